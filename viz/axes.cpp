@@ -41,7 +41,7 @@ void draw_ticks(Canvas& canvas, const FigureLayout& at) {
   }
 }
 
-/// @param room [px] right end of the free part of the row of the x axis' name
+/// @param room [px] right end of the space for the name of the x axis
 void draw_axis_names(Canvas& canvas, const FigureLayout& at, double edge, double room) {
   const std::string x_name = axis_name("x [m]", at.x);
   TextStyle style = small_text();
@@ -53,7 +53,8 @@ void draw_axis_names(Canvas& canvas, const FigureLayout& at, double edge, double
   canvas.text({edge + 12.0, 0.5 * (at.plot.y_min + at.plot.y_max)}, axis_name("y [m]", at.y), style);
 }
 
-/// @return [px] left end of the bar with its text
+/// Draws the scale bar and its text.
+/// @return [px] their left end
 double draw_scale_bar(Canvas& canvas, const FigureLayout& at) {
   const double metres = round_down((at.plot.x_max - at.plot.x_min) / at.scale / 6.0);
   const double right = crisp(at.plot.x_max);

@@ -8,10 +8,10 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kTicksBelow = 68.0;  // tick labels and the axis' name
+constexpr double kTicksBelow = 68.0;  // tick labels and the name of the axis
 constexpr double kAxisName = 34.0;    // left of the tick labels
-constexpr double kLowestMap = 60.0;   // of a page with a height
-constexpr double kLowestPart = 0.4;   // of the width, else
+constexpr double kLowestMap = 60.0;   // smallest height of the map on a page with a height
+constexpr double kLowestPart = 0.4;   // otherwise the smallest height relative to the width
 constexpr double kSmallestWide = 620.0;
 constexpr double kSmallestHigh = 260.0;
 
@@ -19,7 +19,7 @@ struct Size {
   double x = 0.0, y = 0.0;
 };
 
-/// The extent with its margin, never empty.
+/// Returns the extent with its margin; never empty.
 world::Extent padded(const FigureOptions& options) {
   world::Extent e = options.page.extent.value_or(options.extent);
   SF_CHECK(std::isfinite(e.x_min + e.x_max + e.y_min + e.y_max) && e.x_min <= e.x_max && e.y_min <= e.y_max,
@@ -30,7 +30,7 @@ world::Extent padded(const FigureOptions& options) {
   return e;
 }
 
-/// Ticks of the layout's spacing, or closer ones.
+/// Ticks with the layout's spacing, or closer ones.
 Ticks ticks_x(const FigureLayout& at) {
   const Ticks ticks = make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale);
   return ticks.at.size() > 1 ? ticks : ticks_across(at.shown.x_min, at.shown.x_max, at.plot.x_max - at.plot.x_min);
@@ -40,7 +40,7 @@ Ticks ticks_y(const FigureLayout& at) {
   return ticks.at.size() > 1 ? ticks : ticks_up(at.shown.y_min, at.shown.y_max, at.plot.y_max - at.plot.y_min);
 }
 
-/// Grows one side of `shown` about its middle so that it fills `plot` at `scale`.
+/// Extends one side of `shown` symmetrically so that it fills `plot` at `scale`.
 void fill_plot(world::Extent& shown, Size plot, double scale) {
   const double more_x = std::max(0.0, plot.x / scale - (shown.x_max - shown.x_min)) / 2.0;
   const double more_y = std::max(0.0, plot.y / scale - (shown.y_max - shown.y_min)) / 2.0;
@@ -81,13 +81,14 @@ FigureLayout lay_out(const FigureOptions& options) {
   const Size extent{std::max(wanted.x_max - wanted.x_min, 1e-9), std::max(wanted.y_max - wanted.y_min, 1e-9)};
   const Page& page = options.page;
   const double width = page_pixels(page, page.width, options.long_side);
-  // A column is narrow beside its texts: a figure of a given width alone may be higher than wide, up to a column's end.
+  // A column is narrow compared with its texts: a figure with only a width may be taller than wide, up to the height of
+  // a column.
   const double height = page.height > 0.0  ? page_pixels(page, page.height, 0)
                         : page.width > 0.0 ? std::min(1.6 * width, page_pixels(page, kLargestColumn, 0) + 0.0)
                                            : width;
   const double edge = page_edge(page);
 
-  // Labels, legend and scale depend on each other; two iterations suffice.
+  // Labels, legend and scale depend on each other; two iterations are enough.
   FigureLayout layout;
   double left = edge + kAxisName + 40.0;
   double footer = kTicksBelow + kLegendRow + edge;
@@ -107,7 +108,7 @@ FigureLayout lay_out(const FigureOptions& options) {
     layout.plot.x_max = layout.plot.x_min + static_cast<int>(plot.x);
     layout.plot.y_max = layout.plot.y_min + static_cast<int>(plot.y);
 
-    // The scale bar is in the row of the axis' name, so the legend has the whole width.
+    // The scale bar is in the row of the axis name, so the legend can use the full width.
     layout.legend = place_legend(options.legend, layout.plot.x_max - legend_left(page, layout.plot.x_min));
     const int rows = layout.legend.empty() ? 0 : layout.legend.back().row + 1;
     layout.tick_spacing = std::max(layout.tick_spacing, widest_label(ticks_x(layout)) + 20.0);
@@ -115,7 +116,7 @@ FigureLayout lay_out(const FigureOptions& options) {
     footer = kTicksBelow + rows * kLegendRow + edge;
     heading_width = layout.plot.x_max + edge - left - edge;
   }
-  // Two labels along x at least, where they have room.
+  // At least two labels along x, if there is room.
   const auto equal = [&] {
     return make_ticks(layout.shown.x_min, layout.shown.x_max, layout.tick_spacing / layout.scale);
   };

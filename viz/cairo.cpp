@@ -1,4 +1,4 @@
-// The plug-in, the only source that includes Cairo and FreeType.
+// The drawing plug-in, the only source that includes Cairo and FreeType.
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
@@ -19,7 +19,7 @@ constexpr double kPoints = 72.0;  // per inch
 using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
-/// DejaVu from its file, which needs no search of the system's fonts; without the file, the system's sans-serif.
+/// Loads DejaVu from its file, which avoids a search of the system's fonts. Falls back to the system's sans-serif.
 cairo_font_face_t* load_face(bool bold) {
   static FT_Library library = nullptr;
   FT_Face face = nullptr;
@@ -36,7 +36,8 @@ void set_font(cairo_t* to, const Lettering& text) {
   static cairo_font_face_t* const heavy = load_face(true);
   cairo_set_font_face(to, text.bold ? heavy : regular);
   cairo_set_font_size(to, text.size);
-  // Letters of the same shape everywhere: on every machine, at every resolution, in every kind of file.
+  // Disable hinting, so that letters have the same shape on every machine, at every resolution and in every file
+  // format.
   const std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> options(
       cairo_font_options_create(), &cairo_font_options_destroy);
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
@@ -67,7 +68,7 @@ void add_paths(cairo_t* to, const Paths& paths, bool closed) {
   }
 }
 
-/// Paints shapes onto a page. `scale` is the number of the page's pixels per layout pixel; vectors have none.
+/// Paints shapes onto a page. `scale` is the number of page pixels per layout pixel; 0 for vector formats.
 struct Painter {
   cairo_t* to;
   double scale;
@@ -111,7 +112,7 @@ struct Painter {
   void operator()(const CellImage& cells) const;
 };
 
-/// Cells larger than a pixel keep their edges; smaller ones are averaged. Those that are smaller along one side alone
+/// Cells larger than a pixel keep sharp edges; smaller ones are averaged. Cells that are smaller along only one side
 /// are repeated along the other, since filters have no direction.
 void Painter::operator()(const CellImage& cells) const {
   glm::dvec2 cell{(cells.to.x - cells.from.x) / cells.columns, (cells.to.y - cells.from.y) / cells.rows};
@@ -142,7 +143,7 @@ void Painter::operator()(const CellImage& cells) const {
   cairo_restore(to);
 }
 
-/// False when a shape could not be painted.
+/// Returns false if a shape could not be painted.
 bool paint(cairo_t* to, const Drawing& drawing, double scale) {
   cairo_set_line_cap(to, CAIRO_LINE_CAP_ROUND);
   cairo_set_line_join(to, CAIRO_LINE_JOIN_ROUND);
@@ -182,7 +183,7 @@ bool pdf(const Drawing& drawing, double scale, std::string& bytes) {
   const Surface page(
       cairo_pdf_surface_create_for_stream(append, &bytes, drawing.width * points, drawing.height * points),
       &cairo_surface_destroy);
-  // The same figure is the same bytes: no date.
+  // No date, so that equal figures are equal files.
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   {
     const Context to(cairo_create(page.get()), &cairo_destroy);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kLargestSide = 16384;
 
-// Parts of the em height above and below the baseline, of letters without accents.
+// Height above and below the baseline of letters without accents, relative to the em height.
 constexpr double kAscent = 0.78;
 constexpr double kDescent = 0.24;
 
@@ -31,7 +31,7 @@ std::vector<glm::dvec2> circle(glm::dvec2 center, double radius) {
   return points;
 }
 
-/// Length of the UTF-8 character at the start of `text`; 0 when there is none that can be drawn.
+/// Returns the length of the UTF-8 character at the start of `text`, or 0 if it cannot be drawn.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<std::uint8_t>(text[k]); };
   const std::size_t length = byte(0) < 0x80       ? 1
@@ -51,7 +51,7 @@ std::size_t character_length(std::string_view text) {
   return code < kLeast[length] || code > 0x10FFFF || surrogate || none ? 0 : length;
 }
 
-/// `text` with '?' in place of bytes that are not UTF-8 and of control characters.
+/// Returns `text` with '?' in place of invalid UTF-8 and control characters.
 std::string drawable(std::string_view text) {
   std::string out;
   while (!text.empty()) {

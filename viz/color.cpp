@@ -20,7 +20,7 @@ std::uint32_t pack(double r, double g, double b) { return 0xFF000000u | byte(r) 
 
 double cube(double v) { return v * v * v; }
 
-/// Linear RGB of an OKLab colour; outside [0, 1] for colours beyond sRGB.
+/// Linear RGB of an OKLab colour; outside [0, 1] for colours outside sRGB.
 std::array<double, 3> light(const OklabColor& c) {
   const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
   const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
@@ -34,7 +34,7 @@ bool shown(const std::array<double, 3>& rgb) {
   return std::all_of(rgb.begin(), rgb.end(), [](double c) { return c >= 0.0 && c <= 1.0; });
 }
 
-/// As saturated as sRGB allows, up to `chroma`.
+/// Returns a colour as saturated as sRGB allows, with a chroma of at most `chroma`.
 std::uint32_t oklch(double lightness, double chroma, double hue) {
   std::array<double, 3> rgb{};
   do {
@@ -44,7 +44,7 @@ std::uint32_t oklch(double lightness, double chroma, double hue) {
   return pack(to_srgb(rgb[0]), to_srgb(rgb[1]), to_srgb(rgb[2]));
 }
 
-/// A curve in OKLab whose lightness rises linearly from 0.22 to 0.91 while its hue turns from violet through blue and
+/// A curve in OKLab: lightness rises linearly from 0.22 to 0.91 while the hue changes from violet through blue and
 /// green to yellow, as saturated as sRGB allows without a kink.
 constexpr std::array<std::uint32_t, 21> kAnchors{
     0xFF250146u, 0xFF250F55u, 0xFF241E62u, 0xFF202C6Bu, 0xFF1C3A71u, 0xFF184776u, 0xFF13547Cu,

@@ -1,9 +1,9 @@
 #pragma once
-// A drawing: the shapes of a figure in the order in which they are painted. PNG, SVG and PDF files are made of it
-// (viz/picture_file.h), so all three show the same.
+// A drawing: the shapes of a figure in the order in which they are painted. PNG, SVG and PDF files are generated from
+// it (viz/picture_file.h), so all three look the same.
 //
 // Coordinates are layout pixels of 1/180 inch, x right, y down, (0, 0) the upper left corner. Colours are 0xAARRGGBB;
-// alpha is the opacity of the whole shape, however often it overlaps itself. All numbers are finite.
+// alpha is the opacity of the whole shape, even where it overlaps itself. All numbers are finite.
 
 #include <cstdint>
 #include <string>
@@ -24,7 +24,7 @@ struct PixelBox {
 
 using Paths = std::vector<std::vector<glm::dvec2>>;
 
-/// Restricts all later shapes to `box`, in place of the clip before.
+/// Restricts all later shapes to `box`, replacing the previous clip.
 struct Clip {
   PixelBox box;
 };
@@ -44,12 +44,12 @@ struct Lettering {
   std::string text;  ///< valid UTF-8 without control characters, not empty
   int size = 18;     ///< [px] em height, > 0
   bool bold = false;
-  bool upwards = false;     ///< turned by 90 degrees, read from below
+  bool upwards = false;     ///< rotated by 90 degrees, read from below
   glm::dvec2 at;            ///< [px] left end of the baseline
   std::uint32_t color = 0;  ///< opaque
   std::uint32_t halo = 0;   ///< colour of a soft border; alpha 0: none
 };
-/// Cells of one colour each, the top row first, over [from, to).
+/// Single-coloured cells, the top row first, over [from, to).
 struct CellImage {
   glm::dvec2 from, to;
   int columns = 0, rows = 0;
@@ -57,7 +57,7 @@ struct CellImage {
 };
 using Shape = std::variant<Clip, Stroke, Fill, Lettering, CellImage>;
 
-inline constexpr double kHaloWidth = 4.4;  ///< [px] of the line around letters with a halo
+inline constexpr double kHaloWidth = 4.4;  ///< [px] of the border around letters with a halo
 
 struct Drawing {
   int width = 0, height = 0;     ///< [px] in [1, 16384]

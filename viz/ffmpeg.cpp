@@ -1,4 +1,4 @@
-// The plug-in, the only source that includes FFmpeg: VP9 (libvpx) in WebM.
+// The video plug-in, the only source that includes FFmpeg: VP9 (libvpx) in WebM.
 
 #include "viz/video_backend.h"
 
@@ -46,11 +46,11 @@ struct Video {
   std::unique_ptr<AVFrame, FreeFrame> frame;
   std::unique_ptr<AVPacket, FreePacket> packet;
   std::unique_ptr<SwsContext, FreeScaler> scaler;
-  AVStream* stream = nullptr;  ///< of `file`
+  AVStream* stream = nullptr;  ///< owned by `file`
   std::int64_t frames = 0;
 };
 
-/// One thread and no date or version in the file, so that equal frames are equal bytes.
+/// Uses one thread and writes no date or version into the file, so that equal frames give equal bytes.
 void choose_settings(AVCodecContext& codec, const VideoFormat& format) {
   codec.width = format.width;
   codec.height = format.height;
@@ -83,7 +83,7 @@ bool begin(Video& video, const char* path, const VideoFormat& format, std::strin
     return code < 0;
   };
   AVFormatContext* file = nullptr;
-  const std::string url = "file:" + std::string(path);  // no other protocol, whatever its name looks like
+  const std::string url = "file:" + std::string(path);  // prevents other protocols, whatever the file name
   if (failed(avformat_alloc_output_context2(&file, nullptr, "webm", url.c_str()))) return false;
   video.file.reset(file);
   file->flags |= AVFMT_FLAG_BITEXACT;
@@ -113,7 +113,7 @@ bool begin(Video& video, const char* path, const VideoFormat& format, std::strin
   return !failed(avio_open(&file->pb, url.c_str(), AVIO_FLAG_WRITE)) && !failed(avformat_write_header(file, nullptr));
 }
 
-/// Gives the encoder a frame, or its end (null), and writes the packets that are complete. @return error code
+/// Passes a frame to the encoder, or null at the end, and writes the finished packets. @return error code
 int encode(Video& video, const AVFrame* frame) {
   int code = avcodec_send_frame(video.codec.get(), frame);
   while (code >= 0) {

@@ -21,12 +21,12 @@ constexpr double kGauss = 1e-4;  // [T]
 constexpr std::size_t kShades = 160;
 
 // [px]
-constexpr double kRoomForMarks = 9.0;  // per magnet; in denser places marks would hide the field
-constexpr double kGap = 96.0;          // from the map to the profile
-constexpr double kLegendBelow = 72.0;  // the profile's labels
+constexpr double kRoomForMarks = 9.0;  // per magnet; in denser areas marks would hide the field
+constexpr double kGap = 96.0;          // between the map and the profile
+constexpr double kLegendBelow = 72.0;  // for the labels of the profile
 constexpr double kFieldFoot = 18.0;
 
-/// A plot: its box of pixels and the values at its edges.
+/// A plot: its pixel box and the values at its edges.
 struct Plot {
   PixelBox box;
   double x0 = 0.0, x1 = 1.0, y0 = 0.0, y1 = 1.0;
@@ -72,7 +72,7 @@ std::vector<std::uint32_t> shades() {
   return colors;
 }
 
-/// [Gauss] upper end of the colours: the maximum on the map, or a default for a zero field.
+/// [Gauss] Returns the upper end of the colour scale: the maximum on the map, or a default if the field is zero.
 double top_of(const FieldSamples& samples) {
   const double most = *std::max_element(samples.map.begin(), samples.map.end()) / kGauss;
   return most > 0.0 ? most : 1.0;
@@ -108,7 +108,7 @@ std::vector<world::Magnet> all_magnets(const world::World& world) {
   return all;
 }
 
-/// One circle per magnet, filled when the south pole is up.
+/// Draws one circle per magnet, filled if the south pole is up.
 void draw_marks(Canvas& canvas, const world::World& world, const Plot& map) {
   const double scale = (map.box.x_max - map.box.x_min) / (map.x1 - map.x0);
   std::vector<world::Magnet> shown;
@@ -213,7 +213,7 @@ void draw_field(const world::World& world, const FieldView& view, const FieldSam
   const double left = legend_left(page, view.map.x_min);
   const Heading heading = make_heading(title_of(world), subtitle_of(world, view, samples),
                                        view.map.x_max + view.right - left - page_edge(page), page);
-  PixelBox place = view.map;  // below the heading, whatever its lines
+  PixelBox place = view.map;  // below the heading, regardless of its number of lines
   place.y_max += static_cast<int>(heading.height) - place.y_min;
   place.y_min = static_cast<int>(heading.height);
   const double top = place.y_max + kGap;

@@ -1,4 +1,4 @@
-// The view of the field figure, and its samples.
+// The view of the field figure and its samples.
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,11 @@ namespace {
 
 using world::Extent;
 
-// [px] of the map.
-constexpr int kLeft = 78;              // with the page's edge: labels and name of the axis
+// [px] around the map.
+constexpr int kLeft = 78;              // plus the page's edge: labels and name of the axis
 constexpr int kTop = 100;              // a heading of two lines
 constexpr double kFieldBelow = 320.0;  // heading, labels and legend, without the profile
-constexpr double kMapPart = 0.65;      // of a page's height that map and profile share
+constexpr double kMapPart = 0.65;      // of the page height shared by map and profile
 constexpr double kLowestProfile = 90.0;
 constexpr double kNarrowest = 640.0;
 constexpr int kWidest = 1180;
@@ -27,10 +27,10 @@ constexpr double kHighest = 900.0;
 
 constexpr int kFinestCell = 2;        // [px]
 constexpr int kCoarsestCell = 10;     // [px]
-constexpr double kMaxPairs = 1.5e10;  // pairs of magnet and cell: about ten seconds on two cores
+constexpr double kMaxPairs = 1.5e10;  // pairs of a magnet and a cell: about ten seconds on two cores
 constexpr int kProfilePoints = 1201;
 
-/// Bounding box of all magnets at load, with the largest and the smallest height.
+/// Bounding box of all magnets in the loaded world, with their maximum and minimum height.
 struct MagnetBox {
   Extent flat{1e300, 1e300, -1e300, -1e300};
   double low = 1e300, high = -1e300;
@@ -68,7 +68,7 @@ Line default_line(const MagnetBox& box, const Extent& shown) {
   return {{shown.x_min, middle.y}, {shown.x_max, middle.y}};
 }
 
-/// Extends the shorter side, for a limited aspect ratio of the map.
+/// Extends the shorter side to limit the aspect ratio of the map.
 void place_map(FieldView& view, const Page& page) {
   Extent& shown = view.extent;
   const double wide = shown.x_max - shown.x_min;
@@ -90,7 +90,7 @@ void place_map(FieldView& view, const Page& page) {
   view.map = {left, kTop, left + static_cast<int>(width), kTop + static_cast<int>(height)};
 }
 
-/// Approximate number of magnets summed per cell.
+/// Estimates the number of magnets summed per cell.
 double magnets_counted(const world::World& world, const FieldView& view) {
   const double all = static_cast<double>(world.magnets.size());
   const double area = (view.extent.x_max - view.extent.x_min) * (view.extent.y_max - view.extent.y_min);

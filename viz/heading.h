@@ -1,5 +1,5 @@
 #pragma once
-// Title and subtitle of a figure, in as many lines as they need.
+// Title and subtitle of a figure, broken into as many lines as needed.
 
 #include <string>
 #include <vector>
@@ -11,24 +11,24 @@ namespace sf::viz {
 
 struct Heading {
   std::vector<std::string> title, subtitle;  ///< lines
-  double height = 0.0;                       ///< [px] with the margins above and below
+  double height = 0.0;                       ///< [px] including the margins above and below
   double edge = 26.0;                        ///< [px] margin above
 };
 
-/// `text`, shortened until it is at most `width` [px] wide.
+/// Returns `text`, shortened to a width of at most `width` [px].
 std::string fitted_text(std::string text, const TextStyle& style, double width);
 
-/// The same for the name of one of several things: a short last word ("robot 3", "robot sensor 1") stays.
+/// The same for a numbered name: keeps a short last word ("robot 3", "robot sensor 1").
 std::string fitted_name(const std::string& name, const TextStyle& style, double width);
 
-/// `text` in lines of at most `width` [px], broken at spaces; a longer word is shortened.
+/// Breaks `text` at spaces into lines of at most `width` [px]; shortens longer words.
 std::vector<std::string> wrapped_text(const std::string& text, const TextStyle& style, double width);
 
-/// Breaks both texts at spaces into lines of at most `width` [px]; a longer word is shortened. Without lines where the
-/// page has no title.
+/// Breaks both texts at spaces into lines of at most `width` [px]; shortens longer words. Without lines if the page has
+/// no title.
 Heading make_heading(const std::string& title, const std::string& subtitle, double width, const Page& page);
 
-/// @param left [px] of the texts; the heading begins at the picture's upper edge
+/// @param left [px] of the texts; the heading starts at the top of the picture
 void draw_heading(Canvas& canvas, double left, const Heading& heading);
 
 }  // namespace sf::viz

@@ -17,14 +17,14 @@ constexpr int kBarGap = 16;
 constexpr int kBarWidth = 14;
 constexpr int kBarShades = 128;
 
-// Neither end of the scale of colours is black or white, which are those of the cells without a range.
+// The ends of the colour scale are neither black nor white, which mark cells without a range.
 constexpr double kDarkest = 0.16, kLightest = 0.92;
 constexpr std::uint32_t kTooNear = theme::kBlack;
 constexpr std::uint32_t kNoReturn = theme::kWhite;
 
 std::uint32_t shade(double t) { return scale_color(kDarkest + t * (kLightest - kDarkest)); }
 
-/// The least and the greatest finite value; never equal.
+/// The smallest and largest finite value; never equal.
 struct HeatSpan {
   double from = 0.0, to = 1.0;
 };
@@ -41,12 +41,12 @@ HeatSpan span_of(const HeatMap& map) {
 }
 
 std::uint32_t color_of(const HeatMap& map, double value, const HeatSpan& span) {
-  if (std::isnan(value)) return theme::kWhite;  // below hatching
+  if (std::isnan(value)) return theme::kWhite;  // below the hatching
   if (value >= map.limit || std::isinf(value)) return value < 0.0 ? kTooNear : kNoReturn;
   return shade((value - span.from) / (span.to - span.from));
 }
 
-/// The reading that each column of pixels shows; none: hatching.
+/// Returns the reading shown by each pixel column; nullopt: hatching.
 std::vector<std::optional<std::size_t>> shown_readings(const HeatMap& map, int columns, double from, double to) {
   std::vector<std::optional<std::size_t>> shown(static_cast<std::size_t>(columns));
   for (int i = 0; i < columns; ++i) {
@@ -58,7 +58,7 @@ std::vector<std::optional<std::size_t>> shown_readings(const HeatMap& map, int c
   return shown;
 }
 
-/// Cells of the columns [first, last), row by row.
+/// Draws the cells of the columns [first, last), row by row.
 void draw_columns(Canvas& canvas, const HeatMap& map, const PixelBox& plot, const HeatSpan& span,
                   const std::vector<std::optional<std::size_t>>& shown, std::size_t first, std::size_t last) {
   const auto rows = static_cast<int>(map.rows.size());
@@ -70,7 +70,7 @@ void draw_columns(Canvas& canvas, const HeatMap& map, const PixelBox& plot, cons
                {static_cast<int>(last - first), rows, colors});
 }
 
-/// Hatches the cells without a value.
+/// Hatches cells without a value.
 void hatch_missing(Canvas& canvas, const HeatMap& map, const PixelBox& plot,
                    const std::vector<std::optional<std::size_t>>& shown) {
   const double high = (plot.y_max - plot.y_min) / static_cast<double>(map.rows.size());

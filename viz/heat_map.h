@@ -1,5 +1,5 @@
 #pragma once
-// Readings of many elements over time as colours: a row of cells per element. For panels of viz/series_figure.h.
+// Readings with many elements over time as colours, one row of cells per element. For panels of viz/series_figure.h.
 
 #include <cmath>
 #include <string>
@@ -10,32 +10,32 @@
 
 namespace sf::viz {
 
-/// Rule: as many readings as times, and in each a value per row.
+/// Rule: `readings` has one entry per time, each with one value per row.
 struct HeatMap {
-  std::string value_name;                     ///< with its unit, beside the bar of colours: `range [m]`
-  std::vector<std::string> rows;              ///< label of each element, the upper row first
-  std::vector<std::size_t> elements = {};     ///< number of each row's element, for tables; may be empty
-  std::vector<std::string> short_rows = {};   ///< the same for narrow pictures; empty: `rows`
-  std::string short_name = {};                ///< of the rows' axis where these are used
+  std::string value_name;                     ///< with its unit, shown at the colour bar: `range [m]`
+  std::vector<std::string> rows;              ///< label of each element, the top row first
+  std::vector<std::size_t> elements = {};     ///< index of each row's element, for tables; may be empty
+  std::vector<std::string> short_rows = {};   ///< shorter labels for narrow pictures; empty: `rows`
+  std::string short_name = {};                ///< name of the rows' axis if `short_rows` are used
   std::vector<double> times;                  ///< [s] of each reading, in order
   std::vector<std::vector<double>> readings;  ///< by reading and row. NaN: no value; -infinity: too near
-  double limit = HUGE_VAL;                    ///< values from here on are those of no return
-  std::string too_near, no_return;            ///< words of the legend for both
-  double longest_hold = 0.0;                  ///< [s] a reading lasts until the next one, at most as long as this
+  double limit = HUGE_VAL;                    ///< values from this limit on mean no return
+  std::string too_near, no_return;            ///< legend texts for both
+  double longest_hold = 0.0;                  ///< [s] a reading is shown until the next one, but no longer than this
   bool whole = false;                         ///< values are integers
 };
 
-/// [px] of the widest label of a row.
+/// [px] Returns the width of the widest row label.
 double rows_room(const HeatMap& map);
 
-/// [px] room for the bar of colours right of the plot, with its labels.
+/// [px] Returns the width of the colour bar right of the plot, including its labels.
 double bar_room(const HeatMap& map, double height);
 
-/// The words for cells without a value of their own that the map has.
+/// Legend items for the kinds of cells without a value that occur in the map.
 std::vector<LegendItem> heat_legend(const HeatMap& map, double from, double to);
 
-/// The cells in `plot` over [from, to] [s], and the bar of colours to its right. A column of pixels shows the last
-/// reading until its middle; where that is older than `longest_hold`, hatching.
+/// Draws the cells in `plot` over [from, to] [s], and the colour bar to its right. A pixel column shows the last
+/// reading before its middle, or hatching if that is older than `longest_hold`.
 void draw_heat_map(Canvas& canvas, const HeatMap& map, const PixelBox& plot, double from, double to);
 
 }  // namespace sf::viz

@@ -26,25 +26,25 @@ constexpr double kLowestIntervals = 70.0;
 constexpr double kLabelsBelow = 36.0;
 constexpr double kTallestLabel = 170.0;
 constexpr double kNameHeight = 28.0;
-constexpr double kUsualLowest = 150.0;  ///< where the page has no height
+constexpr double kUsualLowest = 150.0;  ///< smallest height if the page has none
 constexpr double kPoint = 5.5;
 constexpr double kCap = 5.0;
-constexpr double kBeside = 5.0;  ///< between points of neighbouring lines at the same x
+constexpr double kBeside = 5.0;  ///< offset between points of adjacent lines at the same x
 constexpr std::uint32_t kOtherLine = 0xFFC4C8CDu;
 
 struct Limits {
   double from = 0.0, to = 1.0;
 };
 
-/// Along an axis: where, and the text.
+/// Labels along an axis: position and text.
 using AxisLabels = std::vector<std::pair<double, std::string>>;
 
-/// What all plots of the figure share.
+/// Axes shared by all plots of the figure.
 struct IntervalAxes {
-  Limits x, y;  ///< x of a logarithmic axis: powers of ten
+  Limits x, y;  ///< powers of ten for a logarithmic x axis
   Ticks values;
   AxisLabels labels;  ///< along x
-  Ticks unit;         ///< of the labels along x: exponent and offset alone
+  Ticks unit;         ///< of the labels along x; only exponent and offset are used
   bool upright = false;
 };
 
@@ -54,7 +54,7 @@ struct IntervalLayout {
   IntervalAxes axes;
   std::vector<PixelBox> plots;
   std::size_t columns = 1;
-  double left = 0.0, below = 0.0;   ///< [px] left end of the plots, and the lower end of the labels of x
+  double left = 0.0, below = 0.0;   ///< [px] left end of the plots, and lower end of the x labels
   std::vector<std::string> y_name;  ///< lines
   std::vector<LegendItem> legend;
   std::vector<LegendPlace> legend_at;
@@ -70,7 +70,7 @@ void for_each_point(const IntervalFigure& figure, Use&& use) {
 
 double place_of(const IntervalFigure& figure, double x) { return figure.logarithmic ? std::log10(x) : x; }
 
-/// The values of x at which something is drawn, each once.
+/// Returns the distinct values of x that are drawn.
 std::vector<double> shown_values(const IntervalFigure& figure) {
   std::vector<double> values;
   for_each_point(figure, [&](const IntervalPoint& p) { values.push_back(p.x); });
@@ -96,7 +96,7 @@ Limits y_limits(const IntervalFigure& figure) {
       if (std::isfinite(v)) y = {std::min(y.from, v), std::max(y.to, v)};
   });
   if (y.from > y.to) return {};
-  const bool zero = y.from >= 0.0 && y.from <= 0.5 * y.to;  // less than half of the axis would be empty
+  const bool zero = y.from >= 0.0 && y.from <= 0.5 * y.to;  // otherwise more than half of the axis would be empty
   if (zero) y.from = 0.0;
   const double pad = y.to > y.from ? 0.06 * (y.to - y.from) : y.to != 0.0 ? 0.05 * std::abs(y.to) : 1.0;
   return {zero ? 0.0 : y.from - pad, y.to + pad};
@@ -107,14 +107,15 @@ bool is_power_of_ten(double value) {
   return power > 0.0 && std::abs(value - power) < 1e-9 * power;
 }
 
-/// "0.35", "20000": with four significant digits or all before the point.
+/// Formats with four significant digits, or all digits before the point: "0.35", "20000".
 std::string plain_number(double value) {
   const double before = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)) + 1e-9) + 1.0;
   return fmt::format("{:.{}g}", value, static_cast<int>(std::clamp(before, 4.0, 15.0)));
 }
 
-/// Labels of one form: powers of ten where all are and some are large or small, else plain numbers in a common unit.
-/// Empty where they have none, since their sizes differ too much or their last digits alone.
+/// Returns labels of the same form: powers of ten if all values are and some are large or small, otherwise plain
+/// numbers in a common unit. Returns none if no common form exists, since the magnitudes differ too much or only the
+/// last digits differ.
 AxisLabels number_labels(const IntervalFigure& figure, const std::vector<double>& values, Ticks& unit) {
   constexpr double kSmall = 1.0001e-4, kLarge = 0.9999e4;
   double most = 0.0;
@@ -140,7 +141,7 @@ AxisLabels number_labels(const IntervalFigure& figure, const std::vector<double>
   return labels;
 }
 
-/// True where labels centred at their values do not touch on `pixels`.
+/// True if labels centred at their values do not touch within `pixels`.
 bool labels_fit(const AxisLabels& labels, const Limits& x, double pixels) {
   double last = -HUGE_VAL;
   for (const auto& [value, text] : labels) {
@@ -151,7 +152,8 @@ bool labels_fit(const AxisLabels& labels, const Limits& x, double pixels) {
   return true;
 }
 
-/// 1, 2 and 5 times powers of ten, 1 alone, or 1 times every second power and so on, within the axis.
+/// Returns the values within the axis: 1, 2 and 5 times powers of ten, only powers of ten, or every second power and so
+/// on.
 std::vector<double> log_values(const Limits& x, int every) {
   std::vector<double> values;
   for (int decade = static_cast<int>(std::floor(x.from)); decade <= x.to; decade += std::max(every, 1))
@@ -161,7 +163,7 @@ std::vector<double> log_values(const Limits& x, int every) {
   return values;
 }
 
-/// Round numbers, two or more: as many as fit.
+/// Labels as many round numbers as fit, at least two.
 void label_round_numbers(const IntervalFigure& figure, double pixels, IntervalAxes& axes) {
   for (int every = 0; figure.logarithmic && every < 40; ++every) {
     axes.labels = number_labels(figure, log_values(axes.x, every), axes.unit);
@@ -176,7 +178,7 @@ void label_round_numbers(const IntervalFigure& figure, double pixels, IntervalAx
     axes.labels = {axes.labels.front(), axes.labels.back()};
 }
 
-/// The swept values where their labels fit, else round numbers.
+/// Labels the swept values if they fit, otherwise round numbers.
 void label_x(const IntervalFigure& figure, double pixels, IntervalAxes& axes) {
   constexpr std::size_t kMostLabels = 8;
   axes.labels.clear();
@@ -217,7 +219,7 @@ std::vector<LegendItem> interval_legend(const IntervalFigure& figure, const Page
   return items;
 }
 
-/// Columns of plots: as many as fit, in rows of about equal length.
+/// Returns the number of columns: as many as fit, in rows of about equal length.
 std::size_t columns_of(std::size_t plots, double room) {
   const auto most = static_cast<std::size_t>(std::clamp((room + kPlotGap) / (kNarrowestPlot + kPlotGap), 1.0, 6.0));
   const std::size_t rows = (plots + most - 1) / most;
@@ -279,7 +281,7 @@ glm::dvec2 pixel_of(const IntervalFigure& figure, const IntervalAxes& axes, cons
           plot.y_max - (y - axes.y.from) / (axes.y.to - axes.y.from) * (plot.y_max - plot.y_min)};
 }
 
-/// Grid lines, and labels where the plot is the first of its row or the last of its column.
+/// Draws grid lines, and labels if the plot is the first of its row or the last of its column.
 void draw_interval_scales(Canvas& canvas, const IntervalAxes& axes, const PixelBox& p, bool first, bool last) {
   TextStyle style = small_text();
   style.across = Anchor::end;
@@ -308,7 +310,7 @@ void draw_bar(Canvas& canvas, const Line& bar, std::uint32_t color) {
     canvas.line(end - glm::dvec2{kCap, 0.0}, end + glm::dvec2{kCap, 0.0}, theme::kOutline, color);
 }
 
-/// The points of a line [px], `aside` to the right of their x; none where there is no mean.
+/// Returns the points of a line [px], moved `aside` to the right of their x; nullopt if there is no mean.
 std::vector<std::optional<glm::dvec2>> places_of(const IntervalFigure& figure, const IntervalAxes& axes,
                                                  const PixelBox& plot, const IntervalLine& line, double aside) {
   std::vector<std::optional<glm::dvec2>> places;
@@ -329,7 +331,7 @@ void draw_through(Canvas& canvas, const std::vector<std::optional<glm::dvec2>>& 
 
 void draw_interval_plot(Canvas& canvas, const IntervalFigure& figure, const IntervalAxes& axes,
                         const IntervalPlot& plot, const PixelBox& box, const Page& page) {
-  canvas.clip({box.x_min - 8, box.y_min - 8, box.x_max + 8, box.y_max + 8});  // points on the border are whole
+  canvas.clip({box.x_min - 8, box.y_min - 8, box.x_max + 8, box.y_max + 8});  // points on the border are not clipped
   for (const IntervalLine& line : plot.others)
     if (figure.joined) draw_through(canvas, places_of(figure, axes, box, line, 0.0), kOtherLine, {});
   for (std::size_t row = 0; row < plot.lines.size(); ++row) {
@@ -357,7 +359,7 @@ void draw_interval_plot(Canvas& canvas, const IntervalFigure& figure, const Inte
               style);
 }
 
-/// Centred below the plots; without the parts before its last point where it is too long.
+/// Centred below the plots. If it is too long, keeps only the part after its last dot.
 void draw_x_name(Canvas& canvas, std::string name, const IntervalLayout& l, double edge) {
   TextStyle style = small_text();
   style.across = Anchor::middle;

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kCell = 4.0;  // [px]
 constexpr int kDirections = 16;
-constexpr double kRing = 9.0;  // [px] step between tested distances
+constexpr double kRing = 9.0;  // [px] step between the distances that are tried
 
-/// The box of `size` in direction `angle` from `mark`, with its nearest side or corner at distance `away`.
+/// Returns the box of `size` in direction `angle` from `mark`, with its nearest side or corner at distance `away`.
 LabelBox box_beside(glm::dvec2 mark, double angle, double away, glm::dvec2 size) {
   const glm::dvec2 d{std::cos(angle), std::sin(angle)};
   const glm::dvec2 middle = mark + away * d + glm::dvec2{0.5 * size.x * d.x, 0.5 * size.y * d.y};
@@ -75,7 +75,7 @@ bool Labels::is_without(const LabelBox& box, int bits) const {
   return true;
 }
 
-// The part of the box over drawings, in [0, 1].
+// Returns the part of the box that covers drawings, in [0, 1].
 double Labels::covered(const LabelBox& box) const {
   const Cells c = cells_of(box);
   int hit = 0;

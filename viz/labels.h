@@ -1,6 +1,6 @@
 #pragma once
-// Placement of texts in a crowded figure: beside their marks, never over each other, and preferably over free space.
-// All [px], y down.
+// Placement of texts in a crowded figure: next to their marks, never overlapping each other, preferably over free
+// space. All [px], y down.
 
 #include <cstdint>
 #include <span>
@@ -19,9 +19,9 @@ struct LabelBox {
 /// Limits of a label's distance from its mark.
 struct LabelRules {
   double nearest = 4.0;    ///< between the mark and the box
-  double farthest = 60.0;  ///< likewise; beyond `leader` a thin line joins label and mark
+  double farthest = 60.0;  ///< between the mark and the box; beyond `leader`, a thin line connects label and mark
   double leader = 14.0;
-  double clear_cost = 1.0;  ///< weight of free space against distance: 0 ignores free space
+  double clear_cost = 1.0;  ///< weight of free space relative to distance; 0 ignores free space
 };
 
 class Labels {
@@ -29,22 +29,22 @@ class Labels {
   /// @param plot labels stay inside it
   explicit Labels(const PixelBox& plot);
 
-  /// Area that labels should preferably not cover: a line of `width`, or the inside of a closed outline.
+  /// Marks an area that labels should avoid if possible: a line of `width`, or the inside of a closed outline.
   void avoid(std::span<const glm::dvec2> line, double width);
   /// A box that no label may cover.
   void forbid(const LabelBox& box);
 
-  /// True when the box is inside the plot and covers neither a drawing nor a label.
+  /// True if the box is inside the plot and covers neither a drawing nor a label.
   bool is_bare(const LabelBox& box) const { return is_without(box, drawn | taken); }
 
-  /// Finds a place for `text` beside one of `marks` (the first of the best), draws it and reserves its box. False,
-  /// without a drawing, when there is no room.
+  /// Finds the best position for `text` next to one of `marks` (the first of equally good ones), draws it and reserves
+  /// its box. Returns false and draws nothing if there is no room.
   bool place(Canvas& canvas, std::span<const glm::dvec2> marks, const std::string& text, const TextStyle& style,
              const LabelRules& rules = {});
 
  private:
   enum Cell : std::uint8_t { bare = 0, drawn = 1, taken = 2 };
-  /// Cells that a box touches: [i_min, i_max] x [j_min, j_max], inside the plot.
+  /// The cells that a box touches: [i_min, i_max] x [j_min, j_max], inside the plot.
   struct Cells {
     int i_min = 0, i_max = 0, j_min = 0, j_max = 0;
   };
@@ -55,7 +55,7 @@ class Labels {
   std::uint8_t at(int i, int j) const {
     return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
   }
-  /// True when the box is inside the plot and none of its cells has one of `bits`.
+  /// True if the box is inside the plot and none of its cells has any of `bits` set.
   bool is_without(const LabelBox& box, int bits) const;
   double covered(const LabelBox& box) const;
   void mark(const LabelBox& box, Cell as);

@@ -16,7 +16,7 @@ constexpr double kTextGap = 9.0;
 constexpr double kItemGap = 30.0;
 constexpr double kMarker = 5.5;
 
-/// [px] room for the sample left of a text.
+/// [px] Returns the width of the sample left of a text.
 double sample_room(const LegendItem& item) { return item.sample == LegendMark::none ? 0.0 : kSampleWidth + kTextGap; }
 
 void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
@@ -135,7 +135,7 @@ void draw_hatching(Canvas& canvas, glm::dvec2 low, glm::dvec2 high) {
   constexpr double kApart = 9.0;
   std::vector<Line> strokes;
   const glm::dvec2 size = high - low;
-  for (double x = kApart; x < size.x + size.y; x += kApart) {  // from the left or lower side up to the right
+  for (double x = kApart; x < size.x + size.y; x += kApart) {  // from the left or lower side to the right
     const double from = std::max(0.0, x - size.y), to = std::min(x, size.x);
     strokes.push_back({{low.x + from, low.y + x - from}, {low.x + to, low.y + x - to}});
   }

@@ -18,12 +18,12 @@ using world::LightState;
 // [px]
 constexpr int kOwnWidth = 1600;
 constexpr double kRow = 34.0;
-constexpr double kBar = 22.0;  ///< height of a bar of red
+constexpr double kBar = 22.0;  ///< height of the bar for red
 constexpr double kBelow = 76.0;
 constexpr double kRoomForMark = 18.0;
-constexpr double kFlash = 7.0;  ///< from one flash to the next
+constexpr double kFlash = 7.0;  ///< between flashes
 
-/// Part of the height of a row's bars: stop is the highest.
+/// Returns the height of a state's bar relative to its row; the bar for stop is the highest.
 double height_of(LightState state) {
   if (state == LightState::red || state == LightState::flashing_red) return 1.0;
   return state == LightState::green ? 0.35 : state == LightState::dark ? 0.08 : 0.65;
@@ -49,7 +49,7 @@ void draw_span(Canvas& canvas, double x0, double x1, double y, LightState state)
   if (x1 - x0 > kRoomForMark) draw_signal(canvas, {0.5 * (x0 + x1), y}, 5.0, item.sample, item.color);
 }
 
-/// The time axis: labels below, lines across all rows.
+/// Draws the time axis: labels below, lines across all rows.
 void draw_times(Canvas& canvas, const PixelBox& plot, double from, double to) {
   TextStyle style = small_text();
   style.across = Anchor::middle;

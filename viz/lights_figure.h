@@ -17,11 +17,11 @@ struct LightSpan {
 
 struct LightRow {
   std::string name;
-  std::vector<LightSpan> spans;  ///< in order of time
+  std::vector<LightSpan> spans;  ///< sorted by time
 };
 
-/// A row per light with a bar per state, which is known by colour, height and the mark of viz/signal_layer.h.
-/// @throws base::InputError naming the path when it cannot be written.
+/// Draws one row per light with a bar per state, distinguished by colour, height and the mark of viz/signal_layer.h.
+/// @throws base::InputError naming the path if it cannot be written.
 void draw_light_states(std::span<const LightRow> rows, const std::string& subtitle, const std::string& path,
                        const Page& page = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// Cells of an occupancy map in figures.
+// Drawing of the cells of an occupancy map.
 
 #include <array>
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace sf::viz {
 
-/// Colours of cells by their state.
+/// Returns the colours of cells by their state.
 const std::array<std::uint32_t, 4>& map_states(MapColors colors);
 
-/// One colour (ARGB) per cell, from the upper left one, row by row.
+/// Returns one colour (ARGB) per cell, row by row from the upper left.
 std::vector<std::uint32_t> pixels_of(const maps::OccupancyGrid& grid, MapColors colors);
 
-/// Each state that some cell has, with its share of all cells.
+/// Returns each state that occurs, with its share of all cells.
 std::vector<LegendItem> state_legend(const maps::CellCounts& cells, MapColors colors);
 
 }  // namespace sf::viz

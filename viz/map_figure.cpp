@@ -24,23 +24,23 @@ constexpr std::size_t kNamedPlaces = 7;
 constexpr int kPitch = 5;  // a cell of 4 and a line of 1
 constexpr std::int64_t kMaxWithGrid = 1600;
 constexpr double kLongestMap = 8000.0;
-constexpr double kMapLeft = 60.0;    // with the page's edge: labels and name of the axis
-constexpr double kMapRight = 14.0;   // with the page's edge
+constexpr double kMapLeft = 60.0;    // plus the page's edge: labels and name of the axis
+constexpr double kMapRight = 14.0;   // plus the page's edge
 constexpr double kMapLabels = 70.0;  // below the map
 constexpr double kNarrowestMap = 640.0;
 constexpr glm::dvec2 kShortestAxes{60.0, 40.0};
 
-/// The map's place in the picture.
+/// Position of the map in the picture.
 struct Layout {
   double scale = kPitch;  ///< [px/cell]
   bool grid = true;
   glm::dvec2 low, high;            ///< [px] upper left and lower right corner of the map
-  glm::dvec2 axes_low, axes_high;  ///< [px] the same of the axes, which are longer where a map is flat
+  glm::dvec2 axes_low, axes_high;  ///< [px] the same for the axes, which are longer than a narrow map
   double width = 0.0;              ///< [px] of the picture
   double height = 0.0;
   std::vector<LegendPlace> legend;
   Heading heading;
-  double left = 0.0, right = 0.0;  ///< [px] beside the map
+  double left = 0.0, right = 0.0;  ///< [px] left and right of the map
 };
 
 Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> legend, const MapFigure& figure,
@@ -90,7 +90,7 @@ void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l
   canvas.image(l.low + line, l.high,
                {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
   if (!l.grid) return;
-  // Single pixels, since lines would be anti-aliased.
+  // Drawn as single pixels, since lines would be anti-aliased.
   const std::vector<std::uint32_t> line_color{theme::kMapGrid};
   for (std::int64_t i = 0; i <= maps::columns(grid.geometry); ++i) {
     const double x = l.low.x + kPitch * static_cast<double>(i);
@@ -102,7 +102,7 @@ void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l
   }
 }
 
-/// [px] of a point of the world.
+/// [px] Returns the position of a point in the world.
 glm::dvec2 pixel(const maps::GridGeometry& geometry, const Layout& l, glm::dvec2 p_W) {
   const double scale = l.scale / geometry.cell;
   return l.low + glm::dvec2{(p_W.x - geometry.left) * scale, (geometry.top - p_W.y) * scale};

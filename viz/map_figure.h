@@ -1,6 +1,6 @@
 #pragma once
-// A robot's own map in the colours of viz/occupancy_figure.h; in those of the thesis also in its style (figure 45):
-// cells of 4 x 4 pixels with a grid of one pixel between them.
+// A map built by a robot, in the colours of viz/occupancy_figure.h. The colours of the thesis also use its style
+// (figure 45): cells of 4 x 4 pixels with a grid of one pixel between them.
 
 #include <string>
 #include <vector>
@@ -14,17 +14,17 @@ namespace sf::viz {
 /// A robot's pose to mark on the map.
 struct PoseMarker {
   std::string name;
-  base::Pose X_WR;  ///< poses outside the map are left out
+  base::Pose X_WR;  ///< poses outside the map are not drawn
 };
 
 struct MapFigure {
   std::string title;
-  std::string subtitle;            ///< precedes the figure's own text: number of cells, and the known part of them
-  std::vector<PoseMarker> places;  ///< at most seven are named beside the map
+  std::string subtitle;            ///< precedes the generated text: the number of cells and the known part of them
+  std::vector<PoseMarker> places;  ///< at most seven are named next to the map
 };
 
-/// Maps of more than 1600 cells along a side are drawn without a grid and reduced as needed.
-/// @throws base::InputError naming the path when it cannot be written.
+/// Maps of more than 1600 cells along a side are drawn without a grid and scaled down as needed.
+/// @throws base::InputError naming the path if it cannot be written.
 void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

@@ -1,5 +1,5 @@
 #pragma once
-// Movers on a figure.
+// Drawing of movers.
 
 #include <cstdint>
 
@@ -8,13 +8,13 @@
 
 namespace sf::viz {
 
-/// [px] A body with a smaller radius is drawn as a dot.
+/// [px] Bodies with a smaller radius are drawn as dots.
 inline constexpr double kSmallestMark = 4.0;
 
-/// The colour of the mover's model, or a neutral one.
+/// Returns the colour of the mover's model, or a neutral one.
 std::uint32_t body_color(const world::World& world, const world::Mover& mover);
 
-/// The filled outline of the mover at the given pose, with a line towards its front.
+/// Fills the outline of the mover at the given pose, with a line towards its front.
 void draw_body(Axes& axes, const world::Mover& mover, const base::Pose& X_WM, std::uint32_t color);
 
 }  // namespace sf::viz

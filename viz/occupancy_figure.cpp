@@ -9,7 +9,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kGridLinesFrom = 5.0;  // [px] smallest side of a cell with a drawn border
+constexpr double kGridLinesFrom = 5.0;  // [px] smallest side of cells with a border
 
 world::Extent extent_of(const maps::GridGeometry& geometry) {
   return {geometry.left, geometry.top - geometry.cell * static_cast<double>(maps::rows(geometry)),
@@ -57,7 +57,8 @@ void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, 
   axes.canvas().image(
       axes.pixel({e.x_min, e.y_max}), axes.pixel({e.x_max, e.y_min}),
       {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
-  if (page.map_colors == MapColors::thesis) draw_cell_borders(axes, grid.geometry);  // free cells of ROS are white
+  if (page.map_colors == MapColors::thesis)
+    draw_cell_borders(axes, grid.geometry);  // ROS colours draw free cells in white
   axes.save(path);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// A map of scans in the greys of ROS' map_server: unknown 205, occupied black, free white. Or in the colours of
-// Vernier's thesis (Virtual Sensor System, 2010, figure 44): unknown dark grey, occupied blue, free white.
+// A map built from scans in the greys of ROS's map_server: unknown 205, occupied black, free white. Alternatively in
+// the colours of Vernier's thesis (Virtual Sensor System, 2010, figure 44): unknown dark grey, occupied blue, free
+// white.
 
 #include <string>
 
@@ -10,7 +11,7 @@
 
 namespace sf::viz {
 
-/// @throws base::InputError naming the path when it cannot be written.
+/// @throws base::InputError naming the path if it cannot be written.
 void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& path,
                     const Page& page = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// Several runs along one lane: the thesis' figures 33, 34, 38 and 39.
+// Several runs along one lane, as in figures 33, 34, 38 and 39 of the thesis.
 
 #include <span>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace sf::viz {
 
-/// Draws lane markings, magnets and walls, the centre line of each path of the world (dashed), and each track.
-/// @throws base::InputError naming the path when it cannot be written.
+/// Draws lane markings, magnets and walls, the centre line of each path in the world (dashed), and each track.
+/// @throws base::InputError naming the path if it cannot be written.
 void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
                       const std::string& subtitle, const std::string& file, const Page& page = {});
 

@@ -11,11 +11,11 @@ namespace {
 
 bool is_finite_line(const Line& l) { return std::isfinite(l.a.x + l.a.y + l.b.x + l.b.y); }
 
-/// Liang and Barsky ("A new concept and method for line clipping", 1984).
+/// Clips by Liang and Barsky ("A new concept and method for line clipping", 1984).
 std::optional<Line> cut_line(const Line& line, const PathBox& box) {
   const glm::dvec2 d = line.b - line.a;
   double from = 0.0, to = 1.0;
-  const auto keep = [&](double step, double room) {  // the part with t * step <= room
+  const auto keep = [&](double step, double room) {  // keeps the part with t * step <= room
     if (step == 0.0) return room >= 0.0;
     if (step < 0.0) from = std::max(from, room / step);
     if (step > 0.0) to = std::min(to, room / step);
@@ -27,8 +27,8 @@ std::optional<Line> cut_line(const Line& line, const PathBox& box) {
   return Line{from > 0.0 ? line.a + from * d : line.a, to < 1.0 ? line.a + to * d : line.b};
 }
 
-/// The part of a closed outline with axis * sign <= limit * sign (Sutherland and Hodgman, "Reentrant polygon clipping",
-/// 1974).
+/// Returns the part of a closed outline with axis * sign <= limit * sign (Sutherland and Hodgman, "Reentrant polygon
+/// clipping", 1974).
 std::vector<glm::dvec2> cut_side(const std::vector<glm::dvec2>& outline, int axis, double sign, double limit) {
   std::vector<glm::dvec2> kept;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -61,7 +61,8 @@ Paths cut_lines(std::span<const Line> lines, const PathBox& box) {
 }
 
 Paths join_edges(std::span<const Line> edges) {
-  // An edge is most often followed by the next one, so its successor is looked for only where an outline ends.
+  // Most edges are followed by the next one in the list, so a search for the successor is needed only at the end of an
+  // outline.
   std::multimap<std::pair<double, double>, std::size_t> starts;
   std::vector<bool> used(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-// Paths of drawings from lines, cut to the visible part, so that files are small and coordinates are in the range of
-// their readers. All [px].
+// Builds the paths of drawings from lines and clips them to the visible part, which keeps files small and coordinates
+// within the range of readers. All [px].
 
 #include <span>
 
@@ -18,14 +18,14 @@ struct PathBox {
   glm::dvec2 low, high;
 };
 
-/// Each line's part in `box`, successive lines that meet as one path. Lines with a number that is not finite are left
-/// out.
+/// Returns the part of each line in `box`; successive lines that meet form one path. Skips lines with numbers that are
+/// not finite.
 Paths cut_lines(std::span<const Line> lines, const PathBox& box);
 
-/// Closed outlines from their directed edges in any order. Edges with a number that is not finite are left out.
+/// Joins directed edges in any order to closed outlines. Skips edges with numbers that are not finite.
 Paths join_edges(std::span<const Line> edges);
 
-/// Closed outlines without what is outside `box`. Parts along its border may remain of those that leave it.
+/// Clips closed outlines to `box`. Outlines that leave the box may keep parts along its border.
 Paths cut_outlines(Paths outlines, const PathBox& box);
 
 }  // namespace sf::viz

@@ -14,7 +14,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kLargestPicture = 32768.0;  // [px] Cairo's
+constexpr double kLargestPicture = 32768.0;  // [px] limit of Cairo
 
 }  // namespace
 

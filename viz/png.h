@@ -1,5 +1,5 @@
 #pragma once
-// PNG files of figures, and the files of pictures in general.
+// PNG files of figures, and writing of picture files in general.
 
 #include <cstdint>
 #include <span>
@@ -8,19 +8,19 @@
 
 namespace sf::viz {
 
-/// Figures, whose areas of one colour repay the search for long matches, or photographs, which do not.
+/// Figures have uniform areas, for which a search for long matches pays off; photographs do not.
 enum class PngContent { figure, photograph };
 
-/// The bytes of a PNG file.
-/// @param rgb 3 bytes a pixel, row by row, the top row first
-/// @param dpi pixels per inch on paper, stated in the file; 0: not stated
+/// Returns the bytes of a PNG file.
+/// @param rgb 3 bytes per pixel, row by row, the top row first
+/// @param dpi pixels per inch on paper, stored in the file; 0: not stored
 std::string encode_png(std::span<const std::uint8_t> rgb, int width, int height,
                        PngContent content = PngContent::figure, double dpi = 0.0);
 
-/// Writes the bytes of a picture. @throws base::InputError when the file cannot be written
+/// Writes the bytes of a picture. @throws base::InputError if the file cannot be written
 void write_picture(const std::string& path, std::string_view bytes);
 
-/// @throws base::InputError when the file cannot be written
+/// @throws base::InputError if the file cannot be written
 void write_png(const std::string& path, std::span<const std::uint8_t> rgb, int width, int height,
                PngContent content = PngContent::figure);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Readings of ranges on a picture: scans of lasers, cones of sonar and infrared.
+// Drawing of range readings: laser scans, cones of sonar and infrared sensors.
 
 #include <vector>
 
@@ -8,17 +8,18 @@
 
 namespace sf::viz {
 
-/// A reading as it is drawn.
+/// A reading to draw.
 struct RangeReading {
-  const record::SensorInfo* sensor = nullptr;  ///< outlives it
-  base::Pose X_WS;                             ///< the sensor at the measurement, so that echoes lie on surfaces
-  std::vector<double> values;                  ///< as in base::ReadingBlock
+  const record::SensorInfo* sensor = nullptr;  ///< must outlive this
+  base::Pose X_WS;             ///< pose of the sensor at the measurement, so that echoes lie on surfaces
+  std::vector<double> values;  ///< as in base::ReadingBlock
 };
 
-/// Whether readings of this sensor are scans or ranges of cones.
+/// True if readings of this sensor are scans or ranges of cones.
 bool has_ranges(const record::RunInfo& info, const record::SensorInfo& sensor);
 
-/// The area in view, and a dot where each beam met a surface. Of cones: the sector up to the echo, fainter without one.
+/// Draws the visible area and a dot where each beam hit a surface. For cones, draws the sector up to the echo, or a
+/// fainter one if there is none.
 /// @param reading of a sensor that `has_ranges`
 void draw_ranges(Axes& axes, const RangeReading& reading);
 

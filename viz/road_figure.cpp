@@ -23,10 +23,10 @@ using world::RoadNetwork;
 using world::RoadZone;
 
 constexpr double kLanePixels = 9.0;    // desired width of a lane
-constexpr double kSpotPixels = 17.0;   // width of a parking spot with room for its checkpoint's id
-constexpr std::uint32_t kCrowded = 6;  // smallest number of spots of an enlarged zone
+constexpr double kSpotPixels = 17.0;   // width of a parking spot with room for the id of its checkpoint
+constexpr std::uint32_t kCrowded = 6;  // smallest number of spots in a zone that is enlarged
 
-/// [px] for which the median lane has the desired width.
+/// [px] Returns the picture size at which the median lane has the desired width.
 int picture_size(const RoadNetwork& network) {
   std::vector<double> widths;
   for (const RoadLane& lane : network.lanes) widths.push_back(lane.width);
@@ -39,7 +39,7 @@ int picture_size(const RoadNetwork& network) {
 
 // ------------------------------------------------------------------------------------------------- insets
 
-/// A part of the network enlarged in a free corner.
+/// An enlarged part of the network in a free corner.
 struct Inset {
   Extent part;  ///< [m]
   PixelBox box;
@@ -55,7 +55,7 @@ Extent joined(const Extent& a, const Extent& b) {
           std::max(a.y_max, b.y_max)};
 }
 
-/// Zones whose spots are too small for their ids, adjacent ones merged.
+/// Returns zones whose spots are too small for their ids; adjacent ones are merged.
 std::vector<Extent> crowded_parts(const RoadView& view, const RoadNetwork& network) {
   std::vector<Extent> parts;
   for (const RoadZone& zone : network.zones) {
@@ -78,7 +78,7 @@ std::vector<Extent> crowded_parts(const RoadView& view, const RoadNetwork& netwo
   return parts;
 }
 
-/// The nearest free box of this size to `from`.
+/// Returns the free box of this size that is nearest to `from`.
 std::optional<PixelBox> free_box(const RoadView& view, const Labels& labels, glm::dvec2 from, int width, int height) {
   std::optional<PixelBox> best;
   double nearest = INFINITY;
@@ -92,7 +92,7 @@ std::optional<PixelBox> free_box(const RoadView& view, const Labels& labels, glm
   return best;
 }
 
-/// The best inset by size and distance: a quarter of additional size is worth 750 pixels of distance.
+/// Returns the best inset by size and distance: a quarter more in size is worth 750 pixels of distance.
 std::optional<Inset> best_inset(const RoadView& view, const Labels& labels, const Extent& part) {
   const glm::dvec2 middle = view.pixel({0.5 * (part.x_min + part.x_max), 0.5 * (part.y_min + part.y_max)});
   std::optional<Inset> best;
@@ -153,7 +153,7 @@ void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& i
 
 // ------------------------------------------------------------------------------------------------- figure
 
-/// @param shown [m] area of the figure: the legend has what is in it
+/// @param shown [m] area of the figure; the legend lists its contents
 std::vector<LegendItem> legend_of(const RoadNetwork& network, const Extent& shown) {
   const auto any = [](const auto& all, auto&& in_view) { return std::any_of(all.begin(), all.end(), in_view); };
   const auto has = [&](glm::dvec2 a, glm::dvec2 b) { return is_in_view(std::array{a, b}, shown); };

@@ -9,9 +9,9 @@
 namespace sf::viz {
 
 /// Draws lanes, lane markings (at least as wide as is visible), driving directions, exits, stop lines, zones, spots,
-/// checkpoints with their ids and the names of segments and zones; texts without room are left out. The size of the
-/// picture follows from the width of its lanes, up to 4000 pixels.
-/// @throws base::InputError naming the path when it cannot be written.
+/// checkpoints with their ids and the names of segments and zones. Texts without room are omitted. The picture size
+/// follows from the lane width, up to 4000 pixels.
+/// @throws base::InputError naming the path if it cannot be written.
 void draw_roads(const world::RoadNetwork& network, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

@@ -16,7 +16,7 @@ constexpr double kShoulder = 7.0;   // [px] asphalt on each side of a marking
 constexpr double kThinnest = 1.3;   // [px] smallest width of a marking
 constexpr double kLaneStep = 0.02;  // [m] along a lane
 
-/// Markings have square ends, canvas lines round ones: each piece becomes a quadrilateral.
+/// Markings have square ends but canvas lines have round ones, so each piece is drawn as a quadrilateral.
 void add_band(Axes& axes, const LaneMarking& marking, std::vector<Line>& edges) {
   const double half = 0.5 * std::max(marking.width, kThinnest / axes.scale());
   for (std::size_t i = 0; i + 1 < marking.line.size(); ++i) {
@@ -28,7 +28,7 @@ void add_band(Axes& axes, const LaneMarking& marking, std::vector<Line>& edges) 
   }
 }
 
-/// All lanes of the world's paths, from edge to edge.
+/// Draws all lanes of the world's paths, from edge to edge.
 void draw_lanes(Axes& axes, const world::World& world) {
   std::vector<Line> edges;
   for (const world::Path& path : world.paths)

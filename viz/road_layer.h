@@ -1,5 +1,5 @@
 #pragma once
-// Lane markings and magnets: the layer of the ground.
+// The ground layer: lane markings and magnets.
 
 #include <vector>
 
@@ -10,17 +10,17 @@
 
 namespace sf::viz {
 
-/// Lane markings in their colours on a band of asphalt, so that white ones are visible; at least a pixel wide. Lanes of
-/// the world's paths are asphalt from edge to edge.
+/// Draws lane markings, at least a pixel wide, in their colours on a band of asphalt, so that white ones are visible.
+/// Lanes of the world's paths are asphalt from edge to edge.
 void draw_lane_markings(Axes& axes, const world::World& world);
 
-/// Lanes and exits as bands as wide as the lanes; zones with their parking spots.
+/// Draws lanes and exits as bands of lane width, and zones with their parking spots.
 void draw_streets(Axes& axes, const world::RoadNetwork& roads);
 
-/// One dot per magnet: red with the north pole up, blue with the south pole up.
+/// Draws one dot per magnet: red if the north pole is up, blue if the south pole is up.
 void draw_magnets(Axes& axes, const world::World& world);
 
-/// Items for the parts of this layer in the world.
+/// Legend items for the objects of this layer in the world.
 std::vector<LegendItem> road_legend(const world::World& world);
 
 }  // namespace sf::viz

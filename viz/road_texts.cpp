@@ -1,4 +1,4 @@
-// Texts of a road network: names, and ids of checkpoints.
+// Texts of a road network: names and checkpoint ids.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ using world::RoadZone;
 
 constexpr std::size_t kLongestName = 32;
 constexpr double kShortestNamed = 45.0;  // [px] of a street
-constexpr std::uint32_t kMaxLanes = 8;   // lanes of a segment that are tried for its name
+constexpr std::uint32_t kMaxLanes = 8;   // number of lanes of a segment that are tried for its name
 
 bool is_in(const DetailViews& places, glm::dvec2 p) {
   return std::any_of(places.begin(), places.end(), [&](const world::Extent& e) {
@@ -39,7 +39,7 @@ TextStyle label_style(int size, std::uint32_t color, bool bold) {
   return style;
 }
 
-/// Places a name beside one of several points along the segment.
+/// Places a name next to one of several points along the segment.
 void label_segments(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
   const TextStyle style = label_style(15, theme::kInk, true);
   for (const world::RoadSegment& segment : network.segments) {
@@ -53,7 +53,7 @@ void label_segments(const RoadView& view, const RoadNetwork& network, Labels& la
     }
     const std::string number = std::to_string(segment.id);
     bool named = !segment.name.empty() && segment.name != number;
-    // A short street's whole name would stand for its neighbours, too.
+    // On a short street, the full name could be mistaken for a neighbour's.
     double longest = 0.0;
     for (std::uint32_t i = 0; i < segment.lanes; ++i)
       longest = std::max(longest, length_of(network.lanes[segment.first_lane + i]) * view.scale);

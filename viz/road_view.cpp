@@ -48,7 +48,7 @@ void draw_edges(const RoadView& view, const RoadLane& lane) {
   view.canvas.polyline(pixels(view, lane.right_edge), theme::kHairline, theme::kLaneEdge);
 }
 
-// Stop lines are among the markings; they are drawn over with their own colour later.
+// The markings include stop lines, which are drawn over later in their own colour.
 void draw_lane_markings(const RoadView& view, const RoadNetwork& network) {
   for (const world::LaneMarking& marking : world::lane_markings_of(network))
     view.canvas.polyline(pixels(view, marking.line), std::max(marking.width * view.scale, kThinnestPaint),

@@ -1,5 +1,5 @@
 #pragma once
-// A part of a road network on a part of a picture.
+// Draws a part of a road network on a part of a picture.
 
 #include <cstdint>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace sf::viz {
 
-/// The part of the world on the canvas, north up.
+/// Maps a part of the world to the canvas, north up.
 struct RoadView {
   Canvas& canvas;      ///< the caller clips it to `box`
   PixelBox box;        ///< [px]
@@ -25,19 +25,19 @@ struct RoadView {
 
 std::vector<glm::dvec2> pixels(const RoadView& view, const std::vector<glm::dvec2>& line);
 
-/// Lanes, lane markings, directions, zones, spots, exits, stop lines and checkpoints, without texts.
+/// Draws lanes, lane markings, directions, zones, spots, exits, stop lines and checkpoints, without texts.
 void draw_network(const RoadView& view, const world::RoadNetwork& network);
 
-/// At most `most` characters of a name for a figure; the name may hold any bytes.
+/// Returns at most `most` characters of a name for a figure; the name may contain any bytes.
 std::string printable(const std::string& name, std::size_t most);
 
-/// Marks the areas that texts should preferably not cover.
+/// Marks the areas that texts should avoid if possible.
 void avoid_network(const RoadView& view, const world::RoadNetwork& network, Labels& labels);
 
-/// Areas of the world [m] that another view shows enlarged; empty: none.
+/// Areas of the world [m] that another view enlarges; empty: none.
 using DetailViews = std::vector<world::Extent>;
 
-/// Names of zones and segments and ids of checkpoints, except those within `elsewhere`.
+/// Draws names of zones and segments and checkpoint ids, except those within `elsewhere`.
 void draw_texts(const RoadView& view, const world::RoadNetwork& network, Labels& labels, const DetailViews& elsewhere);
 
 }  // namespace sf::viz

@@ -43,7 +43,7 @@ std::vector<std::size_t> robots_in_view(const world::World& world, const world::
 RunView::RunView(const world::World& world, const RunViewOptions& options)
     : world_(world), options_(options), view_(world, options.view) {}
 
-/// The box of all followed movers with a margin; while none of them is there, the camera stays.
+/// Moves to the bounding box of all followed movers with a margin. If all of them are absent, the camera does not move.
 void RunView::follow(const RunFrame& frame) {
   std::optional<world::Extent> box;
   for (const std::size_t mover : options_.followed) {
@@ -66,7 +66,7 @@ void RunView::draw_contacts(Axes& axes, const RunFrame& frame) const {
   }
 }
 
-/// Below the robots, where no other name is.
+/// Below the robots, unless another name is there.
 void RunView::draw_names(Axes& axes, const RunFrame& frame) const {
   const std::vector<std::size_t> seen = robots_in_view(world_, axes.layout().shown, frame.X_WM);
   if (seen.size() > kMostNames) return;
@@ -85,7 +85,7 @@ void RunView::draw_names(Axes& axes, const RunFrame& frame) const {
   }
 }
 
-/// Time at the upper left, scale bar at the lower right.
+/// Draws the time at the upper left and the scale bar at the lower right.
 void RunView::draw_texts(Axes& axes, const RunFrame& frame) const {
   Canvas& canvas = axes.canvas();
   TextStyle style = text_style(axes.layout(), 0.03);

@@ -1,6 +1,6 @@
 #pragma once
 // Frames of a video of a run: the world from above with its robots, contacts and lights, readings of some robots, names
-// where they are few, the simulated time and a scale bar.
+// if there are few robots, the simulated time and a scale bar.
 
 #include <cstdint>
 #include <string>
@@ -15,22 +15,22 @@ namespace sf::viz {
 struct RunFrame {
   double time = 0.0;                      ///< [s] simulated
   std::vector<base::Pose> X_WM;           ///< one per mover; absent ones are not drawn
-  std::vector<std::uint8_t> contacts;     ///< one per mover: 1 where something stopped it
-  std::vector<world::LightState> lights;  ///< one per light; empty: by their plans
+  std::vector<std::uint8_t> contacts;     ///< one per mover: 1 if something stopped it
+  std::vector<world::LightState> lights;  ///< one per light; empty: computed from their plans
   std::vector<RangeReading> ranges;
 };
 
 struct RunViewOptions {
   TopViewOptions view;
-  std::vector<std::size_t> followed;  ///< movers that the camera follows; empty: it stays
-  double around = 5.0;                ///< [m] shown at least on each side of the followed movers, > 0
+  std::vector<std::size_t> followed;  ///< movers that the camera follows; empty: the camera does not move
+  double around = 5.0;                ///< [m] minimum margin on each side of the followed movers, > 0
   std::string note;                   ///< after the time, such as "x 4"
 };
 
-/// One thread at a time, and no other may draw.
+/// Not thread-safe; no other thread may draw at the same time.
 class RunView {
  public:
-  /// @param world as for TopView
+  /// @param world see TopView
   RunView(const world::World& world, const RunViewOptions& options);
 
   PixelImage paint(const RunFrame& frame);

@@ -16,13 +16,13 @@ namespace {
 constexpr double kUsualTickAcross = 110.0;
 constexpr double kUsualTickUp = 60.0;
 constexpr double kLowestTickUp = 20.0;
-constexpr double kLabelGap = 16.0;    ///< between neighbouring labels
-constexpr double kSmallestGap = 9.0;  ///< of the only two
+constexpr double kLabelGap = 16.0;    ///< between adjacent labels
+constexpr double kSmallestGap = 9.0;  ///< if there are only two
 
 constexpr int kMostDecimals = 4;
-constexpr double kLargeNumber = 1e5;  ///< labels from here on take an exponent
+constexpr double kLargeNumber = 1e5;  ///< larger labels use an exponent
 
-/// @param always also where labels are short without
+/// @param always also if labels are short without an exponent
 Ticks with_exponent(Ticks ticks, double from, double to, bool always = false) {
   ticks.exponent = label_exponent(std::max(std::abs(from), std::abs(to)), always ? kMostDecimals + 1 : ticks.decimals);
   return ticks;
@@ -33,12 +33,13 @@ Ticks ticks_apart(double from, double to, double pixels, double apart, bool whol
   return with_exponent(make_ticks(from, to, whole ? std::max(step, 1.0) : step), from, to);
 }
 
-/// [px] between neighbouring ticks; infinite where there are less than two.
+/// [px] Returns the distance of adjacent ticks; infinite if there are fewer than two.
 double spacing(const Ticks& ticks, double from, double to, double pixels) {
   return ticks.at.size() < 2 ? HUGE_VAL : (ticks.at[1] - ticks.at[0]) / (to - from) * pixels;
 }
 
-/// Every `every`-th of the ticks: the multiples of that number where there are two, else those about the middle.
+/// Returns every `every`-th tick: the multiples of that number if there are at least two, otherwise ticks around the
+/// middle.
 Ticks every_nth(const Ticks& all, std::size_t every) {
   const auto first_multiple = static_cast<std::size_t>(
       std::fmod(static_cast<double>(every) - std::fmod(std::round(all.at[0] / all.step), static_cast<double>(every)),
@@ -50,13 +51,14 @@ Ticks every_nth(const Ticks& all, std::size_t every) {
   return ticks;
 }
 
-/// Short axes, on which multiples of no round step have room: two or more multiples of a finer one, as coarse as can
-/// be. Empty where none `fit`.
+/// For short axes on which multiples of no round step fit: returns two or more multiples of a finer step, as coarse as
+/// possible. Empty if none `fit`.
 template <class Fit>
 Ticks sparse_ticks(double from, double to, bool whole, Fit&& fit, bool exponent = false) {
   constexpr int kSteps = 7;
   double step = round_down(to - from);
-  const double least = std::max(whole ? 1.0 : 0.0, 1e-13 * std::max(std::abs(from), std::abs(to)));  // of doubles
+  const double least =
+      std::max(whole ? 1.0 : 0.0, 1e-13 * std::max(std::abs(from), std::abs(to)));  // resolution of doubles
   for (int i = 0; i < kSteps && step >= least; ++i, step = round_down(0.51 * step)) {
     const Ticks fine = with_exponent(make_ticks(from, to, step), from, to, exponent);
     for (std::size_t every = 1; every < fine.at.size(); ++every)
@@ -65,7 +67,8 @@ Ticks sparse_ticks(double from, double to, bool whole, Fit&& fit, bool exponent 
   return {};
 }
 
-/// Labels as differences from a round number below all of them, for values that differ in their last digits only.
+/// Labels values as differences from a round number below all of them, for values that differ only in their last
+/// digits.
 template <class Fit>
 Ticks offset_ticks(double from, double to, bool whole, Fit&& fit) {
   const double round = std::pow(10.0, std::ceil(std::log10(to - from)));

@@ -10,10 +10,10 @@ namespace sf::viz {
 
 namespace {
 
-/// Weights whose sum is 0, unexplored, only after hundreds of scans.
+/// With these weights, a sum of exactly 0 (unexplored) can occur only after hundreds of scans.
 constexpr maps::LogOddsUpdate kRule{.hit = 801, .miss = 100, .limit = 32767};
 
-constexpr double kLongest = 4000.0;  // [cells] a map of 4096 x 4096 cells has the largest number of words
+constexpr double kLongest = 4000.0;  // [cells] a map of 4096 x 4096 cells has the maximum number of words
 
 }  // namespace
 

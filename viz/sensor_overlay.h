@@ -1,5 +1,6 @@
 #pragma once
-// Sensors of robots other than lasers, at their poses at load: fans of lane edge sensors, elements of magnetometers.
+// Draws sensors other than lasers at the loaded poses of their robots: fans of lane edge sensors, elements of
+// magnetometers.
 
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace sf::viz {
 /// @throws base::InputError with file and line for a sensor with invalid settings.
 void draw_sensors(Axes& axes, const world::World& world);
 
-/// Items for the sensors of this layer in the world.
+/// Legend items for the sensors of this layer in the world.
 std::vector<LegendItem> sensor_legend(const world::World& world);
 
 }  // namespace sf::viz

@@ -19,19 +19,19 @@ constexpr std::size_t kNamed = 7;
 
 // [px]
 constexpr double kPanelTitle = 34.0;      ///< above each plot
-constexpr double kSeriesTicks = 68.0;     ///< labels and the axis' name, below the last plot
+constexpr double kSeriesTicks = 68.0;     ///< labels and name of the axis, below the last plot
 constexpr double kSeriesAxisName = 34.0;  ///< left of the labels
 constexpr double kLowestPlot = 70.0;
-constexpr double kNameBelow = 24.0;   ///< of an axis' name below its plot, at most
-constexpr double kTitleLifted = 4.0;  ///< above labels of its axis
+constexpr double kNameBelow = 24.0;   ///< maximum extension of an axis name below its plot
+constexpr double kTitleLifted = 4.0;  ///< above the labels of its axis
 constexpr double kLoneDot = 2.2;
-constexpr double kSmallestMove = 0.3;  ///< shorter steps of a curve are left out
+constexpr double kSmallestMove = 0.3;  ///< shorter steps of a curve are skipped
 
 struct Span {
   double from = 0.0, to = 1.0;
 };
 
-/// One panel on the picture.
+/// Layout of one panel.
 struct SeriesPlot {
   PixelBox plot;
   Span time;   ///< [s]
@@ -72,7 +72,7 @@ Span time_span(const SeriesOptions& options) {
   return options.from_zero ? with_zero(*span) : *span;
 }
 
-/// The span of a panel's values with a margin, never empty.
+/// Returns the span of a panel's values with a margin; never empty.
 Span value_span(const Panel& panel, bool from_zero) {
   std::optional<Span> span;
   for (const Series& series : panel.series) widen(span, series.values, [](double v) { return std::isfinite(v); });
@@ -80,7 +80,7 @@ Span value_span(const Panel& panel, bool from_zero) {
   if (panel.from_zero) span->from = std::min(span->from, 0.0);
   if (from_zero) span = with_zero(*span);
   const double size = span->to - span->from;
-  if (panel.whole && size == 0.0) return {span->from - 0.1, span->from + 1.1};  // two integers
+  if (panel.whole && size == 0.0) return {span->from - 0.1, span->from + 1.1};  // contains two integers
   const double pad = size > 0.0 ? 0.06 * size : span->from != 0.0 ? 0.05 * std::abs(span->from) : 1.0;
   if ((from_zero || panel.from_zero) && span->from == 0.0) return {0.0, span->to + pad};
   return {span->from - pad, span->to + pad};
@@ -90,7 +90,7 @@ bool has_value(const Series& series) {
   return std::any_of(series.values.begin(), series.values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// Rows of the named series: all of up to eight, or seven from the first to the last.
+/// Returns the rows of the named series: all if there are up to eight, otherwise seven from the first to the last.
 std::vector<std::size_t> named_rows(const Panel& panel) {
   std::vector<std::size_t> drawn, rows;
   for (std::size_t row = 0; row < panel.series.size(); ++row)
@@ -107,7 +107,7 @@ std::span<const double> style_of(std::size_t row, const Page& page) {
   return page.line_styles ? line_style(row) : std::span<const double>();
 }
 
-/// What the legend of a panel shows.
+/// Returns the legend items of a panel.
 std::vector<LegendItem> legend_of(const Panel& panel, const Span& time, const Page& page) {
   if (panel.map) return heat_legend(*panel.map, time.from, time.to);
   std::vector<LegendItem> items;
@@ -120,27 +120,27 @@ std::vector<LegendItem> legend_of(const Panel& panel, const Span& time, const Pa
   return items;
 }
 
-/// One legend below both then suffices.
+/// If true, one legend below both is enough.
 bool same_legend(const std::vector<LegendItem>& a, const std::vector<LegendItem>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const LegendItem& one, const LegendItem& other) {
     return one.sample == other.sample && one.color == other.color && one.text == other.text;
   });
 }
 
-/// The picture's width, its heading, and its panels.
+/// Width of the picture, heading and panels.
 struct SeriesLayout {
   int width = 0;
   Heading heading;
   std::vector<SeriesPlot> places;
 };
 
-/// The lines of a panel's name of its axis. The gap below a plot is room for it, too.
+/// Returns the lines of a panel's axis name. The name may extend into the gap below the plot.
 std::vector<std::string> y_lines(const Panel& panel, const Span& shown, double height) {
   if (panel.map) return name_lines(panel.y_name, height + kNameBelow);
   return name_lines(axis_name(panel.y_name, ticks_up(shown.from, shown.to, height, panel.whole)), height + kNameBelow);
 }
 
-/// [px] left end of the plots, right of the widest label.
+/// [px] Returns the left end of the plots, right of the widest label.
 double plots_left(const SeriesOptions& options, double height, double edge) {
   double widest = 0.0;
   std::size_t lines = 1;
@@ -153,7 +153,7 @@ double plots_left(const SeriesOptions& options, double height, double edge) {
   return widest + edge + kSeriesAxisName + kNameLine * (static_cast<double>(lines) - 1.0) + 14.0;
 }
 
-/// [px] right of the plots.
+/// [px] Returns the space right of the plots.
 double plots_right(const SeriesOptions& options, double height, double edge) {
   double room = edge;
   for (const Panel& panel : options.panels)
@@ -161,7 +161,8 @@ double plots_right(const SeriesOptions& options, double height, double edge) {
   return room;
 }
 
-/// [px] height of one plot: of the page's height, or in proportion to a narrow page, as far as a column is high.
+/// [px] Returns the height of one plot, given by the page height, or in proportion to a narrow page up to the height of
+/// a column.
 /// @param width of the plots
 double plot_height(const SeriesOptions& options, const Page& page, double heading, double width) {
   const auto panels = static_cast<double>(options.panels.size());
@@ -175,7 +176,7 @@ double plot_height(const SeriesOptions& options, const Page& page, double headin
   return std::min({own, std::max(0.62 * width, 2.0 * kLowestPlot), part_of(kLargestColumn)});
 }
 
-/// [px] height of the picture.
+/// [px] Returns the height of the picture.
 double picture_height(const SeriesLayout& layout, double edge) {
   const SeriesPlot& last = layout.places.back();
   const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
@@ -209,7 +210,7 @@ void place_panels(SeriesLayout& layout, const SeriesOptions& options, const Page
   }
 }
 
-/// Heat maps have short labels of their rows where the long ones would take half of the picture.
+/// Uses the short row labels of heat maps if the long ones would take half of the picture.
 SeriesOptions with_fitting_rows(SeriesOptions options, const Page& page) {
   const double edge = page_edge(page), width = page_pixels(page, page.width, options.width);
   const double height = plot_height(options.panels.size());
@@ -234,7 +235,7 @@ SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
   }
   place_panels(layout, options, page, height);
   if (!(page.height > 0.0)) return layout;
-  // Legends and titles have their heights now.
+  // The heights of legends and titles are now known.
   const double more = page_pixels(page, page.height, 0) - picture_height(layout, edge);
   height = std::max(kLowestPlot, height + std::floor(more / static_cast<double>(options.panels.size())));
   place_panels(layout, options, page, height);

@@ -24,7 +24,7 @@ constexpr SectorStyle kGreenBuoy{theme::kGreenBuoy, 0.14, 0.55};
 constexpr SectorStyle kField{theme::kForceField, 0.14, 0.55};
 constexpr double kLightRadius = 6.0;  // [px]
 
-/// A state by colour and shape, so that it is known without colours too.
+/// Shows a state by colour and shape, so that it is recognizable without colours, too.
 struct LightMark {
   LightState state;
   LegendMark mark;

@@ -33,14 +33,14 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// `fill="#rrggbb"`, with an opacity where there is one.
+/// `fill="#rrggbb"`, with an opacity if the colour is not opaque.
 std::string paint(const char* what, std::uint32_t color) {
   std::string text = fmt::format(" {}=\"#{:06x}\"", what, color & 0xFFFFFFu);
   if (color >> 24 != 0xFF) text += fmt::format(" {}-opacity=\"{:.3g}\"", what, (color >> 24) / 255.0);
   return text;
 }
 
-/// Hundredths of a layout pixel are 1.4 micrometres.
+/// Rounds to hundredths of a layout pixel, 1.4 micrometres.
 std::string number(double value) {
   std::string text = fmt::format("{:.2f}", value);
   text.erase(text.find_last_not_of('0') + 1);

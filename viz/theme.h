@@ -1,6 +1,6 @@
 #pragma once
-// Colours and line widths of figures; scales of values: viz/color.h. Colours are ARGB; curves take the colours of Okabe
-// and Ito (2002), which remain distinct for colour-blind readers.
+// Colours and line widths of figures; for colour scales see viz/color.h. Colours are ARGB. Curves use the colours of
+// Okabe and Ito (2002), which remain distinct for colour-blind readers.
 
 #include <array>
 #include <cstdint>
@@ -82,7 +82,7 @@ inline constexpr double kOutline = 1.5;
 inline constexpr double kCurve = 2.0;
 inline constexpr double kBold = 2.5;
 
-/// Dashes of curves by their row: on, off, ... [px]; with round ends, so each is visible a line's width longer.
+/// Dash patterns of curves by row: on, off, ... [px]; the round ends make each dash one line width longer.
 inline constexpr double kDashed[] = {11.0, 7.0};
 inline constexpr double kDotted[] = {0.1, 5.0};
 inline constexpr double kDashDot[] = {13.0, 6.0, 0.1, 6.0};

@@ -9,7 +9,7 @@
 namespace sf::viz {
 namespace {
 
-/// Digits after the point that distinguish multiples of a round step.
+/// Returns the number of digits after the point that distinguish multiples of a round step.
 int decimals_of(double step) { return std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9))); }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kMargin = 0.02;  // of the longer side of a world that is shown as a whole
+constexpr double kMargin = 0.02;  // of the longer side, if the whole world is shown
 
 world::Extent with_margin(const world::Extent& e) {
   const double margin = kMargin * std::max({e.x_max - e.x_min, e.y_max - e.y_min, 1e-3});
@@ -37,7 +37,7 @@ void check(const TopViewOptions& options) {
                     e.x_min, e.y_min, e.x_max, e.y_max));
 }
 
-/// The wanted area in the middle of the picture, at the largest scale that shows all of it.
+/// Centres the requested area in the picture, at the largest scale that shows all of it.
 FigureLayout layout_of(const world::World& world, const TopViewOptions& options) {
   check(options);
   const world::Extent e = options.extent ? *options.extent : with_margin(world.extent);

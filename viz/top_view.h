@@ -1,5 +1,5 @@
 #pragma once
-// A camera above a world, for pictures of a run at many frames a second: pixels without frame and texts.
+// Views of a world from above, for pictures of a run at many frames per second: pixels without frame and texts.
 //
 //   TopView view(world, {.width = 640, .height = 480});
 //   while (running) show(view.paint(poses, time));
@@ -20,24 +20,24 @@ namespace sf::viz {
 struct TopViewOptions {
   static constexpr int kLongestSide = 4096;
   int width = 640, height = 480;        ///< [px] in [1, kLongestSide]
-  std::optional<world::Extent> extent;  ///< [m] area to show at least, finite and not empty; none: the whole world
+  std::optional<world::Extent> extent;  ///< [m] minimum area to show, finite and not empty; nullopt: the whole world
 };
 
 class TopView {
  public:
-  /// @param world must outlive it, unchanged but for the poses of movers
-  /// @throws base::InputError for options out of range, and without Cairo
+  /// @param world must outlive it; only the poses of movers may change
+  /// @throws base::InputError for options out of range, or if Cairo is missing
   TopView(const world::World& world, const TopViewOptions& options);
 
-  /// Ground, walls and traffic lights, and the body of each mover.
+  /// Paints ground, walls and traffic lights, and the body of each mover.
   /// @param X_WM one per mover, in the order of `World::movers`
   /// @param time [s] of the traffic lights
   PixelImage paint(std::span<const base::Pose> X_WM, double time) const;
 
-  // For pictures with more layers: bare axes, ground and walls, and the bodies, each drawn onto the one before.
+  // For pictures with more layers: axes with ground and walls, then the bodies drawn onto them.
   Axes begin() const;
   void draw_bodies(Axes& axes, std::span<const base::Pose> X_WM) const;
-  /// Moves the camera: another area is in the middle from now on. Paints the static layer again where it differs.
+  /// Moves the camera: centres the view on another area. Repaints the static layer if the view changes.
   void look_at(const world::Extent& extent);
 
  private:

@@ -21,7 +21,7 @@ namespace {
 
 using world::World;
 
-/// Up to this number of tracks, all are as thick as those of convoys.
+/// Up to this number, all tracks are as thick as those of convoys.
 constexpr std::size_t kFew = 12;
 
 enum class Group { car, convoy, other };
@@ -30,7 +30,7 @@ std::uint32_t color_of(Group group) {
   return group == Group::car ? theme::kCar : group == Group::convoy ? theme::kVermillion : theme::kOtherRobot;
 }
 
-/// Groups of movers: followers and followed movers form convoys; movers of an uncommon size form a group of their own.
+/// Groups movers: followers and followed movers form convoys; movers of an uncommon size form a separate group.
 std::vector<Group> groups_of(const World& world, const TownFinalState& end) {
   std::map<double, int> sizes;
   for (const std::uint32_t row : end.movers) ++sizes[world.movers[row].radius];
@@ -79,7 +79,7 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, const T
   return options;
 }
 
-/// A line from the follower's middle to the edge of the robot ahead, with an arrow head at its end.
+/// Draws a line from the centre of the follower to the edge of the robot ahead, with an arrow head at its end.
 void draw_tie(Axes& axes, const base::Pose& from, const base::Pose& to, double radius) {
   const glm::dvec2 a = axes.pixel({from.x, from.y});
   const glm::dvec2 d = axes.pixel({to.x, to.y}) - a;

@@ -1,5 +1,5 @@
 #pragma once
-// A fleet's run in a town: streets, tracks, final poses, convoys and the state of traffic lights.
+// A run of a fleet in a town: streets, tracks, final poses, convoys and the state of traffic lights.
 
 #include <cstdint>
 #include <span>
@@ -12,16 +12,16 @@
 
 namespace sf::viz {
 
-/// The final state beside the tracks.
+/// The final state, drawn with the tracks.
 struct TownFinalState {
-  double time = 0.0;                   ///< [s] time of the final state; lights are drawn as at this time
+  double time = 0.0;                   ///< [s] time of the final state, also for the lights
   std::vector<std::uint32_t> movers;   ///< row in `World::movers` of each track
   std::vector<std::uint32_t> follows;  ///< per track: the followed track; world::kNone: none
 };
 
-/// Draws each track as a thin line with the robot's body at its end. Robots in convoys and their tracks have a colour
-/// of their own, and each follower is joined to the robot ahead; robots of an uncommon shape have a third colour.
-/// @throws base::InputError naming the path when it cannot be written, or when roads can no longer be read.
+/// Draws each track as a thin line with the robot's body at its end. Robots in convoys and their tracks have a separate
+/// colour, and a line connects each follower with the robot ahead; robots of an uncommon shape have a third colour.
+/// @throws base::InputError naming the path if it cannot be written, or if roads can no longer be read.
 void draw_town(const world::World& world, std::span<const Track> tracks, const TownFinalState& end,
                const std::string& path, const Page& page = {});
 

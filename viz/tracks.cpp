@@ -10,7 +10,7 @@ namespace sf::viz {
 
 namespace {
 
-/// [px] shorter steps are left out of a path: they are invisible and cost as much as long ones.
+/// [px] shorter steps of a path are skipped: they are invisible and cost as much as long ones.
 constexpr double kSmallestStep = 0.7;
 /// [px] smallest reach of a cross with a border.
 constexpr double kBordered = 5.0;
@@ -52,7 +52,7 @@ void draw_contacts(Axes& axes, const Track& track, double reach, double line_wid
     if (!track.contacts[i] || (i > 0 && track.contacts[i - 1]) || !is_finite(track.poses[i])) continue;
     const glm::dvec2 at = axes.pixel({track.poses[i].x, track.poses[i].y});
     if (length(at - last) < reach) continue;
-    // A pale border makes large crosses visible on a dot of any colour.
+    // A pale border makes large crosses visible on dots of any colour.
     if (reach >= kBordered) draw_cross(axes.canvas(), at, reach, line_width + 2.4, theme::kWhite);
     draw_cross(axes.canvas(), at, reach, line_width, theme::kContact);
     last = at;

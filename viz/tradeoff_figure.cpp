@@ -18,16 +18,16 @@ namespace {
 
 // [px]
 constexpr int kTradeoffWidth = 1400;
-constexpr int kTradeoffLeft = 124;       ///< with the page's edge
-constexpr int kTradeoffRight = 14;       ///< with the page's edge
-constexpr double kErrorNameLine = 24.0;  ///< of an axis' name of several lines
+constexpr int kTradeoffLeft = 124;       ///< plus the page's edge
+constexpr int kTradeoffRight = 14;       ///< plus the page's edge
+constexpr double kErrorNameLine = 24.0;  ///< line height of axis names with several lines
 constexpr int kPlot = 400;
 constexpr int kLowestPanel = 120;
-constexpr int kBetween = 150;            ///< title of a panel, and labels below its plot
-constexpr double kNothing = 120.0;       ///< column of errors that are 0, at most a quarter of the plot,
+constexpr int kBetween = 150;            ///< between panels, for a title and the labels below a plot
+constexpr double kNothing = 120.0;       ///< column for errors of 0: at most a quarter of the plot,
 constexpr double kLeastNothing = 104.0;  ///< but wide enough for its label and that of the next power of ten
 
-/// Errors below this are rounding errors and count as 0.
+/// Smaller errors are rounding errors and count as 0.
 constexpr double kLeast = 1e-12;
 
 /// The range of powers of ten that contains the values.
@@ -52,7 +52,7 @@ struct PlotArea {
   PixelBox plot;
   Decades error;
   double edge = 0.0;     ///< [px] of the page
-  double fastest = 1.0;  ///< [1/s] upper end; the lower one is 0
+  double fastest = 1.0;  ///< [1/s] upper end of the axis; the lower end is 0
 
   double nothing() const { return std::clamp(0.25 * (plot.x_max - plot.x_min), kLeastNothing, kNothing); }
   double x(double error_value) const {
@@ -71,7 +71,7 @@ std::string rate_text(double rate) {
   return fmt::format("{:g}", std::abs(rate));  // no -0
 }
 
-/// Powers of ten from one label to the next: two labels at least, at most twelve.
+/// Returns the powers of ten per label, for two to twelve labels.
 int decades_apart(const PlotArea& at) {
   constexpr double kUsual = 100.0, kGap = 6.0;  // [px]
   const int all = at.error.to - at.error.from;
@@ -113,7 +113,7 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   canvas.text({at.edge + 20.0, 0.5 * (p.y_min + p.y_max)}, panel.rate_name, style);
 }
 
-/// The line through the Pareto-optimal modes.
+/// Draws the line through the Pareto-optimal modes.
 void draw_front(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) {
   std::vector<TradeoffPoint> front;
   for (const TradeoffPoint& point : panel.points)
@@ -126,7 +126,7 @@ void draw_front(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
 
 /// "skip4, 25 % covered".
 std::string label_of(const TradeoffPoint& point) {
-  const double percent = std::floor(100.0 * point.covered.part);  // never 100 when an element is not covered
+  const double percent = std::floor(100.0 * point.covered.part);  // never 100 if an element is not covered
   return fmt::format("{}, {:.0f} % covered", point.name, percent);
 }
 

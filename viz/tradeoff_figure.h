@@ -1,5 +1,5 @@
 #pragma once
-// Speed over error, one panel per sensor type. Points further up and to the left are better.
+// Speed over error, one panel per sensor type. Points to the upper left are better.
 
 #include <span>
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace sf::viz {
 
-/// The elements for which an error bound is stated.
+/// The elements with an error bound.
 struct BoundedShare {
   double part = 0.0;   ///< [-] share of all elements, in [0, 1]
   double high = 0.0;   ///< their largest error
-  double bound = 0.0;  ///< not used when the share is 0
+  double bound = 0.0;  ///< unused if the share is 0
 };
 
 /// One accuracy mode. Rule: rates and errors are not negative.
@@ -21,7 +21,7 @@ struct TradeoffPoint {
   std::string name;
   double rate = 0.0;  ///< [1/s] > 0
   double low = 0.0, middle = 0.0,
-         high = 0.0;   ///< errors of all elements, ascending; below 1e-12 they count as 0; infinite: beyond the plot
+         high = 0.0;  ///< errors of all elements, ascending; below 1e-12 they count as 0; infinite: outside of the plot
   bool front = false;  ///< Pareto-optimal: no other mode is both faster and more accurate
   BoundedShare covered;
 };
@@ -36,7 +36,7 @@ struct TradeoffPanel {
 /// Errors are on a logarithmic axis, rates begin at 0. A point is at its `middle` error, with a whisker from `low` to
 /// `high`. A ring marks the bound of the covered elements, a cross their largest error; names include the covered
 /// share.
-/// @throws base::InputError naming the path when it cannot be written.
+/// @throws base::InputError naming the path if it cannot be written.
 void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
                    const std::string& path, const Page& page = {});
 

@@ -23,13 +23,13 @@ using world::World;
 
 constexpr std::size_t kNamedTracks = 7;
 constexpr std::size_t kNamedEnds = 150;
-constexpr std::uint32_t kOtherTrack = 0xFF9AA0A8u;  ///< beside labelled ones
+constexpr std::uint32_t kOtherTrack = 0xFF9AA0A8u;  ///< of tracks without labels if others have labels
 
 bool is_labelled(const Track& track, const TrackLabels& labels) {
   return std::find(labels.names.begin(), labels.names.end(), track.name) != labels.names.end();
 }
 
-/// Labelled tracks have the colours of a figure of their own.
+/// Labelled tracks are coloured as if they were alone in the figure.
 std::uint32_t color_of(std::span<const Track> tracks, std::size_t i, const TrackLabels& labels) {
   if (labels.names.empty()) return tracks[i].color.value_or(row_color(i, tracks.size()));
   if (!is_labelled(tracks[i], labels)) return kOtherTrack;
@@ -81,7 +81,7 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, std::
   return world.name.empty() ? text : world.name + ": " + text;
 }
 
-/// @param world its part that the figure shows
+/// @param world the part that the figure shows
 std::vector<LegendItem> legend_of(const World& world, const world::Extent& shown, std::span<const Track> tracks,
                                   const TrackLabels& labels, const Page& page) {
   const auto visible = [&](const Pose& pose) {
@@ -120,8 +120,8 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::st
   return options;
 }
 
-/// Names of more tracks than the legend has room for, in their colours beside their ends, as far as there is room.
-/// @return the number of those without
+/// Labels tracks in their colours at their ends, as far as there is room, for more tracks than fit in the legend.
+/// @return the number of tracks without a label
 std::size_t draw_end_names(Axes& axes, std::span<const Track> tracks, const TrackLabels& wanted) {
   const std::size_t most = wanted.all ? kNamedEnds : kLabelledTracks;
   if (wanted.names.empty() && ((!wanted.all && tracks.size() <= kNamedTracks) || tracks.size() > most))
@@ -158,7 +158,7 @@ std::size_t draw_trajectories(const World& world, std::span<const Track> tracks,
   draw_lane_markings(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
-  // Labelled tracks over the others.
+  // Draw labelled tracks on top.
   std::vector<std::size_t> order(tracks.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !is_labelled(tracks[i], labels); });

@@ -1,5 +1,5 @@
 #pragma once
-// A video of pictures: VP9 in WebM, by FFmpeg, a plug-in.
+// A video file: VP9 in WebM, encoded by the FFmpeg plug-in.
 
 #include <cstdint>
 #include <string>
@@ -11,25 +11,25 @@ namespace sf::viz {
 
 inline constexpr const char* kVideoSuffix = ".webm";
 
-/// One thread at a time. The same frames are the same bytes.
+/// Not thread-safe. Equal frames give equal bytes.
 class VideoFile {
  public:
-  /// @throws base::InputError without the plug-in, naming its package, and where the file cannot be written
+  /// @throws base::InputError if the plug-in is missing, naming its package, or the file cannot be written
   VideoFile(const std::string& path, const VideoFormat& format);
-  /// Ends the file as `finish` does; errors are lost.
+  /// Ends the file as `finish` does, but ignores errors.
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;
 
-  /// The next frame. @param image of the format's size. @throws base::InputError where the file cannot be written
+  /// Appends a frame. @param image of the format's size. @throws base::InputError if the file cannot be written
   void add(const PixelImage& image);
-  /// Writes what is left, and the index that players seek by. @throws base::InputError as above
+  /// Writes the remaining data and the index for seeking. @throws base::InputError as above
   void finish();
 
  private:
   std::string path_;
   VideoFormat format_;
-  void* video_;  ///< of the plug-in; null: finished
+  void* video_;  ///< owned by the plug-in; null: finished
 };
 
 }  // namespace sf::viz

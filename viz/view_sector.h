@@ -1,5 +1,5 @@
 #pragma once
-// A sector between two bearings with a reach: fields of view of sensors, beams of emitters.
+// Draws a sector between two bearings up to a range: fields of view of sensors, beams of emitters.
 
 #include <cstdint>
 
@@ -10,8 +10,8 @@ namespace sf::viz {
 
 struct SectorStyle {
   std::uint32_t color = 0;  ///< 0xAARRGGBB
-  double inside = 0.0;      ///< opacity, 0 to 1
-  double border = 0.0;      ///< opacity, 0 to 1
+  double inside = 0.0;      ///< opacity in [0, 1]
+  double border = 0.0;      ///< opacity in [0, 1]
   int sides = 32;           ///< segments of the arc
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The area that a laser covers, for display only: a few beams against the walls nearby, without the farm's accuracy.
+// The area that a laser covers, for display only: a few beams against nearby walls, without the farm's accuracy.
 
 #include <vector>
 
@@ -8,8 +8,8 @@
 
 namespace sf::viz {
 
-/// The ends of `beams` >= 2 beams spread over the field of view, in order of bearing, each at the first wall at the
-/// sensor's height or at range_max. Movers are ignored. [m] world frame
+/// Returns the ends of `beams` >= 2 beams over the field of view, sorted by bearing, each at the first wall at the
+/// sensor's height or at range_max. Ignores movers. [m] world frame
 std::vector<glm::dvec2> visible_points(const world::World& world, const base::Pose& X_WS,
                                        const raycast::ScanSettings& scan, int beams);
 

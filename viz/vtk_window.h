@@ -1,6 +1,6 @@
 #pragma once
-// VTK's interactive window on a recorded run. VTK is in a plug-in (viz/vtk/plugin.h) that is loaded when
-// a window is opened. Needs a display and OpenGL.
+// VTK's interactive window for a recorded run. VTK is in a plug-in (viz/vtk/plugin.h) that is loaded when a window is
+// opened. Needs a display and OpenGL.
 
 #include <functional>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace sf::viz {
 
-/// What moves.
+/// The moving objects of a scene.
 struct Frame3d {
   PolyData bodies, beams;
 };
@@ -22,16 +22,16 @@ struct Scene3d {
   PolyData walls, roads;
   std::optional<GridData> field;              ///< cell arrays `magnitude` [T] and `in_plane` (x, y, 0) [T]
   std::vector<double> times;                  ///< [s] of each frame, ascending, at least one
-  std::function<Frame3d(std::size_t)> frame;  ///< of a row of `times`
-  std::size_t first = 0;                      ///< row of `times` to begin with
-  std::function<void()> opened;               ///< called once the window is open for a user
-  std::function<bool()> stop;                 ///< true: close the window
+  std::function<Frame3d(std::size_t)> frame;  ///< of an index into `times`
+  std::size_t first = 0;                      ///< initial index into `times`
+  std::function<void()> opened;               ///< called once the window has opened for a user
+  std::function<bool()> stop;                 ///< polled; true closes the window
   int width = 1280, height = 800;             ///< [px] of the window
 };
 
-/// Shows the scene until its window is closed, or `stop` says so. Space plays and pauses, the arrow keys step, the
-/// slider chooses the time, q closes.
-/// @param picture not null: takes the window's pixels once, and returns without waiting for a user
+/// Shows the scene until its window is closed or `stop` returns true. Space plays and pauses, the arrow keys step, the
+/// slider sets the time, q closes.
+/// @param picture not null: receives the window's pixels once, and the function returns without waiting for a user
 /// @throws base::InputError without a display
 void show_window(const Scene3d& scene, PixelImage* picture = nullptr);
 

@@ -15,7 +15,7 @@ namespace {
 
 enum class Kind { solid, passable, unseen, overhead };
 
-/// [m] height above all movers and their loads; infinite without movers.
+/// Returns the height [m] above all movers and their loads; infinite without movers.
 double headroom(const world::World& world) {
   double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
   for (const world::Mover& mover : world.movers) {
@@ -65,7 +65,7 @@ void draw_group(Canvas& canvas, const WallGroup& group, Kind kind, const Paint& 
 }  // namespace
 
 void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
-  // Walls invisible to lasers are drawn beneath visible ones.
+  // Draw walls that are invisible to lasers beneath visible ones.
   std::map<std::tuple<bool, std::uint32_t, Kind>, WallGroup> groups;
   const double room = headroom(world);
   for (const world::Segment& s : world.walls) {

@@ -1,5 +1,5 @@
 #pragma once
-// The static part of a world on a figure.
+// Draws the static part of a world.
 
 #include <vector>
 
@@ -10,14 +10,14 @@ namespace sf::viz {
 
 enum class WallColors {
   of_models,  ///< blocks in their own colours, floor plans in slate
-  quiet       ///< all in light grey, behind more important layers
+  quiet       ///< light grey, behind more important layers
 };
 
 /// Fills solids and draws outlines: solid lines for walls that stop robots, dashed ones for walls that do not, dotted
-/// grey ones for walls invisible to lasers; faint and dashed for walls above all movers (bridges, crowns of trees).
+/// grey ones for walls invisible to lasers, faint dashed ones for walls above all movers (bridges, tree crowns).
 void draw_walls(Axes& axes, const world::World& world, WallColors colors);
 
-/// One item per kind of wall in the world.
+/// Returns one legend item per kind of wall in the world.
 std::vector<LegendItem> wall_legend(const world::World& world, WallColors colors);
 
 }  // namespace sf::viz

@@ -35,7 +35,8 @@ constexpr std::size_t kOutlinedViews = 300;
 
 bool crowded(const World& world) { return world.movers.size() > kNamedMovers; }
 
-/// [px] The outline of a laser's visible area, counter-clockwise in the world; a full turn has no corner at the sensor.
+/// [px] Returns the outline of a laser's visible area, counter-clockwise in the world; a full turn has no corner at the
+/// sensor.
 std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS,
                                      const LaserSettings& laser) {
   std::vector<glm::dvec2> points;
@@ -47,7 +48,7 @@ std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const
   return points;
 }
 
-/// A few fields of view are drawn one by one, so that overlaps are visible; many as one translucent union, with thin
+/// Draws a few fields of view one by one, so that overlaps are visible. Draws many as one translucent union, with thin
 /// outlines up to a limit.
 void draw_views(Axes& axes, const World& world) {
   const bool many = crowded(world);
@@ -71,7 +72,7 @@ void draw_views(Axes& axes, const World& world) {
   }
 }
 
-/// A dashed circle around a mover that follows TAG packets.
+/// Draws a dashed circle around a mover that follows TAG packets.
 void draw_tag(Axes& axes, const Mover& mover) {
   const glm::dvec2 middle = axes.pixel({mover.X_WM.x, mover.X_WM.y});
   const double radius = std::max(mover.radius * axes.scale(), kSmallestMark) + 4.0;
@@ -82,7 +83,7 @@ void draw_tag(Axes& axes, const Mover& mover) {
   draw_dashes(axes.canvas(), circle, 2.0, 6.0, 3.0, theme::kTag);
 }
 
-/// Names beside their robots, never over each other, robots or lights; rather none than one on another.
+/// Draws names next to their robots, never over each other, robots or lights; omits names without room.
 void draw_names(Axes& axes, const World& world) {
   TextStyle style = small_text();
   style.halo = theme::kWhite;
@@ -105,7 +106,7 @@ void draw_names(Axes& axes, const World& world) {
   }
 }
 
-/// "laser 270 deg, 8 m": the common value of all lasers of one colour, or their range.
+/// "laser 270 deg, 8 m": the common value of all lasers with one colour, or their range of values.
 std::vector<LegendItem> view_legend(const World& world, const world::Extent& shown) {
   struct Seen {
     std::set<double> fovs, ranges;
@@ -131,7 +132,7 @@ std::vector<LegendItem> view_legend(const World& world, const world::Extent& sho
   return items;
 }
 
-/// @param world its part that the figure shows
+/// @param world the part that the figure shows
 std::vector<LegendItem> legend_of(const World& world, const World& whole, const world::Extent& shown) {
   std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
   const auto ground = road_legend(world);

@@ -1,5 +1,5 @@
 #pragma once
-// The world as loaded, seen from above.
+// The loaded world, seen from above.
 
 #include <string>
 
@@ -8,10 +8,10 @@
 
 namespace sf::viz {
 
-/// Draws walls, movers with their headings and the fields of view of their lasers, at their poses at load. Movers are
-/// named when there are at most twenty.
+/// Draws walls, movers with their headings and the fields of view of their lasers, at the loaded poses. Names movers if
+/// there are at most twenty.
 /// @param world with an up-to-date `extent` (see world::update_extent_and_hash)
-/// @throws base::InputError naming the path when it cannot be written.
+/// @throws base::InputError naming the path if it cannot be written.
 void draw_world(const world::World& world, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

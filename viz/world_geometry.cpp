@@ -17,7 +17,7 @@ std::int64_t add_point(PolyData& data, glm::dvec2 p, double z) {
   return static_cast<std::int64_t>(data.points.size()) - 1;
 }
 
-/// Appends to the array of that name, which is made by its first value.
+/// Appends to the array with that name, which is created with its first value.
 void append(std::vector<DataArray>& arrays, const char* name, std::initializer_list<double> values) {
   auto found = std::find_if(arrays.begin(), arrays.end(), [&](const DataArray& a) { return a.name == name; });
   if (found == arrays.end()) found = arrays.insert(arrays.end(), {name, static_cast<int>(values.size()), {}});
@@ -42,14 +42,14 @@ std::string name_of(const world::World& world, std::uint32_t model) {
   return model < world.models.size() ? world.models[model].name : "";
 }
 
-/// The top of a part of a body.
+/// The top face of a part of a body.
 struct Lid {
   std::vector<glm::dvec2> outline;  ///< [m] mover's frame
   double z = 0.0;                   ///< [m] above the mover's origin
   std::uint32_t model = 0;
 };
 
-/// One per closed outline of a mover's models.
+/// Returns one lid per closed outline of a mover's models.
 std::vector<Lid> lids_of(const world::Mover& mover) {
   std::map<std::uint32_t, std::vector<Line>> edges;
   std::map<std::uint32_t, double> tops;

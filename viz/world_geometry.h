@@ -1,5 +1,5 @@
 #pragma once
-// A world and its recorded runs as geometry for VTK (viz/vtk_files.h). All [m], world frame, z up.
+// Converts a world and its recorded runs to geometry for VTK (viz/vtk_files.h). All [m], world frame, z up.
 
 #include <span>
 #include <vector>
@@ -12,15 +12,16 @@
 
 namespace sf::viz {
 
-/// One upright rectangle per wall segment. Cell arrays: `model` (row of the world's models), `height` [m], `rgb` [0,
-/// 255], `laser`, `robots`: 1 where lasers see it and where it stops robots; `name` of the model.
+/// Returns one upright rectangle per wall segment. Cell arrays: `model` (row of the world's models), `height` [m],
+/// `rgb` [0, 255]; `laser` and `robots` are 1 if lasers see the wall or robots stop at it; `name` of the model.
 PolyData walls_geometry(const world::World& world);
 
-/// Lane markings and paths as lines on the ground. Cell arrays: `width` [m], `rgb` [0, 255], `kind`: 0 marking, 1 path.
+/// Returns lane markings and paths as lines on the ground. Cell arrays: `width` [m], `rgb` [0, 255], `kind`: 0 marking,
+/// 1 path.
 PolyData roads_geometry(const world::World& world);
 
-/// The sides and tops of the bodies of movers at `poses`, one per mover of the world; absent ones are left out. Cell
-/// arrays: `robot` (row of the world's movers), `rgb`; `name`.
+/// Returns the sides and tops of the bodies of movers at `poses`, one per mover of the world; absent movers are
+/// omitted. Cell arrays: `robot` (row of the world's movers), `rgb`; `name`.
 PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses);
 
 /// A mover's state at one tick.
@@ -30,12 +31,12 @@ struct MotionSample {
   double speed = 0.0;  ///< [m/s]
   bool contact = false;
 };
-/// A line per robot, broken where it is absent. Point arrays: `time` [s], `speed` [m/s], `yaw` [rad], `contact`; cell
-/// array: `robot`; `name`.
+/// Returns one line per robot, with gaps while it is absent. Point arrays: `time` [s], `speed` [m/s], `yaw` [rad],
+/// `contact`; cell array: `robot`; `name`.
 PolyData trajectories_geometry(const world::World& world, std::span<const std::vector<MotionSample>> motions);
 
-/// Scans as dots at the ends of their beams, or as the beams. Point arrays: `range` [m], `bearing`
-/// [rad], `hit` (row of the met model; -1: none in range), `bound` [m] (largest error; infinite: none is stated),
+/// Collects scans as dots at the ends of their beams, or as the beams. Point arrays: `range` [m], `bearing` [rad],
+/// `hit` (row of the model that was hit; -1: none in range), `bound` [m] (largest error; infinite: not stated),
 /// `robot`, `sensor`, `time` [s].
 class ScanGeometry {
  public:

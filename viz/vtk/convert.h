@@ -1,5 +1,5 @@
 #pragma once
-// Our plain tables as VTK's objects, which the caller owns.
+// Converts plain tables to VTK objects, which the caller owns.
 
 #include "viz/vtk_files.h"
 

@@ -12,7 +12,7 @@ namespace {
 
 template <class Writer>
 bool write_data(vtkDataObject* data, const std::string& path) {
-  vtkObject::GlobalWarningDisplayOff();  // the caller reports
+  vtkObject::GlobalWarningDisplayOff();  // the caller reports errors
   vtkNew<Writer> writer;
   writer->SetInputData(data);
   writer->SetFileName(path.c_str());

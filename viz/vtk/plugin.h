@@ -1,6 +1,6 @@
 #pragma once
-// The functions of the plug-in with VTK, `sensorfarm_vtk.so`, which is loaded when a file is first written or a window
-// is opened. They do not throw.
+// The interface of the VTK plug-in, `sensorfarm_vtk.so`, which is loaded when a file is first written or a window is
+// opened. The functions do not throw.
 
 #include <string>
 
@@ -10,17 +10,17 @@
 namespace sf::viz {
 
 struct VtkPlugin {
-  /// @return false when the file cannot be written
+  /// @return false if the file cannot be written
   bool (*write_poly_data)(const PolyData& data, const std::string& path);
   bool (*write_grid)(const GridData& data, const std::string& path);
-  /// @return what is missing for a window; empty when all went well
+  /// @return the missing prerequisite for a window; empty on success
   std::string (*show_window)(const Scene3d& scene, PixelImage* picture);
 };
 
-/// The name of the plug-in's only symbol: `extern "C" const VtkPlugin sensorfarm_vtk`.
+/// The only symbol of the plug-in: `extern "C" const VtkPlugin sensorfarm_vtk`.
 inline constexpr const char* kVtkSymbol = "sensorfarm_vtk";
 
-/// Loads the plug-in, once. @throws base::InputError naming the file when it cannot be loaded
+/// Loads the plug-in once. @throws base::InputError naming the file if it cannot be loaded
 const VtkPlugin& vtk_plugin();
 
 // Within the plug-in.

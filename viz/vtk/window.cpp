@@ -42,10 +42,10 @@ namespace sf::viz {
 namespace {
 
 constexpr int kContours = 10;
-constexpr int kSeeds = 14;           // stream lines along each side
+constexpr int kSeeds = 14;           // number of stream lines along each side
 constexpr unsigned long kTick = 50;  // [ms] between frames while playing
 
-/// `data` with its `rgb` as the colours that VTK paints.
+/// Returns `data` with its `rgb` as the colours that VTK paints.
 vtkSmartPointer<vtkPolyData> painted(const PolyData& data) {
   auto out = vtkSmartPointer<vtkPolyData>::Take(new_poly_data(data));
   for (const DataArray& array : data.cell_data) {
@@ -59,7 +59,7 @@ vtkSmartPointer<vtkPolyData> painted(const PolyData& data) {
   return out;
 }
 
-/// A thing in the scene.
+/// An object in the scene.
 struct Part {
   vtkNew<vtkPolyDataMapper> mapper;
   vtkNew<vtkActor> actor;
@@ -135,7 +135,7 @@ class Window {
     for (Part* part : {&walls_, &roads_, &beams_, &bodies_}) renderer_->AddActor(part->actor);
   }
 
-  /// Contours of the magnitude, evenly in its logarithm, and stream lines of the field in the plane.
+  /// Adds contours of the magnitude at logarithmic steps, and stream lines of the field in the plane.
   void add_field(const GridData& grid) {
     const auto image = vtkSmartPointer<vtkImageData>::Take(new_image(grid));
     vtkNew<vtkCellDataToPointData> points;
@@ -205,7 +205,7 @@ class Window {
     static_cast<vtkSliderRepresentation2D*>(slider_->GetRepresentation())->SetValue(scene_.times[row_]);
   }
 
-  /// From the south, at 55 degrees.
+  /// Views the scene from the south, at 55 degrees.
   void place_camera() {
     renderer_->ResetCamera();
     vtkCamera* camera = renderer_->GetActiveCamera();
@@ -255,8 +255,8 @@ class Window {
 }  // namespace
 
 std::string show_scene(const Scene3d& scene, PixelImage* picture) {
-  // VTK ends the process when it finds no display, so we look first. The connection stays open: a server whose only
-  // client leaves resets itself, and VTK's connection with it.
+  // VTK ends the process if there is no display, so check first. Keep the connection open: an X server resets when its
+  // only client disconnects, which would break VTK's connection.
   const std::unique_ptr<Display, decltype(&XCloseDisplay)> display(XOpenDisplay(nullptr), &XCloseDisplay);
   if (display == nullptr)
     return "no display: the window needs X11; set DISPLAY, or run it under xvfb-run, or take `view DIR` in a browser";

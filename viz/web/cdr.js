@@ -6,7 +6,7 @@ const arrays = { uint8: Uint8Array, byte: Uint8Array, char: Uint8Array, int8: In
 class Reader {
   constructor(view) {
     this.view = view;
-    this.origin = 4;  // alignment counts from behind the encapsulation
+    this.origin = 4;  // alignment counts from the end of the encapsulation header
     this.at = 4;
     this.little = view.getUint8(1) === 1;
     if (view.getUint8(0) !== 0) throw new Error('not plain CDR');
@@ -67,7 +67,7 @@ function parseFields(text) {
   return fields;
 }
 
-/** A function that reads a message (a DataView) of this definition into an object. */
+/** Returns a function that parses a message (a DataView) of this definition into an object. */
 export function readerOf(schema) {
   const [root, ...rest] = schema.split(/^=+$/m);
   const types = new Map();
@@ -112,7 +112,7 @@ export function readerOf(schema) {
   return (view) => read(new Reader(view));
 }
 
-/** A geometry_msgs/msg/Twist in the plane. */
+/** Serializes a planar geometry_msgs/msg/Twist. */
 export function twistBytes(forward, left, turn) {
   const view = new DataView(new ArrayBuffer(4 + 48));
   view.setUint8(1, 1);

@@ -1,12 +1,12 @@
-// Draws a frame: what does not move, then trails, robots, lights, and the selected robot's readings.
+// Draws a frame: the static scene, then trails, robots, lights, and the selected robot's readings.
 
 import { theme, fade, edgeOf, headingOn, moverColors, onPaper } from './theme.js';
 import { drawReadingAbove, drawReadingBelow } from './sensors.js';
 
 const smallest = 3;  // [px] radius below which a robot is a dot
 const namedRobots = 30;
-const paths = 60;  // robots drawn as paths; more of them as pictures, and their trails as hairlines, which cost a tenth
-const headings = 64;  // of such pictures
+const paths = 60;  // robots drawn as paths; more are drawn as pictures with hairline trails, at a tenth of the cost
+const headings = 64;  // of these pictures
 
 export class Drawing {
   /** @param held by topic: {message, pose} */
@@ -17,12 +17,12 @@ export class Drawing {
     this.lights = [];
     this.selected = -1;
     this.maps = new Map();  // by topic: MapPicture
-    /** What the last frame shows, for tests. */
+    /** Contents of the last frame, for tests. */
     this.drawn = {};
     this.restyle();
   }
 
-  /** Takes the colours in use. */
+  /** Applies the colours of the active theme. */
   restyle() {
     this.sprites = new Map();
     this.byColor = new Map();
@@ -120,7 +120,7 @@ export class Drawing {
     c.stroke();
   }
 
-  /** One picture for all robots of a shape, colour and heading: unturned, on whole pixels, it is copied fast. */
+  /** Draws one picture for all robots of a shape, colour and heading: unrotated and on whole pixels, copying is fast. */
   #pictures(c, color, robots) {
     const { fleet, camera, ratio } = this;
     if (this.spriteScale !== camera.scale * ratio) this.sprites.clear();
@@ -169,7 +169,7 @@ export class Drawing {
         c[k === 0 ? 'moveTo' : 'lineTo'](x + cos * line[k] - sin * line[k + 1], y - sin * line[k] - cos * line[k + 1]);
   }
 
-  /** Of dots the heading is beyond the body. */
+  /** For dots, draws the heading outside of the body. */
   #styleHeading(c, color, i) {
     const radius = this.fleet.radius[i] * this.camera.scale;
     c.lineWidth = radius < 6 ? 1.2 : 2;
@@ -182,7 +182,7 @@ export class Drawing {
     c.lineTo(x + reach * Math.cos(yaw), y - reach * Math.sin(yaw));
   }
 
-  /** A ring and a cross: contact is known without its colour. */
+  /** A ring and a cross, so that contact is visible without its colour. */
   #contacts(c) {
     const { fleet, camera } = this;
     c.beginPath();
@@ -231,7 +231,7 @@ export class Drawing {
     }
   }
 
-  /** Names below the robots, where they cover neither each other nor a robot's neighbour. */
+  /** Draws names below the robots, unless they would cover each other or a neighbouring robot. */
   #names(c) {
     const { fleet, camera, scene } = this, taken = [];
     const seen = [];
@@ -262,7 +262,7 @@ function label(c, text, x, y, align, strong = false) {
   c.fillText(text, x, y);
 }
 
-/** A light's state by colour and shape, as in figures: red square, yellow diamond, green disc; flashing ones are hollow. */
+/** Draws a light's state by colour and shape, as in figures: red square, yellow diamond, green disc; hollow if flashing. */
 export function drawSignal(c, x, y, r, state, blink = true) {
   const color = [theme.lightOff, theme.lightRed, theme.lightYellow, theme.lightGreen, theme.lightRed, theme.lightYellow][state] ?? theme.lightOff;
   c.beginPath();

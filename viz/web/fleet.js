@@ -1,12 +1,12 @@
-// States of all robots: the newest, those shown on the way to them, and trails.
+// States of all robots: the newest, the interpolated ones that are shown, and trails.
 
-const snapDistance = 2;  // [m] between two updates: the robot was placed
-const longestGap = 0.6;  // [s] of real time between updates that are shown as a motion
-const longestStep = 0.25;  // [s] simulated: states farther apart do not determine the way between them
-const past = 16;         // updates that are kept, for readings that were measured at their times
+const snapDistance = 2;  // [m] between two updates: larger steps are teleports
+const longestGap = 0.6;  // [s] of real time between updates that are interpolated
+const longestStep = 0.25;  // [s] simulated: no interpolation between states that are farther apart
+const past = 16;  // updates kept for readings measured at their times
 const stuckAfter = 3;    // [s] simulated
 
-/** Whether the robot is to move and hardly does: below a tenth of its command, and below 1 cm/s and 0.02 rad/s. */
+/** True if the robot is commanded to move but hardly does: below a tenth of its command, 1 cm/s and 0.02 rad/s. */
 function isHeld({ velocity, command }) {
   const drives = Math.hypot(command.forward, command.left), turns = Math.abs(command.turn);
   if (drives < 0.02 && turns < 0.05) return false;
@@ -25,10 +25,10 @@ export class Fleet {
     this.absent = new Uint8Array(this.count).fill(1);
     this.contact = new Uint8Array(this.count);
     this.states = new Array(this.count);
-    this.heldSince = new Float64Array(this.count).fill(NaN);  // [s] simulated; NaN: it moves, or stands as commanded
+    this.heldSince = new Float64Array(this.count).fill(NaN);  // [s] simulated; NaN: it moves, or is at rest as commanded
     this.past = [];       // {time, states} of the last updates, the newest at the end
-    this.fromTime = 0;    // [s] simulated, of the poses that the shown ones come from
-    this.shownTime = 0;   // [s] simulated, of those shown
+    this.fromTime = 0;  // [s] simulated, start of the interpolation
+    this.shownTime = 0;  // [s] simulated, of the poses shown
     this.extent = scene.extent;
     this.tick = -1;
     this.time = 0;
@@ -64,7 +64,7 @@ export class Fleet {
     if (this.past.length > past) this.past.shift();
   }
 
-  /** Updates before a jump in time are no neighbours of those after it. */
+  /** Drops updates before a jump in time, since they cannot be interpolated with those after it. */
   forget() {
     this.past = [];
     this.trailCount.fill(0);
@@ -72,8 +72,8 @@ export class Fleet {
   }
 
   /**
-   * [x, y, yaw] of a robot at a time [s]: between updates on the way from one to the next, before the first one that is
-   * kept as its twist says; null: no update is as late.
+   * Returns [x, y, yaw] of a robot at a time [s]: interpolated between updates, extrapolated by the twist before the
+   * first stored one; null if the time is after the last update.
    */
   poseAt(i, time) {
     const after = this.past.findIndex((update) => update.time >= time - 1e-6), next = this.past[after]?.states[i];
@@ -89,7 +89,7 @@ export class Fleet {
   }
 
   isStuck(i) { return !this.absent[i] && this.time - this.heldSince[i] >= stuckAfter; }
-  /** Beyond the box around everything that the world has. */
+  /** True if the robot is outside of the world's bounding box. */
   isOutside(i) {
     const [x0, y0, x1, y1] = this.extent;
     return !this.absent[i] && (this.x[i] < x0 || this.x[i] > x1 || this.y[i] < y0 || this.y[i] > y1);
@@ -127,7 +127,7 @@ export class Fleet {
     ++this.trailCount[i];
   }
 
-  /** Calls `add(x, y, first)` from the oldest point on; coordinates from the scene's origin. */
+  /** Calls `add(x, y, first)` from the oldest point on; coordinates are relative to the scene's origin. */
   eachTrailPoint(i, add) {
     const count = this.trailCount[i], kept = Math.min(count, this.length), base = 2 * this.length * i;
     for (let k = count - kept; k < count; ++k) {
@@ -136,7 +136,7 @@ export class Fleet {
     }
   }
 
-  /** Moves the shown poses on. @return true while they move */
+  /** Advances the shown poses. @return true while they move */
   animate(now) {
     const share = this.duration > 0 ? Math.min(1, (now - this.arrived) / this.duration) : 1;
     this.shownTime = this.fromTime + share * (this.time - this.fromTime);
@@ -148,7 +148,7 @@ export class Fleet {
     return share < 1;
   }
 
-  /** The robot nearest to a point, within `reach` [m] of its outline's circle; -1: none. */
+  /** Returns the robot nearest to a point, within `reach` [m] of its bounding circle; -1: none. */
   pick(x, y, reach) {
     let best = -1, least = Infinity;
     for (let i = 0; i < this.count; ++i) {

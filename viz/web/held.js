@@ -1,16 +1,16 @@
-// Readings of the selected robot, each until the robots that are shown have come to its time.
+// Readings of the selected robot, each held until the shown robots have reached its time.
 
 import { compose } from './sensors.js';
 
-const longest = 32;  // readings of one sensor that wait
+const longest = 32;  // pending readings per sensor
 
 /**
- * Of each sensor the reading is shown that is nearest to the time of the shown robots, from where its sensor was when it
- * measured: robots are drawn on their way to the newest update, and an update may have readings newer than its states.
+ * Shows, for each sensor, the reading nearest in time to the shown robots, at the sensor's pose at the measurement.
+ * Robots are interpolated towards the newest update, and an update may contain readings newer than its states.
  */
 export class HeldReadings {
-  #waiting = new Map();  // by topic: {sensor, message, at}, the shown one first
-  shown = new Map();     // by topic: {message, at, pose}, the sensor's pose from the scene's origin
+  #waiting = new Map();  // by topic: {sensor, message, at}, starting with the shown reading
+  shown = new Map();  // by topic: {message, at, pose}, the sensor's pose relative to the scene's origin
 
   clear() {
     this.#waiting.clear();
@@ -20,13 +20,13 @@ export class HeldReadings {
   /** @param at [s] simulated time of the measurement */
   add(sensor, message, at) {
     const queue = this.#waiting.get(sensor.topic) ?? [];
-    if (queue.length > 0 && at < queue[queue.length - 1].at) queue.length = 0;  // the run began again
+    if (queue.length > 0 && at < queue[queue.length - 1].at) queue.length = 0;  // the run was restarted
     queue.push({ sensor, message, at });
     if (queue.length > longest) queue.shift();
     this.#waiting.set(sensor.topic, queue);
   }
 
-  /** @return true where other readings are shown than before */
+  /** @return true if the shown readings changed */
   update(fleet, robot, [ox, oy]) {
     const apart = ({ at }) => Math.abs(at - fleet.shownTime);
     let changed = false;

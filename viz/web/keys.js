@@ -1,8 +1,8 @@
-// Names of keys, whatever caps lock does.
+// Key names, independent of caps lock.
 
 /**
- * A letter in lower case, after 'Shift ' where Shift is held with R, which restarts; signs as the keyboard's layout has
- * them. Caps lock changes the letter of an event, and not whether Shift is held.
+ * Returns letters in lower case, with the prefix 'Shift ' for Shift and R, which restarts; signs as in the keyboard's
+ * layout. Caps lock changes the letter of an event but not its Shift state.
  */
 export function keyName({ key, shiftKey }) {
   const letter = key.toLowerCase();

@@ -1,4 +1,4 @@
-// The page: connects, and joins the parts.
+// The page: connects to the server and links the modules.
 
 import { Camera } from './camera.js';
 import { twistBytes } from './cdr.js';
@@ -168,7 +168,7 @@ function sendDrive() {
 // View
 
 const systemDark = matchMedia('(prefers-color-scheme: dark)'), themeKey = 'sensorfarm-theme';
-let chosenTheme = null;  // 'dark' or 'light'; null: the system's
+let chosenTheme = null;  // 'dark' or 'light'; null: the system's theme
 try { chosenTheme = localStorage.getItem(themeKey); } catch { /* storage is refused: a choice lasts as long as the page */ }
 
 function restyle() {
@@ -185,7 +185,7 @@ function restyle() {
   dirty = true;
 }
 
-/** A choice that is the system's own follows the system from then on. */
+/** If the chosen theme is the system's current one, the page follows the system again. */
 function toggleTheme() {
   const next = isDark() ? 'light' : 'dark';
   chosenTheme = (next === 'dark') === systemDark.matches ? null : next;
@@ -195,7 +195,7 @@ function toggleTheme() {
   restyle();
 }
 
-/** On narrow screens the panel takes a part of the map's height. */
+/** On narrow screens the panel uses a part of the map's height. */
 function showPanel(open) {
   document.body.dataset.panel = open ? 'open' : 'closed';
   $('show-panel').setAttribute('aria-expanded', String(open));
@@ -290,7 +290,7 @@ function escape() {
   else select(-1);
 }
 
-// Letters as they are without caps lock.
+// Letters as without caps lock.
 const keys = {
   ' ': () => setPaused(!paused), n: step, 'Shift r': reset, t: toggleTheme, f: () => setFollowing(!following), d: toggleDriving,
   '+': () => zoom(1.25), '=': () => zoom(1.25), '-': () => zoom(0.8), '0': fitAll, Home: fitAll,
@@ -307,7 +307,7 @@ function zoom(factor, x, y) {
 
 function keyDown(event) {
   const typing = event.target.matches('input[type=search], select, #slider');
-  const forSigns = event.getModifierState('AltGraph');  // some layouts have brackets with it, as Ctrl and Alt
+  const forSigns = event.getModifierState('AltGraph');  // some layouts need AltGr for brackets, which counts as Ctrl+Alt
   if (!forSigns && (event.ctrlKey || event.metaKey || event.altKey)) return;
   if (typing && event.key === 'Escape') return event.target.blur();
   if (typing || (event.key === ' ' && event.target.matches('button, input'))) return;
@@ -361,7 +361,7 @@ function listenToPointer(canvas) {
   canvas.onpointerup = canvas.onpointercancel = (event) => {
     fingers.delete(event.pointerId);
     pinch = 0;
-    if (fingers.size > 0) { [from] = fingers.values(); return; }  // the other finger goes on from where it is
+    if (fingers.size > 0) { [from] = fingers.values(); return; }  // the other finger continues from its position
     if (moved || event.type === 'pointercancel') return;
     const [x, y] = camera.toWorld(event.offsetX, event.offsetY);
     select(fleet.pick(x, y, 10 / camera.scale));
@@ -446,7 +446,7 @@ function connect() {
   select(row);
 }
 
-/** Another run may listen at the same address now. */
+/** Another run may now listen on the same address. */
 async function reconnect() {
   try {
     const next = await loadScene(token);

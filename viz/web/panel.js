@@ -2,7 +2,7 @@
 
 import { History, plotBars, plotHistory, short } from './plot.js';
 
-const listed = 200;  // at a time; the search finds the others
+const listed = 200;  // at a time; the search finds more
 const units = [['_rad_s', 'rad/s'], ['_m', 'm'], ['_T', 'T'], ['_t', 'T'], ['_s', 's'], ['_counts', 'counts']];
 
 /** 'distance_m' as ['distance', 'm']. */
@@ -17,7 +17,7 @@ function element(tag, props = {}, ...children) {
   return made;
 }
 
-/** A reading's quantities over time: of lists the least, of vectors the length. */
+/** A reading's quantities over time: the minimum of lists, the length of vectors. */
 function quantities(type) {
   if (type.scan) return [{ label: 'nearest echo', unit: 'm', of: (m) => least(m.ranges) }, { label: 'beam ahead', unit: 'm', of: (m) => m.ranges[m.ranges.length >> 1] }];
   return type.columns.map(({ name, width }) => {
@@ -38,8 +38,8 @@ function longest(list, width) {
 }
 
 /**
- * Ranges without an echo are infinite in scans and `most` in other readings; those of surfaces that are too near are
- * -infinite (REP 117). @param most range_max of a range; undefined: the value is none
+ * Ranges without an echo are infinite in scans and `most` in other readings; ranges of surfaces that are too near are
+ * -infinite (REP 117). @param most range_max of a range; undefined: the value is not a range
  */
 function valueText(value, unit, most) {
   if (most !== undefined && value === -Infinity) return 'too near';
@@ -87,7 +87,7 @@ export class Panel {
   #rows = [];
   #drawnAt = 0;
 
-  /** @param choose called with the row of a robot, -1: none  @param colorOf with a row: its colour */
+  /** @param choose called with the row of a robot, -1: none  @param colorOf returns the colour of a row */
   constructor(scene, choose, colorOf) {
     this.scene = scene;
     this.colorOf = colorOf;
@@ -122,7 +122,7 @@ export class Panel {
     document.getElementById('count').textContent = wanted ? `${found.length} of ${count}` : `${count} ${count === 1 ? 'robot' : 'robots'}`;
   }
 
-  /** Counts of the whole fleet; a click selects the next robot that is counted. Commands of robots elsewhere are not known. */
+  /** Counts of the fleet; a click selects the next counted robot. Commands of robots in other processes are unknown. */
   #makeSummary() {
     const rows = [['contact', 'in contact', (fleet, i) => fleet.inContact(i), 'Robots that a wall or a robot stops now'], ['outside', 'outside', (fleet, i) => fleet.isOutside(i), 'Robots beyond the box around the world']];
     if (this.scene.mode !== 'service') rows.splice(1, 0, ['stuck', 'stuck', (fleet, i) => fleet.isStuck(i), 'Robots that are commanded to move and have hardly moved for 3 s of simulated time']);
@@ -209,7 +209,7 @@ export class Panel {
     for (const card of this.#cards.values()) card.histories.forEach((history) => history.clear());
   }
 
-  /** Ten times a second at most: people read no faster. @param maps by topic */
+  /** Updates at most ten times a second, since people do not read faster. @param maps by topic */
   draw(now, maps) {
     if (!this.dirty || this.selected < 0 || now - this.#drawnAt < 0.1) return;
     this.#drawnAt = now;

@@ -1,4 +1,4 @@
-// Small plots: a quantity over the last minute, and the elements of a reading side by side.
+// Small plots: a quantity over the last minute, and the elements of a reading.
 
 import { theme, fade } from './theme.js';
 
@@ -80,7 +80,7 @@ export function plotHistory(canvas, history, unit) {
   c.stroke();
 }
 
-/** One bar per element, with its number where there is room. */
+/** Draws one bar per element, with its index if there is room. */
 export function plotBars(canvas, values, most) {
   const { c, width, height } = prepare(canvas);
   const count = values.length, room = width / count, gap = room > 6 ? 2 : 0;

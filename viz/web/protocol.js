@@ -1,4 +1,4 @@
-// Foxglove's WebSocket protocol, as a client: foxglove.sdk.v1, or foxglove.websocket.v1 without control of playback.
+// A client for Foxglove's WebSocket protocol: foxglove.sdk.v1, or foxglove.websocket.v1 without playback control.
 
 import { readerOf } from './cdr.js';
 
@@ -18,7 +18,7 @@ export class Connection extends EventTarget {
     this.#socket.onmessage = ({ data }) => (typeof data === 'string' ? this.#text(JSON.parse(data)) : this.#binary(new DataView(data)));
   }
 
-  /** @param onMessage called with (message, time in s); `read: false` gives the bytes as a DataView */
+  /** @param onMessage called with (message, time in s); `read: false` passes the bytes as a DataView */
   subscribe(topic, onMessage, { read = true } = {}) {
     this.#wanted.set(topic, { onMessage, read, id: 0 });
     this.#trySubscribe(topic);

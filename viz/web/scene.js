@@ -1,4 +1,4 @@
-// The world as the page draws it: /scene.json, and the parts of it that never move, drawn once per view.
+// The world that the page draws: /scene.json and its static parts, drawn once per view.
 
 import { theme, fade, edgeOf } from './theme.js';
 
@@ -6,7 +6,7 @@ export async function loadScene(token) {
   const response = await fetch('scene.json' + (token ? `?token=${encodeURIComponent(token)}` : ''));
   if (!response.ok) throw new Error((await response.text()).trim());
   const scene = await response.json();
-  // Paths are kept in float32 by browsers: coordinates from here stay exact far from the world's origin.
+  // Browsers store paths as float32: relative to this origin, coordinates are exact far from the world's origin.
   scene.origin = [(scene.extent[0] + scene.extent[2]) / 2, (scene.extent[1] + scene.extent[3]) / 2];
   return scene;
 }
@@ -16,7 +16,7 @@ function addLine(path, line, [ox, oy], close) {
   if (close && line.length > 4 && line[0] === line[line.length - 2] && line[1] === line[line.length - 1]) path.closePath();
 }
 
-/** Where beams with an opening angle reach, as a path in metres around a pose. */
+/** The area that beams with an opening angle reach, as a path in metres around a pose. */
 export function sectorPath(x, y, direction, fov, range) {
   const path = new Path2D();
   if (fov < 2 * Math.PI - 1e-3) path.moveTo(x, y);
@@ -51,10 +51,10 @@ export class StaticLayer {
     });
   }
 
-  /** Draws it again at the next frame, in other colours. */
+  /** Redraws the layer at the next frame, in other colours. */
   restyle() { this.#area = null; }
 
-  /** Copies the layer onto `context`, drawn again where the view left what was drawn. */
+  /** Copies the layer onto `context`. Redraws it first if the view has left the drawn area. */
   draw(context, camera, ratio) {
     const area = this.#area;
     const stays = area && area.scale === camera.scale && area.ratio === ratio &&
@@ -106,7 +106,7 @@ export class StaticLayer {
     c.stroke();
   }
 
-  /** Paint is often white: a grey band beneath makes it visible on white. */
+  /** Paint is often white, so a grey band beneath makes it visible on white. */
   #roads(c, px) {
     c.lineJoin = 'round';
     c.strokeStyle = theme.asphalt;
@@ -164,7 +164,7 @@ export class StaticLayer {
   }
 
   #magnets(c, px) {
-    const radius = Math.max(0.02, Math.min(3, Math.max(1.2, 0.04 / px)) * px);  // rows of them stay apart from far
+    const radius = Math.max(0.02, Math.min(3, Math.max(1.2, 0.04 / px)) * px);  // rows stay separate from a distance
     for (const [x, y, moment] of this.scene.magnets) {
       c.fillStyle = moment > 0 ? theme.magnetUp : theme.magnetDown;
       c.beginPath();

@@ -1,16 +1,16 @@
-// Readings of the selected robot over the map. Each is anchored where the robot was when it was measured, so that ends
-// of beams lie on walls.
+// Draws the selected robot's readings over the map. Each reading is drawn from the robot's pose at the measurement, so
+// that beams end on walls.
 
 import { theme, fade } from './theme.js';
 import { sectorPath } from './scene.js';
 
-/** Frame B in A, then C in B: [x, y, yaw]. */
+/** Composes the pose of B in A with that of C in B: [x, y, yaw]. */
 export function compose([x, y, yaw], [bx, by, byaw]) {
   const c = Math.cos(yaw), s = Math.sin(yaw);
   return [x + c * bx - s * by, y + s * bx + c * by, yaw + byaw];
 }
 
-/** A range of a sensor with limits [least, most), as REP 117 says: below `least` the surface is too near. */
+/** Interprets a range with limits [least, most) as in REP 117: below `least`, the surface is too near. */
 function echoOf(range, least, most) {
   const near = range < least;
   return { near, echo: !near && range < most, drawn: near ? least : Math.min(range, most) };
@@ -43,7 +43,7 @@ function drawScan(c, px, pose, sensor, scan, drawn) {
   drawn.hits += hits;
 }
 
-/** Cones of sonar and infrared, as far as they saw. */
+/** Draws cones of sonar and infrared sensors up to their range. */
 function drawCones(c, px, pose, sensor, message, drawn) {
   const ranges = message.range_m;
   sensor.cones.forEach((cone, i) => {
@@ -60,7 +60,7 @@ function drawCones(c, px, pose, sensor, message, drawn) {
   });
 }
 
-/** The distance to a lane's edge, from the sensor to the edge, and the edge across its end. */
+/** Draws the distance to a lane's edge as a line from the sensor, and the edge across its end. */
 function drawLaneEdge(c, px, pose, sensor, message, drawn) {
   const [x, y, yaw] = pose, sector = sectorPath(x, y, yaw, sensor.fan_fov, sensor.range_max);
   c.fillStyle = fade(theme.lane, 0.1);
@@ -85,7 +85,7 @@ function drawLaneEdge(c, px, pose, sensor, message, drawn) {
   ++drawn.edges;
 }
 
-/** The field at each element, as an arrow in the plane; its length grows with the logarithm. */
+/** Draws the field at each element as an arrow in the plane; its length grows with the logarithm. */
 function drawField(c, px, pose, sensor, message, drawn) {
   const field = message.vector_t ?? [];
   sensor.elements.forEach((element, i) => {
@@ -118,7 +118,7 @@ function drawFix(c, px, origin, message) {
   c.stroke();
 }
 
-/** Occupancy maps as pictures, made anew when a reading came. */
+/** An occupancy map as a picture, redrawn when a reading arrives. */
 export class MapPicture {
   #canvas = document.createElement('canvas');
   cells = { occupied: 0, free: 0 };
@@ -160,13 +160,13 @@ export class MapPicture {
   }
 }
 
-/** One sensor's newest reading, as far as it lies below the robots. @param held {message, pose} of the sensor from the scene's origin */
+/** Draws the newest reading's parts below the robots. @param held {message, pose}, relative to the scene's origin */
 export function drawReadingBelow(c, px, sensor, { message, pose }, drawn) {
   if (message.ranges) drawScan(c, px, pose, sensor, message, drawn);
   else if (sensor.cones && message.range_m) drawCones(c, px, pose, sensor, message, drawn);
 }
 
-/** Likewise what lies above them. */
+/** Draws the parts above the robots. */
 export function drawReadingAbove(c, px, origin, sensor, { message, pose }, drawn) {
   if (sensor.perpendicular) drawLaneEdge(c, px, pose, sensor, message, drawn);
   else if (sensor.elements) drawField(c, px, pose, sensor, message, drawn);

@@ -1,5 +1,5 @@
-// Colours as in viz/theme.h: the palette of Okabe and Ito (2002), distinct for colour-blind readers. States are told
-// apart by shape as well. Dark colours are those of the light theme, lighter.
+// Colours as in viz/theme.h: the palette of Okabe and Ito (2002), distinct for colour-blind readers. States also differ
+// in shape. The dark theme uses lighter versions of the light theme's colours.
 
 const light = {
   paper: '#ffffff', ink: '#202020', quiet: '#55606e', grid: 'rgba(90,100,115,.13)', halo: 'rgba(255,255,255,.9)',
@@ -17,7 +17,7 @@ const dark = {
 };
 export const palettes = { light, dark };
 
-/** The colours in use. */
+/** The colours of the active theme. */
 export const theme = { ...light };
 export const isDark = () => theme.paper === dark.paper;
 export function useTheme(name) { Object.assign(theme, palettes[name]); }
@@ -28,7 +28,7 @@ const hex = (rgb) => '#' + rgb.map((c) => Math.round(Math.min(255, Math.max(0, c
 /** '#rrggbb' as 'rgba(r,g,b,a)'. */
 export function fade(color, alpha) { return `rgba(${channels(color)},${alpha})`; }
 
-/** `share` of the way from one colour to another. */
+/** Interpolates from one colour to another; share 0 is the first. */
 export function mix(color, other, share) {
   const to = channels(other);
   return hex(channels(color).map((c, i) => c + share * (to[i] - c)));
@@ -44,7 +44,7 @@ export function contrast(a, b) {
   return (bright + 0.05) / (dim + 0.05);
 }
 
-/** A colour of the world that is visible as a thin line on paper: moved towards ink as far as it must (contrast 3). */
+/** Moves a colour towards ink until a thin line in it is visible on paper (contrast 3). */
 export function onPaper(color) {
   for (let share = 0; share < 1; share += 0.1) {
     const moved = mix(color, theme.ink, share);
@@ -53,15 +53,15 @@ export function onPaper(color) {
   return theme.ink;
 }
 
-/** The outline of an area of that colour. */
+/** Outline colour for an area of that colour. */
 export function edgeOf(color, share) { return onPaper(mix(color, isDark() ? '#ffffff' : '#000000', share)); }
 
-/** Black or white, whichever is clearer on that colour. */
+/** Black or white, whichever has more contrast with that colour. */
 export const headingOn = (color) => (contrast(color, '#ffffff') > contrast(color, '#000000') ? '#ffffff' : '#000000');
 
 const alikeColors = 24;
 
-/** A colour of its own for each of 24 numbers, as `distinct` of viz/color.cpp: hues apart by the golden angle (OKLCH). */
+/** A distinct colour for each of 24 numbers, as `distinct` in viz/color.cpp: hues differ by the golden angle (OKLCH). */
 export function distinct(number) {
   const i = number % alikeColors, lightness = [0.55, 0.4, 0.7][i % 3] + (isDark() ? 0.14 : 0), hue = 4 + 2.399963229728653 * i;
   for (let chroma = 0.17; ; chroma -= 0.005) {
@@ -73,9 +73,9 @@ export function distinct(number) {
   }
 }
 
-const alike = 3;  // robots of one colour, from which on each gets its own
+const alike = 3;  // from this number of robots with one colour, each gets a distinct colour
 
-/** The colour of each mover: its model's, or one of its own where many look alike. @param own false: always its model's */
+/** The colour of each mover: its model's, or a distinct one if many look alike. @param own false: always its model's */
 export function moverColors(movers, own) {
   const count = new Map();
   for (const { color, tag } of movers) if (!tag) count.set(color, (count.get(color) ?? 0) + 1);
