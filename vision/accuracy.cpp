@@ -42,7 +42,7 @@ void AccuracyMeter::add(double time, std::span<const TrackedTag> tracked) {
       ++known;
       continue;
     }
-    // Nothing is reported at the first moment.
+    // No tag is reported in the first update.
     const auto sees = [&](const TestbedCamera& each) { return fleet_.is_visible(each.camera, tag, time); };
     if (!first_ && std::any_of(testbed_.cameras.begin(), testbed_.cameras.end(), sees)) ++accuracy_.missed;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Errors of tracked tags against the truth of a rendered fleet.
+// Errors of tracked tags relative to the ground truth of a rendered fleet.
 
 #include <cstdint>
 #include <span>
@@ -14,7 +14,7 @@ struct RmsError {
   std::uint64_t count = 0;
 
   void add(double error);
-  double rms() const;  ///< 0 without errors
+  double rms() const;  ///< 0 if there are no errors
 };
 
 struct Accuracy {
@@ -22,15 +22,15 @@ struct Accuracy {
   RmsError heading;          ///< [rad]
   RmsError velocity;         ///< [m/s], from the fifth sighting on
   RmsError turn;             ///< [rad/s], from the fifth sighting on
-  std::uint64_t missed = 0;  ///< a camera saw the whole tag, and it was not reported
-  std::uint64_t wrong = 0;   ///< reported more than `kWrong` from its place, or with an id that no tag has
+  std::uint64_t missed = 0;  ///< a camera saw the whole tag, but it was not reported
+  std::uint64_t wrong = 0;   ///< reported more than `kWrong` from its position, or with an unused id
 };
 
 class AccuracyMeter {
  public:
   static constexpr double kWrong = 0.05;  ///< [m]
 
-  /// @param testbed, fleet live longer
+  /// @param testbed, fleet must outlive this
   AccuracyMeter(const Testbed& testbed, const RenderedFleet& fleet);
   /// @param time [s] at which the exposure of the images began
   void add(double time, std::span<const TrackedTag> tracked);
@@ -41,7 +41,7 @@ class AccuracyMeter {
 
   const Testbed& testbed_;
   const RenderedFleet& fleet_;
-  std::vector<std::uint32_t> sightings_;  ///< of each tag so far
+  std::vector<std::uint32_t> sightings_;  ///< per tag, so far
   bool first_ = true;
   Accuracy accuracy_;
 };

@@ -8,7 +8,7 @@ namespace sf::vision {
 
 namespace {
 
-/// Sums of what was read so far, and their bounds.
+/// Totals of the images read so far, and their limits.
 struct Extent {
   std::string from;
   int width = 0, height = 0;  ///< [px] of all images

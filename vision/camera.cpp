@@ -11,7 +11,7 @@ namespace {
 constexpr double kMaxTangent = 5.67;  // of 80 degrees
 constexpr double kMaxDepth = 1e3;     // [m]
 
-/// Distorted normalised coordinates.
+/// Returns distorted normalised coordinates.
 glm::dvec2 bend(const std::array<double, 5>& d, glm::dvec2 n) {
   const double r2 = n.x * n.x + n.y * n.y;
   const double radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
@@ -60,8 +60,8 @@ glm::dvec2 undistort(const Intrinsics& intrinsics, glm::dvec2 pixel) {
 }
 
 bool is_invertible(const Intrinsics& intrinsics) {
-  // Along rays from the principal point to the border, field angles grow until the border is passed, and on all of the
-  // way the Jacobian is positive definite.
+  // Along rays of growing field angle from the principal point, the Jacobian must be positive definite until the ray
+  // leaves the image.
   constexpr int kRays = 64;
   constexpr int kSteps = 2000;
   for (int ray = 0; ray < kRays; ++ray) {
@@ -89,7 +89,7 @@ std::optional<glm::dvec2> project(const Camera& camera, glm::dvec3 p_W) {
   const glm::dvec2 n = glm::dvec2{glm::dot(camera.right, p), glm::dot(camera.down, p)} / depth;
   if (!(glm::dot(n, n) < kMaxTangent * kMaxTangent)) return std::nullopt;
   const glm::dvec2 pixel = distort(camera.intrinsics, n);
-  // Beyond the image, strong distortion may fold back into it.
+  // Outside of the image, strong distortion may fold back into it.
   if (glm::distance(undistort(camera.intrinsics, pixel), n) > 1e-6) return std::nullopt;
   return pixel;
 }
@@ -117,7 +117,7 @@ void set_orientation(Camera& camera, const std::array<double, 4>& xyzw) {
 }
 
 std::array<double, 4> orientation(const Camera& camera) {
-  // The largest of the four components is computed first, so that no division is by a small number.
+  // Compute the largest of the four components first, to avoid division by a small number.
   const glm::dvec3 &a = camera.right, &b = camera.down, &c = camera.forward;
   const std::array<double, 4> squares{1.0 + a.x - b.y - c.z, 1.0 - a.x + b.y - c.z, 1.0 - a.x - b.y + c.z,
                                       1.0 + a.x + b.y + c.z};

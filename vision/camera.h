@@ -1,5 +1,5 @@
 #pragma once
-// Camera model: pinhole with Brown's distortion (D. C. Brown, "Close-range camera calibration", 1971), in OpenCV's
+// Camera model: pinhole with Brown's distortion (D. C. Brown, "Close-range camera calibration", 1971), with OpenCV's
 // parameters, and a pose in the world.
 //
 // Frames: W world, C camera (x right in the image, y down, z forward along the optical axis). "Normalised" image
@@ -29,34 +29,35 @@ struct Camera {
   glm::dvec3 down{0.0, -1.0, 0.0};     ///< y axis of C in W
   glm::dvec3 forward{0.0, 0.0, -1.0};  ///< z axis of C in W; the default looks straight down
   double rate = 15.0;                  ///< [Hz] of images, > 0
-  double exposure = 0.0;               ///< [s] of one row, >= 0
-  double readout = 0.0;  ///< [s] from the first row's start to the last row's (rolling shutter); 0: global
+  double exposure = 0.0;               ///< [s] per row, >= 0
+  double readout =
+      0.0;  ///< [s] from the start of the first row to that of the last (rolling shutter); 0: global shutter
 };
 
-/// A camera's name is a word of `--input NAME=SOURCE` and the stem of its files: 1 to 64 letters, digits, '_' and '-',
-/// the first a letter or a digit.
+/// True for a valid camera name. Names are used in `--input NAME=SOURCE` and as stems of file names: 1 to 64 letters,
+/// digits, '_' and '-', starting with a letter or a digit.
 bool is_camera_name(std::string_view name);
 inline constexpr const char* kCameraNameForm =
     "a name of letters, digits, '_' and '-', which begins with a letter or a digit, of at most 64";
 
-/// [px] of a point in normalised coordinates.
+/// Returns the pixel of a point in normalised coordinates.
 glm::dvec2 distort(const Intrinsics& intrinsics, glm::dvec2 normalised);
-/// Normalised coordinates of a pixel: the inverse of `distort`, by Newton's method, to 1e-12 within the image.
+/// Returns the normalised coordinates of a pixel: the inverse of `distort`, by Newton's method, to 1e-12 within the
+/// image.
 glm::dvec2 undistort(const Intrinsics& intrinsics, glm::dvec2 pixel);
-/// Whether `distort` is invertible over the image and a margin of 5 %: the image of a larger field angle is farther
-/// out.
+/// True if `distort` is invertible over the image and a margin of 5 %: larger field angles are imaged farther out.
 bool is_invertible(const Intrinsics& intrinsics);
 
-/// Pixel of a point in the world, inside or outside the image; nothing for points that are not in front of the camera,
-/// more than 80 degrees off its axis, or where the distortion has no inverse.
+/// Returns the pixel of a point in the world, inside or outside of the image. Returns nullopt for points behind the
+/// camera, more than 80 degrees off its axis, or where the distortion is not invertible.
 std::optional<glm::dvec2> project(const Camera& camera, glm::dvec3 p_W);
-/// [m] Point on the horizontal plane at height `z` that a ray in normalised coordinates meets; nothing where it does
-/// not, or at a depth of more than 1 km.
+/// Returns the point [m] where a ray in normalised coordinates meets the horizontal plane at height `z`; nullopt if it
+/// does not, or at a depth of more than 1 km.
 std::optional<glm::dvec2> meet_plane(const Camera& camera, glm::dvec2 normalised, double z);
 /// The same for a pixel.
 std::optional<glm::dvec2> to_plane(const Camera& camera, glm::dvec2 pixel, double z);
 
-/// [s] after the start of the exposure of row 0: the middle of the exposure of row `v`.
+/// Returns the middle of the exposure of row `v`, relative to the start of the exposure of row 0 [s].
 double middle_of_exposure(const Camera& camera, double v);
 
 /// Sets the axes from the unit quaternion x, y, z, w of the rotation R_WC.

@@ -1,6 +1,6 @@
 #pragma once
-// Images in memory. Pixel (u, v) is column u, row v; whole numbers are the centres of pixels, and (0, 0) is the centre
-// of the upper left one (OpenCV's convention).
+// Images in memory. Pixel (u, v) is column u, row v. Integers are pixel centres, and (0, 0) is the centre of the upper
+// left pixel (OpenCV's convention).
 
 #include <cstddef>
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace sf::vision {
 
-/// Pixels of the largest image: 64 Mpx. Larger ones are refused, so that their number fits OpenCV's int with room for
-/// three channels, and memory is bounded.
+/// Maximum number of pixels of an image: 64 Mpx. Larger images are rejected, which limits memory and keeps the size of
+/// three channels within OpenCV's int.
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 26;
 
-/// 8 bits a channel, row by row, the top row first.
+/// 8 bits per channel, row by row, the top row first.
 struct Image {
   int width = 0;                     ///< [px]
   int height = 0;                    ///< [px]

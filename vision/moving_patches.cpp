@@ -18,7 +18,7 @@ double MovingPatches::albedo_at(std::uint32_t i, glm::dvec2 p, double dt) const 
   const MovingPatch& m = patches_[i];
   const Patch& patch = *m.patch;
   const glm::dvec2 d = p - (m.at + dt * patch.velocity);
-  // Rotation by the angle of the exposure, to third order.
+  // Rotation by the angle turned during the exposure, to third order.
   const double a = dt * patch.turn;
   const double c1 = 1.0 - 0.5 * a * a, s1 = a * (1.0 - a * a / 6.0);
   const double c = m.cosine * c1 - m.sine * s1, s = m.sine * c1 + m.cosine * s1;
@@ -51,10 +51,10 @@ void MovingPatches::place(const Camera& camera, const Scene& scene, double middl
   list(camera);
 }
 
-/// Box in the image of the outline of a patch during the exposure; the whole image where a part of the outline has no
-/// projection.
+/// Computes the bounding box of a patch in the image during the exposure; the whole image if a part of the outline
+/// cannot be projected.
 void MovingPatches::box_of(const Camera& camera, const MovingPatch& m, glm::dvec2& low, glm::dvec2& high) {
-  constexpr int kSteps = 16;  // along each side, since straight lines are bent
+  constexpr int kSteps = 16;  // along each side, since distortion bends straight lines
   const double seconds = 0.5 * (camera.exposure + camera.readout);
   const double swing = seconds * std::abs(m.patch->turn) * glm::length(m.half);
   const glm::dvec2 half = m.half + swing;
@@ -76,9 +76,9 @@ void MovingPatches::box_of(const Camera& camera, const MovingPatch& m, glm::dvec
       }
 }
 
-/// Enters each patch in the tiles that its box in the image overlaps.
+/// Adds each patch to the tiles that its bounding box overlaps.
 void MovingPatches::list(const Camera& camera) {
-  constexpr double kMargin = 4.0;  // [px] bends between the points of a box
+  constexpr double kMargin = 4.0;  // [px] for the curvature between the points of a box
   columns_ = (camera.intrinsics.width + kTile - 1) / kTile;
   rows_ = (camera.intrinsics.height + kTile - 1) / kTile;
   tiles_.resize(static_cast<std::size_t>(columns_) * rows_);

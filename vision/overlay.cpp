@@ -16,11 +16,12 @@ namespace {
 
 using Color = std::array<std::uint8_t, 3>;
 constexpr Color kTag{86, 224, 120}, kAxis{255, 160, 40}, kWall{240, 90, 90}, kMarking{110, 190, 255};
-constexpr double kPiece = 0.05;  // [m] straight pieces of lines, which lenses bend
+constexpr double kPiece = 0.05;  // [m] length of the straight pieces of lines, since lenses bend them
 
-/// Box of what the camera sees of the plane at height `z`; that of all points where it sees the plane's horizon.
+/// Returns the bounding box of the visible part of the plane at height `z`; all points if the camera sees the plane's
+/// horizon.
 base::Box seen_box(const Camera& camera, double z) {
-  constexpr int kSteps = 16;  // along each border, which lenses bend between the points
+  constexpr int kSteps = 16;  // along each border, since lenses bend it
   const glm::dvec2 last{camera.intrinsics.width - 1, camera.intrinsics.height - 1};
   base::Box box = base::empty_box();
   for (int k = 0; k < 4 * kSteps; ++k) {
@@ -37,7 +38,8 @@ base::Box seen_box(const Camera& camera, double z) {
   return {box.min - margin, box.max + margin};
 }
 
-/// The part of the line from a to b within a box, as fractions of it (Liang and Barsky); empty: first > second.
+/// Returns the part of the line from a to b within a box, as fractions of its length (Liang and Barsky); empty: first >
+/// second.
 std::pair<double, double> clip(const base::Box& box, glm::dvec2 a, glm::dvec2 b) {
   double first = 0.0, last = 1.0;
   for (int axis = 0; axis < 2; ++axis) {
@@ -51,10 +53,10 @@ std::pair<double, double> clip(const base::Box& box, glm::dvec2 a, glm::dvec2 b)
   return {first, last};
 }
 
-/// Lines on a horizontal plane as marks, clipped to the picture.
+/// Converts lines on a horizontal plane to marks, clipped to the picture.
 class LineMarks {
  public:
-  /// @param box of the plane that is in sight, or more
+  /// @param box contains the visible part of the plane
   LineMarks(const Camera& camera, double z, const base::Box& box, const Mark& style, std::vector<Mark>& out)
       : camera_(camera), z_(z), box_(box), mark_(style), out_(out) {}
 
@@ -71,7 +73,7 @@ class LineMarks {
   }
 
  private:
-  /// Continues the line to `p`. Pieces outside the picture are left out.
+  /// Continues the line to `p`. Skips pieces outside the picture.
   void add(glm::dvec2 p) {
     const auto pixel = project(camera_, {p.x, p.y, z_});
     if (!pixel) return end();
@@ -98,14 +100,14 @@ class LineMarks {
   const Camera& camera_;
   double z_;
   base::Box box_;
-  Mark mark_;  ///< the visible line so far
+  Mark mark_;  ///< visible line so far
   std::vector<Mark>& out_;
-  std::optional<glm::dvec2> last_;  ///< [px] end of the last piece, in the picture or not
+  std::optional<glm::dvec2> last_;  ///< [px] end of the last piece, inside or outside the picture
 };
 
-/// Id, heading and position in two lines below the tag, inside the picture.
+/// Adds id, heading and position in two lines below the tag, inside the picture.
 void add_label(const Camera& camera, const Sighting& sighting, std::vector<Mark>& marks) {
-  constexpr double kLetter = 8.5, kLine = 16.0;  // [px] of OpenCV's font as Mark has it
+  constexpr double kLetter = 8.5, kLine = 16.0;  // [px] of OpenCV's font, as used by Mark
   const base::Pose& X = sighting.fit.X_WT;
   const auto middle = project(camera, {X.x, X.y, X.z});
   if (!middle) return;

@@ -1,5 +1,5 @@
 #pragma once
-// Drawings over a camera's image: tags with their ids and poses, and the outlines of a virtual world.
+// Draws over a camera's image: tags with their ids and poses, and the outlines of a virtual world.
 
 #include <array>
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace sf::vision {
 
-/// The fitted square of each tag projected back into the image, an arrow along its x axis, its id and pose.
+/// Returns marks for each tag: its fitted square projected back into the image, an arrow along its x axis, its id and
+/// pose.
 std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings);
 
 /// A line on a horizontal plane in the world.
@@ -22,13 +23,13 @@ struct PlaneLine {
   int width = 1;  ///< [px]
 };
 
-/// Lines as they would lie in front of the camera, clipped to its picture.
+/// Projects lines into the camera's picture and clips them to it.
 std::vector<Mark> line_marks(const Camera& camera, std::span<const PlaneLine> lines);
 
-/// Walls and lane markings of a world, as they would lie in front of the camera, clipped to its picture.
+/// Projects walls and lane markings of a world into the camera's picture and clips them to it.
 std::vector<Mark> world_marks(const Camera& camera, const world::World& world);
 
-/// The grey image with the marks, in colours.
+/// Draws the marks in colour over the grey image.
 Image draw_over(const Image& grey, const std::vector<Mark>& marks);
 
 }  // namespace sf::vision

@@ -1,4 +1,4 @@
-// The plug-in of world/picture.h: JPEG, BMP and GIF by OpenCV's imgcodecs, which reads GIF through GDAL.
+// The plug-in of world/picture.h: reads JPEG, BMP and GIF with OpenCV's imgcodecs, which uses GDAL for GIF.
 
 #include <exception>
 #include <opencv2/imgcodecs.hpp>
@@ -13,10 +13,10 @@ using sf::world::PixelRow;
 cv::Mat read(const std::string& file, const std::string& bytes) {
   if (bytes.starts_with("GIF8")) return cv::imread(file, cv::IMREAD_LOAD_GDAL);
   const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-  return cv::imdecode(encoded, cv::IMREAD_UNCHANGED);  // as stored: no rotation by a camera's notes
+  return cv::imdecode(encoded, cv::IMREAD_UNCHANGED);  // as stored: ignore the orientation tag of cameras
 }
 
-/// OpenCV's blue, green and red, or grey, as RGBA.
+/// Converts OpenCV's blue, green and red, or grey, to RGBA.
 void convert(const std::uint8_t* from, int channels, std::vector<std::uint8_t>& rgba) {
   for (std::size_t i = 0; i < rgba.size(); i += 4, from += channels) {
     for (std::size_t k = 0; k < 3; ++k) rgba[i + k] = channels == 1 ? from[0] : from[2 - k];

@@ -17,7 +17,8 @@ namespace sf::vision {
 namespace {
 
 constexpr std::size_t kFewestPoints = 4;
-constexpr double kLeastSpread = 0.05;  // distance from the line through the two farthest points, in their distance
+constexpr double kLeastSpread =
+    0.05;  // distance from the line through the two farthest points, relative to their distance
 constexpr std::size_t kFewestEdges = 3;
 
 /// A line in normalised image coordinates: normal · p = offset.
@@ -26,7 +27,7 @@ struct Line {
   double offset = 0.0;
 };
 
-/// By total least squares.
+/// Fits by total least squares.
 Line fit_line(const std::vector<glm::dvec2>& points) {
   glm::dvec2 mean{0.0};
   for (const glm::dvec2& p : points) mean += p / static_cast<double>(points.size());
@@ -48,7 +49,7 @@ std::optional<glm::dvec2> meet(const Line& a, const Line& b) {
 
 using Corners = std::array<glm::dvec2, 4>;
 
-/// [px] Corners of a tag, in the order of its outline; nothing where a side has no edge.
+/// [px] Returns the corners of a tag, in the order of its outline; nullopt if a side has no edge.
 std::optional<Corners> corners_of(const Image& image, const Intrinsics& intrinsics, const TagOutline& outline,
                                   int cells) {
   std::vector<EdgePoint> edges;
@@ -63,13 +64,13 @@ std::optional<Corners> corners_of(const Image& image, const Intrinsics& intrinsi
     const auto corner = meet(fit_line(before), fit_line(sides[k]));
     if (!corner) return std::nullopt;
     corners[k] = distort(intrinsics, *corner);
-    // An edge of something else, where the tag is hidden in part.
+    // Another object's edge, if the tag is partly hidden.
     if (glm::distance(corners[k], outline.corners[k]) > 4.0) return std::nullopt;
   }
   return corners;
 }
 
-/// What was seen of one surveyed tag.
+/// Observations of one surveyed tag.
 struct Seen {
   Corners sum{};
   std::size_t images = 0;
@@ -128,7 +129,7 @@ struct Points {
 
   void add(const SurveyedTag& tag, double side, const Corners& corners, const Intrinsics& intrinsics) {
     if (!tag.heading) {
-      // The diagonals of a square meet in its centre, from any side.
+      // The diagonals of a square meet at its centre in any perspective.
       Corners c;
       std::transform(corners.begin(), corners.end(), c.begin(), [&](glm::dvec2 p) { return undistort(intrinsics, p); });
       const auto center = meet(fit_line({c[0], c[2]}), fit_line({c[1], c[3]}));
@@ -145,7 +146,8 @@ struct Points {
   }
 };
 
-/// Distance of the point farthest from the line through two points that are far from each other, in units of theirs.
+/// Returns the distance of the farthest point from the line through two distant points, relative to the distance
+/// between these two.
 double spread_of(const std::vector<glm::dvec3>& points) {
   const auto farthest = [&](glm::dvec3 from) {
     return *std::max_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
@@ -180,7 +182,7 @@ std::optional<double> residual_of(const Points& points, Camera camera) {
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-/// Residuals of one tag, whose points are from `first` to `last`.
+/// Computes the residuals of one tag, whose points have the indices from `first` to `last`.
 void judge(const Points& points, std::size_t first, std::size_t last, const SurveyedTag& surveyed, const Camera& camera,
            TagResidual& tag) {
   glm::dvec2 center{0.0};
@@ -206,7 +208,7 @@ Placement place_camera(const Testbed& testbed, const Camera& camera, ImageSource
   auto seen = look(testbed, camera, images, from);
   Placement result{.camera = camera};
   Points points;
-  std::vector<std::size_t> first;  // point of each tag
+  std::vector<std::size_t> first;  // index of each tag's first point
   for (const auto& [id, tag] : testbed.surveyed) {
     const auto at = seen.find(id);
     if (at == seen.end()) {

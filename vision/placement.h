@@ -1,5 +1,5 @@
 #pragma once
-// A camera's pose in the world from images of tags whose places were surveyed.
+// Computes a camera's pose in the world from images of tags at surveyed positions.
 
 #include <string>
 #include <vector>
@@ -9,33 +9,34 @@
 
 namespace sf::vision {
 
-inline constexpr std::size_t kMaxPlacementImages = 200;  ///< of a folder or a video; the rest is not read
-inline constexpr std::size_t kLivePlacementImages = 15;  ///< of a device
+inline constexpr std::size_t kMaxPlacementImages = 200;  ///< read from a folder or a video; further images are ignored
+inline constexpr std::size_t kLivePlacementImages = 15;  ///< read from a device
 
-/// A surveyed tag against the image, with the camera's pose as found.
+/// Deviation of a surveyed tag from the image, for the computed camera pose.
 struct TagResidual {
   std::uint32_t id = 0;
-  std::size_t images = 0;  ///< in which it was seen
-  double pixels = 0.0;     ///< [px] RMS distance of its corners (its centre, without a heading) from their projections
-  double metres = 0.0;     ///< [m] distance of its centre from the surveyed one, on the plane at its height
-  /// [px] Residual of all other tags, with the camera placed by them alone; nothing where they do not determine it. One
-  /// wrong place spoils the residuals of all tags, and this one of all but its own.
+  std::size_t images = 0;  ///< number of images in which it was seen
+  double pixels =
+      0.0;  ///< [px] RMS distance of its corners (or of its centre if it has no heading) from their projections
+  double metres = 0.0;  ///< [m] distance of its centre from the surveyed position, on the plane at its height
+  /// [px] Residual of all other tags for a camera placed by them alone; nullopt if they do not determine its pose. One
+  /// wrong position increases the residuals of all tags, but it increases this value for all tags except its own.
   std::optional<double> without;
 };
 
 struct Placement {
   Camera camera;
-  double residual = 0.0;              ///< [px] RMS of all points
-  std::vector<TagResidual> tags;      ///< that were seen, by id
+  double residual = 0.0;              ///< [px] RMS over all points
+  std::vector<TagResidual> tags;      ///< seen tags, sorted by id
   std::vector<std::uint32_t> unseen;  ///< surveyed tags that are in no image
 };
 
-/// Places one camera of the testbed. The means over all images count, in which nothing may move. Corners are where
-/// lines through the tags' edges meet, to a few hundredths of a pixel.
+/// Computes the pose of one camera of the testbed. Averages over all images, in which nothing may move. Corners are
+/// intersections of lines through the tags' edges, accurate to a few hundredths of a pixel.
 /// @param from name of the source, for errors
-/// @throws base::InputError for images of another size than the camera's, without surveyed tags in the testbed file,
-/// and where those in sight do not determine a pose: fewer than four points (a tag with a heading has four), or all
-/// nearly on one line
+/// @throws base::InputError if the images do not have the camera's size, the testbed file has no surveyed tags, or the
+/// visible ones do not determine a pose: fewer than four points (a tag with a heading has four), or all nearly on one
+/// line
 Placement place_camera(const Testbed& testbed, const Camera& camera, ImageSource& images, const std::string& from);
 
 }  // namespace sf::vision

@@ -13,9 +13,9 @@ struct Positioning::State {
   const Testbed& testbed;
   base::ThreadPool pool;
   std::vector<TagDetector> detectors;
-  std::vector<std::vector<Sighting>> sightings;  ///< of each camera
+  std::vector<std::vector<Sighting>> sightings;  ///< per camera
   bool live = false;
-  std::vector<std::vector<std::uint8_t>> last;  ///< pixels of each camera's last image, where they are live
+  std::vector<std::vector<std::uint8_t>> last;  ///< pixels of each camera's last image, if the cameras are live
   std::uint64_t frozen = 0;
   std::vector<Sighting> all;
   std::vector<TrackedTag> tracked;
@@ -45,7 +45,7 @@ std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
                       "expected the size with which it was calibrated",
                       camera.name, camera.intrinsics.width, camera.intrinsics.height, image.width, image.height));
   }
-  std::vector<std::uint8_t> frozen(frames.size(), 0);  // bool of std::vector is not safe to share
+  std::vector<std::uint8_t> frozen(frames.size(), 0);  // std::vector<bool> is not safe to share between threads
   for (std::size_t i = 0; s.live && i < frames.size(); ++i) {
     const std::vector<std::uint8_t>& pixels = frames[i].image.pixels;
     frozen[i] = !pixels.empty() && pixels == s.last[i] ? 1 : 0;

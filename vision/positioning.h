@@ -1,5 +1,5 @@
 #pragma once
-// The whole system but for its sources and its network: images of all cameras in, tracked tags out.
+// The positioning system without its sources and network: converts images of all cameras to tracked tags.
 
 #include <memory>
 #include <span>
@@ -10,30 +10,30 @@
 
 namespace sf::vision {
 
-/// The image of one camera at one moment.
+/// An image of one camera.
 struct Frame {
   Image image;        ///< grey, of the camera's size; empty: unreadable
-  double time = 0.0;  ///< [s] at which the exposure of the first row started
+  double time = 0.0;  ///< [s] start of the exposure of the first row
 };
 
-/// One thread at a time; cameras are processed on several.
+/// Not thread-safe; processes cameras on several threads.
 class Positioning {
  public:
-  /// @param testbed lives longer
-  /// @param threads 0: one for each core
-  /// @param live from devices, whose noise makes each image differ: one that is the same as the last of its camera is
-  /// counted as frozen, and no tag is sought in it
+  /// @param testbed must outlive this
+  /// @param threads 0: one per core
+  /// @param live images come from devices, whose noise makes each image differ. An image identical to its camera's last
+  /// one then counts as frozen and is not searched for tags
   explicit Positioning(const Testbed& testbed, unsigned threads = 0, bool live = false);
   ~Positioning();
 
-  /// @param frames one of each camera of the testbed file, in its order
-  /// @return tags seen now; live until the next call
-  /// @throws base::InputError naming the camera whose image has another size
+  /// @param frames one per camera of the testbed file, in its order
+  /// @return tags seen now; valid until the next call
+  /// @throws base::InputError naming a camera whose image has another size
   std::span<const TrackedTag> update(std::span<const Frame> frames);
 
-  /// Of the last update; live until the next.
+  /// Returns the sightings of the last update; valid until the next.
   std::span<const Sighting> sightings(std::size_t camera) const;
-  DetectionCounts counts() const;  ///< of all cameras
+  DetectionCounts counts() const;  ///< over all cameras
   std::uint64_t refused() const;   ///< by the tracker
 
  private:

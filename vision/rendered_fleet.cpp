@@ -14,12 +14,12 @@ namespace sf::vision {
 
 namespace {
 
-constexpr double kMargin = 4.0;           // [px] between a visible tag and the image's border
+constexpr double kMargin = 4.0;           // [px] between a visible tag and the border of the image
 constexpr double kOccluderHeight = 1.0;   // [m]
 constexpr double kOccluderRadius = 0.15;  // [m]
-constexpr double kMaxPlaces = 20'000;     // of a grid, in sight or not
+constexpr double kMaxPlaces = 20'000;     // of a grid, visible or not
 
-/// Half of a tag's diagonal with its white border.
+/// Returns half of the diagonal of a tag including its white border.
 double reach_of(const TagMount& mount, int cells) {
   return M_SQRT1_2 * mount.side * (cells + 2.0 * kTagBorder) / cells;
 }
@@ -38,7 +38,8 @@ bool sees_disc(const Camera& camera, glm::dvec2 center, double radius, double he
   return true;
 }
 
-/// Centres of a square grid of pitch `pitch` whose discs some camera sees; none of a grid of more than `kMaxPlaces`.
+/// Returns the centres of a square grid of pitch `pitch` whose discs are visible in some camera; empty for a grid of
+/// more than `kMaxPlaces`.
 std::vector<glm::dvec2> seen_grid(const Testbed& testbed, glm::dvec2 low, glm::dvec2 high, double pitch) {
   std::vector<glm::dvec2> seen;
   const glm::dvec2 counts = glm::floor((high - low) / pitch);
@@ -71,7 +72,7 @@ RenderedFleet::RenderedFleet(const Testbed& testbed, const FleetOptions& options
     if (testbed.tags.count(id) == 0) ids.push_back(id);
   ids.resize(options.tags);
 
-  // The widest grid that has room for all tags.
+  // Find the widest grid that has room for all tags.
   glm::dvec2 low, high;
   field_of_view(testbed, low, high);
   double least = 0.0;
@@ -98,7 +99,7 @@ RenderedFleet::RenderedFleet(const Testbed& testbed, const FleetOptions& options
     const auto [c, d] = uniform(i, 1);
     const double radius = std::max(0.02, (0.3 + 0.7 * a) * (0.5 * pitch_ - kBodyRadius * side));
     const double speed = options.speed * (0.2 + 0.8 * b);
-    // Grids with more places than tags are used over their whole area.
+    // If the grid has more positions than tags, spread the tags over its whole area.
     tags_.push_back({ids[i],
                      {grid[i * grid.size() / ids.size()], radius, i % 2 == 0 ? speed : -speed, 2.0 * M_PI * c},
                      2.0 * M_PI * d,
@@ -146,7 +147,7 @@ bool RenderedFleet::is_visible(const Camera& camera, std::size_t tag, double tim
   const glm::dvec2 at{state.X_WT.x, state.X_WT.y};
   if (!sees_disc(camera, at, reach, state.X_WT.z)) return false;
   return std::none_of(occluders_.begin(), occluders_.end(), [&](const Circle& circle) {
-    // Shadow of the occluder on the tag's plane, with the camera as the light.
+    // The occluder's shadow on the tag's plane, with the camera as the light.
     const double scale = (camera.position.z - state.X_WT.z) / (camera.position.z - kOccluderHeight);
     const glm::dvec2 eye{camera.position.x, camera.position.y};
     const glm::dvec2 shadow = eye + scale * (place(circle, time) - eye);

@@ -1,6 +1,6 @@
 #pragma once
-// A simulated testbed for the cameras of a testbed file: tags on circles, each in its own part of the field of view,
-// with clutter on the floor and occluders above. Everything is a function of time, so truth is known exactly.
+// A simulated testbed for the cameras of a testbed file: tags move on circles, each in a separate part of the field of
+// view, with clutter on the floor and occluders above. Everything is a function of time, so the ground truth is exact.
 
 #include <cstdint>
 #include <vector>
@@ -10,24 +10,24 @@
 namespace sf::vision {
 
 struct FleetOptions {
-  std::uint32_t tags = 30;      ///< ids 1 to this, or those that the testbed file lists first
-  double speed = 0.5;           ///< [m/s] of the fastest; others have 20 to 100 % of it
-  std::uint32_t occluders = 0;  ///< dark discs of 0.3 m, 1 m above the floor, on circles of their own
+  std::uint32_t tags = 30;      ///< with ids 1 to this number, or the first ids listed in the testbed file
+  double speed = 0.5;           ///< [m/s] of the fastest tag; the others have 20 to 100 % of it
+  std::uint32_t occluders = 0;  ///< dark discs of 0.3 m, 1 m above the floor, on separate circles
   bool clutter = true;          ///< lane markings and framed black squares on the floor
   std::uint64_t seed = 1;
 };
 
 class RenderedFleet {
  public:
-  /// @param testbed lives longer than the fleet
-  /// @throws base::InputError when so many tags do not fit into the field of view, or the dictionary is too small
+  /// @param testbed must outlive the fleet
+  /// @throws base::InputError if the tags do not fit into the field of view, or the dictionary is too small
   RenderedFleet(const Testbed& testbed, const FleetOptions& options);
 
-  /// Patches move as straight as the tags do at `time` [s].
+  /// Returns the scene near `time` [s]; its patches move straight with the tags' velocities at that time.
   Scene scene_at(double time) const;
   TrueTag truth(std::size_t tag, double time) const;
   std::size_t size() const { return tags_.size(); }
-  /// Whether `camera` sees the whole tag with its white border at `time`.
+  /// True if `camera` sees the whole tag with its white border at `time`.
   bool is_visible(const Camera& camera, std::size_t tag, double time) const;
 
  private:

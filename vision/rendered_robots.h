@@ -1,5 +1,5 @@
 #pragma once
-// A simulated testbed whose robots are moved from outside, by their true states: what its cameras see.
+// A simulated testbed with robots that are moved from outside, by their true states.
 
 #include <cstdint>
 #include <map>
@@ -8,21 +8,21 @@
 
 namespace sf::vision {
 
-/// Robots are named by their tags, which they carry at the height and with the `offset` of the testbed file.
+/// Robots are identified by their tags. The height and the `offset` of a tag are those of the testbed file.
 class RenderedRobots {
  public:
-  static constexpr std::size_t kMaxRobots = 1000;   ///< others are left out
-  static constexpr double kMaxExtrapolation = 0.5;  ///< [s] with the last velocity; then a robot stands
+  static constexpr std::size_t kMaxRobots = 1000;   ///< further robots are ignored
+  static constexpr double kMaxExtrapolation = 0.5;  ///< [s] with the last velocity; after that, a robot stops
 
-  /// @param testbed lives longer
+  /// @param testbed must outlive this
   explicit RenderedRobots(const Testbed& testbed);
 
-  /// @param X_WO true pose of the robot with tag `id` at `time` [s]; z does not count
+  /// @param X_WO true pose of the robot with tag `id` at `time` [s]; z is ignored
   /// @param velocity [m/s] of its origin in the world
-  /// @return false, and nothing changes, where the dictionary has no such tag, or the robots are too many
+  /// @return false, without a change, if the dictionary lacks the tag or there are too many robots
   bool update(std::uint32_t id, const base::Pose& X_WO, glm::dvec2 velocity, double turn, double time);
 
-  /// Of an image whose middle is at `time` [s].
+  /// Returns the scene for an image whose middle is at `time` [s].
   Scene scene_at(double time) const;
   std::size_t size() const { return robots_.size(); }
 
@@ -34,7 +34,7 @@ class RenderedRobots {
   };
 
   const Testbed& testbed_;
-  std::uint32_t ids_;  ///< of the dictionary, from 0
+  std::uint32_t ids_;  ///< size of the dictionary; ids start at 0
   std::map<std::uint32_t, Robot> robots_;
 };
 

@@ -13,18 +13,18 @@ namespace sf::vision {
 
 namespace {
 
-constexpr int kFewSamples = 8;   // of a pixel without an edge
-constexpr double kEven = 0.005;  // [albedo] difference of samples within a pixel without an edge
+constexpr int kFewSamples = 8;   // per pixel without an edge
+constexpr double kEven = 0.005;  // [albedo] maximum difference of samples within a pixel without an edge
 
-/// Fractional part.
+/// Returns the fractional part.
 double wrap(double x) { return x - std::floor(x); }
 
-/// Smooth unevenness of the floor, in [-1, 1].
+/// Returns the smooth unevenness of the floor, in [-1, 1].
 double unevenness(glm::dvec2 p) {
   return 0.5 * std::sin(3.1 * p.x + 1.7 * std::sin(1.3 * p.y)) + 0.5 * std::sin(4.3 * p.y + 1.1 * std::sin(2.3 * p.x));
 }
 
-/// [1/(width of a step)] a separable Gaussian of 7 taps.
+/// [1/(width of a step)] Returns a separable Gaussian of 7 taps.
 std::array<float, 7> gaussian(double sigma) {
   std::array<float, 7> taps{};
   double sum = 0.0;
@@ -40,10 +40,10 @@ struct Renderer::State {
   Camera camera;
   Imaging imaging;
   std::uint64_t seed = 0;
-  std::vector<glm::dvec2> rays;  ///< normalised, of each pixel
-  std::vector<float> falloff;    ///< by vignetting, of each pixel
+  std::vector<glm::dvec2> rays;  ///< normalised, per pixel
+  std::vector<float> falloff;    ///< due to vignetting, per pixel
   std::vector<float> light, blurred;
-  std::vector<float> floor;  ///< light from the floor, of `floor_scene`
+  std::vector<float> floor;  ///< light from the floor of `floor_scene`
   Scene floor_scene;
   MovingPatches patches;
 
@@ -58,7 +58,7 @@ struct Renderer::State {
   void expose(std::uint32_t frame, Image& out) const;
 };
 
-/// Keeps the light of the bare floor from image to image.
+/// Computes the light of the bare floor and caches it between images.
 void Renderer::State::light_floor(const Scene& scene) {
   const bool same = !floor.empty() && scene.floor == floor_scene.floor && scene.texture == floor_scene.texture &&
                     scene.gradient == floor_scene.gradient;
@@ -83,7 +83,7 @@ double Renderer::State::light_of_floor(const Scene& scene, glm::dvec2 ray) const
          std::max(0.0, 1.0 + scene.gradient.x * p->x + scene.gradient.y * p->y);
 }
 
-/// Light from the point that the ray meets. @param dt [s] after the middle of the exposure
+/// Returns the light from the point that the ray meets. @param dt [s] after the middle of the exposure
 /// @param bare light of the floor there
 double Renderer::State::sample(const Scene& scene, const std::vector<std::uint32_t>& near, glm::dvec2 ray, double dt,
                                double bare) const {
@@ -96,7 +96,7 @@ double Renderer::State::sample(const Scene& scene, const std::vector<std::uint32
   return bare;
 }
 
-/// Mean over the pixel and its exposure. @param middle, start [s] of all rows' exposures, of this row's
+/// Returns the mean over the pixel and its exposure. @param middle, start [s] of all rows' exposures, of this row's
 double Renderer::State::brightness(const Scene& scene, int u, int v, double middle, double start) const {
   const std::vector<std::uint32_t>& near = patches.near(u, v);
   if (near.empty()) return floor[index(u, v)];
@@ -142,9 +142,9 @@ void Renderer::State::blur() {
   }
 }
 
-/// Grey values with noise.
+/// Computes grey values with noise.
 void Renderer::State::expose(std::uint32_t frame, Image& out) const {
-  // The seed is a hash with the camera's name, so no key is one of a range sensor.
+  // The seed includes a hash of the camera's name, so keys never coincide with those of range sensors.
   const base::RandomKey key{seed, base::RandomStream::range_noise, frame};
   for (std::size_t i = 0; i < light.size(); i += 2) {
     const auto normal = base::random_normal(key, static_cast<std::uint32_t>(i / 2));
@@ -161,7 +161,7 @@ Renderer::Renderer(const Camera& camera, const Imaging& imaging, std::uint64_t s
   State& s = *state_;
   s.camera = camera;
   s.imaging = imaging;
-  // Cameras of one seed have different noise.
+  // Cameras with the same seed have different noise.
   s.seed = base::hash_bytes(camera.name.data(), camera.name.size(), seed);
   const int width = camera.intrinsics.width, height = camera.intrinsics.height;
   const std::size_t count = static_cast<std::size_t>(width) * height;

@@ -1,6 +1,6 @@
 #pragma once
-// Images of a simulated testbed as a camera takes them: perspective, distortion, motion blur, rolling shutter, lens
-// blur, vignetting, uneven light, noise.
+// Renders images of a simulated testbed as a camera takes them: perspective, distortion, motion blur, rolling shutter,
+// lens blur, vignetting, uneven light, noise.
 
 #include <cstdint>
 #include <memory>
@@ -11,9 +11,9 @@
 
 namespace sf::vision {
 
-/// Renders what one camera sees. An image is a function of (camera, scene, imaging, seed, frame, time), the same for
-/// any order of calls. Pixels at edges are averages of `kSamples` points of the pixel and times of the exposure, in a
-/// low-discrepancy sequence; even pixels have fewer samples. One thread at a time.
+/// Renders the images of one camera. An image is a function of (camera, scene, imaging, seed, frame, time), independent
+/// of the order of calls. Pixels at edges average `kSamples` points over the pixel and the exposure, in a
+/// low-discrepancy sequence; uniform pixels use fewer samples. Not thread-safe.
 class Renderer {
  public:
   static constexpr int kSamples = 32;
@@ -23,7 +23,7 @@ class Renderer {
   ~Renderer();
   Renderer(Renderer&&) noexcept;
 
-  /// @param time [s] at which the exposure of the first row starts
+  /// @param time [s] start of the exposure of the first row
   /// @param frame number of the image, for its noise
   void render(const Scene& scene, double time, std::uint32_t frame, Image& out);
 

@@ -1,5 +1,5 @@
 #pragma once
-// From one camera's image to the poses of tags in the world.
+// Computes the poses of tags in the world from one camera's image.
 
 #include <cstdint>
 #include <map>
@@ -11,41 +11,41 @@
 
 namespace sf::vision {
 
-/// A tag as one camera saw it.
+/// A tag seen by one camera.
 struct Sighting {
   std::uint32_t id = 0;
-  double time = 0.0;  ///< [s] the middle of the exposure of the tag's rows
+  double time = 0.0;  ///< [s] middle of the exposure of the tag's rows
   TagFit fit;
 };
 
-/// Counts of images, of sightings and, by reason, of refused outlines.
+/// Counts of images, sightings and, by reason, rejected outlines.
 struct DetectionCounts {
   std::uint64_t images = 0;
-  std::uint64_t unreadable = 0;  ///< of these: without pixels, or OpenCV failed on it
+  std::uint64_t unreadable = 0;  ///< of the images: without pixels, or OpenCV failed on them
   std::uint64_t sightings = 0;
   std::uint64_t unlisted = 0;   ///< `only_listed` is set, and the file has no [[tag]] with this id
-  std::uint64_t unfitted = 0;   ///< fewer than three sides with an edge, or points that make no square
+  std::uint64_t unfitted = 0;   ///< fewer than three sides with an edge, or points that do not form a square
   std::uint64_t misfitted = 0;  ///< side or residual beyond the limits below: clutter, or a wrong height
-  std::uint64_t frozen = 0;     ///< images left out: each the same as the one before, to the bit
+  std::uint64_t frozen = 0;     ///< skipped images that are identical to the one before
 };
 
-/// One thread at a time; use one detector for each camera.
+/// Not thread-safe; use one detector per camera.
 class TagDetector {
  public:
-  /// Sightings whose side differs by more than this share from the stated one are refused.
+  /// Rejects sightings whose side differs from the specified one by more than this fraction.
   static constexpr double kMaxSideError = 0.15;
-  /// [px] Sightings with a larger RMS distance of their edges from the square are refused.
+  /// [px] Rejects sightings with a larger RMS distance of their edges from the square.
   static constexpr double kMaxResidual = 0.5;
 
-  /// @param testbed lives longer than the detector
+  /// @param testbed must outlive the detector
   TagDetector(const Testbed& testbed, const Camera& camera);
   ~TagDetector();
   TagDetector(TagDetector&&) noexcept;
 
-  /// Replaces the content of `out`, in ascending order of ids; of two sightings with one id the one with the smaller
-  /// side error stays.
+  /// Replaces the content of `out`, sorted by id. If two sightings have the same id, keeps the one with the smaller
+  /// side error.
   /// @param image grey, of the camera's size; without pixels it counts as unreadable
-  /// @param time [s] at which the exposure of the first row started
+  /// @param time [s] start of the exposure of the first row
   void detect(const Image& image, double time, std::vector<Sighting>& out);
 
   const DetectionCounts& counts() const { return counts_; }

@@ -1,4 +1,4 @@
-// Sub-pixel edges of a tag.
+// Finds the edges of a tag with sub-pixel accuracy.
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kStep = 0.5;        // [px] between samples across an edge
 constexpr double kMinContrast = 12;  // [grey]
-constexpr double kEnds = 0.12;       // of a side, left out at either end: there the other side's edge is near
+constexpr double kEnds = 0.12;       // fraction of a side skipped at each end, where the adjacent side's edge is near
 
-/// Bilinear; the border's pixels continue outside.
+/// Interpolates bilinearly; border pixels continue outside of the image.
 double grey_at(const Image& image, glm::dvec2 p) {
   const double u = std::clamp(p.x, 0.0, image.width - 1.001), v = std::clamp(p.y, 0.0, image.height - 1.001);
   const int u0 = static_cast<int>(u), v0 = static_cast<int>(v);
@@ -28,10 +28,10 @@ double grey_at(const Image& image, glm::dvec2 p) {
 
 /// One side of a tag, and grey values across it.
 struct Side {
-  glm::dvec2 from, along, outward;      ///< [px]; `along` has the side's length, `outward` is a unit vector
+  glm::dvec2 from, along, outward;      ///< [px]; `along` has the length of the side, `outward` is a unit vector
   int profiles = 0, samples = 0;        ///< along, across
-  std::size_t inside = 0, outside = 0;  ///< samples in the middle of the black border, and as far outside
-  std::vector<double> grey;             ///< profile by profile, from inside to outside
+  std::size_t inside = 0, outside = 0;  ///< samples in the middle of the black border, and equally far outside
+  std::vector<double> grey;             ///< one profile after another, each from inside to outside
 
   glm::dvec2 foot(int profile) const {
     return from + (kEnds + (1.0 - 2.0 * kEnds) * (profile + 0.5) / profiles) * along;
@@ -54,7 +54,8 @@ Side sample_side(const Image& image, glm::dvec2 a, glm::dvec2 b, glm::dvec2 cent
   return side;
 }
 
-/// [px] outward from the profile's foot, where the grey value rises through `level`: the crossing nearest to the foot.
+/// [px] Returns the outward distance from the profile's foot at which the grey value rises through `level`; the
+/// crossing nearest to the foot.
 std::optional<double> crossing(std::span<const double> profile, double level) {
   std::optional<double> nearest;
   const auto middle = static_cast<double>(profile.size() / 2);
@@ -70,8 +71,8 @@ double mean_of_three(std::span<const double> profile, std::size_t at) {
   return (profile[at - 1] + profile[at] + profile[at + 1]) / 3.0;
 }
 
-/// Where the side's profiles cross the mean of black and white: [px] along `outward`, nothing where they do not. Empty
-/// without contrast.
+/// Returns where the side's profiles cross the mean of black and white: [px] along `outward`, nullopt if they do not.
+/// Empty without contrast.
 std::vector<std::optional<double>> crossings(const Side& side) {
   const auto profile = [&](int i) {
     const auto samples = static_cast<std::size_t>(side.samples);
@@ -89,13 +90,13 @@ std::vector<std::optional<double>> crossings(const Side& side) {
   return found;
 }
 
-/// Moves the side's ends by the medians of the crossings in its two halves.
+/// Moves the ends of the side by the medians of the crossings in its two halves.
 void move_ends(const Side& side, const std::vector<std::optional<double>>& found, glm::dvec2& a, glm::dvec2& b) {
   std::vector<double> first, second;
   for (std::size_t i = 0; i < found.size(); ++i)
     if (found[i]) (2 * i < found.size() ? first : second).push_back(*found[i]);
   if (first.empty() || second.empty()) return;
-  // The medians stand for the points at a quarter and three quarters of the profiles' span.
+  // The medians represent the points at a quarter and three quarters of the profiles' span.
   const double mean = 0.5 * (median(first) + median(second));
   const double slope = (median(second) - median(first)) / (0.5 * (1.0 - 2.0 * kEnds));
   a += (mean - 0.5 * slope) * side.outward;

@@ -22,20 +22,20 @@ struct PlanePoint {
   bool used = true;
 };
 
-/// Unknowns of the fit: position, heading, and half of the side.
+/// The unknowns of the fit: position, heading, and half of the side.
 struct Square {
   glm::dvec2 center;
   double yaw = 0.0;
   double half = 0.0;
 };
 
-/// [m] outward from the square's side.
+/// [m] Distance outward from the side of the square.
 double distance(const Square& square, const PlanePoint& point) {
   const double angle = square.yaw + kNormals[point.side];
   return glm::dot(glm::dvec2{std::cos(angle), std::sin(angle)}, point.p - square.center) - square.half;
 }
 
-/// Solves the symmetric 4 x 4 system by Cholesky; false where it is singular.
+/// Solves the symmetric 4 x 4 system by Cholesky decomposition; false if it is singular.
 bool solve(std::array<std::array<double, 4>, 4>& a, std::array<double, 4>& b) {
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
@@ -57,7 +57,7 @@ bool solve(std::array<std::array<double, 4>, 4>& a, std::array<double, 4>& b) {
   return true;
 }
 
-/// One step of Gauss and Newton, in units of the square's half side so that all unknowns are of one size.
+/// Performs one Gauss-Newton step, in units of half the square's side so that all unknowns have similar magnitudes.
 bool improve(Square& square, std::span<const PlanePoint> points) {
   std::array<std::array<double, 4>, 4> normal{};
   std::array<double, 4> right{};
@@ -80,7 +80,7 @@ bool improve(Square& square, std::span<const PlanePoint> points) {
   return square.half > 0.0 && std::isfinite(square.yaw);
 }
 
-/// Leaves out points far from the square.
+/// Removes points far from the square.
 void reject_outliers(const Square& square, std::vector<PlanePoint>& points, double pixel) {
   std::vector<double> distances;
   for (const PlanePoint& point : points) distances.push_back(std::abs(distance(square, point)));
@@ -89,7 +89,7 @@ void reject_outliers(const Square& square, std::vector<PlanePoint>& points, doub
   for (std::size_t i = 0; i < points.size(); ++i) points[i].used = distances[i] <= most;
 }
 
-/// The square whose sides run through the means of the points of each side.
+/// Returns the square whose sides run through the means of the points of each side.
 std::optional<Square> first_guess(std::span<const PlanePoint> points) {
   std::array<glm::dvec2, 4> mean{};
   std::array<double, 4> count{};
@@ -99,7 +99,7 @@ std::optional<Square> first_guess(std::span<const PlanePoint> points) {
   }
   if (std::count_if(count.begin(), count.end(), [](double n) { return n >= 3.0; }) < 3) return std::nullopt;
   for (std::size_t i = 0; i < 4; ++i) mean[i] /= std::max(1.0, count[i]);
-  // Two opposite sides that both have points give the centre and one axis.
+  // Two opposite sides with points give the centre and one axis.
   const bool upright = count[0] >= 3.0 && count[2] >= 3.0;
   const glm::dvec2 axis = upright ? mean[0] - mean[2] : mean[1] - mean[3];
   const glm::dvec2 center = 0.5 * (upright ? mean[0] + mean[2] : mean[1] + mean[3]);

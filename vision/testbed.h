@@ -1,5 +1,5 @@
 #pragma once
-// The testbed file: cameras with their calibration, and the tags that they look for. docs/vps.md describes its keys.
+// The testbed file: cameras with their calibration, and the tags to detect. docs/vps.md describes its keys.
 
 #include <cstdint>
 #include <map>
@@ -15,22 +15,23 @@
 namespace sf::vision {
 
 inline constexpr std::size_t kMaxCameras = 64;
-/// Of the images of all cameras together: 256 Mpx.
+/// Limit for the images of all cameras in total: 256 Mpx.
 inline constexpr std::int64_t kMaxTestbedPixels = 4 * kMaxImagePixels;
 
-/// Tags are printed squares; `side` is that of the black border's outline.
+/// A printed square tag; `side` is that of the outline of its black border.
 struct TagMount {
   double side = 0.15;   ///< [m] > 0
   double height = 0.0;  ///< [m] of the tag above the world's z = 0
-  base::Pose X_OT;      ///< tag in the frame of its object, whose pose is sent; default: the tag's own pose is sent
-  std::string address;  ///< "host:port" that its packets go to; empty: the default
-  std::optional<std::uint32_t> robot;  ///< id of the robot that carries it; nullopt: the tag's id
+  base::Pose
+      X_OT;  ///< pose of the tag in the frame of its object, whose pose is sent; default: the tag's own pose is sent
+  std::string address;                 ///< "host:port" that its packets go to; empty: the default
+  std::optional<std::uint32_t> robot;  ///< id of the robot that carries the tag; nullopt: the tag's id
 };
 
-/// A tag at a known place, by which cameras are placed (vision/placement.h). It lies flat.
+/// A flat tag at a known position, used to place cameras (vision/placement.h).
 struct SurveyedTag {
   glm::dvec3 position;            ///< [m] of its centre in the world
-  std::optional<double> heading;  ///< [rad] of its x axis; nullopt: not known
+  std::optional<double> heading;  ///< [rad] of its x axis; nullopt: unknown
 };
 inline constexpr std::size_t kMaxSurveyed = 1000;
 
@@ -42,7 +43,7 @@ struct TestbedCamera {
 struct Testbed {
   std::string file;
   std::string dictionary = "apriltag_36h11";
-  TagMount tag;                                   ///< of tags without an entry of their own
+  TagMount tag;                                   ///< for tags without an entry
   std::map<std::uint32_t, TagMount> tags;         ///< by id
   bool only_listed = false;                       ///< ignore ids without an entry
   std::vector<TestbedCamera> cameras;             ///< 1 to `kMaxCameras`, names distinct
@@ -51,11 +52,11 @@ struct Testbed {
   const TagMount& mount(std::uint32_t id) const;
 };
 
-/// @throws base::InputError with file and line for unknown keys and values out of bounds
+/// @throws base::InputError with file and line for unknown keys and values out of range
 Testbed parse_testbed(const std::string& file, std::string_view text);
 Testbed read_testbed(const std::string& file);
 
-/// The section [[camera]] of one camera.
+/// Returns the [[camera]] section of one camera.
 std::string camera_section(const Camera& camera);
 
 }  // namespace sf::vision

@@ -11,14 +11,14 @@ constexpr double kAcceleration = 2.0;       // [m/s2/sqrt(Hz)] white acceleratio
 constexpr double kTurnAcceleration = 10.0;  // [rad/s2/sqrt(Hz)]
 constexpr double kPositionSigma = 0.05;     // [px] of a measured position
 constexpr double kHeadingSigma = 2e-3;      // [rad] of a measured heading
-constexpr double kGate = 0.3;               // [m] beyond the motion that the speed allows: another tag, or a false one
-constexpr double kMaxSpeed = 5.0;           // [m/s]
-constexpr double kForget = 1.0;             // [s] unseen, after which a tag starts anew
+constexpr double kGate = 0.3;      // [m] beyond the distance that the speed allows: another tag, or a false one
+constexpr double kMaxSpeed = 5.0;  // [m/s]
+constexpr double kForget = 1.0;    // [s] without a sighting, after which tracking of a tag restarts
 
 }  // namespace
 
 void Tracker::predict(Axis& axis, double dt, double acceleration) {
-  const double q = acceleration * acceleration * dt;  // variance of the velocity that an interval adds
+  const double q = acceleration * acceleration * dt;  // variance of the velocity added during an interval
   axis.x += dt * axis.v;
   axis.xx += dt * (2.0 * axis.xv + dt * axis.vv) + q * dt * dt / 3.0;
   axis.xv += dt * axis.vv + q * dt / 2.0;
@@ -36,8 +36,8 @@ void Tracker::correct(Axis& axis, double measured, double sigma) {
   axis.xx *= 1.0 - kx;
 }
 
-/// Views of one tag at one moment as one: at the time of the first, weighted by 1 / pixel^2. Views at another place
-/// than the first (of a known tag: the first near its track) are refused.
+/// Merges the views of one tag at one time: at the time of the first, weighted by 1 / pixel^2. Rejects views at another
+/// position than the first, or, for a known tag, the first near its track.
 std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const Sighting> views, int& used) {
   const auto view_of = [](const Sighting& s) {
     return View{s.time, s.fit.pixel, {s.fit.X_WT.x, s.fit.X_WT.y, s.fit.X_WT.yaw}};
@@ -57,7 +57,7 @@ std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const 
     if (apart > 0.5 * kGate + kMaxSpeed * std::abs(dt)) continue;
     const double weight = 1.0 / (view.pixel * view.pixel);
     for (std::size_t i = 0; i < 3; ++i) {
-      // Headings relative to the first, so that none is averaged across the jump at pi.
+      // Averages headings relative to the first, which avoids the jump at pi.
       const double off = i == 2 ? base::wrap_angle(view.at[2] - first.at[2]) : view.at[i] - first.at[i];
       sum.at[i] += weight * (off + (track != nullptr ? dt * track->axes[i].v : 0.0));
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Sightings of all cameras merged and tracked: pose and velocity of each tag.
+// Merges the sightings of all cameras and tracks pose and velocity of each tag.
 
 #include <array>
 #include <cstdint>
@@ -19,24 +19,23 @@ struct TrackedTag {
   base::Pose X_WT;      ///< measured, not smoothed; yaw in [-pi, pi]
   glm::dvec2 velocity;  ///< [m/s] in the world
   double turn = 0.0;    ///< [rad/s]
-  int cameras = 0;      ///< that saw it this time
+  int cameras = 0;      ///< number of cameras that saw it this time
 };
 
 /// One filter for each tag and axis (x, y, heading), with constant velocity and white acceleration (Bar-Shalom, Li,
 /// Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 6.2.2). The velocity turns
-/// with the measured heading, as that of a wheeled robot does, so that it does not lag behind in curves.
+/// with the measured heading, as for a wheeled robot, so that it does not lag behind in curves.
 ///
-/// A tag is reported from its second sighting on, since the velocity of the first is unknown and a single one may be
-/// false. Views of several cameras are moved to one time by the tag's velocity and averaged, weighted by the size of
-/// their pixels.
+/// A tag is reported from its second sighting on, since the first gives no velocity and a single sighting may be false.
+/// Views of several cameras are moved to a common time by the tag's velocity and averaged, weighted by pixel size.
 class Tracker {
  public:
-  /// Takes the sightings of all cameras of one moment, those of one camera after those of another. Replaces the content
-  /// of `out` by the tags seen, in ascending order of ids.
+  /// Processes the sightings of all cameras at one time, grouped by camera. Replaces the content of `out` by the tags
+  /// seen, sorted by id.
   void update(std::span<const Sighting> sightings, std::vector<TrackedTag>& out);
 
-  /// Sightings that were refused: too far from the tag's last place, older than its last one, or at a second place at
-  /// the same time.
+  /// Returns the number of rejected sightings: too far from the tag's last position, older than its last sighting, or
+  /// at a second position at the same time.
   std::uint64_t refused() const { return refused_; }
 
  private:

@@ -1,5 +1,5 @@
-// Calibration with a chessboard (Z. Zhang, "A flexible new technique for camera calibration", 2000) by OpenCV's calib3d
-// and, for boards with tags, aruco.
+// Calibration with a chessboard (Z. Zhang, "A flexible new technique for camera calibration", 2000), using OpenCV's
+// calib3d and, for boards with tags, aruco.
 
 #include "vision/opencv/calibration.h"
 
@@ -19,16 +19,16 @@ namespace sf::vision {
 
 namespace {
 
-constexpr std::size_t kFewest = 3;  // images that determine all intrinsics
+constexpr std::size_t kFewest = 3;  // minimum number of images that determines all intrinsics
 
-constexpr std::size_t kFewestCorners = 6;  // of a board that is seen in part
+constexpr std::size_t kFewestCorners = 6;  // minimum for a partly visible board
 
 cv::Point3f place_of(const Chessboard& board, int corner) {
   return {static_cast<float>(corner % board.columns * board.square),
           static_cast<float>(corner / board.columns * board.square), 0.0f};
 }
 
-/// Corners of one row, one column or one diagonal determine no pose.
+/// Corners of a single row, column or diagonal do not determine a pose.
 bool are_spread(const std::vector<BoardCorner>& corners, const Chessboard& board) {
   if (corners.size() < kFewestCorners) return false;
   const auto cell = [&](std::size_t i) {
@@ -44,7 +44,7 @@ bool are_spread(const std::vector<BoardCorner>& corners, const Chessboard& board
 
 std::vector<BoardCorner> find_plain(const cv::Mat& grey, const Chessboard& board) {
   // A. Duda, U. Frese, "Accurate detection and localization of checkerboard corners for calibration", 2018. Its time is
-  // linear in the pixels; OpenCV's other search takes 20 s of an image with some tags and no board.
+  // linear in the pixels; OpenCV's other search needs 20 s for an image with some tags and no board.
   std::vector<cv::Point2f> found;
   std::vector<BoardCorner> corners;
   if (!cv::findChessboardCornersSB(grey, {board.columns, board.rows}, found, cv::CALIB_CB_NORMALIZE_IMAGE))

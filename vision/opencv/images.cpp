@@ -1,4 +1,4 @@
-// Image files by OpenCV's imgcodecs, and drawing by its imgproc.
+// Image files with OpenCV's imgcodecs, drawing with its imgproc.
 
 #include "vision/opencv/images.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// The functions of vision/opencv.h about images.
+// Image functions of vision/opencv.h.
 
 #include <functional>
 
@@ -11,16 +11,17 @@ class Mat;
 
 namespace sf::vision {
 
-/// The same pixels as OpenCV's matrix, which lives as long as the image and must not be written to.
+/// Returns a matrix that refers to the image's pixels. It must not outlive the image or be written to.
 cv::Mat wrap(const Image& image);
 
-/// Calls `work`. @throws base::InputError with OpenCV's reason where OpenCV throws. @param what its name for the error
+/// Calls `work`. @param what subject of the error message @throws base::InputError with OpenCV's reason if OpenCV
+/// throws.
 void attempt(const std::string& what, const std::function<void()>& work);
 
-/// In grey; without pixels where the file cannot be read. @throws base::InputError as ImageSource::next
+/// Reads an image in grey; without pixels if the file is unreadable. @throws base::InputError as ImageSource::next
 Image read_image(const std::string& file);
 void draw(Image& image, const std::vector<Mark>& marks);
-/// Copies OpenCV's matrix, which has 8 bits a channel and the image's channels.
+/// Copies an OpenCV matrix with 8 bits per channel and the image's number of channels.
 /// @param source of the image. @throws base::InputError for more than `kMaxImagePixels`
 void copy(const cv::Mat& from, const std::string& source, Image& to);
 

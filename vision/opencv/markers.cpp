@@ -1,4 +1,4 @@
-// Fiducials by OpenCV's aruco.
+// Fiducials with OpenCV's aruco.
 
 #include "vision/opencv/markers.h"
 
@@ -47,10 +47,10 @@ class ArucoFinder : public TagFinder {
   explicit ArucoFinder(const std::string& dictionary)
       : dictionary_(dictionary_of(dictionary)), settings_(cv::aruco::DetectorParameters::create()) {
     settings_->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
-    // Windows of 13 and 23 pixels. The default's third, of 3 pixels, finds no further tag and costs a third of the
-    // time.
+    // Windows of 13 and 23 pixels. The default's third window, of 3 pixels, finds no further tags but takes a third of
+    // the time.
     settings_->adaptiveThreshWinSizeMin = 13;
-    // The outline of the white border must not replace that of the tag: it is 1/24 of the perimeter away, or less.
+    // The outline of the white border must not replace that of the tag, which is at most 1/24 of the perimeter away.
     settings_->minMarkerDistanceRate = 0.01;
   }
 
@@ -87,7 +87,7 @@ TagPattern tag_pattern(const std::string& dictionary, std::uint32_t id) {
   if (id >= static_cast<std::uint32_t>(tags->bytesList.rows))
     throw base::InputError(fmt::format("tag {} is not in dictionary '{}', which has the ids 0 to {}", id, dictionary,
                                        tags->bytesList.rows - 1));
-  // One pixel a cell.
+  // One pixel per cell.
   const int cells = tags->markerSize + 2;
   cv::Mat picture;
   tags->drawMarker(static_cast<int>(id), cells, picture, 1);

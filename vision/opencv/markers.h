@@ -1,5 +1,5 @@
 #pragma once
-// The functions of vision/opencv.h about tags.
+// Tag functions of vision/opencv.h.
 
 #include "vision/opencv.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// The function of vision/opencv.h about a camera's pose.
+// Camera pose function of vision/opencv.h.
 
 #include "vision/opencv.h"
 

@@ -1,4 +1,4 @@
-// The plug-in's table.
+// The function table of the plug-in.
 
 #include "vision/opencv/calibration.h"
 #include "vision/opencv/images.h"

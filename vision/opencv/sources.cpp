@@ -1,4 +1,4 @@
-// Devices and videos by OpenCV's videoio, and folders of images.
+// Devices and videos with OpenCV's videoio, and folders of images.
 
 #include "vision/opencv/sources.h"
 
@@ -92,7 +92,7 @@ std::unique_ptr<ImageSource> open_source(const std::string& source, int width, i
     throw base::InputError(source, 0,
                            "is a pipe, a socket or a block device; expected a camera, a video, an image or a folder");
   if (!live && is_image(source)) return std::make_unique<Files>(std::vector{source});
-  // The error below says all; OpenCV would print what each of its readers tried.
+  // The error below is sufficient; OpenCV would print the attempts of each of its readers.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   try {
     cv::VideoCapture capture(source, live ? cv::CAP_V4L2 : cv::CAP_FFMPEG);

@@ -1,5 +1,5 @@
 #pragma once
-// The function of vision/opencv.h about video files.
+// Video file function of vision/opencv.h.
 
 #include "vision/opencv.h"
 
