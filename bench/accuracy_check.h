@@ -1,5 +1,5 @@
 #pragma once
-// Errors of a caster: a sample of its beams compared with the tests' brute force.
+// Measures the errors of a caster: compares a sample of its beams with the tests' brute force.
 
 #include "base/reading.h"
 #include "bench/caster.h"
@@ -8,8 +8,8 @@ namespace sf::bench {
 
 struct AccuracyCheck {
   double max_error_m = 0.0;   ///< [m] over the compared beams
-  std::size_t beams = 0;      ///< compared
-  std::size_t at_vertex = 0;  ///< left out: within 10 um of a segment's end, where 32 bits may hit or miss
+  std::size_t beams = 0;      ///< number of compared beams
+  std::size_t at_vertex = 0;  ///< skipped: within 10 um of a segment's end, where 32-bit arithmetic may hit or miss
 };
 
 /// Compares all beams of `robots` robots, spread over the fleet, after `caster` has cast `round`.

@@ -1,6 +1,6 @@
 #pragma once
 // Speed and error of the laser's accuracy modes, and of cheaper methods that did not become modes. Methods take turns;
-// walls stand still.
+// walls do not move.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace sf::bench {
 
 struct AccuracyModeResult : Timing {
-  double median = 0.0, p99 = 0.0, max = 0.0;  ///< [m] errors against mode exact, over all beams of the last turn
+  double median = 0.0, p99 = 0.0, max = 0.0;  ///< [m] errors relative to mode exact, over all beams of the last turn
 };
 
 struct AccuracyModeComparison {

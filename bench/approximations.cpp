@@ -11,7 +11,7 @@ namespace sf::bench {
 
 namespace {
 
-/// [m] Lower bound of the distance between a wall and any point of the cell; 0: a wall may touch the cell.
+/// Lower bounds of the distance [m] between a wall and any point of a cell; 0: a wall may touch the cell.
 struct Clearances {
   float x = 0.0f, y = 0.0f;  ///< [m] lower corner
   float cell = 1.0f;         ///< [m]
@@ -53,7 +53,7 @@ float march(const Clearances& c, float x, float y, float dx, float dy, float ran
   return range_max;
 }
 
-/// Common part: results on the host, robots in chunks on all cores.
+/// Common base: computes on the host, with robots in chunks on all cores.
 class HostCaster : public Caster {
  public:
   HostCaster(const Scans& scans, std::string name) : scans_(scans), results_(scans), name_(std::move(name)) {}

@@ -1,7 +1,7 @@
 // Runs all measurements as Google benchmarks: `sensorfarm_bench [--results=FOLDER] [--pictures=FOLDER]
 // [--benchmark_filter=...]`.
 //
-// A comparison runs as a whole when the first of its methods is benchmarked, since methods have to take turns. The
+// A comparison runs completely when the first of its methods is benchmarked, since methods have to take turns. The
 // benchmarks then report each method's turns one by one.
 
 #include <benchmark/benchmark.h>
@@ -107,7 +107,7 @@ constexpr TickCase kTickCases[] = {{100, 8.0, false, 101},  {100, 8.0, true, 201
 constexpr std::size_t kWarmUp = 20;
 
 void report_ticks(benchmark::State& state, Session& session, const TickCase& c) {
-  // A thousand bodies need more room: a cave of three times the side length, with as many caverns in proportion.
+  // A thousand bodies need more space: a cave with three times the side length and proportionally many caverns.
   const bool large = c.robots > 100;
   world::World world = large ? scenes::cave(1500, 48.0, 3) : load_cave();
   scenes::add_robots(world, c.robots, scenes::laser(361, M_PI, c.range), 1);
@@ -226,7 +226,7 @@ void register_all(Session& session) {
   const auto once = [](benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMillisecond)->Iterations(1); };
   std::vector<Measurement>& facts = session.book.facts;
   std::vector<Measurement>& prices = session.book.prices;
-  // Runs first: a child process counts at least its parent's resident memory.
+  // Must run first: a child process counts at least the resident memory of its parent.
   once(benchmark::RegisterBenchmark(
       "price/program", [&prices](benchmark::State& s) { report_measurements(s, prices, measure_program); }));
   for (const ScanCase& c : kScanCases)

@@ -1,5 +1,5 @@
 #pragma once
-// Interface of ray casters: the farm and the methods that it is compared with.
+// Interface of ray casters: implemented by the farm and the methods that it is compared with.
 
 #include <cmath>
 #include <cstdint>
@@ -19,10 +19,10 @@ class Caster {
  public:
   virtual ~Caster() = default;
   virtual std::string name() const = 0;
-  /// Overwrites all results, so that unwritten ones are detected.
+  /// Overwrites all results, to detect results that are not written.
   virtual void poison() = 0;
   virtual void cast(std::size_t round) = 0;
-  /// Number of results that are still overwritten.
+  /// Returns the number of results that are still overwritten.
   virtual std::size_t unwritten() const = 0;
   virtual double range(std::size_t robot, std::size_t beam) const = 0;  ///< [m]
   virtual std::uint64_t hash() const = 0;                               ///< of all ranges
@@ -59,7 +59,7 @@ class Results {
   std::vector<std::uint32_t> hits_;
 };
 
-/// Robots per chunk of a thread.
+/// Robots per chunk of work of a thread.
 inline constexpr std::size_t kRobotsPerPiece = 8;
 
 }  // namespace sf::bench

@@ -17,7 +17,7 @@ Cost cast_once(Caster& caster, std::size_t round) {
   return cost;
 }
 
-/// Name of the fastest method whose name begins with `peer`; empty: none.
+/// Returns the fastest method whose name begins with `peer`; empty if there is none.
 std::string best_of(const std::vector<MethodResult>& results, const std::string& peer) {
   const MethodResult* best = nullptr;
   for (const MethodResult& result : results)

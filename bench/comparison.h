@@ -1,5 +1,5 @@
 #pragma once
-// Comparison of casters on the same scans. Casters take turns, so that changes in machine load affect all alike.
+// Compares casters on the same scans. Casters take turns, so that changes in machine load affect all of them equally.
 
 #include <memory>
 #include <string>
@@ -25,13 +25,13 @@ struct Comparison {
   std::vector<MethodResult> method_results;
 };
 
-/// In every turn each caster casts the same round once, in rotating order. Only the cast is timed; results are poisoned
-/// before and checked after it. All rounds are cast once for warm-up.
-/// @param peer begins the names of the casters of which ratios refer to the best: the one with the least processor time
+/// In every turn, each caster casts the same round once, in rotating order. Only the cast is timed; results are
+/// poisoned before it and checked after it. All rounds are cast once for warm-up.
+/// @param peer prefix of caster names; ratios refer to the best of these casters, the one with the least processor time
 Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>>& casters, const std::string& peer,
                    std::size_t repeats);
 
-/// [M/s] rays per second in the median turn.
+/// [M/s] Returns the rays per second in the median turn.
 inline double mrays_per_s(std::size_t rays, const Cost& cost) { return 1e-6 * static_cast<double>(rays) / cost.wall_s; }
 
 }  // namespace sf::bench

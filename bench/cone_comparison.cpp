@@ -23,7 +23,7 @@ constexpr std::size_t kRounds = 4;
 constexpr std::size_t kJudgedRobots = 25;  // per round
 constexpr std::size_t kPlain = 1;          // index of the method that ratios refer to
 
-/// The Pioneer's ring from worlds/robots.inc without its firing order.
+/// Returns the Pioneer's sonar ring from worlds/robots.inc without its firing order.
 world::Sensor pioneers_ring() {
   const world::World pioneer =
       world::load_world(SF_SOURCE_DIR "/bench/pioneer.world", {.sensors = sensors::world_file_words()});

@@ -1,5 +1,5 @@
 #pragma once
-// Sonar rings: the farm compared with plain C++ that casts the same rays through a grid and keeps the nearest hit.
+// Sonar rings: compares the farm with plain C++ that casts the same rays through a grid and keeps the nearest hit.
 
 #include <cstdint>
 #include <string>
@@ -20,7 +20,7 @@ struct ConeScene {
 
 /// Result of one method.
 struct ConeMethodResult : Timing {
-  double worst = 0.0;      ///< [m] largest error against the nearest ray, over a sample of all rounds
+  double worst = 0.0;      ///< [m] largest error relative to the nearest ray, over a sample of all rounds
   std::uint64_t hash = 0;  ///< of all ranges of round 0
 };
 
@@ -28,18 +28,18 @@ struct ConeComparison {
   std::size_t robots = 0;
   std::size_t cones = 0;
   std::size_t rays = 0;                          ///< per turn
-  std::size_t checked = 0;                       ///< cones per method
-  std::vector<ConeMethodResult> method_results;  ///< ratios are to plain C++
+  std::size_t checked = 0;                       ///< number of cones per method
+  std::vector<ConeMethodResult> method_results;  ///< ratios are relative to plain C++
 };
 
 ConeScene make_cone_scene(std::uint32_t robots);
 
-/// In every turn each method measures the same round once, in rotating order; results are poisoned before and checked
-/// after.
+/// In every turn, each method measures the same round once, in rotating order; results are poisoned before and checked
+/// after it.
 ConeComparison compare_cones(gpu::Device& device, const ConeScene& scene, std::size_t repeats);
 
-/// Writes cones.csv into `folder`; without measurements the old file is kept.
-/// @throws base::InputError when it cannot be written
+/// Writes cones.csv into `folder`; without measurements, keeps the old file.
+/// @throws base::InputError if it cannot be written
 void write_cones(const std::vector<ConeComparison>& comparisons, const std::string& folder);
 std::string cone_table(const std::vector<ConeComparison>& comparisons);
 

@@ -18,7 +18,7 @@ class ConeMethod {
   virtual void poison() = 0;
   /// The timed part: from poses to ranges.
   virtual void measure(std::size_t round) = 0;
-  /// [m] Not a number when it was not written.
+  /// [m] NaN if it was not written.
   virtual double range(std::size_t robot, std::size_t transducer) const = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Cost of a computation: wall time, and CPU time on all cores of this process. On a busy machine wall time includes
-// delays by other processes; CPU time does not.
+// Cost of a computation: wall time, and CPU time on all cores of this process. On a busy machine, wall time includes
+// delays caused by other processes; CPU time does not.
 
 #include <algorithm>
 #include <string>
@@ -16,8 +16,8 @@ struct Cost {
 /// Time since a fixed point in the past.
 Cost now();
 
-/// Cost from `start` on. Sleeps for a millisecond, not counted, since a thread's time is counted when it sleeps: those
-/// of a pool spin for a while first.
+/// Returns the cost since `start`. First sleeps for a millisecond, which is not counted: a thread's time is updated
+/// when it sleeps, and pool threads spin for a while before that.
 Cost since(const Cost& start);
 
 inline Cost operator-(const Cost& p, const Cost& q) { return {p.wall_s - q.wall_s, p.cpu_s - q.cpu_s}; }
@@ -37,11 +37,11 @@ struct Timing {
   std::string method;
   std::vector<Cost> repeats;  ///< one per turn
   Cost typical;               ///< medians of `repeats`
-  double ratio = 0.0;         ///< [-] median over turns of reference time / its own; 0 without a reference
-  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
+  double ratio = 0.0;         ///< [-] median over turns of reference time / own time; 0 without a reference
+  double cpu_ratio = 0.0;     ///< [-] the same for CPU time on all cores
 };
 
-/// Sets the ratios to the method called `reference`; nothing without one.
+/// Sets the ratios relative to the method called `reference`; does nothing if there is none.
 template <class Result>
 void set_ratios(std::vector<Result>& results, const std::string& reference) {
   const auto known =
@@ -54,8 +54,9 @@ void set_ratios(std::vector<Result>& results, const std::string& reference) {
   }
 }
 
-/// Runs each method once in every turn, in rotating order, so that changes in machine load affect all alike. `run(k,
-/// turn)` runs method k and returns its cost. Sets the medians, and the ratios to the method called `reference`.
+/// Runs each method once in every turn, in rotating order, so that changes in machine load affect all of them equally.
+/// `run(k, turn)` runs method k and returns its cost. Sets the medians, and the ratios relative to the method called
+/// `reference`.
 template <class Result, class Run>
 void take_turns(std::vector<Result>& results, std::size_t turns, const std::string& reference, Run&& run) {
   for (std::size_t turn = 0; turn < turns; ++turn)

@@ -1,6 +1,6 @@
 // CPU time of ticks with movers in crowds and with the same movers spread out, for both casters.
 //
-//   build/release/crowd_cost [ROBOTS|LAYOUT...], where LAYOUT is a part of the name of a layout: default all
+//   build/release/crowd_cost [ROBOTS|LAYOUT...], where LAYOUT is a part of a layout's name; default: all
 
 #include <fmt/format.h>
 

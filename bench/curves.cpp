@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kWarmUp = 5;
 
-/// [byte] Resident memory now, after freed memory is returned to the system.
+/// [byte] Returns the resident memory after returning freed memory to the system.
 double resident() {
   malloc_trim(0);
   std::size_t pages = 0;
@@ -29,7 +29,7 @@ double resident() {
   return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// Least squares of log(cpu) over log(count). Counts below a full tile have a lower density and are left out.
+/// Fits log(cpu) over log(count) by least squares. Skips counts below a full tile, since their density is lower.
 double exponent_of(const std::vector<CurvePoint>& points) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (const CurvePoint& p : points) {
@@ -62,7 +62,8 @@ CurvePoint measure(gpu::Device& device, double count, bool wander, std::size_t t
   return point;
 }
 
-/// A city of `segments` / 4 square blocks. The world's extent is that of the robots: ten blocks across, in the middle.
+/// Creates a city of `segments` / 4 square blocks. The world's extent is that of the robots: ten blocks across, in the
+/// middle.
 world::World city(std::size_t segments) {
   constexpr double kPitch = 10.0, kBlock = 6.0;  // [m]
   world::World world;
@@ -84,9 +85,9 @@ world::World city(std::size_t segments) {
   return world;
 }
 
-/// Adds robots on the crossings and streets nearest to the centre, a metre apart.
+/// Adds robots at the crossings and streets nearest to the centre, a metre apart.
 void add_walkers(world::World& world, std::uint32_t count) {
-  const double low = std::max(world.extent.x_min, -50.0) + 8.0;  // the middle of a street
+  const double low = std::max(world.extent.x_min, -50.0) + 8.0;  // middle of a street
   for (std::uint32_t i = 0; i < count; ++i)
     scenes::add_robot(world, {low + 10.0 * (i % 5), low + 2.0 * (i / 5), 0.0, 0.3 * i}, scenes::laser());
 }

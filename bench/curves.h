@@ -1,5 +1,5 @@
 #pragma once
-// Cost of a tick over the number of robots at constant density, and over the number of segments of a city for 100
+// Cost of a tick over the number of robots at constant density, and over the number of segments of a city with 100
 // robots.
 
 #include <string>
@@ -10,18 +10,18 @@
 namespace sf::bench {
 
 struct CurvePoint {
-  double count = 0.0;   ///< robots or segments
+  double count = 0.0;   ///< number of robots or segments
   double wall_s = 0.0;  ///< [s] median wall time of a tick
   double cpu_s = 0.0;   ///< [s] CPU time on all cores
-  double load_s = 0.0;  ///< [s] wall time from the world in memory to the first reading
-  double memory = 0.0;  ///< [byte] resident for world, fleet and farm
+  double load_s = 0.0;  ///< [s] wall time from the loaded world to the first reading
+  double memory = 0.0;  ///< [byte] resident memory of world, fleet and farm
 };
 
 struct Curve {
   std::string what;
   std::string unit;  ///< of `count`
   std::vector<CurvePoint> points;
-  double exponent = 0.0;  ///< of CPU time over count, by least squares on logarithms, for counts from 100
+  double exponent = 0.0;  ///< of CPU time over count, by a least-squares fit of logarithms, for counts of at least 100
 };
 
 /// 10 to `most` robots in caves of 16 m with 100 robots each; 361 beams to 8 m; all sensors due in every tick.
@@ -31,9 +31,9 @@ Curve robots_curve(gpu::Device& device, bool wander, std::uint32_t most);
 Curve segments_curve(gpu::Device& device, std::size_t most);
 
 std::string curves_table(const std::vector<Curve>& curves);
-/// Writes curves.csv; without curves nothing.
+/// Writes curves.csv; does nothing without curves.
 void write_curves(const std::vector<Curve>& curves, const std::string& folder);
-/// Draws cost.png; without curves nothing. Both axes are logarithmic, so that a line's slope is its exponent.
+/// Draws cost.png; does nothing without curves. Both axes are logarithmic, so that a line's slope is its exponent.
 void draw_curves(const std::vector<Curve>& curves, const std::string& folder);
 
 }  // namespace sf::bench

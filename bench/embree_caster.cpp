@@ -91,7 +91,7 @@ EmbreeCaster::~EmbreeCaster() {
   rtcReleaseDevice(device_);
 }
 
-/// Two triangles per wall: faster than one upright quad, or than one triangle whose section is the wall.
+/// Uses two triangles per wall: faster than one upright quad, or than one triangle whose section is the wall.
 void EmbreeCaster::add_walls(RTCGeometry geometry) {
   const double z = scans_.world.movers[0].X_WM.z + scans_.laser.X_MS.z;
   std::vector<world::Segment> seen;

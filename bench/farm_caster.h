@@ -1,5 +1,5 @@
 #pragma once
-// The farm as a caster: one whole tick per round, including the hash.
+// The farm as a caster: one complete tick per round, including the hash.
 
 #include "bench/caster.h"
 #include "gpu/device.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The farm in a comparison: rounds of poses, ticked one at a time, with results that can be poisoned in between.
+// Runs the farm in a comparison: rounds of poses, one tick each, with results that can be poisoned in between.
 
 #include <cstdint>
 #include <span>
@@ -30,7 +30,7 @@ class FarmRounds {
   }
   void poison() { bench::poison(readings_); }
 
-  /// Of the last tick.
+  /// Returns the readings of the last tick.
   std::span<const base::ReadingBlock> readings() const { return readings_; }
   const farm::Farm& farm() const { return farm_; }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kJudgedRobots = 7;  // per turn
 constexpr const char* kReference = "plain C++, -O3";
 
-/// Arrays of the thesis on robots at random places in the extent, 8.5 cm high.
+/// Creates arrays as in the thesis on robots at random positions in the extent, 8.5 cm above the ground.
 FieldScene fleet_on(std::string name, world::World world, std::uint32_t arrays, std::size_t repeats) {
   double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
   for (const world::Magnet& m : world.magnets) {
@@ -74,7 +74,7 @@ FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutof
 }
 
 FieldComparison compare(const FieldScene& scene, gpu::Device& device) {
-  gpu::Device host{std::string(gpu::kHostDevice)};  // outlives its farm
+  gpu::Device host{std::string(gpu::kHostDevice)};  // must outlive its farm
   std::vector<std::unique_ptr<FieldMethod>> methods;
   methods.push_back(make_farm_method(scene, device));
   methods.push_back(make_plain_method(scene, kReference, sum_portable));
@@ -83,7 +83,7 @@ FieldComparison compare(const FieldScene& scene, gpu::Device& device) {
   FieldComparison comparison{
       scene.name, scene.world.movers.size(), scene.world.magnets.size(), scene.world.magnet_cutoff, 0.0, {}};
   for (const auto& method : methods) {
-    method->sum(scene.repeats);  // warm up
+    method->sum(scene.repeats);  // warm-up
     comparison.method_results.emplace_back().method = method->name();
   }
   const double before = methods[0]->pairs();

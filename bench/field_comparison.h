@@ -1,5 +1,5 @@
 #pragma once
-// Magnetometer arrays over many magnets: the farm compared with plain C++, both checked against direct sums.
+// Magnetometer arrays over many magnets: compares the farm with plain C++, and both with direct sums.
 
 #include <cstdint>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace sf::bench {
 
-/// Arrays of five elements on robots at random poses that differ in each turn, so that old results are wrong.
+/// Arrays of five elements on robots at random poses that differ in each turn, so that stale results are wrong.
 struct FieldScene {
   std::string name;
   world::World world;
@@ -23,7 +23,7 @@ struct FieldScene {
 /// Result of one method.
 struct FieldMethodResult : Timing {
   double max_error = 0.0;   ///< relative to the largest field, over a sample of all turns
-  std::size_t checked = 0;  ///< elements
+  std::size_t checked = 0;  ///< number of elements
 };
 
 struct FieldComparison {
@@ -31,8 +31,8 @@ struct FieldComparison {
   std::size_t arrays = 0;
   std::size_t magnets = 0;
   double cutoff_m = 0.0;
-  double pairs = 0.0;                             ///< of a magnet and an element, summed by the farm per turn
-  std::vector<FieldMethodResult> method_results;  ///< ratios are to plain C++
+  double pairs = 0.0;                             ///< pairs of a magnet and an element that the farm sums per turn
+  std::vector<FieldMethodResult> method_results;  ///< ratios are relative to plain C++
 };
 
 /// `arrays` over SimVille's magnets, without a cut-off.
@@ -42,8 +42,8 @@ FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutof
 
 FieldComparison compare(const FieldScene& scene, gpu::Device& device);
 
-/// Writes field.csv into `folder`; without measurements the old file is kept.
-/// @throws base::InputError when it cannot be written
+/// Writes field.csv into `folder`; without measurements, keeps the old file.
+/// @throws base::InputError if it cannot be written
 void write_csv(const std::vector<FieldComparison>& comparisons, const std::string& folder);
 std::string table(const std::vector<FieldComparison>& comparisons);
 

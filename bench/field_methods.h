@@ -20,9 +20,9 @@ class FieldMethod {
   virtual void poison() = 0;
   /// The timed part: from poses to readings.
   virtual void sum(std::size_t repeat) = 0;
-  /// [T] Field at element `e` of robot `robot`, in the element's frame; not a number when it was not written.
+  /// [T] Returns the field at element `e` of robot `robot`, in the element's frame; NaN if it was not written.
   virtual FieldVector value(std::size_t robot, std::size_t e) const = 0;
-  /// Pairs of a magnet and an element summed so far; 0 for methods that do not count.
+  /// Returns the number of pairs of a magnet and an element summed so far; 0 for methods that do not count.
   virtual double pairs() const { return 0.0; }
 };
 

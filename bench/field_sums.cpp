@@ -8,7 +8,7 @@ namespace sf::bench {
 
 namespace {
 
-/// Independent sums, so that the compiler can vectorize without reordering additions.
+/// Independent sums, which the compiler can vectorize without reordering additions.
 constexpr std::size_t kLanes = 8;
 constexpr double kSteps[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
 
@@ -22,7 +22,8 @@ double total(const double (&lanes)[kLanes]) {
   return sum;
 }
 
-/// The arithmetic of shaders/lib/dipoles.glsl. All loads precede all selections, so that selections are not branches.
+/// Same arithmetic as shaders/lib/dipoles.glsl. All loads precede all selections, so that selections do not become
+/// branches.
 inline void add(const MagnetColumns& m, std::size_t at, double last, double px, double py, double pz,
                 double cutoff_squared, Sums& sums) {
   const double* const mx = m.x.data() + at;

@@ -26,12 +26,12 @@ struct FieldVector {
   double x, y, z;  ///< [T]
 };
 
-/// The field of the magnets in `spans` at one place.
+/// Sums the fields of the magnets in `spans` at one point.
 using SumField = FieldVector (*)(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x,
                                  double y, double z);
 
-/// One source compiled twice: for any x86-64, and for the build machine with all its vector instructions, fused and at
-/// full width.
+/// One source compiled twice: for any x86-64 processor, and for the build machine with all its vector instructions,
+/// fused and at full width.
 FieldVector sum_portable(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x, double y,
                          double z);
 FieldVector sum_native(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x, double y,

@@ -1,5 +1,5 @@
 #pragma once
-// Whole fleets in closed loop, with controllers, motion and all sensors, relative to simulated time.
+// Runs of whole fleets in closed loop with controllers, motion and all sensors, relative to simulated time.
 
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace sf::bench {
 
-/// Runs SimVille's traffic (experiments/simville.toml, whose expectations must be met) and, where the file exists, 1
-/// 000 wandering robots in Stage's hospital (two runs with equal readings).
+/// Runs SimVille's traffic (experiments/simville.toml, whose expectations must be met) and, if the file exists, 1000
+/// wandering robots in Stage's hospital (two runs with equal readings).
 std::vector<Measurement> measure_fleets(gpu::Device& device);
 
 }  // namespace sf::bench

@@ -6,13 +6,14 @@ namespace sf::bench {
 
 namespace {
 
-constexpr double kPad = 1e-7;  ///< [m] exceeds the rounding error of the traversal
+constexpr double kPad = 1e-7;  ///< [m] larger than the rounding error of the traversal
 
 class GridCaster final : public Caster {
  public:
   GridCaster(const Scans& scans, std::string name, Walk walk)
       : scans_(scans), name_(std::move(name)), walk_(walk), results_(scans) {
-    // Fastest of 1/16, 1/8, 1/4, 1/2 and 1 m in the cave: small cells cost steps, large ones intersection tests.
+    // The fastest of 1/16, 1/8, 1/4, 1/2 and 1 m in the cave: small cells need more steps, large ones more intersection
+    // tests.
     grid_ = make_grid(scans.world, scans.world.movers[0].X_WM.z + scans.laser.X_MS.z, 0.5);
   }
 
@@ -47,7 +48,7 @@ SegmentGrid make_grid(const world::World& world, double z, double cell) {
   grid.columns = static_cast<int>((world.extent.x_max - grid.x) / cell) + 2;
   grid.rows = static_cast<int>((world.extent.y_max - grid.y) / cell) + 2;
 
-  // Two passes: one to count, one to fill.
+  // Two passes: the first counts, the second fills.
   std::vector<std::uint32_t> next(static_cast<std::size_t>(grid.columns) * grid.rows + 1, 0);
   const auto each = [&](auto put) {
     for (const world::Segment& s : world.walls) {

@@ -1,12 +1,12 @@
 #pragma once
-// A plain caster in C++: traversal of a uniform grid of segments, cell by cell, in `double` (Amanatides and Woo, "A
-// fast voxel traversal algorithm for ray tracing", Eurographics 1987).
+// A plain caster in C++: traverses a uniform grid of segments cell by cell, in `double` (Amanatides and Woo, "A fast
+// voxel traversal algorithm for ray tracing", Eurographics 1987).
 
 #include "bench/caster.h"
 
 namespace sf::bench {
 
-/// Segments by cell. A cell holds every segment whose bounding box is within `pad` of the cell.
+/// Segments by cell. A cell contains every segment whose bounding box is within `pad` of it.
 struct SegmentGrid {
   struct Item {
     double ax, ay, ex, ey;  ///< [m] start and extent
@@ -25,7 +25,7 @@ SegmentGrid make_grid(const world::World& world, double z, double cell);
 using Walk = void (*)(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<glm::dvec2>& beams,
                       double range_max, double* ranges, std::uint32_t* hits);
 
-/// One source compiled twice: for any x86-64, and for the build machine.
+/// One source compiled twice: for any x86-64 processor, and for the build machine.
 void walk_portable(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<glm::dvec2>& beams,
                    double range_max, double* ranges, std::uint32_t* hits);
 void walk_native(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<glm::dvec2>& beams,

@@ -33,7 +33,7 @@ void test(const SegmentGrid& grid, std::size_t cell, glm::dvec2 o, glm::dvec2 d,
 struct Axis {
   int step;
   double next;   ///< [m] along the beam
-  double every;  ///< [m] along the beam from cell to cell
+  double every;  ///< [m] along the beam between cells
 };
 
 Axis axis(double origin, double direction, int index, double cell) {

@@ -66,7 +66,7 @@ void check_accuracy(const LaneReader& reader, const std::vector<sensors::EdgeRea
 
 LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::size_t repeats) {
   const auto known = know(scene);
-  gpu::Device host{std::string(gpu::kHostDevice)};  // outlives its farm
+  gpu::Device host{std::string(gpu::kHostDevice)};  // must outlive its farm
   std::vector<std::unique_ptr<LaneReader>> readers;
   readers.push_back(make_farm_lanes(scene, device));
   readers.push_back(make_plain_lanes(scene, *known, false));

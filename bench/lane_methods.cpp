@@ -8,7 +8,7 @@ namespace sf::bench {
 
 namespace {
 
-/// The farm's backend and the steps of a tick that concern it.
+/// The farm's backend and the steps of a tick that involve it.
 class FarmLanes final : public LaneReader {
  public:
   FarmLanes(const LaneScene& scene, gpu::Device& device)

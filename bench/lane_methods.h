@@ -18,13 +18,13 @@ class LaneReader {
  public:
   virtual ~LaneReader() = default;
   virtual std::string name() const = 0;
-  /// Overwrites all results, so that unwritten ones are detected.
+  /// Overwrites all results, to detect results that are not written.
   virtual void poison() = 0;
   virtual void read(std::size_t round) = 0;
   virtual sensors::EdgeReading reading(std::size_t sensor) const = 0;
 };
 
-/// A distance that no sensor reads.
+/// A distance that no sensor can read.
 inline constexpr double kPoisonDistance = -7.0;
 
 /// Tables of a scene for plain C++.

@@ -15,7 +15,7 @@ constexpr double kTurn = 0.68;   // [m]
 constexpr double kPaint = 0.03;  // [m]
 constexpr std::size_t kRounds = 8;
 
-/// Transforms points of a street along +x from the origin to its place.
+/// Transforms points of a street along +x at the origin to its position.
 struct Street {
   double x, y;
   bool up;
@@ -65,7 +65,7 @@ LaneScene make_lane_scene(std::uint32_t blocks, std::uint32_t robots, double res
     const double yaw = (s.up ? 0.5 * M_PI : 0.0) + chance.between(-0.35, 0.35);
     poses.push_back({p.x, p.y, 0.0, yaw});
     trial::add_edge_eye(scene.world, poses.back(), {});
-    // Half of the sensors look left to the centre line, the others right to the edge line.
+    // Half of the sensors point left to the centre line, the others right to the edge line.
     scene.world.movers.back().sensors[0].X_MS.yaw = k % 2 == 0 ? 0.5 * M_PI : -0.5 * M_PI;
   }
   for (std::size_t round = 0; round < kRounds; ++round) {

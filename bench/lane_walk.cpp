@@ -35,7 +35,8 @@ Cell cell_at(const MarkingRaster& raster, int x, int y, std::size_t plane) {
   return {word, ((half >> ((y & 3) * kBlock + (x & 7))) & 1u) != 0, quarter_free ? 4 : pair_free ? 2 : 1};
 }
 
-/// Distance from `p` [cells of the raster] along `d` to the start of paint, or to its end when `p` is on paint.
+/// Returns the distance from `p` [cells of the raster] along `d` to the start of paint, or to its end if `p` is on
+/// paint.
 Met walk_paint(const LaneJob& job, glm::dvec2 p, glm::dvec2 d, double reach) {
   const MarkingRaster& raster = *job.raster;
   const glm::dvec2 inverse{d.x == 0.0 ? 1e300 : 1.0 / d.x, d.y == 0.0 ? 1e300 : 1.0 / d.y};

@@ -1,5 +1,5 @@
 #pragma once
-// Lane edge sensors in plain C++: traversal of the same raster, or of a uniform grid of exact faces, and the same fit,
+// Lane edge sensors in plain C++: traverses the same raster, or a uniform grid of exact faces, and uses the same fit,
 // one sensor after another.
 
 #include "base/pose.h"
@@ -11,7 +11,7 @@ namespace sf::bench {
 
 /// Data shared by all sensors of a scene.
 struct LaneJob {
-  const SegmentGrid* grid = nullptr;               ///< of exact faces; else `raster`
+  const SegmentGrid* grid = nullptr;               ///< of exact faces; null: uses `raster`
   const sensors::MarkingRaster* raster = nullptr;  ///< of the markings
   std::uint32_t paint_tag = 0;                     ///< of the raster
   Walk walk = nullptr;                             ///< of the grid, from the same build
@@ -25,7 +25,7 @@ struct LaneJob {
 using LaneRead = void (*)(const LaneJob& job, const sensors::EdgeRow& row, const base::Pose& X_WS,
                           sensors::EdgeReading& out);
 
-/// One source compiled twice: for any x86-64, and for the build machine.
+/// One source compiled twice: for any x86-64 processor, and for the build machine.
 void read_lane_portable(const LaneJob& job, const sensors::EdgeRow& row, const base::Pose& X_WS,
                         sensors::EdgeReading& out);
 void read_lane_native(const LaneJob& job, const sensors::EdgeRow& row, const base::Pose& X_WS,

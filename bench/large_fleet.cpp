@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kWarmUp = 10;
 constexpr std::size_t kReceiveBuffer = 256u << 20;  // [byte] more than two ticks of packets
 
-/// Destination of all packets. Emptied between ticks, outside the measurement.
+/// Receives all packets. Emptied between ticks, outside of the measurement.
 class Sink {
  public:
   Sink() : socket_(netio::open_udp({netio::kLoopback, 0}, {.receive = kReceiveBuffer})), batch_(1024) {}
@@ -36,7 +36,7 @@ class Sink {
   netio::ReceiveBatch batch_;
 };
 
-/// All packets go to one port: stride 0.
+/// Sends all packets to one port: stride 0.
 server::StreamLayout plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
   server::StreamLayout layout;
   layout.stride = 0;
@@ -66,7 +66,7 @@ class LargeFleet {
         publisher_(world_, sensor_set_, plan_for(sensor_set_, sink_.port()),
                    netio::Outbox(server::outbox_options(sensor_set_))) {}
 
-  /// @return its cost
+  /// @return cost of the tick
   Cost tick() {
     const Cost start = now();
     const base::TickRecord record = simulation_.step();

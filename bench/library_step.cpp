@@ -1,5 +1,5 @@
-// Seconds per step of libsensorfarm, on the wall clock and of all threads, for bench/python_step.py: library_step WORLD
-// ROBOTS STEPS. The first line of input starts the measurement, and each further one repeats it.
+// Measures the seconds per step of libsensorfarm, in wall time and CPU time of all threads, for bench/python_step.py:
+// library_step WORLD ROBOTS STEPS. The first line of input starts the measurement; each further line repeats it.
 
 #include <algorithm>
 #include <chrono>

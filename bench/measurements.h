@@ -14,14 +14,14 @@ struct Measurement {
   std::string unit;
 };
 
-/// Time from opening the device to the first reading, with and without the driver's cache of compiled kernels. Changes
-/// environment variables of this process meanwhile.
+/// Measures the time from opening the device to the first reading, with and without the driver's cache of compiled
+/// kernels. Temporarily changes environment variables of this process.
 std::vector<Measurement> measure_start();
 
-/// Ticks with almost no work, and one sensor with much.
+/// Measures ticks with almost no work, and one sensor with much work.
 std::vector<Measurement> measure_ticks(gpu::Device& device);
 
-/// Cost of making the lists of a new cell.
+/// Measures the cost of building the lists of a new cell.
 std::vector<Measurement> measure_lists(gpu::Device& device);
 
 }  // namespace sf::bench

@@ -10,7 +10,7 @@
 namespace sf::bench {
 
 void poison(std::span<const base::ReadingBlock> readings) {
-  // The tables behind the spans are not const.
+  // The tables behind the spans are not const, so they may be written.
   for (const base::ReadingBlock& r : readings) {
     std::fill_n(const_cast<double*>(r.values.data()), r.values.size(), std::numeric_limits<double>::quiet_NaN());
     std::fill_n(const_cast<std::uint32_t*>(r.hits.data()), r.hits.size(), kPoisonHit);

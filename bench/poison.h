@@ -1,5 +1,5 @@
 #pragma once
-// Overwrites the farm's results between ticks, so that unwritten ones are detected.
+// Overwrites the farm's results between ticks, to detect results that are not written.
 
 #include <cstdint>
 #include <span>
@@ -11,10 +11,10 @@ namespace sf::bench {
 /// Overwrites the results of the last tick in place: the spans refer to the tables that the next tick writes.
 void poison(std::span<const base::ReadingBlock> readings);
 
-/// Number of values that are still overwritten.
+/// Returns the number of values that are still overwritten.
 std::size_t unwritten(std::span<const base::ReadingBlock> readings);
 
-/// Hash of all ranges, in order.
+/// Returns the hash of all ranges, in order.
 std::uint64_t hash_ranges(std::span<const base::ReadingBlock> readings);
 
 }  // namespace sf::bench

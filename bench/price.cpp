@@ -33,7 +33,7 @@ struct Process {
   double mib = 0.0;      ///< peak resident memory
 };
 
-/// Runs the program to its end and discards its output.
+/// Runs the program until it exits and discards its output.
 Process run_program(Words words) {
   words.insert(words.begin(), SF_PROGRAM);
   std::vector<char*> arguments;
@@ -62,7 +62,7 @@ std::string simville() { return std::string(SF_SOURCE_DIR) + "/worlds/simville/s
 
 constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] of a sensor
 
-/// A farm that is ticked in turns with others.
+/// A farm that takes turns with others.
 class Turn {
  public:
   Turn(const world::World& world, gpu::Device& device, bool subscribed, std::int64_t interval, bool reuse_unchanged)
@@ -86,7 +86,7 @@ class Turn {
   std::vector<double> costs_;
 };
 
-/// The same hundred lasers in a cave under several conditions.
+/// Measures the same hundred lasers in a cave under several conditions.
 void measure_lasers(gpu::Device& device, std::vector<Measurement>& facts) {
   const world::World plain = make_scans("cave", load_cave(), 100, scenes::laser()).world;
   world::World magnets = plain;
@@ -101,7 +101,7 @@ void measure_lasers(gpu::Device& device, std::vector<Measurement>& facts) {
   facts.push_back({"the same, not subscribed", unsubscribed.ms(), "ms"});
   facts.push_back({"the same, not due", idle.ms(), "ms"});
   facts.push_back({"the same, standing without noise", standing.ms(), "ms"});
-  // On a shared machine a tick of half a millisecond varies by as much.
+  // The margin of 0.5 ms allows for variations of short ticks on a shared machine.
   SF_CHECK(beside.ms() < 1.5 * measured.ms() + 0.5, "magnets without magnetometers cost something");
   SF_CHECK(unsubscribed.ms() < 0.1 * measured.ms(), "sensors without subscribers cost something");
   SF_CHECK(idle.ms() < 0.1 * measured.ms(), "sensors that are not due cost something");

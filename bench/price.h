@@ -1,5 +1,5 @@
 #pragma once
-// Cost of a world: memory, start of the program, and single features of the world.
+// Cost of a world: memory, program start, and single features of the world.
 
 #include <vector>
 
@@ -7,12 +7,12 @@
 
 namespace sf::bench {
 
-/// Runs the program as a process and measures its peak resident memory and the time to the first reading. Fails when
-/// SimVille with 50 robots takes 200 MiB, or a cold start to the first reading 1 s.
+/// Runs the program as a process and measures its peak resident memory and the time to the first reading. Fails if
+/// SimVille with 50 robots needs 200 MiB, or a cold start to the first reading takes 1 s.
 std::vector<Measurement> measure_program();
 
-/// Ticks of SimVille with one sensor type subscribed at a time; also with magnets but no magnetometer, with sensors
-/// that are not due, and with standing robots.
+/// Measures ticks of SimVille with one sensor type subscribed at a time; also with magnets but no magnetometer, with
+/// sensors that are not due, and with robots at rest.
 std::vector<Measurement> measure_features(gpu::Device& device);
 
 }  // namespace sf::bench

@@ -19,19 +19,20 @@ struct Book {
   std::vector<Measurement> prices;
 };
 
-/// The heading of `row`s. @param rate the unit of the third column
+/// Returns the heading for `row`s. @param rate unit of the third column
 std::string heading(std::string_view rate);
-/// A method, its times [ms], `count` per second [M/s], and its ratios: without an end of line.
+/// Returns a method, its times [ms], `count` per second [M/s], and its ratios, without a line end.
 std::string row(const Timing& timing, double count);
 
-/// Replaces the content of `file` by `text`. @throws base::InputError when it cannot be written
+/// Replaces the content of `file` by `text`. @throws base::InputError if it cannot be written
 void write(const std::string& file, const std::string& text);
 
-/// Writes scans.csv, ticks.csv, facts.csv and prices.csv into `folder`. Files of parts without measurements are kept.
-/// @throws base::InputError when a file cannot be written
+/// Writes scans.csv, ticks.csv, facts.csv and prices.csv into `folder`. Keeps the old files of parts without
+/// measurements.
+/// @throws base::InputError if a file cannot be written
 void write_csv(const Book& book, const std::string& folder);
 
-/// The same as text.
+/// Returns the same as text.
 std::string tables(const Book& book);
 
 }  // namespace sf::bench

@@ -1,5 +1,5 @@
 #pragma once
-// Input of every caster: the same walls, robots and beams.
+// Input of all casters: the same walls, robots and beams.
 
 #include <cstdint>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace sf::bench {
 
-/// Scans of a fleet with robots invisible to each other, as all casters support.
+/// Scans of a fleet. Robots are invisible to each other, since not all casters support visible ones.
 struct Scans {
   std::string scene;
   world::World world;                           ///< movers carry `laser` and have no bodies
@@ -25,12 +25,12 @@ struct Scans {
   }
 };
 
-/// `count` robots at random free places of `world`, whose own movers are removed. The robots turn and shift by a few
-/// millimetres from round to round, so that results cannot be reused.
+/// Places `count` robots at random free positions in `world`, whose own movers are removed. The robots turn and shift
+/// by a few millimetres from round to round, so that results cannot be reused.
 Scans make_scans(const std::string& scene, world::World world, std::uint32_t count,
                  const sensors::LaserSettings& laser);
 
-/// The cave of the demo and the tests, `worlds/cave.world`, without its robot.
+/// Returns the cave of the demo and the tests, `worlds/cave.world`, without its robot.
 world::World load_cave();
 
 }  // namespace sf::bench

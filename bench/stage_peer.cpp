@@ -21,14 +21,14 @@ namespace {
 constexpr double kLoadOnly = 0.1;  // [s] simulated
 constexpr int kRounds = 3;
 
-/// Size of a fleet and its cave, which at its usual size has no room for a thousand robots.
+/// Size of a fleet and its cave. The cave's usual size has no room for a thousand robots.
 struct Crowd {
   std::uint32_t robots;
   double side;  ///< [m] of the cave
 };
 constexpr Crowd kCrowds[] = {{100, 16.0}, {300, 16.0}, {1'000, 48.0}};
 
-/// worlds/cave.world with the floor plan scaled to another size.
+/// Loads worlds/cave.world with the floor plan scaled to another size.
 world::World load_cave(const Crowd& crowd, const std::string& file) {
   std::ifstream in(SF_SOURCE_DIR "/worlds/cave.world");
   std::string text{std::istreambuf_iterator<char>(in), {}};

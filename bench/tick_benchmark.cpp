@@ -50,7 +50,7 @@ void TickBenchmark::tick(bool wander) {
   time_ += interval_;
 }
 
-/// Every robot has one laser, so that the index of its reading is its row.
+/// Every robot has one laser, so the index of its reading is its row.
 void TickBenchmark::decide() {
   thread_pool_.parallel_for(readings_.size(), 16, [this](std::size_t first, std::size_t end, unsigned) {
     for (const base::ReadingBlock& reading : readings_.subspan(first, end - first)) {
@@ -80,7 +80,7 @@ TickResult run_ticks(const std::string& scene, const world::World& world, gpu::D
   const double decide_before = fleet.decide_s();
 
   for (std::size_t k = 0; k < ticks; ++k) {
-    // Wandering robots need their readings; those of standing robots are poisoned every time.
+    // Wandering robots need their readings; those of robots at rest are poisoned in every tick.
     if (!wander) poison(fleet.readings());
     const Cost start = now();
     fleet.tick(wander);

@@ -1,5 +1,5 @@
 #pragma once
-// Whole ticks of a simulated fleet with bodies: motion, sensors, decisions.
+// Complete ticks of a simulated fleet with bodies: motion, sensors, decisions.
 
 #include <memory>
 #include <string>
@@ -24,7 +24,7 @@ struct TickResult {
   double interval_s = 0.0;  ///< [s] simulated time per tick
   std::vector<Cost> ticks;  ///< whole ticks: motion, sensors, decisions
   Cost typical;             ///< medians of `ticks`
-  double move_s = 0.0;      ///< [s] mean per tick, as the times below
+  double move_s = 0.0;      ///< [s] mean per tick, like the times below
   double decide_s = 0.0;
   farm::FarmStats stages;  ///< sums over the measured ticks
   AccuracyCheck accuracy;
@@ -36,7 +36,7 @@ class TickBenchmark {
  public:
   TickBenchmark(const world::World& world, gpu::Device& device);
 
-  /// One tick. @param wander false: robots stand
+  /// Runs one tick. @param wander false: robots do not move
   void tick(bool wander);
   double move_s() const { return move_s_; }  ///< [s] total
   double decide_s() const { return decide_s_; }

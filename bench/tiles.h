@@ -1,5 +1,5 @@
 #pragma once
-// Fleets of any size at constant density: closed caves of 16 m side by side, one per hundred robots.
+// Fleets of any size at constant density: separate closed caves of 16 m, one per hundred robots.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace sf::bench {
 
 inline constexpr std::uint32_t kRobotsPerTile = 100;
 
-/// Tiles are not connected. Robots are discs that see each other, at the same hundred places in each tile, rotated.
+/// Tiles are not connected. Robots are discs that see each other, at the same hundred positions in each tile, rotated.
 world::World tiled_cave(std::uint32_t robots, const sensors::LaserSettings& laser);
 
 /// Adds the other sensors of a testbed with 10 000 robots: markings and magnets in every tile, and on every robot a

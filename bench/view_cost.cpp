@@ -1,5 +1,6 @@
-// CPU time that the live view costs the farm's process per tick: a fleet at 30 ticks/s with a reader of its states and
-// one robot's readings, and without. The reader is a process of its own, byte by byte, as no browser's time is meant.
+// CPU time per tick that the live view costs the farm's process: a fleet at 30 ticks/s, with and without a reader of
+// its states and one robot's readings. The reader is a separate process that only reads bytes, since browser time is
+// not measured.
 //
 //   build/bench/view_cost [ROBOTS] [SECONDS]
 
@@ -30,15 +31,15 @@ namespace sf::bench {
 namespace {
 
 constexpr double kRate = 30.0;  // [Hz] of ticks in real time
-constexpr int kTurns = 5;       // with and without a reader, each
+constexpr int kTurns = 5;       // each with and without a reader
 
-/// What the reader reads, for the parent's report.
+/// Counts of the reader, for the parent's report.
 struct Count {
   std::uint64_t messages = 0, bytes = 0;
 };
 
-/// A process that reads until the server goes, or the parent closes its end of a pipe. A program of its own: pages that
-/// a fork shares would be copied when the farm writes to them, at the cost of the farm.
+/// Runs a process that reads until the server ends, or the parent closes its end of a pipe. It executes a separate
+/// program: pages shared by a fork would be copied when the farm writes to them, at the farm's cost.
 class ReaderProcess {
  public:
   ReaderProcess(std::uint16_t port, const std::vector<int>& channels) {
@@ -57,7 +58,8 @@ class ReaderProcess {
     char ready = 0;
     if (::read(report_[0], &ready, 1) != 1) std::abort();
   }
-  /// Ends it. @return what it read
+  /// Ends the process.
+  /// @return the number of messages and bytes read
   Count end() {
     ::kill(child_, SIGTERM);
     Count count, next;
@@ -72,7 +74,7 @@ class ReaderProcess {
   pid_t child_ = 0;
 };
 
-/// The reader's program: tells standard output what it has read.
+/// The reader's program: prints its counts on standard output.
 void read_channels(std::uint16_t port, std::span<char*> channels) {
   bridges::RawClient client(port);
   client.upgrade("foxglove.sdk.v1");
@@ -100,7 +102,7 @@ std::vector<int> channels_of(const record::RunInfo& info) {
   return channels;
 }
 
-/// Ticks at the rate. @return CPU time per tick [s]
+/// Runs ticks at the rate. @return CPU time per tick [s]
 double drive(scenarios::Simulation& simulation, bridges::Viewer* viewer, int ticks) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kPeriod = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / kRate));
@@ -109,7 +111,7 @@ double drive(scenarios::Simulation& simulation, bridges::Viewer* viewer, int tic
   for (int i = 0; i < ticks; ++i) {
     const base::TickRecord tick = simulation.step();
     if (viewer != nullptr) viewer->publish(tick, {});
-    next = std::max(next + kPeriod, Clock::now());  // what is late is not made up for: no update would be sent
+    next = std::max(next + kPeriod, Clock::now());  // delays are not made up for, since no update would be sent
     std::this_thread::sleep_until(next);
   }
   return since(before).cpu_s / ticks;
@@ -159,5 +161,5 @@ int main(int argc, char** argv) {
   const double seconds = argc > 2 ? std::atof(argv[2]) : 6.0;
   sf::gpu::Device device;
   sf::bench::measure(0.1, robots, seconds, device);         // every robot's laser in every tick
-  sf::bench::measure(1.0 / 30.0, robots, seconds, device);  // lasers at 10 Hz: in every third
+  sf::bench::measure(1.0 / 30.0, robots, seconds, device);  // lasers at 10 Hz: in every third tick
 }
