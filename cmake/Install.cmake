@@ -1,5 +1,5 @@
-# What `cmake --install` puts in place: the program, its plug-ins, the public headers and library with a CMake package, the
-# worlds, examples, and the GLSL that kernels of own sensors include. And a Debian package of all that (cpack in the build folder).
+# Installs the program, its plug-ins, the public headers and library with a CMake package, the worlds, the examples, and
+# the GLSL that kernels of users' sensors include. cpack in the build folder creates a Debian package of all this.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -25,7 +25,7 @@ endif()
 install(TARGETS sensorfarm_library sensorfarm_headers EXPORT sensorfarm LIBRARY NAMELINK_SKIP)
 install(TARGETS sensorfarm_library LIBRARY NAMELINK_ONLY)
 install(DIRECTORY sensorfarm TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
-# The program in the build folder finds them from any folder, too.
+# The program in the build folder also finds them from any working directory.
 foreach(data worlds experiments)
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/sensorfarm)
   file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${data} ${CMAKE_BINARY_DIR}/share/sensorfarm/${data} SYMBOLIC)

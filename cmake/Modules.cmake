@@ -12,15 +12,17 @@ find_library(SODIUM sodium REQUIRED)  # libsodium-dev
 find_library(ZSTD zstd REQUIRED)  # libzstd-dev
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
-# Without plug-ins, the program does all that needs no heavy library, and names the plug-in that a command lacks.
+# Without plug-ins, the program supports everything that needs no heavy library, and names the plug-in that a command
+# lacks.
 option(SENSORFARM_BUILD_PLUGINS "Build the plug-ins: figures, videos, VTK, OpenCV, GDAL, ROS 2, MPI, Python" ON)
 if(SENSORFARM_BUILD_PLUGINS)
   include(PluginLibraries)
 endif()
 
-# Build flags of all targets. Contraction is off so that host and device round alike. Code can be part of a shared library
-# (-fPIC; one form for all, as precompiled headers need). g++ 12 warns falsely of overlapping strings (-Wrestrict), of
-# array bounds with precompiled headers, and of variants that are moved before they are set (-Wmaybe-uninitialized).
+# Build flags of all targets. Contraction is off so that host and device round in the same way. All code is compiled with
+# -fPIC, since it may be part of a shared library and precompiled headers need equal flags. g++ 12 has false positives for
+# overlapping strings (-Wrestrict), for array bounds with precompiled headers, and for moved variants
+# (-Wmaybe-uninitialized).
 add_library(project_options INTERFACE)
 target_include_directories(project_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_link_libraries(project_options INTERFACE glm::glm)
@@ -34,13 +36,13 @@ if(SENSORFARM_SANITIZE)
   target_sources(project_options INTERFACE ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp)
 endif()
 
-# Release builds are at -O2, and at -O3 in modules marked HOT, where benchmarks show a gain (docs/developing.md).
+# Release builds use -O2, and -O3 in modules marked HOT, where benchmarks show a gain (docs/developing.md).
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 add_library(hot INTERFACE)
 target_compile_options(hot INTERFACE $<$<CONFIG:Release>:-O3>)
 
-# Precompiled standard headers save a third of the build time. Sources still include all headers that they use;
-# -DSENSORFARM_PCH=OFF proves it.
+# Precompiled standard headers save a third of the build time. Sources still include all headers that they use, which
+# -DSENSORFARM_PCH=OFF verifies.
 option(SENSORFARM_PCH "Precompile the headers that most sources include" ON)
 set(SENSORFARM_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <random>
                               <set> <span> <string> <string_view> <variant> <vector> <fmt/format.h>
@@ -61,9 +63,9 @@ function(precompiled target name)
   endif()
 endfunction()
 
-# With SENSORFARM_CHECKED every module is built a second time, as NAME_checked, under AddressSanitizer and UBSan, and
-# the objects of the test programs are linked with these as well (tests/CMakeLists.txt). Instrumented tests would cost
-# three times as much. -Og without warnings, which the first build has, takes 60 % of the time of -O1.
+# With SENSORFARM_CHECKED, every module is built a second time, as NAME_checked, with AddressSanitizer and UBSan, and the
+# objects of the test programs are also linked with these modules (tests/CMakeLists.txt). Instrumenting the tests as well
+# would cost three times as much. -Og without warnings, which the first build reports, takes 60 % of the time of -O1.
 option(SENSORFARM_CHECKED "Build every module a second time, with sanitizers, and its tests with it" OFF)
 if(SENSORFARM_CHECKED)
   add_library(checked INTERFACE)
@@ -79,18 +81,19 @@ if(SENSORFARM_PCH)
   endif()
 endif()
 
-# Modules, their instrumented copies and tests are compiled eight sources at a time, in a third of the time: file-local
-# names of a module differ. `script/tidy sources` compiles each source alone, which shows missing includes. OFF rebuilds
-# less after a change.
+# Modules, their instrumented copies and tests are compiled in groups of eight sources, in a third of the time. This
+# requires distinct file-local names within a module. `script/tidy sources` compiles each source alone, which reveals
+# missing includes. OFF rebuilds less after a change.
 option(SENSORFARM_UNITY "Compile several sources at a time" ON)
 function(compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SENSORFARM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
-  # g++ takes types of a source's unnamed namespace for those of a header there.
+  # g++ mistakes types in a source's unnamed namespace for a header's in unity builds.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
-# The objects of instrumented modules keep their types beside their code (4 % more to compile), and target odr compares
-# them across sources, generating no code: two that define one type differently end it (one-definition rule).
+# The objects of instrumented modules contain their types in addition to their code (4 % more compile time). Target odr
+# compares the types across sources without generating code, and fails if two sources define one type differently
+# (one-definition rule).
 function(compare_types target)
   target_compile_options(${target} PRIVATE -flto -ffat-lto-objects)
   set_property(GLOBAL APPEND PROPERTY SENSORFARM_COMPARED $<TARGET_OBJECTS:${target}>)
@@ -104,7 +107,7 @@ endfunction()
 # add_module(NAME [HOT] [FOLDER folder] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
 # FOLDER: folder of the sources, default NAME; a folder below another module's belongs to this module only. SOURCES:
 # files generated at configure time, in addition to the folder's. PLUGINS: the source FOLDER/<name>.cpp or the folder
-# FOLDER/<name>/ becomes sensorfarm_<name>.so beside the program, which is loaded at first use.
+# FOLDER/<name>/ becomes sensorfarm_<name>.so in the program's folder, which is loaded at first use.
 function(add_module name)
   cmake_parse_arguments(MODULE "HOT" "FOLDER" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
   if(NOT MODULE_FOLDER)
@@ -151,9 +154,9 @@ function(add_module name)
   endif()
 endfunction()
 
-# add_checked_program(NAME OBJECTS targets... MODULES modules... [LIBRARIES targets...]): program NAME from the objects
-# of targets and all instrumented modules that `modules` depend on. The linker keeps the first copy of an inline
-# function, the instrumented one.
+# add_checked_program(NAME OBJECTS targets... MODULES modules... [LIBRARIES targets...]): links program NAME from the
+# objects of targets and all instrumented modules that `modules` depend on. The linker keeps the first copy of an inline
+# function, which is the instrumented one.
 function(add_checked_program name)
   cmake_parse_arguments(PROGRAM "" "" "OBJECTS;MODULES;LIBRARIES" ${ARGN})
   set(modules "")

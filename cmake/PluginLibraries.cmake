@@ -1,4 +1,4 @@
-# Libraries of plug-ins, which no other target links.
+# Libraries of plug-ins. No other target links them.
 
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # libcairo2-dev
@@ -6,12 +6,12 @@ pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # li
 # Videos of runs. Debian's FFmpeg is a GPL build (docs/figures.md); without it, `run --video` says so.
 pkg_check_modules(FFMPEG IMPORTED_TARGET libavcodec libavformat libavutil libswscale)
 
-# Ranks (cluster/) work without it as one process each. Debian's VTK 9.1 looks for it, too.
+# Without it, ranks (cluster/) are limited to a single process. Debian's VTK 9.1 also searches for it.
 find_package(MPI QUIET COMPONENTS C)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersCore FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)
 find_package(X11 REQUIRED)
 
-# OpenCV without its CMake package, which Debian has only together with all of OpenCV (libopencv-dev).
+# OpenCV without its CMake package, which Debian provides only with all of OpenCV (libopencv-dev).
 find_path(OPENCV_INCLUDE opencv2/aruco.hpp PATH_SUFFIXES opencv4 REQUIRED)  # libopencv-contrib-dev
 set(OPENCV_LIBRARIES "")
 foreach(part core imgproc imgcodecs videoio calib3d aruco)
@@ -19,22 +19,23 @@ foreach(part core imgproc imgcodecs videoio calib3d aruco)
   list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}})
 endforeach()
 
-# GDAL without its CMake package, which looks for all that GDAL may be built with.
+# GDAL without its CMake package, which searches for everything that GDAL may be built with.
 find_path(GDAL_INCLUDE gdal.h PATH_SUFFIXES gdal REQUIRED)  # libgdal-dev
 find_library(GDAL gdal REQUIRED)
 
-# Cyclone DDS without its CMake package, which wants OpenSSL's headers (cyclonedds-dev).
+# Cyclone DDS without its CMake package, which requires OpenSSL's headers (cyclonedds-dev).
 find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
 find_library(CYCLONEDDS ddsc REQUIRED)
 
-# Fast DDS (libfastrtps-dev). Without it, services do not answer clients of rmw_fastrtps, and no test is a peer.
+# Fast DDS (libfastrtps-dev). Without it, services do not answer clients of rmw_fastrtps, and the tests with a Fast DDS
+# peer are omitted.
 find_library(FASTDDS fastrtps)
 find_library(FASTCDR fastcdr)
 if(NOT FASTDDS OR NOT FASTCDR)
   message(STATUS "libfastrtps-dev is missing: no sensorfarm_fastdds, no ros2_tests")
 endif()
 
-# Links each plug-in, once add_module() has made its target.
+# Links each plug-in whose target add_module() has created.
 function(link_plugins)
   target_link_libraries(sensorfarm_cairo PRIVATE PkgConfig::CAIRO)
   target_link_libraries(sensorfarm_vtk PRIVATE VTK::IOXML VTK::FiltersCore VTK::FiltersFlowPaths VTK::InteractionWidgets VTK::RenderingOpenGL2 VTK::RenderingFreeType X11::X11)
@@ -46,7 +47,7 @@ function(link_plugins)
   target_include_directories(sensorfarm_gdal SYSTEM PRIVATE ${GDAL_INCLUDE})
   target_link_libraries(sensorfarm_gdal PRIVATE fmt::fmt ${GDAL})
   target_include_directories(sensorfarm_dds SYSTEM PRIVATE ${CYCLONEDDS_INCLUDE})
-  target_compile_definitions(sensorfarm_dds PRIVATE DDS_NDEBUG)  # as the library was built
+  target_compile_definitions(sensorfarm_dds PRIVATE DDS_NDEBUG)  # as in the library's build
   target_link_libraries(sensorfarm_dds PRIVATE fmt::fmt ${CYCLONEDDS})
   if(FFMPEG_FOUND)
     target_link_libraries(sensorfarm_ffmpeg PRIVATE PkgConfig::FFMPEG)

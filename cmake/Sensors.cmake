@@ -26,7 +26,7 @@ function(farm_sensor id name where)
   set_property(GLOBAL APPEND PROPERTY SENSOR_TYPES ${id}/${name})
 endfunction()
 
-# write_sensor_types(FILE): writes a source that defines sensors::built_in_sensor_types(), all sensor types by id.
+# write_sensor_types(FILE): writes a source that defines sensors::built_in_sensor_types(), all sensor types sorted by id.
 function(write_sensor_types file)
   get_property(known GLOBAL PROPERTY SENSOR_TYPES)
   list(SORT known COMPARE NATURAL)

@@ -3,8 +3,8 @@
 find_program(GLSLANG glslangValidator REQUIRED)
 find_program(AWK awk REQUIRED)
 
-# add_records(SOURCES header.h...): for kernels, `#include "shaders/header.glsl"` gives the header's structs with their accessors
-# (cmake/records.awk). The caller's variable SOURCES is sources that check the layouts.
+# add_records(SOURCES header.h...): lets kernels `#include "shaders/header.glsl"`, which has the header's structs with
+# their accessors (cmake/records.awk). Sets the caller's variable SOURCES to sources that check the layouts.
 function(add_records sources)
   foreach(header ${ARGN})
     string(REGEX REPLACE "\\.h$" "" name ${header})
@@ -27,7 +27,7 @@ function(add_records sources)
   set(${sources} ${checks} PARENT_SCOPE)
 endfunction()
 
-# add_shaders(TARGET file.comp...): `#include "shaders/file.comp.h"` gives `file_comp_spv`.
+# add_shaders(TARGET file.comp...): `#include "shaders/file.comp.h"` provides `file_comp_spv`.
 function(add_shaders target)
   get_property(records GLOBAL PROPERTY RECORD_ACCESSORS)
   foreach(source ${ARGN})

@@ -1,4 +1,4 @@
-# Writes a source with the files of a page as text: cmake -DOUT=file.cpp "-DFILES=a.js;b.css" -P WebFiles.cmake
+# Writes a source that contains the files of a page as text: cmake -DOUT=file.cpp "-DFILES=a.js;b.css" -P WebFiles.cmake
 set(rows "")
 set(count 0)
 foreach(file ${FILES})

@@ -1,4 +1,5 @@
-# Toolchain of script/check_arm64: Debian's cross compiler, libraries unpacked in build/arm64/sysroot, programs run by qemu-user.
+# Toolchain of script/check_arm64: Debian's cross compiler, libraries unpacked in build/arm64/sysroot, and qemu-user to
+# run programs.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
@@ -12,7 +13,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
-# The C library is the cross compiler's own, found first; all else comes from the sysroot.
+# The C library is the cross compiler's, which is found first; all other libraries are in the sysroot.
 set(libraries ${sysroot}/usr/lib/aarch64-linux-gnu)
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-L/usr/aarch64-linux-gnu/lib -L${libraries} -Wl,-rpath-link,${libraries}:${sysroot}/lib/aarch64-linux-gnu")
 set(CMAKE_SHARED_LINKER_FLAGS_INIT ${CMAKE_EXE_LINKER_FLAGS_INIT})

@@ -1,11 +1,11 @@
-# Writes GLSL from a header of records that host and device share: an include of the header, and for each struct S in it
+# Writes GLSL for a header of records that host and device share: an include of the header, and for each struct S in it
 #   struct S { ... };
 #   S decode_S(uvec4 t0, ...)    from its texels     load_S(table, row)        from a table of texels
 #   uvec4[n] encode_S(S r)       to its texels       store_S(table, row, r)    to a table of texels
-# With -v layouts=1 it writes a C++ source instead, which compares the offset of each field with the compiler's.
+# With -v layouts=1, writes a C++ source instead, which compares the offset of each field with the compiler's.
 #
-# A record is a whole number of texels of 16 bytes, or two words in a table of words. Arrays have four elements, and are vectors in
-# GLSL. A field of a record's type is one texel.
+# A record is a whole number of texels of 16 bytes, or two words in a table of words. Arrays have four elements and become
+# vectors in GLSL. A field whose type is a record is one texel.
 
 BEGIN {
   split("float std::uint32_t std::int32_t double std::uint16_t", names)
@@ -33,7 +33,7 @@ function with(pattern, value) { sub(/@/, value, pattern); return pattern }
 
 function add_read(value) { reads = reads (reads == "" ? "" : ", ") value }
 
-# Texels begin where words of the record are a multiple of four.
+# Texels begin at words whose index is a multiple of four.
 function add_put(value, from) { puts = puts (puts == "" ? "uvec4(" : from % 4 == 0 ? "), uvec4(" : ", ") value }
 
 function add_field(cpp, name,   type, from, i) {
