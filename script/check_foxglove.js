@@ -1,5 +1,5 @@
-// Foxglove's own client (@foxglove/ws-protocol, foxglove.websocket.v1) at a live run: topics, schemas, messages, time,
-// parameters, services and commands. Ends with an error at the first violation.
+// Connects Foxglove's own client (@foxglove/ws-protocol, foxglove.websocket.v1) to a live run: topics, schemas, messages,
+// time, parameters, services and commands. Exits with an error at the first violation.
 
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
 const { parse } = require("@foxglove/rosmsg");
@@ -7,7 +7,7 @@ const { MessageReader, MessageWriter } = require("@foxglove/rosmsg2-serializatio
 const { WebSocket } = require("ws");
 const { start, check, run } = require("./live_run");
 
-/** The next event of that name for which `wanted` holds. */
+/** Returns the next event of that name for which `wanted` returns true. */
 function next(client, name, wanted = () => true) {
   return new Promise((resolve) => {
     const listener = (event) => {

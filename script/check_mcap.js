@@ -1,5 +1,5 @@
 // Reads a recording with @mcap/core, by its index and front to back, and decodes every message by its schema.
-// Ends with an error at the first violation.
+// Exits with an error at the first violation.
 
 const fs = require("fs");
 const { McapIndexedReader, McapStreamReader } = require("@mcap/core");
@@ -8,7 +8,7 @@ const { parse } = require("@foxglove/rosmsg");
 const { MessageReader } = require("@foxglove/rosmsg2-serialization");
 const { decompress } = require("fzstd");
 
-/** By the name in a chunk. */
+/** Decompressors by the name in a chunk. */
 const decompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
 
 const FOOTER = 1 + 8 + 8 + 8 + 4;
@@ -18,7 +18,7 @@ function check(condition, message) {
   if (!condition) throw new Error(message);
 }
 
-/** Front to back, every CRC looked at: records by type, messages by topic. */
+/** Reads front to back and checks every CRC. Returns records by type and messages by topic. */
 function readStream(bytes) {
   const reader = new McapStreamReader({ includeChunks: true, validateCrcs: true, decompressHandlers });
   reader.append(bytes);
@@ -38,7 +38,7 @@ function readStream(bytes) {
   return seen;
 }
 
-/** The two checksums that the stream reader leaves alone. */
+/** Checks the two checksums that the stream reader does not check. */
 function checkSums(bytes, seen) {
   const summaryStart = Number(seen.footer.summaryStart);
   const dataEnd = summaryStart - (1 + 8 + 4);
@@ -49,7 +49,7 @@ function checkSums(bytes, seen) {
   check(seen.footer.summaryCrc === crc32(summary), "the summary's CRC does not fit");
 }
 
-/** Every message by the type its schema text describes, and back to its length. */
+/** Decodes every message by the type in its schema, and checks that it consumes the whole message. */
 function decodeAll(seen) {
   const readers = new Map();
   for (const schema of seen.schemas.values()) {
@@ -68,7 +68,7 @@ function decodeAll(seen) {
   }
 }
 
-/** What a message must say beyond being readable. */
+/** Checks the content of a message. */
 function checkContent(seen) {
   for (const [name, topic] of seen.topics) {
     if (topic.type === "sensor_msgs/msg/LaserScan") {
@@ -84,7 +84,7 @@ function checkContent(seen) {
   check(seen.topics.get("/run")?.count === 1, "no single /run message");
 }
 
-/** By the index, as viewers do. */
+/** Reads by the index, as viewers do. */
 async function readIndexed(bytes) {
   const readable = {
     size: async () => BigInt(bytes.length),

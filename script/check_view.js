@@ -1,5 +1,5 @@
-// The live view's page in headless Chromium: what it draws of a run and of a recording, and what its controls do.
-// Ends with an error at the first violation.
+// Checks the live view's page in headless Chromium: its drawing of a run and of a recording, and its controls.
+// Exits with an error at the first violation.
 
 const fs = require("fs");
 const os = require("os");
@@ -11,10 +11,10 @@ const { start, check, run } = require("./live_run");
 const [program, picture] = process.argv.slice(2);
 const flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 
-/** The page's own account of what it drew (`window.view`), and of its state. */
+/** Contents of the page's last frame (`window.view`), and its state. */
 const look = (page) => page.evaluate(() => ({ ...view.drawing.drawn, time: view.time, paused: view.paused, updates: view.counters.updates, frames: view.counters.frames, scale: view.camera.scale, status: document.getElementById("status").textContent }));
 
-/** Waits until `condition` holds in the page, where its policy forbids Playwright's own way. */
+/** Waits until `condition` is true in the page; the page's policy forbids Playwright's own function. */
 async function until(page, what, condition, argument) {
   for (let tries = 0; tries < 400; ++tries) {
     if (await page.evaluate(condition, argument)) return;
@@ -23,7 +23,7 @@ async function until(page, what, condition, argument) {
   throw new Error(`${what}: ${JSON.stringify(await look(page))}`);
 }
 
-/** Pixels of the canvas, of that colour within 12 per channel. */
+/** Counts the canvas pixels of that colour within 12 per channel. */
 const countPixels = (page, rgb) => page.evaluate(([r, g, b]) => {
   const canvas = document.getElementById("view"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
   let count = 0;
@@ -36,7 +36,7 @@ async function open(browser, url, requests) {
   page.on("pageerror", (error) => { console.error(error); process.exit(1); });
   page.on("request", (request) => requests.push(request.url()));
   await page.goto(url);
-  // Until the page has begun, `view` is its canvas of that name.
+  // Before the page's script has run, `view` is the canvas with that id.
   await until(page, "no updates", () => window.view?.counters?.updates > 2 && view.drawing.drawn.robots > 0);
   return page;
 }
@@ -50,7 +50,7 @@ async function watchRun(browser, requests) {
   check(Object.keys(now.lights).length > 0, "no traffic lights");
   check((await countPixels(page, [195, 200, 206])) > 500, "roads are not drawn");
 
-  // A robot by the keyboard, its readings, a plot.
+  // Select a robot with the keyboard; its readings; a plot.
   await page.keyboard.press("]");
   await until(page, "no readings over the map", () => view.drawing.drawn.beams + view.drawing.drawn.edges + view.drawing.drawn.fields + view.drawing.drawn.cones > 0);
   await until(page, "no readings in the panel", () => [...document.querySelectorAll("#selected dd")].some((cell) => /\d/.test(cell.textContent)));
@@ -83,7 +83,7 @@ async function watchRun(browser, requests) {
   await page.keyboard.press("Shift+R");
   await until(page, "not restarted", (before) => view.fleet.tick < before, tick);
 
-  // A click on a robot selects it; a click beside all selects none.
+  // A click on a robot selects it; a click elsewhere clears the selection.
   await page.evaluate(() => view.connection.set(["/paused", true]));
   await until(page, "not at rest", () => view.paused && view.fleet.shownX[1] === view.fleet.x[1] && view.fleet.shownY[1] === view.fleet.y[1]);
   const at = await page.evaluate(() => { const [x, y] = view.camera.toScreen(view.fleet.shownX[1], view.fleet.shownY[1]), box = document.getElementById("view").getBoundingClientRect(); return [box.x + x, box.y + y]; });
@@ -98,8 +98,8 @@ async function watchRun(browser, requests) {
 }
 
 /**
- * In the page, for 4 s: the largest distance of an echo from the nearest wall or robot, as they were when it was
- * measured, and of the sensor's pose in the picture from the drawn robot's.
+ * Runs in the page for 4 s. Returns the largest distance of an echo from the nearest wall or robot at the time of its
+ * measurement, and of the drawn sensor's pose from the drawn robot's.
  */
 async function measureEchoes() {
   const walls = [], [ox, oy] = view.scene.origin, { fleet, drawing } = view, me = drawing.selected;
@@ -140,7 +140,7 @@ async function watchManyRobots(browser, requests) {
   await until(page, "no scan", () => view.drawing.drawn.hits > 0);
   check((await countPixels(page, [179, 89, 0])) > 20, "no echoes on the map");
 
-  // Robots of one model have colours of their own, the same in the list and on the map.
+  // Robots of one model have distinct colours, the same in the list and on the map.
   const marks = await page.evaluate(() => { document.getElementById("search").value = ""; view.panel.fill(); return [...document.querySelectorAll("#robots .mark")].slice(0, 24).map((mark) => getComputedStyle(mark).backgroundColor); });
   check(new Set(marks).size === 24 && (await page.evaluate(() => view.drawing.byColor.size)) === 24, `colours ${marks}`);
   check((await page.evaluate(() => view.fleet.count === 300 && [...document.querySelectorAll("#fleet button")].map(({ textContent }) => /^\d+ (in contact|stuck|outside)$/.test(textContent)).join())) === "true,true,true", "no counts of the fleet");
@@ -148,7 +148,7 @@ async function watchManyRobots(browser, requests) {
   console.log(`${scans} scans: echoes at most ${surface.toFixed(4)} m off walls and robots, sensors ${apart.toFixed(3)} m and ${turned.toFixed(3)} rad off robots`);
   check(scans > 20 && surface < 0.02, "echoes are not where surfaces are");
   check(apart < 0.03 && turned < 0.1, "readings are not where their robot is drawn");
-  await page.selectOption("#speed", "0");  // ticks between updates, which are left out
+  await page.selectOption("#speed", "0");  // ticks between updates are not shown
   await until(page, "not faster", () => Number.parseFloat(document.getElementById("pace").textContent) > 1.5);
   const fast = await page.evaluate(measureEchoes);
   console.log(`${fast.scans} scans at full speed: echoes at most ${fast.surface.toFixed(4)} m off walls and robots`);
@@ -157,7 +157,7 @@ async function watchManyRobots(browser, requests) {
   check((await server.end()) === 0, "the program failed");
 }
 
-/** Dark or light as the system has it, until the user chooses; on a phone everything is within reach; caps lock. */
+/** Dark or light theme as in the system until the user chooses; all controls are reachable on a phone; caps lock. */
 async function watchThemesAndPhones(browser, requests) {
   const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--duration", "600"]);
   const page = await open(browser, await server.url, requests);
@@ -176,7 +176,7 @@ async function watchThemesAndPhones(browser, requests) {
   await page.emulateMedia({ colorScheme: "light" });
   await until(page, "the system is not followed again", () => document.documentElement.dataset.theme === "light");
 
-  // As the keyboard sends them with caps lock on.
+  // The keys that the keyboard sends with caps lock on.
   const press = (key, shiftKey) => page.evaluate(([k, s]) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key: k, shiftKey: s, bubbles: true })), [key, shiftKey]);
   await page.keyboard.press("]");
   await press("F", false);
@@ -198,7 +198,7 @@ async function watchThemesAndPhones(browser, requests) {
   await server.end();
 }
 
-/** A robot that is driven into a wall is in contact, then stuck; its count selects it. */
+/** A robot driven into a wall is in contact, then stuck; a click on the count selects it. */
 async function countFleet(browser, requests) {
   const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--speed", "8", "--duration", "6000"]);
   const page = await open(browser, await server.url, requests);
@@ -215,7 +215,7 @@ async function countFleet(browser, requests) {
   await server.end();
 }
 
-/** Two fingers, one of which is lifted before the other: the map neither jumps nor stays behind. */
+/** If one of two fingers is lifted first, the map neither jumps nor stays behind. */
 async function touchMap(browser, requests) {
   const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--duration", "600"]);
   const page = await open(browser, await server.url, requests);

@@ -1,8 +1,8 @@
-// A run of the program with a live view, for checks that look at it.
+// Starts a run of the program with a live view, for checks.
 
 const { spawn } = require("child_process");
 
-/** Starts `program` with `args`; `url` is where its view is. `end()` interrupts it and gives its exit code. */
+/** Starts `program` with `args`. `url` is the address of its view; `end()` interrupts it and returns its exit code. */
 function start(program, args) {
   const child = spawn(program, args, { stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
@@ -27,7 +27,7 @@ function check(condition, message) {
   if (!condition) throw new Error(message);
 }
 
-/** Ends the process with an error where `main` throws, or takes more than two minutes. */
+/** Exits with an error if `main` throws or takes more than two minutes. */
 function run(main) {
   const guard = setTimeout(() => {
     console.error("not done after two minutes");
