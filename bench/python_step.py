@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Costs of Python: a step from Python beside one from C++, and the farm beside ray casting in NumPy.
+"""Cost of Python: compares a step from Python with one from C++, and the farm with ray casting in NumPy.
 
     script/build bench library_step python_package
     PYTHONPATH=build/bench/python /usr/bin/python3 bench/python_step.py --program build/bench/library_step
@@ -25,7 +25,7 @@ def drive(sim, twists):
 
 
 def steps_in_python(sim, steps):
-    """Seconds per step, with its readings and poses, on the wall clock and of all threads; and the hash."""
+    """Returns the seconds per step, with its readings and poses, in wall and CPU time of all threads, and the hash."""
     sim.reset(1)
     twists, spent, cpu = numpy.zeros((len(sim), 3)), 0.0, 0.0
     for _ in range(steps):
@@ -95,7 +95,7 @@ def world_of(centres, angles, sizes):
 
 
 def cast(poses, starts, edges, bearings):
-    """Ranges (robots, beams): each beam of a robot against each wall near it."""
+    """Returns ranges (robots, beams): tests each beam of a robot against each wall near it."""
     ranges = numpy.full((len(poses), len(bearings)), RANGE)
     middles, reach = starts + 0.5 * edges, 0.5 * numpy.hypot(*edges.T)
     for i, (x, y, _, yaw) in enumerate(poses):
