@@ -1,4 +1,4 @@
-// `check` and `draw`: what was understood, in numbers and as a picture.
+// `check` and `draw`: facts about a world, as numbers and as a picture.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace sf {
 
 namespace {
 
-// A box, a floor plan, a robot with two lasers of either dialect, a magnet and two slips.
+// A box, a floor plan, a robot with two lasers, one of each dialect, a magnet and two mistakes.
 const char* const kWorld = R"(name "small"
 model( name "box" pose [3 0 0 0] size [1 2 1] )
 model( name "plan" pose [0 5 0 0] size [4 4 1] bitmap "plan.pgm" )
@@ -29,7 +29,7 @@ model( name "magnet" pose [0 -3 0 0] size [0.1 0.1 0.1] magnetic_moment 10000 )
 gearbox( pose [0 -4 0 0] )
 )";
 
-// Two cells that meet in a corner, and a pair that is one wall: 4 + 4 + 4 runs, of which none is merged across the
+// Two cells that meet at a corner, and a pair that forms one wall: 4 + 4 + 4 runs, none of which is merged across the
 // corner.
 const char* const kPlan = "P2\n4 4\n255\n0 255 255 255\n255 0 255 255\n255 255 255 255\n255 255 0 0\n";
 
@@ -40,7 +40,7 @@ std::string small_world(const Folder& folder) {
 
 }  // namespace
 
-/// A noisy sensor states no bound, but what it would be without noise.
+/// A noisy sensor has no bound, but states the bound that it would have without noise.
 TEST(Check, NoisySensorsStateNoBound) {
   const Folder folder;
   const std::string world = folder.write("w.world",
@@ -68,7 +68,7 @@ TEST(Check, NoisySensorsStateNoBound) {
   EXPECT_EQ(reading.number("/sigma"), 0.2);
 }
 
-/// How often sensors are read, which of them between ticks, and for which a rate of ticks would be too low.
+/// How often sensors are read, which of them between ticks, and for which ones a tick rate would be too low.
 TEST(Check, RatesAreSaid) {
   const Folder folder;
   const std::string world = folder.write("w.world",
@@ -91,7 +91,7 @@ TEST(Check, RatesAreSaid) {
   EXPECT_TRUE(run_program({"check", world, "--rate", "13"}).err.empty());
 }
 
-/// Boundary: a thousand batches a second are told of, a few are not.
+/// Boundary: more than a thousand batches per second are reported.
 TEST(Check, ManySamplingTimesAreSaid) {
   const Folder folder;
   const std::string laser = "position( name \"roomba1\" laser( rate ";
@@ -112,7 +112,7 @@ TEST(Check, JsonCountsWhatIsThere) {
   EXPECT_EQ(facts.number("/sensors/laser"), 2);
   EXPECT_EQ(facts.number("/magnets"), 1);
   EXPECT_GE(facts.number("/models"), 5);
-  // Box 4, magnet 4, gear-box 4, and three outlines of 4 in the floor plan; the robot's own body is no wall.
+  // Box 4, magnet 4, gear-box 4, and three outlines of 4 in the floor plan; the robot's own body is not a wall.
   EXPECT_EQ(facts.number("/segments"), 24);
   ASSERT_EQ(facts.size("/extent"), 4u);
   EXPECT_EQ(facts.number("/extent/0"), -2);
@@ -163,7 +163,7 @@ TEST(Check, EveryWorldOfStageAndRosLoads) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
     const std::string ending = entry.path().extension().string();
     if (ending != ".world" && ending != ".yaml") continue;
-    if (entry.path().string().find("/reports/") != std::string::npos) continue;  // files with something to complain of
+    if (entry.path().string().find("/reports/") != std::string::npos) continue;  // files with mistakes
     ++seen;
     const Outcome outcome = run_program({"check", entry.path().string(), "--json"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -177,7 +177,7 @@ TEST(Check, EveryWorldOfStageAndRosLoads) {
   EXPECT_GE(seen, 5u);
 }
 
-/// Files from users' reports, each with what is said of it.
+/// Files from users' reports, each with the expected message.
 TEST(Check, ReportedFilesAreReadOrNamed) {
   const std::string reports = SF_SOURCE_DIR "/../shared/data/reports/";
   if (!std::filesystem::exists(reports)) GTEST_SKIP() << "no shared data here";

@@ -1,4 +1,4 @@
-// The clients in examples/clients/: on the golden packets, and as processes beside `serve`.
+// The clients in examples/clients/: with the golden packets, and as processes connected to `serve`.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ constexpr const char* kNoCompiler = "this machine has no C compiler called cc";
 
 bool have_compiler() { return succeeds("cc --version"); }
 
-/// Without a warning. @return path of the program
+/// Compiles without warnings. @return path of the program
 std::string compiled(const Folder& folder, const std::string& source) {
   const std::string program = folder.path("compiled"), log = folder.path("log");
   const std::string command = "cc -std=c11 -O0 -Wall -Wextra -Werror -I" SF_SOURCE_DIR " -o " + program + " " + source;
@@ -34,7 +34,7 @@ std::size_t count_vectors() {
   return count;
 }
 
-/// The judge reads all vectors and says how many.
+/// Runs a checker, which reads all vectors and prints their number.
 void expect_agreement(const std::string& judge, Words words) {
   for (const std::string& file : test::vector_files()) words.push_back(file);
   const Outcome outcome = Program(words, {}, "", "", judge).wait();
@@ -50,7 +50,7 @@ position( name "roomba1" pose [-2 0 0 0] size [0.3 0.3 0.1]
   gps( rate 20 ) )
 )";
 
-/// Values of one type by `sense`. @param list of elements; empty: none
+/// Returns the values that `sense` prints for one type. @param list of elements; empty: none
 std::vector<double> read_sense(const std::string& world, const std::string& type, const std::string& list,
                                const Words& columns) {
   const Json json(
@@ -62,7 +62,7 @@ std::vector<double> read_sense(const std::string& world, const std::string& type
   return values;
 }
 
-/// The numbers of `columns` in the newest line about sensor 0 of a type.
+/// Returns the numbers in `columns` of the newest line about sensor 0 of a type.
 std::vector<double> printed(const std::string& text, const std::string& type, const Words& columns) {
   std::vector<double> values;
   const std::size_t at = text.rfind(type + " 0 of robot 1 at ");
@@ -90,7 +90,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// One of the clients as robot 1 beside a service, until it has printed the readings of `sense`; then it leaves.
+/// Runs a client as robot 1 of a service until it has printed the readings of `sense`; then it leaves.
 void expect_readings(Service& service, unsigned ports, const std::string& program, const Words& first) {
   const auto scan = read_sense(service.world, "laser", "beams", {"range_m"});
   const auto echoes = read_sense(service.world, "sonar", "transducers", {"range_m"});
@@ -115,7 +115,7 @@ void expect_readings(Service& service, unsigned ports, const std::string& progra
   EXPECT_TRUE(client.running()) << client.err();
   EXPECT_NE(text.find(" ms old\n"), std::string::npos) << text;
 
-  // A stranger's scan at the same port is counted and dropped: it was taken when two scans came after it.
+  // A stranger's scan at the same port is counted and dropped: by then, two more scans have been accepted.
   netio::Outbox stranger;
   stranger.queue({netio::kLoopback, static_cast<std::uint16_t>(service.hears(1))},
                  test::read_vectors(SF_SOURCE_DIR "/tests/netio/vectors/laser.txt").at(0).bytes);
@@ -143,7 +143,7 @@ TEST(Clients, CReadsAndWritesTheVectors) {
   expect_agreement(compiled(folder, SF_SOURCE_DIR "/tests/apps/clients/vectors.c"), {});
 }
 
-/// One after the other as the same robot: the second is accepted because the first said that it leaves.
+/// Both run as the same robot, one after the other: the second is accepted because the first has sent LEAVE.
 TEST(Clients, BothPrintTheReadingsOfSense) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
   if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
@@ -179,7 +179,7 @@ TEST(Clients, BothSignAndCheckSignatures) {
     EXPECT_FALSE(facts.has(std::string("/received/") + reason)) << reason;
 }
 
-/// RFC 4231, lengths around a block, the example of docs/packets.md, and all of the test below.
+/// RFC 4231, lengths around a block, the example of docs/packets.md, and all cases of the test below.
 TEST(Clients, CSignsAsSpecified) {
   if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
   const Folder folder;
@@ -189,7 +189,7 @@ TEST(Clients, CSignsAsSpecified) {
   EXPECT_EQ(outcome.out, "sound\n");
 }
 
-/// The counters at the window's edges, as `ReplayWindow` has them, a flipped bit and another key.
+/// Counters at the edges of the window, as in `ReplayWindow`, a flipped bit and a different key.
 TEST(Clients, PythonRefusesWhatTheFarmRefuses) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
   const Outcome outcome =

@@ -1,4 +1,4 @@
-// Whole outputs of commands that need no network, beside golden records: both streams, exit codes and files.
+// Complete outputs of commands that need no network, compared with golden records: both streams, exit codes and files.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,14 +15,15 @@ namespace {
 
 struct Case {
   const char* name;
-  std::vector<const char*> commands;  ///< one after the other; words are parted by spaces
-  std::vector<const char*> files;     ///< of the folder, added to the record
-  std::size_t every = 1;              ///< lines of a file of which one is kept
+  std::vector<const char*> commands;  ///< run one after another; words are separated by spaces
+  std::vector<const char*> files;     ///< in the folder, added to the record
+  std::size_t every = 1;              ///< keeps every n-th line of a file
 };
 
 void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
-/// A world with everything in small: walls, a lane, magnets, a light, a dock, holes, two robots and all sensor types.
+/// A small world with every kind of object: walls, a lane, magnets, a light, a dock, holes, two robots and all sensor
+/// types.
 constexpr const char* kYard = R"(
 name "yard"
 interval_sim 100

@@ -1,4 +1,4 @@
-// `dump`: packets in words, from a capture file and live.
+// `dump`: prints packets from a capture file or live.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ base::Bytes vector_of(const std::string& name, std::size_t i = 0) {
   return test::read_vectors(SF_SOURCE_DIR "/tests/netio/vectors/" + name + ".txt").at(i).bytes;
 }
 
-/// All golden packets, one after another, a microsecond apart.
+/// All golden packets, a microsecond apart.
 std::string all_vectors() {
   test::PcapFile file;
   std::uint32_t time = 0;
@@ -38,7 +38,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// One datagram of J2735, with `more` octets behind it.
+/// One J2735 datagram, followed by `more` octets.
 std::string signal_capture(const std::string& hex, std::size_t more = 0) {
   base::Bytes frame;
   for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
@@ -51,7 +51,7 @@ std::string signal_capture(const std::string& hex, std::size_t more = 0) {
 
 }  // namespace
 
-/// Real traffic lights are on the same wires.
+/// Real traffic lights send J2735 messages on the same networks.
 TEST(Dump, SignalMessagesAreWordsToo) {
   const Folder folder;
   const Outcome frames = run_program({"v2x", "export", our_world("simville/simville.world")});
@@ -65,11 +65,11 @@ TEST(Dump, SignalMessagesAreWordsToo) {
   const Outcome json = run_program({"dump", "--json", folder.write("lights.pcap", signal_capture(hex[0]))});
   EXPECT_EQ(json.code, 0);
   EXPECT_EQ(Json(json.out).text("/name"), "MAP");
-  // What follows a frame is not of it, and the datagram is none of ours either.
+  // Bytes after a frame are not part of it, and the datagram is not a farm packet either.
   EXPECT_EQ(run_program({"dump", folder.write("lights.pcap", signal_capture(hex[0], 1))}).code, 1);
 }
 
-// `serve` before any state of the robot was accepted.
+// `serve` before it has accepted a state of the robot.
 TEST(Dump, SaysThatNoStateHasArrived) {
   base::Bytes packet = vector_of("laser", 1);
   packet[62] |= 2;
@@ -159,7 +159,7 @@ TEST(Dump, ACutOffDatagramIsSaid) {
   EXPECT_NE(outcome.err.find("nothing received, cut off by the capture 1\n"), std::string::npos) << outcome.err;
 }
 
-/// The error beside VALUES is that of the numbers, so they keep all digits.
+/// VALUES packets state the error of their numbers, so all digits are printed.
 TEST(Dump, ValuesKeepAllDigits) {
   const Folder folder;
   base::Bytes third = vector_of("values");

@@ -1,4 +1,4 @@
-// Reports and figures of experiments beside their CSV files.
+// Reports and figures of experiments, compared with their CSV files.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ namespace {
 
 using CsvRecord = std::map<std::string, std::string>;
 
-/// Lines of a file by the names of its heading; cells with commas are quoted.
+/// Reads the lines of a file by the names in its heading; cells with commas are quoted.
 std::vector<CsvRecord> csv_records(const std::string& csv) {
   const auto cells_of = [](const std::string& line) {
     std::vector<std::string> cells(1);
@@ -55,7 +55,7 @@ std::vector<CsvRecord> csv_records(const std::string& csv) {
   return records;
 }
 
-/// Cells of all tables of a report, without their headings.
+/// Returns the cells of all tables of a report, without headings.
 std::vector<std::vector<std::string>> table_rows(const std::string& report) {
   std::istringstream lines(report);
   std::vector<std::vector<std::string>> rows;
@@ -72,7 +72,7 @@ std::vector<std::vector<std::string>> table_rows(const std::string& report) {
   return rows;
 }
 
-/// A table's cell shows a number of the file, times `scale`, to `places` behind the point.
+/// A table's cell shows a number from the file, times `scale`, with `places` decimals.
 void expect_shown(const std::string& cell, const CsvRecord& record, const std::string& name, double scale, int places) {
   const std::size_t point = cell.find('.');
   const std::size_t end = std::min(cell.find(' '), cell.size());
@@ -80,13 +80,13 @@ void expect_shown(const std::string& cell, const CsvRecord& record, const std::s
   EXPECT_NEAR(std::stod(cell), scale * std::stod(record.at(name)), 0.51 * std::pow(10.0, -places)) << name;
 }
 
-/// A run of so many seconds on the test path, from which an experiment of one robot starts.
+/// Writes a run of that duration on the test path, from which an experiment with one robot starts.
 std::string short_path(const std::string& seconds, const std::string& controller, const std::string& more = "") {
   return "world = \"" + our_world("testpath/testpath.world") + "\"\nduration = " + seconds +
          "\nplant = \"thesis\"\n[default]\ncontroller = \"" + controller + "\"\n" + more;
 }
 
-/// Errors of one point of `sweeps`, by a trial of its own with what its row says.
+/// Returns the errors of one point of `sweeps`, from a separate trial with the settings in its row.
 scenarios::ThesisRow swept_errors(const std::string& file, const CsvRecord& record, std::uint64_t seed) {
   const std::string sweep = record.at("sweep"), law = record.at("law");
   const double x = std::stod(record.at("x")), rate = sweep.starts_with("rate") ? x : 10.0;
@@ -157,7 +157,7 @@ TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
       const scenarios::ThesisRow errors = swept_errors(folder.path("sweeps.toml"), record, 3);
       for (std::size_t i = 0; i < errors.size(); ++i)
         EXPECT_NEAR(std::stod(record.at(std::string(scenarios::kColumns[i]))), errors[i], 2e-5 * std::abs(errors[i]));
-      // The bend's angle by gain and time, of which the thesis' plant has twice.
+      // The bend's angle by gain and time; the thesis' plant has twice the gain.
       const double kp = std::string(sweep) == "gain-ideal" ? 1.5 : 2 * 0.5;
       EXPECT_NEAR(std::stod(record.at("owed_mean")), 0.5 * M_PI / (kp * 2.0), 1e-5);
       ++looked_at;
@@ -197,7 +197,7 @@ TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
   }
 }
 
-/// Metres in the file, millimetres in the report.
+/// The file is in metres, the report in millimetres.
 TEST(ExperimentReport, LateStatesShowTheColumnsOfTheirFile) {
   const Folder folder;
   folder.write("late-states.toml",
@@ -228,7 +228,7 @@ TEST(ExperimentReport, LateStatesShowTheColumnsOfTheirFile) {
     EXPECT_GT(scenes::read_png(folder.path(std::string("out/") + name)).width, 0) << name;
 }
 
-/// Each row is a trial with its gain, its speed and its kind of states.
+/// Each row is a trial with its gain, speed and kind of states.
 TEST(ExperimentReport, LateStatesAreThoseThatTheirRowNames) {
   const Folder folder;
   const std::string file =
@@ -266,7 +266,7 @@ TEST(ExperimentReport, LateStatesAreThoseThatTheirRowNames) {
   EXPECT_GE(different.size(), 15u) << "gains hardly matter before the bend where states are not late";
 }
 
-/// A part in the file, per cent in the report.
+/// The file has fractions, the report per cent.
 TEST(ExperimentReport, AccuracyShowsTheColumnsOfItsFile) {
   const Folder folder;
   folder.write("small.world",

@@ -1,4 +1,4 @@
-// `experiment`, `test` and `run --controller` as a user runs them.
+// `experiment`, `test` and `run --controller` as users run them.
 
 #include <gtest/gtest.h>
 
@@ -67,12 +67,12 @@ TEST(Experiment, WritesItsFolder) {
     EXPECT_NE(report.find(text), std::string::npos) << text << "\n" << report;
   EXPECT_NE(report.find(std::to_string(mean).substr(0, 5)), std::string::npos) << "the mean of " << csv << report;
 
-  // Time on the path begins with the first error, a second after the start; ten errors are a second of it.
+  // Time on the path begins with the first error, one second after the start; ten errors make one second of it.
   double seconds = 0.0, errors = 0.0;
   ASSERT_EQ(std::sscanf(report.c_str() + report.find("\n| 1 | "), "\n| 1 | %lf | %lf", &seconds, &errors), 2) << report;
   EXPECT_NEAR(seconds, 0.1 * (errors - 1.0), 0.06) << report;
 
-  // Names have no track's colour; 5 m of track and a minute of errors have.
+  // Names are not in a track's colour; 5 m of track and a minute of errors are.
   constexpr std::uint32_t kFirst = 0xFF0072B2u;
   for (const char* name : {"trajectories.png", "errors.png"}) {
     const scenes::Picture picture = scenes::read_png(folder.path(std::string("out/") + name));
@@ -84,7 +84,7 @@ TEST(Experiment, WritesItsFolder) {
   EXPECT_EQ(run_program({"plot", folder.path("out/trial-1"), "-o", folder.path("pictures")}).code, 0);
 }
 
-/// Scenarios are found above the program; a plant of the user's takes the place of the experiment's.
+/// Scenarios are found above the program; a user's plant replaces the experiment's.
 TEST(Experiment, NeedsNoFilesAndTakesAPlant) {
   if (!std::string(SF_BINARY_DIR).starts_with(SF_SOURCE_DIR)) GTEST_SKIP() << "built outside of the sources";
   const Folder folder;
@@ -96,7 +96,7 @@ TEST(Experiment, NeedsNoFilesAndTakesAPlant) {
     EXPECT_NE(outcome.err.find("wrote " + folder.path("out/") + name + "\n"), std::string::npos) << outcome.err;
 }
 
-/// `wrong` is a part of the known cells: per cent in the report, of one in the file.
+/// `wrong` is a fraction of the known cells: per cent in the report, a fraction in the file.
 TEST(Experiment, TheMappingReportSaysWhatItsFileDoes) {
   const Folder folder;
   folder.write("small.world",

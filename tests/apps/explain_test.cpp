@@ -1,4 +1,4 @@
-// `explain` as a user runs it.
+// `explain` as users run it.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ TEST(Explain, SaysWhatIsBuiltAndWhatIsNot) {
     EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
 }
 
-/// Lasers of 181 beams: what is built for them and what they cost, in whole numbers where these are known.
+/// Lasers of 181 beams: the structures built for them and their cost, in integers where they are known.
 TEST(Explain, AsJson) {
   const Outcome outcome =
       run_program({"explain", our_world("rooms.world"), "--robots", "3", "--caster", "vulkan", "--json"});
@@ -48,7 +48,7 @@ TEST(Explain, AsJson) {
   EXPECT_NE(outcome.out.find("magnet"), std::string::npos) << "no magnets, so nothing is built for them";
 }
 
-/// Where the host casts there is no kernel for it. A caster that there is not is refused.
+/// If the host casts, it has no kernel. An unknown caster is refused.
 TEST(Explain, TheCasterIsAsAsked) {
   const Outcome host =
       run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "host", "--json"});
@@ -77,7 +77,7 @@ TEST(Explain, TheCasterIsAsAsked) {
   EXPECT_EQ(Json(both.out).text("/caster"), "Vulkan kernels") << "the command line comes before the environment";
 }
 
-/// Beams in doubt are counted; the text has their share of all.
+/// Uncertain beams are counted; the text shows their share of all beams.
 TEST(Explain, SaysHowManyBeamsAreInDoubt) {
   const Words words{"explain", our_world("cave.world"), "--robots", "2"};
   Words as_json = words;

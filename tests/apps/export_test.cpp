@@ -25,7 +25,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// Fields of a CSV file without quotes; its heading is row 0.
+/// Fields of a CSV file without quotes; row 0 is the heading.
 Rows rows_of(const std::string& path) {
   Rows rows;
   std::stringstream file(read_file(path));
@@ -37,7 +37,7 @@ Rows rows_of(const std::string& path) {
   return rows;
 }
 
-/// As written by a number's shortest form: to the bit.
+/// Equal to the last bit, as written in the shortest form.
 bool same(const std::string& field, double value) {
   return std::isnan(value) ? field.empty() : !field.empty() && std::strtod(field.c_str(), nullptr) == value;
 }
@@ -189,7 +189,7 @@ TEST_F(Recorded, PartsThatThereAreNotAreRefused) {
   expect_refused(with("plot", {"-o", out, "--robots", "one,three"}), "has no robot 'three'; it has one, two");
   expect_refused(with("export", {"-o", out, "--from", "5"}), "has no tick from 5 s on; it lasts from 0 to 2.9 s");
   expect_refused(with("export", {"-o", out, "--from", "2", "--to", "1"}),
-                 "has no tick from 2 s to 1 s");  // turned round
+                 "has no tick from 2 s to 1 s");  // reversed
   expect_refused(with("export", {}), "--out");
   expect_refused(with("export", {"-o", out, "--every", "0"}), "--every");
   expect_refused(with("plot", {"-o", out, "--format", "eps"}), "expected png, svg or pdf");
@@ -221,7 +221,7 @@ TEST_F(Recorded, ParaViewGetsSeries) {
   }
 }
 
-/// An attribute in the head of a VTK file, of an array or of the whole: `key="VALUE"` behind `after`.
+/// Returns an attribute in the head of a VTK file, of an array or of the whole: `key="VALUE"` after `after`.
 std::string vtk_head(const std::string& file, const std::string& after, const std::string& key) {
   const std::string text = read_file(file);
   const std::size_t at = text.find(key + "=\"", text.find(after)) + key.size() + 2;
@@ -241,7 +241,7 @@ std::string from_base64(const std::string& text) {
   return bytes;
 }
 
-/// The numbers of the first array of a VTK image: blocks of zlib behind the list of their sizes, both in base64.
+/// Returns the numbers of the first array of a VTK image: zlib blocks after the list of their sizes, both in base64.
 std::vector<double> vtk_numbers(const std::string& file) {
   const std::string text = read_file(file);
   const std::size_t begin = text.find('_', text.find("<AppendedData")) + 1;
@@ -269,7 +269,7 @@ std::vector<double> vtk_numbers(const std::string& file) {
   return numbers;
 }
 
-/// Middles of the cells of a VTK image, in the order of their numbers: row by row from the lower left.
+/// Returns the centres of the cells of a VTK image, in the order of their numbers: row by row from the lower left.
 std::vector<glm::dvec2> vtk_middles(const std::string& file) {
   double left = 0.0, bottom = 0.0, cell = 0.0;
   EXPECT_EQ(std::sscanf(vtk_head(file, "<ImageData", "Origin").c_str(), "%lf %lf", &left, &bottom), 2);
@@ -283,7 +283,8 @@ std::vector<glm::dvec2> vtk_middles(const std::string& file) {
   return middles;
 }
 
-/// Known are cells within the 3 m that the robot in the lower left quarter sees, and of the walls that below it.
+/// The known cells are within the 3 m range of the robot in the lower left quarter; the occupied ones belong to the wall
+/// below it.
 TEST_F(Recorded, ParaViewsMapBeginsAtTheLowerLeft) {
   ASSERT_EQ(run_program(with("export", {"--vtk", "-o", folder_.path("v")})).code, 0);
   const std::vector<double> cells = vtk_numbers(folder_.path("v/occupancy.vti"));
@@ -328,7 +329,7 @@ TEST_F(Recorded, ParaViewGetsThePartThatWasAskedFor) {
   EXPECT_EQ(vtk_head(out + "/scans/scans_000000.vtp", "\"robot\"", "RangeMax"), "0") << "two has no laser";
   EXPECT_FALSE(std::filesystem::exists(out + "/roads.vtp")) << "no roads";
 
-  // The room from -4 to 4 m, by cells of 3 cm that begin at its upper left corner.
+  // The room from -4 to 4 m, in cells of 3 cm that begin at its upper left corner.
   double left = 0.0, bottom = 0.0;
   ASSERT_EQ(std::sscanf(vtk_head(map, "<ImageData", "Origin").c_str(), "%lf %lf", &left, &bottom), 2);
   EXPECT_EQ(left, -4.0);
@@ -340,7 +341,7 @@ TEST_F(Recorded, ParaViewGetsThePartThatWasAskedFor) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path("w/scans.pvd"))) << "none of these has a laser";
 }
 
-/// Tags are no robots; a field needs no laser, and is at the height that was asked for.
+/// Tags are not robots. A field needs no laser, and is at the requested height.
 TEST(Export, TagsHaveNoWaysAndMagnetsAField) {
   const Folder folder;
   const std::string world = folder.write(
@@ -367,7 +368,7 @@ TEST(Export, TagsHaveNoWaysAndMagnetsAField) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("c/lights.csv"))) << "no lights";
 }
 
-/// Cells are a 400th of the longer side, at least 1 mm, and cover the world.
+/// Cells are a 400th of the longer side but at least 1 mm, and cover the world.
 TEST(Export, CellsOfAFieldAreAtLeastAMillimetre) {
   const Folder folder;
   for (const auto& [size, cell] : {std::pair{"0.1", 1e-3}, {"0.4", 1e-3}, {"0.8", 2e-3}, {"0.6", 1.5e-3}}) {
@@ -389,7 +390,7 @@ TEST(Export, CellsOfAFieldAreAtLeastAMillimetre) {
   }
 }
 
-/// An X server without a screen, on a display of its own.
+/// An X server without a screen, on a separate display.
 class VirtualDisplay {
  public:
   VirtualDisplay() : server_({"-displayfd", "2", "-screen", "0", "1300x900x24"}, {}, "", "", "Xvfb") {
@@ -433,7 +434,7 @@ TEST_F(Recorded, TheWindowShowsTheRun) {
   EXPECT_GT(red, 500) << "Stage's default colour, of walls and bodies";
 }
 
-/// Opens it for a user, who closes it as from a terminal.
+/// Opens the window and closes it from the terminal, as a user would.
 TEST_F(Recorded, TheWindowClosesOnDemand) {
   if (!succeeds("command -v Xvfb")) GTEST_SKIP() << "no Xvfb on this machine (Debian: xvfb)";
   if (instrumented()) GTEST_SKIP() << "the driver's own leaks would be reported";

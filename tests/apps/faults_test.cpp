@@ -1,5 +1,5 @@
-// Processes on loopback with one of them killed, stopped, behind a bad link, or with a clock that jumps. Each test
-// waits for messages, not for times: a process that does not recover fails it after a minute.
+// Processes on loopback, one of which is killed, stopped, behind a bad link, or has a jumping clock. Each test waits
+// for messages, not for times: a process that does not recover fails it after a minute.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ const char* const kOverhead =
 constexpr const char* kStands = "stops until one arrives";
 constexpr const char* kGoesOn = "drives on";
 
-/// A farm on a port that it keeps through restarts, with what it needs to be found.
+/// A farm on a port that it keeps across restarts, and the files that it needs.
 struct Hall {
   Folder folder;
   std::string world = folder.write("hall.world", kHall);
@@ -52,7 +52,7 @@ struct Hall {
     words.insert(words.end(), more.begin(), more.end());
     return std::make_unique<Program>(words);
   }
-  /// Long enough for the others, which began before, to be served.
+  /// Long enough for the other robots, which started earlier, to be served.
   void drive_for_a_while(const std::string& name, const std::string& seconds = "0.8") const {
     const Outcome outcome = robot(name, {"--duration", seconds})->wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -78,7 +78,7 @@ TEST(Faults, ARobotSurvivesTheRestartOfItsFarm) {
   ASSERT_TRUE(robot->says(kGoesOn)) << robot->err();
   EXPECT_GE(ended(*robot).number("/stops"), 1.0);
   ended(*farm);
-  // The killed farm's recording has every tick that was written.
+  // The killed farm's recording contains every tick that was written.
   const Outcome verified = run_program({"verify", hall.folder.path("first"), "--json"});
   EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
 }
@@ -110,7 +110,7 @@ TEST(Faults, ARestartedRobotIsHeardAgain) {
   ended(*farm);
 }
 
-/// Its successor binds the light's id two seconds after the last packet of the one that was killed, and hears robots.
+/// The new process binds the light's id two seconds after the killed one's last packet, and then receives robot states.
 TEST(Faults, ARestartedLightIsHeardAgain) {
   const Hall hall;
   const auto farm = hall.serve();
@@ -134,7 +134,7 @@ TEST(Faults, ARestartedLightIsHeardAgain) {
 TEST(Faults, ARestartedCameraIsHeardAgain) {
   const Hall hall;
   const auto farm = hall.serve();
-  // Packets of the other tag come here: once one has, the farm has some too.
+  // Packets of the other tag arrive at this socket: once one has, the farm has received some, too.
   const netio::Socket here = netio::open_udp({netio::kLoopback, 0});
   const std::string testbed =
       hall.folder.write("overhead.toml", kOverhead + std::string("[[tag]]\nid = 2\naddress = \"") +
@@ -149,11 +149,11 @@ TEST(Faults, ARestartedCameraIsHeardAgain) {
   for (const char* word : {"--duration", "3.2"}) words.emplace_back(word);
   const Outcome outcome = run_program(words);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  // The first sent a few at most: these are of the second.
+  // The first process sent only a few: these are from the second.
   EXPECT_GE(ended(*farm).number("/received/accepted"), 15.0);
 }
 
-/// Only the wall clock moves: the clocks of ticks do not, and signatures count on.
+/// Only the wall clock jumps: tick clocks do not, and signature counters continue.
 TEST(Faults, AClockThatJumpsByAnHourStopsNobody) {
   const std::string library = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1";
   if (instrumented()) GTEST_SKIP() << "AddressSanitizer must be the first library, as libfaketime must";

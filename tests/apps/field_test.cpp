@@ -1,4 +1,4 @@
-// `field`: a picture and numbers of a world's magnets.
+// `field`: a picture of a world's magnets, and numbers.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST(Field, WritesAPicture) {
   EXPECT_GT(colours.size(), 50u) << "the map runs from nothing to the field above the magnets";
 }
 
-/// Right above a magnet of 1 A m^2, 12.5 cm from its middle, next to another: more than a Gauss.
+/// Directly above a magnet of 1 A m^2, 12.5 cm from its centre, next to another: more than a Gauss.
 TEST(Field, WritesNumbersAlongALine) {
   const Folder folder;
   const Outcome outcome = run_program({"field", magnets(folder), "--height", "0.075", "-o", folder.path("x.png"),

@@ -1,5 +1,5 @@
 #pragma once
-// Files that may not grow, as on a full disk, for programs that start while this lives (`ulimit -f`).
+// Limits the size of files, as on a full disk, for programs that start during its lifetime (`ulimit -f`).
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -18,7 +18,7 @@ struct Rule {
   const char* to;
 };
 
-/// Lines of text and members of JSON whose numbers are measured on the machine.
+/// Lines of text and JSON members with numbers that are measured on the machine.
 const std::vector<Rule>& rules() {
   static const std::vector<Rule> all = [] {
     const auto rule = [](const char* from, const char* to) { return Rule{std::regex(from), to}; };
@@ -47,7 +47,7 @@ const std::vector<Rule>& rules() {
   return all;
 }
 
-/// Each number with more than six digits.
+/// Rounds each number with more than six digits.
 std::string rounded(const std::string& text) {
   static const std::regex number(R"(-?\b\d+\.\d+(?:e[-+]\d+)?)");
   std::string out;
@@ -80,7 +80,7 @@ std::string without_machine(std::string text, const std::string& folder) {
 }
 
 void expect_golden(std::string_view name, const std::string& text) {
-  // The rest of a row, or of a member of an object, follows on its line.
+  // The rest of a row, or of an object's member, stays on its line.
   golden::expect(std::regex_replace(text, std::regex("\n {4,}"), " "), "apps", std::string(name), 1e-6);
 }
 

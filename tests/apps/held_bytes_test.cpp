@@ -1,5 +1,5 @@
-// Readings, packets and recordings keep their bytes. A change here is a change of a format: packets.md, recordings.md
-// and the CHANGELOG name it, and the version of the format counts up.
+// Readings, packets and recordings do not change a byte. A change here is a change of a format: packets.md,
+// recordings.md and the CHANGELOG must describe it, and the format version must be incremented.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 namespace sf {
 namespace {
 
-const std::string kTown = SF_SOURCE_DIR "/worlds/simville/simville.world";  // every sensor type but sonar
+const std::string kTown = SF_SOURCE_DIR "/worlds/simville/simville.world";  // every sensor type except sonar
 const std::string kCave = SF_SOURCE_DIR "/worlds/cave.world";
 
 std::uint64_t chain(std::span<const std::uint8_t> bytes, std::uint64_t hash) {
@@ -59,7 +59,7 @@ TEST_F(HeldBytes, Readings) {
   EXPECT_EQ(Json(town.out).text("/hash"), "693c6bf9e1c62338");
 }
 
-/// The header names the version of the program, and the host caster would name its processor.
+/// The header contains the version of the program, and for the host caster the name of the processor.
 TEST_F(HeldBytes, Recordings) {
   ASSERT_EQ(run_program(
                 {"run", kTown, "--duration", "3", "--caster", "vulkan", "--record", folder.path(), "--record-readings"})
@@ -80,7 +80,7 @@ TEST_F(HeldBytes, Recordings) {
   EXPECT_EQ(base::hash_hex(hash), "cbfb31bce27e1f18");
 }
 
-/// Every datagram of two seconds, in the order of sending.
+/// Every datagram of two seconds, in the order of transmission.
 TEST_F(HeldBytes, Packets) {
   const world::World world = world::load_world(kTown, {.sensors = sensors::world_file_words()});
   const sensors::SensorSet sensor_set(world);

@@ -1,5 +1,5 @@
-// `serve` among strangers whose datagrams are well made and ill meant, over loopback, bounded in number. One robot goes
-// on being served, and nobody who proved no address is sent more than was sent in its name.
+// `serve` with strangers that send well-formed but hostile datagrams over loopback, a limited number. A robot continues
+// to be served, and no one without a proven address receives more than was sent in its name.
 
 #include <gtest/gtest.h>
 
@@ -14,11 +14,11 @@ namespace sf {
 
 namespace {
 
-constexpr std::size_t kStrangers = 20;  ///< sockets
+constexpr std::size_t kStrangers = 20;  ///< number of sockets
 constexpr int kRounds = 10;
-constexpr int kEach = 20;  ///< datagrams of each stranger in a round
+constexpr int kEach = 20;  ///< datagrams per stranger and round
 
-/// A socket that says anything and counts what it is told.
+/// A socket that sends anything and counts what it receives.
 struct Stranger {
   netio::Outbox mouth;
   netio::Socket ears;
@@ -38,7 +38,7 @@ struct Stranger {
   }
 };
 
-/// One of everything that anybody may send, for a robot that is there.
+/// Returns one of the packets that anyone may send, for an existing robot.
 base::Bytes anything(std::mt19937& generator) {
   const auto random = [&] { return static_cast<std::uint32_t>(generator()); };
   netio::Header header;
@@ -66,7 +66,7 @@ base::Bytes anything(std::mt19937& generator) {
       netio::encode(header, netio::Challenge{header.token}, bytes);
       break;
     case 4:
-      header.robot = 12;  // a tag that the world does not have
+      header.robot = 12;  // a tag that the world lacks
       netio::encode(header, netio::Tag{}, bytes);
       break;
     case 5:
@@ -84,7 +84,7 @@ TEST(Hostile, OneRobotIsServedAndNobodyElseIsFlooded) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
   const netio::Endpoint farm{netio::kLoopback, static_cast<std::uint16_t>(service.port)};
-  const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,180");  // the other is behind it
+  const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,180");  // the other robot is behind it
   Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
   std::vector<Stranger> strangers(kStrangers);
   std::mt19937 random(11);  // NOLINT: the same every time
@@ -104,7 +104,7 @@ TEST(Hostile, OneRobotIsServedAndNobodyElseIsFlooded) {
       for (int i = 0; i < kEach; ++i) stranger.say(farm, anything(random));
       stranger.mouth.flush();
     }
-    // A robot that is one: as far away and as fast as a packet can say, and back.
+    // A valid robot that is as far away and as fast as a packet can express, and returns.
     two.say({round % 2 == 0 ? 1e7 : -1e7, 1e7, 0.0, -1e6});
     ASSERT_TRUE(served()) << round;
     for (Stranger& stranger : strangers) stranger.hear();
@@ -124,7 +124,7 @@ TEST(Hostile, OneRobotIsServedAndNobodyElseIsFlooded) {
   EXPECT_GT(facts.number("/received/unproven"), kRounds * static_cast<double>(kStrangers));
   EXPECT_GT(facts.number("/received/wrong direction"), 0);
   EXPECT_GT(facts.number("/received/unknown tag"), 0);
-  EXPECT_FALSE(facts.has("/received/wrong source"));  // nobody got so far
+  EXPECT_FALSE(facts.has("/received/wrong source"));  // no stranger got this far
 }
 
 }  // namespace sf

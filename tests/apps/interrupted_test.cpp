@@ -1,4 +1,4 @@
-// Commands that a signal stops before their work is complete: none of them claims success.
+// Commands stopped by a signal before their work is complete: none of them reports success.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Outcome stopped(const Words& words, int by = SIGINT) {
   return program.wait();
 }
 
-/// A recording of a minute of forty robots, long enough for every command that reads it.
+/// A recording of one minute with forty robots, long enough for every command that reads it.
 class Interrupted : public testing::Test {
  protected:
   std::string record() const {
@@ -31,7 +31,7 @@ class Interrupted : public testing::Test {
   std::string scenario() const {
     return folder.write("s.toml", "world = \"" + our_world("cave.world") + "\"\nrobots = 20\nduration = 60\n");
   }
-  /// A world that takes a while to load, and whose field takes one.
+  /// A world that takes a while to load, and whose field takes a while to compute.
   std::string crowded() const {
     std::string text = "define box model( size [0.1 0.1 0.1] magnetic_moment 100 )\n";
     for (int i = 0; i < 20'000; ++i)
@@ -109,7 +109,7 @@ TEST_F(Interrupted, ByOtherSignalsAndWithAnotherCode) {
   }
 }
 
-/// The report of what was done says that it is not all.
+/// The report of the finished part states that it is incomplete.
 TEST_F(Interrupted, ReportsSayThatTheyAreNotWhole) {
   const Outcome text = stopped({"selftest"});
   EXPECT_NE(text.out.find("; interrupted, "), std::string::npos) << text.out;
@@ -122,7 +122,7 @@ TEST_F(Interrupted, ReportsSayThatTheyAreNotWhole) {
   EXPECT_TRUE(verified.flag("/interrupted"));
 }
 
-/// Services and listeners have no end of their own: to stop them is how they are used.
+/// Services and listeners run until they are stopped, so stopping them is normal use.
 TEST_F(Interrupted, WhatHasNoEndOfItsOwnIsComplete) {
   const std::string rooms = our_world("rooms.world");
   EXPECT_EQ(stopped({"serve", rooms, "--port", "0", "--laser-port", std::to_string(free_ports(64))}).code, 0);
@@ -133,7 +133,7 @@ TEST_F(Interrupted, WhatHasNoEndOfItsOwnIsComplete) {
             0);
 }
 
-/// A signal that comes when all is done changes nothing.
+/// A signal that arrives after all work is done changes nothing.
 TEST_F(Interrupted, CompleteWorkIsComplete) {
   const Outcome outcome = run_program({"selftest", "ranges"});
   EXPECT_EQ(outcome.code, 0) << outcome.out;

@@ -16,7 +16,7 @@
 namespace sf::apps {
 namespace {
 
-/// Reports of children to this process, in shared memory.
+/// Counts that children report to this process, in shared memory.
 struct Told {
   std::atomic<int> begun{0};
   std::atomic<int> runs[8] = {};
@@ -29,7 +29,7 @@ class JobProcesses : public testing::Test {
   ~JobProcesses() override { munmap(memory_, sizeof(Told)); }
   Told& told() { return *static_cast<Told*>(memory_); }
 
-  /// Counts, and does `job`. Ended after a minute, which no test needs.
+  /// Counts calls and runs `job`. Stops after a minute, which no test needs.
   JobCalls calls(std::function<void(std::size_t row)> job = [](std::size_t) {}) {
     return {.begin = [this] { ++told().begun; },
             .run =
@@ -90,7 +90,7 @@ TEST_F(JobProcesses, AChildThatDiesIsReplacedAndItsCauseTold) {
   EXPECT_EQ(told().begun, 4);
 }
 
-/// The second job waits until the first, whose child died, is told as done.
+/// The second job waits until the first, whose child died, is reported as done.
 TEST_F(JobProcesses, JobsWhoseChildDiedAreDone) {
   JobCalls all = calls([this](std::size_t row) {
     if (row == 0) _exit(7);
@@ -119,7 +119,7 @@ TEST_F(JobProcesses, ChildrenLeaveCtrlCToTheirParent) {
   EXPECT_TRUE(died_.empty());
 }
 
-/// A job without end is ended.
+/// A job that never returns is ended.
 TEST_F(JobProcesses, StopEndsChildrenAtOnce) {
   JobCalls all = calls([](std::size_t) { pause(); });
   all.stop = [this] { return told().runs[0] > 0; };

@@ -1,5 +1,5 @@
 #pragma once
-// Access to output of --json by JSON pointers such as "/beams/0/range_m".
+// Access to the output of --json by JSON pointers such as "/beams/0/range_m".
 
 #include <memory>
 #include <string>
@@ -9,11 +9,11 @@ namespace sf {
 
 class Json {
  public:
-  /// Fails the test when `text` is no JSON; nothing is in it then.
+  /// Fails the test if `text` is not valid JSON; the object is then empty.
   explicit Json(const std::string& text);
   ~Json();
 
-  /// Each fails the test, and gives 0, "" or false, where nothing of that type stands.
+  /// Each fails the test and returns 0, "" or false if there is no value of that type.
   double number(const std::string& pointer) const;
   std::string text(const std::string& pointer) const;
   bool flag(const std::string& pointer) const;
@@ -21,7 +21,7 @@ class Json {
 
   bool has(const std::string& pointer) const;
   bool is_null(const std::string& pointer) const;
-  std::vector<std::string> keys() const;  ///< of the whole
+  std::vector<std::string> keys() const;  ///< of the root
 
  private:
   struct Tree;

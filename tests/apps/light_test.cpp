@@ -1,4 +1,4 @@
-// `light`: a process that sends, beside a robot that listens.
+// `light`: a process that sends to a robot.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace sf {
 
 namespace {
 
-/// Ports of SimVille's sensor packets that no other test has, for `serve` and `robot`.
+/// Ports for SimVille's sensor packets that no other test uses, for `serve` and `robot`.
 Words town_ports() {
   Words words;
   for (const std::string type : {"laser", "laneedge", "magnetometer", "encoder", "gyro", "gps"}) {
@@ -34,7 +34,7 @@ TEST(Light, ARobotHearsIt) {
   const std::string spat = std::to_string(free_ports(1));
   Program light({"light", world, "--send", "127.0.0.1", "--port", spat, "--set", "light1=flashing red"});
   ASSERT_TRUE(light.says("7 lights of 2 intersections to 127.0.0.1:" + spat + " at 10 Hz"));
-  // There is no farm: the robot has no readings, and hears the lights all the same.
+  // There is no farm: the robot has no readings, but still receives the lights.
   const Outcome robot =
       run_program(with({"robot", world, "--name", "roomba0", "--controller", "route", "--set", "tour=true",
                         "--stop-after", "0", "--duration", "2.5", "--spat", spat, "--json"},
@@ -68,7 +68,7 @@ TEST(Light, AnotherKeyThanTheFarmsIsStated) {
   EXPECT_TRUE(farm.says("intersection 1 at 127.0.0.1:")) << farm.err();
 }
 
-/// Two seconds of a plan by detectors, beside a farm whose robot stands where one is.
+/// Two seconds of an actuated plan, with a farm whose robot is at a detector.
 TEST(Light, APlanIsRunBesideAFarm) {
   const std::string port = std::to_string(free_ports(1));
   const Words ports = town_ports();
@@ -93,7 +93,7 @@ TEST(Light, APlanIsRunBesideAFarm) {
   EXPECT_FALSE(facts.has("/received/stale"));
 }
 
-/// Far from the next message, which is due in ten seconds.
+/// Long before the next message, which is due in ten seconds.
 TEST(Light, CtrlCEndsItAtOnce) {
   Program light({"light", our_world("simville/simville.world"), "--send", "127.0.0.1", "--port",
                  std::to_string(free_ports(1)), "--rate", "0.1"});

@@ -1,4 +1,4 @@
-// The table "Limits of ranges" of docs/sensors.md, row by row, in every output that the program has.
+// The table "Limits of ranges" of docs/sensors.md, row by row, in every output of the program.
 
 #include <gtest/gtest.h>
 
@@ -49,11 +49,11 @@ std::vector<LimitRow> limit_rows() {
     const std::vector<std::string> c = cells_of(line);
     if (c.size() == 7) rows.push_back({c[0], c[1], c[2], c[3], c[4], c[5], c[6]});
   }
-  if (rows.size() > 2) rows.erase(rows.begin(), rows.begin() + 2);  // the heading, and the line below it
+  if (rows.size() > 2) rows.erase(rows.begin(), rows.begin() + 2);  // the heading and the line below it
   return rows;
 }
 
-/// [m] The value that a cell of the table names.
+/// [m] Returns the value named in a cell of the table.
 double value_of(const std::string& cell) {
   const std::map<std::string, double> values{
       {"range_min", kMin}, {"range_max", kMax}, {"d", kInRange}, {"inf", HUGE_VAL}, {"-inf", -HUGE_VAL}};
@@ -62,14 +62,14 @@ double value_of(const std::string& cell) {
   return found == values.end() ? NAN : found->second;
 }
 
-/// [m] Distance of a row's surface; NaN: there is none.
+/// [m] Returns the distance of a row's surface; NaN if there is none.
 double surface_of(const LimitRow& row) {
   if (row.surface == "less than range_min") return 0.25;
   if (row.surface == "more than range_max") return 6.0;
   return row.surface == "nowhere" ? NAN : value_of(row.surface);
 }
 
-/// A robot per row, with a laser of one beam, a sonar and an infrared sensor, 100 m from the next.
+/// One robot per row with a laser of one beam, a sonar and an infrared sensor, 100 m apart.
 std::string world_of(const std::vector<LimitRow>& rows) {
   std::ostringstream text;
   text << "interval_sim 100\n";
@@ -93,7 +93,7 @@ class Limits : public testing::Test {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return outcome;
   }
-  /// Records one tick of all robots, which stand.
+  /// Records one tick of all robots, which do not move.
   record::Recording recorded(const Words& more = {}) const {
     Words words{"run",          "--controller", "avoid", "--set",    "speed=0",        "--set",
                 "slow_speed=0", "--duration",   "0.1",   "--record", folder.path("r"), "--record-readings"};
@@ -121,7 +121,7 @@ TEST_F(Limits, InJson) {
     }
 }
 
-/// The number in the second column of a scan, and in the first of others.
+/// Returns the number in the second column of a scan, or in the first column of other readings.
 double number_of(const std::string& csv, bool is_scan) {
   const std::string row = csv.substr(csv.find('\n') + 1);
   return std::stod(is_scan ? row.substr(row.find(',') + 1) : row);
@@ -193,7 +193,7 @@ TEST_F(Limits, InRosMessages) {
     }
 }
 
-/// Recordings are read back as tables have them, and are sound.
+/// Recordings read back as in the tables, and verify.
 TEST_F(Limits, InRecordings) {
   for (const Words& options : {Words{}, {"--too-near", "min"}, {"--no-return", "inf"}}) {
     const record::Recording run = recorded(options);
@@ -211,7 +211,7 @@ TEST_F(Limits, InRecordings) {
   }
 }
 
-/// In process, and through packets as a robot receives them.
+/// In process, and in packets as a robot receives them.
 TEST_F(Limits, InReadingsAndPackets) {
   const world::World loaded = world::load_world(world, {.sensors = sensors::world_file_words()});
   farm::Farm farm(loaded, device(), {});

@@ -1,4 +1,4 @@
-// `--view` of `run` and `serve`, as a viewer meets it.
+// `--view` of `run` and `serve`, seen by a viewer.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace sf {
 namespace {
 
-/// Greeting of a viewer's WebSocket.
+/// Returns the greeting that the WebSocket sends to a viewer.
 std::string greeting_of(Program& program) {
   EXPECT_TRUE(program.says("view on http://127.0.0.1:")) << program.err();
   const std::string err = program.err();
@@ -22,7 +22,7 @@ std::string greeting_of(Program& program) {
   return client.settle();
 }
 
-/// A run is paused, stepped and driven from a viewer; the robots of a service are driven elsewhere.
+/// A viewer pauses, steps and drives a run; the robots of a service are driven by other processes.
 TEST(LiveView, ARunIsDrivenAndAServiceIsWatched) {
   const std::string world = our_world("rooms.world");
   Program run({"run", world, "--view", "127.0.0.1:0"}), serve({"serve", world, "--port", "0", "--view", "127.0.0.1:0"});

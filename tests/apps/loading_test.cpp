@@ -1,4 +1,4 @@
-// Libraries of the program: those for drawing are loaded by drawing commands alone.
+// Libraries of the program: only drawing commands load those for drawing.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace sf {
 namespace {
 
-/// The dynamic linker's log of libraries loaded at start and later.
+/// Returns the dynamic linker's log of libraries loaded at start and later.
 std::string loaded_by(const Words& arguments) {
   const Outcome outcome = run_program(arguments, {{"LD_DEBUG", "files"}});
   EXPECT_EQ(outcome.code, 0) << outcome.err.substr(0, 2000);
@@ -28,7 +28,7 @@ TEST(Loading, CommandsWithoutPicturesLoadNoDrawingLibrary) {
   }
 }
 
-/// PNG and Netpbm are read by the program itself; OpenCV takes 0.1 s to load.
+/// The program itself reads PNG and Netpbm; OpenCV takes 0.1 s to load.
 TEST(Loading, OnlyPicturesOfOtherFormatsLoadOpenCv) {
   const Folder folder;
   folder.write("plan.gif", std::string("GIF87a\1\0\1\0\0\0\0;", 14));
@@ -45,7 +45,7 @@ TEST(Loading, OnlyPicturesOfOtherFormatsLoadOpenCv) {
   EXPECT_NE(outcome.err.find("gif.world:2: 'bitmap': "), std::string::npos) << "its only picture is missing";
 }
 
-/// A program without the plug-in reads all other worlds, and says what to do.
+/// A program without the plug-in reads all other worlds, and explains what to do.
 TEST(Loading, APictureWithoutItsPlugInIsAnError) {
   const Folder folder;
   const std::string alone = folder.path("alone");
@@ -65,7 +65,7 @@ TEST(Loading, APictureWithoutItsPlugInIsAnError) {
   EXPECT_EQ(Program({"check", our_world("cave.world")}, {}, "", "", alone).wait().code, 0);
 }
 
-/// The loader need not be installed where no device is opened.
+/// The loader need not be installed if no device is opened.
 TEST(Loading, OnlyDevicesLoadVulkan) {
   const std::string world = our_world("rooms.world");
   for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"sense", world, "--device", "host"}})
@@ -81,7 +81,7 @@ TEST(Loading, DrawingLoadsCairoAndNothingOfVtk) {
   EXPECT_EQ(said.find("libvtk"), std::string::npos);
 }
 
-/// A program without the drawing module beside it takes the one that the dynamic linker finds.
+/// A program without the drawing module in its folder uses the one that the dynamic linker finds.
 TEST(Loading, TheDrawingModuleMayBeWhereTheLinkerLooks) {
   const Folder folder;
   const char* const other = std::getenv("SENSORFARM_PROGRAM");

@@ -1,4 +1,4 @@
-// Lockstep as users have it: `serve --lockstep` and the clients in examples/clients/, each a process.
+// Lockstep as users run it: `serve --lockstep` and the clients in examples/clients/, each in a process.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ namespace {
 const std::string kLockstepClients = SF_SOURCE_DIR "/examples/clients/sensorfarm_lockstep";
 constexpr int kLockstepTicks = 60;
 
-/// What both clients do, in process.
+/// The algorithm of both clients, in process.
 class Avoid final : public sensorfarm::Controller {
  public:
   sensorfarm::Twist step(const sensorfarm::Input& input) override {
@@ -90,7 +90,7 @@ std::string compiled_lockstep(const Folder& folder) {
   return program;
 }
 
-/// One client after the other drives robots of a service of its own; then both of them one service.
+/// Each client drives the robots of a separate service; then both drive the robots of one service.
 TEST(LockstepClients, DriveLikeTheSameControllerInProcess) {
   if (!have_python()) GTEST_SKIP() << "this machine has no python3";
   if (!succeeds("cc --version")) GTEST_SKIP() << "this machine has no C compiler called cc";
@@ -119,7 +119,7 @@ TEST(LockstepClients, DriveLikeTheSameControllerInProcess) {
   EXPECT_EQ(both.end().text("/hash"), expected);
 }
 
-/// Both clients have the flag, and no error where the bound does not hold for every beam.
+/// Both clients print the flag, and no error if the bound does not hold for every beam.
 TEST(LockstepClients, HaveFlagsAndErrors) {
   if (!have_python()) GTEST_SKIP() << "this machine has no python3";
   if (!succeeds("cc --version")) GTEST_SKIP() << "this machine has no C compiler called cc";
@@ -200,7 +200,7 @@ TEST(LockstepClients, ARecordingIsReportedWithItsSize) {
   EXPECT_FALSE(facts.has("/recording_error"));
 }
 
-/// Its file may not grow, as on a full disk: the robots are served to the end, which says so.
+/// The recording may not grow, as on a full disk: the robots are served to the end, and the service reports it.
 TEST(LockstepClients, ARecordingThatIsNotWholeEndsWithOne) {
   const Folder folder;
   const FileSizeLimit limit(400'000);
@@ -221,7 +221,7 @@ TEST(LockstepClients, ARecordingThatIsNotWholeEndsWithOne) {
   EXPECT_EQ(facts.number("/ticks"), 1001);
 }
 
-/// Its client subscribes and never steps, while another waits.
+/// One client subscribes and never steps while another waits.
 TEST(LockstepClients, ALostRobotEndsWithOne) {
   LockstepServer server({"--wait-for", "2", "--lockstep-timeout", "0.05"});
   ASSERT_NE(server.port, 0u) << server.program.err();

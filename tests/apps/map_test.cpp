@@ -89,7 +89,7 @@ TEST(Map, MergesSeveralAndSurvivesNonsense) {
   EXPECT_EQ(run_program(run(world, port, "farm")).code, 0);
   const Outcome outcome = map.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  // The second map lies 3 m east of the first: 30 cells, rounded up to whole words of four.
+  // The second map is 3 m east of the first: 30 cells, rounded up to whole words of four.
   expect_map(outcome.out, 52, 16);
   EXPECT_NE(outcome.err.find("64 ignored"), std::string::npos) << outcome.err;
 }
@@ -114,7 +114,7 @@ TEST(Map, PacketsAreAsDocumented) {
   EXPECT_EQ(second, test::documented("thesis_occupancy_rest"));
 }
 
-/// A map of one word, all of whose cells are in `state`.
+/// Sends a map of one word whose cells are all in `state`.
 void send_map(netio::Outbox& farm, unsigned port, std::uint32_t sequence, std::uint32_t state) {
   base::Bytes payload, packet;
   maps::put_part(
@@ -125,8 +125,8 @@ void send_map(netio::Outbox& farm, unsigned port, std::uint32_t sequence, std::u
   farm.flush();
 }
 
-/// A sequence far ahead of its farm's neither shows its map nor makes the genuine ones after it late; one that the next
-/// follows on is believed.
+/// A sequence number far ahead of the farm's neither shows its map nor makes the genuine ones after it late; it is
+/// accepted if the next one continues it.
 TEST(Map, SequencesThatLeapAreLeftOut) {
   for (const bool followed : {false, true}) {
     const unsigned port = free_ports(1);
@@ -146,7 +146,7 @@ TEST(Map, SequencesThatLeapAreLeftOut) {
   }
 }
 
-/// More than the port's buffer holds, while nobody takes it.
+/// More than the port's buffer holds while no one reads it.
 TEST(Map, DatagramsDroppedByTheKernelAreReported) {
   const unsigned port = free_ports(1);
   Program map(listen(port, {}));
@@ -186,7 +186,7 @@ TEST(Map, APortThatIsGivenTwiceIsRefused) {
   EXPECT_NE(outcome.err.find("--listen: port " + last + " is given twice"), std::string::npos) << outcome.err;
 }
 
-/// Ports in the order in which they were given, each with what came to it.
+/// Ports in the given order, each with the packets it received.
 TEST(Map, PortsMayBeGivenInAnyOrder) {
   const unsigned port = free_ports(2);
   Program map({"map", "--listen", std::to_string(port + 1), "--listen", std::to_string(port), "--silence", "0.3"});
@@ -213,7 +213,7 @@ TEST(Map, TakesMorePortsThanFilesAreAllowedAtFirst) {
   const std::string range = std::to_string(port) + "-" + std::to_string(port + 199);
   const Outcome outcome = run_program({"map", "--listen", range, "--duration", "0.1"});
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
-  EXPECT_EQ(outcome.code, 1) << outcome.err;  // nothing came
+  EXPECT_EQ(outcome.code, 1) << outcome.err;  // nothing was received
   EXPECT_NE(outcome.err.find("on 200 ports"), std::string::npos) << outcome.err;
 }
 

@@ -1,4 +1,4 @@
-// `run --send` to `listen`, and `serve` to robots that live elsewhere, over loopback.
+// `run --send` to `listen`, and `serve` to robots in other processes, over loopback.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ struct Exchange {
   Outcome sent, heard;
 };
 
-/// `run` of a world for some seconds, and `listen` beside it. @param ports as `listen` counts them
-/// @param both more words of both
+/// Runs `run` of a world for some seconds, and `listen` at the same time. @param ports as `listen` counts them
+/// @param both additional arguments for both
 Exchange exchange(const std::string& world, const std::string& ports, const std::string& seconds, const Words& both) {
   Words words{world, "--json", "--laser-port", std::to_string(free_ports(60))};
   words.insert(words.end(), both.begin(), both.end());
@@ -62,7 +62,7 @@ TEST(SendAndListen, BytesAreSaidInMegabytes) {
   EXPECT_NEAR(std::stod(text.substr(at + 2)), 1e-6 * bytes, 0.051) << text;
 }
 
-/// A sensor that is due more than once a tick, or between ticks, sends every reading.
+/// A sensor that is due more than once per tick, or between ticks, sends every reading.
 TEST(SendAndListen, ReadingsBetweenTicksAreSentToo) {
   const Folder folder;
   const std::string world =
@@ -76,7 +76,7 @@ TEST(SendAndListen, ReadingsBetweenTicksAreSentToo) {
   EXPECT_EQ(in.number("/lost"), 0);
 }
 
-/// Each counted under its own name: 2 came twice, 3 late, 4 to 6 never; then another farm.
+/// Each is counted separately: 2 is duplicated, 3 is late, 4 to 6 are lost; then another farm sends.
 TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 2 range_max 8 ) )\n");
@@ -94,7 +94,7 @@ TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
   for (const std::uint32_t sequence : {0u, 1u, 2u, 2u, 7u, 3u}) send(farm, 5, sequence);
   send(other, 6, 100);
   send(farm, 6, 100);
-  send(farm, 5, 1'000'000);  // nobody believes this alone
+  send(farm, 5, 1'000'000);  // rejected on its own
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   listener.signal(SIGINT);
   const Outcome outcome = listener.wait();
@@ -110,8 +110,8 @@ TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
   EXPECT_EQ(in.number("/by_reason/out of range"), 1);
 }
 
-/// In real time readings are sent when they are due, not all at the tick's end: 5 of 50 Hz in a tick of 0.1 s. A
-/// machine that is busy may hand over several at once, so there is more than one trial.
+/// In real time, readings are sent when they are due, not all at the end of the tick: 5 at 50 Hz in a tick of 0.1 s. A
+/// busy machine may deliver several at once, so there are several trials.
 TEST(SendAndListen, InRealTimeReadingsComeAsTheyAreDue) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 9 rate 50 ) )\n");
@@ -201,7 +201,7 @@ TEST(Serve, RobotsReadWhatSenseReadsWhereTheySayTheyAre) {
   ASSERT_NE(service.port, 0u) << service.program.err();
   Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
   const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,30");
-  // It is heard from its first packet on; the scan may still be of the place at load.
+  // Its states are accepted from the first packet on, but the scan may still be from its pose at load.
   std::vector<double> ranges;
   const bool agreed = until([&] {
     one.say({-1.0, 0.5, 0.0, M_PI / 6});
@@ -211,7 +211,7 @@ TEST(Serve, RobotsReadWhatSenseReadsWhereTheySayTheyAre) {
     return same;
   });
   EXPECT_TRUE(agreed) << testing::PrintToString(ranges);
-  // The other never spoke: nothing is sent to it.
+  // The other robot has sent nothing, so nothing is sent to it.
   EXPECT_TRUE(two.hear().empty());
   service.program.signal(SIGTERM);
   const Outcome outcome = service.program.wait();
@@ -224,7 +224,7 @@ TEST(Serve, RobotsReadWhatSenseReadsWhereTheySayTheyAre) {
       << "one laser was computed, not two";
 }
 
-/// Faster than the ticks: many scans nearer to each other than two ticks. How many, is the machine's affair.
+/// Faster than the ticks: many scans are closer in time than two ticks. Their number depends on the machine.
 TEST(Serve, SensorsAreReadBetweenTicks) {
   Service service(fast_room(), {});
   ASSERT_NE(service.port, 0u) << service.program.err();
@@ -240,7 +240,7 @@ TEST(Serve, SensorsAreReadBetweenTicks) {
   })) << near;
 }
 
-/// With --rate sensors are read at ticks alone, and those that are faster are named.
+/// With --rate, sensors are read only at ticks, and the command names the faster ones.
 TEST(Serve, ARateTooLowForASensorIsSaid) {
   Service service(fast_room(), {"--rate", "10"});
   ASSERT_NE(service.port, 0u) << service.program.err();
@@ -257,7 +257,7 @@ TEST(Serve, ARateTooLowForASensorIsSaid) {
   EXPECT_GE(Json(service.program.wait().out).number("/missed"), 4 * 4);
 }
 
-/// 200 states within two ticks at most.
+/// 200 states within at most two ticks.
 TEST(Serve, FilteredStatesBeyondTheLimitOfATickAreCounted) {
   Service service(kRoom, {"--rate", "0.1", "--filter"});
   ASSERT_NE(service.port, 0u) << service.program.err();
@@ -272,7 +272,7 @@ TEST(Serve, RobotsSeeEachOther) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
   Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
-  // One at the origin looks along x, where the other stands with its near side 1 m from the laser.
+  // A robot at the origin looks along x, where the near side of the other is 1 m from the laser.
   std::vector<double> ranges;
   const bool seen = until([&] {
     one.say({0.0, 0.0, 0.0, 0.0});
@@ -283,8 +283,8 @@ TEST(Serve, RobotsSeeEachOther) {
   EXPECT_TRUE(seen) << testing::PrintToString(ranges);
 }
 
-/// The tag is mounted half a metre ahead of a box of 0.2 x 0.4 m and turned on it by 90 degrees; that it is reported
-/// above the lasers does not lift the box. The robot's own packets, of the same number, say where its origin is.
+/// The tag is mounted half a metre ahead of a box of 0.2 x 0.4 m and rotated by 90 degrees; its height above the lasers
+/// does not lift the box. The robot's own packets, with the same id, state its origin.
 TEST(Serve, ATagIsWhereItIsMounted) {
   Service service(std::string(kRoom) +
                   "model( name \"tag1\" pose [-2 1.5 0 0] size [0.2 0.4 0.2] tag_pose [0.5 0 0.1 90] )\n");
@@ -325,7 +325,7 @@ TEST(Serve, StatesArePassedOnWithinTheRadiosRange) {
   EXPECT_EQ(facts.number("/relayed/waited"), 0);
 }
 
-/// A robot hears whom others follow: for one that follows it and has fallen behind it drives at half its speed.
+/// A robot receives the follow relations of others: it halves its speed for a follower that has fallen behind.
 TEST(Serve, AFollowedRobotWaits) {
   const std::string car = "position( size [0.33 0.33 0.1] name \"roomba";
   Service service("road( rndf \"" + our_world("simville/simville.rndf") + "\" )\n" + car +
@@ -354,7 +354,7 @@ TEST(Serve, StrangersAreCountedAndDropped) {
     return !one.hear().empty();
   }));
   ASSERT_TRUE(prove(impostor));
-  // On a busy machine one may have been silent for two seconds by now: it speaks again before every try.
+  // On a busy machine, a robot may have been silent for two seconds: it sends again before every try.
   ASSERT_TRUE(until([&] {
     one.say({-1.0, 0.5, 0.0, 0.0});
     impostor.say({2.0, 0.0, 0.0, 0.0});
@@ -368,7 +368,7 @@ TEST(Serve, StrangersAreCountedAndDropped) {
   const double nan = std::nan("");
   std::memcpy(no_number.data() + netio::kHeaderBytes, &nan, sizeof nan);
   one.send(no_number);
-  service.program.signal(SIGINT);  // what waits then is still counted
+  service.program.signal(SIGINT);  // packets that are pending then are still counted
   const Outcome outcome = service.program.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json facts(outcome.out);
@@ -390,12 +390,12 @@ TEST(Serve, StrangersAreNamedOncePerBindingAndALeaveEndsIt) {
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
   ASSERT_TRUE(service.program.says("says as the same is dropped"));
   one.leave();
-  // It speaks for the id from here on, though not two seconds have passed.
+  // It owns the id from here on, though less than two seconds have passed.
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
   ASSERT_TRUE(until([&] { return one.overhears(again); }));
   service.program.signal(SIGINT);
   const Outcome outcome = service.program.wait();
-  EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;  // where it serves, and the stranger
+  EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;  // the service's address, and the stranger
   EXPECT_NE(outcome.err.find("roomba1 (id 1) is heard from 127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_EQ(Json(outcome.out).number("/received/wrong source"), 5);
 }
@@ -416,7 +416,7 @@ TEST(Serve, AddressesBeyondThisMachineAreWarnedOf) {
   EXPECT_NE(served.err.find("since packets are not signed (--peers has keys)"), std::string::npos) << served.err;
 }
 
-/// A table with keys of some: what can come unsigned is named. With all keys there is nothing to warn of.
+/// A table with only some keys: the command names the senders that may be unsigned. With all keys, there is no warning.
 TEST(Serve, TheWarningNamesWhoHasNoKey) {
   const Folder folder;
   const std::string world = folder.write("room.world", kRoom);
@@ -449,7 +449,7 @@ TEST(Serve, APlayerServerBeyondThisMachineIsWarnedOf) {
   EXPECT_EQ(err_at("0").find("opens it to"), std::string::npos);
 }
 
-/// The default stride is 8 where that fits, and says so where it is another.
+/// The default stride is 8 if that fits; otherwise the command prints the stride.
 TEST(SendAndListen, ThePortsOfARobotAreAsManyAsFit) {
   const Folder folder;
   std::string robots;

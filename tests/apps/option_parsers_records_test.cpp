@@ -1,4 +1,4 @@
-// Parsers of arguments, at the limits of what they take and one beyond, and short texts of reports: a golden record.
+// Parsers of arguments at and just beyond their limits, and short texts of reports, compared with a golden record.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace sf::apps {
 
 namespace {
 
-/// "NAME 'text' -> value", one a line. @param show the value that was read as text
+/// "NAME 'text' -> value", one per line. @param show formats the parsed value
 template <class Read, class Show>
 std::string table(const char* name, Read read, Show show, const std::vector<std::string>& texts) {
   std::string rows;
@@ -109,7 +109,7 @@ TEST(OptionParserRecords, TakeWhatTheirRecordHas) {
   expect_golden("option_parsers", places() + numbers() + validators() + words() + batch_script());
 }
 
-/// Whether a command takes a value of an option, which is looked at before the arguments that are missing here.
+/// True if a command accepts a value of an option. The value is checked before the missing arguments.
 static bool takes(const std::string& command, const std::string& option, const std::string& value) {
   const std::string word = option + "=" + value;
   const char* const words[] = {"sensorfarm", command.c_str(), word.c_str()};
@@ -120,7 +120,7 @@ static bool takes(const std::string& command, const std::string& option, const s
   return said.find(option + ": expected ") == std::string::npos;
 }
 
-/// The least and the greatest value of options, and the next ones beyond.
+/// The smallest and largest values of options, and the next ones beyond.
 TEST(OptionLimits, ValuesEndAtThem) {
   struct Range {
     const char *command, *option, *below, *first, *last, *above;
@@ -198,7 +198,7 @@ TEST(OptionLimits, ValuesEndAtThem) {
   }
 }
 
-/// Names in full up to ten, and units of quantities at their limits.
+/// Up to ten names in full, and units of quantities at their limits.
 TEST(Texts, ListsAndUnitsAtTheirLimits) {
   std::vector<std::string_view> names(10, "a");
   EXPECT_EQ(list_names({}), "none");
@@ -220,7 +220,7 @@ TEST(Texts, ListsAndUnitsAtTheirLimits) {
     EXPECT_EQ(quantity_text(value, "m"), text) << value;
 }
 
-/// A printed bound is never less than the bound.
+/// A printed bound is never smaller than the bound.
 TEST(Texts, BoundsAreRoundedUp) {
   for (double bound = 1e-15; bound < 1e6; bound *= 1.00173) {
     const double shown = std::stod(rounded_up(bound));

@@ -1,4 +1,4 @@
-// Controllers that end, stop or copy their process: they are reported by name, and cost their scenario and no other.
+// Controllers that end, stop or fork their process: they are reported by name and fail only their own scenario.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -23,9 +23,9 @@ const char* const kHall =
     "model( name \"hall\" size [20 6 1] boundary 1 noblocks 0 )\n"
     "position( name \"r0\" pose [-8 0 0 0] size [0.3 0.3 0.1] )\n";
 
-/// A world, and scenarios with a controller of the plug-in that does something to its process.
+/// A world, and scenarios with a plug-in controller that does something to its process.
 struct Bench {
-  /// AddressSanitizer would take faults, and exit with a code of its own.
+  /// Otherwise AddressSanitizer would handle faults and exit with its own code.
   Bench() { setenv("ASAN_OPTIONS", "handle_segv=0:handle_sigbus=0", 1); }
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
@@ -46,7 +46,8 @@ struct Bench {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-  /// The process whose id a controller has written, after a moment in which it may end; 0: none is left.
+  /// Returns the process id that a controller has written, after a moment in which the process may end; 0 if it has
+  /// ended.
   pid_t left_running() const {
     const pid_t pid = std::atoi(read_file(file()).c_str());
     for (int i = 0; i < 200 && pid > 0 && kill(pid, 0) == 0; ++i)
@@ -61,20 +62,20 @@ struct End {
   const char* how;
   const char* reason;
 };
-/// Each way in which a plug-in can end the process, and how it is stated.
+/// Every way in which a plug-in can end the process, and how it is reported.
 const End kEnds[] = {
     {"exit 0", "(exit code 0)"},      // looks like success
     {"exit 3", "(exit code 3)"},      // a code that the program uses
-    {"quick_exit", "(exit code 0)"},  // calls no handler of exit()
-    {"_exit", "(exit code 0)"},       // calls no handler at all
+    {"quick_exit", "(exit code 0)"},  // skips handlers of exit()
+    {"_exit", "(exit code 0)"},       // skips all handlers
     {"abort", "signal 6"},            // raised by the library
-    {"terminate", "signal 6"},        // as an exception that is not caught
+    {"terminate", "signal 6"},        // like an uncaught exception
     {"segv", "signal 11"},            // sent
     {"null", "signal 11"},            // a fault
-    {"bus", "signal 7"},              // as a mapped file that shrinks
-    {"recursion", "signal 11"},       // no stack is left for a handler
-    {"kill", "signal 9"},             // cannot be handled, as the system does for want of memory
-    {"term", "signal 15"},            // without a request to stop
+    {"bus", "signal 7"},              // like a mapped file that shrinks
+    {"recursion", "signal 11"},       // no stack left for a handler
+    {"kill", "signal 9"},             // cannot be handled; sent by the system when memory runs out
+    {"term", "signal 15"},            // without a stop request
 };
 
 }  // namespace
@@ -107,7 +108,7 @@ TEST(OwnProcesses, EachEndIsReportedAndTheOthersAreRun) {
 TEST(OwnProcesses, RunReportsEachEnd) {
   const Bench bench;
   for (const End& end : kEnds) {
-    if (std::string(end.how) == "term") continue;  // a request to stop, as from anywhere else
+    if (std::string(end.how) == "term") continue;  // treated as a stop request
     const Outcome outcome = run_program(bench.run(end.how, {"--record", bench.folder.path("run")}));
     EXPECT_EQ(outcome.code, 1) << end.how << outcome.err;
     EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' ended the process (")) << end.how << outcome.err;
@@ -117,7 +118,7 @@ TEST(OwnProcesses, RunReportsEachEnd) {
   }
 }
 
-/// As before: for debuggers, and where ranks share a fleet. A signal still ends the program.
+/// For debuggers, and with ranks that share a fleet. A signal still ends the program.
 TEST(OwnProcesses, InProcessEndsAreReportedWhereHandlersAreCalled) {
   const Bench bench;
   const Outcome exited = run_program(bench.run("exit 0", {"--in-process"}));
@@ -156,7 +157,7 @@ TEST(OwnProcesses, ExceptionsCostTheirScenarioAlone) {
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: \\x1b[2Jred\\x07 sensorfarm: all is well\n")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: it threw something that is no std::exception")) << outcome.out;
-  // In the order of the files, whatever came first.
+  // In the order of the files, regardless of which finished first.
   EXPECT_LT(outcome.out.find("a.toml"), outcome.out.find("b.toml"));
   EXPECT_LT(outcome.out.find("b.toml"), outcome.out.find("c.toml"));
   EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("c.toml"))) << outcome.out;
@@ -173,7 +174,7 @@ TEST(OwnProcesses, TimeIsLimitedWhereAskedFor) {
   EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("b.toml"))) << outcome.out;
 }
 
-/// Neither its own group nor a session of its own saves a process that a controller leaves behind.
+/// A process that a controller leaves behind is ended even in a separate group or session.
 TEST(OwnProcesses, ChildrenOfControllersAreEnded) {
   for (const char* how : {"child", "daemon"}) {
     const Bench bench;
@@ -188,7 +189,7 @@ TEST(OwnProcesses, ChildrenOfControllersAreEnded) {
   }
 }
 
-/// The copy would drive the robots a second time, into the same recording.
+/// Otherwise the copy would drive the robots a second time, into the same recording.
 TEST(OwnProcesses, ACopyThatReturnsEndsAndTheOriginalGoesOn) {
   const Bench bench;
   const Outcome outcome = run_program(bench.run("copy", {"--record", bench.folder.path("run")}));
@@ -208,7 +209,7 @@ TEST(OwnProcesses, ClosedStreamsAndAnotherFolderLoseNothing) {
   EXPECT_EQ(run_program({"verify", bench.folder.path("run")}).code, 0);
 }
 
-/// The call never returns by itself.
+/// The call never returns.
 TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
   const Bench bench;
   for (const char* how : {"loop", "sleep"})
@@ -228,7 +229,7 @@ TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
     }
 }
 
-/// One that began after the request is as late.
+/// The same applies to a call that began after the request.
 TEST(OwnProcesses, ARequestToStopEndsCallsThatBeginLater) {
   const Bench bench;
   const std::string two = bench.folder.write(
@@ -240,7 +241,7 @@ TEST(OwnProcesses, ARequestToStopEndsCallsThatBeginLater) {
   EXPECT_TRUE(has(outcome.err, "of robot 'r1' at 1.000 s simulated does not return")) << outcome.err;
 }
 
-/// An exit handler that waits for a thread, as Python's does: the report is there, and a request to stop ends it.
+/// An exit handler that waits for a thread, as Python's does: the report is printed, and a stop request ends it.
 TEST(OwnProcesses, AThreadThatGoesOnIsEndedByARequestToStop) {
   const Bench bench;
   for (const bool here : {false, true}) {
@@ -251,13 +252,13 @@ TEST(OwnProcesses, AThreadThatGoesOnIsEndedByARequestToStop) {
     EXPECT_TRUE(has(read_file(report), "robots"));
     program.signal(SIGINT);
     const Outcome outcome = program.wait();
-    if (here) continue;  // as any program: by the signal, or with a code where it came before the end
+    if (here) continue;  // ends like any program: by the signal, or with a code if it arrived before the end
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_TRUE(has(outcome.err, "a thread of controller 'test-ends' of robot 'r0' goes on")) << outcome.err;
   }
 }
 
-/// Without one, too, after the seconds that exit handlers are given.
+/// Also without a request, after the time that exit handlers have.
 TEST(OwnProcesses, AThreadThatGoesOnIsEnded) {
   const Bench bench;
   const Environment soon{{"SENSORFARM_SECONDS_TO_END", "0.15"}};
@@ -280,7 +281,7 @@ TEST(OwnProcesses, TheSecondsToEndAreANumber) {
   EXPECT_EQ(run_program({"--version"}, {{"SENSORFARM_SECONDS_TO_END", ""}}).code, 0) << "as if it were not set";
 }
 
-/// Exit handlers of plug-ins do not turn a failure into success, nor into an error of another kind.
+/// Exit handlers of plug-ins do not turn a failure into a success or into a different error.
 TEST(OwnProcesses, ExitHandlersDoNotChangeTheCode) {
   const Bench bench;
   const Outcome outcome = run_program(bench.run("cover"));
@@ -294,7 +295,7 @@ TEST(OwnProcesses, ExitHandlersDoNotChangeTheCode) {
   EXPECT_TRUE(has(refused.err, "out of luck")) << refused.err;
 }
 
-/// Standard output is the report's alone.
+/// Standard output contains only the report.
 TEST(OwnProcesses, WhatControllersPrintIsNoPartOfJson) {
   const Bench bench;
   for (const Words& more : {Words{"--json"}, Words{"--json", "--in-process"}}) {
@@ -306,7 +307,7 @@ TEST(OwnProcesses, WhatControllersPrintIsNoPartOfJson) {
   EXPECT_TRUE(has(run_program(bench.run("print")).out, "a controller prints"));
 }
 
-/// Files are not opened in the place of streams that are closed.
+/// Files are not opened in place of closed streams.
 TEST(OwnProcesses, ClosedStandardStreamsStayClosed) {
   const Bench bench;
   const std::string junit = bench.folder.path("out.xml");
@@ -325,7 +326,7 @@ TEST(OwnProcesses, ClosedStandardStreamsStayClosed) {
   }
 }
 
-/// As shells start commands in the background, of which scripts end some by `kill -INT`.
+/// Shells start background commands this way, and scripts end some of them with `kill -INT`.
 TEST(OwnProcesses, SigintIsTakenWhereItWasIgnored) {
   const Bench bench;
   Words words{"-c", "trap '' INT; exec \"$0\" \"$@\"", SF_PROGRAM};
@@ -365,8 +366,8 @@ TEST(OwnProcesses, SweepsReportEndsByName) {
   EXPECT_TRUE(has(outcome.out + outcome.err, "2 ")) << outcome.out;
 }
 
-/// Whatever the limit, one line says why; none is left without a report, and none ends in a signal. The driver's own
-/// limits lie between these.
+/// For every limit, one line states the reason; every case has a report, and none ends with a signal. The driver's own
+/// limits are between these.
 TEST(OwnProcesses, ALimitOfMemoryIsStated) {
   if (instrumented()) GTEST_SKIP() << "sanitizers need all addresses";
   for (const char* kilobytes : {"131072", "200000", "220000", "240000", "262144", "280000", "300000"}) {
@@ -380,7 +381,7 @@ TEST(OwnProcesses, ALimitOfMemoryIsStated) {
   }
 }
 
-/// Tests and sweeps state it, too, for the scenario or job that it cost.
+/// Tests and sweeps also state it, for the scenario or job that failed.
 TEST(OwnProcesses, ALimitOfMemoryIsStatedOfChildren) {
   if (instrumented()) GTEST_SKIP() << "sanitizers need all addresses";
   const Folder folder;
@@ -408,11 +409,11 @@ TEST(OwnProcesses, LibrariesThatAreCutOffAreRefused) {
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     return outcome.err;
   };
-  EXPECT_TRUE(has(refusal(whole.substr(0, whole.size() / 2)), "cut.so: is cut off: it has "));  // half a copy
-  EXPECT_TRUE(has(refusal(whole.substr(0, 4096)), "is cut off"));         // ends behind the first page
-  EXPECT_TRUE(has(refusal(whole.substr(0, 100)), "is cut off"));          // ends in the table of its parts
-  EXPECT_TRUE(has(refusal(""), "cannot be loaded as a shared library"));  // nothing
-  EXPECT_TRUE(has(refusal(std::string(9000, 'x')), "cannot be loaded as a shared library"));  // no library
+  EXPECT_TRUE(has(refusal(whole.substr(0, whole.size() / 2)), "cut.so: is cut off: it has "));  // half of it
+  EXPECT_TRUE(has(refusal(whole.substr(0, 4096)), "is cut off"));         // ends after the first page
+  EXPECT_TRUE(has(refusal(whole.substr(0, 100)), "is cut off"));          // ends in the section table
+  EXPECT_TRUE(has(refusal(""), "cannot be loaded as a shared library"));  // empty
+  EXPECT_TRUE(has(refusal(std::string(9000, 'x')), "cannot be loaded as a shared library"));  // not a library
 }
 
 }  // namespace sf

@@ -1,5 +1,4 @@
-// The client of docs/packets.md, as it is printed there, is served; the client in examples/ decodes the page's
-// examples.
+// The client printed in docs/packets.md is served; the client in examples/ decodes the page's examples.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +12,7 @@ namespace sf {
 
 namespace {
 
-/// The client that the page opens with.
+/// Returns the first client on the page.
 std::string python_of_the_page() {
   const std::string page = read_file(SF_SOURCE_DIR "/docs/packets.md");
   const std::string open = "```python\n";
@@ -21,7 +20,7 @@ std::string python_of_the_page() {
   return page.substr(at, page.find("```", at) - at);
 }
 
-/// The output of `script`.
+/// Runs `script` and returns its output.
 std::string printed(const Folder& folder, const std::string& script) {
   const std::string file = folder.write("page.py", script);
   const std::string out = folder.path("out");

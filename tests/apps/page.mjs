@@ -1,5 +1,5 @@
-// Parts of the live view's page that need no browser: node page.mjs FOLDER, a copy of viz/web as ES modules.
-// Prints nothing; ends with an error at the first violation.
+// Tests the parts of the live view's page that need no browser: node page.mjs FOLDER, a copy of viz/web as ES modules.
+// Prints nothing; exits with an error at the first violation.
 
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
@@ -14,12 +14,13 @@ const { HeldReadings } = await load('held.js');
 const { keyName } = await load('keys.js');
 const near = (found, expected, within, what) => assert.ok(Math.abs(found - expected) <= within, `${what}: ${found}, not ${expected}`);
 
-// The contrast formula, by the examples of WCAG: black on white, and the lightest grey that is text on white.
+// The contrast formula, with the examples of WCAG: black on white, and the lightest grey that is valid for text on
+// white.
 near(contrast('#000000', '#ffffff'), 21, 1e-9, 'black on white');
 near(contrast('#767676', '#ffffff'), 4.54, 0.005, 'grey on white');
 near(luminance('#ff0000'), 0.2126, 1e-4, 'red');
 
-// Texts of the style sheet in both themes (AA: 4.5), frames of the focus (3).
+// Texts of the style sheet in both themes (AA: 4.5), focus frames (3).
 const css = fs.readFileSync(path.join(folder, 'style.css'), 'utf8');
 const variables = (selector) => Object.fromEntries([...css.slice(css.indexOf(`${selector} {`)).split('}')[0].matchAll(/--([\w-]+): (#[0-9a-f]{6})/g)].map(([, name, value]) => [name, value]));
 const sheets = { light: variables(':root'), dark: variables(':root[data-theme="dark"]') };
@@ -28,7 +29,7 @@ for (const [name, sheet] of Object.entries(sheets)) {
   assert.deepEqual(Object.keys(sheet).sort(), Object.keys(sheets.light).sort(), `colours of ${name}`);
   const least = name === 'light' || name === 'dark' ? 4.5 : 0;
   for (const [text, ground] of texts) {
-    const wanted = text === 'off' ? 3 : least;  // WCAG asks nothing of disabled controls
+    const wanted = text === 'off' ? 3 : least;  // WCAG has no requirement for disabled controls
     assert.ok(contrast(sheet[text], sheet[ground]) >= wanted, `${name}: ${text} on ${ground} ${contrast(sheet[text], sheet[ground])}`);
   }
   assert.ok(contrast(sheet.focus, sheet.paper) >= 3, `${name}: focus`);
@@ -53,7 +54,7 @@ for (const name of Object.keys(palettes)) {
 }
 useTheme('light');
 
-// Three robots or more that look alike get colours of their own; two, other ones and tags keep theirs.
+// Three or more robots that look alike get distinct colours; two, different ones and tags keep theirs.
 const robots = (colors) => colors.map((color) => ({ color, tag: false }));
 assert.deepEqual(moverColors(robots(['#111111', '#111111', '#222222']), true), ['#111111', '#111111', '#222222']);
 assert.deepEqual(moverColors([...robots(['#111111', '#111111', '#111111', '#222222']), { color: '#111111', tag: true }], true), [distinct(0), distinct(1), distinct(2), '#222222', '#111111']);
@@ -63,7 +64,8 @@ assert.deepEqual(moverColors(robots(['#111111', '#111111', '#111111']), false), 
 for (const [key, shiftKey, name] of [['n', false, 'n'], ['N', false, 'n'], ['N', true, 'n'], ['n', true, 'n'], ['R', true, 'Shift r'], ['r', true, 'Shift r'], ['R', false, 'r'], ['r', false, 'r'], ['?', true, '?'], ['+', true, '+'], ['1', false, '1'], [' ', false, ' '], ['Escape', true, 'Escape'], ['ArrowUp', false, 'ArrowUp'], ['[', false, '[']])
   assert.equal(keyName({ key, shiftKey }), name, `${key} ${shiftKey}`);
 
-// A robot on an arc, and its beam ahead to a wall at x = 5: where the echo is drawn, whatever updates come when.
+// A robot on an arc, with its forward beam to a wall at x = 5: the echo is drawn there regardless of the order of
+// updates.
 const movers = [{ radius: 0.2 }, { radius: 0.2 }, { radius: 0.2 }], extent = [-10, -10, 10, 10], origin = [0, 0];
 const forward = 0.5, turn = 1.2;
 const truth = (t) => [(forward / turn) * Math.sin(turn * t), (forward / turn) * (1 - Math.cos(turn * t)), turn * t];
@@ -74,7 +76,8 @@ function echo({ message, pose: [x, , yaw] }) { return x + message.range * Math.c
 {
   const fleet = new Fleet({ movers, extent, origin }), held = new HeldReadings();
   let worst = 0, apart = 0, compared = 0;
-  // States every 50 ms and scans every 40 ms, which are newer than the states in three of five updates. Frames at 100 Hz.
+  // States every 50 ms and scans every 40 ms, which are newer than the states in three of five updates. Frames at 100
+  // Hz.
   for (let ms = 0, lastFleet = -1, lastScan = -1; ms < 1000; ms += 10) {
     if (ms % 40 === 0) held.add(sensor, { range: rangeAt(ms / 1000) }, (lastScan = ms) / 1000);
     if (ms % 50 === 0) fleet.update({ tick: ms, states: [state(0, truth(ms / 1000))] }, (lastFleet = ms) / 1000, ms / 1000);
@@ -91,14 +94,14 @@ function echo({ message, pose: [x, , yaw] }) { return x + message.range * Math.c
   assert.ok(apart <= 0.02 + 1e-6, `a reading ${apart} s off the robots`);
 }
 {
-  // Before the first update that is known, as when a page is opened while the run is paused.
+  // Before the first known update, as when a page is opened while the run is paused.
   const fleet = new Fleet({ movers, extent, origin }), held = new HeldReadings();
   fleet.update({ tick: 1, states: [state(0, truth(0.5))] }, 0.5, 0);
   held.add(sensor, { range: rangeAt(0.3) }, 0.3);
   fleet.animate(0);
   held.update(fleet, 0, origin);
   near(echo(held.shown.get('/scan')), 5, 0.01, 'by the twist');
-  // A run that began again: readings and states of the run before are of no use.
+  // A restarted run: readings and states of the previous run are discarded.
   fleet.update({ tick: 0, states: [state(0, truth(0))] }, 0, 1);
   held.add(sensor, { range: rangeAt(0) }, 0);
   fleet.animate(1);
@@ -106,7 +109,8 @@ function echo({ message, pose: [x, , yaw] }) { return x + message.range * Math.c
   near(echo(held.shown.get('/scan')), 5, 1e-9, 'after a restart');
 }
 {
-  // The fleet's counts: stuck after 3 s without motion against the command; a robot that stands as commanded is not.
+  // The fleet's counts: stuck after 3 s without motion despite a command; a robot that is commanded to stop is not
+  // stuck.
   const fleet = new Fleet({ movers, extent, origin });
   const still = { velocity: { forward: 0, left: 0, turn: 0 } }, rest = { ...still, command: { forward: 0, left: 0, turn: 0 } };
   const update = (t) => fleet.update({ tick: 0, states: [state(0, [0, 0, 0], { ...still, contact: true }), state(1, [11, 0, 0], rest), state(2, truth(t))] }, t, t);

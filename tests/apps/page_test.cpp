@@ -1,4 +1,4 @@
-// The live view's page, as far as it needs no browser (script/check_view has the rest).
+// The parts of the live view's page that need no browser (script/check_view tests the rest).
 
 #include <gtest/gtest.h>
 

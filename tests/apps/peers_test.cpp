@@ -1,4 +1,4 @@
-// `--peers`: tables that commands refuse or warn of. What a table does is tested in tests/netio.
+// `--peers`: tables that commands refuse or warn about. tests/netio tests their effect.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// `run --player` and `serve --player` as users of Player have them.
+// `run --player` and `serve --player` as seen by users of Player.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using bridges::player::TestClient;
 using bridges::player::xdr_of;
 using bridges::player::XdrReader;
 
-/// The program with two robots and a Player server at any free port.
+/// The program with two robots and a Player server on any free port.
 struct PlayerProgram {
   explicit PlayerProgram(Words words) {
     words.insert(words.begin() + 1, folder.write("two.world", bridges::player::kTwoRobots));
@@ -49,7 +49,7 @@ TEST(PlayerProgram, ARobotIsDrivenAcrossTheRoomAndPutBack) {
   client.pull();
   client.open({bridges::player::Interface::laser, 0});
   client.open(kPosition);
-  client.send(MessageType::command, kPosition, 1, xdr_of(0.0, 0.0, 0.0, 1u));  // the user's from here on
+  client.send(MessageType::command, kPosition, 1, xdr_of(0.0, 0.0, 0.0, 1u));  // the user drives it from here on
   EXPECT_EQ(client.request(kPosition, 6).header.type, MessageType::ack);
   client.send(MessageType::command, kPosition, 2, xdr_of(1.0, 0.5, 0.0, 0.0, 0.0, 0.0, 1u));
   double x = 0.0, y = 0.0;

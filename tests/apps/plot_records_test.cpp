@@ -29,7 +29,7 @@ light( name "lamp" pose [0 3 0 0] phases 2 phase[0] ["green" 2] phase[1] ["red" 
 light( name "late" pose [1 3 0 0] phases 2 phase[0] ["yellow" 1] phase[1] ["flashing red" 0.5] )
 )";
 
-/// Names of a folder's files, in order.
+/// Returns the sorted names of a folder's files.
 std::vector<std::string> files_of(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());

@@ -1,4 +1,4 @@
-// `plot` and the plots of `sweep` as an author of a paper types them.
+// `plot` and the plots of `sweep` as used by the author of a paper.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Eleven robots, of which the first has a ring of 16 sonars, a bumper and two magnetometer elements.
+/// Eleven robots; the first has a ring of 16 sonars, a bumper and two magnetometer elements.
 std::string world_text() {
   std::string text =
       "define magnet model( size [0.025 0.025 0.1] magnetic_moment 10000 )\n"
@@ -41,7 +41,7 @@ class PaperFigures : public testing::Test {
     folder_ = nullptr;
   }
 
-  /// Plots with these words, and returns one of the figures.
+  /// Runs `plot` with these arguments and returns one of the figures.
   static std::string figure(const std::string& name, Words words = {}) {
     words.insert(words.begin(), {"plot", folder_->path("r"), "-o", folder_->path("p"), "--format", "svg"});
     const Outcome plotted = run_program(words);
@@ -110,7 +110,7 @@ TEST_F(PaperFigures, LabelsWithoutRoomAreCounted) {
   EXPECT_TRUE(contains(plotted.err, " of the labels are left out, for want of room")) << plotted.err;
 }
 
-/// A video is one file, and no figure is drawn beside it.
+/// A video is a single file, drawn without figures.
 TEST_F(PaperFigures, OptionsOfFiguresAreNotOfVideos) {
   const Words video{"plot", folder_->path("r"), "--video"};
   const auto message = [&](const std::string& file, const Words& more) {
@@ -160,7 +160,7 @@ TEST_F(PaperFigures, OptionsOfSweepsAreRefused) {
   EXPECT_TRUE(contains(refusal({"--over", "kp"}), "--over and --x-axis go with the folder of a sweep"));
 }
 
-/// Names may have commas; each option that takes several names has one rule for them.
+/// Names may contain commas; all options with several names use the same rule.
 TEST(NamesWithCommas, AreTakenByEveryOption) {
   const Folder folder;
   const std::string world = folder.write("w.world",
@@ -223,7 +223,7 @@ TEST(SweepPlotsCommand, AreDrawnAtItsEndAndAgainByPlot) {
 
   ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("bare"), "--no-plots"}).code, 0);
   EXPECT_FALSE(fs::exists(folder.path("bare/plots")));
-  folder.write("bare/plots", "");  // a file in the way
+  folder.write("bare/plots", "");  // a file blocks the folder
   const Outcome blocked = run_program({"sweep", file, "-o", folder.path("bare")});
   EXPECT_EQ(blocked.code, 0) << "the tables are written: " << blocked.err;
   EXPECT_TRUE(contains(blocked.err, "no plots, `plot ")) << blocked.err;

@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The program under test: the one of this build, or another with the same sources (one with sanitizers).
+/// The program under test: from this build, or another build of the same sources (one with sanitizers).
 const char* program_path() {
   const char* other = std::getenv("SENSORFARM_PROGRAM");
   return other != nullptr ? other : SF_PROGRAM;
@@ -49,7 +49,7 @@ std::vector<std::string> environment_of(const Environment& added) {
   return words;
 }
 
-/// @throws base::InputError when another process has it.
+/// @throws base::InputError if another process uses it.
 netio::Socket take_tcp(unsigned port) {
   netio::Socket socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
@@ -142,7 +142,7 @@ bool Program::handles(int number) {
   for (; running() && Clock::now() < deadline; nap()) {
     const std::string process = "/proc/" + std::to_string(pid_);
     if (has_handler(process, number)) return true;
-    // A parent that supervises passes signals on (apps/processes/supervision.h).
+    // A supervising parent forwards signals (apps/processes/supervision.h).
     const int child = std::atoi(read_file(process + "/task/" + std::to_string(pid_) + "/children").c_str());
     if (child > 0 && has_handler("/proc/" + std::to_string(child), number)) return true;
   }
@@ -191,9 +191,9 @@ std::size_t count_lines(const std::string& text) {
 }
 
 unsigned free_ports(unsigned count) {
-  // Tests may run at once: each begins to look somewhere else.
+  // Tests may run in parallel: each starts its search at another port.
   unsigned base = 11'000 + static_cast<unsigned>(getpid()) * 64 % 20'000;
-  constexpr unsigned kBlock = 64;  // ports under one mark
+  constexpr unsigned kBlock = 64;  // ports per mark
   static std::vector<netio::Socket> marks;
   for (int attempt = 0; attempt < 200; ++attempt, base = 11'000 + (base + count) % 20'000) {
     const std::size_t before = marks.size();

@@ -1,5 +1,5 @@
 #pragma once
-// The built program as a user runs it: a process with arguments, an environment, two streams and an exit code.
+// Runs the built program as users do: a process with arguments, an environment, two streams and an exit code.
 
 #include <sys/types.h>
 
@@ -13,7 +13,7 @@ namespace sf {
 using Words = std::vector<std::string>;
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
-/// A folder of its own for one test, gone with it.
+/// A temporary folder for one test, removed by the destructor.
 class Folder {
  public:
   Folder();
@@ -22,7 +22,7 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
 
   std::string path(const std::string& name = "") const { return (path_ / name).string(); }
-  /// Writes `text` to `name` in it and returns the file's path.
+  /// Writes `text` to the file `name` in the folder and returns its path.
   std::string write(const std::string& name, const std::string& text) const;
 
  private:
@@ -31,32 +31,32 @@ class Folder {
 
 struct Outcome {
   int code = -1;   ///< exit code; -1: ended by a signal
-  int signal = 0;  ///< that ended it
+  int signal = 0;  ///< signal that ended it
   std::string out;
   std::string err;
 };
 
-/// A running program; killed when it goes, if it still runs. There is no display in its environment.
+/// A running program; the destructor kills it if it still runs. Its environment has no display.
 class Program {
  public:
   /// @param environment added to the test's own
-  /// @param out, err files that its streams are written to, other than its own
-  /// @param program another than the built one, found in PATH
+  /// @param out, err files for its streams
+  /// @param program another program, found in PATH
   explicit Program(const Words& arguments, const Environment& environment = {}, const std::string& out = "",
                    const std::string& err = "", const std::string& program = "");
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  /// Standard error so far.
+  /// Returns standard error so far.
   std::string err() const;
   bool running();
-  /// Until `text` stands on standard error; false when it ended before, or after a minute.
+  /// Waits until `text` is on standard error; false if the program ends first, or after a minute.
   bool says(const std::string& text);
-  /// Until it handles the signal; false when it ended before, or after a minute.
+  /// Waits until the program handles the signal; false if it ends first, or after a minute.
   bool handles(int number);
   void signal(int number) const;
-  /// Until it ends; killed after two minutes.
+  /// Waits until the program ends; kills it after two minutes.
   Outcome wait();
 
  private:
@@ -67,28 +67,28 @@ class Program {
   int status_ = 0;
 };
 
-/// Runs it to its end.
+/// Runs the program until it ends.
 Outcome run_program(const Words& arguments, const Environment& environment = {});
 
-/// This machine's shell runs `command` without an error.
+/// True if this machine's shell runs `command` without an error.
 bool succeeds(const std::string& command);
-/// With the modules that clients need.
+/// True if Python has the modules that the clients need.
 inline bool have_python() { return succeeds("python3 -c 'import argparse, select, socket, struct'"); }
 
-/// Environment without drivers: Vulkan finds no device.
+/// An environment without drivers, so that Vulkan finds no device.
 Environment no_device();
 
-/// A world in the sources, e.g. "rooms.world".
+/// Returns the path of a world in the sources, e.g. "rooms.world".
 std::string our_world(const std::string& name);
 
-/// Contents of a file; empty when it does not exist.
+/// Returns the contents of a file; empty if it does not exist.
 std::string read_file(const std::string& path);
 
-/// Lines of `text` that are not empty.
+/// Returns the number of non-empty lines in `text`.
 std::size_t count_lines(const std::string& text);
 
-/// First of `count` neighbouring UDP ports on loopback that nobody has now. They are kept from other tests until this
-/// one ends: a TCP port among every 64, which no program of ours uses, is taken as a mark.
+/// Returns the first of `count` consecutive free UDP ports on loopback. They are reserved for this test until it ends:
+/// one TCP port per 64, which no program here uses, serves as a mark.
 unsigned free_ports(unsigned count);
 
 }  // namespace sf

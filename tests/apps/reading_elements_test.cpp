@@ -1,4 +1,4 @@
-// The order and the names of a sensor's elements in figures.
+// Order and names of a sensor's elements in figures.
 
 #include "apps/options/reading_elements.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Commands that are refused: exit code 2 and one line that says why.
+// Commands that are refused: exit code 2 and a one-line reason.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 namespace sf {
 
-/// @param said somewhere in the line
+/// @param said text in the line
 inline void expect_refused(const Words& arguments, const std::string& said) {
   const Outcome outcome = run_program(arguments);
   EXPECT_EQ(outcome.code, 2) << said << "\n" << outcome.err;

@@ -1,5 +1,5 @@
 #pragma once
-// Robots that live elsewhere, and a service for them: two robots in a room, over loopback.
+// Robots in other processes and a service for them: two robots in a room, over loopback.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 
 namespace sf {
 
-// Two robots in a room; what they read is worked out by `sense`.
+// Two robots in a room; `sense` computes their expected readings.
 inline const char* const kRoom = R"(
 model( name "room" size [6 4 1] boundary 1 noblocks 0 color "gray" )
 define bot position( size [0.3 0.3 0.1] laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
@@ -26,7 +26,7 @@ bot( name "roomba1" pose [-2 0 0 0] )
 bot( name "roomba2" pose [2 1 0 0] )
 )";
 
-/// A robot elsewhere: one socket that it speaks from, one that it hears its sensor on.
+/// A remote robot: one socket to send from, one to receive its sensor on.
 class Robot {
  public:
   Robot(std::uint16_t id, unsigned service, unsigned hears)
@@ -53,7 +53,7 @@ class Robot {
     challenged();
     v2v_socket_.send(bytes);
   }
-  /// Has the farm asked whether it is where it says? From then on what it sends is proven.
+  /// True once the farm has challenged its address. The answer proves it.
   bool challenged() {
     v2v_socket_.receive([&](std::span<const std::uint8_t> bytes) {
       netio::Packet packet;
@@ -64,13 +64,13 @@ class Robot {
     return v2v_socket_.farm_session_token().session != 0;
   }
 
-  /// For its laser, and the other's states.
+  /// Requests readings of its laser and the states of the other.
   void ask() {
     base::Bytes bytes;
     netio::encode({.robot = id_, .sequence = requests_++}, netio::Subscribe{netio::kNeighboursBit | 1u << 1}, bytes);
     send(bytes);
   }
-  std::size_t states() const { return states_; }  ///< of the other, that came
+  std::size_t states() const { return states_; }  ///< number of states of the other received
 
   void leave() {
     base::Bytes bytes;
@@ -78,7 +78,7 @@ class Robot {
     send(bytes);
   }
 
-  /// A reading for `other` waits where this one hears.
+  /// True if a reading for `other` arrives at this robot.
   bool overhears(const Robot& other) {
     bool found = false;
     batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) {
@@ -89,7 +89,7 @@ class Robot {
     return found;
   }
 
-  /// Ranges of the newest scan that waits; empty when none does.
+  /// Returns the ranges of the newest pending scan; empty if there is none.
   std::vector<double> hear() {
     std::vector<double> ranges;
     batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> datagram, const netio::Endpoint&) {
@@ -109,11 +109,11 @@ class Robot {
     return ranges;
   }
 
-  /// [ns] When the scans heard so far were measured, by the farm's clock.
+  /// Returns the measurement times [ns] of the scans received so far, on the farm's clock.
   const std::vector<std::int64_t>& stamps() const { return stamps_; }
 
  private:
-  static constexpr std::size_t kMost = 65'536;  ///< datagrams at once
+  static constexpr std::size_t kMost = 65'536;  ///< datagrams at a time
 
   std::vector<std::int64_t> stamps_;
   std::uint16_t id_;
@@ -134,7 +134,7 @@ inline bool until(const std::function<bool()>& done) {
   return false;
 }
 
-/// Speaks until it is challenged.
+/// Sends states until it is challenged.
 inline bool prove(Robot& robot) {
   return until([&] {
     if (robot.challenged()) return true;
@@ -150,7 +150,7 @@ struct Service {
   Program program;
   unsigned port = 0;
 
-  /// @param rate of ticks; none: the world's
+  /// @param rate of ticks; empty: the world's
   explicit Service(const std::string& text = kRoom, const Words& rate = {"--rate", "50"})
       : world(folder.write("room.world", text)), program(words(rate)) {
     if (!program.says("; Ctrl-C ends it")) return;
@@ -167,7 +167,7 @@ struct Service {
   }
 };
 
-/// The room with lasers of 50 Hz; the world's ticks are 10 a second.
+/// The room with lasers at 50 Hz; the world has 10 ticks per second.
 inline std::string fast_room() {
   std::string text = kRoom;
   return text.replace(text.find("samples 91"), 10, "samples 91 rate 50");

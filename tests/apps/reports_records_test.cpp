@@ -1,4 +1,5 @@
-// Reports with every count set, and with none, beside golden records: rows that a run on one machine does not show.
+// Reports with every count set, and with none, compared with golden records: includes rows that a run on one machine
+// does not show.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ netio::OutboxCounts outbox(std::uint64_t sent) {
   return {.sent = sent, .sent_bytes = 2'345'678, .failed = 3, .dropped = 4, .first_failure = "192.0.2.1:1: no route"};
 }
 
-/// Robots that stand for six reasons: one more than the text has lines for.
+/// Robots at rest for six reasons: one more than the text shows.
 ControlReport control_report() {
   ControlReport f{.controller = "route", .robots = 9, .done = 2, .error = {11, -0.0125, 0.25}};
   f.has_goals = true;
@@ -143,7 +144,7 @@ std::string both(const Report& report) {
 
 TEST(ReportRecords, ARunShowsEveryCountThatItHas) { expect_golden("report_run", both(full_report())); }
 
-/// From a million rays a second on, rates are in millions.
+/// From a million rays per second on, rates are in millions.
 TEST(ReportRecords, RatesAreInMillionsFromOneOn) {
   for (const auto& [rays, text] :
        {std::pair{999'999u, "999999/s of"}, {1'000'000u, "1.0 million/s of"}, {1'250'000u, "1.2 million/s of"}}) {

@@ -140,7 +140,7 @@ TEST(Missions, AgainstTheirNetwork) {
   const Outcome fine = run_program({"check", mission, "--rndf", rndf, "--json"});
   ASSERT_EQ(fine.code, 0) << fine.err;
   EXPECT_EQ(Json(fine.out).text("/checked_against"), rndf);
-  EXPECT_EQ(Json(fine.out).number("/warnings/0/line"), 10);  // a speed limit for 9, which is nowhere
+  EXPECT_EQ(Json(fine.out).number("/warnings/0/line"), 10);  // a speed limit for 9, which does not exist
 
   const Outcome dangling =
       run_program({"check", folder.write("no.mdf", replaced(kMission, "\n5\n", "\n6\n")), "--rndf", rndf});

@@ -1,4 +1,4 @@
-// `--robot-from FILE:NAME`: a robot of the user's own in a map.
+// `--robot-from FILE:NAME`: puts a user's robot into a map.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace sf {
 namespace {
 
-/// A room of 8 m x 8 m as a ROS map.
+/// Writes a room of 8 m x 8 m as a ROS map.
 std::string write_map(const Folder& folder) {
   std::string pixels = "P2 80 80 255\n";
   for (int i = 0; i < 80 * 80; ++i) pixels += i % 80 == 0 || i % 80 == 79 || i < 80 || i >= 79 * 80 ? "0 " : "254 ";
@@ -47,7 +47,7 @@ TEST(RobotFrom, TakesThePlaceOfTheRobotThatAMapIsLent) {
   }
 }
 
-/// Worlds with robots are left as they are, except for copies.
+/// Worlds with robots are unchanged, except for copies.
 TEST(RobotFrom, IsCopiedInAnyWorld) {
   const Folder folder;
   const std::string own = folder.write("own.inc", kOwn) + ":scout", cave = our_world("cave.world");
@@ -58,7 +58,7 @@ TEST(RobotFrom, IsCopiedInAnyWorld) {
   expect_refused({"run", cave, "--robot-from", own}, "has robots of its own; --robot-from is for worlds without");
 }
 
-/// As worlds are, FILE is one of the installed ones, too.
+/// Like worlds, FILE may also be an installed file.
 TEST(RobotFrom, FilesAreFoundAsWorldsAre) {
   const Folder folder;
   const std::string map = write_map(folder);

@@ -1,4 +1,4 @@
-// `robot` processes beside `serve`, over loopback, in real time: short, and nothing is asked of their speed.
+// `robot` processes with `serve`, over loopback, in real time: short, without requirements on their speed.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace sf {
 
 namespace {
 
-// The first robot's scans take three datagrams each, the others' one.
+// The first robot's scans need three datagrams each, those of the others one.
 const char* const kRoom = R"(
 model( name "room" size [8 6 1] boundary 1 noblocks 0 color "gray" )
 define bot position( size [0.3 0.3 0.1] )
@@ -26,7 +26,7 @@ bot( name "roomba3" pose [2 -1 0 0] eye( ) )
 bot( name "roomba4" pose [0 2 0 0] eye( ) )
 )";
 
-// The thesis' layout does not hold that many rays.
+// The thesis' layout has no room for that many rays.
 const char* const kSmallRoom = R"(
 model( name "room" size [8 6 1] boundary 1 noblocks 0 color "gray" )
 position( name "roomba2" pose [2 1 0 0] size [0.3 0.3 0.1]
@@ -64,7 +64,7 @@ Json facts_of(const std::unique_ptr<Program>& robot, int code = 0) {
   return Json(outcome.out);
 }
 
-/// Counts of received and sent packets agree with those that the injected link let pass.
+/// Counts of received and sent packets match the packets that the injected link delivered.
 void expect_sums(const Json& facts) {
   EXPECT_EQ(facts.number("/injected/in/passed"),
             facts.number("/sensor_packets/packets") + facts.number("/relayed/packets"));
@@ -76,7 +76,7 @@ double number_or_none(const Json& facts, const std::string& pointer) {
 }
 
 struct RobotsTest : testing::Test {
-  /// One that nobody answers needs its three seconds: they pass beside the other tests.
+  /// A robot without a farm needs three seconds, which run in parallel with the other tests.
   static void SetUpTestSuite() {
     silent_folder = std::make_unique<Folder>();
     const std::string world = silent_folder->write("room.world", kRoom);
@@ -115,7 +115,7 @@ TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
 
   const Json f1 = facts_of(one), f2 = facts_of(two), f3 = facts_of(three, 1), f4 = facts_of(four);
   for (const Json* facts : {&f1, &f2, &f3, &f4}) expect_sums(*facts);
-  // All three parts of its scans, states of others, and it drives.
+  // It receives all three parts of its scans and the states of others, and it drives.
   EXPECT_TRUE(f1.number("/readings/laser") > 0);
   EXPECT_GE(f1.number("/sensor_packets/by_reason/accepted"), 3 * f1.number("/readings/laser"));
   EXPECT_GT(f1.number("/relayed/by_reason/accepted"), 0);
@@ -126,7 +126,7 @@ TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
   EXPECT_GT(f2.number("/steps"), 0);
   EXPECT_TRUE(f2.flag("/started"));
   EXPECT_GT(f2.number("/distance_m"), 0.0);
-  // Of the third nobody ever heard, nor it of the signal.
+  // The third neither was received by anyone nor received the signal.
   EXPECT_FALSE(f3.flag("/started"));
   EXPECT_EQ(f3.number("/steps"), 0);
   EXPECT_EQ(f3.number("/distance_m"), 0.0);
@@ -134,12 +134,12 @@ TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
   EXPECT_GT(f3.number("/injected/out/lost"), 0);
   EXPECT_EQ(f3.number("/injected/in/passed"), 0);
   EXPECT_EQ(f3.number("/readings/laser"), 0);
-  // A bad link is worse, and still one.
+  // A bad link degrades the service but does not break it.
   EXPECT_GT(f4.number("/injected/in/lost"), 0);
   EXPECT_GT(f4.number("/readings/laser"), 0);
 
   const Json farm = service.end();
-  EXPECT_GE(farm.number("/received/unproven"), 3);  // the first word of each: then it proved its address
+  EXPECT_GE(farm.number("/received/unproven"), 3);  // the first packet of each, before it proved its address
   EXPECT_EQ(
       farm.number("/received/accepted") + number_or_none(farm, "/received/stale") + farm.number("/received/unproven"),
       f1.number("/sent/packets") + f2.number("/sent/packets") + f4.number("/sent/packets") + 3 * kStarts);
@@ -156,7 +156,7 @@ TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
   EXPECT_GT(facts.number("/distance_m"), 0.0);
 }
 
-/// Two robots' own maps as one: each sees a wall that the other does not reach.
+/// Two robots' own maps are merged: each sees a wall that is out of range of the other.
 TEST_F(RobotsTest, SendTheirOwnMaps) {
   FarmService service;
   ASSERT_FALSE(service.port.empty()) << service.program.err();
@@ -178,7 +178,7 @@ TEST_F(RobotsTest, SendTheirOwnMaps) {
   EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), ' '), 20) << outcome.out;
 }
 
-/// One process after another with one name: each is heard from its first packet on.
+/// Successive processes with the same name: each is accepted from its first packet on.
 TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
   FarmService service;
   ASSERT_FALSE(service.port.empty()) << service.program.err();
@@ -201,9 +201,9 @@ TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
     std::string said;
   };
   const Case cases[] = {
-      {{"--name", "roomba3"}, "has no robot 'roomba3'; did you mean 'roomba2'?"},  // one slip away
+      {{"--name", "roomba3"}, "has no robot 'roomba3'; did you mean 'roomba2'?"},  // one typo
       {{"--name", "bus"}, "has no robot 'bus'; it has roomba"},
-      {{}, "--name"},  // it must be said which
+      {{}, "--name"},  // the name is required
       {{"--name", "roomba2", "--controller", "wonder"}, "got 'wonder'"},
       {{"--name", "roomba2", "--set", "speed"}, "expected KEY=VALUE"},
       {{"--name", "roomba2", "--set", "sped=1"}, "has no setting 'sped'"},
@@ -228,7 +228,7 @@ TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
   }
 }
 
-/// Nothing could have come to it, so that nothing came is no failure.
+/// It has no sensors, so receiving nothing is not a failure.
 TEST(Robot, WithoutSensorsItNeedsNoFarm) {
   const Folder folder;
   const std::string world = folder.write("blind.world", "position( name \"blind\" size [0.3 0.3 0.1] )\n");
@@ -238,7 +238,7 @@ TEST(Robot, WithoutSensorsItNeedsNoFarm) {
   EXPECT_GT(Json(outcome.out).number("/distance_m"), 0.0);
 }
 
-/// A controller that drives by its pose alone, on the odometry of a simulated Create.
+/// A controller that uses only its pose, with the odometry of a simulated Create.
 TEST(Robot, DrivesACreateOnASerialLine) {
   const Folder folder;
   const std::string world =

@@ -1,4 +1,4 @@
-// `run` with a scenario file in place of a world.
+// `run` with a scenario file instead of a world.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 const std::string kTown = SF_SOURCE_DIR "/experiments/simville.toml";
 
-// Two robots in a room and a door that goes after a second.
+// Two robots in a room, and a door that is removed after a second.
 const char* const kDoorRoom = R"(
 model( size [0.1 4 1] pose [2 0 0 0] )
 model( size [0.1 4 1] pose [-2 0 0 0] )
@@ -52,7 +52,7 @@ TEST(RunScenario, TheTownOfTheReadmeDrivesAMinuteWithoutContact) {
   EXPECT_EQ(facts.number("/robots"), 50);
 }
 
-// Fleet, controllers, seed, duration and events are those of `test`: so are all readings.
+// Fleet, controllers, seed, duration and events are those of `test`, and so are all readings.
 TEST(RunScenario, GivesTheReadingsOfTest) {
   const Folder folder;
   folder.write("room.world", kDoorRoom);
@@ -65,7 +65,7 @@ TEST(RunScenario, GivesTheReadingsOfTest) {
   EXPECT_NE(facts.text("/hash"), run_json({"run", without, "--json"}).text("/hash")) << "the door stays";
 }
 
-// Robots that join and leave are recorded, verified and painted; all readings are those of `test`.
+// Robots that join and leave are recorded, verified and drawn; all readings are those of `test`.
 TEST(RunScenario, RobotsJoinAndLeave) {
   const Folder folder;
   folder.write("room.world", kDoorRoom);
@@ -105,7 +105,7 @@ TEST(RunScenario, SaysThatExpectationsAreNotJudged) {
   EXPECT_NE(outcome.err.find("9 expectations are not judged"), std::string::npos) << outcome.err;
 }
 
-// A recording of it is verified like that of a world.
+// Its recording is verified like that of a world.
 TEST(RunScenario, RecordsWhatVerifies) {
   const Folder folder;
   folder.write("room.world", kDoorRoom);

@@ -1,4 +1,4 @@
-// `run` and `plot`: a fleet in the loop, its summary, its recording and its pictures.
+// `run` and `plot`: a fleet in closed loop, its summary, its recording and its pictures.
 
 #include <gtest/gtest.h>
 
@@ -34,14 +34,14 @@ Json run(const std::string& world, const Words& more) {
 
 std::string hash(const std::string& world, const Words& more) { return run(world, more).text("/hash"); }
 
-/// The first of the robots' ways, and what `plot` maps of it.
+/// Checks the trajectories, and the map that `plot` draws.
 void expect_pictures(const std::string& folder) {
   scenes::expect_painted(folder + "/trajectories.png", {{0xFF0072B2u, 60}, {0xFFD55E00u, 60}, {0xFF009E73u, 60}});
   // Occupied, unexplored, free.
   scenes::expect_painted(folder + "/occupancy.png", {{0xFF000000u, 500}, {0xFFCDCDCDu, 5000}, {0xFFFEFEFEu, 5000}});
 }
 
-/// Until the recording holds more than the world: the loop is running then.
+/// Waits until the recording is larger than the world: then the loop is running.
 bool records(Program& program, const std::string& file, std::uintmax_t bytes) {
   for (int i = 0; i < 6000 && program.running(); ++i) {
     std::error_code none_yet;
@@ -69,7 +69,7 @@ TEST(Run, TheSummaryHasItsFacts) {
   EXPECT_FALSE(facts.flag("/interrupted"));
 }
 
-/// Rays a second while sensing: of the four stages of sensing together, as the stages' own rows have them.
+/// Rays per second while sensing are relative to the sum of the four sensing stages, as printed in their rows.
 TEST(Run, RatesWhileSensingAreOfItsFourStages) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"a\" laser( samples 361 noise [0.01 0 0] ) )\n");
@@ -87,7 +87,7 @@ TEST(Run, RatesWhileSensingAreOfItsFourStages) {
   const std::string rate = text.substr(text.rfind('\n', end), end - text.rfind('\n', end));
   const double unit = rate.find("million") == std::string::npos ? 1.0 : 1e6;
   const double wanted = 50 * 20 * 361 / seconds;
-  // As rounded: the rate to 0.1 million, each stage to a microsecond a tick.
+  // Within rounding: the rate to 0.1 million, each stage to a microsecond per tick.
   EXPECT_NEAR(unit * std::stod(rate), wanted, 0.051 * unit + 1.1e-4 / seconds * wanted) << text;
 }
 
@@ -97,7 +97,7 @@ TEST(Run, ControllersSayHowTheyFared) {
   EXPECT_EQ(facts.text("/control/controller"), "lane-keeping");
   EXPECT_EQ(facts.number("/control/robots"), 1);
   EXPECT_EQ(facts.number("/control/done"), 1);
-  EXPECT_GT(facts.number("/control/error/steps"), 400);  // 10 a second over 5 m at 0.1 m/s
+  EXPECT_GT(facts.number("/control/error/steps"), 400);  // 10 per second over 5 m at 0.1 m/s
   EXPECT_GT(facts.number("/control/error/abs_mean"), 0.001);
   EXPECT_GT(facts.number("/control/error/abs_mean"), facts.number("/control/error/mean") + 1e-3) << "it overshoots";
   EXPECT_LT(facts.number("/control/error/abs_mean"), 0.2);
@@ -107,7 +107,7 @@ TEST(Run, ControllersSayHowTheyFared) {
   EXPECT_EQ(wanders.out.find("control error"), std::string::npos) << "wander has none: " << wanders.out;
 }
 
-/// In SimVille roomba1 stands in roomba0's lane when that one alone is driven.
+/// In SimVille, roomba1 blocks roomba0's lane if only roomba0 is driven.
 TEST(Run, SaysWhoStandsAndWhy) {
   Words words{"run",          our_world("simville/simville.world"),
               "--controller", "route",
@@ -130,7 +130,7 @@ TEST(Run, SaysWhoStandsAndWhy) {
   EXPECT_EQ(drives.size("/control/standing"), 0u) << "who drives does not stand";
 }
 
-/// Five robots with one reason are one line, three of them by name.
+/// Five robots with the same reason share one line, which names three of them.
 TEST(Run, RobotsThatStandForOneReasonShareALine) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laneedge( ) )\n");
@@ -143,7 +143,7 @@ TEST(Run, RobotsThatStandForOneReasonShareALine) {
       << outcome.out;
 }
 
-/// The reason that stops most robots comes first, though the other one is before it in the alphabet.
+/// The reason that stops most robots is first, though the other is first in the alphabet.
 TEST(Run, TheReasonOfMostRobotsIsFirst) {
   const Folder folder;
   const std::string world = folder.write("w.world",
@@ -231,7 +231,7 @@ TEST(Run, AControllerWithoutItsSensorIsRefused) {
   }
 }
 
-/// In SimVille, two pedestrians stand on no lane.
+/// In SimVille, two pedestrians are not on a lane.
 TEST(Run, OnlyWhoIsNamedIsDriven) {
   Words words =
       run_words("simville/simville.world", {"--duration", "2", "--controller", "route", "--set", "tour=true"});
@@ -285,7 +285,7 @@ TEST(Run, ClonesMayBeNamedAndNobodyElse) {
     EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
     EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
   }
-  // The world may come after it.
+  // The world may follow the option.
   EXPECT_EQ(run_program({"run", "--drive", "roomba1", our_world("rooms.world"), "--duration", "0.1"}).code, 0);
 }
 
@@ -360,7 +360,7 @@ TEST(Run, RecordingDoesNotChangeTheRun) {
   EXPECT_EQ(hash("cave.world", recorded), hash("cave.world", plain));
 }
 
-/// To the byte, and without the tag's: tags have tracks in the recording.
+/// Identical to the byte, and without the tag's track, which the recording contains.
 TEST(Run, ItsPictureIsOfItsRobots) {
   const Folder folder;
   run("rooms.world", {"--duration", "2", "--record", folder.path("r")});
@@ -379,10 +379,10 @@ TEST(Run, ItsPictureIsOfItsRobots) {
   EXPECT_LT(tracks.size(), recording.states.size());
   viz::draw_trajectories(world, tracks, folder.path("expected.png"));
   EXPECT_TRUE(read_file(folder.path("r/trajectories.png")) == read_file(folder.path("expected.png")));
-  scenes::expect_painted(folder.path("r/occupancy.png"), {{0xFF000000u, 4000}});  // what stands still is occupied
+  scenes::expect_painted(folder.path("r/occupancy.png"), {{0xFF000000u, 4000}});  // static objects are occupied
 }
 
-/// A scan a simulated second: at a tick of 0.1 s, of the first tick and of the eleventh.
+/// One scan per simulated second: with a tick of 0.1 s, at the first and the eleventh tick.
 TEST(Run, ItsMapIsOfOneScanASecond) {
   const auto map_of = [](const std::string& duration) {
     const Folder folder;
@@ -395,7 +395,7 @@ TEST(Run, ItsMapIsOfOneScanASecond) {
   EXPECT_FALSE(map_of("1.1") == first) << "the eleventh is scanned from where the robots are then";
 }
 
-/// Contacts are counted when they begin, by `run` as by `plot`.
+/// `run` and `plot` count contacts when they begin.
 TEST(Run, CountsContactsAsItsPictureDoes) {
   const Folder folder;
   const Words words{"--robots", "20", "--duration", "60", "--record", folder.path("r")};
@@ -411,7 +411,7 @@ TEST(Run, CountsContactsAsItsPictureDoes) {
   EXPECT_LT(began, touching) << "or the two could not be told apart";
 }
 
-/// A hash is of what is sent and recorded.
+/// The hash covers the values that are sent and recorded.
 TEST(Run, TheHashCoversBeamsWithoutReturn) {
   const Folder folder;
   const std::string open = folder.write("open.world", "position( name \"a\" laser( samples 3 range_max 5 ) )\n");
@@ -422,7 +422,7 @@ TEST(Run, TheHashCoversBeamsWithoutReturn) {
   };
   EXPECT_NE(hash_of("inf"), hash_of("max")) << "every beam";
   EXPECT_EQ(hash_of("inf"), hash_of("inf"));
-  const Words closed{"--robots", "2", "--duration", "1"};  // within range of a wall, whichever way it looks
+  const Words closed{"--robots", "2", "--duration", "1"};  // within range of a wall in any direction
   Words infinite = closed;
   infinite.insert(infinite.end(), {"--no-return", "inf"});
   EXPECT_EQ(hash("rooms.world", infinite), hash("rooms.world", closed)) << "no beam";
@@ -458,7 +458,7 @@ TEST(Run, StoppingEarlyIsToldByTheExitCode) {
   }
 }
 
-/// A file that may not grow (`ulimit -f`) is as a disk that is full: said, and what was whole stays.
+/// A file that may not grow (`ulimit -f`) is like a full disk: it is reported, and the finished part remains valid.
 TEST(Run, AFileThatMayNotGrowEndsARecordingWithAMessage) {
   const Folder folder;
   const auto run = [&] {
@@ -500,7 +500,7 @@ TEST(Run, HowAWorldsPathIsSpeltDoesNotChangeARecording) {
   }
 }
 
-/// The kernel refuses to send to everyone: as to a network that is down, no packet leaves.
+/// The kernel refuses to send to the broadcast address: as on a network that is down, no packet is sent.
 TEST(Run, PacketsThatAreNotSentAreAFailure) {
   const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.5", "--send", "255.255.255.255"}));
   EXPECT_EQ(outcome.code, 1);
@@ -508,7 +508,7 @@ TEST(Run, PacketsThatAreNotSentAreAFailure) {
   EXPECT_EQ(Json(outcome.out).number("/packets/failed"), 5);
 }
 
-/// Stopped wherever it is: every picture that is there is whole.
+/// Stopped at any point, every existing picture is complete.
 TEST(Plot, StoppedLeavesNoTornPicture) {
   const Folder folder;
   run("cave.world", {"--robots", "20", "--duration", "300", "--record", folder.path("r")});
@@ -537,7 +537,7 @@ TEST(Run, NothingOfADamagedRecordingIsBelieved) {
   EXPECT_NE(outcome.err.find("run.mcap"), std::string::npos);
 }
 
-/// Ticks that a run's check points name; none without the file.
+/// Returns the ticks in a run's check points; none without the file.
 static std::vector<std::string> check_points(const std::string& folder) {
   std::istringstream lines(read_file(folder + "/checkpoints"));
   std::vector<std::string> ticks;

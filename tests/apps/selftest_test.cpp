@@ -47,7 +47,8 @@ TEST(SelfTest, AsJson) {
   EXPECT_GT(json.number("/cases/0/checks"), 20.0);
 }
 
-/// A case that is right or wrong, one to the bit, one within its tolerance, and one that failed; one was not run.
+/// One case that only passes or fails, one to the bit, one within its tolerance, one that failed, and one that was not
+/// run.
 TEST(SelfTest, TheReportSaysHowEachCaseEnded) {
   using selftest::Case;
   const Case plain{"a", "plain", "", "", nullptr}, bits{"a", "bits", "m", "", nullptr},

@@ -1,4 +1,4 @@
-// `sense` against a ruler: ranges that can be worked out by hand.
+// `sense` against ranges that can be computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -14,11 +14,11 @@ namespace sf {
 
 namespace {
 
-constexpr double kExact = 1e-5;  ///< [m] what the farm promises
-constexpr double kRuler = 1e-8;  ///< [m] what it does where rays are steep: nine decimals are printed
+constexpr double kExact = 1e-5;  ///< [m] the farm's guarantee
+constexpr double kRuler = 1e-8;  ///< [m] accuracy for steep rays: nine decimals are printed
 
-// A wall whose face is at x = 0 beside the way along y, a robot with a single forward beam, and a fan that looks
-// around.
+// A wall whose face is at x = 0 next to the path along y, a robot with a single forward beam, and a fan in all
+// directions.
 std::string wall_world(const Folder& folder, double x) {
   const auto at = [](double v) { return std::to_string(v); };
   return folder.write("wall.world", "model( name \"long wall\" pose [" + at(x + 0.5) +
@@ -109,7 +109,7 @@ TEST(Sense, EveryBeamOfAFanFollowsTheCosine) {
   }
 }
 
-/// In a world without surfaces, where every value of some types is their sensor's `limit` or more.
+/// In a world without surfaces, where every value of some types is at least the sensor's `limit`.
 TEST(Sense, NoReturnIsOfLasersAlone) {
   const Folder folder;
   std::string robot = "position( name \"scout\"\n";
@@ -127,7 +127,7 @@ TEST(Sense, NoReturnIsOfLasersAlone) {
 }
 
 TEST(Sense, GrazingIncidenceIsExactAtTheOriginAndFarAway) {
-  // 0.1 m beside the wall, a tenth of a degree off parallel, then 1 mrad: 57.3 m and 99.8 m ahead.
+  // 0.1 m from the wall, a tenth of a degree off parallel, then 1 mrad: 57.3 m and 99.8 m ahead.
   for (const double x : {0.0, 100'000.0}) {
     const Folder folder;
     const std::string world = wall_world(folder, x);
@@ -146,7 +146,7 @@ TEST(Sense, PoseMovesTheRobotAndItsSensor) {
   EXPECT_EQ(scan.number("/pose/0"), -1);
   EXPECT_EQ(scan.number("/pose/1"), 2);
   EXPECT_NEAR(scan.number("/pose/2"), M_PI / 2, 1e-15);
-  // The scanner stands 0.1 m ahead of the robot's centre, which is now towards +y.
+  // The scanner is 0.1 m ahead of the robot's centre, which is now towards +y.
   EXPECT_NEAR(scan.number("/sensor_pose/0"), -1.0, 1e-12);
   EXPECT_NEAR(scan.number("/sensor_pose/1"), 2.1, 1e-12);
   EXPECT_NEAR(scan.number("/sensor_pose/2"), M_PI / 2, 1e-15);
@@ -191,7 +191,7 @@ TEST(Sense, CsvHasAHeadingAndOneLinePerBeam) {
 TEST(Sense, NoiseIsOff) {
   const Words words{"sense", our_world("rooms.world"), "--robot", "roomba2", "--json"};
   const Json scan(run_program(words).out);
-  // roomba2's first laser is noisy by 1 cm; due ahead of it is the far wall's face, 5 m are not enough.
+  // roomba2's first laser has noise of 1 cm; the far wall straight ahead is beyond its range of 5 m.
   EXPECT_EQ(scan.number(beam(135, "range_m")), 5.0);
   EXPECT_EQ(run_program(words).out, run_program(words).out);
 }

@@ -1,4 +1,4 @@
-// Every type of sensor through every command: the same words, files and packets for all of them.
+// Every sensor type with every command: the same arguments, files and packets for all of them.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ constexpr std::uint8_t kMagnetometer = 3;
 
 bool has_type(std::uint8_t id) { return sensors::find_sensor_type(id) != nullptr; }
 
-// A magnet of 1 A m^2, and robots that carry a laser and two elements 0.5 m and 1 m ahead, as high as the magnet.
+// A magnet of 1 A m^2, and robots with a laser and two elements 0.5 m and 1 m ahead, at the height of the magnet.
 const char* const kTypesWorld = R"(
 define bot position
 (
@@ -50,14 +50,14 @@ struct Kinds : testing::Test {
   std::string world = folder.write("types.world", kTypesWorld);
 };
 
-/// `words` after a subcommand, its world and what all of these tests want.
+/// Runs `command` with its world and `words`, and the options that all of these tests need.
 Outcome run(const std::string& command, const std::string& world, const Words& more) {
   Words words{command, world};
   words.insert(words.end(), more.begin(), more.end());
   return run_program(words);
 }
 
-/// Two types of ports that nobody has.
+/// Two free port bases.
 Words free_bases(unsigned& base) {
   base = free_ports(80);
   return {"--laser-port", std::to_string(base), "--magnetometer-port", std::to_string(base + 40)};
@@ -75,7 +75,7 @@ TEST_F(Kinds, AMagnetometerIsSensedByHand) {
   EXPECT_EQ(reading.size("/sensor_pose"), 3u);
   ASSERT_EQ(reading.size("/sensors"), 2u);
   ASSERT_EQ(reading.size("/sensors/0/vector_T"), 3u);
-  // In the plane of a dipole the field is mu0 / (4 pi) m / r^3, against the moment: 1 m and 0.5 m away.
+  // In the plane of a dipole, the field is mu0 / (4 pi) m / r^3, opposite to the moment: 1 m and 0.5 m away.
   EXPECT_NEAR(reading.number("/sensors/0/field_T"), 1e-7, 1e-13);
   EXPECT_NEAR(reading.number("/sensors/0/vector_T/2"), -1e-7, 1e-13);
   EXPECT_NEAR(reading.number("/sensors/1/field_T"), 8e-7, 1e-12);
@@ -156,7 +156,7 @@ TEST_F(Kinds, CheckSaysWhatACutOffLeavesOut) {
   const std::string cut = folder.write("cut.world", "magnet_cutoff 2\n" + std::string(kTypesWorld));
   const Json facts(run("check", cut, {"--json"}).out);
   EXPECT_EQ(facts.number("/magnet_cutoff_m"), 2);
-  // 1 A m^2 at 2 m, as high as the elements: 1e-7 / 2^3 T, and a little for rounding, so that the text rounds up.
+  // 1 A m^2 at 2 m, at the height of the elements: 1e-7 / 2^3 T plus a rounding margin, so the text rounds up.
   EXPECT_NEAR(facts.number("/field_truncation_T"), 1.25e-8, 1e-12);
   EXPECT_GT(facts.number("/field_truncation_T"), 1.25e-8);
   EXPECT_NE(run("check", cut, {}).out.find("what is left out is at most 1.26e-08 T"), std::string::npos);
@@ -195,7 +195,7 @@ TEST_F(Kinds, EveryPacketArrivesOnEitherWire) {
     EXPECT_EQ(in.number("/rays"), 2 * 20 * 3);
     EXPECT_EQ(in.number("/sensors/magnetometer/good"), 2 * 20);
     EXPECT_EQ(in.number("/sensors/magnetometer/elements"), 2 * 20 * 2);
-    // Each element meets the magnet; a run counts that.
+    // Each element is paired with the magnet; a run counts the pairs.
     EXPECT_EQ(out.number("/dipoles"), 2 * 20 * 2);
   }
 }
@@ -249,8 +249,8 @@ TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
   EXPECT_GT(facts.number("/dipoles"), 0);
 }
 
-/// The figure of two magnetometers of two elements each, in Gauss: a panel each, and what the last has more than the
-/// first.
+/// Builds the figure of two magnetometers with two elements each, in Gauss: one panel each, and the difference of the
+/// last and the first element.
 viz::SeriesOptions fields_of(const record::Recording& recording) {
   viz::SeriesOptions options{"Magnetic field", recording.info.world + ": 2 sensors", {}};
   viz::Panel difference{"last element less the first", "difference of |B| [G]", {}};
@@ -302,7 +302,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("q/magnetometer.png"))) << "nothing was recorded to draw";
 }
 
-/// Robots drive by their lasers: what else they carry, and how often it speaks, moves none of them.
+/// Robots drive by their lasers: other sensors, at any rate, do not change their motion.
 TEST_F(Kinds, AnUnusedSensorChangesNoPath) {
   const auto states = [&](const std::string& name, const std::string& sensor) {
     const std::string file =
@@ -349,15 +349,15 @@ TEST(WireFormat, LaneEdgesSendTheDocumentedBytes) {
   EXPECT_EQ(packet, test::documented("lane_edge"));
   EXPECT_NE(type->encode({}, {.type = type->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
   EXPECT_EQ(plain, test::documented("thesis_lane_edge"));
-  // No edge in sight.
+  // No edge in range.
   const std::vector<double> none{NAN, 0, NAN, NAN};
   plain.clear();
   type->encode({}, {.type = type->id, .values = none}, sensors::WireFormat::thesis, 0, plain);
   EXPECT_EQ(plain, (base::Bytes{0xff, 0xff}));
 }
 
-/// The thesis' listing: its robot faces -y, its `laser` of that name looks along its own +x, the road is a thin model.
-/// Ours faces +x and looks to its left. Both are 0.25 m from the paint's face.
+/// The thesis' listing: its robot faces -y, its `laser` looks along its own +x, and the road is a thin model. The other
+/// robot faces +x and looks to its left. Both are 0.25 m from the face of the paint.
 TEST(LaneEdge, TheThesisListingAndOursReadTheSame) {
   if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const Folder folder;
@@ -381,7 +381,7 @@ path( pose [-2 0 0 0] pieces 1 straight[0] [4 0.5] left "solid_white" paint_widt
   }
 }
 
-/// The road as a picture, as the thesis brought it: 5 mm a pixel, seen as it is drawn.
+/// The road as a picture, as in the thesis: 5 mm per pixel, read as drawn.
 TEST(LaneEdge, ARoadMayBeAPicture) {
   if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const Folder folder;
@@ -398,7 +398,7 @@ model( name "road" bitmap "road.pgm" size [1 1 0.01] )
   EXPECT_GE(reading.number("/points"), 59);
 }
 
-/// On the straight a reading states a bound and keeps to it; in the bend it says that none holds.
+/// On the straight, a reading states a bound and satisfies it; in the bend, it states that none holds.
 TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
   if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const std::string lane = our_world("testpath/testpath.world");

@@ -1,4 +1,4 @@
-// `sweep` as a user runs it: processes, shares, kills, and Slurm's scripts and variables.
+// `sweep` as users run it: processes, shares, kills, and Slurm's scripts and variables.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kJobs = 24;
 
-/// Twelve points of two seeds; a job takes some hundredths of a second.
+/// Twelve points with two seeds; a job takes some hundredths of a second.
 std::string write_sweep(const Folder& folder, const std::string& duration = "1", const std::string& expect = "") {
   folder.write("small.toml", "world = \"" + our_world("rooms.world") + "\"\nrobots = 2\nduration = " + duration + "\n" +
                                  (expect.empty() ? "" : "[expect]\n" + expect));
@@ -28,7 +28,7 @@ std::string write_sweep(const Folder& folder, const std::string& duration = "1",
                       "[sample]\npoints = 4\n[sample.range]\nlink.delay = { from = 0, to = 0.3 }\n");
 }
 
-/// By name; the sweep's results and tables.
+/// The sweep's results and tables, by name.
 std::map<std::string, std::string> tables_of(const Folder& folder, const std::string& out) {
   std::map<std::string, std::string> tables;
   for (const char* name : {"jobs.csv", "points.csv", "report.md"})
@@ -36,7 +36,7 @@ std::map<std::string, std::string> tables_of(const Folder& folder, const std::st
   return tables;
 }
 
-/// Paths of the results, with their times of writing.
+/// Paths of the results, with their modification times.
 std::map<std::string, fs::file_time_type> results_of(const std::string& out) {
   std::map<std::string, fs::file_time_type> results;
   std::error_code none;
@@ -55,7 +55,7 @@ TEST(SweepCommand, TablesAreTheSameForAnyNumberOfProcesses) {
   ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("three"), "--jobs", "3"}).code, 0);
   EXPECT_EQ(tables_of(folder, "three"), tables_of(folder, "one"));
 
-  // Shares, in any order; the last one writes the tables.
+  // Shares in any order; the last one writes the tables.
   for (const char* share : {"3/3", "1/3"}) {
     const Outcome part = run_program({"sweep", file, "-o", folder.path("parts"), "--share", share});
     EXPECT_EQ(part.code, 0) << part.err;
@@ -71,8 +71,8 @@ TEST(SweepCommand, TablesAreTheSameForAnyNumberOfProcesses) {
   EXPECT_EQ(count_lines(tables_of(folder, "one")["jobs.csv"]), 1 + kJobs);
 }
 
-/// Begins the sweep and sends it `end` when some jobs are done. A busy machine may let this test look too late, when
-/// all are: then once more, in another folder.
+/// Starts the sweep and sends it `end` when some jobs are done. On a busy machine, all jobs may be done by then: tries
+/// again in another folder.
 Outcome interrupted(const std::string& file, int end, std::string& out) {
   for (;; out += "x") {
     Program program({"sweep", file, "-o", out, "--jobs", "2"});
@@ -83,7 +83,7 @@ Outcome interrupted(const std::string& file, int end, std::string& out) {
   }
 }
 
-/// `end` in the middle, and once more from there.
+/// Interrupts with `end` in the middle, and continues from there.
 void interrupt_and_go_on(int end) {
   const Folder folder;
   const std::string file = write_sweep(folder, "20");
@@ -141,10 +141,11 @@ TEST(SweepCommand, TenFailuresAreNamedAndTheOthersCounted) {
   }
 }
 
-/// A crash of a controller, a controller's own error, and jobs beside them that are fine.
+/// A controller that crashes, a controller that reports an error, and other jobs that succeed.
 TEST(SweepCommand, AFailureCostsItsJobAlone) {
   const Folder folder;
-  // Of three values the least and the greatest are tried before: the middle one is known by its job.
+  // Of three values, the smallest and the largest are checked in advance: an error in the middle one appears in its
+  // job.
   folder.write("small.toml", "world = \"" + our_world("testpath/testpath.world") +
                                  "\"\nduration = 0.5\n[default]\ncontroller = \"lane-keeping\"\n");
   const std::string file =
@@ -219,7 +220,7 @@ TEST(SweepCommand, SlurmScriptsNameWhatIsMissing) {
   EXPECT_NE(run_program(words).out.find("24 jobs: "), std::string::npos) << "nothing is missing: the tables";
 }
 
-/// Fifty points are listed, and the number of the others.
+/// Fifty points are listed, and the number of the rest.
 TEST(SweepCommand, ListsFiftyPoints) {
   const Folder folder;
   folder.write("small.toml", "world = \"" + our_world("rooms.world") + "\"\nduration = 0.1\n");

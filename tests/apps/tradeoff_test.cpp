@@ -1,4 +1,4 @@
-// `tradeoff` and `--accuracy` as a user runs them.
+// `tradeoff` and `--accuracy` as users run them.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ void expect_says(const Outcome& outcome, const std::string& text) {
   EXPECT_NE((outcome.out + outcome.err).find(text), std::string::npos) << text << "\n" << outcome.out << outcome.err;
 }
 
-/// Cells of a CSV, line by line; an empty one is not a number.
+/// Cells of a CSV file, line by line; an empty cell is NaN.
 std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
   std::vector<std::vector<std::string>> rows(1, {""});
   for (const char c : csv) {
@@ -76,7 +76,7 @@ TEST(Tradeoff, ATableAFileAndAPicture) {
   EXPECT_GT(picture.count(0xFFD55E00u), 3 * 10) << "and the ring of a bound";
 }
 
-/// Its columns are JSON's keys.
+/// Its columns are the keys of the JSON output.
 TEST(Tradeoff, JsonSaysWhatTheFileDoes) {
   const Folder folder;
   const Json json(run_program({"tradeoff", our_world("rooms.world"), "-o", folder.path("t"), "--json"}).out);
@@ -93,7 +93,7 @@ TEST(Tradeoff, JsonSaysWhatTheFileDoes) {
     }
 }
 
-/// The terminal says what a bound is of: a mode that leaves beams out shows how many it covers, and their error.
+/// The terminal states the scope of a bound: a mode that leaves beams out shows how many it covers, and their error.
 TEST(Tradeoff, NoBoundStandsBesideErrorsThatItDoesNotCover) {
   const Outcome outcome = run_program({"tradeoff", our_world("cave.world"), "--robots", "10"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -157,7 +157,7 @@ TEST(AccuracyOption, AutoMeasuresFirst) {
   expect_says(outcome, "measured; with every error within 1 nm: --accuracy \"exact\"");
 }
 
-/// A sensor type without a target has no bound of its own; without any target both have the usual one.
+/// A sensor type without a target has no bound; without any target, both have the default.
 TEST(AccuracyOption, AutoSaysWhatItGoesBy) {
   const std::vector<std::pair<Words, std::string>> wishes{
       {{}, "with every error within 10 mm and 1 uT: "},

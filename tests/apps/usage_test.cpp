@@ -1,4 +1,4 @@
-// Wrong usage and wrong files: exit code 2 and one line that says what was expected. No device: 3.
+// Usage errors and wrong files: exit code 2 and one line with the expected input. No device: 3.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ const Words kSubcommands{"devices", "check",  "draw",     "sense",     "run",  "
 
 struct Wrong {
   Words arguments;
-  std::string said;  ///< somewhere in the line
+  std::string said;  ///< text in the line
 };
 
 }  // namespace
@@ -69,7 +69,7 @@ TEST(Usage, PortsAreAGroupAtTheEndOfTheHelp) {
   EXPECT_GT(help.find("--ports-per-robot"), group);
 }
 
-/// Of commands with many options: ten, after the examples, and how to list the others.
+/// For commands with many options: ten, after the examples, and how to list the others.
 TEST(Usage, HelpBeginsWithExamplesAndOptionsOfEveryDay) {
   for (const std::string name : {"run", "serve", "robot", "listen", "vps", "tradeoff"}) {
     const std::string help = run_program({name, "--help"}).out;
@@ -82,7 +82,7 @@ TEST(Usage, HelpBeginsWithExamplesAndOptionsOfEveryDay) {
   }
 }
 
-/// The commands of every day come first.
+/// The most common commands come first.
 TEST(Usage, HelpGroupsTheCommands) {
   const std::string help = run_program({"help"}).out;
   std::size_t before = 0;
@@ -112,7 +112,7 @@ TEST(Usage, MistakesAreExplained) {
   }
 }
 
-/// The options of each command, in order, and a hash of its whole help.
+/// The options of each command, in order, and a hash of its complete help.
 TEST(Usage, HelpIsAsRecorded) {
   std::string record;
   for (const std::string& name : kSubcommands) {
@@ -128,7 +128,7 @@ TEST(Usage, HelpIsAsRecorded) {
   golden::expect(record, "apps", "help", 0.0);
 }
 
-/// An option that changes another one means nothing without it.
+/// An option that modifies another one has no effect without it.
 TEST(Usage, OptionsThatNeedAnotherOneAreRefusedWithoutIt) {
   const Folder folder;
   const std::string world = our_world("rooms.world"), out = folder.path("out");
@@ -184,7 +184,7 @@ TEST(Usage, OptionsThatNeedAnotherOneAreRefusedWithoutIt) {
     expect_refused(arguments, said);
 }
 
-/// Options that contradict each other, in any words.
+/// Options that contradict each other, in any order.
 TEST(Usage, OptionsThatContradictAreRefused) {
   const Folder folder;
   const std::string world = our_world("rooms.world"), out = folder.path("out");
@@ -216,7 +216,7 @@ TEST(Usage, OptionsThatContradictAreRefused) {
     expect_refused(arguments, said);
 }
 
-/// Names that are taken are printed for recordings, too: of sensors where readings are recorded.
+/// Taken names are also printed for recordings; those of sensors only if readings are recorded.
 TEST(Usage, TakenNamesOfTopicsArePrintedForRecordings) {
   const Folder folder;
   const std::string world =
@@ -287,48 +287,48 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
   const std::string world = our_world("rooms.world");
   const Folder folder;
   for (const auto& [arguments, said] : std::vector<Wrong>{
-           {{}, "expected a subcommand: devices, check"},  // nothing at all
+           {{}, "expected a subcommand: devices, check"},  // no arguments
            {{"frob"}, "'frob' is no subcommand"},          // unknown subcommand
-           {{"runn"}, "did you mean 'run'?"},              // one slip away
-           {{"help", "frob"}, "expected devices, check"},  // the same, asked about
-           {{"--loss", "1", "run", world}, "'--loss'"},    // the link is a robot's
+           {{"runn"}, "did you mean 'run'?"},              // one typo
+           {{"help", "frob"}, "expected devices, check"},  // the same for help
+           {{"--loss", "1", "run", world}, "'--loss'"},    // an option of `robot`
            {{"run"}, "world is required"},                 // no world
            {{"draw", world}, "--out is required"},         // no picture
            {{"plot"}, "recording is required"},            // no recording
            {{"run", world, "--duraton", "3"}, "'--duraton' was not expected; did you mean '--duration'?"},
            {{"--json", "check", world}, "options stand after the subcommand"},
            {{"check", world, "another"}, "'another' was not expected"},  // two worlds
-           {{"run", world, "--duration"}, "--duration needs a value"},   // cut short
-           {{"run", world, "--duration", "-1"}, "from 0 to"},            // time does not go back
+           {{"run", world, "--duration"}, "--duration needs a value"},   // cut off
+           {{"run", world, "--duration", "-1"}, "from 0 to"},            // negative time
            {{"run", world, "--duration", "nan"}, "got 'nan'"},           // would never end
            {{"run", world, "--duration", "inf"}, "got 'inf'"},           // would never end
            {{"run", world, "--duration", "5s"}, "got '5s'"},             // a unit
-           {{"run", world, "--robots", "0"}, "from 1 to 65535"},         // fewest
+           {{"run", world, "--robots", "0"}, "from 1 to 65535"},         // minimum
            {{"run", world, "--robots", "65536"}, "from 1 to 65535"},     // ids are 16 bits
-           {{"run", world, "--robots", "2.5"}, "got '2.5'"},             // half a robot
+           {{"run", world, "--robots", "2.5"}, "got '2.5'"},             // not an integer
            {{"run", world, "--seed", "-1"}, "got '-1'"},                 // must not wrap
-           {{"run", world, "--threads", "257"}, "from 0 to 256"},        // most threads
+           {{"run", world, "--threads", "257"}, "from 0 to 256"},        // maximum
            {{"run", world, "--send", ""}, "expected a host"},            // an unset variable in a script
            {{"run", world, "--record", ""}, "expected a folder"},        // the same
            {{"test", "x.toml", "--junit", ""}, "expected a file"},       // the same
-           {{"run", world, "--record-readings"}, "requires --record"},   // nowhere to record to
+           {{"run", world, "--record-readings"}, "requires --record"},   // no recording
            {{"run", world, "--wire", "telegraph"}, "expected farm or thesis"},
            {{"sense", world, "--no-return", "0"}, "expected max or inf"},
            {{"sense", world, "--pose", "1,2"}, "expected X,Y,YAW_DEG"},                     // no heading
-           {{"sense", world, "--pose", "1,2,3,4"}, "expected X,Y,YAW_DEG"},                 // one too many
+           {{"sense", world, "--pose", "1,2,3,4"}, "expected X,Y,YAW_DEG"},                 // one value too many
            {{"sense", world, "--pose", "1,2,nan"}, "expected X,Y,YAW_DEG"},                 // not a number
            {{"sense", world, "--sensor", "-1"}, "got '-1'"},                                // must not wrap
-           {{"sense", world, "--sensor", "1"}, "roomba1 has no sensor 1; it has laser 0"},  // past the last
-           {{"sense", world, "--sensor", "65535"}, "roomba1 has no sensor 65535"},  // the last that may be asked
-           {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},             // there, but blind
-           {{"sense", world, "--type", "lidar"}, "--type: expected laser"},         // somebody else's word
+           {{"sense", world, "--sensor", "1"}, "roomba1 has no sensor 1; it has laser 0"},  // beyond the last
+           {{"sense", world, "--sensor", "65535"}, "roomba1 has no sensor 65535"},          // the largest valid index
+           {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},      // exists, but has no sensors
+           {{"sense", world, "--type", "lidar"}, "--type: expected laser"},  // another program's word
            {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
            {{"serve", world, "--rate", "0"}, "from 0.1 to 10000"},  // would never tick
            {{"serve", world, "--port", "65536"}, "from 0 to 65535"},
            {{"serve", world, "--radio", "-1"}, "from 0 to 1e+09"},   // a distance
-           {{"serve", world, "--radio", "nan"}, "from 0 to 1e+09"},  // would compare as nothing
-           {{"serve", world, "--radio", "inf"}, "from 0 to 1e+09"},  // its square is no distance
-           {{"serve", world, "--bind", "192.0.2.1"}, "192.0.2.1"},   // not this machine's
+           {{"serve", world, "--radio", "nan"}, "from 0 to 1e+09"},  // NaN would pass comparisons
+           {{"serve", world, "--radio", "inf"}, "from 0 to 1e+09"},  // its square overflows
+           {{"serve", world, "--bind", "192.0.2.1"}, "192.0.2.1"},   // not an address of this machine
            {{"run", world, "--send", "no.such.host.invalid"}, "no.such.host.invalid"},
            {{"draw", world, "-o", folder.path("none/x.png")}, "none/x.png"},
            {{"draw", world, "-o", folder.path()}, "picture"},  // a folder
@@ -337,7 +337,7 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
     expect_refused(arguments, said);
 }
 
-/// A name that asks for another format is refused before anything is done.
+/// A name with an unsupported format is refused before any work is done.
 TEST(Usage, PicturesInFormatsThatThereAreNotAreRefused) {
   const Folder folder;
   const std::string world = our_world("six_magnets.world"), network = our_world("simville/simville.rndf");
@@ -374,10 +374,10 @@ TEST(Usage, SizesOfPicturesHaveBounds) {
     expect_refused({"draw", world, "-o", file, "--size", size}, "such as 88 or 170x120");
   for (const char* dpi : {"49", "1201", "nan"})
     expect_refused({"draw", world, "-o", file, "--dpi", dpi}, "from 50 to 1200");
-  expect_refused({"draw", world, "-o", file, "--extent", "1,1,0,2"}, "expected XMIN,YMIN,XMAX,YMAX");  // turned round
+  expect_refused({"draw", world, "-o", file, "--extent", "1,1,0,2"}, "expected XMIN,YMIN,XMAX,YMAX");  // reversed
   expect_refused({"draw", world, "-o", file, "--size", "1000", "--dpi", "1200"}, "fewer dots per inch");
   EXPECT_FALSE(std::filesystem::exists(file));
-  for (const char* size : {"50", "1000x30"})  // the smallest, and the widest with the lowest
+  for (const char* size : {"50", "1000x30"})  // the smallest, and the widest with the smallest height
     EXPECT_EQ(run_program({"draw", world, "-o", file, "--size", size, "--dpi", "50"}).code, 0) << size;
 }
 
@@ -454,7 +454,7 @@ TEST(NoDevice, WhereOneIsAskedForEndsWithThreeAndOneLine) {
       EXPECT_EQ(outcome.code, 3) << words[0] << ", way " << i;
       EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
       EXPECT_NE(outcome.err.find("no Vulkan device"), std::string::npos) << outcome.err;
-      // Never an empty scan, nor a summary of nothing.
+      // Neither an empty scan nor an empty summary.
       if (words[0] != "devices") {
         EXPECT_EQ(outcome.out, "") << words[0];
       }
@@ -488,7 +488,7 @@ TEST(NoDevice, TheHostThatIsNamedContradictsTheRequirement) {
   }
 }
 
-/// As script/hashes: every sensor type with a kernel, 32-bit ranges, and markings as a raster.
+/// As in script/hashes: every sensor type with a kernel, 32-bit ranges, and markings as a raster.
 TEST(NoDevice, TheHostHasTheHashesOfTheKernels) {
   const Folder folder;
   const std::string raster = folder.path("raster.world");

@@ -1,4 +1,4 @@
-// `v2x` as a user calls it.
+// `v2x` as users run it.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 const char* const kVectors = SF_SOURCE_DIR "/tests/v2x/vectors/asn1c.txt";
 
-/// The frames of the vectors, one a line.
+/// The frames of the vectors, one per line.
 std::string frames() {
   std::ifstream stream(kVectors);
   std::string all;
@@ -38,7 +38,7 @@ const char* const kJson = R"({"messageId": 19, "value": {"SPAT": {"intersections
   "states": [{"signalGroup": 2, "state-time-speed": [
     {"eventState": "protected-Movement-Allowed", "timing": {"minEndTime": 22120, "maxEndTime": 22121}}]}]}]}}})";
 
-/// The message of `v2x encode` for kJson with `from` replaced by `to`.
+/// Returns the error of `v2x encode` for kJson with `from` replaced by `to`.
 std::string refusal(const std::string& from, const std::string& to) {
   const Folder folder;
   std::string json = kJson;
@@ -77,7 +77,7 @@ TEST(V2x, BinaryFilesHoldFramesOneAfterAnother) {
   EXPECT_EQ(of_binary.out, of_hex.out);
 }
 
-/// Its first bit says that there are extensions.
+/// The first bit of a frame marks extensions.
 TEST(V2x, AFrameWithExtensionsMayFollowAnother) {
   const Folder folder;
   std::string json = kJson;
@@ -191,7 +191,7 @@ TEST(V2x, FaultsInJsonNameTheirComponent) {
   EXPECT_EQ(refusal("}]}]}]}}}", "}]}]}]}}").find("no JSON from here on: "), 0u);
 }
 
-/// In the place of a frame, of its id and of a component: nothing may recurse as deep as a stranger nests lists.
+/// In place of a frame, its id and a component: recursion must not be as deep as the nesting of a stranger's lists.
 TEST(V2x, JsonOfAnyDepthIsRefused) {
   const std::string open(200'000, '['), closed = open + std::string(200'000, ']');
   EXPECT_EQ(refusal(kJson, closed), "found a list of 1; expected an object");

@@ -1,4 +1,4 @@
-// `verify` as a user runs it.
+// `verify` as users run it.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace sf {
 namespace {
 
-/// Records two seconds of a world with sensors of many types.
+/// Records two seconds of a world with many sensor types.
 std::string record(const Folder& folder, const Words& more = {}) {
   Words words{"run", our_world("minimagic/minimagic.world"), "--duration", "2", "--record", folder.path("run")};
   words.insert(words.end(), more.begin(), more.end());
@@ -23,7 +23,8 @@ std::string record(const Folder& folder, const Words& more = {}) {
   return folder.path("run");
 }
 
-/// Half a second of two robots, its checksums right, with one range of one scan at `tick` a millimetre off.
+/// Records half a second of two robots with valid checksums, but with one range of one scan at `tick` off by a
+/// millimetre.
 std::string altered(const Folder& folder, std::uint64_t tick) {
   const world::World world = world::load_world(our_world("rooms.world"), {.sensors = sensors::world_file_words()});
   gpu::Device device;
@@ -34,7 +35,7 @@ std::string altered(const Folder& folder, std::uint64_t tick) {
     base::TickRecord record = simulation.step();
     std::vector<base::ReadingBlock> readings(record.readings.begin(), record.readings.end());
     std::vector<double> values(readings.front().values.begin(), readings.front().values.end());
-    values[values.size() / 2] -= 1e-3;  // nearer: what is farther than the limit is no return
+    values[values.size() / 2] -= 1e-3;  // nearer, since a range beyond the limit is no return
     if (t == tick) readings.front().values = values;
     record.readings = readings;
     recorder.write(record);
@@ -59,7 +60,7 @@ TEST(Verify, AnAlteredReadingEndsWithOne) {
   EXPECT_EQ(facts.number("/reference/different"), 1) << "so short a run is looked at whole";
 }
 
-/// The default is a sample whose size is said; every scan of a run that is no longer than it.
+/// By default, verifies a sample and prints its size; every scan of a run with no more scans than that.
 TEST(Verify, LooksAtASampleUnlessAskedForAll) {
   const Folder folder;
   const std::string run = folder.path("run");
@@ -98,7 +99,7 @@ TEST(Verify, WithoutReadings) {
   EXPECT_NE(outcome.out.find("\"sound\": true"), std::string::npos) << outcome.out;
 }
 
-/// Where nothing can be compared, that is said.
+/// If nothing can be compared, the output says so.
 TEST(Verify, WithoutReadingsAndLasers) {
   const Folder folder;
   const std::string world = folder.path("blind.world"), run = folder.path("run");
@@ -113,7 +114,7 @@ TEST(Verify, WithoutReadingsAndLasers) {
   EXPECT_FALSE(Json(run_program({"verify", run, "--json"}).out).flag("/sound"));
 }
 
-/// Readings that are there and are all left out are not verified.
+/// If all existing readings are skipped, they are not verified.
 TEST(Verify, ReadingsOfWhichNoneCanBeComparedEndWithOne) {
   const Folder folder;
   const std::string world = folder.write("bumper.world", "position( bumper( ) )\n"), run = folder.path("run");
@@ -123,7 +124,7 @@ TEST(Verify, ReadingsOfWhichNoneCanBeComparedEndWithOne) {
   EXPECT_NE(outcome.out.find("verdict            nothing could be compared\n"), std::string::npos) << outcome.out;
 }
 
-/// A flipped bit in a scan is behind a checksum: it is told as damage, and what is left is verified.
+/// A checksum detects a flipped bit in a scan: it is reported as damage, and the rest is verified.
 TEST(Verify, DamageIsTold) {
   const Folder folder;
   const std::string file = record(folder, {"--record-readings"}) + "/run.mcap";
@@ -141,7 +142,7 @@ TEST(Verify, DamageIsTold) {
   EXPECT_EQ(facts.number("/reference/different"), 0);
 }
 
-/// Bits of the index and the summary, of lengths and of the end, all over the file.
+/// Bits of the index and the summary, of lengths and of the end, throughout the file.
 TEST(Verify, AFlippedBitAnywhereIsToldAndEndsWithAnError) {
   const Folder folder;
   const std::string file = altered(folder, 99) + "/run.mcap";
@@ -158,7 +159,7 @@ TEST(Verify, AFlippedBitAnywhereIsToldAndEndsWithAnError) {
   }
 }
 
-/// A recording of a run that was killed: sound as far as its whole ticks go, and not at all without one.
+/// The recording of a killed run is sound up to its last complete tick, and not sound without any tick.
 TEST(Verify, ACutRecordingIsNoWholeOne) {
   const Folder folder;
   const std::string file = altered(folder, 99) + "/run.mcap";
@@ -170,7 +171,7 @@ TEST(Verify, ACutRecordingIsNoWholeOne) {
       << part.out;
   EXPECT_TRUE(Json(run_program({"verify", file, "--json"}).out).flag("/truncated"));
 
-  // What stands before the first tick has no message of /fleet but the channel's.
+  // Before the first tick, the only /fleet record is that of the channel.
   const record::Recording run = record::open_recording(file);
   std::uintmax_t size = whole * 3 / 4;
   while (record::open_recording(file).ticks > 0) std::filesystem::resize_file(file, size -= 64);

@@ -20,7 +20,7 @@ class Video : public testing::Test {
     if (!std::filesystem::exists(program.parent_path() / "sensorfarm_ffmpeg.so"))
       GTEST_SKIP() << "built without FFmpeg";
   }
-  /// Of two robots that wander for `seconds`.
+  /// Two robots that wander for `seconds`.
   Words run(const std::string& video, const std::string& seconds, const Words& more = {}) const {
     Words words{"run", our_world("cave.world"), "--robots", "2",     "--duration", seconds, "--video",
                 video, "--video-size",          "160x120",  "--json"};
@@ -33,7 +33,7 @@ class Video : public testing::Test {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return folder.path("r");
   }
-  /// What another program finds, where there is one: "codec,frames" and the duration.
+  /// Checks with another program, if it is installed: "codec,frames" and the duration.
   void expect_probed(const std::string& file, const std::string& expected) const {
     if (!succeeds("ffprobe -version")) return;
     EXPECT_TRUE(
@@ -45,7 +45,7 @@ class Video : public testing::Test {
   Folder folder;
 };
 
-/// Ten seconds of ticks are ten seconds of video, at another speed as many times fewer.
+/// Ten seconds of ticks give ten seconds of video, divided by the speed.
 TEST_F(Video, DurationIsThatOfTheRunOverTheSpeed) {
   const Outcome one = run_program(run(folder.path("one.webm"), "10"));
   ASSERT_EQ(one.code, 0) << one.err;
@@ -59,7 +59,7 @@ TEST_F(Video, DurationIsThatOfTheRunOverTheSpeed) {
   expect_probed(folder.path("four.webm"), "vp9,25\n2.500000\n");
 }
 
-/// Frames follow from states alone: those of the run and of its recording are the same.
+/// Frames depend only on states: those of a run and of its recording are the same.
 TEST_F(Video, ARecordingHasTheSameVideoAsItsRun) {
   const Outcome ran = run_program(run(folder.path("run.webm"), "4", {"--record", folder.path("r")}));
   ASSERT_EQ(ran.code, 0) << ran.err;
@@ -71,7 +71,7 @@ TEST_F(Video, ARecordingHasTheSameVideoAsItsRun) {
   EXPECT_TRUE(read_file(folder.path("run.webm")) == read_file(folder.path("plot.webm")));
 }
 
-/// A video changes nothing of the run.
+/// A video does not change the run.
 TEST_F(Video, ReadingsDoNotDependOnIt) {
   const Outcome with = run_program(run(folder.path("v.webm"), "2", {"--video-readings", "roomba1"}));
   ASSERT_EQ(with.code, 0) << with.err;
@@ -95,7 +95,7 @@ TEST_F(Video, FramesArePngFilesForOtherEncoders) {
   EXPECT_NE(read_file(folder.path("f/000000.png")), read_file(folder.path("f/000014.png")));
 }
 
-/// Frames of a longer call before would be read as the end of this one's video; other files are the user's.
+/// Frames left by a longer earlier call would be read as the end of this video; other files belong to the user.
 TEST_F(Video, FramesOfAnEarlierCallAreRemoved) {
   const std::string recording = record("2"), frames = folder.path("f");
   const auto write = [&](const std::string& fps) {
@@ -118,7 +118,7 @@ TEST_F(Video, FramesOfAnEarlierCallAreRemoved) {
   for (const std::string& name : others) EXPECT_TRUE(std::filesystem::exists(frames + "/" + name)) << name;
 }
 
-/// At any frame rate, between ticks and at them, after the begin that was asked for.
+/// At any frame rate, between ticks and at them, after the requested start.
 TEST_F(Video, FramesOfOneTimeAreTheSame) {
   const std::string recording = record("2");
   const auto write = [&](const std::string& fps, const std::string& name) {
@@ -134,7 +134,7 @@ TEST_F(Video, FramesOfOneTimeAreTheSame) {
   EXPECT_FALSE(read_file(folder.path("b/000004.png")) == read_file(folder.path("b/000005.png"))) << "between ticks";
 }
 
-/// Another program's decoder and measure, frame by frame.
+/// Uses another program's decoder and metric, frame by frame.
 TEST_F(Video, DecodedFramesResembleThePaintedOnes) {
   if (!succeeds("ffmpeg -version")) GTEST_SKIP() << "no FFmpeg on this machine (Debian: ffmpeg)";
   const std::string recording = record("3"), video = folder.path("v.webm"), frames = folder.path("f");
@@ -173,7 +173,7 @@ TEST_F(Video, AStoppedPlotSaysThatItsVideoEndsEarly) {
   expect_probed(folder.path("v.webm"), "vp9,");
 }
 
-/// The plug-in or FFmpeg may be missing: the message names the package, and frames need neither.
+/// The plug-in or FFmpeg may be missing: the message names the package. Frames need neither.
 TEST_F(Video, WithoutFfmpegTheMessageNamesItsPackage) {
   const std::filesystem::path program = SF_PROGRAM;
   const std::string alone = folder.path("alone");

@@ -42,7 +42,7 @@ constexpr const char* kTestbed =
     "id = 2\n"
     "offset = [0.1, 0, 90]\n";
 
-/// The reading of a laser whose beams all end 0.3 m away, as `serve --mirror` sends it.
+/// A reading of a laser whose beams all end at 0.3 m, as `serve --mirror` sends it.
 base::Bytes mirrored_scan(const std::string& world_file, std::uint32_t sequence) {
   const world::World world = world::load_world(world_file, {.sensors = sensors::world_file_words()});
   const sensors::SensorSet sensor_set(world);
@@ -76,7 +76,7 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   EXPECT_NE(outcome.out.find("6 sent, 0 failed"), std::string::npos) << outcome.out;
   scenes::expect_painted(folder.path("pictures/a-000003.png"), {{0xFF56E078u, 20}, {0xFFFFA028u, 5}});  // tags, x axes
 
-  // Two tags in each image but the first.
+  // Two tags in each image except the first.
   std::map<std::uint16_t, std::uint32_t> count;
   std::map<std::uint16_t, netio::Packet> last;
   netio::SigningKey key;
@@ -99,7 +99,7 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   EXPECT_EQ(count[2], 3u);
   EXPECT_NEAR(static_cast<double>(last[1].header.time - last[2].header.time), 0.0, 1e9);
 
-  // The packet of tag 1 is the last line of the track about it; that of tag 2 is its object's pose.
+  // The packet of tag 1 matches the last line of the track about it; that of tag 2 has its object's pose.
   std::istringstream lines(read_file(folder.path("track.csv")));
   std::string line;
   std::map<int, std::array<double, 3>> poses;
@@ -119,7 +119,7 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   EXPECT_NEAR(std::abs(two.orientation[3]), std::abs(std::cos(0.5 * yaw)), 1e-5);
 }
 
-/// Three rendered pictures with marks beside the tags, as a folder of photographs. @return the testbed's file
+/// Writes three rendered pictures with marks next to the tags, as a folder of photographs. @return the testbed file
 static std::string write_pictures(const Folder& folder) {
   const std::string testbed = folder.write("t.toml", kTestbed);
   EXPECT_EQ(
@@ -136,7 +136,7 @@ TEST(Vps, ReadsItsOwnPictures) {
   EXPECT_NE(outcome.out.find("\"images\": 3"), std::string::npos) << outcome.out << outcome.err;
 }
 
-/// Boundary: 5 images, of which each second is drawn over: 0, 2 and 4.
+/// Boundary: 5 images, every second of which is drawn over: 0, 2 and 4.
 TEST(Vps, DrawsEachSecondImage) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
@@ -160,7 +160,7 @@ TEST(Vps, DrawsEachSecondImage) {
   EXPECT_NE(read.out.find("\"images\": 3,\n  \"unreadable\": 0"), std::string::npos) << read.out << read.err;
 }
 
-/// Photographs are not overwritten by pictures of them.
+/// Photographs are not overwritten by drawings.
 TEST(Vps, AFolderOfImagesIsNoFolderForPictures) {
   const Folder folder;
   const std::string testbed = write_pictures(folder);
@@ -176,7 +176,7 @@ TEST(Vps, CountsPicturesThatCannotBeRead) {
   const Folder folder;
   const std::string testbed = write_pictures(folder);
   std::ofstream(folder.path("p/a-000001.png"), std::ios::trunc) << "no image";
-  ASSERT_EQ(mkfifo(folder.path("p/a-000009.png").c_str(), 0600), 0);  // not read, which would wait
+  ASSERT_EQ(mkfifo(folder.path("p/a-000009.png").c_str(), 0600), 0);  // not opened, since that would block
   const Outcome outcome =
       run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--overlay", folder.path("q"), "--json"});
   EXPECT_NE(outcome.out.find("\"images\": 3,\n  \"unreadable\": 1"), std::string::npos) << outcome.out << outcome.err;
@@ -184,7 +184,7 @@ TEST(Vps, CountsPicturesThatCannotBeRead) {
   EXPECT_TRUE(std::filesystem::exists(folder.path("q/a-000002.png")));
 }
 
-/// Far from the next image, which is due in ten seconds.
+/// Long before the next image, which is due in ten seconds.
 TEST(Vps, CtrlCEndsItAtOnce) {
   const Folder folder;
   std::string slow = kTestbed;
@@ -198,7 +198,7 @@ TEST(Vps, CtrlCEndsItAtOnce) {
   EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
 }
 
-/// Live images wait for their time however fast they are rendered: they are never closer than their rate.
+/// Live images wait for their time even if rendering is fast: their interval is at least the period.
 TEST(Vps, ImagesOfLiveRobotsAreAPeriodApart) {
   std::string text = kTestbed;
   text.insert(text.find("position"), "rate = 10\n");
@@ -232,8 +232,8 @@ bool says_often(const Program& program, const std::string& text, std::size_t cou
 
 }  // namespace
 
-/// The three programs in real time, of which nothing is asked but that they understand each other: a robot that knows
-/// its pose by cameras alone, which stall for a while. Accuracy: ClosedLoop of tests/vision.
+/// The three programs in real time, only checked for working together: a robot that determines its pose with cameras
+/// alone, which stall for a while. For accuracy see ClosedLoop in tests/vision.
 TEST(Vps, ARobotDrivesByItsPackets) {
   const Folder folder;
   std::string testbed = kTestbed;
@@ -277,8 +277,7 @@ TEST(Vps, ARobotDrivesByItsPackets) {
   EXPECT_GT(served.number("/received/accepted"), 0);
 }
 
-/// Times count from the first image on, whatever the machine's speed, with a period of the cameras between images at
-/// least.
+/// Times count from the first image, at any speed of the machine, with at least one camera period between images.
 TEST(Vps, LiveImagesHaveTheTimeSinceTheFirst) {
   const Folder folder;
   const vision::Testbed testbed = vision::read_testbed(
@@ -356,7 +355,7 @@ TEST(Vps, NamesWhatIsWrong) {
   }
 }
 
-/// Readings come over and over while it runs, so some are there when a tag is seen.
+/// Readings are sent repeatedly while it runs, so some are available when a tag is seen.
 TEST(Vps, ReadingsAreDrawnFromWhereTheTagsAreSeen) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", std::string(kTestbed) + "robot = 5\n");  // carries tag 2

@@ -1,4 +1,4 @@
-// Every command that loads a world tells of its warnings.
+// Every command that loads a world prints its warnings.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace sf {
 namespace {
 
-// Five slips, each in a line of its own; the robot is one all the same.
+// Five mistakes, each on a separate line; the robot is still valid.
 const char* const kSlips = R"(model( name "box" pose [3 0 0 0] size [1 1 1]
   colour "red"
   masss 3 )
@@ -92,7 +92,7 @@ TEST(Warnings, ScenariosTellOfTheirWorlds) {
   EXPECT_NE(outcome.err.find("sensorfarm: 5 warnings, the first 3 here"), std::string::npos) << outcome.err;
 }
 
-// A robot that its world file gives a controller keeps it; the command line drives the others.
+// A robot with a controller in the world file keeps it; the command line's drives the others.
 TEST(Warnings, ControllersOfTheWorldFileCountMore) {
   const Folder folder;
   const std::string robots =

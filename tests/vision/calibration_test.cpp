@@ -1,4 +1,4 @@
-// Intrinsics from rendered images of a chessboard, against those that they were rendered with.
+// Calibrates intrinsics from rendered images of a chessboard, and compares them with those used for rendering.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ Camera camera_at(glm::dvec3 position, double roll, double pitch) {
   camera.intrinsics = {640, 480, {620.0, 610.0}, {325.0, 236.0}, {-0.2, 0.05, 0.0004, -0.0003, 0.0}};
   camera.exposure = camera.readout = 0.0;
   camera.position = position;
-  // Looks at the board's centre, turned by `roll` about its axis and from the side by `pitch`.
+  // Looks at the board's centre, rotated by `roll` about its axis and tilted by `pitch`.
   camera.forward = glm::normalize(glm::dvec3{std::sin(pitch), 0.0, 0.0} - position);
   const glm::dvec3 side = glm::normalize(glm::cross(camera.forward, glm::dvec3{std::sin(roll), std::cos(roll), 0.0}));
   camera.right = side;
@@ -51,7 +51,7 @@ constexpr int kTagSquares = 8,
               kCells = 8;  // squares along a side; cells of a square, of which a tag has the middle six
 const Chessboard kBoardWithTags{kTagSquares - 1, kTagSquares - 1, 0.08, "aruco_4x4_50", 0.06};
 
-/// Larger than the pictures of it.
+/// A board larger than the images.
 Scene board_with_tags() {
   Scene scene;
   scene.texture = 0.0;
@@ -76,7 +76,7 @@ Scene board_with_tags() {
   return scene;
 }
 
-/// A source that claims a number of images, and has none.
+/// A source that reports a number of images but has none.
 class Claim : public ImageSource {
  public:
   explicit Claim(std::size_t size) : size_(size) {}
@@ -116,7 +116,7 @@ TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
     images.push_back(image);
   }
   images.push_back(grey_image(640, 480));  // without a board
-  images.emplace_back();                   // a file that cannot be read
+  images.emplace_back();                   // an unreadable file
   std::vector<std::size_t> progress;
   ImagesInMemory album(images);
   const Calibration c = calibrate(album, "album", kBoard, [&](std::size_t done) { progress.push_back(done); });
@@ -168,7 +168,7 @@ TEST(Calibration, FindsTheIntrinsicsByPartsOfABoardWithTags) {
   EXPECT_NEAR(c.intrinsics.distortion[0], truth.distortion[0], 0.03);
 }
 
-/// Boundary: 8 x 8 squares have 32 tags; a dictionary of 30.
+/// Boundary: 8 x 8 squares need 32 tags; the dictionary has 30.
 TEST(Calibration, RefusesABoardWithMoreTagsThanItsDictionary) {
   Chessboard board = kBoardWithTags;
   board.dictionary = "apriltag_16h5";
@@ -191,16 +191,16 @@ TEST(Calibration, NamesWhatIsMissing) {
 
 TEST(Calibration, BoundsItsWork) {
   const char* const kMany = "album: has more than 200 images; expected fewer, all different";
-  EXPECT_EQ(error_of(Claim(201)), kMany);  // known before any is read
-  EXPECT_EQ(error_of(ImagesInMemory(std::vector<Image>(201, Image{16, 16, 1, {}}))), kMany);  // as of a video
-  Image large{1 << 20, 1 << 11, 1, {0}};  // 2^31 pixels, which are never looked at
+  EXPECT_EQ(error_of(Claim(201)), kMany);  // detected before any image is read
+  EXPECT_EQ(error_of(ImagesInMemory(std::vector<Image>(201, Image{16, 16, 1, {}}))), kMany);  // as in a video
+  Image large{1 << 20, 1 << 11, 1, {0}};  // 2^31 pixels, which are never read
   large.width += 1;
   EXPECT_EQ(error_of(ImagesInMemory({large})),
             "album: has images of more than 2048 Mpx in all; expected fewer or smaller ones");
 }
 
 TEST(Calibration, SearchesImagesOfTagsWithoutStalling) {
-  // Squares in squares, and no chessboard: OpenCV's other search takes 20 s of such an image, this one 0.3 s.
+  // Squares within squares, but no chessboard: OpenCV's other search needs 20 s for such an image, this one 0.3 s.
   Testbed testbed;
   testbed.tag.height = 0.2;
   testbed.cameras.push_back({distorted_camera(), ""});

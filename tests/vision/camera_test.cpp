@@ -13,7 +13,7 @@
 namespace sf::vision {
 
 TEST(Camera, LooksStraightDownByDefault) {
-  // 1 px of the centre is height / focal: 6.5 m / 1664 px on the floor; the image's right is +x, its top is +y.
+  // 1 px at the centre is height / focal: 6.5 m / 1664 px on the floor; the image's right is +x, its top is +y.
   Camera camera = plain_camera();
   const auto center = project(camera, {0.0, 0.0, 0.0});
   ASSERT_TRUE(center);
@@ -25,7 +25,7 @@ TEST(Camera, LooksStraightDownByDefault) {
 }
 
 TEST(Camera, DistortsAsBrownsFormulaSays) {
-  // By hand: n = (0.3, -0.2), r2 = 0.13.
+  // Computed by hand: n = (0.3, -0.2), r2 = 0.13.
   Intrinsics i{1280, 1024, {1000.0, 1100.0}, {600.0, 500.0}, {-0.2, 0.05, 0.001, -0.002, 0.01}};
   const double radial = 1.0 - 0.2 * 0.13 + 0.05 * 0.0169 + 0.01 * 0.002197;
   const double x = 0.3 * radial + 2.0 * 0.001 * 0.3 * -0.2 - 0.002 * (0.13 + 2.0 * 0.09);
@@ -67,7 +67,7 @@ RC_GTEST_PROP(Camera, OrientationIsReadBack, ()) {
   RC_ASSERT(glm::distance(glm::cross(camera.right, camera.down), camera.forward) < 1e-12);
 }
 
-/// Newton's steps need every term of the derivatives where a lens bends as much along as across.
+/// Newton's method needs all derivatives if a lens distorts as much tangentially as radially.
 TEST(Camera, UndistortsStrongTangentialDistortion) {
   Intrinsics i = plain_camera().intrinsics;
   for (const auto& [down, across] : {std::pair{0.3, 0.0}, {0.0, 0.3}, {-0.3, 0.0}, {0.0, -0.3}}) {
@@ -104,7 +104,7 @@ TEST(Camera, KnowsLensesThatFold) {
   EXPECT_TRUE(is_invertible(i));
   i.distortion = {-2.5, 0.0, 0.0, 0.0, 0.0};  // r (1 - 2.5 r2) is largest at r = 0.365, and the corner is at 0.49
   EXPECT_FALSE(is_invertible(i));
-  i.distortion = {0.0, 0.0, 0.0, 0.5, 0.0};  // tangential alone
+  i.distortion = {0.0, 0.0, 0.0, 0.5, 0.0};  // tangential only
   EXPECT_FALSE(is_invertible(i));
 }
 
@@ -120,10 +120,10 @@ TEST(Camera, TimesRows) {
 TEST(Camera, NamesAreKeysAndStems) {
   for (const char* name : {"north", "N", "7", "a_b-c", "2nd"}) EXPECT_TRUE(is_camera_name(name)) << name;
   EXPECT_TRUE(is_camera_name(std::string(64, 'a')));
-  EXPECT_FALSE(is_camera_name(std::string(65, 'a')));  // longer than any that a file name needs
+  EXPECT_FALSE(is_camera_name(std::string(65, 'a')));  // longer than a file name needs
   for (const std::string& name :
        std::vector<std::string>{"", "..", "a/b", "../a",     // other folders
-                                "a=b", "a b", "-a", "a\"b",  // other words of a command line or of the file
+                                "a=b", "a b", "-a", "a\"b",  // other arguments or tokens of the file
                                 "_a", "a.b", "a\n", "\xC3\xB6", std::string("a\0b", 3)})
     EXPECT_FALSE(is_camera_name(name)) << name;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The cameras of the tests: 1280 x 1024 pixels, 5 m x 4 m of the floor from 6.5 m.
+// Test cameras: 1280 x 1024 pixels, 5 m x 4 m of the floor from 6.5 m.
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Robots that drive by cameras: robot -> rendered picture -> detection -> TAG over UDP -> filter in the robot -> V2V ->
-// filter in the farm -> readings -> controller -> the robot moves -> next picture. All but the sockets' kernel runs on
-// a clock of the test's own, so a run is the same each time.
+// filter in the farm -> readings -> controller -> the robot moves -> next picture. Everything except the kernel's
+// sockets uses a simulated clock, so runs are reproducible.
 
 #include <gtest/gtest.h>
 
@@ -24,9 +24,9 @@ namespace sf::vision {
 namespace {
 
 constexpr std::int64_t kTick = 100'000'000;     // [ns] of the robot, the farm and the camera
-constexpr std::int64_t kExposure = 40'000'000;  // [ns] after a tick; what is seen then is heard at the next tick
+constexpr std::int64_t kExposure = 40'000'000;  // [ns] after a tick; an image taken then is received at the next tick
 
-/// One camera above the whole lane of worlds/testpath: 11 mm of the floor a pixel, tags of 21 pixels.
+/// One camera above the whole lane of worlds/testpath: 11 mm of the floor per pixel, tags of 21 pixels.
 Testbed testbed() {
   return parse_testbed(
       "loop.toml",
@@ -35,7 +35,7 @@ Testbed testbed() {
       "distortion = [-0.1, 0.02, 0, 0, 0]\nexposure = 0.004\n");
 }
 
-/// The cameras' side: true states in, TAG packets out.
+/// The cameras: convert true states to TAG packets.
 class Cameras {
  public:
   Cameras()
@@ -47,7 +47,8 @@ class Cameras {
         frames_(1) {}
   netio::Endpoint truth() const { return netio::bound_endpoint(truth_); }
 
-  /// An image, unless the camera repeats its last one. @return tags seen
+  /// Takes an image, or repeats the last one while the camera is frozen.
+  /// @return number of tags seen
   std::size_t look(std::int64_t now, const netio::Endpoint& to) {
     batch_.drain(truth_, 1000, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) {
       netio::Packet packet;
@@ -117,7 +118,7 @@ struct Loop {
     options.truth = cameras.truth();
     client.emplace(world, sensor_set, 0, layout, options);
   }
-  /// Reading ports have no option for "any free one": tests that run at once begin at different places.
+  /// Reading ports cannot be "any free port", so parallel tests start at different ports.
   server::StreamLayout make_layout() const {
     server::StreamLayout made;
     for (unsigned attempt = 0; attempt < 1000; ++attempt) {
@@ -173,7 +174,7 @@ TEST(ClosedLoop, ARobotKeepsItsLaneByCamerasAlone) {
   EXPECT_LE(stats.link.stale, 3u) << "readings before its first state";
 }
 
-/// By its own pose alone: the points are reached in truth.
+/// By its estimated pose only: the true positions reach the points.
 TEST(ClosedLoop, ARobotDrivesToPointsByCamerasAlone) {
   Loop loop("patrol", {{"points", std::vector<double>{0.2, 0.0, 0.8, 0.3}}, {"speed", 0.3}, {"pause", 1000.0}});
   loop.run(60);
@@ -181,7 +182,7 @@ TEST(ClosedLoop, ARobotDrivesToPointsByCamerasAlone) {
   EXPECT_EQ(loop.client->stats().stops, 0u);
 }
 
-/// A camera that repeats its last image with new timestamps: the robot would believe that it stands, and turn on.
+/// A camera repeats its last image with new timestamps: the robot would take itself for stopped and keep turning.
 TEST(ClosedLoop, ARobotStandsWhileTheCameraIsFrozen) {
   Loop loop("lane-keeping", {{"speed", 0.25}});
   loop.run(20);
@@ -202,10 +203,10 @@ TEST(ClosedLoop, ARobotStandsWhileTheCameraIsFrozen) {
   EXPECT_EQ(loop.client->stats().stops, 1u);
 }
 
-/// Boundary: no camera ever sees it.
+/// Boundary: the robot is never seen by a camera.
 TEST(ClosedLoop, ARobotThatNoCameraSeesStands) {
   Loop loop("lane-keeping", {});
-  loop.cameras.frozen = true;  // from before the first image, which is then empty
+  loop.cameras.frozen = true;  // before the first image, which is then empty
   loop.run(10);
   EXPECT_EQ(loop.client->stats().distance_m, 0.0);
   EXPECT_EQ(loop.client->stats().steps, 0u);

@@ -1,4 +1,4 @@
-// The chain from rendered images to tracked tags, against the truth.
+// The chain from rendered images to tracked tags, compared with the ground truth.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ Testbed testbed_with(const std::vector<Camera>& cameras) {
 
 struct Trial {
   Accuracy accuracy;
-  int most_cameras = 0;  ///< that saw one tag at a time
+  int most_cameras = 0;  ///< maximum number that saw one tag at a time
 };
 
 Trial run(const Testbed& testbed, const FleetOptions& options, int images) {
@@ -62,7 +62,7 @@ Patch tag_patch(std::uint32_t id, glm::dvec2 p, double yaw, double side) {
   return tag;
 }
 
-/// Exact edge points of a tag of 0.15 m. @param count of each side: upper, right, lower, left
+/// Exact edge points of a tag of 0.15 m. @param count points of each side: upper, right, lower, left
 std::vector<EdgePoint> edges_of(const Camera& camera, const base::Pose& X_WT, const std::array<int, 4>& count) {
   std::vector<EdgePoint> edges;
   for (int side = 0; side < 4; ++side)
@@ -73,7 +73,7 @@ std::vector<EdgePoint> edges_of(const Camera& camera, const base::Pose& X_WT, co
   return edges;
 }
 
-/// Grey pixels with a square of another grey, whose upper left pixel is at (20, 20).
+/// A uniform image with a square of another grey, whose upper left pixel is at (20, 20).
 Image square(int side, std::uint8_t inside, std::uint8_t outside) {
   Image image{64, 64, 1, std::vector<std::uint8_t>(64 * 64, outside)};
   for (int v = 20; v < 20 + side; ++v)
@@ -93,7 +93,7 @@ std::size_t edges_in(const Image& image, double side) {
 TEST(Detection, ThirtyTagsFromSixAndAHalfMetres) {
   if (instrumented()) GTEST_SKIP() << "rendering is slow with sanitizers; FromThreeMetres takes the same paths";
   const Trial r = run(testbed_with({distorted_camera()}), {30, 0.5, 0, true, 1}, 6);
-  // Measured: 0.05 mm, 0.05 degrees, 2 mm/s. docs/vps.md derives what the pixels allow.
+  // Measured: 0.05 mm, 0.05 degrees, 2 mm/s. docs/vps.md derives the limits due to the pixels.
   EXPECT_LT(r.accuracy.position.rms(), 0.15e-3);
   EXPECT_LT(r.accuracy.heading.rms(), 0.1 * kDegree);
   EXPECT_LT(r.accuracy.velocity.rms(), 8e-3);
@@ -122,7 +122,7 @@ TEST(Detection, TwoCamerasWithOcclusion) {
   testbed.dictionary = "aruco_4x4_50";
   const Trial r = run(testbed, {24, 0.5, 6, true, 3}, 3);
   EXPECT_EQ(r.most_cameras, 2);
-  // Tags that are hidden in part are still found by their other sides, less exactly.
+  // Partly hidden tags are still found by their other sides, with less accuracy.
   EXPECT_LT(r.accuracy.position.rms(), 1e-3);
   EXPECT_LT(r.accuracy.position.largest, 10e-3);
   EXPECT_EQ(r.accuracy.wrong, 0u);
@@ -137,7 +137,7 @@ TEST(Detection, RefusesTagsOfAnotherSizeOrHeight) {
   std::vector<Sighting> seen;
 
   Testbed stated = truth;
-  stated.tags[1].height = 0.2;  // id 1 alone is as stated
+  stated.tags[1].height = 0.2;  // only id 1 is as specified
   stated.tag.side = 0.2;
   TagDetector detector(stated, truth.cameras[0].camera);
   detector.detect(image, 0.0, seen);
@@ -155,8 +155,8 @@ TEST(Detection, RefusesTagsOfAnotherSizeOrHeight) {
 }
 
 TEST(Detection, HeadingIsThatOfThePrintedTag) {
-  // A tag without rotation, its x axis along the world's: the code's left is left in the image of a camera that looks
-  // down with +x to the right.
+  // A tag without rotation, its x axis along the world's: the left of the code is left in the image of a camera that
+  // looks down with +x to the right.
   const Testbed testbed = testbed_with({plain_camera()});
   for (const double yaw : {0.0, -2.5, M_PI}) {
     Scene scene;
@@ -231,7 +231,7 @@ TEST(Detection, EmptyImagesHaveNoTags) {
 }
 
 TEST(Detection, CountsImagesWithoutPixels) {
-  // A file that cannot be read, at which OpenCV throws; on the threads of Positioning nothing may.
+  // An unreadable file, for which OpenCV throws; exceptions must not escape on the threads of Positioning.
   const Testbed testbed = testbed_with({plain_camera(), plain_camera()});
   Positioning positioning(testbed, 2);
   EXPECT_TRUE(positioning.update(std::vector<Frame>(2)).empty());
@@ -248,13 +248,13 @@ TEST(Dictionaries, KnowTheirTags) {
 }
 
 TEST(RenderedFleet, BoundsItsGrid) {
-  // Tags of 1 mm, and a camera that sees 1 cm of the floor: grids as fine as the tags would have 10^9 places.
+  // Tags of 1 mm, and a camera that sees 1 cm of the floor: grids as fine as the tags would have 10^9 positions.
   Testbed testbed = testbed_with({plain_camera(), plain_camera()});
   testbed.tag = {1e-3, 0.0, {}, ""};
   testbed.cameras[0].camera.position = {-49.0, -49.0, 0.01};
   testbed.cameras[1].camera.position = {49.0, 49.0, 0.01};
   EXPECT_THROW(RenderedFleet(testbed, {1000, 0.5, 0, false, 1}), base::InputError);
-  // No camera sees the plane of the tags: there is no field of view.
+  // No camera sees the plane of the tags, so there is no field of view.
   for (TestbedCamera& each : testbed.cameras) each.camera.position.z = -1.0;
   EXPECT_THROW(RenderedFleet(testbed, {1, 0.5, 0, false, 1}), base::InputError);
 }

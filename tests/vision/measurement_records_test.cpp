@@ -35,8 +35,7 @@ Sighting scripted_sighting(std::uint32_t id, double time, double x, double y, do
   return s;
 }
 
-/// Tag 1 drives a circle before two cameras, tag 2 stops and jumps, tag 3 is
-/// seen now and then.
+/// Tag 1 drives on a circle in view of two cameras, tag 2 stops and jumps, tag 3 is seen intermittently.
 std::vector<Sighting> seen_at(int i) {
   const double t = 0.07 * i, a = 1.5 * t;
   std::vector<Sighting> seen{scripted_sighting(1, t, std::sin(a), -std::cos(a), a + 2.5, 0.004)};
@@ -48,7 +47,7 @@ std::vector<Sighting> seen_at(int i) {
   return seen;
 }
 
-/// One tag of 0.15 m before a camera from 2 m.
+/// One tag of 0.15 m at 2 m from a camera.
 struct View {
   Camera camera = distorted_camera();
   Testbed testbed;

@@ -50,7 +50,8 @@ TEST(Overlay, MarksLinesAtTheirHeightAndInTheirColour) {
 
 TEST(Overlay, ClipsToThePicture) {
   const Camera camera = distorted_camera();
-  // 5 m x 4 m are in sight: walls beside it, through it, round it, and much longer than the pieces of a mark could be.
+  // 5 m x 4 m are visible: walls outside of this area, through it, around it, and of extreme length, with a bounded
+  // number of pieces.
   EXPECT_TRUE(world_marks(camera, world_of({wall({4.0, -9.0}, {4.0, 9.0}), wall({50.0, 0.0}, {60.0, 0.0})})).empty());
   for (const double far : {3.0, 100.0, 1e7}) {
     const std::vector<Mark> marks = world_marks(camera, world_of({wall({-far, 0.1}, {far, 0.2}, 0.0)}));
@@ -64,7 +65,7 @@ TEST(Overlay, ClipsToThePicture) {
     }
     EXPECT_LT(nearest, 2.0) << far;
   }
-  // Two pieces of one line, which leaves the picture and comes back.
+  // One line that leaves the picture and enters it again: two pieces.
   world::World bent;
   bent.lane_markings.push_back({{{0.0, 0.0}, {9.0, 0.0}, {9.0, 1.0}, {0.0, 1.0}}, 0.02});
   EXPECT_EQ(world_marks(camera, bent).size(), 2u);

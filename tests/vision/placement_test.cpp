@@ -1,4 +1,4 @@
-// Poses of cameras from rendered images of surveyed tags.
+// Computes camera poses from rendered images of surveyed tags.
 
 #include "vision/placement.h"
 
@@ -25,7 +25,7 @@ Camera truth() {
   return camera;
 }
 
-/// Tags 1 to 5 at different heights; the fifth is out of sight.
+/// Tags 1 to 5 at different heights; the fifth is not visible.
 Testbed survey(bool headings) {
   Testbed testbed;
   testbed.file = "lab.toml";
@@ -48,7 +48,7 @@ ImagesInMemory pictures(const Testbed& testbed, std::size_t tags = 5) {
   std::vector<Image> images(2);
   Renderer renderer(truth(), Imaging{}, 1);
   for (std::uint32_t i = 0; i < images.size(); ++i) renderer.render(scene, 0.0, i, images[i]);
-  images.emplace_back();  // a file that cannot be read
+  images.emplace_back();  // an unreadable file
   return ImagesInMemory(std::move(images));
 }
 
@@ -97,7 +97,7 @@ TEST(Placement, AWrongPlaceShowsInItsResidual) {
   for (const std::size_t other : {0u, 2u, 3u}) EXPECT_GT(*found.tags[other].without, 1.0);
 }
 
-/// Each tag has four corners, so that the mean of the tags' squares is that of all.
+/// Each tag has four corners, so the mean of the tags' squares equals that of all corners.
 TEST(Placement, ResidualsOfTagsMakeThatOfAll) {
   Testbed testbed = survey(true);
   ImagesInMemory images = pictures(testbed);
@@ -108,7 +108,7 @@ TEST(Placement, ResidualsOfTagsMakeThatOfAll) {
   EXPECT_NEAR(std::sqrt(squares / 4.0), found.residual, 1e-3);
 }
 
-/// Of a folder, 200 images are read: one of another size behind them is not.
+/// Only 200 images of a folder are read: a later one of another size is ignored.
 TEST(Placement, ReadsTwoHundredImages) {
   const Testbed testbed = survey(false);
   for (const std::size_t before : {199u, 200u}) {
@@ -120,7 +120,7 @@ TEST(Placement, ReadsTwoHundredImages) {
   }
 }
 
-/// Boundaries: no survey, no image, a point too few, points on a line; the least that suffices.
+/// Boundaries: no survey, no image, one point too few, points on a line; the minimum that suffices.
 TEST(Placement, SaysWhatIsMissing) {
   Testbed testbed = survey(false);
   EXPECT_EQ(

@@ -1,4 +1,4 @@
-// Views of cameras and the drawings over them, compared with golden records.
+// Camera images and drawings over them, compared with golden records.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

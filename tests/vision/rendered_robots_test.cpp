@@ -32,7 +32,7 @@ TEST(RenderedRobots, TagsAreOnTheirRobots) {
   EXPECT_NEAR(pose_at(tag, 10.1).x, 1.0 + 0.1 * 0.3, 1e-12);
 }
 
-/// Boundary: silence for longer than the extrapolation. The robot stands then.
+/// Boundary: no packets for longer than the extrapolation. The robot then stops.
 TEST(RenderedRobots, SilentRobotsStand) {
   const Testbed testbed = offset_testbed();
   RenderedRobots robots(testbed);
@@ -40,7 +40,7 @@ TEST(RenderedRobots, SilentRobotsStand) {
   for (const double time : {0.6, 5.0}) EXPECT_NEAR(pose_at(robots.scene_at(time).patches[1], time).x, 0.5, 1e-12);
 }
 
-/// Boundary: the dictionary's last id, and the one after it.
+/// Boundary: the last id of the dictionary, and the one after it.
 TEST(RenderedRobots, RefusesTagsThatNoDictionaryHas) {
   const Testbed testbed = offset_testbed();
   RenderedRobots robots(testbed);

@@ -1,4 +1,4 @@
-// Rendered images: geometry, light, noise, and that they are a function of their arguments.
+// Rendered images: geometry, light, noise, and independence of anything but their arguments.
 
 #include "vision/renderer.h"
 
@@ -111,7 +111,7 @@ TEST(Renderer, BlursWhatMovesDuringTheExposure) {
   patch.velocity = {4.0, 0.0};  // 40 mm during the exposure: 10 px
   scene.patches.push_back(patch);
   const Image image = rendered(camera, perfect(), scene);
-  // The left edge moves from -0.04 m to 0: columns 69.5 to 79.5; in the middle of its way, half of the light.
+  // The left edge moves from -0.04 m to 0: columns 69.5 to 79.5; in the middle of its path, half of the light.
   double sum = 0.0;
   for (int v = 30; v < 90; ++v) sum += 0.5 * (*image.at(74, v) + *image.at(75, v));
   EXPECT_NEAR(sum / 60.0, 127.5, 3.0);
@@ -150,7 +150,7 @@ TEST(Renderer, NoiseHasTheStatedVariance) {
   }
   const double n = static_cast<double>(image.pixels.size()), mean = sum / n, variance = squares / n - mean * mean;
   EXPECT_NEAR(mean, 127.5, 5.0 * 3.3 / std::sqrt(n));
-  // Read noise, shot noise, quantisation. The standard error of a variance is sqrt(2/n) of it.
+  // Read noise, shot noise, quantisation. The standard error of a variance is sqrt(2/n) times the variance.
   const double expected = 4.0 + 0.05 * 127.5 + 1.0 / 12.0;
   EXPECT_NEAR(variance, expected, 5.0 * std::sqrt(2.0 / n) * expected);
 }

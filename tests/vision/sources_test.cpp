@@ -28,7 +28,8 @@ class Sources : public testing::Test {
   }
   std::string path(const std::string& name) const { return folder_ + "/" + name; }
   void write(const std::string& name, std::uint8_t grey) const {
-    std::ofstream(path(name)) << "P5 4 3 255\n" << std::string(12, static_cast<char>(grey));  // whatever its ending
+    std::ofstream(path(name)) << "P5 4 3 255\n"
+                              << std::string(12, static_cast<char>(grey));  // regardless of its suffix
   }
   void write_text(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
   void make_socket(const std::string& name) const {
@@ -60,7 +61,7 @@ TEST_F(Sources, FoldersAreReadInOrderWithoutSpecialFiles) {
   fs::create_directories(path("c.png"));
   fs::create_symlink("/dev/zero", path("d.png"));
   fs::create_symlink("none", path("e.png"));
-  ASSERT_EQ(mkfifo(path("f.png").c_str(), 0600), 0);  // opening it would wait for a writer
+  ASSERT_EQ(mkfifo(path("f.png").c_str(), 0600), 0);  // opening it would block until there is a writer
   make_socket("g.png");
   fs::create_symlink("b.png", path("h.png"));
   const auto source = opencv().open_source(folder_, 0, 0, 0.0);
@@ -70,7 +71,7 @@ TEST_F(Sources, FoldersAreReadInOrderWithoutSpecialFiles) {
   EXPECT_EQ(seen, (std::vector<int>{10, 20, 20}));
 }
 
-/// Motion JPEG as `--overlay` writes it: images in order, in grey, and the rate.
+/// Motion JPEG as `--overlay` writes it: images in order, in grey, and the frame rate.
 TEST_F(Sources, VideosAreReadAsTheyWereWritten) {
   {
     const auto video = opencv().open_video(path("v.avi"), 32, 16, 12.0);
@@ -122,7 +123,7 @@ TEST_F(Sources, FilesThatCannotBeReadGiveNoPixels) {
 }
 
 TEST_F(Sources, RefuseLargerImages) {
-  std::ofstream(path("a.pgm")) << "P5 65536 1025 255\n" << std::string(65536 * 1025, 'a');  // 64 Mpx and a row
+  std::ofstream(path("a.pgm")) << "P5 65536 1025 255\n" << std::string(65536 * 1025, 'a');  // 64 Mpx plus one row
   const auto source = opencv().open_source(path("a.pgm"), 0, 0, 0.0);
   Image image;
   EXPECT_THROW(source->next(image), base::InputError);
@@ -130,14 +131,14 @@ TEST_F(Sources, RefuseLargerImages) {
 
 TEST(Drawing, FailsWithTheReason) {
   Image image{8, 8, 3, std::vector<std::uint8_t>(192)};
-  Mark mark{{{0.0, 0.0}, {7.0, 7.0}}, "", {255, 0, 0}, 40'000};  // wider than OpenCV's lines may be
+  Mark mark{{{0.0, 0.0}, {7.0, 7.0}}, "", {255, 0, 0}, 40'000};  // wider than OpenCV's maximum line width
   EXPECT_THROW(opencv().draw(image, {mark}), base::InputError);
   mark.width = 1;
   mark.points[1] = {1e300, -1e300};
   opencv().draw(image, {mark});
 }
 
-/// A label alone: the width is of a line that it does not have.
+/// Only a label: the width applies to a line that it does not have.
 TEST(Drawing, OnePointIsNoLine) {
   Image image{8, 8, 3, std::vector<std::uint8_t>(192)};
   opencv().draw(image, {{{{4.0, 4.0}}, "", {255, 0, 0}, 40'000}});

@@ -44,7 +44,7 @@ TEST(Testbed, ReadsCamerasAndTags) {
   EXPECT_EQ(camera.intrinsics.center, glm::dvec2(600.0, 500.0));
   EXPECT_EQ(camera.intrinsics.distortion[3], 2e-4);
   EXPECT_EQ(camera.position, glm::dvec3(0.0, 1.0, 6.5));
-  EXPECT_NEAR(camera.right.y, 0.96, 1e-12);  // turned by 2 acos 0.8 about z
+  EXPECT_NEAR(camera.right.y, 0.96, 1e-12);  // rotated by 2 acos 0.8 about z
   EXPECT_EQ(camera.rate, 30.0);
   EXPECT_EQ(camera.exposure, 0.004);
   EXPECT_EQ(camera.readout, 0.02);
@@ -90,7 +90,7 @@ TEST(Testbed, NamesFileLineAndRemedy) {
            {kCamera + "center = [-1, 500]\n", "t.toml:6: 'center' is outside the image"},
            {kCamera + "center = [600, 1024]\n", "t.toml:6: 'center' is outside the image"},
            {kCamera + "distortion = [1, 2]\n", "t.toml:6: 'distortion' expects [k1, k2, p1, p2, k3]"},
-           {kCamera + "position = 3\n", "t.toml"},  // twice the same key
+           {kCamera + "position = 3\n", "t.toml"},  // the same key twice
            {kCamera + "exposure = -1\n", "t.toml:6: 'exposure' expects a number from 0 to 1"},
            {kCamera + "[[tag]]\nside = 0.1\n", "'id' is missing; expected id = 12"},
            {kCamera + "[[tag]]\nid = 65536\n", "t.toml:7: 'id' expects a whole number from 0 to 65535"},
@@ -117,7 +117,7 @@ TEST(Testbed, BoundsSizesAndNumbers) {
 }
 
 TEST(Testbed, RefusesValuesOfEveryWrongForm) {
-  // Each key with each of the forms that are not its own, beside values that are no finite numbers.
+  // Each key with each of the wrong forms, and with values that are not finite.
   const std::vector<std::string> forms{"true",       "\"\"",      "''",         "nan",       "-inf",
                                        "1e999",      "-1",        "[]",         "[1]",       "[nan, nan]",
                                        "[[1], [2]]", "{ a = 1 }", "2026-01-01", "[1, \"2\"]"};
@@ -188,7 +188,7 @@ TEST(Testbed, WritesCamerasThatItReads) {
   EXPECT_NEAR(read.forward.y, camera.forward.y, 1e-11);
 }
 
-/// The least and the greatest number of each key, and the next ones beyond.
+/// The minimum and maximum of each key, and the next numbers beyond.
 TEST(Testbed, NumbersEndAtTheirLimits) {
   struct Range {
     const char *key, *below, *first, *last, *above;

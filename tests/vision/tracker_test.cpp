@@ -78,7 +78,7 @@ TEST(Tracker, MovesViewsToOneTime) {
   EXPECT_NEAR(tracked[0].X_WT.x, 1.0, 1e-4);
 }
 
-/// At 4 m/s it is 0.2 m farther for the camera that looks 50 ms later, or earlier.
+/// At 4 m/s, the tag is 0.2 m farther for a camera that sees it 50 ms later, or earlier.
 TEST(Tracker, MergesViewsOfAFastTag) {
   for (const double later : {0.05, -0.05}) {
     Tracker tracker;
@@ -90,7 +90,7 @@ TEST(Tracker, MergesViewsOfAFastTag) {
   }
 }
 
-/// A camera that lags behind shows the tag's past beside the others' present.
+/// A camera that lags behind shows the tag's past while the others show its present.
 TEST(Tracker, RefusesAnOldViewBesideANewOne) {
   Tracker tracker;
   update(tracker, {sighting(0.2, 0.0, 0.0, 0.0)});
@@ -101,7 +101,7 @@ TEST(Tracker, RefusesAnOldViewBesideANewOne) {
   EXPECT_EQ(tracker.refused(), 1u);
 }
 
-/// Views of one moment are of one tag up to half of 0.3 m apart.
+/// Simultaneous views belong to one tag if they are up to half of 0.3 m apart.
 TEST(Tracker, MergesViewsUpToFifteenCentimetresApart) {
   const auto cameras = [](double apart) {
     Tracker tracker;
@@ -115,12 +115,12 @@ TEST(Tracker, MergesViewsUpToFifteenCentimetresApart) {
 TEST(Tracker, RefusesASecondPlace) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
-  // A false one, 3 m away, before the true one: no tag covers 3 m within 0.1 s.
+  // A false sighting, 3 m away, before the true one: no tag moves 3 m within 0.1 s.
   const auto tracked = update(tracker, {sighting(0.1, 3.0, 0.0, 0.0), sighting(0.1, 0.01, 0.0, 0.0)});
   ASSERT_EQ(tracked.size(), 1u);
   EXPECT_EQ(tracked[0].X_WT.x, 0.01);
   EXPECT_EQ(tracker.refused(), 1u);
-  // One that is older than the last is refused, as is one of the same time.
+  // A sighting older than the last one is rejected, and so is one at the same time.
   EXPECT_TRUE(update(tracker, {sighting(0.05, 0.0, 0.0, 0.0)}).empty());
   EXPECT_TRUE(update(tracker, {sighting(0.1, 0.0, 0.0, 0.0)}).empty());
   EXPECT_EQ(tracker.refused(), 3u);
@@ -139,7 +139,7 @@ TEST(Tracker, ForgetsTagsThatWereGone) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
   update(tracker, {sighting(0.1, 0.0, 0.0, 0.0)});
-  EXPECT_TRUE(update(tracker, {sighting(1.2, 0.0, 0.0, 0.0)}).empty());  // as if for the first time
+  EXPECT_TRUE(update(tracker, {sighting(1.2, 0.0, 0.0, 0.0)}).empty());  // as at first sight
   EXPECT_EQ(update(tracker, {sighting(1.3, 0.0, 0.0, 0.0)}).size(), 1u);
 }
 

@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, LayoutOf,
                            return name;
                          });
 
-TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers are further apart
+TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers are farther apart
   for (const double offset : {0.0, 1e5, 1e7}) {
     FigureOptions options;
     options.extent = {offset, 0, offset + 1.3, 0.7};
@@ -170,7 +170,7 @@ TEST(Axes, TitleAndLegendAreThere) {
   EXPECT_GT(p.count(0xFF00AA00u, 0, at.plot.y_max, p.width, p.height), 300) << "the legend's block";
 }
 
-/// The scale bar is a sixth of the plot, rounded down, in kilometres from one on.
+/// The scale bar is a sixth of the plot, rounded down, in kilometres from 1 km on.
 TEST(Axes, TheScaleBarHasItsUnit) {
   for (const auto& [metres, text] : {std::pair{5'500.0, ">500 m<"}, {8'000.0, ">1 km<"}, {16'000.0, ">2 km<"}}) {
     const std::string file = testing::TempDir() + "scale_bar.svg";

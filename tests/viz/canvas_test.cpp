@@ -94,7 +94,7 @@ TEST(Canvas, AreaMayReachFarOutside) {  // clipped on all sides: the whole insid
   EXPECT_NEAR(area_of(canvas), 60.0, 1e-9);
 }
 
-TEST(Canvas, AreaAcrossOneSideIsCut) {  // for each side half of the square remains
+TEST(Canvas, AreaAcrossOneSideIsCut) {  // half of the square remains on each side
   for (const glm::dvec2& shift : {glm::dvec2{-5, 0}, glm::dvec2{5, 0}, glm::dvec2{0, -5}, glm::dvec2{0, 5}}) {
     Canvas canvas(10, 10, kWhite);
     std::vector<glm::dvec2> box{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
@@ -144,7 +144,7 @@ TEST(Canvas, ClipKeepsTheRest) {
   EXPECT_NEAR(area_of(canvas), 16.0, 1e-9);
 }
 
-/// A line 4 px wide whose middle runs 1 px outside of one side: one row or column of it remains, of a clip's box too.
+/// A line 4 px wide whose centre runs 1 px outside of one side: one row or column of it remains, for a clip box, too.
 TEST(Canvas, WideLinesBesideASideAreCutAtIt) {
   for (const PixelBox& box : {PixelBox{0, 0, 20, 12}, PixelBox{3, 2, 15, 9}}) {
     const double x0 = box.x_min, y0 = box.y_min, x1 = box.x_max, y1 = box.y_max, far = 40.0;
@@ -200,7 +200,7 @@ TEST(Canvas, OpacityMixes) {
   EXPECT_EQ(picture_of(canvas).at(1, 1) >> 16 & 0xFFu, 255u);
 }
 
-TEST(Canvas, ImageRepeatsLargeCells) {  // a cell of 4 x 4 pixels is one colour to its border
+TEST(Canvas, ImageRepeatsLargeCells) {  // a cell of 4 x 4 pixels has one colour up to its border
   Canvas canvas(8, 4, kWhite);
   const std::uint32_t cells[] = {0xFF112233u, 0xFF445566u};
   canvas.image({0, 0}, {8, 4}, {2, 1, cells});
@@ -271,7 +271,7 @@ TEST(Canvas, DashesLeaveGaps) {  // 100 px of 6 on, 4 off: 60 % of the line
   EXPECT_LT(area_of(canvas), 70.0);
 }
 
-TEST(Canvas, DashesRunOnAcrossSegments) {  // a line in pieces shorter than a dash looks like the whole line
+TEST(Canvas, DashesRunOnAcrossSegments) {  // a line in pieces shorter than a dash looks like a whole line
   Canvas whole(120, 10, kWhite);
   Canvas pieces(120, 10, kWhite);
   const Line line{{10, 5}, {110, 5}};
@@ -306,7 +306,7 @@ TEST(Canvas, UnwritablePathIsNamed) {
   }
 }
 
-TEST(Canvas, FullDiskIsAnError) {  // the bytes fit into the stream's buffer, not onto the device
+TEST(Canvas, FullDiskIsAnError) {  // the bytes fit into the stream's buffer but not on the device
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this machine";
   EXPECT_THROW(save_picture(Canvas(4, 4, kWhite).drawing(), "/dev/full"), base::InputError);
 }
@@ -330,7 +330,7 @@ TEST(Canvas, CharactersEndAtTheirLimits) {
     EXPECT_EQ(drawn(text).substr(0, marks), std::string(marks, '?')) << drawn(text);
 }
 
-/// Corners of a circle: four for each pixel of its radius, from 16 to 360.
+/// Number of corners of a circle: four per pixel of its radius, from 16 to 360.
 TEST(Canvas, CirclesHaveCornersByTheirSize) {
   for (const auto& [radius, corners] :
        {std::pair{0.5, 16u}, {4.0, 16u}, {4.2, 16u}, {4.25, 17u}, {89.9, 359u}, {90.0, 360u}, {120.0, 360u}}) {

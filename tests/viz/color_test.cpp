@@ -15,7 +15,7 @@ double distance(std::uint32_t a, std::uint32_t b) {
   return std::hypot(p.lightness - q.lightness, p.a - q.a, p.b - q.b);
 }
 
-TEST(Color, LabOfKnownColours) {  // from the definition's own table: white, and red
+TEST(Color, LabOfKnownColours) {  // values from the table in the definition: white, and red
   EXPECT_NEAR(to_oklab(0xFFFFFFFFu).lightness, 1.0, 1e-4);
   EXPECT_NEAR(to_oklab(0xFF000000u).lightness, 0.0, 1e-9);
   const OklabColor red = to_oklab(0xFFFF0000u);
@@ -24,7 +24,7 @@ TEST(Color, LabOfKnownColours) {  // from the definition's own table: white, and
   EXPECT_NEAR(red.b, 0.126, 1e-3);
 }
 
-TEST(Color, NeighboursLookUnlike) {  // robots of neighbouring rows: 0.02 is just visible
+TEST(Color, NeighboursLookUnlike) {  // robots in adjacent rows: 0.02 is just visible
   for (std::size_t i = 0; i < 300; ++i)
     for (std::size_t k = 1; k <= 8; ++k)
       EXPECT_GT(distance(distinct(i), distinct(i + k)), 0.06) << i << " and " << i + k;
@@ -42,7 +42,7 @@ TEST(Color, RowsDiffer) {
   }
 }
 
-/// Up to seven rows have named colours, which more rows do not shift.
+/// Up to seven rows have named colours; more rows do not shift them.
 TEST(Color, SevenRowsHaveAPalette) {
   for (const std::size_t count : {1u, 6u, 7u})
     for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(row_color(i, count), row_color(i, 1 + i)) << i << " of " << count;

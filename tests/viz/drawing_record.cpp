@@ -13,10 +13,10 @@
 namespace sf::scenes {
 namespace {
 
-constexpr std::size_t kListedPoints = 8;  // of a path; longer ones are measured
-constexpr double kPixels = 0.021;         // [px] two steps of an SVG file's numbers
+constexpr std::size_t kListedPoints = 8;  // per path; longer paths are summarized
+constexpr double kPixels = 0.021;         // [px] two steps of the numbers in an SVG file
 
-/// Measures of a path that change with each of its points, whatever their number.
+/// Returns measures of a path that change with each of its points, however many it has.
 std::string measures(const std::string& data) {
   std::vector<glm::dvec2> points;
   glm::dvec2 low{1e9}, high{-1e9}, sum{}, weighted{};
@@ -63,7 +63,7 @@ std::string decoded(const std::string& base64) {
   return bytes;
 }
 
-/// One number for each block of 16 x 16 cells, which changes with each of them.
+/// Returns one number per block of 16 x 16 cells, which changes with each of its cells.
 std::string blocks(const Picture& picture, const std::map<std::uint32_t, char>& letters) {
   std::map<std::pair<int, int>, int> sums;
   for (int y = 0; y < picture.height; ++y)
@@ -74,7 +74,8 @@ std::string blocks(const Picture& picture, const std::map<std::uint32_t, char>& 
   return text;
 }
 
-/// The cells of an image: a letter for each colour where they are few, else the colours; of a large one its blocks.
+/// Returns the cells of an image: one letter per colour if there are few colours, else the colours; for a large image
+/// its blocks.
 std::string cells(const std::string& base64) {
   const std::string path = own_file("record_image.png");
   std::ofstream(path, std::ios::binary) << decoded(base64);

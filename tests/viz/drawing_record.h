@@ -1,16 +1,16 @@
 #pragma once
-// Golden records of drawings (tests/golden.h): an SVG file in which neighbouring paths of one style are joined, long
-// paths are replaced by their measures, and images by their cells.
+// Golden records of drawings (tests/golden.h): an SVG file in which adjacent paths of one style are joined, long paths
+// are replaced by their measures, and images by their cells.
 
 #include <string>
 
 namespace sf::scenes {
 
-/// The record of an SVG document.
+/// Returns the record of an SVG document.
 std::string drawing_record(const std::string& svg);
 
-/// Compares the record of the SVG file with the golden one. With SENSORFARM_RECORDS=FOLDER set, the drawing is written
-/// to FOLDER/NAME.svg as well.
+/// Compares the record of the SVG file with the golden one. If SENSORFARM_RECORDS=FOLDER is set, also writes the
+/// drawing to FOLDER/NAME.svg.
 void expect_recorded(const std::string& svg_file, const std::string& module, const std::string& name);
 
 }  // namespace sf::scenes

@@ -33,7 +33,7 @@ FieldSamples slope(const FieldView& view) {
   return samples;
 }
 
-/// Number of colours along the upper side of the map, which has no marks.
+/// Returns the number of colours along the upper side of the map, which has no marks.
 std::size_t colours_of_the_map(const FieldView& view, const std::string& path) {
   const scenes::Picture picture = scenes::read_png(path);
   std::set<std::uint32_t> colours;
@@ -71,7 +71,7 @@ TEST(FieldFigure, TheFigureCoversTheRequestedExtentAndLine) {
   EXPECT_GE(view.extent.y_max, 7.0 - 1e-9);
 }
 
-/// One magnet, several at one place, one on a robot: boxes of zero size.
+/// One magnet, several at one position, one on a robot: boxes of zero size.
 TEST(FieldFigure, OddWorldsHaveAView) {
   world::World world;
   world.movers.emplace_back();
@@ -118,7 +118,7 @@ TEST(FieldFigure, AFileThatCannotBeWrittenIsNamed) {
   EXPECT_THROW(draw_field(six(), view, slope(view), scenes::own_file("no/such/folder/x.png")), base::InputError);
 }
 
-/// Figure 37 of the thesis: six magnets, 7.5 cm above their tops, are nearly one.
+/// Figure 37 of the thesis: the field of six magnets, 7.5 cm above their tops, is nearly that of one.
 TEST(FieldFigure, SixMagnetsAreNearlyContinuous) {
   gpu::Device device;
   const FieldView view = field_view(six(), {.height = 0.075});

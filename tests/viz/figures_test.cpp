@@ -24,7 +24,7 @@ using base::Pose;
 /// An empty room of 6 m x 4 m in walls of 0.5 m.
 world::World room() { return scenes::make_world(6, 4, 0, 0); }
 
-/// The picture of a room, and the pixels of points of the world. The plot is located by its frame.
+/// The picture of a room, and the pixels of points in the world. The plot is located by its frame.
 struct Seen {
   scenes::Picture picture;
   int left = 0, top = 0, right = 0, bottom = 0;
@@ -80,7 +80,7 @@ TEST(WorldFigure, LightsPointWhereTheyFace) {
   EXPECT_GT(to_oklab(seen.at(3.0, 1.945)).lightness, 0.9) << "and none to the south";
 }
 
-/// The begin of the subtitle is at the same place and equal in both pictures.
+/// The start of the subtitle is at the same position and equal in both pictures.
 TEST(WorldFigure, TagsAreNoRobotsInItsSubtitle) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, 0}, 0xFF2E7D32u, 1.0));
@@ -113,7 +113,7 @@ TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
   EXPECT_NE(seen.at(3.02, 2.53), kWhite);
   EXPECT_NE(seen.at(3.02, 0.83), kWhite) << "in the halo behind it";
   EXPECT_EQ(seen.at(3.02, 0.53), kWhite) << "and beyond";
-  // The dock faces west: its red buoy's beam is to its left, that is south.
+  // The dock faces west: its red buoy's beam is to its left, which is south.
   const std::uint32_t south = seen.at(4.82, 2.63), north = seen.at(4.82, 3.37);
   EXPECT_GT(south >> 16 & 0xFF, south >> 8 & 0xFF) << "red";
   EXPECT_GT(north >> 8 & 0xFF, north >> 16 & 0xFF) << "green";
@@ -204,7 +204,7 @@ TEST(WorldFigure, EveryCombinationOfWallFlagsIsDrawn) {  // all combinations of 
   }
 }
 
-/// Two walls at one place: the one visible to lasers covers the dots of the other, in either order.
+/// Two walls at one position: the one visible to lasers covers the dots of the other, in either order.
 TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
   const auto lightest = [](const world::World& world) {
     draw_world(world, scenes::own_file("top.png"));
@@ -278,7 +278,7 @@ TEST(VisiblePoints, BeamsEndAtTheFirstWallOrAtRangeMax) {
   EXPECT_NEAR(back[1].x, 2.0, 1e-9);  // no wall within range_max
 }
 
-/// Their ends lie beyond the range along one axis each, and their middles within it: 11 / sqrt(2) = 7.78 m away.
+/// Their ends are each beyond the range along one axis, and their middles within it: 11 / sqrt(2) = 7.78 m away.
 TEST(VisiblePoints, WallsAcrossACornerOfTheRangeAreSeen) {
   for (int quarter = 0; quarter < 4; ++quarter)
     for (const bool turned : {false, true}) {
@@ -337,7 +337,7 @@ TEST(TrajectoryFigure, ContactIsMarked) {
   EXPECT_EQ(before.at(3.3, 2.0), after.at(3.3, 2.0)) << "the line beside it";
 }
 
-/// Its arms extend beyond the dot and have a pale border on it.
+/// The arms of the cross extend beyond the dot and have a pale border on it.
 TEST(TrajectoryFigure, ContactAtTheEndIsSeenOnItsDot) {
   Track track = straight();
   track.color = 0xFFD4351Cu;  // the colour of the cross
@@ -364,7 +364,7 @@ TEST(TrajectoryFigure, PoseThatIsNotFiniteBreaksTheLine) {
   EXPECT_EQ(seen.at(2.33, 2.0), 0xFFFF00FFu);
 }
 
-/// A path's length is the sum of its unbroken steps; a contact lasts until nothing stops the mover.
+/// The length of a path is the sum of its unbroken steps; a contact lasts until nothing stops the mover.
 TEST(Track, LengthAndContactsOfABrokenPath) {
   Track track;
   track.poses = {
@@ -451,7 +451,7 @@ TEST(Figures, UnwritablePathIsNamed) {
   EXPECT_TRUE(named([&] { draw_occupancy(room(), maps::OccupancyGrid({0, 1, 0.5, 1, 1}), path); }));
 }
 
-TEST(Figures, ManyRobotsCanBeDrawn) {  // the large case, once: 1000 robots in a world of 2000 segments
+TEST(Figures, ManyRobotsCanBeDrawn) {  // a single large case: 1000 robots in a world of 2000 segments
   const world::World world = scenes::make_world(80, 40, 500, 1000, 8.0);
   draw_world(world, scenes::own_file("many.png"));
   const scenes::Picture p = scenes::read_png(scenes::own_file("many.png"));

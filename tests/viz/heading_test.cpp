@@ -36,7 +36,7 @@ TEST(Heading, AWordWiderThanTheFigureIsShortened) {
   EXPECT_LT(heading.title[0].size(), 20u);
 }
 
-/// Names of several things differ in their ends.
+/// Numbered names differ in their ends.
 TEST(Heading, ShortenedNamesKeepTheirNumbers) {
   const TextStyle style = small_text();
   for (const auto& [name, end] : {std::pair{"one_robot_with_a_long_name 15", "... 15"},

@@ -1,4 +1,4 @@
-// Figures need no display: the tests unset it, whatever the machine has.
+// Figures need no display: the tests unset it even if the machine has one.
 
 #include <gtest/gtest.h>
 

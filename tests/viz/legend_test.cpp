@@ -36,7 +36,7 @@ std::size_t painted(const std::string& row) {
   return n;
 }
 
-/// On for 8 px, off for 12: lines have round ends of 1 px to both sides.
+/// 8 px on, 12 px off: lines have round ends of 1 px on both sides.
 TEST(Dashes, RepeatAlongALine) {
   const std::string row = dashes({{{5, 4}, {55, 4}}}, 8.0, 12.0);
   for (const int start : {5, 25, 45}) {
@@ -53,7 +53,7 @@ TEST(Dashes, StopWhereTheirLineStops) {
   EXPECT_EQ(short_of_it.substr(15).find_first_not_of('.'), std::string::npos) << "in the gap: no second dash";
 }
 
-/// A path in pieces has the dashes of the whole path; unconnected pieces begin with a new dash.
+/// A path in pieces has the dashes of the whole path; unconnected pieces start a new dash.
 TEST(Dashes, GoOnOverTheCornersOfAPath) {
   const std::string whole = dashes({{{5, 4}, {55, 4}}}, 8.0, 12.0);
   EXPECT_EQ(dashes({{{5, 4}, {11, 4}}, {{11, 4}, {27, 4}}, {{27, 4}, {55, 4}}}, 8.0, 12.0), whole);
@@ -62,8 +62,8 @@ TEST(Dashes, GoOnOverTheCornersOfAPath) {
   EXPECT_EQ(apart.substr(41, 8).find_first_not_of('.'), std::string::npos) << apart;
 }
 
-/// The corner is 4 px into a dash: its other 4 px stand on the second leg, and a gap of 12 px behind them. Legs that
-/// only share one coordinate with the end before are new lines.
+/// The corner is 4 px into a dash: the other 4 px are on the second leg, followed by a gap of 12 px. Legs that share
+/// only one coordinate with the previous end are new lines.
 TEST(Dashes, TurnCorners) {
   const auto column_of = [](const Canvas& canvas, int x) {
     std::string column;
@@ -90,7 +90,7 @@ TEST(Dashes, LinesWithoutLengthAreLeftOut) {
   EXPECT_EQ(painted(dashes({{{5, 4}, {5, 4}}, {{NAN, 4}, {9, 4}}, {{0, 4}, {1e9, 4}}}, 8.0, 12.0)), 0u);
 }
 
-/// Its four arms lie on the diagonals, `reach` long.
+/// Its four arms are on the diagonals and `reach` long.
 TEST(Cross, HasFourArms) {
   Canvas canvas(40, 40, kWhite);
   draw_cross(canvas, {20, 20}, 10.0, 3.0, kBlack);
@@ -101,7 +101,7 @@ TEST(Cross, HasFourArms) {
   EXPECT_EQ(scenes::picture_of(canvas).at(34, 34), kWhite) << "beyond them";
 }
 
-/// The states of traffic lights differ by shape: what is painted beside the middle tells them apart.
+/// The states of traffic lights differ in shape: the painted area around the middle distinguishes them.
 TEST(Signals, ShapesDiffer) {
   struct Case {
     LegendMark mark;
@@ -138,7 +138,7 @@ TEST(Legend, ARowEndsWhereTheNextItemDoesNotFit) {
   EXPECT_EQ(places[1].row, 1);
 }
 
-/// Each sample is drawn in its own colour, in its own row, left of its text.
+/// Each sample is drawn in its colour, in its row, left of its text.
 TEST(Legend, SamplesStandInTheirPlaces) {
   const std::vector<LegendItem> items{{LegendMark::block, 0xFFFF0000u, "a", 0},
                                       {LegendMark::line, 0xFF00FF00u, "b", 0}};
@@ -192,7 +192,7 @@ TEST(Labels, BoxesAreBareUpToTheirNeighbours) {
   EXPECT_TRUE(bare(240, 158, 244, 160));
 }
 
-/// The nearest place on free space; none where no place is left, and then nothing is drawn.
+/// The nearest position on free space; if there is none, nothing is drawn.
 TEST(Labels, ArePlacedOnceEach) {
   Canvas canvas(400, 300, kWhite);
   Labels labels({0, 0, 400, 300});

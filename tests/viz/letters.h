@@ -1,5 +1,5 @@
 #pragma once
-// The texts of an SVG file, for checks that they can be read: inside the picture, and none over another.
+// The texts of an SVG file, for legibility checks: inside the picture, and without overlaps.
 
 #include <string>
 #include <vector>
@@ -16,8 +16,8 @@ struct LetterBox {
 
 std::vector<LetterBox> letters_of(const std::string& svg);
 
-/// Fails the test where a text leaves the picture or touches another one. Labels that are placed where there is room
-/// (with a halo) are not compared.
+/// Fails the test if a text leaves the picture or touches another one. Ignores labels that are placed where there is
+/// room (with a halo).
 void expect_legible(const std::string& svg, const std::string& what);
 
 }  // namespace sf::scenes

@@ -17,7 +17,7 @@ scenes::Picture lights_drawn(const std::vector<LightRow>& rows, const Page& page
   return scenes::read_png(scenes::own_file("lights.png"));
 }
 
-/// Pixels of a bar's colour on white.
+/// Returns the number of pixels in a bar's colour on white.
 int bar(const scenes::Picture& p, std::uint32_t color) {
   constexpr double kOpacity = 191.0 / 255.0;
   int n = 0;
@@ -33,7 +33,7 @@ int bar(const scenes::Picture& p, std::uint32_t color) {
   return n;
 }
 
-/// For readers who see no colours: red bars are the highest, green ones the lowest, flashing ones have gaps.
+/// For readers who cannot see colours: red bars are the highest, green ones the lowest, flashing ones have gaps.
 TEST(LightsFigure, StatesDifferInHeight) {
   const auto area = [](LightState state, std::uint32_t color) {
     return bar(lights_drawn({{"a", {{0.0, 5.0, state}, {5.0, 10.0, LightState::dark}}}}), color);

@@ -1,4 +1,4 @@
-// Pictures of maps: each cell four pixels of its state's colour, a line between.
+// Pictures of maps: each cell is four pixels in its state's colour, with a line between cells.
 
 #include "viz/map_figure.h"
 
@@ -29,7 +29,7 @@ TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
   const maps::OccupancyGrid grid = striped(30, 30);
   draw_map(grid, {"Title", "", {}}, out("cells.png"), kThesis);
   const scenes::Picture picture = scenes::read_png(out("cells.png"));
-  // The map's left side: the first column in the colour of grid lines over a map's height.
+  // The left side of the map: the first column with the colour of grid lines over the map's height.
   const int left = 86, top = 100, pitch = 5;  // below a title and a subtitle
   for (int row = 0; row < 120; ++row)
     for (int column = 0; column < 120; ++column) {
@@ -60,7 +60,7 @@ TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
     }
   EXPECT_GT(changed, 150);
   EXPECT_EQ(elsewhere, 0);
-  // In the colour that its name has below the map; the second is named there alone.
+  // In the colour of its name below the map; the second is only named there.
   const auto of = [&](std::size_t i, int y0, int y1) { return robot.count(row_color(i, 3), 0, y0, robot.width, y1); };
   EXPECT_GT(of(1, top, top + 201), 10);
   EXPECT_GT(of(1, top + 201, robot.height), 10);
@@ -73,7 +73,7 @@ TEST(MapFigure, LargeMapsAreDrawnSmaller) {
   const scenes::Picture picture = scenes::read_png(out("large.png"));
   EXPECT_LE(picture.width, 8200);
   EXPECT_GT(picture.width, 7000) << "as large as it may be";
-  // A third of the cells each, less the lines between them and the mixed pixels at their sides.
+  // A third of the cells each, minus the lines between them and the mixed pixels at their sides.
   const int cells = picture.count(kDark) + picture.count(kBlue);
   EXPECT_NEAR(picture.count(kDark), 0.5 * cells, 0.02 * cells);
   EXPECT_GT(cells, 2 * 500 * 9) << "nine pixels a cell at least";

@@ -51,7 +51,7 @@ HeatMap ranges() {
   return map;
 }
 
-/// Names as long as users give them, over heat maps and flat panels.
+/// Long names, as users give them, over heat maps and flat panels.
 SeriesOptions long_names() {
   HeatMap map = ranges();
   for (const std::string& row : map.rows)
@@ -91,7 +91,7 @@ IntervalFigure intervals(std::size_t plots) {
   return figure;
 }
 
-/// Over values of x that need an exponent.
+/// Values of x that need an exponent.
 IntervalFigure small_steps(bool logarithmic) {
   IntervalFigure figure = intervals(1);
   figure.x_name = "link.delay [s]";
@@ -197,7 +197,7 @@ TEST(Page, TextsAreInsideAndApartOnEachPage) {
       }
 }
 
-/// A tick's label has another one of its axis: in one row, or in one column at the left or the right end.
+/// Every tick label has another one on its axis: in the same row, or in the same column at the left or right end.
 TEST(Page, NoTickIsAlone) {
   const auto is_number = [](const scenes::LetterBox& letter) {
     return letter.text.find_first_not_of("0123456789.\u2212° kM") == std::string::npos;
@@ -228,7 +228,7 @@ std::vector<std::string> texts_of(const IntervalFigure& figure, double width) {
   return texts;
 }
 
-/// Swept values have labels of one form.
+/// Labels of swept values have the same form.
 TEST(Page, SmallSweptValuesHaveOneUnit) {
   const auto has = [](const std::vector<std::string>& texts, const std::string& text) {
     return std::find(texts.begin(), texts.end(), text) != texts.end();
@@ -258,7 +258,7 @@ TEST(Page, SmallSweptValuesHaveOneUnit) {
   EXPECT_TRUE(has(texts_of(one, 50.0), "1.0") || has(texts_of(one, 50.0), "0.5")) << "ticks beside the only value";
 }
 
-/// Rows have short labels where long ones would take half of the picture.
+/// Rows have short labels if long ones would take half of the picture.
 TEST(Page, RowsOfNarrowHeatMapsHaveShortLabels) {
   const auto svg = [](double width) {
     return drawn([&](const auto& file) { draw_series(long_names(), file, {.width = width}); }, "rows");
@@ -288,7 +288,7 @@ TEST(Page, FiguresAreAsWideAsAskedAndFitAColumn) {
   EXPECT_NEAR(millimetres(svg, "width"), 88.0, 0.3) << "LaTeX needs not scale it";
 }
 
-/// 18 layout pixels are 7.2 points; of 8 points the same letters are 8 / 7.2 as large on paper.
+/// 18 layout pixels are 7.2 points; with 8 points, the same letters are 8 / 7.2 times as large on paper.
 TEST(Page, LettersHaveTheSizeThatIsAskedFor) {
   for (const double font : {5.0, 7.2, 8.0, 12.0}) {
     const Page page{.width = 100.0, .title = false, .font_size = font};

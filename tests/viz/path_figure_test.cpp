@@ -55,7 +55,7 @@ TEST(PathFigure, LeftIsAboveRight) {
   EXPECT_LT(highest(row_color(0, 2)), highest(row_color(1, 2)));
 }
 
-/// Its dashes are thin: few pixels have the full colour.
+/// Its dashes are thin, so only few pixels have the full colour.
 TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
   world::World without = lane();
   without.paths.clear();
@@ -64,7 +64,7 @@ TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
             30 + colored(scenes::read_png(scenes::own_file("no_path.png")), 0xFF808080u));
 }
 
-/// Between its markings a lane is asphalt, not two separate bands.
+/// A lane is asphalt between its markings, not two separate bands.
 TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
   world::World world = lane();
   for (const double y : {0.25, -0.25}) world.lane_markings.push_back({{{0.0, y}, {4.0, y}}, 0.02});
@@ -78,7 +78,7 @@ TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
   EXPECT_GT(filled, bands.width * bands.width / 4 / 4);
 }
 
-/// A track beyond the world is inside the picture.
+/// A track outside of the world is inside the picture.
 TEST(PathFigure, GrowsWithItsTracks) {
   const scenes::Picture p = drawn({track(3.0)});
   EXPECT_GT(colored(p, row_color(0, 1)), 1000);
@@ -88,7 +88,7 @@ TEST(PathFigure, AFolderThatIsNotThereIsNamed) {
   EXPECT_THROW(draw_along_paths(lane(), {}, "", "", "/nowhere/x.png"), base::InputError);
 }
 
-/// The axis of a sweep has its own name: the pictures differ there, below the plot, and nowhere else.
+/// The x axis of a sweep has a separate name: the pictures differ only there, below the plot.
 TEST(SeriesFigureAxis, SaysWhatWasVaried) {
   SeriesOptions options{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
   draw_series(options, scenes::own_file("axis_a.png"));

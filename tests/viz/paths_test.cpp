@@ -31,7 +31,7 @@ TEST(Paths, LinesThatMeetAreOnePath) {
 
 TEST(Paths, LinesAreCutAtTheBox) {
   const Line lines[] = {{{-5, 5}, {15, 5}},       // through both sides
-                        {{-5, -1}, {15, -1}},     // beside it
+                        {{-5, -1}, {15, -1}},     // outside of it
                         {{-1, 2}, {2, -1}},       // across a corner
                         {{-1, 0.5}, {0.5, -1}}};  // past the corner
   const Paths paths = cut_lines(lines, kBox);
@@ -76,7 +76,7 @@ TEST(Paths, EdgesInAnyOrderMakeTheirOutlines) {
   EXPECT_DOUBLE_EQ(area_within(outlines), 2.0);
 }
 
-TEST(Paths, OutlinesTouchingInAPointKeepTheirArea) {  // at (2, 2) two edges begin: either may follow
+TEST(Paths, OutlinesTouchingInAPointKeepTheirArea) {  // two edges begin at (2, 2): either may follow
   const glm::dvec2 p[] = {{1, 1}, {2, 1}, {2, 2}, {1, 2}}, q[] = {{2, 2}, {3, 2}, {3, 3}, {2, 3}};
   std::vector<Line> edges;
   for (int i = 0; i < 4; ++i) edges.insert(edges.end(), {{p[i], p[(i + 1) % 4]}, {q[i], q[(i + 1) % 4]}});
@@ -95,7 +95,7 @@ TEST(Paths, CutOutlinesKeepTwoPoints) {
   EXPECT_EQ(cut_outlines({whole}, kBox), (Paths{whole}));
 }
 
-/// A rectangle's part in the box is the rectangle of what both cover, whatever the rectangle.
+/// The part of a rectangle in the box is the intersection of both, for any rectangle.
 RC_GTEST_PROP(Paths, CutOutlinesKeepTheAreaInside, ()) {
   const auto side = [] { return *rc::gen::inRange(-200, 200) / 10.0; };
   const double x0 = side(), y0 = side(), wide = std::abs(side()), high = std::abs(side());

@@ -42,7 +42,7 @@ Canvas one_of_each() {
   return canvas;
 }
 
-/// The names of elements that are open at a place, as far as tags are closed in order.
+/// Checks that tags are closed in order.
 bool is_well_formed(const std::string& xml) {
   std::vector<std::string> open;
   const std::regex tag("<(/?)([A-Za-z]+)([^<>]*?)(/?)>");
@@ -88,7 +88,8 @@ TEST(Svg, ImagesArePngFiles) {
 
 TEST(Svg, ADrawingWithoutShapesIsAPage) { EXPECT_TRUE(is_well_formed(to_svg({10, 10, kWhite, {}}))); }
 
-/// Control characters, cut or overlong sequences, surrogates and numbers beyond Unicode would end a file's readers.
+/// Readers reject files with control characters, truncated or overlong sequences, surrogates and numbers beyond
+/// Unicode.
 TEST(Canvas, BytesThatAreNoTextBecomeQuestionMarks) {
   struct Case {
     std::string text, drawn;
@@ -113,7 +114,7 @@ TEST(Canvas, BytesThatAreNoTextBecomeQuestionMarks) {
 
 TEST(PictureFile, TheSuffixIsTheFormat) {
   EXPECT_EQ(format_of("a.png"), PictureFormat::png);
-  EXPECT_EQ(format_of("a.b/c"), PictureFormat::png);  // a folder's name has no say
+  EXPECT_EQ(format_of("a.b/c"), PictureFormat::png);  // suffixes of folder names are ignored
   EXPECT_EQ(format_of("a.SVG"), PictureFormat::svg);
   EXPECT_EQ(format_of("a.png.pdf"), PictureFormat::pdf);
   EXPECT_EQ(format_of("a.eps"), std::nullopt);

@@ -26,7 +26,7 @@ void expect_drawing(const std::string& name, Draw&& draw) {
   scenes::expect_recorded(file, "viz", name);
 }
 
-/// Many short words, whose breaks tell the width of a heading.
+/// Many short words, whose line breaks reveal the width of a heading.
 std::string filler() {
   std::string text = "words";
   for (int i = 0; i < 90; ++i) text += i % 3 == 0 ? " a" : i % 3 == 1 ? " of" : " one";
@@ -73,7 +73,7 @@ world::World magnets() {
   return world;
 }
 
-/// Made-up samples: |B| grows along x and y, the profile is a parabola.
+/// Synthetic samples: |B| grows along x and y, the profile is a parabola.
 FieldSamples samples(const FieldView& view) {
   FieldSamples made{12, 6, {}, {}};
   for (int i = 0; i < 72; ++i) made.map.push_back(2e-6 * (i % 12) * (1 + i / 12));

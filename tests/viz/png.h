@@ -1,5 +1,5 @@
 #pragma once
-// Reads written pictures with the PNG library, for checks of the file that a user gets.
+// Reads written pictures with the PNG library, to check the files that users get.
 
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +27,7 @@ struct Picture {
     return 0xFF000000u | static_cast<std::uint32_t>(rgb[i] << 16) | static_cast<std::uint32_t>(rgb[i + 1] << 8) |
            rgb[i + 2];
   }
-  /// Pixels of `color` in the box [x0, x1) x [y0, y1).
+  /// Returns the number of pixels of `color` in the box [x0, x1) x [y0, y1).
   int count(std::uint32_t color, int x0, int y0, int x1, int y1) const {
     int n = 0;
     for (int y = y0; y < y1; ++y)
@@ -38,13 +38,13 @@ struct Picture {
   int count(std::uint32_t color) const { return count(color, 0, 0, width, height); }
 };
 
-/// The pixels of a drawing.
+/// Returns the pixels of a drawing.
 Picture picture_of(const viz::Canvas& canvas);
 
-/// Fails the test when the file is not a PNG.
+/// Fails the test if the file is not a PNG.
 Picture read_png(const std::string& path);
 
-/// A colour, and the smallest number of its pixels.
+/// A colour and the minimum number of its pixels.
 struct Painted {
   std::uint32_t color;
   int least;
@@ -52,7 +52,7 @@ struct Painted {
 /// Checks that a picture has the given colours.
 void expect_painted(const std::string& path, std::initializer_list<Painted> expected);
 
-/// A file in the temporary folder for this test alone, since tests run in parallel.
+/// Returns the path of a temporary file for this test only, since tests run in parallel.
 std::string own_file(const std::string& name);
 
 }  // namespace sf::scenes

@@ -1,5 +1,5 @@
 #pragma once
-// A small world with one of everything that figures show.
+// A small world with every kind of object that figures show.
 
 #include "tests/sensors/edit_laser.h"
 #include "tests/viz/scenes.h"
@@ -30,7 +30,7 @@ inline void add_ground(world::World& world) {
   world.floor_holes.push_back({{{7.0, 1.2}, {7.6, 1.2}, {7.6, 1.7}, {7.0, 1.6}}, 0});
 }
 
-/// A light in each state at time 0, another a second later.
+/// One light in each state at time 0, and another a second later.
 inline void add_signals(world::World& world) {
   using world::LightState;
   double x = 0.4;

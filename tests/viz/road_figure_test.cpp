@@ -87,16 +87,16 @@ TEST(RoadFigure, ShowsWhatThereIs) {
   draw_roads(small(), scenes::own_file("roads.png"));
   const Picture picture = scenes::read_png(scenes::own_file("roads.png"));
   EXPECT_GE(picture.width, 1000);
-  // About 15 px/m: 2 lanes of 60 m x 3 m are 80 000 pixels, less the markings on them.
+  // About 15 px/m: 2 lanes of 60 m x 3 m are 80 000 pixels, minus the markings on them.
   EXPECT_GT(count(picture, theme::kAsphalt), 20000u);
   EXPECT_GT(count(picture, theme::kZone), 20000u);
   EXPECT_GT(count(picture, theme::kSpot), 1000u);
   EXPECT_GT(count(picture, theme::kStop), 50u);
   EXPECT_GT(count(picture, theme::kCheckpoint), 20u);
-  EXPECT_GT(count(picture, world::kYellowPaint), 50u);  // the rest of its edge is mixed
+  EXPECT_GT(count(picture, world::kYellowPaint), 50u);  // the rest of its edge has mixed colours
 }
 
-// In a view with 10 px/m and the lower left corner at (-2.05, -12.05), lines run along the middles of pixels.
+// In a view with 10 px/m and the lower left corner at (-2.05, -12.05), lines run along pixel centres.
 TEST(RoadView, EverythingIsWhereItShouldBe) {
   Canvas canvas(1000, 300, 0xFFFFFFFFu);
   const RoadView view{canvas, {0, 0, 1000, 300}, {-2.05, -12.05}, 10.0};
@@ -110,7 +110,7 @@ TEST(RoadView, EverythingIsWhereItShouldBe) {
   EXPECT_EQ(at(10, 3.8), theme::kAsphalt);
   EXPECT_EQ(at(10, -1.5), world::kWhitePaint);  // the right edge of lane 1.1
   EXPECT_EQ(at(10, 1.5), world::kYellowPaint);  // its left edge, between the lanes
-  EXPECT_EQ(at(10, -2.2), 0xFFFFFFFFu);         // beside the road
+  EXPECT_EQ(at(10, -2.2), 0xFFFFFFFFu);         // next to the road
   EXPECT_EQ(at(60, 0.7), theme::kStop);
   EXPECT_EQ(at(0, 0), theme::kCheckpoint);
   EXPECT_EQ(at(72, 8), theme::kZone);
@@ -125,7 +125,7 @@ TEST(RoadView, ArrowsPointInDrivingDirection) {
   world::RoadNetwork network = small();
   for (world::RoadLane& lane : network.lanes) lane.left = lane.right = world::Boundary::none;
   draw_network(view, network);
-  // Columns of white along the first lane's centre line: an arrow to the right is widest at its left.
+  // White columns along the first lane's centre line: an arrow to the right is widest at its left.
   const Picture drawn = scenes::picture_of(canvas);
   const auto white = [&](double x, double y_low, double y_high) {
     int n = 0;
@@ -214,7 +214,7 @@ TEST(Labels, StayInside) {
   EXPECT_FALSE(labels.place(canvas, mark, "much too long to stand in here", small_text()));
 }
 
-// The largest public network, as a user gets it.
+// The largest public network.
 TEST(RoadFigureFiles, TheFinalIsDrawn) {
   const std::string rndf = SF_SOURCE_DIR "/../shared/data/rndf/darpa_sample/uce_rndf_1_final_event.rndf";
   if (!std::filesystem::exists(rndf)) GTEST_SKIP() << "no shared data beside the sources";

@@ -18,7 +18,7 @@ std::string drawn(const world::RoadNetwork& network) {
   return golden::read(file);
 }
 
-/// A road of 670 m beside a zone with eight spots of 3 m, each with a checkpoint; in the south-east, or in the
+/// A road of 670 m next to a zone with eight spots of 3 m, each with a checkpoint; in the south-east, or in the
 /// north-west and without a name.
 world::RoadNetwork road_with_car_park(bool north_west) {
   std::string text = fmt::format(

@@ -1,4 +1,4 @@
-// Frames of videos: what is where.
+// Positions of objects in video frames.
 
 #include "viz/run_view.h"
 
@@ -18,7 +18,7 @@ world::World room_of_two() {
     position( name "two" pose [2 0 0 0] size [0.4 0.4 0.2] ))");
 }
 
-/// 50 pixels to the metre.
+/// 50 pixels per metre.
 constexpr TopViewOptions kView{.width = 400, .height = 400, .extent = world::Extent{-4.0, -4.0, 4.0, 4.0}};
 
 RunFrame frame_of(const world::World& world) {
@@ -34,7 +34,7 @@ std::uint32_t color_at(const PixelImage& image, double x, double y) {
   return 0xFF000000u | static_cast<std::uint32_t>(p[0] << 16 | p[1] << 8 | p[2]);
 }
 
-/// A scan of five beams of a sensor that looks along y; the middle one has no echo.
+/// A scan of five beams from a sensor that looks along y; the middle one has no echo.
 TEST(RunView, EchoesAreWhereTheSensorMeasured) {
   const world::World world = room_of_two();
   const record::SensorInfo laser{.fov = M_PI, .samples = 5, .range_min = 0.0, .range_max = 3.0};

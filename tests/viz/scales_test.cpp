@@ -9,7 +9,7 @@
 namespace sf::viz {
 namespace {
 
-/// Over widths from that of a small multiple on, and ranges of very different numbers.
+/// For widths from that of a small multiple on, and ranges of very different numbers.
 TEST(Scales, LabelsAlongXNeverTouch) {
   for (const double pixels : {40.0, 90.0, 150.0, 400.0, 1500.0})
     for (const auto& [from, to] :
@@ -24,7 +24,8 @@ TEST(Scales, LabelsAlongXNeverTouch) {
     }
 }
 
-/// From the shortest axes of figures on, along both, for numbers of all sizes and of all places in their decade.
+/// From the shortest axes of figures on, in both directions, for numbers of all sizes and at all positions in their
+/// decade.
 TEST(Scales, EveryAxisHasTwoLabelsThatDoNotTouch) {
   for (const double pixels : {60.0, 72.0, 100.0, 134.0, 250.0, 700.0})
     for (const double size : {1e-12, 1e-6, 1e-3, 0.3, 0.7, 1.0, 1.9, 4.7, 20.0, 97.0, 1e4, 3e5, 1e9})

@@ -13,7 +13,7 @@ namespace {
 
 using maps::Cell;
 
-/// A model that stands, one that moves, and a laser of one beam, 8 m far.
+/// A static model, a moving one, and a laser with one beam of 8 m.
 world::World one_beam() {
   world::World world;
   scenes::add_model(world, "wall", 0);
@@ -26,7 +26,7 @@ world::World one_beam() {
 /// Cells of 1 m, 12 x 8.
 constexpr maps::GridGeometry kPlan{0.0, 8.0, 1.0, 3, 2};
 
-/// Adds one beam along +x from the middle of cell (0, 2). @param met row of the model
+/// Adds one beam along +x from the centre of cell (0, 2). @param met row of the model that was hit
 void add_beam(ScanMap& map, const world::World& world, double range, std::uint32_t met = 0) {
   base::ReadingBlock scan;
   scan.X_WS = {0.5, 5.5, 0.0, 0.0};
@@ -78,7 +78,7 @@ TEST(ScanMap, RangesUpToTheSmallestAreSkipped) {
   add_beam(map, world, 0.1);
   EXPECT_EQ(map.states().at({0, 2}), Cell::unexplored);
   scenes::edit_laser(world.movers[0])->range_min = 0.0;
-  add_beam(map, world, 0.0);  // a sensor on a surface: half a cell behind it begins the next
+  add_beam(map, world, 0.0);  // a sensor on a surface: the next cell begins half a cell behind it
   EXPECT_EQ(map.states().at({1, 2}), Cell::occupied);
 }
 
@@ -114,7 +114,7 @@ TEST(ScanMap, FindsTheWallsOfARoom) {
   }
 }
 
-/// Cells of a centimetre for each 8 m begun, 3 cm to 1 m, and at most 4 000 of them; words of 4 x 4 cells.
+/// One centimetre per cell for each started 8 m, between 3 cm and 1 m, at most 4000 cells; words of 4 x 4 cells.
 TEST(ScanMap, CellsGrowWithTheWorld) {
   const auto grid = [](double wide, double high) { return grid_over({1.0, 2.0, 1.0 + wide, 2.0 + high}); };
   EXPECT_EQ(grid(1.0, 1.0).cell, 0.03);

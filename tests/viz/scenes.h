@@ -1,5 +1,5 @@
 #pragma once
-// Synthetic worlds, paths and scans for the figures' tests, without files or devices.
+// Synthetic worlds, paths and scans for the tests of figures, without files or devices.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ namespace sf::scenes {
 
 using base::Pose;
 
-/// Four walls of a rectangle, solid inside (or outside: the walls of a room).
+/// Adds the four walls of a rectangle, solid inside (or outside: the walls of a room).
 inline void add_box(world::World& world, double x0, double y0, double x1, double y1, std::uint32_t model,
                     bool room = false) {
   std::vector<glm::dvec2> p{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
@@ -36,7 +36,7 @@ inline std::uint32_t add_model(world::World& world, const std::string& name, std
   return static_cast<std::uint32_t>(world.models.size() - 1);
 }
 
-/// A round robot of radius 0.165 m with a laser ahead of its middle.
+/// Adds a round robot of radius 0.165 m with a laser ahead of its centre.
 inline world::Mover make_robot(world::World& world, std::uint32_t id, const Pose& X_WM, std::uint32_t color,
                                double range_max) {
   world::Mover mover;
@@ -103,7 +103,7 @@ inline world::World make_world(double width, double height, int blocks, std::uin
   return world;
 }
 
-/// Robots that wander from their poses and turn away from obstacles, 10 poses a second.
+/// Robots that wander from their poses and turn away from obstacles, 10 poses per second.
 inline std::vector<viz::Track> wander(const world::World& world, int poses, double speed = 0.4) {
   std::mt19937 draw(7);
   std::normal_distribution<double> normal;
@@ -136,7 +136,7 @@ inline std::vector<viz::Track> wander(const world::World& world, int poses, doub
   return tracks;
 }
 
-/// [m] The range along `bearing` to the first wall, at most range_max.
+/// [m] Returns the range along `bearing` to the first wall, at most range_max.
 inline double cast(const world::World& world, glm::dvec2 p, double bearing, double range_max) {
   const glm::dvec2 d = base::rotate(bearing, {1.0, 0.0});
   double best = range_max;

@@ -33,7 +33,7 @@ scenes::Picture drawn(const SeriesOptions& options, const char* name) {
   return scenes::read_png(scenes::own_file(name));
 }
 
-/// Pixels of `color` in columns [from, to) parts of the picture's width.
+/// Returns the number of pixels of `color` in columns [from, to), as fractions of the picture's width.
 int colored(const scenes::Picture& p, std::uint32_t color, double from, double to) {
   return p.count(color, static_cast<int>(from * p.width), 0, static_cast<int>(to * p.width), p.height);
 }
@@ -49,11 +49,11 @@ TEST(SeriesFigure, MissingValuesAreGaps) {
   const std::uint32_t color = row_color(0, 1);
   EXPECT_GT(colored(p, color, 0.1, 0.2), 20);
   EXPECT_GT(colored(p, color, 0.85, 0.95), 20);
-  // Between the second and the fifth of six values there is only the grid.
+  // Only the grid is between the second and the fifth of six values.
   for (double part = 0.3; part < 0.75; part += 0.05) EXPECT_EQ(colored(p, color, part, part + 0.05), 0) << part;
 }
 
-/// The axes begin at 0 only where that does not compress the values too much.
+/// The axes begin at 0 only if that does not compress the values too much.
 TEST(SeriesFigure, FromZeroWhereThatDoesNotSquash) {
   const std::uint32_t color = row_color(0, 1);
   const auto first_column = [&](double from, bool zero) {
@@ -94,7 +94,8 @@ TEST(SeriesFigure, PanelsStandBelowEachOther) {
     EXPECT_GT(three.count(color, 0, third * three.height / 3, three.width, (third + 1) * three.height / 3), 100);
 }
 
-/// Pixels above the legend in the first series' blue, or half of it: lines are thin and lie between pixels.
+/// Returns the number of pixels above the legend in the first series' blue, or half of it: lines are thin and run
+/// between pixels.
 int blue(const scenes::Picture& p) {
   constexpr int kLegend = 60;
   int n = 0;
@@ -133,7 +134,7 @@ std::string svg_of(const SeriesOptions& options, const Page& page = {}) {
   return golden::read(scenes::own_file("series.svg"));
 }
 
-/// Points of the path in the first series' colour.
+/// Returns the points of the path in the first series' colour.
 std::vector<glm::dvec2> curve_of(const std::string& svg) {
   std::vector<glm::dvec2> points;
   const std::size_t end = svg.find("\" stroke=\"#0072b2\"");
@@ -188,7 +189,7 @@ TEST(SeriesFigure, LegendsCountTheCurvesThatTheyDoNotName) {
   EXPECT_NE(more.find(">and 9 more<"), std::string::npos) << "of 16 that are drawn";
 }
 
-/// Cells narrower than a pixel of the file and higher than one keep their rows apart.
+/// Cells narrower than a pixel of the file but higher than one keep their rows separate.
 TEST(HeatMapFigure, RowsStaySharpInCoarseFiles) {
   HeatMap map{.value_name = "v", .rows = {"0", "1"}};
   for (int i = 0; i < 3000; ++i) map.times.push_back(i), map.readings.push_back({0.0, 1.0});
@@ -201,7 +202,7 @@ TEST(HeatMapFigure, RowsStaySharpInCoarseFiles) {
   EXPECT_LE(between, 3) << "one border, of two pixels at most";
 }
 
-/// Two elements over three readings, of which the last comes late.
+/// Two elements over three readings, the last of which is late.
 HeatMap small_map() {
   HeatMap map{.value_name = "range [m]", .rows = {"0 (90°)", "1 (\u221290°)"}, .times = {0.0, 1.0, 4.0}};
   map.readings = {{1.0, -HUGE_VAL}, {2.0, 5.0}, {3.0, 1.0}};
@@ -239,7 +240,7 @@ TEST(HeatMapFigure, CellsHaveTheirColours) {
   EXPECT_LT(part(kWhite, 0.75, 0.95, 0.1, 0.9), 0.98);
 }
 
-/// Greater values are lighter, so they are told apart in grey print.
+/// Larger values are lighter, so they are distinguishable in greyscale print.
 TEST(HeatMapFigure, ColoursGrowLighter) {
   double last = 0.0;
   for (int i = 0; i <= 100; ++i) {

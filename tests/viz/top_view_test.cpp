@@ -1,4 +1,4 @@
-// Images of a world from above: pixels where things are.
+// Images of a world from above: pixels at the positions of objects.
 
 #include "viz/top_view.h"
 
@@ -20,7 +20,7 @@ world::World room() {
     position( name "one" pose [0 0 0 0] size [0.4 0.4 0.2] ))");
 }
 
-/// 100 pixels to the metre.
+/// 100 pixels per metre.
 TopView view_of(const world::World& world) {
   return {world, {.width = 400, .height = 400, .extent = world::Extent{-2.0, -2.0, 2.0, 2.0}}};
 }
@@ -43,7 +43,7 @@ TEST(TopView, ThingsAreWhereTheWorldHasThem) {
   EXPECT_FALSE(free_at(image, -1.995, 0.0)) << "a wall";
 }
 
-/// The static layer is painted once; an image leaves nothing behind in the next.
+/// The static layer is painted once; an image leaves no traces in the next.
 TEST(TopView, ImagesDoNotDependOnThoseBefore) {
   const world::World world = room();
   const TopView view = view_of(world);

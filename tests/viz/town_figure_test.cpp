@@ -39,7 +39,7 @@ int pixels(const scenes::Picture& picture, std::uint32_t color) {
   return picture.count(color, 0, 0, picture.width, picture.height);
 }
 
-/// At 9 s of SimVille's plan two of the seven lights are yellow, at 5 s none.
+/// At 9 s of SimVille's plan, two of the seven lights are yellow; at 5 s, none.
 TEST(TownFigure, LightsShowWhatTheyShowAtTheEnd) {
   Scene scene;
   scene.end.time = 5.0;
@@ -52,7 +52,7 @@ TEST(TownFigure, LightsShowWhatTheyShowAtTheEnd) {
   EXPECT_GT(pixels(before, kRed), 50);
 }
 
-/// Connections of followers are dark and absent in a picture without a convoy.
+/// The connections of followers are dark, and absent in a picture without a convoy.
 TEST(TownFigure, FollowersAreJoinedToWhomTheyFollow) {
   Scene scene;
   scene.end.time = 5.0;

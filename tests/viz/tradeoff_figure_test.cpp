@@ -23,7 +23,7 @@ scenes::Picture drawn(const std::vector<TradeoffPoint>& points) {
   return scenes::read_png(scenes::own_file("tradeoff.png"));
 }
 
-/// Middle of all pixels of one colour.
+/// Returns the centre of all pixels of one colour.
 glm::dvec2 middle_of(const scenes::Picture& p, std::uint32_t color) {
   double x = 0.0, y = 0.0, count = 0.0;
   for (int column = 0; column < p.width; ++column)
@@ -50,7 +50,7 @@ TEST(TradeoffFigure, InfiniteErrorsStayOnThePicture) {
   EXPECT_GT(p.count(kFront, 0, 0, p.width, p.height), 50);
 }
 
-/// A bound has its own mark at its value, and no mark when no element is covered, so it is never shown for errors to
+/// A bound has a separate mark at its value, and no mark if no element is covered, so it is never shown for errors to
 /// which it does not apply.
 TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
   TradeoffPoint skip = point("skip", 2e6, 0.1, true);
@@ -62,7 +62,7 @@ TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
   EXPECT_EQ(drawn({point("skip", 2e6, 0.1, true)}).count(kCovered), 0);
 }
 
-/// The bound of `exact` is a decade to the right of its error, at the default place of its name.
+/// The bound of `exact` is a decade to the right of its error, at the default position of its name.
 TEST(TradeoffFigure, NamesLeaveTheMarksFree) {
   TradeoffPoint exact = point("exact", 2e6, 1e-9, true), far = exact;
   exact.covered = {0.5, 1e-10, 1e-8};

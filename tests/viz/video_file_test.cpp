@@ -1,4 +1,4 @@
-// Videos as FFmpeg's own programs read them.
+// Videos as read by FFmpeg's own programs.
 
 #include "viz/video_file.h"
 
@@ -24,7 +24,7 @@ constexpr int kFrames = 50;
 bool can_encode() { return std::filesystem::exists(base::plugin_file(kVideoBackendSymbol)); }
 bool has_ffmpeg() { return std::system("ffprobe -version >/dev/null 2>&1 && ffmpeg -version >/dev/null 2>&1") == 0; }
 
-/// White, with a blue box that moves.
+/// White, with a moving blue box.
 PixelImage frame(int number, const VideoFormat& format = kFormat) {
   PixelImage image{format.width, format.height, {}};
   image.rgb.assign(3u * static_cast<unsigned>(format.width * format.height), 255);
@@ -78,7 +78,7 @@ TEST(VideoFile, OtherProgramsReadTheFramesThatWereWritten) {
                    frame(i).rgb.data(), size),
               28.0)
         << "frame " << i;
-  // Colours keep their values: BT.709 on both sides.
+  // Colours are preserved: BT.709 on both sides.
   EXPECT_NEAR(static_cast<std::uint8_t>(pixels[0]), 255, 2);
   const std::size_t inside = 3u * (40u * 160u + 30u);
   EXPECT_NEAR(static_cast<std::uint8_t>(pixels[inside]), 0, 12);
@@ -90,7 +90,7 @@ TEST(VideoFile, EqualFramesAreEqualBytes) {
   EXPECT_EQ(read(write_video("a.webm", 30)), read(write_video("b.webm", 30)));
 }
 
-/// Without a frame, and ended by the destructor.
+/// Without a frame, and closed by the destructor.
 TEST(VideoFile, AnyNumberOfFramesIsAFile) {
   if (!can_encode()) GTEST_SKIP() << "built without FFmpeg";
   EXPECT_GT(std::filesystem::file_size(write_video("none.webm", 0)), 0u);

@@ -22,7 +22,7 @@ void expect_drawing(const std::string& name, Draw&& draw) {
   scenes::expect_recorded(file, "viz", name);
 }
 
-/// `count` tracks side by side, each of four poses and a contact; every third is broken.
+/// `count` parallel tracks, each with four poses and a contact; every third is broken.
 std::vector<Track> tracks_of(std::size_t count) {
   std::vector<Track> tracks;
   for (std::size_t i = 0; i < count; ++i) {
@@ -36,7 +36,7 @@ std::vector<Track> tracks_of(std::size_t count) {
   return tracks;
 }
 
-/// Widths and opacities of strokes of one colour, with their numbers.
+/// Counts the strokes of one colour by width and opacity.
 std::map<std::string, int> strokes(const std::string& file, const std::string& color) {
   std::map<std::string, int> found;
   const std::string stroke = " stroke=\"#" + color + "\"";
@@ -92,7 +92,7 @@ TEST(TrajectoryFigure, ManyTracksAreThinner) {
   }
 }
 
-/// Boundary: 8 to 10 tracks are named at their ends, with `all` up to 150, and those that are asked for.
+/// Boundary: 8 to 10 tracks are named at their ends, with `all` up to 150, and those on request.
 TEST(TrajectoryFigure, ManyTracksHaveTheNamesAskedFor) {
   const auto drawn = [](std::size_t count, const TrackLabels& labels) {
     const std::string file = scenes::own_file("names.svg");

@@ -1,4 +1,4 @@
-// Signatures of sensorfarm_client.c, held to RFC 4231, to another implementation of HMAC, and to the farm's window.
+// Checks the signatures of sensorfarm_client.c against RFC 4231, another implementation of HMAC, and the farm's window.
 
 #define SENSORFARM_CLIENT_NO_MAIN
 #include "examples/clients/sensorfarm_client.c"
@@ -14,7 +14,7 @@ static bool is_hex(const uint8_t* bytes, const char* digits) {
   return strncmp(text, digits, strlen(digits)) == 0;
 }
 
-// RFC 4231, cases 1 to 4, 6 and 7: a byte `fill` repeated, or the text, is key and data.
+// RFC 4231, cases 1 to 4, 6 and 7: key and data are either a repeated byte `fill` or the text.
 static void check_rfc_4231(void) {
   uint8_t rising[25], code[32], key[131], data[152];
   for (unsigned i = 0; i < 25; ++i) rising[i] = (uint8_t)(i + 1);
@@ -36,8 +36,8 @@ static void check_rfc_4231(void) {
   expect(is_hex(code, "9b09ffa71b942fcb27635fbcd5b0e944bfdc63644f0713938a7f51535c3a35e2"), "RFC 4231, case", 7);
 }
 
-// Keys of 0 to 199 bytes and data of 0 to 331, each code in the next one's data: all paddings of a block. The last
-// code is that of Python's hmac.
+// Keys of 0 to 199 bytes and data of 0 to 331, where each code is part of the next data: all paddings of a block. The
+// last code was computed by Python's hmac.
 static void check_lengths(void) {
   uint8_t key[200], data[332], code[32] = {0};
   for (unsigned i = 0; i < 200; ++i) key[i] = (uint8_t)i;
@@ -55,7 +55,7 @@ static size_t signed_leave(uint8_t* bytes, const uint8_t* key, uint64_t counter)
   return sf_sign(bytes, sf_encode(&leave, bytes), key, counter);
 }
 
-// The counters at the window's edges, as in signatures.py.
+// Counters at the edges of the window, as in signatures.py.
 static void check_window(const uint8_t* key) {
   static const struct {
     uint64_t counter;

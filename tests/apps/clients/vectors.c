@@ -1,4 +1,4 @@
-// Holds sensorfarm_client.c to tests/netio/vectors: decoding gives their text, encoding their bytes.
+// Checks sensorfarm_client.c against tests/netio/vectors: decoding gives their text, encoding their bytes.
 //
 //   vectors FILE...
 

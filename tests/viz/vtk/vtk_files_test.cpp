@@ -1,4 +1,4 @@
-// Files for ParaView, read back by VTK's own readers.
+// Files for ParaView, read with VTK's own readers.
 
 #include "viz/vtk_files.h"
 
@@ -69,7 +69,7 @@ TEST(VtkFiles, WallsAreUprightRectangles) {
   EXPECT_EQ(names->GetValue(3), "block");
 }
 
-/// A robot that left and came back has two lines; every sample keeps its numbers to the bit.
+/// A robot that left and returned has two lines; every sample keeps its numbers to the bit.
 TEST(VtkFiles, TrajectoriesKeepTimeAndSpeed) {
   world::World world;
   world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
@@ -147,7 +147,7 @@ TEST(VtkFiles, AbsentRobotsHaveNoBody) {
   for (const double robot : one.cell_data[0].values) EXPECT_EQ(robot, 1.0);
 }
 
-/// Models with closed outlines have a lid, at their own height; a bar that is open has none.
+/// Models with closed outlines have a lid at their height; an open bar has none.
 TEST(VtkFiles, OnlyClosedOutlinesHaveALid) {
   world::World world;
   world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
@@ -174,7 +174,7 @@ TEST(VtkFiles, OnlyClosedOutlinesHaveALid) {
 TEST(VtkFiles, RoadsAreLinesOnTheGround) {
   world::World world;
   world.lane_markings.push_back({{{0, 0}, {1, 0}, {1, 1}}, 0.05, 0xFFFFFF00u});
-  world.lane_markings.push_back({{{0, 0}}, 0.05, 0xFFFFFF00u});  // one point is no line
+  world.lane_markings.push_back({{{0, 0}}, 0.05, 0xFFFFFF00u});  // a single point is not a line
   write_poly_data(roads_geometry(world), scenes::own_file("roads.vtp"));
   const auto reader = read_poly_data(scenes::own_file("roads.vtp"));
   ASSERT_EQ(reader->GetOutput()->GetNumberOfLines(), 1);
