@@ -41,7 +41,7 @@ std::string small_world(const Folder& folder) {
 }  // namespace
 
 /// A noisy sensor has no bound, but states the bound that it would have without noise.
-TEST(Check, NoisySensorsStateNoBound) {
+TEST(Check, NoisySensorsHaveNoBound) {
   const Folder folder;
   const std::string world = folder.write("w.world",
                                          "position( name \"a\" laser( noise [0.2 0 0] ) laser( noise [0 0 1] ) "
@@ -69,7 +69,7 @@ TEST(Check, NoisySensorsStateNoBound) {
 }
 
 /// How often sensors are read, which of them between ticks, and for which ones a tick rate would be too low.
-TEST(Check, RatesAreSaid) {
+TEST(Check, RatesAreReported) {
   const Folder folder;
   const std::string world = folder.write("w.world",
                                          "interval_sim 100\nposition( name \"roomba1\" laser( rate 5 ) "
@@ -92,7 +92,7 @@ TEST(Check, RatesAreSaid) {
 }
 
 /// Boundary: more than a thousand batches per second are reported.
-TEST(Check, ManySamplingTimesAreSaid) {
+TEST(Check, ManySamplingTimesAreReported) {
   const Folder folder;
   const std::string laser = "position( name \"roomba1\" laser( rate ";
   EXPECT_TRUE(run_program({"check", folder.write("w.world", laser + "1000 ) )\n")}).err.empty());
@@ -103,7 +103,7 @@ TEST(Check, ManySamplingTimesAreSaid) {
   }
 }
 
-TEST(Check, JsonCountsWhatIsThere) {
+TEST(Check, JsonCountsObjects) {
   const Folder folder;
   const Outcome outcome = run_program({"check", small_world(folder), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -135,7 +135,7 @@ TEST(Check, WarningsNameFileAndLineAndSuggest) {
   EXPECT_NE(text.out.find(world + ":11: "), std::string::npos) << text.out;
 }
 
-TEST(Check, NamesThatAreNoUtf8StillGiveJson) {
+TEST(Check, NamesWithInvalidUtf8GiveValidJson) {
   const Folder folder;
   const std::string world = folder.write("latin.world",
                                          "name \"K\xfc"
@@ -145,7 +145,7 @@ TEST(Check, NamesThatAreNoUtf8StillGiveJson) {
   EXPECT_EQ(Json(outcome.out).number("/segments"), 4);
 }
 
-TEST(Check, RosMapsAreWorlds) {
+TEST(Check, RosMapsLoadAsWorlds) {
   const Folder folder;
   folder.write("plan.pgm", kPlan);
   const std::string map = folder.write("map.yaml",
@@ -178,7 +178,7 @@ TEST(Check, EveryWorldOfStageAndRosLoads) {
 }
 
 /// Files from users' reports, each with the expected message.
-TEST(Check, ReportedFilesAreReadOrNamed) {
+TEST(Check, FilesFromReportsAreReadOrRejected) {
   const std::string reports = SF_SOURCE_DIR "/../shared/data/reports/";
   if (!std::filesystem::exists(reports)) GTEST_SKIP() << "no shared data here";
   struct Report {

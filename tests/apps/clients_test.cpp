@@ -160,7 +160,7 @@ TEST(Clients, BothPrintTheReadingsOfSense) {
   EXPECT_FALSE(facts.has("/received/stale"));
 }
 
-TEST(Clients, BothSignAndCheckSignatures) {
+TEST(Clients, BothSignAndVerifySignatures) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
   if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
   const unsigned ports = free_ports(32);
@@ -190,7 +190,7 @@ TEST(Clients, CSignsAsSpecified) {
 }
 
 /// Counters at the edges of the window, as in `ReplayWindow`, a flipped bit and a different key.
-TEST(Clients, PythonRefusesWhatTheFarmRefuses) {
+TEST(Clients, PythonRejectsWhatTheFarmRejects) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
   const Outcome outcome =
       Program({SF_SOURCE_DIR "/tests/apps/clients/signatures.py", kClients}, {}, "", "", "python3").wait();
@@ -198,7 +198,7 @@ TEST(Clients, PythonRefusesWhatTheFarmRefuses) {
   EXPECT_EQ(outcome.out, "sound\n");
 }
 
-TEST(Clients, WrongWordsAreRefused) {
+TEST(Clients, WrongArgumentsAreRejected) {
   if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
   const Folder folder;
   const std::string client = compiled(folder, kCClient);

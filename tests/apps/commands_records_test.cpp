@@ -134,7 +134,7 @@ class CommandRecords : public testing::TestWithParam<Case> {};
 
 }  // namespace
 
-TEST_P(CommandRecords, PrintWhatTheirRecordHas) {
+TEST_P(CommandRecords, MatchTheirRecord) {
   const Folder folder;
   folder.write("yard.world", kYard);
   std::string text;

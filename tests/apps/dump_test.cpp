@@ -52,7 +52,7 @@ std::string signal_capture(const std::string& hex, std::size_t more = 0) {
 }  // namespace
 
 /// Real traffic lights send J2735 messages on the same networks.
-TEST(Dump, SignalMessagesAreWordsToo) {
+TEST(Dump, SignalMessagesArePrintedAsText) {
   const Folder folder;
   const Outcome frames = run_program({"v2x", "export", our_world("simville/simville.world")});
   const std::vector<std::string> hex = lines_of(frames.out);
@@ -70,7 +70,7 @@ TEST(Dump, SignalMessagesAreWordsToo) {
 }
 
 // `serve` before it has accepted a state of the robot.
-TEST(Dump, SaysThatNoStateHasArrived) {
+TEST(Dump, ReportsThatNoStateHasArrived) {
   base::Bytes packet = vector_of("laser", 1);
   packet[62] |= 2;
   test::PcapFile file({.big_endian = true, .nanoseconds = true, .link = 101});
@@ -80,7 +80,7 @@ TEST(Dump, SaysThatNoStateHasArrived) {
   EXPECT_NE(outcome.out.find("; no state of the robot has arrived yet\n"), std::string::npos) << outcome.out;
 }
 
-TEST(Dump, ACaptureIsPrintedInWords) {
+TEST(Dump, ACaptureIsPrintedAsText) {
   const Folder folder;
   test::PcapFile file({.big_endian = true, .nanoseconds = true, .link = 101});
   std::uint32_t time = 0;
@@ -122,7 +122,7 @@ TEST(Dump, ACaptureIsPrintedInWords) {
             "sensorfarm: 9 datagrams: accepted 7, too short 1, bad magic 1\n");
 }
 
-TEST(Dump, JsonHasOneObjectADatagram) {
+TEST(Dump, JsonHasOneObjectPerDatagram) {
   const Folder folder;
   const Outcome outcome = run_program({"dump", folder.write("a.pcap", all_vectors()), "--json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -145,7 +145,7 @@ TEST(Dump, JsonHasOneObjectADatagram) {
   EXPECT_EQ(i, found.size());
 }
 
-TEST(Dump, ACutOffDatagramIsSaid) {
+TEST(Dump, ATruncatedDatagramIsReported) {
   const Folder folder;
   base::Bytes frame = test::ethernet(test::ipv4(test::udp(1, 2, vector_of("laser"))));
   frame.resize(frame.size() - 3);
@@ -178,7 +178,7 @@ TEST(Dump, ValuesKeepAllDigits) {
       << lines[1];
 }
 
-TEST(Dump, WrongFilesAndWordsAreRefused) {
+TEST(Dump, WrongFilesAndArgumentsAreRejected) {
   const Folder folder;
   const std::string pipe = folder.path("pipe");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -198,7 +198,7 @@ TEST(Dump, WrongFilesAndWordsAreRefused) {
   }
 }
 
-TEST(Dump, DatagramsThatComeArePrinted) {
+TEST(Dump, ReceivedDatagramsArePrinted) {
   const unsigned port = free_ports(2);
   Program dump({"dump", "--port", std::to_string(port) + "-" + std::to_string(port + 1), "--count", "5"});
   ASSERT_TRUE(dump.says("listening on 2 ports")) << dump.err();

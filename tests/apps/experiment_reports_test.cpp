@@ -117,7 +117,7 @@ scenarios::ThesisRow swept_errors(const std::string& file, const CsvRecord& reco
 }
 
 /// The report's tables and the figures show the columns of the file that they name.
-TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
+TEST(ExperimentReport, SweepsMatchTheColumnsOfTheirFile) {
   if (instrumented()) GTEST_SKIP() << "140 runs: 8 s without instruments";
   const Folder folder;
   folder.write("sweeps.toml", short_path("2", "lane-keeping"));
@@ -198,7 +198,7 @@ TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
 }
 
 /// The file is in metres, the report in millimetres.
-TEST(ExperimentReport, LateStatesShowTheColumnsOfTheirFile) {
+TEST(ExperimentReport, LateStatesMatchTheColumnsOfTheirFile) {
   const Folder folder;
   folder.write("late-states.toml",
                short_path("4", "lane-keeping", "[states]\nrate = 10\ndelay = 0.08\nfilter = true\n"));
@@ -229,7 +229,7 @@ TEST(ExperimentReport, LateStatesShowTheColumnsOfTheirFile) {
 }
 
 /// Each row is a trial with its gain, speed and kind of states.
-TEST(ExperimentReport, LateStatesAreThoseThatTheirRowNames) {
+TEST(ExperimentReport, LateStatesMatchTheirRows) {
   const Folder folder;
   const std::string file =
       folder.write("late-states.toml",
@@ -267,7 +267,7 @@ TEST(ExperimentReport, LateStatesAreThoseThatTheirRowNames) {
 }
 
 /// The file has fractions, the report per cent.
-TEST(ExperimentReport, AccuracyShowsTheColumnsOfItsFile) {
+TEST(ExperimentReport, AccuracyMatchesTheColumnsOfItsFile) {
   const Folder folder;
   folder.write("small.world",
                "model( size [0.8 0.8 0.5] boundary 1 noblocks 0 )\n"
@@ -305,7 +305,7 @@ TEST(ExperimentReport, AccuracyShowsTheColumnsOfItsFile) {
 }
 
 /// One row per robot and trial, with the same numbers in both files.
-TEST(ExperimentReport, ATownShowsTheColumnsOfItsFile) {
+TEST(ExperimentReport, ATownMatchesTheColumnsOfItsFile) {
   const Folder folder;
   folder.write("minimagic.toml", "world = \"" + our_world("rooms.world") +
                                      "\"\nduration = 5\nrobots = 3\n[default]\ncontroller = \"wander\"\n");

@@ -20,7 +20,7 @@ std::string scenario(const std::string& more) {
   return "world = \"" + our_world("rooms.world") + "\"\nduration = 1\nrobots = 2\n" + more;
 }
 
-TEST(Experiment, NamesThemAll) {
+TEST(Experiment, ListsAll) {
   const Outcome outcome = run_program({"experiment", "--list"});
   EXPECT_EQ(outcome.code, 0);
   for (const char* name :
@@ -28,7 +28,7 @@ TEST(Experiment, NamesThemAll) {
     EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
 }
 
-TEST(Experiment, WrongUsageIsExplained) {
+TEST(Experiment, WrongUsageIsRejected) {
   const Outcome unknown = run_program({"experiment", "lane-edge", "-o", "x"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.err.find("lane-edge-pi"), std::string::npos);
@@ -97,7 +97,7 @@ TEST(Experiment, NeedsNoFilesAndTakesAPlant) {
 }
 
 /// `wrong` is a fraction of the known cells: per cent in the report, a fraction in the file.
-TEST(Experiment, TheMappingReportSaysWhatItsFileDoes) {
+TEST(Experiment, TheMappingReportMatchesItsFile) {
   const Folder folder;
   folder.write("small.world",
                "model( size [0.8 0.8 0.5] boundary 1 noblocks 0 )\n"
@@ -116,7 +116,7 @@ TEST(Experiment, TheMappingReportSaysWhatItsFileDoes) {
   EXPECT_NEAR(std::stod(report.substr(report.rfind('|', end) + 1)), 100.0 * wrong, 0.006) << report;
 }
 
-TEST(Experiment, StoppedLeavesNoHalfTrial) {
+TEST(Experiment, AStopLeavesNoPartialTrial) {
   const Folder folder;
   Program program({"experiment", "lane-edge-p", "--trials", "200", "-o", folder.path("out"), "--files",
                    SF_SOURCE_DIR "/experiments"});
@@ -138,7 +138,7 @@ TEST(Experiment, StoppedLeavesNoHalfTrial) {
   }
 }
 
-TEST(TestCommand, PassesFailsAndSaysWhy) {
+TEST(TestCommand, ReportsPassesAndFailuresWithReasons) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
   const std::string bad = folder.write("bad.toml", scenario("[expect]\ncontacts = 1000\ndone = true\n"));
@@ -153,7 +153,7 @@ TEST(TestCommand, PassesFailsAndSaysWhy) {
   EXPECT_NE(xml.find("<testsuite name=\"bad\" tests=\"2\" failures=\"1\""), std::string::npos) << xml;
 }
 
-TEST(TestCommand, BadFilesAreRefusedBeforeAnythingRuns) {
+TEST(TestCommand, BadFilesAreRejectedBeforeAnyRun) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario(""));
   const std::string bad = folder.write("bad.toml", scenario("duraton = 3\n"));
@@ -165,7 +165,7 @@ TEST(TestCommand, BadFilesAreRefusedBeforeAnythingRuns) {
   EXPECT_EQ(run_program({"test", folder.path("none.toml")}).code, 2);
 }
 
-TEST(TestCommand, ControllersAreTriedBeforeAnythingRuns) {
+TEST(TestCommand, ControllersAreCheckedBeforeAnyRun) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
   const std::string bad = folder.write("bad.toml", scenario("[default]\ncontroller = \"lane-keeping\"\n"));
@@ -175,7 +175,7 @@ TEST(TestCommand, ControllersAreTriedBeforeAnythingRuns) {
   EXPECT_NE(outcome.err.find("bad.toml:5: controller 'lane-keeping'"), std::string::npos) << outcome.err;
 }
 
-TEST(TestCommand, AFolderThatCannotBeWrittenIsKnownBeforeAnythingRuns) {
+TEST(TestCommand, AnUnwritableFolderIsReportedBeforeAnyRun) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
   const Outcome outcome = run_program({"test", good, "--junit", folder.path("none/out.xml")});
@@ -184,7 +184,7 @@ TEST(TestCommand, AFolderThatCannotBeWrittenIsKnownBeforeAnythingRuns) {
   EXPECT_NE(outcome.err.find("none/out.xml: cannot be written"), std::string::npos) << outcome.err;
 }
 
-TEST(TestCommand, NothingExpectedIsItsOwnState) {
+TEST(TestCommand, NoExpectationsIsASeparateResult) {
   const Folder folder;
   const Outcome outcome =
       run_program({"test", folder.write("idle.toml", scenario("")), "--junit", folder.path("o.xml")});
@@ -194,7 +194,7 @@ TEST(TestCommand, NothingExpectedIsItsOwnState) {
   EXPECT_NE(read_file(folder.path("o.xml")).find("skipped=\"1\""), std::string::npos);
 }
 
-TEST(RunController, SettingsReachIt) {
+TEST(RunController, ReceivesSettings) {
   const std::string world = our_world("testpath/testpath.world");
   const Words words{"run", world, "--duration", "1", "--controller", "lane-keeping"};
   const auto with = [&](const std::string& set) {

@@ -9,7 +9,7 @@
 namespace sf {
 namespace {
 
-TEST(Explain, SaysWhatIsBuiltAndWhatIsNot) {
+TEST(Explain, ListsWhichTablesAreBuilt) {
   const Outcome outcome = run_program({"explain", our_world("simville/simville.world")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* text : {"laser: 6 sensors on 6 robots", "magnets summed", "caster", "subscribed alone",
@@ -49,7 +49,7 @@ TEST(Explain, AsJson) {
 }
 
 /// If the host casts, it has no kernel. An unknown caster is refused.
-TEST(Explain, TheCasterIsAsAsked) {
+TEST(Explain, UsesTheRequestedCaster) {
   const Outcome host =
       run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "host", "--json"});
   EXPECT_EQ(host.code, 0) << host.err;
@@ -78,7 +78,7 @@ TEST(Explain, TheCasterIsAsAsked) {
 }
 
 /// Uncertain beams are counted; the text shows their share of all beams.
-TEST(Explain, SaysHowManyBeamsAreInDoubt) {
+TEST(Explain, CountsUncertainBeams) {
   const Words words{"explain", our_world("cave.world"), "--robots", "2"};
   Words as_json = words;
   as_json.push_back("--json");
@@ -91,7 +91,7 @@ TEST(Explain, SaysHowManyBeamsAreInDoubt) {
   EXPECT_NEAR(std::stod(text.substr(begin, end - begin)), share, 0.06 * share);
 }
 
-TEST(Explain, SizesHaveTheLargestUnitThatTheyFill) {
+TEST(Explain, SizesUseTheLargestSuitableUnit) {
   scenarios::Explanation explanation{.ticks = 1};
   explanation.types.push_back({.type = "laser", .bytes = 1});
   explanation.types[0].tables = {
@@ -100,7 +100,7 @@ TEST(Explain, SizesHaveTheLargestUnitThatTheyFill) {
   EXPECT_NE(text.find("1 B: a 1.5 MiB, b 1.0 MiB, c 1023.5 KiB, d 1.0 KiB, e 1023 B\n"), std::string::npos) << text;
 }
 
-TEST(Explain, WrongUsage) {
+TEST(Explain, WrongUsageIsRejected) {
   EXPECT_EQ(run_program({"explain"}).code, 2);
   EXPECT_EQ(run_program({"explain", "/nowhere.world"}).code, 2);
   EXPECT_EQ(run_program({"explain", our_world("rooms.world"), "--require-vulkan"}, no_device()).code, 3);

@@ -169,7 +169,7 @@ TEST_F(Recorded, PlotsAreSvgOrPdfOnDemand) {
   EXPECT_EQ(read_file(folder_.path("n/trajectories.svg")).find(">Trajectories<"), std::string::npos);
 }
 
-TEST_F(Recorded, APlotSaysHowLongItsPartLasts) {
+TEST_F(Recorded, APlotStatesTheDurationOfItsPart) {
   for (const auto& [from, to, said] : {std::tuple{"0", "10", "2 robots, 2.9 s, "}, {"1", "2", "2 robots, 1 s, "}}) {
     ASSERT_EQ(run_program(with("plot", {"-o", folder_.path("p"), "--format", "svg", "--from", from, "--to", to})).code,
               0);
@@ -184,7 +184,7 @@ TEST_F(Recorded, WithoutALaserThereIsNoMap) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path("p/occupancy.png")));
 }
 
-TEST_F(Recorded, PartsThatThereAreNotAreRefused) {
+TEST_F(Recorded, MissingPartsAreRejected) {
   const std::string out = folder_.path("x");
   expect_refused(with("plot", {"-o", out, "--robots", "one,three"}), "has no robot 'three'; it has one, two");
   expect_refused(with("export", {"-o", out, "--from", "5"}), "has no tick from 5 s on; it lasts from 0 to 2.9 s");
@@ -283,8 +283,8 @@ std::vector<glm::dvec2> vtk_middles(const std::string& file) {
   return middles;
 }
 
-/// The known cells are within the 3 m range of the robot in the lower left quarter; the occupied ones belong to the wall
-/// below it.
+/// The known cells are within the 3 m range of the robot in the lower left quarter; the occupied ones belong to the
+/// wall below it.
 TEST_F(Recorded, ParaViewsMapBeginsAtTheLowerLeft) {
   ASSERT_EQ(run_program(with("export", {"--vtk", "-o", folder_.path("v")})).code, 0);
   const std::vector<double> cells = vtk_numbers(folder_.path("v/occupancy.vti"));
@@ -305,7 +305,7 @@ TEST_F(Recorded, ParaViewsMapBeginsAtTheLowerLeft) {
   EXPECT_GT(occupied, 0);
 }
 
-TEST_F(Recorded, ParaViewGetsThePartThatWasAskedFor) {
+TEST_F(Recorded, ParaViewGetsTheRequestedPart) {
   const std::string out = folder_.path("v"), ways = out + "/trajectories.vtp", map = out + "/occupancy.vti";
   const Outcome outcome = run_program(
       with("export", {"--vtk", "-o", out, "--robots", "one", "--from", "1", "--to", "2", "--every", "0.5"}));
@@ -342,7 +342,7 @@ TEST_F(Recorded, ParaViewGetsThePartThatWasAskedFor) {
 }
 
 /// Tags are not robots. A field needs no laser, and is at the requested height.
-TEST(Export, TagsHaveNoWaysAndMagnetsAField) {
+TEST(Export, TagsHaveNoTrajectoriesAndMagnetsHaveAField) {
   const Folder folder;
   const std::string world = folder.write(
       "w.world",
@@ -403,7 +403,7 @@ class VirtualDisplay {
   std::string name_;
 };
 
-TEST_F(Recorded, WithoutADisplayTheWindowIsRefused) {
+TEST_F(Recorded, WithoutADisplayTheWindowFails) {
   expect_refused(with("view", {"--3d"}), "no display");
   const Outcome outcome = run_program(with("view", {"--3d"}), {{"DISPLAY", ":64999"}});
   EXPECT_EQ(outcome.code, 2) << "a display that is not there";

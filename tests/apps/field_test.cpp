@@ -59,7 +59,7 @@ struct Refusal {
   std::string says;
 };
 
-TEST(Field, RefusesWhatMakesNoSense) {
+TEST(Field, RejectsInvalidArguments) {
   const Folder folder;
   const std::string world = magnets(folder), png = folder.path("x.png");
   const std::string bare = folder.write("bare.world", "name \"bare\"\n");

@@ -80,7 +80,7 @@ base::Bytes anything(std::mt19937& generator) {
 
 }  // namespace
 
-TEST(Hostile, OneRobotIsServedAndNobodyElseIsFlooded) {
+TEST(Hostile, OneRobotIsServedAndNoOneIsFlooded) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
   const netio::Endpoint farm{netio::kLoopback, static_cast<std::uint16_t>(service.port)};

@@ -73,7 +73,7 @@ TEST_F(Interrupted, EachCommandEndsWithTheSignalsCode) {
   }
 }
 
-TEST_F(Interrupted, FilesAreWholeOrNotThere) {
+TEST_F(Interrupted, FilesAreCompleteOrAbsent) {
   const Outcome exported = stopped({"export", record(), "-o", folder.path("csv")});
   EXPECT_NE(exported.err.find("interrupted: the files that were written are whole"), std::string::npos) << exported.err;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path("csv"))) {
@@ -110,7 +110,7 @@ TEST_F(Interrupted, ByOtherSignalsAndWithAnotherCode) {
 }
 
 /// The report of the finished part states that it is incomplete.
-TEST_F(Interrupted, ReportsSayThatTheyAreNotWhole) {
+TEST_F(Interrupted, ReportsStateThatTheyAreIncomplete) {
   const Outcome text = stopped({"selftest"});
   EXPECT_NE(text.out.find("; interrupted, "), std::string::npos) << text.out;
   const Json test(stopped({"selftest", "--json"}).out);
@@ -123,7 +123,7 @@ TEST_F(Interrupted, ReportsSayThatTheyAreNotWhole) {
 }
 
 /// Services and listeners run until they are stopped, so stopping them is normal use.
-TEST_F(Interrupted, WhatHasNoEndOfItsOwnIsComplete) {
+TEST_F(Interrupted, StoppingServicesIsSuccess) {
   const std::string rooms = our_world("rooms.world");
   EXPECT_EQ(stopped({"serve", rooms, "--port", "0", "--laser-port", std::to_string(free_ports(64))}).code, 0);
   EXPECT_EQ(stopped({"run", rooms, "--view", "127.0.0.1:0"}).code, 0) << "no --duration: until it is stopped";
@@ -134,7 +134,7 @@ TEST_F(Interrupted, WhatHasNoEndOfItsOwnIsComplete) {
 }
 
 /// A signal that arrives after all work is done changes nothing.
-TEST_F(Interrupted, CompleteWorkIsComplete) {
+TEST_F(Interrupted, ASignalAfterCompletionChangesNothing) {
   const Outcome outcome = run_program({"selftest", "ranges"});
   EXPECT_EQ(outcome.code, 0) << outcome.out;
 }

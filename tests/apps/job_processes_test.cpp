@@ -76,7 +76,7 @@ TEST_F(JobProcesses, ThereAreNoMoreChildrenThanJobs) {
   EXPECT_EQ(told().begun, 2);
 }
 
-TEST_F(JobProcesses, AChildThatDiesIsReplacedAndItsCauseTold) {
+TEST_F(JobProcesses, ADeadChildIsReplacedAndItsCauseReported) {
   EXPECT_TRUE(run_in_processes(4, 1, calls([](std::size_t row) {
                                  if (row == 0) raise(SIGKILL);
                                  if (row == 1) _exit(7);
@@ -107,7 +107,7 @@ TEST_F(JobProcesses, InputAndDeviceErrorsEndAll) {
   EXPECT_TRUE(died_.empty());
 }
 
-TEST_F(JobProcesses, AFaultOutsideOfAnyJobIsNoJobs) {
+TEST_F(JobProcesses, AFaultOutsideOfAnyJobEndsAll) {
   JobCalls all = calls();
   all.begin = [] { throw std::runtime_error("no luck"); };
   EXPECT_EQ(refusal(all), "input: a process died outside of any job: its process ended with exit code 1: no luck");

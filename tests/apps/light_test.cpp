@@ -29,7 +29,7 @@ Words with(Words words, const Words& more) {
 
 }  // namespace
 
-TEST(Light, ARobotHearsIt) {
+TEST(Light, ARobotReceivesIt) {
   const std::string world = our_world("simville/simville.world");
   const std::string spat = std::to_string(free_ports(1));
   Program light({"light", world, "--send", "127.0.0.1", "--port", spat, "--set", "light1=flashing red"});
@@ -53,7 +53,7 @@ TEST(Light, EndsAfterItsDuration) {
 }
 
 /// On both sides, as for robots.
-TEST(Light, AnotherKeyThanTheFarmsIsStated) {
+TEST(Light, AKeyMismatchIsReported) {
   const Folder folder;
   const std::string port = std::to_string(free_ports(1));
   const auto peers = [&](const std::string& name, char digit) {
@@ -69,7 +69,7 @@ TEST(Light, AnotherKeyThanTheFarmsIsStated) {
 }
 
 /// Two seconds of an actuated plan, with a farm whose robot is at a detector.
-TEST(Light, APlanIsRunBesideAFarm) {
+TEST(Light, RunsAPlanWithAFarm) {
   const std::string port = std::to_string(free_ports(1));
   const Words ports = town_ports();
   Program farm(with({"serve", our_world("simville/simville.world"), "--port", port, "--json"}, ports));
@@ -104,7 +104,7 @@ TEST(Light, CtrlCEndsItAtOnce) {
   EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
 }
 
-TEST(Light, WrongArgumentsAreExplained) {
+TEST(Light, WrongArgumentsAreRejected) {
   const std::string world = our_world("simville/simville.world");
   const Folder folder;
   struct Case {

@@ -66,7 +66,7 @@ TEST(Loading, APictureWithoutItsPlugInIsAnError) {
 }
 
 /// The loader need not be installed if no device is opened.
-TEST(Loading, OnlyDevicesLoadVulkan) {
+TEST(Loading, OnlyDevicesLoadTheVulkanLoader) {
   const std::string world = our_world("rooms.world");
   for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"sense", world, "--device", "host"}})
     EXPECT_EQ(loaded_by(arguments).find("libvulkan"), std::string::npos) << arguments[0];
@@ -82,7 +82,7 @@ TEST(Loading, DrawingLoadsCairoAndNothingOfVtk) {
 }
 
 /// A program without the drawing module in its folder uses the one that the dynamic linker finds.
-TEST(Loading, TheDrawingModuleMayBeWhereTheLinkerLooks) {
+TEST(Loading, TheDrawingModuleMayBeInTheLinkerPath) {
   const Folder folder;
   const char* const other = std::getenv("SENSORFARM_PROGRAM");
   const std::filesystem::path program = other != nullptr ? other : SF_PROGRAM;

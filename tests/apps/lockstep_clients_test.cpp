@@ -201,7 +201,7 @@ TEST(LockstepClients, ARecordingIsReportedWithItsSize) {
 }
 
 /// The recording may not grow, as on a full disk: the robots are served to the end, and the service reports it.
-TEST(LockstepClients, ARecordingThatIsNotWholeEndsWithOne) {
+TEST(LockstepClients, AnIncompleteRecordingExitsWithOne) {
   const Folder folder;
   const FileSizeLimit limit(400'000);
   LockstepServer server({"--record", folder.path("r")});
@@ -222,7 +222,7 @@ TEST(LockstepClients, ARecordingThatIsNotWholeEndsWithOne) {
 }
 
 /// One client subscribes and never steps while another waits.
-TEST(LockstepClients, ALostRobotEndsWithOne) {
+TEST(LockstepClients, ALostRobotExitsWithOne) {
   LockstepServer server({"--wait-for", "2", "--lockstep-timeout", "0.05"});
   ASSERT_NE(server.port, 0u) << server.program.err();
   scenarios::Driver one(static_cast<std::uint16_t>(server.port), {1}),
@@ -239,7 +239,7 @@ TEST(LockstepClients, ALostRobotEndsWithOne) {
   EXPECT_EQ(server.end(1).number("/lockstep/lost_robots"), 1);
 }
 
-TEST(LockstepClients, WhatDoesNotGoWithLockstepIsRefused) {
+TEST(LockstepClients, IncompatibleOptionsAreRejected) {
   for (const Words& more : std::vector<Words>{{"--rate", "5"},
                                               {"--filter"},
                                               {"--laser-port", "12000"},

@@ -58,7 +58,7 @@ void expect_map(const std::string& text, std::size_t columns, std::size_t rows) 
   EXPECT_GT(std::count(text.begin(), text.end(), '0'), 20) << text;
 }
 
-TEST(Map, ComesFromARunInBothForms) {
+TEST(Map, ReceivesBothWireFormatsFromARun) {
   const Folder folder;
   const std::string world = folder.write("a.world", kMapWorld);
   for (const std::string wire : {"farm", "thesis"}) {
@@ -75,7 +75,7 @@ TEST(Map, ComesFromARunInBothForms) {
   }
 }
 
-TEST(Map, MergesSeveralAndSurvivesNonsense) {
+TEST(Map, MergesSeveralAndIgnoresInvalidPackets) {
   const Folder folder;
   const std::string world = folder.write("a.world", kMapWorld);
   const unsigned port = free_ports(120);
@@ -127,7 +127,7 @@ void send_map(netio::Outbox& farm, unsigned port, std::uint32_t sequence, std::u
 
 /// A sequence number far ahead of the farm's neither shows its map nor makes the genuine ones after it late; it is
 /// accepted if the next one continues it.
-TEST(Map, SequencesThatLeapAreLeftOut) {
+TEST(Map, SequencesThatJumpAreDropped) {
   for (const bool followed : {false, true}) {
     const unsigned port = free_ports(1);
     Program map(listen(port, {}));
@@ -160,14 +160,14 @@ TEST(Map, DatagramsDroppedByTheKernelAreReported) {
   EXPECT_NE(outcome.err.find("datagrams dropped by the operating system"), std::string::npos) << outcome.err;
 }
 
-TEST(Map, NothingCame) {
+TEST(Map, ReportsThatNothingWasReceived) {
   const unsigned port = free_ports(1);
   const Outcome outcome = run_program({"map", "--listen", std::to_string(port), "--duration", "0.1"});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.out, "");
 }
 
-TEST(Map, WrongPortsAreRefused) {
+TEST(Map, WrongPortsAreRejected) {
   for (const std::string port : {"0", "65536", "x", "5-4", "1-1025", "7-", "-7"}) {
     const Outcome outcome = run_program({"map", "--listen", port});
     EXPECT_EQ(outcome.code, 2) << port;
@@ -176,7 +176,7 @@ TEST(Map, WrongPortsAreRefused) {
   EXPECT_EQ(run_program({"map"}).code, 2);
 }
 
-TEST(Map, APortThatIsGivenTwiceIsRefused) {
+TEST(Map, DuplicatePortsAreRejected) {
   const unsigned port = free_ports(4);
   const std::string range = std::to_string(port) + "-" + std::to_string(port + 3);
   const std::string last = std::to_string(port + 3);
@@ -203,7 +203,7 @@ TEST(Map, PortsMayBeGivenInAnyOrder) {
         << err;
 }
 
-TEST(Map, TakesMorePortsThanFilesAreAllowedAtFirst) {
+TEST(Map, SupportsMorePortsThanTheFileLimit) {
   const unsigned port = free_ports(200);
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);

@@ -50,7 +50,7 @@ void run_to_listener(const std::string& wire) {
 TEST(SendAndListen, EveryPacketArrivesAndIsGood) { run_to_listener("farm"); }
 TEST(SendAndListen, EveryPacketArrivesInTheThesisLayout) { run_to_listener("thesis"); }
 
-TEST(SendAndListen, BytesAreSaidInMegabytes) {
+TEST(SendAndListen, BytesArePrintedInMegabytes) {
   Words words{"run",          our_world("cave.world"),       "--robots", "4", "--send", "127.0.0.1", "--duration", "10",
               "--laser-port", std::to_string(free_ports(60))};
   const std::string text = run_program(words).out;
@@ -63,7 +63,7 @@ TEST(SendAndListen, BytesAreSaidInMegabytes) {
 }
 
 /// A sensor that is due more than once per tick, or between ticks, sends every reading.
-TEST(SendAndListen, ReadingsBetweenTicksAreSentToo) {
+TEST(SendAndListen, ReadingsBetweenTicksAreSent) {
   const Folder folder;
   const std::string world =
       folder.write("w.world",
@@ -112,7 +112,7 @@ TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
 
 /// In real time, readings are sent when they are due, not all at the end of the tick: 5 at 50 Hz in a tick of 0.1 s. A
 /// busy machine may deliver several at once, so there are several trials.
-TEST(SendAndListen, InRealTimeReadingsComeAsTheyAreDue) {
+TEST(SendAndListen, InRealTimeReadingsArriveWhenTheyAreDue) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 9 rate 50 ) )\n");
   std::size_t heard = 0, times = 0;
@@ -137,7 +137,7 @@ TEST(SendAndListen, InRealTimeReadingsComeAsTheyAreDue) {
   EXPECT_GE(times, 30u) << "all at once at the end of each tick, that would be 20 times";
 }
 
-TEST(SendAndListen, AListenerEndsThoughNothingComes) {
+TEST(SendAndListen, AListenerEndsWithoutPackets) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( ) )\n");
   const Outcome outcome =
@@ -146,14 +146,14 @@ TEST(SendAndListen, AListenerEndsThoughNothingComes) {
   EXPECT_NE(outcome.err.find("listening on 1 port of"), std::string::npos) << outcome.err;
 }
 
-TEST(SendAndListen, OneRobotsKindsOnOneBaseAreToldApart) {
+TEST(SendAndListen, ARobotsKindsOnOneBaseAreDistinguished) {
   const Outcome outcome =
       run_program({"run", our_world("mapping/mapping.world"), "--send", "127.0.0.1", "--laser-port", "52000"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("change --laser-port or --occupancy-port"), std::string::npos) << outcome.err;
 }
 
-TEST(SendAndListen, PortsThatCollideAreRefusedAtLoad) {
+TEST(SendAndListen, CollidingPortsAreRejectedAtLoad) {
   const Folder folder;
   const std::string world = folder.write("w.world",
                                          "position( name \"roomba1\" laser( ) laser( ) )\n"
@@ -170,13 +170,13 @@ TEST(SendAndListen, PortsThatCollideAreRefusedAtLoad) {
   }
 }
 
-TEST(SendAndListen, PortsPastTheLastAreRefusedAtLoad) {
+TEST(SendAndListen, PortsBeyondTheLastAreRejectedAtLoad) {
   const Outcome outcome = run_program({"serve", our_world("rooms.world"), "--port", "0", "--laser-port", "65535"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("65535"), std::string::npos) << outcome.err;
 }
 
-TEST(SendAndListen, ScansTooLargeForTheThesisFormatAreRefusedAtLoad) {
+TEST(SendAndListen, ScansTooLargeForTheThesisFormatAreRejectedAtLoad) {
   const Folder folder;
   for (const std::string laser : {"laser( samples 362 )", "laser( range_max 65.6 )"}) {
     const std::string world = folder.write("w.world", "position( name \"roomba1\" " + laser + " )\n");
@@ -186,7 +186,7 @@ TEST(SendAndListen, ScansTooLargeForTheThesisFormatAreRefusedAtLoad) {
   }
 }
 
-TEST(SendAndListen, APortThatIsTakenIsNamed) {
+TEST(SendAndListen, ATakenPortIsReported) {
   const unsigned base = free_ports(16);
   const netio::Socket taken = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 9)});
   const Folder folder;
@@ -196,7 +196,7 @@ TEST(SendAndListen, APortThatIsTakenIsNamed) {
   EXPECT_NE(outcome.err.find(std::to_string(base + 9)), std::string::npos) << outcome.err;
 }
 
-TEST(Serve, RobotsReadWhatSenseReadsWhereTheySayTheyAre) {
+TEST(Serve, ReadingsAtReportedPosesMatchSense) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
   Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
@@ -241,7 +241,7 @@ TEST(Serve, SensorsAreReadBetweenTicks) {
 }
 
 /// With --rate, sensors are read only at ticks, and the command names the faster ones.
-TEST(Serve, ARateTooLowForASensorIsSaid) {
+TEST(Serve, ARateTooLowForASensorIsReported) {
   Service service(fast_room(), {"--rate", "10"});
   ASSERT_NE(service.port, 0u) << service.program.err();
   const std::string said = service.program.err();
@@ -258,7 +258,7 @@ TEST(Serve, ARateTooLowForASensorIsSaid) {
 }
 
 /// 200 states within at most two ticks.
-TEST(Serve, FilteredStatesBeyondTheLimitOfATickAreCounted) {
+TEST(Serve, FilteredStatesBeyondTheLimitPerTickAreCounted) {
   Service service(kRoom, {"--rate", "0.1", "--filter"});
   ASSERT_NE(service.port, 0u) << service.program.err();
   Robot one(1, service.port, service.hears(1));
@@ -285,7 +285,7 @@ TEST(Serve, RobotsSeeEachOther) {
 
 /// The tag is mounted half a metre ahead of a box of 0.2 x 0.4 m and rotated by 90 degrees; its height above the lasers
 /// does not lift the box. The robot's own packets, with the same id, state its origin.
-TEST(Serve, ATagIsWhereItIsMounted) {
+TEST(Serve, ATagIsAtItsMount) {
   Service service(std::string(kRoom) +
                   "model( name \"tag1\" pose [-2 1.5 0 0] size [0.2 0.4 0.2] tag_pose [0.5 0 0.1 90] )\n");
   ASSERT_NE(service.port, 0u) << service.program.err();
@@ -304,7 +304,7 @@ TEST(Serve, ATagIsWhereItIsMounted) {
   EXPECT_TRUE(seen) << testing::PrintToString(ranges);
 }
 
-TEST(Serve, StatesArePassedOnWithinTheRadiosRange) {
+TEST(Serve, StatesAreRelayedWithinRadioRange) {
   Service service(kRoom, {"--rate", "50", "--radio", "3"});
   ASSERT_NE(service.port, 0u) << service.program.err();
   Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
@@ -326,7 +326,7 @@ TEST(Serve, StatesArePassedOnWithinTheRadiosRange) {
 }
 
 /// A robot receives the follow relations of others: it halves its speed for a follower that has fallen behind.
-TEST(Serve, AFollowedRobotWaits) {
+TEST(Serve, AFollowedRobotWaitsForItsFollower) {
   const std::string car = "position( size [0.33 0.33 0.1] name \"roomba";
   Service service("road( rndf \"" + our_world("simville/simville.rndf") + "\" )\n" + car +
                   "1\" pose [3.9 0.75 0 0] )\n" + car + "2\" pose [2.4 0.75 0 0] )\n");
@@ -378,7 +378,7 @@ TEST(Serve, StrangersAreCountedAndDropped) {
   EXPECT_EQ(facts.number("/received/not finite"), 1);
 }
 
-TEST(Serve, StrangersAreNamedOncePerBindingAndALeaveEndsIt) {
+TEST(Serve, StrangersAreReportedOncePerBindingUntilALeave) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
   Robot one(1, service.port, service.hears(1)), again(1, service.port, service.lasers + 1);
@@ -400,7 +400,7 @@ TEST(Serve, StrangersAreNamedOncePerBindingAndALeaveEndsIt) {
   EXPECT_EQ(Json(outcome.out).number("/received/wrong source"), 5);
 }
 
-TEST(Serve, AddressesBeyondThisMachineAreWarnedOf) {
+TEST(Serve, AddressesBeyondThisMachineCauseAWarning) {
   const Folder folder;
   const std::string world = folder.write("room.world", kRoom);
   const std::string base = std::to_string(free_ports(24));
@@ -417,7 +417,7 @@ TEST(Serve, AddressesBeyondThisMachineAreWarnedOf) {
 }
 
 /// A table with only some keys: the command names the senders that may be unsigned. With all keys, there is no warning.
-TEST(Serve, TheWarningNamesWhoHasNoKey) {
+TEST(Serve, TheWarningNamesSendersWithoutAKey) {
   const Folder folder;
   const std::string world = folder.write("room.world", kRoom);
   const auto key = [](char digit) { return "\nkey = \"" + std::string(64, digit) + "\"\n"; };
@@ -437,7 +437,7 @@ TEST(Serve, TheWarningNamesWhoHasNoKey) {
             std::string::npos);
 }
 
-TEST(Serve, APlayerServerBeyondThisMachineIsWarnedOf) {
+TEST(Serve, APlayerServerBeyondThisMachineCausesAWarning) {
   const Folder folder;
   const std::string world = folder.write("room.world", kRoom);
   const auto err_at = [&](const std::string& place) {
@@ -450,7 +450,7 @@ TEST(Serve, APlayerServerBeyondThisMachineIsWarnedOf) {
 }
 
 /// The default stride is 8 if that fits; otherwise the command prints the stride.
-TEST(SendAndListen, ThePortsOfARobotAreAsManyAsFit) {
+TEST(SendAndListen, PortsPerRobotFitTheSensors) {
   const Folder folder;
   std::string robots;
   for (const std::string name : {"roomba1", "roomba2"}) {
@@ -469,7 +469,7 @@ TEST(SendAndListen, ThePortsOfARobotAreAsManyAsFit) {
   EXPECT_NE(asked.err.find("raise the stride to at least 17"), std::string::npos) << asked.err;
 }
 
-TEST(SendAndListen, TheThesisLeavesOutWhatItHasNoLayoutFor) {
+TEST(SendAndListen, TheThesisFormatOmitsUnsupportedSensors) {
   const Folder folder;
   const std::string world =
       folder.write("w.world",
@@ -485,7 +485,7 @@ TEST(SendAndListen, TheThesisLeavesOutWhatItHasNoLayoutFor) {
   EXPECT_EQ(Json(sent.out).number("/packets/sent"), 2 * 3);
 }
 
-TEST(Serve, APortThatIsTakenIsNamed) {
+TEST(Serve, ATakenPortIsReported) {
   const unsigned port = free_ports(1);
   const netio::Socket taken = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(port)});
   const Outcome outcome = run_program({"serve", our_world("rooms.world"), "--port", std::to_string(port)});

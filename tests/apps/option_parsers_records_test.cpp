@@ -105,7 +105,7 @@ std::string batch_script() {
 
 }  // namespace
 
-TEST(OptionParserRecords, TakeWhatTheirRecordHas) {
+TEST(OptionParserRecords, MatchTheirRecord) {
   expect_golden("option_parsers", places() + numbers() + validators() + words() + batch_script());
 }
 
@@ -121,7 +121,7 @@ static bool takes(const std::string& command, const std::string& option, const s
 }
 
 /// The smallest and largest values of options, and the next ones beyond.
-TEST(OptionLimits, ValuesEndAtThem) {
+TEST(OptionLimits, AreEnforced) {
   struct Range {
     const char *command, *option, *below, *first, *last, *above;
   };

@@ -80,7 +80,7 @@ const End kEnds[] = {
 
 }  // namespace
 
-TEST(OwnProcesses, EachEndIsReportedAndTheOthersAreRun) {
+TEST(OwnProcesses, EachExitIsReportedAndOtherScenariosRun) {
   const Bench bench;
   Words words{"test", bench.scenario("first", "")};
   for (std::size_t i = 0; i < std::size(kEnds); ++i)
@@ -105,7 +105,7 @@ TEST(OwnProcesses, EachEndIsReportedAndTheOthersAreRun) {
   EXPECT_TRUE(has(xml, "<error message=\"controller &apos;test-ends&apos; of robot &apos;r0&apos; ended")) << xml;
 }
 
-TEST(OwnProcesses, RunReportsEachEnd) {
+TEST(OwnProcesses, RunReportsEachExit) {
   const Bench bench;
   for (const End& end : kEnds) {
     if (std::string(end.how) == "term") continue;  // treated as a stop request
@@ -119,7 +119,7 @@ TEST(OwnProcesses, RunReportsEachEnd) {
 }
 
 /// For debuggers, and with ranks that share a fleet. A signal still ends the program.
-TEST(OwnProcesses, InProcessEndsAreReportedWhereHandlersAreCalled) {
+TEST(OwnProcesses, InProcessExitsAreReportedIfHandlersRun) {
   const Bench bench;
   const Outcome exited = run_program(bench.run("exit 0", {"--in-process"}));
   EXPECT_EQ(exited.code, 1);
@@ -132,14 +132,14 @@ TEST(OwnProcesses, InProcessEndsAreReportedWhereHandlersAreCalled) {
   EXPECT_FALSE(has(tested.out, "b.toml")) << tested.out;
 }
 
-TEST(OwnProcesses, AThreadOfAPlugInIsNamedByTheCallThatWaitsForIt) {
+TEST(OwnProcesses, APlugInThreadIsNamedByTheCallThatWaitsForIt) {
   const Bench bench;
   const Outcome outcome = run_program(bench.run("thread"));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_TRUE(has(outcome.err, "ended the process (exit code 0)")) << outcome.err;
 }
 
-TEST(OwnProcesses, AnEndWhileControllersAreMadeIsReportedToo) {
+TEST(OwnProcesses, AnExitDuringControllerCreationIsReported) {
   const Bench bench;
   const Outcome outcome = run_program({"test", bench.scenario("bad", "_exit", ", at_once = true"),
                                        bench.scenario("good", ""), "--junit", bench.folder.path("out.xml")});
@@ -150,7 +150,7 @@ TEST(OwnProcesses, AnEndWhileControllersAreMadeIsReportedToo) {
   EXPECT_TRUE(has(read_file(bench.folder.path("out.xml")), "errors=\"1\""));
 }
 
-TEST(OwnProcesses, ExceptionsCostTheirScenarioAlone) {
+TEST(OwnProcesses, ExceptionsFailOnlyTheirScenario) {
   const Bench bench;
   const Outcome outcome = run_program(
       {"test", bench.scenario("a", "text"), bench.scenario("b", "number"), bench.scenario("c", ""), "--jobs", "3"});
@@ -163,7 +163,7 @@ TEST(OwnProcesses, ExceptionsCostTheirScenarioAlone) {
   EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("c.toml"))) << outcome.out;
 }
 
-TEST(OwnProcesses, TimeIsLimitedWhereAskedFor) {
+TEST(OwnProcesses, TimeIsLimitedOnRequest) {
   const Bench bench;
   const Outcome outcome = run_program({"test", bench.scenario("a", "loop"), bench.scenario("b", ""), "--timeout", "3"});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
@@ -190,7 +190,7 @@ TEST(OwnProcesses, ChildrenOfControllersAreEnded) {
 }
 
 /// Otherwise the copy would drive the robots a second time, into the same recording.
-TEST(OwnProcesses, ACopyThatReturnsEndsAndTheOriginalGoesOn) {
+TEST(OwnProcesses, AForkThatReturnsEndsAndTheOriginalContinues) {
   const Bench bench;
   const Outcome outcome = run_program(bench.run("copy", {"--record", bench.folder.path("run")}));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -210,7 +210,7 @@ TEST(OwnProcesses, ClosedStreamsAndAnotherFolderLoseNothing) {
 }
 
 /// The call never returns.
-TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
+TEST(OwnProcesses, TheFirstStopRequestEndsACallThatNeverReturns) {
   const Bench bench;
   for (const char* how : {"loop", "sleep"})
     for (const int signal : {SIGINT, SIGTERM}) {
@@ -230,7 +230,7 @@ TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
 }
 
 /// The same applies to a call that began after the request.
-TEST(OwnProcesses, ARequestToStopEndsCallsThatBeginLater) {
+TEST(OwnProcesses, AStopRequestEndsCallsThatBeginLater) {
   const Bench bench;
   const std::string two = bench.folder.write(
       "two.world", std::string(kHall) + "position( name \"r1\" pose [8 0 0 0] size [0.3 0.3 0.1] )\n");
@@ -242,7 +242,7 @@ TEST(OwnProcesses, ARequestToStopEndsCallsThatBeginLater) {
 }
 
 /// An exit handler that waits for a thread, as Python's does: the report is printed, and a stop request ends it.
-TEST(OwnProcesses, AThreadThatGoesOnIsEndedByARequestToStop) {
+TEST(OwnProcesses, ARunningThreadIsEndedByAStopRequest) {
   const Bench bench;
   for (const bool here : {false, true}) {
     const std::string report = bench.folder.path(here ? "here" : "child");
@@ -259,7 +259,7 @@ TEST(OwnProcesses, AThreadThatGoesOnIsEndedByARequestToStop) {
 }
 
 /// Also without a request, after the time that exit handlers have.
-TEST(OwnProcesses, AThreadThatGoesOnIsEnded) {
+TEST(OwnProcesses, ARunningThreadIsEnded) {
   const Bench bench;
   const Environment soon{{"SENSORFARM_SECONDS_TO_END", "0.15"}};
   Program child(bench.run("linger"), soon), here(bench.run("linger", {"--in-process"}), soon),
@@ -272,7 +272,7 @@ TEST(OwnProcesses, AThreadThatGoesOnIsEnded) {
   }
 }
 
-TEST(OwnProcesses, TheSecondsToEndAreANumber) {
+TEST(OwnProcesses, TheExitTimeMustBeANumber) {
   for (const char* text : {"soon", "0", "-1", "nan", "1e7", "1 s"}) {
     const Outcome outcome = run_program({"--version"}, {{"SENSORFARM_SECONDS_TO_END", text}});
     EXPECT_EQ(outcome.code, 2) << text;
@@ -282,7 +282,7 @@ TEST(OwnProcesses, TheSecondsToEndAreANumber) {
 }
 
 /// Exit handlers of plug-ins do not turn a failure into a success or into a different error.
-TEST(OwnProcesses, ExitHandlersDoNotChangeTheCode) {
+TEST(OwnProcesses, ExitHandlersDoNotChangeTheExitCode) {
   const Bench bench;
   const Outcome outcome = run_program(bench.run("cover"));
   EXPECT_EQ(outcome.code, 2) << outcome.err;
@@ -296,7 +296,7 @@ TEST(OwnProcesses, ExitHandlersDoNotChangeTheCode) {
 }
 
 /// Standard output contains only the report.
-TEST(OwnProcesses, WhatControllersPrintIsNoPartOfJson) {
+TEST(OwnProcesses, OutputOfControllersIsNotInJson) {
   const Bench bench;
   for (const Words& more : {Words{"--json"}, Words{"--json", "--in-process"}}) {
     const Outcome outcome = run_program(bench.run("print", more));
@@ -327,7 +327,7 @@ TEST(OwnProcesses, ClosedStandardStreamsStayClosed) {
 }
 
 /// Shells start background commands this way, and scripts end some of them with `kill -INT`.
-TEST(OwnProcesses, SigintIsTakenWhereItWasIgnored) {
+TEST(OwnProcesses, SigintIsHandledEvenIfIgnored) {
   const Bench bench;
   Words words{"-c", "trap '' INT; exec \"$0\" \"$@\"", SF_PROGRAM};
   for (const std::string& word : bench.run("loop", {"--record", bench.folder.path("run")})) words.push_back(word);
@@ -341,7 +341,7 @@ TEST(OwnProcesses, SigintIsTakenWhereItWasIgnored) {
   EXPECT_EQ(program.wait().code, 1);
 }
 
-TEST(OwnProcesses, ARequestToStopEndsTestsAndReportsThoseThatWereRun) {
+TEST(OwnProcesses, AStopRequestEndsTestsAndReportsFinishedOnes) {
   const Bench bench;
   const std::string junit = bench.folder.path("out.xml");
   Program program(
@@ -354,7 +354,7 @@ TEST(OwnProcesses, ARequestToStopEndsTestsAndReportsThoseThatWereRun) {
   EXPECT_TRUE(has(read_file(junit), "<error message=\"interrupted\">")) << read_file(junit);
 }
 
-TEST(OwnProcesses, SweepsReportEndsByName) {
+TEST(OwnProcesses, SweepsReportExitsByName) {
   const Bench bench;
   bench.scenario("base", "exit 0");
   const std::string sweep =
@@ -368,7 +368,7 @@ TEST(OwnProcesses, SweepsReportEndsByName) {
 
 /// For every limit, one line states the reason; every case has a report, and none ends with a signal. The driver's own
 /// limits are between these.
-TEST(OwnProcesses, ALimitOfMemoryIsStated) {
+TEST(OwnProcesses, AMemoryLimitIsReported) {
   if (instrumented()) GTEST_SKIP() << "sanitizers need all addresses";
   for (const char* kilobytes : {"131072", "200000", "220000", "240000", "262144", "280000", "300000"}) {
     const Outcome outcome = Program({"-c", std::string("ulimit -v ") + kilobytes + "; exec \"$0\" \"$@\"", SF_PROGRAM,
@@ -382,7 +382,7 @@ TEST(OwnProcesses, ALimitOfMemoryIsStated) {
 }
 
 /// Tests and sweeps also state it, for the scenario or job that failed.
-TEST(OwnProcesses, ALimitOfMemoryIsStatedOfChildren) {
+TEST(OwnProcesses, AMemoryLimitIsReportedForChildren) {
   if (instrumented()) GTEST_SKIP() << "sanitizers need all addresses";
   const Folder folder;
   const std::string scenario = folder.write(
@@ -400,7 +400,7 @@ TEST(OwnProcesses, ALimitOfMemoryIsStatedOfChildren) {
     }
 }
 
-TEST(OwnProcesses, LibrariesThatAreCutOffAreRefused) {
+TEST(OwnProcesses, TruncatedLibrariesAreRejected) {
   const Bench bench;
   const std::string whole = read_file(kPlugin);
   const auto refusal = [&](const std::string& bytes) {

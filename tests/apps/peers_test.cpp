@@ -24,7 +24,7 @@ TEST(Peers, AStartSignalNeedsTheKeyOfItsTable) {
   EXPECT_EQ(run_program({"start", "--peers", folder.write("start.toml", peer("start = true"))}).code, 0);
 }
 
-TEST(Peers, AFileOfKeysThatOthersReadIsWarnedOf) {
+TEST(Peers, WarnsOfAReadableKeyFile) {
   const Folder folder;
   const std::string file = folder.write("peers.toml", peer("start = true"));
   using std::filesystem::perms;
@@ -39,7 +39,7 @@ TEST(Peers, AFileOfKeysThatOthersReadIsWarnedOf) {
   }
 }
 
-TEST(Peers, AServiceRefusesIdsOfNoneAndReadingsWithoutSignatures) {
+TEST(Peers, AServiceRejectsUnknownIdsAndUnsignedReadings) {
   const Folder folder;
   const Outcome unknown = run_program({"serve", kWorld, "--peers", folder.write("a.toml", peer("robot = 77"))});
   EXPECT_EQ(unknown.code, 2);

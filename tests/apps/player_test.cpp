@@ -42,7 +42,7 @@ struct PlayerProgram {
 
 }  // namespace
 
-TEST(PlayerProgram, ARobotIsDrivenAcrossTheRoomAndPutBack) {
+TEST(PlayerProgram, ARobotIsDrivenAcrossTheRoomAndReset) {
   PlayerProgram run({"run", "--player", "0", "--speed", "0"});
   TestClient client(run.server);
   client.banner();
@@ -91,7 +91,7 @@ TEST(PlayerProgram, AServiceIsRead) {
   EXPECT_EQ(serve.end().code, 0);
 }
 
-TEST(PlayerProgram, WrongAddressesAreExplained) {
+TEST(PlayerProgram, WrongAddressesAreRejected) {
   const auto refusal = [](const std::string& address) {
     return run_program({"run", our_world("rooms.world"), "--duration", "1", "--player", address}).err;
   };

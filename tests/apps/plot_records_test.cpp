@@ -37,7 +37,7 @@ std::vector<std::string> files_of(const std::string& folder) {
   return names;
 }
 
-TEST(PlotRecord, DrawsWhatARunRecorded) {
+TEST(PlotRecord, DrawsARecordedRun) {
   const Folder folder;
   const Outcome ran = run_program(
       {"run", folder.write("w.world", kWorld), "--duration", "3", "--record", folder.path("r"), "--record-readings"});

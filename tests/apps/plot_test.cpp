@@ -85,12 +85,12 @@ TEST_F(PaperFigures, CsvOfAHeatMapHasACurvePerElement) {
   EXPECT_TRUE(contains(csv, "\nrange [m],one 0,") && contains(csv, "\nrange [m],one 15,")) << csv.substr(0, 300);
 }
 
-TEST_F(PaperFigures, ADifferenceOfMagnitudesIsNoMagnitude) {
+TEST_F(PaperFigures, ADifferenceOfMagnitudesIsSigned) {
   const std::string svg = figure("magnetometer");
   EXPECT_TRUE(contains(svg, ">|B| [G]<") && contains(svg, ">difference of |B| [G]<"));
 }
 
-TEST_F(PaperFigures, ElevenRobotsHaveTheLabelsAskedFor) {
+TEST_F(PaperFigures, ElevenRobotsHaveTheRequestedLabels) {
   EXPECT_FALSE(contains(figure("trajectories"), ">other3<"));
   const Outcome plotted = run_program({"plot", folder_->path("r"), "-o", folder_->path("p")});
   EXPECT_TRUE(contains(plotted.err, "11 robots have no labels in it; --label NAME,...")) << plotted.err;
@@ -111,7 +111,7 @@ TEST_F(PaperFigures, LabelsWithoutRoomAreCounted) {
 }
 
 /// A video is a single file, drawn without figures.
-TEST_F(PaperFigures, OptionsOfFiguresAreNotOfVideos) {
+TEST_F(PaperFigures, FigureOptionsAreRejectedForVideos) {
   const Words video{"plot", folder_->path("r"), "--video"};
   const auto message = [&](const std::string& file, const Words& more) {
     Words words = video;
@@ -131,7 +131,7 @@ TEST_F(PaperFigures, OptionsOfFiguresAreNotOfVideos) {
   EXPECT_TRUE(contains(message(folder_->path(""), {}), folder_->path("run.webm")));
 }
 
-TEST_F(PaperFigures, LegendsHaveWhatIsDrawn) {
+TEST_F(PaperFigures, LegendsListDrawnItems) {
   EXPECT_FALSE(contains(figure("trajectories", {"--extent", "-0.5,-0.5,0.5,0.5"}), ">wall<")) << "none in that area";
   EXPECT_FALSE(contains(figure("occupancy", {"--robots", "one"}), "0.0 %<")) << "no state without a cell";
 }
@@ -156,12 +156,12 @@ TEST_F(PaperFigures, IntegersAreSteps) {
   EXPECT_TRUE(contains(svg, ">0<") && contains(svg, ">1<")) << "integer ticks";
 }
 
-TEST_F(PaperFigures, OptionsOfSweepsAreRefused) {
+TEST_F(PaperFigures, SweepOptionsAreRejected) {
   EXPECT_TRUE(contains(refusal({"--over", "kp"}), "--over and --x-axis go with the folder of a sweep"));
 }
 
 /// Names may contain commas; all options with several names use the same rule.
-TEST(NamesWithCommas, AreTakenByEveryOption) {
+TEST(NamesWithCommas, AreAcceptedByEveryOption) {
   const Folder folder;
   const std::string world = folder.write("w.world",
                                          "position( name \"a,b\" pose [0 0 0 0] gps( ) )\n"
@@ -197,7 +197,7 @@ TEST(NamesWithCommas, AreTakenByEveryOption) {
   EXPECT_TRUE(contains(empty.err, "has no robot ''")) << empty.err;
 }
 
-TEST(SweepPlotsCommand, AreDrawnAtItsEndAndAgainByPlot) {
+TEST(SweepPlotsCommand, AreDrawnBySweepAndByPlot) {
   const Folder folder;
   folder.write("small.toml", "world = \"" + our_world("rooms.world") + "\"\nduration = 1\n[expect]\ncontacts = 1000\n");
   const std::string file = folder.write("sweep.toml",

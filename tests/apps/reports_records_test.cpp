@@ -142,7 +142,7 @@ std::string both(const Report& report) {
 
 }  // namespace
 
-TEST(ReportRecords, ARunShowsEveryCountThatItHas) { expect_golden("report_run", both(full_report())); }
+TEST(ReportRecords, ARunShowsEveryCount) { expect_golden("report_run", both(full_report())); }
 
 /// From a million rays per second on, rates are in millions.
 TEST(ReportRecords, RatesAreInMillionsFromOneOn) {
@@ -157,7 +157,7 @@ TEST(ReportRecords, RatesAreInMillionsFromOneOn) {
 
 TEST(ReportRecords, AnEmptyRunShowsNoRowsOfServices) { expect_golden("report_run_empty", both(RunReport{})); }
 
-TEST(ReportRecords, ARobotShowsEveryCountThatItHas) {
+TEST(ReportRecords, ARobotShowsEveryCount) {
   expect_golden("report_robot", both(robot_stats()) + both(server::RobotClientStats{}));
 }
 
@@ -176,7 +176,7 @@ TEST(ReportRecords, AVerificationShowsDifferencesDamageAndVerdict) {
   expect_golden("report_verification", text);
 }
 
-TEST(ReportRecords, VpsAndStreamsShowEveryCountThatTheyHave) {
+TEST(ReportRecords, VpsAndStreamsShowEveryCount) {
   expect_golden("report_vps", both(vps_report()) + both(VpsReport{}));
   expect_golden("report_streams", both(summary()) + both(netio::StreamSummary{}));
 }

@@ -46,7 +46,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
-TEST(Roads, JsonCountsWhatIsThere) {
+TEST(Roads, JsonCountsObjects) {
   const Folder folder;
   const Outcome outcome = run_program({"check", folder.write("two.rndf", kRoads), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -68,7 +68,7 @@ TEST(Roads, JsonCountsWhatIsThere) {
   EXPECT_EQ(facts.number("/warnings/0/line"), 7);
 }
 
-TEST(Roads, NamesOfAnyBytesAreJson) {
+TEST(Roads, NamesWithAnyBytesGiveValidJson) {
   const Folder folder;
   const Outcome outcome = run_program(
       {"check",
@@ -97,7 +97,7 @@ TEST(Roads, SidecarIsRead) {
   EXPECT_EQ(Json(outcome.out).size("/warnings"), 0u);
 }
 
-TEST(Roads, AnErrorIsOneLineWithItsPlace) {
+TEST(Roads, AnErrorIsOneLineWithItsPosition) {
   const Folder folder;
   const std::string file = folder.write("two.rndf", replaced(kRoads, "1.2.1\nstop", "9.9.9\nstop"));
   const Outcome outcome = run_program({"check", file});
@@ -107,7 +107,7 @@ TEST(Roads, AnErrorIsOneLineWithItsPlace) {
   EXPECT_EQ(count_lines(outcome.err), 1u);
 }
 
-TEST(Roads, MayHaveEitherEndingInAnyCase) {
+TEST(Roads, AcceptsBothSuffixesInAnyCase) {
   const Folder folder;
   for (const char* name : {"two.rdf", "TWO.RNDF"})
     EXPECT_EQ(Json(run_program({"check", folder.write(name, kRoads), "--json"}).out).number("/roads/lanes"), 2) << name;
@@ -120,7 +120,7 @@ TEST(Roads, IsDrawn) {
   scenes::expect_painted(folder.path("two.png"), {{viz::theme::kAsphalt, 1000}});
 }
 
-TEST(Missions, AloneForTheirForm) {
+TEST(Missions, WithoutTheirNetwork) {
   const Folder folder;
   const Outcome outcome = run_program({"check", folder.write("go.mdf", kMission), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -148,7 +148,7 @@ TEST(Missions, AgainstTheirNetwork) {
   EXPECT_NE(dangling.err.find("no.mdf:5: checkpoint 6 does not exist"), std::string::npos) << dangling.err;
 }
 
-TEST(Missions, WrongUseIsExplained) {
+TEST(Missions, WrongUsageIsRejected) {
   const Folder folder;
   const std::string rndf = folder.write("two.rndf", kRoads);
   const Outcome no_mission = run_program({"check", rndf, "--rndf", rndf});

@@ -21,7 +21,7 @@ std::string write_map(const Folder& folder) {
 }
 const char* const kOwn = "define scout position( size [0.4 0.3 0.2] laser( samples 7 fov 90 range_max 5 ) )\n";
 
-TEST(RobotFrom, TakesThePlaceOfTheRobotThatAMapIsLent) {
+TEST(RobotFrom, ReplacesTheDefaultRobotOfAMap) {
   const Folder folder;
   const std::string map = write_map(folder), own = folder.write("own.inc", kOwn) + ":scout";
   const Outcome one = run_program({"run", map, "--robot-from", own, "--duration", "1", "--json"});
@@ -48,7 +48,7 @@ TEST(RobotFrom, TakesThePlaceOfTheRobotThatAMapIsLent) {
 }
 
 /// Worlds with robots are unchanged, except for copies.
-TEST(RobotFrom, IsCopiedInAnyWorld) {
+TEST(RobotFrom, IsClonedInAnyWorld) {
   const Folder folder;
   const std::string own = folder.write("own.inc", kOwn) + ":scout", cave = our_world("cave.world");
   const Outcome copies =
@@ -70,7 +70,7 @@ TEST(RobotFrom, FilesAreFoundAsWorldsAre) {
   }
 }
 
-TEST(RobotFrom, MistakesAreExplained) {
+TEST(RobotFrom, MistakesAreReported) {
   const Folder folder;
   const std::string map = write_map(folder), file = folder.write("own.inc", kOwn);
   expect_refused({"run", map, "--robot-from", file + ":scuot"},

@@ -97,7 +97,7 @@ std::unique_ptr<Program> RobotsTest::silent;
 
 }  // namespace
 
-TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
+TEST_F(RobotsTest, SeveralDriveByTheirReadings) {
   FarmService service;
   ASSERT_FALSE(service.port.empty()) << service.program.err();
   const auto one = service.robot("roomba1", {"--duration", "2"});
@@ -179,7 +179,7 @@ TEST_F(RobotsTest, SendTheirOwnMaps) {
 }
 
 /// Successive processes with the same name: each is accepted from its first packet on.
-TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
+TEST_F(RobotsTest, SuccessiveProcessesAreAcceptedAtOnce) {
   FarmService service;
   ASSERT_FALSE(service.port.empty()) << service.program.err();
   double sent = 0.0;
@@ -193,7 +193,7 @@ TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
   EXPECT_FALSE(farm.has("/received/wrong source"));
 }
 
-TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
+TEST(Robot, WrongArgumentsAreRejectedWithTheExpectedOnes) {
   const Folder folder;
   const std::string world = folder.write("room.world", kSmallRoom);
   struct Case {
@@ -264,12 +264,12 @@ TEST(Robot, DrivesACreateOnASerialLine) {
   EXPECT_NEAR(facts.number("/pose/0"), 0.0, 0.05);
 }
 
-TEST(Robot, AStartForNoRobotOfAPacketIsRefused) {
+TEST(Robot, AStartForAnInvalidIdIsRejected) {
   EXPECT_EQ(run_program({"start", "--robot", "65536"}).code, 2);
   EXPECT_EQ(run_program({"start", "--server", "no.such.host.invalid"}).code, 2);
 }
 
-TEST_F(RobotsTest, ASilentFarmIsSaidOnce) {
+TEST_F(RobotsTest, ASilentFarmIsReportedOnce) {
   const Outcome outcome = silent->wait();
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;

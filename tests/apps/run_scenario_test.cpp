@@ -53,7 +53,7 @@ TEST(RunScenario, TheTownOfTheReadmeDrivesAMinuteWithoutContact) {
 }
 
 // Fleet, controllers, seed, duration and events are those of `test`, and so are all readings.
-TEST(RunScenario, GivesTheReadingsOfTest) {
+TEST(RunScenario, GivesTheSameReadingsAsTest) {
   const Folder folder;
   folder.write("room.world", kDoorRoom);
   const std::string file = folder.write("door.toml", kDoorScenario + kDoor);
@@ -89,7 +89,7 @@ remove = "b"
   EXPECT_EQ(run_program({"view", folder.path("r"), "--frames", frames}).code, 0);
 }
 
-TEST(RunScenario, RefusesOptionsThatTheScenarioSettles) {
+TEST(RunScenario, RejectsOptionsThatTheScenarioDefines) {
   for (const Words& option : {Words{"--robots", "3"}, Words{"--robots", "3", "--of", "roomba0"}, Words{"--seed", "2"},
                               Words{"--seed", "1"}, Words{"--controller", "wander"}, Words{"--controller", "avoid"},
                               Words{"--set", "speed=0.1"}, Words{"--localize"}, Words{"--drive", "roomba0"}}) {
@@ -99,14 +99,14 @@ TEST(RunScenario, RefusesOptionsThatTheScenarioSettles) {
   }
 }
 
-TEST(RunScenario, SaysThatExpectationsAreNotJudged) {
+TEST(RunScenario, ReportsThatExpectationsAreNotChecked) {
   const Outcome outcome = run_program({"run", kTown, "--duration", "1"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_NE(outcome.err.find("9 expectations are not judged"), std::string::npos) << outcome.err;
 }
 
 // Its recording is verified like that of a world.
-TEST(RunScenario, RecordsWhatVerifies) {
+TEST(RunScenario, ItsRecordingVerifies) {
   const Folder folder;
   folder.write("room.world", kDoorRoom);
   const std::string file = folder.write("door.toml", kDoorScenario + kDoor);

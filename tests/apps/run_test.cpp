@@ -54,7 +54,7 @@ bool records(Program& program, const std::string& file, std::uintmax_t bytes) {
 
 }  // namespace
 
-TEST(Run, TheSummaryHasItsFacts) {
+TEST(Run, TheSummaryListsFacts) {
   const Json facts = run("cave.world", {"--robots", "10", "--duration", "2"});
   EXPECT_NE(facts.text("/device"), "");
   EXPECT_EQ(facts.number("/robots"), 10);
@@ -70,7 +70,7 @@ TEST(Run, TheSummaryHasItsFacts) {
 }
 
 /// Rays per second while sensing are relative to the sum of the four sensing stages, as printed in their rows.
-TEST(Run, RatesWhileSensingAreOfItsFourStages) {
+TEST(Run, SensingRatesCoverTheFourStages) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"a\" laser( samples 361 noise [0.01 0 0] ) )\n");
   const Outcome outcome = run_program({"run", world, "--robots", "20", "--duration", "5"});
@@ -91,7 +91,7 @@ TEST(Run, RatesWhileSensingAreOfItsFourStages) {
   EXPECT_NEAR(unit * std::stod(rate), wanted, 0.051 * unit + 1.1e-4 / seconds * wanted) << text;
 }
 
-TEST(Run, ControllersSayHowTheyFared) {
+TEST(Run, ControllersReportTheirResults) {
   const Words words{"--controller", "lane-keeping", "--duration", "60"};
   const Json facts = run("testpath/testpath.world", words);
   EXPECT_EQ(facts.text("/control/controller"), "lane-keeping");
@@ -108,7 +108,7 @@ TEST(Run, ControllersSayHowTheyFared) {
 }
 
 /// In SimVille, roomba1 blocks roomba0's lane if only roomba0 is driven.
-TEST(Run, SaysWhoStandsAndWhy) {
+TEST(Run, ReportsStoppedRobotsAndReasons) {
   Words words{"run",          our_world("simville/simville.world"),
               "--controller", "route",
               "--set",        "mission=simville.mdf",
@@ -131,7 +131,7 @@ TEST(Run, SaysWhoStandsAndWhy) {
 }
 
 /// Five robots with the same reason share one line, which names three of them.
-TEST(Run, RobotsThatStandForOneReasonShareALine) {
+TEST(Run, RobotsStoppedForOneReasonShareALine) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laneedge( ) )\n");
   const Outcome outcome = run_program(
@@ -160,7 +160,7 @@ TEST(Run, TheReasonOfMostRobotsIsFirst) {
   EXPECT_EQ(facts.number("/control/standing/1/robots"), 1);
 }
 
-TEST(Run, CopiesAreOfTheFirstWithSensorsOrWhoIsNamed) {
+TEST(Run, ClonesAreOfTheFirstRobotWithSensorsOrANamedOne) {
   const Folder folder;
   const std::string world = folder.write(
       "w.world",
@@ -188,7 +188,7 @@ TEST(Run, CopiesAreOfTheFirstWithSensorsOrWhoIsNamed) {
   }
 }
 
-TEST(Run, SettingsAreWhatTheirControllerReads) {
+TEST(Run, SettingsReachTheirController) {
   const Folder folder;
   const std::string world = folder.write(
       "town.world", "road( rndf \"" + our_world("simville/simville.rndf") +
@@ -216,7 +216,7 @@ TEST(Run, SettingsAreWhatTheirControllerReads) {
   }
 }
 
-TEST(Run, AControllerWithoutItsSensorIsRefused) {
+TEST(Run, AControllerWithoutItsSensorIsRejected) {
   const std::pair<Words, std::string> cases[] = {
       {{"magnet-keeping"}, "has no magnetometers; give it a magnetometer( )"},
       {{"lane-keeping", "--set", "half_width=0.2"}, "has no lane edge sensor; give it a laneedge( )"},
@@ -232,7 +232,7 @@ TEST(Run, AControllerWithoutItsSensorIsRefused) {
 }
 
 /// In SimVille, two pedestrians are not on a lane.
-TEST(Run, OnlyWhoIsNamedIsDriven) {
+TEST(Run, OnlyNamedRobotsAreDriven) {
   Words words =
       run_words("simville/simville.world", {"--duration", "2", "--controller", "route", "--set", "tour=true"});
   const std::string hint = "; or name the robots that are driven (--drive NAME)";
@@ -269,7 +269,7 @@ TEST(Run, ADrivenRobotsPathDoesNotDependOnTheOption) {
   EXPECT_EQ(some({"--drive", "roomba1", "--drive", "roomba1"}), one) << "twice is once";
 }
 
-TEST(Run, ClonesMayBeNamedAndNobodyElse) {
+TEST(Run, OnlyExistingRobotsAndClonesMayBeNamed) {
   const Json facts = run("rooms.world", {"--robots", "5", "--duration", "0.1", "--drive", "roomba5"});
   EXPECT_EQ(facts.number("/control/robots"), 1);
   const std::pair<std::string, std::string> refused[] = {
@@ -289,13 +289,13 @@ TEST(Run, ClonesMayBeNamedAndNobodyElse) {
   EXPECT_EQ(run_program({"run", "--drive", "roomba1", our_world("rooms.world"), "--duration", "0.1"}).code, 0);
 }
 
-TEST(Run, AFolderThatCannotBeMadeIsRefusedWithARemedy) {
+TEST(Run, AFolderThatCannotBeCreatedIsReportedWithARemedy) {
   const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.1", "--record", "/proc/x"}));
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("that you may write to"), std::string::npos) << outcome.err;
 }
 
-TEST(Run, TheSameSeedGivesTheSameBytesWhateverTheThreads) {
+TEST(Run, TheSameSeedGivesTheSameBytesForAnyThreadCount) {
   const Words seven{"--robots", "12", "--duration", "3", "--seed", "7"};
   const std::string first = hash("rooms.world", {"--duration", "3", "--seed", "7"});
   EXPECT_EQ(hash("rooms.world", {"--duration", "3", "--seed", "7"}), first);
@@ -308,24 +308,24 @@ TEST(Run, TheSameSeedGivesTheSameBytesWhateverTheThreads) {
   }
 }
 
-TEST(Run, StandardErrorIsSilentWhereNobodyWatches) {
+TEST(Run, StandardErrorIsSilentWithoutATerminal) {
   EXPECT_EQ(run_program(run_words("cave.world", {"--duration", "1"})).err, "");
 }
 
-TEST(Run, NoTimeIsNoTick) { EXPECT_EQ(run("cave.world", {"--duration", "0"}).number("/ticks"), 0); }
+TEST(Run, ZeroDurationHasNoTicks) { EXPECT_EQ(run("cave.world", {"--duration", "0"}).number("/ticks"), 0); }
 
-TEST(Run, ARealTimeSecondTakesASecond) {
+TEST(Run, RealTimeRunsAtTheSpeedOfTheClock) {
   EXPECT_GE(run("cave.world", {"--duration", "0.5", "--real-time"}).number("/wall_s"), 0.5);
 }
 
-TEST(Run, MoreRobotsThanFitAreRefused) {
+TEST(Run, MoreRobotsThanFitAreRejected) {
   const Outcome outcome = run_program(run_words("rooms.world", {"--robots", "60000"}));
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(count_lines(outcome.err), 1u);
   EXPECT_NE(outcome.err.find("no free place"), std::string::npos) << outcome.err;
 }
 
-TEST(Run, RecordingsAreCompressedUnlessAskedOtherwise) {
+TEST(Run, RecordingsAreCompressedByDefault) {
   const Folder folder;
   const auto bytes = [&](const std::string& name, Words options) {
     Words words{"--robots", "4", "--duration", "3", "--record", folder.path(name)};
@@ -361,7 +361,7 @@ TEST(Run, RecordingDoesNotChangeTheRun) {
 }
 
 /// Identical to the byte, and without the tag's track, which the recording contains.
-TEST(Run, ItsPictureIsOfItsRobots) {
+TEST(Run, ItsPictureShowsOnlyItsRobots) {
   const Folder folder;
   run("rooms.world", {"--duration", "2", "--record", folder.path("r")});
   EXPECT_EQ(run_program({"plot", folder.path("r")}).code, 0);
@@ -383,7 +383,7 @@ TEST(Run, ItsPictureIsOfItsRobots) {
 }
 
 /// One scan per simulated second: with a tick of 0.1 s, at the first and the eleventh tick.
-TEST(Run, ItsMapIsOfOneScanASecond) {
+TEST(Run, ItsMapUsesOneScanPerSecond) {
   const auto map_of = [](const std::string& duration) {
     const Folder folder;
     run("rooms.world", {"--duration", duration, "--record", folder.path("r")});
@@ -396,7 +396,7 @@ TEST(Run, ItsMapIsOfOneScanASecond) {
 }
 
 /// `run` and `plot` count contacts when they begin.
-TEST(Run, CountsContactsAsItsPictureDoes) {
+TEST(Run, CountsContactsAsInItsPicture) {
   const Folder folder;
   const Words words{"--robots", "20", "--duration", "60", "--record", folder.path("r")};
   const Json facts = run("rooms.world", words);
@@ -440,7 +440,7 @@ TEST(Run, AKilledRunCanBeDrawn) {
   expect_pictures(folder.path("p"));
 }
 
-TEST(Run, StoppingEarlyIsToldByTheExitCode) {
+TEST(Run, StoppingEarlyIsReportedByTheExitCode) {
   for (const int stop : {SIGINT, SIGTERM, SIGHUP}) {
     const Folder folder;
     Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
@@ -483,7 +483,7 @@ TEST(Run, ARecordingOfNoTicksIsSound) {
   EXPECT_EQ(plotted.code, 0) << plotted.err;
 }
 
-TEST(Run, HowAWorldsPathIsSpeltDoesNotChangeARecording) {
+TEST(Run, TheSpellingOfAWorldsPathDoesNotChangeARecording) {
   const Folder folder;
   std::filesystem::create_directories(folder.path("worlds/inc"));
   folder.write("worlds/inc/bot.inc", "define bot position( size [0.3 0.3 0.1] laser( samples 5 ) gyro( ) )\n");
@@ -501,7 +501,7 @@ TEST(Run, HowAWorldsPathIsSpeltDoesNotChangeARecording) {
 }
 
 /// The kernel refuses to send to the broadcast address: as on a network that is down, no packet is sent.
-TEST(Run, PacketsThatAreNotSentAreAFailure) {
+TEST(Run, UnsentPacketsAreAFailure) {
   const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.5", "--send", "255.255.255.255"}));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.err.find("5 of 5 packets were not sent: 255.255.255.255:"), std::string::npos) << outcome.err;
@@ -509,7 +509,7 @@ TEST(Run, PacketsThatAreNotSentAreAFailure) {
 }
 
 /// Stopped at any point, every existing picture is complete.
-TEST(Plot, StoppedLeavesNoTornPicture) {
+TEST(Plot, AStopLeavesNoPartialPicture) {
   const Folder folder;
   run("cave.world", {"--robots", "20", "--duration", "300", "--record", folder.path("r")});
   Program plot({"plot", folder.path("r"), "-o", folder.path("p")});
@@ -527,7 +527,7 @@ TEST(Plot, StoppedLeavesNoTornPicture) {
   }
 }
 
-TEST(Run, NothingOfADamagedRecordingIsBelieved) {
+TEST(Run, AFileThatIsNotARecordingIsRejected) {
   const Folder folder;
   std::filesystem::create_directory(folder.path("r"));
   folder.write("r/run.mcap", "this is no recording, whatever its name says");

@@ -24,7 +24,7 @@ TEST(SelfTest, SomeCasesAndAGroup) {
   EXPECT_NE(outcome.out.find("5 of 5 cases passed on "), std::string::npos) << outcome.out;
 }
 
-TEST(SelfTest, AFailureIsToldAndEndsWithOne) {
+TEST(SelfTest, AFailureIsReportedAndExitsWithOne) {
   const Outcome outcome = run_program({"selftest", "ranges", "failure"});
   EXPECT_EQ(outcome.code, 1) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("FAILED"), std::string::npos) << outcome.out;
@@ -49,7 +49,7 @@ TEST(SelfTest, AsJson) {
 
 /// One case that only passes or fails, one to the bit, one within its tolerance, one that failed, and one that was not
 /// run.
-TEST(SelfTest, TheReportSaysHowEachCaseEnded) {
+TEST(SelfTest, TheReportListsEachResult) {
   using selftest::Case;
   const Case plain{"a", "plain", "", "", nullptr}, bits{"a", "bits", "m", "", nullptr},
       near{"b", "near", "m", "", nullptr};
@@ -79,7 +79,7 @@ TEST(SelfTest, TheReportSaysHowEachCaseEnded) {
   EXPECT_TRUE(apps::text_of(report).ends_with("29 checks in 1.5 s\n"));
 }
 
-TEST(SelfTest, NothingRunIsNotSound) { EXPECT_FALSE(apps::SelfTestReport{}.sound()); }
+TEST(SelfTest, AnEmptyReportIsNotSound) { EXPECT_FALSE(apps::SelfTestReport{}.sound()); }
 
 TEST(SelfTest, ACaseWithoutChecksFails) {
   const selftest::Case idle{"a", "idle", "", "", nullptr};
@@ -88,7 +88,7 @@ TEST(SelfTest, ACaseWithoutChecksFails) {
   EXPECT_FALSE(report.sound());
 }
 
-TEST(SelfTest, WrongUsage) {
+TEST(SelfTest, WrongUsageIsRejected) {
   const Outcome unknown = run_program({"selftest", "grasing"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.err.find("'grasing' is neither a case nor a group"), std::string::npos) << unknown.err;

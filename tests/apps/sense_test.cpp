@@ -42,7 +42,7 @@ std::string beam(std::size_t i, const std::string& key) { return "/beams/" + std
 
 }  // namespace
 
-TEST(Sense, SaysWhoLooksFromWhere) {
+TEST(Sense, PrintsTheRobotAndItsPose) {
   const Json scan = sense({our_world("rooms.world")});
   EXPECT_EQ(scan.text("/robot"), "roomba1");
   EXPECT_EQ(scan.number("/sensor"), 0);
@@ -56,7 +56,7 @@ TEST(Sense, SaysWhoLooksFromWhere) {
   ASSERT_EQ(scan.size("/beams"), 181u);
 }
 
-TEST(Sense, APoseThatNoRobotCanHaveIsAWarning) {
+TEST(Sense, AnImpossiblePoseIsAWarning) {
   const Folder folder;
   const std::string world = wall_world(folder, 0.0);
   const Outcome within = run_program({"sense", world, "--pose", "0.5,0,0"});
@@ -72,7 +72,7 @@ TEST(Sense, APoseThatNoRobotCanHaveIsAWarning) {
   EXPECT_EQ(run_program({"sense", rooms, "--pose", "1,2,0"}).err.find("warning"), std::string::npos);
 }
 
-TEST(Sense, ARobotOneMetreFromAWallReadsOneMetre) {
+TEST(Sense, ReadsOneMetreAtOneMetreFromAWall) {
   const Folder folder;
   const Json scan = sense({wall_world(folder, 0.0)});
   ASSERT_EQ(scan.size("/beams"), 1u);
@@ -81,7 +81,7 @@ TEST(Sense, ARobotOneMetreFromAWallReadsOneMetre) {
   EXPECT_EQ(scan.text(beam(0, "hit")), "long wall");
 }
 
-TEST(Sense, NamesWithCommasStandInQuotesInCsv) {
+TEST(Sense, NamesWithCommasAreQuotedInCsv) {
   const Folder folder;
   const std::string text = read_file(wall_world(folder, 0.0));
   const std::string world =
@@ -110,7 +110,7 @@ TEST(Sense, EveryBeamOfAFanFollowsTheCosine) {
 }
 
 /// In a world without surfaces, where every value of some types is at least the sensor's `limit`.
-TEST(Sense, NoReturnIsOfLasersAlone) {
+TEST(Sense, NoReturnAppliesOnlyToLasers) {
   const Folder folder;
   std::string robot = "position( name \"scout\"\n";
   for (const sensors::SensorType* type : sensors::built_in_sensor_types())
@@ -188,7 +188,7 @@ TEST(Sense, CsvHasAHeadingAndOneLinePerBeam) {
   EXPECT_EQ(count_lines(outcome.out), 182u);
 }
 
-TEST(Sense, NoiseIsOff) {
+TEST(Sense, NoiseIsDisabled) {
   const Words words{"sense", our_world("rooms.world"), "--robot", "roomba2", "--json"};
   const Json scan(run_program(words).out);
   // roomba2's first laser has noise of 1 cm; the far wall straight ahead is beyond its range of 5 m.
@@ -196,7 +196,7 @@ TEST(Sense, NoiseIsOff) {
   EXPECT_EQ(run_program(words).out, run_program(words).out);
 }
 
-TEST(Sense, AWorldWithoutRobotsIsLentOne) {
+TEST(Sense, AWorldWithoutRobotsGetsADefaultOne) {
   const Folder folder;
   const std::string world = folder.write("bare.world", "model( name \"wall\" pose [2.5 0 0 0] size [1 4 1] )\n");
   const Outcome outcome = run_program({"sense", world, "--pose", "0,0,0", "--json"});
@@ -207,7 +207,7 @@ TEST(Sense, AWorldWithoutRobotsIsLentOne) {
   EXPECT_NEAR(scan.number(beam(180, "range_m")), 2.0, kRuler);
 }
 
-TEST(Sense, TheLentRobotStandsWhereItIsFree) {
+TEST(Sense, TheDefaultRobotIsAtAFreePosition) {
   const Folder folder;
   const std::string world = folder.write("pillar.world",
                                          "model( name \"room\" size [6 4 1] boundary 1 noblocks 0 )\n"

@@ -65,7 +65,7 @@ Words free_bases(unsigned& base) {
 
 }  // namespace
 
-TEST_F(Kinds, AMagnetometerIsSensedByHand) {
+TEST_F(Kinds, AMagnetometerReadsTheComputedField) {
   const Outcome outcome = run("sense", world, {"--type", "magnetometer", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json reading(outcome.out);
@@ -95,13 +95,13 @@ TEST_F(Kinds, CsvHasAColumnPerNumberAndALinePerElement) {
   EXPECT_NE(outcome.err.find("its array at (0.500000, 0.000000, 0.050000) m"), std::string::npos) << outcome.err;
 }
 
-TEST_F(Kinds, WithoutAWordTheFirstKindIsMeant) {
+TEST_F(Kinds, WithoutATypeTheFirstKindIsUsed) {
   EXPECT_EQ(Json(run("sense", world, {"--json"}).out).text("/type"), "laser");
   const std::string only = folder.write("only.world", "position( name \"a\" magnetometer( ) )\n");
   EXPECT_EQ(Json(run("sense", only, {"--json"}).out).text("/type"), "magnetometer");
 }
 
-TEST_F(Kinds, WithoutAWordNumbersCountThroughAllKinds) {
+TEST_F(Kinds, WithoutATypeNumbersCountAllKinds) {
   const Json second(run("sense", world, {"--sensor", "1", "--json"}).out);
   EXPECT_EQ(second.text("/type"), "magnetometer");
   EXPECT_EQ(second.number("/sensor"), 0) << "the first of its type";
@@ -112,7 +112,7 @@ TEST_F(Kinds, WithoutAWordNumbersCountThroughAllKinds) {
   EXPECT_EQ(last.number("/sensor"), 1);
 }
 
-TEST_F(Kinds, AMissingSensorIsRefusedWithTheListOfThoseThere) {
+TEST_F(Kinds, AMissingSensorIsRejectedWithTheAvailableOnes) {
   struct Wrong {
     Words arguments;
     std::string said;
@@ -152,7 +152,7 @@ TEST_F(Kinds, CheckCountsThem) {
   EXPECT_NE(text.find("magnetometer       2 (4 sensors in all)"), std::string::npos) << text;
 }
 
-TEST_F(Kinds, CheckSaysWhatACutOffLeavesOut) {
+TEST_F(Kinds, CheckReportsTheEffectOfACutoff) {
   const std::string cut = folder.write("cut.world", "magnet_cutoff 2\n" + std::string(kTypesWorld));
   const Json facts(run("check", cut, {"--json"}).out);
   EXPECT_EQ(facts.number("/magnet_cutoff_m"), 2);
@@ -162,7 +162,7 @@ TEST_F(Kinds, CheckSaysWhatACutOffLeavesOut) {
   EXPECT_NE(run("check", cut, {}).out.find("what is left out is at most 1.26e-08 T"), std::string::npos);
 }
 
-TEST_F(Kinds, SettingsThatMakeNoSenseNameTheirLineInEveryCommand) {
+TEST_F(Kinds, EveryCommandReportsTheLineOfInvalidSettings) {
   const std::string bad = folder.write("bad.world", "position\n(\n  magnetometer( scount 99 )\n)\n");
   for (const std::string command : {"check", "sense", "run", "serve", "listen"}) {
     const Outcome outcome = run_program({command, bad});
@@ -200,7 +200,7 @@ TEST_F(Kinds, EveryPacketArrivesOnEitherWire) {
   }
 }
 
-TEST_F(Kinds, KindsThatShareAPortAreToldApart) {
+TEST_F(Kinds, KindsOnOnePortAreDistinguished) {
   const Outcome outcome =
       run("serve", world, {"--port", "0", "--magnetometer-port", "10008", "--ports-per-robot", "8"});
   EXPECT_EQ(outcome.code, 2);
@@ -209,7 +209,7 @@ TEST_F(Kinds, KindsThatShareAPortAreToldApart) {
     EXPECT_NE(outcome.err.find(said), std::string::npos) << said << " is not in: " << outcome.err;
 }
 
-TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
+TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
   unsigned base = 0;
   Words words{"serve", world, "--port", "0", "--rate", "50", "--json"};
   const Words bases = free_bases(base);
@@ -303,7 +303,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
 }
 
 /// Robots drive by their lasers: other sensors, at any rate, do not change their motion.
-TEST_F(Kinds, AnUnusedSensorChangesNoPath) {
+TEST_F(Kinds, AnUnusedSensorDoesNotChangeThePath) {
   const auto states = [&](const std::string& name, const std::string& sensor) {
     const std::string file =
         folder.write(name + ".world", "position( name \"a\" laser( samples 91 fov 180 range_max 2 rate 2 )" + sensor +
@@ -358,7 +358,7 @@ TEST(WireFormat, LaneEdgesSendTheDocumentedBytes) {
 
 /// The thesis' listing: its robot faces -y, its `laser` looks along its own +x, and the road is a thin model. The other
 /// robot faces +x and looks to its left. Both are 0.25 m from the face of the paint.
-TEST(LaneEdge, TheThesisListingAndOursReadTheSame) {
+TEST(LaneEdge, TheThesisListingGivesEqualReadings) {
   if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const Folder folder;
   const std::string thesis = folder.write("thesis.world", R"(
@@ -399,7 +399,7 @@ model( name "road" bitmap "road.pgm" size [1 1 0.01] )
 }
 
 /// On the straight, a reading states a bound and satisfies it; in the bend, it states that none holds.
-TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
+TEST(LaneEdge, ABoundHoldsOrIsFlagged) {
   if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const std::string lane = our_world("testpath/testpath.world");
   const auto sense = [&](const std::string& pose) {
@@ -417,7 +417,7 @@ TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
       << run("check", lane, {}).out;
 }
 
-TEST(LaneEdge, GoesThroughEveryCommand) {
+TEST(LaneEdge, WorksWithEveryCommand) {
   if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const std::string lane = our_world("testpath/testpath.world");
   const Json facts(run("check", lane, {"--json"}).out);

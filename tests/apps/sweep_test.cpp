@@ -45,7 +45,7 @@ std::map<std::string, fs::file_time_type> results_of(const std::string& out) {
   return results;
 }
 
-TEST(SweepCommand, TablesAreTheSameForAnyNumberOfProcesses) {
+TEST(SweepCommand, TablesDoNotDependOnTheNumberOfProcesses) {
   const Folder folder;
   const std::string file = write_sweep(folder, "1", "contacts = 1000\n");
   const Outcome one = run_program({"sweep", file, "-o", folder.path("one"), "--jobs", "1"});
@@ -112,10 +112,10 @@ void interrupt_and_go_on(int end) {
   EXPECT_EQ(tables_of(folder, fs::path(out).filename()), tables_of(folder, "undisturbed"));
 }
 
-TEST(SweepCommand, AKilledSweepGoesOn) { interrupt_and_go_on(SIGKILL); }
-TEST(SweepCommand, CtrlCLeavesFinishedJobs) { interrupt_and_go_on(SIGINT); }
+TEST(SweepCommand, AKilledSweepContinues) { interrupt_and_go_on(SIGKILL); }
+TEST(SweepCommand, CtrlCKeepsFinishedJobs) { interrupt_and_go_on(SIGINT); }
 
-TEST(SweepCommand, MissedExpectationsAreInTablesAndExitCode) {
+TEST(SweepCommand, MissedExpectationsShowInTablesAndExitCode) {
   const Folder folder;
   const std::string file = write_sweep(folder, "0.5", "distance = 1000\n");
   const Outcome outcome = run_program({"sweep", file, "-o", folder.path("out")});
@@ -125,7 +125,7 @@ TEST(SweepCommand, MissedExpectationsAreInTablesAndExitCode) {
   EXPECT_NE(outcome.err.find("14 more jobs: see jobs.csv"), std::string::npos) << outcome.err;
 }
 
-TEST(SweepCommand, TenFailuresAreNamedAndTheOthersCounted) {
+TEST(SweepCommand, TenFailuresAreListedAndTheRestCounted) {
   const Folder folder;
   folder.write("small.toml",
                "world = \"" + our_world("rooms.world") + "\"\nrobots = 1\nduration = 0.1\n[expect]\ndistance = 1000\n");
@@ -142,7 +142,7 @@ TEST(SweepCommand, TenFailuresAreNamedAndTheOthersCounted) {
 }
 
 /// A controller that crashes, a controller that reports an error, and other jobs that succeed.
-TEST(SweepCommand, AFailureCostsItsJobAlone) {
+TEST(SweepCommand, AFailureAffectsOnlyItsJob) {
   const Folder folder;
   // Of three values, the smallest and the largest are checked in advance: an error in the middle one appears in its
   // job.
@@ -173,7 +173,7 @@ TEST(SweepCommand, AFailureCostsItsJobAlone) {
   EXPECT_EQ(after.at("000000.txt"), before.at("000000.txt")) << "and no other";
 }
 
-TEST(SweepCommand, AProcessThatDiesCostsItsJobAlone) {
+TEST(SweepCommand, ADeadProcessAffectsOnlyItsJob) {
   if (std::getenv("SENSORFARM_INSTRUMENTED") != nullptr) GTEST_SKIP() << "Python's plug-in is not instrumented";
   if (!fs::exists(SF_BINARY_DIR "/sensorfarm_python.so")) GTEST_SKIP() << "built without Python";
   const Folder folder;
@@ -196,7 +196,7 @@ TEST(SweepCommand, AProcessThatDiesCostsItsJobAlone) {
       << outcome.err;
 }
 
-TEST(SweepCommand, SlurmScriptsNameWhatIsMissing) {
+TEST(SweepCommand, SlurmScriptsListMissingJobs) {
   const Folder folder;
   const std::string file = write_sweep(folder, "0.5");
   const std::string out = folder.path("o u t");
@@ -240,7 +240,7 @@ TEST(SweepCommand, ListsFiftyPoints) {
   }
 }
 
-TEST(SweepCommand, WrongUsageIsExplained) {
+TEST(SweepCommand, WrongUsageIsRejected) {
   const Folder folder;
   const std::string file = write_sweep(folder);
   const auto refused = [&](Words words, const Environment& environment = {}) {

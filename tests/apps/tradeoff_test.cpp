@@ -31,7 +31,7 @@ std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
 
 double number(const std::string& cell) { return cell.empty() ? NAN : std::stod(cell); }
 
-TEST(Tradeoff, ATableAFileAndAPicture) {
+TEST(Tradeoff, WritesATableAFileAndAPicture) {
   const Folder folder;
   const Outcome outcome =
       run_program({"tradeoff", our_world("simville/simville.world"), "-o", folder.path("t"), "--max-error", "5mm"});
@@ -77,7 +77,7 @@ TEST(Tradeoff, ATableAFileAndAPicture) {
 }
 
 /// Its columns are the keys of the JSON output.
-TEST(Tradeoff, JsonSaysWhatTheFileDoes) {
+TEST(Tradeoff, JsonMatchesTheFile) {
   const Folder folder;
   const Json json(run_program({"tradeoff", our_world("rooms.world"), "-o", folder.path("t"), "--json"}).out);
   const auto rows = cells_of(read_file(folder.path("t/tradeoff.csv")));
@@ -94,7 +94,7 @@ TEST(Tradeoff, JsonSaysWhatTheFileDoes) {
 }
 
 /// The terminal states the scope of a bound: a mode that leaves beams out shows how many it covers, and their error.
-TEST(Tradeoff, NoBoundStandsBesideErrorsThatItDoesNotCover) {
+TEST(Tradeoff, BoundsAreShownWithTheErrorsThatTheyCover) {
   const Outcome outcome = run_program({"tradeoff", our_world("cave.world"), "--robots", "10"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::size_t at = outcome.out.find("laser         skip2");
@@ -107,13 +107,13 @@ TEST(Tradeoff, NoBoundStandsBesideErrorsThatItDoesNotCover) {
   EXPECT_LT(bound, largest) << "errors of all come last: " << line;
 }
 
-TEST(Tradeoff, AutoPrintsTheWordsAlone) {
+TEST(Tradeoff, AutoPrintsOnlyTheModes) {
   const Outcome outcome = run_program({"tradeoff", our_world("rooms.world"), "--auto", "--max-error", "1nm"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "exact\n");
 }
 
-TEST(Tradeoff, WrongUsage) {
+TEST(Tradeoff, WrongUsageIsRejected) {
   EXPECT_EQ(run_program({"tradeoff"}).code, 2);
   const Outcome unit = run_program({"tradeoff", our_world("rooms.world"), "--max-error", "5"});
   EXPECT_EQ(unit.code, 2);
@@ -125,7 +125,7 @@ TEST(Tradeoff, WrongUsage) {
   expect_says(nowhere, "/proc/none");
 }
 
-TEST(AccuracyOption, ChangesWhatIsReadAndSaysSo) {
+TEST(AccuracyOption, ChangesReadingsAndPrintsTheMode) {
   const Words sense{"sense", our_world("rooms.world"), "--json"};
   Words skip = sense;
   skip.insert(skip.end(), {"--accuracy", "skip2"});
@@ -138,7 +138,7 @@ TEST(AccuracyOption, ChangesWhatIsReadAndSaysSo) {
   expect_says(run_program({"check", our_world("rooms.world"), "--accuracy", "single"}), "laser single, within 999 um");
 }
 
-TEST(AccuracyOption, WrongWords) {
+TEST(AccuracyOption, RejectsUnknownModes) {
   const Outcome unknown = run_program({"check", our_world("rooms.world"), "--accuracy", "fast"});
   EXPECT_EQ(unknown.code, 2);
   expect_says(unknown, "--accuracy: there is no accuracy \"fast\"; expected one of \"exact\", \"single\"");
@@ -158,7 +158,7 @@ TEST(AccuracyOption, AutoMeasuresFirst) {
 }
 
 /// A sensor type without a target has no bound; without any target, both have the default.
-TEST(AccuracyOption, AutoSaysWhatItGoesBy) {
+TEST(AccuracyOption, AutoPrintsItsTarget) {
   const std::vector<std::pair<Words, std::string>> wishes{
       {{}, "with every error within 10 mm and 1 uT: "},
       {{"--max-error", "2uT"}, "with every error within 2 uT: "},

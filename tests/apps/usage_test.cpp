@@ -46,7 +46,7 @@ TEST(Usage, EverySubcommandHasHelp) {
     EXPECT_EQ(all.out.find(word), std::string::npos) << word << " belongs to subcommands";
 }
 
-TEST(Usage, ExamplesNameFilesThatAreThere) {
+TEST(Usage, ExamplesUseExistingFiles) {
   const std::filesystem::path source = SF_SOURCE_DIR;
   std::size_t found = 0;
   for (const std::string& name : kSubcommands) {
@@ -70,7 +70,7 @@ TEST(Usage, PortsAreAGroupAtTheEndOfTheHelp) {
 }
 
 /// For commands with many options: ten, after the examples, and how to list the others.
-TEST(Usage, HelpBeginsWithExamplesAndOptionsOfEveryDay) {
+TEST(Usage, HelpStartsWithExamplesAndCommonOptions) {
   for (const std::string name : {"run", "serve", "robot", "listen", "vps", "tradeoff"}) {
     const std::string help = run_program({name, "--help"}).out;
     std::size_t options = 0;
@@ -95,7 +95,7 @@ TEST(Usage, HelpGroupsTheCommands) {
   }
 }
 
-TEST(Usage, MistakesAreExplained) {
+TEST(Usage, MistakesAreReported) {
   const std::string world = our_world("rooms.world");
   for (const auto& [arguments, said] : std::vector<Wrong>{
            {{"run", "--hlep"}, "'--hlep' was not expected; did you mean '--help'?"},
@@ -129,7 +129,7 @@ TEST(Usage, HelpIsAsRecorded) {
 }
 
 /// An option that modifies another one has no effect without it.
-TEST(Usage, OptionsThatNeedAnotherOneAreRefusedWithoutIt) {
+TEST(Usage, OptionsThatNeedAnotherAreRejectedWithoutIt) {
   const Folder folder;
   const std::string world = our_world("rooms.world"), out = folder.path("out");
   const std::string sweep = SF_SOURCE_DIR "/experiments/sweeps/lane-edge.toml";
@@ -185,7 +185,7 @@ TEST(Usage, OptionsThatNeedAnotherOneAreRefusedWithoutIt) {
 }
 
 /// Options that contradict each other, in any order.
-TEST(Usage, OptionsThatContradictAreRefused) {
+TEST(Usage, ContradictoryOptionsAreRejected) {
   const Folder folder;
   const std::string world = our_world("rooms.world"), out = folder.path("out");
   const Words sensor{"run", world, "--record", out, "--record-readings", "--topics", "sensor"};
@@ -217,7 +217,7 @@ TEST(Usage, OptionsThatContradictAreRefused) {
 }
 
 /// Taken names are also printed for recordings; those of sensors only if readings are recorded.
-TEST(Usage, TakenNamesOfTopicsArePrintedForRecordings) {
+TEST(Usage, TakenTopicNamesArePrintedForRecordings) {
   const Folder folder;
   const std::string world =
       folder.write("w.world",
@@ -238,7 +238,7 @@ TEST(Usage, TakenNamesOfTopicsArePrintedForRecordings) {
   EXPECT_EQ(none.err.find("topics"), std::string::npos) << none.err;
 }
 
-TEST(Usage, RunsThatDoNothingSaySo) {
+TEST(Usage, RunsWithoutEffectPrintANotice) {
   const std::string world = our_world("rooms.world");
   for (const char* duration : {"0", "0.01"}) {
     const Outcome outcome = run_program({"run", world, "--duration", duration});
@@ -253,7 +253,7 @@ TEST(Usage, RunsThatDoNothingSaySo) {
 }
 
 /// TOML files of other commands.
-TEST(Usage, FilesOfOtherCommandsAreNamed) {
+TEST(Usage, FilesOfOtherCommandsAreRecognized) {
   const std::string source = SF_SOURCE_DIR;
   const std::string sweep = source + "/experiments/sweeps/lane-edge.toml",
                     scenario = source + "/experiments/mapping.toml";
@@ -283,7 +283,7 @@ TEST(Usage, VersionIsPrinted) {
   EXPECT_EQ(outcome.out.rfind("sensorfarm ", 0), 0u);
 }
 
-TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
+TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
   const std::string world = our_world("rooms.world");
   const Folder folder;
   for (const auto& [arguments, said] : std::vector<Wrong>{
@@ -338,7 +338,7 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
 }
 
 /// A name with an unsupported format is refused before any work is done.
-TEST(Usage, PicturesInFormatsThatThereAreNotAreRefused) {
+TEST(Usage, UnknownPictureFormatsAreRejected) {
   const Folder folder;
   const std::string world = our_world("six_magnets.world"), network = our_world("simville/simville.rndf");
   for (const std::string suffix : {".jpg", ".eps", ".svgz"}) {
@@ -353,7 +353,7 @@ TEST(Usage, PicturesInFormatsThatThereAreNotAreRefused) {
   }
 }
 
-TEST(Usage, ThePicturesSuffixIsItsFormat) {
+TEST(Usage, TheSuffixDeterminesThePictureFormat) {
   const Folder folder;
   const std::string world = our_world("six_magnets.world");
   std::filesystem::create_directories(folder.path("v1.2"));
@@ -367,7 +367,7 @@ TEST(Usage, ThePicturesSuffixIsItsFormat) {
   }
 }
 
-TEST(Usage, SizesOfPicturesHaveBounds) {
+TEST(Usage, PictureSizesHaveLimits) {
   const Folder folder;
   const std::string world = our_world("six_magnets.world"), file = folder.path("x.png");
   for (const char* size : {"49.9", "1001", "85x29.9", "85x1001", "85x", "x60", "85,60", "wide", "nan", "85x60x70", ""})
@@ -381,7 +381,7 @@ TEST(Usage, SizesOfPicturesHaveBounds) {
     EXPECT_EQ(run_program({"draw", world, "-o", file, "--size", size, "--dpi", "50"}).code, 0) << size;
 }
 
-TEST(Usage, WrongFilesAreRefusedByEveryCommandThatReadsAWorld) {
+TEST(Usage, EveryCommandThatReadsAWorldRejectsWrongFiles) {
   const Folder folder;
   const std::string broken = folder.write("broken.world", "model\n(\n  size [1 1\n  color \"red\"\n)\n");
   for (const Words& command : std::vector<Words>{{"check"},
@@ -402,7 +402,7 @@ TEST(Usage, WrongFilesAreRefusedByEveryCommandThatReadsAWorld) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("x.png")));
 }
 
-TEST(Usage, PicturesThatCannotBeReadNameTheLineThatAsksForThem) {
+TEST(Usage, UnreadablePicturesAreReportedWithTheirLine) {
   const Folder folder;
   folder.write("notes.png", "not a picture");
   const std::string world = folder.write("w.world", "model( size [1 1 1]\nbitmap \"notes.png\" )\n");
@@ -410,7 +410,7 @@ TEST(Usage, PicturesThatCannotBeReadNameTheLineThatAsksForThem) {
   expect_refused({"check", world}, "notes.png");
 }
 
-TEST(Usage, AnAnswerThatCannotBeWrittenIsNoSuccess) {
+TEST(Usage, UnwritableOutputIsAnError) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "the machine has no /dev/full";
   const Outcome outcome = Program({"check", our_world("rooms.world")}, {}, "/dev/full").wait();
   EXPECT_EQ(outcome.code, 2);
@@ -432,7 +432,7 @@ Environment with(Environment environment, const Environment& more) {
   return environment;
 }
 
-TEST(NoDevice, WhereOneIsAskedForEndsWithThreeAndOneLine) {
+TEST(NoDevice, ARequiredDeviceExitsWithThreeAndOneLine) {
   struct Ask {
     Words words;
     Environment environment;
@@ -461,7 +461,7 @@ TEST(NoDevice, WhereOneIsAskedForEndsWithThreeAndOneLine) {
     }
 }
 
-TEST(NoDevice, ElseTheHostComputesAndOneLineSaysSo) {
+TEST(NoDevice, OtherwiseTheHostComputesAndANoticeIsPrinted) {
   std::vector<Words> commands = sensing_commands();
   commands.push_back({"devices"});
   for (const Words& words : commands) {
@@ -478,7 +478,7 @@ TEST(NoDevice, ElseTheHostComputesAndOneLineSaysSo) {
   EXPECT_EQ(named.err.find("Vulkan"), std::string::npos) << "the host that is named needs no line: " << named.err;
 }
 
-TEST(NoDevice, TheHostThatIsNamedContradictsTheRequirement) {
+TEST(NoDevice, TheHostContradictsTheRequirement) {
   for (const Words& more : std::vector<Words>{{"--require-vulkan"}, {"--caster", "vulkan"}}) {
     Words words{"run", our_world("rooms.world"), "--duration", "0.1", "--device", "host"};
     words.insert(words.end(), more.begin(), more.end());
@@ -517,7 +517,7 @@ TEST(NoDevice, WorldsCanStillBeCheckedAndDrawn) {
   EXPECT_EQ(run_program({"draw", our_world("rooms.world"), "-o", folder.path("x.png")}, no_device()).code, 0);
 }
 
-TEST(Devices, TheChosenOneIsNamed) {
+TEST(Devices, TheChosenDeviceIsPrinted) {
   const Outcome outcome = run_program({"devices", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json facts(outcome.out);
@@ -538,7 +538,7 @@ TEST(Devices, TheChosenOneIsNamed) {
   EXPECT_NE(run_program({"devices"}).out.find("self-check passed"), std::string::npos);
 }
 
-TEST(Devices, TheHostIsNamedInAnyCase) {
+TEST(Devices, TheHostMatchesInAnyCase) {
   const std::string world = our_world("rooms.world");
   for (const char* name : {"host", "Host", "HOST"}) {
     const Outcome outcome = run_program({"sense", world, "--device", name}, {{"SENSORFARM_CASTER", "auto"}});
@@ -553,7 +553,7 @@ TEST(Devices, TheHostIsNamedInAnyCase) {
   }
 }
 
-TEST(Devices, NoSuchDeviceEndsWithThree) {
+TEST(Devices, UnknownDeviceExitsWithThree) {
   for (const std::string command : {"devices", "sense", "run"}) {
     Words words{command};
     if (command != "devices") words.push_back(our_world("rooms.world"));
@@ -564,7 +564,7 @@ TEST(Devices, NoSuchDeviceEndsWithThree) {
   }
 }
 
-TEST(Devices, TheEnvironmentChoosesAndTheOptionOverrules) {
+TEST(Devices, TheOptionOverridesTheEnvironment) {
   const Environment wrong{{"SENSORFARM_DEVICE", "no such device"}};
   EXPECT_EQ(run_program({"devices"}, wrong).code, 3);
   EXPECT_EQ(run_program({"devices", "--device", "0"}, wrong).code, 0);

@@ -53,7 +53,7 @@ std::string refusal(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST(V2x, FramesBecomeJsonAndTheirOwnBytesAgain) {
+TEST(V2x, FramesSurviveARoundTripThroughJson) {
   const Folder folder;
   const std::string hex = upper(frames());
   const Outcome decoded = run_program({"v2x", "decode", folder.write("frames.hex", hex)});
@@ -93,7 +93,7 @@ TEST(V2x, AFrameWithExtensionsMayFollowAnother) {
   EXPECT_EQ(decoded.out.find("padding"), std::string::npos);
 }
 
-TEST(V2x, JsonHasTheNamesOfTheStandard) {
+TEST(V2x, JsonUsesTheNamesOfTheStandard) {
   const Folder folder;
   const Outcome encoded = run_program({"v2x", "encode", folder.write("spat.json", kJson)});
   ASSERT_EQ(encoded.code, 0) << encoded.err;
@@ -131,7 +131,7 @@ TEST(V2x, XmlIsOneDocument) {
   EXPECT_EQ(frames_in(three.out), 3u);
 }
 
-TEST(V2x, BadFramesAreNamedAndTheOthersDecoded) {
+TEST(V2x, BadFramesAreReportedAndTheOthersDecoded) {
   const Folder folder;
   const std::string good = frames().substr(0, frames().find('\n'));
   const std::string file =
@@ -158,7 +158,7 @@ TEST(V2x, ManyBadFramesAreCounted) {
   EXPECT_NE(outcome.err.find("90 more frames are not decoded\n"), std::string::npos) << outcome.err;
 }
 
-TEST(V2x, FilesWithoutAFrameAreRefused) {
+TEST(V2x, FilesWithoutAFrameAreRejected) {
   const Folder folder;
   for (const std::string content : {"\n\n", "# nothing\n"}) {
     const Outcome outcome = run_program({"v2x", "decode", folder.write("none.hex", content)});
@@ -169,7 +169,7 @@ TEST(V2x, FilesWithoutAFrameAreRefused) {
   EXPECT_EQ(run_program({"v2x", "encode", folder.write("blank", " \n")}).code, 2);
 }
 
-TEST(V2x, FaultsInJsonNameTheirComponent) {
+TEST(V2x, JsonErrorsNameTheirComponent) {
   const std::string spat = "value.SPAT.intersections[0]";
   EXPECT_EQ(refusal("35176", "65536"), spat + ".timeStamp: found 65536; expected a whole number from 0 to 65535");
   EXPECT_EQ(refusal("35176", "-1"), spat + ".timeStamp: found -1; expected a whole number from 0 to 65535");
@@ -192,7 +192,7 @@ TEST(V2x, FaultsInJsonNameTheirComponent) {
 }
 
 /// In place of a frame, its id and a component: recursion must not be as deep as the nesting of a stranger's lists.
-TEST(V2x, JsonOfAnyDepthIsRefused) {
+TEST(V2x, DeeplyNestedJsonIsRejected) {
   const std::string open(200'000, '['), closed = open + std::string(200'000, ']');
   EXPECT_EQ(refusal(kJson, closed), "found a list of 1; expected an object");
   EXPECT_EQ(refusal("19", closed), "messageId is a list of 1; 19 (SPaT) or 18 (MAP) expected");
@@ -203,7 +203,7 @@ TEST(V2x, JsonOfAnyDepthIsRefused) {
   EXPECT_EQ(refusal(kJson, open).find("no JSON from here on: "), 0u);
 }
 
-TEST(V2x, TheLightsOfAWorldAreMessages) {
+TEST(V2x, ExportsTheLightsOfAWorld) {
   const Folder folder;
   const Outcome exported = run_program({"v2x", "export", our_world("simville/simville.world"), "--time", "9"});
   ASSERT_EQ(exported.code, 0) << exported.err;
@@ -226,7 +226,7 @@ TEST(V2x, TheLightsOfAWorldAreMessages) {
   EXPECT_NE(none.err.find("no traffic lights in this world"), std::string::npos) << none.err;
 }
 
-TEST(V2x, WrongArgumentsAreExplained) {
+TEST(V2x, WrongArgumentsAreRejected) {
   const Folder folder;
   const std::string file = folder.write("spat.json", kJson);
   for (const Words& words : std::vector<Words>{{"v2x"},

@@ -44,7 +44,7 @@ std::string altered(const Folder& folder, std::uint64_t tick) {
   return folder.path("altered");
 }
 
-TEST(Verify, AnAlteredReadingEndsWithOne) {
+TEST(Verify, AnAlteredReadingExitsWithOne) {
   const Folder folder;
   EXPECT_EQ(run_program({"verify", altered(folder, 99)}).code, 0) << "nothing was altered";
   const Outcome outcome = run_program({"verify", altered(folder, 2)});
@@ -61,7 +61,7 @@ TEST(Verify, AnAlteredReadingEndsWithOne) {
 }
 
 /// By default, verifies a sample and prints its size; every scan of a run with no more scans than that.
-TEST(Verify, LooksAtASampleUnlessAskedForAll) {
+TEST(Verify, ChecksASampleByDefault) {
   const Folder folder;
   const std::string run = folder.path("run");
   ASSERT_EQ(run_program({"run", our_world("cave.world"), "--robots", "60", "--duration", "2", "--record", run}).code,
@@ -78,7 +78,7 @@ TEST(Verify, LooksAtASampleUnlessAskedForAll) {
   EXPECT_EQ(run_program({"verify", run, "--sample", "10", "--all"}).code, 2);
 }
 
-TEST(Verify, ASoundRunSaysSo) {
+TEST(Verify, ASoundRunPasses) {
   const Folder folder;
   const Outcome outcome = run_program({"verify", record(folder, {"--record-readings"})});
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
@@ -86,7 +86,7 @@ TEST(Verify, ASoundRunSaysSo) {
   EXPECT_NE(outcome.out.find("plain C++ beside the recording"), std::string::npos) << outcome.out;
 }
 
-TEST(Verify, InfinityForNothingMet) {
+TEST(Verify, NoReturnMayBeInfinite) {
   const Folder folder;
   const Outcome outcome = run_program({"verify", record(folder, {"--record-readings", "--no-return", "inf"})});
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
@@ -115,7 +115,7 @@ TEST(Verify, WithoutReadingsAndLasers) {
 }
 
 /// If all existing readings are skipped, they are not verified.
-TEST(Verify, ReadingsOfWhichNoneCanBeComparedEndWithOne) {
+TEST(Verify, ReadingsThatCannotBeComparedExitWithOne) {
   const Folder folder;
   const std::string world = folder.write("bumper.world", "position( bumper( ) )\n"), run = folder.path("run");
   ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", run, "--record-readings"}).code, 0);
@@ -125,7 +125,7 @@ TEST(Verify, ReadingsOfWhichNoneCanBeComparedEndWithOne) {
 }
 
 /// A checksum detects a flipped bit in a scan: it is reported as damage, and the rest is verified.
-TEST(Verify, DamageIsTold) {
+TEST(Verify, DamageIsReported) {
   const Folder folder;
   const std::string file = record(folder, {"--record-readings"}) + "/run.mcap";
   std::string bytes = read_file(file);
@@ -143,7 +143,7 @@ TEST(Verify, DamageIsTold) {
 }
 
 /// Bits of the index and the summary, of lengths and of the end, throughout the file.
-TEST(Verify, AFlippedBitAnywhereIsToldAndEndsWithAnError) {
+TEST(Verify, AnyFlippedBitIsReportedAsAnError) {
   const Folder folder;
   const std::string file = altered(folder, 99) + "/run.mcap";
   const std::string whole = read_file(file);
@@ -160,7 +160,7 @@ TEST(Verify, AFlippedBitAnywhereIsToldAndEndsWithAnError) {
 }
 
 /// The recording of a killed run is sound up to its last complete tick, and not sound without any tick.
-TEST(Verify, ACutRecordingIsNoWholeOne) {
+TEST(Verify, ATruncatedRecordingIsIncomplete) {
   const Folder folder;
   const std::string file = altered(folder, 99) + "/run.mcap";
   const auto whole = std::filesystem::file_size(file);
@@ -208,7 +208,7 @@ TEST(Verify, AnotherAccuracyModeHasItsErrors) {
   EXPECT_NE(text.out.find("100.00 %          0          0          0"), std::string::npos) << text.out;
 }
 
-TEST(Verify, UnknownModesAreRefusedWithTheKnownOnes) {
+TEST(Verify, UnknownModesAreRejectedWithTheKnownOnes) {
   const Folder folder;
   const std::string run = record(folder);
   const Outcome unknown = run_program({"verify", run, "--accuracy", "skip3"});
@@ -220,7 +220,7 @@ TEST(Verify, UnknownModesAreRefusedWithTheKnownOnes) {
       << unknown.err;
 }
 
-TEST(Verify, WrongUsage) {
+TEST(Verify, WrongUsageIsRejected) {
   const Outcome nothing = run_program({"verify", "/nowhere"});
   EXPECT_EQ(nothing.code, 2);
   EXPECT_NE(nothing.err.find("/nowhere"), std::string::npos);

@@ -46,7 +46,7 @@ class Video : public testing::Test {
 };
 
 /// Ten seconds of ticks give ten seconds of video, divided by the speed.
-TEST_F(Video, DurationIsThatOfTheRunOverTheSpeed) {
+TEST_F(Video, DurationIsThatOfTheRunDividedByTheSpeed) {
   const Outcome one = run_program(run(folder.path("one.webm"), "10"));
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_NE(one.out.find("\"frames\": 250"), std::string::npos) << one.out;
@@ -119,7 +119,7 @@ TEST_F(Video, FramesOfAnEarlierCallAreRemoved) {
 }
 
 /// At any frame rate, between ticks and at them, after the requested start.
-TEST_F(Video, FramesOfOneTimeAreTheSame) {
+TEST_F(Video, FramesAtEqualTimesAreEqual) {
   const std::string recording = record("2");
   const auto write = [&](const std::string& fps, const std::string& name) {
     EXPECT_EQ(run_program({"view", recording, "--frames", folder.path(name), "--video-fps", fps, "--video-size",
@@ -162,7 +162,7 @@ TEST_F(Video, AStopLeavesAVideoThatPlays) {
   expect_probed(folder.path("v.webm"), "vp9,");
 }
 
-TEST_F(Video, AStoppedPlotSaysThatItsVideoEndsEarly) {
+TEST_F(Video, AStoppedPlotReportsThatItsVideoEndsEarly) {
   const std::string recording = record("600");
   Program program({"plot", recording, "--video", folder.path("v.webm"), "--video-size", "160x120"});
   ASSERT_TRUE(program.handles(SIGINT)) << program.err();
@@ -188,7 +188,7 @@ TEST_F(Video, WithoutFfmpegTheMessageNamesItsPackage) {
   EXPECT_EQ(frames.code, 0) << frames.err;
 }
 
-TEST_F(Video, WrongOptionsAreNamed) {
+TEST_F(Video, WrongOptionsAreReported) {
   const std::string world = our_world("cave.world");
   const auto message = [&](const Words& more) {
     Words words{"run", world, "--robots", "2", "--duration", "0.1"};

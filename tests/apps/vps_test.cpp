@@ -161,7 +161,7 @@ TEST(Vps, DrawsEachSecondImage) {
 }
 
 /// Photographs are not overwritten by drawings.
-TEST(Vps, AFolderOfImagesIsNoFolderForPictures) {
+TEST(Vps, PicturesAreNotWrittenIntoAFolderOfImages) {
   const Folder folder;
   const std::string testbed = write_pictures(folder);
   const Outcome outcome =
@@ -199,7 +199,7 @@ TEST(Vps, CtrlCEndsItAtOnce) {
 }
 
 /// Live images wait for their time even if rendering is fast: their interval is at least the period.
-TEST(Vps, ImagesOfLiveRobotsAreAPeriodApart) {
+TEST(Vps, ImagesOfLiveRobotsAreAtLeastAPeriodApart) {
   std::string text = kTestbed;
   text.insert(text.find("position"), "rate = 10\n");
   const vision::Testbed testbed = vision::parse_testbed("t.toml", text);
@@ -278,7 +278,7 @@ TEST(Vps, ARobotDrivesByItsPackets) {
 }
 
 /// Times count from the first image, at any speed of the machine, with at least one camera period between images.
-TEST(Vps, LiveImagesHaveTheTimeSinceTheFirst) {
+TEST(Vps, LiveImagesHaveTimesSinceTheFirst) {
   const Folder folder;
   const vision::Testbed testbed = vision::read_testbed(
       folder.write("t.toml",
@@ -304,7 +304,7 @@ TEST(Vps, LiveImagesHaveTheTimeSinceTheFirst) {
   EXPECT_FALSE(inputs->next(frames));
 }
 
-TEST(Calibrate, NamesWhatIsWrong) {
+TEST(Calibrate, ReportsErrors) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
   ASSERT_EQ(run_program({"vps", testbed, "--rendered", "1", "--images", "2", "--overlay", folder.path("p")}).code, 0);
@@ -322,7 +322,7 @@ TEST(Calibrate, NamesWhatIsWrong) {
   }
 }
 
-TEST(Vps, NamesWhatIsWrong) {
+TEST(Vps, ReportsErrors) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
   const std::string text = folder.write("text.avi", "no video");
@@ -356,7 +356,7 @@ TEST(Vps, NamesWhatIsWrong) {
 }
 
 /// Readings are sent repeatedly while it runs, so some are available when a tag is seen.
-TEST(Vps, ReadingsAreDrawnFromWhereTheTagsAreSeen) {
+TEST(Vps, ReadingsAreDrawnFromTheSeenTags) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", std::string(kTestbed) + "robot = 5\n");  // carries tag 2
   const std::string world = folder.write(

@@ -45,7 +45,7 @@ void expect_first_three(const Said& said) {
   EXPECT_EQ(err.find("range_maxx"), std::string::npos) << err;
 }
 
-TEST(Warnings, EveryCommandTellsOfTheFirstThree) {
+TEST(Warnings, EveryCommandPrintsTheFirstThree) {
   const Folder folder;
   const std::vector<std::pair<std::string, Words>> commands{
       {"sense", {}},
@@ -62,7 +62,7 @@ TEST(Warnings, EveryCommandTellsOfTheFirstThree) {
   }
 }
 
-TEST(Warnings, JsonHasAllOfThem) {
+TEST(Warnings, JsonListsAll) {
   const Folder folder;
   for (const auto& [command, more] : std::vector<std::pair<std::string, Words>>{
            {"check", {"--json"}},
@@ -83,7 +83,7 @@ TEST(Warnings, JsonHasAllOfThem) {
   EXPECT_EQ(Json(fine.out).size("/warnings"), 0u);
 }
 
-TEST(Warnings, ScenariosTellOfTheirWorlds) {
+TEST(Warnings, ScenariosReportWarningsOfTheirWorlds) {
   const Folder folder;
   folder.write("slips.world", kSlips);
   const Outcome outcome = run_program(
@@ -93,7 +93,7 @@ TEST(Warnings, ScenariosTellOfTheirWorlds) {
 }
 
 // A robot with a controller in the world file keeps it; the command line's drives the others.
-TEST(Warnings, ControllersOfTheWorldFileCountMore) {
+TEST(Warnings, ControllersOfTheWorldFileTakePrecedence) {
   const Folder folder;
   const std::string robots =
       "position( name \"roomba1\" size [0.3 0.3 0.1] ctrl \"wander\" laser( ) )\n"
@@ -114,7 +114,7 @@ TEST(Warnings, ControllersOfTheWorldFileCountMore) {
   EXPECT_EQ(ordered.err.find("as the world file says"), std::string::npos) << ordered.err;
 }
 
-TEST(Warnings, MissionsOfARunTellOfTheirSlips) {
+TEST(Warnings, MissionsOfARunReportTheirMistakes) {
   const Folder folder;
   std::string mission = read_file(our_world("simville/simville.mdf"));
   const std::size_t at = mission.find("num_speed_limits");
@@ -142,7 +142,7 @@ end_segment
 end_file
 )";
 
-TEST(Warnings, RoadsWithSlipsAreTakenAndStrictlyRefused) {
+TEST(Warnings, RoadsWithMistakesAreAcceptedUnlessStrict) {
   const Folder folder;
   const std::string rndf = folder.write("slips.rndf", kSlippedRoads);
   const Outcome check = run_program({"check", rndf, "--json"});

@@ -102,7 +102,7 @@ std::string error_of(ImageSource&& images) {
 
 }  // namespace
 
-TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
+TEST(Calibration, FindsIntrinsicsOfTheImages) {
   std::vector<Image> images;
   for (const glm::dvec3& position : {glm::dvec3{0.0, 0.0, 0.62},
                                      {0.35, 0.1, 0.6},
@@ -137,7 +137,7 @@ TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
   EXPECT_NEAR(c.intrinsics.distortion[0], truth.distortion[0], 0.02);
 }
 
-TEST(Calibration, FindsTheIntrinsicsByPartsOfABoardWithTags) {
+TEST(Calibration, FindsIntrinsicsFromPartsOfABoardWithTags) {
   std::vector<Image> images;
   for (const glm::dvec3& position : {glm::dvec3{0.0, 0.0, 0.5},
                                      {0.35, 0.1, 0.45},
@@ -169,7 +169,7 @@ TEST(Calibration, FindsTheIntrinsicsByPartsOfABoardWithTags) {
 }
 
 /// Boundary: 8 x 8 squares need 32 tags; the dictionary has 30.
-TEST(Calibration, RefusesABoardWithMoreTagsThanItsDictionary) {
+TEST(Calibration, RejectsABoardWithMoreTagsThanItsDictionary) {
   Chessboard board = kBoardWithTags;
   board.dictionary = "apriltag_16h5";
   try {
@@ -180,7 +180,7 @@ TEST(Calibration, RefusesABoardWithMoreTagsThanItsDictionary) {
   }
 }
 
-TEST(Calibration, NamesWhatIsMissing) {
+TEST(Calibration, ReportsMissingInput) {
   EXPECT_NE(error_of(ImagesInMemory(std::vector<Image>(4, grey_image(64, 48))))
                 .find("found in 0 of 4 images; expected at least 3"),
             std::string::npos);
@@ -189,7 +189,7 @@ TEST(Calibration, NamesWhatIsMissing) {
             "album: image 2 is 48 x 64, and the first is 64 x 48; expected images of one camera");
 }
 
-TEST(Calibration, BoundsItsWork) {
+TEST(Calibration, LimitsItsWork) {
   const char* const kMany = "album: has more than 200 images; expected fewer, all different";
   EXPECT_EQ(error_of(Claim(201)), kMany);  // detected before any image is read
   EXPECT_EQ(error_of(ImagesInMemory(std::vector<Image>(201, Image{16, 16, 1, {}}))), kMany);  // as in a video

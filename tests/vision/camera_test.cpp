@@ -24,7 +24,7 @@ TEST(Camera, LooksStraightDownByDefault) {
   EXPECT_NEAR(p->y, 511.5 - 0.5 * 1664.0 / 6.5, 1e-9);
 }
 
-TEST(Camera, DistortsAsBrownsFormulaSays) {
+TEST(Camera, DistortsByBrownsFormula) {
   // Computed by hand: n = (0.3, -0.2), r2 = 0.13.
   Intrinsics i{1280, 1024, {1000.0, 1100.0}, {600.0, 500.0}, {-0.2, 0.05, 0.001, -0.002, 0.01}};
   const double radial = 1.0 - 0.2 * 0.13 + 0.05 * 0.0169 + 0.01 * 0.002197;
@@ -79,7 +79,7 @@ TEST(Camera, UndistortsStrongTangentialDistortion) {
   }
 }
 
-TEST(Camera, RefusesPointsThatItCannotSee) {
+TEST(Camera, RejectsInvisiblePoints) {
   const Camera camera = distorted_camera();
   EXPECT_FALSE(project(camera, {0.0, 0.0, 6.5}));       // its own position
   EXPECT_FALSE(project(camera, {0.0, 0.0, 7.0}));       // behind it
@@ -99,7 +99,7 @@ TEST(Camera, RefusesPointsThatItCannotSee) {
   EXPECT_TRUE(to_plane(level, {639.5, 600.0}, 0.0));
 }
 
-TEST(Camera, KnowsLensesThatFold) {
+TEST(Camera, DetectsLensesThatFold) {
   Intrinsics i = distorted_camera().intrinsics;
   EXPECT_TRUE(is_invertible(i));
   i.distortion = {-2.5, 0.0, 0.0, 0.0, 0.0};  // r (1 - 2.5 r2) is largest at r = 0.365, and the corner is at 0.49

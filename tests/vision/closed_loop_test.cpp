@@ -159,7 +159,7 @@ struct Loop {
 }  // namespace
 
 /// The whole lane, with its bend, at 0.25 m/s.
-TEST(ClosedLoop, ARobotKeepsItsLaneByCamerasAlone) {
+TEST(ClosedLoop, ARobotKeepsItsLaneUsingOnlyCameras) {
   Loop loop("lane-keeping", {{"speed", 0.25}});
   loop.run(300);
   const server::RobotClientStats stats = loop.client->stats();
@@ -175,7 +175,7 @@ TEST(ClosedLoop, ARobotKeepsItsLaneByCamerasAlone) {
 }
 
 /// By its estimated pose only: the true positions reach the points.
-TEST(ClosedLoop, ARobotDrivesToPointsByCamerasAlone) {
+TEST(ClosedLoop, ARobotReachesPointsUsingOnlyCameras) {
   Loop loop("patrol", {{"points", std::vector<double>{0.2, 0.0, 0.8, 0.3}}, {"speed", 0.3}, {"pause", 1000.0}});
   loop.run(60);
   EXPECT_LT(glm::distance(loop.place(), glm::dvec2(0.8, 0.3)), 0.06) << loop.place().x << " " << loop.place().y;
@@ -183,7 +183,7 @@ TEST(ClosedLoop, ARobotDrivesToPointsByCamerasAlone) {
 }
 
 /// A camera repeats its last image with new timestamps: the robot would take itself for stopped and keep turning.
-TEST(ClosedLoop, ARobotStandsWhileTheCameraIsFrozen) {
+TEST(ClosedLoop, ARobotStopsWhileTheCameraIsFrozen) {
   Loop loop("lane-keeping", {{"speed", 0.25}});
   loop.run(20);
   EXPECT_GT(loop.place().x, 0.4);
@@ -204,7 +204,7 @@ TEST(ClosedLoop, ARobotStandsWhileTheCameraIsFrozen) {
 }
 
 /// Boundary: the robot is never seen by a camera.
-TEST(ClosedLoop, ARobotThatNoCameraSeesStands) {
+TEST(ClosedLoop, ARobotWithoutACameraStops) {
   Loop loop("lane-keeping", {});
   loop.cameras.frozen = true;  // before the first image, which is then empty
   loop.run(10);

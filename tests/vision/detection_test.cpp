@@ -129,7 +129,7 @@ TEST(Detection, TwoCamerasWithOcclusion) {
   EXPECT_LE(r.accuracy.missed, 1u);
 }
 
-TEST(Detection, RefusesTagsOfAnotherSizeOrHeight) {
+TEST(Detection, RejectsTagsOfAnotherSizeOrHeight) {
   const Testbed truth = testbed_with({plain_camera()});
   const RenderedFleet fleet(truth, {4, 0.0, 0, false, 1});
   Image image;
@@ -154,7 +154,7 @@ TEST(Detection, RefusesTagsOfAnotherSizeOrHeight) {
   EXPECT_EQ(strict.counts().unlisted, 3u);
 }
 
-TEST(Detection, HeadingIsThatOfThePrintedTag) {
+TEST(Detection, HeadingMatchesThePrintedTag) {
   // A tag without rotation, its x axis along the world's: the left of the code is left in the image of a camera that
   // looks down with +x to the right.
   const Testbed testbed = testbed_with({plain_camera()});
@@ -174,7 +174,7 @@ TEST(Detection, HeadingIsThatOfThePrintedTag) {
   }
 }
 
-TEST(Detection, OfTwoTagsWithOneIdTheOneOfTheStatedSizeIsSeen) {
+TEST(Detection, PrefersTheTagWithTheSpecifiedSize) {
   const Testbed testbed = testbed_with({plain_camera()});
   for (const double x : {-0.5, 0.5}) {
     Scene scene;
@@ -190,7 +190,7 @@ TEST(Detection, OfTwoTagsWithOneIdTheOneOfTheStatedSizeIsSeen) {
   }
 }
 
-TEST(Detection, AnyThreeSidesAreASquare) {
+TEST(Detection, AnyThreeSidesDetermineASquare) {
   const base::Pose X_WT{1.2, -0.7, 0.2, 2.0};
   for (const std::array<int, 4>& count : {std::array<int, 4>{0, 4, 4, 4}, {4, 0, 4, 4}, {4, 4, 0, 4}, {4, 4, 4, 0}}) {
     const auto fit = fit_tag(distorted_camera(), edges_of(distorted_camera(), X_WT, count), 0.2);
@@ -239,7 +239,7 @@ TEST(Detection, CountsImagesWithoutPixels) {
   EXPECT_EQ(positioning.counts().unreadable, 2u);
 }
 
-TEST(Dictionaries, KnowTheirTags) {
+TEST(Dictionaries, ContainTheirTags) {
   EXPECT_EQ(opencv().tag_pattern("apriltag_36h11", 586).cells, 8);
   EXPECT_THROW(opencv().tag_pattern("apriltag_36h11", 587), base::InputError);
   EXPECT_EQ(opencv().tag_pattern("aruco_4x4_50", 49).cells, 6);
@@ -247,7 +247,7 @@ TEST(Dictionaries, KnowTheirTags) {
   EXPECT_THROW(opencv().make_tag_finder("apriltag_36h12"), base::InputError);
 }
 
-TEST(RenderedFleet, BoundsItsGrid) {
+TEST(RenderedFleet, LimitsItsGrid) {
   // Tags of 1 mm, and a camera that sees 1 cm of the floor: grids as fine as the tags would have 10^9 positions.
   Testbed testbed = testbed_with({plain_camera(), plain_camera()});
   testbed.tag = {1e-3, 0.0, {}, ""};
@@ -259,7 +259,7 @@ TEST(RenderedFleet, BoundsItsGrid) {
   EXPECT_THROW(RenderedFleet(testbed, {1, 0.5, 0, false, 1}), base::InputError);
 }
 
-TEST(RenderedFleet, RefusesMoreTagsThanFit) {
+TEST(RenderedFleet, RejectsMoreTagsThanFit) {
   const Testbed testbed = testbed_with({plain_camera()});
   EXPECT_THROW(RenderedFleet(testbed, {500, 0.5, 0, false, 1}), base::InputError);
 }

@@ -78,7 +78,7 @@ std::string text_of(const TagFit& fit) {
 
 }  // namespace
 
-TEST(TrackerRecord, MergesPredictsAndRefuses) {
+TEST(TrackerRecord, MergesPredictsAndRejects) {
   Tracker tracker;
   std::string text;
   std::vector<TrackedTag> tracked;
@@ -143,7 +143,7 @@ TEST(CameraRecord, ProjectsAGrid) {
   golden::expect(text, "vision", "camera", 2e-3);
 }
 
-TEST(AccuracyRecord, ComparesWithTheTruth) {
+TEST(AccuracyRecord, ComparesWithGroundTruth) {
   Testbed testbed;
   testbed.file = "t.toml";
   testbed.tag.height = 0.2;

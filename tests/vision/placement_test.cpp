@@ -70,7 +70,7 @@ std::string refusal(const Testbed& testbed, ImagesInMemory images) {
 
 }  // namespace
 
-TEST(Placement, FindsTheCameraBySurveyedTags) {
+TEST(Placement, FindsTheCameraFromSurveyedTags) {
   for (const bool headings : {true, false}) {
     const Testbed testbed = survey(headings);
     ImagesInMemory images = pictures(testbed);
@@ -86,7 +86,7 @@ TEST(Placement, FindsTheCameraBySurveyedTags) {
   }
 }
 
-TEST(Placement, AWrongPlaceShowsInItsResidual) {
+TEST(Placement, AWrongPositionShowsInItsResidual) {
   Testbed testbed = survey(true);
   ImagesInMemory images = pictures(testbed);
   testbed.surveyed[2].position.x += 0.10;
@@ -98,7 +98,7 @@ TEST(Placement, AWrongPlaceShowsInItsResidual) {
 }
 
 /// Each tag has four corners, so the mean of the tags' squares equals that of all corners.
-TEST(Placement, ResidualsOfTagsMakeThatOfAll) {
+TEST(Placement, ResidualsOfTagsCombineToTheTotal) {
   Testbed testbed = survey(true);
   ImagesInMemory images = pictures(testbed);
   testbed.surveyed[2].position.x += 0.10;
@@ -121,7 +121,7 @@ TEST(Placement, ReadsTwoHundredImages) {
 }
 
 /// Boundaries: no survey, no image, one point too few, points on a line; the minimum that suffices.
-TEST(Placement, SaysWhatIsMissing) {
+TEST(Placement, ReportsMissingInput) {
   Testbed testbed = survey(false);
   EXPECT_EQ(
       refusal(testbed, ImagesInMemory({})),

@@ -147,7 +147,7 @@ TEST(FleetRecord, MovesOnItsCircles) {
   golden::expect(text, "vision", "fleet", 2e-4);
 }
 
-TEST(RobotsRecord, GoOnAsTheyDid) {
+TEST(RobotsRecord, ContinueWithTheirLastVelocity) {
   const Testbed testbed = two_cameras();
   RenderedRobots robots(testbed);
   ASSERT_TRUE(robots.update(4, {1.0, 2.0, 9.0, 0.6}, {0.5, -0.1}, 2.0, 10.0));

@@ -33,7 +33,7 @@ TEST(RenderedRobots, TagsAreOnTheirRobots) {
 }
 
 /// Boundary: no packets for longer than the extrapolation. The robot then stops.
-TEST(RenderedRobots, SilentRobotsStand) {
+TEST(RenderedRobots, SilentRobotsStop) {
   const Testbed testbed = offset_testbed();
   RenderedRobots robots(testbed);
   robots.update(1, {}, {1.0, 0.0}, 0.0, 0.0);
@@ -41,7 +41,7 @@ TEST(RenderedRobots, SilentRobotsStand) {
 }
 
 /// Boundary: the last id of the dictionary, and the one after it.
-TEST(RenderedRobots, RefusesTagsThatNoDictionaryHas) {
+TEST(RenderedRobots, RejectsTagsOutsideTheDictionary) {
   const Testbed testbed = offset_testbed();
   RenderedRobots robots(testbed);
   EXPECT_TRUE(robots.update(49, {}, {}, 0.0, 0.0));

@@ -101,7 +101,7 @@ TEST(Renderer, BlackPatchesHideTheFloor) {
   EXPECT_EQ(*rendered(small_camera(), perfect(), scene).at(80, 60), 0);
 }
 
-TEST(Renderer, BlursWhatMovesDuringTheExposure) {
+TEST(Renderer, BlursMotionDuringTheExposure) {
   Camera camera = small_camera();
   camera.exposure = 0.01;
   Scene scene = bare(0.0);

@@ -98,7 +98,7 @@ TEST_F(Sources, VideosAreReadAsTheyWereWritten) {
   EXPECT_EQ(count, 3);
 }
 
-TEST_F(Sources, RefuseSpecialFiles) {
+TEST_F(Sources, RejectSpecialFiles) {
   ASSERT_EQ(mkfifo(path("f.png").c_str(), 0600), 0);
   ASSERT_EQ(mkfifo(path("f.avi").c_str(), 0600), 0);
   make_socket("g.png");
@@ -122,14 +122,14 @@ TEST_F(Sources, FilesThatCannotBeReadGiveNoPixels) {
   EXPECT_EQ(sizes, (std::vector<std::size_t>{12, 0, 0, 0, 12}));
 }
 
-TEST_F(Sources, RefuseLargerImages) {
+TEST_F(Sources, RejectLargerImages) {
   std::ofstream(path("a.pgm")) << "P5 65536 1025 255\n" << std::string(65536 * 1025, 'a');  // 64 Mpx plus one row
   const auto source = opencv().open_source(path("a.pgm"), 0, 0, 0.0);
   Image image;
   EXPECT_THROW(source->next(image), base::InputError);
 }
 
-TEST(Drawing, FailsWithTheReason) {
+TEST(Drawing, ReportsTheReasonForFailure) {
   Image image{8, 8, 3, std::vector<std::uint8_t>(192)};
   Mark mark{{{0.0, 0.0}, {7.0, 7.0}}, "", {255, 0, 0}, 40'000};  // wider than OpenCV's maximum line width
   EXPECT_THROW(opencv().draw(image, {mark}), base::InputError);
@@ -139,7 +139,7 @@ TEST(Drawing, FailsWithTheReason) {
 }
 
 /// Only a label: the width applies to a line that it does not have.
-TEST(Drawing, OnePointIsNoLine) {
+TEST(Drawing, OnePointIsNotALine) {
   Image image{8, 8, 3, std::vector<std::uint8_t>(192)};
   opencv().draw(image, {{{{4.0, 4.0}}, "", {255, 0, 0}, 40'000}});
   EXPECT_EQ(image.pixels, std::vector<std::uint8_t>(192));

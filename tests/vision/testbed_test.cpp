@@ -66,7 +66,7 @@ TEST(Testbed, DefaultsToACameraThatLooksDown) {
   EXPECT_FALSE(testbed.only_listed);
 }
 
-TEST(Testbed, NamesFileLineAndRemedy) {
+TEST(Testbed, ErrorsHaveFileLineAndRemedy) {
   struct Case {
     std::string text, expected;
   };
@@ -99,7 +99,7 @@ TEST(Testbed, NamesFileLineAndRemedy) {
     EXPECT_NE(error_of(each.text).find(each.expected), std::string::npos) << error_of(each.text) << "\n" << each.text;
 }
 
-TEST(Testbed, BoundsSizesAndNumbers) {
+TEST(Testbed, LimitsSizesAndNumbers) {
   const auto camera = [](int i, const std::string& size) {
     return "[[camera]]\nname = \"c" + std::to_string(i) + "\"\nsize = " + size +
            "\nfocal = [9000, 9000]\nposition = [0, 1, 6.5]\n";
@@ -116,7 +116,7 @@ TEST(Testbed, BoundsSizesAndNumbers) {
   EXPECT_EQ(error_of(large + camera(4, "[16, 16]")), "t.toml:23: 'size' of all cameras is more than 256 Mpx together");
 }
 
-TEST(Testbed, RefusesValuesOfEveryWrongForm) {
+TEST(Testbed, RejectsValuesOfEveryWrongForm) {
   // Each key with each of the wrong forms, and with values that are not finite.
   const std::vector<std::string> forms{"true",       "\"\"",      "''",         "nan",       "-inf",
                                        "1e999",      "-1",        "[]",         "[1]",       "[nan, nan]",
@@ -143,7 +143,7 @@ TEST(Testbed, RefusesValuesOfEveryWrongForm) {
   EXPECT_EQ(count, forms.size() * 17);
 }
 
-TEST(Testbed, RefusesWhatIsNoTestbed) {
+TEST(Testbed, RejectsOtherFiles) {
   std::string deep = "a";
   for (int i = 0; i < 200'000; ++i) deep += ".a";
   for (const std::string& text : {std::string(), std::string("\0", 1), deep + " = 1\n", "[" + deep + "]\n",
@@ -180,7 +180,7 @@ TEST(Testbed, ReadsSurveyedTags) {
   EXPECT_NE(refusal(many).find("'survey' has 1001 sections; expected at most 1000"), std::string::npos);
 }
 
-TEST(Testbed, WritesCamerasThatItReads) {
+TEST(Testbed, WrittenCamerasReadBack) {
   const Camera camera = distorted_camera();
   const Camera read = parse_testbed("t.toml", camera_section(camera)).cameras[0].camera;
   EXPECT_EQ(camera_section(read), camera_section(camera));
@@ -189,7 +189,7 @@ TEST(Testbed, WritesCamerasThatItReads) {
 }
 
 /// The minimum and maximum of each key, and the next numbers beyond.
-TEST(Testbed, NumbersEndAtTheirLimits) {
+TEST(Testbed, NumbersHaveLimits) {
   struct Range {
     const char *key, *below, *first, *last, *above;
   };

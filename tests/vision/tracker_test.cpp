@@ -70,7 +70,7 @@ TEST(Tracker, MergesViewsOfSeveralCameras) {
   EXPECT_EQ(tracker.refused(), 0u);
 }
 
-TEST(Tracker, MovesViewsToOneTime) {
+TEST(Tracker, MovesViewsToACommonTime) {
   Tracker tracker;
   for (int i = 0; i < 10; ++i) update(tracker, {sighting(0.1 * i, 0.1 * i, 0.0, 0.0)});
   const auto tracked = update(tracker, {sighting(1.0, 1.0, 0.0, 0.0), sighting(1.05, 1.05, 0.0, 0.0)});
@@ -91,7 +91,7 @@ TEST(Tracker, MergesViewsOfAFastTag) {
 }
 
 /// A camera that lags behind shows the tag's past while the others show its present.
-TEST(Tracker, RefusesAnOldViewBesideANewOne) {
+TEST(Tracker, RejectsAnOldViewTogetherWithANewOne) {
   Tracker tracker;
   update(tracker, {sighting(0.2, 0.0, 0.0, 0.0)});
   const auto tracked = update(tracker, {sighting(0.3, 0.0, 0.0, 0.0), sighting(0.15, 0.08, 0.0, 0.0)});
@@ -112,7 +112,7 @@ TEST(Tracker, MergesViewsUpToFifteenCentimetresApart) {
   EXPECT_EQ(cameras(std::nextafter(0.15, 1.0)), 1);
 }
 
-TEST(Tracker, RefusesASecondPlace) {
+TEST(Tracker, RejectsASecondPosition) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
   // A false sighting, 3 m away, before the true one: no tag moves 3 m within 0.1 s.
@@ -126,7 +126,7 @@ TEST(Tracker, RefusesASecondPlace) {
   EXPECT_EQ(tracker.refused(), 3u);
 }
 
-TEST(Tracker, AcceptsATagThatWasCarriedElsewhere) {
+TEST(Tracker, AcceptsATagMovedElsewhere) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
   update(tracker, {sighting(0.1, 0.0, 0.0, 0.0)});
@@ -135,7 +135,7 @@ TEST(Tracker, AcceptsATagThatWasCarriedElsewhere) {
   EXPECT_EQ(refused, 5);  // 0.3 m + 5 m/s reach 3 m after 0.54 s, and the sixth sighting is 0.6 s after the last
 }
 
-TEST(Tracker, ForgetsTagsThatWereGone) {
+TEST(Tracker, ForgetsTagsThatDisappeared) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
   update(tracker, {sighting(0.1, 0.0, 0.0, 0.0)});
@@ -143,14 +143,14 @@ TEST(Tracker, ForgetsTagsThatWereGone) {
   EXPECT_EQ(update(tracker, {sighting(1.3, 0.0, 0.0, 0.0)}).size(), 1u);
 }
 
-TEST(Tracker, RemembersATagForASecond) {
+TEST(Tracker, KeepsATagForASecond) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
   EXPECT_EQ(update(tracker, {sighting(1.0, 0.0, 0.0, 0.0)}).size(), 1u);
   EXPECT_TRUE(update(tracker, {sighting(std::nextafter(2.0, 3.0), 0.0, 0.0, 0.0)}).empty());
 }
 
-TEST(Tracker, KeepsTagsApart) {
+TEST(Tracker, TracksTagsSeparately) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0, 2), sighting(0.0, 1.0, 0.0, 0.0, 1)});
   const auto tracked = update(tracker, {sighting(0.1, 0.0, 0.0, 0.0, 2), sighting(0.1, 1.0, 0.0, 0.0, 1)});

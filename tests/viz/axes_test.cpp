@@ -24,7 +24,7 @@ TEST(Ticks, RoundDown) {
   EXPECT_DOUBLE_EQ(round_down(1000.0), 1000.0);
 }
 
-TEST(Ticks, StepIsAtLeastWhatWasAsked) {
+TEST(Ticks, StepIsAtLeastTheRequestedOne) {
   for (const double smallest : {0.001, 0.9, 1.0, 1.1, 2.0, 2.1, 5.0, 5.1, 70.0, 9999.0}) {
     const Ticks ticks = make_ticks(0.0, 20.0 * smallest, smallest);
     EXPECT_GE(ticks.step, smallest * (1 - 1e-9));
@@ -70,7 +70,7 @@ TEST(Ticks, StepsAndDigitsAtTheirLimits) {
   EXPECT_EQ(between.at[1], 0.0);
 }
 
-TEST(Ticks, TextHasNoMinusZero) {
+TEST(Ticks, TextHasNoNegativeZero) {
   EXPECT_EQ(tick_text(-0.0, 1), "0.0");
   EXPECT_EQ(tick_text(-0.04, 1), "0.0");
   EXPECT_EQ(tick_text(-0.4, 1), "\u22120.4");
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, LayoutOf,
                            return name;
                          });
 
-TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers are farther apart
+TEST(Layout, LabelsDoNotOverlap) {  // long numbers are farther apart
   for (const double offset : {0.0, 1e5, 1e7}) {
     FigureOptions options;
     options.extent = {offset, 0, offset + 1.3, 0.7};
@@ -156,7 +156,7 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // no text is cut off
   EXPECT_EQ(p.count(white, p.width - 8, 0, p.width, p.height), 8 * p.height);
 }
 
-TEST(Axes, TitleAndLegendAreThere) {
+TEST(Axes, DrawsTitleAndLegend) {
   FigureOptions options;
   options.title = "TITLE";
   options.extent = {0, 0, 10, 5};

@@ -94,7 +94,7 @@ TEST(Canvas, AreaMayReachFarOutside) {  // clipped on all sides: the whole insid
   EXPECT_NEAR(area_of(canvas), 60.0, 1e-9);
 }
 
-TEST(Canvas, AreaAcrossOneSideIsCut) {  // half of the square remains on each side
+TEST(Canvas, AreaAcrossOneSideIsClipped) {  // half of the square remains on each side
   for (const glm::dvec2& shift : {glm::dvec2{-5, 0}, glm::dvec2{5, 0}, glm::dvec2{0, -5}, glm::dvec2{0, 5}}) {
     Canvas canvas(10, 10, kWhite);
     std::vector<glm::dvec2> box{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
@@ -132,7 +132,7 @@ TEST(Canvas, OnePointIsADot) {
   EXPECT_EQ(picture_of(canvas).at(0, 4), kWhite);
 }
 
-TEST(Canvas, ClipKeepsTheRest) {
+TEST(Canvas, ClipProtectsTheRest) {
   Canvas canvas(10, 10, kWhite);
   canvas.clip({2, 3, 6, 7});
   const glm::dvec2 all[] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
@@ -145,7 +145,7 @@ TEST(Canvas, ClipKeepsTheRest) {
 }
 
 /// A line 4 px wide whose centre runs 1 px outside of one side: one row or column of it remains, for a clip box, too.
-TEST(Canvas, WideLinesBesideASideAreCutAtIt) {
+TEST(Canvas, WideLinesOutsideASideAreClipped) {
   for (const PixelBox& box : {PixelBox{0, 0, 20, 12}, PixelBox{3, 2, 15, 9}}) {
     const double x0 = box.x_min, y0 = box.y_min, x1 = box.x_max, y1 = box.y_max, far = 40.0;
     const double width = x1 - x0, height = y1 - y0;
@@ -169,7 +169,7 @@ TEST(Canvas, ClipOutsideThePictureDrawsNothing) {
   EXPECT_EQ(darkness(canvas), 0);
 }
 
-TEST(Canvas, PointsThatAreNotFiniteAreLeftOut) {
+TEST(Canvas, PointsThatAreNotFiniteAreSkipped) {
   Canvas canvas(10, 10, kWhite);
   canvas.line({kNaN, 1}, {5, 5}, 2.0, kBlack);
   canvas.line({1, 1}, {5, std::numeric_limits<double>::infinity()}, 2.0, kBlack);
@@ -177,7 +177,7 @@ TEST(Canvas, PointsThatAreNotFiniteAreLeftOut) {
   EXPECT_EQ(darkness(canvas), 0);
 }
 
-TEST(Canvas, NothingIsDrawnFromNothing) {
+TEST(Canvas, EmptyShapesDrawNothing) {
   Canvas canvas(4, 4, kWhite);
   canvas.polyline({}, 1.0, kBlack);
   canvas.polygon({}, kBlack);
@@ -271,7 +271,7 @@ TEST(Canvas, DashesLeaveGaps) {  // 100 px of 6 on, 4 off: 60 % of the line
   EXPECT_LT(area_of(canvas), 70.0);
 }
 
-TEST(Canvas, DashesRunOnAcrossSegments) {  // a line in pieces shorter than a dash looks like a whole line
+TEST(Canvas, DashesContinueAcrossSegments) {  // a line in pieces shorter than a dash looks like a whole line
   Canvas whole(120, 10, kWhite);
   Canvas pieces(120, 10, kWhite);
   const Line line{{10, 5}, {110, 5}};
@@ -294,7 +294,7 @@ TEST(Canvas, PngReadsBackTheSame) {
     for (int x = 0; x < 31; ++x) ASSERT_EQ(picture.at(x, y), picture_of(canvas).at(x, y)) << x << ", " << y;
 }
 
-TEST(Canvas, UnwritablePathIsNamed) {
+TEST(Canvas, UnwritablePathIsReported) {
   const Canvas canvas(4, 4, kWhite);
   for (const std::string& path : {testing::TempDir() + "no/such/folder/a.png", testing::TempDir()}) {
     try {
@@ -331,7 +331,7 @@ TEST(Canvas, CharactersEndAtTheirLimits) {
 }
 
 /// Number of corners of a circle: four per pixel of its radius, from 16 to 360.
-TEST(Canvas, CirclesHaveCornersByTheirSize) {
+TEST(Canvas, LargerCirclesHaveMoreCorners) {
   for (const auto& [radius, corners] :
        {std::pair{0.5, 16u}, {4.0, 16u}, {4.2, 16u}, {4.25, 17u}, {89.9, 359u}, {90.0, 360u}, {120.0, 360u}}) {
     Canvas canvas(400, 400, kWhite);
@@ -342,7 +342,7 @@ TEST(Canvas, CirclesHaveCornersByTheirSize) {
   }
 }
 
-TEST(Canvas, SidesEndAtTheirLimits) {
+TEST(Canvas, SidesHaveLimits) {
   EXPECT_EQ(Canvas(1, 16384, kWhite).height(), 16384);
   EXPECT_EQ(Canvas(16384, 1, kWhite).width(), 16384);
   for (const auto& [width, height] : {std::pair{0, 5}, {5, 0}, {16385, 5}, {5, 16385}})

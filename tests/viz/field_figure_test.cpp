@@ -53,7 +53,7 @@ TEST(FieldFigure, ShowsAllMagnetsAndALineAlongThem) {
   EXPECT_NEAR(scale_x / scale_y, 1.0, 0.01) << "a metre is a metre both ways";
 }
 
-TEST(FieldFigure, AColumnOfMagnetsHasALineUpwards) {
+TEST(FieldFigure, AColumnOfMagnetsHasAVerticalLine) {
   world::World world = six();
   for (world::Magnet& m : world.magnets) std::swap(m.p.x, m.p.y);
   const FieldView view = field_view(world, {.height = 0.075});
@@ -72,7 +72,7 @@ TEST(FieldFigure, TheFigureCoversTheRequestedExtentAndLine) {
 }
 
 /// One magnet, several at one position, one on a robot: boxes of zero size.
-TEST(FieldFigure, OddWorldsHaveAView) {
+TEST(FieldFigure, UnusualWorldsHaveAView) {
   world::World world;
   world.movers.emplace_back();
   world.movers[0].X_WM = {10, 20, 0, 1};
@@ -87,7 +87,7 @@ TEST(FieldFigure, OddWorldsHaveAView) {
   }
 }
 
-TEST(FieldFigure, MoreFieldIsLighterAllAlong) {
+TEST(FieldFigure, StrongerFieldsAreLighterEverywhere) {
   const FieldView view = field_view(six(), {.height = 0.075, .extent = world::Extent{1, 1, 3, 2}});
   draw_field(six(), view, slope(view), scenes::own_file("slope.png"));
   const scenes::Picture picture = scenes::read_png(scenes::own_file("slope.png"));
@@ -104,7 +104,7 @@ TEST(FieldFigure, MoreFieldIsLighterAllAlong) {
   EXPECT_LT(steps_most, 1.6 * steps_least) << "evenly";
 }
 
-TEST(FieldFigure, NoFieldAtAllCanBeDrawn) {
+TEST(FieldFigure, AZeroFieldCanBeDrawn) {
   const FieldView view = field_view(six(), {.height = 0.075});
   FieldSamples none = slope(view);
   std::fill(none.map.begin(), none.map.end(), 0.0);
@@ -113,7 +113,7 @@ TEST(FieldFigure, NoFieldAtAllCanBeDrawn) {
   EXPECT_EQ(colours_of_the_map(view, scenes::own_file("none.png")), 1u);
 }
 
-TEST(FieldFigure, AFileThatCannotBeWrittenIsNamed) {
+TEST(FieldFigure, ReportsAnUnwritableFile) {
   const FieldView view = field_view(six(), {.height = 0.075});
   EXPECT_THROW(draw_field(six(), view, slope(view), scenes::own_file("no/such/folder/x.png")), base::InputError);
 }

@@ -54,7 +54,7 @@ Seen see(const std::string& path, double margin) {
   return seen;
 }
 
-TEST(WorldFigure, LightsShowWhatTheyShowAtTheStart) {
+TEST(WorldFigure, LightsHaveTheirInitialState) {
   world::World world = room();
   const auto add = [&](double x, double offset) {
     world.lights.push_back({.name = "light",
@@ -81,7 +81,7 @@ TEST(WorldFigure, LightsPointWhereTheyFace) {
 }
 
 /// The start of the subtitle is at the same position and equal in both pictures.
-TEST(WorldFigure, TagsAreNoRobotsInItsSubtitle) {
+TEST(WorldFigure, TheSubtitleDoesNotCountTags) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, 0}, 0xFF2E7D32u, 1.0));
   draw_world(world, scenes::own_file("robot_alone.png"));
@@ -119,7 +119,7 @@ TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
   EXPECT_GT(north >> 8 & 0xFF, north >> 16 & 0xFF) << "green";
 }
 
-TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
+TEST(WorldFigure, WallsAreAtTheirPositions) {
   draw_world(room(), scenes::own_file("room.png"));
   const Seen seen = see(scenes::own_file("room.png"), 0.03);
   EXPECT_EQ(seen.at(3.27, 2.27), kWhite) << "inside the room";
@@ -129,7 +129,7 @@ TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
   EXPECT_LT(to_oklab(seen.at(3.2, 0.0)).lightness, 0.6) << "the wall's edge";
 }
 
-TEST(WorldFigure, PaintAndMagnetsAreThere) {
+TEST(WorldFigure, DrawsPaintAndMagnets) {
   world::World world = room();
   world.lane_markings.push_back({{{1.0, 2.25}, {5.0, 2.25}}, 0.3, 0xFFF2B800u});
   world.magnets.push_back({{3.0, 1.0}, 0.0, 1.0, 0.05, 0});
@@ -143,7 +143,7 @@ TEST(WorldFigure, PaintAndMagnetsAreThere) {
   EXPECT_LT(to_oklab(seen.at(4.0, 1.0)).b, -0.05) << "blue: south is up";
 }
 
-TEST(WorldFigure, SensorsOfOtherKindsAreThere) {
+TEST(WorldFigure, DrawsOtherSensors) {
   world::World world = room();
   world::Mover robot = scenes::make_robot(world, 1, {2.0, 2.0, 0, 0}, 0xFF2E7D32u, 0.5);
   robot.sensors.push_back({"laneedge", "e", {0.0, 0.0, 0.0, M_PI / 2}, 0.01, 1.0, M_PI / 180.0, {}, 1, "x.world"});
@@ -157,7 +157,7 @@ TEST(WorldFigure, SensorsOfOtherKindsAreThere) {
   EXPECT_LT(to_oklab(seen.at(3.0, 1.0)).lightness, 0.6) << "an element";
 }
 
-TEST(WorldFigure, RobotAndItsViewAreThere) {
+TEST(WorldFigure, DrawsRobotAndItsView) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
   draw_world(world, scenes::own_file("robot.png"));
@@ -205,7 +205,7 @@ TEST(WorldFigure, EveryCombinationOfWallFlagsIsDrawn) {  // all combinations of 
 }
 
 /// Two walls at one position: the one visible to lasers covers the dots of the other, in either order.
-TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
+TEST(WorldFigure, WallsVisibleToLasersAreOnTop) {
   const auto lightest = [](const world::World& world) {
     draw_world(world, scenes::own_file("top.png"));
     const Seen seen = see(scenes::own_file("top.png"), 0.03);
@@ -222,7 +222,8 @@ TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
   EXPECT_LT(lightest(both), lightest(plain) + 0.05);
 }
 
-TEST(WorldFigure, OddWorldsCanBeDrawn) {  // an empty world; no model rows; a name from the file; a robot without a body
+TEST(WorldFigure,
+     UnusualWorldsCanBeDrawn) {  // an empty world; no model rows; a name from the file; a robot without a body
   world::World empty;
   empty.extent = {0, 0, 0, 0};
   draw_world(empty, scenes::own_file("empty.png"));
@@ -295,7 +296,7 @@ TEST(VisiblePoints, WallsAcrossACornerOfTheRangeAreSeen) {
     }
 }
 
-TEST(VisiblePoints, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, the rule of world::Segment
+TEST(VisiblePoints, SeesOnlyWallsAtItsHeight) {  // z_min <= z < z_max, the rule of world::Segment
   const world::World world = room();
   sensors::LaserSettings laser;
   laser.fov = 0.1;
@@ -338,7 +339,7 @@ TEST(TrajectoryFigure, ContactIsMarked) {
 }
 
 /// The arms of the cross extend beyond the dot and have a pale border on it.
-TEST(TrajectoryFigure, ContactAtTheEndIsSeenOnItsDot) {
+TEST(TrajectoryFigure, ContactAtTheEndIsVisibleOnItsDot) {
   Track track = straight();
   track.color = 0xFFD4351Cu;  // the colour of the cross
   track.contacts.assign(track.poses.size(), 0);
@@ -374,7 +375,7 @@ TEST(Track, LengthAndContactsOfABrokenPath) {
   EXPECT_EQ(contact_count(track), 2u);
 }
 
-TEST(TrajectoryFigure, LaterTracksLieOnTop) {
+TEST(TrajectoryFigure, LaterTracksAreOnTop) {
   Track tracks[] = {straight(), straight()};
   tracks[0].color = 0xFFFF0000u;
   tracks[1].color = 0xFF0000FFu;
@@ -436,7 +437,7 @@ TEST(OccupancyFigure, OneWordCanBeDrawn) {
   EXPECT_GT(p.count(0xFFCDCDCDu), p.width * p.height / 2) << "unexplored";
 }
 
-TEST(Figures, UnwritablePathIsNamed) {
+TEST(Figures, UnwritablePathIsReported) {
   const std::string path = scenes::own_file("no/such/folder/x.png");
   const auto named = [&](auto&& draw) {
     try {

@@ -50,7 +50,7 @@ TEST(Heading, ShortenedNamesKeepTheirNumbers) {
   }
 }
 
-TEST(Heading, TextsAsWideAsTheFigureStayWhole) {
+TEST(Heading, TextsAsWideAsTheFigureAreNotShortened) {
   TextStyle style;
   style.size = 28;
   style.bold = true;
@@ -62,7 +62,7 @@ TEST(Heading, TextsAsWideAsTheFigureStayWhole) {
   EXPECT_EQ(title("Magnets below", std::nextafter(both, 0.0)), (std::vector<std::string>{"Magnets", "below"}));
 }
 
-TEST(Heading, WithoutTitleOnlyAMarginIsLeft) {
+TEST(Heading, WithoutTitleOnlyAMarginRemains) {
   const Heading none = make_heading("Title", kTold, 500.0, {.title = false});
   EXPECT_TRUE(none.title.empty());
   EXPECT_TRUE(none.subtitle.empty());

@@ -54,7 +54,7 @@ TEST(Dashes, StopWhereTheirLineStops) {
 }
 
 /// A path in pieces has the dashes of the whole path; unconnected pieces start a new dash.
-TEST(Dashes, GoOnOverTheCornersOfAPath) {
+TEST(Dashes, ContinueAroundTheCornersOfAPath) {
   const std::string whole = dashes({{{5, 4}, {55, 4}}}, 8.0, 12.0);
   EXPECT_EQ(dashes({{{5, 4}, {11, 4}}, {{11, 4}, {27, 4}}, {{27, 4}, {55, 4}}}, 8.0, 12.0), whole);
   const std::string apart = dashes({{{5, 4}, {15, 4}}, {{30, 4}, {50, 4}}}, 8.0, 12.0);
@@ -86,7 +86,7 @@ TEST(Dashes, TurnCorners) {
   EXPECT_EQ(beside.substr(4, 7), "#######") << beside;
 }
 
-TEST(Dashes, LinesWithoutLengthAreLeftOut) {
+TEST(Dashes, LinesWithoutLengthAreSkipped) {
   EXPECT_EQ(painted(dashes({{{5, 4}, {5, 4}}, {{NAN, 4}, {9, 4}}, {{0, 4}, {1e9, 4}}}, 8.0, 12.0)), 0u);
 }
 
@@ -139,7 +139,7 @@ TEST(Legend, ARowEndsWhereTheNextItemDoesNotFit) {
 }
 
 /// Each sample is drawn in its colour, in its row, left of its text.
-TEST(Legend, SamplesStandInTheirPlaces) {
+TEST(Legend, SamplesAreInTheirPositions) {
   const std::vector<LegendItem> items{{LegendMark::block, 0xFFFF0000u, "a", 0},
                                       {LegendMark::line, 0xFF00FF00u, "b", 0}};
   const std::vector<LegendPlace> places{{0.0, 0}, {0.0, 1}};
@@ -163,7 +163,7 @@ TEST(Legend, SamplesStandInTheirPlaces) {
 }
 
 /// Labels stay 2 px inside the plot, off cells of 4 px that others cover.
-TEST(Labels, BoxesAreBareUpToTheirNeighbours) {
+TEST(Labels, BoxesAreFreeUpToTheirNeighbours) {
   Labels labels({100, 50, 300, 250});
   const auto bare = [&](double x0, double y0, double x1, double y1) { return labels.is_bare({{x0, y0}, {x1, y1}}); };
   EXPECT_TRUE(bare(102.1, 52.1, 297.9, 247.9)) << "the whole plot but its rim";

@@ -54,7 +54,7 @@ TEST(LightsFigure, BarsAreAsLongAsTheirStates) {
   EXPECT_NEAR(red_of(8.0), 2.0 * red_of(4.0), 0.05 * red_of(8.0));
 }
 
-TEST(LightsFigure, OddRowsAreDrawnAllTheSame) {
+TEST(LightsFigure, UnusualRowsAreDrawn) {
   EXPECT_GT(lights_drawn({{"without a state", {}}}).width, 0);
   EXPECT_GT(lights_drawn({{"of no time", {{3.0, 3.0, LightState::red}}}}).width, 0);
   EXPECT_GT(lights_drawn({{std::string(300, 'x'), {{0.0, 1.0, LightState::red}}}}, {.width = 85.0}).width, 0)

@@ -25,7 +25,7 @@ maps::OccupancyGrid striped(std::uint32_t columns, std::uint32_t rows) {
   return grid;
 }
 
-TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
+TEST(MapFigure, CellsAreFourPixelsWithALineInBetween) {
   const maps::OccupancyGrid grid = striped(30, 30);
   draw_map(grid, {"Title", "", {}}, out("cells.png"), kThesis);
   const scenes::Picture picture = scenes::read_png(out("cells.png"));
@@ -92,7 +92,7 @@ TEST(MapFigure, RosHasGreysWithoutLines) {
   EXPECT_GE(picture.count(0xFFFEFEFEu), kOfEach) << "free: 254";
 }
 
-TEST(MapFigure, APathThatCannotBeWritten) {
+TEST(MapFigure, ReportsAnUnwritablePath) {
   EXPECT_THROW(draw_map(striped(1, 1), {}, "/nowhere/map.png"), base::InputError);
 }
 

@@ -180,7 +180,7 @@ const std::vector<Figure>& figures() {
   return all;
 }
 
-TEST(Page, TextsAreInsideAndApartOnEachPage) {
+TEST(Page, TextsAreInsideAndDoNotOverlapOnAnyPage) {
   for (const auto& [width, height, font] : {std::tuple{50.0, 0.0, 8.0},
                                             {50.0, 40.0, 6.0},
                                             {60.0, 30.0, 5.0},
@@ -198,7 +198,7 @@ TEST(Page, TextsAreInsideAndApartOnEachPage) {
 }
 
 /// Every tick label has another one on its axis: in the same row, or in the same column at the left or right end.
-TEST(Page, NoTickIsAlone) {
+TEST(Page, EveryAxisHasTwoTickLabels) {
   const auto is_number = [](const scenes::LetterBox& letter) {
     return letter.text.find_first_not_of("0123456789.\u2212° kM") == std::string::npos;
   };
@@ -273,7 +273,7 @@ double millimetres(const std::string& svg, const std::string& side) {
   return std::atof(svg.c_str() + at + side.size() + 3);
 }
 
-TEST(Page, FiguresAreAsWideAsAskedAndFitAColumn) {
+TEST(Page, FiguresHaveTheRequestedWidthAndFitAColumn) {
   for (const double width : {50.0, 88.0, 180.0})
     for (const double font : {6.0, 7.2, 8.0})
       for (const Figure& figure : figures()) {
@@ -289,7 +289,7 @@ TEST(Page, FiguresAreAsWideAsAskedAndFitAColumn) {
 }
 
 /// 18 layout pixels are 7.2 points; with 8 points, the same letters are 8 / 7.2 times as large on paper.
-TEST(Page, LettersHaveTheSizeThatIsAskedFor) {
+TEST(Page, LettersHaveTheRequestedSize) {
   for (const double font : {5.0, 7.2, 8.0, 12.0}) {
     const Page page{.width = 100.0, .title = false, .font_size = font};
     const std::string svg = drawn([&](const std::string& file) { draw_series(series(), file, page); }, "font");

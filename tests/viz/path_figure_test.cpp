@@ -33,7 +33,7 @@ scenes::Picture drawn(const std::vector<Track>& tracks) {
 
 int colored(const scenes::Picture& p, std::uint32_t color) { return p.count(color, 0, 0, p.width, p.height); }
 
-TEST(PathFigure, EveryTrackHasItsColorAndRunsAllAlong) {
+TEST(PathFigure, EveryTrackHasItsColorOverItsWholeLength) {
   const scenes::Picture p = drawn({track(0.2), track(-0.2)});
   for (const std::size_t row : {0u, 1u}) {
     const std::uint32_t color = row_color(row, 2);
@@ -56,7 +56,7 @@ TEST(PathFigure, LeftIsAboveRight) {
 }
 
 /// Its dashes are thin, so only few pixels have the full colour.
-TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
+TEST(PathFigure, TheCentreLineIsDrawnIfThereIsAPath) {
   world::World without = lane();
   without.paths.clear();
   draw_along_paths(without, {}, "Title", "subtitle", scenes::own_file("no_path.png"));
@@ -84,12 +84,12 @@ TEST(PathFigure, GrowsWithItsTracks) {
   EXPECT_GT(colored(p, row_color(0, 1)), 1000);
 }
 
-TEST(PathFigure, AFolderThatIsNotThereIsNamed) {
+TEST(PathFigure, ReportsAMissingFolder) {
   EXPECT_THROW(draw_along_paths(lane(), {}, "", "", "/nowhere/x.png"), base::InputError);
 }
 
 /// The x axis of a sweep has a separate name: the pictures differ only there, below the plot.
-TEST(SeriesFigureAxis, SaysWhatWasVaried) {
+TEST(SeriesFigureAxis, NamesTheVariedQuantity) {
   SeriesOptions options{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
   draw_series(options, scenes::own_file("axis_a.png"));
   options.x_name = "delay of readings [s]";

@@ -21,7 +21,7 @@ double area_within(const Paths& outlines) {
   return sum;
 }
 
-TEST(Paths, LinesThatMeetAreOnePath) {
+TEST(Paths, LinesThatMeetFormOnePath) {
   const Line lines[] = {{{1, 1}, {2, 2}}, {{2, 2}, {3, 1}}, {{5, 5}, {6, 6}}};
   const Paths paths = cut_lines(lines, kBox);
   ASSERT_EQ(paths.size(), 2u);
@@ -29,7 +29,7 @@ TEST(Paths, LinesThatMeetAreOnePath) {
   EXPECT_EQ(paths[1].size(), 2u);
 }
 
-TEST(Paths, LinesAreCutAtTheBox) {
+TEST(Paths, LinesAreClippedToTheBox) {
   const Line lines[] = {{{-5, 5}, {15, 5}},       // through both sides
                         {{-5, -1}, {15, -1}},     // outside of it
                         {{-1, 2}, {2, -1}},       // across a corner
@@ -55,14 +55,14 @@ TEST(Paths, ADotIsAPathOfOnePoint) {
   EXPECT_TRUE(cut_lines({&outside, 1}, kBox).empty());
 }
 
-TEST(Paths, NumbersThatAreNotFiniteAreLeftOut) {
+TEST(Paths, NumbersThatAreNotFiniteAreSkipped) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const Line lines[] = {{{nan, 1}, {2, 2}}, {{1, 1}, {2, -inf}}};
   EXPECT_TRUE(cut_lines(lines, kBox).empty());
   EXPECT_TRUE(join_edges(lines).empty());
 }
 
-TEST(Paths, EdgesInAnyOrderMakeTheirOutlines) {
+TEST(Paths, EdgesInAnyOrderFormTheirOutlines) {
   std::vector<Line> edges;
   for (const double d : {0.0, 3.0}) {
     const glm::dvec2 p[] = {{1 + d, 1}, {2 + d, 1}, {2 + d, 2}, {1 + d, 2}};

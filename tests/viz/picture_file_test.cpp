@@ -90,7 +90,7 @@ TEST(Svg, ADrawingWithoutShapesIsAPage) { EXPECT_TRUE(is_well_formed(to_svg({10,
 
 /// Readers reject files with control characters, truncated or overlong sequences, surrogates and numbers beyond
 /// Unicode.
-TEST(Canvas, BytesThatAreNoTextBecomeQuestionMarks) {
+TEST(Canvas, InvalidBytesBecomeQuestionMarks) {
   struct Case {
     std::string text, drawn;
   };
@@ -112,7 +112,7 @@ TEST(Canvas, BytesThatAreNoTextBecomeQuestionMarks) {
   }
 }
 
-TEST(PictureFile, TheSuffixIsTheFormat) {
+TEST(PictureFile, TheSuffixDeterminesTheFormat) {
   EXPECT_EQ(format_of("a.png"), PictureFormat::png);
   EXPECT_EQ(format_of("a.b/c"), PictureFormat::png);  // suffixes of folder names are ignored
   EXPECT_EQ(format_of("a.SVG"), PictureFormat::svg);
@@ -148,7 +148,7 @@ TEST(PictureFile, DotsPerInchScaleThePixelsAlone) {
   EXPECT_NE(bytes_of(path).find("pHYs"), std::string::npos) << "the size on paper is in the file";
 }
 
-TEST(PictureFile, ToldLimitsAreKept) {
+TEST(PictureFile, LimitsAreEnforced) {
   const std::string path = scenes::own_file("x.png");
   expect_in("more than 32768 along a side",
             refusal_of([&] { save_picture(Canvas(16384, 1, kWhite).drawing(), path, {.dpi = 361.0}); }));

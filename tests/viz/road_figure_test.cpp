@@ -83,7 +83,7 @@ std::size_t count(const Picture& picture, std::uint32_t color) {
   return static_cast<std::size_t>(picture.count(color, 0, 0, picture.width, picture.height));
 }
 
-TEST(RoadFigure, ShowsWhatThereIs) {
+TEST(RoadFigure, ShowsEveryObject) {
   draw_roads(small(), scenes::own_file("roads.png"));
   const Picture picture = scenes::read_png(scenes::own_file("roads.png"));
   EXPECT_GE(picture.width, 1000);
@@ -97,7 +97,7 @@ TEST(RoadFigure, ShowsWhatThereIs) {
 }
 
 // In a view with 10 px/m and the lower left corner at (-2.05, -12.05), lines run along pixel centres.
-TEST(RoadView, EverythingIsWhereItShouldBe) {
+TEST(RoadView, ObjectsAreAtTheirPositions) {
   Canvas canvas(1000, 300, 0xFFFFFFFFu);
   const RoadView view{canvas, {0, 0, 1000, 300}, {-2.05, -12.05}, 10.0};
   draw_network(view, small());
@@ -140,7 +140,7 @@ TEST(RoadView, ArrowsPointInDrivingDirection) {
   EXPECT_LT(white(60 - s - 0.7, 1.7, 4.3), white(60 - s + 0.7, 1.7, 4.3));
 }
 
-TEST(RoadFigure, NamesOfAnyBytes) {
+TEST(RoadFigure, NamesMayContainAnyBytes) {
   world::RoadNetwork network = small();
   network.name =
       "Stra\xDF"
@@ -174,7 +174,7 @@ TEST(RoadFigure, OnePointIsEnough) {
   EXPECT_GT(picture.count(0xFFFFFFFFu), picture.width * picture.height / 10);
 }
 
-TEST(RoadFigure, UnwritablePathIsNamed) {
+TEST(RoadFigure, UnwritablePathIsReported) {
   try {
     draw_roads(small(), "/nowhere/at/all.png");
     FAIL() << "written to nowhere";
@@ -183,7 +183,7 @@ TEST(RoadFigure, UnwritablePathIsNamed) {
   }
 }
 
-TEST(Labels, KeepOffEachOther) {
+TEST(Labels, DoNotOverlap) {
   Canvas canvas(400, 200, 0xFFFFFFFFu);
   Labels labels({0, 0, 400, 200});
   const glm::dvec2 mark[] = {{200, 100}};
@@ -193,7 +193,7 @@ TEST(Labels, KeepOffEachOther) {
   EXPECT_LT(placed, 20);  // no more room within 60 pixels
 }
 
-TEST(Labels, PreferBareGround) {
+TEST(Labels, PreferFreeSpace) {
   Canvas canvas(400, 200, 0xFFFFFFFFu);
   Labels labels({0, 0, 400, 200});
   const glm::dvec2 road[] = {{200, 0}, {200, 200}};

@@ -35,7 +35,7 @@ std::uint32_t color_at(const PixelImage& image, double x, double y) {
 }
 
 /// A scan of five beams from a sensor that looks along y; the middle one has no echo.
-TEST(RunView, EchoesAreWhereTheSensorMeasured) {
+TEST(RunView, EchoesAreDrawnFromTheMeasurementPose) {
   const world::World world = room_of_two();
   const record::SensorInfo laser{.fov = M_PI, .samples = 5, .range_min = 0.0, .range_max = 3.0};
   RunFrame frame = frame_of(world);
@@ -60,7 +60,7 @@ TEST(RunView, ConesOfSonarAreDrawnFromTheirTransducers) {
   EXPECT_EQ(color_at(image, 0.5, 1.0), theme::kWhite) << "behind the transducer";
 }
 
-TEST(RunView, TheCameraFollowsAndStaysWhereItsRobotsLeave) {
+TEST(RunView, TheCameraStopsWhenItsRobotsLeave) {
   const world::World world = room_of_two();
   RunView view(world, {.view = kView, .followed = {0}, .around = 4.0});
   RunFrame frame = frame_of(world);

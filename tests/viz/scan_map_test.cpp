@@ -36,7 +36,7 @@ void add_beam(ScanMap& map, const world::World& world, double range, std::uint32
   map.add(world, scan);
 }
 
-TEST(ScanMap, EndIsOccupiedPathIsFree) {
+TEST(ScanMap, EndIsOccupiedAndPathIsFree) {
   ScanMap map(kPlan);
   add_beam(map, one_beam(), 3.7);
   const maps::OccupancyGrid grid = map.states();

@@ -54,7 +54,7 @@ TEST(SeriesFigure, MissingValuesAreGaps) {
 }
 
 /// The axes begin at 0 only if that does not compress the values too much.
-TEST(SeriesFigure, FromZeroWhereThatDoesNotSquash) {
+TEST(SeriesFigure, StartsAtZeroUnlessThatCompressesTheValues) {
   const std::uint32_t color = row_color(0, 1);
   const auto first_column = [&](double from, bool zero) {
     SeriesOptions options = one_panel({{"a", {from, 2.0}, {1.0, 2.0}}});
@@ -82,7 +82,7 @@ TEST(SeriesFigure, EverySeriesHasItsColor) {
   for (std::size_t i = 0; i < many.size(); ++i) EXPECT_GT(colored(p, row_color(i, many.size()), 0, 1), 20) << i;
 }
 
-TEST(SeriesFigure, PanelsStandBelowEachOther) {
+TEST(SeriesFigure, PanelsAreStacked) {
   const Panel panel{"robot", "|B| [G]", {per_second("element 0", {0, 1})}};
   const scenes::Picture one = drawn({"t", "s", {panel}}, "one.png");
   const scenes::Picture three = drawn({"t", "s", {panel, panel, panel}}, "three.png");
@@ -103,7 +103,7 @@ int blue(const scenes::Picture& p) {
   return n;
 }
 
-TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
+TEST(SeriesFigure, UnusualDataIsDrawn) {
   struct Case {
     Series series;
     int least, most;  ///< blue pixels
@@ -124,7 +124,7 @@ TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
   }
 }
 
-TEST(SeriesFigure, ThePictureIsAFunctionOfTheNumbers) {
+TEST(SeriesFigure, ThePictureDependsOnlyOnTheNumbers) {
   const SeriesOptions options = one_panel({per_second("a", {1, 2, kNan, 4}), per_second("b", {2, 1, 0, 3})});
   EXPECT_EQ(drawn(options, "same1.png").rgb, drawn(options, "same2.png").rgb);
 }
@@ -178,7 +178,7 @@ TEST(SeriesFigure, LegendsOmitCurvesWithoutAValue) {
   EXPECT_EQ(svg.find(">silent<"), std::string::npos);
 }
 
-TEST(SeriesFigure, LegendsCountTheCurvesThatTheyDoNotName) {
+TEST(SeriesFigure, LegendsCountUnnamedCurves) {
   std::vector<Series> many;
   for (int i = 0; i < 8; ++i) many.push_back(per_second("curve " + std::to_string(i), {1.0 * i, i + 0.5}));
   const std::string eight = svg_of(one_panel(many));
@@ -257,7 +257,7 @@ TEST(SeriesFigure, BrokenContractsAbort) {
                "series a has 2 times for 1 values");
 }
 
-TEST(SeriesFigure, APlaceThatCannotBeWrittenIsNamed) {
+TEST(SeriesFigure, ReportsAnUnwritablePath) {
   EXPECT_THROW(draw_series(one_panel({per_second("a", {1})}), "/nowhere/x.png"), base::InputError);
 }
 

@@ -31,7 +31,7 @@ bool free_at(const PixelImage& image, double x, double y) {
   return pixel[0] == 255 && pixel[1] == 255 && pixel[2] == 255;
 }
 
-TEST(TopView, ThingsAreWhereTheWorldHasThem) {
+TEST(TopView, ObjectsAreAtTheirPositions) {
   const world::World world = room();
   const TopView view = view_of(world);
   const PixelImage image = view.paint(std::array{base::Pose{1.0, 0.5, 0.0, 0.0}}, 0.0);
@@ -44,7 +44,7 @@ TEST(TopView, ThingsAreWhereTheWorldHasThem) {
 }
 
 /// The static layer is painted once; an image leaves no traces in the next.
-TEST(TopView, ImagesDoNotDependOnThoseBefore) {
+TEST(TopView, ImagesDoNotDependOnEarlierOnes) {
   const world::World world = room();
   const TopView view = view_of(world);
   const std::array first{base::Pose{1.0, 0.5, 0.0, 0.3}}, second{base::Pose{-1.0, 0.0, 0.0, 0.0}};
@@ -53,7 +53,7 @@ TEST(TopView, ImagesDoNotDependOnThoseBefore) {
   EXPECT_EQ(view.paint(first, 0.0).rgb, before.rgb);
 }
 
-TEST(TopView, RefusesOptionsOutOfRange) {
+TEST(TopView, RejectsOptionsOutOfRange) {
   const world::World world = room();
   using world::Extent;
   for (const TopViewOptions& options :

@@ -40,7 +40,7 @@ int pixels(const scenes::Picture& picture, std::uint32_t color) {
 }
 
 /// At 9 s of SimVille's plan, two of the seven lights are yellow; at 5 s, none.
-TEST(TownFigure, LightsShowWhatTheyShowAtTheEnd) {
+TEST(TownFigure, LightsHaveTheirFinalState) {
   Scene scene;
   scene.end.time = 5.0;
   const scenes::Picture before = scene.draw("town5.png");
@@ -53,7 +53,7 @@ TEST(TownFigure, LightsShowWhatTheyShowAtTheEnd) {
 }
 
 /// The connections of followers are dark, and absent in a picture without a convoy.
-TEST(TownFigure, FollowersAreJoinedToWhomTheyFollow) {
+TEST(TownFigure, FollowersAreConnectedToTheRobotAhead) {
   Scene scene;
   scene.end.time = 5.0;
   const int without = pixels(scene.draw("town-alone.png"), 0xFF202020u);
@@ -61,7 +61,7 @@ TEST(TownFigure, FollowersAreJoinedToWhomTheyFollow) {
   EXPECT_GT(pixels(scene.draw("town-convoy.png"), 0xFF202020u), without + 100);
 }
 
-TEST(TownFigure, TracksWithoutPosesAreLeftOut) {
+TEST(TownFigure, TracksWithoutPosesAreOmitted) {
   Scene scene;
   scene.tracks[0].poses.clear();
   scene.end.follows[0] = 1;

@@ -39,7 +39,7 @@ TEST(TradeoffFigure, FasterIsHigherAndWorseIsFartherRight) {
   EXPECT_LT(fast.y, slow.y - 150.0) << "three times as fast";
 }
 
-TEST(TradeoffFigure, NoErrorHasAPlaceOfItsOwn) {
+TEST(TradeoffFigure, ZeroErrorHasASeparateColumn) {
   const scenes::Picture p = drawn({{"exact", 1e6, 0.0, 0.0, 0.0, true, {}}, point("other", 2e6, 1e-3, false)});
   EXPECT_LT(middle_of(p, kFront).x, 300.0);
   EXPECT_GT(middle_of(p, kBeaten).x, 300.0);
@@ -52,7 +52,7 @@ TEST(TradeoffFigure, InfiniteErrorsStayOnThePicture) {
 
 /// A bound has a separate mark at its value, and no mark if no element is covered, so it is never shown for errors to
 /// which it does not apply.
-TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
+TEST(TradeoffFigure, ABoundHasASeparateMark) {
   TradeoffPoint skip = point("skip", 2e6, 0.1, true);
   skip.covered = {0.25, 1e-9, 1e-8};
   const scenes::Picture p = drawn({skip});
@@ -72,7 +72,7 @@ TEST(TradeoffFigure, NamesLeaveTheMarksFree) {
   EXPECT_NEAR(marks(exact), marks(far), 4) << "neither is hidden";
 }
 
-TEST(TradeoffFigure, NamesWhatCannotBeWritten) {
+TEST(TradeoffFigure, ReportsAnUnwritablePath) {
   EXPECT_THROW(draw_tradeoff("t", "s", {}, "/nowhere/t.png"), base::InputError);
 }
 

@@ -62,7 +62,7 @@ double psnr(const std::uint8_t* a, const std::uint8_t* b, std::size_t size) {
   return 10.0 * std::log10(255.0 * 255.0 / std::max(1e-9, sum / static_cast<double>(size)));
 }
 
-TEST(VideoFile, OtherProgramsReadTheFramesThatWereWritten) {
+TEST(VideoFile, OtherProgramsReadTheWrittenFrames) {
   if (!can_encode() || !has_ffmpeg()) GTEST_SKIP() << "no FFmpeg on this machine (Debian: ffmpeg)";
   const std::string file = write_video("a.webm", kFrames);
   EXPECT_EQ(output_of("ffprobe -v error -count_frames -of csv=p=0 -show_entries "
@@ -85,13 +85,13 @@ TEST(VideoFile, OtherProgramsReadTheFramesThatWereWritten) {
   EXPECT_NEAR(static_cast<std::uint8_t>(pixels[inside + 1]), 255, 12);
 }
 
-TEST(VideoFile, EqualFramesAreEqualBytes) {
+TEST(VideoFile, EqualFramesGiveEqualBytes) {
   if (!can_encode()) GTEST_SKIP() << "built without FFmpeg";
   EXPECT_EQ(read(write_video("a.webm", 30)), read(write_video("b.webm", 30)));
 }
 
 /// Without a frame, and closed by the destructor.
-TEST(VideoFile, AnyNumberOfFramesIsAFile) {
+TEST(VideoFile, AnyNumberOfFramesGivesAFile) {
   if (!can_encode()) GTEST_SKIP() << "built without FFmpeg";
   EXPECT_GT(std::filesystem::file_size(write_video("none.webm", 0)), 0u);
   const std::string file = scenes::own_file("left.webm");
@@ -99,7 +99,7 @@ TEST(VideoFile, AnyNumberOfFramesIsAFile) {
   EXPECT_EQ(read(file), read(write_video("one.webm", 1)));
 }
 
-TEST(VideoFile, AFileThatCannotBeWrittenIsNamedWithItsReason) {
+TEST(VideoFile, AnUnwritableFileIsReportedWithItsReason) {
   if (!can_encode()) GTEST_SKIP() << "built without FFmpeg";
   const auto message = [](const std::string& file, int frames) {
     try {

@@ -93,7 +93,7 @@ TEST(TrajectoryFigure, ManyTracksAreThinner) {
 }
 
 /// Boundary: 8 to 10 tracks are named at their ends, with `all` up to 150, and those on request.
-TEST(TrajectoryFigure, ManyTracksHaveTheNamesAskedFor) {
+TEST(TrajectoryFigure, ManyTracksHaveTheRequestedNames) {
   const auto drawn = [](std::size_t count, const TrackLabels& labels) {
     const std::string file = scenes::own_file("names.svg");
     draw_trajectories(scenes::rich_world(), tracks_of(count), file, "robot", {}, labels);

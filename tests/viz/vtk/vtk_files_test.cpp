@@ -96,7 +96,7 @@ TEST(VtkFiles, TrajectoriesKeepTimeAndSpeed) {
 }
 
 /// Three beams of a laser at the origin of a robot turned by 90 degrees: the middle one looks along +y.
-TEST(VtkFiles, ScansEndWhereTheirBeamsDo) {
+TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   world::World world;
   world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
   sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
@@ -182,7 +182,7 @@ TEST(VtkFiles, RoadsAreLinesOnTheGround) {
   EXPECT_EQ(number(reader->GetOutput()->GetCellData(), "rgb", 0, 2), 0.0);
 }
 
-TEST(VtkFiles, GridsHaveTheirPlaceAndValues) {
+TEST(VtkFiles, GridsHaveTheirPositionAndValues) {
   const GridData grid{-1.0, 2.0, 0.1, 0.5, 0.25, 3, 2, {{"magnitude", 1, {1, 2, 3, 4, 5, 6.5}}}};
   write_grid(grid, scenes::own_file("g.vti"));
   vtkNew<vtkXMLImageDataReader> reader;
@@ -198,7 +198,7 @@ TEST(VtkFiles, GridsHaveTheirPlaceAndValues) {
   EXPECT_EQ(number(image->GetCellData(), "magnitude", 3), 4.0) << "the first cell of the second row";
 }
 
-TEST(VtkFiles, UnwritableFilesAreNamed) {
+TEST(VtkFiles, UnwritableFilesAreReported) {
   for (const char* path : {"/nowhere/x.vtp", "/nowhere/x.vti", "/nowhere/x.pvd"}) {
     try {
       if (std::string(path).ends_with("vtp")) write_poly_data({}, path);
