@@ -141,7 +141,7 @@ void measure(double interval, std::uint32_t robots, double seconds, gpu::Device&
   fmt::print("{} robots, interval {:.3f} s, {} ticks/s, median of {} turns of {} ticks\n", robots, interval, kRate,
              kTurns, ticks);
   fmt::print("  no view             {:8.3f} ms of CPU per tick\n", 1e3 * plain);
-  fmt::print("  view, nobody looks  {:8.3f} ms, {:+.1f} %\n", 1e3 * median(idle), 100.0 * (median(idle) / plain - 1.0));
+  fmt::print("  view, no reader     {:8.3f} ms, {:+.1f} %\n", 1e3 * median(idle), 100.0 * (median(idle) / plain - 1.0));
   fmt::print(
       "  view, one reader    {:8.3f} ms, {:+.1f} %; it read {:.2f} messages and {:.0f} kB per tick, {} skipped\n",
       1e3 * watched, 100.0 * (watched / plain - 1.0), static_cast<double>(read.messages) / ticks,

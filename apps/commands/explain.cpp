@@ -33,7 +33,7 @@ std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
   std::string text = fmt::format("{:.4g} readings", k.readings);
   if (k.reused > 0.0) text += fmt::format(", {:.4g} of them given again since nothing moved", k.reused);
   if (k.work.rays > 0)
-    text += fmt::format(", {:.4g} rays, {:.3g} lists built anew", each(k.work.rays), each(k.work.cells_built));
+    text += fmt::format(", {:.4g} rays, {:.3g} lists rebuilt", each(k.work.rays), each(k.work.cells_built));
   if (k.work.uncertain > 0)
     text += fmt::format(", {:.2g} % of beams decided in 64 bits against all",
                         100.0 * static_cast<double>(k.work.uncertain) / static_cast<double>(k.work.rays));

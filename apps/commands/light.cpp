@@ -72,8 +72,9 @@ void require_farm(const LightOptions& options, const world::LightPlan& plan) {
   const auto place = std::find_if(plan.detectors.begin(), plan.detectors.end(),
                                   [](const world::LightDetector& detector) { return detector.p.has_value(); });
   if (options.farm.empty() && place != plan.detectors.end())
-    print_message("warning: detector '{}' hears robots through a farm, and there is none: add --farm HOST:PORT",
-                  place->name);
+    print_message(
+        "warning: detector '{}' receives robot states through a farm, but there is none: add --farm HOST:PORT",
+        place->name);
 }
 
 /// Sends SPaT and MAP of all intersections to one address.

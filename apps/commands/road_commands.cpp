@@ -89,7 +89,7 @@ std::string text_of(const MissionReport& facts) {
 std::optional<int> check_roads(const CheckOptions& options) {
   if (is_mission(options.world)) return check_mission(options);
   if (!options.rndf.empty())
-    throw base::InputError(options.world, 0, "is no mission; --rndf goes with `check` of an .mdf file");
+    throw base::InputError(options.world, 0, "is not a mission; use --rndf with `check` of an .mdf file");
   if (is_network(options.world)) return check_network(options);
   return std::nullopt;
 }

@@ -114,7 +114,7 @@ int robot(const RobotOptions& options) {
         "signed",
         options.spat);
   install_stop_handlers();
-  print_message("{} (id {}) drives by '{}' {} beside the farm at {}{}; Ctrl-C ends it", world.movers[mover].name,
+  print_message("{} (id {}) drives by '{}' {} with the farm at {}{}; Ctrl-C ends it", world.movers[mover].name,
                 world.movers[mover].id, options.controller,
                 process.on_scans() ? "on each new scan" : fmt::format("at {:g} Hz", process.rate()),
                 netio::text(process.link().farm()),

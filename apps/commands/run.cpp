@@ -402,7 +402,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   if (ticks < 1.0)
     print_message(
         "--duration {:g} simulates nothing, since a tick takes {:g} s; expected more, or no --duration, which is 60 s, "
-        "and beside bridges without end",
+        "or unlimited with bridges",
         duration, ground->world.interval);
   if (options.tiles && ranks == nullptr)
     print_message("--tiles has no effect in one process: start several (mpirun -n N sensorfarm run ...)");

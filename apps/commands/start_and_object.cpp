@@ -57,7 +57,7 @@ int start(const StartOptions& options) {
   const netio::Endpoint farm = farm_of(options);
   send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.start_id)}, netio::Start{},
                   signer_of(options, {netio::PeerKind::start, 0}));
-  print_message("start signal sent to {} for {}, {} times; nobody acknowledges it", netio::text(farm),
+  print_message("start signal sent to {} for {}, {} times; it is not acknowledged", netio::text(farm),
                 options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)),
                 kRepetitions);
   return 0;
@@ -68,7 +68,7 @@ int object(const ObjectOptions& options) {
   const bool present = options.state == ObjectOptions::State::present;
   send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.tag)}, netio::Object{present},
                   signer_of(options, {netio::PeerKind::tag, options.tag}));
-  print_message("'{}' sent to {} for the object of tag {}, {} times; nobody acknowledges it",
+  print_message("'{}' sent to {} for the object of tag {}, {} times; it is not acknowledged",
                 present ? "present" : "absent", netio::text(farm), options.tag, kRepetitions);
   return 0;
 }

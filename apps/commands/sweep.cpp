@@ -223,8 +223,8 @@ int sweep(const SweepOptions& options) {
     const bool whole = run_jobs(options, sweep, folder, jobs, options.retry);
     results = read_results(sweep, folder);
     if (!whole) {
-      print_message("interrupted: {} of {} missing; the same command goes on", scenarios::counts_of(results).missing,
-                    counted(results.size(), "job"));
+      print_message("interrupted: {} of {} missing; run the same command again to continue",
+                    scenarios::counts_of(results).missing, counted(results.size(), "job"));
       return interrupted_code();
     }
   }

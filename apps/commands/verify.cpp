@@ -82,9 +82,10 @@ std::string text_of(const scenarios::RecordedAccuracy& a) {
 
 std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
   std::string text = row("ticks", std::to_string(v.ticks));
-  for (const scenarios::Comparison& c : v.recomputed) text += line_of(c, "this device beside the recording");
+  for (const scenarios::Comparison& c : v.recomputed) text += line_of(c, "this device against the recording");
   if (v.reference.readings > 0)
-    text += line_of(v.reference, readings_recorded ? "plain C++ beside the recording" : "plain C++ beside this device");
+    text +=
+        line_of(v.reference, readings_recorded ? "plain C++ against the recording" : "plain C++ against this device");
   if (v.reference.readings < v.scans)
     text += row("", "a sample: {} of {} scans, spread evenly over the run (--all: every one)", v.reference.readings,
                 v.scans);

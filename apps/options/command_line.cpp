@@ -88,7 +88,7 @@ std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, i
     for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
       names.emplace_back(sub->get_name());
     const std::string what =
-        argc > 1 ? fmt::format("'{}' is no subcommand{}; expected one of", argv[1], base::suggest(argv[1], names))
+        argc > 1 ? fmt::format("'{}' is not a subcommand{}; expected one of", argv[1], base::suggest(argv[1], names))
                  : "expected a subcommand:";
     return fmt::format("{} {}; see `sensorfarm --help`", what, fmt::join(names, ", "));
   }

@@ -207,7 +207,7 @@ std::optional<double> read_rate(const std::string& text) {
 std::string suggest_option(const std::string& word, const std::vector<std::string>& names) {
   if (word.compare(0, 2, "--") != 0) return "";
   const std::string bare = word.substr(2);
-  if (std::count(names.begin(), names.end(), bare) > 0) return "; options stand after the subcommand";
+  if (std::count(names.begin(), names.end(), bare) > 0) return "; options must follow the subcommand";
   std::string found = base::suggest(bare, std::vector<std::string_view>(names.begin(), names.end()));
   const std::size_t quote = found.find('\'');
   return quote == std::string::npos ? "" : found.insert(quote + 1, "--");

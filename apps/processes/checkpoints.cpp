@@ -25,7 +25,7 @@ Checkpoints::Checkpoints(const std::string& folder, std::uint64_t run, std::uint
 
 void Checkpoints::read(const std::string& head) {
   if (!std::filesystem::exists(file_))
-    throw base::InputError(file_, 0, "there is no run to resume: make one with --record and --checkpoint S");
+    throw base::InputError(file_, 0, "there is no run to resume: create one with --record and --checkpoint S");
   const std::string text = base::read_text(file_);
   const std::size_t whole = text.rfind('\n') + 1;  // the last line may be truncated
   std::filesystem::resize_file(file_, whole);
@@ -39,7 +39,7 @@ void Checkpoints::read(const std::string& head) {
     std::uint64_t tick = 0;
     Point point;
     if (std::sscanf(line.c_str(), "%" SCNu64 " %" SCNx64 " %" SCNx64, &tick, &point.readings, &point.states) != 3)
-      throw base::InputError(file_, number, "is no check point: expected a tick and two hashes");
+      throw base::InputError(file_, number, "is not a check point: expected a tick and two hashes");
     known_[tick] = point;
   }
 }

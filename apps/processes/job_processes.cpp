@@ -112,7 +112,7 @@ class Children {
     const pid_t pid = fork();
     if (pid < 0)
       throw base::InputError(
-          fmt::format("no process more can be started: {}; expected --jobs to be smaller, or the limit of processes "
+          fmt::format("no more processes can be started: {}; expected --jobs to be smaller, or the limit of processes "
                       "(ulimit -u) to be larger",
                       std::strerror(errno)));
     if (pid > 0) {

@@ -38,8 +38,8 @@ std::string ranges_of(const std::vector<std::uint64_t>& numbers) {
 
 void check_directive(const std::string& text, const char* what) {
   if (text.find_first_of("\"\\\r\n") == std::string::npos) return;
-  throw base::InputError(
-      fmt::format("{} '{}' cannot stand in a batch script; expected no quotes, backslashes and line ends", what, text));
+  throw base::InputError(fmt::format(
+      "{} '{}' cannot be used in a batch script; expected no quotes, backslashes and line ends", what, text));
 }
 
 }  // namespace

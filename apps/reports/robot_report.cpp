@@ -35,7 +35,7 @@ std::string link_text(const server::LinkCounts& link) {
   text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
   if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
   if (link.socket_drops > 0) text += row("", counted(link.socket_drops, "packet") + " dropped by the operating system");
-  if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
+  if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " restarted");
   text += row("V2V and START", netio::text(link.packets));
   if (link.out.lost + link.in.lost > 0) {
     text += row("injected link, out", injected_text(link.out));

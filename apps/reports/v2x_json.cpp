@@ -148,7 +148,7 @@ class Reader {
     void refuse_others() const {
       for (const auto& [name, value] : json.items())
         if (std::find(known.begin(), known.end(), name) == known.end())
-          reader.fail(fmt::format("'{}' is no component here{}", name, base::suggest(name, known)));
+          reader.fail(fmt::format("'{}' is not a component here{}", name, base::suggest(name, known)));
     }
   };
 

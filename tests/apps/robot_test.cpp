@@ -110,7 +110,7 @@ TEST_F(RobotsTest, SeveralDriveByTheirReadings) {
   for (int i = 0; i < kStarts; ++i) {
     const Outcome started = run_program({"start", "--port", service.port, "--robot", "2"});
     EXPECT_EQ(started.code, 0) << started.err;
-    EXPECT_NE(started.err.find("for robot 2, 3 times; nobody acknowledges it"), std::string::npos) << started.err;
+    EXPECT_NE(started.err.find("for robot 2, 3 times; it is not acknowledged"), std::string::npos) << started.err;
   }
 
   const Json f1 = facts_of(one), f2 = facts_of(two), f3 = facts_of(three, 1), f4 = facts_of(four);

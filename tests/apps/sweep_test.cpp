@@ -255,7 +255,8 @@ TEST(SweepCommand, WrongUsageIsRejected) {
     EXPECT_NE(refused({"-o", folder.path("out"), "--share", share}).find("a share K/N"), std::string::npos) << share;
   EXPECT_NE(refused({"-o", folder.path("out"), "--tasks", "3"}).find("--slurm"), std::string::npos);
   EXPECT_NE(refused({"-o", folder.path("out"), "--slurm", "--sbatch=time"}).find("--sbatch 'time'"), std::string::npos);
-  EXPECT_NE(refused({"-o", folder.path("a\"b"), "--slurm"}).find("cannot stand in a batch script"), std::string::npos);
+  EXPECT_NE(refused({"-o", folder.path("a\"b"), "--slurm"}).find("cannot be used in a batch script"),
+            std::string::npos);
   EXPECT_NE(refused({"-o", folder.path("out")}, {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "2"}, {"SLURM_NTASKS", "2"}})
                 .find("SLURM_PROCID is '2'"),
             std::string::npos);

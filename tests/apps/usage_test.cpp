@@ -288,7 +288,7 @@ TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
   const Folder folder;
   for (const auto& [arguments, said] : std::vector<Wrong>{
            {{}, "expected a subcommand: devices, check"},  // no arguments
-           {{"frob"}, "'frob' is no subcommand"},          // unknown subcommand
+           {{"frob"}, "'frob' is not a subcommand"},       // unknown subcommand
            {{"runn"}, "did you mean 'run'?"},              // one typo
            {{"help", "frob"}, "expected devices, check"},  // the same for help
            {{"--loss", "1", "run", world}, "'--loss'"},    // an option of `robot`
@@ -296,7 +296,7 @@ TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
            {{"draw", world}, "--out is required"},         // no picture
            {{"plot"}, "recording is required"},            // no recording
            {{"run", world, "--duraton", "3"}, "'--duraton' was not expected; did you mean '--duration'?"},
-           {{"--json", "check", world}, "options stand after the subcommand"},
+           {{"--json", "check", world}, "options must follow the subcommand"},
            {{"check", world, "another"}, "'another' was not expected"},  // two worlds
            {{"run", world, "--duration"}, "--duration needs a value"},   // cut off
            {{"run", world, "--duration", "-1"}, "from 0 to"},            // negative time

@@ -179,7 +179,7 @@ TEST(V2x, JsonErrorsNameTheirComponent) {
   EXPECT_EQ(refusal("\"signalGroup\": 2, ", ""), spat + ".states[0]: 'signalGroup' is missing");
   EXPECT_EQ(refusal("signalGroup", "signalGrup"), spat + ".states[0]: 'signalGroup' is missing");
   EXPECT_EQ(refusal("\"timeStamp\"", "\"timestamp\""),
-            spat + ": 'timestamp' is no component here; did you mean 'timeStamp'?");
+            spat + ": 'timestamp' is not a component here; did you mean 'timeStamp'?");
   EXPECT_EQ(refusal("0000000000000000", "000000000000000"),
             spat + ".status: found \"000000000000000\"; expected a text of 16 digits 0 and 1");
   EXPECT_NE(
@@ -199,7 +199,7 @@ TEST(V2x, DeeplyNestedJsonIsRejected) {
   EXPECT_EQ(refusal("35176", closed),
             "value.SPAT.intersections[0].timeStamp: found a list of 1; expected a whole number from 0 to 65535");
   EXPECT_EQ(refusal("\"revision\"", "\"x\": " + closed + ", \"revision\""),
-            "value.SPAT.intersections[0]: 'x' is no component here");
+            "value.SPAT.intersections[0]: 'x' is not a component here");
   EXPECT_EQ(refusal(kJson, open).find("no JSON from here on: "), 0u);
 }
 

@@ -83,7 +83,7 @@ TEST(Verify, ASoundRunPasses) {
   const Outcome outcome = run_program({"verify", record(folder, {"--record-readings"})});
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("verdict            sound"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("plain C++ beside the recording"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("plain C++ against the recording"), std::string::npos) << outcome.out;
 }
 
 TEST(Verify, NoReturnMayBeInfinite) {

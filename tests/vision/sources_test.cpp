@@ -106,7 +106,7 @@ TEST_F(Sources, RejectSpecialFiles) {
     EXPECT_NE(error_of(path(name)).find("is a pipe, a socket or a block device"), std::string::npos)
         << error_of(path(name));
   EXPECT_NE(error_of(folder_).find("has no images"), std::string::npos);
-  EXPECT_NE(error_of("/dev/null").find("is no camera that can be opened"), std::string::npos);
+  EXPECT_NE(error_of("/dev/null").find("cannot be opened as a camera"), std::string::npos);
 }
 
 TEST_F(Sources, FilesThatCannotBeReadGiveNoPixels) {

@@ -37,7 +37,7 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
     words.push_back(word);
   }
   throw base::InputError(
-      fmt::format("'{}' is no dictionary of tags; expected one of: {}", name, fmt::join(words, ", ")));
+      fmt::format("'{}' is not a dictionary of tags; expected one of: {}", name, fmt::join(words, ", ")));
 }
 
 namespace {

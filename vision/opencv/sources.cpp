@@ -106,7 +106,7 @@ std::unique_ptr<ImageSource> open_source(const std::string& source, int width, i
   }
   throw base::InputError(source, 0,
                          live
-                             ? "is no camera that can be opened; expected a V4L2 device that no other program uses"
+                             ? "cannot be opened as a camera; expected a V4L2 device that no other program uses"
                              : "cannot be read as a video; expected a device, a video, an image or a folder of images");
 }
 
