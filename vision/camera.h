@@ -30,8 +30,7 @@ struct Camera {
   glm::dvec3 forward{0.0, 0.0, -1.0};  ///< z axis of C in W; the default looks straight down
   double rate = 15.0;                  ///< [Hz] of images, > 0
   double exposure = 0.0;               ///< [s] per row, >= 0
-  double readout =
-      0.0;  ///< [s] from the start of the first row to that of the last (rolling shutter); 0: global shutter
+  double readout = 0.0;  ///< [s] between the starts of first and last row (rolling shutter); 0: global shutter
 };
 
 /// True for a valid camera name. Names are used in `--input NAME=SOURCE` and as stems of file names: 1 to 64 letters,

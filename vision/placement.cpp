@@ -17,8 +17,7 @@ namespace sf::vision {
 namespace {
 
 constexpr std::size_t kFewestPoints = 4;
-constexpr double kLeastSpread =
-    0.05;  // distance from the line through the two farthest points, relative to their distance
+constexpr double kLeastSpread = 0.05;  // distance from the line through the two farthest points over their distance
 constexpr std::size_t kFewestEdges = 3;
 
 /// A line in normalised image coordinates: normal · p = offset.

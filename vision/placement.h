@@ -16,9 +16,8 @@ inline constexpr std::size_t kLivePlacementImages = 15;  ///< read from a device
 struct TagResidual {
   std::uint32_t id = 0;
   std::size_t images = 0;  ///< number of images in which it was seen
-  double pixels =
-      0.0;  ///< [px] RMS distance of its corners (or of its centre if it has no heading) from their projections
-  double metres = 0.0;  ///< [m] distance of its centre from the surveyed position, on the plane at its height
+  double pixels = 0.0;     ///< [px] RMS distance of its corners (without a heading: its centre) from their projections
+  double metres = 0.0;     ///< [m] distance of its centre from the surveyed position, on the plane at its height
   /// [px] Residual of all other tags for a camera placed by them alone; nullopt if they do not determine its pose. One
   /// wrong position increases the residuals of all tags, but it increases this value for all tags except its own.
   std::optional<double> without;

@@ -22,9 +22,8 @@ inline constexpr std::int64_t kMaxTestbedPixels = 4 * kMaxImagePixels;
 struct TagMount {
   double side = 0.15;   ///< [m] > 0
   double height = 0.0;  ///< [m] of the tag above the world's z = 0
-  base::Pose
-      X_OT;  ///< pose of the tag in the frame of its object, whose pose is sent; default: the tag's own pose is sent
-  std::string address;                 ///< "host:port" that its packets go to; empty: the default
+  base::Pose X_OT;      ///< tag in the frame of its object, whose pose is sent; default: the tag is the object
+  std::string address;  ///< "host:port" to which its packets are sent; empty: the default
   std::optional<std::uint32_t> robot;  ///< id of the robot that carries the tag; nullopt: the tag's id
 };
 

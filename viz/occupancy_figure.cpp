@@ -57,8 +57,7 @@ void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, 
   axes.canvas().image(
       axes.pixel({e.x_min, e.y_max}), axes.pixel({e.x_max, e.y_min}),
       {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
-  if (page.map_colors == MapColors::thesis)
-    draw_cell_borders(axes, grid.geometry);  // ROS colours draw free cells in white
+  if (page.map_colors == MapColors::thesis) draw_cell_borders(axes, grid.geometry);  // ROS: free cells are white
   axes.save(path);
 }
 

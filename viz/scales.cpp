@@ -57,8 +57,7 @@ template <class Fit>
 Ticks sparse_ticks(double from, double to, bool whole, Fit&& fit, bool exponent = false) {
   constexpr int kSteps = 7;
   double step = round_down(to - from);
-  const double least =
-      std::max(whole ? 1.0 : 0.0, 1e-13 * std::max(std::abs(from), std::abs(to)));  // resolution of doubles
+  const double least = std::max(whole ? 1.0 : 0.0, 1e-13 * std::max(std::abs(from), std::abs(to)));  // of doubles
   for (int i = 0; i < kSteps && step >= least; ++i, step = round_down(0.51 * step)) {
     const Ticks fine = with_exponent(make_ticks(from, to, step), from, to, exponent);
     for (std::size_t every = 1; every < fine.at.size(); ++every)

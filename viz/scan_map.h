@@ -33,8 +33,7 @@ class ScanMap {
 
  private:
   maps::LogOddsGrid odds_;
-  std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>>
-      beams_;  ///< by field of view and number of samples
+  std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>> beams_;  ///< by field of view and samples
   std::vector<double> ranges_;
   std::vector<std::uint32_t> ends_;
 };

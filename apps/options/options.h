@@ -262,9 +262,8 @@ struct RunOptions : WorldOptions,
                     BridgeOptions {
   std::vector<std::string> drive;  ///< names of the robots that the controller drives; empty: all robots
   std::optional<double> duration;  ///< [s]; nullopt: 60, or unlimited with bridges
-  std::optional<double>
-      speed;           ///< [1] ratio of simulated to real time, 0: no limit; nullopt: no limit, or 1 with bridges
-  std::string record;  ///< folder; empty: no recording
+  std::optional<double> speed;     ///< [1] simulated over real time, 0: no limit; nullopt: none, or 1 with bridges
+  std::string record;              ///< folder; empty: no recording
   bool record_readings = false;
   std::string send;         ///< host; empty: none
   bool tiles = false;       ///< each rank owns a part of the world

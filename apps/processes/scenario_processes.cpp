@@ -193,9 +193,8 @@ class OwnProcesses {
 
   const TestOptions& options_;
   const std::function<void(const ScenarioResult&)>& show_;
-  std::vector<std::optional<ScenarioResult>> results_,
-      came_;                       ///< by file; `came_` has results of children that may still die
-  std::vector<std::size_t> rows_;  ///< of the scenarios to check or run
+  std::vector<std::optional<ScenarioResult>> results_, came_;  ///< by file; `came_`: of children that may still die
+  std::vector<std::size_t> rows_;                              ///< of the scenarios to check or run
   std::size_t shown_ = 0;
   ResultFile file_;
 };

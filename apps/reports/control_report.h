@@ -38,8 +38,7 @@ struct ControlReport {
   bool has_goals = false;                   ///< true if any robot headed for a checkpoint
   std::uint64_t checkpoints = 0;            ///< number of checkpoints passed
   control::LocalizationError localization;  ///< of robots that localize themselves, compared with their true poses
-  std::vector<Standing>
-      standing;  ///< robots that are not done and have not moved for kStill or longer; the largest group first
+  std::vector<Standing> standing;           ///< not done, and at rest for kStill or longer; the largest group first
 };
 
 /// [s] Robots that have not moved for this time are at rest.

@@ -67,8 +67,7 @@ struct RunReport {
   VideoFacts video;                                ///< no file name: no video
   std::string recording_error;                     ///< why it ends before the run; empty: it is complete
   std::optional<server::LockstepCounts> lockstep;  ///< for a service in lockstep
-  std::optional<RankReport>
-      shared;  ///< for a fleet shared by several ranks; times are means over them, counts are sums
+  std::optional<RankReport> shared;                ///< fleet shared by ranks; times are means over them, counts sums
 };
 
 /// Results of `selftest`.

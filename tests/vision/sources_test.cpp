@@ -28,8 +28,7 @@ class Sources : public testing::Test {
   }
   std::string path(const std::string& name) const { return folder_ + "/" + name; }
   void write(const std::string& name, std::uint8_t grey) const {
-    std::ofstream(path(name)) << "P5 4 3 255\n"
-                              << std::string(12, static_cast<char>(grey));  // regardless of its suffix
+    std::ofstream(path(name)) << "P5 4 3 255\n" << std::string(12, static_cast<char>(grey));  // for any suffix
   }
   void write_text(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
   void make_socket(const std::string& name) const {
