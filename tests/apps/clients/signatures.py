@@ -1,4 +1,4 @@
-"""Signatures of the Python client. Usage: signatures.py FOLDER_OF_CLIENTS"""
+"""Tests the signatures of the Python client. Usage: signatures.py FOLDER_OF_CLIENTS"""
 
 import sys
 

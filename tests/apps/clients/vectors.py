@@ -1,4 +1,4 @@
-"""Holds sensorfarm_client.py to tests/netio/vectors: decoding gives their text, encoding their bytes.
+"""Checks sensorfarm_client.py against tests/netio/vectors: decoding gives their text, encoding their bytes.
 
 Usage: vectors.py FOLDER_OF_THE_CLIENT FILE...
 """
@@ -12,7 +12,7 @@ import sensorfarm_client as client
 
 
 def vectors(path):
-    """(lines of text, bytes) of each packet of a file."""
+    """Yields (lines of text, bytes) for each packet in a file."""
     for block in pathlib.Path(path).read_text().strip().split("\n\n"):
         lines = [line for line in block.splitlines() if not line.startswith("#")]
         if "hex =" in lines:
@@ -47,7 +47,7 @@ def decoded(data):
 
 
 def encoded(packet):
-    """A packet to the farm, encoded again."""
+    """Encodes a packet to the farm again."""
     header = {key: packet.pop(key) for key in ("robot", "sequence", "time_ns", "session", "token")}
     type = packet.pop("type")
     del packet["sensor"]
