@@ -79,7 +79,7 @@ std::uint32_t LaneCorridors::node_of(PointRef at) const {
   const world::PointId id = id_of(roads_, at);
   const auto found = std::lower_bound(roads_.index.begin(), roads_.index.end(), id,
                                       [](const auto& row, world::PointId wanted) { return row.first < wanted; });
-  SF_CHECK(found != roads_.index.end() && found->first == id, "no point " + world::text_of(id));
+  SF_CHECK(found != roads_.index.end() && found->first == id, "no point " + world::point_id_text(id));
   return static_cast<std::uint32_t>(found - roads_.index.begin());
 }
 
@@ -109,7 +109,7 @@ void LaneCorridors::add_lanes(const world::World& world) {
   }
   for (const world::StopLine& stop : roads_.stops) {
     LaneStop mark{roads_.lanes[stop.at.row].points[stop.at.index].s, {}};
-    const std::string name = text_of(id_of(roads_, stop.at));
+    const std::string name = point_id_text(id_of(roads_, stop.at));
     for (std::uint32_t light = 0; light < world.lights.size(); ++light) {
       const auto& points = world.lights[light].points;
       if (std::find(points.begin(), points.end(), name) != points.end()) mark.lights.push_back(light);

@@ -49,7 +49,7 @@ void Route::check_goals() const {
 void Route::refuse(const world::RoadCheckpoint& goal) const {
   throw base::InputError(fmt::format(
       "robot '{}' finds no way to checkpoint {} (way-point {}) in '{}'; choose others, or add exits",
-      site_.world.movers[site_.mover].name, goal.id, text_of(id_of(*site_.roads, goal.at)), site_.roads->file));
+      site_.world.movers[site_.mover].name, goal.id, point_id_text(id_of(*site_.roads, goal.at)), site_.roads->file));
 }
 
 // Two goals are planned ahead, so that the route continues beyond the next goal.

@@ -89,7 +89,7 @@ void draw_lights(Axes& axes, const world::World& world, std::span<const LightSta
 }
 
 LegendItem signal_legend_item(LightState state) {
-  return {mark_of(state).mark, mark_of(state).color, fmt::format("light, {}", name_of(state))};
+  return {mark_of(state).mark, mark_of(state).color, fmt::format("light, {}", light_state_name(state))};
 }
 
 std::vector<LegendItem> lights_legend(const world::World& world, double time) {

@@ -37,6 +37,6 @@ std::vector<SignalForecast> forecasts_at(const World& world, double time) {
   return forecasts;
 }
 
-std::string_view name_of(LightState state) { return words_of(state).at(static_cast<std::size_t>(state)); }
+std::string_view light_state_name(LightState state) { return words_of(state).at(static_cast<std::size_t>(state)); }
 
 }  // namespace sf::world

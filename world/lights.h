@@ -36,6 +36,6 @@ inline base::LightStatus status_of(const Signal& signal) {
   return {static_cast<std::uint8_t>(signal.state), signal.left};
 }
 
-std::string_view name_of(LightState state);  ///< "flashing red"
+std::string_view light_state_name(LightState state);  ///< "flashing red"
 
 }  // namespace sf::world

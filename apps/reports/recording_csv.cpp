@@ -120,7 +120,7 @@ std::string write_lights_csv(const RecordingPart& part, const std::string& folde
   for (const record::LightsSample& sample : part.recording.lights)
     for (std::size_t k = 0; k < std::min(world.lights.size(), sample.lights.size()); ++k)
       file.row(fmt::format("{},{},{},{}", seconds(sample.time), csv_field(world.lights[k].name),
-                           world::name_of(static_cast<world::LightState>(sample.lights[k].state)),
+                           world::light_state_name(static_cast<world::LightState>(sample.lights[k].state)),
                            csv_number(sample.lights[k].left)));
   file.close();
   return path;

@@ -229,7 +229,7 @@ TEST(Passing, GoesRoundASlowerRobotAndComesBack) {
     t.tick();
     const auto place = locate_on_lane(corridors, t.pose(1));
     if (!place || place->offset > 0.02) continue;
-    const std::string lane = name_of(t.roads, t.roads.lanes[place->way]);
+    const std::string lane = lane_name(t.roads, t.roads.lanes[place->way]);
     beside = beside || lane == "1.2";
     back = back || (beside && lane == "1.1" && t.pose(1).x > t.pose(0).x + 0.4);
   }
@@ -250,7 +250,7 @@ TEST(Passing, WaitsUntilTheOtherLaneIsFree) {
     t.tick();
     const auto place = locate_on_lane(corridors, t.pose(1));
     ASSERT_TRUE(place.has_value());
-    ASSERT_EQ(name_of(t.roads, t.roads.lanes[place->way]), "1.1") << 0.1 * i;
+    ASSERT_EQ(lane_name(t.roads, t.roads.lanes[place->way]), "1.1") << 0.1 * i;
     ASSERT_LT(place->offset, 0.02) << 0.1 * i;
   }
   EXPECT_EQ(t.contacts, 0);

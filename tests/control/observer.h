@@ -64,7 +64,7 @@ struct Site {
       const control::Way& way = corridors.way(row);
       if (way.kind != kind || way.from == world::kNone || way.into == world::kNone) continue;
       const bool there = std::isnan(leave) || std::abs(way.leave - leave) < 1e-3;
-      if (there && name_of(roads, roads.lanes[way.from]) == from && name_of(roads, roads.lanes[way.into]) == into)
+      if (there && lane_name(roads, roads.lanes[way.from]) == from && lane_name(roads, roads.lanes[way.into]) == into)
         return row;
     }
     throw std::runtime_error("no way from " + from + " to " + into);
@@ -74,7 +74,7 @@ struct Site {
   }
   std::uint32_t lane(const std::string& name) const {
     for (std::uint32_t row = 0; row < roads.lanes.size(); ++row)
-      if (name_of(roads, roads.lanes[row]) == name) return row;
+      if (lane_name(roads, roads.lanes[row]) == name) return row;
     throw std::runtime_error("no lane " + name);
   }
   Pose on(std::uint32_t row, double s) const {

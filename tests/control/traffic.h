@@ -28,7 +28,7 @@ inline world::RoadNetwork simville() {
 /// Pose on a lane, `s` metres along it.
 inline Pose on_lane(const world::RoadNetwork& roads, const std::string& name, double s) {
   for (const world::RoadLane& lane : roads.lanes) {
-    if (name_of(roads, lane) != name) continue;
+    if (lane_name(roads, lane) != name) continue;
     const glm::dvec2 p = point_at(lane.centre, s);
     const glm::dvec2 d = point_at(lane.centre, s + 0.01) - point_at(lane.centre, s - 0.01);
     return {p.x, p.y, 0.0, std::atan2(d.y, d.x)};

@@ -76,7 +76,7 @@ std::string curve_line(const char* name, const std::vector<glm::dvec2>& line) {
   return fmt::format("  {} {}\n", name, shown(line));
 }
 
-std::string id(const RoadNetwork& roads, PointRef at) { return text_of(id_of(roads, at)); }
+std::string id(const RoadNetwork& roads, PointRef at) { return point_id_text(id_of(roads, at)); }
 
 std::string ways_from(const RoadNetwork& roads, PointRef at) {
   constexpr const char* kKinds[] = {"lane", "exit", "zone", "change"};
@@ -90,10 +90,10 @@ std::string ways_from(const RoadNetwork& roads, PointRef at) {
 
 std::string lane_lines(const RoadNetwork& roads, const RoadLane& lane) {
   std::string text =
-      fmt::format("lane {} segment {} width {} {} {} length {}\n", sf::world::name_of(roads, lane), lane.segment,
+      fmt::format("lane {} segment {} width {} {} {} length {}\n", sf::world::lane_name(roads, lane), lane.segment,
                   number(lane.width), word_of(lane.left), word_of(lane.right), number(length_of(lane)));
   for (const LanePoint& p : lane.points)
-    text += fmt::format("  {} {} s {} yaw {}\n", text_of(p.id), row(p.p), number(p.s), number(p.yaw));
+    text += fmt::format("  {} {} s {} yaw {}\n", point_id_text(p.id), row(p.p), number(p.s), number(p.yaw));
   return text + curve_line("centre", lane.centre.points) + curve_line("tangents", lane.centre.tangents) +
          fmt::format("  s {} knots {}\n", shown(lane.centre.s), shown(lane.centre.knots)) +
          curve_line("left", lane.left_edge) + curve_line("right", lane.right_edge);
@@ -103,7 +103,7 @@ std::string zone_lines(const RoadNetwork& roads) {
   std::string text;
   for (const RoadZone& z : roads.zones) {
     text += fmt::format("zone {} '{}' spots {} from {}\n", z.id, z.name, z.spots, z.first_spot);
-    for (const PerimeterPoint& p : z.perimeter) text += fmt::format("  {} {}\n", text_of(p.id), row(p.p));
+    for (const PerimeterPoint& p : z.perimeter) text += fmt::format("  {} {}\n", point_id_text(p.id), row(p.p));
   }
   for (const RoadSpot& s : roads.spots)
     text += fmt::format("spot {} of {} width {} {} {}\n", s.number, s.zone, number(s.width), row(s.entry), row(s.end));

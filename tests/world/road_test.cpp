@@ -33,7 +33,7 @@ TEST(Road, MagnetsAreUnderTheNamedLanes) {
   const RoadNetwork roads = load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
   std::size_t expected = 0;
   for (const RoadLane& lane : roads.lanes)
-    if (name_of(roads, lane) == "6.1" || name_of(roads, lane) == "6.2")
+    if (lane_name(roads, lane) == "6.1" || lane_name(roads, lane) == "6.2")
       expected += static_cast<std::size_t>(length_of(lane) / 0.071) + 1;
   EXPECT_EQ(world.magnets.size(), expected);
   std::set<long> lanes;

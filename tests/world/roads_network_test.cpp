@@ -115,7 +115,7 @@ TEST(RoadNetwork, EveryPointIsFound) {
 std::set<std::string> onward(const RoadNetwork& network, PointId from) {
   std::set<std::string> all;
   for (const Transition& step : successors(network, *find_point(network, from)))
-    all.insert(text_of(id_of(network, step.to)));
+    all.insert(point_id_text(id_of(network, step.to)));
   return all;
 }
 
@@ -194,13 +194,13 @@ TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
     for (const RoadLane& lane : network.lanes) {
       const double half = 0.5 * lane.width;
       for (const auto* edge : {&lane.left_edge, &lane.right_edge}) {
-        ASSERT_GE(edge->size(), 2u) << name_of(network, lane);
+        ASSERT_GE(edge->size(), 2u) << lane_name(network, lane);
         for (std::size_t i = 0; i < edge->size(); i += 3) {
           double nearest = INFINITY;
           for (const glm::dvec2& p : lane.centre.points) nearest = std::min(nearest, length(p - (*edge)[i]));
           // Distances to points of the centre line, not to its pieces, so they may be slightly larger.
-          EXPECT_GE(nearest, half - 0.01) << name_of(network, lane);
-          EXPECT_LE(nearest, half + 3.0) << name_of(network, lane);
+          EXPECT_GE(nearest, half - 0.01) << lane_name(network, lane);
+          EXPECT_LE(nearest, half + 3.0) << lane_name(network, lane);
         }
       }
     }
@@ -246,21 +246,21 @@ TEST(RoadNetwork, LaneChanges) {
     const auto changes = lane_changes(network, at);
     const bool two_lanes = id.segment == 1 && (id.lane == 1 || id.lane == 2);
     if (!two_lanes) {
-      EXPECT_TRUE(changes.empty()) << text_of(id);
+      EXPECT_TRUE(changes.empty()) << point_id_text(id);
     }
     for (const Transition& step : changes) {
       const PointId to = id_of(network, step.to);
-      EXPECT_EQ(to.segment, 1) << text_of(id);
-      EXPECT_EQ(to.lane, 3 - id.lane) << text_of(id);
+      EXPECT_EQ(to.segment, 1) << point_id_text(id);
+      EXPECT_EQ(to.lane, 3 - id.lane) << point_id_text(id);
       EXPECT_EQ(step.kind, Transition::Kind::change);
-      EXPECT_GE(step.length, 1.2) << text_of(id);  // three widths, or slightly less on the outside of a bend
-      EXPECT_LE(step.length, 2.6) << text_of(id);
+      EXPECT_GE(step.length, 1.2) << point_id_text(id);  // three widths, or slightly less on the outside of a bend
+      EXPECT_LE(step.length, 2.6) << point_id_text(id);
     }
   }
   // On the straight line: 1.5 m ahead is the third of points 0.575 m apart. The last points have no change.
   const auto change = lane_changes(network, *find_point(network, {1, 1, 10}));
   ASSERT_EQ(change.size(), 1u);
-  EXPECT_EQ(text_of(id_of(network, change[0].to)), "1.2.13");
+  EXPECT_EQ(point_id_text(id_of(network, change[0].to)), "1.2.13");
   EXPECT_FALSE(lane_changes(network, *find_point(network, {1, 2, 14})).empty());
   EXPECT_TRUE(lane_changes(network, *find_point(network, {1, 1, 16})).empty());
 }

@@ -101,7 +101,7 @@ TEST(Shipped, SimVilleLightsAreAtTheirStopLinesAndFaceTraffic) {
   for (const Light& light : world.lights) {
     ASSERT_EQ(light.points.size(), 1u);
     for (const StopLine& stop : roads.stops) {
-      if (text_of(id_of(roads, stop.at)) != light.points[0]) continue;
+      if (point_id_text(id_of(roads, stop.at)) != light.points[0]) continue;
       const glm::dvec2 p = position_of(roads, stop.at);
       EXPECT_LT(std::hypot(p.x - light.X_WL.x, p.y - light.X_WL.y), 0.5) << light.name;
       EXPECT_NEAR(std::abs(base::wrap_angle(*yaw_of(roads, stop.at) - light.X_WL.yaw)), M_PI, 0.01) << light.name;

@@ -34,7 +34,7 @@ TEST(Light, IsReadWithItsPlan) {
 TEST(Light, EveryStateHasItsWord) {
   for (const char* word : {"dark", "red", "yellow", "green", "flashing red", "flashing yellow"}) {
     const World world = read_world(std::string("light( phases 1 phase[0] [\"") + word + "\" 1] )");
-    EXPECT_EQ(name_of(world.lights.at(0).phases.at(0).state), word);
+    EXPECT_EQ(light_state_name(world.lights.at(0).phases.at(0).state), word);
   }
 }
 

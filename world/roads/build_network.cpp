@@ -38,7 +38,7 @@ struct Builder {
       warn(point.line,
            fmt::format("{} is {:.0f} km from the origin; distances are too short there (check the degrees, or "
                        "set 'origin' in the sidecar)",
-                       text_of(point.id), length(flat) / 1000.0));
+                       point_id_text(point.id), length(flat) / 1000.0));
     }
     return sidecar.position + base::rotate(sidecar.heading, sidecar.scale * flat);
   }
@@ -66,8 +66,8 @@ void trace_lane(Builder& b, RoadLane& lane, const RndfLane& from) {
   for (const RndfPoint& point : from.points) waypoints.push_back(b.place(point));
   for (std::size_t i = 1; i < waypoints.size(); ++i)
     if (length(waypoints[i] - waypoints[i - 1]) < 1e-6)
-      b.warn(from.points[i].line,
-             fmt::format("way-points {} and {} coincide", text_of(from.points[i - 1].id), text_of(from.points[i].id)));
+      b.warn(from.points[i].line, fmt::format("way-points {} and {} coincide", point_id_text(from.points[i - 1].id),
+                                              point_id_text(from.points[i].id)));
   lane.centre = smooth_curve(waypoints, {b.network.tolerance, 0.5 * lane.width, kMaxSamples - b.samples});
   b.samples += lane.centre.points.size();
   if (b.samples >= kMaxSamples)
@@ -141,7 +141,7 @@ void build_index(RoadNetwork& network) {
 
 PointRef need(const RoadNetwork& network, PointId id) {
   const auto found = find_point(network, id);
-  SF_CHECK(found.has_value(), "a checked RNDF names " + text_of(id) + ", which it does not have");
+  SF_CHECK(found.has_value(), "a checked RNDF names " + point_id_text(id) + ", which it does not have");
   return *found;
 }
 

@@ -121,19 +121,19 @@ class MdfReader {
       ended_ = true;
       return;
     }
-    if (word.substr(4) != name_of(block_))
+    if (word.substr(4) != mdf_block_name(block_))
       statements_.fail(fmt::format("'{}' has no matching start; expected '{}' before it", word, word.substr(4)));
     block_ = Block::file;
   }
 
-  static std::string_view name_of(Block block) {
+  static std::string_view mdf_block_name(Block block) {
     return block == Block::checkpoints ? "checkpoints" : block == Block::speed_limits ? "speed_limits" : "file";
   }
 
   // Ends the open block, even if its end statement is missing.
   void end_block(const std::string& because) {
     if (block_ == Block::file) return;
-    warn(begun_, fmt::format("'{0}' has no 'end_{0}'; it ends {1}", name_of(block_), because));
+    warn(begun_, fmt::format("'{0}' has no 'end_{0}'; it ends {1}", mdf_block_name(block_), because));
     block_ = Block::file;
   }
 

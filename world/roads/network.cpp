@@ -45,7 +45,7 @@ std::optional<double> yaw_of(const RoadNetwork& network, PointRef at) {
   return lane.points[at.index].yaw;
 }
 
-std::string name_of(const RoadNetwork& network, const RoadLane& lane) {
+std::string lane_name(const RoadNetwork& network, const RoadLane& lane) {
   return fmt::format("{}.{}", network.segments[lane.segment].id, lane.number);
 }
 

@@ -135,7 +135,7 @@ glm::dvec2 position_of(const RoadNetwork& network, PointRef at);
 /// Returns the driving direction [rad]; nullopt for perimeter points and for lanes without a direction.
 std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
 /// "1.2", as written in the file.
-std::string name_of(const RoadNetwork& network, const RoadLane& lane);
+std::string lane_name(const RoadNetwork& network, const RoadLane& lane);
 
 /// A transition from one point to another.
 struct Transition {

@@ -60,7 +60,7 @@ int level_of(std::string_view keyword) {
 
 std::string counted(std::size_t have) { return have == 1 ? "1 is" : fmt::format("{} are", have); }
 
-std::string_view name_of(RndfBlock block) {
+std::string_view rndf_block_name(RndfBlock block) {
   constexpr std::array<std::string_view, 6> kNames{"file", "segment", "lane", "zone", "perimeter", "spot"};
   return kNames[static_cast<std::size_t>(block)];
 }
@@ -212,9 +212,9 @@ void RndfReader::apply(std::string_view keyword, const Rule& rule) {
   if (!may(open_.back())) {
     const bool above = std::any_of(open_.begin(), open_.end(), may);
     if (!rule.unwinds || !above)
-      statements_.fail(fmt::format("'{}' stands in {}; expected it in a {}{}", keyword, open_.back().name,
-                                   name_of(rule.blocks[0]),
-                                   rule.blocks.size() > 1 ? fmt::format(" or a {}", name_of(rule.blocks[1])) : ""));
+      statements_.fail(fmt::format(
+          "'{}' stands in {}; expected it in a {}{}", keyword, open_.back().name, rndf_block_name(rule.blocks[0]),
+          rule.blocks.size() > 1 ? fmt::format(" or a {}", rndf_block_name(rule.blocks[1])) : ""));
     while (!may(open_.back())) close_implied(fmt::format("before '{}'", keyword));
   }
   if (rule.once && repeats(keyword)) return;
@@ -291,7 +291,7 @@ void RndfReader::close() {
 
 void RndfReader::close_implied(const std::string& because) {
   const Open& last = open_.back();
-  warn(last.line, fmt::format("{} has no 'end_{}'; it ends {}", last.name, name_of(last.block), because));
+  warn(last.line, fmt::format("{} has no 'end_{}'; it ends {}", last.name, rndf_block_name(last.block), because));
   close();
 }
 

@@ -29,10 +29,11 @@ class Places {
     const auto found = places_.find(packed(id));
     if (found == places_.end())
       return diagnostics_.add_error(
-          line, fmt::format("{} way-point {}, which does not exist; expected one of this file", what, text_of(id)));
+          line,
+          fmt::format("{} way-point {}, which does not exist; expected one of this file", what, point_id_text(id)));
     if (found->second == no)
       diagnostics_.add_error(
-          line, fmt::format("{} {}, a point of a {}; expected a way-point of a lane or a {}", what, text_of(id),
+          line, fmt::format("{} {}, a point of a {}; expected a way-point of a lane or a {}", what, point_id_text(id),
                             no == PlaceKind::spot ? "parking spot" : "zone's perimeter",
                             no == PlaceKind::spot ? "perimeter point of a zone" : "point of a spot"));
   }
@@ -41,7 +42,7 @@ class Places {
     const auto found = places_.find(packed(id));
     if (found == places_.end()) return require(id, line, what, PlaceKind::spot);
     if (found->second != PlaceKind::lane && found->second != PlaceKind::unread)
-      diagnostics_.add_error(line, fmt::format("{} {}; expected a way-point of a lane", what, text_of(id)));
+      diagnostics_.add_error(line, fmt::format("{} {}; expected a way-point of a lane", what, point_id_text(id)));
   }
 
  private:

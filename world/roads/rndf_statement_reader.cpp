@@ -33,7 +33,7 @@ std::string_view take_field(std::string_view& text) {
 
 }  // namespace
 
-std::string text_of(PointId id) { return fmt::format("{}.{}.{}", id.segment, id.lane, id.point); }
+std::string point_id_text(PointId id) { return fmt::format("{}.{}.{}", id.segment, id.lane, id.point); }
 
 std::optional<PointId> read_point_id(std::string_view text, int parts) {
   std::uint16_t numbers[3] = {0, 0, 0};

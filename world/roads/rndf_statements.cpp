@@ -17,7 +17,7 @@ PointId key(int segment, int lane = 0) {
 
 /// Returns the text of an id; segments and zones are {id, 0, 0}, lanes and spots {id, lane, 0}.
 std::string shown(PointId id) {
-  if (id.point > 0) return text_of(id);
+  if (id.point > 0) return point_id_text(id);
   return id.lane > 0 ? fmt::format("{}.{}", id.segment, id.lane) : fmt::format("{}", id.segment);
 }
 
@@ -130,7 +130,7 @@ PointId RndfReader::key_of_block() const {
 PointId RndfReader::own(PointId id, std::string_view what) const {
   const PointId here = key_of_block();
   if (id.segment == here.segment && id.lane == here.lane && id.point > 0) return id;
-  statements_.fail(fmt::format("{} {} stands in {}; expected {}.{}.1, {}.{}.2, ...", what, text_of(id),
+  statements_.fail(fmt::format("{} {} stands in {}; expected {}.{}.1, {}.{}.2, ...", what, point_id_text(id),
                                open_.back().name, here.segment, here.lane, here.segment, here.lane));
 }
 
@@ -140,8 +140,8 @@ PointId RndfReader::own_or_known(PointId id, std::string_view what) {
   const PointId here = key_of_block();
   if (diagnostics_.strict() || id.point == 0 || (id.segment == here.segment && id.lane == here.lane))
     return own(id, what);
-  diagnostics_.add_warning(now().line, fmt::format("{} {} stands in {}", what, text_of(id), open_.back().name), "",
-                           fmt::format("it is assigned to {}.{}", id.segment, id.lane));
+  diagnostics_.add_warning(now().line, fmt::format("{} {} stands in {}", what, point_id_text(id), open_.back().name),
+                           "", fmt::format("it is assigned to {}.{}", id.segment, id.lane));
   return id;
 }
 
@@ -160,10 +160,10 @@ void RndfReader::waypoint() {
   const int expected = row.empty() ? 1 : row.back().id.point + 1;
   if (point.id.point < expected)
     statements_.fail(fmt::format("way-point {} comes after {}; expected them in driving direction, 1, 2, 3, ...",
-                                 text_of(point.id), text_of(row.back().id)));
+                                 point_id_text(point.id), point_id_text(row.back().id)));
   if (point.id.point > expected && open_.back().seen.emplace("gap", "").second)
-    warn(now().line,
-         fmt::format("way-point {} follows where {} was expected; numbers are missing", text_of(point.id), expected));
+    warn(now().line, fmt::format("way-point {} follows where {} was expected; numbers are missing",
+                                 point_id_text(point.id), expected));
   row.push_back(point);
   unread_.erase(id);
 }
@@ -195,10 +195,10 @@ void RndfReader::read_exit() {
   statements_.expect_fields(2);
   const auto [old, fresh] = exits_.emplace(std::pair(exit.from, exit.to), exit.line);
   if (!fresh)
-    return diagnostics_.add_warning(
-        now().line,
-        fmt::format("exit {} to {} is already in line {}", text_of(exit.from), text_of(exit.to), old->second),
-        "expected it once", "it counts once");
+    return diagnostics_.add_warning(now().line,
+                                    fmt::format("exit {} to {} is already in line {}", point_id_text(exit.from),
+                                                point_id_text(exit.to), old->second),
+                                    "expected it once", "it counts once");
   (open_.back().block == RndfBlock::lane ? lane().exits : zone().exits).push_back(exit);
 }
 
@@ -206,7 +206,7 @@ void RndfReader::read_stop() {
   const RndfStop stop{own_or_known(statements_.point(0, "the stop"), "stop"), now().line};
   statements_.expect_fields(1);
   if (!stops_.insert(stop.at).second)
-    return diagnostics_.add_warning(now().line, fmt::format("stop {} is given twice", text_of(stop.at)),
+    return diagnostics_.add_warning(now().line, fmt::format("stop {} is given twice", point_id_text(stop.at)),
                                     "expected it once", "it counts once");
   lane().stops.push_back(stop);
 }

@@ -168,8 +168,9 @@ void check_against(const RoadSidecar& sidecar, const Rndf& rndf) {
           fmt::format("{} has no lane {}.{}; expected one of its lanes", rndf.file, id.segment, id.lane));
   for (const auto& [id, point] : sidecar.points)
     if (points.count(id) == 0)
-      throw base::InputError(sidecar.file, point.line,
-                             fmt::format("{} has no point {}; expected one of its points", rndf.file, text_of(id)));
+      throw base::InputError(
+          sidecar.file, point.line,
+          fmt::format("{} has no point {}; expected one of its points", rndf.file, point_id_text(id)));
 }
 
 }  // namespace sf::world

@@ -31,7 +31,7 @@ Scale scale_of(const StageContext& context, Unit unit) {
   return {};
 }
 
-std::string text_of(const Bounds& bounds, double unit) {
+std::string bounds_text(const Bounds& bounds, double unit) {
   const std::string least = fmt::format("{:.10g}", bounds.least / unit);
   const std::string most = fmt::format("{:.10g}", bounds.most / unit);
   const bool unlimited = bounds.most >= kFinite.most;
@@ -40,7 +40,7 @@ std::string text_of(const Bounds& bounds, double unit) {
 }
 
 /// `xmax of 'velocity_bounds'`
-std::string name_of(const Key& key) {
+std::string key_name(const Key& key) {
   std::istringstream names{std::string(key.tuple.substr(std::min<std::size_t>(1, key.tuple.size())))};
   std::string name;
   for (std::uint32_t i = 0; i <= key.element; ++i) names >> name;
@@ -69,8 +69,8 @@ double read_number(const StageContext& context, const Entity& entity, const Key&
   if (read > bounds.most && read <= bounds.most * (1.0 + 1e-12)) read = bounds.most;
   if (bounds.contains(read)) return read;
   fail(context, at,
-       fmt::format("{} is {:.10g}{}; expected {}", name_of(key), read / unit.shown, key.tuple.empty() ? unit.name : "",
-                   text_of(bounds, unit.shown)));
+       fmt::format("{} is {:.10g}{}; expected {}", key_name(key), read / unit.shown, key.tuple.empty() ? unit.name : "",
+                   bounds_text(bounds, unit.shown)));
 }
 
 std::size_t word_row(const StageContext& context, SourceLocation at, std::string_view key, std::string_view written,

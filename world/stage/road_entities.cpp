@@ -31,7 +31,7 @@ std::vector<const RoadLane*> named_lanes(const BuildState& b, const Entity& enti
   const std::string names = fmt::format(" {} ", text(b.context, entity, "magnet_lanes", "all"));
   std::vector<const RoadLane*> lanes;
   for (const RoadLane& lane : roads.lanes)
-    if (names == " all " || names.find(fmt::format(" {} ", name_of(roads, lane))) != std::string::npos)
+    if (names == " all " || names.find(fmt::format(" {} ", lane_name(roads, lane))) != std::string::npos)
       lanes.push_back(&lane);
   const auto words = static_cast<std::size_t>(std::count(names.begin(), names.end(), ' ')) - 1;
   if (names != " all " && lanes.size() != words)
@@ -43,8 +43,8 @@ std::vector<const RoadLane*> named_lanes(const BuildState& b, const Entity& enti
 
 void register_way_points(BuildState& b, const RoadNetwork& roads) {
   for (const RoadLane& lane : roads.lanes)
-    for (const LanePoint& point : lane.points) b.way_points.try_emplace(text_of(point.id), false);
-  for (const StopLine& stop : roads.stops) b.way_points[text_of(id_of(roads, stop.at))] = true;
+    for (const LanePoint& point : lane.points) b.way_points.try_emplace(point_id_text(point.id), false);
+  for (const StopLine& stop : roads.stops) b.way_points[point_id_text(id_of(roads, stop.at))] = true;
 }
 
 }  // namespace
