@@ -20,7 +20,7 @@ void PlayerBridge::take(Requests& requests) { exchange_.take(requests); }
 
 std::string PlayerBridge::describe() const {
   const netio::Endpoint first = endpoint();
-  std::string line = fmt::format("Player server on {}", netio::text(first));
+  std::string line = fmt::format("Player server on {}", netio::endpoint_text(first));
   if (server_.ports() == 2) line += fmt::format(" for all robots, robot 2 alone on port {}", first.port + 1);
   if (server_.ports() > 2)
     line += fmt::format(" for all robots, robots 2 to {} alone on ports {} to {}", server_.ports(), first.port + 1,

@@ -45,13 +45,15 @@ std::vector<std::uint32_t> own_addresses() {
   return addresses;
 }
 
-std::string text_of(std::uint32_t address) {
+std::string ipv4_text(std::uint32_t address) {
   std::string line;
   for (int shift = 24; shift >= 0; shift -= 8)
     line += std::to_string(address >> shift & 0xFFu) + (shift > 0 ? "." : "");
   return line;
 }
 
-std::string text(const Endpoint& endpoint) { return text_of(endpoint.address) + ":" + std::to_string(endpoint.port); }
+std::string endpoint_text(const Endpoint& endpoint) {
+  return ipv4_text(endpoint.address) + ":" + std::to_string(endpoint.port);
+}
 
 }  // namespace sf::netio

@@ -32,8 +32,8 @@ inline bool is_loopback(std::uint32_t address) { return address >> 24 == 127; }
 std::vector<std::uint32_t> own_addresses();
 
 /// "127.0.0.1".
-std::string text_of(std::uint32_t address);
+std::string ipv4_text(std::uint32_t address);
 /// "127.0.0.1:10008".
-std::string text(const Endpoint& endpoint);
+std::string endpoint_text(const Endpoint& endpoint);
 
 }  // namespace sf::netio

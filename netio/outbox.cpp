@@ -66,7 +66,7 @@ void Batch::send(const Socket& socket, int patience_ms, OutboxCounts& counts) {
       // The error concerns the first message; the others are tried again.
       ++counts.failed;
       if (counts.first_failure.empty())
-        counts.first_failure = text(from_posix(destinations[i])) + ": " + error_text(error);
+        counts.first_failure = endpoint_text(from_posix(destinations[i])) + ": " + error_text(error);
       ++i;
       continue;
     }

@@ -18,7 +18,7 @@ std::string_view name(PacketStatus status) { return kNames[static_cast<std::size
 
 std::uint64_t PacketCounts::total() const { return std::accumulate(of.begin(), of.end(), std::uint64_t{0}); }
 
-std::string text(const PacketCounts& counts) {
+std::string packet_counts_text(const PacketCounts& counts) {
   std::string line;
   for (std::size_t i = 0; i < kPacketStatuses; ++i) {
     if (counts.of[i] == 0) continue;

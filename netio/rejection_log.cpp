@@ -92,7 +92,7 @@ void RejectionLog::note(PacketStatus reason, std::span<const std::uint8_t> bytes
   const std::uint64_t count = row.count(now, is_tolerated(reason) ? kTolerated : 0);
   if (count == 0) return;
   log.write(fmt::format("{} from {} dropped: {} (docs/packets.md)", packets_text(count),
-                        &row == &others_ ? text(who) + " and other senders" : text(who),
+                        &row == &others_ ? endpoint_text(who) + " and other senders" : endpoint_text(who),
                         rejection_text(reason, bytes, robots_)),
             now);
 }

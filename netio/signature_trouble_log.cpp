@@ -83,7 +83,7 @@ void SignatureTroubleLog::note(PacketStatus reason, const Packet& packet, const 
   const Claim claim = claim_of(packet.header);
   const std::uint64_t count = rows_[{claim.kind, claim.id, reason}].packets.count(now);
   if (count == 0) return;
-  log.write(fmt::format("{} at {}: {}{}, {}", peer_text(claim, name), text(who), packets_text(count),
+  log.write(fmt::format("{} at {}: {}{}, {}", peer_text(claim, name), endpoint_text(who), packets_text(count),
                         is_refusal(reason) ? " dropped" : "", reason_text(reason, inbox.lag(claim))),
             now);
 }

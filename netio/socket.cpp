@@ -47,8 +47,8 @@ void bind_socket(const Socket& socket, const Endpoint& endpoint, const char* pro
   const sockaddr_in address = to_posix(endpoint);
   if (bind(socket.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
   const int error = errno;
-  const std::string what =
-      std::string("cannot bind ") + protocol + " " + text(endpoint) + ": " + error_text(error) + "; " + remedy(error);
+  const std::string what = std::string("cannot bind ") + protocol + " " + endpoint_text(endpoint) + ": " +
+                           error_text(error) + "; " + remedy(error);
   if (error == EADDRINUSE) throw PortInUse(what);
   throw base::InputError(what);
 }
@@ -56,7 +56,7 @@ void bind_socket(const Socket& socket, const Endpoint& endpoint, const char* pro
 Socket open_udp(const Endpoint& endpoint, const SocketBuffers& buffers) {
   Socket opened(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (opened.descriptor() < 0) {
-    throw base::InputError("no UDP socket for " + text(endpoint) + ": " + error_text(errno) +
+    throw base::InputError("no UDP socket for " + endpoint_text(endpoint) + ": " + error_text(errno) +
                            "; raise `ulimit -n`, or use fewer ports");
   }
   bind_socket(opened, endpoint, "UDP");

@@ -19,7 +19,8 @@ constexpr int kBacklog = 64;  // connections that wait to be accepted
 Socket open_tcp(const Endpoint& endpoint) {
   Socket opened(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (opened.descriptor() >= 0) return opened;
-  throw base::InputError("no TCP socket for " + text(endpoint) + ": " + error_text(errno) + "; raise `ulimit -n`");
+  throw base::InputError("no TCP socket for " + endpoint_text(endpoint) + ": " + error_text(errno) +
+                         "; raise `ulimit -n`");
 }
 
 void watch(const Socket& epoll, int operation, const Socket& socket, std::uint64_t key, std::uint32_t events) {
@@ -44,7 +45,7 @@ Socket listen_tcp(const Endpoint& bind) {
   setsockopt(listener.descriptor(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   bind_socket(listener, bind, "TCP");
   if (listen(listener.descriptor(), kBacklog) == 0) return listener;
-  throw PortInUse("cannot listen on TCP " + text(bind) + ": " + error_text(errno) +
+  throw PortInUse("cannot listen on TCP " + endpoint_text(bind) + ": " + error_text(errno) +
                   "; another program has this port; end it or choose another port");
 }
 

@@ -143,7 +143,7 @@ RobotClientStats RobotClient::stats() const {
   stats.robot = world_.movers[mover_].name;
   stats.id = world_.movers[mover_].id;
   stats.controller = controller_;
-  stats.farm = netio::text(link_.farm());
+  stats.farm = netio::endpoint_text(link_.farm());
   stats.wall_s = wall_s_;
   stats.steps = steps_;
   stats.started = started_;

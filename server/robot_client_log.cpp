@@ -32,13 +32,13 @@ void RobotClientLog::note_signatures(const RobotLink& link, std::int64_t now) {
   next_trouble_ = now + kTroubleEvery;
   problem_logged_ = true;
   stands_ = reading_timeout_ > 0;
-  log_.write(fmt::format("the farm at {} {}", netio::text(link.farm()),
+  log_.write(fmt::format("the farm at {} {}", netio::endpoint_text(link.farm()),
                          netio::trouble_text(trouble, fmt::format("robot {}", id_), base::unix_time())),
              now);
 }
 
 void RobotClientLog::note_link(const RobotLink& link, std::optional<bool> lost, std::int64_t now) {
-  const std::string farm = netio::text(link.farm());
+  const std::string farm = netio::endpoint_text(link.farm());
   note_signatures(link, now);
   if (!problem_logged_ && link.listens() && now - link.last_answer().value_or(0) >= kAnswerIn) {
     problem_logged_ = true;

@@ -166,10 +166,10 @@ void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::E
   logged = expected;
   const std::string sender = sender_text(packet.header);
   log_.write(refused ? fmt::format("{} is at {} by the table of peers; what {} says as the same is dropped", sender,
-                                   netio::text_of(expected.address), netio::text(who))
+                                   netio::ipv4_text(expected.address), netio::endpoint_text(who))
                      : fmt::format("{} is heard from {}; what {} says as the same is dropped until that one leaves or "
                                    "is silent for 2 s",
-                                   sender, netio::text(expected), netio::text(who)),
+                                   sender, netio::endpoint_text(expected), netio::endpoint_text(who)),
              now);
 }
 

@@ -175,7 +175,7 @@ class Printer {
   std::uint64_t datagrams() const { return counts_.total() + cut_; }
   bool any_good() const { return counts_[netio::PacketStatus::accepted] > 0; }
   std::string summary() const {
-    return netio::text(counts_) + (cut_ > 0 ? fmt::format(", cut off by the capture {}", cut_) : "");
+    return netio::packet_counts_text(counts_) + (cut_ > 0 ? fmt::format(", cut off by the capture {}", cut_) : "");
   }
 
  private:
@@ -238,8 +238,9 @@ void dump_ports(const DumpOptions& options, Printer& printer) {
   while (!is_over()) {
     listener.drain(kPatience, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
       if (options.count > 0 && printer.datagrams() >= options.count) return;
-      printer.print({base::unix_time(), netio::text(source), netio::text(netio::Endpoint{address, ports[i]}),
-                     static_cast<std::uint32_t>(bytes.size()), bytes});
+      printer.print({base::unix_time(), netio::endpoint_text(source),
+                     netio::endpoint_text(netio::Endpoint{address, ports[i]}), static_cast<std::uint32_t>(bytes.size()),
+                     bytes});
     });
     flush_output();
   }

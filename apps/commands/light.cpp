@@ -100,7 +100,7 @@ class Sender {
   const std::vector<server::Intersection>& intersections() const { return intersections_; }
   netio::OutboxCounts counts() const { return outbox_.counts(); }
   std::string to() const {
-    return address_ ? fmt::format("{}:{}", netio::text_of(*address_), fmt::join(ports_, ",")) : "";
+    return address_ ? fmt::format("{}:{}", netio::ipv4_text(*address_), fmt::join(ports_, ",")) : "";
   }
 
  private:

@@ -18,7 +18,7 @@ LightRadio::LightRadio(const world::World& world, const world::RoadNetwork* road
     : messages_(world, roads) {
   const auto address = netio::AddressBook().find(farm);
   if (!address) throw base::InputError(fmt::format("--farm: expected HOST:PORT, got '{}'", farm));
-  farm_ = netio::text(*address);
+  farm_ = netio::endpoint_text(*address);
   for (const server::Intersection& one : messages_.intersections()) {
     const netio::Peer* own = netio::find(peers, netio::PeerKind::light, one.id);
     sockets_.emplace_back(netio::V2vSocketOptions{.farm = *address,

@@ -106,7 +106,7 @@ int serve_lockstep(const ServeOptions& options) {
     print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
     return facts.recording_error.empty() && facts.lockstep->lost_robots == 0 ? 0 : 1;
   } catch (const netio::PortInUse&) {
-    throw base::InputError(netio::text(chosen.lockstep.bind) +
+    throw base::InputError(netio::endpoint_text(chosen.lockstep.bind) +
                            " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
                            "(--port N, or --port 0 for any free one) and tell the clients");
   }

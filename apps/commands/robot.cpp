@@ -117,7 +117,7 @@ int robot(const RobotOptions& options) {
   print_message("{} (id {}) drives by '{}' {} with the farm at {}{}; Ctrl-C ends it", world.movers[mover].name,
                 world.movers[mover].id, options.controller,
                 process.on_scans() ? "on each new scan" : fmt::format("at {:g} Hz", process.rate()),
-                netio::text(process.link().farm()),
+                netio::endpoint_text(process.link().farm()),
                 waits_for_start(options) ? ", once it is given the start signal" : "");
   process.run(stop_requested(), options.duration);
   const server::RobotClientStats facts = process.stats();

@@ -101,7 +101,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
 
 /// Adds the command-line option that resolves the error.
 base::InputError port_in_use(const netio::Endpoint& bind) {
-  return base::InputError(netio::text(bind) +
+  return base::InputError(netio::endpoint_text(bind) +
                           " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
                           "(--port N, or --port 0 for any free one) and tell the robots (robot --port N)");
 }

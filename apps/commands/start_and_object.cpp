@@ -69,7 +69,7 @@ int object(const ObjectOptions& options) {
   send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.tag)}, netio::Object{present},
                   signer_of(options, {netio::PeerKind::tag, options.tag}));
   print_message("'{}' sent to {} for the object of tag {}, {} times; it is not acknowledged",
-                present ? "present" : "absent", netio::text(farm), options.tag, kRepetitions);
+                present ? "present" : "absent", netio::endpoint_text(farm), options.tag, kRepetitions);
   return 0;
 }
 

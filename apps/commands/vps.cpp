@@ -153,7 +153,7 @@ std::unique_ptr<CameraInputs> open(const VpsOptions& options, const vision::Test
   auto inputs = robot_inputs(testbed, listen, options.seed, stop_requested());
   robots = &*inputs;
   print_message("renders robots that report their true states to {} (robot --truth {}); Ctrl-C ends it",
-                netio::text(listen), netio::text(listen));
+                netio::endpoint_text(listen), netio::endpoint_text(listen));
   return inputs;
 }
 

@@ -69,7 +69,7 @@ void LiveBridges::open_ros2() {
 void LiveBridges::open_player() {
   const netio::Endpoint bind = read_own_address(options_.player, "--player");
   auto player = std::make_unique<bridges::PlayerBridge>(bridges::Scene{world_, sensor_set_, info_, simulated_}, bind);
-  options_.player = netio::text(player->endpoint());
+  options_.player = netio::endpoint_text(player->endpoint());
   bridges_.add(std::move(player));
 }
 

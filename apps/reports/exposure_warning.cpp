@@ -8,11 +8,11 @@ namespace sf::apps {
 void warn_of_exposure(std::uint32_t address, const std::string& can, const std::string& since,
                       const std::string& option) {
   if (netio::is_loopback(address)) return;
-  const std::string bound = netio::text_of(address);
+  const std::string bound = netio::ipv4_text(address);
   std::string reached = "whoever reaches " + bound;
   if (address == 0) {
     std::string own;
-    for (const std::uint32_t each : netio::own_addresses()) own += (own.empty() ? "" : " or ") + netio::text_of(each);
+    for (const std::uint32_t each : netio::own_addresses()) own += (own.empty() ? "" : " or ") + netio::ipv4_text(each);
     reached = own.empty() ? "every interface, of which this machine has none but loopback" : "whoever reaches " + own;
   }
   print_message(

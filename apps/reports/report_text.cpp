@@ -235,7 +235,7 @@ std::string text_of(const RunReport& f) {
   if (f.strayed && !f.strayed->empty()) text += strayed_text(*f.strayed);
   text += control_text(f.control);
   if (f.sent) text += packets_text(f.publisher);
-  if (f.received) text += row("packets received", netio::text(f.inbox));
+  if (f.received) text += row("packets received", netio::packet_counts_text(f.inbox));
   if (f.lockstep) text += lockstep_text(*f.lockstep);
   if (f.socket_drops > 0) text += drops_text(f.socket_drops);
   if (f.filtered) text += states_text(f);
@@ -294,7 +294,7 @@ std::string text_of(const netio::StreamSummary& s) {
   text += row("packets lost", "{} ({}, {} reordered)", s.lost, counted(s.duplicates, "duplicate"), s.reordered);
   if (s.stale_states > 0) text += row("stale states", "behind {}", counted(s.stale_states, "good packet"));
   if (s.oldest_state > 0) text += row("oldest state", "{:.3g} s", 1e-9 * static_cast<double>(s.oldest_state));
-  if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
+  if (s.counts.dropped() > 0) text += row("by reason", netio::packet_counts_text(s.counts));
   if (s.socket_drops > 0) text += drops_text(s.socket_drops);
   if (s.silent_ports > 0) text += row("silent ports", s.silent_ports);
   return text;

@@ -30,13 +30,13 @@ std::string link_text(const server::LinkCounts& link) {
     text += row("packets not sent", "{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
                 link.sent.dropped);
   text += row("readings", types_text(link));
-  text += row("sensor packets", netio::text(in.packets));
+  text += row("sensor packets", netio::packet_counts_text(in.packets));
   if (link.stale > 0) text += row("", counted(link.stale, "reading") + " of a stale state");
   text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
   if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
   if (link.socket_drops > 0) text += row("", counted(link.socket_drops, "packet") + " dropped by the operating system");
   if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " restarted");
-  text += row("V2V and START", netio::text(link.packets));
+  text += row("V2V and START", netio::packet_counts_text(link.packets));
   if (link.out.lost + link.in.lost > 0) {
     text += row("injected link, out", injected_text(link.out));
     text += row("  in", injected_text(link.in));
@@ -70,7 +70,7 @@ std::string text_of(const server::RobotClientStats& f) {
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
   if (f.cameras) {
-    text += row("positions", "{} by TAG packets, of which {} used", netio::text(f.cameras->packets),
+    text += row("positions", "{} by TAG packets, of which {} used", netio::packet_counts_text(f.cameras->packets),
                 f.cameras->states.states[static_cast<std::size_t>(estimation::Verdict::used)]);
     const server::PositionErrors& e = f.cameras->errors;
     if (e.count > 0)

@@ -63,7 +63,7 @@ void Server::open_all(netio::Endpoint endpoint) {
     ports_.push_back(
         {std::move(listener), endpoint, Listing(devices_, i == 0 ? std::nullopt : std::optional(robots[i]))});
     if (++endpoint.port == 0 && i + 1 < count)
-      throw netio::PortInUse("the robots' ports after TCP " + netio::text(ports_[0].endpoint) +
+      throw netio::PortInUse("the robots' ports after TCP " + netio::endpoint_text(ports_[0].endpoint) +
                              " would end beyond 65535; choose a lower one");
   }
 }
@@ -142,8 +142,8 @@ void Server::note_full(const netio::Endpoint& peer) {
   log_.write(
       fmt::format("Player: {} refused, the last from {}: {} are connected, the most at a time, of which none has "
                   "been silent for long enough ({:g} s) to make room",
-                  count == 1 ? "1 program" : fmt::format("{} programs", count), netio::text(peer), connections_.size(),
-                  silent_),
+                  count == 1 ? "1 program" : fmt::format("{} programs", count), netio::endpoint_text(peer),
+                  connections_.size(), silent_),
       std::chrono::nanoseconds(now.time_since_epoch()).count());
 }
 

@@ -138,7 +138,7 @@ TEST(Faults, ARestartedCameraIsAcceptedAgain) {
   const netio::Socket here = netio::open_udp({netio::kLoopback, 0});
   const std::string testbed =
       hall.folder.write("overhead.toml", kOverhead + std::string("[[tag]]\nid = 2\naddress = \"") +
-                                             netio::text(netio::bound_endpoint(here)) + "\"\n");
+                                             netio::endpoint_text(netio::bound_endpoint(here)) + "\"\n");
   Words words{"vps", testbed, "--rendered", "2", "--real-time", "--send", "127.0.0.1:" + hall.port};
   {
     Program camera(words);

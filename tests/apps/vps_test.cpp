@@ -66,7 +66,7 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
   const netio::Socket socket = netio::open_udp({netio::kLoopback, 0});
-  const std::string address = netio::text(netio::bound_endpoint(socket));
+  const std::string address = netio::endpoint_text(netio::bound_endpoint(socket));
   const std::string peers = folder.write("peers.toml", "[[peer]]\ntag = 2\nkey = \"" + std::string(64, '5') + "\"\n");
   const Outcome outcome =
       run_program({"vps", testbed, "--rendered", "2", "--images", "4", "--send", address, "--track",

@@ -497,13 +497,13 @@ TEST(PacketStatus, EachHasItsOwnName) {
 
 TEST(PacketStatus, CountsSayWhatHappened) {
   PacketCounts counts;
-  EXPECT_EQ(text(counts), "nothing received");
+  EXPECT_EQ(packet_counts_text(counts), "nothing received");
   counts.add(PacketStatus::accepted);
   counts.add(PacketStatus::stale);
   counts.add(PacketStatus::stale);
   EXPECT_EQ(counts.total(), 3u);
   EXPECT_EQ(counts.dropped(), 2u);
-  EXPECT_EQ(text(counts), "accepted 1, stale 2");
+  EXPECT_EQ(packet_counts_text(counts), "accepted 1, stale 2");
 }
 
 /// Whole numbers of lockstep at their limits and one beyond.

@@ -422,14 +422,14 @@ TEST(Outbox, ADatagramLongerThanAnyIsOurBug) {
 
 TEST(Endpoint, ResolvesAndPrints) {
   EXPECT_EQ(resolve("127.0.0.1"), kLoopback);
-  EXPECT_EQ(text(Endpoint{0xC0000201u, 10008}), "192.0.2.1:10008");
+  EXPECT_EQ(endpoint_text(Endpoint{0xC0000201u, 10008}), "192.0.2.1:10008");
   EXPECT_THROW(resolve("no host has a space"), base::InputError);
 }
 
 TEST(Endpoint, LoopbackIsItsWholeNetwork) {
   for (const std::uint32_t address : {0x7F000000u, kLoopback, 0x7FFFFFFFu}) EXPECT_TRUE(is_loopback(address));
   for (const std::uint32_t address : {0u, 0x7EFFFFFFu, 0x80000000u}) EXPECT_FALSE(is_loopback(address));
-  for (const std::uint32_t address : own_addresses()) EXPECT_FALSE(is_loopback(address)) << text_of(address);
+  for (const std::uint32_t address : own_addresses()) EXPECT_FALSE(is_loopback(address)) << ipv4_text(address);
 }
 
 TEST(Endpoint, OwnAddressesHoldTheSourceOfARouteToOthers) {

@@ -152,11 +152,11 @@ TEST(Service, RobotsWithAndWithoutAKeyDriveTogether) {
     EXPECT_TRUE(stats.started);
     EXPECT_GT(stats.distance_m, 0.05);
     EXPECT_GE(stats.link.whole.at("laser"), 38u) << stats.id;
-    EXPECT_EQ(stats.link.readings.packets.dropped(), 0u) << text(stats.link.readings.packets);
+    EXPECT_EQ(stats.link.readings.packets.dropped(), 0u) << packet_counts_text(stats.link.readings.packets);
     EXPECT_TRUE(robot->link().is_active(3 - stats.id, f.now)) << "each is sent the other's states";
   }
   const netio::PacketCounts inbox = f.service->stats().inbox;
-  EXPECT_EQ(inbox.dropped(), inbox[netio::PacketStatus::unproven]) << text(inbox);
+  EXPECT_EQ(inbox.dropped(), inbox[netio::PacketStatus::unproven]) << packet_counts_text(inbox);
 }
 
 /// A wandering robot steps when its scan arrives, and at 5 Hz without scans, so that the farm does not drop it.
@@ -185,7 +185,7 @@ TEST(Service, ARobotIsServedOnlyWithItsKey) {
     f.run(10);
     EXPECT_FALSE(f.client->stats().answered);
     const netio::PacketCounts inbox = f.service->stats().inbox;
-    EXPECT_GE(inbox[key ? PacketStatus::wrong_signature : PacketStatus::not_signed], 10u) << text(inbox);
+    EXPECT_GE(inbox[key ? PacketStatus::wrong_signature : PacketStatus::not_signed], 10u) << packet_counts_text(inbox);
     EXPECT_EQ(inbox.dropped(), inbox.total());
     EXPECT_EQ(f.service->stats().answers.queued, 2u) << "REFUSAL twice a second, and no challenge";
   }
