@@ -32,7 +32,7 @@ std::string text_of_squares(const OccupancyGrid& grid, std::int64_t side) {
 
 }  // namespace
 
-std::string text_of(const OccupancyGrid& grid) { return text_of_squares(grid, 1); }
+std::string grid_text(const OccupancyGrid& grid) { return text_of_squares(grid, 1); }
 
 std::string text_within(const OccupancyGrid& grid, int across, int down) {
   const auto squares = [](std::int64_t cells, int most) { return (cells + most - 1) / most; };

@@ -8,7 +8,7 @@
 namespace sf::maps {
 
 /// One line per row, trailing blanks kept.
-std::string text_of(const OccupancyGrid& grid);
+std::string grid_text(const OccupancyGrid& grid);
 
 /// Same, scaled to a terminal of limited size. Each character represents a square of cells: occupied if any of its
 /// cells is occupied, otherwise free if any is free.

@@ -120,7 +120,7 @@ void run_with(const ExperimentContext& context, const Entrant& entrant, std::vec
   files.push_back(in_folder(context, entrant.name + "-trajectories.png"));
   viz::draw_trajectories(world, tracks, files.back(), "trial");
   files.push_back(in_folder(context, entrant.name + "-map.txt"));
-  write_text(files.back(), maps::text_of(trials.front().maps.front()));
+  write_text(files.back(), maps::grid_text(trials.front().maps.front()));
   files.push_back(in_folder(context, entrant.name + "-map.png"));
   const viz::Track& track = trials.front().tracks.front();
   viz::draw_map(trials.front().maps.front(),

@@ -181,7 +181,7 @@ void Display::redraw() {
 
 void Display::print_maps() const {
   if (on_terminal_) return;
-  for (const maps::OccupancyGrid& grid : pictures()) print(maps::text_of(grid));
+  for (const maps::OccupancyGrid& grid : pictures()) print(maps::grid_text(grid));
 }
 
 void Display::save(const std::string& file) const {

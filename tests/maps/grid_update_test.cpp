@@ -26,14 +26,14 @@ OccupancyGrid one_beam(const base::Pose& X_WS, double range, double range_max, d
 
 TEST(MapRule, HitOccupiesItsEnd) {
   const OccupancyGrid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
-  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1000000");
+  EXPECT_EQ(grid_text(grid).substr(2 * 13, 12), "00   1000000");
   EXPECT_EQ(count(grid).occupied, 1u);
   EXPECT_EQ(count(grid).free, 3u);
 }
 
 TEST(MapRule, MissFreesItsEnd) {
   for (const double range : {3.0, 100.0, std::numeric_limits<double>::infinity()})
-    EXPECT_EQ(text_of(one_beam({2.5, 9.5, 0, 0}, range, 3.0)).substr(2 * 13, 12), "00    000000") << range;
+    EXPECT_EQ(grid_text(one_beam({2.5, 9.5, 0, 0}, range, 3.0)).substr(2 * 13, 12), "00    000000") << range;
 }
 
 TEST(MapRule, InvalidRangesChangeNoCell) {
@@ -65,7 +65,7 @@ TEST(MapRule, OccupiedTakesPrecedenceWithinAScan) {
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 5.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
-  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1 10000");
+  EXPECT_EQ(grid_text(grid).substr(2 * 13, 12), "00   1 10000");
 }
 
 TEST(MapRule, LaterScanOverwrites) {
@@ -73,17 +73,17 @@ TEST(MapRule, LaterScanOverwrites) {
   const std::vector<glm::dvec2> beams{{1, 0}};
   const std::vector<double> ranges{6.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
-  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00      1000");
+  EXPECT_EQ(grid_text(grid).substr(2 * 13, 12), "00      1000");
   const std::vector<double> nearer{4.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, nearer, beams, 0.0, 8.0});
-  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00    1 1000") << "a free cell is occupied, and what it hides stays";
+  EXPECT_EQ(grid_text(grid).substr(2 * 13, 12), "00    1 1000") << "a free cell is occupied, and what it hides stays";
 }
 
 TEST(MapRule, SensorOutsideTheMap) {
   const OccupancyGrid into = one_beam({-2.5, 9.5, 0, 0}, 4.0, 8.0);
-  EXPECT_EQ(text_of(into).substr(2 * 13, 12), " 10000000000") << "it comes from outside";
+  EXPECT_EQ(grid_text(into).substr(2 * 13, 12), " 10000000000") << "it comes from outside";
   const OccupancyGrid out = one_beam({9.5, 9.5, 0, 0}, 7.0, 8.0);
-  EXPECT_EQ(text_of(out).substr(2 * 13, 12), "000000000   ") << "its end is outside";
+  EXPECT_EQ(grid_text(out).substr(2 * 13, 12), "000000000   ") << "its end is outside";
   EXPECT_EQ(count(out).unexplored, 141u) << "and enters no other row";
   EXPECT_EQ(count(one_beam({-5.5, 9.5, 0, 0}, 4.0, 8.0)).unexplored, 144u);
   for (const double far : {1e9, 1e300, std::numeric_limits<double>::infinity(), std::nan("")})

@@ -88,13 +88,13 @@ TEST(MapText, MatchesTheThesis) {
   grid.set({0, 0}, Cell::occupied);
   grid.set({3, 0}, Cell::free);
   grid.set({1, 3}, Cell::free);
-  EXPECT_EQ(text_of(grid), "100 \n0000\n0000\n0 00\n");
+  EXPECT_EQ(grid_text(grid), "100 \n0000\n0000\n0 00\n");
   EXPECT_EQ(grid.words[0], 1u | 2u << 6 | 2u << 26) << "figure 42: rows of four, two bits each";
 }
 
 TEST(MapText, FitsTheTerminal) {
   const OccupancyGrid grid = filled({0, 0, 1, 5, 3}, 5);  // 20 x 12
-  EXPECT_EQ(text_within(grid, 20, 12), text_of(grid));
+  EXPECT_EQ(text_within(grid, 20, 12), grid_text(grid));
   const std::string half = text_within(grid, 10, 99);
   EXPECT_EQ(half.size(), 6u * 11u);
   for (std::int64_t row = 0; row < 6; ++row)
