@@ -72,7 +72,7 @@ Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& 
   return seen;
 }
 
-std::string text_of(const Coverage& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
+std::string coverage_text(const Coverage& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
 
 double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
   SF_CHECK(map.geometry == reference.geometry, "maps of two geometries cannot be compared");

@@ -130,7 +130,7 @@ std::string setup_of(const ExperimentContext& context, const Disturbance& d) {
       "The start is off by {:g} mm along and across and by {:.2g} degrees; noise (where the world has none): {:g} mm "
       "on each ray of a lane edge sensor, {:g} Gauss on each component of a magnetometer, {:g} mm on each beam of a "
       "laser (all standard deviations).",
-      name_of(context.scenario.plant.value_or(Plant::ideal)),
+      plant_name(context.scenario.plant.value_or(Plant::ideal)),
       first == last ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last),
       context.scenario.duration, readings_of(context.scenario.actor.link), 1e3 * d.place, d.heading * 180.0 / M_PI,
       1e3 * d.edge_noise, d.field_noise, 1e3 * d.scan_noise);

@@ -103,9 +103,9 @@ std::string draw(const ExperimentContext& context, const std::vector<Row>& rows,
   for (const Row& row : rows)
     if (row.speed == speed && row.kp == 0.0) tracks.push_back(row.track);
   const std::string file = in_folder(context, fmt::format("trajectories-{:g}.png", speed));
-  viz::draw_along_paths(world_of(context.scenario), tracks,
-                        fmt::format("Lane keeping at {:g} m/s by late states", speed),
-                        fmt::format("plant {}, seed {}", name_of(*context.scenario.plant), context.options.seed), file);
+  viz::draw_along_paths(
+      world_of(context.scenario), tracks, fmt::format("Lane keeping at {:g} m/s by late states", speed),
+      fmt::format("plant {}, seed {}", plant_name(*context.scenario.plant), context.options.seed), file);
   return file;
 }
 

@@ -41,7 +41,7 @@ struct Mapped {
   double wrong = 0.0;  ///< [-] of the known cells
 };
 
-std::string text_of(const std::optional<std::uint32_t>& count, const char* none) {
+std::string count_text(const std::optional<std::uint32_t>& count, const char* none) {
   return count ? std::to_string(*count) : none;
 }
 
@@ -50,7 +50,7 @@ std::string csv_of(const std::vector<Mapped>& rows) {
       "controller,trial,seconds,done,contacts,helped,dead_ends,stuck_s,driven_m,cells,missed,coverage,disagreement\n";
   for (const Mapped& m : rows)
     text += fmt::format("{},{},{:.1f},{},{},{},{},{:.1f},{:.4g},{},{},{:.6f},{:.5f}\n", m.entrant, m.trial, m.simulated,
-                        m.done ? 1 : 0, m.contacts, m.interventions, text_of(m.dead_ends, ""), m.stuck, m.travelled,
+                        m.done ? 1 : 0, m.contacts, m.interventions, count_text(m.dead_ends, ""), m.stuck, m.travelled,
                         m.seen.wanted, m.seen.missed, m.seen.coverage(), m.wrong);
   return text;
 }
@@ -76,7 +76,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Mapped
   for (const Mapped& m : rows)
     text += fmt::format("| {} | {} | {:.0f} | {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.2f} % |\n", m.entrant,
                         m.trial, m.simulated, m.done ? "yes" : "no", m.contacts, m.interventions,
-                        text_of(m.dead_ends, "-"), m.stuck, m.travelled, text_of(m.seen), 100.0 * m.wrong);
+                        count_text(m.dead_ends, "-"), m.stuck, m.travelled, coverage_text(m.seen), 100.0 * m.wrong);
   return text + fmt::format("\n## Comparison with the thesis\n\n{}\n", context.type.reasons);
 }
 

@@ -27,10 +27,11 @@ std::string draw_paths(const ExperimentContext& context, const std::vector<Trial
     tracks.push_back(std::move(track));
   }
   const std::string file = in_folder(context, "trajectories.png");
-  viz::draw_along_paths(world, tracks, "Trajectories: " + context.scenario.name,
-                        fmt::format("plant {}, {} from seed {}", name_of(context.scenario.plant.value_or(Plant::ideal)),
-                                    counted(trials.size(), "trial"), context.options.seed),
-                        file);
+  viz::draw_along_paths(
+      world, tracks, "Trajectories: " + context.scenario.name,
+      fmt::format("plant {}, {} from seed {}", plant_name(context.scenario.plant.value_or(Plant::ideal)),
+                  counted(trials.size(), "trial"), context.options.seed),
+      file);
   return file;
 }
 

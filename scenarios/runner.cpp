@@ -49,7 +49,7 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
   const bool of_driven = e.kind == Kind::checkpoints || e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error;
   if (of_driven && std::all_of(rows.begin(), rows.end(),
                                [&](std::uint32_t row) { return options.actors[row].controller.name.empty(); }))
-    refuse(fmt::format("'{}' of a robot without a controller; give it one", name_of(e.kind)));
+    refuse(fmt::format("'{}' of a robot without a controller; give it one", expectation_kind_name(e.kind)));
   if (e.kind == Kind::map_coverage && std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
         return sensors::lasers_of(world.movers[row]).empty();
       }))
@@ -159,7 +159,7 @@ class Run {
   }
 
   static std::string what_of(const Expectation& e) {
-    return std::string(name_of(e.kind)) + (e.robot.empty() ? "" : " of " + e.robot);
+    return std::string(expectation_kind_name(e.kind)) + (e.robot.empty() ? "" : " of " + e.robot);
   }
 
   /// Adds the map of a robot whose map is expected.

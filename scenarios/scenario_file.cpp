@@ -222,11 +222,11 @@ void read_expectations(const Reader& reader, const TomlNode& root, Scenario& sce
   const TomlNode* table = reader.table(root, "expect");
   if (table == nullptr) return;
   std::vector<std::string_view> keys;
-  for (const Rule& rule : kRules) keys.push_back(name_of(rule.kind));
+  for (const Rule& rule : kRules) keys.push_back(expectation_kind_name(rule.kind));
   reader.require_known(*table, keys);
   for (const TomlNode& node : table->items)
     for (const Rule& rule : kRules)
-      if (name_of(rule.kind) == node.key) read_expectation(reader, node, rule, scenario);
+      if (expectation_kind_name(rule.kind) == node.key) read_expectation(reader, node, rule, scenario);
 }
 
 void read_plant(const Reader& reader, const TomlNode& root, Scenario& scenario) {
@@ -289,14 +289,14 @@ std::string world_file(const Reader& reader, const TomlNode& root) {
 
 }  // namespace
 
-std::string_view name_of(Expectation::Kind kind) {
+std::string_view expectation_kind_name(Expectation::Kind kind) {
   constexpr std::array<std::string_view, 11> kNames{"no_collision", "contacts",        "mean_error", "mean_abs_error",
                                                     "map_coverage", "lights_obeyed",   "done",       "distance",
                                                     "checkpoints",  "all_checkpoints", "tick_p99_ms"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::string_view name_of(Plant plant) { return plant == Plant::ideal ? "ideal" : "thesis"; }
+std::string_view plant_name(Plant plant) { return plant == Plant::ideal ? "ideal" : "thesis"; }
 
 std::optional<Plant> plant_of(std::string_view name) {
   if (name == "ideal") return Plant::ideal;

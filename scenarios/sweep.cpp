@@ -81,7 +81,7 @@ TriedScenario try_scenario(const Sweep& sweep, const Rows& rows, std::size_t par
 [[noreturn]] void refuse_value(const Sweep& sweep, const Rows& rows, std::size_t parameter, const std::string& error) {
   const SweepParameter& p = sweep.parameters[parameter];
   throw base::InputError(sweep.file, p.line,
-                         fmt::format("{} = {}: {}", p.name, text_of(p.values[rows[parameter]]), error));
+                         fmt::format("{} = {}: {}", p.name, parameter_value_text(p.values[rows[parameter]]), error));
 }
 
 /// Returns the minimum and maximum of numbers, and all other values, except for the first.
@@ -95,10 +95,10 @@ Rows rows_to_try(const SweepParameter& parameter) {
         values.begin(), values.end(), [](const TomlNode& a, const TomlNode& b) { return a.number < b.number; });
     rows = {static_cast<std::size_t>(least - values.begin()), static_cast<std::size_t>(most - values.begin())};
   } else {
-    std::vector<std::string> seen{text_of(values[0])};
+    std::vector<std::string> seen{parameter_value_text(values[0])};
     for (std::size_t i = 1; i < values.size(); ++i)
-      if (std::find(seen.begin(), seen.end(), text_of(values[i])) == seen.end()) {
-        seen.push_back(text_of(values[i]));
+      if (std::find(seen.begin(), seen.end(), parameter_value_text(values[i])) == seen.end()) {
+        seen.push_back(parameter_value_text(values[i]));
         rows.push_back(i);
       }
   }
@@ -155,10 +155,11 @@ std::vector<world::Warning> check_sweep(const Sweep& sweep) {
   return first.warnings;
 }
 
-std::string text_of(const TomlNode& value) {
+std::string parameter_value_text(const TomlNode& value) {
   std::vector<std::string> items;
   for (const TomlNode& item : value.items)
-    items.push_back(item.key.empty() ? text_of(item) : fmt::format("{} = {}", item.key, text_of(item)));
+    items.push_back(item.key.empty() ? parameter_value_text(item)
+                                     : fmt::format("{} = {}", item.key, parameter_value_text(item)));
   switch (value.kind) {
     case TomlNode::Kind::flag:
       return value.flag ? "true" : "false";

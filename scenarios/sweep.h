@@ -59,6 +59,6 @@ Scenario scenario_of(const Sweep& sweep, std::uint64_t job);
 std::vector<world::Warning> check_sweep(const Sweep& sweep);
 
 /// A value as in a TOML file; texts without quotes.
-std::string text_of(const world::TomlNode& value);
+std::string parameter_value_text(const world::TomlNode& value);
 
 }  // namespace sf::scenarios

@@ -40,7 +40,8 @@ std::string number_or_empty(double value) { return std::isnan(value) ? "" : fmt:
 std::vector<std::string> parameter_texts(const Sweep& sweep, std::uint64_t point) {
   const std::vector<std::size_t> rows = rows_at(sweep, point);
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < rows.size(); ++i) texts.push_back(text_of(sweep.parameters[i].values[rows[i]]));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    texts.push_back(parameter_value_text(sweep.parameters[i].values[rows[i]]));
   return texts;
 }
 
@@ -121,7 +122,7 @@ JobCounts counts_of(JobResults results) {
   return counts;
 }
 
-std::string text_of(const JobCounts& counts) {
+std::string job_counts_text(const JobCounts& counts) {
   const std::pair<std::uint64_t, const char*> kinds[] = {{counts.passed, "pass"},
                                                          {counts.missed, "missed"},
                                                          {counts.no_expectations, "without expectations"},
@@ -238,7 +239,7 @@ std::vector<std::string> write_sweep_tables(const Sweep& sweep, const SweepFolde
       "# Sweep {}\n\n{} of {}, seeds {}. {}. Values are means over the seeds, ± the standard deviation of a "
       "sample. points.csv has 95 % intervals of the means.\n\n",
       sweep.name, counted(sweep.points(), "point"), std::filesystem::path(sweep.scenario).filename().string(),
-      seeds_text(sweep), text_of(counts_of(results)));
+      seeds_text(sweep), job_counts_text(counts_of(results)));
   std::vector<std::string> files{folder.file("jobs.csv"), folder.file("points.csv"), folder.file("report.md")};
   write_whole(files[0], csv_of_jobs(sweep, results));
   write_whole(files[1], csv_of_points(sweep, results));

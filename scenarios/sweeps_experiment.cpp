@@ -101,7 +101,7 @@ void add(std::vector<Point>& points, const std::string& sweep, Plant plant, cons
     for (const Law& law : kLaws) {
       Setting setting{.ki = law.ki, .one_ray = law.one_ray, .plant = plant};
       change(setting, x);
-      points.push_back({fmt::format("{}-{}", sweep, name_of(plant)), x, law.name, setting});
+      points.push_back({fmt::format("{}-{}", sweep, plant_name(plant)), x, law.name, setting});
     }
 }
 

@@ -46,7 +46,7 @@ std::string folder_of(const ExperimentOptions& options) {
 
 int list_all() {
   for (const scenarios::ExperimentType* type : scenarios::experiments())
-    print(fmt::format("{:<14} {}; plant {}\n", type->name, type->summary, name_of(type->plant)));
+    print(fmt::format("{:<14} {}; plant {}\n", type->name, type->summary, plant_name(type->plant)));
   return 0;
 }
 

@@ -82,8 +82,8 @@ int list_points(const Sweep& sweep) {
     const std::vector<std::size_t> rows = scenarios::rows_at(sweep, point);
     std::vector<std::string> values;
     for (std::size_t i = 0; i < rows.size(); ++i)
-      values.push_back(
-          fmt::format("{} = {}", sweep.parameters[i].name, scenarios::text_of(sweep.parameters[i].values[rows[i]])));
+      values.push_back(fmt::format("{} = {}", sweep.parameters[i].name,
+                                   scenarios::parameter_value_text(sweep.parameters[i].values[rows[i]])));
     text += fmt::format("{:>6}  {}\n", point, fmt::join(values, ", "));
   }
   if (sweep.points() > kRowsShown) text += fmt::format("{} points more\n", sweep.points() - kRowsShown);
@@ -157,7 +157,7 @@ int write_tables(const SweepOptions& options, const Sweep& sweep, const SweepFol
   install_stop_handlers();  // the tables are written completely in any case
   const std::vector<std::string> files = write_sweep_tables(sweep, folder, results);
   const scenarios::JobCounts counts = scenarios::counts_of(results);
-  print(markdown_of_points(sweep, results, kRowsShown) + "\n" + text_of(counts) + "\n");
+  print(markdown_of_points(sweep, results, kRowsShown) + "\n" + job_counts_text(counts) + "\n");
   print_failures(results);
   for (const std::string& line : scenarios::missing_values(results, 10)) print_message("left out of means: {}", line);
   for (const std::string& file : files) print_message("wrote {}", file);
@@ -172,7 +172,8 @@ int report_share(const SweepOptions& options, const Results& results, const Shar
   const scenarios::JobCounts counts = scenarios::counts_of(own);
   print_failures(results);
   print_message("share {} of {}: {}. {} has no tables yet: {} of {} missing", share.index + 1, share.count,
-                text_of(counts), options.out, scenarios::counts_of(results).missing, counted(results.size(), "job"));
+                job_counts_text(counts), options.out, scenarios::counts_of(results).missing,
+                counted(results.size(), "job"));
   return counts.good() ? 0 : 1;
 }
 

@@ -44,8 +44,8 @@ TEST(Coverage, CountsOnlyFreeCellsOfTheReference) {
 
 /// One missed cell suffices.
 TEST(Coverage, IsNeverRoundedUpToAll) {
-  EXPECT_EQ(text_of({9159, 3}), "3 of 9159") << "missed, not seen";
-  EXPECT_EQ(text_of({9159, 0}), "0 of 9159");
+  EXPECT_EQ(coverage_text({9159, 3}), "3 of 9159") << "missed, not seen";
+  EXPECT_EQ(coverage_text({9159, 0}), "0 of 9159");
 }
 
 /// Other cells would be offset from the explorer's by part of a cell, and could be unknown in its map.

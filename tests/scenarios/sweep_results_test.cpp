@@ -157,7 +157,7 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   EXPECT_EQ(markdown_of_points(sweep, results, 1),
             "| point | name_of | pass | missed | failed | missing | x |\n|---|---|---|---|---|---|---|\n"
             "| 0 | a, b | 1 | 1 | 0 | 0 | 2.5 ± 2.1 |\n\nMore in points.csv: 1 point.\n");
-  EXPECT_EQ(text_of(counts_of(results)), "4 jobs: 1 pass, 1 missed, 1 failed, 1 missing");
+  EXPECT_EQ(job_counts_text(counts_of(results)), "4 jobs: 1 pass, 1 missed, 1 failed, 1 missing");
   EXPECT_FALSE(counts_of(results).good());
 }
 

@@ -260,14 +260,14 @@ TEST(Sweep, ParametersReachEveryKeyOfAScenario) {
   EXPECT_EQ(robot("new").actor->controller.rate, 4.0);
   EXPECT_EQ(scenario.actor.link.loss, 0.25);
   EXPECT_EQ(scenario.expect.at(0).limit, 3.0);
-  EXPECT_EQ(text_of(sweep.parameters[2].values[0]), "{ delay = 0.5, loss = 0.25 }");
+  EXPECT_EQ(parameter_value_text(sweep.parameters[2].values[0]), "{ delay = 0.5, loss = 0.25 }");
 }
 
 TEST(Sweep, ValuesAreShownAsInAFile) {
   const Sweep sweep = parse_sweep(
       kSweepFile, kTown + std::string("[grid]\nvalue = [true, false, 0.5, \"two words\", [1, 2.5], { a = [true] }]\n"));
   std::vector<std::string> texts;
-  for (const world::TomlNode& value : sweep.parameters.at(0).values) texts.push_back(text_of(value));
+  for (const world::TomlNode& value : sweep.parameters.at(0).values) texts.push_back(parameter_value_text(value));
   EXPECT_EQ(texts, (std::vector<std::string>{"true", "false", "0.5", "two words", "[1, 2.5]", "{ a = [true] }"}));
 }
 
