@@ -235,14 +235,14 @@ PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8
   return PacketStatus::accepted;
 }
 
-std::string_view name_of(netio::Type type) {
+std::string_view packet_type_name(netio::Type type) {
   const netio::PacketForm* const form = netio::find_packet_form(type);
   return form != nullptr ? form->name : sensors::find_sensor_type(netio::sensor_type_of(type))->name;
 }
 
 }  // namespace
 
-std::string text_of(const PacketField& field) {
+std::string packet_field_text(const PacketField& field) {
   if (const auto* whole = std::get_if<std::int64_t>(&field.value)) return std::to_string(*whole);
   if (const auto* number = std::get_if<double>(&field.value)) return number_text(*number);
   std::string text;
@@ -261,7 +261,7 @@ PacketDescription describe_packet(std::span<const std::uint8_t> bytes) {
   if (id != 0 && type == nullptr) out.status = PacketStatus::unknown_type;
   if (out.status != PacketStatus::accepted) return out;
   out.header = packet.header;
-  out.name = name_of(packet.header.type);
+  out.name = packet_type_name(packet.header.type);
   add_header(packet.header, out.fields);
   out.header_fields = out.fields.size();
   std::visit(

@@ -18,7 +18,7 @@ struct PacketField {
 };
 
 /// "3", "0.25", "1 none inf": numbers of ten digits.
-std::string text_of(const PacketField& field);
+std::string packet_field_text(const PacketField& field);
 
 /// A datagram as judged by a receiver of its type.
 struct PacketDescription {

@@ -51,7 +51,7 @@ void StateReceiver::receive_pending(std::int64_t now) {
       trouble_.answer(reason, packet, who, now, inbox_, answers_);
       return log_wrong_source(packet, who, now);
     }
-    trouble_.note(reason, packet, who, name_of(packet.header), now, inbox_, answers_, log_);
+    trouble_.note(reason, packet, who, sender_name(packet.header), now, inbox_, answers_, log_);
     if (reason != netio::PacketStatus::unproven || !inbox_.challenge(packet, who, now, challenge_)) return;
     answers_.queue(who, challenge_);
   };
@@ -132,7 +132,7 @@ bool StateReceiver::update_absent_tag(std::uint32_t row) {
 }
 
 /// Of the mover that a packet claims to be from; empty: it is from none.
-std::string StateReceiver::name_of(const netio::Header& header) const {
+std::string StateReceiver::sender_name(const netio::Header& header) const {
   const netio::Claim claim = netio::claim_of(header);
   if (claim.kind != netio::PeerKind::robot && claim.kind != netio::PeerKind::tag) return "";
   return world_.movers[(claim.kind == netio::PeerKind::tag ? names_.tags : names_.robots).at(claim.id)].name;
@@ -143,7 +143,7 @@ std::string StateReceiver::sender_text(const netio::Header& header) const {
   const netio::Claim claim = netio::claim_of(header);
   if (claim.kind == netio::PeerKind::start) return "the sender of START";
   if (claim.kind == netio::PeerKind::light) return fmt::format("intersection {}", claim.id);
-  return fmt::format("{} ({} {})", name_of(header), claim.kind == netio::PeerKind::tag ? "tag" : "id", claim.id);
+  return fmt::format("{} ({} {})", sender_name(header), claim.kind == netio::PeerKind::tag ? "tag" : "id", claim.id);
 }
 
 /// Returns the address that its id is bound to.

@@ -75,7 +75,7 @@ class StateReceiver {
 
  private:
   void take(const netio::Packet& packet, std::int64_t now);
-  std::string name_of(const netio::Header& header) const;
+  std::string sender_name(const netio::Header& header) const;
   std::string sender_text(const netio::Header& header) const;
   std::optional<netio::Endpoint> bound_address(const netio::Header& header, std::int64_t now) const;
   void log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now);

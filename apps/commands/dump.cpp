@@ -65,7 +65,7 @@ std::string words_of(double number, bool exact) {
 
 /// "range_m = 1 0.25 8"; for a long list, its length, minimum and maximum.
 std::string words_of(const server::PacketField& field, bool exact) {
-  if (std::holds_alternative<std::int64_t>(field.value)) return field.name + " = " + text_of(field);
+  if (std::holds_alternative<std::int64_t>(field.value)) return field.name + " = " + packet_field_text(field);
   if (const auto* number = std::get_if<double>(&field.value)) return field.name + " = " + words_of(*number, exact);
   const auto& list = std::get<std::vector<double>>(field.value);
   std::string text = field.name + " =";

@@ -20,7 +20,7 @@ using netio::PacketStatus;
 
 std::string text_of(const PacketDescription& packet) {
   std::string text;
-  for (const PacketField& field : packet.fields) text += field.name + " = " + text_of(field) + "\n";
+  for (const PacketField& field : packet.fields) text += field.name + " = " + packet_field_text(field) + "\n";
   return text;
 }
 
