@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Text that is no UTF-8 must not end the program: names come from world files.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// Returns null if the text is not JSON, or is nested more deeply than any message of the protocol.
 Json parse(std::string_view text) {
@@ -141,7 +141,7 @@ std::string server_info_text(const ServerInfo& info) {
   json["sessionId"] = info.session;
   if (info.start) json["dataStartTime"] = time_of(*info.start);
   if (info.end) json["dataEndTime"] = time_of(*info.end);
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string advertise_text(std::span<const Channel> channels) {
@@ -153,7 +153,7 @@ std::string advertise_text(std::span<const Channel> channels) {
                     {"schemaName", channel.type},
                     {"schemaEncoding", "ros2msg"},
                     {"schema", channel.schema}});
-  return text_of({{"op", "advertise"}, {"channels", std::move(list)}});
+  return json_text({{"op", "advertise"}, {"channels", std::move(list)}});
 }
 
 std::string advertise_services_text(std::span<const Service> services) {
@@ -166,7 +166,7 @@ std::string advertise_services_text(std::span<const Service> services) {
                     {"response", service_side(service, "Response", service.response)},
                     {"requestSchema", service.request},
                     {"responseSchema", service.response}});
-  return text_of({{"op", "advertiseServices"}, {"services", std::move(list)}});
+  return json_text({{"op", "advertiseServices"}, {"services", std::move(list)}});
 }
 
 std::string parameters_text(std::span<const Parameter> parameters, std::string_view id) {
@@ -178,15 +178,15 @@ std::string parameters_text(std::span<const Parameter> parameters, std::string_v
   }
   Json json{{"op", "parameterValues"}, {"parameters", std::move(list)}};
   if (!id.empty()) json["id"] = id;
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string status_text(StatusLevel level, std::string_view message) {
-  return text_of({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+  return json_text({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
 }
 
 std::string service_failure_text(std::uint32_t service, std::uint32_t call, std::string_view message) {
-  return text_of({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
+  return json_text({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
 }
 
 std::optional<ClientText> parse_client_text(std::string_view text) {
@@ -218,7 +218,7 @@ std::optional<bool> parse_json_bool(std::string_view text) {
 }
 
 std::string json_response(bool success, std::string_view message) {
-  return text_of({{"success", success}, {"message", message}});
+  return json_text({{"success", success}, {"message", message}});
 }
 
 }  // namespace sf::bridges

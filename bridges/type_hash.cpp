@@ -118,7 +118,7 @@ std::map<std::string, Fields> read_types(std::string_view type, std::string_view
   return types;
 }
 
-std::string json_of(const std::string& name, const Fields& fields) {
+std::string type_description_json(const std::string& name, const Fields& fields) {
   std::string json = fmt::format(R"({{"type_name": "{}", "fields": [)", name);
   for (const Field& field : fields)
     json += fmt::format(
@@ -146,10 +146,10 @@ std::string type_hash(std::string_view type, std::string_view text) {
   const std::string name(type);
   std::set<std::string> needed;
   if (!add_needed(name, types, needed)) return {};
-  std::string json =
-      R"({"type_description": )" + json_of(name, types.at(name)) + R"(, "referenced_type_descriptions": [)";
+  std::string json = R"({"type_description": )" + type_description_json(name, types.at(name)) +
+                     R"(, "referenced_type_descriptions": [)";
   for (const std::string& other : needed)
-    json += (other == *needed.begin() ? "" : ", ") + json_of(other, types.at(other));
+    json += (other == *needed.begin() ? "" : ", ") + type_description_json(other, types.at(other));
   json += "]}";
   std::string hash = "RIHS01_";
   for (const std::uint8_t byte : netio::sha256({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()}))

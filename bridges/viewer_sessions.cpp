@@ -29,7 +29,7 @@ const std::array<Service, 3> kServices{{{kPause, "/pause", "std_srvs/srv/SetBool
                                         {kStep, "/step", "std_srvs/srv/Trigger", "", kResponse},
                                         {kReset, "/reset", "std_srvs/srv/Trigger", "", kResponse}}};
 
-std::string_view text_of(std::span<const std::uint8_t> bytes) {
+std::string_view payload_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -54,7 +54,7 @@ base::Bytes cdr_response(bool success, std::string_view message) {
 }
 
 std::optional<bool> read_bool(const ServiceCall& call) {
-  if (call.encoding == "json") return parse_json_bool(text_of(call.payload));
+  if (call.encoding == "json") return parse_json_bool(payload_text(call.payload));
   record::CdrReader cdr(call.payload);
   const bool value = cdr.get<bool>();
   return cdr.good() ? std::optional(value) : std::nullopt;
@@ -125,7 +125,7 @@ void ViewerSessions::closed(ClientId id) {
 void ViewerSessions::received(ClientId id, bool is_text, std::span<const std::uint8_t> bytes) {
   const auto found = clients_.find(id);
   if (found == clients_.end()) return;
-  if (is_text) return received_text(id, found->second, text_of(bytes));
+  if (is_text) return received_text(id, found->second, payload_text(bytes));
   const std::optional<ClientBinary> message = parse_client_binary(bytes);
   if (!message) return complain(id, "A binary message that is none of the protocol's.");
   if (const auto* const publish = std::get_if<ClientPublish>(&*message)) published(id, found->second, *publish);
@@ -209,7 +209,7 @@ void ViewerSessions::published(ClientId id, const Client& client, const ClientPu
     return complain(id, fmt::format("Channel {} was not advertised.", publish.channel));
   const ClientText::Advertised& channel = found->second;
   const std::optional<base::Twist> twist =
-      channel.encoding == "json" ? parse_json_twist(text_of(publish.payload))
+      channel.encoding == "json" ? parse_json_twist(payload_text(publish.payload))
                                  : read_cdr_twist(publish.payload, twist_type(channel.type) == TwistType::stamped);
   if (!twist || !std::isfinite(twist->forward) || !std::isfinite(twist->left) || !std::isfinite(twist->turn))
     return complain(id, fmt::format("{}: the message is not a finite {}.", channel.topic, channel.type));

@@ -4,7 +4,7 @@
 
 namespace sf::bridges::player {
 
-std::string_view name_of(Interface interf) {
+std::string_view interface_name(Interface interf) {
   switch (interf) {
     case Interface::player:
       return "player";

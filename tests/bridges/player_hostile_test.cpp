@@ -87,7 +87,8 @@ TEST(PlayerHostile, WrongLengthsEndOnlyTheirOwnConnection) {
       bad.send(message_of(header.type, header.address, header.subtype, payload));
       while (!bad.receive().ended) {
       }
-      EXPECT_EQ(run.bridge.counts().malformed, ++malformed) << name_of(header.address.interf) << " " << header.subtype;
+      EXPECT_EQ(run.bridge.counts().malformed, ++malformed)
+          << interface_name(header.address.interf) << " " << header.subtype;
     }
   }
   EXPECT_GT(malformed, 30u);
@@ -120,7 +121,7 @@ TEST(PlayerHostile, RequestsOfAWrongLengthChangeNothing) {
       TestClient bad(run.port());
       bad.banner();
       bad.send(message_of(MessageType::request, request.to, request.subtype, payload));
-      EXPECT_TRUE(bad.receive().ended) << name_of(request.to.interf) << " " << request.subtype << ": " << wrong;
+      EXPECT_TRUE(bad.receive().ended) << interface_name(request.to.interf) << " " << request.subtype << ": " << wrong;
       EXPECT_EQ(run.bridge.counts().malformed, ++malformed);
     }
   EXPECT_TRUE(run.asked().placements.empty());

@@ -589,7 +589,7 @@ TEST_F(PlayerTest, OtherRequestsOfEachInterfaceAreRefused) {
       if (std::count(row.with_payload.begin(), row.with_payload.end(), subtype) > 0) continue;
       const bool granted = std::count(row.granted.begin(), row.granted.end(), subtype) > 0;
       EXPECT_EQ(ask({row.interf, 0}, subtype), granted ? MessageType::ack : MessageType::nack)
-          << name_of(row.interf) << " " << subtype;
+          << interface_name(row.interf) << " " << subtype;
     }
   for (const std::uint32_t subtype : {0u, 6u, 7u, 8u, 9u, 11u})
     EXPECT_EQ(ask({}, subtype), MessageType::nack) << subtype;
