@@ -68,7 +68,7 @@ sensorfarm::Robot robot_of(const ControllerContext& context) {
 
 namespace {
 
-std::string name_of(const ControllerContext& context) {
+std::string own_controller_name(const ControllerContext& context) {
   return base::one_line(
       fmt::format("controller '{}' of robot '{}'", context.type->name, context.world.movers[context.mover].name));
 }
@@ -93,7 +93,7 @@ class OwnController final : public Controller {
  public:
   OwnController(const ControllerContext& context, std::unique_ptr<sensorfarm::Controller> inner)
       : world_(context.world),
-        name_(name_of(context)),
+        name_(own_controller_name(context)),
         inner_(std::move(inner)),
         range_(guarded([&] { return inner_->radio_range(); })) {}
 
@@ -158,7 +158,7 @@ std::unique_ptr<Controller> make_own_controller(const ControllerContext& context
     throw base::InputError(fmt::format("controller '{}' refuses robot '{}': {}", entry.name,
                                        context.world.movers[context.mover].name, base::one_line(why)));
   };
-  const base::PluginCall under_way(name_of(context));
+  const base::PluginCall under_way(own_controller_name(context));
   std::unique_ptr<sensorfarm::Controller> inner;
   try {
     inner = entry.make(robot_of(context), keys);

@@ -15,7 +15,7 @@ namespace {
 bool is_raw(const Value& value) { return std::holds_alternative<RawText>(value); }
 
 /// The value as text for messages.
-std::string text_of(const Value& value) {
+std::string setting_value_text(const Value& value) {
   if (const auto* raw = std::get_if<RawText>(&value)) return fmt::format("'{}'", raw->text);
   if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("'{}'", *text);
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
@@ -68,7 +68,7 @@ double Settings::number(std::string_view key, double fallback, double least, dou
   const auto value = value_as<double>(setting->value, read_number);
   if (!value || !(*value >= least && *value <= most))
     refuse(key, fmt::format("'{}' of {} expects a number from {:g} to {:g}; got {}", key, owner_, least, most,
-                            text_of(setting->value)));
+                            setting_value_text(setting->value)));
   return *value;
 }
 
@@ -77,7 +77,8 @@ bool Settings::flag(std::string_view key, bool fallback) {
   if (setting == nullptr) return fallback;
   const auto value = value_as<bool>(setting->value, read_flag);
   if (!value)
-    refuse(key, fmt::format("'{}' of {} expects true or false; got {}", key, owner_, text_of(setting->value)));
+    refuse(key,
+           fmt::format("'{}' of {} expects true or false; got {}", key, owner_, setting_value_text(setting->value)));
   return *value;
 }
 
@@ -86,7 +87,8 @@ std::string Settings::text(std::string_view key, const std::string& fallback) {
   if (setting == nullptr) return fallback;
   const auto value = value_as<std::string>(setting->value, [](const std::string& raw) { return read_text(raw); });
   if (!value)
-    refuse(key, fmt::format("'{}' of {} expects a text in quotes; got {}", key, owner_, text_of(setting->value)));
+    refuse(key,
+           fmt::format("'{}' of {} expects a text in quotes; got {}", key, owner_, setting_value_text(setting->value)));
   return *value;
 }
 
@@ -104,7 +106,7 @@ std::vector<double> Settings::numbers(std::string_view key, const std::vector<do
   const auto value = value_as<std::vector<double>>(setting->value, read_numbers);
   if (!value)
     refuse(key, fmt::format("'{}' of {} expects a list of numbers such as {}; got {}", key, owner_,
-                            is_raw(setting->value) ? "1,2" : "[1, 2]", text_of(setting->value)));
+                            is_raw(setting->value) ? "1,2" : "[1, 2]", setting_value_text(setting->value)));
   return *value;
 }
 
@@ -114,7 +116,7 @@ std::vector<std::string> Settings::texts(std::string_view key, const std::vector
   const auto value = value_as<std::vector<std::string>>(setting->value, read_texts);
   if (!value)
     refuse(key, fmt::format("'{}' of {} expects a list of texts such as {}; got {}", key, owner_,
-                            is_raw(setting->value) ? "a,b" : "[\"a\", \"b\"]", text_of(setting->value)));
+                            is_raw(setting->value) ? "a,b" : "[\"a\", \"b\"]", setting_value_text(setting->value)));
   return *value;
 }
 
