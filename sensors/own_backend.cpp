@@ -71,7 +71,7 @@ class SensorSurroundings final : public sensorfarm::Surroundings {
 };
 
 /// "sensor 'nose' (compass)", for messages.
-std::string name_of(const SensorSpec& spec, const OwnType& type) {
+std::string own_sensor_name(const SensorSpec& spec, const OwnType& type) {
   return base::one_line(fmt::format("sensor '{}' ({})", spec.name, type.entry.name));
 }
 
@@ -82,7 +82,7 @@ class OwnSensors final : public SensorBackend {
     std::size_t most = 1;
     for (const OwnSensor& each : sensors_) {
       most = std::max<std::size_t>(most, each.spec.elements);
-      names_.push_back(name_of(each.spec, type));
+      names_.push_back(own_sensor_name(each.spec, type));
     }
     stride_ = most * type.columns.size();
     if (!type.spirv.empty() && context.device.is_host())
@@ -196,7 +196,7 @@ std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& typ
     own.spec.rate = rate_of(sensor, type.entry.rate);
     own.spec.sigma = HUGE_VAL;  // the sensor may add noise
     const Pose& X = own.spec.X_MS;
-    const base::PluginCall under_way(name_of(own.spec, type));
+    const base::PluginCall under_way(own_sensor_name(own.spec, type));
     try {
       own.sensor = type.entry.make({own.spec.name, mover, number, {X.x, X.y, X.z, X.yaw}, sensor.height},
                                    PublicSensorSettings(sensor));
