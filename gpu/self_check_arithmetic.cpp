@@ -96,7 +96,7 @@ bool agree(const Operation& operation, std::uint64_t expected, std::uint64_t fou
   return (std::isnan(e) && std::isnan(f)) || std::abs(f - e) <= operation.tolerance * std::abs(e);
 }
 
-std::string text_of(std::uint64_t result, Form form) {
+std::string result_text(std::uint64_t result, Form form) {
   if (form == Form::word) return fmt::format("{:#x}", result);
   return fmt::format("{:.{}g}", value(result, form), form == Form::f64 ? 17 : 9);
 }
@@ -132,7 +132,7 @@ std::string first_difference(std::span<const std::uint64_t> found) {
     if (!operation.required || agree(operation, expected[i], found[i])) continue;
     const Operands& o = rows[i / std::size(kOperations)];
     return fmt::format("differs from IEEE 754 in {}: a = {:.17g} and b = {:.17g} give {}, not {}", operation.name, o.a,
-                       o.b, text_of(found[i], operation.form), text_of(expected[i], operation.form));
+                       o.b, result_text(found[i], operation.form), result_text(expected[i], operation.form));
   }
   return "";
 }
