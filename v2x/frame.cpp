@@ -24,7 +24,7 @@ std::string decode_message(const base::Bytes& value, Frame& frame) {
 }
 
 /// Meaning of other first two bytes; empty: unknown.
-std::string_view name_of(std::uint64_t id) {
+std::string_view message_id_name(std::uint64_t id) {
   switch (id) {
     case 20:
       return " (BasicSafetyMessage)";
@@ -64,7 +64,7 @@ DecodeResult decode(std::span<const std::uint8_t> bytes, Frame& frame) {
   // Check before the length: data other than a frame rarely has a valid one.
   const bool is_spat = id == Spat::kMessageId;
   if (!is_spat && id != MapData::kMessageId)
-    return {0, fmt::format("messageId: {}{} is neither SPaT (19) nor MAP (18)", id, name_of(id))};
+    return {0, fmt::format("messageId: {}{} is neither SPaT (19) nor MAP (18)", id, message_id_name(id))};
   const base::Bytes value = in.octets();
   frame.additions.values.clear();
   frame.padding.clear();
