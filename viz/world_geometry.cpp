@@ -38,7 +38,7 @@ std::uint32_t color_of(const world::World& world, std::uint32_t model) {
   return model < world.models.size() ? world.models[model].color : 0xFF808080u;
 }
 
-std::string name_of(const world::World& world, std::uint32_t model) {
+std::string model_name(const world::World& world, std::uint32_t model) {
   return model < world.models.size() ? world.models[model].name : "";
 }
 
@@ -84,7 +84,7 @@ PolyData walls_geometry(const world::World& world) {
     append(data.cell_data, "laser", {wall.seen_by_laser ? 1.0 : 0.0});
     append(data.cell_data, "robots", {wall.stops_robots ? 1.0 : 0.0});
     append_color(data.cell_data, color_of(world, wall.model));
-    data.names.push_back(name_of(world, wall.model));
+    data.names.push_back(model_name(world, wall.model));
   }
   return data;
 }
