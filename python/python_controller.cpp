@@ -23,7 +23,7 @@ auto in_python(const std::string& file, Call&& call) {
 }
 
 /// One line, whatever the text.
-std::string text_of(py::handle text) {
+std::string object_text(py::handle text) {
   std::string line = py::bytes(py::str(text).attr("encode")("utf-8", "backslashreplace"));
   std::replace(line.begin(), line.end(), '\n', ' ');
   return line;
@@ -38,7 +38,7 @@ template <class Value, class From>
 Value value_of(const py::object& given, const From& from) {
   py::detail::make_caster<Value> value;
   if (!value.load(given, true))
-    throw std::runtime_error(from() + text_of(py::repr(given)) + "; expected " + expected_of(Value{}));
+    throw std::runtime_error(from() + object_text(py::repr(given)) + "; expected " + expected_of(Value{}));
   return py::detail::cast_op<Value&>(value);
 }
 
@@ -110,12 +110,12 @@ constexpr const char* kConstructor = "expected def __init__(self, robot, setting
 
 void check_constructor(py::handle type) {
   if (takes(py::reinterpret_borrow<py::object>(type), 2)) return;
-  const std::string name = text_of(type.attr("__name__"));
+  const std::string name = object_text(type.attr("__name__"));
   const py::object made = type.attr("__init__");
   if (!py::hasattr(made, "__code__"))
     throw std::runtime_error(place_of(type) + "class " + name + " has no __init__; " + kConstructor);
   throw std::runtime_error(place_of(made) + name + ".__init__" +
-                           text_of(py::str(py::module_::import("inspect").attr("signature")(made))) +
+                           object_text(py::str(py::module_::import("inspect").attr("signature")(made))) +
                            " has other parameters; " + kConstructor);
 }
 
@@ -124,7 +124,7 @@ void check_method(const py::object& object, const char* method, const char* para
   const py::object bound = object.attr(method);
   const bool callable = PyCallable_Check(bound.ptr()) != 0;
   if (callable && takes(bound, arguments)) return;
-  const std::string name = text_of(py::type::of(object).attr("__name__")) + "." + method;
+  const std::string name = object_text(py::type::of(object).attr("__name__")) + "." + method;
   throw std::runtime_error(place_of(py::hasattr(bound, "__code__") ? bound : py::type::of(object)) + name +
                            (callable ? " has other parameters" : " is no method") + "; expected def " + method +
                            parameters);
@@ -146,7 +146,7 @@ template <class Value>
 Value attribute(py::handle type, const char* name, Value fallback) {
   if (!py::hasattr(type, name)) return fallback;
   return value_of<Value>(type.attr(name), [&] {
-    return place_of(type) + "'" + name + "' of class " + text_of(type.attr("__name__")) + " is ";
+    return place_of(type) + "'" + name + "' of class " + object_text(type.attr("__name__")) + " is ";
   });
 }
 
@@ -172,7 +172,7 @@ std::string last_line(py::error_already_set& error, const std::string& file) {
   if (is_syntax && !error.value().attr("filename").is_none())
     place = py::str("{}:{}: ").format(error.value().attr("filename"), error.value().attr("lineno"));
   const py::list lines = traceback.attr("format_exception_only")(error.type(), error.value());
-  return place + text_of(lines[lines.size() - 1].attr("strip")());
+  return place + object_text(lines[lines.size() - 1].attr("strip")());
 }
 
 std::string place_of(py::handle thing) {
