@@ -27,17 +27,17 @@ std::string refusal(Settings settings, Read&& read) {
 }
 
 double number_of(Settings settings) { return settings.number("key", -1.0, -10.0, 10.0); }
-std::string text_of(Settings settings) { return settings.text("key", "fallback"); }
+std::string key_text(Settings settings) { return settings.text("key", "fallback"); }
 Numbers numbers_of(Settings settings) { return settings.numbers("key", {}); }
 Texts texts_of(Settings settings) { return settings.texts("key", {}); }
 
 TEST(Settings, RawValuesBecomeWhatTheyAreReadAs) {
   EXPECT_EQ(number_of(raw("1")), 1.0);
   EXPECT_EQ(numbers_of(raw("1")), Numbers{1.0});  // a list of one
-  EXPECT_EQ(text_of(raw("1")), "1");
+  EXPECT_EQ(key_text(raw("1")), "1");
   EXPECT_EQ(texts_of(raw("1")), Texts{"1"});
-  EXPECT_EQ(text_of(raw("13.10")), "13.10");  // the trailing zero of a spot's name is kept
-  EXPECT_EQ(text_of(raw("true")), "true");
+  EXPECT_EQ(key_text(raw("13.10")), "13.10");  // the trailing zero of a spot's name is kept
+  EXPECT_EQ(key_text(raw("true")), "true");
   EXPECT_TRUE(raw("true").flag("key", false));
   EXPECT_FALSE(raw(" false ").flag("key", true));
 }
@@ -55,13 +55,13 @@ TEST(Settings, RawListsAreWrittenInAnyOfTheUsualWays) {
 }
 
 TEST(Settings, RawTextsMayHaveQuotesAroundThem) {
-  EXPECT_EQ(text_of(raw(R"("13.4")")), "13.4");
-  EXPECT_EQ(text_of(raw("'13.4'")), "13.4");
-  EXPECT_EQ(text_of(raw(R"("13.4')")), R"("13.4')");  // not a pair
-  EXPECT_EQ(text_of(raw("\"")), "\"");                // a single quote mark is no pair
-  EXPECT_EQ(text_of(raw(R"("")")), "");
-  EXPECT_EQ(text_of(raw("")), "");
-  EXPECT_EQ(text_of(raw("a b")), "a b");
+  EXPECT_EQ(key_text(raw(R"("13.4")")), "13.4");
+  EXPECT_EQ(key_text(raw("'13.4'")), "13.4");
+  EXPECT_EQ(key_text(raw(R"("13.4')")), R"("13.4')");  // not a pair
+  EXPECT_EQ(key_text(raw("\"")), "\"");                // a single quote mark is no pair
+  EXPECT_EQ(key_text(raw(R"("")")), "");
+  EXPECT_EQ(key_text(raw("")), "");
+  EXPECT_EQ(key_text(raw("a b")), "a b");
 }
 
 TEST(Settings, InvalidRawValuesAreRefusedAndQuoted) {
@@ -84,12 +84,12 @@ TEST(Settings, ValuesOfAFileKeepTheirTypes) {
   EXPECT_EQ(number_of(given(10.0)), 10.0);  // the largest
   EXPECT_EQ(numbers_of(given(Numbers{1, 2})), (Numbers{1, 2}));
   EXPECT_NE(refusal(given(10.5), number_of).find("from -10 to 10; got 10.5"), std::string::npos);
-  EXPECT_NE(refusal(given(13.4), text_of).find("expects a text in quotes; got 13.4"), std::string::npos);
+  EXPECT_NE(refusal(given(13.4), key_text).find("expects a text in quotes; got 13.4"), std::string::npos);
   EXPECT_NE(refusal(given(1.0), numbers_of).find("such as [1, 2]; got 1"), std::string::npos);
   EXPECT_NE(refusal(given(Texts{"a", "b"}), numbers_of).find("got ['a', 'b']"), std::string::npos);
   EXPECT_NE(refusal(given(Numbers{1, 2.5}), number_of).find("got [1, 2.5]"), std::string::npos);
   EXPECT_NE(refusal(given(std::string("1")), number_of).find("got '1'"), std::string::npos);
-  EXPECT_NE(refusal(given(true), text_of).find("got true"), std::string::npos);
+  EXPECT_NE(refusal(given(true), key_text).find("got true"), std::string::npos);
 }
 
 TEST(Settings, MisspeltKeysAndWordsGetASuggestion) {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 Sweep two_points(const std::string& more = "") {
   return parse_sweep(SF_SOURCE_DIR "/experiments/sweeps/test.toml",
-                     "scenario = \"../simville.toml\"\nseeds = 2\n" + more + "[grid]\nname_of = [\"a, b\", \"c|d\"]\n");
+                     "scenario = \"../simville.toml\"\nseeds = 2\n" + more + "[grid]\nlabel = [\"a, b\", \"c|d\"]\n");
 }
 
 std::string empty_folder(const std::string& name) {
@@ -124,7 +124,7 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   results[1]->message = "x: expected <= 2, got 4";
   results[2] = JobResult{.message = "it said \"no\""};
   EXPECT_EQ(csv_of_jobs(sweep, results),
-            "job,point,name_of,seed,status,x,y of r1,simulated_s,hash,message\n"
+            "job,point,label,seed,status,x,y of r1,simulated_s,hash,message\n"
             "0,0,\"a, b\",1,pass,1,,2.5,ffffffffffffffff,\n"
             "1,0,\"a, b\",2,missed,4,,2.5,ffffffffffffffff,\"x: expected <= 2, got 4\"\n"
             "2,1,c|d,1,failed,,,,,\"it said \"\"no\"\"\"\n"
@@ -133,7 +133,7 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   // met its expectations, and none of one.
   const std::string text = csv_of_points(sweep, results);
   EXPECT_EQ(text.substr(0, text.find('\n')),
-            "point,name_of,jobs,pass,missed,none,failed,missing,x_mean,x_std,x_min,x_max,y of r1_mean,y of r1_std,y of "
+            "point,label,jobs,pass,missed,none,failed,missing,x_mean,x_std,x_min,x_max,y of r1_mean,y of r1_std,y of "
             "r1_min,y of r1_max,met,met_low95,met_high95,x_n,x_low95,x_high95,y of r1_n,y of r1_low95,y of r1_high95");
   const auto rows = table_rows(text);
   ASSERT_EQ(rows.size(), 2u);
@@ -155,7 +155,7 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   results[0]->metrics[1].value = std::nan("");
   results[3].reset();
   EXPECT_EQ(markdown_of_points(sweep, results, 1),
-            "| point | name_of | pass | missed | failed | missing | x |\n|---|---|---|---|---|---|---|\n"
+            "| point | label | pass | missed | failed | missing | x |\n|---|---|---|---|---|---|---|\n"
             "| 0 | a, b | 1 | 1 | 0 | 0 | 2.5 ± 2.1 |\n\nMore in points.csv: 1 point.\n");
   EXPECT_EQ(job_counts_text(counts_of(results)), "4 jobs: 1 pass, 1 missed, 1 failed, 1 missing");
   EXPECT_FALSE(counts_of(results).good());
@@ -164,7 +164,7 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
 TEST(SweepTables, EqualValuesHaveNoDeviationAndBarsAreReplaced) {
   const std::vector<std::optional<JobResult>> results(4, result_of_job(JobStatus::passed, 0.1, 2.0));
   EXPECT_EQ(markdown_of_points(two_points(), results, 2),
-            "| point | name_of | pass | missed | failed | missing | x | y of r1 |\n|---|---|---|---|---|---|---|---|\n"
+            "| point | label | pass | missed | failed | missing | x | y of r1 |\n|---|---|---|---|---|---|---|---|\n"
             "| 0 | a, b | 2 | 0 | 0 | 0 | 0.1 | 2 |\n| 1 | c/d | 2 | 0 | 0 | 0 | 0.1 | 2 |\n")
       << "all points are shown: there are none more";
 }

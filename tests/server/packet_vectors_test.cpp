@@ -18,7 +18,7 @@ namespace {
 
 using netio::PacketStatus;
 
-std::string text_of(const PacketDescription& packet) {
+std::string packet_description_text(const PacketDescription& packet) {
   std::string text;
   for (const PacketField& field : packet.fields) text += field.name + " = " + packet_field_text(field) + "\n";
   return text;
@@ -99,7 +99,7 @@ TEST(PacketVectors, MatchTheFarmsPacketsInBothDirections) {
     if (file.ends_with("statuses.txt")) continue;
     for (const test::PacketVector& vector : test::read_vectors(file)) {
       if (!is_built(vector.bytes)) continue;
-      EXPECT_EQ(text_of(describe_packet(vector.bytes)), vector.text) << file;
+      EXPECT_EQ(packet_description_text(describe_packet(vector.bytes)), vector.text) << file;
       netio::Packet packet;
       ASSERT_EQ(netio::decode(vector.bytes, packet), PacketStatus::accepted) << file;
       types.insert(packet.header.type);

@@ -16,7 +16,7 @@ namespace sf::vision {
 
 namespace {
 
-std::string text_of(const std::vector<TrackedTag>& tags) {
+std::string tracked_tags_text(const std::vector<TrackedTag>& tags) {
   std::string text;
   for (const TrackedTag& t : tags)
     text += fmt::format(
@@ -69,7 +69,7 @@ struct View {
   }
 };
 
-std::string text_of(const TagFit& fit) {
+std::string tag_fit_text(const TagFit& fit) {
   return fmt::format(
       "{:.4f} {:.4f} {:.4f} {:.4f}, side {:.4f}, residual "
       "{:.5f}, pixel {:.5f}, row {:.2f}\n",
@@ -85,7 +85,7 @@ TEST(TrackerRecord, MergesPredictsAndRejects) {
   for (int i = 0; i < 24; ++i) {
     if (i > 14 && i < 18) continue;
     tracker.update(seen_at(i), tracked);
-    text += fmt::format("moment {}, {} refused\n", i, tracker.refused()) + text_of(tracked);
+    text += fmt::format("moment {}, {} refused\n", i, tracker.refused()) + tracked_tags_text(tracked);
   }
   golden::expect(text, "vision", "tracks", 3e-5);
 }
@@ -101,12 +101,12 @@ TEST(DetectionRecord, FindsEdgesAndFitsASquare) {
   std::string text = fmt::format("{} edges\n", edges.size());
   for (std::size_t i = 0; i < edges.size(); i += 5)
     text += fmt::format("side {} at {:.3f} {:.3f}\n", edges[i].side, edges[i].pixel.x, edges[i].pixel.y);
-  text += text_of(fit_tag(view.camera, edges, 0.2).value());
-  text += text_of(fit_tag(view.camera, edges, 0.5).value());
+  text += tag_fit_text(fit_tag(view.camera, edges, 0.2).value());
+  text += tag_fit_text(fit_tag(view.camera, edges, 0.5).value());
   for (std::size_t i = 0; i < edges.size(); i += 9) edges[i].pixel += glm::dvec2{3.0, -1.0};
-  text += text_of(fit_tag(view.camera, edges, 0.2).value());
+  text += tag_fit_text(fit_tag(view.camera, edges, 0.2).value());
   std::erase_if(edges, [](const EdgePoint& e) { return e.side == 1; });
-  text += text_of(fit_tag(view.camera, edges, 0.2).value());
+  text += tag_fit_text(fit_tag(view.camera, edges, 0.2).value());
   std::erase_if(edges, [](const EdgePoint& e) { return e.side == 2; });
   EXPECT_FALSE(fit_tag(view.camera, edges, 0.2)) << "two sides";
   golden::expect(text, "vision", "edges", 2e-3);
@@ -120,7 +120,7 @@ TEST(DetectionRecord, CountsAndTimesItsSightings) {
   std::vector<Sighting> seen;
   detector.detect(view.image, 3.0, seen);
   ASSERT_EQ(seen.size(), 1u);
-  std::string text = fmt::format("tag {} at {:.6f}: ", seen[0].id, seen[0].time) + text_of(seen[0].fit);
+  std::string text = fmt::format("tag {} at {:.6f}: ", seen[0].id, seen[0].time) + tag_fit_text(seen[0].fit);
   golden::expect(text, "vision", "sighting", 1e-4);
 }
 

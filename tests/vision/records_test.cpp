@@ -27,7 +27,7 @@ Camera record_camera() {
   return camera;
 }
 
-std::string text_of(const std::vector<Mark>& marks) {
+std::string marks_text(const std::vector<Mark>& marks) {
   std::string text;
   for (const Mark& mark : marks) {
     const glm::dvec2 first = mark.points.front(), last = mark.points.back();
@@ -43,7 +43,7 @@ std::string text_of(const std::vector<Mark>& marks) {
   return text;
 }
 
-std::string text_of(const Scene& scene) {
+std::string scene_text(const Scene& scene) {
   std::string text = fmt::format("floor {} texture {} gradient {} {}\n", scene.floor, scene.texture, scene.gradient.x,
                                  scene.gradient.y);
   for (const Patch& p : scene.patches)
@@ -57,7 +57,7 @@ std::string text_of(const Scene& scene) {
 }
 
 /// Mean grey values of blocks of `side` x `side` pixels.
-std::string text_of(const Image& image, int side) {
+std::string image_text(const Image& image, int side) {
   std::string text;
   for (int v = 0; v + side <= image.height; v += side) {
     for (int u = 0; u + side <= image.width; u += side) {
@@ -116,8 +116,8 @@ Testbed two_cameras() {
 }  // namespace
 
 TEST(OverlayRecord, MarksTagsAndTheWorld) {
-  golden::expect(text_of(tag_marks(distorted_camera(), sightings())), "vision", "tag_marks", 0.02);
-  golden::expect(text_of(world_marks(distorted_camera(), drawn_world())), "vision", "world_marks", 0.02);
+  golden::expect(marks_text(tag_marks(distorted_camera(), sightings())), "vision", "tag_marks", 0.02);
+  golden::expect(marks_text(world_marks(distorted_camera(), drawn_world())), "vision", "world_marks", 0.02);
 }
 
 TEST(OverlayRecord, IsDrawnInColours) {
@@ -125,13 +125,13 @@ TEST(OverlayRecord, IsDrawnInColours) {
   const Image grey{96, 64, 1, std::vector<std::uint8_t>(96 * 64, 100)};
   std::vector<Mark> marks = world_marks(camera, drawn_world());
   marks.push_back({{{10.0, 40.0}}, "8", {10, 200, 90}, 1});
-  golden::expect(text_of(draw_over(grey, marks), 8), "vision", "drawn_over", 0.3);
+  golden::expect(image_text(draw_over(grey, marks), 8), "vision", "drawn_over", 0.3);
 }
 
 TEST(FleetRecord, MovesOnItsCircles) {
   const Testbed testbed = two_cameras();
   const RenderedFleet fleet(testbed, {6, 0.5, 3, true, 5});
-  std::string text = text_of(fleet.scene_at(0.4));
+  std::string text = scene_text(fleet.scene_at(0.4));
   for (std::size_t tag = 0; tag < fleet.size(); ++tag)
     for (const double time : {0.0, 2.7}) {
       const TrueTag t = fleet.truth(tag, time);
@@ -153,7 +153,7 @@ TEST(RobotsRecord, ContinueWithTheirLastVelocity) {
   ASSERT_TRUE(robots.update(4, {1.0, 2.0, 9.0, 0.6}, {0.5, -0.1}, 2.0, 10.0));
   ASSERT_TRUE(robots.update(2, {-1.0, 0.5, 9.0, -0.6}, {0.2, 0.3}, -1.0, 10.2));
   std::string text;
-  for (const double time : {10.3, 10.5, 10.6, 10.8}) text += text_of(robots.scene_at(time));
+  for (const double time : {10.3, 10.5, 10.6, 10.8}) text += scene_text(robots.scene_at(time));
   golden::expect(text, "vision", "rendered_robots", 2e-4);
 }
 
@@ -169,7 +169,7 @@ TEST(RendererRecord, ShowsMovingPatchesInTheirLight) {
   Image image;
   Renderer renderer(record_camera(), Imaging{}, 3);
   renderer.render(scene, 0.02, 4, image);
-  golden::expect(text_of(image, 4), "vision", "rendered", 0.3);
+  golden::expect(image_text(image, 4), "vision", "rendered", 0.3);
 }
 
 }  // namespace sf::vision

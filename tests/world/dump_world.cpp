@@ -17,7 +17,7 @@ template <class T>
 std::string shown(const T& value);
 
 /// Without the folder that this checkout is in.
-std::string name_of(const std::string& file) { return std::filesystem::path(file).filename().string(); }
+std::string file_name(const std::string& file) { return std::filesystem::path(file).filename().string(); }
 
 std::string number(double value) {
   if (!std::isfinite(value)) return fmt::format("{}", value);
@@ -30,7 +30,7 @@ std::string row(const Row& r) {
   for_each_field<Row>([&](const auto& f) {
     const auto& value = r.*f.member;
     if constexpr (std::is_same_v<decltype(value), const std::string&>)
-      text += (text.empty() ? "" : " ") + (f.role == Role::path ? name_of(value) : '"' + value + '"');
+      text += (text.empty() ? "" : " ") + (f.role == Role::path ? file_name(value) : '"' + value + '"');
     else
       text += (text.empty() ? "" : " ") + shown(value);
   });
@@ -135,7 +135,7 @@ std::string dump_of(const World& world) {
   rest.paths.clear(), rest.lights.clear(), rest.emitters.clear(), rest.floor_holes.clear(), rest.warnings.clear();
   rest.hash = 0, rest.road_files.clear(), rest.unmodelled.clear();
   std::string text = fmt::format("world {}\n", row(rest));
-  for (const std::string& file : world.road_files) text += "roads " + name_of(file) + "\n";
+  for (const std::string& file : world.road_files) text += "roads " + file_name(file) + "\n";
   for (const auto& [type, count] : world.unmodelled) text += fmt::format("unmodelled {} {}\n", type, count);
   const Extent& e = world.extent;
   text += fmt::format("extent {} {} {} {}\n", number(e.x_min), number(e.y_min), number(e.x_max), number(e.y_max));
@@ -150,7 +150,7 @@ std::string dump_of(const RoadNetwork& roads) {
   const RoadCounts& n = roads.counts;
   const MarkingSizes& p = roads.paint;
   const Extent& e = roads.extent;
-  std::string text = fmt::format("network '{}' {} scale {} tolerance {}\n", roads.name, name_of(roads.file),
+  std::string text = fmt::format("network '{}' {} scale {} tolerance {}\n", roads.name, file_name(roads.file),
                                  number(roads.scale), number(roads.tolerance));
   text += fmt::format("counts {} {} {} {} {} {} {} {} {}\n", n.segments, n.lanes, n.zones, n.spots, n.lane_waypoints,
                       n.points, n.exits, n.stops, n.checkpoints);
@@ -164,7 +164,7 @@ std::string dump_of(const RoadNetwork& roads) {
 }
 
 std::string dump_of(const LightPlan& plan) {
-  std::string text = "plan of " + name_of(plan.world) + "\n";
+  std::string text = "plan of " + file_name(plan.world) + "\n";
   for (const LightProgram& p : plan.programs) {
     text += fmt::format("program '{}' lights {} offset {} actuated {}\n", p.name, shown(p.lights), number(p.offset),
                         is_actuated(p));

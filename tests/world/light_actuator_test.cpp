@@ -132,7 +132,7 @@ TEST(LightActuator, LateStepDoesNotShortenYellow) {
   EXPECT_EQ(d.a(), LightState::red);
 }
 
-std::string text_of(const SignalForecast& f) {
+std::string forecast_text(const SignalForecast& f) {
   const auto word = [](LightState state) {
     return std::string(words_of(LightState{})[static_cast<std::size_t>(state)]);
   };
@@ -152,7 +152,7 @@ TEST(LightActuator, ForecastsMatchTheRecord) {
     else
       d.until(second);
     const std::vector<SignalForecast> all = d.lights.forecasts(d.time);
-    text += fmt::format("{}: a {}; b {}\n", second, text_of(all[0]), text_of(all[1]));
+    text += fmt::format("{}: a {}; b {}\n", second, forecast_text(all[0]), forecast_text(all[1]));
   }
   golden::expect(text, "world", "forecasts", 0.051);
 }
