@@ -169,7 +169,7 @@ class Printer {
     counts_.add(netio::PacketStatus::accepted);
     const bool spat = std::holds_alternative<v2x::Spat>(frame.message);
     apps::print(json_ ? fmt::format("{},\"name\":\"{}\",\"frame\":{}}}\n", json_head(datagram, "accepted"),
-                                    spat ? "SPaT" : "MAP", json_of(frame))
+                                    spat ? "SPaT" : "MAP", v2x_frame_json(frame))
                       : words_head(datagram) + words_of(frame) + "\n");
   }
   std::uint64_t datagrams() const { return counts_.total() + cut_; }

@@ -54,7 +54,7 @@ std::string costs_of(const scenarios::SensorTypeCost& k, const scenarios::Explan
   text += row("", work_of(k, static_cast<double>(e.ticks)));
   std::string_view label = "accuracy";
   for (const sensors::AccuracyStatement& s : e.statements)
-    if (s.type->name == k.type) text += row(std::exchange(label, ""), apps::text_of(s));
+    if (s.type->name == k.type) text += row(std::exchange(label, ""), apps::accuracy_statement_text(s));
   text += row("kernels",
               k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
   if (k.tables.empty()) return text;
@@ -66,7 +66,7 @@ std::string costs_of(const scenarios::SensorTypeCost& k, const scenarios::Explan
 
 }  // namespace
 
-std::string text_of(const scenarios::Explanation& e) {
+std::string explanation_text(const scenarios::Explanation& e) {
   std::string text;
   for (const scenarios::SensorTypeCost& cost : e.types) text += costs_of(cost, e);
   text += "together\n";
@@ -91,7 +91,7 @@ int explain(const ExplainOptions& options) {
     explanation =
         scenarios::explain(world, device, options.seed, options.threads, [&](double part) { progress.show(part); });
   }
-  print(options.json ? with_warnings(json_of(explanation), world.warnings) : text_of(explanation));
+  print(options.json ? with_warnings(explanation_json(explanation), world.warnings) : explanation_text(explanation));
   return 0;
 }
 

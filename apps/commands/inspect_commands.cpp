@@ -112,7 +112,7 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
 int devices(const DevicesOptions& options) {
   const gpu::DeviceList list = gpu::list_devices(options.device, options.require_vulkan);
   const bool any = std::any_of(list.devices.begin(), list.devices.end(), [](const auto& d) { return d.chosen; });
-  print(options.json ? json_of(list) : text_of(list));
+  print(options.json ? device_list_json(list) : device_list_text(list));
   // Prints one line if there is no device, or if the host is used.
   const gpu::Device device = open_device(options);
   return any ? 0 : 3;
@@ -124,7 +124,7 @@ int check(const CheckOptions& options) {
   const sensors::SensorSet sensor_set(world);
   warn_of_many_times(sensor_set);
   if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
-  print(options.json ? json_of(world, sensor_set) : text_of(world, sensor_set));
+  print(options.json ? world_report_json(world, sensor_set) : world_report_text(world, sensor_set));
   return 0;
 }
 
@@ -158,8 +158,8 @@ int sense(const SenseOptions& options) {
   if (!options.json && !options.too_near_min) base::mark_too_near(reading.quality, values);
   reading.values = values;
   if (!options.json) print_message(place_of(world, sensor_set, reading));
-  print(options.json ? with_warnings(json_of(world, sensor_set, reading), world.warnings)
-                     : text_of(world, sensor_set, reading));
+  print(options.json ? with_warnings(reading_json(world, sensor_set, reading), world.warnings)
+                     : reading_csv(world, sensor_set, reading));
   return 0;
 }
 

@@ -34,7 +34,7 @@ int listen(const ListenOptions& options) {
   print_message("listening on {} of {}", counted(monitor_options.streams.size(), "port"), options.bind);
   monitor.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));
   const netio::StreamSummary summary = monitor.summary();
-  print(options.json ? with_warnings(json_of(summary), world.warnings) : text_of(summary));
+  print(options.json ? with_warnings(stream_summary_json(summary), world.warnings) : stream_summary_text(summary));
   return summary.good > 0 ? 0 : 1;
 }
 

@@ -103,7 +103,7 @@ int serve_lockstep(const ServeOptions& options) {
       facts.recorded_bytes = recorder->size();
       facts.recording_error = service.recording_error();
     }
-    print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
+    print(options.json ? with_warnings(run_report_json(facts), world.warnings) : run_report_text(facts));
     return facts.recording_error.empty() && facts.lockstep->lost_robots == 0 ? 0 : 1;
   } catch (const netio::PortInUse&) {
     throw base::InputError(netio::endpoint_text(chosen.lockstep.bind) +

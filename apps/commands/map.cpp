@@ -58,7 +58,7 @@ bool follow(Source& source, const netio::Endpoint& from, const netio::Header& he
   return !source.sequences.rejects(header.sequence);
 }
 
-std::string name_of(const Source& source, sensors::WireFormat wire) {
+std::string source_name(const Source& source, sensors::WireFormat wire) {
   return wire == sensors::WireFormat::farm ? "robot " + std::to_string(source.robot)
                                            : "port " + std::to_string(source.port);
 }
@@ -190,7 +190,7 @@ void Display::save(const std::string& file) const {
   if (all.size() == 1) {
     for (const Source& source : sources_)
       if (source.assembler.map() != nullptr)
-        figure.subtitle += (figure.subtitle.empty() ? "" : ", ") + name_of(source, options_.wire);
+        figure.subtitle += (figure.subtitle.empty() ? "" : ", ") + source_name(source, options_.wire);
     return viz::draw_map(all[0], figure, file, options_.page);
   }
   // One picture per port: map.png becomes map_52000.png and so on.
@@ -198,7 +198,7 @@ void Display::save(const std::string& file) const {
   std::size_t i = 0;
   for (const Source& source : sources_) {
     if (source.assembler.map() == nullptr) continue;
-    figure.subtitle = name_of(source, options_.wire);
+    figure.subtitle = source_name(source, options_.wire);
     const std::string own = file.substr(0, dot) + "_" + std::to_string(source.port);
     viz::draw_map(all[i++], figure, dot == std::string::npos ? own : own + file.substr(dot), options_.page);
   }

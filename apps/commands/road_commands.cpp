@@ -34,7 +34,7 @@ int check_network(const CheckOptions& options) {
   std::vector<world::Warning> warnings;
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict);
   const RoadReport facts{network, world::lane_markings_of(network).size(), warnings};
-  print(options.json ? json_of(facts) : text_of(facts));
+  print(options.json ? road_report_json(facts) : road_report_text(facts));
   return 0;
 }
 
@@ -47,19 +47,19 @@ int check_mission(const CheckOptions& options) {
     append(warnings, world::check_against(mission, rndf));
   }
   const MissionReport facts{mission, options.rndf, warnings};
-  print(options.json ? json_of(facts) : text_of(facts));
+  print(options.json ? mission_report_json(facts) : mission_report_text(facts));
   return 0;
 }
 
 }  // namespace
 
-std::string text_of(const RoadReport& facts) {
+std::string road_report_text(const RoadReport& facts) {
   const world::RoadNetwork& network = facts.network;
   const world::RoadCounts& c = network.counts;
   const world::Extent& e = network.extent;
   double length = 0.0;
   for (const world::RoadLane& lane : network.lanes) length += length_of(lane);
-  std::string text = text_of(facts.warnings);
+  std::string text = warnings_text(facts.warnings);
   text += fmt::format("{}\n", network.name.empty() ? network.file : network.name);
   text += row("segments", c.segments);
   text += row("lanes", "{} ({:.1f} m in all)", c.lanes, length);
@@ -75,9 +75,9 @@ std::string text_of(const RoadReport& facts) {
   return text + row("warnings", facts.warnings.size());
 }
 
-std::string text_of(const MissionReport& facts) {
+std::string mission_report_text(const MissionReport& facts) {
   const world::Mdf& mission = facts.mission;
-  std::string text = text_of(facts.warnings);
+  std::string text = warnings_text(facts.warnings);
   text += fmt::format("{}\n", mission.name.empty() ? mission.file : mission.name);
   text += row("made for", mission.rndf_name.empty() ? "-" : mission.rndf_name);
   text += row("checked against", facts.network.empty() ? "nothing (--rndf FILE)" : facts.network);

@@ -25,10 +25,10 @@ struct MissionReport {
   const std::vector<world::Warning>& warnings;
 };
 
-std::string json_of(const RoadReport& facts);
-std::string json_of(const MissionReport& facts);
-std::string text_of(const RoadReport& facts);
-std::string text_of(const MissionReport& facts);
+std::string road_report_json(const RoadReport& facts);
+std::string mission_report_json(const MissionReport& facts);
+std::string road_report_text(const RoadReport& facts);
+std::string mission_report_text(const MissionReport& facts);
 
 /// Runs `check` on a .rndf (or .rdf) or .mdf file; returns nullopt for other files.
 /// @throws base::InputError if the file is invalid, or --rndf is given without a mission.

@@ -121,7 +121,7 @@ int robot(const RobotOptions& options) {
                 waits_for_start(options) ? ", once it is given the start signal" : "");
   process.run(stop_requested(), options.duration);
   const server::RobotClientStats facts = process.stats();
-  print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
+  print(options.json ? with_warnings(robot_client_json(facts), world.warnings) : robot_client_text(facts));
   return facts.answered || !facts.listens ? 0 : 1;
 }
 

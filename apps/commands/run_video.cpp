@@ -240,7 +240,7 @@ void RunVideo::add_movers(const world::World& world) { work_->add_movers(world);
 
 VideoFacts RunVideo::finish() { return work_->finish(); }
 
-std::string text_of(const VideoFacts& facts) {
+std::string video_text(const VideoFacts& facts) {
   std::string text = fmt::format("{}, {:g} s", counted(facts.frames, "frame"), facts.seconds);
   if (facts.bytes > 0) text += fmt::format(", {:.2f} MB", 1e-6 * static_cast<double>(facts.bytes));
   return text;

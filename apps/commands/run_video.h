@@ -24,7 +24,7 @@ struct VideoFacts {
 };
 
 /// "250 frames, 10 s, 1.2 MB".
-std::string text_of(const VideoFacts& facts);
+std::string video_text(const VideoFacts& facts);
 
 /// Frame k at F frames per second shows the simulated time k / F times the speed after the first tick. Poses are
 /// interpolated between ticks; readings are the newest at that time. The queue of frames is bounded and no frame is

@@ -33,7 +33,7 @@ const char* word_of(scenarios::ScenarioStatus status) {
                                                        : "none";
 }
 
-std::string text_of(const scenarios::ScenarioResult& result) {
+std::string scenario_result_text(const scenarios::ScenarioResult& result) {
   if (!result.failure.empty())
     return fmt::format("{} {}: {}\n  FAIL {}\n", word_of(result.status()), result.file, result.name, result.failure);
   std::string text = fmt::format("{} {}: {:.1f} s simulated in {:.2f} s, {}\n", word_of(result.status()), result.file,
@@ -97,7 +97,7 @@ bool run_all(const std::vector<scenarios::Scenario>& all, gpu::Device& device, c
         results.push_back(scenarios::run_scenario(scenario, device, show, cluster::threads_of(0, ranks), ranks,
                                                   [] { return stop_requested().load(); }));
       }
-      print(base::printable(text_of(results.back())));
+      print(base::printable(scenario_result_text(results.back())));
     }
   } catch (const base::Interrupted&) {
     return false;
@@ -138,7 +138,7 @@ int test_in_processes(const TestOptions& options) {
       },
       [&](const scenarios::ScenarioResult& result) {
         results.push_back(result);
-        print(base::printable(text_of(result)));
+        print(base::printable(scenario_result_text(result)));
       });
   const bool fine = none_failed(results);
   if (!whole) add_interrupted(options, results);

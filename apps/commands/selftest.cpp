@@ -58,7 +58,7 @@ std::size_t SelfTestReport::passed() const {
       std::count_if(cases.begin(), cases.end(), [](const auto& c) { return c.second.passed(); }));
 }
 
-std::string text_of(const SelfTestReport& test) {
+std::string self_test_text(const SelfTestReport& test) {
   std::string text =
       fmt::format("{:<9} {:<27} {:>8}  {:<30}\n", "group", "case", "checks", "closest call: error of allowed");
   std::uint64_t checks = 0;
@@ -91,7 +91,7 @@ int selftest(const SelfTestOptions& options) {
       test.seconds += test.cases.back().second.seconds;
     }
   }
-  print(options.json ? json_of(test) : text_of(test));
+  print(options.json ? self_test_json(test) : self_test_text(test));
   return test.sound() ? 0 : test.passed() == test.cases.size() && test.interrupted() ? interrupted_code() : 1;
 }
 

@@ -179,7 +179,7 @@ int serve(const ServeOptions& options) {
       facts.recorded_bytes = recorder->size();
       facts.recording_error = service.stats().recording_error;
     }
-    print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
+    print(options.json ? with_warnings(run_report_json(facts), world.warnings) : run_report_text(facts));
     return facts.recording_error.empty() ? 0 : 1;
   } catch (const netio::PortInUse&) {
     throw port_in_use(chosen.receiver.bind);

@@ -203,7 +203,7 @@ int write_batch_script(const SweepOptions& options, const Sweep& sweep, const Sw
   std::error_code error;
   script.program = fs::read_symlink("/proc/self/exe", error).string();
   const std::string file = folder.file("sweep.sbatch");
-  scenarios::write_whole(file, text_of(script));
+  scenarios::write_whole(file, batch_script_text(script));
   print_message("wrote {}: {} in {}", file, counted(jobs.size(), "job"), counted(script.tasks.size(), "task"));
   print(fmt::format("sbatch {}\n", shell_quoted(file)));
   return 0;

@@ -95,7 +95,7 @@ std::vector<scenarios::ModeResult> measure(const world::World& world, gpu::Devic
 
 }  // namespace
 
-std::string text_of(const std::vector<scenarios::ModeResult>& results) {
+std::string mode_results_text(const std::vector<scenarios::ModeResult>& results) {
   std::string text =
       fmt::format("{:<36}{:<35}  {}\n", "", "--- covered by a stated bound ---", "--- errors of all ---");
   text += fmt::format("{:<13} {:<8} {:>12} {:>11} {:>11} {:>11} {:>10} {:>10} {:>10}\n", "sensor", "mode", "per second",
@@ -141,9 +141,9 @@ int measure_alone(const TradeoffOptions& options) {
                            "laneedge( ) or a magnetometer( )");
   if (!options.out.empty()) write(options, world, device, results);
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
-  const std::string text = options.json        ? with_warnings(json_of(results, target), world.warnings)
+  const std::string text = options.json        ? with_warnings(mode_results_json(results, target), world.warnings)
                            : options.automatic ? words + "\n"
-                                               : text_of(results) + advice_text(results, target);
+                                               : mode_results_text(results) + advice_text(results, target);
   print(text);
   return 0;
 }

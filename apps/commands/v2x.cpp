@@ -58,7 +58,7 @@ class Decoder {
     if (options_.xml) {
       put_xml(frame);
     } else {
-      print(json_of(frame) + "\n");
+      print(v2x_frame_json(frame) + "\n");
     }
     return all.size();
   }

@@ -59,7 +59,7 @@ std::optional<scenarios::RecordedAccuracy> measure_accuracy(const VerifyOptions&
 
 }  // namespace
 
-std::string text_of(const scenarios::RecordedAccuracy& a) {
+std::string recorded_accuracy_text(const scenarios::RecordedAccuracy& a) {
   std::string text = fmt::format("Errors of \"{}\" against exact at the recorded poses, both without noise, {}:\n",
                                  a.words, counted(a.ticks, "tick"));
   text += fmt::format("{:<13} {:<8} {:>10} {:>9} {:>10} {:>10} {:>10} {:>11} {:>11} {:>11}\n", "sensor", "mode",
@@ -80,7 +80,7 @@ std::string text_of(const scenarios::RecordedAccuracy& a) {
   return text + (a.within_bounds() ? "\n" : "AN ERROR IS BEYOND ITS STATED BOUND\n\n");
 }
 
-std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
+std::string verification_text(const scenarios::Verification& v, bool readings_recorded) {
   std::string text = row("ticks", std::to_string(v.ticks));
   for (const scenarios::Comparison& c : v.recomputed) text += line_of(c, "this device against the recording");
   if (v.reference.readings > 0)
@@ -109,8 +109,8 @@ int verify(const VerifyOptions& options) {
     verification = scenarios::verify(recording, device, verify_options(options, progress));
   }
   const bool recorded = recording.info.estimated || !recording.readings.empty();
-  print(options.json ? json_of(verification, accuracy ? &*accuracy : nullptr)
-                     : (accuracy ? text_of(*accuracy) : "") + text_of(verification, recorded));
+  print(options.json ? verification_json(verification, accuracy ? &*accuracy : nullptr)
+                     : (accuracy ? recorded_accuracy_text(*accuracy) : "") + verification_text(verification, recorded));
   if (verification.faulty() || (accuracy && !accuracy->within_bounds())) return 1;
   if (verification.interrupted || (accuracy && accuracy->interrupted)) return interrupted_code();
   // If there are readings, they must be checked. Without readings, the file and its states were checked.

@@ -204,7 +204,7 @@ int vps(const VpsOptions& options) {
   if (sender.has_addresses()) report.sent = sender.counts();
   report.unaddressed = sender.unaddressed();
   if (robots != nullptr) report.truth = robots->truth();
-  print(options.json ? json_of(report) : text_of(report));
+  print(options.json ? vps_report_json(report) : vps_report_text(report));
   complete = complete || (most > 0 && n >= most);
   if (stop_requested() && has_end && !complete) return interrupted_code();
   return report.counts.sightings > 0 ? 0 : 1;

@@ -316,14 +316,14 @@ void require_any(const CLI::App& sub, const std::vector<std::string>& options, c
 
 void check_naming(const CLI::App& sub, const char* readings_option) {
   require_any(sub, {"--topics", "--odometry", "--external", "--too-near"}, {"--record", "--ros2", "--view"});
-  const auto text_of = [&](const char* name) {
+  const auto option_text = [&](const char* name) {
     return sub.count(name) > 0 ? sub.get_option(name)->results().back() : std::string();
   };
-  const std::string odometry = text_of("--odometry");
+  const std::string odometry = option_text("--odometry");
   const std::vector<std::string> nodes = sub.get_option("--external")->results();
   const bool other = (!odometry.empty() && odometry != "truth") ||
                      std::any_of(nodes.begin(), nodes.end(), [](const std::string& node) { return node != "mapper"; });
-  if (text_of("--topics") == "sensor" && other)
+  if (option_text("--topics") == "sensor" && other)
     throw CLI::ValidationError("--topics",
                                "sensor has no frame odom, and true odometry: leave out --odometry encoders and exact, "
                                "--external localizer and filter, or choose other names");

@@ -78,7 +78,7 @@ std::string shell_quoted(const std::string& word) {
   return text + "'";
 }
 
-std::string text_of(const BatchScript& script) {
+std::string batch_script_text(const BatchScript& script) {
   check_directive(script.name, "the name");
   check_directive(script.log, "the folder");
   std::string text = fmt::format(

@@ -40,6 +40,6 @@ struct BatchScript {
   std::vector<std::string> arguments;   ///< --share is appended
 };
 /// @throws base::InputError for texts that a directive cannot contain
-std::string text_of(const BatchScript& script);
+std::string batch_script_text(const BatchScript& script);
 
 }  // namespace sf::apps

@@ -12,12 +12,12 @@
 
 namespace sf::apps {
 
-std::string text_of(const control::ErrorSummary& facts) {
+std::string error_summary_text(const control::ErrorSummary& facts) {
   return fmt::format("mean {:.4f}, mean of its size {:.4f}, of {}", facts.mean, facts.abs_mean,
                      counted(facts.steps, "step"));
 }
 
-std::string text_of(const control::LocalizationError& facts) {
+std::string localization_error_text(const control::LocalizationError& facts) {
   return fmt::format("rms {:.3f} m and {:.2f} degrees, largest {:.3f} m, of {}", facts.rms(),
                      facts.yaw_rms() * 180.0 / M_PI, facts.max, counted(facts.steps, "step"));
 }
@@ -86,7 +86,7 @@ std::vector<Standing> ControlMetrics::standing(const world::World& world, const 
   return sorted;
 }
 
-std::string text_of(const Standing& standing) {
+std::string standing_text(const Standing& standing) {
   std::string names = fmt::format("{}", fmt::join(standing.names, ", "));
   if (standing.robots > standing.names.size())
     names += fmt::format(" and {} more", standing.robots - standing.names.size());

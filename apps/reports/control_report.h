@@ -15,8 +15,8 @@
 namespace sf::apps {
 
 /// For people.
-std::string text_of(const control::ErrorSummary& facts);
-std::string text_of(const control::LocalizationError& facts);
+std::string error_summary_text(const control::ErrorSummary& facts);
+std::string localization_error_text(const control::LocalizationError& facts);
 
 /// Robots that are at rest at the end for the same reason.
 struct Standing {
@@ -27,7 +27,7 @@ struct Standing {
   static constexpr std::size_t kNamed = 3;
 };
 /// "roomba0 for 598 s: 'roomba1' stands in its way".
-std::string text_of(const Standing& standing);
+std::string standing_text(const Standing& standing);
 
 /// Combined results of the robots in a run that have a controller.
 struct ControlReport {

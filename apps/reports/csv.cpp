@@ -45,8 +45,8 @@ std::string place_of(const world::World& world, const sensors::SensorSet& sensor
                      S.z, kDegrees * base::wrap_angle(S.yaw));
 }
 
-std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set,
-                    const base::ReadingBlock& reading) {
+std::string reading_csv(const world::World& world, const sensors::SensorSet& sensor_set,
+                        const base::ReadingBlock& reading) {
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
   std::string text = csv_heading(type);
   const std::size_t width = element_width(type);

@@ -13,13 +13,13 @@ void print_warnings(const std::string& file, const std::vector<world::Warning>& 
   constexpr std::size_t kFirst = 3;
   const std::size_t count = warnings.size();
   if (count == 0) return;
-  std::string lines = text_of(std::span(warnings).first(std::min(count, kFirst)));
+  std::string lines = warnings_text(std::span(warnings).first(std::min(count, kFirst)));
   lines.pop_back();  // `print_message` adds the line end
   print_message("{}{}:\n{}", counted(count, "warning"),
                 count > kFirst ? fmt::format(", the first 3 here, all with `sensorfarm check {}`", file) : "", lines);
 }
 
-std::string text_of(std::span<const world::Warning> warnings) {
+std::string warnings_text(std::span<const world::Warning> warnings) {
   std::string text;
   for (const world::Warning& w : warnings)
     text += fmt::format("{}{}: warning: {}\n", w.file, w.line > 0 ? fmt::format(":{}", w.line) : "", w.message);

@@ -103,23 +103,25 @@ std::size_t count_magnets(const world::World& world);
 /// Counts the docks among the infrared emitters; the others are virtual walls.
 std::size_t count_docks(const world::World& world);
 
-std::string json_of(const gpu::DeviceList& list);
-std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set);
-std::string json_of(const RunReport& facts);
-std::string json_of(const netio::StreamSummary& summary);
+std::string device_list_json(const gpu::DeviceList& list);
+std::string world_report_json(const world::World& world, const sensors::SensorSet& sensor_set);
+std::string run_report_json(const RunReport& facts);
+std::string stream_summary_json(const netio::StreamSummary& summary);
 /// One reading; what is infinite or missing is null.
-std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
+std::string reading_json(const world::World& world, const sensors::SensorSet& sensor_set,
+                         const base::ReadingBlock& reading);
 
-std::string text_of(const gpu::DeviceList& list);
-std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set);
-std::string text_of(const RunReport& facts);
+std::string device_list_text(const gpu::DeviceList& list);
+std::string world_report_text(const world::World& world, const sensors::SensorSet& sensor_set);
+std::string run_report_text(const RunReport& facts);
 /// "5 lasers exact, within 1.03 nm: beams that graze nothing".
-std::string text_of(const sensors::AccuracyStatement& statement);
-std::string text_of(const netio::StreamSummary& summary);
+std::string accuracy_statement_text(const sensors::AccuracyStatement& statement);
+std::string stream_summary_text(const netio::StreamSummary& summary);
 /// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
-std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
+std::string reading_csv(const world::World& world, const sensors::SensorSet& sensor_set,
+                        const base::ReadingBlock& reading);
 /// @param recorded the run kept its readings
-std::string text_of(const scenarios::Verification& verification, bool recorded);
+std::string verification_text(const scenarios::Verification& verification, bool recorded);
 /// @param accuracy null: none was asked for
 std::string json_of(const scenarios::Verification& verification, const scenarios::RecordedAccuracy* accuracy = nullptr);
 std::string text_of(const scenarios::RecordedAccuracy& accuracy);

@@ -172,7 +172,7 @@ Json link_json(const server::LinkCounts& link) {
 
 }  // namespace
 
-std::string json_of(const gpu::DeviceList& list) {
+std::string device_list_json(const gpu::DeviceList& list) {
   Json rows = Json::array();
   for (const gpu::DeviceInfo& d : list.devices)
     rows.push_back({{"name", d.name},
@@ -188,7 +188,7 @@ std::string json_of(const gpu::DeviceList& list) {
   return indented(json);
 }
 
-std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set) {
+std::string world_report_json(const world::World& world, const sensors::SensorSet& sensor_set) {
   Json sensors = Json::object(), rates = Json::object();
   for (const sensors::SensorType* type : sensors::sensor_types()) {
     const auto* group = sensor_set.group(type->id);
@@ -235,7 +235,7 @@ std::string with_warnings(std::string json, const std::vector<world::Warning>& w
   return json.insert(end, ",\n  \"warnings\": " + dump_json(warnings_json(warnings)));
 }
 
-std::string json_of(const RunReport& f) {
+std::string run_report_json(const RunReport& f) {
   Json json{{"device", f.device},
             {"software_device", f.software},
             {"caster", f.caster},
@@ -309,7 +309,7 @@ std::string json_of(const RunReport& f) {
   return indented(json);
 }
 
-std::string json_of(const netio::StreamSummary& s) {
+std::string stream_summary_json(const netio::StreamSummary& s) {
   Json sensors = Json::object();
   for (const auto& [type, share] : s.of) sensors[type] = {{"good", share.good}, {"elements", share.elements}};
   return indented({{"packets", s.datagrams},
@@ -328,8 +328,8 @@ std::string json_of(const netio::StreamSummary& s) {
                    {"by_reason", reasons(s.counts)}});
 }
 
-std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set,
-                    const base::ReadingBlock& reading) {
+std::string reading_json(const world::World& world, const sensors::SensorSet& sensor_set,
+                         const base::ReadingBlock& reading) {
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
   Json head{{"robot", world.movers[reading.mover].name},
             {"sensor", reading.sensor},
@@ -357,7 +357,7 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
   return text + "\n]}\n";
 }
 
-std::string json_of(const server::RobotClientStats& f) {
+std::string robot_client_json(const server::RobotClientStats& f) {
   Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
             {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
             {"started", f.started},   {"done", f.done},     {"answered", f.answered},
@@ -425,7 +425,8 @@ Json accuracy_json(const scenarios::RecordedAccuracy& accuracy) {
 
 }  // namespace
 
-std::string json_of(const scenarios::Verification& verification, const scenarios::RecordedAccuracy* accuracy) {
+std::string verification_json(const scenarios::Verification& verification,
+                              const scenarios::RecordedAccuracy* accuracy) {
   const auto compared = [](const scenarios::Comparison& c) {
     return Json{{"type", c.type},           {"readings", c.readings}, {"numbers", c.values},
                 {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
@@ -445,7 +446,7 @@ std::string json_of(const scenarios::Verification& verification, const scenarios
   return indented(json);
 }
 
-std::string json_of(const SelfTestReport& test) {
+std::string self_test_json(const SelfTestReport& test) {
   Json json{{"device", test.device.name}, {"software", test.device.software},  {"asked", test.asked},
             {"run", test.cases.size()},   {"passed", test.passed()},           {"sound", test.sound()},
             {"seconds", test.seconds},    {"interrupted", test.interrupted()}, {"cases", Json::array()}};
@@ -465,7 +466,7 @@ std::string json_of(const SelfTestReport& test) {
   return indented(json);
 }
 
-std::string json_of(const scenarios::Explanation& e) {
+std::string explanation_json(const scenarios::Explanation& e) {
   Json json{{"ticks", e.ticks},        {"build_s", e.build},
             {"first_tick_s", e.first}, {"silent_tick_s", e.silent},
             {"tick_s", e.all},         {"caster", e.caster},
@@ -498,7 +499,8 @@ std::string json_of(const scenarios::Explanation& e) {
   return indented(json);
 }
 
-std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target) {
+std::string mode_results_json(const std::vector<scenarios::ModeResult>& results,
+                              const scenarios::AccuracyTarget& target) {
   Json json{{"modes", Json::array()},
             {"advice", scenarios::accuracy_words(results, scenarios::select_modes(results, target))}};
   for (const scenarios::ModeResult& g : results)

@@ -37,7 +37,7 @@ std::string sensors_text(const sensors::SensorSet& sensor_set) {
 std::string accuracy_text(const world::World& world, const sensors::SensorSet& sensor_set) {
   std::string text;
   for (const sensors::AccuracyStatement& s : sensors::accuracy_statements(world, sensor_set))
-    text += row(text.empty() ? "accuracy" : "", text_of(s));
+    text += row(text.empty() ? "accuracy" : "", accuracy_statement_text(s));
   return text;
 }
 
@@ -79,7 +79,7 @@ std::string street_text(const world::World& world) {
 
 }  // namespace
 
-std::string text_of(const sensors::AccuracyStatement& s) {
+std::string accuracy_statement_text(const sensors::AccuracyStatement& s) {
   const std::string_view unit = sensors::unit_of(*s.type);
   const std::string quiet = std::isinf(s.bound.error) ? "no bound" : "within " + bound_text(s.bound.error, unit);
   std::string error = quiet;
@@ -90,7 +90,7 @@ std::string text_of(const sensors::AccuracyStatement& s) {
                      s.bound.condition.empty() ? "" : ": ", s.bound.condition);
 }
 
-std::string text_of(const gpu::DeviceList& list) {
+std::string device_list_text(const gpu::DeviceList& list) {
   std::string text;
   for (std::size_t i = 0; i < list.devices.size(); ++i) {
     const gpu::DeviceInfo& d = list.devices[i];
@@ -106,10 +106,10 @@ std::string text_of(const gpu::DeviceList& list) {
   return text;
 }
 
-std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set) {
+std::string world_report_text(const world::World& world, const sensors::SensorSet& sensor_set) {
   const std::size_t robots = count_robots(world);
   const world::Extent& e = world.extent;
-  std::string text = text_of(world.warnings);
+  std::string text = warnings_text(world.warnings);
   text += fmt::format("{}\n", world.name.empty() ? world.file : world.name);
   text += row("models", world.models.size());
   text += row("robots", robots);
@@ -153,12 +153,12 @@ std::string work_text(const RunReport& f) {
 std::string control_text(const ControlReport& f) {
   if (f.robots == 0) return "";
   std::string text = row("controller", "{}: {} of {} done", f.controller, f.done, counted(f.robots, "robot"));
-  if (f.error.steps > 0) text += row("control error", text_of(f.error));
-  if (f.localization.steps > 0) text += row("localization error", text_of(f.localization));
+  if (f.error.steps > 0) text += row("control error", error_summary_text(f.error));
+  if (f.localization.steps > 0) text += row("localization error", localization_error_text(f.localization));
   if (f.has_goals) text += row("checkpoints", "{} passed", f.checkpoints);
   constexpr std::size_t kLines = 5;
   for (std::size_t i = 0; i < std::min(f.standing.size(), kLines); ++i)
-    text += row(i == 0 ? "stand at the end" : "", text_of(f.standing[i]));
+    text += row(i == 0 ? "stand at the end" : "", standing_text(f.standing[i]));
   if (f.standing.size() > kLines)
     text += row("", "and robots for {} (--json has all)", counted(f.standing.size() - kLines, "other reason"));
   return text;
@@ -220,7 +220,7 @@ std::string strayed_text(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::string text_of(const RunReport& f) {
+std::string run_report_text(const RunReport& f) {
   const double ticks = f.ticks > 0 ? static_cast<double>(f.ticks) : 1.0;
   const auto stage = [&](double seconds) { return fmt::format("{:8.3f} ms a tick", seconds * 1e3 / ticks); };
   std::string text = f.interrupted ? "Stopped before the end.\n" : "";
@@ -254,7 +254,7 @@ std::string text_of(const RunReport& f) {
   if (!f.recording.empty())
     text += row("recording", "{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6);
   if (!f.recording_error.empty()) text += row("", "NOT WHOLE: {}", f.recording_error);
-  if (!f.video.file.empty()) text += row("video", "{} ({})", f.video.file, text_of(f.video));
+  if (!f.video.file.empty()) text += row("video", "{} ({})", f.video.file, video_text(f.video));
   text += row("time: move", stage(f.move_s));
   text += row("  place movers", stage(f.farm.place_s));
   text += row("  lists, scans", stage(f.farm.lists_s));
@@ -287,7 +287,7 @@ std::string shares_text(const netio::StreamSummary& summary) {
 
 }  // namespace
 
-std::string text_of(const netio::StreamSummary& s) {
+std::string stream_summary_text(const netio::StreamSummary& s) {
   std::string text = row("packets received", "{} ({:.1f} MB) on {}", s.datagrams, static_cast<double>(s.bytes) * 1e-6,
                          counted(s.ports, "port"));
   text += row("packets good", "{}{}", s.good, shares_text(s));

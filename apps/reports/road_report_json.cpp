@@ -19,7 +19,7 @@ double rounded(double value, double unit) { return std::round(value / unit) * un
 
 }  // namespace
 
-std::string json_of(const RoadReport& facts) {
+std::string road_report_json(const RoadReport& facts) {
   const world::RoadCounts& c = facts.network.counts;
   const world::Extent& e = facts.network.extent;
   double length = 0.0;
@@ -43,7 +43,7 @@ std::string json_of(const RoadReport& facts) {
       facts.warnings);
 }
 
-std::string json_of(const MissionReport& facts) {
+std::string mission_report_json(const MissionReport& facts) {
   Json checkpoints = Json::array(), limits = Json::array();
   for (const auto& checkpoint : facts.mission.checkpoints) checkpoints.push_back(checkpoint.id);
   for (const world::SpeedLimit& limit : facts.mission.speed_limits)

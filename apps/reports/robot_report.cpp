@@ -46,7 +46,7 @@ std::string link_text(const server::LinkCounts& link) {
 
 }  // namespace
 
-std::string text_of(const server::RobotClientStats& f) {
+std::string robot_client_text(const server::RobotClientStats& f) {
   std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
   if (!f.started) text += "The start signal did not come.\n";
   text += row("robot", "{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : "");
@@ -80,8 +80,8 @@ std::string text_of(const server::RobotClientStats& f) {
   text += row("contacts", "{} that began", f.contacts);
   if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings or positions");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
-  if (f.error.steps > 0) text += row("control error", text_of(f.error));
-  if (f.localization.steps > 0) text += row("localization error", text_of(f.localization));
+  if (f.error.steps > 0) text += row("control error", error_summary_text(f.error));
+  if (f.localization.steps > 0) text += row("localization error", localization_error_text(f.localization));
   return text;
 }
 

@@ -7,7 +7,7 @@
 
 namespace sf::apps {
 
-std::string json_of(const server::RobotClientStats& facts);
-std::string text_of(const server::RobotClientStats& facts);
+std::string robot_client_json(const server::RobotClientStats& facts);
+std::string robot_client_text(const server::RobotClientStats& facts);
 
 }  // namespace sf::apps

@@ -280,7 +280,7 @@ class Reader {
 
 }  // namespace
 
-std::string json_of(const v2x::Frame& frame) {
+std::string v2x_frame_json(const v2x::Frame& frame) {
   Json object = Json::object();
   std::visit(
       [&](const auto& message) {

@@ -10,7 +10,7 @@
 namespace sf::apps {
 
 /// On one line, without its end.
-std::string json_of(const v2x::Frame& frame);
+std::string v2x_frame_json(const v2x::Frame& frame);
 
 /// Parses the frames in a text, in order: successive JSON objects (including JSON Lines) or an array of objects.
 /// @throws base::InputError with file, line and component for the first error; the frames before it were passed to

@@ -27,7 +27,7 @@ std::string accuracy_text(const vision::Accuracy& a) {
 
 }  // namespace
 
-std::string text_of(const VpsReport& r) {
+std::string vps_report_text(const VpsReport& r) {
   const auto images = static_cast<double>(r.counts.images);
   std::string text = row("cameras", r.cameras) + row("images", r.counts.images);
   if (r.counts.unreadable > 0) text += row("", "{} of them unreadable", r.counts.unreadable);

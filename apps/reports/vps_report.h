@@ -25,7 +25,7 @@ struct VpsReport {
   std::optional<TruthCounts> truth;  ///< for rendered robots
 };
 
-std::string text_of(const VpsReport& report);
-std::string json_of(const VpsReport& report);
+std::string vps_report_text(const VpsReport& report);
+std::string vps_report_json(const VpsReport& report);
 
 }  // namespace sf::apps

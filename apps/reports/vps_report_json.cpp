@@ -6,7 +6,7 @@ namespace sf::apps {
 
 using Json = nlohmann::ordered_json;
 
-std::string json_of(const VpsReport& r) {
+std::string vps_report_json(const VpsReport& r) {
   Json json = {{"cameras", r.cameras},
                {"images", r.counts.images},
                {"unreadable", r.counts.unreadable},

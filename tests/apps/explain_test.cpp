@@ -96,7 +96,7 @@ TEST(Explain, SizesUseTheLargestSuitableUnit) {
   explanation.types.push_back({.type = "laser", .bytes = 1});
   explanation.types[0].tables = {
       {"", "a", 3u << 19}, {"", "b", 1u << 20}, {"", "c", (1u << 20) - 512}, {"", "d", 1024}, {"", "e", 1023}};
-  const std::string text = apps::text_of(explanation);
+  const std::string text = apps::explanation_text(explanation);
   EXPECT_NE(text.find("1 B: a 1.5 MiB, b 1.0 MiB, c 1023.5 KiB, d 1.0 KiB, e 1023 B\n"), std::string::npos) << text;
 }
 

@@ -93,14 +93,14 @@ std::string words() {
 }
 
 std::string batch_script() {
-  return text_of(BatchScript{.name = "grid",
-                             .tasks = {0, 1, 2, 5, 7, 8},
-                             .shares = 9,
-                             .cpus = 3,
-                             .log = "out/%a.log",
-                             .directives = {"--time=1:00:00"},
-                             .program = "/opt/sensor farm",
-                             .arguments = {"sweep", "a b.toml"}});
+  return batch_script_text(BatchScript{.name = "grid",
+                                       .tasks = {0, 1, 2, 5, 7, 8},
+                                       .shares = 9,
+                                       .cpus = 3,
+                                       .log = "out/%a.log",
+                                       .directives = {"--time=1:00:00"},
+                                       .program = "/opt/sensor farm",
+                                       .arguments = {"sweep", "a b.toml"}});
 }
 
 }  // namespace

@@ -136,8 +136,8 @@ netio::StreamSummary summary() {
 }
 
 template <class Report>
-std::string both(const Report& report) {
-  return text_of(report) + json_of(report);
+std::string both(std::string (&text)(const Report&), std::string (&json)(const Report&), const Report& report) {
+  return text(report) + json(report);
 }
 
 }  // namespace
@@ -151,11 +151,13 @@ TEST(ReportRecords, RatesAreInMillionsFromOneOn) {
     RunReport f{.device = "GPU", .caster = "host"};
     f.wall_s = 1.0;
     f.farm.work.rays = rays;
-    EXPECT_NE(text_of(f).find(std::string(", ") + text), std::string::npos) << text_of(f);
+    EXPECT_NE(run_report_text(f).find(std::string(", ") + text), std::string::npos) << run_report_text(f);
   }
 }
 
-TEST(ReportRecords, AnEmptyRunShowsNoRowsOfServices) { expect_golden("report_run_empty", both(RunReport{})); }
+TEST(ReportRecords, AnEmptyRunShowsNoRowsOfServices) {
+  expect_golden("report_run_empty", both(run_report_text, run_report_json, RunReport{}));
+}
 
 TEST(ReportRecords, ARobotShowsEveryCount) {
   expect_golden("report_robot", both(robot_stats()) + both(server::RobotClientStats{}));
@@ -164,15 +166,16 @@ TEST(ReportRecords, ARobotShowsEveryCount) {
 TEST(ReportRecords, AVerificationShowsDifferencesDamageAndVerdict) {
   std::string text;
   for (const auto& [different, largest] : {std::pair<std::uint64_t, double>{0, 0.0}, {0, 0.125}, {1, 0.5}, {2, 3.0}})
-    text += text_of(verification(different, largest), different == 0) + json_of(verification(different, largest));
+    text += verification_text(verification(different, largest), different == 0) +
+            verification_json(verification(different, largest));
   scenarios::RecordedAccuracy accuracy{.words = "skip2", .ticks = 30, .types = {}, .notes = {"a note"}};
-  text += text_of(accuracy);
+  text += recorded_accuracy_text(accuracy);
   accuracy.types = {{.sensor = "laser", .mode = "skip2", .unit = "m", .noisy = true, .errors = {}},
                     {.sensor = "magnetometer", .mode = "near1", .unit = "T", .errors = {}}};
   for (const double error : {0.0, 0.25, 0.5}) accuracy.types[0].errors.add(error, 0.0, error < 0.5 ? 0.125 : HUGE_VAL);
   accuracy.types[1].errors.add(NAN, 1e-6, HUGE_VAL);
   accuracy.interrupted = true;
-  text += text_of(accuracy) + json_of(verification(0, 0.0), &accuracy);
+  text += recorded_accuracy_text(accuracy) + verification_json(verification(0, 0.0), &accuracy);
   expect_golden("report_verification", text);
 }
 

@@ -65,7 +65,7 @@ TEST(SelfTest, TheReportListsEachResult) {
   report.cases.push_back({&bits, {.checks = 2, .failed = 1, .error = 0.5, .failure = "x [1]"}});
   EXPECT_FALSE(report.sound());
   EXPECT_EQ(report.passed(), 3u);
-  EXPECT_EQ(apps::text_of(report),
+  EXPECT_EQ(apps::self_test_text(report),
             "group     case                          checks  closest call: error of allowed\n"
             "a         plain                              3  right or wrong                 ok\n"
             "a         bits                              20  0: the same to the bit         ok\n"
@@ -76,7 +76,7 @@ TEST(SelfTest, TheReportListsEachResult) {
             "          1 of 2 checks failed; first: x [1]\n"
             "3 of 4 cases passed on device: 29 checks in 1.5 s; interrupted, 1 not run\n");
   report.asked = 4;
-  EXPECT_TRUE(apps::text_of(report).ends_with("29 checks in 1.5 s\n"));
+  EXPECT_TRUE(apps::self_test_text(report).ends_with("29 checks in 1.5 s\n"));
 }
 
 TEST(SelfTest, AnEmptyReportIsNotSound) { EXPECT_FALSE(apps::SelfTestReport{}.sound()); }
