@@ -20,7 +20,7 @@ using Kind = TomlNode::Kind;
 
 constexpr std::size_t kMaxPrograms = 1000, kMaxStages = 100, kMaxDetectors = 1000, kMaxCalls = 10'000;
 constexpr double kMaxSeconds = 1e6, kMaxMetres = 1e7;
-constexpr std::array<std::string_view, 4> kKeys{"world", "program", "detector", "wave"};
+constexpr std::array<std::string_view, 4> kPlanKeys{"world", "program", "detector", "wave"};
 constexpr std::array<std::string_view, 4> kProgramKeys{"name", "lights", "offset", "stage"};
 constexpr std::array<std::string_view, 9> kStageKeys{"states",    "duration", "min",    "max",  "gap",
                                                      "detectors", "on_call",  "yellow", "clear"};
@@ -234,7 +234,7 @@ void PlanReader::read_wave(const TomlNode& table, LightPlan& plan) const {
 
 LightPlan PlanReader::read(const TomlNode& root) {
   reader_.require_kind(root, "a plan of traffic lights");
-  reader_.require_known(root, kKeys);
+  reader_.require_known(root, kPlanKeys);
   LightPlan plan;
   const auto detectors = reader_.tables(root, "detector"), programs = reader_.tables(root, "program");
   if (programs.empty()) reader_.fail(root, "no program; expected a section [[program]], see docs/v2x.md");

@@ -22,9 +22,9 @@ namespace {
 constexpr double kMaxPosition = 1e7;  // [m]
 constexpr double kMaxWidth = 1e4;     // [m]
 
-constexpr std::array<std::string_view, 12> kKeys{"origin",       "scale",         "position",      "heading_deg",
-                                                 "lane_width_m", "paint_width_m", "dash_length_m", "dash_gap_m",
-                                                 "stop_width_m", "spot_width_m",  "lanes",         "points"};
+constexpr std::array<std::string_view, 12> kSidecarKeys{"origin",       "scale",         "position",      "heading_deg",
+                                                        "lane_width_m", "paint_width_m", "dash_length_m", "dash_gap_m",
+                                                        "stop_width_m", "spot_width_m",  "lanes",         "points"};
 constexpr std::array<std::string_view, 3> kLaneKeys{"width_m", "left", "right"};
 constexpr std::array<std::string_view, 1> kPointKeys{"position"};
 
@@ -126,7 +126,7 @@ RoadSidecar parse_sidecar(const std::string& file, std::string_view text, std::v
   sidecar.file = file;
   const TomlNode root = parse_toml(file, text);
   const Reader reader{file, warnings};
-  reader.warn_unknown(root, kKeys);
+  reader.warn_unknown(root, kSidecarKeys);
   read_frame(reader, root, sidecar);
   sidecar.lane_width = reader.width(root, "lane_width_m");
   sidecar.paint_width = reader.width(root, "paint_width_m");
