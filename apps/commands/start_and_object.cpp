@@ -57,7 +57,7 @@ int start(const StartOptions& options) {
   const netio::Endpoint farm = farm_of(options);
   send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.start_id)}, netio::Start{},
                   signer_of(options, {netio::PeerKind::start, 0}));
-  print_message("start signal sent to {} for {}, {} times; it is not acknowledged", netio::text(farm),
+  print_message("start signal sent to {} for {}, {} times; it is not acknowledged", netio::endpoint_text(farm),
                 options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)),
                 kRepetitions);
   return 0;

@@ -87,7 +87,7 @@ struct SelfTestReport {
 /// warnings
 void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
 /// "file:line: warning: message", one a line.
-std::string text_of(std::span<const world::Warning> warnings);
+std::string warnings_text(std::span<const world::Warning> warnings);
 /// Appends the list of all warnings to the JSON object.
 std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings);
 
@@ -123,14 +123,16 @@ std::string reading_csv(const world::World& world, const sensors::SensorSet& sen
 /// @param recorded the run kept its readings
 std::string verification_text(const scenarios::Verification& verification, bool recorded);
 /// @param accuracy null: none was asked for
-std::string json_of(const scenarios::Verification& verification, const scenarios::RecordedAccuracy* accuracy = nullptr);
-std::string text_of(const scenarios::RecordedAccuracy& accuracy);
-std::string text_of(const scenarios::Explanation& explanation);
-std::string json_of(const scenarios::Explanation& explanation);
-std::string text_of(const std::vector<scenarios::ModeResult>& results);
-std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target);
-std::string text_of(const SelfTestReport& test);
-std::string json_of(const SelfTestReport& test);
+std::string verification_json(const scenarios::Verification& verification,
+                              const scenarios::RecordedAccuracy* accuracy = nullptr);
+std::string recorded_accuracy_text(const scenarios::RecordedAccuracy& accuracy);
+std::string explanation_text(const scenarios::Explanation& explanation);
+std::string explanation_json(const scenarios::Explanation& explanation);
+std::string mode_results_text(const std::vector<scenarios::ModeResult>& results);
+std::string mode_results_json(const std::vector<scenarios::ModeResult>& results,
+                              const scenarios::AccuracyTarget& target);
+std::string self_test_text(const SelfTestReport& test);
+std::string self_test_json(const SelfTestReport& test);
 /// Positions of robot and sensor, in one line.
 std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
                      const base::ReadingBlock& reading);

@@ -27,7 +27,7 @@ struct PointId {
   friend bool operator==(PointId, PointId) = default;
   friend auto operator<=>(PointId, PointId) = default;
 };
-std::string text_of(PointId id);
+std::string point_id_text(PointId id);
 /// Reads "3.1.5", or "3.1" if two parts are expected. Returns nullopt for any other text.
 std::optional<PointId> read_point_id(std::string_view text, int parts = 3);
 
