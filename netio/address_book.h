@@ -1,5 +1,5 @@
 #pragma once
-// Addresses as files and command lines have them, with one look-up for each host.
+// Resolves addresses from files and command lines, with one look-up per host.
 
 #include <map>
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace sf::netio {
 
-/// One thread at a time.
+/// Not thread-safe: call it from one thread at a time.
 class AddressBook {
  public:
-  /// @param look_up `resolve`, or another in tests
+  /// @param look_up `resolve`, or a substitute in tests
   explicit AddressBook(std::uint32_t (*look_up)(const std::string& host) = resolve) : look_up_(look_up) {}
 
-  /// @param text "HOST:PORT", the port from 1 to 65535. @return nothing for another form
+  /// Parses "HOST:PORT", with the port in [1, 65535]. @return nullopt for any other form
   /// @throws base::InputError for an unknown host
   std::optional<Endpoint> find(const std::string& text);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Proof of address ownership by tokens. No state is kept per address.
+// Proof of address ownership by tokens, without state per address.
 
 #include <array>
 #include <cstdint>
@@ -11,10 +11,10 @@ namespace sf::netio {
 
 using SipHashKey = std::array<std::uint64_t, 2>;
 
-/// SipHash-2-4 (Aumasson and Bernstein, 2012). Its values cannot be predicted without the key.
+/// Returns SipHash-2-4 (Aumasson and Bernstein, 2012). Its values cannot be predicted without the key.
 std::uint64_t siphash(const SipHashKey& key, std::span<const std::uint8_t> bytes);
 
-/// From the kernel's random number generator.
+/// Draws a key from the kernel's random number generator.
 SipHashKey random_key();
 std::uint32_t random_session();  ///< never 0
 

@@ -1,5 +1,5 @@
 #pragma once
-// Bindings of ids to the addresses that may send for them. No clock is read: time is always an argument.
+// Binds ids to the addresses that may send for them. Reads no clock: time is always an argument.
 
 #include <cstdint>
 #include <optional>
@@ -11,16 +11,17 @@
 
 namespace sf::netio {
 
-inline constexpr std::int64_t kClientTimeout = 2'000'000'000;  ///< [ns] from this duration on a sender is silent
+inline constexpr std::int64_t kClientTimeout = 2'000'000'000;  ///< [ns] a sender is considered silent after this
+                                                               ///< duration
 
-/// `sequence` is less than 2^31 ahead of `than`. The counter may wrap (serial number arithmetic, RFC 1982, section
-/// 3.2).
+/// Returns whether `sequence` is less than 2^31 ahead of `than`. The counter may wrap (serial number arithmetic, RFC
+/// 1982, section 3.2).
 inline bool newer(std::uint32_t sequence, std::uint32_t than) { return static_cast<std::int32_t>(sequence - than) > 0; }
 
-/// Bindings for one space of ids (robots, or tags). The first sender of an id binds it until two seconds of silence. A
-/// packet whose sequence is not newer than the last of its channel is stale: it neither extends the binding nor is
-/// used, so a sender that restarts its count is accepted after two seconds. Channels (one per packet type) are counted
-/// separately.
+/// Bindings for one space of ids (robots or tags). The first sender of an id binds it until two seconds of silence. A
+/// packet whose sequence is not newer than the last one of its channel is stale: it is dropped and does not extend the
+/// binding. A sender that restarts its count is therefore accepted after two seconds. Each channel (one per packet
+/// type) has its own count.
 class ClientRegistry {
  public:
   static constexpr std::size_t kChannels = 2;
@@ -28,32 +29,32 @@ class ClientRegistry {
   /// @param ids known ids, in any order
   explicit ClientRegistry(std::span<const std::uint32_t> ids);
 
-  /// Row of `id` in ascending order of ids; nullopt for an unknown id.
+  /// Returns the row of `id` in ascending order of ids; nullopt for an unknown id.
   std::optional<std::size_t> row(std::uint32_t id) const;
 
-  /// Returns accepted, wrong_source or stale. @pre `id` is known. `now` [ns] on any clock that does not decrease.
+  /// Returns accepted, wrong_source or stale. @pre `id` is known. `now` [ns] is from any clock that does not decrease.
   PacketStatus admit(std::uint32_t id, std::size_t channel, std::uint32_t sequence, const Endpoint& source,
                      std::int64_t now);
 
-  /// Renews the binding of `id` by a packet that needs no order. Returns accepted where `source` was the last sender,
-  /// also after a silence; wrong_source while `id` is bound to another; else stale. @pre as `admit`
+  /// Renews the binding of `id` for a packet whose order does not matter. Returns accepted if `source` was the last
+  /// sender, even after a silence; wrong_source while `id` is bound to another sender; stale otherwise. @pre as `admit`
   PacketStatus renew(std::uint32_t id, const Endpoint& source, std::int64_t now);
 
   /// Ends the binding of `id` to `source`. Returns accepted if it existed (the id is free at once), wrong_source if
-  /// `id` is bound to another sender, else stale. Packets from `source` in the next two seconds are stale, since they
-  /// were sent before.
+  /// `id` is bound to another sender, stale otherwise. Packets from `source` in the next two seconds are stale, because
+  /// they were sent earlier.
   PacketStatus leave(std::uint32_t id, const Endpoint& source, std::int64_t now);
 
-  /// A packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
+  /// Returns whether a packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
   bool is_active(std::uint32_t id, std::int64_t now) const;
 
-  /// The last sender for `id`, even if silent since; nullopt if there was none or it has left.
+  /// Returns the last sender for `id`, even if it is silent now; nullopt if there was none or it has left.
   std::optional<Endpoint> source(std::uint32_t id) const;
 
  private:
   struct Channel {
     std::uint32_t sequence = 0;
-    std::optional<std::int64_t> last;  ///< [ns] when a packet of it was accepted
+    std::optional<std::int64_t> last;  ///< [ns] when its last packet was accepted
   };
   struct Client {
     std::uint32_t id = 0;
@@ -61,9 +62,9 @@ class ClientRegistry {
     std::optional<std::int64_t> last;
     Channel channels[kChannels];
     Endpoint departed;                        ///< the last sender that left
-    std::optional<std::int64_t> departed_at;  ///< [ns] time of its leaving
+    std::optional<std::int64_t> departed_at;  ///< [ns] when it left
   };
-  std::vector<Client> clients_;  ///< by id
+  std::vector<Client> clients_;  ///< sorted by id
 };
 
 }  // namespace sf::netio

@@ -44,7 +44,7 @@ void DelayLine::queue(std::int64_t arrival, std::size_t tag, std::span<const std
   std::push_heap(waiting_.begin(), waiting_.end(), later);
 }
 
-/// The message's memory is reused by the next `send` and lives until then.
+/// Returns memory that the next `send` reuses.
 DelayLine::QueuedMessage DelayLine::pop() {
   std::pop_heap(waiting_.begin(), waiting_.end(), later);
   const QueuedMessage next = waiting_.back();

@@ -14,12 +14,12 @@ namespace sf::netio {
 struct DelayCounts {
   std::uint64_t passed = 0;      ///< released
   std::uint64_t lost = 0;        ///< lost according to the model
-  std::uint64_t full = 0;        ///< dropped because kCapacity messages waited
-  std::uint64_t duplicated = 0;  ///< second copies, counted in the others too
-  std::uint64_t corrupted = 0;   ///< messages with a flipped bit, in all their copies
+  std::uint64_t full = 0;        ///< dropped because the queue held kCapacity messages
+  std::uint64_t duplicated = 0;  ///< second copies, also included in the other counts
+  std::uint64_t corrupted = 0;   ///< messages with a flipped bit, in all of their copies
 };
 
-/// One thread. The memory of messages is reused.
+/// Single-threaded. Reuses the memory of messages.
 class DelayLine {
  public:
   static constexpr std::size_t kCapacity = 65'536;
@@ -31,7 +31,8 @@ class DelayLine {
   void send(const MessageId& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes);
 
   /// Passes all messages that have arrived by `now` [ns] to `take(std::size_t tag, std::span<const std::uint8_t>
-  /// bytes)`, in order of arrival, at equal times in order of sending. `take` must not send.
+  /// bytes)`, in order of arrival; messages with equal arrival times are passed in the order in which they were sent.
+  /// `take` must not call `send`.
   template <class Take>
   void release(std::int64_t now, Take&& take) {
     while (!waiting_.empty() && waiting_.front().arrival <= now) {
@@ -41,7 +42,7 @@ class DelayLine {
     }
   }
 
-  std::int64_t next() const;  ///< [ns] next arrival; the largest value without messages
+  std::int64_t next() const;  ///< [ns] next arrival; the largest value if the queue is empty
   std::size_t waiting() const { return waiting_.size(); }
   const DelayCounts& counts() const { return counts_; }
 
@@ -59,7 +60,7 @@ class DelayLine {
 
   LinkModel model_;
   DelayCounts counts_;
-  std::vector<QueuedMessage> waiting_;  ///< a heap, the next message at the front
+  std::vector<QueuedMessage> waiting_;  ///< a heap; the next message is at the front
   std::vector<base::Bytes> memory_;
   std::vector<std::size_t> free_;  ///< slots of `memory_`
   std::uint64_t order_ = 0;

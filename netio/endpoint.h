@@ -1,5 +1,5 @@
 #pragma once
-// Source or destination of datagrams. IPv4 only, which the testbed's robots, loopback and containers all support.
+// Source or destination of datagrams. IPv4 only: the testbed's robots, loopback and containers all support it.
 
 #include <cstdint>
 #include <optional>
@@ -17,23 +17,22 @@ struct Endpoint {
   bool operator==(const Endpoint&) const = default;
 };
 
-/// IPv4 address of a dotted quad or a host name. Host names are looked up by the machine's resolver; dotted quads need
-/// no network.
-/// @throws base::InputError naming `host` on failure
-/// @throws base::InputError naming `host` when there is none.
+/// Returns the IPv4 address of a dotted quad or a host name. The machine's resolver looks up host names; dotted quads
+/// need no network.
+/// @throws base::InputError naming `host` if it has no address
 std::uint32_t resolve(const std::string& host);
 
-/// IPv4 address of a dotted quad; nullopt for anything else.
+/// Returns the IPv4 address of a dotted quad; nullopt for anything else.
 std::optional<std::uint32_t> parse_address(const std::string& text);
 
-/// 127.0.0.0/8, reachable only from this machine.
+/// Returns whether the address is in 127.0.0.0/8, which is reachable only from this machine.
 inline bool is_loopback(std::uint32_t address) { return address >> 24 == 127; }
-/// Of this machine's interfaces that are up, loopback aside.
+/// Returns the addresses of this machine's interfaces that are up, except loopback.
 std::vector<std::uint32_t> own_addresses();
 
 /// "127.0.0.1".
 std::string ipv4_text(std::uint32_t address);
-/// "127.0.0.1:10008".
-std::string endpoint_text(const Endpoint& endpoint);
+/// Returns "127.0.0.1:10008".
+std::string text(const Endpoint& endpoint);
 
 }  // namespace sf::netio

@@ -1,5 +1,5 @@
 #pragma once
-// Estimate of the farm's clock from the timestamps of readings.
+// Estimates the farm's clock from the timestamps of readings.
 
 #include <cstdint>
 #include <optional>
@@ -8,13 +8,14 @@ namespace sf::netio {
 
 /// The estimate is the largest difference between a reading's timestamp and its arrival. It lags the farm's clock by
 /// the delay of the fastest reading and is never ahead. After two seconds without readings (kClientTimeout) the farm
-/// may have restarted, and the next reading sets the clock anew. No clock is read here.
+/// may have restarted, so the next reading sets the clock again. Reads no clock.
 class FarmClock {
  public:
-  /// Takes a reading measured at `time` [ns] on the farm's clock that arrived at `arrival` [ns] on the robot's clock.
+  /// Updates the estimate with a reading that was measured at `time` [ns] on the farm's clock and arrived at `arrival`
+  /// [ns] on the robot's clock.
   void update(std::int64_t time, std::int64_t arrival);
 
-  /// [ns] The farm's time at the robot's time `own`; equal to it before the first reading.
+  /// Returns the farm's time [ns] at the robot's time `own`. The two are equal before the first reading.
   std::int64_t to_farm(std::int64_t own) const { return own + offset_; }
   /// The inverse of `to_farm`.
   std::int64_t to_own(std::int64_t farm) const { return farm - offset_; }

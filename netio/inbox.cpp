@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kBatch = 64;
 constexpr std::size_t kSendBuffer = 1u << 20;  ///< [byte] for packets sent through a duplicate of the socket
-constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] of bounds on what strangers can ask for
+constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] period of the limits on requests from strangers
 constexpr std::size_t kStateChannel = 0;
 constexpr std::size_t kSubscribeChannel = 1;
 
@@ -72,7 +72,7 @@ PacketStatus Inbox::check(Packet& packet, std::span<const std::uint8_t> bytes, c
   return proven ? admit(packet, source, now) : PacketStatus::unproven;
 }
 
-/// Whether such a packet can concern the farm at all.
+/// Checks whether the packet can concern the farm at all.
 PacketStatus Inbox::check_id(const Header& header) const {
   const auto known = [&](bool is_known) { return is_known ? PacketStatus::accepted : PacketStatus::unknown_robot; };
   const auto robot_if = [&](bool is_taken) {
@@ -108,15 +108,15 @@ PacketStatus Inbox::check_id(const Header& header) const {
   return PacketStatus::wrong_direction;
 }
 
-/// The token of its address; START, TAG and OBJECT have none.
+/// Checks the token of the source address. START, TAG and OBJECT have no token.
 bool Inbox::is_proven(const Header& header, const Endpoint& source) const {
   const PeerKind kind = claim_of(header).kind;
   return kind == PeerKind::start || kind == PeerKind::tag || header.token == tokens_.of(source);
 }
 
-/// Signatures of robots and lights at proven addresses are always checked. Others cost no more than a part of a tick's
-/// time, and those of unproven packets move no counters: a copy that comes first, from elsewhere, does not stop the
-/// genuine one.
+/// Always checks signatures of robots and lights at proven addresses. The cost of other checks is limited to a part of
+/// a tick's time. Signatures of unproven packets do not advance counters: if a copy from another address arrives first,
+/// the genuine packet is still accepted.
 PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
                                bool proven, std::int64_t now) {
   const Claim claim = claim_of(header);
@@ -129,7 +129,7 @@ PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_
   return status;
 }
 
-/// Copies of a signed packet are no trouble of its sender, whose clock is behind by less than this.
+/// Copies of a signed packet are not reported unless the sender's clock is behind by at least this much.
 bool Inbox::is_notable(PacketStatus status, const Packet& packet) {
   constexpr std::uint64_t kClockTrouble = 1'000'000;  // [us]
   switch (status) {
@@ -155,7 +155,7 @@ PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t n
     return objects_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
   if (packet.header.type == Type::v2i) return admit_light(packet, source, now);
   if (packet.header.type == Type::leave) {
-    // A process in lockstep may have been silent for long: it leaves all the same.
+    // LEAVE is accepted even if a process in lockstep has been silent for long.
     if (lockstep_) admit_driver(packet, source, now);
     return robots_.leave(packet.header.robot, source, now);
   }
@@ -163,7 +163,7 @@ PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t n
   return admit_driver(packet, source, now);
 }
 
-/// COMMAND, STEP and FETCH name their tick and need no order; their process has subscribed before.
+/// COMMAND, STEP and FETCH contain their tick and need no order. Their process has subscribed before.
 PacketStatus Inbox::admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now) {
   const Header& header = packet.header;
   if (sessions_[*robots_.row(header.robot)] != header.session) return PacketStatus::stale;
@@ -192,12 +192,13 @@ PacketStatus Inbox::admit_light(const Packet& packet, const Endpoint& source, st
   return status;
 }
 
-/// Marks a state that others of its bound sender overtook, where these are accepted.
+/// Marks a state that newer states of its bound sender overtook, if such states are accepted.
 PacketStatus Inbox::admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source,
                                 std::int64_t now) const {
   const std::uint32_t id = packet.header.robot;
   const PacketStatus status = clients.admit(id, kStateChannel, packet.header.sequence, source, now);
-  packet.late = take_late_ && status == PacketStatus::stale && clients.is_active(id, now);  // else it has left
+  packet.late = take_late_ && status == PacketStatus::stale && clients.is_active(id, now);  // otherwise the sender has
+                                                                                            // left
   return packet.late ? PacketStatus::accepted : status;
 }
 

@@ -3,14 +3,14 @@
 // construction.
 //
 //   Inbox inbox({.robots = ids});
-//   inbox.receive(now, [&](const Packet& packet) { ... });                     // each accepted one
+//   inbox.receive(now, [&](const Packet& packet) { ... });                     // each accepted packet
 //   if (inbox.is_active(7, now) && inbox.is_subscribed(7, type, now)) ...      // send to *inbox.address(7)
 //
 // Packets of a robot are accepted only with the token that was sent to their source address (netio/address_token.h).
-// Before that the answer is a CHALLENGE, which is no larger than the packet. Peers with a key have to sign as well, and
-// are sent signed packets.
+// Without it the answer is a CHALLENGE, which is no larger than the packet. Peers with a key must also sign their
+// packets, and receive signed packets.
 //
-// One thread. No clock is read: `now` is any clock in ns that does not decrease.
+// Single-threaded. Reads no clock: `now` [ns] is from any clock that does not decrease.
 
 #include <array>
 #include <cstdint>
@@ -35,8 +35,9 @@ struct InboxOptions {
   std::vector<std::uint32_t> robots;         ///< ids of the world's robots, distinct, each in [0, kMaxId]
   std::vector<std::uint32_t> tags;           ///< ids of the world's tags, distinct, each in [kMinTag, kMaxId]
   std::uint32_t session = random_session();  ///< session of the farm
-  std::vector<Peer> peers;                   ///< of these robots, tags, and START; each once
-  bool take_late = false;             ///< accept states that others of their sender overtook, marked by `Packet::late`
+  std::vector<Peer> peers;                   ///< peers among these robots and tags, and START; each at most once
+  bool take_late = false;                    ///< accept states that newer states of their sender overtook, marked by
+                                             ///< `Packet::late`
   bool lockstep = false;              ///< accept COMMAND, STEP and FETCH in place of V2V, TAG, START, V2I and OBJECT
   std::vector<std::uint32_t> lights;  ///< ids of the world's intersections, distinct, each in [0, kMaxId]
 };
@@ -45,23 +46,23 @@ class Inbox {
  public:
   /// Maximum number of datagrams per `receive`, which bounds its duration under a flood.
   static constexpr std::size_t kMaxPerReceive = 65'536;
-  /// Maximum number of CHALLENGE packets in 0.1 s to robots without a key, and to those with one. Further requests are
-  /// not answered.
+  /// Maximum number of CHALLENGE packets in 0.1 s, separately for robots without a key and robots with one. Further
+  /// requests are not answered.
   static constexpr std::size_t kMaxChallenges = 1000;
-  /// Maximum number of signatures checked in 0.1 s that are of unproven robots, or wrong ones of tags and of START.
-  /// Further packets of tags, START and unproven robots with keys are dropped as wrong_signature.
+  /// Maximum number of signatures checked in 0.1 s that belong to unproven robots, or are wrong signatures of tags and
+  /// START. Further packets of tags, START and unproven robots with keys are dropped as wrong_signature.
   static constexpr std::size_t kMaxDoubtfulSignatures = 10'000;
   static constexpr std::size_t kMaxRefusals = 100;  ///< REFUSAL packets in 0.1 s
 
-  /// @throws base::InputError when the address cannot be bound or an id does not fit a packet
+  /// @throws base::InputError if the address cannot be bound or an id does not fit a packet
   explicit Inbox(const InboxOptions& options);
 
-  /// Reads all waiting datagrams. Calls `take(const Packet&)` for each accepted one, in order of arrival, and
-  /// `on_notable(PacketStatus, const Packet&, const Endpoint& source)` for each valid one that is unproven, from the
-  /// wrong source, or refused for its signature, and for accepted ones that are `unchecked`; not for copies of signed
-  /// packets, nor where too many signatures are doubtful to be checked.
+  /// Reads all waiting datagrams. Calls `take(const Packet&)` for each accepted packet, in order of arrival. Calls
+  /// `on_notable(PacketStatus, const Packet&, const Endpoint& source)` for each valid packet that is unproven, from the
+  /// wrong source, or refused for its signature, and for accepted packets that are `unchecked`; not for copies of
+  /// signed packets, nor for packets whose signature was not checked because of the limit.
   /// @return number of datagrams read
-  /// @param on_dropped called for every datagram that is dropped: (PacketStatus, bytes, const Endpoint& source)
+  /// @param on_dropped called for each dropped datagram: (PacketStatus, bytes, const Endpoint& source)
   template <class Take, class OnNotable, class OnDropped>
   std::size_t receive(std::int64_t now, Take&& take, OnNotable&& on_notable, OnDropped&& on_dropped) {
     Packet packet;
@@ -80,60 +81,62 @@ class Inbox {
         [](PacketStatus, std::span<const std::uint8_t>, const Endpoint&) {});
   }
 
-  /// Validates and counts one datagram from `source`. Fills `packet` when the status is accepted, or one that
-  /// `on_notable` is called for (undefined otherwise). `receive` calls this for each datagram of the socket.
+  /// Validates and counts one datagram from `source`. Fills `packet` if the status is accepted, or if `on_notable` is
+  /// called for it (undefined otherwise). `receive` calls this for each datagram of the socket.
   PacketStatus accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
-  /// Renews the binding of `robot` to its last sender, where `source` is that one.
+  /// Renews the binding of `robot` if `source` is its last sender.
   void renew(std::uint32_t robot, const Endpoint& source, std::int64_t now) { robots_.renew(robot, source, now); }
 
   /// Encodes the CHALLENGE for an unproven packet of a robot, except LEAVE, from `who`.
-  /// @return false if none is due or the limit of challenges is reached
+  /// @return false if no challenge is due or the limit of challenges is reached
   bool challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out);
 
-  /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`, and no LEAVE since.
+  /// Returns whether a V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`, with no LEAVE
+  /// since.
   bool is_active(std::uint32_t robot, std::int64_t now) const { return robots_.is_active(robot, now); }
 
-  /// is_active, and the robot's last SUBSCRIBE since then includes sensor type `type` in [1, 31]. Without SUBSCRIBE it
-  /// has all types.
+  /// Returns whether `robot` is active and its last SUBSCRIBE since then includes sensor type `type` in [1, 31].
+  /// Without a SUBSCRIBE it includes all types.
   bool is_subscribed(std::uint32_t robot, std::uint32_t type, std::int64_t now) const;
 
-  /// is_active, and the robot's last SUBSCRIBE since then requests the states of other robots.
+  /// Returns whether `robot` is active and its last SUBSCRIBE since then requests the states of other robots.
   bool wants_neighbours(std::uint32_t robot, std::int64_t now) const;
 
-  /// Encodes the REFUSAL for a packet of a robot or light whose signature or source is refused, except LEAVE: unsigned,
-  /// and no larger than the packet. @return false if none is due or the limit of refusals is reached
+  /// Encodes the REFUSAL for a packet of a robot or light whose signature or source is refused, except LEAVE. It is
+  /// unsigned and no larger than the packet. @return false if no refusal is due or the limit of refusals is reached
   bool refuse(const Packet& packet, PacketStatus reason, std::int64_t now, base::Bytes& out);
-  /// See `SignatureChecker::lag`, of the last checked packet with this claim.
+  /// Returns `SignatureChecker::lag` of the last checked packet with this claim.
   std::uint64_t lag(const Claim& claim) { return peers_.lag(claim); }
 
-  /// Address of `robot`; nullopt if it never sent or has left. Its readings go to this address, to each sensor's own
-  /// port.
+  /// Returns the address of `robot`; nullopt if it never sent a packet or has left. Its readings are sent to this
+  /// address, to the port of each sensor.
   std::optional<Endpoint> address(std::uint32_t robot) const { return robots_.source(robot); }
 
-  /// The token that packets from `who` have to carry.
+  /// Returns the token that packets from `who` must carry.
   std::uint32_t token(const Endpoint& who) const { return tokens_.of(who); }
-  /// For packets to `robot`: the farm's session, and the robot's last session.
+  /// Returns the farm's session and the robot's last session, for packets to `robot`.
   SessionToken session_token_for(std::uint32_t robot) const;
-  /// Signs packets to `robot`; null where it has no key. Lives as long as the inbox.
+  /// Returns the signer of packets to `robot`; null if it has no key. Valid as long as the inbox.
   PacketSigner* signer(std::uint32_t robot) { return peers_.signer({PeerKind::robot, robot}); }
   PacketSigner* light_signer(std::uint32_t light) { return peers_.signer({PeerKind::light, light}); }
 
-  /// Address from which the states of tag `tag` come, or from which its object is switched.
+  /// Returns the address that sends the states of tag `tag` or switches its object.
   std::optional<Endpoint> tag_address(std::uint32_t tag) const { return tags_.source(tag); }
   std::optional<Endpoint> object_address(std::uint32_t tag) const { return objects_.source(tag); }
-  /// Address of the sender of V2I of intersection `light`; nullopt: none was accepted in the last two seconds.
+  /// Returns the address that sends the V2I of intersection `light`; nullopt if none was accepted in the last two
+  /// seconds.
   std::optional<Endpoint> light_address(std::uint32_t light, std::int64_t now) const;
-  /// For packets to that sender, as `session_token_for`.
+  /// The same as `session_token_for`, for packets to that sender.
   SessionToken light_session_token(std::uint32_t light) const;
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const PacketCounts& counts() const { return counts_; }
   std::uint64_t socket_drops() const { return netio::socket_drops(socket_); }
-  /// The same socket under a second descriptor, so that answers come from the port that the robots send to.
+  /// Returns the same socket under a second descriptor, so that answers are sent from the port that robots send to.
   Socket socket() const { return duplicate(socket_); }
-  std::uint32_t session() const { return session_; }  ///< of the farm
-  /// Sleeps until a datagram waits, a signal comes, or `timeout_ms` >= 0 has passed.
+  std::uint32_t session() const { return session_; }  ///< session of the farm
+  /// Sleeps until a datagram waits, a signal arrives, or `timeout_ms` >= 0 has passed.
   void wait(int timeout_ms) const;
 
  private:
@@ -152,12 +155,12 @@ class Inbox {
 
   ClientRegistry robots_;
   ClientRegistry tags_;
-  ClientRegistry objects_;  ///< by tag
+  ClientRegistry objects_;  ///< objects, bound by the id of their tag
   ClientRegistry lights_;
   PeerTable peers_;
   std::vector<std::uint32_t> types_;           ///< per robot row: mask of its last SUBSCRIBE, 0 for all
   std::vector<std::uint32_t> sessions_;        ///< per robot row: of its last packet
-  std::vector<std::uint32_t> light_sessions_;  ///< likewise, per row of lights
+  std::vector<std::uint32_t> light_sessions_;  ///< the same per row of lights
   std::uint32_t session_;
   bool take_late_;
   bool lockstep_;

@@ -57,7 +57,7 @@ void put_twist(const base::Twist& twist, base::ByteWriter& writer) {
   for (const double each : {twist.forward, twist.left, twist.turn}) writer.put(each);
 }
 
-/// The first fault of a row; not_finite precedes out_of_range.
+/// Returns the first fault of a row; not_finite takes precedence over out_of_range.
 PacketStatus check_row(const CommandRow& row) {
   const std::array numbers{row.twist.forward, row.twist.left, row.twist.turn};
   if (!all_finite(numbers)) return PacketStatus::not_finite;

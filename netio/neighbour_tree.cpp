@@ -11,13 +11,12 @@ namespace {
 
 double along(glm::dvec2 p, std::uint8_t by_y) { return by_y ? p.y : p.x; }
 
-/// Equal coordinates are ordered by row, so that a crowd at one place is split too and its robots find different
-/// neighbours.
+/// Orders equal coordinates by row, so that a crowd at one place is split too and its robots find different neighbours.
 bool before(glm::dvec2 p, std::uint32_t row, const NeighbourTree::Place& place, std::uint8_t by_y) {
   return std::tuple(along(p, by_y), row) < std::tuple(along(place.p, by_y), place.row);
 }
 
-/// The axis with the larger extent.
+/// Returns whether the extent along y is the larger one.
 bool wider_along_y(std::span<const NeighbourTree::Place> places) {
   const auto width = [&](std::uint8_t by_y) {
     const auto [low, high] = std::minmax_element(places.begin(), places.end(), [&](const auto& a, const auto& b) {
@@ -68,7 +67,7 @@ std::span<const std::uint32_t> NeighbourTree::find(const Query& query) {
   return rows_;
 }
 
-/// Searches the side of `p` first, the other side only where it may hold a nearer place.
+/// Searches the side of `p` first, and the other side only if it may contain a nearer place.
 void NeighbourTree::search(std::size_t first, std::size_t last) {
   if (first == last || visits_left_ == 0) return;
   const std::size_t middle = first + (last - first) / 2;

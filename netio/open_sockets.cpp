@@ -22,11 +22,13 @@ std::set<int> descriptors() {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error))
     found.insert(std::atoi(entry.path().filename().c_str()));
-  std::erase_if(found, [](int descriptor) { return fcntl(descriptor, F_GETFD) < 0; });  // that of the folder itself
+  std::erase_if(found, [](int descriptor) { return fcntl(descriptor, F_GETFD) < 0; });  // the descriptor of the folder
+                                                                                        // itself
   return found;
 }
 
-/// The address that a UDP socket of IPv4 is bound to; nullopt: it is another descriptor, or not bound.
+/// Returns the address that a UDP socket over IPv4 is bound to; nullopt if the descriptor is not such a socket or is
+/// not bound.
 std::optional<sockaddr_in> bound_udp(int descriptor) {
   sockaddr_in address{};
   socklen_t size = sizeof address;
@@ -43,7 +45,7 @@ bool is_open_to_all(int descriptor) {
   return bound && bound->sin_addr.s_addr == htonl(INADDR_ANY);
 }
 
-/// A program of the kernel that drops datagrams that are not sent to 127.0.0.0/8, as a socket bound to there would.
+/// Attaches a kernel filter that drops datagrams not sent to 127.0.0.0/8, as a socket bound to loopback would.
 bool take_loopback_only(int descriptor) {
   constexpr auto kTo = static_cast<std::uint32_t>(SKF_NET_OFF + 16);  // in the header of IPv4
   sock_filter steps[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kTo), BPF_STMT(BPF_ALU | BPF_AND | BPF_K, 0xFF000000u),
@@ -60,7 +62,7 @@ OpenSockets::OpenSockets() : before_(descriptors()) {}
 void OpenSockets::keep_new_ones_to_loopback() const {
   for (const int descriptor : descriptors()) {
     if (before_.count(descriptor) > 0 || !is_open_to_all(descriptor)) continue;
-    constexpr char kInterface[] = "lo";  // older kernels let only root do so; the filter is enough
+    constexpr char kInterface[] = "lo";  // older kernels allow this only for root; the filter is enough
     setsockopt(descriptor, SOL_SOCKET, SO_BINDTODEVICE, kInterface, sizeof kInterface);
     if (!take_loopback_only(descriptor))
       throw base::InputError("sockets cannot be kept to this machine: the kernel refuses filters");

@@ -1,22 +1,22 @@
 #pragma once
-// Sockets that a library opens, found by comparison.
+// Finds sockets that a library opens, by comparing the open descriptors.
 
 #include <set>
 #include <string>
 
 namespace sf::netio {
 
-/// Descriptors of this process at the time of its construction.
+/// Holds the descriptors that this process had open at construction.
 class OpenSockets {
  public:
   OpenSockets();
 
-  /// Makes UDP sockets of IPv4 that were opened since, on all interfaces, receive from this machine's loopback alone:
-  /// Cyclone DDS binds those that receive to 0.0.0.0, whatever the interface.
-  /// @throws base::InputError where the kernel refuses
+  /// Restricts UDP sockets over IPv4 that were opened since on all interfaces to datagrams from this machine's
+  /// loopback. Cyclone DDS binds its receiving sockets to 0.0.0.0, whatever the interface.
+  /// @throws base::InputError if the kernel refuses
   void keep_new_ones_to_loopback() const;
-  /// Addresses of this machine that UDP sockets of IPv4 that were opened since are bound to, without 0.0.0.0: Cyclone
-  /// DDS binds those that send to its interfaces.
+  /// Returns the addresses of this machine, without 0.0.0.0, that UDP sockets over IPv4 opened since are bound to.
+  /// Cyclone DDS binds its sending sockets to its interfaces.
   std::set<std::string> addresses() const;
 
  private:

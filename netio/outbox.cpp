@@ -63,7 +63,7 @@ void Batch::send(const Socket& socket, int patience_ms, OutboxCounts& counts) {
     const int error = errno;
     if (error == EINTR) continue;
     if (error != EAGAIN && error != ENOBUFS) {
-      // The error concerns the first message; the others are tried again.
+      // The error concerns the first message; the other messages are retried.
       ++counts.failed;
       if (counts.first_failure.empty())
         counts.first_failure = endpoint_text(from_posix(destinations[i])) + ": " + error_text(error);
@@ -86,9 +86,9 @@ struct Outbox::Storage {
   Socket socket;
   std::unique_ptr<Batch> filling;
   std::uint64_t queued = 0;
-  OutboxCounts counts;  ///< without `queued`; with a thread, written by the thread while it sends
+  OutboxCounts counts;  ///< excludes `queued`; the sending thread, if any, writes it while it sends
 
-  // For the sending thread.
+  // Used by the sending thread.
   std::mutex lock;
   std::condition_variable wake, idle;
   std::vector<std::unique_ptr<Batch>> full;

@@ -21,18 +21,18 @@ namespace sf::netio {
 
 struct OutboxOptions {
   Endpoint bind = {0, 0};              ///< source address; 0.0.0.0: the route determines the interface
-  std::size_t capacity = 1024;         ///< datagrams; a full outbox flushes itself
+  std::size_t capacity = 1024;         ///< datagrams; a full outbox flushes automatically
   std::size_t send_buffer = 1u << 20;  ///< [byte] requested from the kernel
   int patience_ms = 5;                 ///< [ms] longest wait for a full socket per flush; the rest is then dropped
-  /// > 0: a separate thread sends. At most this number of flushes wait for it, and further ones are dropped, so that a
-  /// slow network does not block the caller.
+  /// > 0: a separate thread sends. At most this number of flushes are queued for it, and further flushes are dropped,
+  /// so that a slow network does not block the caller.
   std::size_t backlog = 0;
 };
 
 struct OutboxCounts {
-  std::uint64_t queued = 0;      ///< sent + failed + dropped + waiting for a flush
+  std::uint64_t queued = 0;      ///< sent + failed + dropped + still waiting for a flush
   std::uint64_t sent = 0;        ///< passed to the kernel
-  std::uint64_t sent_bytes = 0;  ///< UDP payload of the sent ones
+  std::uint64_t sent_bytes = 0;  ///< UDP payload of the sent datagrams
   std::uint64_t failed = 0;      ///< rejected by the kernel: unreachable network, no permission to broadcast, ...
   std::uint64_t dropped = 0;     ///< the socket stayed full for `patience_ms`, or the backlog was full
   std::string first_failure;     ///< "192.0.2.1:10000: Network is unreachable"; empty while failed is 0
@@ -41,9 +41,9 @@ struct OutboxCounts {
 
 class Outbox {
  public:
-  /// @throws base::InputError when no socket can be opened or bound
+  /// @throws base::InputError if no socket can be opened or bound
   explicit Outbox(const OutboxOptions& options = {});
-  /// Sends through an open socket. `bind` and `send_buffer` of the options are ignored.
+  /// Sends through an open socket. Ignores `bind` and `send_buffer` of the options.
   explicit Outbox(Socket socket, const OutboxOptions& options = {});
   /// Sends all flushed datagrams.
   ~Outbox();
@@ -51,13 +51,13 @@ class Outbox {
 
   /// Copies at most kMaxHeaderlessDatagram bytes for the next flush.
   void queue(const Endpoint& to, std::span<const std::uint8_t> bytes);
-  /// The same for an encoded packet, with `session_token` written into the copy, which `signer` (null: none) then
-  /// signs.
+  /// Does the same for an encoded packet: writes `session_token` into the copy, which `signer` (null: none) then signs.
   void queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const SessionToken& session_token,
              PacketSigner* signer = nullptr);
 
-  /// Reserves consecutive slots for `count` <= capacity datagrams; flushes first if there is not enough room. Before
-  /// any other call every slot must be filled with `put`, from any thread, or all be returned with `give_back`.
+  /// Reserves consecutive slots for `count` <= capacity datagrams, and flushes first if there is not enough room.
+  /// Before any other call, every slot must be filled with `put`, from any thread, or all slots must be returned with
+  /// `give_back`.
   /// @return index of the first slot
   std::size_t claim(std::size_t count);
   void put(std::size_t place, const Endpoint& to, std::span<const std::uint8_t> bytes);

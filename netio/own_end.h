@@ -1,5 +1,5 @@
 #pragma once
-// Where a socket is bound that speaks with one other end.
+// Chooses the local address of a socket that communicates with a single peer.
 
 #include <cstdint>
 
@@ -7,8 +7,9 @@
 
 namespace sf::netio {
 
-/// Loopback where `other` is on it, so that nothing else can reach the socket; else all interfaces.
-/// @param port 0: any free one
+/// Returns loopback if `other` is a loopback address, so that no other machine can reach the socket; otherwise all
+/// interfaces.
+/// @param port 0: any free port
 inline Endpoint own_end_for(std::uint32_t other, std::uint16_t port = 0) {
   return {is_loopback(other) ? kLoopback : 0, port};
 }

@@ -9,11 +9,12 @@ namespace sf::netio {
 
 struct PacketForm {
   Type type;
-  std::string_view name;  ///< as in docs/packets.md: "V2V"
-  std::size_t bytes;      ///< header included, without a signature; 0: not of one size
+  std::string_view name;  ///< name in docs/packets.md: "V2V"
+  std::size_t bytes;      ///< including the header, without a signature; 0: the size varies
 };
 
-/// Of all types but readings, whose sensor types name them. @return nullptr for a reading or an unknown type
+/// Returns the form of a packet type that is not a reading; sensor types name readings. @return nullptr for a reading
+/// or an unknown type
 const PacketForm* find_packet_form(Type type);
 
 }  // namespace sf::netio

@@ -11,7 +11,7 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] of session and token
+constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] offset of session and token
 constexpr std::uint32_t kDockingBit = 1;
 constexpr std::uint32_t kPresentBit = 1;
 constexpr std::uint16_t kStaleBit = 1, kNoStateBit = 2;
@@ -30,7 +30,7 @@ PacketStatus check(std::span<const double> values, double limit) {
   return PacketStatus::accepted;
 }
 
-/// The first status that is not `accepted`, except that not_finite precedes out_of_range.
+/// Returns the first status that is not `accepted`, except that not_finite takes precedence over out_of_range.
 PacketStatus first_fault(std::initializer_list<PacketStatus> reasons) {
   PacketStatus found = PacketStatus::accepted;
   for (const PacketStatus status : reasons) {
@@ -178,14 +178,14 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   return payload.size() <= kMaxPayload ? PacketStatus::accepted : PacketStatus::too_long;
 }
 
-/// A covariance with numbers that none has is left out, not refused: it stood in reserved bytes once.
+/// Drops an impossible covariance instead of rejecting the packet, because its bytes used to be reserved.
 void read_covariance(base::ByteReader& reader, std::array<float, 6>& covariance) {
   for (float& each : covariance) each = reader.get<float>();
   const bool finite = std::all_of(covariance.begin(), covariance.end(), [](float v) { return std::isfinite(v); });
   if (!finite || covariance[0] < 0.0f || covariance[3] < 0.0f || covariance[5] < 0.0f) covariance = {};
 }
 
-/// @param trailer [byte] size behind the payload
+/// @param trailer [byte] size of the trailer after the payload
 PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& trailer) {
   for (const std::uint8_t letter : kMagic) {
     if (reader.get<std::uint8_t>() != letter) return PacketStatus::bad_magic;
@@ -210,7 +210,7 @@ PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& 
   return PacketStatus::accepted;
 }
 
-/// At least 1, since 0 states nothing.
+/// Returns at least 1, because 0 means "not stated".
 std::uint32_t age_word(std::int64_t age) {
   constexpr std::int64_t kMost = 0xFFFFFFFF;
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(age / kAgeUnit + (age % kAgeUnit > 0 ? 1 : 0), 1, kMost));
@@ -249,7 +249,7 @@ std::uint16_t encode_accuracy(const Accuracy& accuracy) {
   SF_CHECK(accuracy.mode < 16, "mode " + std::to_string(accuracy.mode) + " in a packet");
   const unsigned low = accuracy.mode | (accuracy.unsure ? 0x10u : 0u);
   if (!(accuracy.bound > 0.0) || std::isinf(accuracy.bound)) return static_cast<std::uint16_t>(low);
-  // The tolerance keeps rounding of the logarithm from stating a smaller bound.
+  // The tolerance keeps rounding of the logarithm from encoding a smaller bound.
   const double code = std::ceil(16.0 * std::log2(accuracy.bound) + 1e-9) + 1024.0;
   if (code > 2047.0) return static_cast<std::uint16_t>(low);
   const auto k = static_cast<unsigned>(std::max(code, 1.0));

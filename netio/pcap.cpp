@@ -20,11 +20,11 @@ constexpr std::size_t kFileHeader = 24, kRecordHeader = 16;  // [byte]
 constexpr std::uint32_t kMicroseconds = 0xA1B2C3D4u, kNanoseconds = 0xA1B23C4Du, kPcapng = 0x0A0D0D0Au;
 constexpr std::uint8_t kUdp = 17;
 
-/// Link types: what stands before the IP header (https://www.tcpdump.org/linktypes.html).
+/// Link types: the bytes before the IP header (https://www.tcpdump.org/linktypes.html).
 struct Link {
   std::uint32_t type;
   std::size_t header;    ///< [byte]
-  std::size_t protocol;  ///< [byte] place of the EtherType; kNoProtocol: the IP header says which version it is
+  std::size_t protocol;  ///< [byte] offset of the EtherType; kNoProtocol: the IP header contains its version
 };
 constexpr std::size_t kNoProtocol = SIZE_MAX;
 constexpr Link kLinks[] = {{0, 4, kNoProtocol}, {1, 14, 12},           {12, 0, kNoProtocol},  {101, 0, kNoProtocol},
@@ -36,12 +36,12 @@ const Link* find_link(std::uint32_t type) {
   return found == std::end(kLinks) ? nullptr : found;
 }
 
-/// In network order; the bytes are there.
+/// Reads a value in network order. @pre the bytes exist
 std::uint32_t u16(Bytes bytes, std::size_t at) { return std::uint32_t{bytes[at]} << 8 | bytes[at + 1]; }
 
 std::uint32_t reversed(std::uint32_t v) { return v >> 24 | (v >> 8 & 0xFF00u) | (v << 8 & 0xFF0000u) | v << 24; }
 
-/// The IP packet in a frame; empty without one.
+/// Returns the IP packet in a frame; empty if there is none.
 Bytes ip_packet(Bytes frame, const Link& link) {
   if (frame.size() < link.header) return {};
   if (link.protocol == kNoProtocol) return frame.subspan(link.header);
@@ -97,7 +97,7 @@ PcapReader::PcapReader(std::span<const std::uint8_t> file, const std::string& na
   const std::uint32_t kind = swapped_ ? reversed(magic) : magic;
   if (kind != kMicroseconds && kind != kNanoseconds) throw base::InputError(name, 0, "is no pcap file (tcpdump -w)");
   fraction_ = kind == kMicroseconds ? 1000 : 1;
-  link_ = word(20) & 0xFFFFu;  // the upper bits say how long a frame's checksum is
+  link_ = word(20) & 0xFFFFu;  // the upper bits contain the length of a frame's checksum
   if (find_link(link_) == nullptr)
     throw base::InputError(name, 0,
                            "captured on a link of type " + std::to_string(link_) +
@@ -135,7 +135,7 @@ bool PcapReader::read_frame(std::span<const std::uint8_t> frame, CapturedDatagra
   datagram.source = address_text(segment.family, segment.source, u16(segment.udp, 0));
   datagram.destination = address_text(segment.family, segment.destination, u16(segment.udp, 2));
   datagram.sent_bytes = u16(segment.udp, 4) - kHeader;
-  datagram.payload = segment.udp.subspan(kHeader);  // behind it, Ethernet pads short frames
+  datagram.payload = segment.udp.subspan(kHeader);  // Ethernet pads short frames after it
   datagram.payload = datagram.payload.first(std::min<std::size_t>(datagram.payload.size(), datagram.sent_bytes));
   return true;
 }

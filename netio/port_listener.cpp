@@ -13,7 +13,7 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kPortBatch = 64;
-constexpr std::size_t kSpareFiles = 64;  ///< descriptors left for the rest of the process
+constexpr std::size_t kSpareFiles = 64;  ///< descriptors reserved for the rest of the process
 constexpr std::size_t kEvents = 256;
 
 std::vector<SensorPorts> uses_of(std::span<const StreamSpec> streams) {

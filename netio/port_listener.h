@@ -1,8 +1,8 @@
 #pragma once
-// The ports on which sensors' packets arrive.
+// Listens on the ports at which sensors' packets arrive.
 //
-// One socket per port, since Linux allows no unprivileged socket for a range of ports. One epoll set over all sockets,
-// so that idle ports cost nothing, and recvmmsg on each ready socket.
+// Each port has its own socket, because Linux offers no unprivileged socket for a range of ports. One epoll set covers
+// all sockets, so idle ports cost nothing; recvmmsg reads each ready socket.
 
 #include <cstdint>
 #include <span>
@@ -19,15 +19,15 @@ struct StreamSpec {
   std::uint32_t robot = 0;
   std::uint32_t sensor = 0;
   PortRule rule;
-  std::string type = "sensor";  ///< for messages about colliding ports
+  std::string type = "sensor";  ///< used in messages about colliding ports
 };
 
-/// One thread.
+/// Single-threaded.
 class PortListener {
  public:
   /// Binds all ports at `address` (0: all interfaces) and raises the limit of open files as needed.
   /// @param receive_buffer [byte] per port, requested from the kernel
-  /// @throws base::InputError when ports collide, are in use, or exceed the machine's limits
+  /// @throws base::InputError if ports collide, are in use, or exceed the machine's limits
   PortListener(std::uint32_t address, std::size_t receive_buffer, std::span<const StreamSpec> streams);
 
   /// Waits at most `timeout_ms` (0: no wait) for a datagram, then passes all waiting ones, up to a limit, to
@@ -37,7 +37,7 @@ class PortListener {
   std::size_t drain(int timeout_ms, Take&& take) {
     std::size_t taken = 0;
     for (wait(timeout_ms); !ready_.empty() && taken < kMaxPerDrain; wait(0)) {
-      for (const std::size_t stream : ready_)  // one batch each, so that none keeps the others waiting
+      for (const std::size_t stream : ready_)  // one batch per stream, so that no stream delays the others
         taken += batch_.drain(sockets_[stream], 1, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
           take(stream, bytes, source);
         });
@@ -47,7 +47,7 @@ class PortListener {
 
   /// Readable while a datagram waits on any port; for wait_readable.
   const Socket& epoll() const { return epoll_; }
-  std::size_t receive_buffer_size() const;  ///< [byte] of the first port; 0 without ports
+  std::size_t receive_buffer_size() const;  ///< [byte] size at the first port; 0 without ports
   std::uint64_t socket_drops() const;       ///< datagrams lost to full receive buffers
 
  private:

@@ -32,7 +32,7 @@ std::string describe(const PortRule& rule) {
                          "), but ports are 1 to 65535 and ids at most 65535: use a lower base port, or lower ids");
 }
 
-/// Name of the base port for messages: its option, if known.
+/// Returns the name of the base port for messages: its option, if known.
 std::string base_of(const SensorPorts& use) { return use.option.empty() ? "the base port of " + use.type : use.option; }
 
 std::string advice_for(const SensorPorts& a, const SensorPorts& b) {
@@ -50,7 +50,7 @@ std::string advice_for(const SensorPorts& a, const SensorPorts& b) {
                          "): " + advice_for(a, b));
 }
 
-/// The ports are distinct and valid with this stride; `ports` is scratch memory.
+/// Checks that the ports are distinct and valid with this stride; `ports` is scratch memory.
 bool fits(std::span<const SensorPorts> uses, std::uint32_t stride, std::vector<std::uint64_t>& ports) {
   ports.clear();
   for (const SensorPorts& use : uses) {

@@ -1,5 +1,5 @@
 #pragma once
-// Conversions between netio and POSIX types. Included by .cpp files only.
+// Conversions between netio and POSIX types. Include it in .cpp files only.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -24,9 +24,9 @@ inline sockaddr_in to_posix(const Endpoint& endpoint) {
 
 inline Endpoint from_posix(const sockaddr_in& posix) { return {ntohl(posix.sin_addr.s_addr), ntohs(posix.sin_port)}; }
 
-/// @param protocol "UDP" or "TCP", for errors
+/// Binds `socket`. @param protocol "UDP" or "TCP", for errors
 /// @throws PortInUse
-/// @throws base::InputError when the address is not this machine's
+/// @throws base::InputError if the address does not belong to this machine
 void bind_socket(const Socket& socket, const Endpoint& endpoint, const char* protocol);
 
 inline std::string error_text(int error) { return std::generic_category().message(error); }

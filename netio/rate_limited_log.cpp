@@ -15,8 +15,8 @@
 namespace sf::netio {
 
 bool write_nonblocking(int descriptor, std::string_view text) {
-  // A writable pipe accepts PIPE_BUF bytes without waiting. O_NONBLOCK is not set, since other processes may share the
-  // pipe.
+  // A writable pipe accepts PIPE_BUF bytes without blocking. O_NONBLOCK is not set, because other processes may share
+  // the pipe.
   pollfd writable{descriptor, POLLOUT, 0};
   if (poll(&writable, 1, 0) != 1 || (writable.revents & POLLOUT) == 0 || (writable.revents & POLLERR) != 0)
     return false;

@@ -22,7 +22,7 @@ PartStatus ReadingAssembler::find_partial(const ReadingPart& piece, std::int64_t
   PartialReading* found = find(piece.sequence);
   if (found == nullptr) found = begin(piece);
   if (found == nullptr) return PartStatus::late;
-  // Different parts or time: another sender, or one that has restarted.
+  // A different number of parts or time means another sender, or a sender that has restarted.
   if (found->piece.parts != piece.parts || found->piece.time != piece.time) return PartStatus::late;
   if (found->seen[piece.part]) return PartStatus::duplicate;
   partial = found;

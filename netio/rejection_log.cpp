@@ -10,7 +10,7 @@ namespace sf::netio {
 
 namespace {
 
-/// "a V2V of 131 bytes", with the size that it should have.
+/// Returns "a V2V of 131 bytes", with the expected size.
 std::string size_text(std::span<const std::uint8_t> bytes, bool is_short) {
   if (bytes.size() < kHeaderBytes)
     return fmt::format("{} bytes: every packet begins with a header of {} bytes", bytes.size(), kHeaderBytes);
@@ -29,7 +29,7 @@ std::string ids_text(std::span<const std::uint32_t> ids) {
                      ids.size() > kShown ? fmt::format(" and {} more", ids.size() - kShown) : "");
 }
 
-/// As `PacketStatus` orders them: those of signatures and sources have a log of their own.
+/// Relies on the order of `PacketStatus`. Reasons about signatures and sources have their own log.
 bool is_reported(PacketStatus reason) {
   return (reason >= PacketStatus::too_short && reason <= PacketStatus::unknown_light) ||
          reason == PacketStatus::unproven || reason == PacketStatus::stale;

@@ -16,22 +16,23 @@
 
 namespace sf::netio {
 
-/// The fault of a datagram and the remedy, as in "a V2V of 131 bytes is too short: expected 132".
+/// Returns the fault of a datagram and the remedy, as in "a V2V of 131 bytes is too short: expected 132".
 /// @param robots ids of the world's robots
 std::string rejection_text(PacketStatus reason, std::span<const std::uint8_t> bytes,
                            std::span<const std::uint32_t> robots);
 
-/// One thread. Allocates for new senders alone, up to a limit.
+/// Single-threaded. Allocates only for new senders, up to a limit.
 class RejectionLog {
  public:
-  static constexpr std::size_t kMaxRows = 256;  ///< pairs of sender and reason; those beyond share one
-  /// Unproven and stale packets also occur with sound clients: as many in ten seconds are reported.
+  static constexpr std::size_t kMaxRows = 256;  ///< pairs of sender and reason; further pairs share one row
+  /// Well-behaved clients also send unproven and stale packets. They are reported only from this number in ten seconds
+  /// on.
   static constexpr std::uint64_t kTolerated = 20;
 
   explicit RejectionLog(std::vector<std::uint32_t> robots) : robots_(std::move(robots)) {}
 
-  /// Logs the first datagram of a sender and reason, then every ten seconds their number while more come. Reasons that
-  /// SignatureTroubleLog reports are ignored. @param now [ns] of any clock that does not decrease
+  /// Logs the first datagram of a sender and reason, then the number of datagrams every ten seconds while more arrive.
+  /// Ignores reasons that SignatureTroubleLog reports. @param now [ns] of any clock that does not decrease
   void note(PacketStatus reason, std::span<const std::uint8_t> bytes, const Endpoint& who, std::int64_t now,
             RateLimitedLog& log);
 
@@ -40,7 +41,7 @@ class RejectionLog {
 
   std::vector<std::uint32_t> robots_;
   std::map<std::tuple<std::uint32_t, std::uint16_t, PacketStatus>, RepeatedEvent>
-      rows_;  ///< by address, port and reason
+      rows_;  ///< keyed by address, port and reason
   RepeatedEvent others_;
 };
 

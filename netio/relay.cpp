@@ -74,7 +74,8 @@ void Relay::send_starts(Inbox& inbox, std::int64_t now, Outbox& outbox) {
   start_pending_ = false;
 }
 
-/// Finds the subscribers, and the places of all robots with a state since the turn of the longest-waiting one.
+/// Finds the subscribers, and the places of all robots with a state since the turn of the subscriber that has waited
+/// longest.
 void Relay::find_recipients(const Inbox& inbox, std::int64_t now) {
   recipients_.clear();
   updated_.clear();
@@ -94,7 +95,7 @@ void Relay::find_recipients(const Inbox& inbox, std::int64_t now) {
   neighbour_tree_.build(updated_);
 }
 
-/// Serves subscribers from the first one passed over last time, as far as the budget allows.
+/// Serves subscribers as far as the budget allows, starting with the first one that was passed over last time.
 void Relay::send_states(Inbox& inbox, std::int64_t now, Outbox& outbox) {
   if (updated_.empty() || recipients_.empty()) return;
   const std::size_t share = std::clamp(options_.budget / recipients_.size(), kMinShare, options_.most);
@@ -120,7 +121,7 @@ std::size_t Relay::send_others(Robot& to, std::size_t most, Inbox& inbox, std::i
   return rows.size();
 }
 
-/// Lights are few and without a share of the budget: each is told the nearest robots at every tick.
+/// Lights are few and do not count against the budget: each receives the nearest robots at every tick.
 void Relay::send_to_lights(Inbox& inbox, std::int64_t now, Outbox& outbox) {
   const auto none = static_cast<std::uint32_t>(robots_.size());
   for (Light& light : lights_) {

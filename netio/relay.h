@@ -1,7 +1,7 @@
 #pragma once
-// Forwards states and signals from the farm: the newest V2V states of nearby robots to robots that subscribe to them
-// and to senders of V2I, and START to the robots named in it. Once per tick, several states per datagram, within a
-// budget, so that outgoing traffic does not grow with incoming traffic.
+// Forwards states and signals from the farm: the newest V2V states of nearby robots to subscribed robots and to senders
+// of V2I, and START to the robots that it names. Sends once per tick, several states per datagram, within a budget, so
+// that outgoing traffic does not grow with incoming traffic.
 //
 //   relay.take(packet);                        // each packet that the inbox accepted
 //   relay.forward(inbox, now, outbox);         // each tick; then outbox.flush()
@@ -20,9 +20,9 @@
 namespace sf::netio {
 
 struct RelayOptions {
-  double range = kV2vRange;     ///< [m] radius within which states are forwarded; 0: none are
-  std::size_t most = 64;        ///< states of the nearest robots to one robot per tick
-  std::size_t budget = 16'384;  ///< states to all robots per tick, divided evenly; at least Relay::kMinShare
+  double range = kV2vRange;     ///< [m] radius within which states are forwarded; 0: no states are forwarded
+  std::size_t most = 64;        ///< number of nearest robots whose states one robot receives per tick
+  std::size_t budget = 16'384;  ///< states sent to all robots per tick, divided evenly; at least Relay::kMinShare
 };
 
 struct RelayCounts {
@@ -32,11 +32,11 @@ struct RelayCounts {
   std::uint64_t starts = 0;     ///< START datagrams queued
 };
 
-/// One thread. Nothing is allocated after construction.
+/// Single-threaded. Allocates nothing after construction.
 class Relay {
  public:
-  /// Minimum number of states per turn of a robot. When the budget does not suffice for all subscribers in one tick
-  /// they take turns, and each gets the states since its last turn.
+  /// Minimum number of states per turn of a robot. If the budget does not suffice for all subscribers in one tick, they
+  /// take turns, and each receives the states since its last turn.
   static constexpr std::size_t kMinShare = 4;
 
   /// @param robots ids of the world's robots
@@ -44,16 +44,16 @@ class Relay {
   explicit Relay(std::span<const std::uint32_t> robots, const RelayOptions& options = {},
                  std::span<const std::uint32_t> lights = {});
 
-  /// Keeps the newest V2V of each robot, or a START, until the next `forward`, and where lights are. Other packets are
-  /// ignored.
+  /// Keeps the newest V2V of each robot, START, and the positions of lights until the next `forward`. Ignores other
+  /// packets.
   void take(const Packet& packet);
 
   /// Queues the new states for each subscriber and each light that is active at `now` [ns], to the address that it
-  /// sends from. A robot does not get its own state. Unused states are dropped.
+  /// sends from. A robot does not receive its own state. Drops unused states.
   void forward(Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   const RelayCounts& counts() const { return counts_; }
-  /// Number of places visited by the neighbour search.
+  /// Returns the number of places visited by the neighbour search.
   std::uint64_t visits() const { return neighbour_tree_.visits(); }
 
  private:
@@ -62,18 +62,18 @@ class Relay {
     std::uint32_t age = std::numeric_limits<std::uint32_t>::max();  ///< [passes] since its last state
     std::uint32_t waits = 0;                                        ///< [passes] since its turn, while it subscribes
     std::uint32_t sent = 0;                                         ///< NEIGHBOURS packets sent to it
-    bool started = false;                                           ///< a START for this robot waits
+    bool started = false;                                           ///< a START for this robot is pending
     std::optional<glm::dvec2> p;                                    ///< [m] its reported position
     base::Bytes state;
     base::Bytes start;
   };
-  /// Of an intersection, which is told the states near its first light.
+  /// An intersection, which receives the states near its first light.
   struct Light {
     std::uint32_t id = 0;
     glm::dvec2 p{};  ///< [m]
     std::uint32_t sent = 0;
   };
-  /// To whom NEIGHBOURS go.
+  /// A receiver of NEIGHBOURS packets.
   struct Recipient {
     std::uint32_t id = 0;
     Endpoint address;
@@ -96,7 +96,7 @@ class Relay {
   std::vector<std::uint32_t> recipients_;      ///< rows, in one pass
   NeighbourTree neighbour_tree_;
   std::uint32_t turn_ = 0;      ///< row served first
-  bool start_pending_ = false;  ///< a START for all robots waits
+  bool start_pending_ = false;  ///< a START for all robots is pending
   base::Bytes start_;           ///< START for all robots
   base::Bytes states_, packet_;
   RelayCounts counts_;

@@ -1,6 +1,6 @@
 #pragma once
-// Plausibility check of a stream's sequence numbers (RFC 3550, appendix A.1), so that a forged number does not make all
-// genuine later packets stale.
+// Checks that a stream's sequence numbers are plausible (RFC 3550, appendix A.1), so that a forged number does not make
+// all later genuine packets stale.
 
 #include <cstdint>
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace sf::netio {
 
-/// One stream of one sender. One thread.
+/// One stream of one sender. Single-threaded.
 class SequenceGuard {
  public:
-  /// @param max_dropout a larger gap is accepted only when the next sequence follows it
+  /// @param max_dropout a larger gap is accepted only if the next sequence follows it
   explicit SequenceGuard(std::uint32_t max_dropout) : max_dropout_(max_dropout) {}
 
-  /// Checks the next sequence. @return true when it is implausibly far ahead and does not follow such a one
+  /// Checks the next sequence. @return true if it is implausibly far ahead and does not follow another such jump
   bool rejects(std::uint32_t sequence) {
     const bool ahead = highest_ && newer(sequence, *highest_);
     const bool far = ahead && sequence - *highest_ > max_dropout_ && expected_ != sequence;

@@ -1,5 +1,5 @@
 #pragma once
-// Loss, duplicates and reordering of a stream of numbered datagrams.
+// Counts loss, duplicates and reordering in a stream of numbered datagrams.
 
 #include <cstdint>
 
@@ -17,7 +17,7 @@ struct SequenceTracker {
 /// Counts the arrival of `index`. An index 64 or more behind the largest counts as reordered, not as a duplicate.
 void count_arrival(SequenceTracker& tracker, std::uint64_t index);
 
-/// Missing indices below the largest. Losses after the last arrival are not detectable here.
+/// Returns the number of missing indices below the largest. Losses after the last arrival cannot be detected here.
 inline std::uint64_t lost(const SequenceTracker& tracker) {
   return tracker.next > tracker.unique ? tracker.next - tracker.unique : 0;
 }

@@ -48,10 +48,10 @@ SerialLine::SerialLine(const std::string& device, unsigned baud) {
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~(CSTOPB | CRTSCTS);
-  settings.c_cc[VMIN] = 1;  // without bytes read() fails with EAGAIN, and 0 is a line that hung up
+  settings.c_cc[VMIN] = 1;  // without bytes read() fails with EAGAIN; 0 means that the line hung up
   settings.c_cc[VTIME] = 0;
   if (cfsetspeed(&settings, speed) != 0 || tcsetattr(line, TCSANOW, &settings) != 0) fail(device, errno);
-  ioctl(line, TIOCEXCL);  // other programs, but root's, are refused
+  ioctl(line, TIOCEXCL);  // excludes other programs, except those of root
   tcflush(line, TCIOFLUSH);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A serial line on POSIX: eight bits, no parity, one stop bit, without flow control, not blocking.
+// A non-blocking serial line on POSIX: eight bits, no parity, one stop bit, no flow control.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace sf::netio {
 
-/// One thread.
+/// Single-threaded.
 class SerialLine {
  public:
-  /// Bytes that wait to be sent, at most; more are refused.
+  /// Maximum number of bytes waiting to be sent. Further bytes are refused.
   static constexpr std::size_t kMostWaiting = 256;
 
   /// @param baud 9600, 19200, 38400, 57600 or 115200
-  /// @throws base::InputError where the device cannot be opened or is no serial line, with a remedy
+  /// @throws base::InputError with a remedy if the device cannot be opened or is not a serial line
   SerialLine(const std::string& device, unsigned baud);
 
-  /// @return bytes read into `bytes`, 0 where none wait
+  /// @return number of bytes read into `bytes`, 0 if none wait
   std::size_t read(std::span<std::uint8_t> bytes);
-  /// Sends all of it, now or with the next call, or nothing. @return false: what was sent before still waits
+  /// Sends all bytes, now or in the next call, or none. @return false if earlier bytes still wait
   bool write(std::span<const std::uint8_t> bytes);
-  /// Waits until all is sent, for 100 ms at most.
+  /// Waits until all bytes are sent, for at most 100 ms.
   void drain();
-  /// It hung up, or a call failed; the line is of no more use.
+  /// Returns whether the line hung up or a call failed. A lost line cannot be used again.
   bool lost() const { return lost_; }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Reports peers whose signatures the farm refuses: with another key, without one, or with a clock that is
-// behind; those whose signatures it has no key for; and those at another address than is expected of them.
+// Reports peers whose signatures the farm refuses (another key, no signature, or a clock that is behind), peers whose
+// signatures it has no key for, and peers at an unexpected address.
 
 #include <cstdint>
 #include <map>
@@ -14,20 +14,21 @@
 
 namespace sf::netio {
 
-/// For a sender's user, behind "the farm at 127.0.0.1:9000 ": what has to be changed.
+/// Returns what the sender's user has to change, as the continuation of "the farm at 127.0.0.1:9000 ".
 /// @param who "robot 7"  @param unix_time [ns] of this machine's clock
 std::string trouble_text(const SignatureTrouble& trouble, const std::string& who, std::int64_t unix_time);
 
-/// One thread.
+/// Single-threaded.
 class SignatureTroubleLog {
  public:
-  /// Logs the first packet of a peer and reason, then every ten seconds their number while more come, and answers it.
-  /// @param reason not_signed, wrong_signature, replayed or wrong_source; others: where the packet is `unchecked`
+  /// Logs the first packet of a peer and reason, then the number of packets every ten seconds while more arrive, and
+  /// answers the packet.
+  /// @param reason not_signed, wrong_signature, replayed or wrong_source; others: the packet is `unchecked`
   /// @param name of the mover or light, in messages; may be empty
   /// @param now [ns] of the inbox' clock
   void note(PacketStatus reason, const Packet& packet, const Endpoint& who, const std::string& name, std::int64_t now,
             Inbox& inbox, Outbox& answers, RateLimitedLog& log);
-  /// Answers a robot or light by REFUSAL, at most twice a second.
+  /// Answers a robot or light with a REFUSAL, at most twice a second.
   void answer(PacketStatus reason, const Packet& packet, const Endpoint& who, std::int64_t now, Inbox& inbox,
               Outbox& answers);
 
@@ -37,7 +38,7 @@ class SignatureTroubleLog {
     std::int64_t next_answer = 0;  ///< [ns]
   };
   std::map<std::tuple<PeerKind, std::uint32_t, PacketStatus>, Row>
-      rows_;  ///< of the world's ids, whose number is known
+      rows_;  ///< ids of the world only, so their number is bounded
   base::Bytes answer_;
 };
 

@@ -12,7 +12,7 @@
 
 namespace sf::netio {
 
-/// Owner of a file descriptor.
+/// Owns a file descriptor.
 class Socket {
  public:
   Socket() = default;
@@ -29,7 +29,7 @@ class Socket {
   int descriptor_ = -1;
 };
 
-/// Buffer sizes to request from the kernel. [byte] 0: the kernel's default (about 92 laser datagrams).
+/// Buffer sizes to request from the kernel [byte]. 0: the kernel's default (about 92 laser datagrams).
 struct SocketBuffers {
   std::size_t receive = 0;
   std::size_t send = 0;
@@ -44,34 +44,35 @@ class PortInUse : public base::InputError {
 /// Opens a bound, non-blocking UDP socket. The kernel may grant smaller buffers (net.core.rmem_max), see
 /// receive_buffer.
 /// @throws PortInUse
-/// @throws base::InputError when the address is not this machine's or no descriptors are left
+/// @throws base::InputError if the address does not belong to this machine or no descriptors are left
 Socket open_udp(const Endpoint& bind, const SocketBuffers& buffers = {});
 
-/// The same socket under a second descriptor.
-/// @throws base::InputError when no descriptors are left
+/// Returns the same socket under a second descriptor.
+/// @throws base::InputError if no descriptors are left
 Socket duplicate(const Socket& socket);
 
 /// Sleeps until one of the sockets is readable, a signal arrives, or `timeout_ms` >= 0 has passed.
 void wait_readable(const Socket& one, const Socket& other, int timeout_ms);
 
-/// Address and port to which `socket` is bound; for port 0 the chosen one.
+/// Returns the address and port to which `socket` is bound, with the chosen port if port 0 was requested.
 Endpoint bound_endpoint(const Socket& socket);
 
-/// [byte] granted by the kernel, which counts about 2.3 kB for a laser datagram of 748 B.
+/// Returns the size [byte] granted by the kernel, which counts about 2.3 kB for a laser datagram of 748 B.
 std::size_t receive_buffer(const Socket& socket);
 
-/// Datagrams dropped by the operating system since the socket was opened, mostly for a full buffer; 0 where this is
-/// unknown.
+/// Returns the number of datagrams that the operating system has dropped since the socket was opened, mostly because of
+/// a full buffer; 0 if it is unknown.
 std::uint64_t socket_drops(const Socket& socket);
 
 /// Raises this process' soft limit of open files to at least `count`; never lowers it.
-/// @throws base::InputError when the hard limit is lower
+/// @throws base::InputError if the hard limit is lower
 void raise_open_file_limit(std::size_t count);
 
 /// Receives datagrams in batches into preallocated storage.
 class ReceiveBatch {
  public:
-  static constexpr std::size_t kSlotBytes = 2048;  ///< longer datagrams are cut off; no packet of the farm is
+  static constexpr std::size_t kSlotBytes = 2048;  ///< longer datagrams are truncated; all packets of the farm are
+                                                   ///< shorter
 
   explicit ReceiveBatch(std::size_t capacity);
   ~ReceiveBatch();
@@ -93,7 +94,7 @@ class ReceiveBatch {
     return taken;
   }
 
-  /// A datagram of the last `fill`; lives until the next.
+  /// Returns a datagram of the last `fill`. Valid until the next `fill`.
   std::span<const std::uint8_t> bytes(std::size_t i) const;
   Endpoint source(std::size_t i) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Selection of one farm by a receiver that sends nothing and therefore has no session with the farm.
+// Selects one farm for a receiver that sends nothing and therefore has no session with the farm.
 
 #include <cstdint>
 #include <optional>
@@ -10,16 +10,16 @@
 namespace sf::netio {
 
 /// Selects the first sender of a valid packet until it is silent for two seconds (kClientTimeout), so that packets of
-/// two farms, or of a farm and a forger, are not mixed. No clock is read.
+/// two farms, or of a farm and a forger, are not mixed. Reads no clock.
 class SourceLock {
  public:
   /// @param host the only accepted address; 0: any
   explicit SourceLock(std::uint32_t host = 0) : host_(host) {}
 
-  /// False: packets from this address are never accepted.
+  /// Returns false if packets from this address are never accepted.
   bool allows(const Endpoint& source) const { return host_ == 0 || source.address == host_; }
-  /// True when a valid packet from `source` at `now` [ns] with this session is accepted.
-  /// @param session 0 for packets without one
+  /// Returns true if a valid packet from `source` at `now` [ns] with this session is accepted.
+  /// @param session 0 for packets without a session
   bool admit(const Endpoint& source, std::uint32_t session, std::int64_t now) {
     const bool same = source_ == source && session_ == session;
     if (!allows(source) || (last_ && now - *last_ < kClientTimeout && !same)) return false;

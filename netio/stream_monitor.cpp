@@ -68,13 +68,13 @@ struct StreamMonitor::Streams {
 
   PortListener port_listener;
   bool headerless;
-  /// Checks that a good packet is from the selected farm and plausible in its sequence.
+  /// Checks that a valid packet is from the selected farm and has a plausible sequence.
   PacketStatus check_source(Stream& stream, const Header& header, const Endpoint& source, std::int64_t now);
 
   SourceLock farm;
   PayloadInspector inspect;
   std::vector<Stream> rows;
-  SequenceCounts before;  ///< of the farms selected before
+  SequenceCounts before;  ///< of previously selected farms
   PacketCounts counts;
   std::uint64_t bytes = 0;
   std::uint64_t stale_states = 0;

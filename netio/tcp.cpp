@@ -14,7 +14,7 @@ namespace sf::netio {
 
 namespace {
 
-constexpr int kBacklog = 64;  // connections that wait to be accepted
+constexpr int kBacklog = 64;  // connections waiting to be accepted
 
 Socket open_tcp(const Endpoint& endpoint) {
   Socket opened(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -41,7 +41,7 @@ std::optional<std::size_t> moved(ssize_t bytes) {
 
 Socket listen_tcp(const Endpoint& bind) {
   Socket listener = open_tcp(bind);
-  const int on = 1;  // connections of an earlier run that linger do not hold the port
+  const int on = 1;  // lingering connections of an earlier run do not block the port
   setsockopt(listener.descriptor(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   bind_socket(listener, bind, "TCP");
   if (listen(listener.descriptor(), kBacklog) == 0) return listener;
@@ -62,8 +62,8 @@ Socket accept_tcp(const Socket& listener, Endpoint& peer) {
 
 std::optional<std::size_t> receive_some(const Socket& connection, std::span<std::uint8_t> bytes) {
   const auto received = moved(recv(connection.descriptor(), bytes.data(), bytes.size(), 0));
-  // A peer that sends a command and then a request has the request wait for the acknowledgement of the command (Nagle),
-  // which the kernel would delay by 40 ms. The option lasts until the next message.
+  // Disables Nagle's algorithm: when a peer sends a command and then a request, the request waits for the
+  // acknowledgement of the command, which the kernel would delay by 40 ms. The option lasts until the next message.
   const int on = 1;
   if (received) setsockopt(connection.descriptor(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
   return received;
@@ -80,7 +80,7 @@ SocketWait::SocketWait() : epoll_(epoll_create1(EPOLL_CLOEXEC)), event_(eventfd(
   watch(epoll_, EPOLL_CTL_ADD, event_, kWoken, EPOLLIN);
 }
 
-// Edge-triggered: where no descriptors are left, the connection waits and does not end every wait at once.
+// Edge-triggered: when no descriptors are left, a waiting connection must not end every wait at once.
 void SocketWait::add_listener(const Socket& listener, std::uint64_t key) {
   watch(epoll_, EPOLL_CTL_ADD, listener, key, EPOLLIN | EPOLLET);
 }
@@ -109,7 +109,7 @@ std::span<const std::uint64_t> SocketWait::wait() {
 
 void SocketWait::wake() {
   const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written = write(event_.descriptor(), &one, sizeof one);  // full: it is awake already
+  [[maybe_unused]] const auto written = write(event_.descriptor(), &one, sizeof one);  // full: it is already awake
 }
 
 }  // namespace sf::netio

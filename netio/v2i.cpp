@@ -14,10 +14,10 @@ namespace {
 constexpr std::uint32_t kNoChange = 0xFFFFFFFFu;  ///< [ms]
 constexpr std::size_t kMaxRows = (kMaxPayload - kV2iHeadBytes) / kV2iRowBytes;
 
-/// Rounds up, as SPaT does: no change is announced before it happens.
+/// Rounds up, as SPaT does, so that no change is announced before it happens.
 std::uint32_t milliseconds(double seconds) {
   constexpr double kMost = kNoChange - 1.0;
-  constexpr double kRounding = 1e-4;  // [ms] of sums of durations
+  constexpr double kRounding = 1e-4;  // [ms] rounding error of sums of durations
   if (!std::isfinite(seconds)) return kNoChange;
   return static_cast<std::uint32_t>(std::clamp(std::ceil(1e3 * seconds - kRounding), 0.0, kMost));
 }

@@ -31,8 +31,9 @@ void V2vSocket::send(std::span<const std::uint8_t> bytes) {
   outbox_.flush();
 }
 
-/// Of the whole datagram: the states in a NEIGHBOURS packet have no signatures of their own. Packets without this
-/// robot's session come first: its own, sent back to it, have valid signatures, and counters of another clock.
+/// Checks the signature of the whole datagram: the states in a NEIGHBOURS packet are not signed individually. Packets
+/// without this robot's session are rejected first: the robot's own packets, sent back to it, have valid signatures and
+/// counters of another clock.
 PacketStatus V2vSocket::check_signature(std::span<const std::uint8_t> bytes) {
   if (!checker_) return PacketStatus::accepted;
   Packet packet;
@@ -41,7 +42,7 @@ PacketStatus V2vSocket::check_signature(std::span<const std::uint8_t> bytes) {
   return packet.header.token == options_.session ? checker_->check(bytes) : PacketStatus::wrong_source;
 }
 
-/// Before signatures are checked: the farm has no valid one where keys differ. It changes nothing but a message.
+/// Runs before signatures are checked: if the keys differ, the farm cannot sign validly. It changes only a message.
 bool V2vSocket::take_refusal(std::span<const std::uint8_t> bytes) {
   Packet packet;
   if (decode(bytes, packet) != PacketStatus::accepted || packet.header.token != options_.session) return false;

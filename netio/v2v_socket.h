@@ -5,7 +5,7 @@
 //   radio.send(bytes);                                             // an encoded packet
 //   radio.receive([&](std::span<const std::uint8_t> bytes) { ... radio.accept(bytes, now, packet); });
 //
-// One thread. No clock is read.
+// Single-threaded. Reads no clock.
 
 #include <cstdint>
 #include <optional>
@@ -26,30 +26,30 @@ namespace sf::netio {
 
 struct V2vSocketOptions {
   Endpoint farm;                      ///< destination, and the only accepted source
-  std::uint32_t robot = 0;            ///< its own id
+  std::uint32_t robot = 0;            ///< id of this robot
   std::vector<std::uint32_t> others;  ///< ids of the world's other robots
   std::uint32_t session = random_session();
   std::size_t receive_buffer = 1u << 20;
-  std::optional<SigningKey> key;      ///< signs what it sends, and has to sign what comes
+  std::optional<SigningKey> key;      ///< signs sent packets, and must have signed received packets
   std::vector<std::uint32_t> lights;  ///< ids of the world's intersections
 };
 
-/// Why nothing signed passes between robot and farm.
+/// The reason why robot and farm exchange no signed packets.
 struct SignatureTrouble {
-  PacketStatus reason = PacketStatus::accepted;  ///< not_signed, wrong_signature or replayed, of the
-                                                 ///< farm also wrong_source; accepted: no trouble
+  PacketStatus reason = PacketStatus::accepted;  ///< not_signed, wrong_signature or replayed; for the farm also
+                                                 ///< wrong_source; accepted: no trouble
   bool of_farm = false;  ///< the farm refuses the robot's packets (as a REFUSAL states, which is not signed); false:
                          ///< the robot refuses the farm's
   std::int64_t farm_time = 0;  ///< [ns] Unix time of the REFUSAL; 0: none
-  std::uint64_t count = 0;     ///< packets refused so far, or REFUSALs
+  std::uint64_t count = 0;     ///< number of packets refused so far, or of REFUSALs
 };
 
 class V2vSocket {
  public:
-  /// @throws base::InputError when no socket can be opened.
+  /// @throws base::InputError if no socket can be opened
   explicit V2vSocket(const V2vSocketOptions& options);
 
-  /// Sends a packet to the farm immediately, with the newest token, and signed where it has a key.
+  /// Sends a packet to the farm immediately, with the newest token, and signed if there is a key.
   void send(std::span<const std::uint8_t> bytes);
 
   /// Passes each V2V of a NEIGHBOURS packet to `take`, and any other datagram unchanged.
@@ -62,7 +62,7 @@ class V2vSocket {
   }
 
   /// Passes all waiting datagrams from the farm, up to a limit, through `for_each_state` to `take(std::span<const
-  /// std::uint8_t> bytes)`. Others are counted as PacketStatus::wrong_source, or by the fault of their signature.
+  /// std::uint8_t> bytes)`. Counts others as PacketStatus::wrong_source, or by the fault of their signature.
   template <class Take>
   void receive(Take&& take) {
     constexpr std::size_t kMost = 65'536;
@@ -77,20 +77,20 @@ class V2vSocket {
     });
   }
 
-  /// Checks any bytes from the farm, received at `now` [ns]. V2V of other robots, V2I, and START and CHALLENGE for
-  /// this robot are accepted and fill `packet`. Packets without this robot's session, or with another session of the
-  /// farm than the last challenge's, are wrong_source. Packets for other robots are unknown_robot, V2I of other
-  /// intersections unknown_light; old states are stale.
+  /// Checks any bytes from the farm, received at `now` [ns]. Accepts V2V of other robots, V2I, and START and CHALLENGE
+  /// for this robot, and fills `packet`. Packets without this robot's session, or with a session of the farm other than
+  /// that of the last challenge, are wrong_source. Packets for other robots are unknown_robot, V2I of other
+  /// intersections are unknown_light, and old states are stale.
   PacketStatus accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet);
 
-  /// A state of `robot` was accepted less than two seconds before `now`.
+  /// Returns whether a state of `robot` was accepted less than two seconds before `now`.
   bool is_active(std::uint32_t robot, std::int64_t now) const { return others_.is_active(robot, now); }
 
-  /// Session and token of all packets from the farm. The session is 0 before the first CHALLENGE.
+  /// Returns session and token of all packets from the farm. The session is 0 before the first CHALLENGE.
   SessionToken farm_session_token() const { return {farm_session_, options_.session}; }
 
   const PacketCounts& counts() const { return counts_; }
-  /// The last one.
+  /// Returns the last trouble.
   const SignatureTrouble& trouble() const { return trouble_; }
   OutboxCounts sent() const { return outbox_.counts(); }
   const Socket& socket() const { return socket_; }
