@@ -1,6 +1,6 @@
 #pragma once
 // ROS 2 messages as bytes: CDR in its first version (OMG "DDS Interoperability Wire Protocol" 2.2, section 10; XCDR1),
-// little endian. Four bytes of encapsulation (00 01 00 00), then the fields; every number is aligned to its own size,
+// little endian. Four bytes of encapsulation (00 01 00 00) precede the fields. Every number is aligned to its own size,
 // counted from the byte after the encapsulation.
 
 #include <array>
@@ -30,14 +30,14 @@ class CdrWriter {
     bytes_.put(value);
   }
   void put(bool value) { bytes_.put(static_cast<std::uint8_t>(value ? 1 : 0)); }
-  /// u32 length with the terminator counted, the characters, the terminator.
+  /// Appends the u32 length including the terminator, the characters, and the terminator.
   void put(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size() + 1));
     bytes_.put_bytes(text.data(), text.size());
     bytes_.put(std::uint8_t{0});
   }
   void put(const char* text) { put(std::string_view(text)); }
-  /// Number of elements, before a sequence.
+  /// Appends the number of elements that precedes a sequence.
   void put_count(std::size_t count) { put(static_cast<std::uint32_t>(count)); }
 
  private:
@@ -51,8 +51,8 @@ class CdrWriter {
   std::size_t origin_ = 0;
 };
 
-/// Reads one message from a caller's bytes. A read past the end, or a malformed field, sets the state to bad and gives
-/// zeros.
+/// Reads one message from a caller's bytes. A read past the end, or a malformed field, sets the state to bad and
+/// returns zeros.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::uint8_t> in) : bytes_(in) {
@@ -78,8 +78,8 @@ class CdrReader {
     }
     return {reinterpret_cast<const char*>(text.data()), text.size() - 1};
   }
-  /// Length of a sequence whose elements take at least `least` bytes each. Bad, and 0, when the bytes left cannot hold
-  /// them.
+  /// Reads the length of a sequence whose elements take at least `least` bytes each. Sets the state to bad and returns
+  /// 0 if the remaining bytes cannot hold them.
   std::uint32_t get_count(std::size_t least) {
     const auto count = get<std::uint32_t>();
     if (good() && count <= bytes_.left() / least) return count;

@@ -12,7 +12,7 @@ ChunkWriter::~ChunkWriter() {
   try {
     finish();
   } catch (const base::InputError&) {
-    // The chunks before it are in the file.
+    // The earlier chunks are in the file.
   }
 }
 

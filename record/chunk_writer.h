@@ -1,5 +1,5 @@
 #pragma once
-// Chunks on their way into a recording. A thread compresses and writes them, while the next ticks are computed.
+// Compresses and writes the chunks of a recording in a thread, while the next ticks are computed.
 
 #include <condition_variable>
 #include <deque>
@@ -14,17 +14,17 @@ namespace sf::record {
 
 class ChunkWriter {
  public:
-  static constexpr std::size_t kMaxWaiting = 2;  ///< chunks, not counting the one that is being written
+  static constexpr std::size_t kMaxWaiting = 2;  ///< chunks, excluding the chunk that is being written
 
-  /// From here on, `mcap` and `file` are the thread's, until `finish` returns.
+  /// The thread owns `mcap` and `file` from here until `finish` returns.
   ChunkWriter(McapWriter& mcap, GrowingFile& file);
   /// Calls `finish` if needed and ignores its errors.
   ~ChunkWriter();
 
-  /// Takes a chunk and gives an empty one. Waits while `kMaxWaiting` chunks wait.
-  /// @throws base::InputError once an earlier chunk could not be written whole; later ones are left out then
+  /// Takes a chunk and replaces it with an empty one. Blocks while `kMaxWaiting` chunks wait.
+  /// @throws base::InputError if an earlier chunk could not be written completely; later chunks are then dropped
   void add(McapChunk& chunk);
-  /// Returns when all chunks are in the file, and ends the thread. @throws base::InputError as `add` does
+  /// Blocks until all chunks are in the file, then ends the thread. @throws base::InputError in the same cases as `add`
   void finish();
 
  private:
@@ -36,7 +36,7 @@ class ChunkWriter {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<McapChunk> waiting_;
-  std::vector<McapChunk> spare_;  ///< empty, with their memory
+  std::vector<McapChunk> spare_;  ///< empty chunks that keep their memory
   std::exception_ptr error_;
   bool finished_ = false;
   std::thread thread_;

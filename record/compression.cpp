@@ -10,7 +10,7 @@ namespace sf::record {
 
 namespace {
 
-/// Higher ones cost twice the time and save less than 1 % of a recording (docs/recordings.md).
+/// Higher levels take twice the time and save less than 1 % of a recording (docs/recordings.md).
 constexpr int kLevel = 1;
 
 template <class T>

@@ -13,11 +13,11 @@ struct ZSTD_DCtx_s;
 
 namespace sf::record {
 
-/// For one thread; keeps its memory between calls.
+/// Single-threaded; keeps its memory between calls.
 class ZstdCompressor {
  public:
   ZstdCompressor();
-  /// Replaces `out` by one frame, which states the size of `in`. The same bytes give the same frame.
+  /// Replaces `out` with one frame, which states the size of `in`. Equal bytes give equal frames.
   void compress(std::span<const std::uint8_t> in, base::Bytes& out);
 
  private:
@@ -27,10 +27,10 @@ class ZstdCompressor {
   std::unique_ptr<ZSTD_CCtx_s, Free> context_;
 };
 
-/// For one thread; keeps its memory between calls.
+/// Single-threaded; keeps its memory between calls.
 class ZstdDecompressor {
  public:
-  /// Takes frames that anyone may have made. @return false where they do not fill `out` exactly, or are malformed
+  /// Decompresses untrusted frames. @return false if they do not fill `out` exactly or are malformed
   bool decompress(std::span<const std::uint8_t> in, std::span<std::uint8_t> out);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// State, command and contact of all movers at one tick, bitwise: `sensorfarm_msgs/msg/Fleet`.
+// State, command and contact of all movers at one tick, bit for bit: `sensorfarm_msgs/msg/Fleet`.
 
 #include <cstdint>
 #include <span>
@@ -25,10 +25,10 @@ struct FleetState {
   std::vector<MoverState> states;
 };
 
-/// Appends one message. Rule: `commands` and `contacts` are empty, or one per report.
+/// Appends one message. @pre `commands` and `contacts` are empty or contain one entry per report
 void encode_fleet(const base::TickRecord& record, base::Bytes& out);
 
-/// @returns false when the bytes are not a Fleet message; `fleet` is then partly filled. Its capacity is reused.
+/// @return false if the bytes are not a Fleet message; `fleet` is then partly filled. Reuses its capacity.
 bool decode_fleet(std::span<const std::uint8_t> message, FleetState& fleet);
 
 }  // namespace sf::record

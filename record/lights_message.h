@@ -11,11 +11,11 @@
 
 namespace sf::record {
 
-/// Appends one message. Rule: one name per light.
+/// Appends one message. @pre one name per light
 void encode_lights(std::int64_t time, std::span<const std::string> names, std::span<const base::LightStatus> lights,
                    base::Bytes& out);
 
-/// @returns false when the bytes are not a Lights message. Names are left out.
+/// @return false if the bytes are not a Lights message. Skips the names.
 bool decode_lights(std::span<const std::uint8_t> message, std::int64_t& time, std::vector<base::LightStatus>& lights);
 
 }  // namespace sf::record

@@ -31,7 +31,7 @@ enum class Opcode : std::uint8_t {
   data_end = 0x0F,
 };
 
-/// Of the messages in chunks.
+/// Compression of the messages in chunks.
 enum class Compression : std::uint8_t { none, zstd };
 inline constexpr const char* kZstd = "zstd";  ///< in a chunk
 
@@ -64,7 +64,7 @@ struct McapMessage {
 
 struct McapAttachment {
   std::uint64_t log_time = 0;     ///< [ns]
-  std::uint64_t create_time = 0;  ///< [ns] 0: not known
+  std::uint64_t create_time = 0;  ///< [ns] 0: unknown
   std::string name;
   std::string media_type;
   std::span<const std::uint8_t> data;  ///< the caller's bytes, or a view into the file

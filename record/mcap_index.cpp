@@ -15,9 +15,9 @@ struct Summary {
   std::vector<McapLayout::Chunk> chunks;
   std::vector<McapLayout::Attachment> attachments;
   std::vector<McapLayout::Metadata> metadata;
-  using Group = std::pair<std::uint64_t, std::uint64_t>;  ///< place and length of the records of an opcode
+  using Group = std::pair<std::uint64_t, std::uint64_t>;  ///< offset and length of the records of an opcode
   std::map<Opcode, Group> groups;
-  std::vector<std::pair<Opcode, Group>> offsets;  ///< as the summary states them
+  std::vector<std::pair<Opcode, Group>> offsets;  ///< as stated by the summary
   std::uint64_t offsets_start = 0;                ///< 0: none
 };
 
@@ -94,7 +94,7 @@ void read_offset(ByteReader& in, Summary& summary) {
   summary.offsets.push_back({opcode, {at, in.get<std::uint64_t>()}});
 }
 
-/// @return false when a record is shorter than its fields
+/// @return false if a record is shorter than its fields
 bool read_summary_record(const McapRecord& record, Summary& summary) {
   ByteReader in(record.body);
   if (record.opcode == Opcode::statistics) summary.statistics.push_back(read_statistics(in));
@@ -112,7 +112,7 @@ bool read_summary_record(const McapRecord& record, Summary& summary) {
   return in.good();
 }
 
-/// An index that lists nothing is left out, as MCAP permits.
+/// MCAP permits omitting an index, so an empty one fits.
 template <class Entry>
 bool fits(std::vector<Entry> stated, std::vector<Entry> found) {
   if (stated.empty()) return true;
@@ -121,7 +121,7 @@ bool fits(std::vector<Entry> stated, std::vector<Entry> found) {
   return stated == found;
 }
 
-/// @return the first statement that does not fit the data; empty: all do
+/// @return the first entry of the summary that contradicts the data; empty: none does
 std::string contradiction(const Summary& summary, McapLayout& layout, const McapContents& contents) {
   for (McapLayout::Chunk& chunk : layout.chunks) std::sort(chunk.indexes.begin(), chunk.indexes.end());
   for (const McapLayout::Statistics& s : summary.statistics)
@@ -191,7 +191,7 @@ void check_summary(View file, const McapRecord& footer, McapLayout layout, McapC
   if (from != layout.data_end) return refuse("the summary is not where the footer says");
   if (crc != 0 && crc != crc32_of(file.subspan(from, covered - from)))
     return refuse("the summary does not fit its CRC: bytes were changed after writing");
-  if (!contents.damage.empty()) return;  // what was left out is in no statistics
+  if (!contents.damage.empty()) return;  // the statistics do not include omitted data
 
   Summary summary;
   McapRecord record;

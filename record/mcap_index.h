@@ -1,7 +1,7 @@
 #pragma once
-// What an MCAP file states about its own records: message indexes behind chunks, and the summary with statistics,
-// indexes and offsets behind the data. Reading needs none of it; other programs do, so a file is damaged where it does
-// not fit. All comparisons ignore the order of entries.
+// The redundant part of an MCAP file: message indexes after chunks, and the summary with statistics, indexes and
+// offsets after the data. Reading does not need them, but other programs do, so a contradiction counts as damage. All
+// comparisons ignore the order of entries.
 
 #include <compare>
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace sf::record {
 
-/// The records of a data section, as the reader found them. Places and lengths in bytes, times in ns.
+/// The records of a data section, as found by the reader. Offsets and lengths in bytes, times in ns.
 struct McapLayout {
   struct Message {
     std::uint16_t channel = 0;
@@ -25,7 +25,7 @@ struct McapLayout {
   };
   struct Chunk {
     std::uint64_t first = 0, last = 0, at = 0, length = 0;
-    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes;  ///< channel, place
+    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes;  ///< channel, offset
     std::uint64_t index_length = 0;
     std::string compression;
     std::uint64_t compressed = 0, size = 0;
@@ -46,30 +46,30 @@ struct McapLayout {
     std::uint16_t schemas = 0;
     std::uint32_t channels = 0, attachments = 0, metadata = 0, chunks = 0;
     std::uint64_t first = 0, last = 0;
-    std::map<std::uint16_t, std::uint64_t> by_channel;  ///< without zeros
+    std::map<std::uint16_t, std::uint64_t> by_channel;  ///< without zero counts
     bool operator==(const Statistics&) const = default;
   };
 
   std::vector<Chunk> chunks;
   std::vector<Attachment> attachments;
   std::vector<Metadata> metadata;
-  std::size_t data_end = 0;  ///< [byte] behind the data end record; 0: there is none
+  std::size_t data_end = 0;  ///< [byte] offset after the data end record; 0: there is none
 };
 
-/// Compares the message indexes behind a chunk with its messages.
+/// Compares the message indexes after a chunk with its messages.
 class MessageIndexCheck {
  public:
   explicit MessageIndexCheck(McapContents& contents) : contents_(contents) {}
 
-  /// A whole chunk, whose messages follow; its times are compared as well.
+  /// Begins a whole chunk, whose messages follow; its times are compared as well.
   void begin_chunk(const McapRecord& record) { begin(record, State::whole); }
-  /// A chunk that was left out, which is damage enough.
+  /// Begins a skipped chunk. Its index is not checked, since the loss already counts as damage.
   void begin_lost_chunk(const McapRecord& record) { begin(record, State::lost); }
   void add(const McapLayout::Message& message) { messages_.push_back(message); }
   void end_chunk(const McapLayout::Chunk& chunk);
-  /// @param chunk the last one; null: none
+  /// @param chunk the last chunk; null: none
   void add_index(const McapRecord& record, McapLayout::Chunk* chunk);
-  /// To be called where a whole record of another kind follows: the index of the last chunk is complete.
+  /// Call this when a whole record of another kind follows: the index of the last chunk is complete.
   void finish_index();
 
  private:
@@ -78,12 +78,12 @@ class MessageIndexCheck {
 
   McapContents& contents_;
   State state_ = State::none;
-  std::size_t at_ = 0;  ///< [byte] of the chunk
+  std::size_t at_ = 0;  ///< [byte] offset of the chunk
   std::vector<McapLayout::Message> messages_, indexed_;
 };
 
-/// Checks the summary of a finished file: its CRC, and, where nothing else is damaged, its content.
-/// @param footer whole, of the file
+/// Checks the summary of a finished file: its CRC and, if nothing else is damaged, its content.
+/// @param footer a whole footer of the file
 void check_summary(std::span<const std::uint8_t> file, const McapRecord& footer, McapLayout layout,
                    McapContents& contents);
 

@@ -17,7 +17,7 @@ using View = std::span<const std::uint8_t>;
 
 namespace {
 
-/// A file as far as it has been read.
+/// The part of a file that has been read.
 struct Reading {
   View file;
   McapContents contents;
@@ -86,7 +86,7 @@ void read_message(const McapRecord& record, McapContents& contents) {
   contents.messages.push_back(message);
 }
 
-/// @param whole the chunk was not cut
+/// @param whole the chunk is not truncated
 void read_chunk_records(View records, std::size_t offset, bool whole, Reading& reading) {
   McapContents& contents = reading.contents;
   McapRecord record;
@@ -115,7 +115,8 @@ McapLayout::Chunk read_chunk_head(ByteReader& in, const McapRecord& record, std:
   return chunk;
 }
 
-/// @param bytes of a chunk, whole if it is compressed; out: its records @return why it cannot be read; empty: it was
+/// @param bytes of a chunk, whole if it is compressed; out: its records @return the reason why it cannot be read;
+/// empty: none
 std::string decompress(const McapLayout::Chunk& chunk, View& bytes, Reading& reading) {
   if (chunk.compression.empty()) return chunk.size == chunk.compressed ? "" : "malformed chunk";
   if (chunk.compression != kZstd)
@@ -126,7 +127,7 @@ std::string decompress(const McapLayout::Chunk& chunk, View& bytes, Reading& rea
     return "chunk left out: it states " + std::to_string(chunk.size) + " bytes of records, and at most " +
            std::to_string(most) + " more are decompressed of a file of this size";
   const auto size = static_cast<std::size_t>(chunk.size);
-  // Memory that nothing is written to costs nothing: malformed chunks may state any size.
+  // Memory that is never written costs nothing, and malformed chunks may state any size.
   auto records = std::make_unique_for_overwrite<std::uint8_t[]>(size);
   if (!reading.zstd.decompress(bytes, {records.get(), size})) return "chunk left out: its zstd frame is malformed";
   reading.decompressed += size;
@@ -135,7 +136,7 @@ std::string decompress(const McapLayout::Chunk& chunk, View& bytes, Reading& rea
   return "";
 }
 
-/// A truncated chunk gives its whole messages, and none where it is compressed; its CRC cannot be checked then.
+/// A truncated chunk yields its whole messages, or none if it is compressed; its CRC cannot be checked then.
 void read_chunk(const McapRecord& record, Reading& reading) {
   McapContents& contents = reading.contents;
   reading.index.begin_lost_chunk(record);
@@ -232,7 +233,7 @@ void read_record(const McapRecord& record, Reading& reading) {
 
 bool is_magic(View bytes) { return std::equal(bytes.begin(), bytes.end(), kMcapMagic.begin(), kMcapMagic.end()); }
 
-/// The magic ends a finished file; less of it is a cut one.
+/// The magic ends a finished file; a part of it means a truncated file.
 void check_end(const McapRecord& footer, Reading& reading) {
   check_summary(reading.file, footer, reading.layout, reading.contents);
   const View end = reading.file.subspan(footer.end());

@@ -1,5 +1,5 @@
 #pragma once
-// Writing of single MCAP records.
+// Writes single MCAP records.
 
 #include <cstdint>
 #include <cstring>
@@ -10,7 +10,7 @@
 
 namespace sf::record {
 
-/// Writes a record's opcode, and its length in the destructor.
+/// Writes a record's opcode in the constructor, and its length in the destructor.
 class OpenRecord {
  public:
   OpenRecord(base::Bytes& out, Opcode opcode) : out_(out) {
@@ -35,7 +35,7 @@ inline void append(base::Bytes& out, std::span<const std::uint8_t> bytes) {
   base::ByteWriter(out).put_bytes(bytes.data(), bytes.size());
 }
 
-/// u32 length of the whole map in bytes, then keys and values.
+/// Appends the u32 length of the whole map in bytes, then keys and values.
 inline void put_pairs(base::ByteWriter& out, const TextPairs& pairs) {
   std::uint32_t size = 0;
   for (const auto& [key, value] : pairs) size += static_cast<std::uint32_t>(8 + key.size() + value.size());

@@ -1,5 +1,5 @@
 #pragma once
-// Records of an MCAP file, one after the other, and notes of their damage.
+// Iterates over the records of an MCAP file, and notes their damage.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,24 +13,24 @@ namespace sf::record {
 
 inline constexpr std::size_t kRecordHead = 9;  ///< [byte] opcode and length
 
-/// A record's place in the file and its content.
+/// A record's offset in the file and its content.
 struct McapRecord {
   Opcode opcode = Opcode::header;
-  std::size_t at = 0;  ///< [byte] of the opcode
+  std::size_t at = 0;  ///< [byte] offset of the opcode
   std::span<const std::uint8_t> body;
-  bool whole = false;  ///< false: `body` is the rest before the cut
+  bool whole = false;  ///< false: `body` is the part before the truncation
 
   std::size_t end() const { return at + kRecordHead + body.size(); }
 };
 
-/// Lines beyond the hundredth are left out.
+/// Drops lines after the hundredth.
 inline void note_damage(McapContents& contents, std::size_t at, const std::string& what) {
   constexpr std::size_t kMost = 100;
   if (contents.damage.size() < kMost) contents.damage.push_back("byte " + std::to_string(at) + ": " + what);
 }
 
 /// @param offset of `bytes` in the file @param at in `bytes`
-/// @returns false at the end, and when the rest is shorter than a head.
+/// @return false at the end, and if the rest is shorter than a head
 inline bool next_record(std::span<const std::uint8_t> bytes, std::size_t offset, std::size_t at, McapRecord& record) {
   if (bytes.size() - at < kRecordHead) return false;
   base::ByteReader in(bytes.subspan(at, kRecordHead));

@@ -108,7 +108,7 @@ void McapChunk::add(const McapMessage& message) {
   out.put_bytes(message.data.data(), message.data.size());
 }
 
-/// Of a sealed chunk, as the summary states it.
+/// Offset of a sealed chunk, as stated by the summary.
 struct McapWriter::ChunkPlace {
   std::uint64_t first = 0, last = 0;  ///< [ns]
   std::uint64_t start = 0, length = 0, index_length = 0;

@@ -16,10 +16,10 @@
 
 namespace sf::record {
 
-/// Messages of one chunk. One thread.
+/// Messages of one chunk. Single-threaded.
 class McapChunk {
  public:
-  /// The data is copied. Rule: the channel is one of the writer that takes the chunk.
+  /// Copies the data. @pre the channel belongs to the writer that receives the chunk
   void add(const McapMessage& message);
 
  private:
@@ -34,31 +34,31 @@ class McapChunk {
   std::vector<IndexEntry> index_;
 };
 
-/// One thread. Order: schemas, channels, attachments and metadata, then messages; `finish` last and once.
+/// Single-threaded. Order of calls: schemas, channels, attachments and metadata, then messages; `finish` last and once.
 class McapWriter {
  public:
   McapWriter(std::string_view profile, std::string_view library, Compression compression = Compression::none);
 
-  /// @returns the schema's id, from 1.
+  /// @return the schema's id, from 1
   std::uint16_t add_schema(std::string_view name, std::string_view encoding, std::string_view text);
-  /// @param schema an id of `add_schema`. At most 65 535 channels. @returns the channel's id, from 1.
+  /// @param schema an id of `add_schema`. At most 65 535 channels. @return the channel's id, from 1
   std::uint16_t add_channel(std::uint16_t schema, std::string_view topic, std::string_view encoding,
                             const TextPairs& metadata = {});
   void add_attachment(const McapAttachment& attachment);
   void add_metadata(const McapMetadata& metadata);
 
-  /// Adds to the open chunk. The data is copied.
+  /// Adds to the open chunk. Copies the data.
   void add_message(const McapMessage& message) { chunk_.add(message); }
-  /// Seals the open chunk; does nothing when it is empty.
+  /// Seals the open chunk; does nothing if it is empty.
   void end_chunk() { write(chunk_); }
-  /// Seals a chunk of the caller's and clears it; does nothing when it is empty.
+  /// Seals and clears a chunk of the caller; does nothing if it is empty.
   void write(McapChunk& chunk);
   /// Seals the file: DataEnd, summary, footer.
   void finish();
 
-  /// Whole records not yet drained. Valid until the next call of another function.
+  /// Returns whole records that are not yet drained. Valid until the next call of another function.
   std::span<const std::uint8_t> pending() const { return pending_; }
-  /// To be called when `pending` is in the file.
+  /// Call this when `pending` is in the file.
   void drained();
 
  private:
@@ -73,19 +73,20 @@ class McapWriter {
 
   base::Bytes pending_;
   std::uint64_t drained_ = 0;      ///< [byte] drained so far
-  std::uint32_t drained_crc_ = 0;  ///< of the drained bytes
+  std::uint32_t drained_crc_ = 0;  ///< CRC of the drained bytes
 
-  std::optional<ZstdCompressor> zstd_;                                  ///< none: chunks are not compressed
-  base::Bytes compressed_;                                              ///< of the sealed chunk
-  McapChunk chunk_;                                                     ///< the open one
-  std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets_;  ///< of the sealed chunk: channel, file offset
+  std::optional<ZstdCompressor> zstd_;                                  ///< nullopt: chunks are not compressed
+  base::Bytes compressed_;                                              ///< compressed records of the sealed chunk
+  McapChunk chunk_;                                                     ///< the open chunk
+  std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets_;  ///< channel and file offset of each index of
+                                                                        ///< the sealed chunk
 
-  // Records that the summary repeats, complete.
+  // Complete records that the summary repeats.
   base::Bytes schemas_, channels_, chunk_indexes_, attachment_indexes_, metadata_indexes_;
   std::uint16_t schema_count_ = 0;
   std::uint32_t attachment_count_ = 0, metadata_count_ = 0, chunk_count_ = 0;
   std::uint64_t message_count_ = 0, first_time_ = 0, last_time_ = 0;
-  std::vector<std::uint64_t> channel_messages_;  ///< by channel id - 1
+  std::vector<std::uint64_t> channel_messages_;  ///< number of messages, indexed by channel id - 1
 };
 
 }  // namespace sf::record

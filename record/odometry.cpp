@@ -14,7 +14,7 @@ base::Pose inverse(const base::Pose& X_AB) {
   return {p.x, p.y, -X_AB.z, -X_AB.yaw};
 }
 
-/// Of the state's error along the axes of a frame whose yaw in the world is `yaw`.
+/// Returns the covariance of the state's error along the axes of a frame whose yaw in the world is `yaw`.
 std::array<double, 6> turned(const std::array<float, 6>& P, double yaw) {
   const double c = std::cos(yaw), s = std::sin(yaw);
   const double xx = P[0], xy = P[1], xa = P[2], yy = P[3], ya = P[4];
@@ -87,7 +87,7 @@ bool Odometer::roll(const base::ReadingBlock& encoder) {
   return true;
 }
 
-/// One step of the errors. @param middle [rad] heading half way
+/// Advances the errors by one step. @param middle [rad] heading at half the step
 void Odometer::propagate(double left, double right, double middle) {
   const double half = 0.5 * (right - left) / encoder_->track, way = 0.5 * (left + right);
   const double chord = std::abs(half) < 1e-4 ? way : way * std::sin(half) / half;
@@ -135,7 +135,7 @@ void Odometer::add_rounding(double left, double right, Errors::Complex step) {
   errors_.with_rounded += sideways * variance;
 }
 
-/// As stated: with the rounding of the last counts, and at least kLeastVariance.
+/// Sets the stated covariance, which includes the rounding of the last counts and is at least kLeastVariance.
 void Odometer::state_covariance(double left, double right, double seconds) {
   const double count2 = encoder_->per_count * encoder_->per_count, slip2 = encoder_->slip * encoder_->slip;
   const double track = encoder_->track, yaw = state_.X_OM.yaw;

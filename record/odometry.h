@@ -1,5 +1,5 @@
 #pragma once
-// Odometry: where a robot is by its own account.
+// Odometry: the pose of a robot according to its own measurements.
 //
 //   Odometer odometer(mover, source);
 //   odometer.begin();                                     // of a run
@@ -8,14 +8,14 @@
 //
 // The covariance of wheel odometry has two parts; docs/bridges.md gives the formulas.
 //
-// Slip: the variance slip^2 |d| of a wheel that rolled d. The usual propagation to first order (Siegwart and
-// Nourbakhsh, Introduction to Autonomous Mobile Robots, 5.2.4) fails once the heading is off by some tenths of a
-// radian: it states far too little along a straight way, which such a heading shortens. Deviation: the mean squares
-// here are exact, as those of e^(i error) are for a normal error of the heading.
+// Slip: a wheel that rolls d has the variance slip^2 |d|. The usual first-order propagation (Siegwart and Nourbakhsh,
+// Introduction to Autonomous Mobile Robots, 5.2.4) fails once the heading error reaches some tenths of a radian: it
+// greatly underestimates the error along a straight path, because such a heading error shortens the path. Deviation:
+// the mean squares here are exact for a normal error of the heading, as they use those of e^(i error).
 //
-// Rounding to counts: at most half a count of each wheel's whole way, which does not add up. But it turns the heading,
-// which displaces each step sideways. While the wheels count the same in each step, as at constant speed, this is the
-// same error from step to step; else another one.
+// Rounding to counts: the error is at most half a count of each wheel's total distance and does not accumulate.
+// However, it turns the heading, which displaces each step sideways. While the wheels count the same number in each
+// step, as at constant speed, the error is the same from step to step; otherwise it differs.
 
 #include <array>
 #include <complex>
@@ -29,60 +29,63 @@
 
 namespace sf::record {
 
-/// As in nav_msgs/Odometry, of a robot in the plane. All zero: not stated.
+/// Covariance of nav_msgs/Odometry, for a robot in the plane. All zero: not stated.
 struct OdometryCovariance {
-  std::array<double, 6> pose{};   ///< of x, y [m], yaw [rad] in the parent's frame: xx, xy, x yaw, yy, y yaw, yaw yaw
-  std::array<double, 3> twist{};  ///< of forward [m/s] and turn [rad/s]: both, and in the middle their covariance
+  std::array<double, 6> pose{};   ///< covariance of x, y [m], yaw [rad] in the parent's frame: xx, xy, x yaw, yy, y
+                                  ///< yaw, yaw yaw
+  std::array<double, 3> twist{};  ///< covariance of forward [m/s] and turn [rad/s]: the two variances, with their
+                                  ///< covariance in between
   double fixed = 0.0;             ///< variance of components that a robot in the plane does not change
 };
 
-/// Variance of quantities without an error: filters cannot invert zero.
+/// Variance of quantities without an error, because filters cannot invert zero.
 inline constexpr double kLeastVariance = 1e-9;
 
 struct OdometryState {
-  std::int64_t time = -1;  ///< [ns] of the measurement; -1: none came yet
-  base::Pose X_OM;         ///< the robot in the odometry's frame
-  base::Pose X_WO;         ///< the odometry's frame in the world: it drifts by the odometry's errors
+  std::int64_t time = -1;  ///< [ns] time of the measurement; -1: no measurement yet
+  base::Pose X_OM;         ///< pose of the robot in the odometry's frame
+  base::Pose X_WO;         ///< pose of the odometry's frame in the world, which drifts by the odometry's errors
   base::Twist velocity;    ///< in the robot's frame
   OdometryCovariance covariance;
 };
 
 class Odometer {
  public:
-  /// @param source `encoders`: of those that the mover has
+  /// @param source `encoders`: uses the encoders that the mover has
   Odometer(const MoverInfo& mover, OdometrySource source);
 
-  /// Forgets all: the next pose or reading is the first one of a run.
+  /// Resets the state: the next pose or reading is the first one of a run.
   void begin();
   bool has_encoders() const { return encoder_.has_value(); }
-  /// The readings of these encoders.
+  /// Returns whether the reading is from these encoders.
   bool reads(const base::ReadingBlock& reading) const {
     return encoder_ && reading.type == encoder_->type && reading.sensor == 0;
   }
 
-  /// The true pose, or its estimate with a quality. As encoders do not count it, a displacement of more than 0.5 m plus
-  /// twice the distance possible at top speed moves the odometry's frame instead.
+  /// Updates the state from the true pose, or from its estimate with a quality. A displacement of more than 0.5 m plus
+  /// twice the distance possible at top speed moves the odometry's frame instead, because encoders do not count it.
   void move(std::int64_t time, const base::Pose& X_WM, const base::Twist& velocity,
             const base::StateQuality& quality = {});
-  /// A reading of the encoders. @return false: it is earlier than the last one, which may come twice, and left out
+  /// Updates the state from a reading of the encoders. @return false if it is earlier than the last one, which may
+  /// arrive twice; it is then ignored
   bool roll(const base::ReadingBlock& encoder);
-  /// The mover is out of the world, and may return elsewhere.
+  /// Notes that the mover has left the world. It may return at another place.
   void leave() { away_ = true; }
   const OdometryState& state() const { return state_; }
 
  private:
   /// Mean values of the error D of the position, as a complex number x + iy [m], with the error e [rad] of the heading
-  /// by slip, and with that by rounding.
+  /// caused by slip, and with the error caused by rounding.
   struct Errors {
     using Complex = std::complex<double>;
-    Complex position;      ///< of D
-    Complex square;        ///< of D^2
-    Complex turned;        ///< of D exp(ie)
-    Complex back;          ///< of D exp(-ie)
-    Complex with_yaw;      ///< of D e
-    Complex with_rounded;  ///< of D and the rounding of the heading
-    double norm = 0.0;     ///< of |D|^2
-    double yaw = 0.0;      ///< of e^2
+    Complex position;      ///< mean of D
+    Complex square;        ///< mean of D^2
+    Complex turned;        ///< mean of D exp(ie)
+    Complex back;          ///< mean of D exp(-ie)
+    Complex with_yaw;      ///< mean of D e
+    Complex with_rounded;  ///< mean of D times the rounding of the heading
+    double norm = 0.0;     ///< mean of |D|^2
+    double yaw = 0.0;      ///< mean of e^2
   };
 
   void propagate(double left, double right, double middle);
@@ -97,7 +100,7 @@ class Odometer {
   OdometryState state_;
   Errors errors_;                    ///< without the rounding of the last counts
   double left_ = 0.0, right_ = 0.0;  ///< [m] rolled at the last reading
-  std::array<double, 2> counted_{};  ///< by both wheels, in the last step that counted
+  std::array<double, 2> counted_{};  ///< counts of both wheels, in the last step with counts
 };
 
 }  // namespace sf::record

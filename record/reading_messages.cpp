@@ -38,7 +38,7 @@ void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
   }
 }
 
-/// Whether a message can hold that many elements: a number takes at least four bytes.
+/// Returns whether a message can hold that many elements: a number takes at least four bytes.
 bool fits(const SensorTypeInfo& sensor_type, std::size_t elements, std::size_t message) {
   return elements <= message && element_width(sensor_type) * elements <= message / 4;
 }

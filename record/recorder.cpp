@@ -20,14 +20,14 @@ namespace {
 
 constexpr std::size_t kMaxChannels = 0xFFFF;
 
-/// @param taken out: notes of names that are taken
+/// @param taken out: notes about names that are taken
 RunInfo named(RunInfo info, const RecordingPart& part, std::vector<std::string>& taken) {
   SF_CHECK(!info.snapshot.empty(), "a recording without its world");
   SF_CHECK(info.interval > 0.0 && info.odometry_rate >= 0.0, std::to_string(info.interval));
   const bool has_encoders = std::any_of(info.movers.begin(), info.movers.end(),
                                         [](const MoverInfo& mover) { return mover.encoder.has_value(); });
   if (part.parts > 1 && has_encoders && naming_of(info).odometry == OdometrySource::encoders) {
-    // A robot's readings come on the rank that has it, which changes with tiles.
+    // A robot's readings are recorded by the rank that owns it, which changes with tiles.
     Naming exact;
     exact.odometry = OdometrySource::exact;
     put_naming(exact, info);
@@ -61,7 +61,7 @@ const TextPairs kLatched = {
      "  lifespan:\n    sec: 0\n    nsec: 0\n  liveliness: 1\n  liveliness_lease_duration:\n"
      "    sec: 0\n    nsec: 0\n  avoid_ros_namespace_conventions: false\n"}};
 
-/// Numbers as text that gives the same doubles again.
+/// Writes numbers as text that parses to the same doubles.
 TextPairs pairs_of(const JoinedMover& mover) {
   TextPairs pairs = {{"name", mover.name}, {"like", std::to_string(mover.original)}};
   const base::Pose& X = mover.X_WM;
@@ -106,7 +106,7 @@ Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPa
   flush();
   file_.publish();
   if (part.compression != Compression::none) start_writer();
-  // Another run's whole recording would be taken for this one's.
+  // Otherwise the complete recording of another run would be mistaken for this run's recording.
   if (part.parts > 1 && part.part == 0) std::remove((directory + "/" + RecordingPart{}.file()).c_str());
   info_.snapshot = {};
   info_.shape = {};
@@ -132,7 +132,7 @@ void Recorder::start_writer() {
   try {
     writer_.emplace(mcap_, file_);
   } catch (const std::system_error&) {
-    // The system starts no more threads: `write` compresses and writes.
+    // The system cannot start another thread: `write` compresses and writes.
   }
 }
 
@@ -145,7 +145,7 @@ void Recorder::check_topics(const TickMessages& messages) const {
       "needs " + std::to_string(count) + " topics, and a file holds 65535: record fewer robots, or no readings");
 }
 
-/// For the topics that have none yet.
+/// Adds channels for the topics that do not have one yet.
 void Recorder::add_channels() {
   channels_.clear();
   for (const Topic& topic : messages_->topics()) {
@@ -163,14 +163,14 @@ void Recorder::add_movers(RunInfo info) {
   info = named(std::move(info), {}, taken_names_);
   check_topics(TickMessages(info));
   const std::size_t known = info_.joined.size();
-  const TickMessages before = std::move(*messages_);  // of which only its counts are used
+  const TickMessages before = std::move(*messages_);  // only its counts are used
   info_ = std::move(info);
   info_.snapshot = {};
   info_.shape = {};
   messages_.emplace(info_);
   const bool threaded = writer_.has_value();
-  finished_ = true;                 // reset when the writer has done its part: a failure is final
-  if (threaded) writer_->finish();  // the file is ours until it goes on
+  finished_ = true;                 // reset when the writer has finished: a failure is final
+  if (threaded) writer_->finish();  // this thread owns the file until a writer starts again
   writer_.reset();
   finished_ = false;
   for (std::size_t i = known; i < info_.joined.size(); ++i)
@@ -192,7 +192,7 @@ void Recorder::add(const TopicMessage& message) {
 }
 
 void Recorder::flush() {
-  finished_ = true;  // reset when the bytes are in the file, or on their way: a failure is final
+  finished_ = true;  // reset when the bytes are in the file or handed to the thread: a failure is final
   if (writer_) {
     writer_->add(chunk_);
   } else {

@@ -71,7 +71,7 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
     recording.states[state.mover].push_back(
         {fleet.tick, fleet.time, state.contact, state.X_WM, state.velocity, state.command});
   }
-  // Robots that join later.
+  // Adds robots that join later.
   for (std::size_t row = recording.states.size() - recording.info.joined.size(); row < recording.states.size(); ++row)
     if (is_before_joining(recording, row))
       recording.states[row].push_back({fleet.tick, fleet.time, false, base::kAbsent, {}, {}});
@@ -101,7 +101,7 @@ bool read_reading(const McapMessage& message, const SensorTopic& topic, Recordin
   return true;
 }
 
-/// @return false when a message of a known type is malformed; unknown types are not damage.
+/// @return false if a message of a known type is malformed; unknown types are not damage
 bool read_message(const McapMessage& message, std::string_view type, const std::string& name, const Topics& topics,
                   FleetState& fleet, Recording& recording) {
   if (type == kFleet) return read_fleet(message, fleet, recording);
@@ -141,7 +141,7 @@ RunInfo run_info_of(const McapContents& contents, const std::string& name) {
         name, 0, "not a sensorfarm recording: expected a readable " + std::string(kRunInfo) + " message" + cause);
   }
   info = first;
-  // Each time that robots joined, another message has them, too.
+  // Robots that join are listed in a further message.
   for (auto later = found;
        (later = std::find_if(later + 1, contents.messages.end(), is_info)) != contents.messages.end();)
     if (RunInfo more; decode_run_info(later->data, more) && more.movers.size() >= info.movers.size())

@@ -28,9 +28,9 @@ struct ReadingSample {
   std::uint32_t sensor = 0;  ///< 0-based among the mover's sensors of this type
   std::uint32_t sequence = 0;
   std::int64_t delivered = 0;  ///< [ns] simulated time of the tick of delivery
-  std::int64_t time = 0;       ///< [ns] of the measurement
-  /// Element by element, in the order of the sensor type's columns; scans in float32. A range of -infinity is that of a
-  /// surface nearer than the sensor's minimum; one from the sensor's maximum on is that of no echo.
+  std::int64_t time = 0;       ///< [ns] time of the measurement
+  /// Element by element, in the order of the sensor type's columns; scans in float32. A range of -infinity means a
+  /// surface nearer than the sensor's minimum; a range from the sensor's maximum on means no echo.
   std::vector<double> values;
 };
 
@@ -42,26 +42,26 @@ struct LightsSample {
 
 struct Recording {
   std::string file;
-  RunInfo info;                                  ///< with the world's snapshot
+  RunInfo info;                                  ///< includes the world's snapshot
   std::vector<std::vector<StateSample>> states;  ///< by mover, then by tick
   std::vector<ReadingSample> readings;           ///< in order of delivery; empty when not recorded
-  std::vector<LightsSample> lights;              ///< by tick; empty when the world has none
+  std::vector<LightsSample> lights;              ///< by tick; empty if the world has none
   std::uint64_t ticks = 0;                       ///< number of ticks in the file
   std::int64_t end_time = 0;                     ///< [ns] simulated time of the last tick
-  bool truncated = false;           ///< not finished: killed, or still being written; all whole ticks are here
+  bool truncated = false;           ///< not finished: killed, or still being written; contains all whole ticks
   std::vector<std::string> damage;  ///< omitted data: checksum errors and unreadable messages
 };
 
-/// @param directory as given to the recorder, or the path of an MCAP file.
-/// @throws base::InputError when there is no recording, the file has another origin, or its world is missing.
+/// @param directory as passed to the recorder, or the path of an MCAP file
+/// @throws base::InputError if there is no recording, the file has another origin, or its world is missing
 Recording open_recording(const std::string& directory);
 
-/// Likewise from memory. @param name of the file, for messages
+/// Reads a recording from memory. @param name of the file, for messages
 Recording read_recording(std::span<const std::uint8_t> bytes, const std::string& name);
 
 struct McapContents;
-/// The description of a recorded run, with its world. @param name of the file, for messages
-/// @throws base::InputError where it is not a recording of ours
+/// Returns the description of a recorded run, with its world. @param name of the file, for messages
+/// @throws base::InputError if it is not a sensorfarm recording
 RunInfo run_info_of(const McapContents& contents, const std::string& name);
 
 }  // namespace sf::record

@@ -20,7 +20,7 @@ namespace {
 
 bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
-/// Whether a living process holds the lock of `path`. A link is no recording.
+/// Returns whether a living process holds the lock of `path`. A link does not count as a recording.
 bool is_being_written(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
   if (descriptor < 0) return false;
@@ -52,7 +52,7 @@ GrowingFile::GrowingFile(const std::string& path) : path_(path) {
   }
 }
 
-/// Never an existing file, nor what a link of that name points at. What an ended run has left is removed.
+/// Never opens an existing file or the target of a link of that name. Removes the file of a run that has ended.
 void GrowingFile::create() {
   constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
   descriptor_ = ::open(fresh_.c_str(), kFlags, 0666);
@@ -68,9 +68,9 @@ void GrowingFile::create() {
 void GrowingFile::refuse_second_writer() {
   struct stat mine = {};
   struct stat named = {};
-  // File systems without locks refuse no writer.
+  // File systems without locks do not refuse a second writer.
   const bool held = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  // Between creating and locking, another writer may have taken the file for one of an ended run.
+  // Between creating and locking, another writer may have mistaken the file for that of an ended run.
   const bool still_named =
       !held && ::fstat(descriptor_, &mine) == 0 && ::lstat(fresh_.c_str(), &named) == 0 && same_file(mine, named);
   if (still_named && !is_being_written(whole_)) return;

@@ -1,5 +1,5 @@
 #pragma once
-// Files for recordings: one to write, which appears under its name only when it is usable, and one to read.
+// Files for recordings: one for writing, which appears under its name only when it is usable, and one for reading.
 
 #include <atomic>
 #include <cstdint>
@@ -9,25 +9,26 @@
 namespace sf::record {
 
 /// A file that replaces `path` only in `publish`. Bytes are passed to the kernel without a buffer, so a killed process
-/// loses no appended bytes. One writer at a time: a second one on the same path is refused while the first lives.
+/// loses no appended bytes. Allows one writer at a time: a second writer of the same path is refused while the first
+/// exists.
 class GrowingFile {
  public:
   /// Creates the directories above `path`, and `path`.new.
-  /// @throws base::InputError when that fails, or when another process writes this recording.
+  /// @throws base::InputError if that fails, or if another process writes this recording
   explicit GrowingFile(const std::string& path);
   ~GrowingFile();
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
-  /// @throws base::InputError when not all bytes could be written (a full disk); bytes appended before remain.
+  /// @throws base::InputError if not all bytes could be written (a full disk); earlier bytes remain
   void append(std::span<const std::uint8_t> bytes);
-  /// Replaces `path` by this file, in one step.
+  /// Replaces `path` with this file, in one step.
   void publish();
-  /// Waits until the bytes are on the disk. @throws base::InputError when that fails.
+  /// Waits until the bytes are on the disk. @throws base::InputError if that fails
   void sync();
 
   const std::string& path() const { return path_; }
-  std::uint64_t size() const { return size_; }  ///< [byte]; for any thread
+  std::uint64_t size() const { return size_; }  ///< [byte]; callable from any thread
 
  private:
   void create();
@@ -35,9 +36,9 @@ class GrowingFile {
   [[noreturn]] void refuse() const;
   [[noreturn]] void fail(const std::string& doing) const;
 
-  std::string path_;   ///< for messages
-  std::string whole_;  ///< the same, absolute
-  std::string fresh_;  ///< the absolute name before `publish`
+  std::string path_;   ///< as given, for messages
+  std::string whole_;  ///< absolute path
+  std::string fresh_;  ///< absolute path before `publish`
   int descriptor_ = -1;
   std::atomic<std::uint64_t> size_ = 0;
   bool published_ = false;
@@ -46,7 +47,7 @@ class GrowingFile {
 /// A whole file as read-only memory. It must not shrink while it is mapped; it may grow.
 class MappedFile {
  public:
-  /// @throws base::InputError when it is not a readable file.
+  /// @throws base::InputError if it is not a readable file
   explicit MappedFile(const std::string& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

@@ -41,7 +41,8 @@ void put_twist(CdrWriter& cdr, const Twist& twist) {
   for (const double value : {twist.forward, twist.left, 0.0, 0.0, 0.0, twist.turn}) cdr.put(value);
 }
 
-/// 6 x 6 of x, y, z and turns about them, from x, y and the turn about z: xx, xy, x yaw, yy, y yaw, yaw yaw.
+/// Writes the 6 x 6 covariance of x, y, z and rotations about them, given x, y and the rotation about z: xx, xy, x yaw,
+/// yy, y yaw, yaw yaw.
 void put_planar(CdrWriter& cdr, const std::array<double, 6>& P, double fixed) {
   std::array<double, 36> all{};
   constexpr std::size_t kAxes[3] = {0, 1, 5};

@@ -1,6 +1,6 @@
 #pragma once
-// The ROS messages of a recording as CDR. Every `encode` appends one whole message to `out`. Units and frames after REP
-// 103, names after REP 105. Time is simulated, [ns] >= 0.
+// The ROS messages of a recording as CDR. Every `encode` appends one whole message to `out`. Units and frames follow
+// REP 103, names follow REP 105. Time is simulated, [ns] >= 0.
 
 #include <cstdint>
 #include <optional>
@@ -18,9 +18,9 @@
 
 namespace sf::record {
 
-/// Time stamp and frame, the first fields of every message. @param time [ns] >= 0
+/// Writes time stamp and frame, the first fields of every message. @param time [ns] >= 0
 void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame);
-/// @param time out: [ns] @return the frame
+/// Reads both. @param time out: [ns] @return the frame
 std::string get_header(CdrReader& cdr, std::int64_t& time);
 
 /// Pose of one frame in another.
@@ -33,18 +33,18 @@ struct Transform {
 
 /// One planar scan.
 struct Scan {
-  std::int64_t time = 0;      ///< [ns] of the measurement
-  std::string frame;          ///< of the sensor: x along bearing 0
-  float fov = 0.0F;           ///< [rad] bearings run from -fov/2 to +fov/2, both included; that of one sample is 0
-  float scan_time = 0.0F;     ///< [s] from one scan to the next
+  std::int64_t time = 0;      ///< [ns] time of the measurement
+  std::string frame;          ///< frame of the sensor: x along bearing 0
+  float fov = 0.0F;           ///< [rad] bearings range from -fov/2 to +fov/2, inclusive; a single sample has bearing 0
+  float scan_time = 0.0F;     ///< [s] time between scans
   double range_min = 0.0;     ///< [m]
   double range_max = 0.0;     ///< [m]
-  std::vector<float> ranges;  ///< [m] one per sample, as of base::rep117_range
+  std::vector<float> ranges;  ///< [m] one per sample, as defined by base::rep117_range
 };
 
-/// Position and the quaternion (x, y, z, w) of a turn about +z.
+/// Writes position and the quaternion (x, y, z, w) of a rotation about +z.
 void put_pose(CdrWriter& cdr, const base::Pose& pose);
-/// `count` zeros, as of a covariance that is zero or unknown.
+/// Writes `count` zeros, for example for a covariance that is zero or unknown.
 void put_zeros(CdrWriter& cdr, int count);
 
 /// @param velocity in the child frame
@@ -55,21 +55,21 @@ void encode_twist(std::int64_t time, std::string_view frame, const base::Twist& 
 
 void encode_transforms(std::span<const Transform> transforms, base::Bytes& out);
 
-/// The message's limits are rounded outwards, so that each valid range is at least `range_min` and less than
-/// `range_max`.
+/// Rounds the message's limits outwards, so that each valid range is at least `range_min` and less than `range_max`.
 /// @param ranges [m] one per sample: `range_max` or more without an echo, less than `range_min` for a surface that is
 /// too near. `scan.ranges` is not used.
 void encode_scan(const Scan& scan, std::span<const double> ranges, base::Bytes& out);
 
-/// The simulated time, for nodes that use it.
+/// Encodes the simulated time, for nodes that use it.
 void encode_clock(std::int64_t time, base::Bytes& out);
 
-/// Of a mover's state at `time`: its age in s, and the covariance of x, y [m] and yaw [rad] as in base::StateQuality.
+/// Encodes the quality of a mover's state at `time`: its age in s, and the covariance of x, y [m] and yaw [rad] as in
+/// base::StateQuality.
 /// @param frame of the mover
 void encode_state_quality(std::int64_t time, std::string_view frame, const base::StateQuality& quality,
                           base::Bytes& out);
 
-/// @returns nullopt when the bytes are not a LaserScan. Its limits are those of the message, its fov 0 for one sample.
+/// @return nullopt if the bytes are not a LaserScan. The limits are those of the message; the fov of one sample is 0.
 std::optional<Scan> decode_scan(std::span<const std::uint8_t> message);
 
 }  // namespace sf::record

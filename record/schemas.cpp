@@ -113,7 +113,7 @@ const Definition& find(std::string_view name) {
   return *found;
 }
 
-/// Adds the types that `fields` mention, and their dependencies, in order of first mention.
+/// Adds the types mentioned in `fields`, and their dependencies, in order of first mention.
 void add_dependencies(std::string_view fields, std::vector<std::string_view>& needed) {
   while (!fields.empty()) {
     std::string_view type = fields.substr(0, fields.find(' '));

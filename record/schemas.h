@@ -22,10 +22,10 @@ inline constexpr std::string_view kLights = "sensorfarm_msgs/msg/Lights";
 inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
 inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 
-/// The `ros2msg` text of one of the types above: its fields, then all types that it needs, each once, behind a line of
-/// 80 '=' and a line `MSG: package/Name`.
+/// Returns the `ros2msg` text of one of the types above: its fields, then all types that it needs, each once, after a
+/// line of 80 '=' and a line `MSG: package/Name`.
 std::string schema_text(std::string_view type);
-/// Likewise for a type of the caller, given its fields, one per line.
+/// Returns the same for a type of the caller, given its fields, one per line.
 std::string with_dependencies(std::string_view fields);
 
 }  // namespace sf::record

@@ -36,8 +36,8 @@ struct Degrees {
   double latitude = 0.0, longitude = 0.0;
 };
 
-/// The position on the ellipsoid above a point of the plane that touches it at (0, 0): there east is Earth's y axis and
-/// north its z axis. Exact.
+/// Returns the position on the ellipsoid above a point of the plane that touches it at (0, 0), where east is Earth's y
+/// axis and north its z axis. Exact.
 Degrees degrees_at(double east, double north) {
   constexpr double a = 6378137.0, b = 6356752.314245;  // [m] semi-axes of WGS84
   const double up = a * std::sqrt(std::max(0.0, 1.0 - (east / a) * (east / a) - (north / b) * (north / b)));
@@ -56,7 +56,7 @@ void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double>
   cdr.put(std::numeric_limits<double>::quiet_NaN());  // altitude: not measured
   if (topic.sigma > 0.0 && fix) {
     constexpr double kUnmeasured = 1e6;                                            // [m^2] of the altitude
-    const double error = topic.sigma * values[2], variance = 0.5 * error * error;  // HDOP is that of both axes
+    const double error = topic.sigma * values[2], variance = 0.5 * error * error;  // HDOP refers to both axes together
     for (const double term : {variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, kUnmeasured}) cdr.put(term);
     return cdr.put(std::uint8_t{1});  // approximated
   }
@@ -64,7 +64,7 @@ void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double>
   cdr.put(std::uint8_t{0});  // covariance: unknown
 }
 
-/// Nine numbers of which the first says that the quantity is not measured.
+/// Writes nine numbers; the first marks the quantity as not measured.
 void put_unmeasured(CdrWriter& cdr) {
   cdr.put(-1.0);
   put_zeros(cdr, 8);
@@ -90,7 +90,7 @@ void put_map(CdrWriter& cdr, const StandardTopic& topic, std::int64_t time, std:
   cdr.put(static_cast<std::uint32_t>(rows));
   put_pose(cdr, {grid.left, grid.top - static_cast<double>(rows) * grid.cell, 0.0, 0.0});
   cdr.put_count(static_cast<std::size_t>(columns * rows));
-  constexpr std::int8_t kShown[4] = {-1, 100, 0, -1};  // by maps::Cell
+  constexpr std::int8_t kShown[4] = {-1, 100, 0, -1};  // indexed by maps::Cell
   for (std::int64_t row = rows - 1; row >= 0; --row)   // a ROS map begins at its lower left
     for (std::int64_t column = 0; column < columns; ++column) {
       const auto word = static_cast<std::uint32_t>(

@@ -9,20 +9,20 @@
 
 namespace sf::record {
 
-/// The ROS type of the topic's messages.
+/// Returns the ROS type of the topic's messages.
 std::string_view type_of(StandardTopic::Message message);
 
-/// Appends one message. What a sensor does not measure is marked unknown, as each message defines it: an orientation,
-/// an acceleration (covariance -1); the covariance of a fix (type 0).
-///   range           range_m as of base::rep117_range; the limits are rounded outwards
+/// Appends one message. Marks quantities that a sensor does not measure as unknown, as each message defines it: an
+/// orientation or an acceleration (covariance -1), the covariance of a fix (type 0).
+///   range           range_m as defined by base::rep117_range; the limits are rounded outwards
 ///   magnetic_field  vector_T [T]
 ///   fix             x_m, y_m on a plane that touches WGS84 at latitude 0 and longitude 0, x east, y north; NaN: no
 ///                   fix; half of (sigma hdop)^2 as the variance of each axis
 ///   imu             rate_rad_s about z, and its variance
 ///   map             words (maps/grid.h): -1 unexplored, 0 free, 100 occupied
 /// @param time [ns] of the measurement
-/// @param values of the whole reading, with a range below `range_min` for a surface that is too near  Rule: as the
-/// sensor type of `topic` has them
+/// @param values of the whole reading, with a range below `range_min` for a surface that is too near; in the layout of
+/// the sensor type of `topic`
 void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<const double> values, base::Bytes& out);
 
 }  // namespace sf::record

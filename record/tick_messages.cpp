@@ -29,7 +29,7 @@ Scan header_of(const SensorInfo& sensor) {
 
 }  // namespace
 
-/// Messages of one tick on their way.
+/// Destination of the messages of one tick.
 struct TickMessages::Output {
   const base::TickRecord& record;
   const Emit& emit;
@@ -37,7 +37,7 @@ struct TickMessages::Output {
   base::Bytes& bytes;
 
   bool wants(std::uint32_t topic) const { return wanted.empty() || wanted[topic]; }
-  /// @param encode appends the message to the bytes that it is given
+  /// @param encode appends the message to the bytes passed to it
   template <class Encode>
   void send(std::uint32_t topic, std::uint32_t sequence, std::int64_t time, Encode&& encode) const {
     if (!wants(topic)) return;
@@ -104,7 +104,7 @@ void TickMessages::add_mover(const MoverInfo& mover) {
     row.sensors.push_back({find_sensor_type(info_, sensor.type), &sensor, 0, header_of(sensor)});
 }
 
-/// Recordings without readings have it in /fleet, services do not know it.
+/// Recordings without readings contain the truth in /fleet; services do not have it.
 bool TickMessages::has_truth() const {
   return info_.record_readings && !info_.estimated && naming_.style != TopicStyle::sensor;
 }
@@ -150,10 +150,10 @@ void TickMessages::go_on(const TickMessages& before, std::int64_t time, const Em
   for (const Tree& tree : trees_) send_tree(tree, out);
 }
 
-/// Frames that do not move, the map and the bodies.
+/// Sends the static frames, the map and the bodies.
 void TickMessages::send_tree(const Tree& tree, const Output& out) {
   transforms_.clear();
-  // Walls, /fleet and services are in `world`. A mapper's map is at another place.
+  // Walls, /fleet and services use the frame `world`. A mapper's map is at another place.
   if (naming_.style != TopicStyle::sensor && !naming_.mapper) transforms_.push_back({0, root_, "world", {}});
   for (std::size_t row = tree.first; row < tree.end; ++row) add_fixed(info_.movers[row], movers_[row]);
   out.send(tree.fixed, 0, out.record.time, [&](base::Bytes& bytes) { encode_transforms(transforms_, bytes); });
@@ -163,7 +163,7 @@ void TickMessages::send_tree(const Tree& tree, const Output& out) {
   out.send(tree.bodies, 0, out.record.time, [&](base::Bytes& bytes) { encode_bodies(movers, bytes); });
 }
 
-/// Frames of a mover's sensors and of their elements, that of its place on the ground, and that of true odometry.
+/// Adds the frames of a mover's sensors and their elements, its footprint, and true odometry.
 void TickMessages::add_fixed(const MoverInfo& mover, const MoverTopics& topics) {
   if (places_odometry(mover) && odometry_ == OdometrySource::truth)
     transforms_.push_back({0, root_, mover.odom_frame, {}});
@@ -200,7 +200,7 @@ void TickMessages::encode(const base::TickRecord& record, const Emit& emit, cons
   ++ticks_;
 }
 
-/// Of encoders at the times of their readings, of other movers at the tick's.
+/// Finds odometry of encoders at the times of their readings, and of other movers at the time of the tick.
 void TickMessages::find_odometry(const base::TickRecord& record) {
   news_.clear();
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
@@ -234,12 +234,12 @@ void TickMessages::send_transforms(const Output& out) {
   if (is_shared) send(trees_[0]);
 }
 
-/// The farm publishes its map -> odom. A mapper's map is at another place than the farm's.
+/// The farm publishes its own map -> odom. A mapper's map is at another place than the farm's.
 bool TickMessages::places_odometry(const MoverInfo& mover) const {
   return naming_.style != TopicStyle::sensor && !naming_.mapper && (!naming_.localizer || mover.tag);
 }
 
-/// Of map -> odom -> base_link, those that no node elsewhere publishes.
+/// Adds the transforms of map -> odom -> base_link that no external node publishes.
 void TickMessages::add_transforms(const Odometry& odometry) {
   const MoverInfo& mover = info_.movers[odometry.mover];
   const OdometryState& state = odometry.state;
@@ -270,7 +270,7 @@ void TickMessages::send_odometry(const Output& out) {
   }
 }
 
-/// True poses and commands.
+/// Sends true poses and commands.
 void TickMessages::send_truth(const Output& out) {
   const base::TickRecord& record = out.record;
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
@@ -290,7 +290,7 @@ void TickMessages::send_truth(const Output& out) {
 
 void TickMessages::send_reading(const base::ReadingBlock& reading, const Output& out) {
   SF_CHECK(reading.mover < movers_.size(), "mover " + std::to_string(reading.mover));
-  std::uint32_t before = 0;  // sensors of the same type before this one
+  std::uint32_t before = 0;  // number of sensors of the same type before this one
   for (SensorTopics& each : movers_[reading.mover].sensors) {
     if (each.type->id != reading.type || before++ < reading.sensor) continue;
     each.header.time = reading.time;

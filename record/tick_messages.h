@@ -1,5 +1,5 @@
 #pragma once
-// Ticks as ROS messages: the topics of a run, and what each tick has to say on them. Recordings and bridges share them.
+// Ticks as ROS messages: the topics of a run, and the messages of each tick. Recordings and bridges share them.
 //
 //   TickMessages messages(info);
 //   for (const Topic& topic : messages.topics()) advertise(topic);
@@ -22,44 +22,44 @@
 
 namespace sf::record {
 
-/// Lives as long as its TickMessages.
+/// Valid as long as its TickMessages.
 struct Topic {
   std::string name;         ///< "/robot/scan"
   std::string_view type;    ///< "sensor_msgs/msg/LaserScan"
   std::string_view schema;  ///< its definition as `ros2msg`
-  bool latched = false;     ///< the message of `begin` holds for the whole run
+  bool latched = false;     ///< the message of `begin` is valid for the whole run
 };
 
-/// A message; its bytes are valid during the call.
+/// A message. Its bytes are valid during the call.
 struct TopicMessage {
   std::uint32_t topic = 0;              ///< row of `TickMessages::topics`
-  std::uint32_t sequence = 0;           ///< of readings: their own; else counted per tick
-  std::int64_t log_time = 0;            ///< [ns] of the tick
-  std::int64_t time = 0;                ///< [ns] of the measurement
+  std::uint32_t sequence = 0;           ///< counted per reading for readings, per tick otherwise
+  std::int64_t log_time = 0;            ///< [ns] time of the tick
+  std::int64_t time = 0;                ///< [ns] time of the measurement
   std::span<const std::uint8_t> bytes;  ///< CDR
 };
 
-/// One thread. After warm-up, messages allocate nothing.
+/// Single-threaded. Allocates nothing after warm-up.
 class TickMessages {
  public:
   using Emit = std::function<void(const TopicMessage&)>;
 
-  /// @param info frames and topics are named (`name_frames`); outlives the object
+  /// @param info its frames and topics have names (`name_frames`); outlives the object
   explicit TickMessages(const RunInfo& info);
 
   const std::vector<Topic>& topics() const { return topics_; }
 
-  /// Per topic, for `encode`: readings and /clock.
+  /// Returns a flag per topic, for `encode`: set for readings and /clock.
   std::vector<bool> readings_and_clock() const;
 
-  /// Latched topics. The next tick is the first of a run: its time may be earlier than that of the last one.
+  /// Emits the latched topics. The next tick is the first of a run: its time may be earlier than that of the last one.
   void begin(const Emit& emit);
-  /// Goes on where `before` was, which had fewer movers: sends what is latched, but not map and walls.
+  /// Continues from `before`, which had fewer movers: sends the latched topics, except map and walls.
   /// @param time [ns] of the last tick
   void go_on(const TickMessages& before, std::int64_t time, const Emit& emit);
-  /// Rule: every report's mover is a row of `info.movers`, its quality is there if `info.estimated`, every reading's
-  /// sensor one of its sensors; time is non-decreasing and not negative.
-  /// @param wanted per topic, for those that nobody listens to; empty: all are
+  /// Emits the messages of a tick. @pre every report's mover is a row of `info.movers`, its quality exists if
+  /// `info.estimated`, every reading's sensor is one of its sensors; time is non-decreasing and not negative
+  /// @param wanted flag per topic, false if it has no subscribers; empty: all topics are encoded
   void encode(const base::TickRecord& record, const Emit& emit, const std::vector<bool>& wanted = {});
 
  private:
@@ -67,8 +67,8 @@ class TickMessages {
     const SensorTypeInfo* type = nullptr;  ///< row of `RunInfo::sensor_types`
     const SensorInfo* sensor = nullptr;
     std::uint32_t topic = 0;
-    Scan header;                 ///< `frame` of every type; of scans, all but time and ranges
-    std::uint32_t standard = 0;  ///< first of the rows of its standard topics
+    Scan header;                 ///< for every type only `frame`; for scans all fields except time and ranges
+    std::uint32_t standard = 0;  ///< first row of its standard topics
   };
   struct MoverTopics {
     std::uint32_t odometry = 0, truth = 0, command = 0, quality = 0;
@@ -76,7 +76,7 @@ class TickMessages {
     Odometer odometer;
     std::vector<SensorTopics> sensors;
   };
-  /// A tree of frames, with the movers [first, end): all of them, or one.
+  /// A tree of frames, with the movers [first, end): all movers, or one.
   struct Tree {
     std::size_t first = 0, end = 0;
     std::uint32_t transforms = 0, fixed = 0, map = 0, bodies = 0;
@@ -109,12 +109,12 @@ class TickMessages {
   const Naming naming_;
   const OdometrySource odometry_;
   const std::string_view root_;                              ///< frame of all trees
-  std::map<std::string, std::string, std::less<>> schemas_;  ///< by type
+  std::map<std::string, std::string, std::less<>> schemas_;  ///< schemas by type
   std::vector<Topic> topics_;
   std::vector<Tree> trees_;
   std::vector<MoverTopics> movers_;
   std::vector<Odometry> news_;
-  std::size_t first_reading_ = 0;   ///< row of the first topic of readings; all topics from it on are theirs
+  std::size_t first_reading_ = 0;   ///< row of the first topic of readings; all later topics are readings too
   std::int64_t next_odometry_ = 0;  ///< [ns]
   std::uint32_t ticks_ = 0, odometries_ = 0;
   bool marks_too_near_ = true;  ///< ranges of surfaces that are too near are -infinity

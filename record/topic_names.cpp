@@ -13,12 +13,12 @@ namespace sf::record {
 namespace {
 
 constexpr std::string_view kStyleOption = "topics", kOdometryOption = "odometry", kExternalOption = "external";
-constexpr std::size_t kLongestName = 64;  // DDS and ROS limit a topic to some 250 characters
+constexpr std::size_t kLongestName = 64;  // DDS and ROS limit a topic to about 250 characters
 
 bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 bool begins_with_digit(const std::string& name) { return std::isdigit(static_cast<unsigned char>(name[0])) != 0; }
 
-/// Topics whose parts begin with '_' are hidden in ROS 2, and repeated '_' are refused.
+/// ROS 2 hides topics with parts that begin with '_', and refuses repeated '_'.
 std::string ros_name(const std::string& name, const std::string& otherwise) {
   std::string text;
   for (const char c : name.substr(0, kLongestName)) {
@@ -32,7 +32,7 @@ std::string ros_name(const std::string& name, const std::string& otherwise) {
   return begins_with_digit(text) ? otherwise + "_" + text : text;
 }
 
-/// Likewise of TopicStyle::sensor.
+/// The same for TopicStyle::sensor.
 std::string plain_ros_name(const std::string& name, const std::string& otherwise) {
   std::string text;
   for (const char c : name) text += is_name_character(c) ? c : '_';
@@ -76,8 +76,8 @@ const char* word_of(StandardTopic::Message message) {
   return "";
 }
 
-/// "PREFIX/range_3" and the frame "SENSOR/range_3"; of a sensor of one element "PREFIX/fix" and the frame "SENSOR".
-/// Maps are of the world.
+/// Names the topic "PREFIX/range_3" and the frame "SENSOR/range_3"; for a sensor with one element "PREFIX/fix" and
+/// "SENSOR". Maps have the frame `world`.
 void name_standard_topics(SensorInfo& sensor, const std::string& prefix) {
   const bool single = sensor.standard.size() == 1;
   for (StandardTopic& each : sensor.standard) {
@@ -96,7 +96,7 @@ const SensorTypeInfo& sensor_type_of(const RunInfo& info, const SensorInfo& sens
   return *type;
 }
 
-/// TopicStyle::sensor: after the sensor's own name.
+/// TopicStyle::sensor: names topics after the sensor's own name.
 void name_by_sensors(const RunInfo& info, MoverInfo& mover) {
   mover.space = "/" + mover.frame;
   mover.base_frame = mover.frame;
@@ -110,7 +110,7 @@ void name_by_sensors(const RunInfo& info, MoverInfo& mover) {
   }
 }
 
-/// After the sensor's type: `scan`, `scan_1`, ... A gyro's Imu has the robot's topic `imu`.
+/// Names topics after the sensor's type: `scan`, `scan_1`, ... A gyro's Imu uses the robot's topic `imu`.
 void name_by_types(const RunInfo& info, TopicStyle style, MoverInfo& mover, std::vector<std::string>& notes) {
   const std::string prefix = style == TopicStyle::nav2 || mover.plain ? "" : mover.frame + "/";
   mover.space = mover.plain ? "" : "/" + mover.frame;

@@ -14,24 +14,24 @@ namespace sf::record {
 enum class TopicStyle : std::uint8_t {
   robot,  ///< /ROBOT/scan, frames ROBOT/base_link, one /tf
   nav2,   ///< /ROBOT/scan, frames base_link, a /ROBOT/tf per robot
-  plain,  ///< of the only robot: /scan, frames base_link, /tf; other movers as in `robot`
+  plain,  ///< for the only robot: /scan, frames base_link, /tf; other movers as in `robot`
   sensor  ///< /ROBOT/SENSOR/scan, frames ROBOT in `world`; odometry is the truth
 };
 
 /// Contents of the topic `odom`, and of the transform from the frame `odom` to the robot.
 enum class OdometrySource : std::uint8_t {
-  encoders,  ///< wheel encoders; of robots without them as `exact`
+  encoders,  ///< wheel encoders; robots without encoders use `exact`
   exact,     ///< without errors, from the start pose on
   truth      ///< the pose in `world`, as in all recordings without readings
 };
 
-/// Which names topics and frames have, and which transforms nodes elsewhere publish.
+/// Names of topics and frames, and the transforms that external nodes publish.
 struct Naming {
   TopicStyle style = TopicStyle::robot;
   OdometrySource odometry = OdometrySource::encoders;
-  bool localizer = false;  ///< elsewhere: no transform map -> odom
-  bool mapper = false;     ///< elsewhere: no transform map -> odom, no /map, and no frame `world` below `map`
-  bool filter = false;     ///< elsewhere: no transform odom -> base_link
+  bool localizer = false;  ///< is external: no transform map -> odom
+  bool mapper = false;     ///< is external: no transform map -> odom, no /map, and no frame `world` below `map`
+  bool filter = false;     ///< is external: no transform odom -> base_link
 
   friend bool operator==(const Naming&, const Naming&) = default;
 };
@@ -46,15 +46,15 @@ inline constexpr std::array<std::pair<std::string_view, OdometrySource>, 3> kOdo
 inline constexpr std::array<std::pair<std::string_view, bool Naming::*>, 3> kExternalNodes{
     {{"localizer", &Naming::localizer}, {"mapper", &Naming::mapper}, {"filter", &Naming::filter}}};
 
-/// Adds options to the run (`RunInfo::options`), as far as they differ from the default.
+/// Adds options to the run (`RunInfo::options`) if they differ from the default.
 void put_naming(const Naming& naming, RunInfo& info);
-/// As the run's options have it. Unknown words count as the default.
+/// Returns the naming in the run's options. Unknown words count as the default.
 Naming naming_of(const RunInfo& info);
 
-/// Gives every mover its topics' prefix and its frames, and every sensor and its standard topics theirs. Names consist
-/// of [A-Za-z0-9_], without a digit or '_' in front, a '_' at the end, or two in a row; equal ones are numbered. Names
-/// of a mover do not depend on later ones.
-/// @return a line for each name that another one has taken; of sensors only where readings are published
+/// Sets the topic prefix and the frames of every mover, and the names of every sensor and its standard topics. Names
+/// consist of [A-Za-z0-9_], do not begin with a digit or '_', do not end with '_', and never contain two in a row;
+/// duplicates are numbered. The names of a mover do not depend on later ones.
+/// @return a line for each name that was already taken; for sensors only if readings are published
 std::vector<std::string> name_frames(RunInfo& info);
 
 }  // namespace sf::record

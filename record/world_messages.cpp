@@ -18,7 +18,7 @@ void put_color(CdrWriter& cdr, std::uint32_t argb) {
   for (const unsigned shift : {16u, 8u, 0u, 24u}) cdr.put(static_cast<float>((argb >> shift) & 0xFFu) / 255.0F);
 }
 
-/// An empty sensor_msgs/CompressedImage, sequence of texture coordinates, text and mesh.
+/// Writes an empty sensor_msgs/CompressedImage, sequence of texture coordinates, text and mesh.
 void put_no_texture(CdrWriter& cdr) {
   cdr.put("");
   put_header(cdr, 0, "");
@@ -43,7 +43,7 @@ void put_lines(CdrWriter& cdr, const Marker& marker, const Outline& outline) {
   put_pose(cdr, {});
   for (const double scale : {kWidth, 0.0, 0.0}) cdr.put(scale);
   put_color(cdr, outline.color);
-  cdr.put(std::int32_t{0});  // lifetime: without end
+  cdr.put(std::int32_t{0});  // lifetime: unlimited
   cdr.put(std::uint32_t{0});
   cdr.put(marker.locked);
   cdr.put_count(outline.ends.size());

@@ -10,14 +10,14 @@
 
 namespace sf::record {
 
-/// `nav_msgs/OccupancyGrid`: 100 where a wall passes, 0 elsewhere. Appends one message. Rule: `shape` has a map.
-/// @param frame at the place of the world's
+/// Appends a `nav_msgs/OccupancyGrid`: 100 where a wall passes, 0 elsewhere. @pre `shape` has a map
+/// @param frame placed at the world's frame
 void encode_map(const WorldShape& shape, std::string_view frame, base::Bytes& out);
 
-/// `visualization_msgs/MarkerArray`: one list of lines per model, in the frame "world".
+/// Appends a `visualization_msgs/MarkerArray`: one list of lines per model, in the frame "world".
 void encode_walls(const WorldShape& shape, base::Bytes& out);
 
-/// Likewise, one list of lines per mover, locked to its frame.
+/// The same, with one list of lines per mover, locked to its frame.
 void encode_bodies(std::span<const MoverInfo> movers, base::Bytes& out);
 
 }  // namespace sf::record
