@@ -22,7 +22,7 @@ double least(std::span<const double> ranges) {
 
 }  // namespace
 
-// Beams on the border of two thirds belong to the front.
+// Beams on the border between two thirds belong to the front.
 Thirds thirds_of(std::span<const double> ranges) {
   if (ranges.size() < 3) return {least(ranges), least(ranges), least(ranges)};
   const std::size_t side = (ranges.size() - 1) / 3;

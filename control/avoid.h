@@ -1,7 +1,7 @@
 #pragma once
-// Obstacle avoidance of the thesis (4.4.5, figure 46): forward at 0.1 m/s; at 0.05 m/s while an obstacle in front is
-// nearer than 0.4 m; below 0.2 m a turn to the side whose third of the field of view has the larger minimum, until the
-// front third is clear.
+// Obstacle avoidance of the thesis (4.4.5, figure 46): drives forward at 0.1 m/s; at 0.05 m/s while an obstacle in
+// front is nearer than 0.4 m. Below 0.2 m it turns to the side whose third of the field of view has the larger minimum,
+// until the front third is clear.
 //
 // Distances are ranges, measured from the sensor. The thesis states no turning speed. "Until the front third is clear"
 // is implemented as: no range in the front third is below `clear` (default: `turn`). With the default the robot may
@@ -16,7 +16,7 @@ namespace sf::control {
 
 struct AvoidSettings {
   double speed = 0.1;        ///< [m/s]
-  double slow_speed = 0.05;  ///< [m/s] with an obstacle in front nearer than `slow`
+  double slow_speed = 0.05;  ///< [m/s] while an obstacle in front is nearer than `slow`
   double slow = 0.4;         ///< [m]
   double turn = 0.2;         ///< [m] an obstacle in front nearer than this starts a turn
   double clear = 0.2;        ///< [m] a turn ends when the front third is free to this range; >= turn
@@ -38,7 +38,7 @@ class Avoid final : public Controller {
   State state_ = State::drive;
 };
 
-/// [m] Smallest range in each third of the field of view; infinity without ranges. NaN is ignored.
+/// [m] Smallest range in each third of the field of view; infinity without ranges. Ignores NaN.
 struct Thirds {
   double right, front, left;
 };

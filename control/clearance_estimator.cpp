@@ -10,7 +10,7 @@ namespace sf::control {
 
 namespace {
 
-constexpr std::uint32_t kBeams = 512;     // beams used of one laser, at most
+constexpr std::uint32_t kBeams = 512;     // maximum number of beams used per laser
 constexpr double kFarthestBearing = 1.8;  // [rad] beams farther from straight ahead are not used
 
 }  // namespace
@@ -50,7 +50,7 @@ void ClearanceEstimator::add(const View& view, std::span<const double> ranges, S
     if (beam.sample >= ranges.size() || std::isnan(ranges[beam.sample])) continue;
     const double range = std::max(ranges[beam.sample], 0.0);
 
-    // A hit is an obstacle when it lies in the lane that the body sweeps.
+    // A hit is an obstacle if it lies in the lane that the body sweeps.
     if (range < view.range_max) {
       const double x = view.p_MS.x + range * beam.x;
       const double y = view.p_MS.y + range * beam.y;

@@ -1,5 +1,6 @@
 #pragma once
-// Free space around a robot from the scans of its lasers. Any number of lasers, fields of view and ranges.
+// Estimates the free space around a robot from the scans of its lasers, for any number of lasers, fields of view and
+// ranges.
 
 #include <cstdint>
 #include <span>
@@ -21,11 +22,11 @@ class ClearanceEstimator {
  public:
   explicit ClearanceEstimator(const world::Mover& mover);
 
-  /// [m] Sensor range ahead of the body; 0 without a laser that covers the forward direction.
+  /// Returns the sensor range ahead of the body [m]; 0 without a laser that covers the forward direction.
   double range() const { return range_; }
 
-  /// Readings of other types or sensors are ignored, and NaN ranges too. A range at or beyond range_max counts as free.
-  /// Without readings the result is free ahead, and left equals right.
+  /// Ignores readings of other types or sensors, and NaN ranges. A range at or beyond range_max counts as free. Without
+  /// readings the way ahead is free and left equals right.
   Clearance estimate(std::span<const base::ReadingBlock> readings) const;
 
  private:
@@ -42,7 +43,7 @@ class ClearanceEstimator {
   void add(const View& view, std::span<const double> ranges, Sum& sum) const;
 
   std::vector<View> views_;  ///< one per laser
-  std::vector<Beam> beams_;  ///< of all lasers
+  std::vector<Beam> beams_;  ///< beams of all lasers
   double front_ = 0.0;       ///< [m] from the origin to the body's front
   double half_width_ = 0.0;  ///< [m] half the width of the lane that the body needs
   double range_ = 0.0;

@@ -5,7 +5,7 @@
 //                                             Control --(the controller is done)--> Stop
 //
 // Settings: `start`, "at-once" or "signal"; `wait_on_bumper`, default `ControllerType::stops_on_bumper`; `localize`,
-// default false: the controller is given the state that the robot's own sensors tell.
+// default false: the controller receives the state estimated from the robot's own sensors.
 
 #include <memory>
 #include <optional>
@@ -22,10 +22,10 @@ enum class ControlShellState { start, control, wait, stop };
 struct ControlShellSettings {
   bool on_signal = false;      ///< Start lasts until `ControllerInput::started`
   bool wait_on_bumper = true;  ///< Control becomes Wait while `ControllerInput::contact`
-  bool localize = false;       ///< estimates in place of `ControllerInput::state`, in every state of the shell
+  bool localize = false;       ///< replaces `ControllerInput::state` with estimates, in every state of the shell
 };
 
-/// @throws base::InputError for an unknown value of `start`.
+/// @throws base::InputError for an unknown value of `start`
 ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_on_bumper);
 
 class ControlShell final : public Controller, public StatesStopReason {
@@ -34,14 +34,14 @@ class ControlShell final : public Controller, public StatesStopReason {
   ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings,
                std::optional<OwnLocalization> localization = std::nullopt);
 
-  /// Returns a zero twist in Start, Wait and Stop. The inner controller is not called in these states, so its time
+  /// Returns a zero twist in Start, Wait and Stop. Does not call the inner controller in these states, so its time
   /// jumps over a Wait.
   base::Twist step(const ControllerInput& given) override;
 
   base::Intent intent() const override { return inner_->intent(); }
   double v2v_range() const override { return inner_->v2v_range(); }
   bool done() const override { return state_ == ControlShellState::stop; }
-  /// NaN after steps in which the inner controller was not called.
+  /// Returns NaN after steps in which the inner controller was not called.
   double error() const override;
   std::string stop_reason() const override;
 
@@ -54,7 +54,7 @@ class ControlShell final : public Controller, public StatesStopReason {
 
   std::unique_ptr<Controller> inner_;
   ControlShellSettings settings_;
-  std::optional<OwnLocalization> localization_;  ///< none: the state of the input
+  std::optional<OwnLocalization> localization_;  ///< nullopt: the state of the input is used
   ControlShellState state_ = ControlShellState::start;
   bool stepped_ = false;  ///< the last step called the inner controller
 };

@@ -1,6 +1,6 @@
 #pragma once
 // Interface of robot controllers: readings in, twist out. The simulation calls a controller in process; `sensorfarm
-// robot` runs the same code over UDP. Their list, names and settings: control/controllers.h.
+// robot` runs the same code over UDP. For the list of controllers, their names and settings see control/controllers.h.
 
 #include <cstdint>
 #include <limits>
@@ -16,16 +16,16 @@ namespace sf::control {
 /// Another robot's state from its V2V packet.
 struct Neighbour {
   std::uint32_t id = 0;  ///< id in packets
-  base::Report state;    ///< its `mover` is not for controllers
+  base::Report state;    ///< ignore its `mover`
   base::Intent intent;
 };
 
-/// Inputs of one control step. Spans live for the call.
+/// Inputs of one control step. Spans are valid during the call.
 struct ControllerInput {
   std::int64_t time = 0;  ///< [ns] simulated time, or the robot's clock; does not decrease
-  base::Report state;     ///< the robot's own state: true in a simulation, that of its motion model in `robot`,
-                          ///< with the setting `localize` the estimate by its own sensors
-  /// The newest reading of each of its sensors, whether new since the last call or not; may be empty.
+  base::Report state;     ///< the robot's own state: true in a simulation, that of its motion model in `robot`, and
+                          ///< with the setting `localize` the estimate from its own sensors
+  /// The newest reading of each of its sensors, whether or not it is new since the last call; may be empty.
   std::span<const base::ReadingBlock> readings;
   bool contact = false;                      ///< the bumper is pressed, or an obstacle blocked the last motion
   bool started = true;                       ///< the start signal was given
@@ -33,24 +33,24 @@ struct ControllerInput {
   std::span<const world::Signal> signals{};  ///< one per row of `World::lights`
 };
 
-/// One object per robot. Calls on one object come from one thread at a time; different objects may run in parallel.
+/// One object per robot. Calls on one object are made by one thread at a time; different objects may run in parallel.
 class Controller {
  public:
   virtual ~Controller() = default;
   /// @return the twist to drive until the next call; finite
   virtual base::Twist step(const ControllerInput& input) = 0;
 
-  /// Intent to broadcast (V2V), after a step.
+  /// Returns the intent to broadcast (V2V), after a step.
   virtual base::Intent intent() const { return {}; }
-  /// [m] Radius within which states of other robots are needed; 0: none.
+  /// Returns the radius [m] within which states of other robots are needed; 0: none.
   virtual double v2v_range() const { return 0.0; }
-  /// The task is finished and the robot stands.
+  /// Returns whether the task is finished and the robot has stopped.
   virtual bool done() const { return false; }
-  /// Control error of the last step, in the controller's own unit, for statistics. NaN without an error.
+  /// Returns the control error of the last step, in the controller's own unit, for statistics; NaN without an error.
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-/// The newest reading of one sensor; null without one.
+/// Returns the newest reading of one sensor; null if there is none.
 inline const base::ReadingBlock* newest(const ControllerInput& input, std::uint8_t type, std::uint32_t sensor = 0) {
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.type == type && reading.sensor == sensor) return &reading;

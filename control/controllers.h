@@ -21,19 +21,20 @@ namespace sf::control {
 
 struct ControllerType;
 
-/// Inputs for the construction of a controller. Everything it refers to must outlive the controller.
+/// Inputs for the construction of a controller. All objects that it refers to must outlive the controller.
 struct ControllerContext {
   const world::World& world;
   std::uint32_t mover = 0;                          ///< row of the robot
-  std::uint64_t seed = 0;                           ///< of the controller's random choices
+  std::uint64_t seed = 0;                           ///< seed of the controller's random choices
   const world::RoadNetwork* roads = nullptr;        ///< null: the world has no road network
-  std::vector<world::Warning>* warnings = nullptr;  ///< receives warnings of the files that it reads; or null
-  const sensors::SensorSet* sensor_set = nullptr;   ///< of the world; null: made where needed
-  const ControllerType* type = nullptr;             ///< of the controller; set by make_controller
+  std::vector<world::Warning>* warnings = nullptr;  ///< receives warnings about the files that the controller reads; or
+                                                    ///< null
+  const sensors::SensorSet* sensor_set = nullptr;   ///< sensors of the world; null: created when needed
+  const ControllerType* type = nullptr;             ///< type of the controller; set by make_controller
 };
 
-/// Description of one controller. Defined as `constinit const ControllerType x_controller` beside its class, listed in
-/// control/controllers.cpp.
+/// Description of one controller. Defined as `constinit const ControllerType x_controller` next to its class, and
+/// listed in control/controllers.cpp.
 struct ControllerType {
   std::string_view name;        ///< "lane-keeping"
   std::string_view summary;     ///< one line for help
@@ -41,20 +42,20 @@ struct ControllerType {
   bool stops_on_bumper = true;  ///< default of the shell's `wait_on_bumper`
   bool on_scans = false;        ///< without a configured rate, steps on each new scan and on contact, if the robot has
                                 ///< a laser
-  /// @throws base::InputError for invalid settings, or when the world or the robot lacks something required.
+  /// @throws base::InputError for invalid settings, or if the world or the robot lacks something required
   std::unique_ptr<Controller> (*make)(const ControllerContext& context, Settings& settings);
-  const sensorfarm::ControllerEntry* entry = nullptr;  ///< of a user's own controller (control/own_controllers.h)
+  const sensorfarm::ControllerEntry* entry = nullptr;  ///< entry of a user's own controller (control/own_controllers.h)
 };
 
-/// The farm's own, then those of plug-ins in the order in which they were added.
+/// Returns the built-in controllers, then those of plug-ins in the order in which they were added.
 std::span<const ControllerType* const> controllers();
-/// @param name also the file of a plug-in, which is loaded: "./libmine.so", with several controllers
-/// "./libmine.so:name"
+/// @param name may also be the file of a plug-in, which is loaded: "./libmine.so", or "./libmine.so:name" if it has
+/// several controllers
 /// @return null for an unknown name
 /// @throws base::InputError for a file that cannot be loaded
 const ControllerType* find_controller(std::string_view name);
-/// Adds a controller for the rest of the program; not while controllers are made or searched on another thread.
-/// @param type lives as long as the program
+/// Adds a controller for the rest of the program. Do not call it while another thread creates or finds controllers.
+/// @param type valid until the program ends
 void add_controller(const ControllerType* type);
 
 /// A controller as configured by the user, run within the control shell.
@@ -70,7 +71,7 @@ struct ConfiguredController {
   bool on_scans = false;  ///< steps on each new scan and on contact instead of at its rate
 };
 
-/// @throws base::InputError for an unknown name (the message lists all names) and for settings that no code has read.
+/// @throws base::InputError for an unknown name (the message lists all names) and for settings that no code has read
 ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config);
 
 }  // namespace sf::control

@@ -12,7 +12,7 @@ namespace {
 constexpr double kNewcomerDistance = 2.5;  // [m] distance of a newcomer at which the gap is opened
 constexpr double kBehind = 1.2;            // [m] distance at which a follower has fallen behind
 
-/// Row of another follower of the same leader.
+/// Returns the row of another follower of the same leader.
 std::optional<std::uint32_t> newcomer(const ConvoyState& convoy, const std::vector<RoadUser>& road_users) {
   if (convoy.leader == base::kNoId || convoy.merges) return std::nullopt;
   for (std::uint32_t row = 1; row < road_users.size(); ++row)

@@ -40,7 +40,7 @@ base::Twist Docking::step(const ControllerInput& input) {
     seen_ = input.time;
   }
   const bool both = buoys == (kRedBuoy | kGreenBuoy);
-  // Contact with an obstacle or with the dock's corner: retreat and approach anew.
+  // Contact with an obstacle or with the dock's corner: retreat and approach again.
   if (contact_) retreats_ = true;
   if (both && (light & kForceField) == 0) retreats_ = false;
   follows_ = !retreats_ && (both || (follows_ && input.time - seen_ <= kBlind));
@@ -59,7 +59,7 @@ bool Docking::docked(const base::Pose& X_WM) const {
          std::abs(off) < kFaces;
 }
 
-// Drives to the staging point on the axis; the route leads round the dock where that is in between.
+// Drives to the staging point on the axis. The route leads around the dock if the dock is in between.
 base::Twist Docking::approach(const base::Pose& X_WM) {
   const glm::dvec2 p = from_dock(X_WM);
   const double wide = 1.6 * settings_.reach;
@@ -70,9 +70,9 @@ base::Twist Docking::approach(const base::Pose& X_WM) {
   return drive_to_point(X_WM, base::transform(settings_.X_WD, goal), {settings_.speed, settings_.turn});
 }
 
-// The red buoy's beam is on the left of the dock's x axis, so on the right of a robot that faces the dock. The receiver
-// is off the robot's centre, and a turn in place carries it from one beam into the other. The robot therefore drives
-// while it turns, and keeps the direction of a turn in place once begun.
+// The red buoy's beam is on the left of the dock's x axis, and therefore on the right of a robot that faces the dock.
+// The receiver is off the robot's centre, so a turn in place carries it from one beam into the other. The robot
+// therefore drives while it turns, and keeps the direction of a turn in place once begun.
 base::Twist Docking::follow_beams(const base::Pose& X_WM) {
   const bool red = (light_ & kRedBuoy) != 0, green = (light_ & kGreenBuoy) != 0;
   const double lean = red && green ? 0.0 : red ? settings_.lean : -settings_.lean;

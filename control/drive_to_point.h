@@ -1,5 +1,5 @@
 #pragma once
-// Drives to a point: turn in place first, then forward.
+// Drives to a point: turns in place first, then drives forward.
 
 #include <algorithm>
 #include <cmath>

@@ -7,12 +7,12 @@ namespace sf::control {
 
 /// Means, in the controller's own unit.
 struct ErrorSummary {
-  std::uint64_t steps = 0;  ///< with an error
+  std::uint64_t steps = 0;  ///< number of steps with an error
   double mean = 0.0;
   double abs_mean = 0.0;
 };
 
-/// Adds one step. NaN and infinity are ignored.
+/// Adds one step. Ignores NaN and infinity.
 void add(ErrorSummary& summary, double error);
 
 }  // namespace sf::control

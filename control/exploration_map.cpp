@@ -27,7 +27,7 @@ ExplorationMap::ExplorationMap(const maps::GridGeometry& geometry, double radius
   unknown_.resize(count);
   driven_.resize(static_cast<std::size_t>(maps::columns(geometry) * maps::rows(geometry)));
 
-  // Nodes too near to the map's border always count as unknown.
+  // Nodes too close to the map's border always count as unknown.
   const Node rim = static_cast<Node>(std::ceil(std::max(radius, reach) / cell_)) + 2;
   for (Node row = 0; row < rows_; ++row) {
     for (Node column = 0; column < columns_; ++column) {
@@ -55,7 +55,7 @@ glm::dvec2 ExplorationMap::place(Node node) const {
   return {grid_.geometry.left + (node % columns_ + 0.5) * cell_, grid_.geometry.top - (node / columns_ + 0.5) * cell_};
 }
 
-// Visits every node within `radius` of p, with its distance.
+// Visits every node within `radius` of p, and passes its distance.
 template <typename Visit>
 void ExplorationMap::around(glm::dvec2 p, double radius, Visit visit) {
   const double column = (p.x - grid_.geometry.left) / cell_ - 0.5, row = (grid_.geometry.top - p.y) / cell_ - 0.5;

@@ -1,7 +1,7 @@
 #pragma once
-// Map of an explorer: the occupancy grid (rule of maps/grid_update.h), all surface points that its laser has measured,
-// and on a lattice three times as fine as the grid the clearance and whether a body there would cover unexplored
-// ground.
+// Map of an explorer. It contains the occupancy grid (rule of maps/grid_update.h) and all surface points that its laser
+// has measured. On a lattice three times as fine as the grid it contains the clearance, and whether a body there would
+// cover unexplored ground.
 //
 // Clearances are distances to points, not to cells. They are exact at the nodes of the lattice except for the gaps
 // between the beams that hit a surface (0.1 mm for a flat surface nearby).
@@ -14,7 +14,7 @@
 
 namespace sf::control {
 
-/// Index of a lattice node, row-major as the cells of the map.
+/// Index of a lattice node, row-major like the cells of the map.
 using Node = std::int32_t;
 
 class ExplorationMap {
@@ -23,11 +23,11 @@ class ExplorationMap {
   /// @param reach [m] >= radius, to the farthest point on the body; the whole body stays within the map
   ExplorationMap(const maps::GridGeometry& geometry, double radius, double reach);
 
-  /// Marks a disc as explored and free without a scan, since the robot stands there.
+  /// Marks a disc as explored and free without a scan, because the robot occupies it.
   void mark_free(glm::dvec2 p, double radius);
-  /// @return true when the scan changed the map
+  /// @return true if the scan changed the map
   bool add(const maps::ScanView& scan);
-  /// Adds an obstacle point at `p`, such as a contact. @return true when it changed the map
+  /// Adds an obstacle point at `p`, such as a contact. @return true if it changed the map
   bool add_point(glm::dvec2 p);
 
   const maps::OccupancyGrid& grid() const { return grid_; }
@@ -38,15 +38,16 @@ class ExplorationMap {
   Node node_at(glm::dvec2 p) const;  ///< @pre contains(p)
   glm::dvec2 place(Node node) const;
 
-  /// [m] From a node to the nearest surface point. Limited to the body's radius plus kMaxClearance.
+  /// Returns the distance [m] from a node to the nearest surface point. Limited to the body's radius plus
+  /// kMaxClearance.
   float clearance(Node node) const { return clearance_[static_cast<std::size_t>(node)]; }
-  /// A body at the node would cover unexplored ground or leave the map.
+  /// Returns whether a body at the node would cover unexplored ground or leave the map.
   bool covers_unknown(Node node) const { return unknown_[static_cast<std::size_t>(node)] != 0; }
-  /// A surface passes through the node's square.
+  /// Returns whether a surface passes through the node's square.
   bool occupied(Node node) const { return occupied_[static_cast<std::size_t>(node)] != 0; }
   bool explored(Node node) const { return explored_[static_cast<std::size_t>(node)] != 0; }
 
-  /// [m] From `p` to the nearest surface point, at most `most`.
+  /// Returns the distance [m] from `p` to the nearest surface point, at most `most`.
   double nearest(glm::dvec2 p, double most) const;
 
   static constexpr double kMaxClearance = 0.06;  ///< [m]
@@ -62,9 +63,9 @@ class ExplorationMap {
   double cell_;
   Node columns_, rows_;
   std::vector<glm::dvec2> points_;
-  std::vector<std::uint8_t> taken_;  ///< one bit per fine square, set when the square holds a point
+  std::vector<std::uint8_t> taken_;  ///< one bit per fine square, set if the square contains a point
   std::vector<float> clearance_;
-  std::vector<std::uint16_t> unknown_;  ///< unexplored cells whose centre is under the body
+  std::vector<std::uint16_t> unknown_;  ///< number of unexplored cells whose centre is under the body
   std::vector<std::uint8_t> occupied_, explored_;
   std::vector<std::uint8_t> driven_;  ///< per cell of the map: explored
 };

@@ -82,7 +82,7 @@ bool Explore::update_map(const ControllerInput& input) {
   return map_.add({reading->X_WS, ranges, settings_.beams, settings_.range_min, settings_.eye.range});
 }
 
-// One full turn in place at the start.
+// Makes one full turn in place at the start.
 Twist Explore::turn_once(const Pose& X_WM) {
   turned_ += base::wrap_angle(X_WM.yaw - last_yaw_);
   last_yaw_ = X_WM.yaw;
@@ -169,7 +169,7 @@ Twist Explore::drive(const ControllerInput& input) {
 Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
   const DriveLimits pace{settings_.speed, settings_.turn, 0.03, std::min(0.7 / dt, 5.0)};
   if (!leg.straight) {
-    // The direction of the turn is kept only for large heading errors.
+    // Keeps the direction of the turn only for large heading errors.
     double off = base::wrap_angle(leg.heading - X_WM.yaw);
     if (leg.side * off < 0.0 && std::abs(off) > 0.3) off += leg.side * 2.0 * M_PI;
     return {0.0, 0.0, turn_to(off, pace)};
@@ -207,7 +207,7 @@ Twist Explore::wait(const ControllerInput& input) {
   return {};
 }
 
-// Gives up the targets of this goal: they are not visible from there, or the goal is not reachable.
+// Gives up the targets of this goal: they are not visible from there, or the goal is unreachable.
 void Explore::give_up() {
   for (const maps::CellAt cell : targets_)
     if (grid().at(cell) == maps::Cell::unexplored)

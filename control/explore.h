@@ -1,11 +1,11 @@
 #pragma once
 // Autonomous exploration without contacts, which the thesis' avoidance (control/avoid.h) cannot guarantee. The robot
-// keeps its own map and drives to the nearest pose from which its laser would see unexplored cells, until no such pose
-// is left.
+// keeps its own map and drives to the nearest pose from which its laser would see unexplored cells, until there is no
+// such pose.
 //
 // Paths are searched over places and headings (control/pose_search.h), since the laser's field of view is limited and
-// the laser may reach beyond the body. A goal is kept until all its target cells are seen or the path is blocked. Goals
-// that allow `margin` come first, then goals with `least_margin`: the robot drives through a passage that is
+// the laser may extend beyond the body. A goal is kept until all its target cells are seen or the path is blocked.
+// Goals that allow `margin` come first, then goals with `least_margin`: the robot drives through a passage that is
 // `least_margin` wider than the body on both sides.
 //
 // Assumptions: a static world, a body that turns in place (modelled as its circumscribed disc), and a precise pose,
@@ -26,19 +26,19 @@ struct ExploreSettings {
   Footprint body;
   ScannerModel eye;
   std::vector<glm::dvec2> beams;  ///< directions in the laser's frame
-  double range_min = 0.0;         ///< [m] of the laser
+  double range_min = 0.0;         ///< [m] minimum range of the laser
   double speed = 0.1;             ///< [m/s]
-  double slow_speed = 0.05;       ///< [m/s] with an obstacle nearer than `slow` ahead of the body
+  double slow_speed = 0.05;       ///< [m/s] while an obstacle ahead of the body is nearer than `slow`
   double slow = 0.05;             ///< [m]
   double turn = 1.0;              ///< [rad/s] maximum
-  double margin = 0.01;           ///< [m] between body and surfaces, first stages
+  double margin = 0.01;           ///< [m] between body and surfaces, in the first stages
   double least_margin = 0.003;    ///< [m] the same in the last stages; <= margin
   bool thorough = false;          ///< adds a last stage that looks along surfaces for hidden cells
-  double patience = 2.0;          ///< [s] wait for a reading at a goal
+  double patience = 2.0;          ///< [s] maximum wait for a reading at a goal
 };
 
-/// Grid with cells of 3 cm (default) around all walls, at least the thesis' 30 x 30 words, with the world's centre at
-/// its own centre.
+/// Returns a grid with cells of 3 cm (default) around all walls, at least as large as the thesis' 30 x 30 words, with
+/// the world's centre at its own centre.
 /// @throws base::InputError for an area that is too large
 maps::GridGeometry grid_around(const world::World& world, double cell = 0.03);
 
@@ -82,14 +82,14 @@ class Explore final : public Controller {
   int stage_ = 0;
   bool started_ = false, turned_once_ = false;
   double turned_ = 0.0, last_yaw_ = 0.0;
-  std::optional<std::uint32_t> sequence_;  ///< of the last scan
-  base::Pose X_WS_;                        ///< of the last scan
-  std::vector<double> ranges_;             ///< [m] of the last scan with flags
+  std::optional<std::uint32_t> sequence_;  ///< sequence of the last scan
+  base::Pose X_WS_;                        ///< sensor pose of the last scan
+  std::vector<double> ranges_;             ///< [m] ranges of the last scan with flags
   std::int64_t last_time_ = 0;
-  std::vector<LatticeState> path_;  ///< to the goal, which is its last state
-  std::vector<Leg> legs_;           ///< remaining legs, the next one last
+  std::vector<LatticeState> path_;  ///< path to the goal, which is its last state
+  std::vector<Leg> legs_;           ///< remaining legs; the next leg is last
   std::vector<maps::CellAt> targets_;
-  std::optional<std::int64_t> arrived_;  ///< [ns] arrival at the goal
+  std::optional<std::int64_t> arrived_;  ///< [ns] time of arrival at the goal
 };
 
 extern const ControllerType explore_controller;

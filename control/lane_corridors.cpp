@@ -15,7 +15,7 @@ namespace {
 
 using world::PointRef;
 
-constexpr double kChangeCost = 1.0;  // [m] added to the length, so that routes change lanes only where that helps
+constexpr double kChangeCost = 1.0;  // [m] added to the length, so that routes change lanes only if that helps
 
 /// Samples a line evenly.
 void sample(Way& way, const world::Curve& line, double step) {
@@ -161,7 +161,7 @@ void LaneCorridors::add_changes() {
 
 std::shared_ptr<const LaneCorridors> shared_lane_corridors(const world::RoadNetwork& roads, const world::World& world,
                                                            const RoadFootprint& body) {
-  // Corridors refer to their network, so its address identifies it for as long as they exist.
+  // Corridors refer to their network, so its address identifies the network as long as they exist.
   struct Shared {
     const world::World* world;
     RoadFootprint body;

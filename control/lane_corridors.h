@@ -1,5 +1,5 @@
 #pragma once
-// The ways of a road network: evenly sampled lines, with the stretches on which two ways come too near to each other
+// The ways of a road network: evenly sampled lines, with the stretches on which two ways are too close to each other
 // for two robots to pass at once.
 //
 //   LaneCorridors corridors(roads, world, footprint_of(mover));
@@ -8,7 +8,7 @@
 // A way is a lane, the connection of an exit, a lane change, or a straight line within a zone. Two ways conflict where
 // their lines are nearer than the width of two robots and a margin: at crossings of exits, where exits enter the same
 // lane, and where lanes cross (bridges count as crossings, since the road network is flat). Two ways that leave the
-// same point do not conflict, nor do two consecutive ways: there one robot follows the other.
+// same point do not conflict, nor do two consecutive ways, because one robot follows the other there.
 
 #include <algorithm>
 #include <array>
@@ -25,25 +25,26 @@ namespace sf::control {
 
 using base::Pose;
 
-/// Dimensions of a robot that matter on a road. [m]
+/// Dimensions [m] of a robot that matter on a road.
 struct RoadFootprint {
   double radius = 0.165;  ///< > 0
   double front = 0.165;   ///< from the origin to the front
 
   friend bool operator==(const RoadFootprint&, const RoadFootprint&) = default;
 };
-/// Dimensions of the parts of a mover that collide; virtual scanners do not.
+/// Returns the dimensions of the parts of a mover that collide; virtual scanners do not.
 RoadFootprint footprint_of(const world::Mover& mover);
 
-/// Stretches of two ways that two robots cannot occupy at once. [m] along either way, of the robots' origins.
+/// Stretches of two ways that two robots cannot occupy at once, in metres along each way, measured at the robots'
+/// origins.
 struct Conflict {
   std::uint32_t way = 0;  ///< row of the other way
   double from = 0.0, to = 0.0;
   double other_from = 0.0, other_to = 0.0;
-  bool yields = false;  ///< this way enters the other one in its course, and robots on the other way go first
+  bool yields = false;  ///< this way enters the other one between its ends, and robots on the other way have priority
 };
 
-/// Conflicts of one way that are too close together to wait between them.
+/// Conflicts of one way that are too close together for a robot to wait between them.
 struct ConflictZone {
   double hold = 0.0;  ///< [m] a robot's origin waits here; negative: on the preceding way
   double end = 0.0;   ///< [m] from here on the robot is clear of the other ways
@@ -71,12 +72,12 @@ struct Way {
   double length = 0.0;                       ///< [m] > 0
   double step = 0.0;                         ///< [m] between neighbouring points
   std::vector<glm::dvec2> points;            ///< at least two
-  std::vector<double> yaw;                   ///< [rad] of the line at each point, not wrapped
+  std::vector<double> yaw;                   ///< [rad] yaw of the line at each point, not wrapped
   std::vector<glm::dvec2> tangents;          ///< unit vectors
   std::vector<double> curvature;             ///< [1/m] positive to the left
   std::vector<ConflictZone> conflict_zones;  ///< in order
   std::vector<LaneStop> stops;               ///< lanes: in order
-  /// Lanes: places where robots wait for the conflict zones of the lane and of its exits, in order.
+  /// Lanes: points where robots wait for the conflict zones of the lane and of its exits, in order.
   std::vector<double> lines;
   std::vector<std::uint32_t> out;  ///< lanes: rows of the ways that leave it
 };
@@ -105,11 +106,11 @@ struct Edge {
   std::uint32_t to = 0;
   /// Driven one after the other; the second may be kNone.
   std::array<std::uint32_t, 2> ways{world::kNone, world::kNone};
-  double from_s = 0.0, to_s = 0.0;  ///< [m] along the first; the second is driven whole
+  double from_s = 0.0, to_s = 0.0;  ///< [m] along the first; the second is driven completely
   double cost = 0.0;                ///< [m]
 };
 
-/// Of all ways of a network together, four in a body's radius: some 400 MB.
+/// Limit for all ways of a network together, with four points per body radius: about 400 MB.
 inline constexpr double kMaxWayPoints = 4e6;
 
 /// Immutable after construction; callable from any number of threads. The network and the world must outlive it.
@@ -122,17 +123,18 @@ class LaneCorridors {
   const RoadFootprint& body() const { return body_; }
   const std::vector<Way>& ways() const { return ways_; }
   const Way& way(std::uint32_t row) const { return ways_[row]; }
-  /// Edges that start at a node.
+  /// Returns the edges that start at a node.
   const std::vector<Edge>& edges(std::uint32_t node) const { return edges_[node]; }
   std::uint32_t node_of(world::PointRef at) const;
 
-  /// Ways within `reach` [m] of the robot that run in its direction (within 45 degrees), nearest first.
+  /// Returns the ways within `reach` [m] of the robot that run in its direction (within 45 degrees), nearest first.
   RoadPositions positions(const Pose& X_WM, double reach) const;
-  /// Within the perimeter of the zone or half a radius outside it, since spots may be entered from the perimeter.
+  /// Returns whether `p` is within the perimeter of the zone or at most half a radius outside it, since spots may be
+  /// entered from the perimeter.
   bool inside(std::uint32_t zone, glm::dvec2 p) const;
-  /// Pose of a robot's origin when parked in a spot.
+  /// Returns the pose of a robot's origin when parked in a spot.
   Pose parked(std::uint32_t spot) const;
-  /// [m] Distance of two lines below which they conflict.
+  /// Returns the distance [m] below which two lines conflict.
   double clearance() const { return clearance_; }
 
  private:
@@ -155,7 +157,7 @@ class LaneCorridors {
   RoadFootprint body_;
   double clearance_;
   double step_;
-  double points_ = 0.0;  ///< of all ways
+  double points_ = 0.0;  ///< number of points of all ways
   std::vector<Way> ways_;
   std::vector<std::vector<Edge>> edges_;
 
@@ -188,8 +190,8 @@ void LaneCorridors::near(glm::dvec2 p, double reach, F&& visit) const {
     }
 }
 
-/// Returns the same corridors for all robots of one shape on one network while any robot holds them: the tables are
-/// large, and a shared table stays in the processor's cache. Callable from any thread.
+/// Returns the same corridors for all robots of one shape on one network as long as any robot holds them: the tables
+/// are large, and a shared table stays in the processor's cache. Callable from any thread.
 std::shared_ptr<const LaneCorridors> shared_lane_corridors(const world::RoadNetwork& roads, const world::World& world,
                                                            const RoadFootprint& body);
 

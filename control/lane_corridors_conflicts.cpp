@@ -10,7 +10,7 @@ namespace {
 
 enum class Relation { none, meets, yields };
 
-/// Relation of way `a` to way `b`. `row_a` and `row_b` are their rows, used for lanes.
+/// Returns the relation of way `a` to way `b`. `row_a` and `row_b` are their rows, used for lanes.
 Relation relation(const Way& a, std::uint32_t row_a, const Way& b, std::uint32_t row_b) {
   if (a.kind == Way::Kind::zone || b.kind == Way::Kind::zone) return Relation::none;
   const bool lane_a = a.kind == Way::Kind::lane, lane_b = b.kind == Way::Kind::lane;
@@ -20,10 +20,10 @@ Relation relation(const Way& a, std::uint32_t row_a, const Way& b, std::uint32_t
     const std::uint32_t lane = lane_a ? row_a : row_b;
     if (other.from == lane) return Relation::none;
     if (other.into != lane) return Relation::meets;
-    // A lane does not yield to ways that enter it in its course.
+    // A lane does not yield to ways that enter it between its ends.
     return lane_b && a.enter > 0.0 ? Relation::yields : Relation::none;
   }
-  // From one lane, or one after the other: robots follow each other there.
+  // The ways start at one lane, or follow each other: robots follow each other there.
   const bool side_by_side =
       a.from != world::kNone && a.from == b.from && (a.leave == b.leave || !a.at_end || !b.at_end);
   const bool in_turn = (a.into != world::kNone && a.into == b.from) || (b.into != world::kNone && b.into == a.from);
@@ -32,7 +32,7 @@ Relation relation(const Way& a, std::uint32_t row_a, const Way& b, std::uint32_t
 
 }  // namespace
 
-// Lanes of one segment run side by side; lanes connected by a way may be one road.
+// Lanes of one segment run side by side; lanes connected by a way may form one road.
 bool LaneCorridors::joined(std::uint32_t a, std::uint32_t b) const {
   if (roads_.lanes[a].segment == roads_.lanes[b].segment) return true;
   return std::any_of(ways_.begin(), ways_.end(), [&](const Way& way) {
@@ -78,7 +78,7 @@ void LaneCorridors::find_conflicts(std::uint32_t row) {
       return last * w.step < end || first * w.step > w.length - end;
     };
     if (lane != other_lane && (lane ? at_end(way, f.from, f.to) : at_end(other, f.other_from, f.other_to))) continue;
-    // Between two samples the distance may fall below the clearance.
+    // Between two samples the distance may drop below the clearance.
     const auto low = [](const Way& w, std::uint32_t i) { return i > 0 ? (i - 1) * w.step : 0.0; };
     const auto high = [](const Way& w, std::uint32_t i) { return std::min((i + 1) * w.step, w.length); };
     conflicts.push_back({f.way, low(way, f.from), high(way, f.to), low(other, f.other_from), high(other, f.other_to),

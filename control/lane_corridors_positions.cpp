@@ -1,4 +1,4 @@
-// Localization of robots on the ways, by a grid of samples.
+// Localizes robots on the ways, with a grid of samples.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kAlike = 0.7;  // least cosine of the angle between a robot and its way
+constexpr double kAlike = 0.7;  // smallest cosine of the angle between a robot and its way
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void LaneCorridors::fill_grid() {
     }
   if (ways_.empty()) low = high = {};
   corner_ = low;
-  // At most a few million cells, whatever the length of the roads.
+  // Limits the grid to a few million cells, whatever the length of the roads.
   const double area = std::max((high.x - low.x) * (high.y - low.y), 1e-12);
   cell_ = std::max(0.5 * clearance_, std::sqrt(area / 4e6));
   columns_ = static_cast<std::int64_t>((high.x - low.x) / cell_) + 1;
@@ -48,7 +48,7 @@ void LaneCorridors::fill_grid() {
 RoadPositions LaneCorridors::positions(const Pose& X_WM, double reach) const {
   const glm::dvec2 p{X_WM.x, X_WM.y};
   const glm::dvec2 facing{std::cos(X_WM.yaw), std::sin(X_WM.yaw)};
-  // The nearest sample of each way, the nearest ways first.
+  // The nearest sample of each way, nearest way first.
   struct Nearest {
     std::uint32_t way = 0, index = 0;
     double distance = 0.0;
@@ -78,7 +78,7 @@ RoadPositions LaneCorridors::positions(const Pose& X_WM, double reach) const {
     if (s < -1e-6 || s > way.length + 1e-6) continue;  // beyond its ends
     const RoadPosition place{found[i].way, s, std::abs(base::cross(along, d))};
     if (place.offset > reach) continue;
-    // Insertion in order of offset, then of row.
+    // Inserts in order of offset, then of row.
     std::uint32_t at = positions.count;
     while (at > 0 && (positions.all[at - 1].offset > place.offset ||
                       (positions.all[at - 1].offset == place.offset && positions.all[at - 1].way > place.way)))

@@ -24,7 +24,8 @@ Pose LaneCorridors::parked(std::uint32_t row) const {
   return {p.x, p.y, 0.0, std::atan2(along.y, along.x)};
 }
 
-// Into a spot: along the aisle to the place before it, a turn in place, straight in. Out of it: in reverse.
+// A way into a spot leads along the aisle to the place in front of it, turns in place, and continues straight in. A way
+// out is driven in reverse.
 void LaneCorridors::add_zones() {
   const auto leads = [&](PointRef at, bool out) {
     return std::any_of(roads_.exits.begin(), roads_.exits.end(),

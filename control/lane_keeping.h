@@ -11,13 +11,14 @@ namespace sf::control {
 struct LaneSettings {
   PiGains gains{.kp = 0.5};          ///< per metre; `lane-keeping` derives its default from the sensor's position
   double speed = 0.1;                ///< [m/s]
-  std::optional<double> half_width;  ///< [m] half the lane's width; none: that of the path's piece under the sensor
+  std::optional<double> half_width;  ///< [m] half the lane's width; nullopt: the width of the path's piece under the
+                                     ///< sensor
   double side = 1.0;                 ///< edge that the sensor measures: +1 left, -1 right
   double hold = 1.0;                 ///< [s]
   glm::dvec2 p_MS;                   ///< [m] position of the sensor in the robot's frame
 };
 
-/// Its error is the robot's offset to the right of the lane's centre, measured from the edge. [m]
+/// Its error [m] is the robot's offset to the right of the lane's centre, measured from the edge.
 class LaneKeeping final : public PathFollower {
  public:
   LaneKeeping(const LaneSettings& settings, const PathTask& task);

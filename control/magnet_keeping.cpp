@@ -21,7 +21,7 @@ double MagnetKeeping::error_of(const base::ReadingBlock& reading, const base::Po
 
 namespace {
 
-/// @throws base::InputError for a robot without an array of at least two magnetometers.
+/// @throws base::InputError for a robot without an array of at least two magnetometers
 void require_array(const world::Mover& mover) {
   const auto found = std::find_if(mover.sensors.begin(), mover.sensors.end(),
                                   [](const world::Sensor& sensor) { return sensor.type == "magnetometer"; });

@@ -1,7 +1,7 @@
 #pragma once
-// Follows a line of magnets by an array of magnetometers across the robot (thesis, 4.3.3): e = z of the last element -
-// z of the first, in Gauss, u = kp e + ki (integral of e), at constant speed. Element 0 is the rightmost: a line to the
-// left of the robot's centre makes e positive, and the robot turns left.
+// Follows a line of magnets with an array of magnetometers across the robot (thesis, 4.3.3): e = z of the last element
+// - z of the first, in Gauss, u = kp e + ki (integral of e), at constant speed. Element 0 is the rightmost: a line to
+// the left of the robot's centre makes e positive, and the robot turns left.
 //
 // The thesis prints the gains (0.01, 0.006) without a unit. Here gains are in rad/s per Gauss.
 

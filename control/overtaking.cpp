@@ -6,7 +6,8 @@ namespace sf::control {
 
 namespace {
 
-/// No robot is on the lane from `low` to `high` [m], and none behind will get there within three seconds at its speed.
+/// Returns whether the lane is free from `low` to `high` [m] and no robot behind will get there within three seconds at
+/// its speed.
 bool lane_free(const std::vector<RoadUser>& road_users, std::uint32_t lane, double low, double high) {
   for (std::size_t i = 1; i < road_users.size(); ++i)
     for (const RoadPosition& place : road_users[i].positions)
@@ -14,7 +15,7 @@ bool lane_free(const std::vector<RoadUser>& road_users, std::uint32_t lane, doub
   return true;
 }
 
-/// Row of the first change between two lanes at or after `s` [m] along the first; null without one.
+/// Returns the row of the first change between two lanes at or after `s` [m] along the first; null if there is none.
 const std::uint32_t* change_after(const LaneCorridors& corridors, std::uint32_t from, std::uint32_t into, double s) {
   const std::uint32_t* best = nullptr;
   for (const std::uint32_t& row : corridors.way(from).out) {
@@ -42,7 +43,7 @@ std::optional<RoutePlan> plan_return(const LaneCorridors& corridors, const Route
                                      const Pose& X_WM) {
   const std::size_t at = leg_at(plan, s);
   const Way& change = corridors.way(plan.legs[at].way);
-  // Continue only when the lane that the robot leaves is at least as near as the other one.
+  // Continue only if the lane that the robot leaves is at least as near as the other one.
   const RoadPosition *left = nullptr, *entered = nullptr;
   const RoadPositions positions = corridors.positions(X_WM, 2.5 * corridors.body().radius);
   for (const RoadPosition& place : positions) {
@@ -77,8 +78,8 @@ std::optional<Passing> plan_passing(const LaneCorridors& corridors, const RouteP
     const Way& change = corridors.way(row);
     if (change.kind != Way::Kind::change || change.leave < here + 0.05 || change.leave > here + 2.0) continue;
     const std::uint32_t beside = change.into;
-    // On the adjacent lane the robot gains on the slower one at the difference of their speeds, until it is a gap
-    // ahead. The lane changes take their own length.
+    // On the adjacent lane the robot gains on the slower robot at the difference of their speeds, until it is a gap
+    // ahead. The lane changes add their own length.
     const double gain = slow.free + 2.0 * body + 0.3;
     const double driven = gain * speed / (speed - other);
     const double back_after = change.enter + std::max(driven - (change.leave - here) - change.length, 0.0);

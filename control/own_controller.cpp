@@ -25,7 +25,7 @@ std::span<const std::uint8_t> flags_of(const base::ReadingBlock& reading) {
   return {reinterpret_cast<const std::uint8_t*>(reading.quality.data()), reading.quality.size()};
 }
 
-/// The farm's settings behind the public interface.
+/// Adapts the farm's settings to the public interface.
 class PublicSettings final : public sensorfarm::Settings {
  public:
   explicit PublicSettings(control::Settings& settings) : settings_(settings) {}

@@ -1,6 +1,6 @@
 #pragma once
-// A user's own controller as a controller of the farm: translates its inputs, and its exceptions into errors with the
-// robot's name.
+// Runs a user's own controller as a controller of the farm: translates its inputs, and converts its exceptions into
+// errors with the robot's name.
 
 #include <memory>
 
@@ -12,7 +12,7 @@ namespace sf::control {
 /// `ControllerType::make` of all types with an entry.
 std::unique_ptr<Controller> make_own_controller(const ControllerContext& context, Settings& settings);
 
-/// The robot as its controller is told of it. @throws base::InputError for a sensor with invalid settings
+/// Returns the robot as described to its controller. @throws base::InputError for a sensor with invalid settings
 sensorfarm::Robot robot_of(const ControllerContext& context);
 
 }  // namespace sf::control

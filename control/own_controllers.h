@@ -1,6 +1,6 @@
 #pragma once
-// Users' own controllers: those of plug-ins (sensorfarm/plugin.h) and those that a program adds, as controllers of the
-// farm.
+// Users' own controllers as controllers of the farm: those of plug-ins (sensorfarm/plugin.h) and those that a program
+// adds.
 
 #include <string>
 #include <string_view>
@@ -10,21 +10,23 @@
 
 namespace sf::control {
 
-/// Adds it for the rest of the program.
-/// @param from file it comes from, for messages
+/// Adds the entry for the rest of the program.
+/// @param from file that defines it, for messages
 /// @throws base::InputError for a name that is taken or unusable, and for an invalid rate
 const ControllerType* add_own_controller(sensorfarm::ControllerEntry entry, const std::string& from);
 
-/// "./libmine.so", "folder/libmine.so:name" or "mine.py:Class", not a plain name.
+/// Returns whether the name has the form "./libmine.so", "folder/libmine.so:name" or "mine.py:Class", instead of a
+/// plain name.
 bool names_a_file(std::string_view name);
 
-/// Loads the file where it is not loaded yet. @throws base::InputError
+/// Loads the file if it is not yet loaded. @throws base::InputError
 const ControllerType* load_controller(const std::string& name);
 
-/// Loads a plug-in and adds everything in it. Loading it again changes nothing. @throws base::InputError
+/// Loads a plug-in and adds all its controllers and sensors. Does nothing if it is already loaded. @throws
+/// base::InputError
 void load_plugin_file(const std::string& file);
 
-/// Loads all files of a list separated by colons, as in SENSORFARM_PLUGINS; of a folder all its `*.so`, by name.
+/// Loads all files of a list separated by colons, as in SENSORFARM_PLUGINS; for a folder all its `*.so`, by name.
 /// @throws base::InputError
 void load_plugin_list(const std::string& list);
 

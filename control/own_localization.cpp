@@ -38,7 +38,7 @@ estimation::LocalizationOptions options_of(const world::Mover& mover) {
   return options;
 }
 
-/// X_BC from X_AB and X_AC.
+/// Returns X_BC, given X_AB and X_AC.
 base::Pose relative(const base::Pose& X_AB, const base::Pose& X_AC) {
   const glm::dvec2 p = base::rotate(-X_AB.yaw, {X_AC.x - X_AB.x, X_AC.y - X_AB.y});
   return {p.x, p.y, X_AC.z - X_AB.z, X_AC.yaw - X_AB.yaw};
@@ -96,12 +96,12 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
 }
 
 void OwnLocalization::take(const base::ReadingBlock& reading) {
-  if (reading.time <= last_[reading.type]) return;  // given before
+  if (reading.time <= last_[reading.type]) return;  // already used
   const std::span<const double> v = reading.values;
   if (reading.type == sensors::kEncoder && v.size() >= 2) localization_->add_encoder(reading.time, v[0], v[1]);
   if (reading.type == sensors::kGyro && !v.empty()) localization_->add_gyro(reading.time, v[0]);
   if (reading.type == sensors::kGps && v.size() >= 3) {
-    // The antenna is where the robot carries it: turned by the estimated heading.
+    // The antenna moves with the robot: its position uses the estimated heading.
     const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
     const double yaw = localization_->predict(reading.time).estimate.X_WM.yaw;
     const glm::dvec2 arm = base::rotate(yaw, {X_MS.x, X_MS.y});

@@ -1,6 +1,6 @@
 #pragma once
-// A controller's state by the robot's own encoders, gyro and GPS receiver, in place of its true one (the shell's
-// setting `localize`).
+// Estimates a controller's state from the robot's own encoders, gyro and GPS receiver, in place of its true state (the
+// shell's setting `localize`).
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace sf::control {
 
-/// Errors of a robot's estimated poses beside its true ones, at the steps of its controller.
+/// Errors of a robot's estimated poses relative to its true ones, at the steps of its controller.
 struct LocalizationError {
   std::uint64_t steps = 0;
   double squares = 0.0;      ///< [m^2] sum of squared distances
@@ -26,32 +26,32 @@ struct LocalizationError {
   double yaw_rms() const;  ///< [rad]
 };
 
-/// Called once a step. The first sensor of each type counts, with the errors that its settings state.
+/// Called once per step. Uses the first sensor of each type, with the errors stated in its settings.
 class OwnLocalization {
  public:
   /// @throws base::InputError for a robot without encoders, or with invalid settings of these sensors
   explicit OwnLocalization(const world::Mover& mover);
 
-  /// `input` with the estimate as the robot's pose and twist, and as the poses of its readings at their times. The
-  /// first call's pose is the start, which is known. Spans live until the next call.
+  /// Returns `input` with the estimate as the robot's pose and twist, and as the poses of its readings at their times.
+  /// The pose of the first call is taken as the known start. Spans are valid until the next call.
   ControllerInput localize(const ControllerInput& input);
 
-  /// [ns] of the last second or later. Rule: after a step; z is 0
+  /// [ns] within the last second, or later. @pre after a step; z is 0
   base::Pose pose_at(std::int64_t time) const { return localization_->predict(time).estimate.X_WM; }
-  /// Beside the poses of the inputs.
+  /// Returns the error relative to the poses of the inputs.
   const LocalizationError& error() const { return error_; }
 
  private:
   void take(const base::ReadingBlock& reading);
 
   estimation::LocalizationOptions options_;
-  std::optional<estimation::Localization> localization_;  ///< from the first step on
+  std::optional<estimation::Localization> localization_;  ///< set from the first step on
   std::array<std::int64_t, 256> last_;                    ///< [ns] by sensor type: time of the last reading
   std::vector<base::ReadingBlock> readings_;
   LocalizationError error_;
 };
 
-/// Of a controller made by `make_controller`; null where it is given other states.
+/// Returns the localization of a controller created by `make_controller`; null if the controller does not use it.
 const OwnLocalization* localization_of(const Controller& controller);
 
 }  // namespace sf::control

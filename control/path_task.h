@@ -1,5 +1,5 @@
 #pragma once
-// Following a path of the world file: progress, end of the path, and the control loop shared by all followers.
+// Follows a path of the world file: progress, end of the path, and the control loop shared by all followers.
 
 #include <cstdint>
 #include <string_view>
@@ -19,9 +19,9 @@ class PathTask {
   PathTask(const ControllerContext& context, Settings& settings);
 
   bool known() const { return path_ != nullptr; }
-  /// [m] Lane width of the piece nearest to `p`. @pre known()
+  /// Returns the lane width [m] of the piece nearest to `p`. @pre known()
   double width_at(glm::dvec2 p) const;
-  /// The robot's origin is within `stop_before` of the path's end, measured along the path.
+  /// Returns whether the robot's origin is within `stop_before` of the path's end, measured along the path.
   bool ended(const base::Pose& X_WM) const;
 
  private:
@@ -29,17 +29,17 @@ class PathTask {
   double stop_before_ = 0.25;  ///< [m]
 };
 
-/// Sample-and-hold for a sensor whose readings arrive at another rate than the controller's, so that the controller may
-/// get one reading twice, or late.
+/// Sample-and-hold for a sensor whose rate differs from the controller's, so that the controller may receive one
+/// reading twice, or late.
 class SampleHold {
  public:
   explicit SampleHold(double seconds) : hold_(static_cast<std::int64_t>(1e9 * seconds)) {}
 
-  /// @param reading null: none @return true when the newest reading is at most `seconds` old, counted from its arrival
+  /// @param reading null: none @return true if the newest reading is at most `seconds` old, counted from its arrival
   bool is_fresh(const base::ReadingBlock* reading, std::int64_t time);
 
   /// @param now value of the reading; NaN: none
-  /// @return `now`, or the last value if that is at most `seconds` old, else NaN
+  /// @return `now`, or the last value if it is at most `seconds` old, otherwise NaN
   double update(double now, std::int64_t time);
 
  private:
@@ -50,9 +50,9 @@ class SampleHold {
   bool any_ = false;
 };
 
-/// Follows a path at constant speed by an error measured with one sensor, with P or PI steering. Each step uses the
-/// newest reading, whether new or not. Without an error the last one holds for `hold` seconds; after that the robot
-/// stands until there is one again. The integral is frozen meanwhile. (The thesis does not specify this.)
+/// Follows a path at constant speed, with P or PI steering of an error measured with one sensor. Each step uses the
+/// newest reading, whether or not it is new. Without an error the last one is held for `hold` seconds; after that the
+/// robot stops until there is one again. The integral is frozen meanwhile. (The thesis does not specify this.)
 class PathFollower : public Controller, public StatesStopReason {
  public:
   base::Twist step(const ControllerInput& input) final;
@@ -67,7 +67,7 @@ class PathFollower : public Controller, public StatesStopReason {
   const PathTask& task() const { return task_; }
 
  private:
-  /// Control error from a reading; NaN when the reading gives none.
+  /// Returns the control error from a reading; NaN if the reading contains none.
   virtual double error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const = 0;
 
   std::uint8_t type_;

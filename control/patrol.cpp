@@ -12,7 +12,7 @@ Patrol::Patrol(PatrolSettings settings) : settings_(std::move(settings)) {
   SF_CHECK(!settings_.points.empty(), "a patrol of no points");
 }
 
-// V2V states carry no footprint, so robots are considered a metre beyond the stopping distance.
+// V2V states contain no footprint, so robots are considered up to a metre beyond the stopping distance.
 double Patrol::v2v_range() const { return settings_.radius + settings_.keep + 1.0; }
 
 base::Twist Patrol::step(const ControllerInput& input) {
@@ -40,7 +40,7 @@ void Patrol::next(std::int64_t time) {
   target_ = backwards_ ? target_ - 1 : target_ + 1;
 }
 
-// The lane that the robot's own body sweeps, doubled in width since V2V states carry no footprint.
+// Checks the lane that the robot's own body sweeps, doubled in width because V2V states contain no footprint.
 bool Patrol::obstructed(const ControllerInput& input) const {
   return std::any_of(input.others.begin(), input.others.end(), [&](const Neighbour& other) {
     const base::Pose& X_WM = input.state.X_WM;

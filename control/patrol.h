@@ -1,5 +1,5 @@
 #pragma once
-// Drives through given points to the last and back to the first, repeatedly; for pedestrians and Kheperas. Stands while
+// Drives through given points to the last and back to the first, repeatedly; for pedestrians and Kheperas. Stops while
 // another robot (V2V) is within its stopping distance ahead.
 
 #include <vector>
@@ -13,10 +13,10 @@ struct PatrolSettings {
   std::vector<glm::dvec2> points;  ///< [m] at least one
   double speed = 0.1;              ///< [m/s]
   double turn_speed = 1.0;         ///< [rad/s]
-  double pause = 0.0;              ///< [s] at each end
+  double pause = 0.0;              ///< [s] pause at each end
   double reach = 0.03;             ///< [m] distance at which a point is reached
   double keep = 0.3;               ///< [m] between its own body and the origins of other robots
-  double radius = 0.165;           ///< [m] of its own body
+  double radius = 0.165;           ///< [m] radius of its own body
   bool turns_in_place = true;      ///< false: a car, which drives while it turns
 };
 

@@ -26,7 +26,7 @@ class PiController {
   /// @return [rad/s]
   double steer(double error, std::int64_t time);
 
-  /// Control with a held error: the integral is frozen and continues from the next call of `steer`.
+  /// Steers with a held error: the integral is frozen and continues with the next call of `steer`.
   double hold(double error);
 
   double integral() const { return integral_; }  ///< [unit s]

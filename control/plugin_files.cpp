@@ -1,4 +1,4 @@
-// Plug-ins as files, shared libraries or Python: each is loaded once.
+// Plug-ins as files, shared libraries or Python; each is loaded once.
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ Loaded& loaded() {
   return files;
 }
 
-/// The file and, behind a colon, the controller of "libmine.so:name"; an empty name without one.
+/// Splits "libmine.so:name" into the file and the controller after the colon; the name is empty if there is none.
 std::pair<std::string, std::string> parts_of(const std::string& name) {
   const std::size_t slash = name.rfind('/');
   const std::size_t colon = name.find(':', slash == std::string::npos ? 0 : slash);
@@ -37,7 +37,7 @@ std::pair<std::string, std::string> parts_of(const std::string& name) {
 
 bool is_python(const std::string& file) { return file.ends_with(".py"); }
 
-/// The classes of a Python file (python/interpreter.cpp). @param whole its canonical path
+/// Adds the classes of a Python file (python/interpreter.cpp). @param whole its canonical path
 void fill_from_python(const std::string& file, const std::string& whole, sensorfarm::Plugin& plugin) {
   const void* const symbol = base::load_plugin("sensorfarm_python", "controllers in Python cannot run",
                                                "libpython3 and NumPy (Debian: libpython3.11 python3-numpy)");

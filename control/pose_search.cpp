@@ -24,7 +24,7 @@ constexpr std::array<std::array<int, 2>, kHeadings> kSteps = {{{1, 0},
                                                                {1, -1},
                                                                {2, -1}}};
 
-// Costs: 10 is a step of one node at full speed.
+// Costs: a step of one node at full speed costs 10.
 constexpr std::uint32_t kTurnCost = 40;  // per heading
 constexpr std::uint32_t kBackwards = 2;  // factor in reverse
 constexpr std::uint32_t kNear = 2;       // factor near a surface
@@ -62,7 +62,7 @@ PoseSearch::PoseSearch(const ExplorationMap& map, const Footprint& body)
   };
   const double reach = glm::length(body.p_MS);
   for (int half = 0; half < 2 * kHeadings; ++half) {
-    // Odd entries are the headings halfway between two neighbours, passed in a turn.
+    // Odd entries are the headings halfway between two neighbours, which a turn passes.
     const double to =
         half % 2 == 0 ? 0.0 : 0.5 * base::wrap_angle(heading_angle(around(half / 2 + 1)) - heading_angle(half / 2));
     const double yaw = heading_angle(half / 2) + to;

@@ -2,8 +2,8 @@
 // Path search for a body with a sensor on it, on a lattice of places and sixteen headings: cheapest path from the
 // current state (Dijkstra, "A note on two problems in connexion with graphs", 1959).
 //
-// A state is allowed when the body keeps its margin to all surfaces, covers no unexplored ground, and no surface lies
-// between the body and its sensor, which may reach beyond the body.
+// A state is allowed if the body keeps its margin to all surfaces and covers no unexplored ground, and no surface lies
+// between the body and its sensor, which may extend beyond the body.
 
 #include <array>
 #include <cstdint>
@@ -23,7 +23,7 @@ struct LatticeState {
   bool operator==(const LatticeState&) const = default;
 };
 
-/// [rad] Angle of heading k. Headings point to sixteen neighbouring nodes and are 18 to 27 degrees apart.
+/// Returns the angle [rad] of heading k. Headings point to sixteen neighbouring nodes and are 18 to 27 degrees apart.
 double heading_angle(int heading);
 
 /// The moving body.
@@ -40,13 +40,13 @@ class PoseSearch {
   /// @param margin [m] between the body and all surfaces
   bool allowed(const LatticeState& state, double margin) const;
 
-  /// The sensor's node in a state. @pre the body is within the map
+  /// Returns the sensor's node in a state. @pre the body is within the map
   Node sensor_at(const LatticeState& state) const {
     return state.node + sensor_[static_cast<std::size_t>(state.heading)];
   }
 
-  /// The cheapest path to the first state for which `goal` returns true, from `from` to that state. Empty without a
-  /// path. Near `from` a smaller margin is allowed when the start has no more.
+  /// Returns the cheapest path from `from` to the first state for which `goal` returns true. Empty if there is none.
+  /// Near `from` a smaller margin is allowed if the start does not have the full margin.
   std::vector<LatticeState> find(const LatticeState& from, double margin,
                                  const std::function<bool(const LatticeState&)>& goal);
 

@@ -22,7 +22,7 @@ bool is_quoted(std::string_view word) {
   return word.size() >= 2 && is_quote(word.front()) && word.back() == word.front();
 }
 
-/// The words between separators outside of quotes, trimmed.
+/// Returns the words between separators outside of quotes, trimmed.
 std::vector<std::string_view> split(std::string_view raw, std::string_view separators) {
   std::vector<std::string_view> words;
   char open = 0;
@@ -41,7 +41,7 @@ std::vector<std::string_view> split(std::string_view raw, std::string_view separ
   return words;
 }
 
-/// Words separated by commas or, without commas, by blanks. Returns nullopt for a comma without a word beside it or an
+/// Returns words separated by commas or, without commas, by blanks; nullopt for a comma without a word next to it or an
 /// unbalanced bracket.
 std::optional<std::vector<std::string_view>> words_of(std::string_view raw) {
   raw = trim(raw);

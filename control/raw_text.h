@@ -13,17 +13,18 @@ struct RawText {
   std::string text;
 };
 
-// Each allows blanks around the value, and returns nullopt for text of another form.
+// Each function allows blanks around the value, and returns nullopt for text of another form.
 
-/// A finite number in decimal digits.
+/// Reads a finite number in decimal digits.
 std::optional<double> read_number(std::string_view raw);
-/// "true" or "false".
+/// Reads "true" or "false".
 std::optional<bool> read_flag(std::string_view raw);
 /// Strips one pair of quotes ("..." or '...') around the text, if any.
 std::string read_text(std::string_view raw);
-/// "1,2", "1 2", "[1, 2]", "[1 2]", "1", or "[]" for none.
+/// Reads "1,2", "1 2", "[1, 2]", "[1 2]", "1", or "[]" for none.
 std::optional<std::vector<double>> read_numbers(std::string_view raw);
-/// The same for texts, each with or without quotes. Blanks and commas within quotes belong to the text.
+/// Reads a list of texts in the same forms, each with or without quotes. Blanks and commas within quotes belong to the
+/// text.
 std::optional<std::vector<std::string>> read_texts(std::string_view raw);
 
 }  // namespace sf::control

@@ -42,7 +42,7 @@ bool RightOfWay::committed(double ahead, double speed) const {
   return ahead + margin_ < speed * speed / (2.0 * kHardBraking);
 }
 
-// Positions are computed again only after a robot has moved.
+// Positions are recomputed only after a robot has moved.
 const RoadPositions& RightOfWay::positions_of(std::uint32_t id, const Pose& X_WM) {
   auto known = std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.id == id; });
   if (known == known_.end()) known = known_.insert(known_.end(), {id, {HUGE_VAL, 0.0, 0.0, 0.0}, {}, 0});
@@ -51,7 +51,7 @@ const RoadPositions& RightOfWay::positions_of(std::uint32_t id, const Pose& X_WM
   known->X_WM = X_WM;
   RoadPositions& positions = known->positions;
   positions = corridors_.positions(X_WM, 0.8 * corridors_.body().radius);
-  // Keeps the ways that are about as near as the nearest.
+  // Keeps the ways that are about as near as the nearest one.
   const double most = positions.count > 0 ? positions.all[0].offset + 0.25 * corridors_.body().radius : 0.0;
   while (positions.count > 1 && positions.all[positions.count - 1].offset > most) --positions.count;
   return positions;
@@ -146,7 +146,7 @@ bool RightOfWay::precedes(const RoadUser& other, const Approach& own) const {
 bool RightOfWay::is_in_way(const RoadUser& other, const Conflict& conflict, const Approach& own) const {
   const Way& way = corridors_.way(conflict.way);
   const Approach& theirs = other.approach;
-  // A merging robot lets its leader pass first, at any distance.
+  // A merging robot yields to its leader, at any distance.
   const bool leads = merges_ && other.id == road_users_.front().follows;
   for (const RoadPosition& place : other.positions) {
     if (leads && place.way == (way.kind == Way::Kind::lane ? conflict.way : way.from) &&
@@ -157,14 +157,14 @@ bool RightOfWay::is_in_way(const RoadUser& other, const Conflict& conflict, cons
       if (way.at_end || place.s > conflict.other_from - margin_) return true;
       continue;
     }
-    // A robot on the lane that this way enters goes first if it gets there soon.
+    // A robot on the lane that this way enters has priority if it arrives there soon.
     if (conflict.yields) {
-      // Of two standing robots that want to swap lanes, the one with the smaller id begins.
+      // If two stopped robots want to swap lanes, the one with the smaller id begins.
       if (other.speed < kStanding && road_users_.front().id < other.id) continue;
       // A robot that drives on ahead is followed.
       const double body = 2.5 * corridors_.body().radius;
       if (place.s > conflict.other_from + body && other.speed > kStanding) continue;
-      // The other follower of the same leader opens a gap for a merging robot. It blocks only beside that gap.
+      // The other follower of the same leader opens a gap for a merging robot. It blocks only the way next to that gap.
       const bool lets_in = merges_ && other.follows == road_users_.front().follows;
       if (lets_in && place.s < conflict.other_from - body) continue;
       if (place.s > conflict.other_from - 2.0 * corridors_.body().radius - 2.5 * other.speed) return true;
@@ -186,7 +186,7 @@ bool RightOfWay::is_in_way(const RoadUser& other, const Conflict& conflict, cons
 bool RightOfWay::may_enter(std::uint32_t row, const ConflictZone& conflict_zone) const {
   const Way& way = corridors_.way(row);
   const RoadUser& self = road_users_.front();
-  // Before a line of a lane the robot has to contend; a lane change has no such line.
+  // A robot before a line of a lane has to contend; a lane change has no such line.
   Approach own = self.approach;
   const bool has_line = way.kind == Way::Kind::lane || way.at_end;
   if (has_line && !own.contends) return false;

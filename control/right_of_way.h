@@ -3,17 +3,17 @@
 // traffic lights, so that two conflicting robots never both take the right of way.
 //
 // A robot that has passed its waiting line, or can no longer stop before it, occupies the crossing: all robots whose
-// ways conflict with any way it may take wait. Among the other robots near a line (the first of each lane),
+// ways conflict with any way it may take must wait. Among the other robots near a line (the first of each lane),
 //   1. a robot that need not stop (no stop line, or a green light) precedes one that must; robots at a red light do not
 //      take part;
-//   2. then the earlier arrival precedes: the time of coming within kApproachDistance or of standing at the stop line;
+//   2. then the earlier arrival precedes: the time of coming within kApproachDistance or of stopping at the stop line;
 //   3. then the smaller id.
-// A robot that merges behind a leader precedes the robot that followed this leader until then. Once either of two
+// A robot that merges behind a leader precedes the robot that has followed this leader until then. Once either of two
 // robots has waited longer than kMaxWait, a lottery decides between them. It is drawn every kLotteryPeriod from (id,
-// time), equal for all robots. Without it, a robot that cannot use its turn because its lane is full would block the
-// others.
+// time), with the same result on all robots. Without it, a robot that cannot use its turn because its lane is full
+// would block the others.
 //
-// Robots that decide at the same time see the same poses and agree on the order; a robot observes at its next decision
+// Robots that decide at the same time see the same poses and agree on the order; at its next decision a robot observes
 // the motion that the other has begun. V2V packets do not state the chosen exit, so all exits of a robot's lane count.
 
 #include <cstdint>
@@ -25,7 +25,7 @@
 
 namespace sf::control {
 
-inline constexpr double kApproachDistance = 0.5;               ///< [m] before the waiting line
+inline constexpr double kApproachDistance = 0.5;               ///< [m] distance before the waiting line
 inline constexpr std::int64_t kMaxWait = 3'000'000'000;        ///< [ns]
 inline constexpr std::int64_t kLotteryPeriod = base::kSecond;  ///< [ns]
 inline constexpr double kHardBraking = 0.6;                    ///< [m/s^2] deceleration that every robot can achieve
@@ -60,19 +60,20 @@ class RightOfWay {
  public:
   RightOfWay(const LaneCorridors& corridors, std::uint32_t own_id);
 
-  /// Takes the states of one time. Robots farther than 3.5 m away are left out, except its leader and its followers.
+  /// Updates the road users from the states at one time. Excludes robots farther than 3.5 m away, except its leader and
+  /// its followers.
   /// @param follows id of its own leader; kNoId: none
   /// @param merges it has yet to merge behind the leader
   void observe(const ControllerInput& input, std::uint32_t follows, bool merges);
 
-  /// All observed robots; the first is the robot itself. Lives until the next `observe`.
+  /// Returns all observed robots; the first is the robot itself. Valid until the next `observe`.
   const std::vector<RoadUser>& road_users() const { return road_users_; }
 
-  /// No robot occupies the conflict zone or precedes this one.
+  /// Returns whether no robot occupies the conflict zone or precedes this one.
   bool may_enter(std::uint32_t way, const ConflictZone& conflict_zone) const;
-  /// A robot can no longer stop within `ahead` [m].
+  /// Returns whether a robot can no longer stop within `ahead` [m].
   bool committed(double ahead, double speed) const;
-  /// No robot drives in the zone or is entering it.
+  /// Returns whether no robot drives in the zone or is entering it.
   bool zone_free(std::uint32_t zone) const;
 
  private:

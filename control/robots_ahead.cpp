@@ -78,7 +78,7 @@ void Progress::update(const LaneCorridors& corridors, const RoutePlan& plan, glm
   for (;;) {
     const RouteLeg& leg = plan.legs[leg_];
     const Way& way = corridors.way(leg.way);
-    // The nearest sample around the last position, then the foot of the perpendicular.
+    // Finds the nearest sample around the last position, then the foot of the perpendicular.
     const double was = leg.from + s_ - leg.start;
     double best = HUGE_VAL, at = was;
     const auto consider = [&](double s) {
@@ -109,7 +109,7 @@ base::Twist steer(double speed, double offset, double heading, double curvature,
   if (std::abs(heading) > turn_on_spot) return {0.0, 0.0, std::clamp(-2.0 * heading, -max_turn, max_turn)};
   const double sine = std::abs(heading) > 1e-6 ? std::sin(heading) / heading : 1.0;
   const double along = std::max(1.0 - curvature * offset, 0.3);
-  // Far from the line the robot returns at 45 degrees at most.
+  // Far from the line the robot returns at no more than 45 degrees.
   const double off = std::clamp(offset, -1.2 * reach, 1.2 * reach);
   const double bend = curvature * std::cos(heading) / along - off * sine / (reach * reach) - 1.6 * heading / reach;
   const double v = std::abs(bend) * speed > max_turn ? max_turn / std::abs(bend) : speed;

@@ -11,7 +11,7 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kStands = 0.005;  // [m/s] speed limits below this count as a standstill
+constexpr double kStands = 0.005;  // [m/s] lower speed limits count as a standstill
 
 }  // namespace
 

@@ -2,7 +2,7 @@
 // Drives on a road network from checkpoint to checkpoint in traffic: keeps to its lane, stops at stop lines and red
 // lights, keeps its distance, yields the right of way, and never enters a crossing that it cannot leave.
 //
-// Each rule gives a speed limit, and the lowest applies. One step
+// Each rule sets a speed limit, and the lowest applies. Each step
 //   1. updates the position on the route, passes checkpoints, extends the plan;
 //   2. observes the road users (control/right_of_way.h) and the robots ahead (control/robots_ahead.h);
 //   3. limits the speed by curvature, stop lines, conflict zones, robots ahead and the end of the route;
@@ -21,9 +21,9 @@ namespace sf::control {
 
 struct RouteSettings {
   double speed = 0.2;      ///< [m/s] > 0 on a free road
-  double gap = 0.06;       ///< [m] > 0 to the robot ahead when standing, in addition to the size of both robots
+  double gap = 0.06;       ///< [m] > 0 to the robot ahead at a standstill, in addition to the size of both robots
   double headway = 0.8;    ///< [s] > 0 additional gap per speed
-  bool pass = true;        ///< overtakes slower robots where there is an adjacent lane
+  bool pass = true;        ///< overtakes slower robots if there is an adjacent lane
   double v2v_range = 4.0;  ///< [m]
 };
 
@@ -36,7 +36,7 @@ class Route : public Controller, public StatesStopReason {
   base::Intent intent() const override;
   double v2v_range() const override { return settings_.v2v_range; }
   bool done() const override { return done_; }
-  /// Offset to the left of the line. [m]
+  /// Returns the offset [m] to the left of the line.
   double error() const override { return offset_; }
   std::string stop_reason() const override;
 
@@ -93,21 +93,21 @@ class Route : public Controller, public StatesStopReason {
   std::vector<LeadRobot> ahead_;
   std::int64_t last_ = -1;  ///< [ns] time of the last step
   double offset_ = 0.0;     ///< [m]
-  const char* why_ = "";    ///< cause of a standstill at the last step; empty: the robot drives
+  const char* why_ = "";    ///< cause of the standstill at the last step; empty: the robot drives
   std::uint32_t who_ = base::kNoId;
   double stopped_at_ = -HUGE_VAL;     ///< [m] along the route: last stop line at which the robot has stopped
-  std::int64_t standing_since_ = -1;  ///< [ns] at a stop line; -1: not standing at one
+  std::int64_t standing_since_ = -1;  ///< [ns] since when it has stopped at a stop line; -1: it has not
   std::int64_t blocked_since_ = -1;   ///< [ns] waiting for room on a full lane; -1: not waiting
   std::uint32_t blocked_way_ = world::kNone;
   std::int64_t still_since_ = -1;  ///< [ns] start of the standstill; -1: before the first step
-  std::int64_t slow_since_ = -1;   ///< [ns] behind a slower robot; -1: not behind one
+  std::int64_t slow_since_ = -1;   ///< [ns] since when it is behind a slower robot; -1: it is not
   double pass_until_ = -1.0;       ///< [m] along the route: end of the current overtaking
 };
 
 extern const ControllerType route_controller;
 
-/// Makes a route or convoy controller from the settings `speed`, `gap`, `headway`, `pass`, `radio`, and `merge_behind`
-/// and those of RouteGoals, or for convoys `leader`.
+/// Creates a route or convoy controller from the settings `speed`, `gap`, `headway`, `pass`, `radio`, `merge_behind`,
+/// and for routes those of RouteGoals, for convoys `leader`.
 /// @param follows true: convoy
 /// @throws base::InputError
 std::unique_ptr<Controller> make_route_controller(const ControllerContext& context, Settings& settings, bool follows);

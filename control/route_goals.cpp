@@ -24,7 +24,7 @@ std::string ids_of(const world::RoadNetwork& roads) {
   return ids.empty() ? "it has none" : ids;
 }
 
-/// The path as given, or relative to the world file's folder if only that exists.
+/// Returns the path as given, or relative to the world file's folder if the file exists only there.
 std::string find_file(const world::World& world, const std::string& file) {
   if (std::filesystem::exists(file)) return file;
   const auto beside = std::filesystem::path(world.file).parent_path() / file;
@@ -94,7 +94,7 @@ void RouteGoals::read_park(const ControllerContext& context, Settings& settings)
   for (std::uint32_t row = 0; row < roads.spots.size(); ++row) {
     const world::RoadSpot& spot = roads.spots[row];
     if (fmt::format("{}.{}", roads.zones[spot.zone].id, spot.number) != name) continue;
-    // The checkpoint of the spot if it has one.
+    // The checkpoint of the spot, if it has one.
     world::RoadCheckpoint goal{-1, {PointRef::Kind::spot, row, 1}, spot.end};
     for (const auto& checkpoint : roads.checkpoints)
       if (checkpoint.at.kind == PointRef::Kind::spot && checkpoint.at.row == row) goal.id = checkpoint.id;

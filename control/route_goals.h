@@ -1,5 +1,5 @@
 #pragma once
-// Goals of a route: a list of checkpoints, once or repeated, or checkpoints drawn at random without end.
+// Goals of a route: a list of checkpoints, once or repeated, or an endless sequence of random checkpoints.
 
 #include <vector>
 
@@ -11,17 +11,17 @@ namespace sf::control {
 class RouteGoals {
  public:
   /// Reads `checkpoints [1 2]`, `mission "file.mdf"`, `park "zone.spot"`, `tour true` (random), `loop true`.
-  /// @throws base::InputError for a name that the network does not have, or when the settings give no goal.
+  /// @throws base::InputError for a name that the network does not have, or if the settings contain no goal
   RouteGoals(const ControllerContext& context, Settings& settings);
-  /// Random goals; none where the network has no checkpoints on lanes.
+  /// Draws random goals; there are none if the network has no checkpoints on lanes.
   explicit RouteGoals(const ControllerContext& context);
 
-  /// Goal `k`, 0-based; null after the last.
+  /// Returns goal `k`, 0-based; null after the last one.
   const world::RoadCheckpoint* at(std::uint64_t k) const;
   bool by_lot() const { return tour_; }
-  /// Goals of one repetition; 0 for random goals.
+  /// Returns the number of goals of one repetition; 0 for random goals.
   std::size_t count() const { return goals_.size(); }
-  /// [m/s] Speed limit of the mission on a lane of this segment, or in a zone; infinity without a limit.
+  /// Returns the speed limit [m/s] of the mission on a lane of this segment, or in a zone; infinity without a limit.
   double limit(std::uint32_t segment) const { return segment < limits_.size() ? limits_[segment] : HUGE_VAL; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBraking = 0.3;             // [m/s^2] comfortable deceleration
 constexpr double kSideways = 0.1;            // [m/s^2] lateral acceleration in curves
 constexpr double kWaiting = 0.5;             // factor of the speed while a follower has fallen behind
-constexpr double kStandstill = 0.02;         // [m/s] below this a robot counts as standing
+constexpr double kStandstill = 0.02;         // [m/s] below this speed a robot counts as stopped
 constexpr std::int64_t kStop = 300'000'000;  // [ns] duration of a full stop
 
 }  // namespace
@@ -98,13 +98,13 @@ void Route::limit_by_conflict_zones(const ControllerInput& input, Limit& limit) 
   if (full && blocked_since_ < 0) blocked_since_ = input.time;
 }
 
-/// Robots ahead of `end` and this robot all find room between `end` and the first robot beyond it.
+/// Returns whether all robots ahead of `end`, and this robot, have room between `end` and the first robot beyond it.
 bool Route::room_beyond(double end) const {
   const double room = end - progress_.s();
   double between = 0.0;
   for (const LeadRobot& other : ahead_) {
     if (other.free < room) {
-      if (other.speed < 0.02) return false;  // it stands, possibly for long
+      if (other.speed < 0.02) return false;  // it has stopped, possibly for a long time
       between += 2.2 * corridors_->body().radius + settings_.gap;
       continue;
     }
@@ -113,7 +113,7 @@ bool Route::room_beyond(double end) const {
   return true;
 }
 
-// One robot at a time drives in a zone. The others wait before the zone or in their spots.
+// Only one robot at a time drives in a zone. The others wait before the zone or in their spots.
 void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
   const double s = progress_.s();
   const double margin = 0.12 * corridors_->body().radius;
@@ -121,7 +121,7 @@ void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
     const RouteLeg& leg = plan_.legs[i];
     const Way& way = corridors_->way(leg.way);
     if (way.backwards && s - leg.start < margin) {
-      // Parked robots leave in turns.
+      // Parked robots leave in turn.
       const std::uint32_t spots = site_.roads->zones[way.zone].spots;
       const auto turn = static_cast<std::uint64_t>(input.time / 2'000'000'000) % spots;
       const auto own = spot_at(*corridors_, input.state.X_WM).value_or(0) - site_.roads->zones[way.zone].first_spot;

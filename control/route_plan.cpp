@@ -33,7 +33,7 @@ void append(const LaneCorridors& corridors, RoutePlan& plan, const Edge& edge) {
   plan.node = edge.to;
 }
 
-/// Edges of the shortest path, at least one; empty without a path.
+/// Returns the edges of the shortest path, at least one; empty if there is none.
 std::vector<Edge> shortest(const LaneCorridors& corridors, std::uint32_t from, std::uint32_t to, std::uint32_t avoid) {
   const std::size_t count = corridors.roads().index.size();
   struct Reached {
@@ -75,7 +75,7 @@ std::vector<Edge> shortest(const LaneCorridors& corridors, std::uint32_t from, s
   return edges;
 }
 
-/// The point of a lane where another way enters it.
+/// Returns the point of a lane where another way enters it.
 std::uint32_t entry_of(const LaneCorridors& corridors, const Way& way) {
   return corridors.node_of({PointRef::Kind::lane, way.into, point_from(corridors.roads().lanes[way.into], way.enter)});
 }

@@ -37,39 +37,39 @@ struct RoutePlan {
 };
 inline double length_of(const RoutePlan& plan) { return end_of(plan.legs.back()); }
 
-/// Index of the first point of a lane at or after `s` [m], else of the last.
+/// Returns the index of the first point of a lane at or after `s` [m], or of the last point if there is none.
 std::uint32_t point_from(const world::RoadLane& lane, double s);
 
-/// Index of the leg at `s` [m] along the route; the first or last beyond its ends.
+/// Returns the index of the leg at `s` [m] along the route; the first or last leg beyond its ends.
 std::size_t leg_at(const RoutePlan& plan, double s);
 
-/// The lane at a robot's pose, in its direction, and the position along it; nullopt when there is none near.
+/// Returns the lane at a robot's pose, in its direction, and the position along it; nullopt if there is none nearby.
 std::optional<RoadPosition> locate_on_lane(const LaneCorridors& corridors, const Pose& X_WM);
-/// The same, including exits between lanes.
+/// Does the same, including exits between lanes.
 std::optional<RoadPosition> locate_on_road(const LaneCorridors& corridors, const Pose& X_WM);
-/// The parking spot at a robot's pose.
+/// Returns the parking spot at a robot's pose.
 std::optional<std::uint32_t> spot_at(const LaneCorridors& corridors, const Pose& X_WM);
 
-/// A route of one leg: from the position to the next point of its lane, or to the end of its exit.
+/// Returns a route of one leg: from the position to the next point of its lane, or to the end of its exit.
 RoutePlan plan_from(const LaneCorridors& corridors, const RoadPosition& place);
-/// A route that begins where a robot is parked.
+/// Returns a route that begins where a robot is parked.
 RoutePlan plan_from_spot(const LaneCorridors& corridors, std::uint32_t spot);
 
 /// Extends the plan to a checkpoint (second form: to a point of the network). A robot that is already there drives at
 /// least one edge.
-/// @param avoid row of a way to leave out; kNone: none
+/// @param avoid row of a way to exclude; kNone: none
 /// @return false without a path; the plan is then unchanged
 bool extend(const LaneCorridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to,
             std::uint32_t avoid = world::kNone);
 bool extend(const LaneCorridors& corridors, RoutePlan& plan, world::PointRef to, std::uint32_t avoid = world::kNone);
 
-/// Truncates the plan at the first point of a lane after `s` and drops the goals after `s`. Legs through a zone are
-/// kept up to the next lane, or all of them where the plan ends in the zone.
+/// Truncates the plan at the first point of a lane after `s` and drops the goals after `s`. Keeps legs through a zone
+/// up to the next lane, or all of them if the plan ends in the zone.
 void cut_after(const LaneCorridors& corridors, RoutePlan& plan, double s);
 
-/// Random start poses for `count` robots on lanes, in driving direction, at least `apart` [m] from each other and from
-/// the lanes' ends. A function of the arguments alone.
-/// @throws base::InputError when there is no room for that many
+/// Returns random start poses for `count` robots on lanes, in driving direction, at least `apart` [m] from each other
+/// and from the lanes' ends. Depends only on the arguments.
+/// @throws base::InputError if there is no room for that many
 std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count, std::uint64_t seed, double apart);
 
 }  // namespace sf::control

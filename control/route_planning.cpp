@@ -13,7 +13,7 @@ namespace sf::control {
 
 namespace {
 
-constexpr std::size_t kOldLegs = 24;  // passed legs that are kept
+constexpr std::size_t kOldLegs = 24;  // number of passed legs that are kept
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void Route::refuse(const world::RoadCheckpoint& goal) const {
       site_.world.movers[site_.mover].name, goal.id, point_id_text(id_of(*site_.roads, goal.at)), site_.roads->file));
 }
 
-// Two goals are planned ahead, so that the route continues beyond the next goal.
+// Plans two goals ahead, so that the route continues beyond the next goal.
 void Route::fill() {
   if (!goals_) return;
   int refused = 0;
@@ -61,7 +61,7 @@ void Route::fill() {
     if (goal == nullptr) return;
     ++planned_;
     if (extend(*corridors_, plan_, *goal)) continue;
-    // A random goal without a path is skipped.
+    // Skips a random goal without a path.
     if (!goals_->by_lot() || ++refused > 100) refuse(*goal);
   }
 }
@@ -109,7 +109,7 @@ void Route::search() {
     if (const world::RoadCheckpoint* goal = lots_.at(searched_++)) extend(*corridors_, plan_, goal->at);
 }
 
-// A lane that stays full is avoided.
+// Avoids a lane that stays full.
 void Route::reroute(const ControllerInput& input) {
   const std::uint32_t avoid = blocked_way_;
   const std::int64_t patience = (20 + 2 * (site_.mover % 5)) * base::kSecond;
@@ -131,7 +131,7 @@ bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
   return true;
 }
 
-// Two robots that swap lanes could block each other for ever. After a long standstill one returns to its lane.
+// Two robots that swap lanes could block each other forever. After a long standstill one of them returns to its lane.
 void Route::give_up_change(const ControllerInput& input) {
   if (std::abs(input.state.velocity.forward) > 0.005 || still_since_ < 0) still_since_ = input.time;
   const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * base::kSecond;

@@ -25,7 +25,7 @@ std::string setting_value_text(const Value& value) {
   return fmt::format("['{}']", fmt::join(std::get<std::vector<std::string>>(value), "', '"));
 }
 
-/// The value as a T, if it is one or `read` converts it.
+/// Returns the value as a T, if it is one or `read` converts it.
 template <class T, class Read>
 std::optional<T> value_as(const Value& value, Read&& read) {
   if (const auto* raw = std::get_if<RawText>(&value)) return read(raw->text);

@@ -20,27 +20,27 @@ struct Setting {
   std::string where;  ///< "file:line: " or "--set kp: ", prefix of error messages
 };
 
-/// Settings by key. Reading a setting marks it as known; settings that remain unread are errors.
+/// Settings by key. Reading a setting marks it as known; unread settings are errors.
 class Settings {
  public:
   Settings() = default;
   /// @param owner for messages, such as "controller 'lane-keeping'"
   Settings(std::string owner, std::vector<Setting> settings);
 
-  // Each returns the fallback when the key is absent.
-  // @throws base::InputError for a value of another type or outside [least, most].
+  // Each function returns the fallback if the key is absent.
+  // @throws base::InputError for a value of another type or outside [least, most]
   double number(std::string_view key, double fallback, double least, double most);
   bool flag(std::string_view key, bool fallback);
   std::string text(std::string_view key, const std::string& fallback);
-  /// One of `words`.
+  /// Returns one of `words`.
   std::string choice(std::string_view key, const std::string& fallback, const std::vector<std::string>& words);
   std::vector<double> numbers(std::string_view key, const std::vector<double>& fallback);
   std::vector<std::string> texts(std::string_view key, const std::vector<std::string>& fallback);
   bool has(std::string_view key) const;
 
-  /// @throws base::InputError naming the first unread setting, and the keys that were requested.
+  /// @throws base::InputError naming the first unread setting, and the keys that were requested
   void require_all_read() const;
-  /// Always throws. @throws base::InputError with the location of the setting `key`.
+  /// @throws base::InputError always, with the location of the setting `key`
   [[noreturn]] void refuse(std::string_view key, const std::string& message) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 // Viewpoints for exploration: for every lattice node, the robot headings with which a laser at that node would see an
-// unexplored target cell, in field of view and range, without an obstacle or much unexplored ground in between.
+// unexplored target cell, within field of view and range, without an obstacle or much unexplored ground in between.
 
 #include <cstdint>
 #include <unordered_map>
@@ -22,18 +22,18 @@ class ViewpointPlanner {
  public:
   ViewpointPlanner(const ExplorationMap& map, const ScannerModel& eye);
 
-  /// Computes all viewpoints anew.
+  /// Recomputes all viewpoints.
   /// @param all true: all unexplored cells are targets; false: only those adjacent to free cells
   /// @param range [m] maximum viewing distance
-  /// @param graze occupied nodes that a line of sight may cross, since it may pass beside the surface
+  /// @param graze occupied nodes that a line of sight may cross, since it may pass next to the surface
   /// @return number of target cells
   std::size_t update(bool all, double range, int graze = 0);
 
-  /// A laser at node `sensor` of a robot with this heading would see a target cell.
+  /// Returns whether a laser at node `sensor` of a robot with this heading would see a target cell.
   bool sees_target(Node sensor, int heading) const {
     return (headings_[static_cast<std::size_t>(sensor)] >> heading & 1u) != 0;
   }
-  /// The target cells that it would see.
+  /// Returns the target cells that it would see.
   std::vector<maps::CellAt> targets(Node sensor, int heading) const;
 
   /// Records that a cell was not seen from a viewpoint. Viewpoints near it are no longer used for this cell, and after

@@ -58,10 +58,10 @@ base::Twist Wander::step(const ControllerInput& input) {
 }
 
 void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
-  // Touched only from behind: backing off would keep the contact.
+  // If the robot is touched only from behind, backing off would keep the contact.
   const bool from_behind = input.state.contact_mask != 0 && (input.state.contact_mask & ~kRear) == 0;
   if (input.contact && from_behind) return drive_away(clearance);
-  // After another contact: back off, then turn by a random angle.
+  // After any other contact: back off, then turn by a random angle.
   if (input.contact) {
     if (mode_ == Mode::back) return start_turn(clearance, 0.5 + 2.0 * random());
     start_turn(clearance, 0.5 + 2.0 * random());
@@ -78,7 +78,7 @@ void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
       turned_ = 0.0;
       return;
     case Mode::turn: {
-      // After a full turn without a gap a smaller free distance suffices.
+      // After a full turn without a gap, a smaller free distance suffices.
       const double enough = turned_ > 2.0 * M_PI ? settings_.stop : settings_.resume;
       const bool free = clearance_estimator_.range() <= 0.0 || clearance.ahead >= enough;
       if (turned_ >= least_ && free) mode_ = Mode::cruise;
@@ -88,7 +88,7 @@ void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
   }
 }
 
-/// Forward where there is some room, else a turn in place.
+/// Drives forward if there is some room, otherwise turns in place.
 void Wander::drive_away(const Clearance& clearance) {
   const bool room = clearance_estimator_.range() <= 0.0 || clearance.ahead > 0.25 * settings_.stop;
   if (room)
@@ -112,7 +112,7 @@ void Wander::start_back(std::int64_t time) {
 }
 
 base::Twist Wander::turn() const {
-  // A car turns in a tight curve as far as contacts allow.
+  // A car turns in a curve as tight as contacts allow.
   return {settings_.turns_in_place ? 0.0 : 0.3 * settings_.speed, 0.0, side_ * settings_.turn};
 }
 
@@ -123,7 +123,7 @@ base::Twist Wander::cruise(const Clearance& clearance, std::int64_t time) {
   }
   if (clearance_estimator_.range() <= 0.0) return {settings_.speed, 0.0, drift_};
 
-  // 1 at the stop distance, 0 where it is free: slower, and more towards the freer side.
+  // 1 at the stop distance, 0 on free ground: slower, and more towards the freer side.
   const double near =
       std::clamp((settings_.slow - clearance.ahead) / std::max(settings_.slow - settings_.stop, 1e-9), 0.0, 1.0);
   const double sides = clearance.left + clearance.right;

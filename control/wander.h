@@ -1,7 +1,7 @@
 #pragma once
-// Wandering without a map: drives where there is room, slows down near obstacles, turns to the freer side before
-// contact, and after a contact backs off and turns by a random angle. Drives forward when touched only from behind.
-// Works with any laser, several, or none.
+// Wanders without a map: drives where there is room, slows down near obstacles, turns to the freer side before contact,
+// and after a contact backs off and turns by a random angle. Drives forward if touched only from behind. Works with any
+// laser, several, or none.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace sf::control {
 
-/// Distances from the body's front, derived from the mover's dimensions and limits. [m]
+/// Distances [m] from the body's front, derived from the mover's dimensions and limits.
 struct WanderSettings {
   double speed = 0.4;   ///< [m/s] on free ground
   double turn = 1.0;    ///< [rad/s] when blocked
@@ -27,10 +27,10 @@ WanderSettings wander_settings(const world::Mover& mover, double range);
 class Wander final : public Controller {
  public:
   /// @param robot row of the mover; selects the robot's random numbers
-  /// @param speed [m/s] on free ground; none: that of `wander_settings`
+  /// @param speed [m/s] on free ground; nullopt: the speed of `wander_settings`
   Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed, std::optional<double> speed = {});
 
-  /// Depends on the inputs so far and on (seed, robot) alone.
+  /// Depends only on the inputs so far and on (seed, robot).
   base::Twist step(const ControllerInput& input) override;
 
  private:
