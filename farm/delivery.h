@@ -12,20 +12,20 @@
 
 namespace sf::farm {
 
-/// Holds back the readings of sensors with a latency. Without such sensors `deliver` returns its argument.
+/// Delays the readings of sensors with a latency. Without such sensors `deliver` returns its argument.
 class Delivery {
  public:
   /// `sensor_set` must outlive it.
   explicit Delivery(const sensors::SensorSet& sensor_set);
 
-  /// The sensor set has got more sensors.
+  /// Call this after the sensor set has gained sensors.
   void add_sensors();
 
   /// Takes the readings measured at `now` [ns] and returns those delivered at `now`: first the delayed ones, in order
-  /// of their delivery times, then those without latency. Blocks live until the next call.
+  /// of their delivery times, then those without latency. Blocks are valid until the next call.
   std::span<const base::ReadingBlock> deliver(std::int64_t now, std::span<const base::ReadingBlock> measured);
 
-  /// [ns] Delivery time of the next delayed reading; kNever: none waits.
+  /// Returns the delivery time [ns] of the next delayed reading; kNever: no reading is waiting.
   std::int64_t next() const { return next_; }
 
  private:
@@ -42,7 +42,7 @@ class Delivery {
   std::int64_t next_ = kNever;
   std::vector<Waiting> waiting_;  ///< slots are reused with their memory
   std::vector<Waiting*> ready_;
-  std::vector<Waiting*> last_delivered_;  ///< their slots are free at the next call
+  std::vector<Waiting*> last_delivered_;  ///< their slots are freed at the next call
   std::vector<base::ReadingBlock> delivered_;
 };
 

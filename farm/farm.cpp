@@ -51,23 +51,23 @@ struct Farm::State {
   std::vector<SensorPipeline> pipelines;
   std::unique_ptr<gpu::Batch> batch;
   Delivery delivery;
-  std::unique_ptr<PoseChanges> pose_changes;  ///< of this tick
-  std::vector<base::Report> states;       ///< per mover, as sensed in this tick or sample; backends have a view of it
-  std::vector<base::Report> tick_states;  ///< of the last tick, while samples follow it
-  bool between = false;                   ///< `states` are those of a sample
-  std::vector<std::uint32_t> subscribed;  ///< per mover: bits of sensor types
-  std::vector<std::uint8_t> gone;         ///< per mover
+  std::unique_ptr<PoseChanges> pose_changes;  ///< of the current tick
+  std::vector<base::Report> states;           ///< per mover, as sensed in this tick or sample; backends view it
+  std::vector<base::Report> tick_states;      ///< of the last tick, while samples follow it
+  bool between = false;                       ///< `states` belongs to a sample
+  std::vector<std::uint32_t> subscribed;      ///< per mover: bits of sensor types
+  std::vector<std::uint8_t> gone;             ///< per mover
   std::vector<base::StateQuality> qualities;  ///< per mover; empty: none was set
   std::vector<base::ReadingBlock> blocks;
-  SensorPipeline* lender = nullptr;   ///< `blocks` are its vector of readings, and it has theirs
+  SensorPipeline* lender = nullptr;   ///< its vector of readings is swapped with `blocks`
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
-  sensors::SensorStats earlier_work;  ///< of backends that were replaced
+  sensors::SensorStats earlier_work;  ///< of replaced backends
   std::uint64_t hash = 0;
-  std::optional<Sharing> sharing;  ///< none: this farm senses the whole fleet
+  std::optional<Sharing> sharing;  ///< nullopt: this farm senses the whole fleet
   FarmOptions options;
-  std::int64_t last_call = -1;  ///< [ns] of a tick or sample; -1: there was none
-  std::int64_t last_tick = -1;  ///< [ns] of a tick; -1: there was none
+  std::int64_t last_call = -1;  ///< [ns] of the last tick or sample; -1: none yet
+  std::int64_t last_tick = -1;  ///< [ns] of the last tick; -1: none yet
 
   State(const world::World& w, gpu::Device& d, const FarmOptions& given)
       : world(w),
@@ -109,7 +109,7 @@ struct Farm::State {
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
 };
 
-/// @param of outlives them, as do the states
+/// @param of must outlive the pipelines, as must the states
 std::vector<SensorPipeline> Farm::State::make_pipelines(const sensors::SensorSet& of,
                                                         std::span<const base::Report> sensed) {
   const sensors::SensorContext context{world,        device,        thread_pool,        sensed,
@@ -124,7 +124,7 @@ std::vector<SensorPipeline> Farm::State::make_pipelines(const sensors::SensorSet
   return made;
 }
 
-/// All that can fail comes first.
+/// Everything that can fail comes first.
 std::shared_ptr<const void> Farm::State::add_mover() {
   SF_CHECK(states.size() + 1 == world.movers.size() && exchange() == nullptr, std::to_string(states.size()));
   clear_blocks();
@@ -189,7 +189,7 @@ void Farm::State::prepare() {
     rerecord |= pipeline.prepare();
   }
   if (!rerecord) return;
-  // A kernel is compiled when it is first recorded, so kernels that were never needed are left out.
+  // A kernel is compiled when it is first recorded, so kernels that were never needed are not recorded.
   batch->begin();
   for (SensorPipeline& pipeline : pipelines)
     if (pipeline.active) pipeline.backend->record_measure(*batch);
@@ -218,7 +218,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   watch.lap(stats.lists_s);
   submit();
   watch.lap(stats.device_s);
-  // Sensors of the host are read while the device runs.
+  // Reads sensors of the host while the device runs.
   const auto collect_all = [&](bool from_device) {
     for (SensorPipeline& pipeline : pipelines)
       if (!pipeline.derived() && pipeline.needs_device() == from_device) collect(pipeline, now, reuse);
@@ -254,7 +254,7 @@ void Farm::State::clear_blocks() {
   blocks.clear();
 }
 
-/// Copies a type's readings behind those of the types before it. Those of the first are swapped, not copied.
+/// Appends a type's readings. Swaps the readings of the first type instead of copying them.
 void Farm::State::append(SensorPipeline& pipeline) {
   if (blocks.empty() && exchange() == nullptr) {
     blocks.swap(pipeline.blocks);
@@ -264,7 +264,7 @@ void Farm::State::append(SensorPipeline& pipeline) {
   blocks.insert(blocks.end(), pipeline.blocks.begin(), pipeline.blocks.end());
 }
 
-/// The values of a reading as sent, from which the hash is computed.
+/// Returns the values of a reading as sent, from which the hash is computed.
 std::span<const double> Farm::State::sent(const base::ReadingBlock& reading, unsigned thread) {
   if (!no_return_inf || reading.hits.empty()) return reading.values;
   std::vector<double>& values = marked[thread];

@@ -10,7 +10,7 @@ namespace sf::farm {
 
 namespace {
 
-/// Bitwise, since the sign of a zero may affect a reading.
+/// Compares bitwise, since the sign of a zero may affect a reading.
 bool same(const base::Pose& p, const base::Pose& q) {
   using Bits = std::array<std::uint64_t, 4>;
   static_assert(sizeof(base::Pose) == sizeof(Bits));

@@ -15,23 +15,23 @@ class PoseChanges {
   /// `world` must outlive it.
   explicit PoseChanges(const world::World& world);
 
-  /// Starts a tick, without moved movers.
+  /// Starts a tick without moved movers.
   void begin();
-  /// Records the motion of `mover`. Ignored when both poses are bitwise equal.
+  /// Records the motion of `mover`. Ignores it if both poses are bitwise equal.
   void add(std::uint32_t mover, const base::Pose& from, const base::Pose& to);
 
   bool any() const { return !moved_.empty(); }
   bool moved(std::uint32_t mover) const { return flags_[mover]; }
-  /// A mover that moved carries magnets.
+  /// Returns whether a mover that moved carries magnets.
   bool magnets() const { return magnets_; }
-  /// True when a mover that moved was or is, with any part, within `reach` [m] of `p`. Movers without a body are
-  /// ignored.
+  /// Returns whether a mover that moved was or is, with any part, within `reach` [m] of `p`. Ignores movers without a
+  /// body.
   bool within(glm::dvec2 p, double reach);
 
  private:
   struct Place {
     double x, y;    ///< [m]
-    double radius;  ///< [m] of the mover
+    double radius;  ///< [m] radius of the mover
   };
   const world::World& world_;
   std::vector<std::uint32_t> moved_;
@@ -39,7 +39,7 @@ class PoseChanges {
   std::vector<Place> places_;
   double largest_ = 0.0;  ///< [m] largest radius of all movers
   bool magnets_ = false;
-  bool sorted_ = true;  ///< `places_` is in order of x
+  bool sorted_ = true;  ///< `places_` is sorted by x
 };
 
 }  // namespace sf::farm

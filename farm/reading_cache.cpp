@@ -6,7 +6,7 @@ namespace sf::farm {
 
 namespace {
 
-/// Searches in 32 bits may reach slightly beyond a sensor's range; their results do not.
+/// Searches in 32 bits may extend slightly beyond a sensor's range; their results do not.
 constexpr double kMargin = 1e-5;
 
 double reach_of(const sensors::SensorSpec& row) {

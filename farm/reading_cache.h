@@ -1,7 +1,7 @@
 #pragma once
-// Cached readings of sensors near which nothing moves. A cached reading is reused instead of measured again.
+// Caches readings of sensors near which nothing moves. A cached reading is reused instead of measured again.
 //
-// A reading without noise is a function of its sensor's pose and of the poses of the movers within
+// A reading without noise depends only on its sensor's pose and on the poses of the movers within
 // `SensorSpec::dependency_radius`. A cached reading is valid until one of these changes. Only the second reading
 // without a change in between is stored, so sensors of driving robots copy nothing. Later readings reuse it, byte for
 // byte.
@@ -23,9 +23,10 @@ class ReadingCache {
   /// @param rows of the type @param noise whether readings carry noise
   ReadingCache(std::span<const sensors::SensorSpec> rows, bool noise);
 
-  /// Invalidates readings affected by the moves of a tick. Called with the states after the moves, before the readings.
+  /// Invalidates readings affected by the moves of a tick. Call it with the states after the moves, before the
+  /// readings.
   void invalidate(PoseChanges& pose_changes, std::span<const base::Report> states);
-  /// A valid reading of sensor `row` is stored.
+  /// Returns whether a valid reading of sensor `row` is stored.
   bool has(std::uint32_t row) const { return validity_[row] == Validity::stored; }
   /// @pre has(row)
   const base::ReadingBlock& reading(std::uint32_t row) const { return stored_[row]->block(); }
@@ -43,9 +44,9 @@ class ReadingCache {
   struct Carrier {
     std::uint32_t mover;
     std::uint32_t first, end;  ///< rows
-    double reach;              ///< [m] from the mover's origin, largest of all of them
-    bool depends_on_magnets;   ///< they depend on magnets, not on bodies
-    bool unchanged;            ///< some sensor is `unchanged` or `stored`
+    double reach;              ///< [m] from the mover's origin, the largest of its sensors
+    bool depends_on_magnets;   ///< the sensors depend on magnets, not on bodies
+    bool unchanged;            ///< at least one sensor is `unchanged` or `stored`
   };
   void invalidate_all(Carrier& carrier);
 

@@ -24,7 +24,7 @@ std::span<const T> get_all(std::vector<T>& row, base::ByteReader& in) {
 
 void write_reading(const base::ReadingBlock& reading, base::ByteWriter& out) {
   static_assert(std::is_trivially_copyable_v<base::ReadingBlock>);
-  out.put_bytes(&reading, sizeof reading);  // spans with it, whose addresses mean nothing elsewhere
+  out.put_bytes(&reading, sizeof reading);  // includes spans, whose addresses are meaningless in other processes
   put_all(reading.values, out);
   put_all(reading.hits, out);
   put_all(reading.quality, out);

@@ -12,7 +12,7 @@ std::uint64_t late_rank(const sensors::SensorSpec& row, std::uint8_t type) {
   return std::uint64_t{row.mover} << 31 | std::uint64_t{type} << 23 | row.sensor;
 }
 
-/// The others follow type by type, derived types after all others.
+/// The other readings follow type by type, derived types last.
 std::uint64_t prompt_rank(const sensors::SensorType& type, std::size_t row) {
   return std::uint64_t{1} << 63 | std::uint64_t{type.derived_from != 0} << 62 | std::uint64_t{type.id} << 32 | row;
 }

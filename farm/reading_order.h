@@ -1,6 +1,6 @@
 #pragma once
-// The order in which a farm delivers its readings, as a key of each reading: so that parts of a fleet, measured by
-// different processes, can be put together again.
+// The order in which a farm delivers its readings, as a key of each reading. It allows merging parts of a fleet that
+// different processes measure.
 
 #include <compare>
 #include <cstdint>
@@ -13,16 +13,16 @@ namespace sf::farm {
 
 class ReadingOrder {
  public:
-  /// Readings in ascending order of keys are in order of delivery, over all calls of `tick` and `sample`.
+  /// Readings in ascending order of keys are in order of delivery, across all calls of `tick` and `sample`.
   struct Key {
     std::int64_t due = 0;    ///< [ns] time of the measurement and latency
-    std::uint64_t rank = 0;  ///< among those due at one time: late readings by robot, then others by type
+    std::uint64_t rank = 0;  ///< among readings due at one time: late readings by robot, then others by type
     auto operator<=>(const Key&) const = default;  // NOLINT(modernize-use-nullptr): misread by clang-tidy 14
   };
 
   explicit ReadingOrder(const sensors::SensorSet& sensor_set);
 
-  /// Number of a reading's sensor among all of the world, from 0.
+  /// Returns the number of a reading's sensor among all sensors of the world, from 0.
   std::uint32_t sensor_of(std::uint8_t type, std::uint32_t mover, std::uint32_t sensor) const;
   std::uint32_t sensors() const { return static_cast<std::uint32_t>(sensors_.size()); }
   /// @param sensor number of the sensor @param time [ns] of the measurement
@@ -37,7 +37,7 @@ class ReadingOrder {
     std::uint64_t rank;
   };
   struct Type {
-    std::uint32_t before = 0;          ///< sensors of types before this one
+    std::uint32_t before = 0;          ///< number of sensors of types before this one
     std::vector<std::uint32_t> first;  ///< per mover: its first row
   };
   std::vector<Sensor> sensors_;

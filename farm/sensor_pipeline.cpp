@@ -9,7 +9,7 @@ namespace sf::farm {
 
 namespace {
 
-/// Where no element has a bound, as with noise, a reading states none.
+/// States no bound if no element has one, as for noisy readings.
 void withdraw_bound(double sigma, base::ReadingBlock& block) {
   if (sigma > 0.0 && block.sigma == 0.0) block.sigma = sigma;
   const auto& flags = block.quality;
@@ -39,7 +39,7 @@ SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sens
 
 void SensorPipeline::go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call) {
   if (last_tick >= 0) backend->accumulate(last_tick, false);
-  // A time that has passed is found in two steps at most, as rounding may put it before its reading.
+  // Two steps suffice to find a past due time, because rounding may place it before its reading.
   const std::vector<std::uint32_t> none(movers.empty() ? 0 : movers.back() + 1, 0u);
   for (int step = 0; step < 2 && last_call >= 0; ++step) find_due(last_call, none);
   due.clear();
@@ -63,8 +63,8 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
     const std::uint64_t skipped = should - timing.started - 1;
     timing.started = should;
     timing.next = due_time(should, timing.rate, timing.phase);
-    // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers stay
-    // unused.
+    // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers are not
+    // used.
     for (std::uint32_t row = timing.first; row < timing.end; ++row) {
       if ((subscribed[movers[row]] & type) == 0) continue;
       due.push_back({row, should - 1});
@@ -110,7 +110,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Repo
                                     base::ThreadPool& thread_pool) {
   blocks.resize(due.size());
   backend->collect(std::span(blocks).first(to_measure.size()));
-  // Reused readings are inserted among the measured ones, from the last one backwards.
+  // Inserts reused readings among the measured ones, from the end backwards.
   const std::size_t again = due.size() - to_measure.size();
   std::size_t fresh = to_measure.size();
   for (std::size_t i = due.size(); i-- > fresh;) {

@@ -21,8 +21,8 @@ struct SensorPipeline {
   /// The due times of consecutive sensors with the same rate and phase.
   struct Timing {
     double rate, phase;        ///< [Hz], [s]
-    std::uint64_t started;     ///< readings of each
-    std::int64_t next;         ///< [ns] due time of the next one
+    std::uint64_t started;     ///< readings of each sensor
+    std::int64_t next;         ///< [ns] due time of the next reading
     std::uint32_t first, end;  ///< rows
   };
   std::vector<Timing> timings;
@@ -30,9 +30,11 @@ struct SensorPipeline {
   std::vector<sensors::DueSample> due;
   std::vector<sensors::DueSample> to_measure;  ///< due sensors without a reusable reading
   std::vector<base::ReadingBlock> blocks;      ///< readings of all due sensors, in order
-  bool active = false;                         ///< its kernels are recorded in the batch, from its first measurement on
-  bool idle = true;                            ///< the backend was last prepared without due sensors
-  bool uploaded = true;  ///< the device's tables are up to date with that, as far as the kernels are recorded
+  bool active = false;                         ///< its kernels are recorded in the batch; true from its first
+                                               ///< measurement on
+  bool idle = true;                            ///< no sensor was due when the backend was last prepared
+  bool uploaded = true;                        ///< the device's tables match that preparation, as far as the kernels
+                                               ///< are recorded
 
   /// @param group must outlive it
   SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& group);
@@ -45,22 +47,23 @@ struct SensorPipeline {
     for (; row != group->rows.end() && row->mover == mover; ++row)
       visit(static_cast<std::uint32_t>(row - group->rows.begin()));
   }
-  /// Goes on where the pipeline before a new mover was: its sensors are the first rows of this one.
-  /// @param before its backend is of no use afterwards, but its readings are; null: there was none
+  /// Continues from the pipeline before a new mover: its sensors are the first rows of this one.
+  /// @param before its backend must not be used afterwards, but its readings may; null: there was none
   /// @param last_tick, last_call [ns] of the farm's last tick, and of that or a later sample; -1: there was none
   void go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call);
   bool derived() const { return group->type->derived_from != 0; }
-  /// Finds the sensors of this type due at `now` [ns].
+  /// Finds the sensors of this type that are due at `now` [ns].
   /// @param subscribed per mover: bits of sensor types
-  /// @return readings of subscribed sensors that were due before, are superseded at `now` and were never measured
+  /// @return number of readings of subscribed sensors that were due before, are superseded at `now` and were never
+  /// measured
   std::uint64_t find_due(std::int64_t now, std::span<const std::uint32_t> subscribed);
-  /// [ns] Due time of the next subscribed sensor; kNever: none.
+  /// Returns the due time [ns] of the next subscribed sensor; kNever: none.
   std::int64_t next_due(std::span<const std::uint32_t> subscribed) const;
   /// Splits the due sensors. @param reuse whether cached readings may be used
   void split(bool reuse);
-  /// @return true when the batch must be recorded again.
+  /// @return true if the batch must be recorded again
   bool prepare();
-  /// The batch has work for this sensor type.
+  /// Returns whether the batch has work for this sensor type.
   bool needs_device() const { return !to_measure.empty() && backend->on_device(); }
   void add_copies(gpu::Batch& batch);
   /// Fills `blocks`. @return number of reused readings

@@ -1,5 +1,5 @@
 #pragma once
-// The hash of readings that several processes measure, each a part of them: equal to that of one process.
+// Hash of readings that several processes measure in parts. It equals the hash of a single process.
 
 #include <cstdint>
 #include <span>
@@ -11,20 +11,21 @@
 
 namespace sf::farm {
 
-/// Collects the hashes of one process' readings, call by call, and chains those of all processes. All make the same
-/// calls at the same times. Bytes: per call their number, then a sensor and a hash each, and the time of late readings.
+/// Collects the hashes of one process' readings, call by call, and chains those of all processes. All processes make
+/// the same calls at the same times. Bytes: for each call the number of readings, then a sensor and a hash for each
+/// reading, and the time of late readings.
 class SharedHash {
  public:
   explicit SharedHash(const sensors::SensorSet& sensor_set) : order_(sensor_set) {}
 
-  /// The fleet has got more sensors.
+  /// Call this after the fleet has gained sensors.
   void add_sensors(const sensors::SensorSet& sensor_set) { order_ = ReadingOrder(sensor_set); }
   /// Adds a call's readings. @param now [ns] @param hashes one per reading
   void add_call(std::int64_t now, std::span<const base::ReadingBlock> readings, std::span<const std::uint64_t> hashes);
   /// Writes all calls since the last `write`.
   void write(base::Bytes& out);
-  /// Chains the calls of all processes since the last `chain`, from what they wrote.
-  /// @param parts one reader per process, at its calls; out: behind them @return the hash of all calls so far
+  /// Chains the calls of all processes since the last `chain`, from their written bytes.
+  /// @param parts one reader per process, at its calls; out: after them @return the hash of all calls so far
   std::uint64_t chain(std::span<base::ByteReader> parts);
 
  private:

@@ -17,34 +17,34 @@ class Sharing {
  public:
   Sharing(const sensors::SensorSet& sensor_set, std::size_t movers);
 
-  /// Another process measures the mover's sensors and delivers their readings. They are still due here, as far as
-  /// `Farm::next_due` and the numbers of readings are concerned.
+  /// Leaves the mover's sensors to another process, which measures them and delivers their readings. They remain due
+  /// here, as far as `Farm::next_due` and the numbers of readings are concerned.
   void leave_to_others(std::uint32_t mover);
-  /// Whether this process measures the mover's subscribed sensors, whichever process delivers their readings.
+  /// Sets whether this process measures the mover's subscribed sensors, whichever process delivers their readings.
   void set_measured_here(std::uint32_t mover, bool here);
-  /// Where the mover is, another process knows and this one does not: no sensor here detects it until it is shown
-  /// again. The first report after that sets its pose.
+  /// Hides a mover whose pose only another process has: no sensor here detects it until it is shown again. The first
+  /// report after that sets its pose.
   void set_hidden(std::uint32_t mover, bool hidden) { hidden_.at(mover) = hidden ? 1 : 0; }
-  /// Passes readings from the process that measures them to the one that delivers them. @param exchange must outlive
-  /// the farm; null: none
+  /// Passes readings from the process that measures them to the process that delivers them. @param exchange must
+  /// outlive the farm; null: none
   void set_exchange(ReadingExchange* exchange) { exchange_ = exchange; }
 
-  /// Writes the hashes of this process' readings since the last call, for the others (farm/shared_hash.h).
+  /// Writes the hashes of this process' readings since the last call, for the other processes (farm/shared_hash.h).
   void write_hashes(base::Bytes& out) { hashes_.write(out); }
   /// Chains the hashes of all processes. @param parts one reader per process, at the bytes of its `write_hashes`; out:
-  /// behind them
+  /// after them
   void add_hashes(std::span<base::ByteReader> parts) { hash_ = hashes_.chain(parts); }
-  /// Of the readings chained so far.
+  /// Returns the hash of the readings chained so far.
   std::uint64_t hash() const { return hash_; }
 
-  // For the farm.
+  // For use by the farm:
 
   void subscribe(std::uint32_t mover, std::uint32_t types);
-  /// The world has one more mover, in its last row.
+  /// Call this after the world has gained one mover, in its last row.
   void add_mover(const sensors::SensorSet& sensor_set);
   bool is_hidden(std::uint32_t mover) const { return hidden_[mover] != 0; }
   ReadingExchange* exchange() const { return exchange_; }
-  /// Per mover: bits of the subscribed sensor types that are measured here, or delivered here.
+  /// Returns per mover the bits of the subscribed sensor types that are measured here, or delivered here.
   std::span<const std::uint32_t> measured_types() const { return measured_types_; }
   std::span<const std::uint32_t> delivered_types() const { return delivered_types_; }
   void add_call(std::int64_t now, std::span<const base::ReadingBlock> readings, std::span<const std::uint64_t> hashes) {

@@ -24,7 +24,7 @@ class StoredReading {
     block_.hits = hits_;
     block_.quality = quality_;
   }
-  /// Its spans live until the next `take`.
+  /// Its spans are valid until the next `take`.
   const base::ReadingBlock& block() const { return block_; }
 
  private:
