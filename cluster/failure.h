@@ -1,5 +1,5 @@
 #pragma once
-// Errors that all ranks know of: the job ends as a process of its own would, with one message and one exit code.
+// Errors that are shared by all ranks: the job ends with one message and one exit code, like a single process.
 
 #include <functional>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace sf::cluster {
 
-/// The first rank's error, thrown on all of them.
+/// The first rank's error, thrown on all ranks.
 class Failure : public std::runtime_error {
  public:
   Failure(int code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -19,13 +19,13 @@ class Failure : public std::runtime_error {
   int code_;
 };
 
-/// Exit code of the exception that is being handled: 2 base::InputError, 3 base::DeviceError, 1 any other.
+/// Returns the exit code of the exception that is being handled: 2 base::InputError, 3 base::DeviceError, 1 any other.
 /// @param message out
 int code_of_current(std::string& message);
 
-/// Runs `body` on all ranks. @throws Failure on all of them where it threw on one
+/// Runs `body` on all ranks. @throws Failure on all ranks if it throws on one
 void agree(Ranks& ranks, const std::function<void()>& body);
-/// Likewise; without ranks `body()` with its own error. @param ranks may be null
+/// Does the same; without ranks it calls `body()`, which throws its own error. @param ranks may be null
 void agree(Ranks* ranks, const std::function<void()>& body);
 
 }  // namespace sf::cluster

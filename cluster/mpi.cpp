@@ -1,4 +1,4 @@
-// The ranks of an MPI job. The only source that includes MPI.
+// The ranks of an MPI job. No other source includes MPI.
 
 #include <mpi.h>
 
@@ -17,10 +17,10 @@ using Clock = std::chrono::steady_clock;
 
 class MpiRanks final : public Ranks {
  public:
-  /// @param owner of MPI: it ends with this. Else a program that uses MPI itself ends it.
+  /// @param owner true: finalizes MPI when it is destroyed; false: the program itself uses MPI and finalizes it
   explicit MpiRanks(bool owner) : owner_(owner) {
     int rank = 0, size = 1, beside = 1;
-    MPI_Comm_dup(MPI_COMM_WORLD, &all_ranks_);  // apart from such a program's messages
+    MPI_Comm_dup(MPI_COMM_WORLD, &all_ranks_);  // separate from messages of such a program
     MPI_Comm_rank(all_ranks_, &rank);
     MPI_Comm_size(all_ranks_, &size);
     MPI_Comm machine = MPI_COMM_NULL;
@@ -102,7 +102,7 @@ class MpiRanks final : public Ranks {
   MPI_Comm all_ranks_ = MPI_COMM_NULL;
   unsigned rank_ = 0, size_ = 1, beside_ = 1;
   Block block_;
-  int own_size_ = 0;                 ///< [byte] of it
+  int own_size_ = 0;                 ///< [byte] of `block_`
   std::vector<int> sizes_, starts_;  ///< [byte] per rank
   std::vector<std::uint8_t> all_;
   std::vector<Block> blocks_;

@@ -10,7 +10,7 @@
 namespace sf::cluster {
 
 bool is_rank() {
-  // Open MPI's mpirun; PMIx and PMI-2, as of srun --mpi. A plain srun starts programs that know nothing of each other.
+  // Open MPI's mpirun; PMIx and PMI-2, as set by srun --mpi. A plain srun starts independent programs.
   constexpr std::array kMarks{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
   return std::any_of(kMarks.begin(), kMarks.end(), [](const char* mark) { return std::getenv(mark) != nullptr; });
 }

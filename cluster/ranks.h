@@ -1,12 +1,12 @@
 #pragma once
-// Ranks: the processes of one job over one or more machines, as `mpirun -n N` starts them.
+// Ranks: the processes of one job on one or more machines, as started by `mpirun -n N`.
 //
-//   const std::unique_ptr<cluster::Ranks> ranks = cluster::join();  // null: a process of its own
+//   const std::unique_ptr<cluster::Ranks> ranks = cluster::join();  // null: a single process
 //   ranks->begin(block);                                            // one block of bytes per rank
 //   ...                                                             // work meanwhile
-//   for (const auto block : ranks->finish()) ...                    // those of all ranks
+//   for (const auto block : ranks->finish()) ...                    // the blocks of all ranks
 //
-// MPI is used in one source, a plug-in (cluster/mpi.cpp, `sensorfarm_mpi.so`) that is loaded in such a process alone.
+// Only one source, a plug-in (cluster/mpi.cpp, `sensorfarm_mpi.so`), uses MPI. Only processes started as ranks load it.
 
 #include <cstdint>
 #include <memory>
@@ -19,26 +19,25 @@ namespace sf::cluster {
 /// Bytes of one rank.
 using Block = std::span<const std::uint8_t>;
 
-/// What exchanges have cost so far.
+/// Cost of the exchanges so far.
 struct ExchangeCounts {
   std::uint64_t exchanges = 0;
-  std::uint64_t bytes = 0;  ///< sent by this rank, counted once where every other rank receives them
+  std::uint64_t bytes = 0;  ///< sent by this rank, counted once if every other rank receives them
   double wait_s = 0.0;      ///< [s] in `begin`, `finish` and `swap`
 };
 
-/// One thread. All ranks call `begin` and `finish` in the same order.
+/// Single-threaded. All ranks call `begin` and `finish` in the same order.
 class Ranks {
  public:
   virtual ~Ranks() = default;
   virtual unsigned rank() const = 0;    ///< in [0, size())
   virtual unsigned size() const = 0;    ///< at least 1
-  virtual unsigned beside() const = 0;  ///< ranks on this machine, this one among them
-  /// Starts an exchange. @param block at most 2 GiB with those of all ranks; unchanged until after `finish`
+  virtual unsigned beside() const = 0;  ///< number of ranks on this machine, including this one
+  /// Starts an exchange. @param block at most 2 GiB together with those of all ranks; unchanged until after `finish`
   virtual void begin(Block block) = 0;
-  /// Ends it. @return one block per rank; they live until the next `begin`
+  /// Ends the exchange. @return one block per rank, valid until the next `begin`
   virtual std::span<const Block> finish() = 0;
-  /// Sends each rank a block of its own. @param to one per rank @return one from each rank; they live until the next
-  /// call
+  /// Sends each rank its own block. @param to one per rank @return one from each rank, valid until the next call
   virtual std::span<const Block> swap(std::span<const base::Bytes> to) = 0;
   /// Ends the processes of all ranks.
   [[noreturn]] virtual void abort(int code) = 0;
@@ -53,14 +52,14 @@ class Ranks {
   ExchangeCounts counts_;
 };
 
-/// This process was started as a rank: by mpirun, or by srun with an interface for MPI.
+/// Returns whether this process was started as a rank: by mpirun, or by srun with an interface for MPI.
 bool is_rank();
 
-/// Joins the other ranks; null where `is_rank` says no. Called once.
-/// @throws base::InputError where the plug-in or MPI is missing
+/// Joins the other ranks; null if `is_rank` returns false. Call it once.
+/// @throws base::InputError if the plug-in or MPI is missing
 std::unique_ptr<Ranks> join();
 
-/// The plug-in's symbol: `extern "C" sf::cluster::Ranks* sensorfarm_mpi()`, null when MPI cannot start.
+/// The plug-in's symbol: `extern "C" sf::cluster::Ranks* sensorfarm_mpi()`, which returns null if MPI cannot start.
 inline constexpr const char* kMpiSymbol = "sensorfarm_mpi";
 
 }  // namespace sf::cluster

@@ -12,7 +12,7 @@ std::vector<std::uint32_t> equal_shares(std::span<const double> costs, unsigned 
   double before = 0.0;
   std::uint32_t at = 0;
   for (unsigned k = 1; k < shares; ++k) {
-    // An item goes to the share in which its middle lies.
+    // An item belongs to the share that contains its middle.
     const double due = whole * k / shares;
     while (at < costs.size() && before + 0.5 * costs[at] < due) before += costs[at++];
     first.push_back(at);

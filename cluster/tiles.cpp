@@ -28,7 +28,7 @@ void Tiles::divide(std::span<Item> items, const base::Box& box, unsigned first, 
   std::size_t at = 0;
   while (at < items.size() && before + 0.5 * items[at].cost < due) before += items[at++].cost;
 
-  // Without points the plane is cut anywhere; points of one coordinate stay together.
+  // Without points the cut is arbitrary; points with equal coordinates stay together.
   const std::size_t low = at > 0 ? at - 1 : 0, high = std::min(at, items.size() - 1);
   const double between = items.empty() ? 0.0 : 0.5 * items[low].p[axis] + 0.5 * items[high].p[axis];
   const double cut = std::clamp(between, box.min[axis], box.max[axis]);
