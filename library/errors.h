@@ -1,5 +1,5 @@
 #pragma once
-// Errors of the farm as those of the public interface.
+// Converts errors of the farm to those of the public interface.
 
 #include <type_traits>
 
@@ -10,8 +10,8 @@
 
 namespace sf::library {
 
-/// `call()`. @throws sensorfarm::DeviceError for base::DeviceError, sensorfarm::Error for base::InputError, either for
-/// an error of any rank
+/// Returns `call()`. @throws sensorfarm::DeviceError for base::DeviceError, sensorfarm::Error for base::InputError, and
+/// the matching one for an error of any rank
 template <class Call>
 auto translated(Call&& call) -> std::invoke_result_t<Call> {
   try {

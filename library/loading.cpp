@@ -40,7 +40,7 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
 
 std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options) {
   static std::mutex lock;
-  // A process that was forked has devices of its parent, whose threads it lacks: it opens its own.
+  // A forked process inherits its parent's devices without their threads, so it opens its own devices.
   static std::map<std::tuple<pid_t, std::string, bool>, std::weak_ptr<gpu::Device>> open;
   const bool require_vulkan =
       options.require_vulkan || raycast::choose_caster(true, raycast::caster_named(options.caster)).on_device;

@@ -1,5 +1,5 @@
 #pragma once
-// The inputs of a simulation of the public interface.
+// Loads the inputs of a simulation of the public interface.
 
 #include <memory>
 #include <string>
@@ -16,16 +16,16 @@ namespace sf::library {
 /// A world file, or a world's text with a name for it.
 struct WorldSource {
   std::string file;
-  std::string text;  ///< empty: that of `file`
+  std::string text;  ///< empty: the text of `file`
 };
 
-/// `file`, or the installed file of that relative path where it does not exist here.
+/// Returns `file`, or the installed file with that relative path if `file` does not exist here.
 std::string found(const std::string& file);
 
-/// Loads, lends a robot to a world without one, and clones. @throws base::InputError
+/// Loads the world, adds a default robot to a world without one, and clones robots. @throws base::InputError
 world::World load(const WorldSource& source, const sensorfarm::Options& options);
 
-/// The open device that `options` choose, shared by all that ask for it while one of them lives.
+/// Returns the open device that `options` select, shared by all callers as long as one of them holds it.
 /// @throws base::DeviceError
 std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options);
 

@@ -9,7 +9,7 @@ namespace sf::library {
 
 namespace {
 
-cluster::Ranks* known = nullptr;  // by `abort_ranks`, which joins none
+cluster::Ranks* known = nullptr;  // used by `abort_ranks`, which does not join any ranks
 
 }  // namespace
 

@@ -1,12 +1,12 @@
 #pragma once
-// The ranks of this process' job, which all its simulations share.
+// The ranks of this process' job, shared by all its simulations.
 
 #include "cluster/ranks.h"
 
 namespace sf::library {
 
-/// Joins the other ranks at the first call, until the process ends. Null: mpirun has started this process alone, or not
-/// at all. @throws base::InputError where MPI is missing
+/// Joins the other ranks at the first call, until the process ends. Null if the process was not started by mpirun, or
+/// is its only rank. @throws base::InputError if MPI is missing
 cluster::Ranks* joined_ranks();
 
 }  // namespace sf::library

@@ -43,7 +43,7 @@ std::size_t ReadingTable::row_of(const base::ReadingBlock& reading) const {
   return group_.first[reading.mover] + reading.sensor;
 }
 
-/// The farm's buffer has these readings as rows of equal distance.
+/// Returns whether these readings are equidistant rows of the farm's buffer.
 bool ReadingTable::is_one_table(std::span<const base::ReadingBlock> readings) const {
   if (!every_tick_ || readings.size() != view_.sensors) return false;
   const auto step = readings.size() > 1 ? readings[1].values.data() - readings[0].values.data() : 0;

@@ -11,17 +11,17 @@
 
 namespace sf::library {
 
-/// Where all sensors of the type are read at every tick and nowhere else, and the farm's buffer has them row by row,
-/// the table is that buffer; else readings are copied.
+/// If all sensors of the type are read at every tick and at no other time, and the farm's buffer contains them row by
+/// row, the table is that buffer; otherwise readings are copied.
 class ReadingTable {
  public:
   /// @param interval [s] of a tick
   ReadingTable(const sensors::SensorSet::Group& group, double interval);
 
-  /// Takes a tick's readings of this type, in order of delivery. Their memory must last until the next call.
+  /// Takes a tick's readings of this type, in order of delivery. Their memory must be valid until the next call.
   void take(std::span<const base::ReadingBlock> readings);
 
-  /// Takes the rows of a table of the same type, which had fewer sensors.
+  /// Continues with the rows of a table of the same type that had fewer sensors.
   void go_on(const ReadingTable& before);
 
   std::uint8_t type() const { return group_.type->id; }
@@ -35,7 +35,7 @@ class ReadingTable {
   void note(const base::ReadingBlock& reading);
 
   const sensors::SensorSet::Group& group_;
-  bool every_tick_;  ///< each sensor is read at every tick and nowhere else
+  bool every_tick_;  ///< each sensor is read at every tick and at no other time
   sensorfarm::Readings view_;
   std::vector<double> values_;
   std::vector<std::uint32_t> hits_;

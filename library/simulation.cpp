@@ -44,7 +44,7 @@ scenarios::SimulationOptions simulation_options(const Options& options, cluster:
 
 }  // namespace
 
-/// Memory of views from before a robot joined. They keep it alive.
+/// Memory of views created before a robot joined. The views keep it alive.
 struct Earlier {
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
@@ -53,7 +53,7 @@ struct Earlier {
   std::shared_ptr<const void> readings;
 };
 
-/// The rows with one more, whose memory stays in `before`.
+/// Appends a row. The old memory stays in `before`.
 template <class Row>
 void add_row(std::vector<Row>& rows, const Row& row, std::vector<Row>& before) {
   before = rows;
@@ -80,7 +80,7 @@ struct Simulation::State {
 
   library::WorldSource source;
   Options options;
-  cluster::Ranks* ranks;  ///< null: none but this process
+  cluster::Ranks* ranks;  ///< null: a single process
   std::shared_ptr<gpu::Device> device;
   world::World world;
   std::optional<scenarios::Simulation> simulation;
@@ -90,12 +90,12 @@ struct Simulation::State {
   std::vector<std::string> models;
   std::vector<std::string> warnings;
   std::vector<base::Twist> commands;
-  std::vector<base::Twist> sent;  ///< likewise, as other ranks know them
-  bool commanded = false;         ///< some row has no controller
+  std::vector<base::Twist> sent;  ///< the commands as last sent to the other ranks
+  bool commanded = false;         ///< at least one row has no controller
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
   std::vector<std::uint8_t> contacts, done, owned, present;
-  std::shared_ptr<Earlier> earlier = std::make_shared<Earlier>();  ///< of the next robot that joins
+  std::shared_ptr<Earlier> earlier = std::make_shared<Earlier>();  ///< for the next robot that joins
   std::vector<base::ReadingBlock> of_type;                         ///< scratch
   std::vector<std::pair<ImageOptions, viz::TopView>> top_views;    ///< of the last images, the newest at the end
   std::uint64_t tick = 0;
@@ -133,7 +133,7 @@ void Simulation::State::prepare() {
   if (!options.record.empty()) record();
 }
 
-/// Readings of other ranks are in their own parts; without readings the first rank records all.
+/// Readings of other ranks are recorded in their own parts; without readings the first rank records everything.
 void Simulation::State::record() {
   if (options.compression != "zstd" && options.compression != "none")
     throw base::InputError(fmt::format("compression: expected \"zstd\" or \"none\", got \"{}\"", options.compression));
@@ -165,7 +165,7 @@ void Simulation::State::step(std::span<const Twist> given) {
   take(simulation->step());
 }
 
-/// Takes the commands of own rows.
+/// Sets the commands of this rank's rows.
 void Simulation::State::set(std::span<const Twist> given) {
   if (!given.empty() && given.size() != commands.size())
     throw base::InputError(
@@ -180,7 +180,7 @@ void Simulation::State::set(std::span<const Twist> given) {
   }
 }
 
-/// `set` on all ranks: each sends what its rows have new, or why it refuses them.
+/// Calls `set` on all ranks: each sends the new commands of its rows, or the reason why it refuses them.
 void Simulation::State::exchange(std::span<const Twist> given) {
   std::string refusal;
   try {
@@ -341,7 +341,7 @@ void Simulation::step(std::span<const Twist> commands) {
 
 void Simulation::reset() { reset(state_->options.seed); }
 void Simulation::reset(std::uint64_t seed) {
-  // Views of the old run keep its memory, but not its recording, whose folder the new one takes.
+  // Views of the old run keep its memory. Its recording ends here, because the new one uses the same folder.
   finish_recording();
   state_->recorder.reset();
   state_ = library::translated([&] {

@@ -8,7 +8,7 @@ namespace sf::library {
 
 namespace {
 
-// Longer ones first.
+// Longer words precede shorter ones.
 constexpr auto kWords = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"--stage-noise or the world key", "the world key"},
     {"--stage-obstacles or the world key", "the world key"},
