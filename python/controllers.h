@@ -1,6 +1,6 @@
 #pragma once
 // Controllers written in Python: a class with __init__(self, robot, settings) and step(self, input) -> (forward, left,
-// turn). Optional: `rate` [Hz], `on_scans` and `stops_on_bumper` of the class, methods radio_range(), done() and
+// turn). Optional: class attributes `rate` [Hz], `on_scans` and `stops_on_bumper`, methods radio_range(), done() and
 // error() (sensorfarm/controller.h).
 
 #include <pybind11/pybind11.h>
@@ -11,22 +11,23 @@
 
 namespace sensorfarm::python {
 
-/// Adds Robot, SensorInfo, Input, Reading, Neighbour, Light and Settings, local to the library that calls it.
+/// Adds Robot, SensorInfo, Input, Reading, Neighbour, Light and Settings, local to the library that calls this.
 void add_controller_types(pybind11::module_& module);
 
-/// "mine.py:12: ValueError: too fast", with the innermost line in `file`, else the innermost line. Needs the GIL.
+/// Returns "mine.py:12: ValueError: too fast" with the innermost line in `file`, or the innermost line if there is
+/// none. Requires the GIL.
 std::string last_line(pybind11::error_already_set& error, const std::string& file);
 
-/// "mine.py:12: " of a class, method or function; empty where its source is not at hand. Needs the GIL.
+/// Returns "mine.py:12: " for a class, method or function; empty if its source is not available. Requires the GIL.
 std::string place_of(pybind11::handle thing);
 
-/// Arguments of Python classes, which are copies: Python may keep them.
+/// Returns arguments for Python classes. They are copies, because Python may keep them.
 pybind11::object input_of(const Input& input, const Robot& robot);
-/// Hands `settings` to `use` in a form that refuses calls later on.
+/// Passes `settings` to `use` in a form that refuses later calls.
 pybind11::object with_settings(Settings& settings, const pybind11::handle& type, const Robot& robot);
 
-/// The class as a kind of controller, called by its own name. The class is kept for the rest of the program. Its
-/// objects acquire the GIL in each call. Signatures are checked when the first object is made.
+/// Wraps the class as a kind of controller with its own name. Keeps the class for the rest of the program. Its objects
+/// acquire the GIL in each call. Checks signatures when the first object is created.
 /// @throws std::runtime_error for attributes of another type
 ControllerEntry entry_of(pybind11::handle type);
 

@@ -1,5 +1,5 @@
-// The plug-in sensorfarm_python.so: the controllers of a Python file, in the program's own interpreter, or in the one
-// that has loaded the farm.
+// The plug-in sensorfarm_python.so: runs the controllers of a Python file in the program's own interpreter, or in the
+// interpreter that has loaded the farm.
 
 #include <dlfcn.h>
 #include <pybind11/embed.h>
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Python of an active virtual environment of this version, else the one that the plug-in was built with: its modules
-/// are found.
+/// Returns the Python of an active virtual environment of this version, or the Python that the plug-in was built with,
+/// so that its modules are found.
 std::string interpreter_file() {
   const char* const environment = std::getenv("VIRTUAL_ENV");
   std::error_code ignored;
@@ -27,7 +27,7 @@ std::string interpreter_file() {
   return environment != nullptr && fs::exists(own, ignored) ? own.string() : SF_PYTHON;
 }
 
-/// Folder of this plug-in.
+/// Returns the folder of this plug-in.
 fs::path own_folder() {
   Dl_info info = {};
   dladdr(reinterpret_cast<const void*>(&interpreter_file), &info);
@@ -35,13 +35,14 @@ fs::path own_folder() {
   return fs::canonical(info.dli_fname, ignored).parent_path();
 }
 
-/// Waits for threads of Python, calls `atexit` and writes what is printed.
+/// Waits for Python's threads, runs `atexit` handlers and flushes the output.
 void finish() {
   PyGILState_Ensure();
   Py_FinalizeEx();
 }
 
-/// Signals stay the program's. The interpreter's symbols become visible to its compiled modules (numpy).
+/// Starts the interpreter. The program keeps its signal handlers. The interpreter's symbols become visible to its
+/// compiled modules (numpy).
 void start() {
   Dl_info info = {};
   dladdr(reinterpret_cast<const void*>(&Py_IsInitialized), &info);
@@ -56,11 +57,11 @@ void start() {
   if (PyStatus_Exception(status) != 0)
     throw std::runtime_error(std::string("Python does not start: ") +
                              (status.err_msg != nullptr ? status.err_msg : "?"));
-  PyEval_SaveThread();  // threads of controllers take the GIL in turn
+  PyEval_SaveThread();  // threads of controllers acquire the GIL in turn
   std::atexit(finish);
 }
 
-/// Needs the GIL.
+/// Requires the GIL.
 void prepare() {
   static bool prepared = false;
   if (prepared) return;
@@ -73,7 +74,7 @@ void prepare() {
   prepared = true;
 }
 
-/// The file as a module of its own. Its folder is searched for modules first, as Python does for scripts.
+/// Loads the file as a separate module. Its folder is searched for modules first, as Python does for scripts.
 py::object module_of(const std::string& file) {
   const py::module_ util = py::module_::import("importlib.util");
   const py::module_ sys = py::module_::import("sys");
@@ -116,7 +117,7 @@ void fill(const std::string& file, Plugin& plugin) {
 
 }  // namespace sensorfarm::python
 
-/// The classes of `file` (a canonical path) that have a method `step`. @throws std::exception
+/// Adds the classes of `file` (a canonical path) that have a method `step`. @throws std::exception
 extern "C" __attribute__((visibility("default"))) void sensorfarm_python(const char* file, sensorfarm::Plugin& plugin) {
   sensorfarm::python::fill(file, plugin);
 }

@@ -1,4 +1,4 @@
-// sensorfarm._sensorfarm: sensorfarm/simulation.h for Python. Arrays are views of the farm's memory, which they keep.
+// sensorfarm._sensorfarm: sensorfarm/simulation.h for Python. Arrays are views of the farm's memory and keep it alive.
 
 #include <unistd.h>
 
@@ -19,8 +19,8 @@ namespace {
 
 using Text = const std::string&;
 
-/// The farm is in use: one thread at a time, for all simulations of the process. A second one is refused, not queued,
-/// so that a controller that steps a simulation cannot wait for itself.
+/// Marks the farm as in use: one thread at a time, for all simulations of the process. A second thread is refused, not
+/// queued, so that a controller that steps a simulation cannot deadlock.
 class Use {
  public:
   Use() {
@@ -51,17 +51,17 @@ struct PySimulation {
   PySimulation(Simulation made, bool views_writable) : farm(std::move(made)), writable(views_writable) {}
   PySimulation(PySimulation&&) noexcept = default;
   PySimulation& operator=(PySimulation&&) noexcept = default;
-  /// A process that was forked cannot end threads that it does not have, so it keeps the memory.
+  /// A forked process cannot end threads that it does not have, so it keeps the memory.
   ~PySimulation() {
     if (process != getpid()) new Simulation(std::move(farm));
   }
 
   Simulation farm;
-  bool writable;  ///< arrays can be written to
+  bool writable;  ///< arrays are writable
   pid_t process = getpid();
 };
 
-/// A call of this simulation without the GIL.
+/// Calls this simulation without the GIL.
 template <class Call>
 auto in_farm(const PySimulation& s, Call&& call) {
   if (s.process != getpid())
@@ -78,7 +78,7 @@ std::vector<std::pair<std::string, std::string>> texts_of(const py::dict& settin
   return texts;
 }
 
-/// Options of the constructor by keyword, checked as Python checks them.
+/// Keyword options of the constructor, checked like Python's own arguments.
 class Keywords {
  public:
   explicit Keywords(const py::kwargs& given) : left_(py::dict(given)) {}
@@ -138,10 +138,10 @@ PySimulation made(const py::kwargs& keywords, Make&& make) {
   return s;
 }
 
-/// The name by which a simulation can use a class, "module.Class", with a number where another class has it.
+/// Returns the name by which a simulation can use a class: "module.Class", with a number if another class has it.
 std::string controller_name(py::handle controller) {
   if (PyType_Check(controller.ptr()) == 0) return py::str(controller);
-  static std::map<PyObject*, std::string> names;  // classes are kept by their entries
+  static std::map<PyObject*, std::string> names;  // the entries keep the classes alive
   static std::map<std::string, int> uses;
   const auto known = names.find(controller.ptr());
   if (known != names.end()) return known->second;
@@ -156,7 +156,7 @@ std::string controller_name(py::handle controller) {
   return names[controller.ptr()] = name;
 }
 
-/// A view, of which each row begins `stride` bytes after the one before.
+/// Returns a view whose rows begin `stride` bytes apart.
 py::array view(const PySimulation& s, const py::dtype& type, const void* data, std::vector<py::ssize_t> shape,
                std::size_t stride) {
   std::vector<py::ssize_t> strides(shape.size());

@@ -11,7 +11,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// Calls with the GIL. Exceptions of Python become std::runtime_error with their last line.
+/// Calls with the GIL. Converts Python exceptions to std::runtime_error with their last line.
 template <class Call>
 auto in_python(const std::string& file, Call&& call) {
   const py::gil_scoped_acquire gil;
@@ -33,7 +33,7 @@ constexpr const char* expected_of(const Twist&) { return "three numbers (forward
 constexpr const char* expected_of(bool) { return "True or False"; }
 constexpr const char* expected_of(double) { return "a number"; }
 
-/// @param from where it is from, asked where it is of another type: "mine.py:7: step() returned "
+/// @param from origin of the value, called if it has another type: "mine.py:7: step() returned "
 template <class Value, class From>
 Value value_of(const py::object& given, const From& from) {
   py::detail::make_caster<Value> value;
@@ -88,8 +88,8 @@ class PythonController final : public Controller {
   bool has_done_, has_error_;
 };
 
-/// A call of Python that `bind` refuses has arguments that the callable does not take. Callables without a signature,
-/// such as those of extension modules, are left to the call itself.
+/// Returns whether the callable takes these arguments: Python's `bind` refuses them otherwise. Callables without a
+/// signature, such as those of extension modules, are checked only by the call itself.
 bool takes(const py::object& callable, int arguments) {
   const py::module_ inspect = py::module_::import("inspect");
   try {
@@ -168,7 +168,7 @@ std::string last_line(py::error_already_set& error, const std::string& file) {
     in_file = name == file;
     place = name + ":" + py::str(frame.attr("lineno")).cast<std::string>() + ": ";
   }
-  const bool is_syntax = error.matches(PyExc_SyntaxError);  // its place is not that of a frame
+  const bool is_syntax = error.matches(PyExc_SyntaxError);  // the location is not that of a frame
   if (is_syntax && !error.value().attr("filename").is_none())
     place = py::str("{}:{}: ").format(error.value().attr("filename"), error.value().attr("lineno"));
   const py::list lines = traceback.attr("format_exception_only")(error.type(), error.value());

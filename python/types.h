@@ -11,7 +11,7 @@
 
 namespace sensorfarm::python {
 
-/// The named tuple's class, made once per library; it lives as long as the interpreter.
+/// Returns the named tuple's class, created once per library; it exists as long as the interpreter.
 inline pybind11::handle tuple_type(const char* name, const char* fields) {
   return pybind11::module_::import("collections").attr("namedtuple")(name, fields).release();
 }

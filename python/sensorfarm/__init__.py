@@ -23,8 +23,8 @@ __all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Neighbour", "Pose"
 
 
 def _valid(self, type, without_noise=False):
-    """A new bool array (sensors, elements): the element was measured, and a stated error bound holds for it; with
-    without_noise=True also where that bound holds before noise is added."""
+    """Returns a new bool array (sensors, elements): True if the element was measured and a stated error bound holds for
+    it. With without_noise=True, it suffices that the bound holds before noise is added."""
     values = self.readings(type)
     measured = _numpy.isfinite(values) if values.ndim == 2 else _numpy.isfinite(values).all(axis=2)
     stated = _numpy.isfinite(self.bound_without_noise(type) if without_noise else self.bounds(type))
@@ -32,7 +32,7 @@ def _valid(self, type, without_noise=False):
 
 
 def _png(self):
-    """The picture that `draw` makes, as bytes of a PNG file; a notebook shows it."""
+    """Returns the picture of `draw` as bytes of a PNG file, for display in a notebook."""
     with _tempfile.TemporaryDirectory() as folder:
         file = _os.path.join(folder, "now.png")
         self.draw(file)
@@ -41,7 +41,7 @@ def _png(self):
 
 
 def _end_all_by_errors():
-    """From now on an exception that ends this process ends those of all ranks, which would wait for it for ever."""
+    """From now on an exception that ends this process also ends all other ranks, which would wait for it forever."""
     before = _sys.excepthook
     if getattr(before, "ends_all", False):
         return

@@ -1,4 +1,5 @@
-"""A 2-D multi-robot simulator with virtual sensors, stepped by your program (docs/python.md). Metres, seconds, radians."""
+"""A 2-D multi-robot simulator with virtual sensors, stepped by your program (docs/python.md). Metres, seconds,
+radians."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
@@ -10,13 +11,13 @@ NONE: int
 """No model: the beam met nothing within its range."""
 
 class Error(RuntimeError):
-    """A fault that you can correct: one line, with file and line where there are some."""
+    """An error that you can correct. The message is one line, with file and line number if available."""
 
 class DeviceError(Error):
-    """No usable Vulkan device: every device, and the reason for its refusal."""
+    """No usable Vulkan device. The message lists every device and the reason why it was refused."""
 
 class Pose(NamedTuple):
-    """x forward, y left, z up [m], yaw [rad] counter-clockwise; in the world unless said otherwise."""
+    """x forward, y left, z up [m], yaw [rad] counter-clockwise; in the world frame unless stated otherwise."""
     x: float
     y: float
     z: float
@@ -39,7 +40,7 @@ class SensorInfo:
     def name(self) -> str: ...
     @property
     def X_RS(self) -> Pose:
-        """The sensor in the robot's frame."""
+        """Pose of the sensor in the robot's frame."""
     @property
     def rate(self) -> float:
         """[Hz]"""
@@ -57,7 +58,7 @@ class SensorInfo:
         """[rad] of a laser's beams; empty for other types."""
 
 class Robot:
-    """A robot or tag, as it is at the start."""
+    """A robot or tag, as at the start."""
     @property
     def name(self) -> str: ...
     @property
@@ -70,7 +71,7 @@ class Robot:
     def pose(self) -> Pose: ...
     @property
     def radius(self) -> float:
-        """[m] of the circle about its origin that holds its body."""
+        """[m] radius of the circle about its origin that contains its body."""
     @property
     def max_forward(self) -> float:
         """[m/s]"""
@@ -87,7 +88,7 @@ class Robot:
         """Path of the world file."""
 
 class Reading:
-    """One reading of one sensor. A copy: it can be kept."""
+    """One reading of one sensor. It is a copy and can be kept."""
     @property
     def type(self) -> str: ...
     @property
@@ -97,25 +98,26 @@ class Reading:
         """[s] of the measurement."""
     @property
     def X_WS(self) -> Pose:
-        """The sensor at the measurement."""
+        """Pose of the sensor at the measurement."""
     @property
     def values(self) -> NDArray[np.float64]:
-        """(elements,), or (elements, columns) for several columns. A range without a return is the limit."""
+        """(elements,), or (elements, columns) for several columns. A range without a return equals the limit."""
     @property
     def hits(self) -> NDArray[np.uint32] | None:
-        """(beams,) numbers of models, or NONE; None for types without beams."""
+        """(beams,) indices of models, or NONE; None for types without beams."""
     @property
     def bound(self) -> float:
-        """Largest error of the first column, of elements without a flag; infinity: not stated, as of noisy sensors."""
+        """Largest error of the first column, for elements without a flag; infinity: not stated, as for noisy
+        sensors."""
     @property
     def bound_without_noise(self) -> float:
-        """The same before noise was added."""
+        """The same before noise is added."""
     @property
     def sigma(self) -> float:
-        """Largest standard deviation of the first column's noise; 0: no noise; infinity: not known."""
+        """Largest standard deviation of the first column's noise; 0: no noise; infinity: unknown."""
     @property
     def flags(self) -> NDArray[np.uint8]:
-        """(elements,): 0, or the reason for which the bound does not hold (docs/accuracy.md)."""
+        """(elements,): 0, or the reason why the bound does not hold (docs/accuracy.md)."""
 
 class Neighbour:
     """Another robot, as it broadcasts itself (V2V)."""
@@ -144,18 +146,18 @@ class Light:
         """[s] until its next change; infinity: never."""
 
 class Input:
-    """What a robot knows when its controller is called. A copy: it can be kept."""
+    """The input of one control step. It is a copy and can be kept."""
     @property
     def time(self) -> float:
-        """[s] simulated, or the robot's clock."""
+        """[s] simulated, or on the robot's clock."""
     @property
     def pose(self) -> Pose:
-        """The robot's own: true in a simulation, estimated in `sensorfarm robot`."""
+        """Of the robot: true in a simulation, estimated in `sensorfarm robot`."""
     @property
     def velocity(self) -> Twist: ...
     @property
     def readings(self) -> list[Reading]:
-        """The newest of each of its sensors."""
+        """The newest reading of each of its sensors."""
     @property
     def contact(self) -> bool: ...
     @property
@@ -166,75 +168,79 @@ class Input:
         """Robots within radio_range(), by id."""
     @property
     def lights(self) -> list[Light]:
-        """All of the world."""
+        """All lights of the world."""
     def newest(self, type: str, number: int = 0) -> Reading | None: ...
 
 class Settings:
-    """Settings by key, to be read in __init__. Values of another kind or out of bounds, and keys that nothing has read,
-    are errors with their place."""
+    """Settings by key, to be read in __init__. Values of another type or out of bounds, and keys that were not read,
+    are errors that name their place."""
     def number(self, key: str, fallback: float, least: float = ..., most: float = ...) -> float: ...
     def flag(self, key: str, fallback: bool) -> bool: ...
     def text(self, key: str, fallback: str) -> str: ...
     def numbers(self, key: str, fallback: Sequence[float]) -> list[float]: ...
 
 class Controller(Protocol):
-    """A controller of your own: this shape, not this class. Optional: `rate` [Hz] (10), `on_scans` (False: steps
-    at `rate`, not on each new scan) and `stops_on_bumper` (True) of the class; methods radio_range() [m], done() and error()."""
+    """Your own controller: a class of this shape, not a subclass. Optional: class attributes `rate` [Hz] (10),
+    `on_scans` (False: steps at `rate`, not on each new scan) and `stops_on_bumper` (True); methods radio_range() [m],
+    done() and error()."""
     def __init__(self, robot: Robot, settings: Settings) -> None: ...
     def step(self, input: Input) -> tuple[float, float, float]:
-        """Forward [m/s], left [m/s], turn [rad/s] until the next call."""
+        """Returns forward [m/s], left [m/s], turn [rad/s] to drive until the next call."""
 
 class Simulation:
-    """A simulated fleet. One thread at a time. Arrays are views without a copy, valid until the next step, put or reset:
-    read them anew after it, and copy what you keep. They cannot be written to, unless `writable`."""
+    """A simulated fleet. Not thread-safe. Arrays are views without a copy, valid until the next step, put or reset:
+    read them again after it, and copy the data that you keep. They are read-only unless `writable`."""
 
     def __init__(self, world: str, *, robots: int = 0, of: str = "", robot_from: str = "",
                  seed: int = 1, threads: int = 0, noise: bool = True, accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
                  ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", writable: bool = False) -> None:
-        """world: a world file or ROS map (.yaml), also one of the installed worlds. robots: clones of one robot (`of`;
-        else the first with sensors) at free poses; 0: the world's own. robot_from: "FILE:NAME", a robot of another
-        world file, for a world without robots (a ROS map) or to be cloned. seed: of poses, noise and controllers. threads: 0
-        for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name, or
-        "host". require_vulkan: without a usable device DeviceError, not the host. caster:
-        auto, or a name of `sensorfarm run --caster`, such as host or reference (docs/accuracy.md). controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
-        twists drive them. record: folder of a recording. too_near_min: ranges of surfaces that
-        are too near are recorded as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd or none
-        (docs/recordings.md). ranks: processes of mpirun share the fleet; all make the same
-        calls, and each has the readings of its own robots alone and commands these (docs/cluster.md). Raises Error, DeviceError, TypeError."""
+        """world: a world file or ROS map (.yaml), possibly one of the installed worlds. robots: clones of one robot
+        (`of`; otherwise the first with sensors) at free poses; 0: the world's own robots. robot_from: "FILE:NAME", a
+        robot of another world file, for a world without robots (a ROS map) or as the robot to clone. seed: of poses,
+        noise and controllers. threads: 0 for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row
+        or part of a device's name, or "host". require_vulkan: raise DeviceError instead of using the host if no device
+        is usable. caster: auto, or a name of `sensorfarm run --caster`, such as host or reference (docs/accuracy.md).
+        controller: of all robots, by name, file (mine.py:Class, ./libmine.so)
+        or class; empty: twists drive them. record: folder of a recording. too_near_min: record ranges of surfaces that
+        are too near as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd or none
+        (docs/recordings.md). ranks: processes of mpirun share the fleet; all make the same calls, and each has the
+        readings of its own robots only and commands these (docs/cluster.md). Raises Error, DeviceError, TypeError."""
     @staticmethod
     def from_text(text: str, name: str = "given.world", **options: Any) -> Simulation:
-        """A world given as text, with the options of the constructor. name: for messages; files that the text includes are
-        looked for in its folder."""
+        """Creates a simulation of a world given as text, with the options of the constructor. name: for messages; files
+        that the text includes are looked up in its folder."""
     def step(self, twists: ArrayLike | None = None) -> None:
-        """One tick: robots execute their twists, (robots, 3) of forward [m/s], left [m/s], turn [rad/s]; then sensors are
-        read. None: twists stay as they are. Rows with a controller ignore theirs. Other threads of Python run meanwhile."""
+        """Advances by one tick: robots execute their twists, (robots, 3) of forward [m/s], left [m/s], turn [rad/s];
+        then sensors are read. None: the previous twists apply. Twists of rows with a controller are ignored. Other
+        Python threads run meanwhile."""
     def reset(self, seed: int | None = None) -> None:
-        """Begins anew at time 0. Arrays read before keep the old run."""
+        """Restarts at time 0. Arrays read before keep the old run."""
     def add_robot(self, name: str, like: str, pose: Sequence[float], *, controller: str | type = "",
                   settings: Mapping[str, Any] = ...) -> int:
-        """Adds a copy of the robot `like` (its name, or the word of its type) at (x, y, z, yaw), at rest: its sensors are
-        read from the next step on. Returns its row: the last one, or that of a removed robot of the same name and kind,
-        which returns. Other rows and the bytes of readings that do not see it stay as they are. name: 1 to 64 letters,
-        digits or '_'. Arrays read before keep the rows that they had. A reset forgets it. Raises Error, with nothing changed."""
+        """Adds a copy of the robot `like` (its name, or the word of its type) at (x, y, z, yaw), at rest. Its sensors
+        are read from the next step on. Returns its row: the last one, or that of a removed robot of the same name and
+        kind, which returns. Other rows, and the bytes of readings that do not see it, are unchanged. name: 1 to 64
+        letters, digits or '_'. Arrays read before keep their rows. A reset removes the robot. Raises Error, with
+        nothing changed."""
     def remove_robot(self, row: int) -> None:
-        """Takes a robot out of the world: its pose is NaN, its readings stay as they were. Its row, id and name stay its own.
-        Raises Error for a row without a present robot."""
+        """Removes a robot from the world: its pose is NaN, its readings are unchanged. Its row, id and name remain
+        reserved. Raises Error for a row without a present robot."""
     def put(self, row: int, pose: Sequence[float]) -> None:
-        """Places a robot at (x, y, z, yaw), at rest. Its sensors see it from the next step on."""
+        """Places a robot at (x, y, z, yaw), at rest. Its sensors see the new place from the next step on."""
     def draw(self, file: str) -> None:
         """Writes a PNG of the world at this time."""
     def image(self, width: int = 640, height: int = 480,
               view: tuple[float, float, float, float] | None = None) -> NDArray[np.uint8]:
-        """(height, width, 3) red, green, blue: the world from above at this time, +y up, without texts and fields of view;
-        a new array. view: (x_min, y_min, x_max, y_max) [m] to show at least; None: the whole world. The first image of a
-        size and view paints the static layer, which is kept for the last four. Sides are 1 to 4096 pixels.
-        Raises Error for options out of range, and without Cairo."""
+        """Returns a new array (height, width, 3) of red, green, blue: the world from above at this time, +y up, without
+        texts and fields of view. view: (x_min, y_min, x_max, y_max) [m] that must be visible; None: the whole world.
+        The first image of a size and view paints the static layer, which is cached for the last four combinations.
+        Sides are 1 to 4096 pixels. Raises Error for options out of range, and without Cairo."""
     def finish_recording(self) -> None:
-        """Ends the recording, with its index."""
+        """Ends the recording and writes its index."""
     def __len__(self) -> int:
-        """Rows: robots, and tags if the world has some."""
+        """Number of rows: robots, and tags if the world contains any."""
     @property
     def poses(self) -> NDArray[np.float64]:
         """(robots, 4): x, y, z [m], yaw [rad] of the last tick."""
@@ -243,13 +249,13 @@ class Simulation:
         """(robots, 3): forward, left [m/s], turn [rad/s]."""
     @property
     def contacts(self) -> NDArray[np.bool_]:
-        """(robots,): a wall or a robot stopped it."""
+        """(robots,): True if a wall or a robot stopped it."""
     @property
     def done(self) -> NDArray[np.bool_]:
-        """(robots,): its controller is done."""
+        """(robots,): True if its controller is done."""
     @property
     def present(self) -> NDArray[np.bool_]:
-        """(robots,): False where remove_robot took it out of the world."""
+        """(robots,): False if remove_robot removed it from the world."""
     @property
     def robots(self) -> list[Robot]: ...
     @property
@@ -257,7 +263,7 @@ class Simulation:
         """Sensor types of this world: "laser", ..."""
     @property
     def models(self) -> list[str]:
-        """Names, by the numbers in hits()."""
+        """Names, indexed by hits()."""
     @property
     def interval(self) -> float:
         """[s] of a tick."""
@@ -268,45 +274,46 @@ class Simulation:
     def tick(self) -> int: ...
     @property
     def hash(self) -> int:
-        """Of all readings so far: that of `sensorfarm run`, which prints it in hexadecimal digits."""
+        """Of all readings so far; equals the hash of `sensorfarm run`, which prints it in hexadecimal digits."""
     @property
     def rank(self) -> int:
         """Number of this process, below `ranks`."""
     @property
     def ranks(self) -> int:
-        """Processes that share the fleet; 1: this one alone."""
+        """Number of processes that share the fleet; 1: only this one."""
     @property
     def owned(self) -> NDArray[np.bool_]:
-        """(robots,): this rank has its readings and commands it."""
+        """(robots,): True if this rank has its readings and commands it."""
     @property
     def description(self) -> str:
         """Device and caster, in one line."""
     @property
     def warnings(self) -> list[str]:
-        """Of the world file, and of the device."""
+        """About the world file and the device."""
     def readings(self, type: str) -> NDArray[np.float64]:
-        """(sensors, elements), or (sensors, elements, columns) for types with several columns: the newest reading of each
-        sensor of the type. Shorter readings end in NaN. A range without a return is the sensor's limit, and that of a
-        surface nearer than its minimum is this minimum, with the flag 5."""
+        """Returns (sensors, elements), or (sensors, elements, columns) for types with several columns: the newest
+        reading of each sensor of the type. Shorter readings are padded with NaN. A range without a return equals the
+        sensor's limit. The range of a surface nearer than the sensor's minimum equals this minimum, with flag 5."""
     def hits(self, type: str) -> NDArray[np.uint32]:
-        """(sensors, beams): number of the model that each beam met, or NONE."""
+        """Returns (sensors, beams): index of the model hit by each beam, or NONE."""
     def flags(self, type: str) -> NDArray[np.uint8]:
-        """(sensors, elements): 0 where a stated bound holds (docs/accuracy.md); 5: the surface is too near."""
+        """Returns (sensors, elements): 0 if a stated bound holds (docs/accuracy.md); 5: the surface is too near."""
     def valid(self, type: str, without_noise: bool = False) -> NDArray[np.bool_]:
-        """(sensors, elements): measured, and a stated bound holds; without_noise=True: by `bound_without_noise`, which
-        noisy sensors have, too. A new array."""
+        """Returns a new array (sensors, elements): True if the element was measured and a stated bound holds.
+        without_noise=True uses `bound_without_noise`, which noisy sensors also have."""
     def bounds(self, type: str) -> NDArray[np.float64]:
-        """(sensors,): largest error of the first column; infinity: not stated, as of noisy sensors."""
+        """Returns (sensors,): largest error of the first column; infinity: not stated, as for noisy sensors."""
     def bound_without_noise(self, type: str) -> NDArray[np.float64]:
-        """(sensors,): the same before noise was added."""
+        """Returns (sensors,): the same before noise is added."""
     def sigma(self, type: str) -> NDArray[np.float64]:
-        """(sensors,): largest standard deviation of the first column's noise; 0: no noise; infinity: not known."""
+        """Returns (sensors,): largest standard deviation of the first column's noise; 0: no noise; infinity:
+        unknown."""
     def times(self, type: str) -> NDArray[np.float64]:
-        """(sensors,) [s] of the measurement; NaN before the first."""
+        """Returns (sensors,) [s] time of the measurement; NaN before the first."""
     def rows(self, type: str) -> NDArray[np.uint32]:
-        """(sensors,): row of the sensor's robot in `poses`."""
+        """Returns (sensors,): row of the sensor's robot in `poses`."""
     def fresh(self, type: str) -> NDArray[np.bool_]:
-        """(sensors,): delivered in the last step."""
+        """Returns (sensors,): True if delivered in the last step."""
 
 def load_plugin(file: str) -> None:
-    """Loads controllers from a shared library or Python file: `controller` can name them. Raises Error."""
+    """Loads controllers from a shared library or Python file, so that `controller` can name them. Raises Error."""

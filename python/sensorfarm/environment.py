@@ -1,4 +1,4 @@
-"""What the environments of sensorfarm.gym and sensorfarm.pettingzoo share: seeds, pictures and copies."""
+"""Shared parts of the environments of sensorfarm.gym and sensorfarm.pettingzoo: seeds, pictures and copies."""
 
 import copy
 import secrets
@@ -10,11 +10,11 @@ RENDER_MODES = ["rgb_array"]
 
 
 class Environment:
-    """Mixed into the environments. A copy (copy.deepcopy, pickle) is the environment as its last full reset left it, or
-    as it was made: class, arguments, seeds and generators. The same actions lead a copy through the same episode. Motion
-    since then, and what a Task has changed of itself, is not copied."""
+    """Mixin of the environments. A copy (copy.deepcopy, pickle) is the environment after its last full reset, or after
+    its construction: class, arguments, seeds and generators. The same actions lead a copy through the same episode.
+    Motion since then, and changes that a Task has made to itself, are not copied."""
 
-    _spaces = ()  # names of attributes, whose generators are copied as they are
+    _spaces = ()  # names of attributes whose generators are copied unchanged
     _np_random = None
     _np_random_seed = None
 
@@ -45,12 +45,12 @@ class Environment:
             self.close()
 
     def _keep(self, seeds):
-        """Notes what a copy needs. seeds: of the simulations."""
+        """Saves the data for copies. seeds: of the simulations."""
         self._seeds = list(seeds)
         self._at_reset = self._seeds, self._np_random_seed, copy.deepcopy(self._np_random), self._fresh
 
     def _seed(self, seed):
-        """seed: that of all random choices of the environment; None: one that nothing foretells."""
+        """seed: for all random choices of the environment; None: an unpredictable one."""
         seed = secrets.randbits(31) if seed is None else int(seed)
         self._np_random_seed, self._np_random = seed, numpy.random.default_rng(seed)
         return seed
@@ -95,7 +95,7 @@ def _made(kind, arguments, options):
 
 
 def finite(actions, shape):
-    """The actions as an array. Raises ValueError for another shape, and for numbers that are not finite."""
+    """Returns the actions as an array. Raises ValueError for another shape, and for numbers that are not finite."""
     actions = numpy.asarray(actions, dtype=float)
     if actions.shape != shape or not numpy.isfinite(actions).all():
         raise ValueError(f"actions have the shape {actions.shape}; expected finite numbers of shape {shape}")
@@ -103,7 +103,7 @@ def finite(actions, shape):
 
 
 def warn_of(options, *expected):
-    """Warns of options of `reset` that have no effect."""
+    """Warns about options of `reset` that have no effect."""
     unknown = sorted(map(str, set(options or ()) - set(expected)))
     if unknown:
         known = ", ".join(expected) or "none"

@@ -1,11 +1,12 @@
-"""Gymnasium's interfaces: Env is one robot, VectorEnv the robots of one world, or of many worlds side by side.
+"""Gymnasium's interfaces: Env is one robot, VectorEnv all robots of one or more worlds.
 
     env = sensorfarm.gym.VectorEnv("worlds/cave.world", num_envs=64, worlds=4)
     observations, infos = env.reset(seed=1)
     observations, rewards, terminations, truncations, infos = env.step(env.action_space.sample())
 
-Gymnasium is not needed. Where it can be imported, both are its environments, and importing this module registers
-"sensorfarm/Drive-v0" for `gymnasium.make` and `gymnasium.make_vec`; the name "sensorfarm.gym:sensorfarm/Drive-v0" imports it.
+Gymnasium is optional. If it can be imported, both classes are Gymnasium environments, and importing this module
+registers "sensorfarm/Drive-v0" for `gymnasium.make` and `gymnasium.make_vec`; the name
+"sensorfarm.gym:sensorfarm/Drive-v0" imports it.
 """
 
 from .single_env import Env

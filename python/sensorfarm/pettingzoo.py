@@ -1,4 +1,4 @@
-"""PettingZoo's parallel interface over the robots of one world.
+"""PettingZoo's parallel interface to the robots of one world.
 
     env = sensorfarm.pettingzoo.ParallelEnv("worlds/cave.world", robots=8)
     observations, infos = env.reset(seed=1)
@@ -6,7 +6,7 @@
         actions = {agent: env.action_space(agent).sample() for agent in env.agents}
         observations, rewards, terminations, truncations, infos = env.step(actions)
 
-PettingZoo is not needed. Where it can be imported, ParallelEnv is one of its environments; where it has a registry (1.27),
+PettingZoo is optional. If it can be imported, ParallelEnv is one of its environments; if it has a registry (1.27),
 importing this module registers "sensorfarm/Drive-v0" for `pettingzoo.make`.
 """
 
@@ -24,9 +24,9 @@ except ImportError:
 
 
 class ParallelEnv(Environment, _Base):
-    """Agents are the robots with sensors of one type, by name. One that has ended leaves `agents`, and its robot stands
-    where it is until the next reset. Arguments as of sensorfarm.gym.VectorEnv; robots = 0: the world's own.
-    state_space: of `state`, without bounds."""
+    """The agents are the robots with sensors of one type, identified by name. An agent whose episode has ended leaves
+    `agents`, and its robot stays where it is until the next reset. For the arguments see sensorfarm.gym.VectorEnv;
+    robots=0: the world's own robots. state_space: the space of `state`, without bounds."""
 
     metadata = {"name": "sensorfarm_drive_v0", "render_modes": RENDER_MODES, "render_fps": 10, "is_parallelizable": True}
     spec = None
@@ -64,7 +64,7 @@ class ParallelEnv(Environment, _Base):
         return self.action_spaces[agent]
 
     def reset(self, seed=None, options=None):
-        """Returns observations and infos by agent. None: a seed that follows from the last one."""
+        """Returns observations and infos by agent. seed=None: a seed derived from the last one."""
         warn_of(options)
         if seed is not None or not self._fresh:
             self._begin([self._next_seed() if seed is None else self._seed(seed)])
@@ -80,8 +80,8 @@ class ParallelEnv(Environment, _Base):
         self.agents = [] if self._fresh else list(self.possible_agents)
 
     def step(self, actions):
-        """actions: by agent, of all in `agents`. Returns observations, rewards, terminations, truncations and infos of
-        these agents."""
+        """actions: by agent, one for each agent in `agents`. Returns observations, rewards, terminations, truncations
+        and infos of these agents."""
         if set(actions) != set(self.agents):
             raise ValueError(f"actions of {sorted(actions)}; expected those of {sorted(self.agents)}")
         if not self.agents:
@@ -105,11 +105,11 @@ class ParallelEnv(Environment, _Base):
         return {agent: {} for agent in self.agents}
 
     def state(self):
-        """(robots, 7): poses, then velocities, of all robots."""
+        """Returns (robots, 7): poses, then velocities, of all robots."""
         return numpy.concatenate([self.simulation.poses, self.simulation.velocities], axis=1)
 
     def render(self):
-        """(height, width, 3) uint8: the world from above. None without a render_mode."""
+        """Returns (height, width, 3) uint8: the world from above. None without a render_mode."""
         return None if self.render_mode is None else self._frame(self.simulation)
 
     def close(self):

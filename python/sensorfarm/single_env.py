@@ -12,12 +12,12 @@ except ImportError:
 
 
 class Env(Environment, _Base):
-    """One robot, the first with sensors of this type, in a simulation of its own; other robots stay at rest. An episode ends where
-    `Task.terminated` says so, or is truncated after `max_steps`; then call reset.
+    """One robot, the first with sensors of this type, in its own simulation; other robots stay at rest. An episode ends
+    when `Task.terminated` returns True, or is truncated after `max_steps`; then call reset.
 
-    robots: clones in the world; 0: the world's own robots. seed: None: episodes differ from run to run until `reset` is given
-    a seed. render_mode: None or "rgb_array"; render_size: (width, height) in pixels; render_view: as in Simulation.image.
-    Other arguments as of VectorEnv.
+    robots: clones in the world; 0: the world's own robots. seed: None: episodes differ from run to run until `reset` is
+    given a seed. render_mode: None or "rgb_array"; render_size: (width, height) in pixels; render_view: as in
+    Simulation.image. For the other arguments see VectorEnv.
     """
 
     metadata = {"render_modes": RENDER_MODES, "render_fps": 10}
@@ -39,7 +39,7 @@ class Env(Environment, _Base):
         self._keep([seed])
 
     def reset(self, *, seed=None, options=None):
-        """Begins an episode. seed: of the start and of noise; None: one that follows from the last one.
+        """Begins an episode. seed: for the start and for noise; None: a seed derived from the last one.
         Returns the observation and infos."""
         self._check_open()
         warn_of(options)
@@ -55,7 +55,7 @@ class Env(Environment, _Base):
         self._seeds, self._age = seeds, 0
 
     def step(self, action):
-        """One tick. action: (2,) in [-1, 1]. Returns observation, reward, terminated, truncated, infos."""
+        """Advances by one tick. action: (2,) in [-1, 1]. Returns observation, reward, terminated, truncated, infos."""
         self._check_open()
         actions = numpy.zeros((len(self.task), 2))
         actions[0] = finite(action, self.action_space.shape)
@@ -69,9 +69,9 @@ class Env(Environment, _Base):
         return {"pose": self.simulation.poses[self.task.rows[0]].copy()}
 
     def render(self):
-        """(height, width, 3) uint8: the world from above. None without a render_mode."""
+        """Returns (height, width, 3) uint8: the world from above. None without a render_mode."""
         return None if self.render_mode is None else self._frame(self.simulation)
 
     def close(self):
-        """Frees the simulation; its arrays stay as they are."""
+        """Frees the simulation; its arrays are unchanged."""
         self.simulation, self.task, self.closed = None, None, True

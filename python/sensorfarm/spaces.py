@@ -1,4 +1,5 @@
-"""Spaces of actions and observations: Gymnasium's Box where it can be imported, else one with the same interface."""
+"""Spaces of actions and observations: Gymnasium's Box if it can be imported, otherwise a class with the same
+interface."""
 
 import numpy
 
@@ -40,10 +41,10 @@ except ImportError:
 
 
 def another(box):
-    """An equal space with samples of its own."""
+    """Returns an equal space with its own random generator."""
     return Box(box.low, box.high, dtype=box.dtype)
 
 
 def batched(box, count):
-    """The space of `count` samples of `box`, one per row."""
+    """Returns the space of `count` samples of `box`, one per row."""
     return Box(numpy.repeat(box.low[None], count, axis=0), numpy.repeat(box.high[None], count, axis=0), dtype=box.dtype)

@@ -1,23 +1,23 @@
-"""What the robots of a world sense, do and are rewarded for, in sensorfarm.gym and sensorfarm.pettingzoo."""
+"""Observations, actions and rewards of the robots of a world, in sensorfarm.gym and sensorfarm.pettingzoo."""
 
 import numpy
 
 from . import Error, Simulation
 from .spaces import Box
 
-_STANDS_APART = 1.05  # of the sum of two radii
+_STANDS_APART = 1.05  # times the sum of two radii
 
 
 def simulation(world, text, **options):
-    """That of a world file, or of a world's text, which `world` then names."""
+    """Creates the simulation of a world file, or of a world's text, which `world` then names."""
     return Simulation(world, **options) if text is None else Simulation.from_text(text, world, **options)
 
 
 class Task:
-    """Drive far without contact. Override `observe`, `reward` and `terminated` for a task of your own.
+    """Drive far without contact. Override `observe`, `reward` and `terminated` for your own task.
 
-    Resets of some robots of a world observe them by a second task, with a simulation of its own: `observe` may use `sim`
-    and what __init__ and `begin` set.
+    A reset of some robots of a world observes them with a second task, which has its own simulation. Therefore
+    `observe` may use only `sim` and attributes set by __init__ and `begin`.
 
     sim: the Simulation; rows: its robots with sensors of this type, which are the agents; starts: their poses at the
     last reset, (agents, 4).
@@ -46,7 +46,8 @@ class Task:
         return len(self.rows)
 
     def observe(self):
-        """(agents, n) float32 in [-1, 1]: readings over their limits, then forward and turning speed over theirs."""
+        """Returns (agents, n) float32 in [-1, 1]: readings over their limits, then forward and turning speed over
+        theirs."""
         values = self.sim.readings(self.sensor)
         agents, sensors = self.limits.shape
         values = values.reshape(agents, sensors, -1) / self.limits[:, :, None]
@@ -55,11 +56,11 @@ class Task:
         return numpy.clip(numpy.nan_to_num(seen, nan=1.0), -1.0, 1.0).astype(numpy.float32)
 
     def reward(self):
-        """(agents,) of the last step: metres driven forward, less 1 for a contact."""
+        """Returns (agents,) for the last step: metres driven forward, minus 1 for a contact."""
         return self.sim.velocities[self.rows, 0] * self.sim.interval - self.terminated()
 
     def terminated(self):
-        """(agents,) bool: the episode ends here. By default: a contact."""
+        """Returns (agents,) bool: whether the episode ends here. By default: at a contact."""
         return self.sim.contacts[self.rows]
 
     def begin(self):
@@ -67,7 +68,8 @@ class Task:
         self.starts = self.sim.poses[self.rows].copy()
 
     def restart(self, agent, generator):
-        """Places one agent at a start that is free, its own where none is. Sensors see it from the next step on."""
+        """Places one agent at a free start, or at its own start if none is free. Sensors see it from the next step
+        on."""
         starts = self.starts[self.starts[:, 2] == self.starts[agent, 2]]
         others = numpy.arange(len(self)) != agent
         poses = self.sim.poses[self.rows[others]]
@@ -81,8 +83,8 @@ class Task:
         self.sim.put(int(self.rows[agent]), chosen)
 
     def step(self, actions, standing=None):
-        """Drives agents by actions in [-1, 1], (agents, 2): forward and turning speed over their limits. Agents in the
-        mask `standing` stand."""
+        """Drives agents with actions in [-1, 1], (agents, 2): forward and turning speed over their limits. Agents in
+        the mask `standing` do not move."""
         speeds = numpy.clip(actions, -1.0, 1.0) * self.speeds
         if standing is not None:
             speeds[standing] = 0.0

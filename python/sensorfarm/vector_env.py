@@ -1,4 +1,4 @@
-"""VectorEnv of sensorfarm.gym: the robots of one world, or of many."""
+"""VectorEnv of sensorfarm.gym: the robots of one or more worlds."""
 
 import numpy
 
@@ -15,19 +15,19 @@ try:
 except ImportError:
     _Base = object
 
-_SECONDS = 10  # that a sensor may take for its first reading of a robot that was placed
+_SECONDS = 10  # maximum time that a sensor may take for its first reading of a robot that was placed
 
 
 class VectorEnv(Environment, _Base):
-    """Sub-environment i is one robot: worlds one after another, in each its robots by row.
+    """Sub-environment i is one robot. Worlds follow one after another, and within each world its robots by row.
 
-    An episode ends where `Task.terminated` says so, or is truncated after `max_steps`. In the step after that its action
-    is ignored, its reward is 0 and its robot stands at a free start (autoreset in the next step). Other robots go on.
-    With autoreset_mode="Disabled" you reset it (`reset_mask`) before the next step.
+    An episode ends when `Task.terminated` returns True, or is truncated after `max_steps`. In the following step its
+    action is ignored, its reward is 0 and its robot is placed at a free start (autoreset in the next step). Other
+    robots continue. With autoreset_mode="Disabled" you reset it (`reset_mask`) before the next step.
 
-    world: a world file, or a name for the world that `text` is. num_envs: robots of all worlds together; None: the world's
-    own robots. worlds: number of simulations, with seeds that follow each other. task: a subclass of Task. render_mode,
-    render_size, render_view: as of Env. Further options are those of Simulation.
+    world: a world file, or a name for the world in `text`. num_envs: robots of all worlds together; None: the worlds'
+    own robots. worlds: number of simulations, with consecutive seeds. task: a subclass of Task. render_mode,
+    render_size, render_view: as for Env. Further options are those of Simulation.
     """
 
     metadata = {"render_modes": RENDER_MODES, "render_fps": 10, "autoreset_mode": _MODES["NextStep"]}
@@ -62,7 +62,7 @@ class VectorEnv(Environment, _Base):
         self._set_render(render_mode, render_size, render_view, self.simulations[0].interval)
         self._autoreset = mode == "NextStep"
         self.metadata["autoreset_mode"] = _MODES[mode]
-        self._fresh = True  # the simulations have not moved since they were made with `seed`
+        self._fresh = True  # the simulations have not moved since they were created with `seed`
         self._ended = numpy.zeros(self.num_envs, bool)
         self._ages = numpy.zeros(self.num_envs, int)
         self._keep(range(seed, seed + worlds))
@@ -70,12 +70,13 @@ class VectorEnv(Environment, _Base):
     def reset(self, *, seed=None, options=None):
         """Begins episodes: all, or those of options={"reset_mask": mask}, a bool array (num_envs,).
 
-        seed: an integer s, for s + k in world k; or one per sub-environment, of which the first of each world counts; None:
-        seeds that follow from the last one. The same seed gives the same episodes.
+        seed: an integer s, for s + k in world k; or one per sub-environment, of which the first of each world counts;
+        None: seeds derived from the last one. The same seed gives the same episodes.
 
-        With a mask, a world whose robots are all in it is reset as without a mask. In others the robots of the mask are placed at
-        free starts, chosen by seed s + i, or the i-th seed, for sub-environment i; no time passes, and the rest of the world,
-        noise too, goes on as it was. Observations of the rest are those of before.
+        With a mask, a world whose robots are all in the mask is reset as without a mask. In other worlds the robots of
+        the mask are placed at free starts, chosen by seed s + i, or the i-th seed, for sub-environment i. No time
+        passes, and the rest of the world, including noise, continues unchanged. Observations of the other robots are
+        their previous ones.
         """
         self._check_open()
         warn_of(options, "reset_mask")
@@ -137,8 +138,8 @@ class VectorEnv(Environment, _Base):
         return observations, self._infos(mask)
 
     def _sensed(self, k):
-        """Observations of world k with all robots at their present poses, at rest. They come from a second simulation, the
-        twin: reading sensors takes time, which must not pass in the first."""
+        """Returns observations of world k with all robots at their present poses, at rest. A second simulation, the
+        twin, provides them: reading sensors takes simulated time, which must not pass in the first."""
         twin = self._twins[k] = self._twins[k] or self._make_task(self._seeds[k], record="")
         sim, placed = twin.sim, twin.sim.time
         for row, pose in enumerate(self.simulations[k].poses):
@@ -151,7 +152,7 @@ class VectorEnv(Environment, _Base):
         return twin.observe()
 
     def step(self, actions):
-        """One tick of every world. actions: (num_envs, 2) in [-1, 1].
+        """Advances every world by one tick. actions: (num_envs, 2) in [-1, 1].
         Returns observations, rewards, terminations, truncations, infos."""
         self._check_open()
         actions = finite(actions, self.action_space.shape)
@@ -167,7 +168,7 @@ class VectorEnv(Environment, _Base):
                 one.restart(agent, self.np_random)
             one.step(actions[share], begins[share])
             rewards[share], terminations[share] = one.reward(), one.terminated()
-        rewards[begins], terminations[begins] = 0.0, False  # whatever the task says of the way to the start
+        rewards[begins], terminations[begins] = 0.0, False  # whatever the task returns for the way to the start
         self._ages = numpy.where(begins, 0, self._ages + 1)
         truncations = (self._ages >= self.max_steps) & ~terminations
         self._ended = terminations | truncations
@@ -181,13 +182,13 @@ class VectorEnv(Environment, _Base):
         return {"pose": poses, "_pose": numpy.ones(self.num_envs, bool) if mask is None else mask.copy()}
 
     def render(self):
-        """A picture per sub-environment, (height, width, 3) uint8, of its world from above; robots of one world have the
-        same array. None without a render_mode."""
+        """Returns one picture per sub-environment, (height, width, 3) uint8, of its world from above; robots of one
+        world share an array. None without a render_mode."""
         if self.render_mode is None:
             return None
         frames = [self._frame(sim) for sim in self.simulations]
         return tuple(frame for frame, one in zip(frames, self.tasks) for _ in range(len(one)))
 
     def close(self, **kwargs):
-        """Frees the simulations; their arrays stay as they are."""
+        """Frees the simulations; their arrays are unchanged."""
         self.simulations, self.tasks, self._twins, self.closed = [], [], [], True
