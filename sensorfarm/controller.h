@@ -1,12 +1,13 @@
 #pragma once
-// Controllers of your own, in your own library: readings in, twist out (docs/own_controller.md).
+// Your own controllers, in your own library: readings in, twist out (docs/own_controller.md).
 //
 //   #include <sensorfarm/plugin.h>
 //
 //   class Straight : public sensorfarm::Controller {
 //    public:
 //     Straight(const sensorfarm::Robot&, sensorfarm::Settings& settings) : speed_(settings.number("speed", 0.2, 0, 2))
-//     {} sensorfarm::Twist step(const sensorfarm::Input& input) override { return {input.contact ? 0.0 : speed_}; }
+//     {}
+//     sensorfarm::Twist step(const sensorfarm::Input& input) override { return {input.contact ? 0.0 : speed_}; }
 //
 //    private:
 //     double speed_;
@@ -14,7 +15,7 @@
 //
 //   SENSORFARM_PLUGIN(plugin) { plugin.add_controller<Straight>("straight", "drives straight on"); }
 //
-// Such a library is loaded by `sensorfarm run WORLD --controller ./libstraight.so --set speed=0.3`.
+// Load such a library with `sensorfarm run WORLD --controller ./libstraight.so --set speed=0.3`.
 
 #include <functional>
 #include <limits>
@@ -33,25 +34,26 @@ struct SensorInfo {
   std::string type;                  ///< such as "laser"
   std::uint32_t number = 0;          ///< 0-based among the robot's sensors of this type
   std::string name;                  ///< unique among the robot's sensors
-  Pose X_RS;                         ///< the sensor in the robot's frame
+  Pose X_RS;                         ///< pose of the sensor in the robot's frame
   double rate = 0.0;                 ///< [Hz]
-  std::uint32_t elements = 1;        ///< rows of a reading: beams of a laser, cones of a sonar ring, else 1
-  std::vector<std::string> columns;  ///< of a row, with units: "range_m"; a vector of three is three columns
-  double limit = 0.0;                ///< largest value of a row's first column: a laser's range [m]
-  std::vector<double> bearings;      ///< [rad] of a laser's beams in the sensor's frame; empty for other types
+  std::uint32_t elements = 1;        ///< rows of a reading: beams of a laser, cones of a sonar ring, otherwise 1
+  std::vector<std::string> columns;  ///< names of a row's columns, with units: "range_m"; a 3-D vector takes three
+                                     ///< columns
+  double limit = 0.0;                ///< largest value of the first column of a row: a laser's range [m]
+  std::vector<double> bearings;      ///< [rad] bearings of a laser's beams in the sensor's frame; empty for other types
 };
 
-/// The robot that a controller drives, as it is when the controller is made.
+/// The robot that a controller drives, at the time when the controller is created.
 struct Robot {
-  std::string name;          ///< of the world file
+  std::string name;          ///< name in the world file
   std::uint32_t id = 0;      ///< number in packets
   std::uint32_t row = 0;     ///< among all robots and tags of the world
-  Pose pose;                 ///< at the start
-  double radius = 0.0;       ///< [m] of the circle about its origin that holds its body
+  Pose pose;                 ///< pose at the start
+  double radius = 0.0;       ///< [m] radius of the circle about its origin that contains its body
   double max_forward = 0.0;  ///< [m/s]
   double max_turn = 0.0;     ///< [rad/s]
   std::vector<SensorInfo> sensors;
-  std::uint64_t seed = 0;  ///< of random choices; the same for all robots of a run
+  std::uint64_t seed = 0;  ///< seed of random choices; the same for all robots of a run
   std::string world;       ///< path of the world file, as given by the user
 };
 
@@ -59,17 +61,18 @@ struct Robot {
 struct Reading {
   std::string_view type;           ///< such as "laser"
   std::uint32_t number = 0;        ///< 0-based among the robot's sensors of this type
-  double time = 0.0;               ///< [s] of the measurement
-  Pose X_WS;                       ///< the sensor at the measurement
-  std::span<const double> values;  ///< row by row, in each the type's columns; a range without a return is the limit
-  std::span<const std::uint32_t> hits;  ///< lasers in a simulation: number of the model met by each beam, or kNone
-  /// Largest error of the first column, in rows without a flag; infinite: none is stated, as of noisy sensors.
+  double time = 0.0;               ///< [s] time of the measurement
+  Pose X_WS;                       ///< pose of the sensor at the measurement
+  std::span<const double> values;  ///< row by row, each with the columns of the type; a range without a return equals
+                                   ///< the limit
+  std::span<const std::uint32_t> hits;  ///< lasers in a simulation: index of the model hit by each beam, or kNone
+  /// Largest error of the first column, in rows without a flag; infinite: not stated, as for noisy sensors.
   double bound = std::numeric_limits<double>::infinity();
-  double bound_without_noise = std::numeric_limits<double>::infinity();  ///< the same before noise was added
-  /// Largest standard deviation of the first column's noise; 0: no noise; infinite: not known.
+  double bound_without_noise = std::numeric_limits<double>::infinity();  ///< the same before noise is added
+  /// Largest standard deviation of the first column's noise; 0: no noise; infinite: unknown.
   double sigma = 0.0;
-  /// One per row: 0, or the reason for which the bound does not hold (docs/accuracy.md); empty: 0 for all. Always empty
-  /// in `sensorfarm robot`, where a bound is stated only if it holds for all rows.
+  /// One per row: 0, or the reason why the bound does not hold (docs/accuracy.md); empty: 0 for all rows. Always empty
+  /// in `sensorfarm robot`, which states a bound only if it holds for all rows.
   std::span<const std::uint8_t> flags;
 };
 
@@ -86,23 +89,24 @@ enum class LightState : std::uint8_t { dark, red, yellow, green, flashing_red, f
 /// One traffic light of the world.
 struct Light {
   std::string_view name;
-  Pose pose;  ///< its lamps face along x
+  Pose pose;  ///< pose of the light; its lamps face along x
   LightState state = LightState::dark;
   double left = 0.0;  ///< [s] until its next change; infinity: never
 };
 
-/// The knowledge of a robot when its controller is called. Spans live for the call.
+/// The input of one control step. Spans are valid during the call.
 struct Input {
-  double time = 0.0;  ///< [s] simulated, or the robot's clock; does not decrease
-  Pose pose;          ///< the robot's own: true in a simulation, estimated in `sensorfarm robot`
+  double time = 0.0;  ///< [s] simulated, or on the robot's clock; does not decrease
+  Pose pose;          ///< pose of the robot: true in a simulation, estimated in `sensorfarm robot`
   Twist velocity;
-  std::span<const Reading> readings;  ///< the newest of each of its sensors, new since the last call or not
+  std::span<const Reading> readings;  ///< the newest reading of each of its sensors, whether or not it is new since the
+                                      ///< last call
   bool contact = false;               ///< the bumper is pressed, or an obstacle blocked the last motion
   bool started = true;                ///< the start signal was given
   std::span<const Neighbour> others;  ///< robots within `Controller::radio_range`, in order of id
-  std::span<const Light> lights;      ///< all of the world
+  std::span<const Light> lights;      ///< all lights of the world
 
-  /// The newest reading of a sensor; null without one.
+  /// Returns the newest reading of a sensor; null if there is none.
   const Reading* newest(std::string_view type, std::uint32_t number = 0) const {
     for (const Reading& reading : readings)
       if (reading.number == number && reading.type == type) return &reading;
@@ -110,24 +114,24 @@ struct Input {
   }
 };
 
-/// One object per robot. Calls of one object come one after another; those of different objects may run in parallel.
-/// An exception ends the run with its message.
+/// One object per robot. Calls of one object never overlap; calls of different objects may run in parallel. An
+/// exception ends the run with its message.
 class Controller {
  public:
   virtual ~Controller() = default;
   /// @return the twist to drive until the next call; finite
   virtual Twist step(const Input& input) = 0;
-  /// [m] Within which other robots are heard; read once. 0: none.
+  /// Returns the radius [m] within which the states of other robots are received. Read once. 0: none.
   virtual double radio_range() const { return 0.0; }
-  /// The task is finished. The robot stands from then on, and a run ends when all are done.
+  /// Returns whether the task is finished. The robot stops from then on, and a run ends when all controllers are done.
   virtual bool done() const { return false; }
-  /// Control error of the last step in a unit of your own, for statistics and scenarios; NaN: none.
+  /// Returns the control error of the last step in your own unit, for statistics and scenarios; NaN: none.
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-/// Settings by key, from `--set KEY=VALUE` or a scenario's `[robots.settings]`. Each function returns the fallback
-/// where the key is absent. Values of another kind or outside [least, most], and keys that nothing has read when the
-/// controller is made, are errors with their place.
+/// Settings by key, from `--set KEY=VALUE` or a scenario's `[robots.settings]`. Each function returns the fallback if
+/// the key is absent. Values of another type or outside [least, most], and keys that were not read during the
+/// construction of the controller, are errors that name their place.
 class Settings {
  public:
   virtual ~Settings() = default;
@@ -137,16 +141,17 @@ class Settings {
   virtual std::vector<double> numbers(std::string_view key, const std::vector<double>& fallback) = 0;
 };
 
-/// A kind of controller: its name, and how one is made.
+/// A kind of controller: its name, and how to create one.
 struct ControllerEntry {
-  std::string name;             ///< by which users choose it
+  std::string name;             ///< name by which users choose it
   std::string summary;          ///< one line
-  double rate = 10.0;           ///< [Hz] of its calls, in (0, 10000]
-  bool stops_on_bumper = true;  ///< it is not called, and the robot stands, while `Input::contact` (the user's setting
-                                ///< `wait_on_bumper` decides)
-  /// An exception refuses the robot, with its message.
+  double rate = 10.0;           ///< [Hz] rate of its calls, in (0, 10000]
+  bool stops_on_bumper = true;  ///< while `Input::contact`, the robot stops and `step` is not called (the user's
+                                ///< setting `wait_on_bumper` overrides this)
+  /// Throws an exception to refuse the robot; its message is reported.
   std::function<std::unique_ptr<Controller>(const Robot&, Settings&)> make;
-  /// Unless the user sets a rate, a robot with a laser calls it on each new scan and on contact instead of at `rate`.
+  /// Unless the user sets a rate, calls the controller of a robot with a laser on each new scan and on contact instead
+  /// of at `rate`.
   bool on_scans = false;
 };
 

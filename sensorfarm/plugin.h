@@ -1,6 +1,6 @@
 #pragma once
-// A plug-in: a shared library with controllers and sensors of your own. It needs these headers only, and no library of
-// the farm.
+// A plug-in: a shared library with your own controllers and sensors. It needs only these headers, and no library of the
+// farm.
 
 #include <memory>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace sensorfarm {
 
-/// Raised with every change of these headers that changes the layout of a type. A library with another number is
+/// Incremented with every change of these headers that changes the layout of a type. A library with another number is
 /// refused.
 inline constexpr int kPluginInterface = 3;
 
@@ -21,7 +21,7 @@ struct Plugin {
   std::vector<ControllerEntry> controllers;
   std::vector<SensorEntry> sensors;
 
-  /// `Made` is constructed from (const Robot&, Settings&).
+  /// Adds a controller. `Made` is constructed from (const Robot&, Settings&).
   template <class Made>
   ControllerEntry& add_controller(std::string name, std::string summary, double rate = 10.0) {
     return controllers.emplace_back(ControllerEntry{
@@ -29,7 +29,8 @@ struct Plugin {
         [](const Robot& robot, Settings& settings) { return std::make_unique<Made>(robot, settings); }});
   }
 
-  /// `Made` is constructed from (const SensorSite&, const SensorSettings&). @param entry without `make`
+  /// Adds a sensor type. `Made` is constructed from (const SensorSite&, const SensorSettings&). @param entry without
+  /// `make`
   template <class Made>
   SensorEntry& add_sensor(SensorEntry entry) {
     entry.make = [](const SensorSite& site, const SensorSettings& settings) {
@@ -41,7 +42,7 @@ struct Plugin {
 
 }  // namespace sensorfarm
 
-/// Opens the function that fills in `plugin`; once per library.
+/// Begins the function that fills in `plugin`. Use it once per library.
 #define SENSORFARM_PLUGIN(plugin)                                                       \
   extern "C" __attribute__((visibility("default"))) int sensorfarm_plugin_interface() { \
     return sensorfarm::kPluginInterface;                                                \

@@ -1,17 +1,17 @@
 #pragma once
-// Plain types of the public interface: metres, radians, seconds. Headers of this folder include the standard library
-// alone.
+// Plain types of the public interface: metres, radians, seconds. Headers of this folder include only the standard
+// library.
 
 #include <cstdint>
 
 namespace sensorfarm {
 
-/// A planar pose with a height, in the world frame unless said otherwise: x forward, y left, z up.
+/// A planar pose with a height, in the world frame unless stated otherwise: x forward, y left, z up.
 struct Pose {
   double x = 0.0;    ///< [m]
   double y = 0.0;    ///< [m]
   double z = 0.0;    ///< [m]
-  double yaw = 0.0;  ///< [rad] counter-clockwise, any value
+  double yaw = 0.0;  ///< [rad] counter-clockwise, unbounded
 };
 
 /// A velocity in the robot's own frame.
