@@ -5,11 +5,11 @@
 //   cc -std=c11 -O2 -o sensorfarm_client sensorfarm_client.c -lm
 //   ./sensorfarm_client --robot 7 --farm 127.0.0.1:9000 --pose 1.5,-2.25,30 --sensor laser --sensor gps.0
 //
-// --key FILE (64 hexadecimal digits, as the farm's table of peers has them) signs what is sent, and drops what the farm
-// did not sign.
+// --key FILE (64 hexadecimal digits, the key in the farm's table of peers) signs sent packets, and drops packets that
+// the farm did not sign.
 //
 // As a library: with -DSENSORFARM_CLIENT_NO_MAIN. Parts of large scans and maps are delivered one by one, each with its
-// place in the whole. One thread per client.
+// place in the whole. Each client is single-threaded.
 
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
@@ -41,7 +41,7 @@ enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // loc
 enum { SF_MAX_COMMANDS = 38, SF_MAX_PART = 148, SF_MAX_DATAGRAM = 1400 };
 #define SF_NONE 0xFFFFFFFFu  // V2V: no leader, no checkpoint
 
-// Name, base of the ports, names of the integers, and columns of a row: name, numbers, unit on the wire.
+// Name, base of the ports, names of the integers, and columns of a row: name, number of values, unit on the wire.
 typedef struct {
   uint8_t type;
   const char* name;
@@ -84,7 +84,7 @@ static const sf_type sf_types[] = {
     {134, "COMMAND", 0, {0}, {{"robots", 1, 1}, {"twists", 3, 1}}},
     {135, "STEP", 0, {"ticks", "commands"}, {{0}}},
     {136, "FETCH", 0, {"first", "count"}, {{0}}},
-    // Rows of eight numbers: approaches, and behind them the stop lines of SF_STOP_LINE.
+    // Rows of eight numbers: approaches, followed by the stop lines of SF_STOP_LINE.
     {137, "V2I", 0, {0}, {{"group", 1, 1}, {"state", 1, 1}, {"next", 1, 1}, {"left_s", 1, 1e-3}, {"light", 4, 1}}},
     {138, "OBJECT", 0, {"present"}, {{0}}},
     {139, "REFUSAL", 0, {"reason"}, {{0}}},
@@ -101,16 +101,16 @@ typedef struct {
   uint32_t session, token;
   unsigned mode, unsure;         // readings, VALUES: accuracy mode; 1: no bound holds for every element
   double bound;                  // of the error, in the unit of the first column; NAN: not stated
-  uint32_t age_us;               // of the robot's state behind the reading; 0: not stated
-  unsigned stale;                // 1: that state is too old to be relied on
-  unsigned no_state;             // 1: no state has arrived yet; the robot is where the world file places it
-  float covariance[6];           // of that state, x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: not known
-  uint32_t words[5];             // the integers that sf_types names
+  uint32_t age_us;               // of the robot's state used for the reading; 0: not stated
+  unsigned stale;                // 1: that state is too old to act on
+  unsigned no_state;             // 1: no state has arrived yet; the robot is at its place in the world file
+  float covariance[6];           // of that state, x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: unknown
+  uint32_t words[5];             // the integers named in sf_types
   double corner[3];              // OCCUPANCY: left, top, cell [m]
-  unsigned count;                // values. NEIGHBOURS: V2V packets
-  unsigned approaches;           // V2I: rows of eight values that are approaches; the others are stop lines
+  unsigned count;                // number of values. NEIGHBOURS: number of V2V packets
+  unsigned approaches;           // V2I: number of rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
-  const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; live as long as the datagram
+  const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; valid as long as the datagram
   uint64_t tick;                 // lockstep
   double sensor_pose[4], error;  // VALUES: x, y, z [m], yaw [rad] in the world frame; error bound, INFINITY: not stated
 } sf_packet;
@@ -373,7 +373,7 @@ static void decode_state_quality(sf_packet* p, const uint8_t* b) {
   if (!known) memset(p->covariance, 0, sizeof p->covariance);
 }
 
-// Decodes any bytes. Returns NULL, or the reason for which they are dropped.
+// Decodes any bytes. Returns NULL, or the reason why they are dropped.
 const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   memset(packet, 0, sizeof *packet);
   if (size < SF_HEADER) return "too short";
@@ -440,8 +440,8 @@ static void print_columns(FILE* out, const sf_type* type, const double* values, 
   }
 }
 
-// Encodes a COMMAND, STEP or FETCH likewise, of at most SF_MAX_DATAGRAM bytes. COMMAND: values are rows of robot,
-// forward, left [m/s], turn [rad/s], `count` numbers in all.
+// Encodes a COMMAND, STEP or FETCH in the same way, of at most SF_MAX_DATAGRAM bytes. COMMAND: values are rows of
+// robot, forward, left [m/s], turn [rad/s], `count` numbers in all.
 size_t sf_encode_lockstep(const sf_packet* packet, uint8_t* bytes) {
   const sf_packet head = {.type = SF_LEAVE,
                           .robot = packet->robot,
@@ -466,7 +466,7 @@ size_t sf_encode_lockstep(const sf_packet* packet, uint8_t* bytes) {
   return sf_decode(bytes, (size_t)(row - bytes), &back) == NULL ? (size_t)(row - bytes) : 0;
 }
 
-// The names and values of a packet behind its header, each as `before`, "range_m = 1 0.25 8" and `after`.
+// Prints the names and values of a packet after its header, each as `before`, "range_m = 1 0.25 8" and `after`.
 void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char* after) {
   static const char* const corner[] = {"left_m", "top_m", "cell_m"};
   const sf_type* const type = sf_find_type(p->type);
@@ -491,7 +491,7 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
 }
 
-// "; error up to " with three digits, never less than the bound.
+// Prints "; error up to " with three digits, never less than the bound.
 static void print_bound(FILE* out, double bound) {
   char text[32];
   snprintf(text, sizeof text, "%.3g", bound);
@@ -500,7 +500,7 @@ static void print_bound(FILE* out, double bound) {
   fprintf(out, "; error up to %s", text);
 }
 
-// One line about a packet; NEIGHBOURS: one for each state.
+// Prints one line about a packet; NEIGHBOURS: one for each state.
 void sf_print(FILE* out, const sf_packet* p) {
   for (unsigned i = 0; p->type == SF_NEIGHBOURS && i < p->count; ++i) {
     static _Thread_local sf_packet state;
@@ -527,7 +527,7 @@ void sf_print(FILE* out, const sf_packet* p) {
 
 typedef struct {
   uint32_t words[8];
-  uint64_t size;  // bytes so far
+  uint64_t size;  // number of bytes so far
   uint8_t block[64];
 } sf_sha256;
 
@@ -586,7 +586,7 @@ static void sha256_end(sf_sha256* s, uint8_t hash[32]) {
   for (unsigned i = 0; i < 32; ++i) hash[i] = (uint8_t)(s->words[i / 4] >> (24 - 8 * (i % 4)));
 }
 
-// key: at most 64 bytes; longer ones are hashed first.
+// key: at most 64 bytes; longer keys are hashed first.
 void sf_hmac_sha256(const uint8_t* key, size_t key_size, const uint8_t* bytes, size_t size, uint8_t code[32]) {
   uint8_t padded[64] = {0}, inner[32];
   sf_sha256 s;
@@ -609,7 +609,7 @@ void sf_hmac_sha256(const uint8_t* key, size_t key_size, const uint8_t* bytes, s
   sha256_end(&s, code);
 }
 
-// Puts a trailer behind a packet without one, in a buffer with SF_SIGNATURE more bytes. Returns the size with it.
+// Appends a trailer to a packet without one, in a buffer with room for SF_SIGNATURE more bytes. Returns the new size.
 size_t sf_sign(uint8_t* bytes, size_t size, const uint8_t key[32], uint64_t counter) {
   uint8_t code[32];
   put(bytes + 60, 2, SF_SIGNATURE);
@@ -619,12 +619,12 @@ size_t sf_sign(uint8_t* bytes, size_t size, const uint8_t key[32], uint64_t coun
   return size + SF_SIGNATURE;
 }
 
-// Counters of signatures that came: each is new once, in any order within the newest 64.
+// Counters of received signatures: each is accepted once, in any order within the newest 64.
 typedef struct {
-  uint64_t newest, seen;  // bit k of seen: newest - k came
+  uint64_t newest, seen;  // bit k of seen: newest - k was received
 } sf_window;
 
-// Of a packet that sf_decode has accepted. Returns NULL, or the reason for which it is dropped.
+// Checks a packet that sf_decode has accepted. Returns NULL, or the reason why it is dropped.
 const char* sf_check_signature(sf_window* window, const uint8_t* bytes, size_t size, const uint8_t key[32]) {
   uint8_t code[32], differs = 0;
   if (size < SF_HEADER + SF_SIGNATURE || get(bytes + 60, 2) != SF_SIGNATURE) return "not signed";
@@ -643,16 +643,17 @@ const char* sf_check_signature(sf_window* window, const uint8_t* bytes, size_t s
   return NULL;
 }
 
-// A robot beside the farm. Its first socket sends; that one's address and port are what binds the robot's id.
+// A robot that communicates with the farm. Its first socket sends; the address and port of this socket bind the robot's
+// id.
 typedef struct {
   uint16_t robot;
   struct sockaddr_in farm;
   uint32_t session, token, farm_session, types, states, requests;
-  double next_request;  // [s] by the monotonic clock
+  double next_request;  // [s] on the monotonic clock
   unsigned sockets;
   struct pollfd polled[1 + SF_MAX_SENSORS];
   sf_window windows[1 + SF_MAX_SENSORS];  // of the farm's signatures, by socket
-  uint8_t key[32];                        // that the farm has for this robot (docs/packets.md, Signatures)
+  uint8_t key[32];                        // the farm's key for this robot (docs/packets.md, Signatures)
   bool has_key;                           // false: nothing is signed
   uint64_t counter;                       // of the next signature
   struct {
@@ -663,7 +664,7 @@ typedef struct {
   struct {
     const char* status;
     unsigned long packets;
-  } counts[16];  // accepted, and dropped by reason
+  } counts[16];  // accepted packets, and dropped ones by reason
 } sf_client;
 
 static double now_s(void) {
@@ -679,7 +680,7 @@ static void count_status(sf_client* c, const char* status) {
   ++c->counts[i].packets;
 }
 
-// Binds a port, 0: any. A farm on this machine is heard on loopback alone. Returns false, with errno.
+// Binds a port, 0: any. Uses loopback only for a farm on this machine. Returns false and sets errno on failure.
 static bool open_port(sf_client* c, uint16_t port) {
   if (c->sockets > SF_MAX_SENSORS) return false;
   const bool local = ntohl(c->farm.sin_addr.s_addr) >> 24 == 127;
@@ -690,7 +691,7 @@ static bool open_port(sf_client* c, uint16_t port) {
   return opened >= 0 && bind(opened, (const struct sockaddr*)&own, sizeof own) == 0;
 }
 
-// Opens the socket that sends. @param neighbours asks for the states of others, too
+// Opens the socket that sends. @param neighbours also request the states of other robots
 bool sf_open(sf_client* c, uint16_t robot, const char* host, const char* port, bool neighbours) {
   memset(c, 0, sizeof *c);
   struct addrinfo wanted = {.ai_family = AF_INET, .ai_socktype = SOCK_DGRAM}, *found = NULL;
@@ -701,7 +702,7 @@ bool sf_open(sf_client* c, uint16_t robot, const char* host, const char* port, b
   memcpy(&c->farm, found->ai_addr, sizeof c->farm);
   freeaddrinfo(found);
   c->robot = robot;
-  c->session |= 1;  // 0 would say that there is none
+  c->session |= 1;  // 0 would mean that there is none
   c->types = neighbours;
   struct timespec now;
   clock_gettime(CLOCK_REALTIME, &now);
@@ -709,7 +710,8 @@ bool sf_open(sf_client* c, uint16_t robot, const char* host, const char* port, b
   return open_port(c, 0);
 }
 
-// Signs what is sent, and drops what the farm did not sign. file: 64 hexadecimal digits. Returns false for another one.
+// Signs sent packets, and drops packets that the farm did not sign. file: 64 hexadecimal digits. Returns false for any
+// other content.
 bool sf_read_key(sf_client* c, const char* file) {
   char digits[66] = "";
   FILE* const opened = fopen(file, "r");
@@ -723,7 +725,7 @@ bool sf_read_key(sf_client* c, const char* file) {
   return c->has_key;
 }
 
-// Listens for one sensor, numbered from 0 among those of its type. @param port 0: the farm's default
+// Listens for one sensor, numbered from 0 among the sensors of its type. @param port 0: the farm's default
 bool sf_add_sensor(sf_client* c, const sf_type* type, unsigned number, unsigned port) {
   if (port == 0) port = type->port + 8u * c->robot + number;
   c->types |= 1u << type->type;
@@ -742,7 +744,7 @@ static void send_packet(sf_client* c, sf_packet* p) {
   if (size == 0 || sendto(c->polled[0].fd, bytes, size, 0, farm, sizeof c->farm) < 0) count_status(c, "not sent");
 }
 
-// V2V, and twice a second SUBSCRIBE. state: x, y, z [m], yaw [rad] in the world frame, forward, left [m/s], turn
+// Sends V2V, and SUBSCRIBE twice a second. state: x, y, z [m], yaw [rad] in the world frame, forward, left [m/s], turn
 // [rad/s].
 void sf_send_state(sf_client* c, const double state[7], uint32_t follows, uint32_t checkpoint, bool docking) {
   if (now_s() >= c->next_request) {
@@ -759,7 +761,7 @@ void sf_leave(sf_client* c) {
   for (unsigned i = 0; i < c->sockets; ++i) close(c->polled[i].fd);
 }
 
-// By its sequence, which the parts of one reading share; after two seconds of silence any packet is new.
+// Compares sequences, which the parts of one reading share; after two seconds of silence any packet is new.
 static bool is_newer(sf_client* c, const sf_packet* p) {
   const uint64_t stream = (uint64_t)p->type << 32 | (uint32_t)p->robot << 16 | p->sensor;
   unsigned at = 0, oldest = 0;
@@ -775,7 +777,7 @@ static bool is_newer(sf_client* c, const sf_packet* p) {
   return true;
 }
 
-// Why the farm drops what this client sends; anyone may have sent this, so it is counted and changes nothing.
+// The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 static const char* refusal_text(const sf_packet* p) {
   static const char* const kReasons[] = {"refused: not signed", "refused: wrong signature", "refused: clock behind",
                                          "refused: wrong address"};
@@ -805,7 +807,8 @@ static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size
   return p->type == SF_START || is_newer(c, p) ? NULL : "stale";
 }
 
-// Waits at most `timeout` [s], then hands over accepted readings, NEIGHBOURS, V2I and START, 64 from each port at most.
+// Waits at most `timeout` [s], then passes accepted readings, NEIGHBOURS, V2I and START to `handle`, at most 64 from
+// each port.
 void sf_receive(sf_client* c, double timeout, void (*handle)(const sf_packet*, void*), void* context) {
   if (poll(c->polled, c->sockets, timeout > 0 ? (int)ceil(1e3 * timeout) : 0) <= 0) return;
   for (unsigned i = 0; i < c->sockets; ++i)
@@ -843,7 +846,7 @@ static bool add_sensor(sf_client* c, const char* word) {
   char name[16] = "";
   unsigned number = 0, port = 0;
   int length = 0, more = 0;
-  if (strchr(word, '-') != NULL) return false;  // numbers with a sign
+  if (strchr(word, '-') != NULL) return false;  // rejects numbers with a sign
   sscanf(word, "%15[a-z]%n.%5u%n", name, &length, &number, &more);
   word += more > length ? more : length;
   length = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A robot's side of the sensor farm, with Python's standard library alone. docs/packets.md specifies every byte.
+"""A robot's side of the sensor farm, using only Python's standard library. docs/packets.md specifies every byte.
 
 As a program: robot 7 reports its pose (x, y [m], yaw [degrees]) ten times a second and prints its readings.
 
@@ -28,7 +28,7 @@ import sys
 import time
 
 LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
-# Why the farm drops what this client sends; anyone may have sent this, so it is counted and changes nothing.
+# The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
             4: "refused: wrong address"}
 V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS = (
@@ -72,7 +72,7 @@ def require(fine, reason="out of range"):
 
 
 def unpack(form, payload):
-    """The numbers of a payload of exactly this form."""
+    """Unpacks the numbers of a payload of exactly this form."""
     size = struct.calcsize(form)
     require(len(payload) >= size, "too short")
     require(len(payload) <= size, "too long")
@@ -80,7 +80,8 @@ def unpack(form, payload):
 
 
 def unpack_rows(form, word, payload):
-    """The numbers of a payload's head, of which the last is the count of the words behind it, and these words."""
+    """Unpacks the numbers of a payload's head, whose last number is the count of the words after it, and these
+    words."""
     size = struct.calcsize(form)
     require(len(payload) >= size, "too short")
     head = struct.unpack_from(form, payload)
@@ -235,7 +236,7 @@ def decode_state(type, robot, payload):
 
 
 def decode(data):
-    """Any bytes as a dictionary, in SI units: None is no number. Raises Malformed."""
+    """Decodes any bytes to a dictionary, in SI units. None means that there is no number. Raises Malformed."""
     require(len(data) >= HEADER_BYTES, "too short")
     fields = HEADER.unpack_from(data)
     magic, version, type, robot, sensor, accuracy, sequence, time_ns, session, token, age = fields[:11]
@@ -272,25 +273,27 @@ def decode(data):
 
 
 def encode(type, payload=b"", robot=0, sequence=0, time_ns=0, session=0, token=0):
-    """A packet to the farm; START and LEAVE have no payload. Raises Malformed for numbers that the farm would drop."""
+    """Encodes a packet to the farm; START and LEAVE have no payload. Raises Malformed for numbers that the farm would
+    drop."""
     head = HEADER.pack(b"SFPK", 2, type, robot, 0, 0, sequence, time_ns, session, token, 0, *[0.0] * 6, 0, 0)
     decode(head + payload)
     return head + payload
 
 
 def encode_v2v(pose, velocity=(0.0, 0.0, 0.0), follows=None, checkpoint=None, docking=0, **header):
-    """A robot's state. pose: x, y, z [m], yaw [rad] in the world frame; velocity: forward, left [m/s], turn [rad/s]."""
+    """Encodes a robot's state. pose: x, y, z [m], yaw [rad] in the world frame; velocity: forward, left [m/s], turn
+    [rad/s]."""
     ids = [NONE if number is None else number for number in (follows, checkpoint)]
     return encode(V2V, struct.pack(STATES[V2V], *pose, *velocity, *ids, docking), **header)
 
 
 def encode_tag(position, orientation, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0), **header):
-    """The state of tag number `robot` in the world frame [m, m/s, rad/s]. orientation: quaternion x, y, z, w."""
+    """Encodes the state of tag `robot` in the world frame [m, m/s, rad/s]. orientation: quaternion x, y, z, w."""
     return encode(TAG, struct.pack(STATES[TAG], *position, *orientation, *linear, *angular), **header)
 
 
 def encode_object(present, **header):
-    """Takes the object of tag number `robot` out of the world, or puts it back."""
+    """Removes the object of tag `robot` from the world, or puts it back."""
     return encode(OBJECT, struct.pack("<I", present), **header)
 
 
@@ -300,33 +303,33 @@ def encode_subscribe(types=0, **header):
 
 
 def encode_command(tick, robots, twists, **header):
-    """Lockstep: what robots do from this tick on. robots: 1 to 38 ids; twists: forward, left [m/s], turn [rad/s] of each,
-    one after another."""
+    """Lockstep: commands of robots from this tick on. robots: 1 to 38 ids; twists: forward, left [m/s], turn [rad/s] of
+    each, one after another."""
     rows = [struct.pack("<3d2I", *twists[3 * i:3 * i + 3], robot, 0) for i, robot in enumerate(robots)]
     return encode(COMMAND, struct.pack("<QII", tick, len(rows), 0) + b"".join(rows), **header)
 
 
 def encode_step(tick, ticks=1, commands=0, **header):
-    """Lockstep: simulate `ticks` more. commands: robots for which this process has sent a COMMAND of this tick."""
+    """Lockstep: simulates `ticks` more. commands: robots for which this process has sent a COMMAND of this tick."""
     return encode(STEP, struct.pack("<QII", tick, ticks, commands), **header)
 
 
 def encode_fetch(tick, first, count, **header):
-    """Lockstep: send `count` datagrams of this tick's answer, from number `first` on."""
+    """Lockstep: requests `count` datagrams of this tick's answer, from number `first` on."""
     return encode(FETCH, struct.pack("<QII", tick, first, count), **header)
 
 
 def sign(data, key, counter):
-    """The packet with a signature behind it: a counter, and half the HMAC-SHA-256 of all before."""
+    """Returns the packet with a signature appended: a counter, and half the HMAC-SHA-256 of all preceding bytes."""
     head = data[:60] + struct.pack("<H", SIGNATURE_BYTES) + data[62:] + struct.pack("<Q", counter)
     return head + hmac.digest(key, head, "sha256")[:16]
 
 
 class Window:
-    """Counters of signatures that came: each is new once, in any order within the newest 64."""
+    """Counters of received signatures: each is accepted once, in any order within the newest 64."""
 
     def __init__(self):
-        self.newest, self.seen = 0, 0  # bit k of seen: newest - k came
+        self.newest, self.seen = 0, 0  # bit k of seen: newest - k was received
 
     def check(self, data, key):
         require(data[60:62] == struct.pack("<H", SIGNATURE_BYTES), "not signed")
@@ -341,17 +344,17 @@ class Window:
 
 
 class Client:
-    """One robot beside the farm. `counts` has the number of packets accepted, and dropped by reason."""
+    """One robot that communicates with the farm. `counts` has the number of packets accepted, and dropped by reason."""
 
     def __init__(self, robot, farm, sensors, neighbours=False, key=None):
-        """farm: host, port. sensors: (type's name, number[, own port]) of each. neighbours: states of others, too.
-        key: 32 bytes that the farm has for this robot (docs/packets.md, Signatures); None: nothing is signed."""
+        """farm: host, port. sensors: (type's name, number[, own port]) of each. neighbours: also request states of
+        others. key: the farm's key for this robot, 32 bytes (docs/packets.md, Signatures); None: nothing is signed."""
         self.key, self.counter = key, time.time_ns() // 1000
         self.robot, self.farm = robot, (socket.gethostbyname(farm[0]), farm[1])
         self.session, self.token, self.farm_session = int.from_bytes(os.urandom(4), "little") | 1, 0, 0
         self.types, self.sent, self.next_request = int(neighbours), collections.Counter(), 0.0
         self.newest, self.counts = {}, collections.Counter()
-        self.sockets = [self._open(0)]  # the first sends: its address and port are what binds the id
+        self.sockets = [self._open(0)]  # the first one sends: its address and port bind the id
         for name, number, *port in sensors:
             type = next(type for type in SENSORS if SENSORS[type][0] == name)
             self.types |= 1 << type
@@ -378,7 +381,7 @@ class Client:
             self.counts["not sent"] += 1
 
     def send_state(self, pose, velocity=(0.0, 0.0, 0.0), **state):
-        """V2V, and twice a second SUBSCRIBE."""
+        """Sends V2V, and SUBSCRIBE twice a second."""
         if time.monotonic() >= self.next_request:
             self._send(encode_subscribe(self.types, **self._header(SUBSCRIBE)))
             self.next_request = time.monotonic() + 0.5
@@ -390,7 +393,7 @@ class Client:
             opened.close()
 
     def receive(self, timeout):
-        """Accepted readings, NEIGHBOURS, V2I and START that came within `timeout` [s]; bounded in number."""
+        """Returns accepted readings, NEIGHBOURS, V2I and START that arrive within `timeout` [s]; bounded in number."""
         packets = []
         for opened in select.select(self.sockets, [], [], max(0.0, timeout))[0]:
             for _ in range(64):
@@ -425,7 +428,8 @@ class Client:
         return packet
 
     def _is_newer(self, packet):
-        """By its sequence; parts of one reading share theirs, and after two seconds of silence any is."""
+        """Compares sequences. Parts of one reading share theirs, and after two seconds of silence any packet is
+        newer."""
         key, now = (packet["type"], packet["robot"], packet["sensor"]), time.monotonic()
         sequence, when = self.newest.get(key, (0, -math.inf))
         first = 0 if "part" in packet else 1
@@ -442,7 +446,7 @@ def text(value):
 
 
 def fields(packet):
-    """The keys and values of `decode` as text, in order."""
+    """Returns the keys and values of `decode` as text, in order."""
     pairs = {key: text(value) for key, value in packet.items() if key != "states"}
     for i, state in enumerate(packet.get("states", [])):
         pairs.update(("%d.%s" % (i, key), value) for key, value in fields(state).items())
@@ -450,13 +454,13 @@ def fields(packet):
 
 
 def rounded_up(bound):
-    """Three digits, never less than the bound."""
+    """Returns three digits, never less than the bound."""
     nearest = "%.3g" % bound
     return nearest if float(nearest) >= bound else "%.3g" % (bound + 0.5 * 10.0**(math.floor(math.log10(bound)) - 2))
 
 
 def words(packet):
-    """One line about a packet; NEIGHBOURS: one for each state."""
+    """Returns one line about a packet; NEIGHBOURS: one for each state."""
     if packet["type"] == NEIGHBOURS:
         return "\n".join(map(words, packet["states"]))
     whose = {V2I: "intersection", OBJECT: "tag"}.get(packet["type"], "robot")
@@ -510,7 +514,7 @@ def main():
     parser.add_argument("--sensor", type=read_sensor, action="append", metavar="TYPE[.NUMBER][=PORT]")
     parser.add_argument("--key", type=read_key, metavar="FILE", help="64 hexadecimal digits: sign, and check signatures")
     parser.add_argument("--neighbours", action="store_true", help="print the states of other robots, too")
-    # -1,0.5,30 is a value of --pose, not an option.
+    # "-1,0.5,30" is a value of --pose, not an option.
     options = parser.parse_args("\0".join(sys.argv[1:]).replace("--pose\0", "--pose=").split("\0"))
     if not (0 <= options.robot <= 65535 and 1.0 <= options.rate <= 1000.0):
         parser.error("--robot takes 0 to 65535, --rate 1 to 1000")

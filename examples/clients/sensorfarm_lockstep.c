@@ -1,28 +1,28 @@
 // Drives robots that the farm simulates (`sensorfarm serve WORLD --lockstep`), tick by tick, in C11 and POSIX. Lost
 // packets are repeated; a run has the same readings each time, bit for bit.
 //
-// As a program: robots 1 to 5 drive forward and turn away from what is near.
+// As a program: robots 1 to 5 drive forward and turn away from nearby obstacles.
 //
 //   cc -std=c11 -O2 -ffp-contract=off -o sensorfarm_lockstep sensorfarm_lockstep.c -lm
 //   ./sensorfarm_lockstep --robots 1-5 --farm 127.0.0.1:9000 --ticks 600
 //
-// As a library: with -DSENSORFARM_LOCKSTEP_NO_MAIN. One thread per client. Robots with a key are driven by the client
-// in Python; C has no HMAC.
+// As a library: with -DSENSORFARM_LOCKSTEP_NO_MAIN. Each client is single-threaded. Robots with a key need the client
+// in Python; the one in C has no HMAC.
 
 #define SENSORFARM_CLIENT_NO_MAIN
 #include "sensorfarm_client.c"
 
-enum { SF_WINDOW = 64, SF_PUSHED = 64 };  // datagrams of a FETCH; datagrams of an answer that come without one
+enum { SF_WINDOW = 64, SF_PUSHED = 64 };  // datagrams of a FETCH; datagrams of an answer that arrive without a FETCH
 
 typedef struct {
   uint8_t type;  // of the sensor
   uint16_t sensor;
-  uint64_t tick;    // at which it came
+  uint64_t tick;    // when it arrived
   int64_t time_ns;  // of the measurement
-  unsigned total;   // values
+  unsigned total;   // number of values
   double pose[4];   // of the sensor: x, y, z [m], yaw [rad] in the world frame
   double* values;   // row by row; INFINITY: no return
-  double error;     // largest of the first column of all rows; INFINITY: no bound is stated
+  double error;     // largest error of the first column of all rows; INFINITY: no bound is stated
   bool unsure;      // the type's bound does not hold for all rows: noise, a bend, beams that graze or were not cast
 } sf_reading;
 
@@ -31,21 +31,21 @@ typedef struct {
   bool subscribed, commanded;
   double pose[4], velocity[3], command[3];  // x, y, z, yaw; forward, left, turn
   bool contact;
-  unsigned count;  // readings: the newest of each sensor
+  unsigned count;  // number of readings: the newest of each sensor
   sf_reading readings[SF_MAX_SENSORS];
 } sf_robot;
 
 typedef struct {
   sf_client link;
-  unsigned count;    // robots
+  unsigned count;    // number of robots
   sf_robot* robots;  // by id
   uint32_t types;    // bit k: sensors of type k; 0: all
   uint64_t tick, wanted;
   int64_t time_ns;   // simulated
-  bool driver_lost;  // the farm has left out another process: from then on runs may differ
-  double patience;   // [s] with a silent farm
+  bool driver_lost;  // the farm has dropped another process: from then on runs may differ
+  double patience;   // [s] maximum silence of the farm
   // The answer of `tick`.
-  unsigned char* parts;  // 1: has come
+  unsigned char* parts;  // 1: has arrived
   unsigned datagrams, missing, asked, room;
 } sf_lockstep;
 
@@ -61,7 +61,7 @@ static sf_robot* sf_find_robot(sf_lockstep* l, unsigned id) {
   return first < l->count && l->robots[first].id == id ? &l->robots[first] : NULL;
 }
 
-// The newest reading of a sensor; NULL before the first.
+// Returns the newest reading of a sensor; NULL before the first.
 const sf_reading* sf_find_reading(const sf_robot* robot, uint8_t type, uint16_t sensor) {
   for (unsigned i = 0; i < robot->count; ++i)
     if (robot->readings[i].type == type && robot->readings[i].sensor == sensor) return &robot->readings[i];
@@ -82,7 +82,7 @@ static void post_fetch(sf_lockstep* l, unsigned first, unsigned count) {
   post(l, &(sf_packet){.type = SF_FETCH, .robot = l->robots[0].id, .tick = l->tick, .words = {first, count}});
 }
 
-// The commands that are new, and the wish for more ticks.
+// Sends the new commands, and the request for more ticks.
 static void post_step(sf_lockstep* l, unsigned ticks) {
   static _Thread_local sf_packet command;
   unsigned commands = 0;
@@ -122,7 +122,7 @@ static void place_values(sf_robot* robot, const sf_packet* p) {
   memcpy(reading->values + p->words[4], p->values, p->count * sizeof *p->values);
 }
 
-// One datagram of an answer, once.
+// Stores one datagram of an answer, once.
 static void place(sf_lockstep* l, const sf_packet* p) {
   sf_robot* const robot = sf_find_robot(l, p->robot);
   if (p->type == SF_STATE && robot && !robot->subscribed) {
@@ -157,7 +157,7 @@ static void place(sf_lockstep* l, const sf_packet* p) {
   l->time_ns = p->time_ns;
 }
 
-// Everything that waits. Returns whether something of the farm came.
+// Receives all waiting packets. Returns whether any packet of the farm arrived.
 static bool receive_all(sf_lockstep* l, double timeout) {
   static _Thread_local sf_packet packet;
   bool came = false;
@@ -195,7 +195,8 @@ static void fetch_ahead(sf_lockstep* l) {
     post_fetch(l, l->asked, SF_WINDOW);
 }
 
-// Until the answer of the wanted tick is whole. Returns false after `patience` without a packet of the farm.
+// Waits until the answer of the requested tick is complete. Returns false after `patience` without a packet of the
+// farm.
 static bool await_answer(sf_lockstep* l, unsigned ticks) {
   double wait = 0.02, heard = now_s();
   while (l->tick != l->wanted || l->datagrams == 0 || l->missing > 0) {
@@ -217,8 +218,8 @@ static bool await_answer(sf_lockstep* l, unsigned ticks) {
   return true;
 }
 
-// Subscribes robots `first` to `last` for sensors of `types` (bit k: type k; 0: all). Returns false, where no farm in
-// lockstep answers within `patience` [s]; sf_lockstep_close is due in either case.
+// Subscribes robots `first` to `last` to sensors of `types` (bit k: type k; 0: all). Returns false if no farm in
+// lockstep answers within `patience` [s]. Call sf_lockstep_close in either case.
 bool sf_lockstep_open(sf_lockstep* l, unsigned first, unsigned last, const char* host, const char* port, uint32_t types,
                       double patience) {
   memset(l, 0, sizeof *l);
@@ -248,7 +249,8 @@ bool sf_lockstep_open(sf_lockstep* l, unsigned first, unsigned last, const char*
   return await_answer(l, 1);
 }
 
-// What a robot does from now on: forward, left [m/s], turn [rad/s]. Returns false for a robot of others.
+// Sets the command of a robot from now on: forward, left [m/s], turn [rad/s]. Returns false for a robot of another
+// process.
 bool sf_lockstep_command(sf_lockstep* l, unsigned id, double forward, double left, double turn) {
   sf_robot* const robot = sf_find_robot(l, id);
   if (!robot) return false;
@@ -257,7 +259,7 @@ bool sf_lockstep_command(sf_lockstep* l, unsigned id, double forward, double lef
   return true;
 }
 
-// Simulates 1 to 1000 ticks; robots without a new command go on as before. Returns false where the farm is silent.
+// Simulates 1 to 1000 ticks; robots without a new command continue as before. Returns false if the farm is silent.
 bool sf_lockstep_step(sf_lockstep* l, unsigned ticks) {
   l->wanted = l->tick + ticks;
   post_step(l, ticks);
@@ -283,7 +285,7 @@ static int refuse(const char* text, const char* about) {
   return 2;
 }
 
-// Forward, and away from what is near: the left half of a scan comes last.
+// Drives forward, and away from nearby obstacles: the left half of a scan comes last.
 static void avoid(sf_lockstep* l, const sf_robot* robot, const sf_reading* scan) {
   double nearest = scan->values[0];
   for (unsigned i = 1; i < scan->total; ++i) nearest = scan->values[i] < nearest ? scan->values[i] : nearest;

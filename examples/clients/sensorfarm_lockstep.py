@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Drives robots that the farm simulates (`sensorfarm serve WORLD --lockstep`), tick by tick, with Python's standard
-library alone. Lost packets are repeated; a run has the same readings each time, bit for bit, on any machine's network.
+"""Drives robots that the farm simulates (`sensorfarm serve WORLD --lockstep`), tick by tick, using only
+Python's standard library. Lost packets are repeated; a run has the same readings each time, bit for bit, on any
+machine's network.
 
-As a program: robots 1 to 5 drive forward and turn away from what is near.
+As a program: robots 1 to 5 drive forward and turn away from nearby obstacles.
 
     python3 sensorfarm_lockstep.py --robots 1-5 --farm 127.0.0.1:9000 --ticks 600
 
@@ -28,23 +29,23 @@ from sensorfarm_client import (CHALLENGE, EVERY_ROBOT, LEAVE, REFUSAL, REFUSALS,
                                Malformed, Window, decode, encode, encode_command, encode_fetch, encode_step,
                                encode_subscribe, read_farm, read_key, require, sign)
 
-ROWS, WINDOW, PUSHED = 38, 64, 64  # robots of a COMMAND; datagrams of a FETCH; datagrams that come without one
+ROWS, WINDOW, PUSHED = 38, 64, 64  # robots of a COMMAND; datagrams of a FETCH; datagrams that arrive without a FETCH
 PATIENCE = 0.02  # [s] of silence after which packets are repeated, doubled each time up to half a second
 
 State = collections.namedtuple("State", "pose velocity contact")  # x, y, z, yaw; forward, left, turn; 0 or 1
-# error: the largest of the first column of all elements; None: no bound is stated. unsure: 1: the type's bound does
-# not hold for all of them (noise, a bend of a lane edge, beams that graze or were not cast).
+# error: the largest error of the first column of all elements; None: no bound is stated. unsure: 1: the type's bound
+# does not hold for all elements (noise, a bend of a lane edge, beams that graze or were not cast).
 Reading = collections.namedtuple("Reading", "time_ns pose values error tick unsure")
 
 
 class Lockstep(Client):
-    """Robots of one process. After each call of `step`: tick, time [s], `robots` with the state of each by id, `readings`
-    with the newest of each sensor by (id, type's name, number); its `tick` is that at which it came. `others` has the
-    states of robots of other processes, where they are asked for."""
+    """Robots of one process. After each call of `step`: tick, time [s], `robots` with the state of each by id,
+    `readings` with the newest of each sensor by (id, type's name, number); its `tick` is the tick at which it arrived.
+    `others` has the states of robots of other processes, if they are requested."""
 
     def __init__(self, robots, farm, sensors=None, others=False, keys=None, timeout=10.0):
-        """sensors: names of types; None: all that there are. keys: by id, of robots that have one. timeout: [s] without
-        a packet of the farm after which TimeoutError is raised."""
+        """sensors: names of types; None: all types. keys: by id, of robots that have one. timeout: [s] without a packet
+        of the farm after which TimeoutError is raised."""
         super().__init__(robots[0], farm, [])
         self.sockets[0].setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2**22)  # the system may grant less
         self.keys, self.timeout = keys or {}, timeout
@@ -54,16 +55,17 @@ class Lockstep(Client):
         self.ids, self.robots, self.others, self.readings = sorted(robots), {}, {}, {}
         self.tick = self.wanted = self.time = None
         self.parts, self.missing, self.asked, self.rows = [], 0, 0, {}
-        self.driver_lost = False  # the farm has left out another process: from then on runs may differ
+        self.driver_lost = False  # the farm has dropped another process: from then on runs may differ
         self._subscribe()
 
     def step(self, commands, ticks=1):
-        """Simulates `ticks`. commands: by id forward, left [m/s], turn [rad/s]; robots without one go on as before."""
+        """Simulates `ticks`. commands: by id forward, left [m/s], turn [rad/s]; robots without a command continue as
+        before."""
         ids, sequence = sorted(commands), self.tick
         for id in ids:
             if id not in self.robots:
                 raise ValueError("robot %d is not among those of this process" % id)
-        plain = [id for id in ids if id not in self.keys]  # robots with a key have a packet of their own
+        plain = [id for id in ids if id not in self.keys]  # robots with a key get a separate packet
         chosen = [plain[i:i + ROWS] for i in range(0, len(plain), ROWS)] + [[id] for id in ids if id in self.keys]
         asks = [(some[0], encode_command(sequence, some, [v for id in some for v in commands[id]],
                                          **self._head(some[0]))) for some in chosen]
@@ -94,7 +96,7 @@ class Lockstep(Client):
         return sign(data, self.keys[id], self.counters[id] - 1)
 
     def _subscribe(self):
-        """Until the farm has shown that it knows all robots, then the whole answer of its tick."""
+        """Subscribes until the farm has confirmed all robots, then receives the whole answer of its tick."""
         sequence, silent = 0, 0
         while len(self.robots) < len(self.ids):
             for id in [id for id in self.ids if id not in self.robots][:WINDOW]:
@@ -109,7 +111,7 @@ class Lockstep(Client):
         self._ask([])
 
     def _ask(self, asks):
-        """Sends, and repeats what is not answered."""
+        """Sends requests, and repeats them until they are answered."""
         for ask in asks:
             self._post(*ask)
         wait, heard = PATIENCE, time.monotonic()
@@ -129,7 +131,7 @@ class Lockstep(Client):
                     self._post(*ask)
 
     def _fetch_ahead(self):
-        """Asks for the next datagrams when half of those before have come."""
+        """Requests the next datagrams when half of the previous ones have arrived."""
         have = len(self.parts) - self.missing
         while self.tick == self.wanted and self.asked < len(self.parts) and have >= self.asked - WINDOW // 2:
             self._fetch(self.asked)
@@ -139,7 +141,7 @@ class Lockstep(Client):
         self._post(self.ids[0], encode_fetch(self.tick, first, count, **self._head(self.ids[0])))
 
     def _receive(self, timeout):
-        """Everything that waits. Returns whether something of the farm came."""
+        """Receives all waiting packets. Returns whether any packet of the farm arrived."""
         came = False
         select.select(self.sockets, [], [], timeout)
         while True:
@@ -173,7 +175,7 @@ class Lockstep(Client):
         return packet
 
     def _place(self, packet):
-        """Takes one datagram of an answer, once."""
+        """Stores one datagram of an answer, once."""
         if packet["type"] == STATE and len(self.robots) < len(self.ids) and packet["robot"] in self.ids:
             self.robots[packet["robot"]] = None
             self.wanted = packet["tick"]
@@ -202,7 +204,7 @@ class Lockstep(Client):
 
 
 def avoid(ranges):
-    """Forward, and away from what is near: the left half of a scan comes last."""
+    """Drives forward, and away from nearby obstacles: the left half of a scan comes last."""
     nearest, turn = min(ranges), 0.125 * (ranges[-1] - ranges[0])
     return 0.25 * min(nearest, 2.0), 0.0, 1.0 if nearest < 0.6 else turn
 

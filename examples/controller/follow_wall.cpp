@@ -1,4 +1,4 @@
-// A controller of your own: keeps a distance to the wall on its right.
+// Your own controller: keeps a distance to the wall on its right.
 //
 //   cmake -B build && cmake --build build
 //   sensorfarm run worlds/cave.world --robots 20 --controller build/libfollow_wall.so --set distance=0.6
@@ -33,7 +33,7 @@ class FollowWall : public sensorfarm::Controller {
   double error() const override { return error_; }
 
  private:
-  /// [m] The nearest range among beams between two bearings [rad].
+  /// Returns the smallest range [m] among the beams between two bearings [rad].
   double nearest(const sensorfarm::Reading& scan, double first, double last) const {
     double range = HUGE_VAL;
     for (std::size_t i = 0; i < bearings_.size(); ++i)
@@ -43,7 +43,7 @@ class FollowWall : public sensorfarm::Controller {
 
   double distance_;               // [m]
   double speed_;                  // [m/s]
-  double error_ = 0.0;            // [m] too far from the wall
+  double error_ = 0.0;            // [m] positive if too far from the wall
   std::vector<double> bearings_;  // [rad] of the beams
 };
 

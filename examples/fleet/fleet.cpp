@@ -1,4 +1,4 @@
-// A fleet in a loop of your own: 300 robots that avoid what they see.
+// A fleet in your own loop: 300 robots that avoid obstacles.
 //
 //   cmake -B build && cmake --build build && build/fleet
 
@@ -10,7 +10,7 @@
 
 namespace {
 
-/// Drives on where the middle third of the scan is free, turns where it is not.
+/// Drives on if the middle third of the scan is free, turns if it is not.
 sensorfarm::Twist avoid(std::span<const double> ranges) {
   const std::size_t third = ranges.size() / 3;
   const double ahead = *std::min_element(ranges.begin() + third, ranges.end() - third);

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A small policy learns to drive round a corridor without contact, in a minute or two on two cores.
+"""A small policy learns to drive around a corridor without contact, in a minute or two on two cores.
 
     PYTHONPATH=build/release/python examples/python/corridor.py --out out/corridor
 
-Needs NumPy only. The policy is a network of one hidden layer: ranges and speeds in, forward and turning speed out. It is
+Needs only NumPy. The policy is a network of one hidden layer: ranges and speeds in, forward and turning speed out. It is
 trained by an evolution strategy with mirrored samples (Salimans et al., "Evolution Strategies as a
 Scalable Alternative to Reinforcement Learning", 2017). All candidates drive at once in one world: each on a floor of its
 own, at its own height, between walls as high as all floors, so that they neither meet nor see each other.
@@ -20,16 +20,16 @@ import sensorfarm.gym
 FLOOR = 0.2  # [m] height of a floor
 WIDTH = 1.3  # [m] of the corridor
 HIDDEN = 8
-FAR = 0.04  # [m] per step round the ring; a robot drives 0.05 m
+FAR = 0.04  # [m] per step around the ring; a robot drives 0.05 m
 
 
 def radius(angle):
-    """[m] of the corridor's middle: a ring with five bends."""
+    """Returns the radius [m] of the corridor's middle: a ring with five bends."""
     return 4.0 + 0.7 * numpy.sin(5 * angle) + 0.3 * numpy.cos(2 * angle)
 
 
 def corridor(floors, sides=120):
-    """The world as text, with one robot per floor, at places spread over the ring."""
+    """Returns the world as text, with one robot per floor, at places spread over the ring."""
     angles = numpy.linspace(0, 2 * numpy.pi, sides + 1)
     unit = numpy.stack([numpy.cos(angles), numpy.sin(angles)], axis=1)
     middle = radius(angles)[:, None] * unit
@@ -63,7 +63,7 @@ def corridor(floors, sides=120):
 
 
 class Rounds(sensorfarm.gym.Task):
-    """Reward: metres round the ring, the angle times the radius of the corridor's middle."""
+    """Reward: metres around the ring, the angle times the radius of the corridor's middle."""
 
     def begin(self):
         super().begin()
@@ -80,7 +80,7 @@ class Rounds(sensorfarm.gym.Task):
 
 
 def act(policies, observations):
-    """Actions (n, 2) of n policies, each with its own observation."""
+    """Returns the actions (n, 2) of n policies, each with its own observation."""
     inputs = observations.shape[1] + 1
     first = policies[:, :inputs * HIDDEN].reshape(-1, inputs, HIDDEN)
     second = policies[:, inputs * HIDDEN:].reshape(-1, HIDDEN, 2)
@@ -90,7 +90,7 @@ def act(policies, observations):
 
 
 def episodes(env, policies, steps):
-    """Each policy's metres until its first contact, and whether it had none."""
+    """Returns each policy's metres until its first contact, and whether it had none."""
     observations, _ = env.reset()
     metres, driving = numpy.zeros(env.num_envs), numpy.ones(env.num_envs, bool)
     for _ in range(steps):
@@ -103,12 +103,13 @@ def episodes(env, policies, steps):
 
 
 def train(env, generations, steps, seed, say=print):
-    """Until the policy drives far without contact. Returns it and, per generation, best, mean and worst metres of its candidates and the part without contact."""
+    """Trains until the policy drives far without contact. Returns the policy and, per generation, best, mean and worst
+    metres of its candidates and the share without contact."""
     generator = numpy.random.default_rng(seed)
     size = (env.single_observation_space.shape[0] + 1) * HIDDEN + 2 * HIDDEN
     policy, momentum, curve = numpy.zeros(size), numpy.zeros(size), []
     for generation in range(generations):
-        calm = max(0.2, 1.0 - 0.015 * generation)  # ever smaller steps
+        calm = max(0.2, 1.0 - 0.015 * generation)  # steps that become smaller and smaller
         sigma, rate = 0.3 * calm, 0.12 * calm
         half = generator.standard_normal((env.num_envs // 2, size))
         noise = numpy.concatenate([half, -half])
@@ -122,12 +123,12 @@ def train(env, generations, steps, seed, say=print):
         if generation % 4 == 3:
             metres, free = episodes(env, numpy.tile(policy, (env.num_envs, 1)), steps)
             if free.all() and metres.min() > FAR * steps:
-                break  # from every start the policy itself drives far without contact
+                break  # the policy itself drives far without contact from every start
     return policy, numpy.array(curve)
 
 
 def draw(curve, file):
-    """The learning curve as an SVG file: mean metres per generation, between best and worst."""
+    """Draws the learning curve as an SVG file: mean metres per generation, between best and worst."""
     width, height, margin = 720, 360, 56
     top = max(1.0, numpy.ceil(curve[:, 0].max() / 5) * 5)
     low = min(0.0, numpy.floor(curve[:, 2].min() / 5) * 5)

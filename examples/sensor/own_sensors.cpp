@@ -9,7 +9,7 @@
 
 namespace {
 
-/// One ray ahead, with noise that grows with the range.
+/// One ray ahead, with noise proportional to the range.
 class Rangefinder : public sensorfarm::Sensor {
  public:
   Rangefinder(const sensorfarm::SensorSite&, const sensorfarm::SensorSettings& settings)
@@ -24,7 +24,7 @@ class Rangefinder : public sensorfarm::Sensor {
 
  private:
   double range_;  // [m]
-  double noise_;  // standard deviation over range
+  double noise_;  // standard deviation divided by range
 };
 
 /// Free distances all around, computed by openness.comp.
