@@ -9,13 +9,13 @@
 namespace sf::netio {
 namespace {
 
-TEST(AccuracyWord, NothingSaidIsZero) {
+TEST(AccuracyWord, NothingStatedIsZero) {
   EXPECT_EQ(encode_accuracy({}), 0u);
   EXPECT_EQ(encode_accuracy({0, false, HUGE_VAL}), 0u);
   EXPECT_TRUE(std::isinf(decode_accuracy(0).bound));
 }
 
-TEST(AccuracyWord, ModesAndFlagsComeBack) {
+TEST(AccuracyWord, ModesAndFlagsRoundTrip) {
   for (std::uint8_t mode = 0; mode < 16; ++mode)
     for (const bool unsure : {false, true}) {
       const Accuracy back = decode_accuracy(encode_accuracy({mode, unsure, 1e-9}));

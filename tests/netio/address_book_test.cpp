@@ -1,4 +1,4 @@
-// Addresses of files and command lines.
+// Addresses in files and command lines.
 
 #include "netio/address_book.h"
 
@@ -30,7 +30,7 @@ TEST(AddressBook, LooksUpEachHostOnce) {
   EXPECT_EQ(look_ups, 2);
 }
 
-TEST(AddressBook, RefusesOtherForms) {
+TEST(AddressBook, RejectsOtherForms) {
   AddressBook book(count_look_up);
   look_ups = 0;
   for (const char* text :

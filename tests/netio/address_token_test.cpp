@@ -7,8 +7,9 @@
 namespace sf::netio {
 namespace {
 
-/// Published test values (appendix A of the paper, and vectors.h beside it): key 00 .. 0f, input 00 01 02 ...
-TEST(Token, SipHashIsTheAuthors) {
+/// Published test values (appendix A of the paper, and vectors.h of its reference implementation): key 00 .. 0f, input
+/// 00 01 02 ...
+TEST(Token, SipHashMatchesPublishedValues) {
   const SipHashKey key{0x0706050403020100u, 0x0f0e0d0c0b0a0908u};
   std::array<std::uint8_t, 15> bytes{};
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i);
@@ -18,7 +19,7 @@ TEST(Token, SipHashIsTheAuthors) {
   EXPECT_EQ(siphash(key, bytes), 0xa129ca6149be45e5u);
 }
 
-TEST(Token, EachAddressAndPortHasItsOwn) {
+TEST(Token, DiffersByAddressAndPort) {
   const AddressTokens tokens(SipHashKey{1, 2});
   const Endpoint one{kLoopback, 5001};
   EXPECT_EQ(tokens.of(one), AddressTokens(SipHashKey{1, 2}).of(one));
@@ -27,10 +28,10 @@ TEST(Token, EachAddressAndPortHasItsOwn) {
   EXPECT_NE(tokens.of(one), AddressTokens(SipHashKey{1, 3}).of(one));  // a restarted farm
 }
 
-TEST(Token, NoSessionAndNoKeyTwice) {
+TEST(Token, SessionsAndKeysAreUnique) {
   std::set<std::uint32_t> sessions;
   for (int i = 0; i < 100; ++i) sessions.insert(random_session());
-  EXPECT_GT(sessions.size(), 98u);  // two of 100 equal: once in a million runs
+  EXPECT_GT(sessions.size(), 98u);  // two of 100 are equal once in a million runs
   EXPECT_EQ(sessions.count(0), 0u);
   EXPECT_NE(random_key(), random_key());
   EXPECT_NE(AddressTokens().of({}), AddressTokens().of({}));

@@ -1,4 +1,4 @@
-// Receiving and sending allocate nothing after construction. This program counts `new`.
+// Receiving and sending allocate nothing after construction. This program counts calls of `new`.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ base::Bytes state_of_another(std::uint32_t token) {
   return bytes;
 }
 
-TEST(Allocation, NoneOnTheWayInOrOut) {
+TEST(Allocation, NoneWhenReceivingOrSending) {
   Inbox inbox({.bind = {kLoopback, 0}, .robots = {7, 9}, .tags = {12}, .lights = {2}});
   Relay relay(std::vector<std::uint32_t>{7, 9}, {}, std::vector<std::uint32_t>{2});
   Outbox answers(inbox.socket());
@@ -61,10 +61,10 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   std::vector<base::Bytes> packets = examples();
   const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
   for (base::Bytes& packet : packets) write_session_token(packet, {1, token});
-  packets.resize(packets.size() - 2);                                      // packets from the farm, as the challenge
+  packets.resize(packets.size() - 2);                                      // packets from the farm, like the challenge
   const std::vector<base::Bytes> fixed(packets.end() - 2, packets.end());  // a light and an object
   packets.resize(packets.size() - 3);
-  const base::Bytes leave = packets.back();  // after it the robot gets no packets
+  const base::Bytes leave = packets.back();  // after it the robot receives no packets
   packets.back() = subscribe_to_others(token);
   packets.push_back(state_of_another(token));
   packets.insert(packets.end(), fixed.begin(), fixed.end());

@@ -19,7 +19,7 @@ struct ClientRegistryTest : testing::Test {
   }
 };
 
-TEST_F(ClientRegistryTest, KnowsItsIdsOnly) {
+TEST_F(ClientRegistryTest, AcceptsOnlyItsIds) {
   EXPECT_EQ(registry.row(0), 0u);
   EXPECT_EQ(registry.row(7), 1u);
   EXPECT_EQ(registry.row(40'000), 2u);
@@ -47,7 +47,7 @@ TEST_F(ClientRegistryTest, TheFirstSenderBinds) {
   EXPECT_FALSE(registry.is_active(0, 1));  // other ids are unaffected
 }
 
-TEST_F(ClientRegistryTest, TwoSecondsOfSilenceFree) {
+TEST_F(ClientRegistryTest, TwoSecondsOfSilenceReleaseTheId) {
   EXPECT_EQ(say(kAlice, 10, 5 * kSecond), PacketStatus::accepted);
   EXPECT_TRUE(registry.is_active(7, 7 * kSecond - 1));
   EXPECT_EQ(say(kBob, 0, 7 * kSecond - 1), PacketStatus::wrong_source);  // one nanosecond early
@@ -58,13 +58,13 @@ TEST_F(ClientRegistryTest, TwoSecondsOfSilenceFree) {
   EXPECT_EQ(say(kAlice, 11, 7 * kSecond + 1), PacketStatus::wrong_source);
 }
 
-TEST_F(ClientRegistryTest, EachPacketRenews) {
+TEST_F(ClientRegistryTest, EachPacketRenewsTheBinding) {
   for (int i = 0; i < 10; ++i)
     EXPECT_EQ(say(kAlice, static_cast<std::uint32_t>(i), i * (2 * kSecond - 1)), PacketStatus::accepted);
   EXPECT_EQ(say(kBob, 99, 9 * (2 * kSecond - 1) + kSecond), PacketStatus::wrong_source);
 }
 
-TEST_F(ClientRegistryTest, WrongSourcesDoNotRenew) {
+TEST_F(ClientRegistryTest, WrongSourcesDoNotRenewTheBinding) {
   say(kAlice, 0, 0);
   say(kBob, 1, kSecond);
   EXPECT_FALSE(registry.is_active(7, 2 * kSecond));
@@ -82,10 +82,10 @@ TEST_F(ClientRegistryTest, SequencesWrap) {
   EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 0), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 0, 1), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 0x7FFFFFFFu, 2), PacketStatus::accepted);  // the largest distance ahead
-  EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 3), PacketStatus::stale);     // half the range is not ahead
+  EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 3), PacketStatus::stale);     // half the range does not count as ahead
 }
 
-TEST_F(ClientRegistryTest, ARestartedSenderIsBackAfterTwoSeconds) {
+TEST_F(ClientRegistryTest, RestartedSenderIsAcceptedAfterTwoSeconds) {
   EXPECT_EQ(say(kAlice, 5000, 0), PacketStatus::accepted);
   for (int tick = 1; tick < 20; ++tick)
     EXPECT_EQ(say(kAlice, static_cast<std::uint32_t>(tick), tick * kSecond / 10), PacketStatus::stale);
@@ -93,38 +93,38 @@ TEST_F(ClientRegistryTest, ARestartedSenderIsBackAfterTwoSeconds) {
   EXPECT_EQ(say(kAlice, 20, 2 * kSecond), PacketStatus::accepted);
 }
 
-TEST_F(ClientRegistryTest, ChannelsCountApart) {
+TEST_F(ClientRegistryTest, ChannelsHaveSeparateSequences) {
   EXPECT_EQ(say(kAlice, 5000, 0, 0), PacketStatus::accepted);
-  EXPECT_EQ(say(kAlice, 0, 1, 1), PacketStatus::accepted);    // SUBSCRIBE has its own count
+  EXPECT_EQ(say(kAlice, 0, 1, 1), PacketStatus::accepted);    // SUBSCRIBE has its own sequence
   EXPECT_EQ(say(kBob, 1, 2, 1), PacketStatus::wrong_source);  // and the same binding
   EXPECT_EQ(say(kAlice, 1, kSecond, 1), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 0, kSecond, 0), PacketStatus::stale);
   EXPECT_EQ(say(kAlice, 2, 2 * kSecond, 1), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 0, 2 * kSecond, 0),
-            PacketStatus::accepted);  // this channel was silent, the other one kept the binding
+            PacketStatus::accepted);  // this channel was silent, but the other one kept the binding
 }
 
-TEST_F(ClientRegistryTest, ALeavingClientFreesItsIdAtOnce) {
+TEST_F(ClientRegistryTest, LeaveReleasesTheIdAtOnce) {
   say(kAlice, 10, 0);
   EXPECT_EQ(registry.leave(7, kAlice, 1), PacketStatus::accepted);
   EXPECT_FALSE(registry.is_active(7, 1));
   EXPECT_FALSE(registry.source(7));
-  EXPECT_EQ(say(kBob, 0, 1), PacketStatus::accepted);  // in the same nanosecond, with a new count
+  EXPECT_EQ(say(kBob, 0, 1), PacketStatus::accepted);  // in the same nanosecond, with a new sequence
   EXPECT_EQ(registry.source(7), kBob);
   EXPECT_EQ(say(kAlice, 11, 2), PacketStatus::wrong_source);
 }
 
-TEST_F(ClientRegistryTest, APacketThatALeaveOvertookBindsNoClient) {
+TEST_F(ClientRegistryTest, PacketOvertakenByLeaveDoesNotBind) {
   say(kAlice, 10, 0);
   registry.leave(7, kAlice, kSecond);
   EXPECT_EQ(say(kAlice, 9, kSecond), PacketStatus::stale);
-  EXPECT_EQ(say(kAlice, 11, 3 * kSecond - 1), PacketStatus::stale);    // sent before LEAVE, or a return too soon
-  EXPECT_EQ(say(kAlice, 0, 3 * kSecond - 1, 1), PacketStatus::stale);  // on the other channel, too
+  EXPECT_EQ(say(kAlice, 11, 3 * kSecond - 1), PacketStatus::stale);    // sent before LEAVE, or returning too soon
+  EXPECT_EQ(say(kAlice, 0, 3 * kSecond - 1, 1), PacketStatus::stale);  // also on the other channel
   EXPECT_FALSE(registry.is_active(7, 3 * kSecond - 1));
   EXPECT_EQ(say(kAlice, 0, 3 * kSecond), PacketStatus::accepted);  // accepted again after two seconds
 }
 
-TEST_F(ClientRegistryTest, OnlyTheBoundOneLeaves) {
+TEST_F(ClientRegistryTest, OnlyTheBoundClientCanLeave) {
   EXPECT_EQ(registry.leave(7, kAlice, 0), PacketStatus::stale);  // no binding
   say(kAlice, 0, 0);
   EXPECT_EQ(registry.leave(7, kBob, 1), PacketStatus::wrong_source);
@@ -132,7 +132,7 @@ TEST_F(ClientRegistryTest, OnlyTheBoundOneLeaves) {
   EXPECT_EQ(registry.leave(7, kAlice, 2), PacketStatus::accepted);
   EXPECT_EQ(registry.leave(7, kAlice, 3), PacketStatus::stale);  // repeated
   say(kBob, 0, 4);
-  EXPECT_EQ(registry.leave(7, kBob, 4 + 2 * kSecond), PacketStatus::stale);  // silent already
+  EXPECT_EQ(registry.leave(7, kBob, 4 + 2 * kSecond), PacketStatus::stale);  // already silent
 }
 
 TEST_F(ClientRegistryTest, TheLastSenderRenewsWithoutOrder) {
@@ -143,12 +143,12 @@ TEST_F(ClientRegistryTest, TheLastSenderRenewsWithoutOrder) {
   EXPECT_TRUE(registry.is_active(7, 3 * kSecond - 1));
   EXPECT_EQ(registry.renew(7, kBob, 3 * kSecond), PacketStatus::stale);       // silent, but not bound to this one
   EXPECT_EQ(registry.renew(7, kAlice, 9 * kSecond), PacketStatus::accepted);  // after a silence
-  EXPECT_EQ(say(kAlice, 11, 9 * kSecond), PacketStatus::accepted);            // counts go on
+  EXPECT_EQ(say(kAlice, 11, 9 * kSecond), PacketStatus::accepted);            // the sequence continues
   registry.leave(7, kAlice, 9 * kSecond);
   EXPECT_EQ(registry.renew(7, kAlice, 9 * kSecond), PacketStatus::stale);
 }
 
-TEST_F(ClientRegistryTest, AClockAtItsEndsDoesNotMatter) {
+TEST_F(ClientRegistryTest, HandlesExtremeClockValues) {
   EXPECT_EQ(say(kAlice, 0, INT64_MAX - 1), PacketStatus::accepted);
   EXPECT_TRUE(registry.is_active(7, INT64_MAX));
 }

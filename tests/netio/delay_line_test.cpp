@@ -18,7 +18,7 @@ base::Bytes bytes_of(std::uint32_t n) {
   return bytes;
 }
 
-/// Messages released by `now`, as numbers.
+/// Returns the messages released by `now`, as numbers.
 std::vector<std::uint32_t> released(DelayLine& line, std::int64_t now) {
   std::vector<std::uint32_t> numbers;
   line.release(now, [&](std::size_t, std::span<const std::uint8_t> bytes) {
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> released(DelayLine& line, std::int64_t now) {
 
 void send(DelayLine& line, std::uint32_t n, std::int64_t now) { line.send({1, 2, n}, now, 0, bytes_of(n)); }
 
-TEST(DelayLine, APerfectLinkHoldsNothingBack) {
+TEST(DelayLine, PerfectLinkAddsNoDelay) {
   DelayLine line({});
   send(line, 3, 10);
   EXPECT_EQ(line.next(), 10);
@@ -37,7 +37,7 @@ TEST(DelayLine, APerfectLinkHoldsNothingBack) {
   EXPECT_EQ(line.next(), std::numeric_limits<std::int64_t>::max());
 }
 
-TEST(DelayLine, HoldsForItsDelay) {
+TEST(DelayLine, DelaysMessages) {
   DelayLine line({.delay = 0.05});
   send(line, 1, 0);
   EXPECT_EQ(line.next(), 50 * kMilli);
@@ -47,27 +47,27 @@ TEST(DelayLine, HoldsForItsDelay) {
   EXPECT_EQ(line.counts().passed, 1u);
 }
 
-TEST(DelayLine, KeepsTheOrderOfWhatComesAtOnce) {
+TEST(DelayLine, KeepsOrderOfSimultaneousArrivals) {
   DelayLine line({.delay = 0.05});
   for (std::uint32_t i = 0; i < 100; ++i) send(line, i, 0);
   const auto numbers = released(line, 50 * kMilli);
   for (std::uint32_t i = 0; i < 100; ++i) ASSERT_EQ(numbers[i], i);
 }
 
-TEST(DelayLine, TagsComeBack) {
+TEST(DelayLine, ReturnsTags) {
   DelayLine line({});
   line.send({}, 0, 42, bytes_of(0));
   line.release(0, [](std::size_t tag, std::span<const std::uint8_t>) { EXPECT_EQ(tag, 42u); });
 }
 
-TEST(DelayLine, AllIsLostAtLossOne) {
+TEST(DelayLine, LossOfOneDropsEverything) {
   DelayLine line({.loss = 1.0});
   for (std::uint32_t i = 0; i < 100; ++i) send(line, i, 0);
   EXPECT_TRUE(released(line, 1'000'000 * kMilli).empty());
   EXPECT_EQ(line.counts().lost, 100u);
 }
 
-// With jitter messages arrive at the times of `sample_delay`, in order and once each, whenever they are released.
+// With jitter, messages arrive at the times of `sample_delay`, in order and once each, whenever they are released.
 TEST(DelayLine, ReleasesInOrderOfArrival) {
   const LinkModel model{.delay = 0.01, .jitter = 0.2, .loss = 0.1, .seed = 5};
   std::mt19937 random(3);  // NOLINT: the same every time
@@ -98,8 +98,8 @@ TEST(DelayLine, ReleasesInOrderOfArrival) {
   EXPECT_GT(overtaken, 50u);
 }
 
-// Faults come as often as asked for, within five standard deviations of 2000 messages.
-TEST(DelayLine, MessagesComeTwiceOrWithAFlippedBit) {
+// Faults occur at the configured rate, within five standard deviations of 2000 messages.
+TEST(DelayLine, DuplicatesAndCorruptsMessages) {
   constexpr int kMessages = 2000;
   DelayLine line({.delay = 0.01, .jitter = 0.1, .seed = 3, .duplicate = 0.25, .corrupt = 0.1});
   for (std::uint32_t n = 0; n < kMessages; ++n) send(line, n, n * kMilli);
@@ -108,7 +108,7 @@ TEST(DelayLine, MessagesComeTwiceOrWithAFlippedBit) {
   line.release(1'000'000 * kMilli, [&](std::size_t, std::span<const std::uint8_t> bytes) {
     const auto number = base::ByteReader(bytes).get<std::uint32_t>();
     if (number < kMessages) ++copies[number];
-    // A flipped bit makes some other number, seldom one that is in use: its copies are then too many.
+    // A flipped bit changes the number, rarely to one that is in use, which then has too many copies.
     odd += number >= kMessages;
   });
   const DelayCounts& counts = line.counts();
@@ -131,7 +131,7 @@ TEST(DelayLine, BothCopiesHaveTheSameFlippedBit) {
   }
 }
 
-TEST(DelayLine, FaultsAreFunctionsOfTheMessage) {
+TEST(DelayLine, FaultsDependOnlyOnTheMessage) {
   const LinkModel model{.seed = 3, .duplicate = 0.5, .corrupt = 0.5};
   for (std::uint64_t n = 0; n < 50; ++n) {
     const MessageFaults one = sample_faults(model, {1, 2, n}), other = sample_faults(model, {1, 2, n});
@@ -142,14 +142,14 @@ TEST(DelayLine, FaultsAreFunctionsOfTheMessage) {
   EXPECT_FALSE(none.again || none.flipped_bit);
 }
 
-TEST(DelayLine, AnEmptyMessageHasNoBitToFlip) {
+TEST(DelayLine, EmptyMessageIsNotCorrupted) {
   DelayLine line({.corrupt = 1.0});
   line.send({1, 2, 3}, 0, 0, {});
   line.release(0, [](std::size_t, std::span<const std::uint8_t> bytes) { EXPECT_TRUE(bytes.empty()); });
   EXPECT_EQ(line.counts().passed, 1u);
 }
 
-TEST(DelayLine, AFloodIsBounded) {
+TEST(DelayLine, FloodIsBounded) {
   DelayLine line({.delay = 1.0});
   for (std::uint32_t i = 0; i < DelayLine::kCapacity + 5; ++i) send(line, i, 0);
   EXPECT_EQ(line.waiting(), DelayLine::kCapacity);

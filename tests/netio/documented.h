@@ -11,7 +11,7 @@
 
 namespace sf::test {
 
-/// The bytes below `<!-- example: NAME -->`; empty without such an example.
+/// Returns the bytes below `<!-- example: NAME -->`; empty if there is no such example.
 inline base::Bytes documented(const std::string& example) {
   std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
   std::string line;
@@ -21,7 +21,7 @@ inline base::Bytes documented(const std::string& example) {
   base::Bytes bytes;
   std::size_t end = 0;
   while (std::getline(file, line) && line != "```") {
-    if (line == "*") continue;  // rows like the one before, up to the next row's offset
+    if (line == "*") continue;  // rows equal to the previous one, up to the next row's offset
     std::istringstream row(line);
     std::size_t offset = 0;
     row >> std::hex >> offset;

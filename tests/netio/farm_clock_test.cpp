@@ -6,7 +6,7 @@
 namespace sf::netio {
 namespace {
 
-TEST(FarmClock, IsTheRobotsOwnUntilSomethingCame) {
+TEST(FarmClock, EqualsTheRobotsClockBeforeTheFirstReading) {
   const FarmClock clock;
   EXPECT_FALSE(clock.synchronised());
   EXPECT_EQ(clock.to_farm(123), 123);
@@ -20,15 +20,15 @@ TEST(FarmClock, FollowsTheTimestamps) {
   EXPECT_EQ(clock.to_own(102 * kSecond), 3 * kSecond);
 }
 
-TEST(FarmClock, MayBeBehindTheRobots) {
-  for (const std::int64_t arrival : {kSecond, 5 * kSecond}) {  // the first reading sets the clock, however early
+TEST(FarmClock, MayLagTheRobotsClock) {
+  for (const std::int64_t arrival : {kSecond, 5 * kSecond}) {  // the first reading sets the clock, however early it is
     FarmClock clock;
     clock.update(0, arrival);
     EXPECT_EQ(clock.to_farm(6 * kSecond), 6 * kSecond - arrival);
   }
 }
 
-TEST(FarmClock, TheQuickestSaysItBest) {
+TEST(FarmClock, FastestReadingDeterminesTheEstimate) {
   FarmClock clock;
   clock.update(10 * kSecond, 50);
   clock.update(11 * kSecond, kSecond + 20);  // delay smaller by 30 ns
@@ -36,7 +36,7 @@ TEST(FarmClock, TheQuickestSaysItBest) {
   EXPECT_EQ(clock.to_farm(2 * kSecond + 20), 12 * kSecond);
 }
 
-TEST(FarmClock, AFarmThatBeganAnewIsBelievedAfterSilence) {
+TEST(FarmClock, RestartedFarmIsAcceptedAfterSilence) {
   FarmClock clock;
   clock.update(100 * kSecond, 0);
   clock.update(0, 2 * kSecond - 1);  // may be very late

@@ -51,7 +51,7 @@ base::Bytes signed_leave() {
 struct InboxTest : testing::Test {
   Inbox inbox{options()};
   Packet packet;
-  /// Signed, with the token of `who`.
+  /// Returns a signed LEAVE with the token of `who`.
   base::Bytes proven_leave(const Endpoint& who) {
     base::Bytes bytes = leave_of_keyed();
     write_session_token(bytes, {kSession, inbox.token(who)});
@@ -65,7 +65,7 @@ struct InboxTest : testing::Test {
   }
 };
 
-TEST(Inbox, OvertakenStatesAreTakenOnRequest) {
+TEST(Inbox, AcceptsOvertakenStatesOnRequest) {
   InboxOptions chosen = options();
   chosen.take_late = true;
   Inbox inbox(chosen);
@@ -87,14 +87,14 @@ TEST(Inbox, OvertakenStatesAreTakenOnRequest) {
   encode({.robot = 7}, Leave{}, leave);
   EXPECT_EQ(say(leave, 6), PacketStatus::accepted);
   EXPECT_EQ(say(v2v(7, 6), 7), PacketStatus::stale) << "after a LEAVE";
-  // A late state does not extend the binding: two seconds after the last one in order the id is free.
+  // A late state does not extend the binding: two seconds after the last state in order, the id is free.
   EXPECT_EQ(say(v2v(3, 5), 10), PacketStatus::accepted);
   EXPECT_EQ(say(v2v(3, 4), kSecond), PacketStatus::accepted);
   EXPECT_FALSE(inbox.is_active(3, 2 * kSecond + 10));
 }
 
-/// Packets of lockstep, of the robot's session, after its SUBSCRIBE; the others have no meaning there.
-TEST(Inbox, LockstepHasItsOwnPackets) {
+/// Accepts packets of lockstep with the robot's session, after its SUBSCRIBE. The other packets are rejected.
+TEST(Inbox, LockstepAcceptsItsOwnPacketTypes) {
   InboxOptions chosen = options();
   chosen.lockstep = true;
   Inbox inbox(chosen), plain(options());
@@ -127,7 +127,7 @@ TEST(Inbox, LockstepHasItsOwnPackets) {
     EXPECT_LE(challenge.size(), bytes.size()) << "nothing is amplified";
 }
 
-TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
+TEST_F(InboxTest, ReachesAndCountsEveryReason) {
   base::Bytes long_packet = v2v_example();
   long_packet.push_back(0);
   EXPECT_EQ(say({}), PacketStatus::too_short);
@@ -145,7 +145,7 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(say(leave_of_keyed()), PacketStatus::not_signed);
   EXPECT_EQ(say(signed_leave()), PacketStatus::wrong_signature);  // changed by its token
   EXPECT_EQ(inbox.accept(signed_leave(), kSender, 0, packet), PacketStatus::unproven);
-  // The counter of the unproven packet did not count; it is a LEAVE of one that never spoke.
+  // The counter of the unproven packet was not recorded. It is a LEAVE of a robot that has never sent a packet.
   EXPECT_EQ(inbox.accept(proven_leave(kSender), kSender, 0, packet), PacketStatus::stale);
   EXPECT_EQ(inbox.accept(proven_leave(kSender), kSender, 0, packet), PacketStatus::replayed);
   EXPECT_EQ(say(v2v_example()), PacketStatus::accepted);
@@ -155,14 +155,14 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(inbox.counts().dropped(), kPacketStatuses - 1);
 }
 
-TEST_F(InboxTest, DroppedPacketsAreNotHeard) {
+TEST_F(InboxTest, DroppedPacketsDoNotActivateARobot) {
   say(patched(v2v_example(), 64, 2e7));
   say(reading_example());
   EXPECT_FALSE(inbox.is_active(7, 0));
   EXPECT_FALSE(inbox.address(7));
 }
 
-TEST_F(InboxTest, EitherPacketIsHeardForTwoSeconds) {
+TEST_F(InboxTest, StateAndSubscribeActivateForTwoSeconds) {
   say(v2v(7, 0), 0);
   EXPECT_TRUE(inbox.is_active(7, 2 * kSecond - 1));
   EXPECT_FALSE(inbox.is_active(7, 2 * kSecond));
@@ -173,10 +173,10 @@ TEST_F(InboxTest, EitherPacketIsHeardForTwoSeconds) {
   EXPECT_EQ(inbox.address(7), kSender);
 }
 
-TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
+TEST_F(InboxTest, LeaveEndsBindingAndSubscription) {
   const auto leave = [](std::uint16_t robot) { return patched<std::uint16_t>(leave_example(), 6, robot); };
   EXPECT_EQ(say(leave(8)), PacketStatus::unknown_robot);
-  EXPECT_EQ(say(leave(7)), PacketStatus::stale);  // without a state before
+  EXPECT_EQ(say(leave(7)), PacketStatus::stale);  // no state before
   say(v2v(7, 5));
   say(subscribe(0, 1u << 2));
   EXPECT_EQ(say(leave(7), 1, kOtherSender), PacketStatus::wrong_source);
@@ -185,18 +185,18 @@ TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
   EXPECT_FALSE(inbox.is_active(7, 1));
   EXPECT_FALSE(inbox.address(7));
   EXPECT_EQ(say(v2v(7, 0), 2, kOtherSender), PacketStatus::accepted);
-  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all types, not the subscription of the sender before
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all types, not the subscription of the previous sender
   EXPECT_EQ(inbox.address(7), kOtherSender);
 }
 
-TEST_F(InboxTest, StrangersPacketsSayWhoseIdTheyUse) {
+TEST_F(InboxTest, ReportsTheIdUsedByStrangers) {
   say(v2v(7, 0));
   EXPECT_EQ(say(v2v(7, 1), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_EQ(packet.header.robot, 7);
   EXPECT_EQ(packet.header.sequence, 1u);
 }
 
-TEST_F(InboxTest, AnAddressIsHeardOnceItSendsItsTokenBack) {
+TEST_F(InboxTest, AcceptsAnAddressOnceItReturnsItsToken) {
   base::Bytes answer;
   base::Bytes request = subscribe(0, 1u << kLaser);
   write_session_token(request, {kSession, 0});
@@ -219,20 +219,20 @@ TEST_F(InboxTest, AnAddressIsHeardOnceItSendsItsTokenBack) {
             PacketStatus::unproven);  // a restarted farm
 }
 
-/// Forged sources bind no id, block no id and end no binding.
-TEST_F(InboxTest, ForgedAddressesDoNothing) {
+/// Forged sources do not bind, block or release an id.
+TEST_F(InboxTest, ForgedAddressesHaveNoEffect) {
   base::Bytes forged = v2v(7, 5);
   EXPECT_EQ(inbox.accept(forged, kOtherSender, 0, packet), PacketStatus::unproven);
   EXPECT_EQ(say(v2v(7, 0)), PacketStatus::accepted);
   EXPECT_EQ(inbox.accept(forged, kSender, 1, packet),
-            PacketStatus::unproven);  // without a token Alice's id gets no state
+            PacketStatus::unproven);  // without a token no state of Alice is accepted
   base::Bytes leave = leave_example();
   write_session_token(leave, {kSession, inbox.token(kOtherSender)});
   EXPECT_EQ(inbox.accept(leave, kSender, 1, packet), PacketStatus::unproven);
   base::Bytes none;
   EXPECT_FALSE(inbox.challenge(packet, kSender, 1, none));  // a LEAVE gets no challenge
   EXPECT_TRUE(inbox.is_active(7, 1));
-  // After LEAVE, and after two seconds, the next sender has to prove its address, too.
+  // After LEAVE, and after two seconds, the next sender must prove its address, too.
   say(leave_example(), 2);
   EXPECT_EQ(inbox.accept(v2v(7, 9), kOtherSender, 3, packet), PacketStatus::unproven);
   EXPECT_EQ(inbox.accept(v2v(7, 9), kOtherSender, 5 * kSecond, packet), PacketStatus::unproven);
@@ -240,7 +240,7 @@ TEST_F(InboxTest, ForgedAddressesDoNothing) {
   EXPECT_EQ(say(v2v(7, 9), 5 * kSecond, kOtherSender), PacketStatus::accepted);
 }
 
-TEST_F(InboxTest, OnlySoManyChallengesInATenthOfASecond) {
+TEST_F(InboxTest, LimitsChallengesPerTenthOfASecond) {
   base::Bytes out;
   inbox.accept(v2v(7, 0), kOtherSender, 0, packet);
   std::size_t answered = 0;
@@ -250,7 +250,7 @@ TEST_F(InboxTest, OnlySoManyChallengesInATenthOfASecond) {
   EXPECT_TRUE(inbox.challenge(packet, kOtherSender, kSecond + kSecond / 10, out));
 }
 
-TEST_F(InboxTest, AFloodOfRobotsWithoutKeysTakesNoChallengesOfThoseWithKeys) {
+TEST_F(InboxTest, LimitsChallengesSeparatelyWithAndWithoutKeys) {
   base::Bytes out, keyed = v2v(kKeyed, 0);
   sign(keyed, kKey, 1);
   EXPECT_EQ(inbox.accept(keyed, kSender, kSecond, packet), PacketStatus::unproven);
@@ -263,17 +263,17 @@ TEST_F(InboxTest, AFloodOfRobotsWithoutKeysTakesNoChallengesOfThoseWithKeys) {
   EXPECT_FALSE(inbox.challenge(genuine, kSender, kSecond, out)) << "they have a limit of their own";
 }
 
-TEST_F(InboxTest, TagsMakeNoRobotHeard) {
+TEST_F(InboxTest, TagsDoNotActivateRobots) {
   Inbox both({.bind = {kLoopback, 0}, .robots = {12}, .tags = {12}});
   EXPECT_EQ(both.accept(tag_example(), kSender, 0, packet), PacketStatus::accepted);
   EXPECT_FALSE(both.is_active(12, 0));
   base::Bytes state = v2v(12, 0);
   write_session_token(state, {0, both.token(kOtherSender)});
   EXPECT_EQ(both.accept(state, kOtherSender, 0, packet),
-            PacketStatus::accepted);  // ids of tags are bound separately from those of robots
+            PacketStatus::accepted);  // ids of tags are bound independently of those of robots
 }
 
-TEST_F(InboxTest, ARobotWantsAllKindsUntilItChooses) {
+TEST_F(InboxTest, DefaultSubscriptionIncludesAllTypes) {
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));   // not active
   EXPECT_FALSE(inbox.is_subscribed(99, kLaser, 0));  // unknown
   say(v2v(7, 0), 0);
@@ -283,24 +283,24 @@ TEST_F(InboxTest, ARobotWantsAllKindsUntilItChooses) {
   EXPECT_TRUE(inbox.is_subscribed(7, 2, 0));
   say(v2v(7, 1), kSecond);  // states do not change the subscription
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, kSecond));
-  say(subscribe(1, 0), kSecond);  // 0 is all again
+  say(subscribe(1, 0), kSecond);  // 0 selects all types again
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, kSecond));
   EXPECT_TRUE(inbox.is_subscribed(7, 31, kSecond));
 }
 
-TEST_F(InboxTest, SilenceForgetsTheChoice) {
+TEST_F(InboxTest, SilenceResetsTheSubscription) {
   say(subscribe(0, 1u << 2), 0);
   say(v2v(7, 0), 2 * kSecond);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2 * kSecond));
 }
 
-TEST_F(InboxTest, StrangersCannotChoose) {
+TEST_F(InboxTest, StrangersCannotSubscribe) {
   say(v2v(7, 0), 0);
   EXPECT_EQ(say(subscribe(0, 1u << 2), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 0));
 }
 
-TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
+TEST_F(InboxTest, StatesOfOthersRequireSubscription) {
   say(v2v(7, 0), 0);
   EXPECT_FALSE(inbox.wants_neighbours(7, 0));  // states of robots are not included in "all types"
   say(subscribe(0, 0), 0);
@@ -315,8 +315,9 @@ TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
   EXPECT_FALSE(inbox.wants_neighbours(99, 0));           // unknown
 }
 
-/// A light hears robots where it says it is, so it has to prove that; the sender of an object hears nothing.
-TEST_F(InboxTest, LightsProveTheirAddressAndObjectsDoNot) {
+/// A light receives the robots near its claimed position, so it has to prove its address. The sender of an object
+/// receives nothing.
+TEST_F(InboxTest, LightsMustProveTheirAddressObjectsNeedNot) {
   InboxOptions lit = options();
   lit.lights = {2};
   Inbox crossing(lit);
@@ -336,7 +337,7 @@ TEST_F(InboxTest, LightsProveTheirAddressAndObjectsDoNot) {
   EXPECT_EQ(crossing.object_address(12), kSender);
 }
 
-TEST_F(InboxTest, AnybodyMayStartRobots) {
+TEST_F(InboxTest, AnySenderMayStartRobots) {
   say(v2v(7, 0), 0);
   EXPECT_EQ(say(start_example(), 0, kOtherSender), PacketStatus::accepted);  // from any source
   EXPECT_EQ(say(start_example(), 0, kOtherSender), PacketStatus::accepted);  // and again
@@ -427,7 +428,7 @@ TEST_F(LoopbackTest, SurvivesThousandsOfRandomDatagrams) {
   EXPECT_EQ(inbox.counts().total(), 5000u);
 }
 
-TEST_F(LoopbackTest, ATakenPortIsOneClearError) {
+TEST_F(LoopbackTest, PortInUseIsAnError) {
   try {
     Inbox second({.bind = {kLoopback, inbox.port()}});
     FAIL() << "bound twice";
@@ -438,16 +439,14 @@ TEST_F(LoopbackTest, ATakenPortIsOneClearError) {
   }
 }
 
-TEST(Inbox, AForeignAddressIsOneClearError) {
-  EXPECT_THROW(Inbox({.bind = {resolve("192.0.2.1"), 0}}), base::InputError);
-}
+TEST(Inbox, ForeignAddressIsAnError) { EXPECT_THROW(Inbox({.bind = {resolve("192.0.2.1"), 0}}), base::InputError); }
 
-TEST(Inbox, IdsThatDoNotFitAPacketAreRefused) {
+TEST(Inbox, RejectsIdsThatDoNotFitAPacket) {
   EXPECT_THROW(Inbox({.bind = {kLoopback, 0}, .robots = {65'536}}), base::InputError);
   EXPECT_THROW(Inbox({.bind = {kLoopback, 0}, .tags = {0}}), base::InputError);
 }
 
-TEST(Inbox, BindsToLoopbackUnlessToldOtherwise) { EXPECT_EQ(InboxOptions{}.bind, (Endpoint{0x7F000001u, 9000})); }
+TEST(Inbox, BindsToLoopbackByDefault) { EXPECT_EQ(InboxOptions{}.bind, (Endpoint{0x7F000001u, 9000})); }
 
 }  // namespace
 }  // namespace sf::netio

@@ -1,5 +1,5 @@
 #pragma once
-// The lines that a log writes, through a pipe.
+// Reads the lines that a log writes, through a pipe.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

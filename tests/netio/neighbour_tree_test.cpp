@@ -49,8 +49,8 @@ TEST(NeighbourTree, FindsTheNearest) {
   }
 }
 
-/// At one place all robots are equally near: each has neighbours, never itself, and not all the same ones.
-TEST(NeighbourTree, ACrowdAtOnePlace) {
+/// If all robots are at one place, each has neighbours, never itself, and not all robots have the same ones.
+TEST(NeighbourTree, CrowdAtOnePlace) {
   Places places;
   for (std::uint32_t row = 0; row < 5000; ++row) places.push_back({{1.0, 2.0}, row});
   NeighbourTree tree(places.size());
@@ -67,7 +67,7 @@ TEST(NeighbourTree, ACrowdAtOnePlace) {
 }
 
 /// The worst case for the tree: all places at about the same distance.
-TEST(NeighbourTree, ACrowdOnACircleCostsNoMoreThanItsBound) {
+TEST(NeighbourTree, CrowdOnACircleIsBounded) {
   Places places;
   for (std::uint32_t row = 0; row < 5000; ++row) places.push_back({{std::cos(row), std::sin(row)}, row});
   NeighbourTree tree(places.size());
@@ -76,7 +76,7 @@ TEST(NeighbourTree, ACrowdOnACircleCostsNoMoreThanItsBound) {
   EXPECT_LE(tree.visits(), NeighbourTree::kMaxVisits);
 }
 
-TEST(NeighbourTree, OldPlacesCostNoMoreThanTheBound) {
+TEST(NeighbourTree, OldPlacesAreBounded) {
   Places places;
   for (std::uint32_t row = 0; row < 2000; ++row) places.push_back({{0.0, 0.0}, row, 1});
   NeighbourTree tree(places.size());
@@ -85,7 +85,7 @@ TEST(NeighbourTree, OldPlacesCostNoMoreThanTheBound) {
   EXPECT_EQ(tree.visits(), NeighbourTree::kMaxVisits);
 }
 
-TEST(NeighbourTree, AnyWhereThereIsNoPlace) {
+TEST(NeighbourTree, ReturnsAnyRowsWithoutACentre) {
   const Places places{{{0, 0}, 0}, {{1e7, 0}, 1}, {{0, -1e7}, 2}, {{5, 5}, 3, 1}};
   NeighbourTree tree(places.size());
   tree.build(places);

@@ -1,4 +1,4 @@
-// Sockets of a library that are kept to this machine.
+// Restricts the sockets of a library to this machine.
 
 #include "netio/open_sockets.h"
 
@@ -21,7 +21,7 @@ bool has_filter(const Socket& socket) {
   return count > 0;
 }
 
-TEST(OpenSockets, NewOnesOnAllInterfacesReceiveFromThisMachineAlone) {
+TEST(OpenSockets, RestrictsNewSocketsToLoopback) {
   const Socket old = open_udp({0, 0});
   const OpenSockets before;
   const Socket open_to_all = open_udp({0, 0}), kept = open_udp({kLoopback, 0});
@@ -29,7 +29,7 @@ TEST(OpenSockets, NewOnesOnAllInterfacesReceiveFromThisMachineAlone) {
   EXPECT_FALSE(has_filter(old)) << "of somebody else";
   EXPECT_FALSE(has_filter(kept)) << "bound to loopback already";
   ASSERT_TRUE(has_filter(open_to_all));
-  // What is sent to loopback still arrives.
+  // Datagrams to loopback still arrive.
   Outbox sender;
   const std::array<std::uint8_t, 3> bytes{1, 2, 3};
   for (const std::uint32_t to : {kLoopback, kLoopback + 1}) sender.queue({to, bound_endpoint(open_to_all).port}, bytes);
@@ -43,7 +43,7 @@ TEST(OpenSockets, NewOnesOnAllInterfacesReceiveFromThisMachineAlone) {
   EXPECT_EQ(came, 2u);
 }
 
-TEST(OpenSockets, AddressesAreThoseThatNewOnesAreBoundTo) {
+TEST(OpenSockets, ReturnsAddressesOfNewSockets) {
   const Socket old = open_udp({kLoopback + 1, 0});
   const OpenSockets before;
   EXPECT_TRUE(before.addresses().empty());

@@ -31,7 +31,7 @@ Body body_of(const base::Bytes& bytes) {
   return std::get<Body>(packet.body);
 }
 
-TEST(Packets, BytesAreTheDocumentedOnes) {
+TEST(Packets, BytesMatchTheDocumentation) {
   EXPECT_EQ(reading_example(), documented("laser"));
   EXPECT_EQ(extended_example(), documented("laser_extended"));
   EXPECT_EQ(v2v_example(), documented("v2v"));
@@ -51,7 +51,7 @@ TEST(Packets, BytesAreTheDocumentedOnes) {
   EXPECT_EQ(values_example(), documented("values"));
 }
 
-TEST(Packets, HeaderComesBack) {
+TEST(Packets, HeaderRoundTrips) {
   base::Bytes bytes;
   encode({.robot = 0xFFFF,
           .sensor = 0xABCD,
@@ -71,7 +71,7 @@ TEST(Packets, HeaderComesBack) {
   EXPECT_EQ(packet.header.token, 1u);
 }
 
-/// The state of a reading whose header has `sent`.
+/// Returns the state of a decoded reading whose header contains `sent`.
 StateQuality received(const StateQuality& sent) {
   base::Bytes bytes;
   encode_reading({.robot = 7, .state = sent}, 1, {}, bytes);
@@ -80,7 +80,7 @@ StateQuality received(const StateQuality& sent) {
   return packet.header.state;
 }
 
-TEST(Packets, StateOfAReadingComesBack) {
+TEST(Packets, StateOfAReadingRoundTrips) {
   const StateQuality got =
       received({.stated = true, .stale = true, .age = 80'000'000, .covariance = {1, 2, 3, 4, 5, 6}});
   EXPECT_TRUE(got.stated);
@@ -92,14 +92,14 @@ TEST(Packets, StateOfAReadingComesBack) {
 }
 
 TEST(Packets, AgeIsRoundedUpAndNeverZero) {
-  EXPECT_EQ(received({.stated = true, .age = 0}).age, 1000);   // 0 would state nothing
-  EXPECT_EQ(received({.stated = true, .age = -5}).age, 1000);  // a state of after the reading
+  EXPECT_EQ(received({.stated = true, .age = 0}).age, 1000);   // 0 would mean that nothing is stated
+  EXPECT_EQ(received({.stated = true, .age = -5}).age, 1000);  // a state later than the reading
   EXPECT_EQ(received({.stated = true, .age = 1001}).age, 2000);
   EXPECT_EQ(received({.stated = true, .age = kMaxTime}).age, 4'294'967'295'000);
 }
 
-// Older clients read a stale state of the largest age.
-TEST(Packets, ThatNoStateHasArrivedComesBack) {
+// Older clients see a stale state with the largest age.
+TEST(Packets, MissingStateRoundTrips) {
   base::Bytes bytes;
   encode_reading({.robot = 7, .state = {.stated = true, .stale = true, .age = base::kNoStateYet}}, 1, {}, bytes);
   EXPECT_EQ(base::ByteReader(std::span(bytes).subspan(32)).get<std::uint32_t>(), 0xFFFFFFFFu);
@@ -107,7 +107,7 @@ TEST(Packets, ThatNoStateHasArrivedComesBack) {
   EXPECT_EQ(received({.stated = true, .stale = true, .age = base::kNoStateYet}).age, base::kNoStateYet);
 }
 
-TEST(Packets, CovarianceThatIsNoneIsLeftOut) {
+TEST(Packets, ImpossibleCovarianceIsDropped) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   for (const std::array<float, 6>& bad :
        {std::array<float, 6>{-1, 0, 0, 1, 0, 1}, {1, kNone, 0, 1, 0, 1}, {1, 0, 0, 1, 0, -1}}) {
@@ -116,7 +116,7 @@ TEST(Packets, CovarianceThatIsNoneIsLeftOut) {
   }
 }
 
-/// In a state these fields are reserved: a relay would pass them on.
+/// These fields are reserved in a state: a relay would forward them.
 TEST(Packets, AgeAndCovarianceOfAStateAreIgnored) {
   base::Bytes bytes;
   encode({.robot = 7, .state = {.stated = true, .age = 5000, .covariance = {1, 0, 0, 1, 0, 1}}}, V2v{}, bytes);
@@ -126,7 +126,7 @@ TEST(Packets, AgeAndCovarianceOfAStateAreIgnored) {
   EXPECT_EQ(packet.header.state.covariance[0], 0.0f);
 }
 
-TEST(Packets, V2vComesBack) {
+TEST(Packets, V2vRoundTrips) {
   base::Bytes bytes;
   const V2v sent{.X_WR = {-kMaxPosition, kMaxPosition, 0.1, -kMaxYaw},
                  .velocity = {kMaxSpeed, -0.0, -1e-300},
@@ -153,7 +153,7 @@ TEST(Packets, NoRobotAndNoCheckpointHaveReservedValues) {
   EXPECT_EQ(body_of<V2v>(bytes).checkpoint, kNone);
 }
 
-TEST(Packets, TagComesBack) {
+TEST(Packets, TagRoundTrips) {
   const auto got = body_of<Tag>(tag_example());
   EXPECT_EQ(got.position, (std::array<double, 3>{3, 4, 0.5}));
   EXPECT_EQ(got.orientation, (std::array<double, 4>{0, 0, 0.6, 0.8}));
@@ -161,9 +161,9 @@ TEST(Packets, TagComesBack) {
   EXPECT_EQ(got.angular, (std::array<double, 3>{0, 0, 0.25}));
 }
 
-TEST(Packets, SubscribeComesBack) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).types, 2u); }
+TEST(Packets, SubscribeRoundTrips) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).types, 2u); }
 
-TEST(Packets, StartIsItsHeaderAlone) {
+TEST(Packets, StartIsOnlyAHeader) {
   base::Bytes bytes;
   encode({.robot = 7, .sequence = 3}, Start{}, bytes);
   EXPECT_EQ(bytes.size(), kHeaderBytes);
@@ -174,7 +174,7 @@ TEST(Packets, StartIsItsHeaderAlone) {
   EXPECT_EQ(packet.header.robot, 7);
 }
 
-TEST(Packets, LeaveIsItsHeaderAlone) {
+TEST(Packets, LeaveIsOnlyAHeader) {
   Packet packet;
   ASSERT_EQ(decode(leave_example(), packet), PacketStatus::accepted);
   EXPECT_TRUE(std::holds_alternative<Leave>(packet.body));
@@ -182,7 +182,7 @@ TEST(Packets, LeaveIsItsHeaderAlone) {
   EXPECT_EQ(packet.header.robot, 7);
 }
 
-TEST(Packets, NeighboursAreWholeV2v) {
+TEST(Packets, NeighboursContainWholeV2v) {
   static_assert(kMaxNeighbours == 9 && kV2vBytes == 132);
   const base::Bytes whole = neighbours_example();
   const auto states = body_of<Neighbours>(whole).states;
@@ -211,15 +211,15 @@ TEST(Packets, ReservedBytesAreSentAsZero) {
     for (std::size_t at = 32; at < kHeaderBytes; ++at) EXPECT_EQ(bytes[at], 0) << at;
 }
 
-/// A later release may sign packets: this one accepts them and ignores the signature.
-TEST(Packets, ATrailerIsLeftOut) {
+/// A later release may sign packets. This one accepts them and ignores the signature.
+TEST(Packets, TrailerIsIgnored) {
   for (const std::uint16_t size : {std::uint16_t{1}, std::uint16_t{kMaxTrailer}}) {
     for (const base::Bytes& example : all_examples()) {
       base::Bytes bytes = patched<std::uint16_t>(example, 60, size);
       bytes.resize(bytes.size() + size, 0xAB);
       EXPECT_EQ(reason_of(bytes), PacketStatus::accepted) << size;
       bytes.push_back(0);
-      const bool any_size = sensor_type_of(Type{example[5]}) != 0;  // the length of a reading is defined by its type
+      const bool any_size = sensor_type_of(Type{example[5]}) != 0;  // the type of a reading defines its length
       const bool several = Type{example[5]} == Type::neighbours;    // further bytes begin another V2V
       EXPECT_EQ(reason_of(bytes), any_size  ? PacketStatus::accepted
                                   : several ? PacketStatus::too_short
@@ -236,7 +236,7 @@ TEST(Packets, ATrailerIsLeftOut) {
   EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer + 1)), PacketStatus::out_of_range);
 }
 
-TEST(Packets, AStampIsSessionAndTokenAlone) {
+TEST(Packets, WritesOnlySessionAndToken) {
   base::Bytes bytes = v2v_example();
   write_session_token(bytes, {0x11223344, 0x55667788});
   Packet packet;
@@ -256,7 +256,7 @@ TEST(Packets, EveryShorterPrefixIsTooShort) {
   };
   for (const base::Bytes& state : states()) check(state, state.size());
   for (const base::Bytes& packet : lockstep_examples()) check(packet, packet.size());
-  check(reading_example(), kHeaderBytes);  // the length of a reading is defined by its type
+  check(reading_example(), kHeaderBytes);  // the type of a reading defines its length
 }
 
 TEST(Packets, OneByteMoreIsTooLong) {
@@ -271,7 +271,7 @@ TEST(Packets, OneByteMoreIsTooLong) {
   EXPECT_EQ(reason_of(reading), PacketStatus::too_long);
 }
 
-TEST(Packets, AReadingsPayloadIsWhatLiesBehindItsHeader) {
+TEST(Packets, PayloadOfAReadingFollowsTheHeader) {
   const base::Bytes bytes = reading_example();
   Packet packet;
   ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
@@ -284,14 +284,14 @@ TEST(Packets, AReadingsPayloadIsWhatLiesBehindItsHeader) {
   EXPECT_EQ(payload.size(), 8u);
 }
 
-TEST(Packets, AReadingMayBeEmpty) {
+TEST(Packets, ReadingMayBeEmpty) {
   base::Bytes bytes;
   encode_reading({}, 31, {}, bytes);
   EXPECT_EQ(bytes.size(), kHeaderBytes);
   EXPECT_TRUE(body_of<Reading>(bytes).payload.empty());
 }
 
-TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
+TEST(Packets, TypesBelow128AreReadings) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // type 0 does not exist
     EXPECT_EQ(sensor_type_of(Type(type)), is_reading ? type % 64 : 0) << type;
@@ -303,7 +303,7 @@ TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   }
 }
 
-TEST(Packets, EachLetterOfTheMagicCounts) {
+TEST(Packets, ChecksEachByteOfTheMagic) {
   for (std::size_t i = 0; i < kMagic.size(); ++i)
     EXPECT_EQ(reason_of(patched<std::uint8_t>(v2v_example(), i, 0)), PacketStatus::bad_magic);
 }
@@ -313,7 +313,7 @@ TEST(Packets, OtherVersionsAreUnknown) {
     EXPECT_EQ(reason_of(patched(v2v_example(), 4, static_cast<std::uint8_t>(version))), PacketStatus::unknown_version);
 }
 
-TEST(Packets, NoRealOfAStateMayBeNanOrInfinite) {
+TEST(Packets, RejectsNanAndInfinityInStates) {
   for (const double bad : {kNan, kInf, -kInf}) {
     for (std::size_t i = 0; i < 7; ++i)
       EXPECT_EQ(reason_of(patched(v2v_example(), 64 + 8 * i, bad)), PacketStatus::not_finite) << i;
@@ -322,11 +322,11 @@ TEST(Packets, NoRealOfAStateMayBeNanOrInfinite) {
   }
 }
 
-TEST(Packets, NanComesBeforeOutOfRange) {
+TEST(Packets, NotFiniteTakesPrecedenceOverOutOfRange) {
   EXPECT_EQ(reason_of(patched(patched(v2v_example(), 64, 1e300), 112, kNan)), PacketStatus::not_finite);
 }
 
-TEST(Packets, StatesEndAtTheirLimits) {
+TEST(Packets, RejectsStatesBeyondTheirLimits) {
   struct Limit {
     std::size_t offset;
     double limit;
@@ -345,7 +345,7 @@ TEST(Packets, StatesEndAtTheirLimits) {
   for (const Limit& at : tag) check(tag_example(), at);
 }
 
-TEST(Packets, RowsOfAV2iEndAtTheirLimits) {
+TEST(Packets, RejectsV2iRowsBeyondTheirLimits) {
   const auto check = [](std::size_t offset, auto limit) {
     for (const auto edge : {limit, -limit}) {
       EXPECT_EQ(reason_of(patched(v2i_example(), offset, edge)), PacketStatus::accepted) << offset;
@@ -360,7 +360,7 @@ TEST(Packets, RowsOfAV2iEndAtTheirLimits) {
   EXPECT_EQ(reason_of(patched(v2i_example(), 132, std::nextafter(1e7f, 2e7f))), PacketStatus::out_of_range);
 }
 
-TEST(Packets, WholeNumbersEndAtTheirLimits) {
+TEST(Packets, RejectsIntegersBeyondTheirLimits) {
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65535)), PacketStatus::accepted);  // last robot id
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65536)),
             PacketStatus::out_of_range);  // neither a robot nor kNone
@@ -386,14 +386,14 @@ TEST(Packets, OrientationsAreUnitQuaternions) {
   EXPECT_EQ(reason_of(patched(tag_example(), 104, 1e200)), PacketStatus::out_of_range);  // its square overflows
 }
 
-TEST(Packets, RefusedBytesLeaveThePacketAlone) {
+TEST(Packets, RejectedBytesDoNotChangeThePacket) {
   Packet packet;
   packet.header.sequence = 77;
   decode(patched(v2v_example(), 64, kNan), packet);
   EXPECT_EQ(packet.header.sequence, 77u);
 }
 
-TEST(Packets, OurOwnBadNumbersAbort) {
+TEST(Packets, EncodingInvalidNumbersAborts) {
   base::Bytes out;
   EXPECT_DEATH(encode({}, V2v{.X_WR = {kNan, 0, 0, 0}}, out), "not finite");
   EXPECT_DEATH(encode({.time = -1}, Subscribe{}, out), "timestamp -1");
@@ -404,7 +404,7 @@ TEST(Packets, OurOwnBadNumbersAbort) {
   EXPECT_DEATH(encode_reading({}, 1, base::Bytes(kMaxPayload + 1), out), "1257 bytes of payload");
 }
 
-TEST(Packets, AStateIsAReport) {
+TEST(Packets, ConvertsStatesToReports) {
   Packet packet;
   ASSERT_EQ(decode(v2v_example(), packet), PacketStatus::accepted);
   const base::Report got = report(packet.header, std::get<V2v>(packet.body), 5);
@@ -414,7 +414,7 @@ TEST(Packets, AStateIsAReport) {
   EXPECT_EQ(got.velocity.turn, -0.125);
 }
 
-TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
+TEST(Packets, RotatesTagVelocityIntoTheMoversFrame) {
   // Rotated by +90 degrees and moving along world x, which is to its right.
   const double half = std::sqrt(0.5);
   const base::Report got =
@@ -425,15 +425,15 @@ TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
   EXPECT_EQ(got.velocity.turn, 0.5);
 }
 
-/// [s] that a V2I row says of `left`.
+/// Returns the time [s] in a V2I row for `left`.
 double sent_left(double left) {
   base::Bytes rows;
   put(SignalApproach{.left = left}, rows);
   return approach_at({rows, {}}, 0).left;
 }
 
-/// No change is announced before it happens, and none a millisecond late.
-TEST(Packets, TheTimeToAChangeIsRoundedUp) {
+/// No change is announced before it happens, or a millisecond late.
+TEST(Packets, TimeToAChangeIsRoundedUp) {
   for (int tenth = 0; tenth < 100'000; ++tenth) {  // of a millisecond
     const double left = 1e-4 * tenth;
     ASSERT_GE(sent_left(left), left - 1e-7);
@@ -445,8 +445,8 @@ TEST(Packets, TheTimeToAChangeIsRoundedUp) {
   EXPECT_EQ(sent_left(std::numeric_limits<double>::infinity()), std::numeric_limits<double>::infinity());
 }
 
-/// Without an offset the tag's own numbers, bitwise.
-TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
+/// Without an offset, the result equals the tag's own numbers, bitwise.
+TEST(Packets, TagAtTheOriginEqualsTheModelsPose) {
   Packet packet;
   ASSERT_EQ(decode(tag_example(), packet), PacketStatus::accepted);
   const Tag& tag = std::get<Tag>(packet.body);
@@ -463,7 +463,7 @@ TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
 
 /// A tag ahead of its model's origin, to its left and above it, rotated by 90 degrees. The model turns in place: its
 /// tag moves, its origin does not.
-TEST(Packets, ATagMayBeMountedAnywhereOnItsModel) {
+TEST(Packets, TagMayBeMountedAnywhereOnItsModel) {
   const base::Pose X_MT{0.2, 0.1, 0.3, M_PI / 2};
   for (const double yaw : {0.0, M_PI / 2, -2.5}) {
     const base::Pose X_WM{1.0, 2.0, 0.2, yaw};
@@ -484,7 +484,7 @@ TEST(Packets, ATagMayBeMountedAnywhereOnItsModel) {
   }
 }
 
-TEST(PacketStatus, EachHasItsOwnName) {
+TEST(PacketStatus, NamesAreUnique) {
   for (std::size_t i = 0; i < kPacketStatuses; ++i) {
     EXPECT_FALSE(name(static_cast<PacketStatus>(i)).empty());
     for (std::size_t j = 0; j < i; ++j)
@@ -495,7 +495,7 @@ TEST(PacketStatus, EachHasItsOwnName) {
   EXPECT_EQ(static_cast<std::size_t>(PacketStatus::stale) + 1, kPacketStatuses) << "the last one";
 }
 
-TEST(PacketStatus, CountsSayWhatHappened) {
+TEST(PacketStatus, CountsAsText) {
   PacketCounts counts;
   EXPECT_EQ(packet_counts_text(counts), "nothing received");
   counts.add(PacketStatus::accepted);
@@ -506,11 +506,11 @@ TEST(PacketStatus, CountsSayWhatHappened) {
   EXPECT_EQ(packet_counts_text(counts), "accepted 1, stale 2");
 }
 
-/// Whole numbers of lockstep at their limits and one beyond.
-TEST(Packets, LockstepEndsAtItsLimits) {
+/// Integers of lockstep at their limits and one beyond.
+TEST(Packets, RejectsLockstepNumbersBeyondTheirLimits) {
   struct Limit {
     base::Bytes packet;
-    std::size_t at;  ///< of the number in its payload
+    std::size_t at;  ///< offset of the number in its payload
     std::uint32_t least, most;
   };
   const std::vector<Limit> limits{
@@ -527,8 +527,8 @@ TEST(Packets, LockstepEndsAtItsLimits) {
   }
 }
 
-/// VALUES and rows of COMMAND at the limits that docs/packets.md states, each number alone.
-TEST(Packets, ValuesAndCommandsEndAtTheirLimits) {
+/// VALUES and rows of COMMAND at the limits in docs/packets.md, each number separately.
+TEST(Packets, RejectsValuesAndCommandsBeyondTheirLimits) {
   using Status = PacketStatus;
   const base::Bytes values = values_example();  // three values of type 1, part 1 of 3
   const auto with = [&](std::size_t at, auto value) { return reason_of(patched(values, at, value)); };
@@ -581,8 +581,8 @@ TEST(Packets, ValuesAndCommandsEndAtTheirLimits) {
   }
 }
 
-/// The numbers of packet types and of refusals as docs/packets.md lists them.
-TEST(PacketsPage, NumbersAreThoseOfThePrograms) {
+/// The numbers of packet types and of refusals, as listed in docs/packets.md.
+TEST(PacketsPage, NumbersMatchTheCode) {
   const std::pair<const char*, Type> types[] = {
       {"V2V", Type::v2v},         {"TAG", Type::tag},       {"SUBSCRIBE", Type::subscribe},
       {"START", Type::start},     {"LEAVE", Type::leave},   {"CHALLENGE", Type::challenge},

@@ -16,7 +16,7 @@ struct PcapForm {
 
 inline void append(base::Bytes& out, const base::Bytes& bytes) { out.insert(out.end(), bytes.begin(), bytes.end()); }
 
-/// `value` in `size` bytes.
+/// Returns `value` in `size` bytes.
 inline base::Bytes integer(std::uint64_t value, int size, bool big_endian = true) {
   base::Bytes bytes;
   for (int i = 0; i < size; ++i)
@@ -69,7 +69,7 @@ class PcapFile {
     append(bytes_, integer(4, 2, form.big_endian));
     for (const std::uint32_t each : {0u, 0u, 262'144u, form.link}) word(each);
   }
-  /// @param fraction of the second, in the form's unit  @param claimed [byte] captured; by default all
+  /// @param fraction of the second, in the file's unit  @param claimed [byte] captured; by default all
   void add(const base::Bytes& frame, std::uint32_t second = 0, std::uint32_t fraction = 0, std::int64_t claimed = -1) {
     const auto size = static_cast<std::uint32_t>(claimed < 0 ? static_cast<std::int64_t>(frame.size()) : claimed);
     for (const std::uint32_t each : {second, fraction, size, size}) word(each);

@@ -1,4 +1,4 @@
-// Capture files in every form that is read, damaged and of other kinds.
+// Capture files in every supported format, damaged files, and files of other kinds.
 
 #include "netio/pcap.h"
 
@@ -65,7 +65,7 @@ std::string pcap_refusal(const Bytes& file) {
   return "";
 }
 
-TEST(Pcap, BothByteOrdersAndUnitsOfTimeAreRead) {
+TEST(Pcap, ReadsBothByteOrdersAndTimeUnits) {
   for (const bool big_endian : {false, true}) {
     for (const bool nanoseconds : {false, true}) {
       PcapFile file({.big_endian = big_endian, .nanoseconds = nanoseconds});
@@ -76,7 +76,7 @@ TEST(Pcap, BothByteOrdersAndUnitsOfTimeAreRead) {
   }
 }
 
-TEST(Pcap, EveryLinkIsRead) {
+TEST(Pcap, ReadsEveryLinkType) {
   const Bytes four = ipv4(kUdp), six = ipv6(kUdp);
   const std::string a = "10.0.0.1:9000", b = "10.0.0.2:10056", c = "[2001:db8::1]:9000", d = "[::1]:10056";
   expect_datagram(file_of(1, ethernet(four)), a, b);
@@ -84,20 +84,21 @@ TEST(Pcap, EveryLinkIsRead) {
   expect_datagram(file_of(1, ethernet(four, {0x81, 0, 0, 5, 8, 0})), a, b);                    // VLAN 5
   expect_datagram(file_of(1, ethernet(four, {0x88, 0xA8, 0, 5, 0x81, 0, 0, 6, 8, 0})), a, b);  // VLAN 6 in 5
   expect_datagram(file_of(1, joined(ethernet(four), Bytes(14, 0))), a, b);                     // padded
-  expect_datagram(file_of(0xF000'0001, ethernet(four)), a, b);                           // says a checksum's length
-  expect_datagram(file_of(0, joined({2, 0, 0, 0}, four)), a, b);                         // BSD loopback
-  expect_datagram(file_of(113, joined(Bytes(14, 0), joined({8, 0}, four))), a, b);       // SLL
-  expect_datagram(file_of(276, joined({0x86, 0xDD}, joined(Bytes(18, 0), six))), c, d);  // SLL2
+  expect_datagram(file_of(0xF000'0001, ethernet(four)), a, b);                                 // states the length of a
+                                                                                               // checksum
+  expect_datagram(file_of(0, joined({2, 0, 0, 0}, four)), a, b);                               // BSD loopback
+  expect_datagram(file_of(113, joined(Bytes(14, 0), joined({8, 0}, four))), a, b);             // SLL
+  expect_datagram(file_of(276, joined({0x86, 0xDD}, joined(Bytes(18, 0), six))), c, d);        // SLL2
   for (const std::uint32_t raw : {12u, 101u, 228u}) expect_datagram(file_of(raw, four), a, b);
   for (const std::uint32_t raw : {12u, 101u, 229u}) expect_datagram(file_of(raw, six), c, d);
 }
 
-TEST(Pcap, ExtensionHeadersAreSkipped) {
+TEST(Pcap, SkipsExtensionHeaders) {
   const Bytes hop_by_hop{60, 0, 0, 0, 0, 0, 0, 0}, destination{17, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   expect_datagram(file_of(101, ipv6(kUdp, joined(hop_by_hop, destination), 0)), "[2001:db8::1]:9000", "[::1]:10056");
 }
 
-TEST(Pcap, RecordsWithoutAWholeUdpDatagramAreCounted) {
+TEST(Pcap, CountsRecordsWithoutAWholeUdpDatagram) {
   PcapFile file;
   file.add(ethernet(ipv4(kUdp)));
   file.add(ethernet(ipv4(kUdp, 0x2000)));                // the first fragment
@@ -105,7 +106,7 @@ TEST(Pcap, RecordsWithoutAWholeUdpDatagramAreCounted) {
   file.add(ethernet(ipv4(kUdp, 0, 6)));                  // TCP
   file.add(ethernet(Bytes(28, 0), {0x08, 0x06}));        // ARP
   file.add(ethernet(ipv6(kUdp, {}, 44), {0x86, 0xDD}));  // a fragment
-  file.add(ethernet(Bytes(kUdp)));                       // no IP
+  file.add(ethernet(Bytes(kUdp)));                       // not IP
   file.add(Bytes(13, 0));                                // shorter than Ethernet's header
   file.add({});
   Bytes short_udp = kUdp;
@@ -118,7 +119,7 @@ TEST(Pcap, RecordsWithoutAWholeUdpDatagramAreCounted) {
   EXPECT_FALSE(contents.damaged);
 }
 
-TEST(Pcap, ADatagramThatTheCaptureCutSaysItsSize) {
+TEST(Pcap, TruncatedDatagramStatesItsSize) {
   Bytes frame = ethernet(ipv4(kUdp));
   frame.pop_back();
   const Bytes file = file_of(1, frame);
@@ -128,7 +129,7 @@ TEST(Pcap, ADatagramThatTheCaptureCutSaysItsSize) {
   EXPECT_EQ(contents.datagrams[0].sent_bytes, 4u);
 }
 
-TEST(Pcap, ADamagedFileIsReadUpToTheDamage) {
+TEST(Pcap, ReadsADamagedFileUpToTheDamage) {
   PcapFile file;
   file.add(ethernet(ipv4(kUdp)));
   for (const std::size_t left : {1, 15, 16, 40}) {  // within the header of the second record, and within its frame
@@ -150,7 +151,7 @@ TEST(Pcap, ADamagedFileIsReadUpToTheDamage) {
   EXPECT_FALSE(contents_of(largest.bytes()).damaged);
 }
 
-TEST(Pcap, OtherFilesAreRefusedByName) {
+TEST(Pcap, RejectsOtherFilesByName) {
   EXPECT_EQ(pcap_refusal(PcapFile().bytes()), "");
   EXPECT_NE(pcap_refusal({}).find("file: is no pcap file"), std::string::npos);
   EXPECT_NE(pcap_refusal(Bytes(24, 0)).find("file: is no pcap file"), std::string::npos);
@@ -162,8 +163,8 @@ TEST(Pcap, OtherFilesAreRefusedByName) {
             std::string::npos);
 }
 
-/// With damage anywhere, nothing outside of the file is read (the sanitizers look).
-TEST(Pcap, AnyBytesAreRead) {
+/// Whatever the damage, nothing outside the file is read (the sanitizers check this).
+TEST(Pcap, ReadsAnyBytes) {
   PcapFile whole;
   for (const Bytes& frame : {ethernet(ipv4(kUdp)), ethernet(ipv6(kUdp, {17, 0, 0, 0, 0, 0, 0, 0}, 0), {0x86, 0xDD})})
     whole.add(frame);

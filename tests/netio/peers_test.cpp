@@ -1,4 +1,4 @@
-// Peers of an inbox: addresses and keys that it was told.
+// Peers of an inbox: configured addresses and keys.
 
 #include "netio/peers.h"
 
@@ -38,7 +38,7 @@ struct PeersTest : testing::Test {
   Inbox inbox{peer_options()};
   PacketSigner robot{kRobotKey, 1000};
   Packet packet;
-  /// With the token of its source, and signed by `signer`.
+  /// Adds the token of its source and a signature of `signer`.
   base::Bytes ready(base::Bytes bytes, PacketSigner* signer, const Endpoint& who = kPeerSource) {
     write_session_token(bytes, {77, inbox.token(who)});
     if (signer != nullptr) signer->sign(bytes);
@@ -52,7 +52,7 @@ struct PeersTest : testing::Test {
   }
 };
 
-TEST_F(PeersTest, ARobotWithAKeySigns) {
+TEST_F(PeersTest, RobotWithAKeyMustSign) {
   PacketSigner forger(kTagKey, 1'000'000);
   EXPECT_EQ(say(peer_v2v(7, 0), nullptr), PacketStatus::not_signed);
   EXPECT_EQ(say(peer_v2v(7, 0), &forger), PacketStatus::wrong_signature);
@@ -71,8 +71,8 @@ TEST_F(PeersTest, ARobotWithAKeySigns) {
   EXPECT_EQ(inbox.counts()[PacketStatus::replayed], 2u);
 }
 
-/// One on the way copies a packet, and is first with it, from an address of its own.
-TEST_F(PeersTest, ACopyFromElsewhereDoesNotStopTheGenuinePacket) {
+/// An attacker on the path copies a packet and sends it first, from another address.
+TEST_F(PeersTest, CopyFromAnotherAddressDoesNotBlockThePacket) {
   const base::Bytes genuine = ready(peer_v2v(7, 0), &robot);
   EXPECT_EQ(accept(genuine, kElsewhere), PacketStatus::unproven) << "the token is another address'";
   EXPECT_EQ(accept(genuine, kElsewhere), PacketStatus::unproven) << "its counter did not count";
@@ -80,7 +80,7 @@ TEST_F(PeersTest, ACopyFromElsewhereDoesNotStopTheGenuinePacket) {
 }
 
 /// Boundary: the last signature of a stranger that is checked in 0.1 s, and the first that is not.
-TEST_F(PeersTest, StrangersSignaturesCostABoundedTime) {
+TEST_F(PeersTest, LimitsSignatureChecksForStrangers) {
   base::Bytes request = peer_v2v(7, 0);
   write_session_token(request, {77, 0});
   base::Bytes forged = request;
@@ -95,14 +95,14 @@ TEST_F(PeersTest, StrangersSignaturesCostABoundedTime) {
   EXPECT_EQ(inbox.accept(request, kPeerSource, kSecond, packet), PacketStatus::unproven) << "later";
 }
 
-TEST_F(PeersTest, ARobotWithoutAKeyNeedsNone) {
+TEST_F(PeersTest, RobotWithoutAKeyNeedsNoSignature) {
   EXPECT_EQ(say(peer_v2v(3, 0), nullptr), PacketStatus::accepted);
   EXPECT_EQ(say(peer_v2v(3, 1), &robot), PacketStatus::accepted) << "its trailer is dropped";
   EXPECT_EQ(inbox.signer(3), nullptr);
   EXPECT_EQ(inbox.signer(99), nullptr);
 }
 
-TEST_F(PeersTest, ATagWithAKeySigns) {
+TEST_F(PeersTest, TagWithAKeyMustSign) {
   PacketSigner camera(kTagKey, 0);
   EXPECT_EQ(say(tag_example(), nullptr), PacketStatus::not_signed);
   EXPECT_EQ(say(tag_example(), &robot), PacketStatus::wrong_signature);
@@ -112,7 +112,7 @@ TEST_F(PeersTest, ATagWithAKeySigns) {
 }
 
 /// START to one robot and to all have the same sender.
-TEST_F(PeersTest, StartIsSignedByItsSenderAlone) {
+TEST_F(PeersTest, OnlyTheSenderOfStartSignsIt) {
   PacketSigner user(kStartKey, 1);
   const base::Bytes to_one = patched<std::uint16_t>(start_example(), 6, 7);
   EXPECT_EQ(say(start_example(), nullptr), PacketStatus::not_signed);
@@ -124,7 +124,7 @@ TEST_F(PeersTest, StartIsSignedByItsSenderAlone) {
 }
 
 /// Boundary: another port of the same address, and an address one higher.
-TEST_F(PeersTest, AnAddressIsTheOnlyOne) {
+TEST_F(PeersTest, AcceptsOnlyTheConfiguredAddress) {
   EXPECT_EQ(say(peer_v2v(5, 0), nullptr, kElsewhere), PacketStatus::wrong_source);
   EXPECT_FALSE(inbox.is_active(5, 0));
   EXPECT_EQ(say(peer_v2v(5, 0), nullptr, {kLoopback, 5999}), PacketStatus::accepted);
@@ -132,8 +132,8 @@ TEST_F(PeersTest, AnAddressIsTheOnlyOne) {
       << "bound by its first sender as without";
 }
 
-/// Without the token too: an unproven request is signed, and so is the answer, which is no larger.
-TEST_F(PeersTest, ChallengesAreSignedAndNoLarger) {
+/// An unproven request is signed even without the token, and so is the answer, which is no larger.
+TEST_F(PeersTest, ChallengesAreSignedAndNoLargerThanTheRequest) {
   base::Bytes request = subscribe_example(), answer;
   write_session_token(request, {77, 0});
   EXPECT_EQ(accept(request), PacketStatus::not_signed) << "no answer to strangers";
@@ -146,7 +146,7 @@ TEST_F(PeersTest, ChallengesAreSignedAndNoLarger) {
   EXPECT_EQ(std::get<Challenge>(packet.body).token, inbox.token(kPeerSource));
 }
 
-/// A REFUSAL is unsigned, no larger than the smallest packet that it answers, and no LEAVE, TAG or START gets one.
+/// A REFUSAL is unsigned and no larger than the smallest packet that it answers. LEAVE, TAG and START get none.
 TEST_F(PeersTest, RefusalsAreNoLargerAndLimited) {
   base::Bytes request = subscribe_example(), answer;
   ASSERT_EQ(accept(request), PacketStatus::not_signed);
@@ -171,8 +171,8 @@ TEST_F(PeersTest, RefusalsAreNoLargerAndLimited) {
   }
 }
 
-/// Counters of a second or more behind are a clock that was set back; less are copies. Boundary: 1 s.
-TEST_F(PeersTest, TheLagOfACounterIsKnown) {
+/// Counters that are a second or more behind mean a clock that was set back; smaller lags are copies. Boundary: 1 s.
+TEST_F(PeersTest, ReportsTheLagOfACounter) {
   for (const std::uint64_t lag : {64u, 999'999u, 1'000'000u}) {
     PacketSigner now(kRobotKey, 1u << 30), then(kRobotKey, (1u << 30) - lag);
     Inbox fresh{peer_options()};
@@ -186,12 +186,12 @@ TEST_F(PeersTest, TheLagOfACounterIsKnown) {
   }
 }
 
-TEST_F(PeersTest, UnknownIdsComeFirst) {
+TEST_F(PeersTest, UnknownIdsTakePrecedence) {
   EXPECT_EQ(say(peer_v2v(8, 0), nullptr), PacketStatus::unknown_robot);
   EXPECT_EQ(say(reading_example(), nullptr), PacketStatus::wrong_direction);
 }
 
-/// The window holds late states for the filter.
+/// The window keeps late states for the filter.
 TEST(Peers, OvertakenStatesAreLateNotReplayed) {
   InboxOptions chosen = peer_options();
   chosen.take_late = true;
@@ -211,7 +211,7 @@ TEST(Peers, OvertakenStatesAreLateNotReplayed) {
 
 constexpr std::uint32_t kFarm = 11, kOwn = 22;  ///< sessions
 
-/// A robot's socket, beside a farm of the test's own.
+/// A robot's socket, and a farm that the test simulates.
 struct SignedSocketTest : testing::Test {
   Outbox farm{OutboxOptions{.bind = {kLoopback, 0}}};
   V2vSocket socket{{.farm = farm.endpoint(), .robot = 7, .others = {3}, .session = kOwn, .key = kRobotKey}};
@@ -235,8 +235,9 @@ struct SignedSocketTest : testing::Test {
   }
 };
 
-/// With this robot's session it is taken without a signature, for a message alone; with another it is not.
-TEST_F(SignedSocketTest, ARefusalChangesNothing) {
+/// A REFUSAL with this robot's session is accepted without a signature, but only for a message. With another session it
+/// is rejected.
+TEST_F(SignedSocketTest, RefusalChangesNothing) {
   base::Bytes refusal;
   encode({.robot = 7, .time = 9}, Refusal{PacketStatus::wrong_signature}, refusal);
   EXPECT_EQ(hear(refusal, {kFarm, kOwn + 1}, nullptr), 0u);
@@ -248,8 +249,8 @@ TEST_F(SignedSocketTest, ARefusalChangesNothing) {
   EXPECT_EQ(socket.farm_session_token().session, kFarm) << "as before";
 }
 
-/// Nothing beyond this machine reaches a robot whose farm is on it. Boundary: any address of 127.0.0.0/8.
-TEST(V2vSocket, IsBoundWhereItsFarmIs) {
+/// No other machine can reach a robot whose farm is on its machine. Boundary: any address of 127.0.0.0/8.
+TEST(V2vSocket, BindsToLoopbackForALocalFarm) {
   const auto own_address = [](std::uint32_t farm) {
     return bound_endpoint(V2vSocket({.farm = {farm, 9000}, .robot = 7}).socket()).address;
   };
@@ -266,7 +267,7 @@ base::Bytes neighbours() {
   return out;
 }
 
-TEST_F(SignedSocketTest, HearsSignedPacketsOnce) {
+TEST_F(SignedSocketTest, AcceptsEachSignedPacketOnce) {
   EXPECT_EQ(hear(neighbours(), {kFarm, kOwn}, nullptr), 0u);
   EXPECT_EQ(socket.counts()[PacketStatus::not_signed], 1u);
   PacketSigner forger(kTagKey, 1'000'000);
@@ -279,8 +280,8 @@ TEST_F(SignedSocketTest, HearsSignedPacketsOnce) {
   EXPECT_EQ(socket.counts()[PacketStatus::replayed], 1u);
 }
 
-/// Boundary: the robot's clock is ahead of the farm's, so its own counters are.
-TEST_F(SignedSocketTest, OwnPacketsSentBackDoNotMoveTheWindow) {
+/// Boundary: the robot's clock is ahead of the farm's, and so are its counters.
+TEST_F(SignedSocketTest, OwnPacketsSentBackDoNotAdvanceTheWindow) {
   PacketSigner own(kRobotKey, 1'000'000);
   EXPECT_EQ(hear(v2v_example(), {kOwn, 3}, &own), 0u);
   EXPECT_EQ(socket.counts()[PacketStatus::wrong_source], 1u);

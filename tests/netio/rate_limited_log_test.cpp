@@ -1,4 +1,4 @@
-// Log lines of a running service: never blocking, limited in rate.
+// Log lines of a running service: non-blocking and limited in rate.
 
 #include "netio/rate_limited_log.h"
 #include "tests/units.h"
@@ -21,7 +21,7 @@ struct Pipe {
     for (const int end : ends)
       if (end >= 0) close(end);
   }
-  /// All data in the pipe.
+  /// Reads all data in the pipe.
   std::string read_all() const {
     fcntl(ends[0], F_SETFL, O_NONBLOCK);
     std::string text;
@@ -31,7 +31,7 @@ struct Pipe {
   }
 };
 
-TEST(RateLimitedLog, LinesAreWritten) {
+TEST(RateLimitedLog, WritesLines) {
   const Pipe pipe;
   RateLimitedLog log(pipe.ends[1]);
   log.write("one", 0);
@@ -40,8 +40,8 @@ TEST(RateLimitedLog, LinesAreWritten) {
   EXPECT_EQ(log.left_out(), 0u);
 }
 
-/// A burst, then a limited rate; the first line after a gap states the number of missing lines.
-TEST(RateLimitedLog, AFloodIsThinnedAndCounted) {
+/// Writes a burst, then at a limited rate. The first line after a gap states the number of missing lines.
+TEST(RateLimitedLog, LimitsAndCountsAFlood) {
   const Pipe pipe;
   RateLimitedLog log(pipe.ends[1]);
   for (int i = 0; i < 1000; ++i) log.write("flood", 0);
@@ -53,8 +53,8 @@ TEST(RateLimitedLog, AFloodIsThinnedAndCounted) {
   EXPECT_EQ(pipe.read_all(), "sensorfarm: at once\n");
 }
 
-/// A full pipe, at any rate: `write` returns, and continues once the pipe is read.
-TEST(RateLimitedLog, AnUnreadPipeKeepsNobodyWaiting) {
+/// With a full pipe `write` returns, and continues once the pipe is read.
+TEST(RateLimitedLog, UnreadPipeDoesNotBlock) {
   const Pipe pipe;
   RateLimitedLog log(pipe.ends[1]);
   const std::string text(1000, 'x');
@@ -65,8 +65,8 @@ TEST(RateLimitedLog, AnUnreadPipeKeepsNobodyWaiting) {
   EXPECT_NE(pipe.read_all().find("sensorfarm: read ("), std::string::npos);
 }
 
-/// A pipe without a reader: no signal ends the program.
-TEST(RateLimitedLog, AClosedPipeIsNoEnd) {
+/// Without a reader no signal ends the program.
+TEST(RateLimitedLog, ClosedPipeDoesNotEndTheProgram) {
   Pipe pipe;
   close(pipe.ends[0]);
   pipe.ends[0] = -1;

@@ -39,12 +39,12 @@ struct Plain {
   double value() const { return assembler.newest() ? assembler.newest()->values[0] : NAN; }
 };
 
-TEST(ReadingAssembler, NothingIsNewestAtFirst) {
+TEST(ReadingAssembler, HasNoReadingInitially) {
   EXPECT_FALSE(ReadingAssembler(3).newest());
   EXPECT_EQ(ReadingAssembler(3).lost(), 0u);
 }
 
-TEST(ReadingAssembler, TheLastPartMakesItWhole) {
+TEST(ReadingAssembler, LastPartCompletesTheReading) {
   Parts p;
   EXPECT_EQ(p.say(4, 2), PartStatus::incomplete);  // in any order
   EXPECT_EQ(p.say(4, 0), PartStatus::incomplete);
@@ -78,7 +78,7 @@ TEST(ReadingAssembler, PartsOfTwoReadingsMayInterleave) {
   EXPECT_EQ(p.values()[0], 20.0);
 }
 
-TEST(ReadingAssembler, ANewerWholeOneGivesUpTheOlder) {
+TEST(ReadingAssembler, NewerCompleteReadingAbandonsOlderOnes) {
   Parts p;
   p.say(1, 0);
   for (const std::uint32_t part : {0u, 1u, 2u}) p.say(2, part);
@@ -93,18 +93,18 @@ TEST(ReadingAssembler, RepetitionsAreDuplicates) {
   EXPECT_EQ(p.say(1, 0), PartStatus::duplicate);  // while parts are missing
   p.say(1, 1);
   p.say(1, 2);
-  EXPECT_EQ(p.say(1, 2), PartStatus::duplicate);  // once it is complete
+  EXPECT_EQ(p.say(1, 2), PartStatus::duplicate);  // after it is complete
 }
 
-TEST(ReadingAssembler, OnlySoManyReadingsAreAwaited) {
+TEST(ReadingAssembler, LimitsReadingsInProgress) {
   Parts p;
   for (std::uint32_t sequence = 0; sequence <= ReadingAssembler::kMaxPartial; ++sequence) p.say(sequence, 0);
-  EXPECT_EQ(p.say(0, 1), PartStatus::late);  // abandoned for the last one
+  EXPECT_EQ(p.say(0, 1), PartStatus::late);  // abandoned for the newest reading
   p.say(1, 1);
   EXPECT_EQ(p.say(1, 2), PartStatus::complete);  // the oldest in progress
 }
 
-TEST(ReadingAssembler, PartsThatDoNotFitTheirReadingAreLeftOut) {
+TEST(ReadingAssembler, DropsPartsThatContradictTheirReading) {
   Parts p;
   p.say(1, 0);
   EXPECT_EQ(p.say(1, 1, 2), PartStatus::late);     // different number of parts
@@ -112,7 +112,7 @@ TEST(ReadingAssembler, PartsThatDoNotFitTheirReadingAreLeftOut) {
   EXPECT_EQ(p.say(1, 1, 3, 0), PartStatus::incomplete);
 }
 
-TEST(ReadingAssembler, OldReadingsNeverComeBack) {
+TEST(ReadingAssembler, NeverReturnsToAnOlderReading) {
   Plain p;
   EXPECT_EQ(p.say(5), PartStatus::complete);
   EXPECT_EQ(p.say(4), PartStatus::late);
@@ -129,7 +129,7 @@ TEST(ReadingAssembler, SequencesWrap) {
   EXPECT_EQ(p.assembler.lost(), 1u);                // 0
 }
 
-TEST(ReadingAssembler, ASenderThatBeginsAnewIsBelievedAfterTwoSeconds) {
+TEST(ReadingAssembler, RestartedSenderIsAcceptedAfterTwoSeconds) {
   Plain p;
   p.say(5000, 0);
   EXPECT_EQ(p.say(0, 2 * kSecond - 1), PartStatus::late);
@@ -140,7 +140,7 @@ TEST(ReadingAssembler, ASenderThatBeginsAnewIsBelievedAfterTwoSeconds) {
   EXPECT_EQ(p.say(2, 2 * kSecond + 1), PartStatus::complete);
 }
 
-TEST(ReadingAssembler, AfterSilenceNewerOnesAreNoRestart) {
+TEST(ReadingAssembler, NewerReadingsAfterSilenceAreNotARestart) {
   Plain p;
   p.say(5, 0);
   EXPECT_EQ(p.say(7, 10 * kSecond), PartStatus::complete);
@@ -148,8 +148,8 @@ TEST(ReadingAssembler, AfterSilenceNewerOnesAreNoRestart) {
   EXPECT_EQ(p.assembler.lost(), 1u);
 }
 
-/// A forged datagram must not make the following ones late.
-TEST(ReadingAssembler, LeapsAreLeftOut) {
+/// A forged datagram must not make later ones late.
+TEST(ReadingAssembler, DropsJumps) {
   Plain p;
   std::uint64_t whole = 0;
   for (std::uint32_t i = 0; i < 72; ++i) {
@@ -161,7 +161,7 @@ TEST(ReadingAssembler, LeapsAreLeftOut) {
   EXPECT_EQ(p.assembler.lost(), 0u);
 }
 
-TEST(ReadingAssembler, ALeapBeginsBehindTheLimits) {
+TEST(ReadingAssembler, JumpLimitsAreInclusive) {
   const auto after = [](std::uint32_t ahead, std::int64_t time, std::int64_t now) {
     ReadingAssembler assembler(1);
     assembler.take({5, 0, 1, kSecond}, 0, [](std::span<double>) {});
@@ -171,14 +171,15 @@ TEST(ReadingAssembler, ALeapBeginsBehindTheLimits) {
   EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 0), PartStatus::jump);
   EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump, 0), PartStatus::complete);
   EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 0), PartStatus::jump);
-  EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 1), PartStatus::complete);  // it arrived as much later
-  EXPECT_EQ(after(1, -1, 0), PartStatus::jump);                                      // newer, but measured before
+  EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 1), PartStatus::complete);  // it arrived later by the same
+                                                                                     // time
+  EXPECT_EQ(after(1, -1, 0), PartStatus::jump);                                      // newer, but measured earlier
   EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 2 * kSecond - 1), PartStatus::jump);
   EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 2 * kSecond),
             PartStatus::complete);  // after silence any part is accepted
 }
 
-TEST(ReadingAssembler, AnotherSenderBeginsAtOnce) {
+TEST(ReadingAssembler, AcceptsAnotherSenderAfterRestart) {
   Plain p;
   p.say(5000, 0);
   p.assembler.restart();
@@ -187,8 +188,8 @@ TEST(ReadingAssembler, AnotherSenderBeginsAtOnce) {
   EXPECT_EQ(p.assembler.restarts(), 1u);
 }
 
-// Any order, repetition and loss: the newest reading is complete, correct, and never older than before.
-TEST(ReadingAssembler, AnyArrivalOrderKeepsThePromise) {
+// For any order, repetition and loss, the newest reading is complete, correct, and never older than before.
+TEST(ReadingAssembler, HandlesAnyArrivalOrder) {
   std::mt19937 random(7);  // NOLINT: the same every time
   std::uint64_t whole = 0;
   for (int trial = 0; trial < 300; ++trial) {

@@ -36,7 +36,7 @@ base::Bytes part(std::uint16_t sensor, std::uint32_t sequence, std::uint8_t numb
   return bytes;
 }
 
-TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
+TEST(Receiver, ReturnsTheNewestCompleteReadingOfEachSensor) {
   Receiver receiver(receiver_options());
   EXPECT_FALSE(receiver.newest(0));
   EXPECT_EQ(receiver.accept(0, part(0, 4, 1, 11), 5), PartStatus::incomplete);
@@ -51,8 +51,8 @@ TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
   EXPECT_FALSE(receiver.newest(1));
 }
 
-/// Counters are those of each port: the second port's are far behind the first's when its packets are read.
-TEST(Receiver, WithAKeyReadingsAreSigned) {
+/// Each port has its own counters: the second port's are far behind the first's when its packets are read.
+TEST(Receiver, RequiresSignaturesWithAKey) {
   constexpr SigningKey kReceiverKey{1};
   ReceiverOptions chosen = receiver_options();
   chosen.key = kReceiverKey;
@@ -76,7 +76,7 @@ TEST(Receiver, WithAKeyReadingsAreSigned) {
   EXPECT_EQ(counts[PacketStatus::replayed], 1u);
 }
 
-TEST(Receiver, CountsWhatItDoesNotUse) {
+TEST(Receiver, CountsUnusedDatagrams) {
   Receiver receiver(receiver_options());
   EXPECT_EQ(receiver.accept(0, part(1, 4, 0, 1), 0), PartStatus::rejected);  // another sensor's port
   EXPECT_EQ(receiver.accept(0, v2v_example(), 0), PartStatus::rejected);
@@ -114,7 +114,7 @@ TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
   EXPECT_EQ(receiver.newest(0)->sequence, 2u);
 }
 
-TEST(Receiver, HeaderlessPartsBelongToTheReadingThatTheyFollow) {
+TEST(Receiver, HeaderlessPartsBelongToThePrecedingReading) {
   Receiver receiver(receiver_options(true));
   const auto say = [&](std::uint8_t part, std::uint8_t value, std::int64_t now) {
     return receiver.accept(0, base::Bytes{part, 2, value}, now);
@@ -150,8 +150,8 @@ TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
   EXPECT_GT(receiver.counts().duplicates, 0u);
 }
 
-/// A bound receiver accepts packets with its farm's session and its own.
-TEST(Receiver, TakesPacketsOfItsFarmAlone) {
+/// A receiver with a session accepts packets with its farm's session and its own.
+TEST(Receiver, AcceptsOnlyPacketsOfItsFarm) {
   const auto from = [](const SessionToken& farm, std::uint32_t sequence, std::uint8_t number) {
     base::Bytes bytes = part(0, sequence, number, 1);
     write_session_token(bytes, farm);
@@ -179,7 +179,7 @@ TEST(Receiver, TakesPacketsOfItsFarmAlone) {
   EXPECT_EQ(receiver.counts().restarts, 2u);  // of two streams
 }
 
-TEST(Receiver, CountsLeaps) {
+TEST(Receiver, CountsJumps) {
   Receiver receiver(receiver_options());
   for (const std::uint8_t number : {std::uint8_t{0}, std::uint8_t{1}}) receiver.accept(0, part(0, 5, number, 1), 0);
   EXPECT_EQ(receiver.accept(0, part(0, 50'000, 0, 1), 0), PartStatus::jump);

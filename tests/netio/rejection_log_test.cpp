@@ -38,7 +38,7 @@ TEST(RejectionText, NamesTheFaultAndTheRemedy) {
             "version 1 of the protocol: expected 2; update the sender");
 }
 
-/// Packets of processes in lockstep, too.
+/// Includes packets of processes in lockstep.
 TEST(RejectionText, NamesEveryType) {
   base::Bytes bytes = v2v();
   bytes[kTypeAt] = static_cast<std::uint8_t>(Type::step);
@@ -49,8 +49,8 @@ TEST(RejectionText, NamesEveryType) {
       << "its size depends on its rows";
 }
 
-/// The decoder knows all types of the table, and their sizes are those that it takes.
-TEST(PacketForms, AreThoseOfTheDecoder) {
+/// The decoder accepts all types of the table, with the sizes in the table.
+TEST(PacketForms, MatchTheDecoder) {
   int forms = 0;
   for (int number = 0; number < 256; ++number) {
     const auto type = static_cast<Type>(number);
@@ -78,8 +78,8 @@ TEST(PacketForms, AreThoseOfTheDecoder) {
   EXPECT_EQ(forms, 15);
 }
 
-// Every reason that is not another log's has words of its own.
-TEST(RejectionText, NoReasonIsWithoutWords) {
+// Every reason that no other log reports has its own text.
+TEST(RejectionText, EveryReasonHasAText) {
   const base::Bytes bytes = v2v();
   for (auto i = static_cast<int>(PacketStatus::too_short); i <= static_cast<int>(PacketStatus::unknown_light); ++i) {
     const auto reason = static_cast<PacketStatus>(i);
@@ -98,7 +98,7 @@ struct Fixture {
   RejectionLog rejections;
 };
 
-TEST(RejectionLog, StatesEachSenderAndReasonOnceThenTheirNumberEveryTenSeconds) {
+TEST(RejectionLog, LogsEachSenderOnceThenCountsEveryTenSeconds) {
   Fixture f;
   for (int i = 0; i < 5; ++i) f.note(PacketStatus::unknown_robot, 4000, i);
   f.note(PacketStatus::unknown_robot, 4001, 5);
@@ -115,7 +115,7 @@ TEST(RejectionLog, StatesEachSenderAndReasonOnceThenTheirNumberEveryTenSeconds) 
   EXPECT_NE(f.pipe.read_all().find("6 packets from 127.0.0.1:4000"), std::string::npos);
 }
 
-// A client's first packet has no token, and networks overtake: a few of either are sound.
+// A client's first packet has no token, and networks reorder packets, so a few of either are normal.
 TEST(RejectionLog, ToleratesAFewUnprovenAndStalePackets) {
   for (const PacketStatus reason : {PacketStatus::unproven, PacketStatus::stale}) {
     Fixture f;
@@ -129,7 +129,7 @@ TEST(RejectionLog, ToleratesAFewUnprovenAndStalePackets) {
 }
 
 // Other logs report these.
-TEST(RejectionLog, LeavesSignaturesAndSourcesToTheirLogs) {
+TEST(RejectionLog, IgnoresSignaturesAndSources) {
   Fixture f;
   for (const PacketStatus reason : {PacketStatus::accepted, PacketStatus::not_signed, PacketStatus::wrong_signature,
                                     PacketStatus::replayed, PacketStatus::wrong_source})
@@ -144,7 +144,7 @@ TEST(RejectionLog, SendersBeyondItsLimitShareOneRow) {
   f.note(PacketStatus::bad_magic, 9000, 11 * kSecond);
   const std::string text = f.pipe.read_all();
   EXPECT_NE(text.find("packets from 127.0.0.1:9000 and other senders dropped"), std::string::npos) << text;
-  // Silent senders make room.
+  // Silent senders free their rows.
   f.note(PacketStatus::bad_magic, 9001, 12 * kSecond);
   EXPECT_NE(f.pipe.read_all().find("1 packet from 127.0.0.1:9001 dropped"), std::string::npos);
 }

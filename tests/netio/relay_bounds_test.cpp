@@ -1,5 +1,4 @@
-// States are forwarded within the V2V range and a budget for any number of subscribers. Work is counted, without a
-// clock.
+// Forwards states within the V2V range and a budget for any number of subscribers. Counts the work, without a clock.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@ namespace {
 using test::RelayFixture;
 using Rows = std::vector<std::uint32_t>;
 
-TEST(RelayBounds, StatesWithinTheRadiosRange) {
+TEST(RelayBounds, ForwardsStatesWithinRange) {
   RelayFixture crowd(4, {.range = 10.0});
   crowd.all_ask();
   crowd.say(0, {0, 0});
@@ -35,7 +34,7 @@ TEST(RelayBounds, StatesWithinTheRadiosRange) {
   EXPECT_EQ(heard[0], Rows{1});
 }
 
-TEST(RelayBounds, ARangeOfNothingPassesNothingOn) {
+TEST(RelayBounds, RangeOfZeroForwardsNothing) {
   RelayFixture crowd(3, {.range = 0.0});
   crowd.all_ask();
   for (const std::uint32_t id : {1u, 2u}) crowd.say(id, {0, 0});  // at one place; robot 0 without one
@@ -45,7 +44,7 @@ TEST(RelayBounds, ARangeOfNothingPassesNothingOn) {
   EXPECT_EQ(counts.starts, 3u) << "no V2V";
 }
 
-TEST(RelayBounds, WithoutAPlaceARobotHearsAllInTurn) {
+TEST(RelayBounds, RobotWithoutAPositionReceivesAllInTurn) {
   RelayFixture crowd(13, {.range = 10.0, .most = Relay::kMinShare});
   crowd.ask(0);
   std::set<std::uint32_t> heard;
@@ -58,7 +57,7 @@ TEST(RelayBounds, WithoutAPlaceARobotHearsAllInTurn) {
   EXPECT_EQ(heard.size(), 12u);
 }
 
-TEST(RelayBounds, ManyStatesADatagramTheNearestFirst) {
+TEST(RelayBounds, PacksStatesNearestFirst) {
   for (const std::uint32_t others : {1u, 9u, 10u, 80u}) {  // one, a full datagram, one more, more than the maximum
     RelayFixture crowd(others + 1);
     crowd.ask(0);
@@ -73,7 +72,7 @@ TEST(RelayBounds, ManyStatesADatagramTheNearestFirst) {
   }
 }
 
-TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
+TEST(RelayBounds, ForwardedPacketsCarryTheReceiversSession) {
   RelayFixture crowd(12);
   crowd.ask(5);
   for (const std::uint32_t id : crowd.ids) crowd.say(id, {0, 0});
@@ -101,7 +100,7 @@ TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
 
 /// 500 and 1000 subscribers behind one socket, side by side or all at the origin for lack of a position: sent states
 /// and visits grow with their number, not with its square.
-TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
+TEST(RelayBounds, BudgetHoldsForAnyNumberOfSubscribers) {
   for (const bool localised : {true, false}) {
     for (const std::uint32_t count : {500u, 1000u}) {
       RelayFixture crowd(count);
@@ -118,8 +117,8 @@ TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
   }
 }
 
-/// A budget for ten of thirty: all get a turn within three ticks, in order, and none twice before all.
-TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
+/// A budget for ten of thirty: all get a turn within three ticks, in order, and none gets two before all have had one.
+TEST(RelayBounds, RobotsTakeTurnsWhenTheBudgetIsSpent) {
   RelayFixture crowd(30, {.budget = 10 * Relay::kMinShare});
   crowd.all_ask();
   for (std::uint32_t pass = 0; pass < 6; ++pass) {
@@ -136,8 +135,8 @@ TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
   }
 }
 
-/// A robot that unsubscribes before its turn is passed over for the next one.
-TEST(RelayBounds, ATurnNotTakenIsTheNextRobots) {
+/// A robot that unsubscribes before its turn is skipped.
+TEST(RelayBounds, UnusedTurnPassesToTheNextRobot) {
   RelayFixture crowd(4, {.budget = Relay::kMinShare});
   crowd.all_ask();
   const auto served = [&] {
@@ -153,9 +152,9 @@ TEST(RelayBounds, ATurnNotTakenIsTheNextRobots) {
   EXPECT_EQ(served(), 0u);
 }
 
-/// Five robots that send, subscribe and unsubscribe at random, with a budget for one or two: each robot gets all states
-/// since its last turn or subscription, once, and waits for at most four others.
-TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
+/// Five robots that send, subscribe and unsubscribe at random, with a budget for one or two: each robot receives all
+/// states since its last turn or subscription, once, and waits for at most four others.
+TEST(RelayBounds, TurnIncludesAllStatesSinceTheLastTurn) {
   RelayFixture crowd(5, {.budget = Relay::kMinShare});
   std::mt19937 random(3);  // NOLINT: the same every time
   std::vector<std::set<std::uint32_t>> due(5);
@@ -186,20 +185,20 @@ TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
 
 constexpr std::uint32_t kNorth = 100, kSouth = 101;  ///< lights
 
-TEST(RelayBounds, LightsHearTheRobotsWithinTheRadiosRangeOfThem) {
+TEST(RelayBounds, LightsReceiveRobotsWithinRange) {
   RelayFixture crowd(3, {.range = 10.0}, {kNorth, kSouth});
   crowd.shine(kNorth, {0, 100});
   crowd.shine(kSouth, {0, -100});
   crowd.say(0, {0, 90});  // exactly at the range
   crowd.say(1, {0, std::nextafter(-90.0, 0)});
   crowd.say(2, {0, -95});
-  crowd.pass();  // no robot has asked
+  crowd.pass();  // no robot has subscribed
   const auto heard = crowd.received();
   EXPECT_EQ(heard, (std::map<std::uint32_t, Rows>{{kNorth, {0}}, {kSouth, {2}}}));
 }
 
-/// However little the budget leaves to robots, and once, though others wait for the same states.
-TEST(RelayBounds, ALightHearsTheNearestInTheirOwnTick) {
+/// Independent of the budget left to robots, and once, even if others wait for the same states.
+TEST(RelayBounds, LightReceivesTheNearestInTheSameTick) {
   RelayFixture crowd(70, {.budget = Relay::kMinShare}, {kNorth});
   crowd.all_ask();
   crowd.shine(kNorth, {0, 0});
@@ -213,14 +212,14 @@ TEST(RelayBounds, ALightHearsTheNearestInTheirOwnTick) {
   EXPECT_EQ(crowd.received()[kNorth], Rows{9});
 }
 
-TEST(RelayBounds, ATurnHasRoomForFourStates) {
+TEST(RelayBounds, TurnHoldsAtLeastFourStates) {
   const Rows ids{0, 1};
   EXPECT_DEATH(Relay(ids, {.most = Relay::kMinShare - 1}), "passes nothing on");
   EXPECT_DEATH(Relay(ids, {.budget = Relay::kMinShare - 1}), "passes nothing on");
 }
 
-/// Robots with few neighbours use little of the budget, so that more than two are served.
-TEST(RelayBounds, UnusedSharesAreLeftToOthers) {
+/// Robots with few neighbours use little of the budget, so more than two are served.
+TEST(RelayBounds, UnusedSharesServeOtherRobots) {
   RelayFixture crowd(8, {.range = 1.0, .budget = 2 * Relay::kMinShare});
   crowd.all_ask();
   for (const std::uint32_t id : crowd.ids) crowd.say(id, {100.0 * (id / 2), 0});  // in pairs

@@ -50,7 +50,7 @@ struct RelayFixture {
   }
   void say(std::uint32_t id, glm::dvec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
   void ask(std::uint32_t id, std::uint32_t types = kNeighboursBit) { take(id, Subscribe{types}); }
-  /// A light says where it is.
+  /// Sends a light's position.
   void shine(std::uint32_t light, glm::dvec2 p) {
     base::Bytes rows;
     put(SignalApproach{.X_WL = {p.x, p.y, 0, 0}}, rows);
@@ -60,7 +60,7 @@ struct RelayFixture {
     for (const std::uint32_t id : ids) ask(id);
   }
 
-  /// One tick. @return its additions to the counts
+  /// Runs one tick. @return its additions to the counts
   RelayCounts pass(std::int64_t now = 0) {
     const RelayCounts before = relay.counts();
     relay.forward(inbox, now, outbox);
@@ -70,7 +70,7 @@ struct RelayFixture {
             after.starts - before.starts};
   }
 
-  /// By robot or light: ids of the received states, in order. Loopback delivers immediately.
+  /// Returns the ids of the received states, in order, by robot or light. Loopback delivers immediately.
   std::map<std::uint32_t, std::vector<std::uint32_t>> received() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> received;
     datagrams.clear();

@@ -28,7 +28,7 @@ struct RelayTest : testing::Test {
   }
   V2vSocket& v2v_socket(std::uint32_t id) { return *radios[id == 3 ? 0 : id == 7 ? 1 : 2]; }
 
-  /// Challenge and answer.
+  /// Performs challenge and answer.
   void prove(std::uint32_t id) {
     base::Bytes answer;
     Packet packet;
@@ -63,7 +63,7 @@ struct RelayTest : testing::Test {
     relay.forward(inbox, now, outbox);
     outbox.flush();
   }
-  /// Packets received by a robot. Loopback delivers immediately.
+  /// Returns the packets received by a robot. Loopback delivers immediately.
   std::vector<Packet> heard(std::uint32_t id, std::int64_t now = 0) {
     std::vector<Packet> packets;
     V2vSocket& one = v2v_socket(id);
@@ -75,13 +75,13 @@ struct RelayTest : testing::Test {
   }
 };
 
-TEST_F(RelayTest, OthersStatesGoToThoseThatAsked) {
+TEST_F(RelayTest, SendsStatesToSubscribers) {
   ask(3, kNeighboursBit);
   say(3, 1.0);
   say(7, 2.0);
   tick();
   const auto packets = heard(3);
-  ASSERT_EQ(packets.size(), 1u);  // not its own
+  ASSERT_EQ(packets.size(), 1u);  // excludes its own
   EXPECT_EQ(packets[0].header.robot, 7);
   EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 2.0);
   EXPECT_TRUE(heard(7).empty());  // not subscribed
@@ -89,7 +89,7 @@ TEST_F(RelayTest, OthersStatesGoToThoseThatAsked) {
   EXPECT_EQ(relay.counts().states, 1u);
 }
 
-TEST_F(RelayTest, TheNewestOfEachOncePerTick) {
+TEST_F(RelayTest, SendsTheNewestStateOncePerTick) {
   ask(3, kNeighboursBit);
   for (const double x : {1.0, 2.0, 3.0}) say(7, x);
   say(9, 4.0);
@@ -104,7 +104,7 @@ TEST_F(RelayTest, TheNewestOfEachOncePerTick) {
   EXPECT_EQ(heard(3).size(), 1u);
 }
 
-TEST_F(RelayTest, StatesWithoutSubscribersAreForgotten) {
+TEST_F(RelayTest, DropsStatesWithoutSubscribers) {
   say(7, 2.0);
   tick();
   ask(3, kNeighboursBit);
@@ -112,7 +112,7 @@ TEST_F(RelayTest, StatesWithoutSubscribersAreForgotten) {
   EXPECT_TRUE(heard(3).empty());
 }
 
-TEST_F(RelayTest, SilentRobotsAreSentNothing) {
+TEST_F(RelayTest, SendsNothingToSilentRobots) {
   ask(3, kNeighboursBit);
   say(7, 2.0);
   start(kBroadcastId);
@@ -120,7 +120,7 @@ TEST_F(RelayTest, SilentRobotsAreSentNothing) {
   EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
 }
 
-TEST_F(RelayTest, StartGoesToAllThatAreHeard) {
+TEST_F(RelayTest, SendsStartToAllActiveRobots) {
   say(3, 0.0);
   say(7, 0.0);
   start(kBroadcastId);
@@ -136,7 +136,7 @@ TEST_F(RelayTest, StartGoesToAllThatAreHeard) {
   EXPECT_TRUE(heard(3).empty());  // once
 }
 
-TEST_F(RelayTest, StartMayMeanOneRobot) {
+TEST_F(RelayTest, StartMayAddressOneRobot) {
   say(3, 0.0);
   say(7, 0.0);
   start(7);
@@ -148,7 +148,7 @@ TEST_F(RelayTest, StartMayMeanOneRobot) {
   EXPECT_TRUE(heard(7).empty());  // once
 }
 
-TEST_F(RelayTest, PassesOnTheBytesAsTheyCame) {
+TEST_F(RelayTest, ForwardsBytesUnchanged) {
   base::Bytes bytes;
   const V2v state{.X_WR = {1.5, -2.25, 0.0, 0.5}, .velocity = {0.25, 0.0, -0.125}, .follows = 3, .docking = true};
   encode({.robot = 7, .sequence = 77, .time = 1'500'000'000, .session = 5, .token = inbox.token({kLoopback, 1})}, state,
@@ -156,7 +156,7 @@ TEST_F(RelayTest, PassesOnTheBytesAsTheyCame) {
   Packet packet;
   ask(3, kNeighboursBit);
   ASSERT_EQ(inbox.accept(bytes, {kLoopback, 1}, 0, packet), PacketStatus::accepted);
-  write_session_token(bytes, v2v_socket(3).farm_session_token());  // but for who speaks to whom
+  write_session_token(bytes, v2v_socket(3).farm_session_token());  // except for sender and receiver
   relay.take(packet);
   tick();
   base::Bytes came;
@@ -164,7 +164,7 @@ TEST_F(RelayTest, PassesOnTheBytesAsTheyCame) {
   EXPECT_EQ(came, bytes);
 }
 
-TEST_F(RelayTest, TagsAndRequestsAreNotPassedOn) {
+TEST_F(RelayTest, DoesNotForwardTagsAndRequests) {
   ask(3, kNeighboursBit);
   Packet packet;
   decode(tag_example(), packet);
@@ -201,7 +201,7 @@ base::Bytes stamped(base::Bytes bytes, const SessionToken& stamp = {kRelayFarm, 
   return bytes;
 }
 
-TEST_F(V2vSocketTest, OnlyTheFarmsWordCounts) {
+TEST_F(V2vSocketTest, AcceptsOnlyPacketsFromTheFarm) {
   Outbox stranger;
   stranger.queue(to(), v2v_of(3, 0));
   stranger.flush();
@@ -217,7 +217,7 @@ TEST_F(V2vSocketTest, OnlyTheFarmsWordCounts) {
 }
 
 /// Each of its states is checked separately.
-TEST_F(V2vSocketTest, NeighboursAreTakenApart) {
+TEST_F(V2vSocketTest, SplitsNeighbours) {
   base::Bytes states, bytes;
   for (const base::Bytes& state : {v2v_of(3, 5), v2v_of(9, 0), v2v_of(3, 4), stamped(v2v_of(9, 1), {})})
     states.insert(states.end(), state.begin(), state.end());
@@ -232,7 +232,7 @@ TEST_F(V2vSocketTest, NeighboursAreTakenApart) {
   EXPECT_EQ(v2v_socket.accept(bytes, 0, packet), PacketStatus::wrong_direction) << "as a whole it says nothing";
 }
 
-TEST_F(V2vSocketTest, JudgesWhatComes) {
+TEST_F(V2vSocketTest, ChecksReceivedPackets) {
   EXPECT_EQ(v2v_socket.accept(v2v_of(3, 5), 0, packet), PacketStatus::accepted);
   EXPECT_EQ(v2v_socket.accept(v2v_of(3, 5), 0, packet), PacketStatus::stale);
   EXPECT_EQ(v2v_socket.accept(v2v_of(7, 0), 0, packet), PacketStatus::unknown_robot);  // itself
@@ -252,7 +252,7 @@ TEST_F(V2vSocketTest, JudgesWhatComes) {
 }
 
 /// A forger of the farm's address has to guess the session.
-TEST_F(V2vSocketTest, OnlyWhatCarriesItsSessionIsMeantForIt) {
+TEST_F(V2vSocketTest, AcceptsOnlyPacketsWithItsSession) {
   const auto challenge = [](std::uint32_t token, const SessionToken& stamp) {
     base::Bytes bytes;
     encode({.session = stamp.session, .token = stamp.token}, Challenge{token}, bytes);

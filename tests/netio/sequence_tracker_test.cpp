@@ -13,7 +13,7 @@ SequenceTracker after(std::initializer_list<std::uint64_t> indices) {
   return tracker;
 }
 
-TEST(SequenceTracker, NothingSeenNothingLost) { EXPECT_EQ(lost(SequenceTracker{}), 0u); }
+TEST(SequenceTracker, ReportsNoLossWithoutArrivals) { EXPECT_EQ(lost(SequenceTracker{}), 0u); }
 
 TEST(SequenceTracker, InOrder) {
   const SequenceTracker tracker = after({0, 1, 2, 3});
@@ -24,9 +24,9 @@ TEST(SequenceTracker, InOrder) {
 
 TEST(SequenceTracker, LossBeforeTheFirstArrivalCounts) { EXPECT_EQ(lost(after({3, 4})), 3u); }
 
-TEST(SequenceTracker, AGapIsLoss) { EXPECT_EQ(lost(after({0, 1, 5})), 3u); }
+TEST(SequenceTracker, GapCountsAsLoss) { EXPECT_EQ(lost(after({0, 1, 5})), 3u); }
 
-TEST(SequenceTracker, ALateOneFillsItsGap) {
+TEST(SequenceTracker, LateArrivalFillsItsGap) {
   const SequenceTracker tracker = after({0, 2, 1, 3});
   EXPECT_EQ(lost(tracker), 0u);
   EXPECT_EQ(tracker.reordered, 1u);
@@ -40,9 +40,9 @@ TEST(SequenceTracker, RepetitionsAreDuplicates) {
   EXPECT_EQ(lost(tracker), 0u);
 }
 
-TEST(SequenceTracker, ADuplicateOfALateOneIsSeen) { EXPECT_EQ(after({0, 5, 2, 2}).duplicates, 1u); }
+TEST(SequenceTracker, DetectsDuplicateOfALateArrival) { EXPECT_EQ(after({0, 5, 2, 2}).duplicates, 1u); }
 
-TEST(SequenceTracker, TheWindowEndsAfter64) {
+TEST(SequenceTracker, WindowHolds64Indices) {
   SequenceTracker tracker = after({0, 63});
   count_arrival(tracker, 0);  // 63 behind: remembered
   EXPECT_EQ(tracker.duplicates, 1u);
@@ -52,13 +52,13 @@ TEST(SequenceTracker, TheWindowEndsAfter64) {
   EXPECT_EQ(tracker.reordered, 1u);
 }
 
-TEST(SequenceTracker, JumpsForgetTheWindow) {
+TEST(SequenceTracker, JumpsClearTheWindow) {
   for (const std::uint64_t jump : {63ull, 64ull, 65ull, 1000ull}) {
     SequenceTracker tracker = after({0, jump});
     count_arrival(tracker, jump - 1);
     EXPECT_EQ(tracker.duplicates, 0u) << jump;
     EXPECT_EQ(lost(tracker), jump - 2) << jump;
-    EXPECT_EQ(after({0, 1, jump + 1, jump}).duplicates, 0u) << jump;  // nothing of before takes its place
+    EXPECT_EQ(after({0, 1, jump + 1, jump}).duplicates, 0u) << jump;  // no earlier index takes its place
   }
 }
 

@@ -28,8 +28,8 @@ base::Bytes signed_leave(std::uint64_t counter) {
   return packet;
 }
 
-/// RFC 4231, test cases 1, 2 and 5, the last of which is truncated there too.
-TEST(Hmac, IsThatOfRfc4231) {
+/// RFC 4231, test cases 1, 2 and 5; the last one is truncated in the RFC too.
+TEST(Hmac, MatchesRfc4231) {
   const auto hmac = [](const base::Bytes& key, std::string_view text) { return hmac_sha256(key, bytes_of(text)); };
   EXPECT_EQ(hmac(base::Bytes(20, 0x0b), "Hi There"), (TruncatedHmac{0xb0, 0x34, 0x4c, 0x61, 0xd8, 0xdb, 0x38, 0x53,
                                                                     0x5c, 0xa8, 0xaf, 0xce, 0xaf, 0x0b, 0xf1, 0x2b}));
@@ -41,13 +41,13 @@ TEST(Hmac, IsThatOfRfc4231) {
       (TruncatedHmac{0xa3, 0xb6, 0x16, 0x74, 0x73, 0x10, 0x0e, 0xe0, 0x6e, 0x0c, 0x79, 0x6c, 0x29, 0x55, 0x55, 0x2b}));
 }
 
-TEST(Signature, IsThatOfTheDocument) {
+TEST(Signature, MatchesTheDocumentation) {
   const base::Bytes packet = signed_leave(0x0006'0a24'181e'4000);
   EXPECT_EQ(packet, documented("signed_leave"));
   EXPECT_EQ(SignatureChecker(counting_key()).check(packet), PacketStatus::accepted);
 }
 
-/// The trailer does not change what a packet says, of any type.
+/// The trailer does not change the content of a packet of any type.
 TEST(Signature, LeavesThePacketReadable) {
   for (const base::Bytes& example : all_examples()) {
     base::Bytes packet = example;
@@ -62,7 +62,7 @@ TEST(Signature, LeavesThePacketReadable) {
   }
 }
 
-TEST(Signature, NoFlippedBitIsAccepted) {
+TEST(Signature, RejectsEachFlippedBit) {
   for (const base::Bytes& example : all_examples()) {
     base::Bytes packet = example;
     sign(packet, counting_key(), 1'000'000);
@@ -78,7 +78,7 @@ TEST(Signature, NoFlippedBitIsAccepted) {
   }
 }
 
-TEST(Signature, EveryOtherTrailerIsNone) {
+TEST(Signature, RejectsEveryOtherTrailer) {
   SignatureChecker checker(counting_key());
   EXPECT_EQ(checker.check(leave_example()), PacketStatus::not_signed);
   for (const int size : {0, 23, 25, 80}) {
@@ -89,13 +89,13 @@ TEST(Signature, EveryOtherTrailerIsNone) {
   EXPECT_EQ(checker.check(short_packet), PacketStatus::not_signed) << "states a trailer that it does not have";
 }
 
-TEST(Signature, AnotherKeyIsAnotherSignature) {
+TEST(Signature, AnotherKeyGivesAnotherSignature) {
   SigningKey other = counting_key();
   other[31] ^= 1;
   EXPECT_EQ(SignatureChecker(other).check(signed_leave(5)), PacketStatus::wrong_signature);
 }
 
-TEST(Signature, OnlyValidOnesMoveTheWindow) {
+TEST(Signature, OnlyValidSignaturesAdvanceTheWindow) {
   SignatureChecker checker(counting_key());
   base::Bytes forged = signed_leave(1'000);
   forged.back() ^= 1;
@@ -104,7 +104,7 @@ TEST(Signature, OnlyValidOnesMoveTheWindow) {
   EXPECT_EQ(checker.check(signed_leave(5)), PacketStatus::replayed);
 }
 
-/// One boundary after another; the comments say which.
+/// Checks one boundary after another, named in the comments.
 TEST(ReplayWindow, AdmitsEachCounterOnce) {
   ReplayWindow window;
   EXPECT_TRUE(window.admit(100));
@@ -141,8 +141,8 @@ TEST(ReplayWindow, BeginsAtAnyCounter) {
   EXPECT_FALSE(window.admit(0));
 }
 
-/// Against the rule in words: new, and less than 64 behind the newest.
-TEST(ReplayWindow, AgreesWithItsRule) {
+/// Compares with the rule: new, and less than 64 behind the newest.
+TEST(ReplayWindow, MatchesItsRule) {
   ReplayWindow window;
   std::vector<bool> seen(3000, false);
   std::uint64_t newest = 0, random = 1;

@@ -24,7 +24,7 @@ constexpr int kPatience = 5000;  ///< [ms] longest wait for datagrams that loopb
 
 constexpr Endpoint kMonitoredFarm{kLoopback, 9000};
 
-/// One sensor on each of `robots`, at two ports a robot.
+/// One sensor on each of `robots`, at two ports per robot.
 std::vector<StreamSpec> plans(std::uint32_t robots) {
   std::vector<StreamSpec> streams;
   for (std::uint32_t id = 0; id < robots; ++id) streams.push_back({id, 0, {12'000, 2}});
@@ -38,8 +38,8 @@ PayloadInfo inspect_stream(std::size_t, const Header&, std::span<const std::uint
   return {PacketStatus::accepted, payload[0], payload[1], payload[2]};
 }
 
-/// A monitor at the first free base port below Linux's ephemeral ports, since other tests run in parallel. Moves
-/// `streams` there.
+/// Returns a monitor at the first free base port below Linux's ephemeral ports, since other tests run in parallel.
+/// Moves `streams` there.
 std::unique_ptr<StreamMonitor> listen(std::vector<StreamSpec>& streams, bool headerless = false,
                                       const PayloadInspector& judging = inspect_stream) {
   for (std::uint32_t base = 12'000; base < 32'000; base += 200) {
@@ -75,7 +75,7 @@ void drain(StreamMonitor& monitor, std::uint64_t until) {
   }
 }
 
-TEST(StreamMonitor, AThousandPacketsArrive) {
+TEST(StreamMonitor, ReceivesAThousandPackets) {
   auto streams = plans(100);
   const auto monitor = listen(streams);
   Outbox outbox;
@@ -110,7 +110,7 @@ TEST(StreamMonitor, RunsUntilSilence) {
   EXPECT_EQ(monitor->summary().good, 1u);
 }
 
-TEST(StreamMonitor, RunsUntilToldToStop) {
+TEST(StreamMonitor, RunsUntilStopped) {
   auto streams = plans(1);
   const auto monitor = listen(streams);
   std::atomic<bool> stop = false;
@@ -120,11 +120,11 @@ TEST(StreamMonitor, RunsUntilToldToStop) {
   EXPECT_EQ(monitor->summary().silent_ports, 1u);
 }
 
-TEST(StreamMonitor, RunsNoLongerThanItMay) {
+TEST(StreamMonitor, RunsUntilItsTimeLimit) {
   auto streams = plans(1);
   const auto monitor = listen(streams);
   const std::atomic<bool> stop = false;
-  monitor->run(stop, 1'000'000, 1);  // no datagrams, and no stop
+  monitor->run(stop, 1'000'000, 1);  // no datagrams, and `stop` is not set
   EXPECT_EQ(monitor->summary().good, 0u);
 }
 
@@ -155,7 +155,7 @@ TEST(StreamMonitor, WithoutHeadersDatagramsArePayloads) {
   EXPECT_EQ(sum.counts[PacketStatus::out_of_range], 1u);
 }
 
-TEST(StreamMonitor, KindsAreCountedApart) {
+TEST(StreamMonitor, CountsTypesSeparately) {
   auto streams = plans(3);
   streams[0].type = streams[2].type = "laser";
   streams[1].type = "magnetometer";
@@ -172,7 +172,7 @@ TEST(StreamMonitor, KindsAreCountedApart) {
   EXPECT_EQ(sum.of.at("magnetometer").elements, 4u);
 }
 
-TEST(StreamMonitor, TheJudgeIsToldTheStreamAndTheHeader) {
+TEST(StreamMonitor, InspectorReceivesStreamAndHeader) {
   auto streams = plans(2);
   std::size_t asked = 99;
   Header told;
@@ -196,10 +196,10 @@ struct OnePort : testing::Test {
   }
 };
 
-TEST_F(OnePort, ChecksWhatItCarries) {
+TEST_F(OnePort, ChecksPayloads) {
   EXPECT_EQ(say(1, 0, 0, {3, 0, 1}), PacketStatus::accepted);
   EXPECT_EQ(say(1, 0, 1, {255, 0, 1}), PacketStatus::out_of_range);  // from the inspector
-  EXPECT_EQ(say(1, 0, 2, {}), PacketStatus::too_short);              // likewise
+  EXPECT_EQ(say(1, 0, 2, {}), PacketStatus::too_short);              // the same
   EXPECT_EQ(say(0, 0, 4, {3, 0, 1}), PacketStatus::wrong_source);    // another robot's
   EXPECT_EQ(say(1, 1, 5, {3, 0, 1}), PacketStatus::wrong_source);    // another sensor's
   EXPECT_EQ(monitor->accept(1, v2v_example(), kMonitoredFarm, 0), PacketStatus::wrong_direction);
@@ -211,7 +211,7 @@ TEST_F(OnePort, ChecksWhatItCarries) {
   EXPECT_EQ(sum.silent_ports, 1u);
 }
 
-TEST_F(OnePort, SeesLossDuplicatesAndReordering) {
+TEST_F(OnePort, CountsLossDuplicatesAndReordering) {
   for (const std::uint32_t sequence : {0, 1, 1, 5, 4, 6}) say(1, 0, sequence, {3, 0, 1});
   const StreamSummary sum = monitor->summary();
   EXPECT_EQ(sum.good, 6u);
@@ -221,7 +221,7 @@ TEST_F(OnePort, SeesLossDuplicatesAndReordering) {
 }
 
 /// Two farms on one host, or a farm and a forger.
-TEST_F(OnePort, ListensToOneFarmAtATime) {
+TEST_F(OnePort, AcceptsOneFarmAtATime) {
   const auto from = [&](std::uint32_t session, const Endpoint& who, std::uint32_t sequence, std::int64_t now) {
     base::Bytes bytes = reading(1, 0, sequence, {3, 0, 1});
     write_session_token(bytes, {session, 0});
@@ -241,12 +241,12 @@ TEST_F(OnePort, ListensToOneFarmAtATime) {
   EXPECT_EQ(sum.lost, 2u);  // 1 of the first, 0 of the second
 }
 
-TEST_F(OnePort, AFaultyPacketBindsNobody) {
+TEST_F(OnePort, FaultyPacketDoesNotSelectAFarm) {
   EXPECT_EQ(monitor->accept(1, reading(1, 0, 0, {255, 0, 1}), {kLoopback, 9001}, 0), PacketStatus::out_of_range);
   EXPECT_EQ(say(1, 0, 0, {3, 0, 1}), PacketStatus::accepted);
 }
 
-TEST(StreamMonitor, MayTakePacketsOfOneHostAlone) {
+TEST(StreamMonitor, MayAcceptPacketsOfOneHostOnly) {
   auto streams = plans(1);
   streams[0].rule.base = port_of(streams[0]).port;
   std::unique_ptr<StreamMonitor> monitor;
@@ -265,7 +265,7 @@ TEST(StreamMonitor, MayTakePacketsOfOneHostAlone) {
 }
 
 /// RFC 3550, appendix A.1: a jump is accepted at the second datagram in sequence.
-TEST_F(OnePort, LeapsAreNotBelievedAlone) {
+TEST_F(OnePort, RejectsASingleJump) {
   const auto at = [&](std::uint32_t sequence) { return say(1, 0, sequence, {3, 0, 1}); };
   EXPECT_EQ(at(0), PacketStatus::accepted);
   EXPECT_EQ(at(StreamMonitor::kMaxDropout), PacketStatus::accepted);
@@ -277,19 +277,19 @@ TEST_F(OnePort, LeapsAreNotBelievedAlone) {
   EXPECT_EQ(at(1'000'001), PacketStatus::accepted);
 }
 
-TEST(StreamMonitor, CollidingPortsAreRefused) {
+TEST(StreamMonitor, RejectsCollidingPorts) {
   std::vector<StreamSpec> streams = plans(2);
   streams.push_back({0, 2, {12'000, 2}});  // sensor 2 uses a port of robot 1
   EXPECT_THROW(StreamMonitor({.streams = streams, .inspect = inspect_stream}), base::InputError);
 }
 
-TEST(StreamMonitor, ATakenPortIsRefused) {
+TEST(StreamMonitor, RejectsAPortInUse) {
   auto streams = plans(1);
   const auto first = listen(streams);
   EXPECT_THROW(StreamMonitor({.streams = streams, .inspect = inspect_stream}), base::InputError);
 }
 
-TEST(Outbox, RefusedDatagramsAreCountedWithTheFirstReason) {
+TEST(Outbox, CountsRejectedDatagramsWithTheFirstReason) {
   Outbox outbox;
   outbox.queue({kLoopback, 0}, base::Bytes{1});  // invalid port
   outbox.queue({kLoopback + 1, 0}, base::Bytes{1});
@@ -319,7 +319,7 @@ class Full : public testing::Test {
 };
 using FullOutbox = Full;
 
-TEST_F(FullOutbox, RefusedDatagramsAreDroppedAndCounted) {
+TEST_F(FullOutbox, DropsAndCountsDatagrams) {
   Outbox outbox(std::move(full_), {.capacity = 20'000, .patience_ms = 0});
   for (int i = 0; i < 20'000; ++i) outbox.queue({kLoopback, 9}, base::Bytes(kMaxHeaderlessDatagram));
   outbox.flush();
@@ -333,8 +333,8 @@ TEST_F(FullOutbox, RefusedDatagramsAreDroppedAndCounted) {
   EXPECT_EQ(outbox.counts().failed, 0u);
 }
 
-/// Sent by a separate thread: the same datagrams in the same order, put by several threads.
-TEST(Outbox, AThreadOfItsOwnSendsAllInOrder) {
+/// A separate thread sends the same datagrams in the same order, even if several threads put them.
+TEST(Outbox, SeparateThreadSendsAllInOrder) {
   const Socket ears = open_udp({kLoopback, 0}, {.receive = 8u << 20});
   constexpr std::uint32_t kBatches = 40, kEach = 16;
   {
@@ -364,8 +364,8 @@ TEST(Outbox, AThreadOfItsOwnSendsAllInOrder) {
   EXPECT_EQ(next, kBatches * kEach);
 }
 
-/// Only the sending thread is blocked. Flushes beyond the backlog are dropped and counted.
-TEST_F(FullOutbox, ABacklogHasABound) {
+/// Blocks only the sending thread. Drops and counts flushes beyond the backlog.
+TEST_F(FullOutbox, BacklogIsBounded) {
   Outbox outbox(std::move(full_), {.capacity = 100, .patience_ms = 2, .backlog = 2});
   for (int i = 0; i < 20'000; ++i) outbox.queue({kLoopback, 9}, base::Bytes(kMaxHeaderlessDatagram));
   outbox.flush();
@@ -377,7 +377,7 @@ TEST_F(FullOutbox, ABacklogHasABound) {
 }
 
 /// Claimed and returned slots are neither sent nor counted.
-TEST(Outbox, DatagramsGivenBackAreForgotten) {
+TEST(Outbox, ReturnedSlotsAreNotSent) {
   const Socket ears = open_udp({kLoopback, 0});
   Outbox outbox;
   outbox.queue(bound_endpoint(ears), base::Bytes{1});
@@ -389,7 +389,7 @@ TEST(Outbox, DatagramsGivenBackAreForgotten) {
   EXPECT_EQ(outbox.counts().queued, 2u);
 }
 
-TEST(Socket, TellsWhatTheKernelDropped) {
+TEST(Socket, ReportsKernelDrops) {
   const Socket ears = open_udp({kLoopback, 0}, {.receive = 1});  // the minimum of the kernel
   const Endpoint to{kLoopback, bound_endpoint(ears).port};
   EXPECT_EQ(socket_drops(ears), 0u);
@@ -403,7 +403,7 @@ TEST(Socket, TellsWhatTheKernelDropped) {
   EXPECT_EQ(socket_drops(ears), 100u - taken);
 }
 
-TEST(Outbox, AFullOneFlushesItself) {
+TEST(Outbox, FlushesAutomaticallyWhenFull) {
   Outbox outbox({.capacity = 4});
   for (int i = 0; i < 10; ++i) outbox.queue({kLoopback, 9}, base::Bytes{1, 2, 3});
   EXPECT_EQ(outbox.counts().sent, 8u);
@@ -413,9 +413,9 @@ TEST(Outbox, AFullOneFlushesItself) {
   EXPECT_EQ(outbox.counts().sent_bytes, 30u);
 }
 
-TEST(StreamMonitor, WithoutAJudgeIsOurBug) { EXPECT_DEATH(StreamMonitor({.streams = {}}), "without a judge"); }
+TEST(StreamMonitor, AbortsWithoutAnInspector) { EXPECT_DEATH(StreamMonitor({.streams = {}}), "without a judge"); }
 
-TEST(Outbox, ADatagramLongerThanAnyIsOurBug) {
+TEST(Outbox, AbortsOnTooLongADatagram) {
   Outbox outbox;
   EXPECT_DEATH(outbox.queue({kLoopback, 9}, base::Bytes(kMaxHeaderlessDatagram + 1)), " bytes in one datagram");
 }
@@ -426,13 +426,13 @@ TEST(Endpoint, ResolvesAndPrints) {
   EXPECT_THROW(resolve("no host has a space"), base::InputError);
 }
 
-TEST(Endpoint, LoopbackIsItsWholeNetwork) {
+TEST(Endpoint, LoopbackIncludesItsWholeNetwork) {
   for (const std::uint32_t address : {0x7F000000u, kLoopback, 0x7FFFFFFFu}) EXPECT_TRUE(is_loopback(address));
   for (const std::uint32_t address : {0u, 0x7EFFFFFFu, 0x80000000u}) EXPECT_FALSE(is_loopback(address));
   for (const std::uint32_t address : own_addresses()) EXPECT_FALSE(is_loopback(address)) << ipv4_text(address);
 }
 
-TEST(Endpoint, OwnAddressesHoldTheSourceOfARouteToOthers) {
+TEST(Endpoint, OwnAddressesIncludeTheSourceOfARoute) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
   const sockaddr_in other = to_posix({0xCB007101u, 9});  // for documentation; nothing is sent
   sockaddr_in own{};
@@ -445,8 +445,8 @@ TEST(Endpoint, OwnAddressesHoldTheSourceOfARouteToOthers) {
   EXPECT_EQ(std::ranges::count(own_addresses(), source), 1);
 }
 
-/// In a separate process, since the limit applies to the whole process.
-TEST(Socket, OpenFilesAreAllowedButNeverFewer) {
+/// Runs in a separate process, since the limit applies to the whole process.
+TEST(Socket, RaisesButNeverLowersTheOpenFileLimit) {
   const auto try_limits = [] {
     rlimit before{}, after{};
     getrlimit(RLIMIT_NOFILE, &before);
@@ -459,7 +459,7 @@ TEST(Socket, OpenFilesAreAllowedButNeverFewer) {
     getrlimit(RLIMIT_NOFILE, &after);
     fine = fine && after.rlim_cur == 65 && after.rlim_max == before.rlim_max;
     before.rlim_max = after.rlim_cur;
-    setrlimit(RLIMIT_NOFILE, &before);  // hard limit, too
+    setrlimit(RLIMIT_NOFILE, &before);  // lowers the hard limit, too
     try {
       raise_open_file_limit(66);
       fine = false;

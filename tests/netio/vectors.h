@@ -1,5 +1,6 @@
 #pragma once
-// The golden packets in tests/netio/vectors/, to which the farm and the clients in examples/clients/ are held.
+// The golden packets in tests/netio/vectors/, which the farm and the clients in examples/clients/ must encode and
+// decode.
 //
 // A file has the packets of one type, separated by empty lines: comments (#), `key = value` lines and, below `hex =`,
 // the bytes. Numbers have ten significant digits. In statuses.txt the only key is the packet's status, and the bytes
