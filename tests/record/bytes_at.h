@@ -1,5 +1,5 @@
 #pragma once
-// Fields of encoded messages at known offsets.
+// Reads fields of encoded messages at known offsets.
 
 #include <cstring>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace sf::record::test {
 
-/// A field at an offset counted by hand, encapsulation included. Independent of the code under test.
+/// Reads a field at an offset counted by hand, including the encapsulation. Independent of the code under test.
 template <class T>
 T at(const base::Bytes& bytes, std::size_t offset) {
   T value{};

@@ -15,7 +15,7 @@ TEST(Cdr, StartsWithTheLittleEndianEncapsulation) {
   EXPECT_EQ(out, (Bytes{0, 1, 0, 0}));
 }
 
-TEST(Cdr, EverySizeIsAlignedToItself) {
+TEST(Cdr, AlignsEachNumberToItsSize) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put(true);
@@ -30,7 +30,7 @@ TEST(Cdr, EverySizeIsAlignedToItself) {
                         0, 0, 0, 0, 0, 0, 0xF0, 0x3F}));
 }
 
-TEST(Cdr, AlignmentCountsFromBehindTheEncapsulationWhereverTheMessageStarts) {
+TEST(Cdr, AlignmentCountsFromTheEndOfTheEncapsulation) {
   Bytes out = {77};
   CdrWriter cdr(out);
   cdr.put(std::uint8_t{9});
@@ -38,7 +38,7 @@ TEST(Cdr, AlignmentCountsFromBehindTheEncapsulationWhereverTheMessageStarts) {
   EXPECT_EQ(out, (Bytes{77, 0, 1, 0, 0, 9, 0, 0, 0, 5, 0, 0, 0}));
 }
 
-TEST(Cdr, NoPaddingBeforeWhatIsAlreadyAligned) {
+TEST(Cdr, NoPaddingBeforeAlignedNumbers) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put(1.0);
@@ -48,7 +48,7 @@ TEST(Cdr, NoPaddingBeforeWhatIsAlreadyAligned) {
   EXPECT_EQ(out.size(), 4u + 8u + 4u + 4u + 8u);
 }
 
-TEST(Cdr, StringsCountTheirTerminator) {
+TEST(Cdr, StringLengthsIncludeTheTerminator) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put("ab");
@@ -56,7 +56,7 @@ TEST(Cdr, StringsCountTheirTerminator) {
   EXPECT_EQ(out, (Bytes{0, 1, 0, 0, 3, 0, 0, 0, 'a', 'b', 0, 0, 1, 0, 0, 0, 0}));
 }
 
-TEST(Cdr, ReadsBackWhatItWrote) {
+TEST(Cdr, RoundTrips) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put(true);
@@ -80,9 +80,9 @@ TEST(Cdr, ReadsBackWhatItWrote) {
 }
 
 /// Malformed messages, one reason each.
-TEST(Cdr, MalformedMessagesTurnTheReaderBad) {
-  EXPECT_FALSE(CdrReader(Bytes{}).good());            // nothing at all
-  EXPECT_FALSE(CdrReader(Bytes{0, 1, 0}).good());     // cut in the encapsulation
+TEST(Cdr, MalformedMessagesSetTheReaderToBad) {
+  EXPECT_FALSE(CdrReader(Bytes{}).good());            // empty
+  EXPECT_FALSE(CdrReader(Bytes{0, 1, 0}).good());     // truncated in the encapsulation
   EXPECT_FALSE(CdrReader(Bytes{0, 0, 0, 0}).good());  // big endian
   const auto string_is_good = [](const Bytes& bytes) {
     CdrReader in(bytes);
@@ -93,18 +93,18 @@ TEST(Cdr, MalformedMessagesTurnTheReaderBad) {
   EXPECT_FALSE(string_is_good({0, 1, 0, 0, 2, 0, 0, 0, 'a', 'b'}));            // not terminated
   EXPECT_FALSE(string_is_good({0, 1, 0, 0, 3, 0, 0, 0, 'a', 0}));              // longer than the message
   EXPECT_FALSE(string_is_good({0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 'a', 0}));  // absurdly long
-  EXPECT_TRUE(string_is_good({0, 1, 0, 0, 1, 0, 0, 0, 0}));                    // empty, and right
+  EXPECT_TRUE(string_is_good({0, 1, 0, 0, 1, 0, 0, 0, 0}));                    // empty, and valid
 }
 
-TEST(Cdr, ACountBeyondTheMessageIsRefusedBeforeAnythingIsAllocated) {
+TEST(Cdr, RejectsCountsBeyondTheMessageBeforeAllocating) {
   const Bytes bytes = {0, 1, 0, 0, 3, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-  EXPECT_EQ(CdrReader(bytes).get_count(4), 0u);  // 11 bytes hold no three numbers of four
+  EXPECT_EQ(CdrReader(bytes).get_count(4), 0u);  // 11 bytes cannot hold three numbers of four
   EXPECT_EQ(CdrReader(bytes).get_count(3), 3u);
   const Bytes absurd = {0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0};
   EXPECT_EQ(CdrReader(absurd).get_count(1), 0u);
 }
 
-TEST(Cdr, PaddingPastTheEndTurnsTheReaderBad) {
+TEST(Cdr, PaddingPastTheEndSetsTheReaderToBad) {
   const Bytes bytes = {0, 1, 0, 0, 1};
   CdrReader in(bytes);
   in.get<bool>();

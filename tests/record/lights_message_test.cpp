@@ -16,7 +16,7 @@ namespace {
 const std::vector<std::string> kNames{"light1", "post.s"};
 const std::vector<base::LightStatus> kStates{{3, 6.5}, {0, HUGE_VAL}};
 
-TEST(LightsMessage, ComesBackToTheBit) {
+TEST(LightsMessage, RoundTripsBitwise) {
   base::Bytes bytes;
   encode_lights(1'500'000'000, kNames, kStates, bytes);
   std::int64_t time = 0;
@@ -28,7 +28,7 @@ TEST(LightsMessage, ComesBackToTheBit) {
     EXPECT_FALSE(decode_lights(std::span(bytes).first(size), time, back)) << size << " bytes";
 }
 
-TEST(LightsMessage, UnknownStatesAreRefused) {
+TEST(LightsMessage, RejectsUnknownStates) {
   base::Bytes bytes;
   encode_lights(0, kNames, std::vector<base::LightStatus>{{6, 0.0}, {1, 0.0}}, bytes);
   std::int64_t time = 0;
@@ -36,7 +36,7 @@ TEST(LightsMessage, UnknownStatesAreRefused) {
   EXPECT_FALSE(decode_lights(bytes, time, back));
 }
 
-TEST(Recording, HasTheLightsOfEveryTick) {
+TEST(Recording, ContainsTheLightsOfEveryTick) {
   const std::string folder = test::fresh_directory("lights");
   RunInfo info = test::sample_info(true);
   info.lights = kNames;

@@ -14,7 +14,7 @@ namespace {
 
 using base::Bytes;
 
-/// The CRC bit by bit, as a reference.
+/// Computes the CRC bit by bit, as a reference.
 std::uint32_t slow_crc(std::span<const std::uint8_t> bytes) {
   std::uint32_t crc = 0xFFFFFFFFu;
   for (const std::uint8_t byte : bytes) {
@@ -131,7 +131,7 @@ Bytes tiny_file_by_hand() {
 
 McapContents read(const Bytes& bytes) { return read_mcap(bytes, "f.mcap"); }
 
-/// Magic, header, a schema and a channel 1, before the records of a case.
+/// Magic, header, a schema and channel 1, which precede the records of a case.
 Hand opening() {
   Hand file;
   file.raw(kMagic).record(0x01, 8).text("").text("");
@@ -140,7 +140,7 @@ Hand opening() {
   return file;
 }
 
-TEST(Crc, AgreesWithTheDefinition) {
+TEST(Crc, MatchesTheDefinition) {
   const std::string digits = "123456789";
   const Bytes bytes(digits.begin(), digits.end());
   EXPECT_EQ(crc32_of(bytes), 0xCBF43926u);  // the check value of CRC-32/ISO-HDLC
@@ -151,7 +151,7 @@ TEST(Crc, AgreesWithTheDefinition) {
   EXPECT_EQ(crc32_of({}), 0u);
 }
 
-TEST(McapWriter, ATinyFileIsWhatTheSpecificationSaysByteByByte) { EXPECT_EQ(tiny_file(), tiny_file_by_hand()); }
+TEST(McapWriter, TinyFileMatchesTheSpecificationByteByByte) { EXPECT_EQ(tiny_file(), tiny_file_by_hand()); }
 
 TEST(McapWriter, DrainingAtAnyTimeMakesNoDifference) {
   const Bytes data = {1, 2, 3};
@@ -177,14 +177,14 @@ TEST(McapWriter, DrainingAtAnyTimeMakesNoDifference) {
   EXPECT_EQ(write(true), write(false));
 }
 
-TEST(McapWriter, AnEmptyChunkIsNotWritten) {
+TEST(McapWriter, DoesNotWriteEmptyChunks) {
   McapWriter writer("", "");
   const std::size_t before = writer.pending().size();
   writer.end_chunk();
   EXPECT_EQ(writer.pending().size(), before);
 }
 
-TEST(McapWriter, MessagesThatGoBackInTimeAreIndexedByTheirExtremes) {
+TEST(McapWriter, IndexesUnorderedMessagesByTheirExtremes) {
   McapWriter writer("", "");
   const auto channel = writer.add_channel(writer.add_schema("S", "", ""), "/t", "cdr");
   for (const std::uint64_t time : {50u, 20u, 70u}) writer.add_message({channel, 0, time, time, {}});
@@ -217,7 +217,7 @@ TEST(McapReader, ReadsTheTinyFile) {
   EXPECT_EQ(contents.metadata.at(0).pairs, (TextPairs{{"a", "b"}}));
 }
 
-TEST(McapReader, MessagesOutsideChunksAreReadToo) {
+TEST(McapReader, ReadsMessagesOutsideChunks) {
   Hand file = opening();
   file.record(0x05, 22 + 1).u16(1).u32(9).u64(1).u64(1).u8({5});
   const McapContents contents = read(file.bytes);
@@ -226,22 +226,22 @@ TEST(McapReader, MessagesOutsideChunksAreReadToo) {
   EXPECT_TRUE(contents.truncated);  // no footer
 }
 
-TEST(McapReader, OpcodesOfLaterVersionsArePassedOver) {
+TEST(McapReader, SkipsOpcodesOfLaterVersions) {
   Hand file = opening();
   file.record(0x10, 3).u8({1, 2, 3}).record(0x80, 0);
   file.record(0x05, 22).u16(1).u32(9).u64(1).u64(1);
   EXPECT_EQ(read(file.bytes).messages.size(), 1u);
 }
 
-TEST(McapReader, OtherFilesAreRefused) {
+TEST(McapReader, RejectsOtherFiles) {
   const std::vector<Bytes> corpus = {
       {}, {0x89}, Bytes(8, 0), {'#', 'R', 'O', 'S', 'B', 'A', 'G', ' ', 'V', '2', '.', '0'}};
   for (const Bytes& bytes : corpus) EXPECT_THROW(read(bytes), base::InputError);
   EXPECT_TRUE(read(kMagic).truncated);  // the magic alone is a truncated file
 }
 
-/// Bad records with the reason of each. All must be skipped, and all but truncations reported.
-TEST(McapReader, BadRecordsAreLeftOutAndTold) {
+/// Bad records with the reason of each. All must be skipped, and all except truncations reported.
+TEST(McapReader, SkipsAndReportsBadRecords) {
   const std::vector<std::pair<const char*, Bytes>> corpus = {
       {"schema shorter than its fields", Hand().record(0x03, 1).u8({1}).bytes},
       {"schema with the reserved id 0", Hand().record(0x03, 14).u16(0).text("").text("").text("").bytes},
@@ -285,7 +285,7 @@ TEST(McapReader, BadRecordsAreLeftOutAndTold) {
   }
 }
 
-TEST(McapReader, ALengthBeyondTheFileEndsIt) {
+TEST(McapReader, LengthBeyondTheFileEndsReading) {
   for (const std::uint64_t length : {std::uint64_t{1}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     const McapContents contents = read(opening().record(0x05, length).bytes);
     EXPECT_TRUE(contents.truncated);
@@ -293,7 +293,7 @@ TEST(McapReader, ALengthBeyondTheFileEndsIt) {
   }
 }
 
-TEST(McapReader, WholeMessagesOfACutChunkAreKept) {
+TEST(McapReader, KeepsWholeMessagesOfATruncatedChunk) {
   Hand file = opening();
   file.record(0x06, 40 + 2 * 31).u64(0).u64(0).u64(62).u32(1).text("").u64(62);
   file.record(0x05, 22).u16(1).u32(7).u64(0).u64(0);
@@ -305,7 +305,7 @@ TEST(McapReader, WholeMessagesOfACutChunkAreKept) {
   EXPECT_EQ(contents.messages[0].sequence, 7u);
 }
 
-TEST(McapReader, DamageIsToldAHundredTimesAndNoMore) {
+TEST(McapReader, ReportsDamageAtMostAHundredTimes) {
   Hand file = opening();
   for (int i = 0; i < 1000; ++i) file.record(0x05, 0);
   EXPECT_EQ(read(file.bytes).damage.size(), 100u);
@@ -320,11 +320,11 @@ void expect_cuts_read(const Bytes& file) {
   EXPECT_FALSE(read(file).truncated);
 }
 
-TEST(McapReader, ACutAtAnyByteGivesWhatWasWholeBeforeIt) {
+TEST(McapReader, ReadsWholeRecordsBeforeAnyTruncation) {
   for (const Compression compression : {Compression::none, Compression::zstd}) expect_cuts_read(tiny_file(compression));
 }
 
-/// A chunk of 100 messages, compressed by `writer`.
+/// Returns a chunk of 100 messages, compressed by `writer`.
 Bytes compressed_records(Bytes& records) {
   Hand all;
   for (std::uint64_t i = 0; i < 100; ++i) all.record(0x05, 22).u16(1).u32(i).u64(5).u64(5);
@@ -334,7 +334,7 @@ Bytes compressed_records(Bytes& records) {
   return frame;
 }
 
-TEST(McapReader, CompressedChunks) {
+TEST(McapReader, ReadsCompressedChunks) {
   Bytes records;
   const Bytes frame = compressed_records(records);
   ASSERT_LT(frame.size(), records.size() / 4);
@@ -384,8 +384,9 @@ TEST(McapReader, CompressedChunks) {
   }
 }
 
-/// Frames from anywhere, with one byte changed or cut: no read beyond their ends, and no message that is not there.
-TEST(McapReader, AnyCompressedBytesAreBounded) {
+/// Frames of any origin, with one byte changed or truncated: no read beyond their ends, and no message that does not
+/// exist.
+TEST(McapReader, HandlesAnyCompressedBytes) {
   Bytes records;
   const Bytes frame = compressed_records(records);
   ZstdDecompressor zstd;
@@ -401,7 +402,7 @@ TEST(McapReader, AnyCompressedBytesAreBounded) {
   EXPECT_EQ(out, records);
 }
 
-/// Two channels in two chunks, and all records that come before chunks; not finished.
+/// Two channels in two chunks, and all records that precede chunks; not finished.
 Bytes unfinished_file() {
   McapWriter writer("p", "lib");
   const auto schema = writer.add_schema("S", "ros2msg", "bool b\n");
@@ -417,7 +418,7 @@ Bytes unfinished_file() {
   return {writer.pending().begin(), writer.pending().end()};
 }
 
-/// A record's opcode and the place of its content.
+/// A record's opcode and the offset of its content.
 struct Place {
   Opcode opcode;
   std::size_t begin, end;
@@ -434,7 +435,7 @@ std::vector<Place> places_in(const Bytes& file, std::size_t at, std::size_t end)
   return places;
 }
 
-/// Flips each bit of the bytes in turn. @param mend makes the file's checksum that of its new bytes
+/// Flips each bit of the bytes in turn. @param mend updates the file's checksum to its new bytes
 template <class Mend>
 void expect_each_flip_told(Bytes file, std::size_t begin, std::size_t end, Mend mend) {
   for (std::size_t at = begin; at < end; ++at)
@@ -450,18 +451,18 @@ void expect_each_flip_told(Bytes file, std::size_t begin, std::size_t end, Mend 
     }
 }
 
-TEST(McapReader, EachFlippedBitOfAFinishedFileIsTold) {
+TEST(McapReader, ReportsEachFlippedBitOfAFinishedFile) {
   for (const Bytes& file : {tiny_file(), tiny_file(Compression::zstd), [] {
-                              McapWriter writer("", "");  // with nothing inside
+                              McapWriter writer("", "");  // without content
                               writer.finish();
                               return Bytes(writer.pending().begin(), writer.pending().end());
                             }()})
     expect_each_flip_told(file, 0, file.size(), [](Bytes&) {});
 }
 
-/// Before its end, a file has CRCs and doubled numbers in attachments, chunks and their indexes. The rest (header,
-/// schemas, channels, metadata, heads of records) is stated once, and the index of the last chunk may be cut.
-TEST(McapReader, EachFlippedBitOfAnUnfinishedFileIsToldWhereItIsStatedTwice) {
+/// Before its end, a file has CRCs and redundant numbers in attachments, chunks and their indexes. The rest (header,
+/// schemas, channels, metadata, heads of records) is stated once, and the index of the last chunk may be truncated.
+TEST(McapReader, ReportsFlippedBitsInRedundantFieldsOfAnUnfinishedFile) {
   Bytes file = unfinished_file();
   const std::vector<Place> places = places_in(file, kMagic.size(), file.size());
   ASSERT_EQ(places.back().opcode, Opcode::message_index);
@@ -480,8 +481,8 @@ TEST(McapReader, EachFlippedBitOfAnUnfinishedFileIsToldWhereItIsStatedTwice) {
   EXPECT_TRUE(read(file).damage.empty());
 }
 
-/// A summary whose CRC is right, but whose content is not that of the data.
-TEST(McapReader, ASummaryThatDoesNotFitTheDataIsTold) {
+/// A summary whose CRC is correct, but whose content contradicts the data.
+TEST(McapReader, ReportsASummaryThatContradictsTheData) {
   const Bytes file = tiny_file();
   std::uint64_t start = 0;
   const std::size_t footer = file.size() - kMagic.size() - 20;
@@ -491,13 +492,13 @@ TEST(McapReader, ASummaryThatDoesNotFitTheDataIsTold) {
     std::memcpy(changed.data() + footer + 16, &crc, sizeof crc);
   };
   for (const Place& place : places_in(file, start, footer + 20)) {
-    // The footer's own CRC is what is mended.
+    // Only the footer's own CRC is updated.
     const std::size_t end = place.opcode == Opcode::footer ? place.end - 4 : place.end;
     expect_each_flip_told(file, place.begin, end, mend);
   }
 }
 
-/// A chunk of one message and its index as `rest` writes it: a count of bytes, and what follows.
+/// A chunk of one message, and its index as written by `rest`: a count of bytes, and further content.
 TEST(McapReader, MessageIndexesEndWithTheirEntries) {
   const auto damage = [](const Bytes& rest) {
     Hand file = opening();
@@ -528,7 +529,7 @@ TEST(McapReader, MessageIndexesEndWithTheirEntries) {
 }
 
 /// A chunk states the times of its first and its last message.
-TEST(McapReader, TheTimesOfAChunkAreThoseOfItsMessages) {
+TEST(McapReader, ChecksTheTimesOfAChunk) {
   const auto damaged = [](std::uint64_t first, std::uint64_t last) {
     Hand file = opening();
     Hand messages;
@@ -542,15 +543,15 @@ TEST(McapReader, TheTimesOfAChunkAreThoseOfItsMessages) {
         << first << " to " << last;
 }
 
-TEST(McapReader, BytesBehindTheEndAreTold) {
+TEST(McapReader, ReportsBytesAfterTheEnd) {
   Bytes file = tiny_file();
   file.push_back(0);
   EXPECT_EQ(read(file).damage.size(), 1u);
   EXPECT_FALSE(read(file).truncated);
 }
 
-/// A CRC of 0 is none: MCAP permits files without.
-TEST(McapReader, AFileWithoutChecksumsIsRead) {
+/// A CRC of 0 means none: MCAP permits files without CRCs.
+TEST(McapReader, ReadsAFileWithoutChecksums) {
   Bytes file = tiny_file();
   const std::size_t footer_crc = file.size() - kMagic.size() - 4;
   std::memset(file.data() + footer_crc, 0, 4);

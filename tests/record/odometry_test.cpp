@@ -1,4 +1,4 @@
-// Odometry of encoders against true ways, and its covariance against the spread of its errors.
+// Odometry of encoders compared with true paths, and its covariance with the spread of its errors.
 
 #include "record/odometry.h"
 
@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kStep = 100'000'000;  // [ns]
 constexpr EncoderInfo kWheels{8, 1e-3, 0.005, 0.258};
 
-/// A robot on a way of arcs, and its encoders with slip and rounding.
+/// A robot on a path of arcs, and its encoders with slip and rounding.
 struct Drive {
   explicit Drive(const EncoderInfo& encoder, unsigned seed = 1)
       : wheels(encoder), random(seed), odometer({.encoder = encoder}, OdometrySource::encoders) {}
@@ -39,14 +39,14 @@ struct Drive {
     base::ReadingBlock reading{.type = 8, .time = time, .X_WM = X_WM, .values = values};
     return odometer.roll(reading);
   }
-  /// The way of all tests: arcs, a stand, a turn on the spot, backwards.
+  /// The path of all tests: arcs, a stop, a turn on the spot, backwards.
   void go() {
     for (int i = 0; i < 200; ++i) step(0.3, 0.5 * std::sin(0.1 * i));
     for (int i = 0; i < 10; ++i) step(0.0, 0.0);
     for (int i = 0; i < 20; ++i) step(0.0, 1.0);
     for (int i = 0; i < 100; ++i) step(-0.2, 0.1);
   }
-  /// In the odometry's frame, which began at X_WO.
+  /// Returns the error in the odometry's frame, which began at X_WO.
   std::array<double, 3> error(const base::Pose& X_WO) const {
     const glm::dvec2 p = base::rotate(-X_WO.yaw, {X_WM.x - X_WO.x, X_WM.y - X_WO.y});
     const base::Pose& X_OM = odometer.state().X_OM;
@@ -63,7 +63,7 @@ struct Drive {
 
 const base::Pose kStart{2.0, -1.0, 0.3, 2.5};
 
-TEST(Odometry, FineEncodersKnowTheWay) {
+TEST(Odometry, FineEncodersFollowTheTruePath) {
   Drive drive({8, 1e-9, 0.0, 0.258});
   EXPECT_TRUE(drive.read()) << "the first reading, at 0";
   drive.go();
@@ -71,15 +71,15 @@ TEST(Odometry, FineEncodersKnowTheWay) {
   const OdometryState& state = drive.odometer.state();
   EXPECT_NEAR(state.velocity.forward, -0.2, 1e-6);
   EXPECT_NEAR(state.velocity.turn, 0.1, 1e-6);
-  // The frame lies where the robot began, at its height.
+  // The frame is at the robot's start, at its height.
   EXPECT_NEAR(std::hypot(state.X_WO.x - kStart.x, state.X_WO.y - kStart.y), 0.0, 1e-6);
   EXPECT_NEAR(base::wrap_angle(state.X_WO.yaw - kStart.yaw), 0.0, 1e-6);
   EXPECT_EQ(state.X_WO.z, kStart.z);
   EXPECT_EQ(state.X_OM.z, 0.0);
 }
 
-/// Whatever the errors, both transforms together are the true pose.
-TEST(Odometry, ItsFrameMakesUpForItsErrors) {
+/// Whatever the errors, both transforms together give the true pose.
+TEST(Odometry, FrameCompensatesErrors) {
   Drive drive({8, 0.01, 0.1, 0.258});
   drive.go();
   const OdometryState& state = drive.odometer.state();
@@ -90,11 +90,11 @@ TEST(Odometry, ItsFrameMakesUpForItsErrors) {
   EXPECT_NEAR(base::wrap_angle(X_WM.yaw - drive.X_WM.yaw), 0.0, 1e-12);
 }
 
-/// Squared error by the stated covariance: 3 on average, for as many dimensions.
+/// Returns the squared error normalised by the stated covariance: 3 on average, the number of dimensions.
 double normalised_square(const Drive& drive, const base::Pose& X_WO) {
   const auto [x, y, a] = drive.error(X_WO);
   const auto& [xx, xy, xa, yy, ya, aa] = drive.odometer.state().covariance.pose;
-  // e' P^-1 e by the adjugate.
+  // e' P^-1 e, computed with the adjugate.
   const double A = yy * aa - ya * ya, B = xa * ya - xy * aa, C = xy * ya - xa * yy;
   const double D = xx * aa - xa * xa, E = xa * xy - xx * ya, F = xx * yy - xy * xy;
   const double determinant = xx * A + xy * B + xa * C;
@@ -102,7 +102,8 @@ double normalised_square(const Drive& drive, const base::Pose& X_WO) {
   return (A * x * x + D * y * y + F * a * a + 2 * (B * x * y + C * x * a + E * y * a)) / determinant;
 }
 
-/// @param runs of different seeds, each after a short way by which wheels begin anywhere between two counts
+/// @param runs number of runs with different seeds, each after a short distance that randomises the phase between two
+/// counts
 double mean_square(const EncoderInfo& wheels, int runs, const std::function<void(Drive&)>& go) {
   double sum = 0.0;
   for (int run = 0; run < runs; ++run) {
@@ -122,7 +123,7 @@ void drive_on(Drive& drive, double forward, double turn, int steps) {
 }
 
 /// docs/bridges.md states these bands.
-TEST(Odometry, ErrorsSpreadAsItsCovarianceStates) {
+TEST(Odometry, ErrorsMatchTheStatedCovariance) {
   struct Case {
     const char* name;
     std::function<void(Drive&)> go;
@@ -155,7 +156,7 @@ TEST(Odometry, ErrorsSpreadAsItsCovarianceStates) {
   EXPECT_NEAR(mean_square({8, 1e-6, 0.003, 0.4}, 400, [](Drive& d) { d.go(); }), 3.0, 0.5) << "slip alone";
 }
 
-TEST(Odometry, CovarianceGrowsAlongTheWayAlone) {
+TEST(Odometry, CovarianceGrowsOnlyWithTheDistanceDriven) {
   Drive drive(kWheels);
   std::array<double, 6> last{};
   for (int i = 0; i < 100; ++i) {
@@ -175,7 +176,7 @@ TEST(Odometry, CovarianceGrowsAlongTheWayAlone) {
   EXPECT_NEAR(P[5], 2.0 * (slip + count) / (0.258 * 0.258), 0.02 * P[5]);
 }
 
-TEST(Odometry, VelocitiesStateTheirCounts) {
+TEST(Odometry, VelocityCovarianceIncludesRounding) {
   Drive drive({8, 1e-3, 0.0, 0.258});
   drive.step(0.3, 0.0);
   const auto& twist = drive.odometer.state().covariance.twist;
@@ -185,7 +186,7 @@ TEST(Odometry, VelocitiesStateTheirCounts) {
   EXPECT_NEAR(twist[2], 2.0 * wheel / (0.258 * 0.258), 1e-7);
 }
 
-TEST(Odometry, ReadingsOutOfOrderAreLeftOut) {
+TEST(Odometry, IgnoresReadingsOutOfOrder) {
   Drive drive(kWheels);
   drive.step(0.3, 0.0);
   const double x = drive.odometer.state().X_OM.x;
@@ -197,7 +198,7 @@ TEST(Odometry, ReadingsOutOfOrderAreLeftOut) {
   EXPECT_EQ(drive.odometer.state().time, kStep);
 }
 
-TEST(Odometry, ReadingsOfOtherSensorsAreNot) {
+TEST(Odometry, IgnoresReadingsOfOtherSensors) {
   const Odometer with({.encoder = kWheels}, OdometrySource::encoders), without({}, OdometrySource::encoders);
   EXPECT_TRUE(with.reads({.type = 8}));
   EXPECT_FALSE(with.reads({.type = 9}));
@@ -206,7 +207,7 @@ TEST(Odometry, ReadingsOfOtherSensorsAreNot) {
   EXPECT_FALSE(Odometer({.encoder = kWheels}, OdometrySource::exact).has_encoders());
 }
 
-TEST(Odometry, ExactOneBeginsWhereTheRobotDoes) {
+TEST(Odometry, ExactOdometryBeginsAtTheStartPose) {
   Odometer odometer({}, OdometrySource::exact);
   odometer.move(0, kStart, {});
   EXPECT_NEAR(odometer.state().X_OM.x, 0.0, 1e-15);
@@ -223,8 +224,8 @@ TEST(Odometry, ExactOneBeginsWhereTheRobotDoes) {
   EXPECT_NEAR(odometer.state().X_OM.x, 0.0, 1e-15) << "a new run";
 }
 
-/// A robot that is put elsewhere has not driven there: its odometry goes on, its frame moves.
-TEST(Odometry, APlacementMovesTheFrame) {
+/// A robot that is placed elsewhere has not driven there: its odometry continues, its frame moves.
+TEST(Odometry, PlacementMovesTheFrame) {
   Odometer odometer({.max_forward = 0.5}, OdometrySource::exact);
   odometer.move(0, {}, {});
   odometer.move(kStep, {0.59, 0.0, 0.0, 0.0}, {});
@@ -237,7 +238,7 @@ TEST(Odometry, APlacementMovesTheFrame) {
   EXPECT_NEAR(X_WM.yaw, 1.0, 1e-12);
 }
 
-TEST(Odometry, TheTruthIsThePoseInTheWorld) {
+TEST(Odometry, TruthIsThePoseInTheWorld) {
   Odometer odometer({.max_forward = 0.5, .encoder = kWheels}, OdometrySource::truth);
   odometer.move(0, kStart, {});
   odometer.move(kStep, {9.0, 3.0, 0.0, 1.0}, {});
@@ -246,7 +247,7 @@ TEST(Odometry, TheTruthIsThePoseInTheWorld) {
   EXPECT_EQ(odometer.state().covariance.pose, (std::array<double, 6>{}));
 }
 
-/// A service states how far a state can be relied on, along the axes of the world.
+/// A service states the accuracy of a state along the axes of the world.
 TEST(Odometry, EstimatesKeepTheirCovariance) {
   Odometer odometer({}, OdometrySource::exact);
   const base::StateQuality quality{.stated = true, .covariance = {4.0F, 0.0F, 0.5F, 1.0F, 0.0F, 0.25F}};

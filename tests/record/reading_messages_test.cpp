@@ -24,7 +24,7 @@ Bytes encoded(const SensorTypeInfo& type, const std::vector<double>& values) {
   return out;
 }
 
-TEST(Readings, AKindIsAMessageTypeOfItsOwn) {
+TEST(Readings, EachTypeHasItsOwnMessageType) {
   EXPECT_EQ(type_of(edge_type()), "sensorfarm_msgs/msg/Edge");
   const std::string text = schema_text(edge_type());
   EXPECT_EQ(text.rfind("std_msgs/Header header\nfloat64 distance_m\nuint32 points\nfloat64[3] normal_w\n=", 0), 0u)
@@ -32,27 +32,27 @@ TEST(Readings, AKindIsAMessageTypeOfItsOwn) {
   EXPECT_NE(text.find("MSG: builtin_interfaces/Time\n"), std::string::npos);
 }
 
-TEST(Readings, AKindWithAListHasAnArrayPerColumn) {
+TEST(Readings, TypeWithAListHasAnArrayPerColumn) {
   const std::string text = schema_text(array_type());
   EXPECT_EQ(text.rfind("std_msgs/Header header\nfloat64[] field_t\nfloat64[] vector_t\nuint32[] hits\n=", 0), 0u)
       << text;
 }
 
-TEST(Readings, OneRowLiesWhereItsDefinitionSays) {
+TEST(Readings, SingleRowMatchesItsDefinition) {
   const Bytes out = encoded(edge_type(), {0.25, 61.0, 1.0, 2.0, 3.0});
   EXPECT_EQ(at<std::int32_t>(out, 4), 12);
   EXPECT_EQ(at<std::uint32_t>(out, 8), 34u);
   EXPECT_EQ(std::memcmp(out.data() + 16, "r/s", 4), 0);
-  EXPECT_EQ(at<double>(out, 20), 0.25);        // 16 behind the encapsulation
+  EXPECT_EQ(at<double>(out, 20), 0.25);        // 16 after the encapsulation
   EXPECT_EQ(at<std::uint32_t>(out, 28), 61u);  // then 4 of padding
   EXPECT_EQ(at<double>(out, 36), 1.0);
   EXPECT_EQ(at<double>(out, 52), 3.0);
   EXPECT_EQ(out.size(), 60u);
 }
 
-TEST(Readings, AListLiesColumnByColumn) {
+TEST(Readings, ListIsStoredColumnByColumn) {
   const Bytes out = encoded(array_type(), {1.5, 1, 2, 3, 7, 2.5, 4, 5, 6, 8});
-  EXPECT_EQ(at<std::uint32_t>(out, 20), 2u);  // field_t: 16 behind the encapsulation, then 4 of padding
+  EXPECT_EQ(at<std::uint32_t>(out, 20), 2u);  // field_t: 16 after the encapsulation, then 4 of padding
   EXPECT_EQ(at<double>(out, 28), 1.5);
   EXPECT_EQ(at<double>(out, 36), 2.5);
   EXPECT_EQ(at<std::uint32_t>(out, 44), 6u);  // vector_t: two of three
@@ -64,7 +64,7 @@ TEST(Readings, AListLiesColumnByColumn) {
   EXPECT_EQ(out.size(), 112u);
 }
 
-TEST(Readings, ReadingsOfAnyShapeComeBackToTheBit) {
+TEST(Readings, ReadingsOfAnyShapeRoundTripBitwise) {
   std::mt19937 random(3);  // NOLINT: the same shapes every time
   for (int i = 0; i < 2000; ++i) {
     SensorTypeInfo type{.id = 9, .name = "any", .list = random() % 2 == 0 ? "rows" : ""};
@@ -102,7 +102,7 @@ TEST(Readings, CountsSaturate) {
   EXPECT_EQ(count(std::numeric_limits<double>::infinity()), 4294967295u);
 }
 
-TEST(Readings, NoCutOfAMessageIsTakenForOne) {
+TEST(Readings, RejectsEveryTruncation) {
   std::vector<double> values;
   std::int64_t time = 0;
   for (const auto& [type, sent] : {std::pair{edge_type(), std::vector<double>{1, 2, 3, 4, 5}},
@@ -113,18 +113,18 @@ TEST(Readings, NoCutOfAMessageIsTakenForOne) {
   }
 }
 
-TEST(Readings, ArraysOfDifferentLengthsAreNoReading) {
+TEST(Readings, RejectsArraysOfDifferentLengths) {
   std::vector<double> values;
   std::int64_t time = 0;
   Bytes bytes = encoded(array_type(), {1.5, 1, 2, 3, 7, 2.5, 4, 5, 6, 8});
   bytes[44] = 5;  // vector_t: not two of three
   EXPECT_FALSE(decode_reading(array_type(), bytes, time, values));
   bytes[44] = 6;
-  bytes[20] = 1;  // field_t: one element, where the others have two
+  bytes[20] = 1;  // field_t: one element; the others have two
   EXPECT_FALSE(decode_reading(array_type(), bytes, time, values));
 }
 
-TEST(Readings, KindsThatMakeNoSenseAreNotRead) {
+TEST(Readings, RejectsInvalidTypes) {
   std::vector<double> values;
   std::int64_t time = 0;
   const Bytes bytes = encoded(edge_type(), {1, 2, 3, 4, 5});
@@ -133,13 +133,13 @@ TEST(Readings, KindsThatMakeNoSenseAreNotRead) {
   type.columns = {{"a", 0}};
   EXPECT_FALSE(decode_reading(type, bytes, time, values));  // a column of width 0
   type.columns = {{"a", 0xFFFFFFFF}};
-  EXPECT_FALSE(decode_reading(type, bytes, time, values));  // more than the memory
+  EXPECT_FALSE(decode_reading(type, bytes, time, values));  // larger than memory
   type.columns = {{"a", 1}, {"b", 0xFFFFFFFF}};
   type.list = "rows";
   EXPECT_FALSE(decode_reading(type, encoded(array_type(), {1, 2, 3, 4, 5}), time, values));
 }
 
-TEST(Readings, BrokenContractsAbortWithTheValues) {
+TEST(Readings, BrokenPreconditionsAbortWithTheValues) {
   EXPECT_DEATH(encoded(edge_type(), {1, 2, 3, 4}), "4 values in a reading of type edge");
   EXPECT_DEATH(encoded(edge_type(), std::vector<double>(10)), "10 values");  // two rows without a list
   EXPECT_DEATH(encoded(array_type(), std::vector<double>(6)), "6 values in a reading of type array");

@@ -47,7 +47,7 @@ std::map<std::string, std::size_t> topics_of(const base::Bytes& file) {
   return topics;
 }
 
-/// log_time is the time of delivery, publish_time that of the measurement.
+/// log_time is the time of delivery, publish_time the time of the measurement.
 TEST(Recorder, ReadingsHaveBothOfTheirTimes) {
   const std::string directory = fresh_directory("times");
   Recorder recorder(directory, sample_info(true));
@@ -60,7 +60,7 @@ TEST(Recorder, ReadingsHaveBothOfTheirTimes) {
     EXPECT_EQ(times[scan_and_array], (std::pair<std::uint64_t, std::uint64_t>{400'000'000, 200'000'000}));
 }
 
-TEST(Recorder, TheWorldIsInTheFileBeforeTheFirstTick) {
+TEST(Recorder, WritesTheWorldBeforeTheFirstTick) {
   const std::string directory = fresh_directory("first");
   const Recorder recorder(directory, sample_info(false));
   const Recording recording = open_recording(directory);
@@ -70,7 +70,7 @@ TEST(Recorder, TheWorldIsInTheFileBeforeTheFirstTick) {
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }
 
-TEST(Recorder, UncompressedEveryTickIsReadableAsSoonAsWriteReturns) {
+TEST(Recorder, UncompressedTicksAreReadableWhenWriteReturns) {
   const std::string directory = fresh_directory("live");
   Recorder recorder(directory, sample_info(false), kUncompressed);
   for (std::uint64_t tick = 0; tick < 4; ++tick) {
@@ -80,8 +80,8 @@ TEST(Recorder, UncompressedEveryTickIsReadableAsSoonAsWriteReturns) {
   }
 }
 
-// Stays below the build directory, as a sample for other readers of MCAP.
-TEST(Recorder, TopicsAreAsDocumented) {
+// Kept below the build directory, as a sample for other readers of MCAP.
+TEST(Recorder, TopicsMatchTheDocumentation) {
   const std::string directory = fresh_directory("sample");
   Recorder recorder(directory, sample_info(true));
   write_ticks(recorder, 0, 10);
@@ -110,7 +110,7 @@ TEST(Recorder, TopicsAreAsDocumented) {
   EXPECT_EQ(topics, expected);
 }
 
-/// Names of earlier versions, where they are asked for.
+/// Names of earlier versions, on request.
 TEST(Recorder, TopicsMayBeNamedAfterSensors) {
   RunInfo info = sample_info(true);
   put_naming({.style = TopicStyle::sensor}, info);
@@ -126,14 +126,14 @@ TEST(Recorder, TopicsMayBeNamedAfterSensors) {
   EXPECT_EQ(topics_of(bytes_of(recorder.path())), expected);
 }
 
-TEST(Recorder, EstimatedStatesHaveTheirQuality) {
+TEST(Recorder, RecordsTheQualityOfEstimatedStates) {
   const std::string directory = fresh_directory("estimated");
   RunInfo info = sample_info(false);
   info.estimated = true;
   info.odometry_rate = 0.0;
   Recorder recorder(directory, info);
   SampleTick tick(0);
-  // The first mover has a state of 1/4 s, the second none that is known; then the first is out of the world.
+  // The first mover has a state that is 1/4 s old, the second an unknown state; then the first leaves the world.
   const std::vector<base::StateQuality> qualities = {
       {.stated = true, .stale = true, .age = 250'000'000, .covariance = {1, 2, 3, 4, 5, 6}}, {}};
   tick.record.qualities = qualities;
@@ -161,7 +161,7 @@ TEST(Recorder, EstimatedStatesHaveTheirQuality) {
   EXPECT_FALSE(base::is_absent(recording.states[1][1].X_WM));
 }
 
-TEST(Recorder, WithoutReadingsAndOdometryOnlyTheExactStatesAndFramesRemain) {
+TEST(Recorder, WithoutReadingsAndOdometryRecordsOnlyExactStatesAndFrames) {
   const std::string directory = fresh_directory("lean");
   RunInfo info = sample_info(false);
   info.odometry_rate = 0.0;
@@ -173,7 +173,7 @@ TEST(Recorder, WithoutReadingsAndOdometryOnlyTheExactStatesAndFramesRemain) {
   EXPECT_EQ(topics_of(bytes_of(recorder.path())), expected);
 }
 
-TEST(Recorder, EverySensorHasAFrameWhateverItsKind) {
+TEST(Recorder, EverySensorHasAFrame) {
   Recorder recorder(fresh_directory("frames"), sample_info(false), kUncompressed);
   recorder.finish();
   const base::Bytes file = bytes_of(recorder.path());
@@ -200,7 +200,7 @@ TEST(Recorder, TheDestructorFinishes) {
   EXPECT_FALSE(open_recording(directory).truncated);
 }
 
-TEST(Recorder, FinishingTwiceIsFinishingOnce) {
+TEST(Recorder, FinishIsIdempotent) {
   Recorder recorder(fresh_directory("twice"), sample_info(false));
   recorder.finish();
   const auto size = recorder.size();
@@ -208,8 +208,8 @@ TEST(Recorder, FinishingTwiceIsFinishingOnce) {
   EXPECT_EQ(recorder.size(), size);
 }
 
-/// With compression all but those that its thread has.
-TEST(Recorder, AKilledProcessLeavesEveryTickItWrote) {
+/// With compression, all ticks except those that its thread still holds.
+TEST(Recorder, KilledProcessLeavesEveryWrittenTick) {
   for (const Compression compression : {Compression::none, Compression::zstd}) {
     const std::string directory = fresh_directory("killed");
     const pid_t child = ::fork();
@@ -230,8 +230,8 @@ TEST(Recorder, AKilledProcessLeavesEveryTickItWrote) {
   }
 }
 
-/// The same messages in both forms, and the version that wrote them.
-TEST(Recorder, CompressedChunksHoldTheSameMessages) {
+/// Both forms contain the same messages, and the version that wrote them.
+TEST(Recorder, CompressedChunksContainTheSameMessages) {
   McapContents contents[2];
   base::Bytes files[2];
   for (const bool zstd : {false, true}) {
@@ -255,7 +255,7 @@ TEST(Recorder, CompressedChunksHoldTheSameMessages) {
   }
 }
 
-TEST(Recorder, AnOlderRecordingIsReplacedWhole) {
+TEST(Recorder, ReplacesAnOlderRecordingCompletely) {
   const std::string directory = fresh_directory("replaced");
   {
     Recorder recorder(directory, sample_info(true));
@@ -264,10 +264,10 @@ TEST(Recorder, AnOlderRecordingIsReplacedWhole) {
   std::ofstream(directory + "/run.mcap.new") << "left by a process that was killed before it began";
   Recorder recorder(directory, sample_info(false));
   EXPECT_EQ(open_recording(directory).ticks, 0u);
-  EXPECT_EQ(bytes_of(recorder.path()).size(), recorder.size());  // no bytes of the old file after the new ones
+  EXPECT_EQ(bytes_of(recorder.path()).size(), recorder.size());  // no bytes of the old file follow the new ones
 }
 
-TEST(Recorder, ARecordingThatCannotBeginLeavesTheOlderOne) {
+TEST(Recorder, FailedStartKeepsTheOlderRecording) {
   const std::string directory = fresh_directory("kept");
   {
     Recorder recorder(directory, sample_info(true));
@@ -280,8 +280,8 @@ TEST(Recorder, ARecordingThatCannotBeginLeavesTheOlderOne) {
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }
 
-/// A link of that name, by whoever may write to the folder, is replaced: what it points at stays as it is.
-TEST(Recorder, ALinkIsNotFollowed) {
+/// Replaces a link of that name, whoever created it in the folder. Its target is unchanged.
+TEST(Recorder, DoesNotFollowLinks) {
   const std::string directory = fresh_directory("link");
   const std::string target = directory + "/target";
   fs::create_directories(directory);
@@ -297,7 +297,7 @@ TEST(Recorder, ALinkIsNotFollowed) {
 }
 
 /// A plug-in may change it before the file gets its name.
-TEST(Recorder, TheWorkingDirectoryMayChange) {
+TEST(Recorder, WorkingDirectoryMayChange) {
   const std::string directory = fresh_directory("moved");
   const fs::path here = fs::current_path();
   {
@@ -309,7 +309,7 @@ TEST(Recorder, TheWorkingDirectoryMayChange) {
   EXPECT_EQ(open_recording(directory).ticks, 2u);
 }
 
-TEST(Recorder, ASecondRecorderInTheSamePlaceIsRefusedWhileTheFirstLives) {
+TEST(Recorder, RejectsASecondRecorderWhileTheFirstExists) {
   const std::string directory = fresh_directory("second");
   {
     Recorder first(directory, sample_info(false));
@@ -321,7 +321,7 @@ TEST(Recorder, ASecondRecorderInTheSamePlaceIsRefusedWhileTheFirstLives) {
   EXPECT_NO_THROW(Recorder(directory, sample_info(false)));
 }
 
-TEST(Recorder, APlaceThatCannotBeWrittenIsRefusedWithTheReason) {
+TEST(Recorder, RejectsAnUnwritableFolderWithTheReason) {
   EXPECT_NE(message_of([] { Recorder("/dev/null/run", sample_info(false)); }).find("cannot be made a directory"),
             std::string::npos);  // below a file
   const std::string directory = fresh_directory("occupied");
@@ -329,7 +329,7 @@ TEST(Recorder, APlaceThatCannotBeWrittenIsRefusedWithTheReason) {
   EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("Is a directory"), std::string::npos);
 }
 
-/// Limits the size of all files of this process, as a full disk does.
+/// Limits the size of all files of this process, like a full disk.
 class FullDisk {
  public:
   explicit FullDisk(std::uint64_t bytes) {
@@ -350,7 +350,7 @@ class FullDisk {
   void (*handler_)(int) = nullptr;
 };
 
-TEST(Recorder, AFullDiskIsToldAndLosesNoTickBeforeIt) {
+TEST(Recorder, FullDiskIsReportedAndKeepsEarlierTicks) {
   const std::string directory = fresh_directory("full");
   std::uint64_t kept = 0;
   std::string told;
@@ -372,8 +372,8 @@ TEST(Recorder, AFullDiskIsToldAndLosesNoTickBeforeIt) {
   EXPECT_LE(recording.ticks, kept + 1);  // the whole messages of the truncated chunk
 }
 
-/// The error of the thread is that of a later tick, or of the end.
-TEST(Recorder, AFullDiskIsToldOfCompressedTicksToo) {
+/// The error of the thread is reported at a later tick, or at the end.
+TEST(Recorder, FullDiskIsReportedForCompressedTicks) {
   const std::string directory = fresh_directory("full_compressed");
   std::uint64_t written = 0;
   std::string told;
@@ -395,20 +395,20 @@ TEST(Recorder, AFullDiskIsToldOfCompressedTicksToo) {
   EXPECT_GT(recording.ticks, 0u);
 }
 
-TEST(Recorder, AFullDiskAtTheEndIsTold) {
+TEST(Recorder, FullDiskAtTheEndIsReported) {
   Recorder recorder(fresh_directory("full_end"), sample_info(false));
   const FullDisk disk(recorder.size());
   EXPECT_NE(message_of([&] { recorder.finish(); }).find("cannot take more than"), std::string::npos);
 }
 
-TEST(Recorder, AFullDiskAtTheStartLeavesNothing) {
+TEST(Recorder, FullDiskAtTheStartLeavesNothing) {
   const std::string directory = fresh_directory("full_start");
   const FullDisk disk(100);
   EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("cannot take more"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(directory));
 }
 
-TEST(Recorder, BrokenContractsAbortWithTheValues) {
+TEST(Recorder, BrokenPreconditionsAbortWithTheValues) {
   const std::string directory = fresh_directory("contracts");
   RunInfo worldless = sample_info(false);
   worldless.snapshot.clear();
@@ -453,7 +453,7 @@ TEST(Recorder, BytesPerTickOfAHundredRobots) {
   const auto per_tick = (recorder.size() - start) / 600;
   RecordProperty("bytes_per_tick", std::to_string(per_tick));
   EXPECT_LT(per_tick, 32'000u);
-  EXPECT_GT(per_tick, 8'800u);  // 88 bytes a state
+  EXPECT_GT(per_tick, 8'800u);  // 88 bytes per state
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ bool same(const ReadingSample& a, const ReadingSample& b) {
          a.delivered == b.delivered && a.time == b.time && a.values == b.values;
 }
 
-/// Whether `part` is a prefix of `whole`.
+/// Returns whether `part` is a prefix of `whole`.
 bool is_prefix(const Recording& part, const Recording& whole) {
   const auto begins = [](const auto& a, const auto& b) {
     return a.size() <= b.size() &&
@@ -72,7 +72,7 @@ bool is_prefix(const Recording& part, const Recording& whole) {
   return begins(part.readings, whole.readings) && part.info.snapshot == whole.info.snapshot;
 }
 
-TEST(Recording, ARunComesBack) {
+TEST(Recording, RoundTripsARun) {
   const Recording recording = read_recording(sample().bytes, "run.mcap");
   EXPECT_FALSE(recording.truncated);
   EXPECT_TRUE(recording.damage.empty());
@@ -96,7 +96,7 @@ TEST(Recording, ARunComesBack) {
   }
 }
 
-TEST(Recording, ReadingsComeBackToTheBitAndScansAsFloat32) {
+TEST(Recording, RoundTripsReadingsBitwiseAndScansAsFloat32) {
   const Recording recording = read_recording(sample().bytes, "run.mcap");
   ASSERT_EQ(recording.readings.size(), 18u);
   for (std::size_t i = 0; i < 18; ++i) {
@@ -119,7 +119,7 @@ void expect_prefixes(const Sample& of) {
   const Recording whole = read_recording(of.bytes, "run.mcap");
   const std::vector<std::size_t>& sizes = of.sizes;
   for (std::size_t size = 0; size < of.bytes.size(); ++size) {
-    // A buffer of exactly this size, so that the sanitizer detects reads past the cut.
+    // A buffer of exactly this size, so that the sanitizer detects reads beyond the truncation.
     const Bytes cut(of.bytes.begin(), of.bytes.begin() + static_cast<std::ptrdiff_t>(size));
     Recording part;
     try {
@@ -136,7 +136,7 @@ void expect_prefixes(const Sample& of) {
   }
 }
 
-TEST(Recording, ACutAtAnyByteGivesAPrefixWithEveryWholeTick) {
+TEST(Recording, TruncationAtAnyByteKeepsEveryWholeTick) {
   expect_prefixes(sample(Compression::none));
   expect_prefixes(sample(Compression::zstd));
 }
@@ -154,13 +154,14 @@ void expect_flips_told(Bytes bytes) {
   }
 }
 
-/// Of a finished file: one bit of each byte, a different one from byte to byte. `McapReader` has tests with all bits.
-TEST(Recording, AFlippedBitIsTold) {
+/// Flips one bit of each byte of a finished file, a different one from byte to byte. `McapReader` has tests with all
+/// bits.
+TEST(Recording, ReportsAFlippedBit) {
   expect_flips_told(sample(Compression::none).bytes);
   expect_flips_told(sample(Compression::zstd).bytes);
 }
 
-TEST(Recording, TornAndGarbledFilesNeitherCrashNorHang) {
+TEST(Recording, TruncatedAndGarbledFilesNeitherCrashNorHang) {
   std::mt19937 random(2);
   for (int i = 0; i < 3000; ++i) {
     Bytes bytes = sample(i % 4 < 2 ? Compression::none : Compression::zstd).bytes;
@@ -196,7 +197,7 @@ void add_run_info(McapWriter& writer, const RunInfo& info) {
   writer.add_message({.channel = writer.add_channel(schema, "/run", "cdr"), .data = message});
 }
 
-TEST(Recording, OtherRecordingsAreRefusedWithTheReason) {
+TEST(Recording, RejectsOtherRecordingsWithTheReason) {
   EXPECT_NE(refusal({'P', 'K', 3, 4}).find("dir/run.mcap: not an MCAP file"), std::string::npos);
   EXPECT_NE(refusal({}).find("not an MCAP file"), std::string::npos);
 
@@ -213,7 +214,7 @@ TEST(Recording, OtherRecordingsAreRefusedWithTheReason) {
   EXPECT_NE(refusal(finished(empty_world)).find("no complete world inside"), std::string::npos);
 }
 
-TEST(Recording, ADamagedWorldIsRefusedWithTheCause) {
+TEST(Recording, RejectsADamagedWorldWithTheCause) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world(100, 7);
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -224,7 +225,7 @@ TEST(Recording, ADamagedWorldIsRefusedWithTheCause) {
   EXPECT_NE(refusal(bytes).find("attachment left out: its CRC does not fit"), std::string::npos);
 }
 
-TEST(Recording, AStateOfAMoverThatIsNotThereIsLeftOutAndTold) {
+TEST(Recording, SkipsAndReportsStatesOfUnknownMovers) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -238,8 +239,8 @@ TEST(Recording, AStateOfAMoverThatIsNotThereIsLeftOutAndTold) {
   EXPECT_EQ(recording.damage.size(), 1u);
 }
 
-/// Earlier versions named topics after sensors, and no option says so.
-TEST(Recording, TopicsOfEarlierVersionsAreRead) {
+/// Earlier versions named topics after sensors, without an option that states it.
+TEST(Recording, ReadsTopicsOfEarlierVersions) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -260,7 +261,7 @@ TEST(Recording, TopicsOfEarlierVersionsAreRead) {
   EXPECT_EQ(recording.readings[0].type, 2);
 }
 
-TEST(Recording, AReadingThatItsKindDoesNotExplainIsLeftOutAndTold) {
+TEST(Recording, SkipsAndReportsReadingsThatContradictTheirType) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -281,10 +282,10 @@ TEST(Recording, AReadingThatItsKindDoesNotExplainIsLeftOutAndTold) {
   writer.end_chunk();
   const Recording recording = read_recording(finished(writer), "run.mcap");
   EXPECT_EQ(recording.readings.size(), 1u);
-  EXPECT_EQ(recording.damage.size(), 2u);  // topics of other programs are no damage
+  EXPECT_EQ(recording.damage.size(), 2u);  // topics of other programs do not count as damage
 }
 
-TEST(Recording, DamageIsToldAHundredTimesAndNoMore) {
+TEST(Recording, ReportsDamageAtMostAHundredTimes) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -299,7 +300,7 @@ TEST(Recording, DamageIsToldAHundredTimesAndNoMore) {
   EXPECT_NE(recording.damage.back().find("/fleet at 0 ns: not understood"), std::string::npos);
 }
 
-TEST(Recording, APlaceWithoutARecordingIsRefusedWithAdvice) {
+TEST(Recording, RejectsAFolderWithoutARecordingWithAdvice) {
   const auto refusal_of = [](const std::string& directory) -> std::string {
     try {
       open_recording(directory);
@@ -317,7 +318,7 @@ TEST(Recording, APlaceWithoutARecordingIsRefusedWithAdvice) {
   EXPECT_NE(refusal_of(directory).find("not an MCAP file"), std::string::npos);  // empty
 }
 
-TEST(Recording, TheFileItselfMayBeNamed) {
+TEST(Recording, AcceptsThePathOfTheFile) {
   Recorder recorder(test::fresh_directory("by_name"), test::sample_info(false));
   recorder.write(SampleTick(0).record);
   recorder.finish();

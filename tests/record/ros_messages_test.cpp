@@ -23,7 +23,7 @@ Scan sample_scan() {
       .time = 12'000'000'034, .frame = "r/l", .fov = 2.0F, .scan_time = 0.1F, .range_min = 0.25F, .range_max = 8.0F};
 }
 
-TEST(Messages, AScanLiesWhereROSExpectsIt) {
+TEST(Messages, ScanHasTheLayoutOfROS) {
   const double infinity = std::numeric_limits<double>::infinity();
   Bytes out;
   encode_scan(sample_scan(), std::vector<double>{1.0 / 3.0, 8.0, infinity}, out);
@@ -40,14 +40,14 @@ TEST(Messages, AScanLiesWhereROSExpectsIt) {
   EXPECT_EQ(at<float>(out, 44), 8.0F);
   EXPECT_EQ(at<std::uint32_t>(out, 48), 3u);
   EXPECT_EQ(at<float>(out, 52), static_cast<float>(1.0 / 3.0));
-  EXPECT_EQ(at<float>(out, 56), std::numeric_limits<float>::infinity());  // the largest range: no return (REP 117)
+  EXPECT_EQ(at<float>(out, 56), std::numeric_limits<float>::infinity());  // the largest range means no return (REP 117)
   EXPECT_EQ(at<float>(out, 60), std::numeric_limits<float>::infinity());
   EXPECT_EQ(at<std::uint32_t>(out, 64), 0u);  // no intensities
   EXPECT_EQ(out.size(), 68u);
 }
 
 /// Clients compute `angle_min + i * angle_increment`.
-TEST(Messages, AScanOfOneBeamLooksAhead) {
+TEST(Messages, ScanOfOneBeamPointsAhead) {
   Bytes out;
   encode_scan(sample_scan(), std::vector<double>{1.0}, out);
   EXPECT_EQ(at<float>(out, 20), 0.0F) << "angle_min";
@@ -56,7 +56,7 @@ TEST(Messages, AScanOfOneBeamLooksAhead) {
   EXPECT_EQ(decode_scan(out)->fov, 0.0F);
 }
 
-TEST(Messages, LimitsThatFloatsDoNotHoldAreRoundedOutwards) {
+TEST(Messages, RoundsLimitsOutwardsToFloats) {
   Scan scan = sample_scan();
   scan.range_min = 0.1;  // its nearest float32 is more
   scan.range_max = 0.7;  // its nearest float32 is less
@@ -71,7 +71,7 @@ TEST(Messages, LimitsThatFloatsDoNotHoldAreRoundedOutwards) {
   EXPECT_EQ(back->ranges[2], -std::numeric_limits<float>::infinity()) << "too near";
 }
 
-TEST(Messages, AScanComesBack) {
+TEST(Messages, ScanRoundTrips) {
   Bytes out;
   encode_scan(sample_scan(), std::vector<double>{0.5, 7.75}, out);
   const auto scan = decode_scan(out);
@@ -85,7 +85,7 @@ TEST(Messages, AScanComesBack) {
   EXPECT_EQ(scan->ranges, (std::vector<float>{0.5F, 7.75F}));
 }
 
-TEST(Messages, NoCutOfAMessageIsTakenForOne) {
+TEST(Messages, RejectsEveryTruncation) {
   const test::SampleTick tick(3);
   RunInfo info = test::sample_info(true);
   name_frames(info);
@@ -100,11 +100,11 @@ TEST(Messages, NoCutOfAMessageIsTakenForOne) {
   for (std::size_t size = 0; size < run.size(); ++size) EXPECT_FALSE(decode_run_info(std::span(run).first(size), info));
 }
 
-TEST(Messages, OdometryLiesWhereROSExpectsIt) {
+TEST(Messages, OdometryHasTheLayoutOfROS) {
   Bytes out;
   encode_odometry({1'500'000'000, "world", "r", {1.0, 2.0, 3.0, M_PI / 2}}, {0.5, -0.25, 0.125},
                   {{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}, 0.5}, out);
-  // 4 + stamp 8 + "world" 4 + 6 | 22 -> 24: "r" 4 + 2 | 30 -> 36: the pose, 8-aligned behind the encapsulation
+  // 4 + stamp 8 + "world" 4 + 6 | 22 -> 24: "r" 4 + 2 | 30 -> 36: the pose, 8-aligned after the encapsulation
   EXPECT_EQ(at<std::uint32_t>(out, 8), 500'000'000u);
   EXPECT_EQ(std::memcmp(out.data() + 16, "world", 6), 0);
   EXPECT_EQ(std::memcmp(out.data() + 28, "r", 2), 0);
@@ -118,7 +118,7 @@ TEST(Messages, OdometryLiesWhereROSExpectsIt) {
   const auto covariance = [&](std::size_t begin, std::size_t row, std::size_t column) {
     return at<double>(out, begin + 8 * (6 * row + column));
   };
-  const double pose[3][3] = {{1.0, 2.0, 3.0}, {2.0, 4.0, 5.0}, {3.0, 5.0, 6.0}};  // x, y and the turn about z
+  const double pose[3][3] = {{1.0, 2.0, 3.0}, {2.0, 4.0, 5.0}, {3.0, 5.0, 6.0}};  // x, y and the rotation about z
   for (const std::size_t i : {0, 1, 2})
     for (const std::size_t j : {0, 1, 2}) EXPECT_EQ(covariance(92, i == 2 ? 5 : i, j == 2 ? 5 : j), pose[i][j]);
   for (const std::size_t axis : {2, 3, 4}) EXPECT_EQ(covariance(92, axis, axis), 0.5);
@@ -131,13 +131,13 @@ TEST(Messages, OdometryLiesWhereROSExpectsIt) {
   EXPECT_EQ(out.size(), twist + 48 + 36 * 8);
 }
 
-TEST(Messages, CommandsAndTransformsLieWhereROSExpectsThem) {
+TEST(Messages, CommandsAndTransformsHaveTheLayoutOfROS) {
   Bytes twist;
   encode_twist(1'500'000'000, "abc", {0.5, -0.25, 0.125}, twist);
   EXPECT_EQ(at<std::int32_t>(twist, 4), 1);
   EXPECT_EQ(at<std::uint32_t>(twist, 8), 500'000'000u);
   EXPECT_EQ(std::memcmp(twist.data() + 16, "abc", 4), 0);
-  EXPECT_EQ(at<double>(twist, 20), 0.5);  // stamp 8, string 8: 16 behind the encapsulation
+  EXPECT_EQ(at<double>(twist, 20), 0.5);  // stamp 8, string 8: 16 after the encapsulation
   EXPECT_EQ(at<double>(twist, 28), -0.25);
   for (const std::size_t zero : {36, 44, 52}) EXPECT_EQ(at<double>(twist, zero), 0.0) << zero;
   EXPECT_EQ(at<double>(twist, 60), 0.125);
@@ -152,14 +152,14 @@ TEST(Messages, CommandsAndTransformsLieWhereROSExpectsThem) {
   EXPECT_EQ(at<std::uint32_t>(transforms, 12), 3u);
   EXPECT_EQ(std::memcmp(transforms.data() + 20, "abc", 4), 0) << "parent";
   EXPECT_EQ(std::memcmp(transforms.data() + 28, "xyz", 4), 0) << "child";
-  EXPECT_EQ(at<double>(transforms, 36), 1.0);  // count 4, stamp 8, strings 16: 28 -> 32 behind the encapsulation
+  EXPECT_EQ(at<double>(transforms, 36), 1.0);  // count 4, stamp 8, strings 16: 28 -> 32 after the encapsulation
   EXPECT_EQ(at<double>(transforms, 44), 2.0);
   EXPECT_EQ(at<double>(transforms, 52), 3.0);
   EXPECT_EQ(at<double>(transforms, 84), 1.0);   // w
-  EXPECT_EQ(at<double>(transforms, 116), 4.0);  // 88 + stamp 8, strings 16: 112 behind the encapsulation
+  EXPECT_EQ(at<double>(transforms, 116), 4.0);  // 88 + stamp 8, strings 16: 112 after the encapsulation
 }
 
-TEST(Messages, TheClockAndAStatesQualityLieInTheirOrder) {
+TEST(Messages, ClockAndStateQualityHaveTheirLayout) {
   Bytes clock;
   encode_clock(3'000'000'021, clock);
   EXPECT_EQ(at<std::int32_t>(clock, 4), 3);
@@ -175,14 +175,14 @@ TEST(Messages, TheClockAndAStatesQualityLieInTheirOrder) {
   EXPECT_EQ(at<std::int32_t>(out, 4), 5);
   EXPECT_EQ(at<std::uint32_t>(out, 8), 6u);
   EXPECT_EQ(std::memcmp(out.data() + 16, "abc", 4), 0);
-  EXPECT_EQ(at<std::uint8_t>(out, 20), 1);  // stamp 8, string 8: 16 behind the encapsulation
+  EXPECT_EQ(at<std::uint8_t>(out, 20), 1);  // stamp 8, string 8: 16 after the encapsulation
   EXPECT_EQ(at<double>(out, 28), 0.25);     // [s], 8-aligned
   for (std::size_t i = 0; i < quality.covariance.size(); ++i)
     EXPECT_EQ(at<float>(out, 36 + 4 * i), 0.5F + static_cast<float>(i)) << i;
   EXPECT_EQ(out.size(), 36 + 4 * quality.covariance.size());
 }
 
-TEST(Messages, AFleetComesBackToTheBit) {
+TEST(Messages, FleetRoundTripsBitwise) {
   const test::SampleTick tick(3);
   Bytes out;
   encode_fleet(tick.record, out);
@@ -201,7 +201,7 @@ TEST(Messages, AFleetComesBackToTheBit) {
   }
 }
 
-TEST(Messages, AFleetWithoutCommandsAndContactsSaysZero) {
+TEST(Messages, FleetWithoutCommandsAndContactsContainsZeros) {
   test::SampleTick tick(3);
   tick.record.commands = {};
   tick.record.contacts = {};
@@ -213,7 +213,7 @@ TEST(Messages, AFleetWithoutCommandsAndContactsSaysZero) {
   EXPECT_EQ(fleet.states[1].command.forward, 0.0);
 }
 
-TEST(Messages, RunInfoComesBack) {
+TEST(Messages, RunInfoRoundTrips) {
   RunInfo info = test::sample_info(true);
   name_frames(info);
   Bytes out;
@@ -255,8 +255,8 @@ TEST(Messages, RunInfoComesBack) {
   EXPECT_EQ(back.movers[1].sensors.size(), 1u);
 }
 
-/// Rows of lasers name no type: with another type 1, values of any size would be taken for its readings.
-TEST(Messages, ARunInfoWithAnotherType1IsRefused) {
+/// Rows of lasers do not contain a type: with another type 1, values of any size would be mistaken for its readings.
+TEST(Messages, RejectsARunInfoWithAnotherType1) {
   RunInfo info;
   info.sensor_types = {{.id = 1, .name = "laneedge", .columns = {{"distance_m"}}}};
   Bytes out;
@@ -264,7 +264,7 @@ TEST(Messages, ARunInfoWithAnotherType1IsRefused) {
   EXPECT_FALSE(decode_run_info(out, info));
 }
 
-TEST(Messages, ATimeBeforeZeroIsOurBug) {
+TEST(Messages, NegativeTimeAborts) {
   Bytes out;
   EXPECT_DEATH(encode_twist(-1, "r", {}, out), "time -1 ns");
 }

@@ -85,7 +85,7 @@ struct SampleTick {
   SampleTick& operator=(const SampleTick&) = delete;
 };
 
-/// An empty directory for one test, below the build directory.
+/// Returns an empty directory for one test, below the build directory.
 inline std::string fresh_directory(const std::string& name) {
   const std::string directory = std::string(SF_BINARY_DIR) + "/recordings/" + name;
   std::filesystem::remove_all(directory);

@@ -14,7 +14,7 @@ std::size_t count(const std::string& text, const std::string& what) {
   return n;
 }
 
-TEST(Schemas, ATypeComesWithEveryTypeItNeedsOnce) {
+TEST(Schemas, ContainsEachRequiredTypeOnce) {
   const std::string text = schema_text(kOdometry);
   EXPECT_EQ(text.rfind("std_msgs/Header header\nstring child_frame_id\n", 0), 0u);
   EXPECT_EQ(count(text, "\n" + std::string(80, '=') + "\nMSG: "), 9u);
@@ -35,7 +35,7 @@ TEST(Schemas, EveryLineIsAFieldOrAHeading) {
   }
 }
 
-TEST(Schemas, ATypeNobodyDefinedIsOurBug) {
+TEST(Schemas, UndefinedTypeAborts) {
   EXPECT_DEATH(schema_text("std_msgs/msg/Strng"), "no message type std_msgs/Strng");
   EXPECT_DEATH(schema_text("Odometry"), "not a message type");
 }

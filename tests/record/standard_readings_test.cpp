@@ -1,4 +1,4 @@
-// Readings as standard ROS messages, read back by the layout that ROS documents.
+// Readings as standard ROS messages, decoded with the layout that ROS documents.
 
 #include "record/standard_readings.h"
 
@@ -39,7 +39,7 @@ Encoded of(StandardTopic topic, const std::vector<double>& values) {
   return {topic, values};
 }
 
-TEST(StandardReadings, ARangeHasItsConeAndItsLimits) {
+TEST(StandardReadings, RangeContainsConeAndLimits) {
   StandardTopic topic{.message = Message::range, .element = 1, .fov = 0.5, .range_min = 0.25, .range_max = 4.0};
   for (const auto& [range, told] : {std::pair{2.5, 2.5F},
                                     {4.0, kInfinity},
@@ -65,7 +65,7 @@ TEST(StandardReadings, InfraredElementsHaveTwoColumns) {
   EXPECT_EQ(message.cdr.get<float>(), 0.2F);
 }
 
-TEST(StandardReadings, AMagneticFieldIsTheVectorOfItsElement) {
+TEST(StandardReadings, MagneticFieldIsTheVectorOfItsElement) {
   Encoded message = of({.message = Message::magnetic_field, .element = 1}, {9, 9, 9, 9, 5e-5, 3e-5, 4e-5, -1e-6});
   EXPECT_EQ(message.cdr.get<double>(), 3e-5);
   EXPECT_EQ(message.cdr.get<double>(), 4e-5);
@@ -74,8 +74,8 @@ TEST(StandardReadings, AMagneticFieldIsTheVectorOfItsElement) {
   EXPECT_TRUE(message.cdr.good());
 }
 
-/// The plane's points as GeographicLib sees them: on the ellipsoid, above or below.
-TEST(StandardReadings, AFixLiesOnTheEllipsoidOverItsPoint) {
+/// The plane's points as computed by GeographicLib: on the ellipsoid, above or below.
+TEST(StandardReadings, FixIsOnTheEllipsoidAboveItsPoint) {
   const GeographicLib::LocalCartesian plane(0.0, 0.0);
   for (const auto& [x, y] : {std::pair{0.0, 0.0}, {25.0, -3.0}, {-7e4, 9e4}}) {
     Encoded message = of({.message = Message::fix}, {x, y, 1.2, 7});
@@ -93,7 +93,7 @@ TEST(StandardReadings, AFixLiesOnTheEllipsoidOverItsPoint) {
   }
 }
 
-TEST(StandardReadings, ErrorsThatAreKnownAreStated) {
+TEST(StandardReadings, StatesKnownErrors) {
   Encoded fix = of({.message = Message::fix, .sigma = 2.0}, {1.0, 2.0, 1.5, 7});
   fix.cdr.get<std::int8_t>();
   fix.cdr.get<std::uint16_t>();
@@ -111,7 +111,7 @@ TEST(StandardReadings, ErrorsThatAreKnownAreStated) {
   EXPECT_EQ(imu.cdr.get<double>(), 0.25);
 }
 
-TEST(StandardReadings, WithoutAFixThereIsNoPosition) {
+TEST(StandardReadings, NoFixGivesNoPosition) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Encoded message = of({.message = Message::fix}, {nan, nan, nan, 3});
   EXPECT_EQ(message.cdr.get<std::int8_t>(), -1);
@@ -120,7 +120,7 @@ TEST(StandardReadings, WithoutAFixThereIsNoPosition) {
   EXPECT_TRUE(std::isnan(message.cdr.get<double>()));
 }
 
-TEST(StandardReadings, AnImuKnowsTheYawRateAlone) {
+TEST(StandardReadings, ImuContainsOnlyTheYawRate) {
   Encoded message = of({.message = Message::imu}, {0.75});
   message.skip(4);
   EXPECT_EQ(message.cdr.get<double>(), -1.0) << "no orientation";
@@ -132,8 +132,8 @@ TEST(StandardReadings, AnImuKnowsTheYawRateAlone) {
   EXPECT_TRUE(message.cdr.good());
 }
 
-/// One word of 4 x 4 cells: rows of a ROS map begin at the lower left, ours at the upper left.
-TEST(StandardReadings, AMapIsTurnedOver) {
+/// One word of 4 x 4 cells: rows of a ROS map begin at the lower left, rows of a word at the upper left.
+TEST(StandardReadings, MapIsFlippedVertically) {
   maps::OccupancyGrid grid({.left = -1.0, .top = 3.0, .cell = 0.5, .word_columns = 2, .word_rows = 1});
   grid.set({0, 0}, maps::Cell::occupied);  // upper left
   grid.set({7, 3}, maps::Cell::free);      // lower right

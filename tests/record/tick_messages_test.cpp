@@ -1,4 +1,4 @@
-// Topics of a run, and which of them a tick has something to say on.
+// Topics of a run, and the topics on which a tick sends messages.
 
 #include "record/tick_messages.h"
 
@@ -27,10 +27,10 @@ RunInfo named_info() {
   return info;
 }
 
-/// Messages per topic's name.
+/// Number of messages by topic name.
 using Counts = std::map<std::string, int>;
 
-TEST(TickMessages, ATickSpeaksOnTopicsThatAreWanted) {
+TEST(TickMessages, EncodesOnlyWantedTopics) {
   const RunInfo info = named_info();
   TickMessages messages(info);
   const test::SampleTick tick(0);
@@ -46,7 +46,7 @@ TEST(TickMessages, ATickSpeaksOnTopicsThatAreWanted) {
       tick.record, [](const TopicMessage&) { ADD_FAILURE() << "nothing was wanted"; }, wanted);
 }
 
-TEST(TickMessages, LatchedTopicsComeAtTheBeginningAlone) {
+TEST(TickMessages, LatchedTopicsAreSentOnlyAtTheBeginning) {
   const RunInfo info = named_info();
   TickMessages messages(info);
   Counts first, then;
@@ -84,12 +84,12 @@ TEST(TickMessages, ElementsHaveFramesBelowTheirSensor) {
   EXPECT_EQ(parents.size(), 11u) << "six sensors, two elements, two places on the ground, the world";
 }
 
-/// Frames as listeners of tf see them, by topic.
+/// Frames as seen by listeners of tf, by topic.
 struct Frames {
   std::map<std::string, std::string> parents;  ///< by child
-  std::map<std::string, base::Pose> poses;     ///< in the parent, the newest
-  std::map<std::string, std::int64_t> stamps;  ///< the newest
-  bool sound = true;                           ///< one parent each, later stamps
+  std::map<std::string, base::Pose> poses;     ///< in the parent, newest
+  std::map<std::string, std::int64_t> stamps;  ///< newest
+  bool sound = true;                           ///< each has one parent, and stamps increase
 
   void read(std::span<const std::uint8_t> message) {
     CdrReader cdr(message);
@@ -105,7 +105,7 @@ struct Frames {
       poses[child] = {numbers[0], numbers[1], numbers[2], 2.0 * std::atan2(numbers[5], numbers[6])};
     }
   }
-  /// @return the pose in the frame at the top, whose name is `root` out
+  /// @return the pose in the top frame @param root out: the name of that frame
   base::Pose pose(std::string frame, std::string& root) const {
     base::Pose X;
     for (int depth = 0; parents.contains(frame) && depth < 10; ++depth) {
@@ -163,8 +163,8 @@ TEST(TickMessages, EveryFrameHasOneParentAndLeadsToTheMap) {
     }
 }
 
-/// A transform that a node elsewhere publishes would be a second parent.
-TEST(TickMessages, TransformsOfNodesElsewhereAreLeftOut) {
+/// A transform that an external node publishes would add a second parent.
+TEST(TickMessages, OmitsTransformsOfExternalNodes) {
   const auto children = [](const Naming& naming) {
     const RunInfo info = info_with(naming);
     std::string text;
@@ -185,8 +185,8 @@ TEST(TickMessages, TransformsOfNodesElsewhereAreLeftOut) {
   }
 }
 
-/// A robot with encoders has the odometry of their readings, at the times of these; others that of each tick.
-TEST(TickMessages, OdometryIsThatOfEncoders) {
+/// A robot with encoders has the odometry of their readings, at the times of these; others have one per tick.
+TEST(TickMessages, OdometryComesFromEncoders) {
   RunInfo info = test::sample_info(true);
   info.sensor_types.push_back({.id = 8, .name = "encoder", .columns = {{"left_m"}, {"right_m"}}});
   info.movers[0].sensors.push_back({.type = 8, .name = "wheels"});
@@ -245,7 +245,7 @@ TEST(TickMessages, AfterAResetOdometryIsDueAtOnce) {
   EXPECT_EQ(counts["/roomba_1/odom"], 2);
 }
 
-/// Ranges of the second scan of the sample, and the first field of its first array, as a tick's messages have them.
+/// Returns the range of the second scan of the sample, and the first field of its first array, in a tick's messages.
 std::pair<float, double> told_values(const RunInfo& info, const base::TickRecord& record) {
   TickMessages messages(info);
   std::pair<float, double> told{NAN, NAN};
@@ -260,8 +260,7 @@ std::pair<float, double> told_values(const RunInfo& info, const base::TickRecord
   return told;
 }
 
-/// In messages, which have no flags, surfaces that are too near are -infinity (REP 117), or `range_min` where that is
-/// asked for.
+/// In messages, which have no flags, surfaces that are too near are -infinity (REP 117), or `range_min` on request.
 TEST(TickMessages, RangesOfSurfacesThatAreTooNearAreMarked) {
   RunInfo info = named_info();
   test::SampleTick tick(0);

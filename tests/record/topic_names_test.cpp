@@ -1,4 +1,4 @@
-// Names of topics and frames, as ROS 2 allows them, in each style.
+// Names of topics and frames that ROS 2 allows, in each style.
 
 #include "record/topic_names.h"
 
@@ -63,7 +63,7 @@ TEST(TopicNames, FollowTheSensorsTypes) {
   EXPECT_EQ(robot.sensors[6].standard[0].frame, "world") << "maps do not move with their robot";
 }
 
-TEST(TopicNames, OfNav2HaveFramesWithoutARobot) {
+TEST(TopicNames, Nav2FramesHaveNoRobotPrefix) {
   const RunInfo info = named({.style = TopicStyle::nav2}, {kRobot});
   EXPECT_EQ(info.movers[0].sensors[0].topic, "/roomba2/scan");
   EXPECT_EQ(info.movers[0].sensors[0].frame, "laser");
@@ -71,7 +71,7 @@ TEST(TopicNames, OfNav2HaveFramesWithoutARobot) {
   EXPECT_EQ(info.movers[0].odom_frame, "odom");
 }
 
-TEST(TopicNames, PlainOnesAreThoseOfOneRobot) {
+TEST(TopicNames, PlainNamesAreForOneRobot) {
   MoverInfo robot = kRobot;
   robot.plain = true;
   const RunInfo info = named({.style = TopicStyle::plain}, {kRobot, robot});
@@ -85,7 +85,7 @@ TEST(TopicNames, PlainOnesAreThoseOfOneRobot) {
 }
 
 /// The names of earlier versions.
-TEST(TopicNames, OfSensorsAreTheSensorsOwn) {
+TEST(TopicNames, SensorStyleUsesSensorNames) {
   const RunInfo info =
       named({.style = TopicStyle::sensor}, {kRobot, {.name = "3at"}, {.name = "a.b"}, {.name = "a b"}});
   const MoverInfo& robot = info.movers[0];
@@ -100,8 +100,9 @@ TEST(TopicNames, OfSensorsAreTheSensorsOwn) {
   EXPECT_EQ(info.movers[3].frame, "a_b_2");
 }
 
-/// Of ROS 2: no empty part, none that begins with a digit, no two '_' in a row; a part with '_' in front is hidden.
-TEST(TopicNames, AreValidWhateverTheWorldsNames) {
+/// ROS 2 allows no empty part, no part that begins with a digit, and no two '_' in a row; a part that begins with '_'
+/// is hidden.
+TEST(TopicNames, AreValidForAnyNamesInTheWorld) {
   std::vector<MoverInfo> movers;
   for (const char* name : {"", "3at", "f\xC3\xBC", "\xC3\xBC", "_x_", "a__b", "a b", "a.b", "map", "tf", "world",
                            "odom", "sensorfarm", "ends_", "1", "robot", "robot_2"}) {
@@ -131,7 +132,7 @@ TEST(TopicNames, AreValidWhateverTheWorldsNames) {
   EXPECT_EQ(info.movers[2].frame, "f");
 }
 
-TEST(TopicNames, TakenOnesAreReported) {
+TEST(TopicNames, ReportsTakenNames) {
   std::vector<std::string> notes;
   named({}, {{.name = "a b"}, {.name = "a.b"}, {.name = "c", .sensors = {{.type = 4, .name = "x"}}}}, &notes);
   ASSERT_EQ(notes.size(), 2u);
@@ -143,7 +144,7 @@ TEST(TopicNames, TakenOnesAreReported) {
   EXPECT_TRUE(notes.empty()) << "a second sensor of a type is no surprise";
 }
 
-/// A robot that joins a fleet takes no other one's name.
+/// A robot that joins a fleet does not take the name of another robot.
 TEST(TopicNames, DoNotDependOnLaterMovers) {
   RunInfo info = named({}, {{.name = "a b"}, {.name = "c"}});
   info.movers.push_back({.name = "a.b"});
@@ -153,7 +154,7 @@ TEST(TopicNames, DoNotDependOnLaterMovers) {
   EXPECT_EQ(info.movers[2].frame, "a_b_2");
 }
 
-TEST(TopicNames, ChoicesComeBackFromARecording) {
+TEST(TopicNames, NamingRoundTripsThroughARecording) {
   for (const auto& [style_word, style] : kTopicStyles)
     for (const auto& [source_word, source] : kOdometrySources)
       for (int nodes = 0; nodes < 8; ++nodes) {
