@@ -1,4 +1,4 @@
-// Road users of a robot, the ways that they are on, and the lines that they approach.
+// Road users around a robot, their ways, and the lines that they approach.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 using control::Rule;
 
-TEST(RoadUsers, AreThoseWithinThreeAndAHalfMetres) {
+TEST(RoadUsers, IncludeRobotsWithinThreeAndAHalfMetres) {
   const Site site(two_crossings());
   Observer me(site, 5);
   const auto counted = [&](const Seen& other, std::uint32_t leader = base::kNoId) {
@@ -29,7 +29,7 @@ TEST(RoadUsers, AreThoseWithinThreeAndAHalfMetres) {
   EXPECT_FALSE(counted({5, {1, 0, 0, 0}})) << "itself";
 }
 
-TEST(RoadUsers, HaveVelocitiesInTheWorld) {
+TEST(RoadUsers, HaveVelocitiesInTheWorldFrame) {
   const Site site(two_crossings());
   control::RightOfWay rights(site.corridors, 5);
   rights.observe({.state = {.X_WM = {1, 0, 0, M_PI / 2}, .velocity = {0.3, 0.4, 1.0}}, .readings = {}, .others = {}}, 0,
@@ -39,7 +39,7 @@ TEST(RoadUsers, HaveVelocitiesInTheWorld) {
   EXPECT_NEAR(rights.road_users()[0].speed, 0.5, 1e-12);
 }
 
-TEST(RoadUsers, HaveNewPositionsAfterEveryMotion) {
+TEST(RoadUsers, UpdatePositionsAfterEveryMotion) {
   const Site site(two_crossings());
   Observer me(site, 5);
   const auto place = [&](const Pose& X_WM) {
@@ -55,7 +55,7 @@ TEST(RoadUsers, HaveNewPositionsAfterEveryMotion) {
 }
 
 // Boundary: 0.8 radii.
-TEST(RoadUsers, AreOnALaneOrBesideIt) {
+TEST(RoadUsers, AreOnALaneOrNextToIt) {
   const Site site(two_crossings());
   Observer me(site, 5);
   me.see(0.0, {5, {1, 0.8 * 0.165 - 1e-3, 0, 0}});
@@ -64,8 +64,8 @@ TEST(RoadUsers, AreOnALaneOrBesideIt) {
   EXPECT_EQ(me.user().positions.count, 0u);
 }
 
-// Where ways part: those that are not a quarter of a radius farther than the nearest.
-TEST(RoadUsers, AreOnAllWaysAboutAsNearAsTheNearest) {
+// Where ways part: ways at most a quarter of a radius farther than the nearest one.
+TEST(RoadUsers, AreOnAllWaysNearlyAsCloseAsTheNearest) {
   const Site site(simville());
   Observer me(site, 5);
   const std::uint32_t bend = site.exit("1.1", "12.1");
@@ -109,8 +109,8 @@ TEST(RoadUsers, ContendFromHalfAMetreBeforeTheLine) {
   }
 }
 
-// Boundary: one that stands up to 0.15 radii beyond the line is still before the next.
-TEST(RoadUsers, ContendWhereNobodyIsBetweenThemAndTheLine) {
+// Boundary: a robot at rest up to 0.15 radii beyond the line still counts as before the line.
+TEST(RoadUsers, ContendIfNoRobotIsBetweenThemAndTheLine) {
   const Site site(two_crossings());
   const auto contends = [&](const Pose& other) {
     Observer me(site, 5);
@@ -128,8 +128,8 @@ TEST(RoadUsers, ContendWhereNobodyIsBetweenThemAndTheLine) {
   EXPECT_TRUE(me.approach().contends) << "on another lane";
 }
 
-// Boundary: a radius to either side of where the front is when the robot waits.
-TEST(RoadUsers, HeedAStopLineAtTheirWaitingLine) {
+// Boundary: a radius to either side of the robot's front at its waiting position.
+TEST(RoadUsers, ObserveAStopLineAtTheirWaitingLine) {
   const double front = Site(two_crossings()).corridors.way(kCross).lines[0] + 0.165;
   for (const double off : {-1.1, -0.9, 0.9, 1.1}) {
     const glm::dvec2 stop{4, -3 + front + 0.165 * off};
@@ -140,14 +140,14 @@ TEST(RoadUsers, HeedAStopLineAtTheirWaitingLine) {
   }
 }
 
-/// Two crossing lanes with stop lines, their fronts at these when they wait.
+/// Two crossing lanes with stop lines, at the fronts of waiting robots.
 world::RoadNetwork two_stops() {
   const double front = Site(two_crossings()).corridors.way(kCross).lines[0] + 0.165;
   return straight_lanes({{{{0, 0}, {1 + front, 0}, {12, 0}}}, {{{4, -3}, {4, -3 + front}, {4, 3}}}},
                         {"stop 1.1.2", "stop 2.1.2"});
 }
 
-TEST(RoadUsers, ContendAtAStopLineOnceTheyHaveStoodThere) {
+TEST(RoadUsers, ContendAtAStopLineAfterStopping) {
   const Site site(two_stops());
   const auto contends = [&](double ahead, double speed) {
     Observer me(site, 5);
@@ -163,7 +163,7 @@ TEST(RoadUsers, ContendAtAStopLineOnceTheyHaveStoodThere) {
   EXPECT_FALSE(contends(-0.085, 0.0));
 }
 
-TEST(RoadUsers, CountFromWhenTheyContendNotFromWhenTheyCome) {
+TEST(RoadUsers, RankByTheStartOfContentionNotByArrival) {
   const Site site(two_stops());
   for (const bool other_first : {false, true}) {
     Observer me(site, other_first ? 5 : 7);

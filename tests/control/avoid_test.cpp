@@ -13,12 +13,12 @@
 namespace sf::control {
 namespace {
 
-TEST(Thirds, OfTheFieldOfView) {
+TEST(Thirds, DivideTheFieldOfView) {
   std::vector<double> ranges(361, 0.75);
   ranges[0] = 0.3;
   ranges[119] = 0.31;
-  ranges[120] = 0.5;  // -30 degrees exactly: the front's
-  ranges[240] = 0.6;  // +30 degrees exactly
+  ranges[120] = 0.5;  // exactly -30 degrees: belongs to the front
+  ranges[240] = 0.6;  // exactly +30 degrees
   ranges[241] = 0.4;
   const Thirds thirds = thirds_of(ranges);
   EXPECT_EQ(thirds.right, 0.3);
@@ -36,7 +36,7 @@ struct Moment {
   const char* why;
 };
 
-TEST(Avoid, GoesThroughTheStatesOfTheThesis) {
+TEST(Avoid, FollowsTheStatesOfTheThesis) {
   using enum Avoid::State;
   Avoid avoid({});
   for (const Moment& m :
@@ -59,7 +59,7 @@ TEST(Avoid, GoesThroughTheStatesOfTheThesis) {
   }
 }
 
-TEST(Avoid, TurnsUntilAsFarAsItWasTold) {
+TEST(Avoid, TurnsUntilTheConfiguredClearance) {
   Avoid avoid({.clear = 0.4});
   for (const auto& [front, turns] : {std::pair{0.19, true}, {0.39, true}, {0.41, false}, {0.39, false}}) {
     const std::vector<double> ranges(9, front);
@@ -68,7 +68,7 @@ TEST(Avoid, TurnsUntilAsFarAsItWasTold) {
   }
 }
 
-TEST(Avoid, StandsUntilTheLaserTells) {
+TEST(Avoid, StopsUntilTheLaserDelivers) {
   Avoid avoid({});
   EXPECT_EQ(avoid.step({}).forward, 0.0);
 }

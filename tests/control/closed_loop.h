@@ -21,7 +21,8 @@ namespace sf::loop {
 using base::Pose;
 using base::Twist;
 
-/// The thesis' path, and a Create with a lane edge sensor and five magnetometers. @param yaw [rad] of the former
+/// The thesis' path, and a Create with a lane edge sensor and five magnetometers. @param yaw [rad] of the lane edge
+/// sensor
 inline world::World path_world(double yaw = M_PI / 2) {
   world::World world = scenes::empty_world();
   world::Mover& robot = scenes::add_create(world, {0, 0, 0, 0});
@@ -34,7 +35,7 @@ inline world::World path_world(double yaw = M_PI / 2) {
   return world;
 }
 
-/// Distance to the left edge by formula, as an ideal lane edge sensor reads it on a straight lane.
+/// Distance to the left edge by formula, as measured by an ideal lane edge sensor on a straight lane.
 inline std::vector<double> edge_from(const world::World& world, const Pose& X_WM) {
   const world::PathProjection at = world::project_onto(world.paths[0], transform(X_WM, {0.225, 0.0}));
   return {0.5 * world.paths[0].pieces[at.piece].width - at.offset, 61, 0, 0};
@@ -51,7 +52,7 @@ inline std::vector<double> field_over(const world::World& world, const Pose& X_W
   return values;
 }
 
-/// Ranges of a laser on walls only.
+/// Returns the ranges of a laser, considering only walls.
 inline std::vector<double> scan(const world::World& world, const sensors::LaserSettings& laser, const Pose& X_WS) {
   // Walls out of range are excluded once for all beams.
   std::vector<const world::Segment*> near;
@@ -74,7 +75,7 @@ inline std::vector<double> scan(const world::World& world, const sensors::LaserS
   return ranges;
 }
 
-/// One robot alone: laser 0 at its own rate, a tick of 0.1 s.
+/// A single robot: laser 0 at its own rate, a tick of 0.1 s.
 struct LaserRun {
   LaserRun(const world::World& w, control::Controller& c) : world(w), controller(c), fleet(w) { look(); }
 

@@ -9,7 +9,7 @@
 namespace sf::control {
 namespace {
 
-// Counts its steps, and is done after a number of them.
+// Counts its steps, and is done after a given number of them.
 class Counting final : public Controller {
  public:
   explicit Counting(int steps, int& count) : steps_(steps), count_(count) {}
@@ -66,7 +66,7 @@ TEST(ControlShell, WaitsWhileTheBumperIsPressed) {
   live({.wait_on_bumper = false}, {{true, true, kControl, true, "it looks after itself"}});
 }
 
-TEST(ControlShell, StopsForGoodWhenTheControllerIsDone) {
+TEST(ControlShell, StopsPermanentlyWhenTheControllerIsDone) {
   live({},
        {{false, true, kControl, true, "first step"},
         {false, true, kStop, false, "done with the second"},
@@ -82,7 +82,7 @@ class Stating final : public Controller, public StatesStopReason {
   std::string stop_reason() const override { return "it has one"; }
 };
 
-TEST(ControlShell, SaysWhyItStands) {
+TEST(ControlShell, StatesItsStopReason) {
   ControlShell shell(std::make_unique<Stating>(), {.on_signal = true});
   shell.step({.started = false});
   EXPECT_EQ(stop_reason_of(shell), "the start signal was not given");
@@ -94,7 +94,7 @@ TEST(ControlShell, SaysWhyItStands) {
   EXPECT_EQ(stop_reason_of(Counting(1, count)), "") << "not every controller can";
 }
 
-TEST(ControlShell, PassesOnWhatTheControllerTells) {
+TEST(ControlShell, ForwardsTheControllersOutputs) {
   int count = 0;
   const ControlShell shell(std::make_unique<Counting>(1, count), {});
   EXPECT_EQ(shell.intent().follows, 7u);
@@ -122,7 +122,7 @@ const ControlShell& made_shell(const ConfiguredController& made) {
   return dynamic_cast<const ControlShell&>(*made.controller);
 }
 
-TEST(MakeController, PutsEveryKindIntoAShellWithItsOwnDefaults) {
+TEST(MakeController, WrapsEveryTypeInAShellWithItsDefaults) {
   const world::World world = shell_world();
   ConfiguredController wander = make_controller({world}, config_of("wander"));
   ConfiguredController avoid = make_controller({world}, config_of("avoid"));
@@ -133,7 +133,7 @@ TEST(MakeController, PutsEveryKindIntoAShellWithItsOwnDefaults) {
   EXPECT_EQ(made_shell(avoid).state(), kWait);
 }
 
-TEST(MakeController, TakesTheSettingsOfTheShell) {
+TEST(MakeController, AcceptsTheSettingsOfTheShell) {
   const world::World world = shell_world();
   ConfiguredController made = make_controller(
       {world}, config_of("wander", {{"start", std::string("signal"), ""}, {"wait_on_bumper", true, ""}}));
@@ -158,7 +158,7 @@ struct Refused {
   const char* says;
 };
 
-TEST(MakeController, RefusesByName) {
+TEST(MakeController, NamesTheControllerInErrors) {
   const world::World world = shell_world();
   const std::string at = "s.toml:3: ";
   const std::vector<Refused> cases = {

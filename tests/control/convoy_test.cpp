@@ -36,8 +36,9 @@ TEST(Parking, StopsWithItsFrontAtTheEndOfEverySpot) {
   }
 }
 
-/// Refused before the work: lines of a body that small have billions of points. 0.02 m is a tenth of a Create's radius.
-TEST(LaneCorridors, RefuseBodiesTooSmallForTheirRoads) {
+/// Rejected before any work: lines for such a small body have billions of points. 0.02 m is a tenth of a Create's
+/// radius.
+TEST(LaneCorridors, RejectsBodiesTooSmallForTheirRoads) {
   Streets t;
   for (const double radius : {1e-9, 1e-5, 5e-324}) {
     try {
@@ -51,7 +52,7 @@ TEST(LaneCorridors, RefuseBodiesTooSmallForTheirRoads) {
 }
 
 /// Boundary: half a radius outside the zone, all along its perimeter.
-TEST(Parking, AZoneReachesHalfARadiusFarther) {
+TEST(Parking, ZoneExtendsByHalfARadius) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {.radius = 0.2});
   const control::LaneCorridors narrow(t.roads, t.world, {.radius = 0.02});
@@ -67,7 +68,7 @@ TEST(Parking, AZoneReachesHalfARadiusFarther) {
 }
 
 // Five robots leave their spots while a sixth arrives. They take turns, although all start at once.
-TEST(Parking, AFullCarParkEmptiesWhileAnotherComesIn) {
+TEST(Parking, FullCarParkEmptiesWhileAnotherRobotArrives) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
   for (std::uint32_t spot = 0; spot < 5; ++spot)
@@ -91,7 +92,7 @@ TEST(Parking, AFullCarParkEmptiesWhileAnotherComesIn) {
 
 // ---- Convoys.
 
-TEST(Convoy, AChainOfFiveKeepsItsGaps) {
+TEST(Convoy, ChainOfFiveKeepsItsGaps) {
   Streets t;
   for (int k = 0; k < 5; ++k) {
     const Pose X_WM = on_lane(t.roads, "1.1", 4.0 - 0.6 * k);
@@ -112,11 +113,11 @@ TEST(Convoy, AChainOfFiveKeepsItsGaps) {
   EXPECT_EQ(t.contacts, 0);
   EXPECT_GT(t.route(0).reached(), 6u);
   EXPECT_GT(least, 0.4);
-  // a stop sign may hold a follower when its leader has just gone
+  // a stop sign may hold a follower when its leader has just left
   EXPECT_LT(farthest, 2.5);
 }
 
-// Positions along the path of the first leader, which give the order of a convoy.
+// Positions along the path of the first leader, which determine the order of a convoy.
 struct Trail {
   std::vector<glm::dvec2> points;
   void add(const Pose& X) { points.push_back({X.x, X.y}); }
@@ -129,7 +130,7 @@ struct Trail {
 };
 
 // Robot 4 waits at the stop sign of 12.2 and merges behind robot 1, which robots 2 and 3 follow in a chain.
-TEST(Convoy, LetsARobotInBetween) {
+TEST(Convoy, LetsARobotMerge) {
   Streets t;
   t.add(on_lane(t.roads, "2.2", 2.2), "route", go({4, 8}));
   t.add(on_lane(t.roads, "2.2", 1.6), "convoy", {{"leader", 1.0, ""}});
@@ -149,9 +150,9 @@ TEST(Convoy, LetsARobotInBetween) {
   EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
 }
 
-/// Distances from which on room is made for a newcomer and a follower counts as behind, in both directions of the
-/// world.
-TEST(Convoy, DistancesAtTheirLimits) {
+/// Distances from which room is made for a newcomer, and from which a follower counts as behind, in both directions of
+/// the world.
+TEST(Convoy, AppliesItsDistanceLimits) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {.radius = 0.2});
   const auto others_at = [](glm::dvec2 d, std::uint32_t follows) {
@@ -179,8 +180,8 @@ TEST(Convoy, DistancesAtTheirLimits) {
   EXPECT_EQ(control::row_of(others_at({}, 0), 10), std::nullopt) << "the robot itself";
 }
 
-// It comes to its last goal where it has just merged: that goal is no longer its own.
-TEST(Convoy, WhoHasMergedForgetsItsGoals) {
+// It reaches its last goal at the place where it has just merged; that goal no longer applies.
+TEST(Convoy, MergedRobotDropsItsGoals) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 4.0), "route", go({2}, {{"merge_behind", 2.0, ""}}));
   t.begin();
@@ -197,7 +198,7 @@ TEST(Convoy, WhoHasMergedForgetsItsGoals) {
 }
 
 // The same from the adjacent lane: robot 4 drives on 1.2 and merges into the convoy on 1.1.
-TEST(Convoy, LetsARobotInFromTheLaneBeside) {
+TEST(Convoy, LetsARobotMergeFromTheAdjacentLane) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.0), "route", go({2, 5}, {{"speed", 0.15, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.4), "convoy", {{"leader", 1.0, ""}});
@@ -218,7 +219,7 @@ TEST(Convoy, LetsARobotInFromTheLaneBeside) {
 
 // ---- Passing.
 
-TEST(Passing, GoesRoundASlowerRobotAndComesBack) {
+TEST(Passing, OvertakesASlowerRobotAndReturns) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}));
@@ -238,7 +239,7 @@ TEST(Passing, GoesRoundASlowerRobotAndComesBack) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-// With robots on the other lane, one beside and one approaching from behind at the same speed, it keeps its lane.
+// With robots on the other lane, one alongside and one approaching from behind at the same speed, it keeps its lane.
 TEST(Passing, WaitsUntilTheOtherLaneIsFree) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
@@ -257,7 +258,7 @@ TEST(Passing, WaitsUntilTheOtherLaneIsFree) {
 }
 
 // A robot on the other lane counts at its position in 3 s. Boundary: a millimetre.
-TEST(Passing, WaitsForARobotThatComesUpFromBehind) {
+TEST(Passing, WaitsForARobotApproachingFromBehind) {
   const Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
   const auto lane = locate_on_lane(corridors, on_lane(t.roads, "1.1", 1.2));
@@ -283,7 +284,7 @@ TEST(Passing, WaitsForARobotThatComesUpFromBehind) {
 }
 
 // Boundary: `pass false` never changes lanes.
-TEST(Passing, DoesNotWhereItMustNot) {
+TEST(Passing, NeverOvertakesWithPassFalse) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}, {{"pass", false, ""}}));
@@ -293,7 +294,8 @@ TEST(Passing, DoesNotWhereItMustNot) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-/// [s] until a robot that has stood since it began to change lanes takes another route; 99: it does not within 20 s
+/// Returns the time [s] until a robot that stopped when it began to change lanes takes another route; 99: not within 20
+/// s.
 double gives_up_after(std::uint32_t row, const std::vector<Setting>& more = {}) {
   Streets t;
   for (std::uint32_t k = 0; k < row; ++k) t.add(on_lane(t.roads, "1.3", 1.0 + 0.6 * k), "route", go({8}));
@@ -316,8 +318,8 @@ double gives_up_after(std::uint32_t row, const std::vector<Setting>& more = {}) 
   return 99.0;
 }
 
-// Two that would swap lanes wait for different times, unless they are five rows apart.
-TEST(Passing, GivesUpALaneChangeAfterStandingForEightToSixteenSeconds) {
+// Two robots that want to swap lanes wait for different times, unless they are five rows apart.
+TEST(Passing, AbortsALaneChangeAfterEightToSixteenSecondsAtRest) {
   const double seconds[] = {8.0, 10.0, 12.0, 14.0, 16.0, 8.0};
   for (std::uint32_t row = 0; row < 6; ++row) EXPECT_NEAR(gives_up_after(row), seconds[row], 1e-6) << row;
   EXPECT_EQ(gives_up_after(0, {{"merge_behind", 77.0, ""}}), 99.0) << "it waits for the gap";

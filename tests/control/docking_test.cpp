@@ -17,7 +17,7 @@ using base::Pose;
 constexpr double kRange = 1.8, kFov = 0.7, kHalo = 0.6;
 
 // The dock's light by formula, at a receiver in the robot's centre: the red buoy's beam on the left, the green one's on
-// the right, with a quarter of each overlapping. (tests/scenarios/docking_test.cpp has the shipped receiver and dock.)
+// the right, each overlapping by a quarter. (tests/scenarios/docking_test.cpp has the shipped receiver and dock.)
 double byte_at(const Pose& X_WD, glm::dvec2 p) {
   const glm::dvec2 from = base::rotate(-X_WD.yaw, p - glm::dvec2{X_WD.x, X_WD.y});
   const double bearing = std::atan2(from.y, from.x), far = glm::length(from);
@@ -30,7 +30,7 @@ double byte_at(const Pose& X_WD, glm::dvec2 p) {
 struct Docked {
   bool done = false;
   double aside = 0.0;  // [m] from the dock's axis
-  double off = 0.0;    // [rad] from facing it
+  double off = 0.0;    // [rad] deviation from facing it
   double far = 0.0;    // [m]
   double seconds = 0.0;
 };
@@ -40,7 +40,7 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
   scenes::add_create(world, from).sensors.push_back({.type = "irreceiver"});
   world.emitters.push_back(
       {.kind = world::Emitter::Kind::dock, .X_WE = X_WD, .range = kRange, .fov = kFov, .halo = kHalo});
-  if (solid) {  // a face across the axis, which the bumper hits
+  if (solid) {  // a face across the axis that the bumper hits
     scenes::add_wall(world, base::transform(X_WD, {0.08, -0.15}), base::transform(X_WD, {0.08, 0.15}));
   }
   Settings settings("controller 'docking'", {});
@@ -63,7 +63,7 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
           result.seconds};
 }
 
-TEST(Docking, FromAnywhereBeforeTheDock) {
+TEST(Docking, DocksFromAnywhereInFrontOfTheDock) {
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto u = base::random_uniform({.seed = 5, .a = i}, 0),
                v = base::random_uniform({.seed = 5, .a = i, .b = 1}, 0);
@@ -106,7 +106,7 @@ TEST(Docking, FollowsTheLineBetweenTheBuoys) {
   }
 }
 
-TEST(Docking, WithoutLightItGoesToAPlaceBeforeTheDock) {
+TEST(Docking, WithoutLightItDrivesToTheStagingPoint) {
   for (const double byte : {255.0, 242.0, 240.0, 130.0, std::nan("")}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const std::vector<double> values{0.0, byte};
@@ -117,7 +117,7 @@ TEST(Docking, WithoutLightItGoesToAPlaceBeforeTheDock) {
   }
 }
 
-TEST(Docking, TheNearestDockIsMeantOrTheOneThatIsNamed) {
+TEST(Docking, SelectsTheNearestOrTheNamedDock) {
   world::World world = scenes::empty_world();
   scenes::add_create(world, {}).sensors.push_back({.type = "irreceiver"});
   for (const auto& [name, x] : {std::pair{"behind", -6.0}, {"near", 3.0}, {"far", 9.0}}) {
@@ -141,7 +141,7 @@ TEST(Docking, TheNearestDockIsMeantOrTheOneThatIsNamed) {
   EXPECT_TRUE(turns({})) << "now the one behind is nearest";
 }
 
-TEST(Docking, WithOneBuoyAloneItGoesToThatPlaceUntilItHasSeenBoth) {
+TEST(Docking, WithOneBuoyItDrivesToTheStagingPointUntilItReceivesBoth) {
   for (const double byte : {248.0, 250.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const std::vector<double> values{0.0, byte};
@@ -152,9 +152,9 @@ TEST(Docking, WithOneBuoyAloneItGoesToThatPlaceUntilItHasSeenBoth) {
   }
 }
 
-// A turn in place moves the receiver from beam to beam, and facing away from the dock the shorter direction differs
-// between beams. The robot keeps the direction in which it began.
-TEST(Docking, ATurnInPlaceGoesOnTheSameWayRound) {
+// A turn in place moves the receiver from beam to beam, and when facing away from the dock the shorter direction
+// differs between beams. The robot keeps the direction in which it began.
+TEST(Docking, TurnInPlaceKeepsItsDirection) {
   Docking docking({.X_WD = {}});
   const auto step = [&](double yaw, double byte) {
     const std::vector<double> values{0.0, byte};
@@ -168,7 +168,7 @@ TEST(Docking, ATurnInPlaceGoesOnTheSameWayRound) {
   EXPECT_GT(step(0.3, 244.0).turn, 0.5);
 }
 
-TEST(Docking, BlindForAMomentItGoesOnThenBackToItsPlace) {
+TEST(Docking, ContinuesWithoutLightForAMomentThenReturns) {
   Docking docking({.X_WD = {}, .stage = 1.0});
   const auto step = [&](double seconds, double byte) {
     const std::vector<double> values{0.0, byte};
@@ -182,7 +182,7 @@ TEST(Docking, BlindForAMomentItGoesOnThenBackToItsPlace) {
   EXPECT_EQ(step(2.1, 255.0).forward, 0.0) << "longer: it turns to the place behind it";
 }
 
-TEST(Docking, ATouchOfAnythingElseIsNoDock) {
+TEST(Docking, ContactElsewhereIsNotDocking) {
   struct Touch {
     Pose X;
     bool docked;
@@ -200,7 +200,7 @@ TEST(Docking, ATouchOfAnythingElseIsNoDock) {
   }
 }
 
-TEST(Docking, AfterSuchATouchItDrivesOutOfTheForceFieldFirst) {
+TEST(Docking, LeavesTheForceFieldAfterAContact) {
   Docking docking({.X_WD = {}, .stage = 1.0});
   const auto step = [&](const Pose& X, double byte, bool contact) {
     const std::vector<double> values{0.0, byte};
@@ -212,7 +212,7 @@ TEST(Docking, AfterSuchATouchItDrivesOutOfTheForceFieldFirst) {
   EXPECT_EQ(step({0.8, 0.0, 0, 0.0}, 252, false).forward, 0.0) << "beyond the field: it turns to the dock";
 }
 
-TEST(Docking, AfterSuchATouchItsPlaceIsReachedWithinTwoCentimetres) {
+TEST(Docking, ReachesTheStagingPointWithinTwoCentimetresAfterAContact) {
   for (const double off : {0.02, 0.019}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const std::vector<double> values{0.0, 254.0};
@@ -223,11 +223,11 @@ TEST(Docking, AfterSuchATouchItsPlaceIsReachedWithinTwoCentimetres) {
   }
 }
 
-TEST(Docking, FromBehindItGoesRoundTheDock) {
+TEST(Docking, DrivesAroundTheDockFromBehind) {
   for (const double side : {1.0, -1.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const auto heading = [&](double x, double y) {
-      // Without a turn when it faces its goal.
+      // It does not turn if it faces its goal.
       for (double yaw = -M_PI; yaw < M_PI; yaw += 0.01) {
         const base::Twist twist = docking.step({.state = {.X_WM = {x, y, 0, yaw}}});
         if (twist.forward > 0.0 && std::abs(twist.turn) < 0.016) return yaw;

@@ -34,10 +34,10 @@ void expect_drive(const std::string& name, const std::string& drive) {
   sf::golden::expect(drive, "control", name, 1.5e-4);
 }
 
-/// Readings of the robot at a pose.
+/// Returns the readings of the robot at a pose.
 using Sense = std::function<std::vector<double>(const Pose&)>;
 
-/// A robot alone drives for some ticks with one sensor; every 25th of its steps is a line.
+/// Drives a single robot for some ticks with one sensor, and writes a line for every 25th step.
 std::string drive_of(const world::World& world, const std::string& name, std::vector<Setting> given, std::uint8_t type,
                      const Sense& sense, int ticks) {
   Settings settings("controller '" + name + "'", std::move(given));
@@ -64,7 +64,7 @@ std::string drive_of(const world::World& world, const std::string& name, std::ve
   return text + fmt::format("{} done {}\n", line_of(fleet.reports()[0], {}), controller->done());
 }
 
-/// A little beside the path, and askew.
+/// Starts next to the path, at an angle to it.
 world::World path_world() {
   world::World world = loop::path_world();
   world.movers[0].X_WM = {0, 0.03, 0, 0.1};
@@ -137,7 +137,7 @@ TEST(DriveRecords, Docking) {
   expect_drive("docking", drive_of(world, "docking", {}, 11, light, 600));
 }
 
-/// SimVille's streets with lights: a convoy of three, one that parks, and eight that tour.
+/// SimVille's streets with lights: a convoy of three, one robot that parks, and eight that tour.
 TEST(DriveRecords, Streets) {
   traffic::Streets t;
   t.add_lights();

@@ -9,7 +9,7 @@ namespace sf::control {
 namespace {
 
 /// Boundaries: an error below zero, and steps without one (NaN, infinity).
-TEST(ErrorSummary, MeansAreOfStatedErrors) {
+TEST(ErrorSummary, AveragesStatedErrors) {
   ErrorSummary summary;
   for (const double error : {1.0, -3.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) add(summary, error);
   EXPECT_EQ(summary.steps, 2u);

@@ -26,7 +26,7 @@ struct Looker {
 };
 
 inline constexpr double kStep = 0.01;  ///< [m] between tested poses
-inline constexpr int kTurns = 48;      ///< headings of each
+inline constexpr int kTurns = 48;      ///< headings per pose
 
 /// All poses in the map's rectangle, on a lattice of kStep.
 class Reference {
@@ -40,7 +40,7 @@ class Reference {
     flood(start);
   }
 
-  /// One value per cell, row by row: 1 where the cell is visible.
+  /// Returns one value per cell, row by row: 1 if the cell is visible.
   std::vector<std::uint8_t> seen() const {
     std::vector<std::uint8_t> seen(connected_.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -66,7 +66,7 @@ class Reference {
     return false;
   }
 
-  // Positions of the disc that are connected to the start.
+  // Finds positions of the disc that are connected to the start.
   void reach(glm::dvec2 start) {
     reached_.resize(static_cast<std::size_t>(wide_ * high_));
     std::vector<int> open{static_cast<int>((geometry_.top - start.y) / kStep) * wide_ +
@@ -86,7 +86,7 @@ class Reference {
     }
   }
 
-  // Positions of the sensor, with the headings that lead to them.
+  // Finds positions of the sensor, with the headings that lead to them.
   void look_from_everywhere() {
     headings_.resize(reached_.size());
     for (int at = 0; at < wide_ * high_; ++at) {
@@ -104,7 +104,7 @@ class Reference {
     }
   }
 
-  // Cells that a point reaches from the start.
+  // Finds the cells that a point reaches from the start.
   void flood(glm::dvec2 start) {
     connected_.resize(static_cast<std::size_t>(maps::columns(geometry_) * maps::rows(geometry_)));
     std::vector<maps::CellAt> open{maps::cell_at(geometry_, start)};

@@ -48,7 +48,7 @@ Explored explore(const world::World& world, const exploration::Looker& looker = 
   return result;
 }
 
-TEST(Explore, MapsAllOfTheMappingAreaAndTouchesNothing) {
+TEST(Explore, MapsTheWholeMappingAreaWithoutContact) {
   const world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world", {.sensors = sensors::world_file_words()});
   const Explored e = explore(world);
@@ -61,7 +61,7 @@ TEST(Explore, MapsAllOfTheMappingAreaAndTouchesNothing) {
 }
 
 // Slivers along surfaces are visible only by some beams from some places: a few cells in a thousand.
-TEST(Explore, MapsAreasOfBoxesAtAnyAngleAndTouchesNothing) {
+TEST(Explore, MapsAreasOfBoxesAtAnyAngleWithoutContact) {
   if (instrumented()) GTEST_SKIP() << "minutes under sanitizers; MapsAllOfTheMappingArea runs the same code";
   for (const std::uint64_t seed : {3, 5}) {
     const world::World world = exploration::boxes(seed, 4 + static_cast<int>(seed));
@@ -74,7 +74,7 @@ TEST(Explore, MapsAreasOfBoxesAtAnyAngleAndTouchesNothing) {
   }
 }
 
-TEST(Explore, MissesNothingWhenItIsThorough) {
+TEST(Explore, ThoroughModeMapsEveryVisibleCell) {
   if (instrumented()) GTEST_SKIP() << "a minute under sanitizers; the passages run the same code";
   const Explored e = explore(exploration::boxes(1, 5), {.spare = 0.003}, true);
   EXPECT_TRUE(e.done);
@@ -83,7 +83,7 @@ TEST(Explore, MissesNothingWhenItIsThorough) {
   EXPECT_EQ(e.missed, 0);
 }
 
-// A room behind a passage, not visible from before it and not accessible to a slightly wider body.
+// A room behind a passage that is not visible from outside and not accessible to a slightly wider body.
 world::World two_rooms(double gap) {
   world::World world = exploration::boxes(1, 0);
   scenes::add_outline(world.walls, scenes::rectangle({0.0, -0.75 - gap / 4.0}, 0.3, 1.5 - gap / 2.0));
@@ -92,7 +92,7 @@ world::World two_rooms(double gap) {
   return world;
 }
 
-TEST(Explore, PassesAPassageTwoCentimetresWiderThanTheBody) {
+TEST(Explore, DrivesThroughAPassageTwoCentimetresWiderThanTheBody) {
   const Explored e = explore(two_rooms(0.35), {.spare = 0.003});
   EXPECT_TRUE(e.done);
   EXPECT_EQ(e.contacts, 0);
@@ -100,8 +100,8 @@ TEST(Explore, PassesAPassageTwoCentimetresWiderThanTheBody) {
   EXPECT_LE(e.missed, e.must / 200);
 }
 
-// A pose before the passage, so far aside that the body would touch its corner within two steps.
-TEST(Explore, StandsRatherThanDriveOnWhereItWouldTouch) {
+// A pose in front of the passage, so far off its axis that the body would touch its corner within two steps.
+TEST(Explore, StopsBeforeAContact) {
   const world::World world = two_rooms(0.35);
   const auto controller = make_explore(world);
   loop::LaserRun run(world, *controller);
@@ -125,7 +125,7 @@ TEST(Explore, DoesNotTryAPassageNarrowerThanTheBody) {
   EXPECT_LE(e.missed, e.must / 200);
 }
 
-TEST(Explore, StandsWhenItIsDone) {
+TEST(Explore, StopsWhenItIsDone) {
   world::World world = scenes::boxed_world(0.8, 0.8);
   scenes::add_create(world, {0.4, 0.4, 0, 0})
       .sensors.push_back(
@@ -141,7 +141,7 @@ TEST(Explore, StandsWhenItIsDone) {
   EXPECT_EQ(run.contacts, 0);
 }
 
-TEST(Explore, TheSameWayAgain) {
+TEST(Explore, RepeatsTheSamePath) {
   const world::World world = exploration::boxes(2, 4);
   const auto a = make_explore(world), b = make_explore(world);
   loop::LaserRun first(world, *a), second(world, *b);
@@ -151,8 +151,8 @@ TEST(Explore, TheSameWayAgain) {
   EXPECT_EQ(a->grid().words, b->grid().words);
 }
 
-// A laser 0.3 m ahead never sees the ground within that distance of where the robot turns.
-TEST(Explore, GroundWithinReachOfALaserBeyondTheBodyIsFreeAtTheStart) {
+// A laser 0.3 m ahead never sees the ground within that distance of the point where the robot turns.
+TEST(Explore, GroundWithinReachOfALaserBeyondTheBodyIsInitiallyFree) {
   world::World world = scenes::boxed_world(3.0, 3.0, {-1.5, -1.5});
   scenes::add_create(world, {}).sensors.push_back(
       sensors::laser_sensor({{.X_MS = {0.3, 0, 0.1, 0}, .fov = M_PI, .samples = 181, .range_max = 1.0}}));
@@ -163,7 +163,7 @@ TEST(Explore, GroundWithinReachOfALaserBeyondTheBodyIsFreeAtTheStart) {
   EXPECT_GE(far(), 0.1) << "it can leave the place";
 }
 
-TEST(Explore, AGivenAreaIsRoundedUpToWholeWords) {
+TEST(Explore, RoundsAGivenAreaUpToWholeWords) {
   const maps::GridGeometry area = make_explore(exploration::boxes(2, 4), {{"cell", 0.05, ""},
                                                                           {"map_left", -1.0, ""},
                                                                           {"map_top", 2.0, ""},
@@ -177,7 +177,7 @@ TEST(Explore, AGivenAreaIsRoundedUpToWholeWords) {
   EXPECT_EQ(area.word_rows, 20u);
 }
 
-TEST(Explore, OddReadingsDoNoHarm) {
+TEST(Explore, ToleratesOddReadings) {
   const world::World world = exploration::boxes(2, 4);
   const double nan = std::nan("");
   for (const double range : {0.0, 0.75, HUGE_VAL, -1.0, nan}) {
@@ -213,7 +213,7 @@ TEST(ExplorationMap, ClearanceIsTheDistanceToPoints) {
   EXPECT_FALSE(terrain.occupied(terrain.node_at({0.32, 0.1})));
 }
 
-TEST(ExplorationMap, GroundIsKnownOnceItIsSeenOrStoodOn) {
+TEST(ExplorationMap, GroundIsExploredOnceSeenOrOccupied) {
   ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
   const Node here = terrain.node_at({0, 0});
   EXPECT_TRUE(terrain.covers_unknown(here));
@@ -231,7 +231,7 @@ TEST(ExplorationMap, GroundIsKnownOnceItIsSeenOrStoodOn) {
   EXPECT_TRUE(terrain.covers_unknown(terrain.node_at({1.7, 0}))) << "it would leave the map";
 }
 
-// A map that is seen completely, with a wall of points at y = 0.
+// Returns a completely explored map with a wall of points at y = 0.
 ExplorationMap beside_a_wall() {
   ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
   terrain.mark_free({0, 0}, 10.0);
@@ -239,7 +239,7 @@ ExplorationMap beside_a_wall() {
   return terrain;
 }
 
-TEST(PoseSearch, ASensorThatReachesBeyondTheBodyIsNotTurnedIntoAWall) {
+TEST(PoseSearch, DoesNotTurnAProtrudingSensorIntoAWall) {
   const ExplorationMap terrain = beside_a_wall();
   const PoseSearch search(terrain, {0.165, {0.19, 0.0}});
   const Node near = terrain.node_at({0.0, 0.175});
@@ -250,7 +250,7 @@ TEST(PoseSearch, ASensorThatReachesBeyondTheBodyIsNotTurnedIntoAWall) {
   EXPECT_TRUE(search.allowed({terrain.node_at({0.0, 0.3}), 12}, 0.01)) << "from farther away";
 }
 
-TEST(PoseSearch, FindsTheCheapestWay) {
+TEST(PoseSearch, FindsTheCheapestPath) {
   const ExplorationMap terrain = beside_a_wall();
   PoseSearch search(terrain, {0.165, {0.19, 0.0}});
   const LatticeState from{terrain.node_at({-0.5, 0.5}), 0};
@@ -258,7 +258,7 @@ TEST(PoseSearch, FindsTheCheapestWay) {
   ASSERT_EQ(ahead.size(), 31u);
   EXPECT_EQ(ahead.front(), from);
   for (const LatticeState& state : ahead) EXPECT_EQ(state.heading, 0);
-  // The robot cannot turn towards the wall, so the path turns by the free side.
+  // The robot cannot turn towards the wall, so the path turns on the free side.
   const LatticeState close{terrain.node_at({0.0, 0.175}), 0};
   const auto turned = search.find(close, 0.003, [&](const LatticeState& s) { return s.heading == 8; });
   ASSERT_FALSE(turned.empty());
@@ -266,7 +266,7 @@ TEST(PoseSearch, FindsTheCheapestWay) {
   EXPECT_TRUE(search.find(from, 0.01, [](const LatticeState&) { return false; }).empty()) << "no goal, no way";
 }
 
-TEST(PlanAround, HoldsTheWorldAndIsNeverSmallerThanTheThesis) {
+TEST(PlanAround, ContainsTheWorldAndIsAtLeastAsLargeAsInTheThesis) {
   world::World world = scenes::empty_world();
   world.extent = {-1.5, -1.5, 1.5, 1.5};
   const maps::GridGeometry small = grid_around(world);

@@ -78,8 +78,8 @@ Drive drive_lane(std::vector<Setting> settings, Plant plant, Pose X_WM = {}) {
       world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return loop::edge_from(world, X); }, plant, X_WM);
 }
 
-// All turning is kp times the error, so that a path that turns by 90 degrees determines the mean error.
-TEST(LaneKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
+// All turning is kp times the error, so a path that turns by 90 degrees determines the mean error.
+TEST(LaneKeeping, MeanErrorOfPControlMatchesTheTurn) {
   for (const double kp : {0.5, 0.8, 1.2}) {
     const Drive d = drive_lane({set("kp", kp)}, ideal);
     EXPECT_NEAR(d.mean * kp * d.seconds / (M_PI / 2), 1.0, 0.1) << "kp " << kp;
@@ -88,7 +88,7 @@ TEST(LaneKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
   }
 }
 
-TEST(LaneKeeping, PlayersDriverAboutHalvesTheError) {
+TEST(LaneKeeping, PlayersDriverRoughlyHalvesTheError) {
   const Drive p = drive_lane({set("kp", 0.5)}, player_create);
   const Drive pi = drive_lane({set("kp", 0.5), set("ki", 0.015)}, player_create);
   EXPECT_NEAR(p.mean, 0.027, 0.005) << "thesis: 0.022 to 0.030";
@@ -96,20 +96,20 @@ TEST(LaneKeeping, PlayersDriverAboutHalvesTheError) {
   EXPECT_GT(pi.mean, 0.0);
 }
 
-TEST(LaneKeeping, TheIntegralLessensTheMeanError) {
+TEST(LaneKeeping, IntegralReducesTheMeanError) {
   const Drive p = drive_lane({set("kp", 0.5)}, ideal), pi = drive_lane({set("kp", 0.5), set("ki", 0.015)}, ideal);
   EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
   const Drive limited = drive_lane({set("kp", 0.5), set("ki", 0.015), set("integral_limit", 1e-6)}, ideal);
   EXPECT_NEAR(limited.mean, p.mean, 1e-4) << "an integral of nothing is P";
 }
 
-TEST(LaneKeeping, EndsBeforeTheEnd) {
+TEST(LaneKeeping, StopsBeforeTheEndOfThePath) {
   const double length = 2.72 + 0.93 * M_PI / 2 + 1.349;
   EXPECT_NEAR(drive_lane({}, ideal).end, length - 0.25, 0.02);
   EXPECT_NEAR(drive_lane({set("stop_before", 1.0)}, ideal).end, length - 1.0, 0.02);
 }
 
-TEST(LaneKeeping, ComesBackToTheMiddle) {
+TEST(LaneKeeping, ReturnsToTheMiddle) {
   const Drive d = drive_lane({set("stop_before", 3.2)}, ideal, {0, -0.15, 0, 0});
   EXPECT_NEAR(d.largest, 0.15, 1e-9);
   EXPECT_LT(d.farthest, 0.16);
@@ -143,7 +143,7 @@ void step_through(Controller& controller, const std::vector<Step>& steps) {
   }
 }
 
-TEST(LaneKeeping, ErrorAndTrapezoidByHand) {
+TEST(LaneKeeping, ErrorAndTrapezoidMatchHandCalculation) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("kp", 2.0), set("ki", 10.0)});
   step_through(*controller, {{0.35, 0.1, 0.2, "right of the middle: to the left; no time has passed"},
@@ -151,14 +151,14 @@ TEST(LaneKeeping, ErrorAndTrapezoidByHand) {
                              {0.15, -0.1, -0.2 + 10 * 0.02, "and of 0.2 to -0.1"}});
 }
 
-TEST(LaneKeeping, TheRightEdgeMirrors) {
+TEST(LaneKeeping, RightEdgeIsMirrored) {
   const world::World world = loop::path_world(-M_PI / 2);  // a sensor that looks to the right
   const auto controller = make(world, lane_keeping_controller, {set("kp", 0.5)});
   step_through(*controller, {{0.35, -0.1, -0.05, "far from the right edge: left of the middle, to the right"}});
 }
 
-// A sensor beside the robot's axis: the error is that of the axis.
-TEST(LaneKeeping, ASensorBesideTheAxisCountsFromTheAxis) {
+// A sensor off the robot's axis: the error refers to the axis.
+TEST(LaneKeeping, OffAxisSensorMeasuresFromTheAxis) {
   struct Mounted {
     double yaw, y, z, error;
     const char* why;
@@ -175,7 +175,7 @@ TEST(LaneKeeping, ASensorBesideTheAxisCountsFromTheAxis) {
 }
 
 // With its default gain the whole body stays in the lane, except for a finger's width where the lane narrows to 0.45 m.
-TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
+TEST(LaneKeeping, DefaultGainKeepsTheLane) {
   for (const auto plant : {&ideal, &player_create})
     for (const double speed : {0.1, 0.2, 0.4}) {
       world::World world = loop::path_world();
@@ -188,7 +188,7 @@ TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
     }
 }
 
-TEST(LaneKeeping, ItsOwnGainFollowsFromSpeedAndSensor) {
+TEST(LaneKeeping, DefaultGainDependsOnSpeedAndSensor) {
   const auto gain = [](double speed, double ahead, world::ActuatorModel law = world::ActuatorModel::direct) {
     world::World world = loop::path_world();
     world.movers[0].sensors[0].X_MS.x = ahead;
@@ -205,7 +205,7 @@ TEST(LaneKeeping, ItsOwnGainFollowsFromSpeedAndSensor) {
   EXPECT_NEAR(gain(0.1, -0.1), 20.0, 1e-9) << "as if 0.1 m ahead";
 }
 
-TEST(LaneKeeping, SaysWhyItStands) {
+TEST(LaneKeeping, StatesItsStopReason) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5)});
   controller->step({});
@@ -222,13 +222,13 @@ TEST(LaneKeeping, SaysWhyItStands) {
   EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor") << "the same for too long";
 }
 
-TEST(LaneKeeping, TakesAWidthInsteadOfThePaths) {
+TEST(LaneKeeping, GivenWidthOverridesThePath) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("half_width", 0.3), set("kp", 0.5)});
   step_through(*controller, {{0.35, 0.05, 0.025, "half of 0.6 m"}});
 }
 
-TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStandsThenGoesOn) {
+TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStopsThenContinues) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("kp", 1.0), set("ki", 1.0), set("hold", 0.25)});
   step_through(*controller, {{0.35, 0.1, 0.1, "an edge"},
@@ -240,7 +240,7 @@ TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStandsThenGoesOn) {
                              {0.35, 0.1, 0.12, "and on"}});
 }
 
-TEST(LaneKeeping, TheSameReadingAgainCountsUntilTheSensorIsSilentForLong) {
+TEST(LaneKeeping, RepeatedReadingIsUsedUntilTheSensorIsSilentTooLong) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("kp", 0.5), set("ki", 1.0)});
   const std::vector<double> values{0.35, 61, 0, 0};
@@ -257,7 +257,7 @@ TEST(LaneKeeping, TheSameReadingAgainCountsUntilTheSensorIsSilentForLong) {
   EXPECT_LE(moving, 12) << "silence is no edge";
 }
 
-TEST(LaneKeeping, StandsWithoutAnyReading) {
+TEST(LaneKeeping, StopsWithoutAnyReading) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller);
   EXPECT_EQ(controller->step({}).forward, 0.0);
@@ -276,7 +276,7 @@ Drive drive_magnets(std::vector<Setting> settings, Pose X_WM = {}) {
       X_WM);
 }
 
-TEST(MagnetKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
+TEST(MagnetKeeping, MeanErrorOfPControlMatchesTheTurn) {
   for (const double kp : {0.15, 0.2, 0.4}) {
     const Drive d = drive_magnets({set("kp", kp)});
     EXPECT_NEAR(d.mean * kp * d.seconds / (M_PI / 2), 1.0, 0.1) << "kp " << kp;
@@ -287,7 +287,7 @@ TEST(MagnetKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
   EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
 }
 
-TEST(MagnetKeeping, TakesTheOutermostElementsInGauss) {
+TEST(MagnetKeeping, UsesTheOutermostElementsInGauss) {
   const world::World world = loop::path_world();
   const auto controller = make(world, magnet_keeping_controller, {set("kp", 0.5)});
   const std::vector<double> values{0.2e-4, 9, 9, 9, 7, 9, 9, 9, 0.8e-4, 9, 9, 9};  // [T], three elements
@@ -296,7 +296,7 @@ TEST(MagnetKeeping, TakesTheOutermostElementsInGauss) {
   EXPECT_NEAR(controller->error(), 0.6, 1e-12);
 }
 
-TEST(MagnetKeeping, OneElementOrNoneIsNoArray) {
+TEST(MagnetKeeping, RequiresAnArrayOfTwoElements) {
   const world::World world = loop::path_world();
   const std::vector<double> one{1e-4, 0, 0, 0};
   const base::ReadingBlock block{.type = sensors::kMagnetometer, .values = one};

@@ -13,7 +13,7 @@
 
 namespace sf::traffic {
 
-/// A network of straight lanes 0.5 m wide, by segment. [m]
+/// Returns a network of straight lanes 0.5 m wide, by segment, in metres.
 /// @param statements of lanes: "stop 1.1.2", "exit 1.1.2 2.1.1"
 inline world::RoadNetwork straight_lanes(const std::vector<std::vector<std::vector<glm::dvec2>>>& segments,
                                          const std::vector<std::string>& statements = {}) {
@@ -57,7 +57,7 @@ struct Site {
     world.lights = lights;
     return world;
   }
-  /// The way between two lanes, of an exit or of the lane change that leaves at `leave` [m].
+  /// Returns the way between two lanes: an exit, or the lane change that leaves at `leave` [m].
   std::uint32_t way(control::Way::Kind kind, const std::string& from, const std::string& into,
                     double leave = NAN) const {
     for (std::uint32_t row = 0; row < corridors.ways().size(); ++row) {
@@ -81,7 +81,7 @@ struct Site {
     const glm::dvec2 p = point_on(corridors.way(row), s);
     return {p.x, p.y, 0.0, yaw_on(corridors.way(row), s)};
   }
-  /// `ahead` [m] before a line of a lane where robots wait.
+  /// Returns the pose `ahead` [m] before a waiting line of a lane.
   Pose before(std::uint32_t lane, double ahead, std::size_t line = 0) const {
     return on(lane, corridors.way(lane).lines.at(line) - ahead);
   }
@@ -122,7 +122,7 @@ struct Observer {
   }
   const control::RoadUser& user(std::size_t row = 0) const { return rights.road_users().at(row); }
   const control::Approach& approach() const { return user().approach; }
-  /// It may drive on along a way as far as the conflict with another way is concerned.
+  /// Returns whether it may drive on along a way, considering only the conflict with another way.
   bool goes(std::uint32_t row, std::uint32_t other) const {
     const control::Conflict& conflict = site.conflict(row, other);
     return rights.may_enter(row, {.hold = 0.0, .end = 0.0, .conflicts = {conflict}});

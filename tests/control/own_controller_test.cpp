@@ -24,7 +24,7 @@ world::World one_robot() {
   return world;
 }
 
-/// Controller that returns what `decide` does.
+/// Controller that returns the result of `decide`.
 struct Scripted : sensorfarm::Controller {
   explicit Scripted(std::function<sensorfarm::Twist(const sensorfarm::Input&)> d) : decide(std::move(d)) {}
   sensorfarm::Twist step(const sensorfarm::Input& input) override { return decide(input); }
@@ -32,7 +32,7 @@ struct Scripted : sensorfarm::Controller {
   std::function<sensorfarm::Twist(const sensorfarm::Input&)> decide;
 };
 
-/// One is added per name and test program.
+/// Adds one controller per name and test program.
 std::unique_ptr<Controller> scripted(const world::World& world, const std::string& name,
                                      std::function<sensorfarm::Twist(const sensorfarm::Input&)> decide) {
   if (find_controller(name) == nullptr)
@@ -43,18 +43,18 @@ std::unique_ptr<Controller> scripted(const world::World& world, const std::strin
   return make_controller({world}, {.name = name}).controller;
 }
 
-TEST(OwnController, ComesFromAPluginWithItsRateAndSettings) {
+TEST(OwnController, LoadsFromAPluginWithItsRateAndSettings) {
   const world::World world = one_robot();
   const ConfiguredController made = make_controller(
       {world}, {.name = kPlugin + ":test-straight", .settings = {"controller", {{"speed", RawText{"0.5"}, ""}}}});
   EXPECT_EQ(made.rate, 5.0);
   EXPECT_EQ(made.controller->step({}).forward, 0.5);
-  // Loaded once: the same type again, now also by its plain name.
+  // Already loaded: returns the same type, now also by its plain name.
   EXPECT_EQ(find_controller("test-straight"), find_controller(kPlugin + ":test-straight"));
 }
 
 /// A configured rate overrides it; without a laser there are no scans.
-TEST(OwnController, StepsOnScansWhereItSaysSo) {
+TEST(OwnController, StepsOnScansIfConfigured) {
   world::World world = one_robot();
   const auto on_scans = [&](const char* name, double rate) {
     return make_controller({world}, {.name = name, .rate = rate}).on_scans;
@@ -72,17 +72,17 @@ TEST(OwnController, StepsOnScansWhereItSaysSo) {
   EXPECT_TRUE(on_scans("wander", 0.0));
 }
 
-TEST(OwnController, SettingsAreReadAndRefusedLikeThoseOfOurs) {
+TEST(OwnController, ReadsAndRejectsSettingsLikeBuiltInControllers) {
   const world::World world = one_robot();
   const auto make = [&](const char* key, const char* value) {
     make_controller({world}, {.name = kPlugin + ":test-straight",
                               .settings = {"controller 'x'", {{key, RawText{value}, "here: "}}}});
   };
-  expect_in("here: ", refusal_of([&] { make("speed", "3"); }));  // above its most
+  expect_in("here: ", refusal_of([&] { make("speed", "3"); }));  // above its upper limit
   expect_in("has no setting 'sped'", refusal_of([&] { make("sped", "1"); }));
 }
 
-TEST(OwnController, PluginFilesAreRefusedWithTheReason) {
+TEST(OwnController, RejectsPluginFilesWithTheReason) {
   expect_in("cannot be opened", refusal_of([] { find_controller("./nowhere.so"); }));
   const std::string text = std::filesystem::temp_directory_path() / "sensorfarm_no_library.so";
   std::ofstream(text) << "no library";
@@ -94,7 +94,7 @@ TEST(OwnController, PluginFilesAreRefusedWithTheReason) {
   expect_in(":test-straight", refusal_of([] { find_controller(kPlugin + ":other"); }));
 }
 
-TEST(OwnController, AListOfPluginsMayHaveFoldersAndGaps) {
+TEST(OwnController, PluginListMayContainFoldersAndGaps) {
   load_plugin_list(":" + kPlugin + "::");
   EXPECT_NE(find_controller("test-picky"), nullptr);
   expect_in("nowhere", refusal_of([] { load_plugin_list(kPlugin + ":/nowhere"); }));
@@ -111,13 +111,13 @@ TEST(OwnController, NamesMustBeNewAndUsable) {
   for (const double rate : {0.0, -1.0, 1e5, double{NAN}}) expect_in("a rate of", add("fine", rate));
 }
 
-TEST(OwnController, RefusalsNameTheRobot) {
+TEST(OwnController, ErrorsNameTheRobot) {
   const world::World world = one_robot();
   expect_in("controller 'test-picky' refuses robot 'r0': robot r0 is not good enough",
             refusal_of([&] { make_controller({world}, {.name = kPlugin + ":test-picky"}); }));
 }
 
-TEST(OwnController, GetsWhatARobotKnows) {
+TEST(OwnController, ReceivesTheInputsOfTheRobot) {
   world::World world = one_robot();
   world.lights.push_back({.name = "L"});
   sensorfarm::Input seen;

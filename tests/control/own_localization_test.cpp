@@ -24,8 +24,7 @@ world::Mover localized_create(std::initializer_list<const char*> types) {
 
 constexpr std::int64_t kTenth = 100'000'000;
 
-/// Moves straight on at 0.2 m/s from (1, 2) and 0.5 rad; its readings say so without an error. The input's pose claims
-/// otherwise after the start.
+/// Moves straight on at 0.2 m/s from (1, 2) and 0.5 rad, with exact readings. The input's pose differs after the start.
 struct Straight {
   explicit Straight(const world::Mover& mover) : localization(mover) {}
 
@@ -47,7 +46,7 @@ struct Straight {
   std::vector<base::ReadingBlock> readings;
 };
 
-TEST(OwnLocalization, ReplacesTheStateByWhatTheSensorsTell) {
+TEST(OwnLocalization, ReplacesTheStateByTheEstimate) {
   Straight robot(localized_create({"encoder"}));
   ControllerInput seen = robot.step();
   EXPECT_EQ(seen.state.X_WM.x, 1.0) << "the start is known";
@@ -61,10 +60,11 @@ TEST(OwnLocalization, ReplacesTheStateByWhatTheSensorsTell) {
   EXPECT_GT(robot.localization.error().max, 50.0) << "beside the poses of the inputs";
 }
 
-TEST(OwnLocalization, PlacesReadingsAtTheEstimateOfTheirTime) {
+TEST(OwnLocalization, PlacesReadingsAtTheEstimateForTheirTime) {
   Straight robot(localized_create({"encoder"}));
   for (int k = 0; k < 20; ++k) robot.step();
-  // A laser that looks left from 0.1 m ahead; its reading is half a second old, and the input's poses are elsewhere.
+  // A laser that looks left from 0.1 m ahead. Its reading is half a second old, and the input's poses are at another
+  // place.
   const base::Pose X_WM{7, 7, 0, 1};
   const base::Pose X_WS = base::compose(X_WM, {0.1, 0, 0.2, M_PI / 2});
   const base::ReadingBlock scan{.type = 1, .time = robot.time - 5 * kTenth, .X_WM = X_WM, .X_WS = X_WS};
@@ -77,8 +77,8 @@ TEST(OwnLocalization, PlacesReadingsAtTheEstimateOfTheirTime) {
   EXPECT_NEAR(std::hypot(placed.X_WS.x - placed.X_WM.x, placed.X_WS.y - placed.X_WM.y), 0.1, 1e-12);
 }
 
-TEST(OwnLocalization, TakesEachReadingOnceAndTheAntennaWhereItIs) {
-  // The antenna is 0.3 m ahead of the robot; the wheels say that it stands, and it does.
+TEST(OwnLocalization, UsesEachReadingOnceAndTheAntennasPosition) {
+  // The antenna is 0.3 m ahead of the robot, which is at rest, as the wheels measure.
   const base::Pose X_WM{1, 2, 0, 0.5}, X_WS = base::compose(X_WM, {0.3, 0, 0, 0});
   const std::vector<double> fix{X_WS.x, X_WS.y, 1.0}, wheels{0, 0, 0, 0};
   OwnLocalization own(localized_create({"encoder", "gps"}));
@@ -101,7 +101,7 @@ TEST(OwnLocalization, TakesEachReadingOnceAndTheAntennaWhereItIs) {
   EXPECT_LT(own.error().rms(), 0.01) << "0.3 m without the antenna's place";
 }
 
-TEST(OwnLocalization, SurvivesReadingsThatAreNone) {
+TEST(OwnLocalization, SurvivesInvalidReadings) {
   OwnLocalization own(localized_create({"encoder", "gyro", "gps"}));
   const std::vector<double> none(4, NAN), few{};
   for (std::int64_t time = -2 * kTenth; time < 20 * kTenth; time += kTenth) {
@@ -115,7 +115,7 @@ TEST(OwnLocalization, SurvivesReadingsThatAreNone) {
   }
 }
 
-TEST(OwnLocalization, IsTheShellsByASettingAlone) {
+TEST(OwnLocalization, IsEnabledOnlyByASettingOfTheShell) {
   world::World world = scenes::boxed_world(8, 8);
   scenes::add_create(world, {2, 2, 0, 0}).sensors.push_back({.type = "encoder"});
   for (const bool localize : {false, true}) {

@@ -34,26 +34,26 @@ Walk walk(Patrol& patrol, const Pose& from, int ticks, const std::vector<Neighbo
   return walk;
 }
 
-TEST(Patrol, GoesToTheLastPointAndBack) {
+TEST(Patrol, DrivesToTheLastPointAndBack) {
   Patrol patrol({.points = {{0, 0}, {1, 0}, {1, 1}}});
   EXPECT_EQ(walk(patrol, {}, 600).targets, (std::vector<std::size_t>{0, 1, 2, 1, 0, 1, 2}));
 }
 
-TEST(Patrol, OnePointIsGoneToAndKept) {
+TEST(Patrol, DrivesToASinglePointAndStays) {
   Patrol patrol({.points = {{1, 0}}});
   const Walk w = walk(patrol, {}, 300);
   EXPECT_NEAR(w.X_WM.x, 1.0, 0.03 + 1e-9);
   EXPECT_GT(w.standing, 15.0);
 }
 
-TEST(Patrol, PausesAtTheEndsAlone) {
+TEST(Patrol, PausesOnlyAtTheEnds) {
   Patrol patrol({.points = {{0, 0}, {0.5, 0}, {1, 0}}, .pause = 3.0});
   const Walk w = walk(patrol, {}, 600);
   EXPECT_GE(w.standing, 6.0) << "at both ends, at least once";
   EXPECT_LE(w.standing, 13.0);
 }
 
-TEST(Patrol, ACarComesRound) {
+TEST(Patrol, CarTurnsAround) {
   Patrol patrol({.points = {{0, 0}, {2, 0}}, .reach = 0.1, .turns_in_place = false});
   EXPECT_GE(walk(patrol, {0, 0, 0, 1.0}, 900, {}, world::Drive::car).targets.size(), 4u);
 }
@@ -64,7 +64,7 @@ struct Standing {
   const char* why;
 };
 
-TEST(Patrol, StandsForOthersInItsWay) {
+TEST(Patrol, StopsForRobotsInItsWay) {
   for (const Standing& s : {Standing{{0.4, 0.0}, true, "ahead"}, Standing{{0.47, 0.0}, false, "beyond 0.165 + 0.3 m"},
                             Standing{{-0.3, 0.0}, false, "behind"}, Standing{{0.3, 0.34}, false, "beside its lane"},
                             Standing{{0.3, -0.32}, true, "half in its lane"}}) {

@@ -1,4 +1,4 @@
-// A plug-in of tests: two controllers, and one that does to its process what its setting `how` says.
+// A plug-in of tests: two controllers, and one that affects its process as its setting `how` states.
 
 #include <fcntl.h>
 #include <sensorfarm/plugin.h>
@@ -41,7 +41,7 @@ int recurse(int depth) {
   return yes ? recurse(depth + 1) + frame[depth % 4096] : 0;
 }
 
-/// Leaves a process behind, whose id is written to a file. @param away in a session of its own
+/// Leaves a process running and writes its id to a file. @param away in a separate session
 void leave_running(const std::string& file, bool away) {
   const pid_t child = fork();
   if (child > 0) {
@@ -60,7 +60,7 @@ void forever() {
   while (yes) sleep(60);  // signals interrupt it
 }
 
-/// The first call asks for a stop, and returns when the parent has seen it; the next one does not return.
+/// The first call requests a stop, and returns when the parent has noticed it; the next call does not return.
 void follow_a_stop() {
   static bool asked = false;
   if (asked) forever();
@@ -107,7 +107,7 @@ void end_by(const std::string& how, const std::string& file) {
   if (const auto way = ways.find(how); way != ways.end()) way->second();
 }
 
-/// Drives straight on, and at 1 s does what `how` says.
+/// Drives straight on, and at 1 s does what `how` states.
 class Ends : public sensorfarm::Controller {
  public:
   Ends(const sensorfarm::Robot&, sensorfarm::Settings& settings)

@@ -10,9 +10,9 @@ namespace {
 constexpr double kRadius = 0.165;           // [m]
 constexpr double kMargin = 0.15 * kRadius;  // [m]
 
-// ---- The order of those that wait.
+// ---- The order of waiting robots.
 
-TEST(Precedence, WhoCameFirstElseTheSmallerId) {
+TEST(Precedence, EarlierArrivalThenSmallerId) {
   const Site site(two_crossings());
   const auto goes = [&](double own, double others, std::uint32_t id) {
     Observer me(site, id);
@@ -26,7 +26,7 @@ TEST(Precedence, WhoCameFirstElseTheSmallerId) {
   EXPECT_FALSE(goes(0.0, 0.0, 7));
 }
 
-TEST(Precedence, WhoWentAwayCountsAgainFromItsReturn) {
+TEST(Precedence, ReturningRobotRanksFromItsReturn) {
   const Site site(two_crossings());
   Observer me(site, 5);
   for (const double t : {0.0, 0.1, 0.2})
@@ -34,8 +34,9 @@ TEST(Precedence, WhoWentAwayCountsAgainFromItsReturn) {
   EXPECT_FALSE(me.goes(kCross, kMain));
 }
 
-// A robot that has passed the line still approaches it, for want of another. The next does not inherit its turn.
-TEST(Precedence, EveryRobotHasATurnOfItsOwn) {
+// A robot that has passed the line still approaches it, because there is no other. The next robot does not inherit its
+// turn.
+TEST(Precedence, EveryRobotHasItsOwnTurn) {
   const Site site(two_crossings());
   Observer me(site, 5);
   for (const double t : {0.0, 0.1, 0.2})
@@ -45,13 +46,13 @@ TEST(Precedence, EveryRobotHasATurnOfItsOwn) {
   EXPECT_FALSE(me.goes(kCross, kMain));
 }
 
-TEST(Precedence, EveryLineHasATurnOfItsOwn) {
+TEST(Precedence, EveryLineHasItsOwnTurn) {
   const Site site(two_crossings());
   Observer me(site, 7);
   for (const double t : {0.0, 0.1, 0.2})
     me.see(t, {7, site.before(kFarCross, t == 0.0 ? 1.0 : 0.1)}, {{6, site.before(kMain, 0.1, t == 0.2 ? 1 : 0)}});
   EXPECT_TRUE(me.goes(kFarCross, kMain)) << "the other has come from the line before";
-  // The two lanes across have their lines at the same place.
+  // The two crossing lanes have their lines at the same place.
   Observer other(site, 5);
   for (const double t : {0.0, 0.1, 0.2})
     other.see(t, {5, site.before(t == 0.2 ? kFarCross : kCross, 0.1)},
@@ -60,7 +61,7 @@ TEST(Precedence, EveryLineHasATurnOfItsOwn) {
 }
 
 // 6.1 and 10.2 cross, and each has a light.
-TEST(Precedence, WhoNeedNotStopGoesFirstAndWhoMayNotGoDoesNotCount) {
+TEST(Precedence, RobotThatNeedNotStopPrecedesAndRobotAtRedIsIgnored) {
   using enum world::LightState;
   Site site(simville(), {light("a", {"6.1.3"}, {{dark, 1.0}}), light("b", {"10.2.3"}, {{dark, 1.0}})});
   const std::uint32_t a = site.lane("6.1"), b = site.lane("10.2");
@@ -81,18 +82,19 @@ TEST(Precedence, WhoNeedNotStopGoesFirstAndWhoMayNotGoDoesNotCount) {
   EXPECT_FALSE(goes(red, dark, 0.0, 9.0)) << "nor does it go itself, though nobody comes";
 }
 
-/// A light that no signal tells of is as good as none.
-TEST(Precedence, ALineWhoseLightSaysNothingIsAStopSign) {
+/// A light without a signal counts as if it did not exist.
+TEST(Precedence, LineWithoutASignalIsAStopSign) {
   const std::vector<world::Signal> one{{world::LightState::green, 0.0}};
   EXPECT_EQ(control::rule_of({0.0, {0}}, one), control::Rule::free);
   EXPECT_EQ(control::rule_of({0.0, {1}}, one), control::Rule::stop);
   EXPECT_EQ(control::rule_of({0.0, {}}, one), control::Rule::stop);
 }
 
-// Two that wait see each other. Of twenty pairs in which the first would go, the lot lets the second go in some.
-TEST(Precedence, AfterThreeSecondsOfEitherALotDecidesThatBothAgreeOn) {
+// Two waiting robots see each other. In some of twenty pairs in which the first one would go, the lottery lets the
+// second go.
+TEST(Precedence, SharedLotteryDecidesAfterThreeSeconds) {
   const Site site(two_crossings());
-  for (const std::int64_t second : {0, 2000, 3500}) {  // [ms] when it comes
+  for (const std::int64_t second : {0, 2000, 3500}) {  // [ms] when it arrives
     int won = 0, changes = 0;
     for (std::uint32_t id = 6; id < 26; ++id) {
       Observer a(site, 5), b(site, id);
@@ -122,7 +124,7 @@ TEST(Precedence, AfterThreeSecondsOfEitherALotDecidesThatBothAgreeOn) {
   }
 }
 
-TEST(Precedence, FollowersGiveWay) {
+TEST(Precedence, FollowersYield) {
   const Site site(two_crossings());
   const auto goes = [&](std::uint32_t leader, std::uint32_t others_leader, bool merges = false, bool first = true) {
     Observer me(site, 5);
@@ -139,9 +141,9 @@ TEST(Precedence, FollowersGiveWay) {
   EXPECT_FALSE(goes(base::kNoId, 7, false, false));
 }
 
-// ---- Those that are in the way.
+// ---- Robots in the way.
 
-TEST(Precedence, WhoCannotStopIsCommitted) {
+TEST(Precedence, RobotThatCannotStopIsCommitted) {
   const Site site(two_crossings());
   const control::RightOfWay rights(site.corridors, 5);
   const double least = 0.5 * 0.5 / (2.0 * 0.6) - kMargin;  // [m] to stop from 0.5 m/s, with the margin
@@ -151,7 +153,8 @@ TEST(Precedence, WhoCannotStopIsCommitted) {
   EXPECT_FALSE(rights.committed(-kMargin + 1e-6, 0.0));
 }
 
-/// Whether robot 5, the first to come to the line of `lane` (the last), goes on along `row` though 6 is somewhere.
+/// Returns whether robot 5, the first to arrive at the last line of `lane`, drives on along `row` with robot 6 at
+/// `X_WM`.
 bool goes_first(const Site& site, std::uint32_t lane, std::uint32_t row, std::uint32_t other, const Pose& X_WM,
                 double speed = 0.0) {
   const Seen self{5, site.before(lane, 0.0, site.corridors.way(lane).lines.size() - 1)};
@@ -161,8 +164,8 @@ bool goes_first(const Site& site, std::uint32_t lane, std::uint32_t row, std::ui
   return me.goes(row, other);
 }
 
-// Boundary: a millimetre before the line that it cannot stop at, and at the end of the conflict.
-TEST(Precedence, WhoIsOnTheCrossingIsLetOut) {
+// Boundary: a millimetre before the line at which it cannot stop, and at the end of the conflict.
+TEST(Precedence, RobotOnTheCrossingHasPriority) {
   const Site site(two_crossings());
   const double least = 0.5 * 0.5 / (2.0 * 0.6) - kMargin;
   EXPECT_TRUE(goes_first(site, kCross, kCross, kMain, site.before(kMain, least + 1e-3), 0.5));
@@ -183,7 +186,7 @@ TEST(Precedence, ExitsFromTheEndsOfLanes) {
   EXPECT_TRUE(goes_first(site, lane, own, other, site.before(other_lane, 0.0, last)));
   EXPECT_TRUE(goes_first(site, lane, own, other, site.before(other_lane, least + 1e-3, last), 0.5));
   EXPECT_FALSE(goes_first(site, lane, own, other, site.before(other_lane, least - 1e-3, last), 0.5));
-  // The other way round it waits, though it has stood there first.
+  // In the opposite case it waits, although it stopped there first.
   EXPECT_TRUE(goes_first(site, other_lane, other, own, site.before(lane, 1.0)));
   EXPECT_FALSE(goes_first(site, other_lane, other, own, site.before(lane, 0.3)));
   EXPECT_FALSE(goes_first(site, other_lane, other, own, site.on(own, 0.1))) << "before they meet";
@@ -193,7 +196,7 @@ TEST(Precedence, ExitsFromTheEndsOfLanes) {
   EXPECT_TRUE(goes_first(site, other_lane, other, bend, site.on(bend, end + 0.01))) << "past where they meet";
 }
 
-/// Whether robot 7, which comes later, goes on along `row` though 6 waits at the first line of a lane.
+/// Returns whether robot 7, which arrives later, drives on along `row` although 6 waits at the first line of a lane.
 bool goes_past(const Site& site, std::uint32_t lane, std::uint32_t row, std::uint32_t other, std::uint32_t waits) {
   Observer me(site, 7);
   for (const double t : {0.0, 0.1})
@@ -202,7 +205,7 @@ bool goes_past(const Site& site, std::uint32_t lane, std::uint32_t row, std::uin
   return me.goes(row, other);
 }
 
-TEST(Precedence, WhoWaitsElsewhereIsNotWaitedFor) {
+TEST(Precedence, IgnoresRobotsWaitingAtOtherLines) {
   const Site crossings(two_crossings());
   EXPECT_TRUE(goes_past(crossings, kFarCross, kFarCross, kMain, kMain)) << "at the line before";
   // 12.1 has a line halfway and one at its end.
@@ -224,9 +227,9 @@ TEST(Precedence, WhoWaitsElsewhereIsNotWaitedFor) {
 
 // ---- Lane changes.
 
-// From 1.1 into 1.2, 5 m from its start. Boundaries: two radii behind where they meet and 2.5 s of its speed; two and a
-// half radii beyond.
-TEST(LaneChange, WaitsForWhoIsBesideOrComesSoon) {
+// From 1.1 into 1.2, 5 m from its start. Boundaries: two radii behind the meeting point plus 2.5 s at its speed; two
+// and a half radii beyond.
+TEST(LaneChange, WaitsForRobotsAlongsideOrArrivingSoon) {
   const Site site(simville());
   const std::uint32_t beside = site.lane("1.2");
   const std::uint32_t change = site.way(control::Way::Kind::change, "1.1", "1.2", site.roads.lanes[0].points[9].s);
@@ -249,8 +252,8 @@ TEST(LaneChange, WaitsForWhoIsBesideOrComesSoon) {
   EXPECT_FALSE(goes(5, 0.1, 0.05));
 }
 
-// The other follower of the same leader blocks only beside the gap that it opens: two and a half radii behind.
-TEST(LaneChange, GoesIntoTheGapThatIsOpenedForIt) {
+// The other follower of the same leader blocks only next to the gap that it opens: two and a half radii behind.
+TEST(LaneChange, EntersTheGapOpenedForIt) {
   const Site site(simville());
   const std::uint32_t beside = site.lane("1.2");
   const std::uint32_t change = site.way(control::Way::Kind::change, "1.1", "1.2", site.roads.lanes[0].points[9].s);
@@ -267,15 +270,15 @@ TEST(LaneChange, GoesIntoTheGapThatIsOpenedForIt) {
   EXPECT_FALSE(goes(-2.5 * kRadius - 1e-2, 3, false)) << "it has merged";
 }
 
-// Two lanes side by side, and one across them where the way of a lane change runs.
-TEST(LaneChange, CrossesALaneWhenNobodyComesThere) {
+// Two lanes side by side, and one that crosses them where the way of a lane change runs.
+TEST(LaneChange, CrossesALaneWhenNoRobotApproaches) {
   const Site site(straight_lanes({{{{0, 0}, {2, 0}, {8, 0}}, {{0, 0.5}, {4, 0.5}, {8, 0.5}}}, {{{3, -3}, {3, 3}}}}));
   const std::uint32_t change = site.way(control::Way::Kind::change, "1.1", "1.2", 2.0), across = site.lane("2.1");
   Observer me(site, 5);
   me.see(0.0, {5, site.on(0, 1.0)}, {{6, site.before(across, 1.0)}});
   EXPECT_FALSE(me.approach().contends);
   EXPECT_TRUE(me.goes(change, across));
-  // It has come first, but to the line of its lane, which a lane change has not.
+  // It arrived first, but at the line of its lane; a lane change has no line.
   me.see(0.1, {5, site.before(0, 0.1)}, {{6, site.before(across, 1.0)}});
   me.see(0.2, {5, site.before(0, 0.1)}, {{6, site.before(across, 0.1)}});
   EXPECT_TRUE(me.goes(0, across));
@@ -283,7 +286,7 @@ TEST(LaneChange, CrossesALaneWhenNobodyComesThere) {
 }
 
 // Boundary: 0.15 radii before the stretch that two robots cannot share.
-TEST(LaneChange, IsInTheWayFromWhereItMeetsTheOther) {
+TEST(LaneChange, BlocksFromTheStartOfTheSharedStretch) {
   const Site site(straight_lanes({{{{0, 0}, {2, 0}, {8, 0}}, {{0, 0.5}, {4, 0.5}, {8, 0.5}}}, {{{3, -3}, {3, 3}}}}));
   const std::uint32_t change = site.way(control::Way::Kind::change, "1.1", "1.2", 2.0), across = site.lane("2.1");
   const control::Conflict& conflict = site.conflict(across, change);
@@ -296,7 +299,7 @@ TEST(LaneChange, IsInTheWayFromWhereItMeetsTheOther) {
 
 // ---- Merging behind a leader.
 
-TEST(Merging, LetsTheLeaderPassFromAnyDistance) {
+TEST(Merging, YieldsToTheLeaderAtAnyDistance) {
   const Site site(two_crossings());
   const double meet = site.conflict(kCross, kMain).other_from, clear = site.conflict(kCross, kMain).other_to;
   const auto goes = [&](double s, std::uint32_t leader, bool merges, std::uint32_t lane = kMain) {
@@ -312,7 +315,7 @@ TEST(Merging, LetsTheLeaderPassFromAnyDistance) {
   EXPECT_TRUE(goes(0.5, 6, true, kFarCross)) << "it comes another way";
 }
 
-TEST(Merging, LetsTheLeaderOutOfTheLaneThatItComesFrom) {
+TEST(Merging, YieldsToTheLeaderLeavingTheSameLane) {
   const Site site(simville());
   const std::uint32_t lane = site.lane("12.2"), from = site.lane("2.2");
   const Seen self{5, site.before(lane, 0.0, site.corridors.way(lane).lines.size() - 1), 0.0, 6};
@@ -334,7 +337,7 @@ struct Yard : Site {
   }
 };
 
-// Boundary: 0.35 radii from where it parks.
+// Boundary: 0.35 radii from its parking position.
 TEST(ZoneFree, WhileTheOthersAreParked) {
   const Yard site(simville());
   const Pose spot = site.corridors.parked(2);
@@ -347,7 +350,7 @@ TEST(ZoneFree, WhileTheOthersAreParked) {
 }
 
 // Boundary: its front at the end of the lane that leads into the zone.
-TEST(ZoneFree, UntilOneIsAboutToEnter) {
+TEST(ZoneFree, UntilARobotIsAboutToEnter) {
   Yard site(simville());
   EXPECT_TRUE(site.free_with(site.on(site.lane("11.2"), 0.45 - kRadius - 1e-3)));
   EXPECT_FALSE(site.free_with(site.on(site.lane("11.2"), 0.45 - kRadius + 1e-3)));
@@ -356,7 +359,7 @@ TEST(ZoneFree, UntilOneIsAboutToEnter) {
 }
 
 // Robots so small that the exits of the zone are outside it.
-TEST(ZoneFree, UntilOneIsOnAWayIntoOrOutOfIt) {
+TEST(ZoneFree, UntilARobotIsOnAWayIntoOrOutOfIt) {
   const Yard site(simville(), {}, {.radius = 0.02, .front = 0.02});
   const auto& ways = site.corridors.ways();
   int exits = 0;
@@ -370,8 +373,8 @@ TEST(ZoneFree, UntilOneIsOnAWayIntoOrOutOfIt) {
   EXPECT_EQ(exits, 2);
 }
 
-// The exit into the zone is moved to the start of 7.1, where no robot at the end of 7.1 can take it.
-TEST(ZoneFree, ThoughOneHasPassedItsEntrance) {
+// The exit into the zone is moved to the start of 7.1, so that no robot at the end of 7.1 can take it.
+TEST(ZoneFree, EvenIfARobotHasPassedItsEntrance) {
   world::RoadNetwork roads = simville();
   const Site before(roads);
   for (world::RoadExit& exit : roads.exits)

@@ -14,8 +14,8 @@ namespace {
 
 // ---- Right of way.
 
-// 12.2 has a stop sign, 2.2 has none: a robot on 2.2 goes first, though the other has stopped there before it arrived.
-TEST(RightOfWay, ARobotWithoutAStopLineGoesFirst) {
+// 12.2 has a stop sign, 2.2 has none: a robot on 2.2 has priority, although the other one stopped before it arrived.
+TEST(RightOfWay, RobotWithoutAStopLineHasPriority) {
   Streets t;
   t.add(on_lane(t.roads, "12.2", 3.4), "route", go({4, 8}));
   t.add(on_lane(t.roads, "2.2", 2.45), "route", go({4, 8}));
@@ -31,7 +31,7 @@ TEST(RightOfWay, ARobotWithoutAStopLineGoesFirst) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-// Two robots arrive while a third drives through the crossing. Afterwards the first that stood there goes first.
+// Two robots arrive while a third drives through the crossing. Afterwards the robot that stopped first goes first.
 TEST(RightOfWay, FirstComeFirstServed) {
   for (const bool other_first : {false, true}) {
     Streets t;
@@ -53,7 +53,7 @@ TEST(RightOfWay, FirstComeFirstServed) {
   }
 }
 
-// The network is flat, so the bridge is a crossing: one of two robots waits, and none waits for ever.
+// The network is flat, so the bridge is a crossing: one of two robots waits, and none waits forever.
 TEST(RightOfWay, LanesThatCrossWithoutASign) {
   for (int k = 0; k < 10; ++k) {
     Streets t;
@@ -68,7 +68,7 @@ TEST(RightOfWay, LanesThatCrossWithoutASign) {
 }
 
 // Every light of the shipped world belongs to a stop line, and every stop line without a light is a stop sign.
-TEST(RightOfWay, LightsOfSimvilleStandAtTheirLines) {
+TEST(RightOfWay, LightsOfSimvilleBelongToStopLines) {
   const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
   const world::RoadNetwork roads = simville();
   const control::LaneCorridors corridors(roads, world, {});
@@ -84,7 +84,7 @@ TEST(RightOfWay, LightsOfSimvilleStandAtTheirLines) {
   EXPECT_EQ(lights.size(), 7u);
 }
 
-// With a full lane beyond the crossing a robot stops before the crossing, not within.
+// If the lane beyond the crossing is full, a robot stops before the crossing, not within it.
 TEST(RightOfWay, DoesNotBlockTheBox) {
   Streets t;
   t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
@@ -97,9 +97,9 @@ TEST(RightOfWay, DoesNotBlockTheBox) {
   EXPECT_LT(t.pose(1).x - 0.165, line + 0.05);
 }
 
-// Before a lane that stays full a robot plans another way after 20 s, the second robot of the world after 22 s, so that
-// two do not change their minds at once.
-TEST(RightOfWay, AFullLaneIsAvoidedWhenPatienceEnds) {
+// Before a lane that stays full, a robot plans another way after 20 s, the second robot of the world after 22 s, so
+// that two do not change their routes at once.
+TEST(RightOfWay, AvoidsAFullLaneAfterWaiting) {
   for (const std::uint32_t row : {0u, 1u}) {
     Streets t;
     const auto wait = [&] { t.add(on_lane(t.roads, "4.1", 1.0), "route", go({8})); };
@@ -161,7 +161,7 @@ Crowd crowd(std::size_t count, double seconds, std::uint64_t seed, bool lights) 
   return c;
 }
 
-TEST(Crowd, FiftyTouchNobodyAndAllGetOn) {
+TEST(Crowd, FiftyRobotsDriveWithoutContact) {
   if (instrumented()) GTEST_SKIP() << "a minute under sanitizers; crowds of twenty run the same code";
   for (const std::uint64_t seed : {1u, 2u}) {
     const Crowd c = crowd(50, 600, seed, seed == 2);
@@ -171,7 +171,7 @@ TEST(Crowd, FiftyTouchNobodyAndAllGetOn) {
   }
 }
 
-TEST(Crowd, TwentyAllReachCheckpoints) {
+TEST(Crowd, TwentyRobotsReachCheckpoints) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Crowd c = crowd(20, 400, seed, seed % 2 == 0);
     EXPECT_EQ(c.contacts, 0) << seed;
@@ -180,7 +180,7 @@ TEST(Crowd, TwentyAllReachCheckpoints) {
   }
 }
 
-TEST(Crowd, GoesTheSameWayAgainAndAnotherWithAnotherSeed) {
+TEST(Crowd, DependsOnTheSeed) {
   EXPECT_EQ(crowd(20, 60, 1, true).x, crowd(20, 60, 1, true).x);
   EXPECT_NE(crowd(20, 60, 1, true).x, crowd(20, 60, 3, true).x);
 }

@@ -21,7 +21,7 @@ struct Planner {
   }
 };
 
-TEST(RoutePlan, EveryLegBeginsWhereTheOneBeforeEnds) {
+TEST(RoutePlan, EveryLegBeginsAtTheEndOfThePreviousOne) {
   const Planner p;
   for (const auto& checkpoint : p.streets.roads.checkpoints) {
     control::RoutePlan plan = p.from("7.2", 0.4);
@@ -35,13 +35,13 @@ TEST(RoutePlan, EveryLegBeginsWhereTheOneBeforeEnds) {
     }
     const auto& last = plan.legs.back();
     const glm::dvec2 end = point_on(p.corridors.way(last.way), last.to);
-    // The way into a spot ends at the robot's origin, its front at the checkpoint.
+    // The way into a spot ends at the robot's origin, with its front at the checkpoint.
     const double off = checkpoint.at.kind == world::PointRef::Kind::spot ? 0.165 : 0.0;
     EXPECT_NEAR(length(end - checkpoint.p), off, 2e-4) << checkpoint.id;  // chords of 4 cm in bends
   }
 }
 
-TEST(RoutePlan, TakesTheShortestWay) {
+TEST(RoutePlan, FindsTheShortestPath) {
   const Planner p;
   control::RoutePlan plan = p.from("4.1", 2.0);
   ASSERT_TRUE(extend(p.corridors, plan, *find_checkpoint(p.streets.roads, 8)));
@@ -51,7 +51,7 @@ TEST(RoutePlan, TakesTheShortestWay) {
   EXPECT_NEAR(length_of(plan), 0.6 + 1.2 + lane.points[5].s, 0.01);
 }
 
-TEST(RoutePlan, RoundAgainToTheSameCheckpoint) {
+TEST(RoutePlan, ReturnsToTheSameCheckpoint) {
   const Planner p;
   control::RoutePlan plan = p.from("4.1", 0.1);
   const auto& checkpoint = *find_checkpoint(p.streets.roads, 7);
@@ -61,7 +61,7 @@ TEST(RoutePlan, RoundAgainToTheSameCheckpoint) {
   EXPECT_GT(length_of(plan), once + 5.0);
 }
 
-TEST(RoutePlan, AvoidsWhatItIsToldTo) {
+TEST(RoutePlan, AvoidsAGivenWay) {
   const Planner p;
   control::RoutePlan straight = p.from("4.1", 2.0);
   ASSERT_TRUE(extend(p.corridors, straight, *find_checkpoint(p.streets.roads, 8)));
@@ -86,13 +86,13 @@ TEST(RoutePlan, IsCutAtTheNextPoint) {
   }
 }
 
-TEST(StartPoses, StandApartOnLanesAndComeFromTheSeed) {
+TEST(StartPoses, AreApartOnLanesAndDependOnTheSeed) {
   const world::RoadNetwork roads = simville();
   const auto poses = control::start_poses(roads, 50, 1, 0.5);
   ASSERT_EQ(poses.size(), 50u);
   for (std::size_t i = 0; i < poses.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(std::hypot(poses[i].x - poses[j].x, poses[i].y - poses[j].y), 0.5);
-  // Half that distance from the ends of a lane: who stands at its very end stands in what it leads to.
+  // At least half that distance from the ends of a lane: a robot at its very end would be on the next way.
   for (const Pose& pose : poses) {
     double off = HUGE_VAL;
     for (const world::RoadLane& lane : roads.lanes)
@@ -107,7 +107,7 @@ TEST(StartPoses, StandApartOnLanesAndComeFromTheSeed) {
   EXPECT_THROW(control::start_poses(roads, 500, 1, 0.5), base::InputError);
 }
 
-TEST(RoutePlan, ALaneChangeCostsAMetreMoreThanItsWay) {
+TEST(RoutePlan, LaneChangeCostsAMetreMoreThanItsLength) {
   const Planner p;
   int changes = 0;
   for (std::uint32_t node = 0; node < p.streets.roads.index.size(); ++node)
@@ -122,7 +122,7 @@ TEST(RoutePlan, ALaneChangeCostsAMetreMoreThanItsWay) {
   EXPECT_GT(changes, 20);
 }
 
-TEST(LaneCorridors, LaneChangesBeginAtTheFirstPointOfALaneToo) {
+TEST(LaneCorridors, LaneChangesMayBeginAtTheFirstPointOfALane) {
   const Planner p;
   int first = 0;
   for (std::uint32_t row = 0; row < p.streets.roads.lanes.size(); ++row) {
@@ -136,7 +136,7 @@ TEST(LaneCorridors, LaneChangesBeginAtTheFirstPointOfALaneToo) {
   EXPECT_GT(first, 0);
 }
 
-TEST(LaneCorridors, AreThoseOfOneNetworkOneWorldAndOneShape) {
+TEST(LaneCorridors, AreSharedForOneNetworkWorldAndShape) {
   const Streets a, b;
   const auto shared = control::shared_lane_corridors(a.roads, a.world, {});
   EXPECT_EQ(control::shared_lane_corridors(a.roads, a.world, {}), shared);
@@ -147,9 +147,9 @@ TEST(LaneCorridors, AreThoseOfOneNetworkOneWorldAndOneShape) {
 
 // ---- Conflicts: any two points on two ways without a conflict are clear of each other.
 
-/// A gate is held before the first of its conflicts and ends behind the last: for wide robots that one need not begin
-/// last.
-TEST(LaneCorridors, ConflictZonesSpanTheirConflicts) {
+/// A zone begins before the first of its conflicts and ends after the last one to end, which for wide robots need not
+/// be the last one to begin.
+TEST(LaneCorridors, ConflictZonesCoverTheirConflicts) {
   const Streets streets;
   for (const double radius : {0.165, 0.25}) {
     const control::LaneCorridors corridors(streets.roads, streets.world, {radius, radius});
@@ -162,7 +162,7 @@ TEST(LaneCorridors, ConflictZonesSpanTheirConflicts) {
   }
 }
 
-TEST(LaneCorridors, WaysThatDoNotMeetAreClearOfEachOther) {
+TEST(LaneCorridors, WaysWithoutConflictsAreClearOfEachOther) {
   const Planner p;
   const auto& ways = p.corridors.ways();
   using Kind = control::Way::Kind;

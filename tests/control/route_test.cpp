@@ -12,7 +12,7 @@
 namespace sf::traffic {
 namespace {
 
-// ---- One robot alone.
+// ---- A single robot.
 
 TEST(Route, DrivesEveryCheckpointOfSimville) {
   Streets t;
@@ -36,8 +36,8 @@ TEST(Route, DrivesEveryCheckpointOfSimville) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-/// Without the start signal it neither drives nor tells others where it is going.
-TEST(Route, StandsUntilItIsStarted) {
+/// Without the start signal it neither drives nor broadcasts its goal.
+TEST(Route, WaitsForTheStartSignal) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 0.3), "route", go({1}));
   t.begin();
@@ -56,7 +56,7 @@ TEST(Route, StandsUntilItIsStarted) {
   EXPECT_EQ(t.controllers[0]->intent().checkpoint, 1u);
 }
 
-TEST(Route, DrivesAMissionRoundAndRound) {
+TEST(Route, RepeatsAMission) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 0.3), "route",
         {{"mission", std::string(SF_SOURCE_DIR "/worlds/simville/simville.mdf"), ""}, {"loop", true, ""}});
@@ -109,9 +109,9 @@ TEST(Route, ParksAtHalfItsSpeed) {
   EXPECT_NEAR(near, 0.1, 0.01);
 }
 
-// The third spot lies along the x axis, so that the way out of it from (0, 0) is measured exactly; the turn at first is
-// the first spot's.
-TEST(Route, WaitsForItsTurnToLeaveItsSpotUntilItHasLeft) {
+// The third spot is parallel to the x axis, so that the way out of it from (0, 0) is measured exactly; the first turn
+// belongs to the first spot.
+TEST(Route, WaitsForItsTurnToLeaveItsSpot) {
   Streets t;
   ASSERT_GT(t.roads.zones[0].spots, 2u);
   world::RoadSpot& spot = t.roads.spots[t.roads.zones[0].first_spot + 2];
@@ -229,7 +229,7 @@ std::string refusal(const std::vector<Setting>& settings, const Pose& X_WM) {
   return "";
 }
 
-TEST(Route, RefusesWhatCannotBeDriven) {
+TEST(Route, RejectsUndrivableRoutes) {
   const Pose lane = on_lane(simville(), "1.1", 1.0);
   EXPECT_NE(refusal(go({99}), lane).find("'checkpoints' names 99"), std::string::npos);
   EXPECT_NE(refusal(go({1.5}), lane).find("names 1.5"), std::string::npos);
@@ -242,8 +242,8 @@ TEST(Route, RefusesWhatCannotBeDriven) {
   EXPECT_EQ(refusal(go({1}), lane), "");
 }
 
-// A network of one lane with a dead end: the second round has no path.
-TEST(Route, SaysWhereNoWayLeads) {
+// A network of one lane with a dead end: the second lap has no path.
+TEST(Route, ReportsUnreachableGoals) {
   Streets t;
   t.roads.exits.clear();
   t.add(on_lane(t.roads, "1.1", 1.0), "route", go({4}));
@@ -257,8 +257,8 @@ TEST(Route, SaysWhereNoWayLeads) {
   }
 }
 
-// The route is refused at the start when the third of three checkpoints cannot be reached.
-TEST(Route, LooksAtTheWholeListBeforeItStarts) {
+// Rejects the route at the start if the third of three checkpoints cannot be reached.
+TEST(Route, ChecksTheWholeListBeforeStarting) {
   Streets t;
   const auto row = find_checkpoint(t.roads, 12)->at.row;
   std::erase_if(t.roads.exits, [&](const world::RoadExit& exit) {
@@ -280,7 +280,7 @@ TEST(Route, StartsBetweenLanes) {
 
 // ---- Two and more.
 
-TEST(Route, FollowsASlowerRobotWithoutTouchingIt) {
+TEST(Route, FollowsASlowerRobotWithoutContact) {
   for (const double slow : {0.02, 0.1, 0.19}) {
     Streets t;
     t.add(on_lane(t.roads, "1.3", 2.0), "route", go({8}, {{"speed", slow, ""}}));
@@ -299,8 +299,8 @@ TEST(Route, FollowsASlowerRobotWithoutTouchingIt) {
   }
 }
 
-// Behind a robot that stands for ever it stops near it, without contact.
-TEST(Route, StandsBehindWhoStands) {
+// Behind a permanently stopped robot it stops nearby, without contact.
+TEST(Route, StopsBehindAStoppedRobot) {
   Streets t;
   t.add(on_lane(t.roads, "4.1", 2.0), "route", go({7}, {{"speed", 0.01, ""}}));
   t.add(on_lane(t.roads, "4.1", 0.5), "route", go({8}));
@@ -314,7 +314,7 @@ TEST(Route, StandsBehindWhoStands) {
   EXPECT_EQ(t.route(1).stop_reason(), "'robot1' stands in its way");
 }
 
-TEST(Route, SaysWhyItStandsAtAStopSign) {
+TEST(Route, StatesItsStopReasonAtAStopSign) {
   Streets t;
   t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8}));
   t.begin();

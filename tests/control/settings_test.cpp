@@ -1,4 +1,4 @@
-// Values from files, which have a type, and from the command line, whose type is that of the reader.
+// Values from files, which have a type, and from the command line, whose type the reader determines.
 
 #include "control/settings.h"
 
@@ -31,7 +31,7 @@ std::string key_text(Settings settings) { return settings.text("key", "fallback"
 Numbers numbers_of(Settings settings) { return settings.numbers("key", {}); }
 Texts texts_of(Settings settings) { return settings.texts("key", {}); }
 
-TEST(Settings, RawValuesBecomeWhatTheyAreReadAs) {
+TEST(Settings, ConvertsRawValuesToTheRequestedType) {
   EXPECT_EQ(number_of(raw("1")), 1.0);
   EXPECT_EQ(numbers_of(raw("1")), Numbers{1.0});  // a list of one
   EXPECT_EQ(key_text(raw("1")), "1");
@@ -42,7 +42,7 @@ TEST(Settings, RawValuesBecomeWhatTheyAreReadAs) {
   EXPECT_FALSE(raw(" false ").flag("key", true));
 }
 
-TEST(Settings, RawListsAreWrittenInAnyOfTheUsualWays) {
+TEST(Settings, ReadsRawListsInAllForms) {
   for (const char* text : {"1,2", "1, 2", "1 2", "[1,2]", "[1, 2]", "[1 2]", " [ 1  2 ] ", "1 , 2"})
     EXPECT_EQ(numbers_of(raw(text)), (Numbers{1, 2})) << text;
   EXPECT_EQ(numbers_of(raw("[-0.5 1e3]")), (Numbers{-0.5, 1000}));
@@ -54,17 +54,17 @@ TEST(Settings, RawListsAreWrittenInAnyOfTheUsualWays) {
   EXPECT_EQ(texts_of(raw(R"(["a, b" 'c d'])")), (Texts{"a, b", "c d"}));
 }
 
-TEST(Settings, RawTextsMayHaveQuotesAroundThem) {
+TEST(Settings, RawTextsMayBeQuoted) {
   EXPECT_EQ(key_text(raw(R"("13.4")")), "13.4");
   EXPECT_EQ(key_text(raw("'13.4'")), "13.4");
   EXPECT_EQ(key_text(raw(R"("13.4')")), R"("13.4')");  // not a pair
-  EXPECT_EQ(key_text(raw("\"")), "\"");                // a single quote mark is no pair
+  EXPECT_EQ(key_text(raw("\"")), "\"");                // a single quote mark is not a pair
   EXPECT_EQ(key_text(raw(R"("")")), "");
   EXPECT_EQ(key_text(raw("")), "");
   EXPECT_EQ(key_text(raw("a b")), "a b");
 }
 
-TEST(Settings, InvalidRawValuesAreRefusedAndQuoted) {
+TEST(Settings, RejectsAndQuotesInvalidRawValues) {
   const char* const no_lists[] = {"",      "a",   "1,",  ",1",    "1,,2", "[1", "1]",
                                   "1 2,3", "1;2", "nan", "1,inf", "0x10", "]["};
   for (const char* text : no_lists)
@@ -112,7 +112,7 @@ TEST(Settings, MisspeltKeysAndWordsGetASuggestion) {
             "f:1: 'side' of controller 'c' is 'rigth'; did you mean 'right'?; expected one of: left, right");
 }
 
-TEST(Settings, WithoutTheKeyTheFallbackCounts) {
+TEST(Settings, ReturnsTheFallbackWithoutTheKey) {
   Settings none("controller 'c'", {});
   EXPECT_EQ(none.number("key", 3.0, 0.0, 1.0), 3.0);
   EXPECT_EQ(none.text("key", "fallback"), "fallback");
@@ -120,8 +120,8 @@ TEST(Settings, WithoutTheKeyTheFallbackCounts) {
   none.require_all_read();
 }
 
-/// Each number of a controller at its limits, and the next ones beyond.
-TEST(Settings, NumbersOfControllersEndAtTheirLimits) {
+/// Each number of a controller at its limits, and the next numbers beyond.
+TEST(Settings, RejectsNumbersBeyondTheirLimits) {
   traffic::Streets streets;
   streets.add(traffic::on_lane(streets.roads, "1.1", 4.0), "wander", {});
   world::Mover& mover = streets.world.movers[0];

@@ -34,9 +34,9 @@ void add_cast(Streets& t, std::uint64_t seed) {
 
 struct Town {
   int contacts = 0;
-  double longest_stand = 0.0;              // [s] of the robots that do not park
-  std::uint64_t goals = 0, least = ~0ull;  // of the robots with goals
-  std::array<double, 5> driven{};          // [m] by the members of the convoy
+  double longest_stand = 0.0;              // [s] for the robots that do not park
+  std::uint64_t goals = 0, least = ~0ull;  // for the robots with goals
+  std::array<double, 5> driven{};          // [m] driven by the members of the convoy
   std::vector<double> gaps;                // [m] from each member to the one ahead of it, every second
   double gap(double quantile) {
     const auto at = static_cast<std::size_t>(quantile * static_cast<double>(gaps.size() - 1));
@@ -72,7 +72,7 @@ Town town(std::uint64_t seed, double seconds) {
 }
 
 // A route that is cut anywhere in the car park continues from the cut.
-TEST(Town, ARouteCutInTheCarParkStaysInOnePiece) {
+TEST(Town, RouteCutInTheCarParkStaysContinuous) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
   const auto start = locate_on_lane(corridors, on_lane(t.roads, "11.2", 0.1));
@@ -94,7 +94,7 @@ TEST(Town, ARouteCutInTheCarParkStaysInOnePiece) {
   EXPECT_GT(in_zone, 3);
 }
 
-TEST(Town, NoRobotStandsForGoodAndTheConvoyDrivesOn) {
+TEST(Town, NoRobotStopsPermanentlyAndTheConvoyContinues) {
   for (std::uint64_t seed = 1; seed <= (instrumented() ? 1u : 3u); ++seed) {
     const Town t = town(seed, 500.0);
     EXPECT_EQ(t.contacts, 0) << seed;
@@ -104,7 +104,7 @@ TEST(Town, NoRobotStandsForGoodAndTheConvoyDrivesOn) {
   }
 }
 
-// Half an hour of simulated time takes half a minute, so it runs on request only.
+// Half an hour of simulated time takes half a minute, so it runs only on request.
 TEST(Town, DISABLED_HalfAnHour) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Town t = town(seed, 1800.0);

@@ -25,7 +25,7 @@ inline world::RoadNetwork simville() {
   return world::load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
 }
 
-/// Pose on a lane, `s` metres along it.
+/// Returns a pose on a lane, `s` metres along it.
 inline Pose on_lane(const world::RoadNetwork& roads, const std::string& name, double s) {
   for (const world::RoadLane& lane : roads.lanes) {
     if (lane_name(roads, lane) != name) continue;
@@ -36,7 +36,7 @@ inline Pose on_lane(const world::RoadNetwork& roads, const std::string& name, do
   return {};
 }
 
-/// A light of SimVille with one phase plan for some stop lines.
+/// Returns a light of SimVille with one phase plan for some stop lines.
 inline world::Light light(const std::string& name, std::vector<std::string> points,
                           std::vector<world::LightPhase> phases, double offset = 0.0) {
   world::Light light;
@@ -128,7 +128,7 @@ class Streets {
 
 using Numbers = std::vector<double>;
 
-/// Settings of a route through checkpoints.
+/// Returns settings of a route through checkpoints.
 inline std::vector<Setting> go(Numbers checkpoints, std::vector<Setting> more = {}) {
   more.push_back({"checkpoints", std::move(checkpoints), "test: "});
   return more;

@@ -29,7 +29,7 @@ sensors::LaserSettings laser(double fov, std::uint32_t samples, double range_max
   return l;
 }
 
-// Range along a bearing to walls and the bodies of other movers, by brute force.
+// Returns the range along a bearing to walls and the bodies of other movers, by brute force.
 double cast(const world::World& world, std::span<const base::Report> reports, std::size_t own, glm::dvec2 p,
             double bearing, double range_max) {
   const glm::dvec2 u{std::cos(bearing), std::sin(bearing)};
@@ -116,7 +116,7 @@ world::World arena() {
   return world;
 }
 
-TEST(Wander, WithAScannerCoversGroundAndMeetsNothing) {
+TEST(Wander, WithAScannerCoversGroundWithoutContact) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     world::World world = arena();
     scenes::add_create(world, {2, 2, 0, 0.3})
@@ -129,8 +129,9 @@ TEST(Wander, WithAScannerCoversGroundAndMeetsNothing) {
   }
 }
 
-// Touched only from behind the robot drives forward where there is room, else turns. Touched elsewhere it backs off.
-TEST(Wander, LeavesWhatPressesFromBehind) {
+// Touched only from behind, the robot drives forward if there is room, otherwise turns. Touched elsewhere, it backs
+// off.
+TEST(Wander, DrivesForwardWhenTouchedFromBehind) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 181, 8.0)));
   const auto first_twist = [&](double range, std::uint32_t contact_mask) {
@@ -165,7 +166,7 @@ TEST(Wander, WithTwelveSingleBeamsKeepsMoving) {
   EXPECT_LT(w.longest_stay, 10.0);
 }
 
-TEST(Wander, WithoutALaserWalksByTouch) {
+TEST(Wander, WithoutALaserWandersByTouch) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3});
   const Walked w = walk(world, 120);
@@ -175,7 +176,7 @@ TEST(Wander, WithoutALaserWalksByTouch) {
   EXPECT_GT(w.contacts, 0);
 }
 
-TEST(Wander, ATinyRobotWithShortSight) {
+TEST(Wander, TinyRobotWithAShortRange) {
   world::World world = scenes::boxed_world(1, 1);
   std::vector<glm::dvec2> corners;
   for (int i = 0; i < 12; ++i) corners.push_back(0.035 * glm::dvec2{std::cos(M_PI * i / 6), std::sin(M_PI * i / 6)});
@@ -186,7 +187,7 @@ TEST(Wander, ATinyRobotWithShortSight) {
   EXPECT_GT(walk(world, 60).distance, 3.0);
 }
 
-TEST(Wander, ACarKeepsMoving) {
+TEST(Wander, CarKeepsMoving) {
   world::World world = arena();
   world::Mover& mover = scenes::add_square(world, {2, 2, 0, 0.3});
   mover.drive = world::Drive::car;
@@ -197,7 +198,7 @@ TEST(Wander, ACarKeepsMoving) {
   EXPECT_GT(w.cells, 6u);
 }
 
-TEST(Wander, ACrowdKeepsMoving) {
+TEST(Wander, CrowdKeepsMoving) {
   world::World world = arena();
   for (int i = 0; i < 12; ++i) {
     scenes::add_create(world, {1.0 + i % 4, 1.0 + i / 4, 0, 0.5 * i})
@@ -212,7 +213,7 @@ TEST(Wander, ACrowdKeepsMoving) {
   for (const double d : distance) EXPECT_GT(d, 5.0);
 }
 
-TEST(Wander, TheSameWalkAgainAndAnotherWithAnotherSeed) {
+TEST(Wander, DependsOnTheSeed) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 61, 8.0)));
   WanderWalk a(world, 1), b(world, 1), c(world, 2);
@@ -252,7 +253,7 @@ TEST(Wander, IgnoresReadingsThatAreNotItsOwnLasers) {
   EXPECT_GT(wander.step({0, {}, blocks, false}).forward, 0.3);
 }
 
-TEST(Wander, BacksOffFromWhatItMetThenTurns) {
+TEST(Wander, BacksOffAfterAContactThenTurns) {
   world::World world = scenes::empty_world();
   Wander wander(scenes::add_create(world, {}), 0, 1);
   EXPECT_GT(wander.step({0, {}, {}, false}).forward, 0.0);
@@ -264,7 +265,7 @@ TEST(Wander, BacksOffFromWhatItMetThenTurns) {
 
 // ---- Single decisions: a Create with a laser of 181 beams over 180 degrees, 8 m range, at its centre.
 
-TEST(Wander, ItsDistancesFollowFromTheBodyItsSpeedAndItsSight) {
+TEST(Wander, DistancesDependOnBodySpeedAndRange) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {});
   struct Sized {
@@ -293,7 +294,7 @@ struct Eyes {
     scenes::add_create(world, {}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 181, 8.0)));
     wander.emplace(world.movers[0], 0, 1);
   }
-  /// @param front [m] range of the 3 middle beams, 0.165 m of it to the body's front
+  /// @param front [m] range of the 3 middle beams, including 0.165 m to the body's front
   Twist look(double seconds, double front, double right = 8.0, double left = 8.0, double yaw = 0.0,
              bool contact = false) {
     std::vector<double> ranges(181, right);
@@ -307,7 +308,7 @@ struct Eyes {
 };
 
 // `--set speed=0.1`; at most the robot's maximum.
-TEST(Wander, TakesASpeed) {
+TEST(Wander, AcceptsASpeed) {
   world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
   scenes::add_mover(world, {0.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.3, 0.3));
   const auto first_command = [&](std::vector<Setting> settings) {
@@ -322,7 +323,7 @@ TEST(Wander, TakesASpeed) {
   EXPECT_THROW(first_command({{"speed", -0.1, ""}}), base::InputError);
 }
 
-TEST(Wander, SlowsDownInProportionAndTurnsWhereItIsBlocked) {
+TEST(Wander, SlowsDownProportionallyAndTurnsWhenBlocked) {
   // 0.4 m/s from 1 m on, a quarter of it at 0.2 m; below that the robot turns.
   for (const auto& [ahead, speed] : {std::pair{5.0, 0.4}, {1.01, 0.4}, {0.6, 0.4 * 0.625}, {0.201, 0.1}})
     EXPECT_NEAR(Eyes().look(0.0, ahead + 0.165).forward, speed, 1e-3) << ahead;
@@ -331,8 +332,8 @@ TEST(Wander, SlowsDownInProportionAndTurnsWhereItIsBlocked) {
   EXPECT_NEAR(std::abs(blocked.turn), 0.8 * M_PI / 2, 1e-12);
 }
 
-// On free ground 0.3 of the turn rate times the difference of both sides, near an obstacle all of it; plus a drift of
-// 0.25.
+// On free ground 0.3 of the turn rate times the difference of both sides, near an obstacle the full rate; plus a drift
+// of 0.25.
 TEST(Wander, SteersTowardsTheFreerSide) {
   const double most = 0.8 * M_PI / 2, drift = 0.25 * most;
   EXPECT_NEAR(Eyes().look(0.0, 8.0, 4.0, 8.0).turn, 0.3 * most * 2.0 / 3.0, 1.1 * drift) << "left";
@@ -343,7 +344,7 @@ TEST(Wander, SteersTowardsTheFreerSide) {
   EXPECT_NEAR(left - right, 2.0 * 0.3 * most, 0.05) << "the drift of one seed is one";
 }
 
-TEST(Wander, BlockedItTurnsToTheFreerSideUntilItMayResume) {
+TEST(Wander, TurnsToTheFreerSideUntilItMayResume) {
   for (const double side : {1.0, -1.0}) {
     Eyes eyes;
     const double right = side > 0.0 ? 1.0 : 3.0, left = 4.0 - right;
@@ -354,7 +355,7 @@ TEST(Wander, BlockedItTurnsToTheFreerSideUntilItMayResume) {
   }
 }
 
-TEST(Wander, AfterAWholeRoundLessRoomWillDoAndAfterTwoItBacksOff) {
+TEST(Wander, RequiresLessRoomAfterOneTurnAndBacksOffAfterTwo) {
   Eyes eyes;
   eyes.look(0.0, 0.3);
   double turned = 0.0, seconds = 0.0;
@@ -369,8 +370,8 @@ TEST(Wander, AfterAWholeRoundLessRoomWillDoAndAfterTwoItBacksOff) {
   EXPECT_LT(stuck.look(seconds += 0.1, 0.3, 8.0, 8.0, turned += 0.5).forward, 0.0) << "two rounds: backwards";
 }
 
-// Half its speed for 0.3 to 0.8 s, then a turn of 0.5 to 2.5 rad, even when it is free ahead.
-TEST(Wander, BacksOffForAMomentAndTurnsBySomeAngle) {
+// Half its speed for 0.3 to 0.8 s, then a turn of 0.5 to 2.5 rad, even if it is free ahead.
+TEST(Wander, BacksOffBrieflyAndTurnsByARandomAngle) {
   std::set<double> backs, turns;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Eyes eyes;
@@ -398,7 +399,7 @@ struct Look {
   const char* why;
 };
 
-TEST(ClearanceEstimator, AheadIsMeasuredFromTheFrontInTheLane) {
+TEST(ClearanceEstimator, AheadIsMeasuredInTheLaneFromTheFront) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, 0, 0, 0})));
@@ -413,7 +414,7 @@ TEST(ClearanceEstimator, AheadIsMeasuredFromTheFrontInTheLane) {
 }
 
 // The lane is 15 % and a centimetre wider than the half width of 0.2 m, on both sides.
-TEST(ClearanceEstimator, TheLaneIsALittleWiderThanTheBody) {
+TEST(ClearanceEstimator, LaneIsSlightlyWiderThanTheBody) {
   for (const auto& [aside, ahead] : {std::pair{0.0, 1.0}, {0.235, 1.0}, {-0.235, 1.0}, {0.245, 1.9}, {-0.245, 1.9}}) {
     world::World world = scenes::empty_world();
     world::Mover mover = scenes::add_square(world, {});
@@ -424,7 +425,7 @@ TEST(ClearanceEstimator, TheLaneIsALittleWiderThanTheBody) {
   }
 }
 
-TEST(ClearanceEstimator, ThingsBesideTheLaneAreNotAhead) {
+TEST(ClearanceEstimator, IgnoresObstaclesOutsideTheLane) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 3, 4.0)));
