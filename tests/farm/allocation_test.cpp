@@ -1,5 +1,5 @@
-// A warm tick allocates nothing. The test replaces `operator new` and counts calls of the calling thread only: the
-// Vulkan driver's threads may allocate.
+// A tick after warm-up allocates nothing. The test replaces `operator new` and counts only calls of the calling thread:
+// the Vulkan driver's threads may allocate.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::uint64_t allocations_per_lap(const world::World& world, const FarmOptions& 
   });
 }
 
-TEST(Allocation, TheCountCounts) {
+TEST(Allocation, CountsAllocations) {
   counting = true;
   allocations = 0;
   const auto made = std::make_unique<std::vector<int>>(100);
@@ -40,14 +40,14 @@ TEST(Allocation, NoneInATickAfterWarmUp) {
   for (const unsigned threads : {1u, 2u}) EXPECT_EQ(allocations_per_lap(small_world(20), {.threads = threads}), 0u);
 }
 
-TEST(Allocation, NoneWithNoiseAndLatencyEither) {
+TEST(Allocation, NoneWithNoiseAndLatency) {
   world::World world = small_world(20, {.range_sigma = 0.01, .angle_sigma = 0.001});
   for (world::Mover& mover : world.movers) scenes::edit_laser(mover)->latency = 0.25;
   EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u);
 }
 
 /// Static and moving magnets, with and without a cut-off.
-TEST(Allocation, NoneWithMagnetometersEither) {
+TEST(Allocation, NoneWithMagnetometers) {
   world::World world = scenes::sheet(300, 6.0, 1);
   for (int i = 0; i < 12; ++i) {
     const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, scenes::five());
@@ -60,7 +60,7 @@ TEST(Allocation, NoneWithMagnetometersEither) {
   }
 }
 
-TEST(Allocation, NoneWithMapsEither) {
+TEST(Allocation, NoneWithMaps) {
   world::World world = small_world(8);
   for (world::Mover& mover : world.movers) {
     world::Sensor map;
@@ -74,7 +74,7 @@ TEST(Allocation, NoneWithMapsEither) {
 }
 
 /// Sensors without device work: a roof overhead, a hole in the floor, a dock and a virtual wall.
-TEST(Allocation, NoneWithSensorsOfTheHostEither) {
+TEST(Allocation, NoneWithHostSensors) {
   world::World world;
   for (int i = 0; i < 12; ++i) {
     const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, trial::fitted("bumper"));
@@ -93,7 +93,7 @@ TEST(Allocation, NoneWithSensorsOfTheHostEither) {
 }
 
 /// Transducers in sequence and all at once, with noise, among walls and each other.
-TEST(Allocation, NoneWithSonarAndInfraredEither) {
+TEST(Allocation, NoneWithSonarAndInfrared) {
   world::World world = small_world(20);
   for (world::Mover& mover : world.movers) {
     mover.sensors.push_back(trial::cones("sonar", trial::ring(16, 0.1),

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kShortTick = 20'000'000;
 
-TEST(Latency, AReadingComesLaterAndUnchanged) {
+TEST(Latency, DeliversReadingsLaterAndUnchanged) {
   world::World prompt = small_world(2);
   scenes::edit_laser(prompt.movers[1])->accuracy.word = "skip2";  // with quality flags of skipped beams
   world::World late = prompt;
@@ -43,7 +43,7 @@ TEST(Latency, AReadingComesLaterAndUnchanged) {
 
 /// A latency of whole ticks delivers at exactly that tick, a latency below one tick at the next. Boundary: 1 ns more
 /// adds a tick.
-TEST(Latency, OfWholeTicks) {
+TEST(Latency, HandlesWholeTicks) {
   const std::int64_t tick = 100'000'000;
   for (const auto& [latency, ticks] : {std::pair{0.1, 1}, {0.2, 2}, {0.100000001, 2}, {0.099999999, 1}, {1e-9, 1}}) {
     world::World world = small_world(1);
@@ -59,7 +59,7 @@ TEST(Latency, OfWholeTicks) {
 }
 
 /// The other sensors have no latency.
-TEST(Latency, OfTheFirstSensorAlone) {
+TEST(Latency, AppliesOnlyToTheFirstSensor) {
   world::World world = small_world(2);
   scenes::edit_laser(world.movers[0])->latency = 0.05;
   Farm farm(world, device());
@@ -69,7 +69,7 @@ TEST(Latency, OfTheFirstSensorAlone) {
   EXPECT_EQ(readings[0].mover, 1u);
 }
 
-/// The farm reports the time of the next delivery. A sample at that time, between two ticks, is punctual.
+/// The farm reports the time of the next delivery. A sample at that time, between two ticks, delivers it on time.
 TEST(Latency, DeliveredBetweenTicks) {
   world::World world = small_world(2);
   scenes::edit_laser(world.movers[1])->latency = 0.03;
@@ -88,8 +88,8 @@ TEST(Latency, DeliveredBetweenTicks) {
   EXPECT_EQ(farm.next_delivery(), 80'000'000);
 }
 
-/// Latency above the period: several readings wait at once and are delivered in order.
-TEST(Latency, LongerThanThePeriod) {
+/// Latency above the period: several readings wait at the same time and are delivered in order.
+TEST(Latency, MayExceedThePeriod) {
   world::World world = small_world(3);
   for (world::Mover& mover : world.movers) scenes::edit_laser(mover)->latency = 0.35;
   Farm farm(world, device());
@@ -104,7 +104,7 @@ TEST(Latency, LongerThanThePeriod) {
 }
 
 /// Readings delivered in one tick are ordered by age, oldest first; those without latency come last.
-TEST(Latency, OldestFirst) {
+TEST(Latency, DeliversOldestFirst) {
   world::World world = small_world(2);
   scenes::edit_laser(world.movers[0])->latency = 0.0;
   scenes::edit_laser(world.movers[1])->latency = 0.15;
@@ -121,7 +121,7 @@ TEST(Latency, OldestFirst) {
 }
 
 /// Readings of one delivery are ordered by robot, not by time of measurement.
-TEST(Latency, RobotByRobot) {
+TEST(Latency, DeliversRobotByRobot) {
   world::World world = small_world(2);
   scenes::edit_laser(world.movers[0])->latency = 0.1;
   scenes::edit_laser(world.movers[1])->latency = 0.2;

@@ -36,8 +36,8 @@ TEST(Determinism, IndependentOfTheNumberOfThreads) {
   for (const unsigned threads : {2u, 3u, 7u}) EXPECT_EQ(run(world, {.seed = 1, .threads = threads}), one) << threads;
 }
 
-/// Samples between two ticks are those at the interpolated states. An absent mover's first report sets its pose.
-TEST(Determinism, SamplesBetweenTicksAreAtInterpolatedStates) {
+/// Samples between two ticks use the interpolated states. An absent mover's first report sets its pose.
+TEST(Determinism, SamplesBetweenTicksUseInterpolatedStates) {
   const world::World world = small_world(30);
   Farm farm(world, device()), by_hand(world, device());
   farm.subscribe_all(), by_hand.subscribe_all();
@@ -62,7 +62,7 @@ TEST(Determinism, SamplesBetweenTicksAreAtInterpolatedStates) {
 }
 
 /// Sent ranges are infinite without a return; the hash covers the sent values.
-TEST(Determinism, TheHashIsOfWhatIsSent) {
+TEST(Determinism, HashCoversSentValues) {
   const world::World world = small_world(30);
   Farm farm(world, device(), {.no_return_inf = true});
   Farm plain(world, device());
@@ -89,7 +89,7 @@ TEST(Determinism, TheHashIsOfWhatIsSent) {
 }
 
 /// The cache is so small that cells are evicted every tick and that it must grow within a tick.
-TEST(Determinism, IndependentOfThePoolsSize) {
+TEST(Determinism, IndependentOfThePoolSize) {
   const world::World world = small_world(30, kNoise);
   const std::uint64_t large = run(world, {.seed = 1});
   for (const std::uint32_t chunks : {32u, 1024u, 16'384u})
@@ -100,7 +100,7 @@ TEST(Determinism, IndependentOfThePoolsSize) {
           << chunks << " chunks, " << cells << " cells";
 }
 
-TEST(Determinism, EvictedCellsAreBuiltAgain) {
+TEST(Determinism, RebuildsEvictedCells) {
   const world::World world = small_world(30);
   Farm farm(world, device(), {.scene = {.caster = &raycast::device_caster, .pool_chunks = 16'384, .pool_cells = 32}});
   farm.subscribe_all();
@@ -112,7 +112,7 @@ TEST(Determinism, EvictedCellsAreBuiltAgain) {
   EXPECT_EQ(farm.hash(), roomy.hash());
 }
 
-/// Readings of robot 0; `hear_others` subscribes the other robots too.
+/// Returns the readings of robot 0; `hear_others` subscribes the other robots too.
 std::vector<Kept> of_first(const world::World& world, bool hear_others) {
   Farm farm(world, device(), {.seed = 3});
   farm.subscribe(0, kAllSensorTypes);
@@ -126,7 +126,7 @@ std::vector<Kept> of_first(const world::World& world, bool hear_others) {
 }
 
 /// Invisible robots change no reading: far away, behind walls, or not seen by lasers.
-TEST(Determinism, RobotsThatCannotBeSensedChangeNothing) {
+TEST(Determinism, InvisibleRobotsChangeNothing) {
   world::World alone;
   scenes::add_room(alone, {}, 6.0);
   scenes::add_outline(alone, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "box");
@@ -157,7 +157,7 @@ TEST(Determinism, IndependentOfTheBatch) {
 }
 
 /// A sense request between ticks does not change later readings.
-TEST(Determinism, SenseLeavesNoTrace) {
+TEST(Determinism, SenseHasNoSideEffects) {
   const world::World world = small_world(5, kNoise);
   Farm asked(world, device(), {.seed = 1});
   Farm plain(world, device(), {.seed = 1});

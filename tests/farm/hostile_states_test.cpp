@@ -19,7 +19,7 @@ namespace {
 constexpr double kFarthest = 1e7;  // [m] limit of packets
 constexpr double kFastest = 1e3;   // [m/s], [rad/s]
 
-/// An awkward coordinate: beside, exactly on or between known ones, to the last bit, or at the limit of packets.
+/// An awkward coordinate: next to, exactly on or between known ones, to the last bit, or at the limit of packets.
 double odd_coordinate(trial::Chance& chance, double known) {
   switch (chance.below(8)) {
     case 0:
@@ -43,7 +43,7 @@ double odd_coordinate(trial::Chance& chance, double known) {
 
 base::Report odd_report(trial::Chance& chance, const world::World& world, std::int64_t now) {
   const auto mover = chance.below(static_cast<std::uint32_t>(world.movers.size()));
-  // Round a corner of a wall, another mover, or the mover's own position at load.
+  // Near a corner of a wall, another mover, or the mover's own position at load.
   const base::Pose& other = world.movers[chance.below(static_cast<std::uint32_t>(world.movers.size()))].X_WM;
   glm::dvec2 known{other.x, other.y};
   if (!world.walls.empty() && chance.below(2) == 0)
@@ -82,7 +82,7 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
     reports.clear();
     const std::uint32_t count = chance.below(2 * static_cast<std::uint32_t>(world.movers.size()));
     for (std::uint32_t i = 0; i < count; ++i) reports.push_back(odd_report(chance, world, now));
-    // Occasionally all reports have one position.
+    // Occasionally all reports have the same position.
     if (tick % 7 == 3)
       for (base::Report& report : reports) report.X_WM = reports[0].X_WM;
     fleet.apply(reports);
@@ -108,12 +108,12 @@ void expect_the_same_from_all(const world::World& world, std::uint64_t seed) {
   EXPECT_EQ(under_siege(world, seed, 2, &raycast::device_caster), hash) << "the device's kernels";
 }
 
-TEST(HostileStates, AmongBoxes) {
+TEST(HostileStates, MatchTheReferenceAmongBoxes) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) expect_the_same_from_all(small_world(30), seed);
 }
 
 /// All sensor types, road, lights and magnets.
-TEST(HostileStates, InSimVille) {
+TEST(HostileStates, MatchTheReferenceInSimVille) {
   const world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   for (const std::uint64_t seed : {4u, 5u}) expect_the_same_from_all(world, seed);

@@ -33,7 +33,7 @@ std::size_t bytes_of(const world::World& world) {
   return bytes;
 }
 
-TEST(Price, KindsThatAreAbsentHoldNothing) {
+TEST(Price, AbsentTypesUseNoMemory) {
   world::World world = small_world(4);
   const auto lasers = held_for(world);
   ASSERT_EQ(lasers.size(), 1u);
@@ -51,15 +51,15 @@ TEST(Price, KindsThatAreAbsentHoldNothing) {
 }
 
 /// The lists' initial size depends on the number of sensing robots, up to the limits in the options.
-TEST(Price, FewRobotsHoldLittle) {
+TEST(Price, FewRobotsUseLittleMemory) {
   constexpr std::size_t kMiB = 1u << 20;
   EXPECT_LT(bytes_of(small_world(6)), 8 * kMiB);
   EXPECT_LT(bytes_of(small_world(50)), 24 * kMiB);
   EXPECT_GT(bytes_of(small_world(50)), bytes_of(small_world(6)));
 }
 
-/// Kernels join the batch at the first subscription; readings do not depend on that time.
-TEST(Price, KindsThatAreHeardLaterReadTheSame) {
+/// Kernels join the batch at the first subscription; readings do not depend on when that is.
+TEST(Price, TypesSubscribedLaterGiveTheSameReadings) {
   world::World world = small_world(6);
   world.magnets.push_back(scenes::magnet({0.5, 0.5}));
   for (world::Mover& mover : world.movers) {
@@ -87,7 +87,7 @@ TEST(Price, KindsThatAreHeardLaterReadTheSame) {
   }
 }
 
-TEST(Price, TheUnheardCastAndSubmitNothing) {
+TEST(Price, UnsubscribedSensorsCastAndSubmitNothing) {
   const world::World world = small_world(20);
   Farm farm(world, device());
   for (int k = 0; k < 20; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
@@ -106,7 +106,7 @@ TEST(Price, SensorsThatAreNotDueSubmitNothing) {
   EXPECT_EQ(farm.stats().work.rays, 10u * 20u * kBeams);
 }
 
-TEST(Price, AStandingFleetCastsAndSubmitsNothing) {
+TEST(Price, FleetAtRestCastsAndSubmitsNothing) {
   const world::World world = small_world(20);
   Farm farm(world, device(), kOnDevice);
   farm.subscribe_all();
@@ -117,7 +117,7 @@ TEST(Price, AStandingFleetCastsAndSubmitsNothing) {
 }
 
 /// Host scans need no batch and give the same bytes.
-TEST(Price, ScansOfTheHostSubmitNothing) {
+TEST(Price, HostScansSubmitNothing) {
   const world::World world = small_world(20);
   Farm by_host(world, device(), {.scene = {.caster = &raycast::host_caster}});
   Farm by_device(world, device(), kOnDevice);
@@ -130,8 +130,8 @@ TEST(Price, ScansOfTheHostSubmitNothing) {
   EXPECT_EQ(by_host.hash(), by_device.hash());
 }
 
-/// One robot drives, the others stand: only robots that may see it measure anew.
-TEST(Price, OneThatDrivesIsSeenByThoseInReach) {
+/// One robot drives, the others are at rest: only robots that may see it measure again.
+TEST(Price, OnlyRobotsInRangeMeasureADrivingRobot) {
   world::World world;
   scenes::add_room(world, {}, 60.0);
   for (int i = 0; i < 10; ++i)

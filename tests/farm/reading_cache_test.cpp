@@ -1,4 +1,4 @@
-// Reused readings: the same bytes as measured ones, and no work where nothing moves.
+// Reused readings equal measured ones, and nothing is computed where nothing moves.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ world::World varied_world(std::uint64_t seed) {
   return world;
 }
 
-/// A sequence of states: robots stand, drive and jump in turn; some never move.
+/// A sequence of states: robots stop, drive and jump in turn; some never move.
 class Day {
  public:
   Day(const world::World& world, std::uint64_t seed) : chance_(seed), stir_(world.movers.size()) {
@@ -132,7 +132,7 @@ std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) 
   return again.stats().reused;
 }
 
-TEST(ReadingCache, TheSameBytesAsIfEveryoneHadLooked) {
+TEST(ReadingCache, ReusedReadingsEqualMeasuredOnes) {
   std::uint64_t again = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
@@ -161,7 +161,7 @@ struct Pair {
       : world(made(change)), farm(world, device(), kOnDevice) {
     farm.subscribe(0, kAllSensorTypes);
   }
-  /// True when the due reading is reused with the disc at `X`.
+  /// Returns whether the due reading is reused with the disc at `X`.
   bool again_with(const base::Pose& X, const base::Pose& own = {}) {
     const FarmStats before = farm.stats();
     const std::vector<base::Report> reports{{0, 0, own, {}}, {1, 0, X, {}}};
@@ -172,14 +172,14 @@ struct Pair {
     EXPECT_EQ(farm.stats().batches - before.batches, again == 0 ? 1u : 0u);
     return again > 0;
   }
-  /// Ticks until the reading is cached.
+  /// Runs ticks until the reading is cached.
   void settle(const base::Pose& X, const base::Pose& own = {}) {
     for (int k = 0; k < 3; ++k) again_with(X, own);
     EXPECT_TRUE(again_with(X, own));
   }
 };
 
-TEST(ReadingCache, AStandingSensorIsMeasuredTwice) {
+TEST(ReadingCache, MeasuresASensorAtRestTwice) {
   Pair pair;
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   EXPECT_FALSE(pair.again_with(far));
@@ -189,7 +189,7 @@ TEST(ReadingCache, AStandingSensorIsMeasuredTwice) {
 }
 
 /// Any change of its own pose counts, even the sign of a zero.
-TEST(ReadingCache, AMovingSensorIsMeasured) {
+TEST(ReadingCache, MeasuresAMovingSensor) {
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   for (const base::Pose& own : {base::Pose{1e-300, 0, 0, 0}, base::Pose{0, -1e-9, 0, 0}, base::Pose{0, 0, 0, 1e-16},
                                 base::Pose{0, 0, 0, 2.0 * M_PI}, base::Pose{0, 0, 0, -0.0}}) {
@@ -200,7 +200,7 @@ TEST(ReadingCache, AMovingSensorIsMeasured) {
   }
 }
 
-TEST(ReadingCache, OthersCountWhereTheyWereAndWhereTheyAre) {
+TEST(ReadingCache, ChecksOldAndNewPositionsOfOthers) {
   const base::Pose far{5.0, 0.0, 0.0, 0.0}, farther{6.0, 0.0, 0.0, 0.0}, near{1.0, 0.0, 0.0, 0.0};
   Pair pair;
   pair.settle(far);
@@ -221,15 +221,15 @@ TEST(ReadingCache, OthersCountWhereTheyWereAndWhereTheyAre) {
   EXPECT_TRUE(pair.again_with({0.0, 2.66, 0.0, 0.0})) << "passes outside of it, and is near nobody who is not";
 }
 
-/// The range counts from the sensor, which may be off its robot's centre.
-TEST(ReadingCache, RangesCountFromTheSensor) {
+/// The range is measured from the sensor, which may be off its robot's centre.
+TEST(ReadingCache, MeasuresRangesFromTheSensor) {
   Pair pair([](world::World& world) { scenes::edit_laser(world.movers[0])->X_MS = {-1.0, 0.0, 0.1, 0.0}; });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_FALSE(pair.again_with({-2.9, 0.0, 0.0, 0.0}));
 }
 
-/// Sensors of one type on a robot share the largest radius: they are invalidated together.
-TEST(ReadingCache, TheFarthestOfARobotsSensorsCounts) {
+/// Sensors of one type on a robot share the largest radius, so they are invalidated together.
+TEST(ReadingCache, UsesTheLargestReachOfARobotsSensors) {
   for (const std::size_t farthest : {0u, 1u}) {
     Pair pair([&](world::World& world) {
       world.movers[0].sensors.push_back(sensors::laser_sensor(sensors::lasers_of(world.movers[0])[0]));
@@ -242,8 +242,8 @@ TEST(ReadingCache, TheFarthestOfARobotsSensorsCounts) {
   }
 }
 
-/// A mover that comes and goes between two readings leaves no trace, but its motion still invalidates.
-TEST(ReadingCache, BetweenReadingsToo) {
+/// A mover that appears and disappears between two readings affects none of them, but its motion still invalidates.
+TEST(ReadingCache, MotionBetweenReadingsInvalidates) {
   Pair pair([](world::World& world) { scenes::edit_laser(world.movers[0])->rate = 5.0; });
   const std::vector<base::Report> far{{1, 0, {5.0, 0.0, 0.0, 0.0}, {}}}, near{{1, 0, {1.0, 0.0, 0.0, 0.0}, {}}};
   for (int k = 0; k < 6; ++k) pair.farm.tick(k * kTick, far);
@@ -255,7 +255,7 @@ TEST(ReadingCache, BetweenReadingsToo) {
   EXPECT_EQ(pair.farm.stats().reused, 2u) << "moved when nothing was due";
 }
 
-TEST(ReadingCache, NoiseIsNeverGivenAgain) {
+TEST(ReadingCache, NeverReusesNoisyReadings) {
   for (const raycast::ScanNoise noise :
        {raycast::ScanNoise{.range_sigma = 0.01}, {.range_proportional = 0.01}, {.angle_sigma = 0.01}}) {
     Pair pair([&](world::World& world) { scenes::edit_laser(world.movers[0])->noise = noise; });
@@ -263,7 +263,7 @@ TEST(ReadingCache, NoiseIsNeverGivenAgain) {
   }
 }
 
-TEST(ReadingCache, UnlessNoiseIsOff) {
+TEST(ReadingCache, ReusesReadingsWhenNoiseIsOff) {
   world::World world = small_world(3, {.range_sigma = 0.01});
   Farm farm(world, device(), {.noise = false});
   farm.subscribe_all();
@@ -272,7 +272,7 @@ TEST(ReadingCache, UnlessNoiseIsOff) {
 }
 
 /// Moving magnets invalidate from any distance; bodies without magnets do not.
-TEST(ReadingCache, MagnetometersMindMagnetsAlone) {
+TEST(ReadingCache, MagnetometersDependOnlyOnMagnets) {
   for (const bool carries : {false, true}) {
     Pair pair([&](world::World& world) {
       scenes::remove_lasers(world.movers[0]);
@@ -287,14 +287,14 @@ TEST(ReadingCache, MagnetometersMindMagnetsAlone) {
 }
 
 /// A robot without an outline is invisible.
-TEST(ReadingCache, AMoverWithoutOutlineInvalidatesNothing) {
+TEST(ReadingCache, MoverWithoutOutlineInvalidatesNothing) {
   Pair pair([](world::World& world) { world.movers[1].body.clear(); });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_TRUE(pair.again_with({1.0, 0.0, 0.0, 0.0}));
 }
 
 /// A sense request neither reuses nor stores readings.
-TEST(ReadingCache, SenseNeitherTakesNorLeaves) {
+TEST(ReadingCache, SenseNeitherReusesNorStores) {
   const world::World world = small_world(5);
   Farm asked(world, device()), plain(world, device());
   for (Farm* farm : {&asked, &plain}) farm->subscribe_all();
@@ -312,7 +312,7 @@ TEST(ReadingCache, SenseNeitherTakesNorLeaves) {
 }
 
 /// Moving robots store nothing; robots at rest allocate once.
-TEST(ReadingCache, AFleetThatDrivesKeepsNothing) {
+TEST(ReadingCache, DrivingFleetStoresNothing) {
   const world::World world = small_world(10);
   Farm farm(world, device());
   farm.subscribe_all();
@@ -320,7 +320,7 @@ TEST(ReadingCache, AFleetThatDrivesKeepsNothing) {
   EXPECT_EQ(farm.stats().reused, 0u);
 }
 
-TEST(ReadingCache, NothingIsSubmittedWhereTheHostAloneLooks) {
+TEST(ReadingCache, HostSensorsSubmitNothing) {
   world::World world = small_world(2);
   scenes::edit_laser(world.movers[0])->rate = 1.0;
   scenes::edit_laser(world.movers[1])->rate = 1.0;

@@ -53,8 +53,9 @@ void expect_same_reading(const base::ReadingBlock& a, const base::ReadingBlock& 
   EXPECT_TRUE(std::ranges::equal(a.quality, b.quality));
 }
 
-/// A scan with everything, a plain reading and an empty one, through one reader: nothing of an earlier one stays.
-TEST(ReadingExchange, ReadingsComeBackOneAfterAnother) {
+/// Reads a scan with all fields, a plain reading and an empty one with one reader: no data of an earlier reading
+/// remains.
+TEST(ReadingExchange, ReadingsRoundTripInSequence) {
   const Reading scan{{1.0 / 3.0, 8.0, 0.5}, {7, base::kNoHit, 9}, {QualityFlag::none, QualityFlag::grazing}};
   const Reading plain{{0.25}, {}, {}};
   const Reading empty;

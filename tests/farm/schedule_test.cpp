@@ -25,7 +25,7 @@ TEST(Schedule, DueAtPhasePlusWholePeriods) {
   EXPECT_EQ(readings_started(100 * kSecond, 0.01, 0.0), 2u) << "slower than a tick a second";
 }
 
-/// Reading k starts at phase + k / rate, rounded to a nanosecond: also for odd rates and after a year.
+/// Reading k starts at phase + k / rate, rounded to a nanosecond, also for odd rates and after a year.
 TEST(Schedule, ExactToANanosecondAfterAYear) {
   for (const double rate : {1.0, 10.0, 13.37, 30.0, 37.5, 1.0 / 3.0, 333.3, 1000.0})
     for (const double years : {0.0, 0.1, 1.0, 10.0})
@@ -38,7 +38,7 @@ TEST(Schedule, ExactToANanosecondAfterAYear) {
       }
 }
 
-TEST(Schedule, CountsEveryReadingOnceWhateverTheTick) {
+TEST(Schedule, CountsEveryReadingOnceForAnyTick) {
   for (const std::int64_t dt : {std::int64_t{1'000'003}, std::int64_t{16'666'667}, std::int64_t{99'999'999}}) {
     std::uint64_t before = 0;
     for (std::int64_t now = 0; now < 20 * kSecond; now += dt) {
@@ -51,7 +51,7 @@ TEST(Schedule, CountsEveryReadingOnceWhateverTheTick) {
 }
 
 /// A sensor is due at exactly `due_time`, to the nanosecond, and never before its phase.
-TEST(Schedule, DueTimesAreWhenReadingsBegin) {
+TEST(Schedule, DueTimesMatchTheStartOfReadings) {
   EXPECT_EQ(due_time(0, 10.0, 0.0), 0);
   EXPECT_EQ(due_time(0, 10.0, 0.25), kSecond / 4) << "its phase";
   EXPECT_EQ(due_time(3, 10.0, 0.25), kSecond / 4 + 3 * kSecond / 10);
@@ -70,7 +70,7 @@ TEST(Schedule, DueTimesAreWhenReadingsBegin) {
         }
 }
 
-TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
+TEST(Schedule, NextDueIsTheEarliestSubscribedSensor) {
   world::World world = small_world(3);
   scenes::edit_laser(world.movers[0])->rate = 50.0;
   scenes::edit_laser(world.movers[1])->rate = 13.0;
@@ -96,7 +96,7 @@ TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
 
 /// Sensors faster than the ticks deliver all readings when the farm samples at their due times; each reading has its
 /// own time.
-TEST(Schedule, FasterThanTheTicks) {
+TEST(Schedule, HandlesSensorsFasterThanTheTicks) {
   world::World world = small_world(3);
   const double rates[] = {13.0, 25.0, 50.0};
   for (std::size_t i = 0; i < 3; ++i) scenes::edit_laser(world.movers[i])->rate = rates[i];
@@ -117,8 +117,8 @@ TEST(Schedule, FasterThanTheTicks) {
   EXPECT_EQ(farm.stats().missed, 0u);
 }
 
-/// A tick of a third of a second is early by rounding: sensors due within a nanosecond are read.
-TEST(Schedule, ATickThatIsANanosecondEarly) {
+/// A tick of a third of a second is early because of rounding: sensors due within a nanosecond are read.
+TEST(Schedule, HandlesATickThatIsANanosecondEarly) {
   world::World world = small_world(1);
   scenes::edit_laser(world.movers[0])->rate = 3.0;
   Farm farm(world, device());
@@ -132,8 +132,8 @@ TEST(Schedule, ATickThatIsANanosecondEarly) {
   EXPECT_TRUE(farm.tick(kSecond - 2, {}).empty()) << "two nanoseconds";
 }
 
-/// Without samples between ticks they give one reading per tick, and the farm counts the missed ones.
-TEST(Schedule, MissedReadingsAreCounted) {
+/// Without samples between ticks, they give one reading per tick, and the farm counts the missed ones.
+TEST(Schedule, CountsMissedReadings) {
   world::World world = small_world(2);
   scenes::edit_laser(world.movers[0])->rate = 50.0;
   Farm farm(world, device());
@@ -151,7 +151,7 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
   scenes::edit_laser(world.movers[1])->rate = 2.0;
   scenes::edit_laser(world.movers[2])->rate = 10.0;
   scenes::edit_laser(world.movers[2])->phase = 0.05;
-  scenes::edit_laser(world.movers[3])->rate = 10.0;  // as the one before, at another phase
+  scenes::edit_laser(world.movers[3])->rate = 10.0;  // same rate as the previous one, at another phase
   scenes::edit_laser(world.movers[3])->phase = 0.07;
   Farm farm(world, device());
   farm.subscribe_all();
@@ -168,7 +168,7 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
   EXPECT_EQ(counts, (std::vector<int>{20, 4, 20, 20}));
 }
 
-/// A tick longer than the period: one reading per tick, with the number of the latest due time.
+/// A tick longer than the period gives one reading, with the number of the latest due time.
 TEST(Schedule, TenSecondTicksAndMicrosecondTicks) {
   const world::World world = small_world(1);
   Farm slow(world, device());
@@ -198,7 +198,7 @@ TEST(Schedule, AYearOfSimulatedTime) {
   }
 }
 
-TEST(Schedule, NothingIsComputedForTheUnheard) {
+TEST(Schedule, ComputesNothingForUnsubscribedSensors) {
   const world::World world = small_world(4);
   Farm farm(world, device());
   EXPECT_TRUE(farm.tick(0, {}).empty());

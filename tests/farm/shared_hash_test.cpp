@@ -1,4 +1,4 @@
-// A fleet measured in parts: the hash of all readings is that of one farm.
+// A fleet measured in parts: the hash of all readings equals that of one farm.
 
 #include "farm/shared_hash.h"
 
@@ -15,7 +15,7 @@
 namespace sf::farm {
 namespace {
 
-/// Prompt and late sensors, at three rates that no tick has in common.
+/// Prompt and late sensors, at three rates without a common tick.
 world::World mixed_world() {
   world::World world = small_world(7, {.range_sigma = 0.01});
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
@@ -39,7 +39,7 @@ std::span<const base::ReadingBlock> step(Farm& farm, const world::World& world, 
   return farm.tick(tick * 100'000'000LL, reports);
 }
 
-/// @param parts farms; mover m is measured by farm m % parts @param silent as the last part, which owns no mover
+/// @param parts number of farms; farm m % parts measures mover m @param silent whether the last part owns no mover
 std::uint64_t hash_of_parts(const world::World& world, unsigned parts, bool silent) {
   std::vector<std::unique_ptr<Farm>> farms;
   const unsigned all = parts + (silent ? 1 : 0);
@@ -62,7 +62,7 @@ std::uint64_t hash_of_parts(const world::World& world, unsigned parts, bool sile
   return farms[0]->hash();
 }
 
-TEST(SharedHash, IsThatOfOneFarm) {
+TEST(SharedHash, EqualsTheHashOfOneFarm) {
   const world::World world = mixed_world();
   Farm alone(world, device(), {.seed = 3});
   alone.subscribe_all();
@@ -71,7 +71,7 @@ TEST(SharedHash, IsThatOfOneFarm) {
   EXPECT_EQ(hash_of_parts(world, 2, true), alone.hash()) << "a part without robots samples at the same times";
 }
 
-TEST(SharedHash, AReadingLeftOutShows) {
+TEST(SharedHash, DetectsAMissingReading) {
   const world::World world = mixed_world();
   Farm alone(world, device(), {.seed = 3, .shared = true});
   alone.subscribe_all();
@@ -90,9 +90,9 @@ TEST(SharedHash, AReadingLeftOutShows) {
   EXPECT_NE(hashes[0], hashes[1]);
 }
 
-/// An own sensor type, whose id is above that of maps.
+/// Adds a custom sensor type, whose id is above that of maps.
 void add_still_type() {
-  if (sensors::find_sensor_type(31) != nullptr) return;  // types stay for the whole program
+  if (sensors::find_sensor_type(31) != nullptr) return;  // types remain for the whole program
   struct Still : sensorfarm::Sensor {
     std::uint32_t elements() const override { return 1; }
     void read(const sensorfarm::Measurement&, std::span<double> values) const override { values[0] = 0.0; }
@@ -101,7 +101,7 @@ void add_still_type() {
   sensors::add_own_sensor({.name = "still", .id = 31, .columns = {{"zero", 1.0}}, .rate = 10.0, .make = make}, "test");
 }
 
-/// Keys order readings as `Delivery` does, call by call. Maps, which are derived, come after all other types.
+/// Keys order readings like `Delivery`, call by call. Maps, which are derived, follow all other types.
 TEST(ReadingOrder, FollowsTheFarm) {
   add_still_type();
   world::World world = mixed_world();
@@ -129,8 +129,9 @@ TEST(ReadingOrder, FollowsTheFarm) {
   EXPECT_GT(readings, 100u);
 }
 
-/// Late readings that are due at once come by robot, then by type, then by sensor, and before all others.
-TEST(ReadingOrder, LateReadingsComeByRobotTypeAndSensor) {
+/// Late readings that are due at the same time are ordered by robot, then by type, then by sensor, and precede all
+/// others.
+TEST(ReadingOrder, OrdersLateReadingsByRobotTypeAndSensor) {
   world::World world = small_world(3, {});
   for (world::Mover& mover : world.movers) {
     mover.sensors.clear();
@@ -152,7 +153,7 @@ TEST(ReadingOrder, LateReadingsComeByRobotTypeAndSensor) {
     for (const auto& row : group.rows) {
       const std::uint32_t number = order.sensor_of(group.type->id, row.mover, row.sensor);
       EXPECT_EQ(order.is_late(number), row.latency > 0.0);
-      const std::int64_t time = row.latency > 0.0 ? 50'000'000 : 100'000'000;  // all are due at 0.1 s
+      const std::int64_t time = row.latency > 0.0 ? 50'000'000 : 100'000'000;  // all readings are due at 0.1 s
       keys[{row.latency == 0.0, row.mover, group.type->id, row.sensor}] = order.key(number, time);
     }
   ASSERT_EQ(keys.size(), 15u);

@@ -13,7 +13,7 @@ namespace sf::farm {
 
 inline constexpr std::uint32_t kBeams = 61;
 
-/// Lasers on the device's kernels, even on a software device.
+/// Runs lasers on the device's kernels, even on a software device.
 inline constexpr FarmOptions kOnDevice{.scene = {.caster = &raycast::device_caster}};
 
 /// `robots` robots among boxes, each with one laser at 10 Hz.

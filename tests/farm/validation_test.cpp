@@ -11,7 +11,7 @@
 namespace sf::farm {
 namespace {
 
-TEST(Validation, TheLayerIsSilent) {
+TEST(Validation, LayerReportsNothing) {
   setenv("SENSORFARM_VALIDATE", "1", 1);
   {
     gpu::Device device;
