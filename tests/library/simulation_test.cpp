@@ -1,4 +1,4 @@
-// The public interface, as a program of a user sees it.
+// The public interface, as a user's program sees it.
 
 #include "sensorfarm/simulation.h"
 
@@ -51,7 +51,7 @@ TEST(Library, CommandsAndControllersGiveOneHash) {
   EXPECT_NE(other.hash(), commanded.hash());
 }
 
-/// Rows, readings of before and views of before stay as they were; the new row is read from the next step on.
+/// Rows, earlier readings and earlier views are unchanged; the new row is read from the next step on.
 TEST(Library, RobotsJoinAndLeave) {
   Simulation simulation(kCave, {.robots = 5, .seed = 4}), alone(kCave, {.robots = 5, .seed = 4});
   drive(simulation, 10), drive(alone, 10);
@@ -93,7 +93,7 @@ TEST(Library, RobotsJoinAndLeave) {
   EXPECT_EQ(simulation.size(), 5u);
 }
 
-TEST(Library, WithoutMpirunOneRankHasAll) {
+TEST(Library, WithoutMpirunOneRankOwnsAll) {
   Simulation alone(kCave, {.robots = 5});
   Simulation shared(kCave, {.robots = 5, .ranks = true});
   drive(alone, 5), drive(shared, 5);
@@ -119,11 +119,11 @@ TEST(Library, ReadingsAreTheFarmsOwnTable) {
   const Readings second = simulation.readings("laser");
   EXPECT_EQ(first.values, second.values) << "nothing was copied";
   EXPECT_NE(second.row(7)[180], before);
-  // Hits name models.
+  // Hits are indices of models.
   EXPECT_LT(second.hits_of(0)[180], simulation.models().size());
 }
 
-TEST(Library, SensorsThatAreNotReadAtEveryTickKeepTheirNewestReading) {
+TEST(Library, SlowerSensorsKeepTheirNewestReading) {
   const std::string text = R"(
     name "slow"
     interval_sim 100
@@ -147,7 +147,7 @@ TEST(Library, SensorsThatAreNotReadAtEveryTickKeepTheirNewestReading) {
   EXPECT_NEAR(simulation.velocities()[0].forward, 0.5, 1e-9);
 }
 
-TEST(Library, ResetBeginsAnew) {
+TEST(Library, ResetRestarts) {
   Simulation simulation(kCave, {.robots = 5, .seed = 3});
   drive(simulation, 10);
   const std::uint64_t hash = simulation.hash();
@@ -170,7 +170,7 @@ TEST(Library, MemoryOutlivesTheSimulation) {
     scans = simulation.readings("laser");
     memory = simulation.memory();
   }
-  EXPECT_GT(scans.row(1)[0], 0.0);  // read after the end under AddressSanitizer
+  EXPECT_GT(scans.row(1)[0], 0.0);  // AddressSanitizer checks this read after the end
 }
 
 TEST(Library, PlacesRobots) {
@@ -184,7 +184,7 @@ TEST(Library, PlacesRobots) {
   expect_in("is not finite", refusal_of<Error>([&] { simulation.put(0, {NAN}); }));
 }
 
-TEST(Library, BadInputIsRefusedAndChangesNothing) {
+TEST(Library, RejectsBadInputWithoutChanges) {
   Simulation simulation(kCave, {.robots = 2});
   std::vector<Twist> commands(2);
   simulation.step(commands);
@@ -198,7 +198,7 @@ TEST(Library, BadInputIsRefusedAndChangesNothing) {
   EXPECT_EQ(simulation.tick(), 1u);
 }
 
-TEST(Library, ErrorsHaveFileAndLine) {
+TEST(Library, ErrorsIncludeFileAndLine) {
   expect_in("nowhere.world: no such file", refusal_of<Error>([] { Simulation simulation("nowhere.world"); }));
   expect_in("mine.world:2: ",
             refusal_of<Error>([] { Simulation::from_text("\nposition( size [1\n", {}, "mine.world"); }));
@@ -208,7 +208,7 @@ TEST(Library, ErrorsHaveFileAndLine) {
   EXPECT_THROW(Simulation(kCave, {.device = "no such device"}), DeviceError);
 }
 
-/// Never those of the command line.
+/// They never name options of the command line.
 TEST(Library, MessagesNameOptionsOfTheLibrary) {
   const std::vector<std::string> messages{
       refusal_of<DeviceError>([] { Simulation simulation(kCave, {.device = "hots"}); }),
@@ -227,7 +227,7 @@ TEST(Library, MessagesNameOptionsOfTheLibrary) {
   for (const std::string& warning : simulation.warnings()) EXPECT_EQ(warning.find("--"), std::string::npos) << warning;
 }
 
-TEST(Library, ARobotOfAnotherFileIsLentAndCopied) {
+TEST(Library, UsesAndClonesARobotOfAnotherFile) {
   const std::string own = SF_SOURCE_DIR "/worlds/simville/simville.world:car";
   const std::string bare = "model( size [9 0.1 1] pose [0 4 0 0] ) model( size [9 0.1 1] pose [0 -4 0 0] )";
   const Simulation one = Simulation::from_text(bare, {.robot_from = own});
@@ -242,7 +242,7 @@ TEST(Library, ARobotOfAnotherFileIsLentAndCopied) {
             }));
 }
 
-TEST(Library, TakenNamesOfRecordedTopicsAreWarnings) {
+TEST(Library, WarnsAboutTakenTopicNames) {
   const auto folder = std::filesystem::temp_directory_path() / "sensorfarm_library_names";
   const Simulation simulation =
       Simulation::from_text("position( name \"map\" laser( samples 3 ) )", {.record = folder.string()});
@@ -268,21 +268,21 @@ TEST(Library, TheReferenceCaster) {
             refusal_of<Error>([] { Simulation simulation(kCave, {.robots = 300, .caster = "reference"}); }));
 }
 
-TEST(Library, Records) {
+TEST(Library, RecordsARun) {
   const auto folder = std::filesystem::temp_directory_path() / "sensorfarm_library_record";
   std::filesystem::remove_all(folder);
   Simulation simulation(kCave, {.robots = 2, .record = folder.string(), .record_readings = true});
   drive(simulation, 3);
   simulation.finish_recording();
   EXPECT_GT(std::filesystem::file_size(folder / "run.mcap"), 10'000u);
-  simulation.reset();  // begins the recording anew
+  simulation.reset();  // begins the recording again
   drive(simulation, 3);
   simulation.finish_recording();
   EXPECT_GT(std::filesystem::file_size(folder / "run.mcap"), 10'000u);
   std::filesystem::remove_all(folder);
 }
 
-TEST(Library, RecordsInEitherForm) {
+TEST(Library, RecordsWithEitherCompression) {
   const auto folder = std::filesystem::temp_directory_path() / "sensorfarm_library_form";
   const auto size = [&](const std::string& compression) {
     std::filesystem::remove_all(folder);
@@ -296,7 +296,7 @@ TEST(Library, RecordsInEitherForm) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Library, AnImageShowsRobotsAtTheirPoses) {
+TEST(Library, ImageShowsRobotsAtTheirPoses) {
   Simulation simulation(kCave, {.robots = 1});
   const auto at = [&](double x) {
     simulation.put(0, {x, 0.0, 0.0, 0.0});
@@ -311,7 +311,7 @@ TEST(Library, AnImageShowsRobotsAtTheirPoses) {
             refusal_of<Error>([&] { simulation.image({.width = 40, .height = 0, .view = {}}); }));
 }
 
-TEST(Library, AControllerThatFailsEndsTheStepWithTheFirstRobotsName) {
+TEST(Library, FailingControllerEndsTheStepAndNamesTheFirstRobot) {
   struct Fails : Controller {
     Twist step(const Input& input) override {
       if (input.time > 0.15) throw std::runtime_error("had enough");
