@@ -13,7 +13,7 @@ namespace sf::cluster {
 
 namespace {
 
-/// The second of three ranks; the others' blocks are given.
+/// The second of three ranks; the blocks of the other ranks are fixed.
 class SecondOfThree final : public Ranks {
  public:
   SecondOfThree(base::Bytes first, base::Bytes third) : first_(std::move(first)), third_(std::move(third)) {}
@@ -41,7 +41,7 @@ base::Bytes error_of(std::uint8_t code, const char* message) {
   return bytes;
 }
 
-/// "code: message" of what `agree` throws; empty: nothing.
+/// Returns "code: message" of the exception thrown by `agree`; empty if there is none.
 std::string agreed(Ranks& ranks, const std::function<void()>& body) {
   try {
     agree(ranks, body);
@@ -51,24 +51,24 @@ std::string agreed(Ranks& ranks, const std::function<void()>& body) {
   return "";
 }
 
-TEST(Failure, NoneIsThrownWhereAllSucceed) {
+TEST(Failure, NotThrownIfAllSucceed) {
   SecondOfThree ranks({}, {});
   EXPECT_EQ(agreed(ranks, [] {}), "");
 }
 
-TEST(Failure, OfAnotherRankIsThrownHere) {
+TEST(Failure, ErrorOfAnotherRankIsThrown) {
   SecondOfThree ranks({}, error_of(3, "no device"));
   EXPECT_EQ(agreed(ranks, [] {}), "3: no device");
 }
 
-TEST(Failure, OwnErrorKeepsItsKind) {
+TEST(Failure, OwnErrorKeepsItsType) {
   SecondOfThree ranks({}, {});
   EXPECT_EQ(agreed(ranks, [] { throw base::InputError("f.world", 3, "bad"); }), "2: f.world:3: bad");
   EXPECT_EQ(agreed(ranks, [] { throw base::DeviceError("none"); }), "3: none");
   EXPECT_EQ(agreed(ranks, [] { throw std::runtime_error("other"); }), "1: other");
 }
 
-TEST(Failure, TheFirstRanksErrorCounts) {
+TEST(Failure, ReportsTheErrorOfTheFirstRank) {
   SecondOfThree ranks(error_of(2, "first"), error_of(2, "third"));
   EXPECT_EQ(agreed(ranks, [] { throw base::InputError("second"); }), "2: first");
 }

@@ -12,13 +12,11 @@ namespace {
 
 using Firsts = std::vector<std::uint32_t>;
 
-TEST(Shares, OneTakesAll) { EXPECT_EQ(equal_shares(std::vector<double>{1, 2, 3}, 1), (Firsts{0, 3})); }
+TEST(Shares, SingleShareTakesAll) { EXPECT_EQ(equal_shares(std::vector<double>{1, 2, 3}, 1), (Firsts{0, 3})); }
 
-TEST(Shares, EqualItemsAreDealtEvenly) {
-  EXPECT_EQ(equal_shares(std::vector<double>(6, 1.0), 3), (Firsts{0, 2, 4, 6}));
-}
+TEST(Shares, DividesEqualItemsEvenly) { EXPECT_EQ(equal_shares(std::vector<double>(6, 1.0), 3), (Firsts{0, 2, 4, 6})); }
 
-TEST(Shares, CostsCountNotItems) { EXPECT_EQ(equal_shares(std::vector<double>{3, 1, 1, 1}, 2), (Firsts{0, 1, 4})); }
+TEST(Shares, BalancesCostsNotItems) { EXPECT_EQ(equal_shares(std::vector<double>{3, 1, 1, 1}, 2), (Firsts{0, 1, 4})); }
 
 TEST(Shares, MoreSharesThanItems) {  // some ranks have no robot
   const Firsts first = equal_shares(std::vector<double>{1, 1}, 5);
@@ -26,8 +24,8 @@ TEST(Shares, MoreSharesThanItems) {  // some ranks have no robot
   EXPECT_EQ(first.back(), 2u);
 }
 
-/// An item whose middle is exactly where two shares meet goes to the second one.
-TEST(Shares, AnItemInTheMiddleGoesToTheLaterShare) {
+/// An item whose middle is exactly on the boundary of two shares belongs to the second one.
+TEST(Shares, ItemOnABoundaryBelongsToTheLaterShare) {
   EXPECT_EQ(equal_shares(std::vector<double>{1, 1, 1}, 2), (Firsts{0, 1, 3}));
   EXPECT_EQ(equal_shares(std::vector<double>{2, 2, 2, 2, 2}, 2), (Firsts{0, 2, 5}));
   EXPECT_EQ(equal_shares(std::vector<double>{4}, 2), (Firsts{0, 0, 1}));
@@ -35,7 +33,7 @@ TEST(Shares, AnItemInTheMiddleGoesToTheLaterShare) {
 
 TEST(Shares, NoItems) { EXPECT_EQ(equal_shares({}, 2), (Firsts{0, 0, 0})); }
 
-TEST(Shares, EachMissesItsPartByLessThanTwoHalves) {  // both ends are off by half an item at most
+TEST(Shares, DeviationIsBelowOneItem) {  // both ends deviate by at most half an item
   rc::check([] {
     const auto whole = *rc::gen::container<std::vector<unsigned>>(rc::gen::inRange(0u, 100u));
     const std::vector<double> costs(whole.begin(), whole.end());

@@ -1,5 +1,5 @@
 #pragma once
-// Ranks that are threads of this process, so that tests need no MPI.
+// Ranks that are threads of this process, so tests need no MPI.
 
 #include <barrier>
 #include <cstdlib>
@@ -15,7 +15,7 @@ class ThreadRanks {
  public:
   explicit ThreadRanks(unsigned count) : barrier_(count), blocks_(count), swapped_(count) {}
 
-  /// Runs `body` once per rank, at once.
+  /// Runs `body` once per rank, concurrently.
   void run(const std::function<void(Ranks&)>& body) {
     std::vector<std::jthread> threads;
     for (unsigned rank = 0; rank < blocks_.size(); ++rank)

@@ -18,30 +18,30 @@ std::vector<unsigned> counts_of(const Tiles& tiles, const Points& points) {
   return counts;
 }
 
-TEST(Tiles, OneIsThePlane) {
+TEST(Tiles, SingleTileIsThePlane) {
   const Tiles tiles(Points{{1, 2}}, std::vector<double>{1}, 1);
   EXPECT_EQ(tiles.at({-1e9, 1e9}), 0u);
   EXPECT_EQ(tiles.distance(0, {-1e9, 1e9}), 0.0);
 }
 
-TEST(Tiles, TheCutRunsAcrossTheLongerSide) {
+TEST(Tiles, CutsAcrossTheLongerSide) {
   const Tiles tiles(Points{{0, 0}, {1, 9}}, std::vector<double>{1, 1}, 2);
   EXPECT_EQ(tiles.at({100, 4.4}), 0u);
   EXPECT_EQ(tiles.at({-100, 4.6}), 1u);
 }
 
-TEST(Tiles, AnEdgeBelongsToTheUpperTile) {
+TEST(Tiles, EdgeBelongsToTheUpperTile) {
   const Tiles tiles(Points{{0, 0}, {2, 0}}, std::vector<double>{1, 1}, 2);
   EXPECT_EQ(tiles.at({1, 0}), 1u);
   EXPECT_EQ(tiles.at({std::nextafter(1.0, 0.0), 0}), 0u);
 }
 
-TEST(Tiles, CostsCountNotPoints) {
+TEST(Tiles, BalancesCostsNotPoints) {
   const Points points{{0, 0}, {1, 0}, {2, 0}, {3, 0}};
   EXPECT_EQ(counts_of(Tiles(points, std::vector<double>{3, 1, 1, 1}, 2), points), (std::vector<unsigned>{1, 3}));
 }
 
-TEST(Tiles, APartOfAnOddNumberHasItsShare) {
+TEST(Tiles, OddNumberOfTilesIsBalanced) {
   Points points;
   for (int i = 0; i < 30; ++i) points.push_back({i, 0});
   EXPECT_EQ(counts_of(Tiles(points, std::vector<double>(30, 1.0), 3), points), (std::vector<unsigned>{10, 10, 10}));
@@ -59,7 +59,7 @@ TEST(Tiles, NoPoints) {  // a world without robots
   EXPECT_LT(tiles.at({3, 4}), 5u);
 }
 
-TEST(Tiles, EveryPointIsInItsTileAndOutsideTheOthers) {
+TEST(Tiles, EveryPointIsInExactlyOneTile) {
   rc::check([](std::vector<std::pair<int, int>> places, std::uint8_t ranks, int x, int y) {
     Points points;
     for (const auto& [a, b] : places) points.push_back({a, b});
@@ -74,7 +74,7 @@ TEST(Tiles, EveryPointIsInItsTileAndOutsideTheOthers) {
   });
 }
 
-TEST(Tiles, TheDistanceIsThatOfTheNearestPoint) {
+TEST(Tiles, DistanceIsToTheNearestPoint) {
   const Tiles tiles(Points{{0, 0}, {10, 0}, {0, 10}, {10, 10}}, std::vector<double>(4, 1.0), 4);
   const unsigned far = tiles.at({10, 10});
   EXPECT_DOUBLE_EQ(tiles.distance(far, {2, 1}), 5.0);  // 3 and 4 to its corner at (5, 5)
