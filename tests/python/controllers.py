@@ -2,7 +2,7 @@
 
 
 class Careful:
-    """Turns where something is near."""
+    """Turns if an obstacle is near."""
 
     def __init__(self, robot, settings):
         self.near = settings.number("near", 0.6, 0, 10)
@@ -14,7 +14,7 @@ class Careful:
 
 
 class Divides:
-    """Fails on its third call: robot 7 alone."""
+    """Fails on its third call, for robot 7 only."""
 
     def __init__(self, robot, settings):
         self.left = 2 if robot.row == 7 else 1000
@@ -25,7 +25,7 @@ class Divides:
 
 
 class Returns:
-    """Returns what the setting says."""
+    """Returns the value of the setting."""
 
     def __init__(self, robot, settings):
         self.what = {"none": None, "two": (0, 0), "nan": (float("nan"), 0, 0), "text": "abc"}[settings.text("what", "two")]
@@ -35,7 +35,7 @@ class Returns:
 
 
 class Reads:
-    """Fails in a module of Python's own."""
+    """Fails in a module of Python's standard library."""
 
     def __init__(self, robot, settings):
         pass
@@ -66,7 +66,7 @@ class Prints:
 
 
 class Ends:
-    """Does to its process what the setting says, at 1 s: robot 0 alone."""
+    """Affects its process as the setting states, at 1 s, for robot 0 only."""
 
     def __init__(self, robot, settings):
         self.how, self.file, self.row = settings.text("how", ""), settings.text("file", ""), robot.row

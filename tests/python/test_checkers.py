@@ -1,5 +1,5 @@
-"""The checkers of Gymnasium and PettingZoo, run on the environments where these packages can be imported. What they check is
-covered without them in test_gym.py and test_environment.py."""
+"""Runs the checkers of Gymnasium and PettingZoo on the environments if these packages can be imported. test_gym.py and
+test_environment.py cover the same without them."""
 
 import copy
 import pickle
@@ -27,7 +27,7 @@ SIZE = dict(render_mode="rgb_array", render_size=(64, 48))
 
 
 def driven(steps, env):
-    """Observations of `steps` steps of one action from seed 4."""
+    """Returns the observations of `steps` steps of one action from seed 4."""
     seen = [env.reset(seed=4)[0].copy()]
     for _ in range(steps):
         seen.append(env.step(numpy.full(env.action_space.shape, 0.5, numpy.float32))[0].copy())
@@ -37,7 +37,7 @@ def driven(steps, env):
 @unittest.skipIf(gymnasium is None, "Gymnasium cannot be imported")
 class Gymnasium(unittest.TestCase):
     def setUp(self):
-        """Warnings of the checkers fail a test."""
+        """Warnings of the checkers fail the test."""
         caught = warnings.catch_warnings()
         caught.__enter__()
         self.addCleanup(caught.__exit__, None, None, None)
@@ -114,7 +114,7 @@ class PettingZoo(unittest.TestCase):
 
     def test_api(self):
         with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "options of reset without effect")  # it passes some
+            warnings.filterwarnings("ignore", "options of reset without effect")  # it passes options
             parallel_api_test(self.make(), num_cycles=100)
 
     @unittest.skipUnless(hasattr(pettingzoo, "make"), "this PettingZoo has no registry")

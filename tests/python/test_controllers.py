@@ -24,14 +24,14 @@ CAVE = "worlds/cave.world"
 
 
 def run(*arguments):
-    """Exit code, output and errors of `sensorfarm run` with 20 robots for 2 s."""
+    """Returns exit code, output and errors of `sensorfarm run` with 20 robots for 2 s."""
     done = subprocess.run([PROGRAM, "run", CAVE, "--robots", "20", "--duration", "2", *arguments],
                           capture_output=True, text=True)
     return done.returncode, done.stdout, done.stderr
 
 
 def line_of(text):
-    """Number of the line of controllers.py with `text`."""
+    """Returns the number of the line of controllers.py with `text`."""
     with open(FILE) as file:
         return 1 + file.read().split(text)[0].count("\n")
 
@@ -44,7 +44,7 @@ def simulated(**options):
 
 
 class OneHash(unittest.TestCase):
-    """A controller drives alike wherever it runs."""
+    """A controller drives the same way wherever it runs."""
 
     @classmethod
     def setUpClass(cls):
@@ -85,7 +85,7 @@ class OneHash(unittest.TestCase):
 
 
 def class_of(file):
-    """Class A of a file, loaded as a module of its own."""
+    """Returns class A of a file, loaded as a separate module."""
     spec = importlib.util.spec_from_file_location(os.path.dirname(file).replace("/", "_"), file)
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
@@ -119,7 +119,8 @@ class Program(unittest.TestCase):
                 self.assertIn(f"{FILE}:{line_of('return self.what') - 1}: step() returned", errors)
 
     def test_signatures(self):
-        """Place and expected signature of constructors and methods that cannot be called, in the program and in process."""
+        """Errors state place and expected signature of constructors and methods that cannot be called, in the program
+        and in process."""
         maker, drives = "def __init__(self, robot, settings): pass", "def step(self, input): return 0, 0, 0"
         for first, second, line, said in (
                 ("pass", drives, 2, "class A has no __init__; expected def __init__(self, robot, settings)"),
@@ -139,7 +140,7 @@ class Program(unittest.TestCase):
                 self.assertIn(f"{file}:{line}: {said}", str(raised.exception))
 
     def test_other_shapes_of_the_same_signatures(self):
-        """Arguments of any number or with defaults, methods of the class, callables."""
+        """Accepts arguments of any number or with defaults, methods of the class, and callables."""
         class Any:
             def __init__(self, *all, **named):
                 pass
@@ -163,7 +164,7 @@ class Program(unittest.TestCase):
         self.assertIn("has no setting 'far'", self.fails("--controller", FILE + ":Careful", "--set", "far=1"))
 
     def test_end_of_the_process(self):
-        # One thread: of several, another robot's may wait for the interpreter in its call.
+        # Uses one thread: with several, another robot's thread may wait for the interpreter in its call.
         code, out, errors = run("--controller", FILE + ":Ends", "--set", "how=exit", "--threads", "1")
         self.assertEqual(code, 1)
         self.assertIn("controller 'Ends' of robot 'roomba1' ended the process (exit code 0) at 1.000 s simulated", errors)
@@ -174,7 +175,8 @@ class Program(unittest.TestCase):
         self.assertIn("ValueError: \\x1b[2Jgone", errors)
 
     def test_first_interrupt(self):
-        """Within half a second, by Python's loops and sleeps, too; the rest of the limit is for slow machines."""
+        """The run ends within half a second, also during Python's loops and sleeps; the rest of the limit is for slow
+        machines."""
         for how in ("loop", "sleep"):
             with tempfile.TemporaryDirectory() as folder:
                 started = subprocess.Popen([PROGRAM, "run", CAVE, "--robots", "20", "--duration", "5", "--controller",
@@ -223,7 +225,7 @@ class Program(unittest.TestCase):
         self.assertTrue(out.endswith("farewell\n"), out[-200:])
 
     def test_virtual_environment(self):
-        """Modules of an active environment of this version are found; one of another version is left alone."""
+        """Modules of an active environment of this version are found; an environment of another version is ignored."""
         with tempfile.TemporaryDirectory() as folder:
             own = os.path.join(folder, "own")
             venv.create(own, system_site_packages=True, with_pip=False, symlinks=True)
@@ -260,7 +262,7 @@ class InProcess(unittest.TestCase):
             simulated(controller=Divides)
 
     def test_faults_of_classes(self):
-        """Answers of another type, texts that are no UTF-8, lines that are several, and classes that drive nothing."""
+        """Results of another type, invalid UTF-8, multi-line texts, and classes that drive nothing."""
         def made(**members):
             return type("Made", (), {"__init__": lambda self, robot, settings: None, "step": lambda self, input: (0, 0, 0),
                                      **members})
@@ -358,7 +360,7 @@ class InProcess(unittest.TestCase):
             sim.step()
 
     def test_calls_run_in_threads_of_the_farm(self):
-        """Two calls wait for each other, so each thread must let go of the interpreter."""
+        """Two calls wait for each other, so each thread must release the interpreter."""
         both = threading.Barrier(2, timeout=60)
 
         class Meets:

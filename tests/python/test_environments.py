@@ -30,13 +30,13 @@ def parallel(**options):
 
 
 def go(env, steps=5):
-    """Observations, rewards and ends of some steps at half speed."""
+    """Returns observations, rewards and ends of some steps at half speed."""
     actions = numpy.full(env.action_space.shape, 0.5)
     return [env.step(actions)[:4] for _ in range(steps)]
 
 
 class Shifted(Task):
-    """Its own reward, to be found again in a copy."""
+    """A task with its own reward, which a copy must have too."""
 
     def reward(self):
         return super().reward() + 10.0
@@ -98,7 +98,7 @@ class Single(unittest.TestCase):
 
 class ResetOfSome(unittest.TestCase):
     def test_the_rest_goes_on(self):
-        """Poses, speeds, time, observations and the rest of the episode are those of a run without the reset."""
+        """Poses, speeds, time, observations and the rest of the episode equal those of a run without the reset."""
         env, plain = vector(max_steps=8), vector(max_steps=8)
         for each in (env, plain):
             each.reset(seed=1)
@@ -118,7 +118,7 @@ class ResetOfSome(unittest.TestCase):
         self.assertEqual(ends[:, :2].argmax(axis=0).tolist(), [7, 7], "those of the mask are as old as their reset")
 
     def test_observations_are_those_of_the_new_poses(self):
-        """Readings are those of a simulation in which all robots stand there; speeds are 0."""
+        """Readings equal those of a simulation in which all robots are at these poses; speeds are 0."""
         env = vector()
         env.reset(seed=1)
         go(env)
@@ -133,7 +133,8 @@ class ResetOfSome(unittest.TestCase):
         self.assertEqual(numpy.abs(after[mask, -2:]).max(), 0)
 
     def test_seeds(self):
-        """s + i, or the i-th, chooses the start of sub-environment i; None goes on with the environment's own."""
+        """Seed s + i, or the i-th seed, chooses the start of sub-environment i; None uses the environment's own
+        generator."""
         mask = numpy.arange(6) == 3
 
         def start(seed):
@@ -146,7 +147,7 @@ class ResetOfSome(unittest.TestCase):
         self.assertGreater(len({start(seed) for seed in range(6)}), 1)
 
     def test_a_world_of_its_own_begins(self):
-        """A world whose robots are all in the mask begins as by a full reset; other worlds stand still."""
+        """A world whose robots are all in the mask begins as after a full reset; other worlds do not advance."""
         env = vector(worlds=2)
         env.reset(seed=1)
         before = go(env)[-1][0]
@@ -237,7 +238,7 @@ class Copies(unittest.TestCase):
         yield pickle.loads(pickle.dumps(env))
 
     def test_a_copy_is_as_after_the_last_reset(self):
-        """The same actions lead to the same observations, rewards and ends, through restarts too."""
+        """The same actions lead to the same observations, rewards and ends, also across restarts."""
         for make in (single, vector):
             env = make(seed=3, max_steps=7, task=Shifted)
             env.reset(seed=8)
@@ -263,7 +264,7 @@ class Copies(unittest.TestCase):
                 numpy.testing.assert_array_equal(seen, first[agent])
 
     def test_before_the_first_reset(self):
-        """Also without a seed, of which a copy has the one that was drawn."""
+        """Also without a seed; a copy has the seed that was drawn."""
         env = single()
         other = pickle.loads(pickle.dumps(env))
         numpy.testing.assert_array_equal(env.reset()[0], other.reset()[0])

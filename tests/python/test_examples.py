@@ -1,4 +1,4 @@
-"""The worked example runs, and its parts do what they say."""
+"""The worked example runs, and its parts behave as described."""
 
 import contextlib
 import io
@@ -35,7 +35,7 @@ class Corridor(unittest.TestCase):
         self.assertIn("even number", done.stderr)
 
     def test_floors(self):
-        """Robots neither meet nor see each other, and their reward is the way along the ring."""
+        """Robots neither touch nor see each other, and their reward is the distance along the ring."""
         env = sensorfarm.gym.VectorEnv("corridor.world", num_envs=None, task=corridor.Rounds,
                                        text=corridor.corridor(6))
         env.reset(seed=1)
@@ -43,15 +43,15 @@ class Corridor(unittest.TestCase):
         self.assertEqual(len(set(sim.poses[:, 2])), 6)
         hits = set(sim.hits("laser").ravel().tolist()) - {sensorfarm.NONE}
         self.assertEqual({sim.models[hit] for hit in hits}, {"inner", "outer"})
-        sim.put(1, sim.poses[0] + (0, 0, corridor.FLOOR, 0))  # above the first one
+        sim.put(1, sim.poses[0] + (0, 0, corridor.FLOOR, 0))  # on the floor above the first robot
         _, rewards, terminations, *_ = env.step(numpy.tile([1.0, 0.0], (6, 1)))
         self.assertFalse(terminations.any())
-        self.assertTrue(((rewards[2:] > 0.03) & (rewards[2:] < 0.0501)).all(), rewards)  # 0.05 m, across in part
+        self.assertTrue(((rewards[2:] > 0.03) & (rewards[2:] < 0.0501)).all(), rewards)  # 0.05 m, partly sideways
 
 
 class Documentation(unittest.TestCase):
     def test_blocks_run(self):
-        """Those of docs/python.md, and the one of the package's own description."""
+        """The blocks of docs/python.md, and the one of the package's own description."""
         with open("docs/python.md") as page:
             blocks = re.findall(r"```python\n(.*?)```", page.read(), re.S)
         self.assertEqual(len(blocks), 3)

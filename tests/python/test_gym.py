@@ -19,7 +19,7 @@ def vector(**options):
 
 class Vector(unittest.TestCase):
     def check(self, env, answer):
-        """Types, shapes and ranges that Gymnasium's documentation states for `step`."""
+        """Checks the types, shapes and ranges that Gymnasium's documentation states for `step`."""
         observations, rewards, terminations, truncations, infos = answer
         self.assertIn(observations, env.observation_space)
         self.assertEqual((rewards.shape, rewards.dtype), ((env.num_envs,), numpy.float64))
@@ -70,7 +70,7 @@ class Vector(unittest.TestCase):
         numpy.testing.assert_array_equal(alone.reset(seed=2)[0], observations[3:])
 
     def test_autoreset_in_the_next_step(self):
-        """Full speed ahead ends at a wall. The step after that ignores the action and gives the reset observation."""
+        """Full speed ahead ends at a wall. The following step ignores the action and returns the reset observation."""
         env = vector(num_envs=1, seed=2)
         start, _ = env.reset(seed=2)
         for age in range(1000):
@@ -98,7 +98,7 @@ class Vector(unittest.TestCase):
         self.assertEqual(seen, [False, False, True, False, False, False, True, False])
 
     def test_the_step_of_a_reset_has_no_reward(self):
-        """Not even where the task rewards standing, or ends an episode there."""
+        """Not even if the task rewards a robot at rest, or ends an episode there."""
         class Stand(Task):
             def reward(self):
                 return numpy.ones(len(self))
@@ -118,7 +118,7 @@ class Vector(unittest.TestCase):
         numpy.testing.assert_allclose(observations[0, -2:], [0.2, 0.4], atol=1e-6)
 
     def test_a_start_must_be_free(self):
-        """Of two robots one stands at the other's start: the other restarts elsewhere, at the first one's."""
+        """One of two robots occupies the other's start, so the other restarts at the first one's start."""
         env = vector(num_envs=2)
         env.reset(seed=1)
         task, sim = env.tasks[0], env.simulations[0]
@@ -177,7 +177,7 @@ class Vector(unittest.TestCase):
             env.step(numpy.zeros((6, 2)))
 
     def test_registers_with_gymnasium(self):
-        """With a stand-in for the package, since it is not there."""
+        """Uses a stand-in for the package, which is not installed."""
         text = """
 import enum, sys, types
 made = []

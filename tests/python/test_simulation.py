@@ -45,7 +45,7 @@ class Arrays(unittest.TestCase):
             self.assertFalse(array.flags.writeable)
 
     def test_views_share_memory(self):
-        """A view shows the newest tick: its address stays, its content changes."""
+        """A view shows the newest tick: its address does not change, its content does."""
         sim = sensorfarm.Simulation(CAVE, robots=20, seed=3)
         names = ("poses", "velocities", "contacts")
         of_type = ("readings", "hits", "bounds", "times", "fresh", "flags")
@@ -80,7 +80,7 @@ class Arrays(unittest.TestCase):
         numpy.testing.assert_allclose(before[0], (0.5, 0.5, 0, 1))
 
     def test_the_interpreter_runs_during_a_step(self):
-        """With an endless switch interval another thread runs only when a step lets go of the interpreter."""
+        """With an endless switch interval another thread runs only when a step releases the interpreter."""
         go, ran = threading.Event(), []
 
         def wait():
@@ -134,18 +134,18 @@ class Readings(unittest.TestCase):
             self.assertEqual(list(sim.robots[0].sensors[0].bearings), [0.0], "a single beam looks ahead")
 
     def test_late_and_uncertain_elements_are_invalid(self):
-        """Before a sensor's first reading all is invalid; where a beam grazes a wall its bound does not hold."""
+        """Before a sensor's first reading all elements are invalid; if a beam grazes a wall its bound does not hold."""
         sim = sensorfarm.Simulation.from_text(ROOM.replace("rate 5", "rate 5 phase 0.1"), noise=False)
         numpy.testing.assert_array_equal(sim.valid("laser")[1], [False] * 5)
         self.assertTrue(numpy.isnan(sim.times("laser")[1]))
         sim.step()
         self.assertTrue(sim.valid("laser")[1, :3].all())
-        sim.put(0, (-1.5, 1.99 - 1e-4, 0, 1e-4))  # the middle beam meets the wall 1 m ahead, at 0.1 mrad
+        sim.put(0, (-1.5, 1.99 - 1e-4, 0, 1e-4))  # the middle beam hits the wall 1 m ahead, at 0.1 mrad
         sim.step()
         numpy.testing.assert_array_equal(sim.valid("laser")[0], [True, True, False, True, True])
 
     def test_noisy_sensors_state_no_bound(self):
-        """A bound of the readings without noise, and the noise's deviation, take its place."""
+        """The bound of the readings without noise, and the noise's deviation, replace it."""
         text = ROOM.replace("range_max 3 )", "range_max 3 noise [0.2 0 0] )")
         for noise in (True, False):
             sim = sensorfarm.Simulation.from_text(text, noise=noise)
@@ -193,12 +193,12 @@ class Steps(unittest.TestCase):
         sim.step([[0.1, 0.2, 0.3], [0, 0, 0]])
         numpy.testing.assert_allclose(sim.velocities[0], (0.1, 0.2, 0.3), atol=1e-12)
         numpy.testing.assert_allclose(sim.poses[0, 3], 0.03, atol=1e-12)
-        sim.step()  # commands stay as they are
+        sim.step()  # commands are unchanged
         numpy.testing.assert_allclose(sim.poses[0, 3], 0.06, atol=1e-12)
         self.assertEqual((sim.tick, round(sim.time, 9)), (2, 0.2))
 
     def test_twists_of_other_layouts(self):
-        """Integers, columns first, a part of a wider array: all are the same twists."""
+        """Integers, column-major order, and a part of a wider array all give the same twists."""
         hashes = set()
         twists = numpy.array([[0, 0, 1], [1, 0, 0]])
         wide = numpy.zeros((2, 6))
@@ -239,7 +239,7 @@ class Steps(unittest.TestCase):
 
 class Joining(unittest.TestCase):
     def test_robots_join_and_leave(self):
-        """Arrays of before keep their rows and values; commands have a row more."""
+        """Earlier arrays keep their rows and values; commands have one more row."""
         sim = room()
         sim.step()
         poses, ranges = sim.poses, sim.readings("laser")
@@ -270,11 +270,11 @@ class Joining(unittest.TestCase):
 
 
 class Images(unittest.TestCase):
-    """Of the room of 4 m, with 100 pixels to the metre."""
+    """Images of the room of 4 m, with 100 pixels per metre."""
     WHOLE = dict(width=400, height=400, view=(-2, -2, 2, 2))
 
     def test_what_is_where(self):
-        """White where nothing is; walls along the edges, robots at their poses, +y up."""
+        """Background is white; walls are along the edges, robots at their poses, +y is up."""
         sim = room()
         sim.put(1, (1, 1, 0, 0))
         image = sim.image(**self.WHOLE)
@@ -284,7 +284,7 @@ class Images(unittest.TestCase):
             self.assertEqual((pixel == 255).all(), free, (x, y, pixel))
 
     def test_views(self):
-        """A view twice as long as high is shown whole, in the middle, in the picture's own shape."""
+        """A view twice as long as high is shown completely, in the middle, with the picture's aspect ratio."""
         sim = room()
         sim.put(0, (0, 0, 0, 0))
         image = sim.image(100, 100, (-0.5, -0.25, 0.5, 0.25))
@@ -302,7 +302,7 @@ class Images(unittest.TestCase):
         self.assertTrue((sim.image() != before).any())
 
     def test_images_are_apart_and_repeat(self):
-        """Kept layers do not change the picture, whichever came before."""
+        """Cached layers do not change the picture, in any order."""
         sim, views = room(), [(-k, -k, k, k) for k in (1, 2, 3, 4, 5, 6)]
         first = [sim.image(50, 40, view) for view in views]
         for view, known in reversed(list(zip(views, first))):
@@ -325,7 +325,7 @@ class Images(unittest.TestCase):
 
 class Processes(unittest.TestCase):
     def test_a_forked_process_makes_its_own(self):
-        """A simulation of its parent is refused, and a new one has the parent's readings, by every caster."""
+        """The child refuses its parent's simulation, and a new one has the parent's readings, with every caster."""
         for caster in ("host", "vulkan", "reference"):
             sim = room(caster=caster)
             reader, writer = os.pipe()
@@ -370,7 +370,7 @@ class Faults(unittest.TestCase):
                 (ValueError, "read-only", lambda: sim.poses.__setitem__((0, 0), 1.0))):
             with self.assertRaisesRegex(error, said):
                 call()
-        sim.step(numpy.zeros((2, 3)))  # none of these has harmed it
+        sim.step(numpy.zeros((2, 3)))  # none of these has damaged it
 
     def test_errors_are_of_one_family(self):
         self.assertTrue(issubclass(sensorfarm.DeviceError, sensorfarm.Error))

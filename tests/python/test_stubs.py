@@ -1,4 +1,4 @@
-"""The type stubs name what there is, and nothing else."""
+"""The type stubs contain exactly the public names."""
 
 import ast
 import os
