@@ -1,11 +1,11 @@
-// libFuzzer target: any bytes through the decoder, the inbox' rules and the listener's with the laser's judgement,
-// without a socket in the way.
+// libFuzzer target: any bytes through the decoder, the inbox' rules and the listener's with the laser's payload checks,
+// without a socket.
 //
 //   cmake -S . -B build/fuzz -G Ninja -DSENSORFARM_FUZZ=ON -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
 //   ninja -C build/fuzz packets_fuzz && build/fuzz/packets_fuzz -max_total_time=60
 //
-// An input is a row of datagrams: one byte of sender and elapsed time, two of length, then the bytes. A token of 0
-// stands for the sender's own, which no input could guess.
+// An input is a sequence of datagrams: one byte of sender and elapsed time, two of length, then the bytes. A token of 0
+// is replaced by the sender's own token, which no input could guess.
 
 #include <unistd.h>
 
@@ -54,7 +54,7 @@ void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes
   for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || reserved(i));
 }
 
-/// An unproven address is sent no more than came in its name.
+/// An unproven address is never sent more bytes than it has sent.
 void challenge(netio::Inbox& inbox, const netio::Packet& packet, const netio::Endpoint& source, std::size_t size,
                std::int64_t now) {
   base::Bytes answer;
@@ -66,7 +66,7 @@ void challenge(netio::Inbox& inbox, const netio::Packet& packet, const netio::En
   require(std::get<netio::Challenge>(asked.body).token == inbox.token(source));
 }
 
-/// A laser of 3 beams up to 8 m, and one of whatever: the two streams of the listener below.
+/// A laser of 3 beams up to 8 m, and an arbitrary one: the two streams of the listener below.
 sensors::SensorSpec laser_of(std::size_t stream) {
   sensors::SensorSpec row;
   row.elements = stream == 0 ? 3 : 0;
@@ -89,7 +89,7 @@ netio::PayloadInfo inspect_scan(std::size_t stream, const netio::Header& header,
 
 const netio::V2v* state_of(const netio::Packet& packet) { return std::get_if<netio::V2v>(&packet.body); }
 
-/// The robot's side of the same two streams: what is newest is whole, and in the range of what may be read.
+/// The robot's side of the same two streams: the newest reading is complete, and within the sensor's range.
 void receive(std::size_t stream, std::span<const std::uint8_t> bytes, std::int64_t now) {
   static const auto read = [](std::size_t, const netio::Header&, std::span<const std::uint8_t> payload,
                               std::span<double> values) { values[0] = static_cast<double>(payload.size()); };
@@ -109,7 +109,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                              .peers = {{netio::PeerKind::tag, 1, std::nullopt, netio::SigningKey{}}},
                              .lights = {2}});
   static const std::uint32_t free_base =
-      20'000 + static_cast<std::uint32_t>(getpid()) % 5'000 * 2;  // for fuzzers side by side
+      20'000 + static_cast<std::uint32_t>(getpid()) % 5'000 * 2;  // allows several fuzzers to run concurrently
   static netio::StreamMonitor monitor(
       {.streams = {{.robot = 7, .rule = {free_base, 8}}, {.robot = 7, .sensor = 1, .rule = {free_base, 8}}},
        .inspect = inspect_scan});

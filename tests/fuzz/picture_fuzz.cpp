@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes as a picture, traced as a floor plan. JPEG, BMP and GIF need the plug-in, which is not
-// there: their headers are read.
+// libFuzzer target: any bytes as a picture, traced as a floor plan. JPEG, BMP and GIF need the plug-in, which is
+// missing here: only their headers are read.
 
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@
 using namespace sf;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t kMost = 1u << 20;  // pixels: larger ones are sound, and slow
+  constexpr std::size_t kMost = 1u << 20;  // pixels: larger pictures are valid, but slow
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   try {
     std::size_t rows = 0, width = 0;

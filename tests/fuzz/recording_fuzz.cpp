@@ -1,4 +1,4 @@
-// Any bytes as a recording: it is read or refused, whatever its chunks and their compressed forms state.
+// Any bytes as a recording: it is read or rejected, whatever its chunks and their compressed forms state.
 
 #include "base/error.h"
 #include "record/recording.h"

@@ -1,6 +1,6 @@
-// libFuzzer target: any bytes as a road network, a mission or a sidecar. What is accepted becomes lanes and paint.
+// libFuzzer target: any bytes as a road network, a mission or a sidecar. Accepted input becomes lanes and paint.
 //
-// The first byte chooses the reader, from 0x80 on a strict one; the rest is the file.
+// The first byte selects the reader, from 0x80 on a strict one; the rest is the file.
 
 #include <cmath>
 #include <cstdint>

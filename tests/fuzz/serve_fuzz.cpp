@@ -1,9 +1,9 @@
-// libFuzzer target: the service under legal but hostile traffic, over loopback and by a clock of its own.
+// libFuzzer target: the service under valid but hostile traffic, over loopback and with a simulated clock.
 //
-// An input is a row of actions: one byte of sender and action, then its fields (`Harness::act`). Senders are real
+// An input is a sequence of actions: one byte of sender and action, then its fields (`Harness::act`). Senders are real
 // sockets; three of four answer their CHALLENGE, so that most packets are accepted, and the fourth never does. After
-// each tick everything that was sent is taken in and examined: valid packets, for robots that exist, in bounded number,
-// and as many as the service counts.
+// each tick all sent packets are received and checked: valid packets, for existing robots, in bounded number, and as
+// many as the service counts.
 
 #include <unistd.h>
 
@@ -69,11 +69,11 @@ struct Scene {
   }
 };
 
-/// A socket that sends what the input says, and knows the service's token once it was challenged.
+/// A socket that sends what the input specifies, and has the service's token after a challenge.
 struct Sender {
   const netio::Socket* socket = nullptr;
   std::optional<netio::Outbox> outbox;
-  bool answers = true;  ///< its challenges
+  bool answers = true;  ///< answers its challenges
   netio::SessionToken session_token{1, 0};
   std::uint32_t sequence = 0;
   std::uint64_t sent = 0, received = 0;  ///< [byte]
@@ -92,9 +92,9 @@ class Harness {
       senders_[i].answers = i != 3;
       senders_[i].session_token.session = static_cast<std::uint32_t>(i + 1);
     }
-    drain(false);  // datagrams for the service before
+    drain(false);  // datagrams for the previous service
   }
-  /// Robots of the input before have been silent for so long that they are out of the world.
+  /// Robots of the previous input have been silent for so long that they have left the world.
   void run(std::span<const std::uint8_t> input) {
     input_ = base::ByteReader(input);
     tick(12'000 * kMilli);
@@ -132,7 +132,7 @@ class Harness {
     send(sender);
   }
 
-  /// Robot, sequence and time by one byte each; most sequences go up.
+  /// Robot, sequence and time in one byte each; most sequences increase.
   netio::Header header() {
     const auto robot = input_.get<std::uint8_t>();
     netio::Header header;
@@ -149,7 +149,7 @@ class Harness {
     if (made.robot <= kRobots) made.robot = kTag;
     return made;
   }
-  /// One of two scales by each number's lowest bit: the room's, or the packet's limits.
+  /// Uses one of two scales, chosen by each number's lowest bit: the room's, or the packet's limits.
   double number(double room, double most) {
     const auto word = input_.get<std::int16_t>();
     const double part = std::max(-1.0, word / 32'767.0);
@@ -181,10 +181,10 @@ class Harness {
     if (which == 1) made.robot = netio::kBroadcastId;
     if (which < 4) return netio::encode(made, netio::Start{}, packet_), send(sender);
     if (which < 6) return netio::encode(made, netio::Challenge{made.sequence}, packet_), send(sender);
-    sender.session_token.session += which == 6 ? 1 : 0;  // the sender starts again
-    sender.session_token.token ^= which == 7 ? 1 : 0;    // it is wrong about its token until it is challenged
+    sender.session_token.session += which == 6 ? 1 : 0;  // the sender restarts
+    sender.session_token.token ^= which == 7 ? 1 : 0;    // its token is wrong until it is challenged
   }
-  /// A right header of any type, then any bytes.
+  /// Sends a valid header of any type, then any bytes.
   void send_raw(Sender& sender) {
     netio::Header made = header();
     const auto type = input_.get<std::uint8_t>();
@@ -200,7 +200,7 @@ class Harness {
     sender.outbox->flush();
     sender.sent += packet_.size();
     ++sent_;
-    if (sent_ % 16 == 0) receive();  // the kernel's buffer holds some dozens
+    if (sent_ % 16 == 0) receive();  // the kernel's buffer holds a few dozen
   }
 
   void receive() {
@@ -215,7 +215,7 @@ class Harness {
     const server::ServiceStats before = service_.stats();
     service_.tick(now_);
     const server::ServiceStats after = service_.stats();
-    // A robot is passed the others in one datagram, and signals for it and for all.
+    // A robot receives the states of the others in one datagram, and signals for it and for all.
     require(after.relayed.datagrams - before.relayed.datagrams <= kRobots);
     require(after.relayed.starts - before.relayed.starts <= 2 * kRobots);
     check();
@@ -288,14 +288,14 @@ class Harness {
   netio::ReceiveBatch batch_{64};
   base::Bytes packet_;
   std::uint32_t sequence_ = 0;
-  std::uint64_t sent_ = 0, received_ = 0;  ///< datagrams, of all senders together
+  std::uint64_t sent_ = 0, received_ = 0;  ///< datagrams of all senders together
   std::int64_t now_ = 0;
 };
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // A service takes long to make, so that it has many inputs, one after another.
+  // Creating a service takes long, so it processes many inputs in sequence.
   constexpr int kInputs = 1000;
   Scene& scene = Scene::get();  // outlives the harness
   static std::optional<Harness> harness;

@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes as TOML, as scenario files and sidecars of road networks are read, and as a plan of
-// lights, which runs for a while.
+// libFuzzer target: any bytes as TOML, read as scenario files, as sidecars of road networks, and as a plan of lights,
+// which runs for a while.
 
 #include <algorithm>
 #include <cstdint>
@@ -22,7 +22,7 @@ int depth_of(const world::TomlNode& node) {
   return deepest + 1;
 }
 
-/// Two lights; whatever the plan, each has a state at each time.
+/// Two lights; whatever the plan, each has a state at any time.
 void run_plan(const std::string& text) {
   world::World world;
   for (const char* name : {"a", "b"}) {

@@ -1,4 +1,4 @@
-// libFuzzer target: any bytes as a V2X message frame. What is decoded has an XML form and encodes to a frame with the
+// libFuzzer target: any bytes as a V2X message frame. A decoded message has an XML form and encodes to a frame with the
 // same content.
 
 #include <cstdint>
@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!result.ok()) return 0;
   require(!v2x::xml_of(frame).empty());
 
-  // Lengths that are longer than need be become short: the bytes may differ, the content and their number do not grow.
+  // Lengths in a longer form than necessary become short: the bytes may differ, but the content is equal and their
+  // number does not grow.
   base::Bytes again;
   v2x::encode(frame, again);
   require(again.size() <= result.size);

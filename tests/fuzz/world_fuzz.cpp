@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes as a Stage world. What is accepted keeps the rules of world.h and survives a recording.
-// Includes and bitmaps are looked for in a folder that is not there: other targets read those.
+// libFuzzer target: any bytes as a Stage world. An accepted world satisfies the rules of world.h and survives a
+// recording. Includes and bitmaps are looked up in a folder that does not exist; other targets read those.
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes as the YAML of a ROS map. Its picture is looked for in a folder that is not there, so
-// that all of it is read and none becomes a world.
+// libFuzzer target: any bytes as the YAML of a ROS map. Its picture is looked up in a folder that does not exist, so
+// that the whole file is read and none becomes a world.
 
 #include <cstdint>
 #include <cstdlib>
