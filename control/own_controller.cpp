@@ -86,7 +86,7 @@ class OwnController final : public Controller {
     } catch (const std::exception& error) {
       fail(error.what());
     } catch (...) {
-      fail("it threw something that is no std::exception");
+      fail("it threw something that is not a std::exception");
     }
   }
 
@@ -167,7 +167,7 @@ std::unique_ptr<Controller> make_own_controller(const ControllerContext& context
   } catch (const std::exception& error) {
     refuse(error.what());
   } catch (...) {
-    refuse("it threw something that is no std::exception");
+    refuse("it threw something that is not a std::exception");
   }
   if (inner == nullptr) refuse("it made none");
   return std::make_unique<OwnController>(context, std::move(inner));

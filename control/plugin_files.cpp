@@ -54,7 +54,7 @@ void fill_from_library(const std::string& file, sensorfarm::Plugin& plugin) {
   const auto interface = reinterpret_cast<int (*)()>(library.find("sensorfarm_plugin_interface"));
   const auto fill = reinterpret_cast<void (*)(sensorfarm::Plugin&)>(library.find("sensorfarm_plugin"));
   if (interface == nullptr || fill == nullptr)
-    throw base::InputError(file, 0, "is no plug-in: it has no SENSORFARM_PLUGIN (sensorfarm/plugin.h)");
+    throw base::InputError(file, 0, "is not a plug-in: it has no SENSORFARM_PLUGIN (sensorfarm/plugin.h)");
   if (interface() != sensorfarm::kPluginInterface)
     throw base::InputError(file, 0,
                            fmt::format("was built for plug-in interface {}, and this program has {}: build it again "
@@ -65,7 +65,7 @@ void fill_from_library(const std::string& file, sensorfarm::Plugin& plugin) {
   } catch (const std::exception& error) {
     throw base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: " + base::one_line(error.what()));
   } catch (...) {
-    throw base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: it threw something that is no std::exception");
+    throw base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: it threw something that is not a std::exception");
   }
 }
 

@@ -388,7 +388,7 @@ void encode(const Header& header, const Values& values, base::Bytes& out) {
 }
 
 void encode_reading(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
-  SF_CHECK(sensor_type_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");
+  SF_CHECK(sensor_type_of(Type{type}) != 0, "type " + std::to_string(type) + " is not a reading type");
   SF_CHECK(payload.size() <= kMaxPayload, std::to_string(payload.size()) + " bytes of payload");
   start(header, Type{type}, out);
   out.insert(out.end(), payload.begin(), payload.end());

@@ -95,7 +95,7 @@ PcapReader::PcapReader(std::span<const std::uint8_t> file, const std::string& na
   if (magic == kPcapng)
     throw base::InputError(name, 0, "a pcapng file; convert it: tcpdump -r FILE -w FILE.pcap, or editcap -F pcap");
   const std::uint32_t kind = swapped_ ? reversed(magic) : magic;
-  if (kind != kMicroseconds && kind != kNanoseconds) throw base::InputError(name, 0, "is no pcap file (tcpdump -w)");
+  if (kind != kMicroseconds && kind != kNanoseconds) throw base::InputError(name, 0, "is not a pcap file (tcpdump -w)");
   fraction_ = kind == kMicroseconds ? 1000 : 1;
   link_ = word(20) & 0xFFFFu;  // the upper bits contain the length of a frame's checksum
   if (find_link(link_) == nullptr)

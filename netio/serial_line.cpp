@@ -32,7 +32,7 @@ speed_t speed_of(unsigned baud) {
   if (error == EACCES)
     remedy = "its users are a group, mostly `dialout`: sudo usermod -aG dialout $USER, and log in again";
   if (error == EBUSY) remedy = "another program uses it; end that one";
-  if (error == ENOTTY) remedy = "it is no serial line; expected one such as /dev/ttyUSB0";
+  if (error == ENOTTY) remedy = "it is not a serial line; expected one such as /dev/ttyUSB0";
   throw base::InputError("cannot open the serial line '" + device + "': " + error_text(error) + "; " + remedy);
 }
 

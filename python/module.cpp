@@ -99,7 +99,7 @@ class Keywords {
   void finish() const {
     for (const auto& [key, value] : left_)
       throw py::type_error("'" + std::string(py::str(key)) +
-                           "' is no option of a simulation; see help(sensorfarm.Simulation)");
+                           "' is not an option of a simulation; see help(sensorfarm.Simulation)");
   }
 
  private:
@@ -147,7 +147,7 @@ std::string controller_name(py::handle controller) {
   if (known != names.end()) return known->second;
   if (!py::hasattr(controller, "step"))
     throw py::type_error(place_of(controller) + "'" + std::string(py::str(controller.attr("__name__"))) +
-                         "' is no controller: it has no method step(self, input)");
+                         "' is not a controller: it has no method step(self, input)");
   ControllerEntry entry = entry_of(controller);
   entry.name = std::string(py::str(controller.attr("__module__"))) + "." + entry.name;
   if (const int number = ++uses[entry.name]; number > 1) entry.name += "#" + std::to_string(number);
@@ -215,7 +215,7 @@ void step(PySimulation& s, const py::object& twists) {
   if (!commands || commands.ndim() != 2 || commands.shape(1) != 3 || commands.shape(0) != count(s.farm.size()))
     throw py::value_error("twists have " +
                           (commands ? "the shape " + std::string(py::str(commands.attr("shape")))
-                                    : std::string("elements that are no numbers")) +
+                                    : std::string("elements that are not numbers")) +
                           "; expected (" + std::to_string(s.farm.size()) +
                           ", 3): forward [m/s], left [m/s], turn [rad/s] per row");
   static_assert(sizeof(Twist) == 3 * sizeof(double));

@@ -126,7 +126,7 @@ void check_method(const py::object& object, const char* method, const char* para
   if (callable && takes(bound, arguments)) return;
   const std::string name = object_text(py::type::of(object).attr("__name__")) + "." + method;
   throw std::runtime_error(place_of(py::hasattr(bound, "__code__") ? bound : py::type::of(object)) + name +
-                           (callable ? " has other parameters" : " is no method") + "; expected def " + method +
+                           (callable ? " has other parameters" : " is not a method") + "; expected def " + method +
                            parameters);
 }
 

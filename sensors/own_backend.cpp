@@ -170,7 +170,7 @@ void OwnSensors::measure(std::size_t i) {
   } catch (const std::exception& error) {
     fail(error.what());
   } catch (...) {
-    fail("it threw something that is no std::exception");
+    fail("it threw something that is not a std::exception");
   }
 }
 

@@ -156,8 +156,8 @@ TEST(OwnProcesses, ExceptionsFailOnlyTheirScenario) {
       {"test", bench.scenario("a", "text"), bench.scenario("b", "number"), bench.scenario("c", ""), "--jobs", "3"});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: \\x1b[2Jred\\x07 sensorfarm: all is well\n")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: it threw something that is no std::exception")) << outcome.out;
-  // In the order of the files, regardless of which finished first.
+  EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: it threw something that is not a std::exception")) << outcome.out;
+  // In the order of the files, whatever came first.
   EXPECT_LT(outcome.out.find("a.toml"), outcome.out.find("b.toml"));
   EXPECT_LT(outcome.out.find("b.toml"), outcome.out.find("c.toml"));
   EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("c.toml"))) << outcome.out;

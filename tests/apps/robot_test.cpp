@@ -213,7 +213,7 @@ TEST(Robot, WrongArgumentsAreRejectedWithTheExpectedOnes) {
       {{"--name", "roomba2", "--map", "52000"}, "expected HOST:PORT"},
       {{"--name", "roomba2", "--map", "127.0.0.1:0"}, "expected HOST:PORT"},
       {{"--name", "roomba2", "--serial", "/dev/ttyNONE0"}, "`ls /dev/ttyUSB* /dev/ttyACM*`"},
-      {{"--name", "roomba2", "--serial", "/dev/null"}, "is no serial line"},
+      {{"--name", "roomba2", "--serial", "/dev/null"}, "is not a serial line"},
       {{"--name", "roomba2", "--serial", "/dev/null", "--baud", "1200"}, "57600"},
       {{"--name", "roomba2", "--baud", "57600"}, "--serial"},
       {{"--name", "roomba2", "--server", "no.such.host.invalid"}, "no.such.host.invalid"},

@@ -88,7 +88,7 @@ TEST(OwnController, RejectsPluginFilesWithTheReason) {
   std::ofstream(text) << "no library";
   expect_in("cannot be loaded as a shared library", refusal_of([&] { find_controller(text); }));
   std::filesystem::remove(text);
-  expect_in("is no plug-in", refusal_of([] { find_controller(SF_BINARY_DIR "/sensorfarm_cairo.so"); }));
+  expect_in("is not a plug-in", refusal_of([] { find_controller(SF_BINARY_DIR "/sensorfarm_cairo.so"); }));
   expect_in("build it again", refusal_of([] { find_controller(SF_BINARY_DIR "/test_old_plugin.so"); }));
   expect_in("has several controllers; expected one of: ", refusal_of([] { find_controller(kPlugin); }));
   expect_in(":test-straight", refusal_of([] { find_controller(kPlugin + ":other"); }));
@@ -182,7 +182,7 @@ TEST(OwnController, FailuresNameRobotAndTime) {
       scripted(world, "throws", [](const auto&) -> sensorfarm::Twist { throw std::out_of_range("off"); });
   expect_in("failed at 0.000 s: off", refusal_of([&] { throws->step({}); }));
   const auto odd = scripted(world, "odd", [](const auto&) -> sensorfarm::Twist { throw 1; });
-  expect_in("no std::exception", refusal_of([&] { odd->step({}); }));
+  expect_in("not a std::exception", refusal_of([&] { odd->step({}); }));
 }
 
 }  // namespace

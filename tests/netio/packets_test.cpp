@@ -398,9 +398,9 @@ TEST(Packets, EncodingInvalidNumbersAborts) {
   EXPECT_DEATH(encode({}, V2v{.X_WR = {kNan, 0, 0, 0}}, out), "not finite");
   EXPECT_DEATH(encode({.time = -1}, Subscribe{}, out), "timestamp -1");
   EXPECT_DEATH(encode({.robot = 0}, Tag{}, out), "tag id 0");
-  EXPECT_DEATH(encode_reading({}, 0, {}, out), "type 0 is no reading's");
-  EXPECT_DEATH(encode_reading({}, 64, {}, out), "type 64 is no reading's");    // type 0's second form
-  EXPECT_DEATH(encode_reading({}, 128, {}, out), "type 128 is no reading's");  // a state's
+  EXPECT_DEATH(encode_reading({}, 0, {}, out), "type 0 is not a reading type");
+  EXPECT_DEATH(encode_reading({}, 64, {}, out), "type 64 is not a reading type");    // second form of type 0
+  EXPECT_DEATH(encode_reading({}, 128, {}, out), "type 128 is not a reading type");  // type of a state
   EXPECT_DEATH(encode_reading({}, 1, base::Bytes(kMaxPayload + 1), out), "1257 bytes of payload");
 }
 

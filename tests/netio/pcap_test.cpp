@@ -153,10 +153,10 @@ TEST(Pcap, ReadsADamagedFileUpToTheDamage) {
 
 TEST(Pcap, RejectsOtherFilesByName) {
   EXPECT_EQ(pcap_refusal(PcapFile().bytes()), "");
-  EXPECT_NE(pcap_refusal({}).find("file: is no pcap file"), std::string::npos);
-  EXPECT_NE(pcap_refusal(Bytes(24, 0)).find("file: is no pcap file"), std::string::npos);
+  EXPECT_NE(pcap_refusal({}).find("file: is not a pcap file"), std::string::npos);
+  EXPECT_NE(pcap_refusal(Bytes(24, 0)).find("file: is not a pcap file"), std::string::npos);
   const Bytes header = PcapFile().bytes();
-  EXPECT_NE(pcap_refusal({header.begin(), header.end() - 1}).find("file: is no pcap file"), std::string::npos);
+  EXPECT_NE(pcap_refusal({header.begin(), header.end() - 1}).find("file: is not a pcap file"), std::string::npos);
   EXPECT_NE(pcap_refusal(joined({0x0A, 0x0D, 0x0D, 0x0A}, Bytes(24, 0))).find("file: a pcapng file"),
             std::string::npos);
   EXPECT_NE(pcap_refusal(PcapFile({.link = 105}).bytes()).find("file: captured on a link of type 105"),

@@ -127,7 +127,7 @@ class Program(unittest.TestCase):
                 ("def __init__(self): pass", drives, 3, "A.__init__(self) has other parameters; expected def __init__(self, robot, "),
                 (maker, "def step(self): return 0, 0, 0", 4, "A.step has other parameters; expected def step(self, input)"),
                 (maker, "def step(self, input, more): pass", 4, "A.step has other parameters; expected def step(self, input)"),
-                (maker, "step = 5", 2, "A.step is no method; expected def step(self, input)"),
+                (maker, "step = 5", 2, "A.step is not a method; expected def step(self, input)"),
                 (maker + "\n  def done(self, input): pass", drives, 4, "A.done has other parameters; expected def done(self)"),
                 (maker + "\n  def error(self, input): pass", drives, 4, "A.error has other parameters; expected def error(self)")):
             with tempfile.TemporaryDirectory() as folder:
@@ -279,9 +279,9 @@ class InProcess(unittest.TestCase):
                               (dict(step=lambda self, input: "\udcff"), r"returned '\\udcff'; expected three numbers")):
             with self.assertRaisesRegex(sensorfarm.Error, said):
                 simulated(controller=made(**members))
-        with self.assertRaisesRegex(TypeError, "'int' is no controller"):
+        with self.assertRaisesRegex(TypeError, "'int' is not a controller"):
             simulated(controller=int)
-        with self.assertRaisesRegex(TypeError, r"test_controllers.py:\d+: 'InProcess' is no controller: .* step\(self, input\)"):
+        with self.assertRaisesRegex(TypeError, r"test_controllers.py:\d+: 'InProcess' is not a controller: .* step\(self, input\)"):
             simulated(controller=InProcess)
         with self.assertRaisesRegex(ValueError, "without a controller"):
             simulated(settings={"near": 1})

@@ -360,13 +360,13 @@ class Faults(unittest.TestCase):
                 (sensorfarm.DeviceError, "name another with device or", lambda: room(device="nonsuch")),
                 (sensorfarm.DeviceError, r"\(require_vulkan, ", lambda: room(device="host", require_vulkan=True)),
                 (sensorfarm.Error, "robots of its own; robot_from is", lambda: room(robot_from="worlds/robots.inc:create")),
-                (TypeError, "'robotz' is no option", lambda: room(robotz=1)),
+                (TypeError, "'robotz' is not an option", lambda: room(robotz=1)),
                 (TypeError, "'robots' has a value of another type", lambda: room(robots=-1)),
                 (TypeError, "put", lambda: sim.put(0, (0, 0))),
                 (TypeError, "", lambda: sim.put(-1, (0, 0, 0, 0))),
                 (ValueError, r"the shape \(3, 3\); expected \(2, 3\)", lambda: sim.step(numpy.zeros((3, 3)))),
                 (ValueError, r"the shape \(6,\)", lambda: sim.step(numpy.zeros(6))),
-                (ValueError, "no numbers", lambda: sim.step("ahead")),
+                (ValueError, "not numbers", lambda: sim.step("ahead")),
                 (ValueError, "read-only", lambda: sim.poses.__setitem__((0, 0), 1.0))):
             with self.assertRaisesRegex(error, said):
                 call()

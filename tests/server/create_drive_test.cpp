@@ -190,7 +190,7 @@ std::string refusal_of(const std::string& device, unsigned baud = 57600) {
 
 TEST(CreateDrive, RejectsAFileThatIsNotASerialLine) {
   EXPECT_NE(refusal_of("/dev/ttyNONE0").find("`ls /dev/ttyUSB*"), std::string::npos);
-  EXPECT_NE(refusal_of("/dev/null").find("is no serial line"), std::string::npos);
+  EXPECT_NE(refusal_of("/dev/null").find("is not a serial line"), std::string::npos);
   CreateSimulator create;
   EXPECT_NE(refusal_of(create.device(), 12345).find("expected 9600"), std::string::npos);
 }
