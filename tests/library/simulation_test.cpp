@@ -258,8 +258,8 @@ TEST(Library, CastersGiveTheSameBytes) {
   EXPECT_NE(host.description(), vulkan.description());
 }
 
-/// Options take any name of `--caster`. Robots that drive without reading go the same way, to other bytes.
-TEST(Library, TheReferenceCaster) {
+/// Options accept any name of `--caster`. Readings of the reference caster differ from those of the host.
+TEST(Library, AcceptsTheReferenceCaster) {
   Simulation host(kCave, {.robots = 4, .caster = "host"}), reference(kCave, {.robots = 4, .caster = "reference"});
   drive(host, 5), drive(reference, 5);
   expect_in("rays cast by: reference, long double", reference.description());

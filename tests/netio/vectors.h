@@ -7,7 +7,7 @@
 // are edits of another packet:
 //
 //   like = laser 0         the first packet of laser.txt
-//   size = 76              cut, or extended by zeros
+//   size = 76              truncated, or padded with zeros
 //   at 72 = ab ab x 2      bytes from offset 72, twice
 
 #include <algorithm>
@@ -38,7 +38,7 @@ inline std::vector<std::string> vector_files() {
 
 std::vector<PacketVector> read_vectors(const std::string& path);
 
-/// Applies a line that edits a packet. @return false for another line
+/// Applies a line that edits a packet. @return false for any other line
 inline bool edit(const std::string& line, const std::string& path, base::Bytes& bytes) {
   std::istringstream row(line);
   std::string word, equals;
