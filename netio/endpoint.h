@@ -33,6 +33,6 @@ std::vector<std::uint32_t> own_addresses();
 /// "127.0.0.1".
 std::string ipv4_text(std::uint32_t address);
 /// Returns "127.0.0.1:10008".
-std::string text(const Endpoint& endpoint);
+std::string endpoint_text(const Endpoint& endpoint);
 
 }  // namespace sf::netio

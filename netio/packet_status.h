@@ -57,6 +57,6 @@ struct PacketCounts {
 };
 
 /// Returns the non-zero counts, such as "accepted 12, too short 1, stale 3"; "nothing received" if all are zero.
-std::string text(const PacketCounts& counts);
+std::string packet_counts_text(const PacketCounts& counts);
 
 }  // namespace sf::netio
