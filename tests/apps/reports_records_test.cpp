@@ -142,7 +142,9 @@ std::string both(std::string (&text)(const Report&), std::string (&json)(const R
 
 }  // namespace
 
-TEST(ReportRecords, ARunShowsEveryCount) { expect_golden("report_run", both(full_report())); }
+TEST(ReportRecords, ARunShowsEveryCount) {
+  expect_golden("report_run", both(run_report_text, run_report_json, full_report()));
+}
 
 /// From a million rays per second on, rates are in millions.
 TEST(ReportRecords, RatesAreInMillionsFromOneOn) {
@@ -160,7 +162,8 @@ TEST(ReportRecords, AnEmptyRunShowsNoRowsOfServices) {
 }
 
 TEST(ReportRecords, ARobotShowsEveryCount) {
-  expect_golden("report_robot", both(robot_stats()) + both(server::RobotClientStats{}));
+  expect_golden("report_robot", both(robot_client_text, robot_client_json, robot_stats()) +
+                                    both(robot_client_text, robot_client_json, server::RobotClientStats{}));
 }
 
 TEST(ReportRecords, AVerificationShowsDifferencesDamageAndVerdict) {
@@ -180,8 +183,10 @@ TEST(ReportRecords, AVerificationShowsDifferencesDamageAndVerdict) {
 }
 
 TEST(ReportRecords, VpsAndStreamsShowEveryCount) {
-  expect_golden("report_vps", both(vps_report()) + both(VpsReport{}));
-  expect_golden("report_streams", both(summary()) + both(netio::StreamSummary{}));
+  expect_golden("report_vps", both(vps_report_text, vps_report_json, vps_report()) +
+                                  both(vps_report_text, vps_report_json, VpsReport{}));
+  expect_golden("report_streams", both(stream_summary_text, stream_summary_json, summary()) +
+                                      both(stream_summary_text, stream_summary_json, netio::StreamSummary{}));
 }
 
 }  // namespace sf::apps
