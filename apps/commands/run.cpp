@@ -401,8 +401,8 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   const double ticks = std::round(duration / ground->world.interval);
   if (ticks < 1.0)
     print_message(
-        "--duration {:g} simulates nothing, since a tick takes {:g} s; expected more, or no --duration, which is 60 s, "
-        "or unlimited with bridges",
+        "--duration {:g} simulates nothing, since a tick takes {:g} s; give a longer one, or none for 60 s (no end "
+        "with bridges)",
         duration, ground->world.interval);
   if (options.tiles && ranks == nullptr)
     print_message("--tiles has no effect in one process: start several (mpirun -n N sensorfarm run ...)");

@@ -153,7 +153,7 @@ TEST(Missions, WrongUsageIsRejected) {
   const std::string rndf = folder.write("two.rndf", kRoads);
   const Outcome no_mission = run_program({"check", rndf, "--rndf", rndf});
   EXPECT_EQ(no_mission.code, 2);
-  EXPECT_NE(no_mission.err.find("--rndf goes with `check` of an .mdf file"), std::string::npos) << no_mission.err;
+  EXPECT_NE(no_mission.err.find("use --rndf with `check` of an .mdf file"), std::string::npos) << no_mission.err;
   const Outcome no_picture = run_program({"draw", folder.write("go.mdf", kMission), "-o", folder.path("x.png")});
   EXPECT_EQ(no_picture.code, 2);
   EXPECT_NE(no_picture.err.find("a mission has no picture"), std::string::npos) << no_picture.err;
