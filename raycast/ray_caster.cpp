@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "raycast/scan_tables.h"
+
 namespace sf::raycast {
 
 RayCaster::RayCaster(const SensorContext& context, const world::World& world, std::vector<Scanner> scanners)
