@@ -1,5 +1,5 @@
 #pragma once
-// The beams of a planar scan: settings, selection, directions and packing into lanes.
+// Beams of a planar scan: settings, selection, directions and packing into lanes.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace sf::raycast {
 
-/// Noise of a scan. All zero: none. Range noise applies only to beams with an echo.
+/// Noise of a scan. All zeros disable noise. Range noise applies only to beams with an echo.
 struct ScanNoise {
   double range_sigma = 0.0;         ///< [m] constant part of the range's standard deviation
   double range_proportional = 0.0;  ///< [-] part of the standard deviation per metre of range
@@ -22,35 +22,35 @@ struct ScanNoise {
   bool has_range() const { return range_sigma > 0.0 || range_proportional > 0.0; }
 };
 
-/// Settings of a planar scan. Bearings run from -fov/2 to +fov/2, both ends cast exactly; a single sample has bearing
-/// 0.
+/// Settings of a planar scan. Bearings run from -fov/2 to +fov/2, and beams at both ends are cast exactly. A single
+/// sample has bearing 0.
 struct ScanSettings {
-  std::string name;              ///< of the sensor, for messages
+  std::string name;              ///< sensor name, for messages
   base::Pose X_MS;               ///< sensor in the mover's frame; z is the height above the mover's origin
   double fov = M_PI;             ///< [rad] in [0, 2 pi]
   std::uint32_t samples = 180;   ///< in [1, 1'000'000]
-  double range_min = 0.0;        ///< [m] closer echoes read range_min
-  double range_max = 8.0;        ///< [m] > 0; the reading of a beam without an echo before it
-  std::uint32_t resolution = 1;  ///< only every n-th beam and the last are cast
-  ScanNoise noise;               ///< ray casting applies its angular part only
+  double range_min = 0.0;        ///< [m] nearer echoes read range_min
+  double range_max = 8.0;        ///< [m] > 0; a beam without a nearer echo reads range_max
+  std::uint32_t resolution = 1;  ///< casts only every n-th beam and the last one
+  ScanNoise noise;               ///< ray casting applies only its angular part
 };
 
-/// As base::bearing_of.
+/// Same as base::bearing_of.
 inline double bearing_of(const ScanSettings& scan, std::uint32_t i) {
   return base::bearing_of(scan.fov, scan.samples, i);
 }
 
 /// The cast beams of one scan, in lanes of SF_BEAMS_PER_LANE.
 struct BeamPlan {
-  std::vector<std::uint32_t> samples;  ///< numbers of the samples that are cast, ascending
-  bool packed = true;                  ///< adjacent beams share a lane; false: one beam per lane, in its first place
-  double spread = 0.0;                 ///< [rad] largest angle from a lane's middle bearing to its outermost beam
+  std::vector<std::uint32_t> samples;  ///< indices of the cast samples, ascending
+  bool packed = true;   ///< adjacent beams share a lane; false: each lane has one beam, in its first place
+  double spread = 0.0;  ///< [rad] largest angle from a lane's middle bearing to its outermost beam
 
   std::uint32_t lanes() const {
     const auto count = static_cast<std::uint32_t>(samples.size());
     return packed ? (count + SF_BEAMS_PER_LANE - 1) / SF_BEAMS_PER_LANE : count;
   }
-  /// Index of the k-th cast beam among the sensor's results.
+  /// Returns the index of the k-th cast beam in the sensor's results.
   std::size_t place(std::size_t k) const { return packed ? k : SF_BEAMS_PER_LANE * k; }
 };
 
@@ -62,17 +62,17 @@ BeamPlan plan_beams(const ScanSettings& scan, bool with_noise);
 void draw_angle_noise(const ScanSettings& scan, const BeamPlan& plan, const base::RandomKey& draw,
                       std::span<double> angle_noise);
 
-/// The part of the device's beam tables that belongs to one scan. Pointers to its first lane.
+/// One scan's part of the device's beam tables. The pointers address its first lane.
 struct BeamTables {
   float* mid_bearings;   ///< [sectors] one per lane
-  double* directions64;  ///< 8 per lane: cosine and sine of each beam
+  double* directions64;  ///< 8 per lane: cosine and sine of each beam's bearing
 };
 
-/// Writes the tables of `plan`. Beam k is turned by `angle_noise[k]` [rad]; an empty vector means no noise.
+/// Writes the tables of `plan`. Rotates beam k by `angle_noise[k]` [rad]; an empty vector means no noise.
 void write_beams(const ScanSettings& scan, const BeamPlan& plan, const std::vector<double>& angle_noise,
                  const BeamTables& tables);
 
-/// Truncation of angular noise, in standard deviations. A bounded angle keeps the lists of walls complete.
+/// Angular noise is truncated at this many standard deviations: wall lists are complete only for bounded angles.
 inline constexpr double kMaxSigmas = 6.0;
 
 }  // namespace sf::raycast

@@ -8,14 +8,15 @@ namespace sf::raycast {
 
 namespace {
 
-/// Below this number of segments, beams find theirs as fast without an index.
+/// With fewer segments, an index does not speed up the search.
 constexpr std::size_t kFewest = 256;
 constexpr std::uint32_t kFewestSectors = 32, kMostSectors = 4096;
 constexpr double kMostPerBeam = 64.0;  ///< [segments] at one bearing, on average
-constexpr double kPoint = 1e-9;        ///< [m] radius of a disc that is as good as its centre
-constexpr std::uint32_t kWideArc = 4;  ///< [sectors] wider ones are narrowed by their own bands
+constexpr double kPoint = 1e-9;        ///< [m] radius of a disc that is treated as a point
+constexpr std::uint32_t kWideArc = 4;  ///< [sectors] wider arcs are narrowed by the bands of their sectors
 
-/// Sectors with few segments each; 0: segments are so wide that each beam would read many of them.
+/// Returns a number of sectors with few segments each; 0 if segments are so wide that each beam would read many of
+/// them.
 std::uint32_t sectors_for(std::span<const CandidateWall> walls) {
   double sum = 0.0;  // [turns]
   for (const CandidateWall& wall : walls) sum += std::min(wall.half, M_PI) / M_PI;
@@ -58,7 +59,7 @@ void BearingIndex::build(std::span<const CandidateWall> found, double radius,
   if (all_.nearest <= length(centre_) + radius) sectors_ = 0;
 }
 
-/// The sectors that a beam passes while its distance from the centre is in `band`.
+/// Returns the sectors that a beam crosses while its distance from the centre is in `band`.
 BearingIndex::Arc BearingIndex::arc_within(glm::dvec2 from, glm::dvec2 d, const Band& band) const {
   const double along = dot(from, d), across = base::cross(from, d), aside = across * across;
   const auto place_at = [&](double distance) {

@@ -1,9 +1,10 @@
 #pragma once
-// Segments round a cell by their bearing from their own centre, for beams that each meet few of very many.
+// Index of the segments around a cell by their bearing from their common centre. It is for large sets of segments of
+// which each beam may meet only a few.
 //
-// Needs: a closed curve round the cell among the segments, so that a beam from inside has met something when it is
-// farther from the centre than all segments. Result: for a beam, the sectors of the bearings that it passes between the
-// nearest and the farthest segment, and the segments in them.
+// Input: segments that include a closed curve around the cell, so a beam from inside hits a segment before it is
+// farther from the centre than all of them. Output for a beam: the segments in the sectors that it crosses between the
+// nearest and the farthest segment.
 
 #include <functional>
 #include <span>
@@ -21,21 +22,23 @@ struct RowRange {
   std::uint32_t first = 0, end = 0;
 };
 
-/// Keeps its memory between uses.
+/// Reuses its memory.
 class BearingIndex {
  public:
   struct Scratch {
     std::vector<CandidateWall> walls;
     SectorLists lists;
   };
-  /// Replaces the index by one of `walls`, or by none where they are few, wide or not all outside of the viewers.
-  /// @param radius [m] of the disc round the origin that holds the viewers  @param exact segments by row
+  /// Rebuilds the index from `walls`. It stays empty if they are few or wide, or if a viewer may be as far from their
+  /// centre as a segment.
+  /// @param radius [m] of the disc around the origin that contains the viewers  @param exact returns a segment by its
+  /// row
   void build(std::span<const CandidateWall> walls, double radius,
              const std::function<ExactSegment(std::uint32_t row)>& exact, Scratch& scratch);
   bool empty() const { return sectors_ == 0; }
-  /// Intersects a beam with the segments that it may meet, in 64 bits. Needs an index that is not empty.
+  /// Intersects a beam, in 64 bits, with the segments that it may meet.
   /// @param from [m] the viewer relative to the cell's centre  @param origin [m] in the world  @param d unit vector
-  /// @param skipped rows that the beam does not see  @return number of segments
+  /// @param skipped rows that are invisible to the beam  @return number of segments tested  @pre the index is not empty
   std::size_t intersect(glm::dvec2 from, glm::dvec2 origin, glm::dvec2 d, RowRange skipped, ClosestHit& best) const;
 
  private:
@@ -48,9 +51,9 @@ class BearingIndex {
   Arc arc_of(glm::dvec2 from, glm::dvec2 d) const;
   Arc arc_within(glm::dvec2 from, glm::dvec2 d, const Band& band) const;
 
-  glm::dvec2 centre_;                 ///< [m] of the segments, from the cell's: bearings and distances are from here
-  std::uint32_t sectors_ = 0;         ///< a power of two
-  std::vector<std::uint32_t> first_;  ///< segment of each sector, and the end
+  glm::dvec2 centre_;          ///< [m] of the segments, relative to the cell's centre; origin of bearings and distances
+  std::uint32_t sectors_ = 0;  ///< a power of two
+  std::vector<std::uint32_t> first_;  ///< first segment of each sector, and the end
   std::vector<Band> bands_;           ///< of the segments of each sector
   Band all_;                          ///< of all segments
   std::vector<CandidateSegment> segments_;

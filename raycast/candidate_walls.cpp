@@ -9,10 +9,10 @@ namespace sf::raycast {
 
 namespace {
 
-/// [rad] error bound of the bearings below.
+/// [rad] error bound of the bearings computed here.
 constexpr double kSlack = 1e-5;
 
-/// [rad] upper bound, but for rounding, of the arc sine of v in [0, 1).
+/// Returns an upper bound [rad] of the arc sine of v in [0, 1), except for rounding.
 double asin_bound(double v) {
   if (v > 0.8) return std::asin(v);
   const double vv = v * v;
@@ -21,7 +21,7 @@ double asin_bound(double v) {
 
 }  // namespace
 
-/// Arc tangent after Abramowitz and Stegun 4.4.49.
+/// Arc tangent by Abramowitz and Stegun 4.4.49.
 double fast_bearing(glm::dvec2 p) {
   const double along = std::abs(p.x), across = std::abs(p.y);
   const double q = std::min(along, across) / std::max(along, across), z = q * q;

@@ -9,7 +9,7 @@ namespace sf::raycast {
 
 namespace {
 
-/// Scanners with equal beams share beam tables.
+/// Scanners with equal keys share a beam table.
 using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// The scanners of a RayCaster, planned at load.
+// Layout of a RayCaster's scanners, fixed at load.
 
 #include <cstdint>
 #include <vector>
@@ -13,37 +13,37 @@ namespace sf::raycast {
 /// The beams of one sensor.
 struct Scanner {
   ScanSettings scan;
-  std::uint32_t mover = 0;   ///< mover that carries it
-  std::uint32_t sensor = 0;  ///< key of its noise
-  bool single = false;       ///< ranges in 32 bits where these are accurate enough: within `single_bound`
+  std::uint32_t mover = 0;   ///< mover that carries the sensor
+  std::uint32_t sensor = 0;  ///< key of the sensor's noise
+  bool single = false;       ///< computes ranges in 32 bits where the error stays within `single_bound`
 };
 
-/// One scanner, planned at load.
+/// Layout of one scanner, fixed at load.
 struct ScannerRow {
   base::Pose mount;        ///< in the mover's frame; z: world height of the beams, fixed at load (2.5-D world)
   double range_min = 0.0;  ///< [m]
   std::uint32_t mover = 0;
   std::uint32_t config = 0;
   std::uint32_t beams = 0;    ///< first lane of its beam tables
-  std::uint32_t pattern = 0;  ///< number of its beams' pattern, without angular noise
+  std::uint32_t pattern = 0;  ///< index of its beam pattern, if it has no angular noise
   std::uint32_t out = 0;      ///< first lane of its results
-  bool angle_noise = false;   ///< has angular noise: its beam tables are its own and change
-  bool single = false;        ///< as Scanner::single
+  bool angle_noise = false;   ///< has angular noise, so its beam tables are not shared and change
+  bool single = false;        ///< same as Scanner::single
   BeamPlan plan;
 };
 
 /// Constant after construction. `world` need not outlive it.
 struct CastPlan {
-  /// @param scanners sorted by mover  @param noise false: none, whatever their settings
+  /// @param scanners sorted by mover  @param noise false disables noise regardless of their settings
   CastPlan(const world::World& world, std::vector<Scanner> scanners, bool noise);
 
   std::vector<Scanner> scanners;
   std::vector<ScannerRow> rows;  ///< one per scanner
   ListConfigs configs;
   std::uint32_t patterns = 0;
-  std::uint32_t beam_lanes = 0;    ///< of all beam tables; scanners with equal beams share theirs
-  std::uint32_t result_lanes = 0;  ///< of all results
-  std::uint32_t spare_lanes = 0;   ///< behind all results: device output of scans that the host computes
+  std::uint32_t beam_lanes = 0;    ///< total of all beam tables; scanners with equal beams share a table
+  std::uint32_t result_lanes = 0;  ///< total of all results
+  std::uint32_t spare_lanes = 0;   ///< after all results: receive the device's output for scans that the host computes
   bool any_angle_noise = false;
 
  private:

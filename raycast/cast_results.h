@@ -1,5 +1,5 @@
 #pragma once
-// The results of scans, in the layout of the kernels.
+// Results of scans, in the layout that kernels use.
 
 #include <cstdint>
 #include <span>
@@ -11,9 +11,9 @@
 
 namespace sf::raycast {
 
-/// The device must outlive it.
+/// The device must outlive this object.
 struct CastResults {
-  /// @throws base::DeviceError when the device cannot hold the tables
+  /// @throws base::DeviceError if the tables exceed the device's memory
   CastResults(gpu::Device& device, const CastPlan& plan);
 
   gpu::Buffer ranges;  ///< SF_BEAMS_PER_LANE doubles [m] per lane
@@ -26,8 +26,8 @@ struct CastResults {
   std::uint32_t* models_of(const ScannerRow& row) {
     return hits.host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
   }
-  /// Writes one scan. @param own_ranges, own_models of its beams; may be those of `row`, where its lanes are packed
-  /// @param grazes null when no beam grazes
+  /// Writes one scan. @param own_ranges, own_models of its beams; may be the row's own tables if its lanes are packed
+  /// @param grazes null if no beam grazes a surface
   void write(const ScannerRow& row, const double* own_ranges, const std::uint32_t* own_models,
              const std::uint8_t* grazes);
   /// Copies one scan to the device.

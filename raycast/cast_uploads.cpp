@@ -35,7 +35,7 @@ CastUploads::CastUploads(const SensorContext& context, const CastPlan& plan)
 }
 
 void CastUploads::write_all_beams() {
-  // Tables were allocated in order of rows: a table behind all written ones is new, others are shared.
+  // Tables were allocated in order of rows, so a table after all written ones is new, and others are shared.
   std::uint32_t written = 0;
   for (std::size_t i = 0; i < plan_.scanners.size(); ++i) {
     const ScannerRow& row = plan_.rows[i];
@@ -65,7 +65,7 @@ void CastUploads::turn_all_beams(std::span<const DueSample> due, base::ThreadPoo
 }
 
 void CastUploads::write_lanes(std::span<const DueSample> due) {
-  // New tables hold undefined values: the first tick writes them even when nothing is due.
+  // The contents of new tables are undefined, so the first tick writes them even if no sensor is due.
   const bool same = any_lanes_ && std::equal(due.begin(), due.end(), lanes_written_.begin(), lanes_written_.end(),
                                              [](const DueSample& d, std::uint32_t row) { return d.row == row; });
   if (same) return;
@@ -84,7 +84,7 @@ void CastUploads::write_lanes(std::span<const DueSample> due, bool is_single, La
     for (std::uint32_t lane = 0; lane < plan_.rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
   }
   const gpu::GroupCounts groups = gpu::groups_for(at, SF_LANES_PER_GROUP);
-  // Padding repeats the last lane; its results are written repeatedly with equal values.
+  // Padding repeats the last lane, whose results are then written several times with equal values.
   const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
   std::fill(table.begin() + static_cast<std::ptrdiff_t>(at),
             table.begin() + static_cast<std::ptrdiff_t>(SF_LANES_PER_GROUP * groups.all()), last);

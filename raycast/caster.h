@@ -1,9 +1,9 @@
 #pragma once
-// The interface of casters, which find the nearest surface along each beam of the scans that are due. `RayCaster` plans
-// the scans; casters read its plan and its beams, and fill in its results. Every call is one per tick, none per beam.
+// Interface of casters, which find the nearest surface along each beam of the due scans. `RayCaster` plans the scans;
+// casters read its plan and beams and fill in its results. Each function is called once per tick, never per beam.
 //
-// A tick: `place`, `prepare`, then, for casters on the device, `add_copies` and `record` into a batch, `collect` after
-// it. Casters on the host have filled in the results when `prepare` returns.
+// Sequence of a tick: `place`, then `prepare`. Casters on the host fill in the results in `prepare`. For casters on the
+// device, `add_copies` and `record` follow, into a batch, and `collect` after that batch.
 
 #include <span>
 #include <vector>
@@ -19,14 +19,14 @@
 
 namespace sf::raycast {
 
-/// The scans of one tick.
+/// The due scans of one tick.
 struct DueScans {
   std::vector<DueSample> samples;  ///< rows of scanners
   std::vector<Viewpoint> views;    ///< one per sample
 };
 
-/// What a caster is made from. All but `context` and `world` must outlive it; so must the device, thread pool and
-/// states of `context`.
+/// Arguments of a caster's constructor. The device, thread pool and states of `context`, and all other members except
+/// `context` and `world`, must outlive the caster.
 struct CasterInputs {
   const SensorContext& context;
   const world::World& world;  ///< the visible geometry
@@ -42,21 +42,21 @@ class Caster {
   Caster(const Caster&) = delete;
   Caster& operator=(const Caster&) = delete;
 
-  /// Moves the movers to this tick's poses, before `prepare`.
+  /// Moves the movers to this tick's poses. Call before `prepare`.
   virtual void place() = 0;
   /// Casts the due scans on the host, or prepares the kernels that cast them.
-  /// @param cast false: no scan on the host; the caller records no cast, and reads the beams' directions alone
-  /// @return true when kernels must be recorded again
+  /// @param cast false skips scans on the host; the caller does not record a cast, and reads only the beams' directions
+  /// @return true if kernels must be recorded again
   virtual bool prepare(const DueScans& due, bool cast) = 0;
-  /// Records the kernels. Default: none.
+  /// Records the kernels. The default records none.
   virtual void record(gpu::Batch& batch);
-  /// Adds copies of the caster's own tables and of results. Default: of all due results, to the device, for kernels of
-  /// others.
-  /// @param results copies the device's ranges and hits to the host
+  /// Records copies of the caster's own tables and of results. The default copies all due results to the device, for
+  /// kernels of other modules.
+  /// @param results also copies the device's ranges and hits to the host
   virtual void add_copies(gpu::Batch& batch, const DueScans& due, bool results);
-  /// Takes in the device's beam flags after each batch. Default: none.
+  /// Reads the device's beam flags. Called after each batch. The default does nothing.
   virtual void collect(const DueScans& due);
-  /// Counters since construction, without `rays`.
+  /// Returns the counters since construction, except `rays`.
   virtual SensorStats stats() const = 0;
 
  protected:

@@ -70,7 +70,7 @@ std::uint32_t CellCache::free_pages(std::uint32_t pages) {
       ++end;
       continue;
     }
-    // This tick uses the owner's pages: continue behind them.
+    // This tick uses the owner's pages; continue after them.
     const std::uint32_t behind = slots_[owner].first_page + slots_[owner].pages;
     tried += behind - start;
     start = behind + pages <= all ? behind : 0;

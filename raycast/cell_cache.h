@@ -1,5 +1,5 @@
 #pragma once
-// Cache of cells: a pool of fixed size. Cells are built where sensors are and evicted oldest first.
+// Cache of cells: a pool of fixed size. Cells are built at the sensors' positions, and the oldest are evicted first.
 
 #include <cstdint>
 #include <vector>
@@ -8,15 +8,16 @@ namespace sf::raycast {
 
 /// Key of one cell of one list config.
 struct CellKey {
-  std::int64_t config = 0;  ///< 2 * list config, plus 1 where viewpoints lie inside solids
+  std::int64_t config = 0;  ///< 2 * list config, plus 1 if viewpoints are inside solids
   std::int64_t x = 0;
   std::int64_t y = 0;
   bool operator==(const CellKey&) const = default;
 };
 
-/// Bookkeeping of the pool: the slot and the chunks that each key owns. The contents are the caller's.
+/// Bookkeeping of the pool: the slot and the chunks of each key. The caller stores the contents.
 ///
-/// Chunks are handed out in pages from a ring. Pages that this tick does not use are evicted. Allocates only to grow.
+/// Chunks are allocated in pages from a ring. Pages that this tick does not use are evicted. Only `grow` allocates
+/// memory.
 class CellCache {
  public:
   /// @param slots largest number of cells  @param chunks largest number of chunks of entries
@@ -30,28 +31,29 @@ class CellCache {
   void grow(std::uint32_t slots, std::uint32_t chunks);
 
   void begin_tick() { ++tick_; }
-  /// The slot of `key`, marked as used in this tick; kNone when absent.
+  /// Returns the slot of `key` and marks it as used in this tick; kNone if absent.
   std::uint32_t find(const CellKey& key);
-  /// The slot of `key`; kNone when absent. Thread-safe among readers. @param guess its likely slot, or kNone
+  /// Returns the slot of `key`; kNone if absent. Safe to call from several readers at once. @param guess its likely
+  /// slot, or kNone
   std::uint32_t slot_of(const CellKey& key, std::uint32_t guess = kNone) const;
   /// Marks `slot` as used in this tick.
   void touch(std::uint32_t slot) { slots_[slot].tick = tick_; }
   /// Allocates `chunks` chunks for `key`, which must be absent.
-  /// @return its slot; kNone when this tick's cells fill the pool
+  /// @return its slot; kNone if this tick's cells fill the pool
   std::uint32_t insert(const CellKey& key, std::uint32_t chunks);
 
   std::uint32_t first_chunk(std::uint32_t slot) const { return slots_[slot].first_page * page_; }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(slots_.size()); }
   std::uint32_t cells() const { return used_; }             ///< in the pool now
-  std::uint64_t built() const { return built_; }            ///< inserted since construction
-  std::uint64_t evicted() const { return built_ - used_; }  ///< of these, removed again
+  std::uint64_t built() const { return built_; }            ///< number inserted since construction
+  std::uint64_t evicted() const { return built_ - used_; }  ///< number of these that were removed
 
  private:
   struct Slot {
     CellKey key;
     std::uint32_t first_page = 0;
     std::uint32_t pages = 0;
-    std::uint64_t tick = 0;  ///< last tick that used it
+    std::uint64_t tick = 0;  ///< last tick that used the slot
     bool used = false;
   };
   std::size_t bucket_of(const CellKey& key) const;

@@ -11,7 +11,7 @@ namespace sf::raycast {
 
 namespace {
 
-/// Approximately a unit vector.
+/// A unit vector, up to rounding in 32 bits.
 struct Direction {
   float x, y;
 };
@@ -85,7 +85,7 @@ bool ConeCaster::prepare(std::span<const DueSample> due) {
   thread_pool_.parallel_for(count_, 512, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
   });
-  // Padding repeats one cone; its echoes are written behind all others.
+  // Padding repeats one cone, whose echoes are written after all others.
   if (count_ > 0)
     std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), kernel_.padded(count_) - count_, rows[count_ - 1]);
   gpu::write_counts(gpu::groups_for(count_, kernel_.group_size()), groups_);

@@ -1,5 +1,5 @@
 #pragma once
-// Cones of beams, cast exactly. On the device only the nearest echo of each cone is copied back.
+// Casts cones of beams exactly. The device copies back only the nearest echo of each cone.
 
 #include <cstdint>
 #include <span>
@@ -16,7 +16,7 @@ namespace sf::raycast {
 /// One cone.
 struct Cone {
   Scanner scanner;         ///< its beams
-  float min_cosine = 0.0;  ///< least cosine of an angle of incidence that returns an echo; 0: any angle
+  float min_cosine = 0.0;  ///< smallest cosine of an angle of incidence that returns an echo; 0: any angle
 };
 
 /// The kernel that reduces a cone's beams to a reading.
@@ -26,15 +26,15 @@ struct ConeKernel {
   bool uses_incidence = false;  ///< also binds the tables of directions, reflectors and headings
 };
 
-/// Not thread-safe. `context` must outlive it, except for `context.world`.
+/// Not thread-safe. `context`, except `context.world`, must outlive this object.
 class ConeCaster {
  public:
-  /// @throws base::DeviceError when the device cannot hold the tables; base::InputError for more cones than one
-  /// dispatch takes
+  /// @throws base::DeviceError if the tables exceed the device's memory; base::InputError if there are more cones than
+  /// one dispatch supports
   ConeCaster(const SensorContext& context, std::span<const Cone> cones, const ConeKernel& kernel);
 
   void place_movers();
-  /// Rows of `due` are cones. @return true when kernels must be recorded again
+  /// @param due rows are cones  @return true if kernels must be recorded again
   bool prepare(std::span<const DueSample> due);
   void record_measure(gpu::Batch& batch) { caster_.record(batch); }
   void record_derive(gpu::Batch& batch) const {
@@ -45,29 +45,29 @@ class ConeCaster {
   void take_flags() { caster_.take_flags(); }
   SensorStats stats() const { return caster_.stats(); }
 
-  /// Echo of the i-th due cone. Thread-safe.
+  /// Returns the echo of the i-th due cone. Thread-safe.
   ConeEcho echo(std::size_t i) { return on_device() ? echoes_.host<ConeEcho>()[i] : nearest_echo(i); }
-  /// False: scans run on the host, and nothing is recorded.
+  /// Returns false if scans run on the host and no kernels are recorded.
   bool on_device() const { return caster_.on_device(); }
 
  private:
   ConeCaster(const SensorContext& context, std::span<const Cone> cones, bool incidence, const Reflectors& reflectors,
              const ConeKernel& kernel);
   ConeRow row_of(std::size_t i) const;
-  /// Same operations in the same order as shaders/lib/cone.glsl.
+  /// Performs the operations of shaders/lib/cone.glsl in the same order.
   ConeEcho nearest_echo(std::size_t i);
-  /// Same operations as shaders/sonar.comp. @param beam index in the caster's table of directions
+  /// Performs the operations of shaders/sonar.comp. @param beam index in the caster's table of directions
   bool returns_echo(const ConeRow& row, std::size_t beam, std::uint32_t hit);
 
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
   std::vector<float> min_cosines_;  ///< per cone
   RayCaster caster_;
-  bool fresh_ = true;      ///< constant tables are not yet on the device
+  bool fresh_ = true;      ///< the constant tables are not on the device yet
   std::size_t count_ = 0;  ///< number of due cones
   gpu::Kernel kernel_;
   gpu::Buffer rows_, echoes_, groups_, reflectors_, headings_;
-  bool incidence_;  ///< some cone limits the angle of incidence
+  bool incidence_;  ///< at least one cone limits the angle of incidence
 };
 
 }  // namespace sf::raycast

@@ -11,21 +11,22 @@ namespace sf::raycast {
 
 namespace {
 
-/// Directions of lines: few find a line that hides an edge at a large angle, many one of hundreds at a small angle.
+/// Sizes of the two tables of lines by direction. The coarse one finds a line that hides an edge at a large angle; the
+/// fine one finds one of hundreds at a small angle.
 constexpr std::size_t kFewDirections = 256;
 constexpr std::size_t kMostDirections = 16384;
-/// To either side of an edge's direction lines are looked for until there are so many, or so many directions are done.
+/// On each side of an edge's direction, the search ends after this many lines or this many directions.
 constexpr int kLinesAside = 3;
 constexpr std::size_t kMostTurns = 12;
 
-/// Index of a direction: monotonic in its bearing, so that neighbours lie within a few degrees.
+/// Returns the index of a direction. It is monotonic in the bearing, so neighbours differ by a few degrees at most.
 std::size_t direction_of(glm::dvec2 n, std::size_t directions) {
   const double part = n.y / (std::abs(n.x) + std::abs(n.y));
   const double turn = n.x < 0.0 ? 2.0 - part : part + (n.y < 0.0 ? 4.0 : 0.0);  // [quarters] in [0, 4]
   return static_cast<std::size_t>(turn * (static_cast<double>(directions) / 4.0)) % directions;
 }
 
-/// The two least of values that belong to different movers.
+/// The two smallest values that belong to different movers.
 struct TwoLeast {
   double first, second;
   std::uint32_t mover = kNoMover;  ///< of `first`
@@ -45,7 +46,7 @@ struct TwoLeast {
 
 }  // namespace
 
-/// Lines through edges of the members: for each direction the two nearest, of different movers.
+/// Lines through edges of the members: for each direction, the nearest two of different movers.
 struct Crowds::Lines {
   struct Line {
     glm::dvec2 normal;         ///< unit vector, outward
@@ -53,11 +54,11 @@ struct Crowds::Lines {
     std::uint32_t mover = kNoMover;
   };
   using Nearest = std::vector<std::array<Line, 2>>;  ///< by direction
-  std::array<Nearest, 2> tables;                     ///< of few and of many directions; the second may be empty
-  double margin = 0.0;                               ///< [m] beyond a line, more than the rounding of 64-bit ranges
-  TwoLeast reach{HUGE_VAL};                          ///< [m] farthest corners of the outlines that hold the viewers
+  std::array<Nearest, 2> tables;                     ///< coarse and fine; the second may be empty
+  double margin = 0.0;                               ///< [m] beyond a line, larger than the rounding of 64-bit ranges
+  TwoLeast reach{HUGE_VAL};                          ///< [m] farthest corners of the outlines that contain the viewers
 
-  /// Removes all lines. @param expected number of lines to be added
+  /// Removes all lines. @param expected number of lines that will be added
   void clear(std::size_t expected) {
     tables[0].assign(kFewDirections, {});
     tables[1].assign(expected > kFewDirections ? std::min(kMostDirections, std::bit_ceil(expected)) : 0, {});
@@ -77,8 +78,8 @@ struct Crowds::Lines {
     }
   }
 
-  /// Finds what lines of about the direction `normal` leave of ab: parts of its length, up to its end but for what is
-  /// hidden at its start, and the other way round.
+  /// Clips ab at lines of about the direction `normal`. @param start, end smallest fractions of its length, from a and
+  /// from b, at which a line starts to hide it
   void find_hidden(glm::dvec2 a, glm::dvec2 b, glm::dvec2 normal, TwoLeast& start, TwoLeast& end) const {
     const auto cut_by = [&](const std::array<Line, 2>& nearest) {
       int lines = 0;
@@ -127,7 +128,7 @@ void Crowds::find(std::span<const Viewpoint> views, const std::function<std::uin
   });
 }
 
-/// Divides the crowded views among large cells where nearly all movers hold these, and small ones elsewhere.
+/// Assigns crowded views to large cells if nearly all movers at the cell contain it, and otherwise to small cells.
 void Crowds::find_places(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t)>& height_of,
                          base::ThreadPool& thread_pool) {
   if (size_ == 0.0) size_ = std::max(0.25 * movers_.smallest_inner(), movers_.largest_radius() / 64.0);
@@ -155,7 +156,7 @@ Crowds::Place Crowds::place_of(const Viewpoint& view, std::uint32_t height, std:
   return {height, scale, cell_of(view.X_WS.x), cell_of(view.X_WS.y)};
 }
 
-/// Lists the places of the views, and draws a box round the viewers of each.
+/// Lists the places of the views and computes the bounding box of the viewers in each.
 void Crowds::collect_places(std::span<const Viewpoint> views) {
   places_.clear();
   std::copy_if(place_of_view_.begin(), place_of_view_.end(), std::back_inserter(places_),
@@ -179,7 +180,8 @@ Crowds::Disc Crowds::viewers_of(std::size_t place) const {
           0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 + 1e-15 * (std::abs(box.max.x) + std::abs(box.max.y))};
 }
 
-/// Whether as many movers hold all viewers of a large cell as hold its centre, but for a few.
+/// Returns whether nearly all movers that contain the centre of a large cell's viewers also contain all of these
+/// viewers.
 bool Crowds::serves(const OutlineTable& outlines, const Disc& viewers, Scratch& s) const {
   find_members(outlines, {viewers.centre, 0.0}, s.members);
   const std::size_t most = s.members.size();
@@ -187,7 +189,7 @@ bool Crowds::serves(const OutlineTable& outlines, const Disc& viewers, Scratch& 
   return s.members.size() >= kCrowd && s.members.size() + most / 16 >= most;
 }
 
-/// Whether enough movers for a crowd are near `p`.
+/// Returns whether enough movers for a crowd are near `p`.
 bool Crowds::is_crowded(glm::dvec2 p) const {
   const MoverGrid& grid = movers_.grid();
   const glm::dvec2 at = p - grid.low;
@@ -227,7 +229,7 @@ void Crowds::build(const OutlineTable& outlines, const Disc& viewers, Scratch& s
   cell.bounds.resize(cell.blocks.size() + kBlock);
 }
 
-/// Lists the movers with an outline that holds the viewers, without those that others coincide with.
+/// Lists the movers with an outline that contains the viewers, without twins.
 void Crowds::find_members(const OutlineTable& outlines, const Disc& viewers,
                           std::vector<std::uint32_t>& members) const {
   const MoverGrid& grid = movers_.grid();
@@ -248,13 +250,13 @@ void Crowds::find_members(const OutlineTable& outlines, const Disc& viewers,
     }
 }
 
-/// Edge `number` of a mover, relative to `centre`.
+/// Returns edge `number` of a mover, relative to `centre`.
 Crowds::Edge Crowds::edge_of(std::uint32_t mover, std::uint32_t number, glm::dvec2 centre) const {
   const ExactSegment& s = movers_.exact()[movers_.first_rows()[mover] - movers_.first_rows().front() + number];
   return {{s.ax - centre.x, s.ay - centre.y}, {s.bx - centre.x, s.by - centre.y}};
 }
 
-/// Whether all viewers are inside `loop`, away from its edges.
+/// Returns whether all viewers are inside `loop` and away from its edges.
 bool Crowds::holds(std::uint32_t mover, const OutlineTable::Loop& loop, const Disc& viewers) const {
   for (std::uint32_t k = 0; k < loop.count; ++k) {
     const Edge edge = edge_of(mover, loop.first + k, viewers.centre);
@@ -275,7 +277,7 @@ void Crowds::add_loop(std::uint32_t mover, const OutlineTable::Loop& loop, const
   lines.reach.add((farthest + viewers.radius) * (1.0 + 1e-6), mover);
 }
 
-/// Adds what the viewers may see of a mover's edges.
+/// Adds the parts of a mover's edges that the viewers may see.
 void Crowds::add_edges(std::uint32_t mover, const OutlineTable& outlines, const Lines& lines, const Disc& viewers,
                        std::vector<CandidateWall>& found) const {
   const OutlineTable::Outline& outline = outlines.of_mover[mover];

@@ -1,15 +1,15 @@
 #pragma once
-// Crowds: places where viewers lie inside many movers at once.
+// Crowds: places where viewers are inside many movers at once.
 //
-// Needs: movers at this tick's poses. Result: for each small cell with viewers in a crowd, the edges that they may see.
+// Input: movers at this tick's poses. Output: for each small cell with viewers in a crowd, the edges that they may see.
 //
-// From inside a convex outline nothing is visible beyond the line through any of its edges. An edge of a mover is
-// therefore cut at the lines of two other movers, two so that one remains where the other carries the sensor. The cost
-// of a cell grows with the number of its movers, not with its viewers and beams; a scan from it then reads the few
-// edges that are left, or, where many are left, for each beam those of its bearing. Movers that hold no viewer, and
+// A viewer inside a convex outline sees nothing beyond the line through any of its edges. Each mover's edges are
+// therefore clipped at the lines of two other movers; the second one is needed if the first carries the sensor. The
+// cost of a cell grows with the number of its movers, not with its viewers and beams. A scan from the cell reads the
+// few remaining edges; if many remain, each beam reads those at its bearing. Movers that contain no viewer, and
 // outlines that are not convex, are scanned as outside of crowds.
 //
-// A line hides only points that lie beyond it by more than the rounding of 64-bit ranges, so readings do not change.
+// A line hides only points that are beyond it by more than the rounding of 64-bit ranges, so readings do not change.
 
 #include <functional>
 #include <span>
@@ -24,26 +24,26 @@
 
 namespace sf::raycast {
 
-/// The edges that viewers in one cell of a crowd may see of the movers that hold the cell.
+/// Edges that viewers in one cell of a crowd may see, of the movers that contain the cell.
 struct CrowdCell {
   glm::dvec2 centre;                   ///< [m] world
-  double horizon = 0.0;                ///< [m] every beam meets a member's edge within it
-  std::vector<SegmentBlock> blocks;    ///< relative to the centre; rows of exact segments
+  double horizon = 0.0;                ///< [m] every beam meets a member's edge within this distance
+  std::vector<SegmentBlock> blocks;    ///< relative to the centre; rows refer to exact segments
   std::vector<BlockBounds> bounds;     ///< of `blocks`, padded by kBlock
-  BearingIndex by_bearing;             ///< of the same segments
-  std::vector<std::uint64_t> members;  ///< a bit per mover that holds the cell; empty: too few for a crowd
+  BearingIndex by_bearing;             ///< index of the same segments
+  std::vector<std::uint64_t> members;  ///< one bit per mover that contains the cell; empty: too few for a crowd
 };
 
-/// Not thread-safe. `movers` must outlive it.
+/// Not thread-safe. `movers` must outlive this object.
 class Crowds {
  public:
   explicit Crowds(const MoverGeometry& movers);
   ~Crowds();
 
-  /// Finds the crowds round `views`. @param height_of index of the height of a list config
+  /// Finds the crowds around `views`. @param height_of returns the height index of a list config
   void find(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t config)>& height_of,
             base::ThreadPool& thread_pool);
-  /// Of a view of the last `find`; null: none.
+  /// Returns the crowd of a view of the last `find`, or null.
   const CrowdCell* of(std::size_t view) const {
     if (places_.empty() || place_of_[view] == kNoPlace || cells_[place_of_[view]].members.empty()) return nullptr;
     return &cells_[place_of_[view]];
@@ -51,7 +51,7 @@ class Crowds {
 
  private:
   static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFu;
-  static constexpr std::int32_t kLarge = 8;  ///< [size_] side of a large cell: about a robot's
+  static constexpr std::int32_t kLarge = 8;  ///< [size_] side of a large cell: about the size of a robot
   /// A cell's key.
   struct Place {
     std::uint32_t height;
@@ -60,7 +60,7 @@ class Crowds {
     auto operator<=>(const Place&) const = default;
   };
   static constexpr Place kNowhere{kNoPlace, 0, 0, 0};
-  /// A disc that holds the viewers of a cell.
+  /// A disc that contains the viewers of a cell.
   struct Disc {
     glm::dvec2 centre;
     double radius = 0.0;  ///< [m]
@@ -87,13 +87,13 @@ class Crowds {
                  std::vector<CandidateWall>& found) const;
 
   const MoverGeometry& movers_;
-  double size_ = 0.0;                    ///< [m] side of a small cell; viewers are an eighth of it from members' edges
+  double size_ = 0.0;  ///< [m] side of a small cell; viewers are at least an eighth of it away from members' edges
   std::vector<Place> places_;            ///< of this tick, ascending
   std::vector<std::uint32_t> place_of_;  ///< per view: row of `places_`
   std::vector<Place> place_of_view_;     ///< scratch
   std::vector<std::uint8_t> serves_;     ///< scratch, per place
-  std::vector<base::Box> boxes_;         ///< per place: round its viewers
-  std::vector<CrowdCell> cells_;         ///< per place; kept for their memory
+  std::vector<base::Box> boxes_;         ///< per place: bounds its viewers
+  std::vector<CrowdCell> cells_;         ///< per place; kept to reuse their memory
   std::vector<Scratch> scratch_;         ///< per thread
 };
 

@@ -15,7 +15,7 @@ namespace sf::raycast {
 
 namespace {
 
-/// Lanes with beams that 32 bits could not certify, as the first kernel lists them for the second.
+/// Lanes with beams that 32 bits could not certify. The first kernel writes this list and the second reads it.
 struct UncertainLanes {
   struct Entry {
     std::uint32_t lane;   ///< row in `LaneTable::lanes`
@@ -25,7 +25,7 @@ struct UncertainLanes {
   std::uint32_t count = 0;
 };
 
-/// Scanners are sorted by mover.
+/// Returns the number of movers with scanners, which are sorted by mover.
 std::uint32_t count_sensing_movers(const std::vector<Scanner>& scanners) {
   std::uint32_t sensing_movers = 0;
   for (std::size_t i = 0; i < scanners.size(); ++i)
@@ -33,7 +33,7 @@ std::uint32_t count_sensing_movers(const std::vector<Scanner>& scanners) {
   return sensing_movers;
 }
 
-/// The inputs, where the device runs kernels.
+/// Returns the inputs. @throws base::DeviceError if the device cannot run kernels
 const CasterInputs& checked(const CasterInputs& in) {
   if (in.context.device.is_host())
     throw base::DeviceError(
@@ -75,7 +75,7 @@ void DeviceCaster::make_pass(gpu::Device& device, Pass& pass, LaneTable& lanes, 
       device, is_single ? "uncertain beams in 32 bits" : "uncertain beams", laser_uncertain_comp_spv, constants);
 }
 
-/// Empties the list of uncertain lanes.
+/// Clears the list of uncertain lanes.
 void DeviceCaster::Pass::begin() { *reinterpret_cast<UncertainLanes*>(uncertain->host<std::uint32_t>().data()) = {}; }
 
 void DeviceCaster::place() {
@@ -95,7 +95,7 @@ bool DeviceCaster::prepare(const DueScans& due, bool cast) {
   return bound_ = true;
 }
 
-/// Empties the lists of uncertain lanes, and clears the flags of the last cast.
+/// Clears the lists of uncertain lanes and the flags of the last cast.
 void DeviceCaster::begin_passes() {
   for (const std::uint32_t lane : flagged_) results_.beam_flags[lane] = 0;
   flagged_.clear();
@@ -103,7 +103,7 @@ void DeviceCaster::begin_passes() {
   if (single_) single_->begin();
 }
 
-/// Builds the lists and rows of all due scanners. @return true when tables were replaced
+/// Builds the lists and rows of all due scanners. @return true if tables were replaced
 bool DeviceCaster::write_rows(const DueScans& due) {
   const auto ray_rows = rows_.host<RayRow>().first(due.samples.size());
   const bool replaced = scene_.prepare(due.views, ray_rows);
@@ -170,7 +170,7 @@ void DeviceCaster::add_copies(gpu::Batch& batch, const DueScans& due, bool resul
   if (results) download(batch, due);
 }
 
-/// Copies results to the host; those of scans with adjacent results together.
+/// Copies results to the host, with one copy for scans with adjacent results.
 void DeviceCaster::download(gpu::Batch& batch, const DueScans& due) {
   for (std::size_t i = 0; i < due.samples.size();) {
     const std::size_t first = row_of(due.samples[i]).out;
@@ -187,7 +187,7 @@ void DeviceCaster::collect(const DueScans& due) {
   if (single_) take_uncertain(due, *single_);
 }
 
-/// Takes in the flags of the last cast, without scans that the host computed.
+/// Reads the flags of the last cast, except for scans that the host computed.
 void DeviceCaster::take_uncertain(const DueScans& due, Pass& pass) {
   const std::span<const std::uint32_t> words = pass.uncertain->host<std::uint32_t>();
   const std::uint32_t count = reinterpret_cast<const UncertainLanes*>(words.data())->count;

@@ -1,6 +1,6 @@
 #pragma once
-// The device's caster: Vulkan kernels that search lists (raycast/device_scene.h). The host computes the scans whose
-// lists exceed the device's limits.
+// Caster on the device: Vulkan kernels that search lists (raycast/device_scene.h). Scans whose lists exceed the
+// device's limits run on the host.
 
 #include <cstdint>
 #include <memory>
@@ -16,7 +16,7 @@ namespace sf::raycast {
 
 class DeviceCaster : public Caster {
  public:
-  /// @throws base::DeviceError when the device is the host, or cannot hold the tables
+  /// @throws base::DeviceError if the device is the host or lacks memory for the tables
   explicit DeviceCaster(const CasterInputs& in);
 
   void place() override;
@@ -27,7 +27,8 @@ class DeviceCaster : public Caster {
   SensorStats stats() const override;
 
  private:
-  /// Two kernels over the lanes of their due scanners: the second casts the listed ones in 64 bits.
+  /// Two kernels over the lanes of due scanners. The first lists its uncertain lanes; the second casts those in 64
+  /// bits.
   struct Pass {
     std::unique_ptr<gpu::Kernel> kernel, uncertain_kernel;
     LaneTable* lanes = nullptr;
@@ -48,9 +49,9 @@ class DeviceCaster : public Caster {
   DeviceScene scene_;
   gpu::Buffer rows_;  ///< RayRow of each due scanner
   Pass exact_;
-  std::optional<Pass> single_;             ///< present where a scanner is `single`
-  std::vector<std::uint32_t> host_scans_;  ///< due scans of this tick that the host computes
-  std::vector<std::uint32_t> flagged_;     ///< lanes whose flags the last cast set
+  std::optional<Pass> single_;             ///< present if any scanner is `single`
+  std::vector<std::uint32_t> host_scans_;  ///< due scans of this tick that run on the host
+  std::vector<std::uint32_t> flagged_;     ///< lanes whose flags were set by the last cast
   std::uint64_t host_scans_in_all_ = 0;
   std::uint64_t uncertain_beams_ = 0;
   bool bound_ = false;

@@ -11,13 +11,14 @@ namespace sf::raycast {
 
 namespace {
 
-/// Capacity per robot for cells that it left recently, and a minimum for few robots.
+/// Capacity per robot, which includes cells that it left recently, and a minimum for worlds with few robots.
 constexpr SceneOptions kPerRobot{.pool_chunks = 1u << 12, .pool_cells = 1u << 6};
 constexpr SceneOptions kMinimum{.pool_chunks = 1u << 15, .pool_cells = 1u << 10};
 constexpr std::uint32_t kPageChunks = 8;
 
-/// Side of a cell [m] where kernels run on the processor: short lists save more than small cells cost. A 32nd of the
-/// range suits a scanner of some hundred beams; few beams use larger cells (docs/performance.md).
+/// Returns the side of a cell [m] for kernels that run on the CPU, where short lists save more than small cells cost. A
+/// 32nd of the range suits a scanner with several hundred beams; scanners with few beams use larger cells
+/// (docs/performance.md).
 double fine_cell_size(double range, std::uint32_t beams) {
   const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 6.0);
   return std::clamp(fewer * range / 32.0, 1e-3, 4.0);
@@ -151,7 +152,7 @@ void DeviceScene::make_room(std::uint32_t sensing_movers) {
        room(kPerRobot.pool_chunks, kMinimum.pool_chunks, limits_.pool_chunks), has_movers() ? 1u << 14 : 1);
 }
 
-/// @return false when the device lacks memory
+/// @return false if the device lacks memory
 bool DeviceScene::try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_texels) {
   try {
     grow(pool_cells, pool_chunks, mover_texels);
@@ -175,7 +176,7 @@ void DeviceScene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std:
     tables_replaced_ = upload_all_ = true;
   };
   const std::size_t end = pool_begin_ + std::size_t{kChunkTexels} * pool_chunks;
-  // The search prefetches one chunk.
+  // The search prefetches one chunk beyond the last.
   replace(lists_, "sector lists", gpu::Texel::u32x4, end + mover_texels + 1);
   replace(segment_ids_, "names in sector lists", gpu::Texel::u32, end);
   cells_.grow(pool_cells, pool_chunks);
@@ -192,7 +193,7 @@ void DeviceScene::upload(gpu::Batch& batch) {
     batch.upload(*segments_, 0, segments_->bytes());
     batch.upload(*models_, 0, models_->bytes());
   } else {
-    // Whole pages: those of new cells are mostly adjacent, so that one copy takes many.
+    // Copies whole pages. Pages of new cells are mostly adjacent, so one copy covers many of them.
     constexpr std::size_t kPageTexels = kPageChunks * kChunkTexels;
     for (const std::uint32_t slot : new_slots_) {
       const std::size_t first = cell_tables_[slot].first;

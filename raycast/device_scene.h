@@ -1,5 +1,5 @@
 #pragma once
-// The scene on the device: walls and movers as exact segments, and sector lists round the sensors.
+// Scene on the device: walls and movers as exact segments, and sector lists around the sensors.
 //
 // One table holds all lists, in texels of 16 bytes: empty lists, outlines of movers, the pool of cells (list heads,
 // entries, chunks of entries), and lists of the movers near each view, rebuilt each tick.
@@ -21,26 +21,26 @@
 
 namespace sf::raycast {
 
-/// Not thread-safe. `world` need not outlive it.
+/// Not thread-safe. `world` may be destroyed after construction.
 class DeviceScene {
  public:
-  /// @param configs complete, of `world`; must outlive this object
-  /// @param sensing_movers number of movers that carry scanners: sizes the first allocation
+  /// @param configs complete list of configs, built for `world`; must outlive this object
+  /// @param sensing_movers number of movers with scanners; determines the first allocation
   DeviceScene(const world::World& world, const ListConfigs& configs, gpu::Device& device, base::ThreadPool& thread_pool,
               const SceneOptions& options, std::uint32_t sensing_movers);
   ~DeviceScene();
 
-  /// Moves the movers to this tick's poses. @param states one per mover; where they change, call again before `prepare`
+  /// Moves the movers to this tick's poses. @param states one per mover; after a change, call again before `prepare`
   void place_movers(std::span<const base::Report> states);
 
-  /// Builds the lists for all `views` and fills `rows`, one per view: all fields but beams, out and range_min.
-  /// @return true when tables were replaced, so that kernels must be bound again
+  /// Builds the lists for all `views` and fills `rows`, one per view: all fields except beams, results and range_min.
+  /// @return true if tables were replaced and kernels must be bound again
   bool prepare(std::span<const Viewpoint> views, std::span<RayRow> rows);
 
-  /// True when the lists of view `i` of the last `prepare` would be too long, or movers round it overlap. Its row then
-  /// names empty lists.
+  /// Returns whether view `i` of the last `prepare` must be scanned by the host, because its lists would be too long or
+  /// movers around it overlap. Its row then refers to empty lists.
   bool needs_host(std::size_t i) const { return needs_host_[i] != 0; }
-  /// Adds copies of all tables that changed since the last call.
+  /// Records copies of all tables that changed since the last call.
   void upload(gpu::Batch& batch);
 
   bool has_movers() const { return movers_.segments() > 0; }
@@ -52,7 +52,7 @@ class DeviceScene {
 
   struct Counts {
     std::uint64_t cells_built = 0;      ///< since construction
-    std::uint64_t movers_in_range = 0;  ///< since construction: pairs of a view and a mover within its range
+    std::uint64_t movers_in_range = 0;  ///< since construction: pairs of a view and a mover in its range
     std::uint64_t movers_visible = 0;   ///< of these, in the field of view
   };
   Counts counts() const;
@@ -61,13 +61,13 @@ class DeviceScene {
   /// Cells and tables of one list config.
   struct ConfigTables {
     CellShape shape;
-    double spread = 0.0;  ///< [rad] from the middle of a lane's beams to its outermost, plus the search's own error
+    double spread = 0.0;  ///< [rad] from the middle of a lane's beams to the outermost, plus the error of the search
     std::uint32_t height = 0;
   };
   /// Texels of one cell.
   struct Cell {
     std::uint32_t first = 0, count = 0;
-    bool too_long = false;  ///< its lists exceed the limit and are empty
+    bool too_long = false;  ///< its lists would exceed the limit and are empty
   };
   struct NearbyMover;
   struct Scratch;
@@ -97,10 +97,10 @@ class DeviceScene {
   std::vector<Cell> cell_tables_;                  ///< per slot
   std::vector<std::uint32_t> outlines_;            ///< per height: texel of the first block
   std::uint32_t pool_begin_ = SF_SECTORS;          ///< texel
-  std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: the host scans it
+  std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: 1 if the host scans it
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
   std::vector<std::uint32_t> new_slots_;           ///< cells built since the last upload
-  std::uint32_t mover_texels_ = 0;                 ///< capacity for lists of movers, behind the pool
+  std::uint32_t mover_texels_ = 0;                 ///< capacity for lists of movers, after the pool
   std::uint32_t mover_texels_used_ = 0;            ///< may exceed the capacity while a tick is retried
   bool tables_replaced_ = false;                   ///< since `prepare` began
   bool upload_all_ = true;

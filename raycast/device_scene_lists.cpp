@@ -1,4 +1,4 @@
-// The device's lists: of walls, for cells without lists, and of movers, each tick.
+// Lists for the device: walls of new cells, and movers of each tick.
 
 #include <algorithm>
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace sf::raycast {
 
-/// Adds `found`: one entry each, and the sectors in which it may be visible, near to far.
+/// Adds one entry per wall of `found`, and assigns it to the sectors in which it may be visible, near to far.
 void DeviceScene::Scratch::add(std::vector<CandidateWall>& found, double spread, SectorLists& sectors) {
   std::sort(found.begin(), found.end(), [](const CandidateWall& p, const CandidateWall& q) {
     return std::tie(p.nearest, p.row, p.a.x, p.a.y) < std::tie(q.nearest, q.row, q.a.x, q.a.y);
@@ -30,7 +30,7 @@ void DeviceScene::Scratch::add(std::vector<CandidateWall>& found, double spread,
   sectors.sort();
 }
 
-/// Appends chunks of the entries `items`, padded with the entry behind all. @return number of chunks
+/// Appends chunks of the entries `items`, padded with the entry after the last one. @return number of chunks
 std::uint32_t DeviceScene::Scratch::append(std::span<const std::uint32_t> items) {
   for (std::size_t at = 0; at < items.size(); at += SF_CHUNK) {
     ListChunk& chunk = chunks.emplace_back(ListChunk{nearest[items[at]], 0, {}});
@@ -102,7 +102,7 @@ void DeviceScene::build_missing_cells() {
   cells_.drop_cached();
 }
 
-/// Lists the movers in range and in view, near to far, unless they are crowded.
+/// Lists the movers in range and in view, near to far, unless they form a crowd.
 void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
   const MoverGrid& grid = movers_.grid();
   const ListConfig& config = configs_[view.config];
@@ -154,7 +154,7 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
   s.front_facing.sort();
 }
 
-/// Lists the edges of a mover's outline that face the view; all edges when the view may be inside.
+/// Lists the edges of a mover's outline that face the view; all edges if the view may be inside.
 void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scratch& s) const {
   const std::uint32_t height = config_tables_[view.config].height;
   const OutlineTable& outlines = movers_.outlines(height);
@@ -207,7 +207,7 @@ void DeviceScene::write_mover_lists(const Viewpoint& view, std::uint32_t at, con
   std::memcpy(lists + 16 * std::size_t{at}, heads, sizeof heads);
 }
 
-/// @return [texels] needed by the lists of the scratch's movers; 0: no lists; kNone: a list would exceed the limit
+/// @return [texels] size of the lists of the scratch's movers; 0: no lists; kNone: a list would exceed the limit
 std::uint32_t DeviceScene::mover_lists_size(const Scratch& s, std::size_t most) const {
   std::size_t all = 0;
   for (std::uint32_t sector = 0; sector < SF_SECTORS; ++sector) {
@@ -220,7 +220,7 @@ std::uint32_t DeviceScene::mover_lists_size(const Scratch& s, std::size_t most) 
 }
 
 /// @param more_room tables may grow; if false, views without room go to the host
-/// @return false when the tables must grow first
+/// @return false if the tables must grow first
 bool DeviceScene::build_mover_lists(std::span<const Viewpoint> views, std::span<RayRow> rows, bool more_room) {
   std::atomic<std::uint32_t> next{0};
   const std::size_t most =

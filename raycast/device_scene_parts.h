@@ -1,5 +1,5 @@
 #pragma once
-// Parts that the sources of raycast::DeviceScene share.
+// Definitions shared by the sources of raycast::DeviceScene.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace sf::raycast {
 
-/// Older Mesa silently ends a loop after 65 535 iterations. All loops of one lane together stay below: a search visits
-/// each chunk once, the 64-bit decision visits each entry once per beam of the lane. Scans with longer lists run on the
-/// host.
+/// Older Mesa versions silently end a loop after 65 535 iterations. These limits keep the sum over all loops of a lane
+/// below that: a search visits each chunk once, and the 64-bit decision visits each entry once per beam of the lane.
+/// Scans with longer lists run on the host.
 inline constexpr std::uint32_t kMaxWallChunks = 2'800;  ///< per sector
 inline constexpr std::uint32_t kMaxMoverChunks = 1'000;
 static_assert((kMaxWallChunks + kMaxMoverChunks) * (1 + SF_BEAMS_PER_LANE * SF_CHUNK) + 16 < 65'535);
@@ -22,9 +22,9 @@ static_assert((kMaxWallChunks + kMaxMoverChunks) * (1 + SF_BEAMS_PER_LANE * SF_C
 inline constexpr std::uint32_t kMaxPoolChunks = 1u << 24;
 inline constexpr std::uint32_t kChunkTexels = 4;
 inline constexpr std::uint32_t kMaxMoverTexels = 1u << 25;
-inline constexpr std::uint32_t kMinMoverTexels = 1u << 10;  ///< guaranteed to each view
+inline constexpr std::uint32_t kMinMoverTexels = 1u << 10;  ///< guaranteed for each view
 
-/// Texels of one outline block, and the padding entry, which faces away from every viewer.
+/// Texels of one outline block and its padding entry, which faces away from every viewer.
 inline constexpr std::uint32_t kBlockTexels = kBlock + 1;
 inline constexpr std::uint32_t kMaxOutlineBlocks = 0xFFFFu / kBlockTexels;
 inline constexpr ListEntry kPaddingEntry{0.0f, -1e15f, 0.5f, 0.0f};
@@ -35,14 +35,14 @@ struct DeviceScene::NearbyMover {
   float radius;   ///< [m]
   std::uint32_t mover;
   float bearing, half;                 ///< [rad] of its disc, in the world frame
-  std::uint32_t first = 0, count = 0;  ///< entries that face the view, in the scratch's `mover_entries`
+  std::uint32_t first = 0, count = 0;  ///< entries that face the view, in `Scratch::mover_entries`
 };
 
-/// Detects crowds by the sum of the squared radii of discs: where discs overlap little it is at most a few times the
-/// squared radius of the disc that holds them all.
+/// Detects crowds by the sum of the discs' squared radii. For discs that overlap little, the sum is at most a few times
+/// the squared radius of the disc that contains them all.
 class CrowdMeasure {
  public:
-  /// Adds discs by their distance from one point. @return true in a crowd
+  /// Adds a disc at this distance from a fixed point. @return true in a crowd
   bool add(float radius, float distance) {
     sum_ += radius * radius;
     largest_ = std::max(largest_, radius);
@@ -65,7 +65,7 @@ struct DeviceScene::Scratch {
   ListHead heads[SF_SECTORS];
   std::vector<NearbyMover> near;
   std::vector<std::uint16_t> mover_entries;
-  bool crowded = false;  ///< movers overlap: no lists, since the host scans crowds at a bounded cost
+  bool crowded = false;  ///< movers overlap; no lists are built, since the host scans crowds at a bounded cost
   std::uint64_t movers_in_range = 0, movers_visible = 0;
 
   void add(std::vector<CandidateWall>& found, double spread, SectorLists& sectors);

@@ -19,7 +19,7 @@ ScanView scan_view_of(const ScannerRow& row, const Viewpoint& from) {
   return view;
 }
 
-/// [beams] whose results are fetched before a scan: a third of the smallest first-level cache.
+/// [beams] limit of the results prefetched before a scan: a third of the smallest L1 cache.
 constexpr std::size_t kMostFetched = 1024;
 
 }  // namespace
@@ -35,7 +35,7 @@ HostCaster::HostCaster(const CasterInputs& in, bool share)
   if (share) find_shared_views();
 }
 
-/// Makes the pattern of scanner `i` from its beam tables. @param angle_noise [rad] of each cast beam; empty: none
+/// Builds the pattern of scanner `i` from its beam tables. @param angle_noise [rad] of each cast beam; empty: none
 void HostCaster::make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own, ScanPattern& pattern) {
   const ScanSettings& scan = plan_.scanners[i].scan;
   const ScannerRow& row = plan_.rows[i];
@@ -47,7 +47,7 @@ void HostCaster::make_pattern(std::size_t i, std::span<const double> angle_noise
                  bearing_of(scan, samples.front()), bearing_of(scan, samples.back()), row.plan.place(1));
 }
 
-/// Finds runs of scanners of one mover at one point.
+/// Finds runs of scanners at the same point of a mover.
 void HostCaster::find_shared_views() {
   std::vector<const BeamPlan*> plans;
   for (const ScannerRow& row : plan_.rows) plans.push_back(&row.plan);
@@ -67,7 +67,7 @@ void HostCaster::find_shared_views() {
 bool HostCaster::prepare(const DueScans& due, bool cast) {
   while (all_.size() < due.samples.size()) all_.push_back(static_cast<std::uint32_t>(all_.size()));
   if (cast)
-    scan(due, std::span(all_).first(due.samples.size()));  // turns its beams itself
+    scan(due, std::span(all_).first(due.samples.size()));  // applies the angular noise itself
   else
     uploads_.turn_all_beams(due.samples, thread_pool_);
   return false;
@@ -85,7 +85,7 @@ void HostCaster::scan(const DueScans& due, std::span<const std::uint32_t> which)
   });
 }
 
-/// Lists this tick's host scans. A view is shared when all of its scanners are due.
+/// Lists this tick's host scans. A view is shared if all of its scanners are due.
 void HostCaster::list_scans(const DueScans& due, std::span<const std::uint32_t> which) {
   scans_.clear();
   views_.clear();
@@ -113,7 +113,7 @@ void HostCaster::scan_one(const DueScans& due, std::size_t k, unsigned thread) {
   if (row.plan.packed) {
     to = results_.ranges_of(row);
     hit_models = results_.models_of(row);
-    // A fleet's results exceed the caches: stores would wait for each of their lines.
+    // The results of a large fleet exceed the caches, so stores would wait for every cache line.
     const std::size_t fetched = std::min<std::size_t>(pattern.beams, kMostFetched);
     prefetch(to, fetched * sizeof *to), prefetch(hit_models, fetched * sizeof *hit_models);
   }
@@ -122,7 +122,7 @@ void HostCaster::scan_one(const DueScans& due, std::size_t k, unsigned thread) {
   results_.write(row, to, hit_models, grazes ? own.grazes.data() : nullptr);
 }
 
-/// Scans all beams of a shared view and distributes the results to its scanners, in the layout of the kernels.
+/// Scans all beams of a shared view and distributes the results to its scanners, in the layout that kernels use.
 void HostCaster::scan_shared(const DueScans& due, std::size_t k, unsigned thread) {
   const SharedView& shared = shared_views_.views()[scans_[k].shared];
   const SharedPattern& all = shared_views_.pattern(shared);

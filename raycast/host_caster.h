@@ -1,5 +1,6 @@
 #pragma once
-// The host's caster: scan conversion (raycast/rasterizer.h) of all due scans, or of those that the device leaves to it.
+// Caster on the host: scan conversion (raycast/rasterizer.h) of all due scans, or of those that DeviceCaster passes to
+// it.
 
 #include <cstdint>
 #include <span>
@@ -13,21 +14,21 @@ namespace sf::raycast {
 
 class HostCaster : public Caster {
  public:
-  /// @param share scanners of one mover at one point are scanned together; false: for `scan` of single scans
+  /// @param share scans scanners at the same point of a mover together; must be false for calls of `scan`
   explicit HostCaster(const CasterInputs& in, bool share = true);
 
   void place() override { placed_ = false; }
   bool prepare(const DueScans& due, bool cast) override;
   SensorStats stats() const override;
 
-  /// Computes the scans `which`, in ascending order.
+  /// Computes the due scans with the indices `which`, which must be ascending.
   void scan(const DueScans& due, std::span<const std::uint32_t> which);
 
  private:
   /// Value of `shared` for scanners without a shared view.
   static constexpr std::uint32_t kNotShared = 0xFFFFFFFFu;
 
-  /// One scan, for one scanner or a shared view.
+  /// One scan, of one scanner or of a shared view.
   struct Scan {
     std::uint32_t due = 0;              ///< its first due scanner
     std::uint32_t shared = kNotShared;  ///< index of the shared view
@@ -38,7 +39,7 @@ class HostCaster : public Caster {
     std::vector<std::uint32_t> models;
     std::vector<std::uint8_t> grazes;
 
-    /// Room for the results and directions of `beams` beams.
+    /// Makes room for the results and directions of `beams` beams.
     void make_room(std::size_t beams) {
       if (grazes.size() >= beams) return;
       grazes.resize(beams), models.resize(beams), ranges.resize(beams);
@@ -53,11 +54,11 @@ class HostCaster : public Caster {
   void scan_shared(const DueScans& due, std::size_t k, unsigned thread);
 
   HostScene scene_;
-  bool placed_ = false;                ///< the movers are at this tick's poses: only once a scan needs them
+  bool placed_ = false;                ///< the movers are at this tick's poses; set when the first scan needs them
   std::vector<ScanPattern> patterns_;  ///< of scanners without angular noise
   std::vector<Scratch> scratch_;       ///< per thread
   SharedViews shared_views_;
-  std::vector<std::uint32_t> shared_of_;  ///< per scanner: the shared view that begins with it, or kNotShared
+  std::vector<std::uint32_t> shared_of_;  ///< per scanner: the shared view that starts with it, or kNotShared
   std::vector<std::uint32_t> all_;        ///< 0, 1, ...: the due scans of a tick
   std::vector<Scan> scans_;               ///< of this tick
   std::vector<Viewpoint> views_;          ///< one per scan

@@ -14,20 +14,21 @@ namespace sf::raycast {
 namespace {
 
 constexpr std::uint32_t kPageBlocks = 4;
-/// Blocks that are projected to all beams in the time in which one beam finds its nearest segment by an index.
+/// Number of blocks that can be projected to all beams in the time that one beam needs to find its nearest segment with
+/// an index.
 constexpr double kBlocksPerIndexedBeam = 0.4;
 constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
-/// [blocks] Robots return to their cells: up to this size per view (21 KiB), and 42 MiB in all, the cache grows rather
-/// than evict cells again.
+/// [blocks] Robots return to their cells. Up to this size per view (21 KiB), and 42 MiB in total, the cache grows
+/// instead of evicting cells.
 constexpr std::size_t kKeptPerView = 64, kMostKept = 1u << 17;
-/// [blocks] Limit of the cache: a quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots need 1.4). A
-/// cell without room in the cache is rebuilt by each scan.
+/// Returns the limit of the cache [blocks]: a quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots
+/// need 1.4 GiB). A cell that does not fit is rebuilt by each scan.
 std::uint32_t most_blocks() {
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   return static_cast<std::uint32_t>(std::clamp(0.25 * memory / sizeof(SegmentBlock), 0x1p21, 0x1p23));
 }
 
-/// Whether a scan of so many beams is faster by the index of a crowd than by its blocks.
+/// Returns whether a scan of this many beams is faster with the index of a crowd than with its blocks.
 bool reads_by_bearing(const CrowdCell& crowd, std::size_t beams) {
   return !crowd.by_bearing.empty() &&
          kBlocksPerIndexedBeam * static_cast<double>(beams) < static_cast<double>(crowd.blocks.size());
@@ -45,7 +46,7 @@ struct HostScene::Thread {
   CandidateWalls walls;
   std::vector<SegmentBlock> blocks;
   std::vector<BlockBounds> bounds;
-  std::vector<SegmentBlock> crowd;  ///< of a crowd without the viewer's own edges
+  std::vector<SegmentBlock> crowd;  ///< blocks of a crowd without the viewer's own edges
 };
 
 HostScene::HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool)
@@ -137,7 +138,7 @@ void HostScene::grow() {
   cells_.grow(static_cast<std::uint32_t>(lists_.size()), static_cast<std::uint32_t>(blocks_.size()));
 }
 
-/// Prefetches the cell of view `i`, which is mostly scanned next.
+/// Prefetches the cell of view `i`, which is usually scanned next.
 void HostScene::prefetch(std::size_t i) const {
   if (i + 1 >= views_.size()) return;
   if (cells_.slot(i + 1) != CellCache::kNone) __builtin_prefetch(&lists_[cells_.slot(i + 1)]);

@@ -1,5 +1,5 @@
 #pragma once
-// The scene of host scans: movers, and walls in lists per cell, built round the sensors.
+// Scene for scans on the host: movers, and lists of walls per cell around the sensors.
 
 #include <cstdint>
 #include <memory>
@@ -16,21 +16,21 @@
 
 namespace sf::raycast {
 
-/// Not thread-safe, except for `scan`. `world` need not outlive it.
+/// Not thread-safe, except for `scan`. `world` may be destroyed after construction.
 class HostScene {
  public:
-  /// @param configs complete, of `world`; must outlive this object
+  /// @param configs complete list of configs, built for `world`; must outlive this object
   HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool);
   ~HostScene();
 
-  /// Moves the movers to this tick's poses. @param states one per mover; where they change, call again before `prepare`
+  /// Moves the movers to this tick's poses. @param states one per mover; after a change, call again before `prepare`
   void place_movers(std::span<const base::Report> states);
   /// Builds the lists of `views`.
   void prepare(std::span<const Viewpoint> views);
   /// Scans from view `i` of the last `prepare`.
-  /// @param from overwritten here: origin, offset, range_max and band
+  /// @param from origin, range_max and band are overwritten
   /// @param thread index of the calling pool thread
-  /// @return true when any beam grazes; only then `out.grazes` is filled in
+  /// @return true if any beam grazes a surface; `out.grazes` is filled in only then
   bool scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out);
 
   std::uint64_t cells_built() const { return cells_.cache().built(); }
@@ -39,7 +39,7 @@ class HostScene {
  private:
   struct ConfigTables;
   struct Thread;
-  /// Blocks of one cell: first the front-facing ones, then the back-facing ones, which decide only ties at corners.
+  /// Blocks of one cell: front-facing ones, then back-facing ones, which are needed only for ties at corners.
   struct Cell {
     std::uint32_t first = 0, front_facing = 0, all = 0;
   };

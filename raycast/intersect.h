@@ -1,6 +1,6 @@
 #pragma once
-// The 64-bit intersection of one beam and one segment on the host. Same operations in the same order as
-// shaders/lib/intersect.glsl, so that both results are equal bit by bit.
+// 64-bit intersection of one beam and one segment on the host. It performs the operations of shaders/lib/intersect.glsl
+// in the same order, so both results are bit-identical.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ inline ExactSegment to_world(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p, glm::dvec
 /// A segment that a beam may meet.
 struct CandidateSegment {
   ExactSegment at;
-  std::uint32_t id;  ///< row: walls first, then movers' edges. The smaller id wins a tie.
+  std::uint32_t id;  ///< row in the table of walls, then movers' edges; the smaller id wins a tie
 };
 
 /// The nearest intersection so far along one beam.
@@ -30,14 +30,14 @@ struct ClosestHit {
   std::uint32_t id = SF_NO_HIT;  ///< row of the segment
   float incidence[3] = {};       ///< cross product of segment and direction [m]; x and y of the segment [m]
 
-  /// True when the sine of the angle between beam and surface is below `least`.
+  /// Returns whether the sine of the angle between beam and surface is below `least`.
   bool grazes(float least) const {
     return id != SF_NO_HIT &&
            incidence[0] * incidence[0] < least * least * (incidence[1] * incidence[1] + incidence[2] * incidence[2]);
   }
 };
 
-/// Updates `best` when the beam from `origin` along `d` (unit vector) meets `surface` nearer.
+/// Updates `best` if the beam from `origin` along `d` (unit vector) meets `surface` at a smaller range.
 inline void intersect(const CandidateSegment& surface, glm::dvec2 origin, glm::dvec2 d, ClosestHit& best) {
   const ExactSegment& s = surface.at;
   const double wax = s.ax - origin.x, way = s.ay - origin.y;
@@ -57,9 +57,9 @@ inline void intersect(const CandidateSegment& surface, glm::dvec2 origin, glm::d
     best = {range, surface.id, {static_cast<float>(denominator), static_cast<float>(ex), static_cast<float>(ey)}};
 }
 
-/// Range [m] of a beam that meets `s`, in 32 bits; negative when 32 bits are not accurate enough. The error is at most
-/// 16 u |e| (|w| + range_max) / |e x d|, u = 2^-24, and is kept below half of SF_SINGLE_TOLERANCE range_max.
-/// Same operations in the same order as shaders/lib/intersect.glsl.
+/// Returns the range [m] of a beam that meets `s`, in 32 bits; a negative value if 32 bits are not accurate enough. The
+/// error is at most 16 u |e| (|w| + range_max) / |e x d|, u = 2^-24, and is kept below half of SF_SINGLE_TOLERANCE
+/// range_max. Same operations in the same order as shaders/lib/intersect.glsl.
 inline float range_single(const ExactSegment& s, glm::dvec2 origin, glm::dvec2 d, float range_max) {
   const auto wx = static_cast<float>(s.ax - origin.x), wy = static_cast<float>(s.ay - origin.y);
   const auto ex = static_cast<float>(s.bx - s.ax), ey = static_cast<float>(s.by - s.ay);

@@ -10,9 +10,9 @@ namespace sf::raycast {
 
 namespace {
 
-constexpr std::size_t kLongestLoop = 64;  ///< bounds the pairs of edges and corners
+constexpr std::size_t kLongestLoop = 64;  ///< limits the number of pairs of an edge and a corner
 
-/// True for a closed convex outline, solid inside. Corners may lie outside by rounding.
+/// Returns whether the edges form a closed convex outline that is solid inside. Corners may be outside by rounding.
 bool is_convex(std::span<const world::Segment> loop, double radius) {
   if (loop.size() < 3 || loop.size() > kLongestLoop || loop.back().b != loop.front().a) return false;
   return std::all_of(loop.begin(), loop.end(), [&](const world::Segment& s) {

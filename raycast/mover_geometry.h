@@ -1,5 +1,5 @@
 #pragma once
-// Movers as surfaces: outlines at this tick's poses, and a grid of mover positions.
+// Surfaces of movers: outlines at this tick's poses, and a grid of mover positions.
 
 #include <map>
 #include <span>
@@ -14,26 +14,26 @@ namespace sf::raycast {
 
 using base::Pose;
 
-inline constexpr int kMaxGridCells = 256;  ///< along an axis
+inline constexpr int kMaxGridCells = 256;  ///< along each axis
 
-/// Outlines of all movers, without edges that lasers do not see.
+/// Outlines of all movers, without edges that are invisible to lasers.
 class MoverGeometry {
  public:
   explicit MoverGeometry(const world::World& world);
 
-  /// Registers scans in the horizontal plane at world height `z` [m]; call before the first `place`. @return index of
+  /// Registers scans in the horizontal plane at world height `z` [m]. Call before the first `place`. @return index of
   /// the height
   std::uint32_t add_height(double z);
 
-  /// Moves every outline to its mover's pose. @param states one per mover, as long as they are used
-  /// @param exact out: the movers' edges, mover by mover, `segments()` of them
+  /// Moves every outline to its mover's pose. @param states one per mover; must stay valid until the next call
+  /// @param exact out: `segments()` edges, ordered by mover
   void place(std::span<const base::Report> states, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
 
   std::size_t segments() const { return local_.size(); }
   /// `Segment::model` of each edge.
   const std::vector<std::uint32_t>& models() const { return models_; }
   double largest_radius() const { return grid_.largest_radius; }  ///< [m]
-  double smallest_inner() const;                                  ///< [m] of `MoverGrid::inner`
+  double smallest_inner() const;                                  ///< [m] smallest `MoverGrid::inner`
 
   const MoverGrid& grid() const { return grid_; }
   std::uint32_t heights() const { return static_cast<std::uint32_t>(heights_.size()); }
@@ -41,7 +41,8 @@ class MoverGeometry {
   std::span<const base::Report> states() const { return states_; }
   std::span<const glm::dvec2> headings() const { return headings_; }
   std::span<const ExactSegment> exact() const { return exact_; }  ///< the edges at this tick's poses
-  /// Row of each mover's first edge in the table of exact segments, where walls come first; then the end.
+  /// Returns the row of each mover's first edge in the table of exact segments, which starts with the walls; then the
+  /// end.
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
  private:
@@ -61,11 +62,11 @@ class MoverGeometry {
   std::vector<world::Segment> local_;  ///< mover frame
   std::vector<std::uint32_t> models_;
   std::vector<std::uint32_t> first_rows_;
-  std::vector<double> radii_;          ///< [m] 0: no outline
+  std::vector<double> radii_;          ///< [m] 0 if there is no outline
   std::vector<double> inner_;          ///< [m] distance of the nearest edge from the origin
-  std::vector<std::uint32_t> shapes_;  ///< equal where movers have equal outlines at all heights
-  std::vector<std::uint32_t> twins_;   ///< per mover, as MoverGrid::twin
-  std::vector<double> load_z_;         ///< [m] heights at load; they do not change (2.5-D world)
+  std::vector<std::uint32_t> shapes_;  ///< equal for movers with equal outlines at all heights
+  std::vector<std::uint32_t> twins_;   ///< per mover, same as MoverGrid::twin
+  std::vector<double> load_z_;         ///< [m] heights at load, which are constant (2.5-D world)
   std::uint32_t walls_;
   std::vector<Height> heights_;
   std::span<const base::Report> states_;

@@ -1,4 +1,4 @@
-// The grid of MoverGeometry: movers by position, those that coincide once.
+// The grid of MoverGeometry: movers by position, without duplicates in crowded cells.
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kNoCell = 0xFFFFFFFFu;
 
-/// Poses as words: equal for equal bits alone.
+/// A pose as words, which are equal only if all bits are equal.
 std::array<std::uint64_t, 3> words_of(const Pose& X) {
   return {std::bit_cast<std::uint64_t>(X.x), std::bit_cast<std::uint64_t>(X.y), std::bit_cast<std::uint64_t>(X.yaw)};
 }
@@ -42,7 +42,7 @@ void MoverGeometry::find_cells() {
   grid_.cell = std::max({4.0 * grid_.largest_radius, extent / (kMaxGridCells - 1), 1e-6});
   grid_.columns = static_cast<int>((high.x - low.x) / grid_.cell) + 1;
   grid_.rows = static_cast<int>((high.y - low.y) / grid_.cell) + 1;
-  // Covers the position of a mover, and of a viewer, which may lie outside the grid by its range.
+  // Covers the position of a mover and of a viewer, which may be outside of the grid by up to its range.
   grid_.error = static_cast<float>(0x1p-21 * (extent + grid_.cell));
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const Pose& X = states_[i].X_WM;
@@ -71,7 +71,7 @@ void MoverGeometry::sort_into_cells() {
   }
 }
 
-/// Takes all but the first two of coincident movers in crowded cells out of the grid. @return true where there are any
+/// In crowded cells, removes all but the first two of coincident movers from the grid. @return true if any were removed
 bool MoverGeometry::drop_twins() {
   bool any = false;
   for (std::size_t cell = 0; cell + 1 < grid_.first.size(); ++cell) {

@@ -35,7 +35,7 @@ void scan(Scratch& s, const Projection& p, const ScanView& view, const ScanPatte
   if (scene.movers != nullptr) rasterize_movers(s, p, view, pattern, scene);
 }
 
-/// @return true when any beam grazes
+/// @return true if any beam grazes a surface
 bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
               const ScanOutput& out) {
   if (pattern.beams <= kMaxExactBeams) return intersect_all_beams(s, view, pattern, scene, out);

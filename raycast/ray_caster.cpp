@@ -34,7 +34,8 @@ bool RayCaster::prepare(std::span<const DueSample> due, bool cast) {
   return std::exchange(fresh_, false) || again;
 }
 
-/// Poses of the due scanners [first, last): as base::compose, with one sine and cosine per mover. Counts their beams.
+/// Computes the poses of the due scanners [first, last) as base::compose does, but with one sine and cosine per mover.
+/// Counts their beams.
 void RayCaster::find_views(std::size_t first, std::size_t last) {
   std::uint32_t mover = kNoMover;
   std::uint64_t beams = 0;

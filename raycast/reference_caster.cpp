@@ -14,7 +14,7 @@ namespace sf::raycast {
 
 namespace {
 
-/// As bearing_of, in `long double`.
+/// Same as bearing_of, in `long double`.
 long double wide_bearing(const ScanSettings& scan, std::uint32_t i) {
   if (scan.samples < 2) return 0.0L;
   const long double last = scan.samples - 1;
@@ -25,7 +25,7 @@ WideBeam heading_of(double yaw) {
   return {{}, std::cos(static_cast<long double>(yaw)), std::sin(static_cast<long double>(yaw))};
 }
 
-/// As exact_bound, with the unit roundoff of `long double`. The range is rounded to `double`.
+/// Same as exact_bound, with the unit roundoff of `long double`. The range is rounded to `double`.
 double wide_bound(double range_max, double longest, double farthest) {
   constexpr auto kRoundoff = static_cast<double>(std::numeric_limits<long double>::epsilon() / 2);
   return SF_CONTACT_DISTANCE + 0x1p-53 * range_max +
@@ -37,7 +37,7 @@ std::uint64_t count_visible(std::span<const world::Segment> surfaces) {
       std::count_if(surfaces.begin(), surfaces.end(), [](const world::Segment& s) { return s.seen_by_laser; }));
 }
 
-/// Refuses more than ReferenceCaster::kMostPairs.
+/// Rejects worlds with more than ReferenceCaster::kMostPairs.
 void check_size(const CasterInputs& in) {
   std::uint64_t beams = 0, surfaces = count_visible(in.world.walls);
   for (const ScannerRow& row : in.plan.rows) beams += row.plan.samples.size();
@@ -96,7 +96,7 @@ bool ReferenceCaster::prepare(const DueScans& due, bool cast) {
   return false;
 }
 
-/// Collects the surfaces at the height of a sensor, without those of its own mover.
+/// Collects the surfaces at the height of a sensor, except those of its own mover.
 void ReferenceCaster::find_visible(const Viewpoint& view, std::vector<Surface>& visible) const {
   visible.clear();
   for (std::size_t i = 0; i < local_.size(); ++i) {

@@ -1,9 +1,9 @@
 #pragma once
-// The reference: every beam against every surface, in `long double`, for small worlds. It shares the plan of the scans
-// and the layout of the results with the other casters, but no list, no search and no arithmetic.
+// Reference caster for small worlds: intersects every beam with every surface, in `long double`. It shares the plan of
+// the scans and the layout of the results with the other casters, but none of their lists, searches or arithmetic.
 //
-// Its rules are those of raycast/ray_caster.h. Sums of angles lose digits at large headings, so directions are products
-// of cosines and sines, in this type like all else.
+// It follows the rules of raycast/ray_caster.h. Sums of angles lose digits at large headings, so directions are
+// computed from products of cosines and sines, also in `long double`.
 
 #include <cmath>
 #include <cstdint>
@@ -23,19 +23,19 @@ struct WideBeam {
 
 /// The nearest surface along a beam.
 struct WideHit {
-  long double range = 0.0L;         ///< [m]; range_max without a hit
+  long double range = 0.0L;         ///< [m]; range_max if there is no hit
   std::uint32_t model = SF_NO_HIT;  ///< `Segment::model`
   long double sine = 1.0L;          ///< of the angle between beam and surface
 };
 
-/// The direction of `bearing` [rad] in the frame of a sensor with the unit vector `heading`.
+/// Returns the beam at `bearing` [rad] of a sensor whose heading is the unit vector `heading`.
 inline WideBeam wide_beam(glm::dvec2 origin, const WideBeam& heading, long double bearing) {
   const long double c = std::cos(bearing), s = std::sin(bearing);
   return {origin, heading.x * c - heading.y * s, heading.y * c + heading.x * s};
 }
 
-/// Among surfaces of equal range, the first counts.
-/// @param surfaces with ends `a` and `b`, of coordinates in any floating-point type [m], and a `model`
+/// Returns the nearest surface along `beam`; the first one of those at equal range.
+/// @param surfaces with ends `a` and `b` [m], whose coordinates have any floating-point type, and a `model`
 template <class Surface>
 WideHit nearest_surface(std::span<const Surface> surfaces, const WideBeam& beam, long double range_max) {
   constexpr long double kContact = SF_CONTACT_DISTANCE;
@@ -45,7 +45,7 @@ WideHit nearest_surface(std::span<const Surface> surfaces, const WideBeam& beam,
     const long double ay = s.a.y - static_cast<long double>(beam.origin.y);
     const long double bx = s.b.x - static_cast<long double>(beam.origin.x);
     const long double by = s.b.y - static_cast<long double>(beam.origin.y);
-    // Signs that two surfaces with a common end compute alike, so that no beam passes between them.
+    // Two surfaces with a common end compute the same sign for it, so no beam passes between them.
     const long double side_a = beam.x * ay - beam.y * ax, side_b = beam.x * by - beam.y * bx;
     const bool crosses = (side_a >= 0 && side_b <= 0) || (side_a <= 0 && side_b >= 0);
     if (!crosses) continue;
@@ -62,10 +62,10 @@ WideHit nearest_surface(std::span<const Surface> surfaces, const WideBeam& beam,
 
 class ReferenceCaster : public Caster {
  public:
-  /// [pairs] of a beam and a surface per tick: a quarter of a second of work on one core (x86-64).
+  /// [pairs] limit of beams times surfaces per tick: a quarter of a second of work on one x86-64 core.
   static constexpr std::uint64_t kMostPairs = 100'000'000;
 
-  /// @throws base::InputError when all beams and all surfaces make more than kMostPairs
+  /// @throws base::InputError if the product of beams and surfaces exceeds kMostPairs
   explicit ReferenceCaster(const CasterInputs& in);
 
   void place() override { placed_ = false; }
@@ -92,10 +92,10 @@ class ReferenceCaster : public Caster {
   void find_visible(const Viewpoint& view, std::vector<Surface>& visible) const;
   void scan(const DueScans& due, std::size_t i, unsigned thread);
 
-  std::vector<world::Segment> local_;  ///< walls in the world, then edges in the frames of their movers
-  std::vector<std::uint32_t> movers_;  ///< of each; kNoMover: a wall
-  std::vector<Surface> surfaces_;      ///< of each, in the world, in this tick
-  std::vector<double> load_z_;         ///< [m] heights of movers at load; they do not change (2.5-D world)
+  std::vector<world::Segment> local_;  ///< walls in the world frame, then edges in the frames of their movers
+  std::vector<std::uint32_t> movers_;  ///< mover of each; kNoMover: a wall
+  std::vector<Surface> surfaces_;      ///< the same in the world frame, in this tick
+  std::vector<double> load_z_;         ///< [m] heights of movers at load, which are constant (2.5-D world)
   std::vector<Scratch> scratch_;       ///< per thread
   bool placed_ = false;                ///< the movers are at this tick's poses
 };

@@ -1,5 +1,5 @@
 #pragma once
-// The subset of a world that reflects sound, with the direction of each segment: the angle of incidence decides whether
+// Subset of a world that reflects sound, with the direction of each segment. The angle of incidence determines whether
 // an echo returns.
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace sf::raycast {
 
 struct Reflectors {
-  world::World world;                    ///< walls and movers that echo; `Segment::model` is an index into `rows`
+  world::World world;  ///< walls and movers that reflect sound; `Segment::model` is an index into `rows`
   std::vector<ReflectorDirection> rows;  ///< one per segment
 };
 

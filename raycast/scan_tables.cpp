@@ -56,7 +56,7 @@ void ScanPattern::assign(std::span<const double> bearings, std::span<const doubl
   slack = static_cast<float>(most < 1e-6 ? 0.0 : 1.001 * most);
   narrow = farthest <= 0.5 * M_PI;
   half_view = static_cast<float>(farthest + 1e-6);
-  // Widened for rounding.
+  // Widened to cover rounding errors.
   const double edge = std::min(farthest + 1e-6, 0.5 * M_PI);
   edge_cos = static_cast<float>(std::cos(edge)), edge_sin = static_cast<float>(std::sin(edge));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Inputs of casters and sensor backends: context, due samples, and counters of their work.
+// Inputs of casters and sensor backends (context, due samples) and their counters.
 
 #include <cstdint>
 #include <span>
@@ -14,21 +14,21 @@ namespace sf::raycast {
 
 using base::Pose;
 
-/// One sensor that is due.
+/// One due sensor.
 struct DueSample {
   std::uint32_t row = 0;       ///< index among the world's sensors of one type
-  std::uint64_t sequence = 0;  ///< number of the sensor's reading; key of its noise
+  std::uint64_t sequence = 0;  ///< number of the reading; key of its noise
 };
 
-/// Context of sensor backends of all types. All references must outlive them.
+/// Context of sensor backends of all types. All referenced objects must outlive the backends.
 struct SensorContext {
   const world::World& world;
   gpu::Device& device;
   base::ThreadPool& thread_pool;
-  std::span<const base::Report> states;  ///< one per mover, as sensed in this tick: the farm's own, not a copy
-  std::uint64_t seed = 0;                ///< of all noise
-  bool noise = true;                     ///< false: no noise, whatever the world file says
-  bool true_poses = true;  ///< true: simulation, reported poses are true; false: reported poses are estimates
+  std::span<const base::Report> states;  ///< one per mover, used for sensing in this tick; refers to the farm's memory
+  std::uint64_t seed = 0;                ///< seed of all noise
+  bool noise = true;                     ///< false disables noise regardless of the world file
+  bool true_poses = true;                ///< true: reported poses are true (simulation); false: they are estimates
   SceneOptions scene;
 };
 
@@ -36,11 +36,12 @@ struct SensorContext {
 struct SensorStats {
   std::uint64_t rays = 0;             ///< beams cast
   std::uint64_t uncertain = 0;        ///< beams that 32 bits could not certify
-  std::uint64_t cells_built = 0;      ///< cells whose lists were built
-  std::uint64_t dipoles = 0;          ///< pairs of magnet and element summed
+  std::uint64_t cells_built = 0;      ///< cells for which lists were built
+  std::uint64_t dipoles = 0;          ///< summed pairs of a magnet and an element
   std::uint64_t movers_in_range = 0;  ///< pairs of a sensing robot and a mover within its range
-  std::uint64_t movers_visible = 0;   ///< of these, in view; on the host also not hidden by nearer movers or walls
-  std::uint64_t host_scans = 0;       ///< scans on the host because the device's lists would be too long
+  std::uint64_t movers_visible =
+      0;                         ///< of these, pairs in view; on the host, also not hidden by nearer movers or walls
+  std::uint64_t host_scans = 0;  ///< scans that ran on the host because the device's lists would be too long
 
   SensorStats& operator+=(const SensorStats& more);
   SensorStats operator-(const SensorStats& before) const;

@@ -8,7 +8,7 @@ namespace sf::raycast {
 
 namespace {
 
-/// [places] largest distance of a beam from its place in an even pattern.
+/// [places] limit of the distance of a beam from its place in an even pattern.
 constexpr float kMaxSlack = 4.0F;
 
 SharedPattern merge(std::span<const Scanner> scanners, std::span<const BeamPlan* const> plans) {

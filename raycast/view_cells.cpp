@@ -10,10 +10,10 @@ namespace sf::raycast {
 
 namespace {
 
-constexpr int kSide = 8;  ///< parts of a cell along each side
+constexpr int kSide = 8;  ///< number of parts along each side of a cell
 constexpr std::uint64_t kFirstColumn = 0x0101010101010101u, kAll = ~std::uint64_t{0};
 
-/// All parts in `clear` that are connected with those in `from`.
+/// Returns all parts in `clear` that are connected with those in `from`.
 std::uint64_t connected(std::uint64_t from, std::uint64_t clear) {
   for (std::uint64_t all = from & clear;; from = all) {
     all |= ((all << 1) & ~kFirstColumn) | ((all & ~kFirstColumn) >> 1) | all << kSide | all >> kSide;
@@ -39,12 +39,12 @@ void ViewCells::grow(std::uint32_t slots, std::uint32_t chunks) {
   parts_.resize(cache_.slots());
 }
 
-/// @param last_slot of the same view in the last tick: a robot mostly stays in its cell
+/// @param last_slot slot of the same view in the last tick; robots mostly stay in their cells
 CellKey ViewCells::key_of(const Viewpoint& view, std::uint32_t last_slot) const {
   const double size = sizes_[view.config];
   CellKey key{2 * std::int64_t{view.config}, static_cast<std::int64_t>(std::floor(view.X_WS.x / size)),
               static_cast<std::int64_t>(std::floor(view.X_WS.y / size))};
-  // An undivided region lies on one side as a whole: the result for one viewpoint holds for all.
+  // A region that no surface divides is on one side as a whole, so the result for one viewpoint applies to all of them.
   const std::uint32_t part = part_of(view);
   const auto known = [&] {
     const std::uint32_t slot = cache_.slot_of(key, last_slot);
@@ -84,7 +84,7 @@ void ViewCells::find_clear_parts(const CellKey& key, std::uint32_t slot, std::sp
   parts_[slot] = {clear, 0};
 }
 
-/// Learns from a viewpoint of the cell that the parts connected with its own lie on the cell's side.
+/// Marks the parts that are connected with the part of this viewpoint as being on the cell's side.
 void ViewCells::learn_side(const Viewpoint& view, Parts& parts) const {
   if (parts.known == parts.clear) return;
   const std::uint64_t own = std::uint64_t{1} << part_of(view);

@@ -1,5 +1,5 @@
 #pragma once
-// Poses of sensors that are due.
+// Poses of due sensors.
 
 #include <cstdint>
 
@@ -7,10 +7,10 @@
 
 namespace sf::raycast {
 
-/// A sensor that is due.
+/// A due sensor.
 struct Viewpoint {
   std::uint32_t config = 0;
-  std::uint32_t self = 0;  ///< mover that carries it
+  std::uint32_t self = 0;  ///< mover that carries the sensor
   base::Pose X_WS;
   glm::dvec2 heading;  ///< unit vector of the yaw
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Blocks of the segments that viewers in one cell may see, with their bounds.
+// Blocks of the segments that viewers in a cell may see, with their bounds.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace sf::raycast {
 
-/// Appends `found`, which it sorts by rings and bearings, and the bounds of each block.
+/// Sorts `found` by rings and bearings, and appends it in blocks with their bounds.
 void append_blocks(std::vector<CandidateWall>& found, std::vector<SegmentBlock>& blocks,
                    std::vector<BlockBounds>& bounds);
 

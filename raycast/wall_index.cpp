@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMaxBands = 1024;
 constexpr std::size_t kLeafWalls = 8;
-constexpr std::size_t kAhead = 8;  ///< walls that are fetched while earlier ones are looked at
+constexpr std::size_t kAhead = 8;  ///< number of walls to prefetch ahead
 
 double least_x(const IndexedWall& s) { return std::min(s.a.x, s.b.x); }
 double largest_x(const IndexedWall& s) { return std::max(s.a.x, s.b.x); }
@@ -65,8 +65,8 @@ void WallIndex::near(glm::dvec2 p, double radius, std::vector<std::uint32_t>& fo
 bool WallIndex::inside_solid(glm::dvec2 p) const {
   const base::Box all = tree_.extent();
   if (!meet(all, {p, p})) return false;
-  // A horizontal line crosses closed outlines upward as often as downward. The crossings on one side of p suffice: the
-  // side with less of the world.
+  // A horizontal line crosses closed outlines upward as often as downward, so the crossings on one side of p suffice.
+  // Use the side with less of the world.
   const bool left = p.x - all.min.x < all.max.x - p.x;
   const Band& band = bands_[band_of(p.y)];
   int winding = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Spatial index of the walls that beams at one height can meet.
+// Spatial index of the walls at the height of a sensor's beams.
 
 #include <cstdint>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace sf::raycast {
 
-/// A visible segment; `row` is its row among all walls.
+/// A visible segment. `row` is its row in the table of all walls.
 struct IndexedWall {
   glm::dvec2 a;
   glm::dvec2 b;
@@ -21,28 +21,28 @@ struct IndexedWall {
 /// Immutable after construction and thread-safe.
 class WallIndex {
  public:
-  /// Indexes the walls visible at height `z` [m]. They need not outlive it.
+  /// Indexes the walls visible at height `z` [m]. `walls` may be destroyed after construction.
   WallIndex(std::span<const world::Segment> walls, double z);
 
   const std::vector<IndexedWall>& segments() const { return segments_; }
 
-  /// Finds every segment within `radius` [m] of `p`, and possibly more. @param found out: indices into `segments()`,
-  /// each once, in unspecified order
+  /// Finds every segment within `radius` [m] of `p`, and possibly others. @param found out: indices into `segments()`,
+  /// without duplicates, in unspecified order
   void near(glm::dvec2 p, double radius, std::vector<std::uint32_t>& found) const;
 
-  /// True when `p` lies in a solid: the winding number of all outlines with a known solid side is not 0. Within
-  /// rounding of a surface either result is possible.
+  /// Returns whether `p` is in a solid, i.e. the winding number of all outlines with a known solid side is not 0.
+  /// Within rounding of a surface, either result is possible.
   bool inside_solid(glm::dvec2 p) const;
 
  private:
-  /// The segments of solids in an interval of y, for winding numbers.
+  /// Segments of solids in an interval of y, for winding numbers.
   struct Band {
-    std::vector<std::uint32_t> from_left, from_right;  ///< by ascending least x, and by descending largest x
+    std::vector<std::uint32_t> from_left, from_right;  ///< sorted by ascending minimum x, and by descending maximum x
   };
   void index_bands();
   std::size_t band_of(double y) const;
 
-  std::vector<IndexedWall> segments_;  ///< neighbours stand together
+  std::vector<IndexedWall> segments_;  ///< spatial neighbours are adjacent
   base::BoxTree tree_;
   std::vector<Band> bands_;
   double band_height_ = 1.0;  ///< [m]

@@ -1,5 +1,4 @@
-// The uncertain beams of a scan, decided in 64 bits.
-// Compiled once per instruction set (hwy/foreach_target.h).
+// Decides the uncertain beams of a scan in 64 bits. Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_DECIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_DECIDE_INL_H
@@ -24,7 +23,7 @@ HWY_INLINE void each_uncertain(const Scratch& s, Visit visit) {
       visit(64 * w + static_cast<std::size_t>(__builtin_ctzll(pending)));
 }
 
-/// Sink of projected blocks that intersects uncertain beams with the segments that may be their nearest.
+/// Sink of projected blocks that intersects uncertain beams with the segments that may be nearest to the viewer.
 struct Decide {
   Scratch& s;
   const ScanView& view;
@@ -57,7 +56,7 @@ struct Decide {
       }
     }
   }
-  /// `intersect` for a vector of beams that begins at `i`: the same operations in the same order.
+  /// `intersect` for a vector of beams that starts at `i`, with the same operations in the same order.
   HWY_INLINE void intersect_vector(std::uint32_t row, std::size_t i) const {
     const ExactSegment& g = scene.exact[row];
     const double wax = g.ax - view.origin.x, way = g.ay - view.origin.y;
@@ -79,8 +78,8 @@ struct Decide {
   }
 };
 
-/// Intersects the uncertain beams with all segments, one segment after the other: where there are many, a segment is
-/// projected once for all beams.
+/// Intersects the uncertain beams with all segments, segment by segment. For many beams this is faster, since each
+/// segment is projected only once.
 void decide_segments(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                      const ScanScene& scene) {
   const std::size_t padded = pattern.beams + kBlock;
@@ -107,7 +106,7 @@ void decide_segments(Scratch& s, const Projection& p, const ScanView& view, cons
   }
 }
 
-/// Intersects the uncertain beams in 64 bits. @return true when any grazes
+/// Intersects the uncertain beams in 64 bits. @return true if any grazes a surface
 bool intersect_uncertain_beams(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                                const ScanScene& scene, const ScanOutput& out) {
   std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});

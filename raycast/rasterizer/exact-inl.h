@@ -75,8 +75,8 @@ void intersect_crowd(Scratch& s, const ScanView& view, const ScanScene& scene, g
     intersect_cell(s, view, scene, scene.crowd, d, best);
 }
 
-/// Begins each beam with its nearest segment of the crowd, found by its index. Beams that graze it, or begin on it, are
-/// left to `intersect_uncertain_beams`.
+/// Initializes each beam with its nearest segment of the crowd, from the crowd's index. Beams that graze that segment
+/// or start on it are left to `intersect_uncertain_beams`.
 void draw_indexed_crowd(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
   constexpr float kMinSine = 2e-3f;
   constexpr double kNearest = 1e-6;  // [m]
@@ -125,7 +125,7 @@ void intersect_mover(Scratch& s, const ScanView& view, const ScanScene& scene, s
                     best);
 }
 
-/// Intersects the movers that the grid has along the beam.
+/// Intersects the movers along the beam, using the grid.
 void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, ClosestHit& best) {
   const MoverGrid& grid = *scene.movers;
   const double margin = grid.largest_radius * 1.001 + 2.0 * static_cast<double>(grid.error);
@@ -138,7 +138,7 @@ void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, 
   for (const std::uint32_t mover : s.across) intersect_mover(s, view, scene, mover, d, best);
 }
 
-/// Intersects the movers that the scan found round the beam at `place`, near to far.
+/// Intersects the movers that the scan found near the beam at `place`, near to far.
 void intersect_near_movers(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
                            float place, glm::dvec2 d, ClosestHit& best) {
   const float turn = 6.2831853f * pattern.per_radian;
@@ -151,7 +151,7 @@ void intersect_near_movers(Scratch& s, const ScanView& view, const ScanPattern& 
   }
 }
 
-/// Writes the result of a beam. @return true when it grazes
+/// Writes the result of a beam. @return true if it grazes a surface
 bool write_beam(const ScanView& view, const ScanScene& scene, std::size_t i, glm::dvec2 d, ClosestHit best,
                 const ScanOutput& out) {
   const bool grazes = best.grazes(static_cast<float>(view.min_sine));
@@ -166,7 +166,7 @@ bool write_beam(const ScanView& view, const ScanScene& scene, std::size_t i, glm
   return grazes;
 }
 
-/// Intersects every beam in 64 bits. @return true when any grazes
+/// Intersects every beam in 64 bits. @return true if any grazes a surface
 bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
                          const ScanOutput& out) {
   bool grazes = false;

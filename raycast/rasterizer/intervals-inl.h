@@ -1,5 +1,5 @@
-// Intervals of beams: the nearest segments within one, and whether one is hidden.
-// Compiled once per instruction set (hwy/foreach_target.h).
+// Intervals of beams: the nearest segments in an interval, and whether an interval is hidden. Compiled once per
+// instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_INTERVALS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_INTERVALS_INL_H
@@ -16,18 +16,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-/// Segments of one vector, projected to the beams that they cover.
+/// A vector of segments, projected to the beams that they cover.
 struct Intervals {
   HWY_ALIGN float a[kBlock], b[kBlock], error[kBlock];  ///< 1 / t = a cos + b sin, within error [1/m]
   HWY_ALIGN float low_possible[kBlock], high_possible[kBlock], low_certain[kBlock],
-      high_certain[kBlock];                     ///< places of beams that each may cover, and certainly covers
+      high_certain[kBlock];                     ///< places of beams that each segment may cover, and certainly covers
   HWY_ALIGN float first[kBlock], last[kBlock];  ///< indices of beams to test; last < first: none
   HWY_ALIGN std::int32_t row[kBlock];           ///< of the exact segment
-  std::uint32_t from, end;                      ///< beams to test for all of them
+  std::uint32_t from, end;                      ///< beams to test for all segments
 };
 
-/// Updates the bounds of all beams that `g` may cover. The bounds of a vector of beams stay in registers while its
-/// segments, one after the other, are compared with them.
+/// Updates the bounds of all beams that `g` may cover. The bounds of a vector of beams stay in registers while all
+/// segments are compared with them.
 inline void rasterize(Scratch& s, const ScanPattern& pattern, const Intervals& g) {
   const std::uint32_t step = lanes();
   const VF first = hn::Load(kF, g.first), last = hn::Load(kF, g.last);
@@ -55,7 +55,7 @@ inline void rasterize(Scratch& s, const ScanPattern& pattern, const Intervals& g
   }
 }
 
-/// False when every beam in [low, high] certainly meets something nearer than `distance`.
+/// Returns false if every beam in [low, high] certainly meets a surface nearer than `distance`.
 HWY_INLINE bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float low, float high, float distance) {
   const auto last = static_cast<float>(pattern.beams - 1);
   if (high < 0.0f || low > last) return false;
@@ -72,7 +72,7 @@ HWY_INLINE bool may_be_visible(const Scratch& s, const ScanPattern& pattern, flo
   return false;
 }
 
-/// The same for beams a whole turn away, too.
+/// The same, also for beams that are a full turn away.
 inline bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float turn, float low, float high,
                            float distance) {
   return may_be_visible(s, pattern, low, high, distance) ||
@@ -80,7 +80,7 @@ inline bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float t
          may_be_visible(s, pattern, low + turn, high + turn, distance);
 }
 
-/// [m] Every beam certainly meets something within it.
+/// Returns a distance [m] within which every beam certainly meets a surface.
 inline float horizon_of(const Scratch& s, const ScanPattern& pattern) {
   VF least = load(&s.near_low[0]);
   for (std::uint32_t j = 0; j < pattern.beams; j += lanes()) least = hn::Min(least, load(&s.near_low[j]));

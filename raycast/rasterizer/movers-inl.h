@@ -30,7 +30,7 @@ void find_movers_in_row(Scratch& s, const Projection& p, const ScanView& view, c
     const VF radius = load(&grid.radius[at]) * constant(1.0001f) + tolerance;
     const VF ahead = p.heading_cos * dx + p.heading_sin * dy, left = p.heading_cos * dy - p.heading_sin * dx;
     const VF distance = hn::Sqrt(ahead * ahead + left * left);
-    // Its edges are within its disc, and none is nearer to its origin than `inner`.
+    // A mover's edges are within its disc, and at least `inner` away from its origin.
     const VF inside = load(&grid.inner[at]) * constant(0.9999f) - tolerance - distance;
     const VF gap = distance - radius, apart = hn::Max(gap, inside);
     MF seen = apart <= reach;

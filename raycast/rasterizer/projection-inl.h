@@ -42,10 +42,10 @@ Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
           constant(pattern.edge_sin)};
 }
 
-/// The segments of one block, projected. A segment may cover beams at both ends of the view.
+/// The projected segments of one block. A segment may cover beams at both ends of the view.
 struct ProjectedBlock {
   Intervals parts[3 * kBlock / hn::MaxLanes(kF)];
-  std::uint32_t count = 0;  ///< of parts in use
+  std::uint32_t count = 0;  ///< number of parts in use
 };
 
 /// Appends the segments of `mask` whose intervals contain beams.
@@ -99,7 +99,7 @@ inline void project(ProjectedBlock& out, const Projection& p, VF wx, VF wy, VF g
   const VF margin_low = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_b, margin_a);
   const VF margin_high = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_a, margin_b);
   const MF edge_on = hn::Abs(ahead) <= error_margin;
-  // An end too near for a bearing, or a viewer on the segment between its ends: the segment may cover every beam.
+  // If an end is too near for a bearing, or the viewer is on the segment, the segment may cover every beam.
   const VF span = high - low;
   const MF anywhere = hn::Or(hn::Or(hn::Max(margin_a, margin_b) > constant(0.1f) * p.per_radian,
                                     hn::Abs(span - half) < constant(1e-5f) * p.turn),

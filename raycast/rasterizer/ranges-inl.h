@@ -1,5 +1,5 @@
-// The certified nearest segment of each beam, and its range in 64 bits.
-// Compiled once per instruction set (hwy/foreach_target.h).
+// Finds the certified nearest segment of each beam, and computes its range in 64 bits. Compiled once per instruction
+// set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_RANGES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_RANGES_INL_H
@@ -15,8 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-/// Fills the bit masks of the last beam of each run of one nearest segment, and of the uncertain beams.
-/// @return true when any beam is uncertain
+/// Fills the bit masks of the last beams of all runs with one nearest segment, and of the uncertain beams. @return true
+/// if any beam is uncertain
 bool find_runs(Scratch& s, std::uint32_t beams) {
   std::fill(s.ends.begin(), s.ends.end(), 0);
   std::fill(s.uncertain.begin(), s.uncertain.end(), 0);
@@ -37,8 +37,8 @@ bool find_runs(Scratch& s, std::uint32_t beams) {
   return any_uncertain;
 }
 
-/// Calls `range_of(j)` for vectors of beams that begin at `j`, and writes what it returns, and `model`, for the beams
-/// [first, end). The next run overwrites places behind `end`.
+/// Calls `range_of(j)` for vectors of beams that start at `j`, and writes the returned ranges and `model` for the beams
+/// [first, end). The next run overwrites places after `end`.
 template <class Range>
 HWY_INLINE void write_run(const ScanPattern& pattern, const ScanOutput& out, std::uint32_t first, std::uint32_t end,
                           std::uint32_t model, Range range_of) {
@@ -56,7 +56,7 @@ HWY_INLINE void write_run(const ScanPattern& pattern, const ScanOutput& out, std
   std::fill(&out.models[j], &out.models[pattern.beams], model);
 }
 
-/// Ranges of beams [first, end) that meet `g`, by the operations of `intersect`.
+/// Computes the ranges of beams [first, end) that meet `g`, with the operations of `intersect`.
 HWY_INLINE void write_exact_ranges(const ScanView& view, const ScanPattern& pattern, const ExactSegment& g,
                                    std::uint32_t first, std::uint32_t end, std::uint32_t model, const ScanOutput& out) {
   const double wx = g.ax - view.origin.x, wy = g.ay - view.origin.y;

@@ -11,7 +11,7 @@ namespace sf::raycast {
 /// A mover that may be visible, with the interval of beams that its disc covers. The interval may exceed the view.
 struct NearMover {
   float distance;   ///< [m] lower bound of the distance to its nearest edge
-  float low, high;  ///< [places] as `ScanPattern::place`
+  float low, high;  ///< interval [places], as ScanPattern::place
   std::uint32_t mover;
   bool outside;  ///< the viewer is outside of its disc
 };
@@ -23,7 +23,7 @@ struct Rasterizer::Scratch {
   std::vector<std::uint64_t> ends, uncertain;      ///< one bit per beam
 
   std::vector<double> x, y;       ///< directions, where many beams are uncertain
-  std::vector<double> range;      ///< [m] likewise: nearest intersection so far
+  std::vector<double> range;      ///< [m] nearest intersection so far, where many beams are uncertain
   std::vector<std::int64_t> row;  ///< its exact segment, or SF_NO_HIT
 
   // Movers.

@@ -1,5 +1,5 @@
-// Vector types of a scan: as wide as the machine's, at most one block of segments.
-// Compiled once per instruction set (hwy/foreach_target.h).
+// Vector types of a scan: as wide as the machine's vectors, but at most one block of segments. Compiled once per
+// instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_VECTORS_INL_H
@@ -27,7 +27,7 @@ constexpr hn::RebindToUnsigned<F> kU;
 constexpr hn::ScalableTag<double> kD;
 using VD = hn::Vec<decltype(kD)>;
 constexpr hn::Rebind<std::uint32_t, decltype(kD)> kModels;  // one per range
-constexpr hn::Rebind<std::int64_t, decltype(kD)> kRows;     // likewise
+constexpr hn::Rebind<std::int64_t, decltype(kD)> kRows;     // one per range
 
 inline std::uint32_t lanes() { return static_cast<std::uint32_t>(hn::Lanes(kF)); }
 inline VF constant(float value) { return hn::Set(kF, value); }
@@ -40,7 +40,7 @@ inline std::uint32_t bits_of(MF mask) {
   return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
-/// Bearing [rad] of (x, y), to 1e-6, and the inverse of max(|x|, |y|). Abramowitz and Stegun 4.4.49.
+/// Computes the bearing [rad] of (x, y), to 1e-6, by Abramowitz and Stegun 4.4.49, and the inverse of max(|x|, |y|).
 HWY_INLINE VF bearing_of(VF y, VF x, VF& inverse) {
   const VF across = hn::Abs(y), along = hn::Abs(x);
   const VF larger = hn::Max(hn::Max(along, across), constant(1e-30f));

@@ -1,5 +1,5 @@
-// Rasterizes the surfaces round a cell: walls, and the edges of a crowd.
-// Compiled once per instruction set (hwy/foreach_target.h).
+// Rasterizes the surfaces around a cell: walls, and the edges of a crowd. Compiled once per instruction set
+// (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_WALLS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_WALLS_INL_H
@@ -43,7 +43,7 @@ HWY_INLINE void project_blocks(Scratch& s, const Projection& p, const ScanPatter
                                std::uint32_t from, std::uint32_t end, bool reversed, Sink sink) {
   const VF ox = constant(static_cast<float>(cell.offset.x)), oy = constant(static_cast<float>(cell.offset.y));
   BlockIntervals intervals;
-  // Each block is projected before the sink has the previous one: the processor overlaps both.
+  // Each block is projected before the previous one is passed to the sink, so the CPU can overlap both.
   ProjectedBlock projected[2];
   std::uint32_t spare = 0;
   for (std::uint32_t first = from; first < end; first += lanes()) {
