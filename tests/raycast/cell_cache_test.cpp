@@ -1,4 +1,4 @@
-// Bookkeeping of the cell cache: no cell in use is lost, and no evicted cell is found.
+// Bookkeeping of the cell cache: cells in use are never lost, and evicted cells are never found.
 
 #include "raycast/cell_cache.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kPage = CellCache::kPage;
 
-TEST(CellCache, FindsWhatWasInserted) {
+TEST(CellCache, FindsInsertedKeys) {
   CellCache cache(8, 8 * kPage);
   const CellKey key{1, -5, 7};
   EXPECT_EQ(cache.find(key), CellCache::kNone);
@@ -27,7 +27,7 @@ TEST(CellCache, FindsWhatWasInserted) {
   EXPECT_EQ(cache.built(), 1u);
 }
 
-TEST(CellCache, AWrongGuessChangesNothing) {
+TEST(CellCache, WrongGuessesHaveNoEffect) {
   CellCache cache(2, 2 * kPage);
   const std::uint32_t p = cache.insert({0, 1, 0}, 1), q = cache.insert({0, 2, 0}, 1);
   for (const std::uint32_t guess : {p, q, 2u, CellCache::kNone}) {
@@ -41,7 +41,7 @@ TEST(CellCache, AWrongGuessChangesNothing) {
   EXPECT_EQ(cache.evicted(), 1u);
 }
 
-TEST(CellCache, ACellWithoutChunksIsACellToo) {
+TEST(CellCache, SupportsCellsWithoutChunks) {
   CellCache cache(4, kPage);
   ASSERT_NE(cache.insert({0, 0, 0}, 0), CellCache::kNone);
   ASSERT_NE(cache.insert({0, 1, 0}, kPage), CellCache::kNone);
@@ -62,8 +62,8 @@ TEST(CellCache, CellsDoNotShareChunks) {
   }
 }
 
-/// This tick's cells are never evicted; when they fill the pool, `insert` returns kNone.
-TEST(CellCache, RefusesRatherThanForgetWhatThisTickNeeds) {
+/// This tick's cells are never evicted. If they fill the pool, `insert` returns kNone.
+TEST(CellCache, NeverEvictsCellsOfThisTick) {
   CellCache cache(64, 4 * kPage);
   for (int i = 0; i < 4; ++i) ASSERT_NE(cache.insert({0, i, 0}, kPage), CellCache::kNone);
   EXPECT_EQ(cache.insert({0, 9, 0}, 1), CellCache::kNone) << "no chunks left";
@@ -75,14 +75,14 @@ TEST(CellCache, RefusesRatherThanForgetWhatThisTickNeeds) {
   EXPECT_EQ(CellCache(4, kPage).insert({0, 0, 0}, kPage + 1), CellCache::kNone) << "never fits";
 }
 
-TEST(CellCache, TheOldestMakesWay) {
+TEST(CellCache, EvictsTheOldestCellFirst) {
   CellCache cache(64, 4 * kPage);
   for (int i = 0; i < 4; ++i) {
     cache.begin_tick();
     ASSERT_NE(cache.insert({0, i, 0}, kPage), CellCache::kNone);
   }
   cache.begin_tick();
-  ASSERT_NE(cache.find({0, 1, 0}), CellCache::kNone);  // used again in this tick
+  ASSERT_NE(cache.find({0, 1, 0}), CellCache::kNone);  // in use in this tick
   ASSERT_NE(cache.insert({0, 4, 0}, kPage), CellCache::kNone);
   ASSERT_NE(cache.insert({0, 5, 0}, kPage), CellCache::kNone);
   EXPECT_NE(cache.find({0, 1, 0}), CellCache::kNone) << "this tick needs it, though it came after the first";
@@ -91,7 +91,7 @@ TEST(CellCache, TheOldestMakesWay) {
   EXPECT_NE(cache.find({0, 3, 0}), CellCache::kNone);
 }
 
-TEST(CellCache, GrowingKeepsWhatIsThere) {
+TEST(CellCache, GrowingKeepsCells) {
   CellCache cache(4, 4 * kPage);
   std::map<int, std::uint32_t> slots;
   for (int i = 0; i < 4; ++i) slots[i] = cache.insert({3, i, -i}, kPage);
@@ -106,9 +106,9 @@ TEST(CellCache, GrowingKeepsWhatIsThere) {
   for (int i = 4; i < 60; ++i) EXPECT_NE(cache.insert({3, i, -i}, kPage), CellCache::kNone) << i;
 }
 
-/// 200 000 finds, inserts and evictions against a model. With few slots, chains of the hash table collide and are
+/// Compares 200 000 finds, inserts and evictions with a model. With few slots, chains of the hash table collide and are
 /// repaired.
-TEST(CellCache, AgreesWithAModelUnderChurn) {
+TEST(CellCache, MatchesAModelUnderChurn) {
   constexpr std::uint32_t kSlots = 13;
   constexpr std::uint32_t kPages = 40;
   CellCache cache(kSlots, kPages * kPage);

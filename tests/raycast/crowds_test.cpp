@@ -1,5 +1,5 @@
-// Crowds: movers inside, round and behind each other. Scans equal those of 64-bit intersection with everything, bit by
-// bit, and their work stays near that of the same movers spread out.
+// Crowds: movers inside, around and behind each other. Scans are bit-identical to 64-bit intersection with all
+// segments, and cost about as much as scans of the same movers spread out.
 
 #include "raycast/crowds.h"
 
@@ -41,7 +41,7 @@ std::vector<glm::dvec2> box(double x0, double y0, double x1, double y1) {
   return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
 }
 
-/// Poses of a layout by the number of the mover.
+/// Returns the pose of the i-th mover of a layout.
 using Layout = Pose (*)(int i, Chance& chance);
 
 world::World crowd(int movers, Layout layout) {
@@ -65,7 +65,7 @@ Pose two_groups(int i, Chance& c) {
                     : Pose{0.35 + 0.1 * c.between(0.0, 1.0), 0.3 * c.between(-1.0, 1.0), 0.0, 3.0};
 }
 
-/// One tick of scans from every mover.
+/// Scans from every mover in one tick.
 struct Swarm {
   explicit Swarm(const world::World& w, std::size_t beams = 181, double fov = M_PI, double range = 8.0)
       : world(w),
@@ -89,7 +89,7 @@ struct Swarm {
                 {found.ranges.data(), found.models.data(), grazes.data()});
     return found;
   }
-  /// Segments projected or intersected, by all scans.
+  /// Runs all scans and returns the number of segments projected or intersected.
   std::uint64_t work() {
     for (std::size_t i = 0; i < views.size(); ++i) scan(i);
     const ScanCounts counts = scene->counts();
@@ -113,13 +113,13 @@ void expect_exact(const world::World& world, const ScanPattern& pattern, double 
     ASSERT_EQ(swarm.scan(m), intersect_everything(world, swarm.views[m].X_WS, m, pattern, range)) << name << ", " << m;
 }
 
-/// A thousand robots at one pose are less work than a thousand that see each other at a distance.
-TEST(Crowds, AThousandAtOnePoseAreNoMoreWorkThanSpreadOut) {
+/// A thousand robots at one pose cost at most as much as a thousand that see each other at a distance.
+TEST(Crowds, OnePoseCostsNoMoreThanSpreadOutRobots) {
   EXPECT_LE(Swarm(crowd(1'000, at_one_pose)).work(), Swarm(crowd(1'000, spread_out)).work());
 }
 
-/// The work of a scan does not grow with the crowd, or hardly: 48 segments a beam, where the crowd has up to 16 000.
-TEST(Crowds, TheWorkOfAScanIsBoundedByItsBeams) {
+/// The work of a scan hardly grows with the crowd: at most 48 segments per beam, in crowds with up to 16 000 segments.
+TEST(Crowds, WorkPerBeamIsBounded) {
   const Layout layouts[] = {nearly_at_one_pose<1>,
                             nearly_at_one_pose<1'000>,
                             nearly_at_one_pose<1'000'000>,
@@ -131,7 +131,8 @@ TEST(Crowds, TheWorkOfAScanIsBoundedByItsBeams) {
     EXPECT_LE(Swarm(crowd(1'000, layouts[k])).work(), 1'000u * 181u * 48u) << k;
 }
 
-/// All headings at one place: every edge of the crowd is the nearest somewhere, so scans read them by bearing.
+/// Robots with all headings at one place: each edge of the crowd is the nearest one somewhere, so scans read edges by
+/// bearing.
 TEST(Crowds, ManyVisibleEdgesAreReadByBearing) {
   const world::World world = crowd(300, turned_at_one_place);
   for (const std::size_t beams : {1, 2, 4, 61, 181})
@@ -139,15 +140,16 @@ TEST(Crowds, ManyVisibleEdgesAreReadByBearing) {
       expect_exact(world, pattern_of(even_bearings(beams, fov)), 8.0, 43, std::to_string(beams));
 }
 
-/// Bodies of two outlines: the viewers are in the first one of each, and outside of the second one, in front of them.
-TEST(Crowds, EdgesOfOtherOutlinesAreSeenFromOutside) {
+/// Bodies with two outlines: viewers are inside every mover's first outline and outside of the second, which is in
+/// front of them.
+TEST(Crowds, OuterOutlinesAreVisible) {
   world::World world = crowd(300, nearly_at_one_pose<1'000'000>);
   for (world::Mover& mover : world.movers) set_body(mover, {box(-1, -1, 1, 1), box(0.4, -0.3, 0.6, 0.3)});
   for (const double fov : {0.5, 2.0 * M_PI}) expect_exact(world, pattern_of(even_bearings(61, fov)), 8.0, 43, "two");
 }
 
-/// A wall in front of the crowd's edges, touching them, or through the viewers.
-TEST(Crowds, WallsHideEdgesThatAreReadByBearing) {
+/// The wall is in front of the crowd's edges, touches them, or passes through the viewers.
+TEST(Crowds, WallsHideEdgesReadByBearing) {
   for (const double x : {0.5, 0.55, 0.5 + 0.17}) {
     world::World world = crowd(300, turned_at_one_place);
     world::Segment wall = world.walls.front();
@@ -157,8 +159,9 @@ TEST(Crowds, WallsHideEdgesThatAreReadByBearing) {
   }
 }
 
-/// Of movers that coincide to the bit the grid holds two: for all scans the first, for its own scans the second.
-TEST(Crowds, OfCoincidentMoversTheFirstInTheTableIsNamed) {
+/// The grid contains two of the movers with bit-identical poses. Scans hit the first; scans by the first hit the
+/// second.
+TEST(Crowds, CoincidentMoversReportTheFirst) {
   const world::World world = crowd(100, at_one_pose);
   Swarm swarm(world);
   EXPECT_EQ(swarm.scan(0).models[90], world.movers[1].model);
@@ -171,7 +174,7 @@ TEST(Crowds, OfCoincidentMoversTheFirstInTheTableIsNamed) {
   EXPECT_EQ(movers.grid().first.back(), 2u);
 }
 
-/// Equal poses with other outlines, or at other heights, do not coincide.
+/// Movers at equal poses do not coincide if their outlines or heights differ.
 TEST(Crowds, OnlyEqualOutlinesCoincide) {
   world::World world = crowd(40, at_one_pose);
   for (std::uint32_t m = 10; m < 20; ++m) scale(world.movers[m], 0.9);
@@ -181,8 +184,8 @@ TEST(Crowds, OnlyEqualOutlinesCoincide) {
   expect_exact(world, pattern_of(even_bearings(91, 6.0)), 8.0, 5, "mixed outlines");
 }
 
-/// Patterns of every kind in crowds of every layout, robots of other sizes inside and outside among them.
-TEST(Crowds, AreExactForEveryPattern) {
+/// All kinds of patterns in all layouts of crowds, which include larger robots.
+TEST(Crowds, AllPatternsAreExact) {
   const Layout layouts[] = {at_one_pose, turned_at_one_place, nearly_at_one_pose<1>, nearly_at_one_pose<1'000'000>,
                             in_a_line,   two_groups};
   for (const Layout layout : layouts)
@@ -195,8 +198,8 @@ TEST(Crowds, AreExactForEveryPattern) {
     }
 }
 
-/// Random crowds: groups with offsets from picometres to metres, any headings or none, discs, boxes, bodies of two
-/// parts, sizes, walls through them, near the origin and far away, ranges shorter than the bodies.
+/// Random crowds: groups with offsets from picometres to metres, random or equal headings, discs, boxes, bodies with
+/// two parts, various sizes, walls through them, near the origin and far away, and ranges shorter than the bodies.
 TEST(Crowds, RandomCrowdsAreExact) {
   for (std::uint64_t seed = 1; seed <= 80; ++seed) {
     Chance chance(seed);
@@ -220,7 +223,7 @@ TEST(Crowds, RandomCrowdsAreExact) {
   }
 }
 
-/// Corners that all robots of a crowd share, aimed at from lattice points.
+/// Beams from lattice points to corners that all robots of a crowd share.
 TEST(Crowds, BeamsThroughSharedCornersAreExact) {
   world::World world;
   for (int i = 0; i < 30; ++i) {

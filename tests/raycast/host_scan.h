@@ -1,5 +1,5 @@
 #pragma once
-// Single host scans, and the reference by 64-bit intersection with everything.
+// Single host scans, and their reference: 64-bit intersection with all segments.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace sf::raycast {
 
-/// Results of a scan.
+/// The results of a scan.
 struct Scan {
   std::vector<double> ranges;
   std::vector<std::uint32_t> models;
@@ -46,7 +46,7 @@ inline Scan scan(const world::World& world, const Pose& X, std::uint32_t self, c
   return scan;
 }
 
-/// The reference by `intersect` alone: every wall and every edge of other movers.
+/// Returns the reference scan: `intersect` with every wall and every edge of other movers.
 inline Scan intersect_everything(const world::World& world, const Pose& X, std::uint32_t self,
                                  const ScanPattern& pattern, double range) {
   std::vector<ExactSegment> exact;

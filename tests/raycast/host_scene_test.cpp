@@ -1,4 +1,4 @@
-// Host scans against 64-bit intersection with all segments: patterns, instruction sets, lists without room.
+// Compares host scans with 64-bit intersection with all segments: patterns, instruction sets, full caches.
 
 #include "raycast/host_scene.h"
 
@@ -26,15 +26,15 @@ void expect_decided(const world::World& world, const ScanPattern& pattern, doubl
   }
 }
 
-TEST(HostScene, FansOfEveryWidth) {
+TEST(HostScene, AllFieldsOfViewAreExact) {
   const world::World world = crowd();
   for (const double fov : {0.0, 1e-7, 0.1, 0.5 * M_PI, M_PI, 1.5 * M_PI, 2.0 * M_PI})
     for (const std::size_t beams : {1, 2, 15, 16, 17, 64, 65, 361})
       expect_decided(world, pattern_of(even_bearings(beams, fov)), 8.0);
 }
 
-/// Irregular beams: a closer last one, angular noise, many in one direction, unordered.
-TEST(HostScene, BeamsOutOfStep) {
+/// Irregular beams: a smaller last step, angular noise, many beams in one direction, unordered beams.
+TEST(HostScene, IrregularBeamsAreExact) {
   const world::World world = crowd();
   trial::Chance chance(3);
   std::vector<double> short_last = even_bearings(46, M_PI);
@@ -54,7 +54,7 @@ TEST(HostScene, BeamsOutOfStep) {
   }
 }
 
-TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
+TEST(HostScene, InstructionSetsAreBitIdentical) {
   const world::World world = crowd();
   const ScanPattern pattern = pattern_of(even_bearings(361, M_PI));
   Pose X = world.movers[0].X_WM;
@@ -73,7 +73,7 @@ TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
   EXPECT_GE(tried, 2) << "the fallback and at least one other";
 }
 
-TEST(HostScene, CellsAreListedOnce) {
+TEST(HostScene, BuildsEachCellOnce) {
   const world::World world = crowd();
   base::ThreadPool thread_pool(2);
   ListConfigs configs(world);
@@ -91,8 +91,8 @@ TEST(HostScene, CellsAreListedOnce) {
   EXPECT_EQ(scene.cells_built(), 2u);
 }
 
-/// Viewpoints inside and outside of solids, in cells that both share, tick by tick.
-TEST(HostScene, EitherSideOfWallsInOneCell) {
+/// Viewpoints inside and outside of solids share cells, over several ticks.
+TEST(HostScene, CellsWithViewsOnBothSidesOfWalls) {
   const world::World world = crowd();
   base::ThreadPool thread_pool(2);
   ListConfigs configs(world);
@@ -119,8 +119,9 @@ TEST(HostScene, EitherSideOfWallsInOneCell) {
   }
 }
 
-/// Five hundred robots drive rounds through more cells than the cache has at first. One alone does not fill the memory.
-TEST(HostScene, CellsThatRobotsReturnToAreKept) {
+/// Five hundred robots return to more cells than the cache has initially, so it grows to keep them. For a single robot
+/// it does not grow as much.
+TEST(HostScene, KeepsCellsThatAreVisitedAgain) {
   const world::World world = scenes::boxes(400, 40.0, 2);
   base::ThreadPool thread_pool(1);
   ListConfigs configs(world);
@@ -140,7 +141,7 @@ TEST(HostScene, CellsThatRobotsReturnToAreKept) {
   }
 }
 
-TEST(MoverGeometry, MoversOfOneShapeShareItsBlocks) {
+TEST(MoverGeometry, MoversOfEqualShapeShareBlocks) {
   world::World world;
   for (int i = 0; i < 5; ++i) scenes::add_robot(world, {2.0 * i, 0.0, 0.0, 0.3 * i}, scenes::laser());
   MoverGeometry movers(world);
@@ -151,8 +152,8 @@ TEST(MoverGeometry, MoversOfOneShapeShareItsBlocks) {
   EXPECT_EQ(above.of_mover[0].all, 0u) << "nothing so high";
 }
 
-/// An absent mover is in no cell; the others are found in theirs.
-TEST(MoverGeometry, MoversThatAreGoneAreNowhere) {
+/// An absent mover is not in any cell. The others are in their cells.
+TEST(MoverGeometry, AbsentMoversAreNotInTheGrid) {
   world::World world;
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {5.0 * i, 0.0, 0.0, 0.0}, scenes::laser());
   MoverGeometry movers(world);

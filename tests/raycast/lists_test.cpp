@@ -1,4 +1,4 @@
-// Lists of walls and sectors may hold too much, never too little.
+// Lists of walls and sectors are conservative: they may contain too much, but never miss a hit.
 
 #include "raycast/sector_lists.h"
 
@@ -19,7 +19,7 @@
 namespace sf::raycast {
 namespace {
 
-/// Row of the first wall along a beam, by the brute-force reference: every wall is its own model here.
+/// Returns the row of the first wall along a beam, by brute force. Needs walls whose `model` is their row.
 std::uint32_t first_wall(const std::vector<world::Segment>& walls, glm::dvec2 p, double direction, double range) {
   const WideBeam beam = wide_beam(p, {}, direction);
   return nearest_surface(std::span<const world::Segment>(oracle::within(walls, p, range)), beam, range).model;
@@ -58,16 +58,16 @@ void every_hit_is_listed(world::World world, double range, double size, std::uin
   EXPECT_GT(checked, 500u);
 }
 
-TEST(Sectors, EveryWallABeamMeetsIsListed) {
+TEST(Sectors, ListsEveryWallThatABeamMeets) {
   every_hit_is_listed(scenes::cave(300, 16.0, 3), 8.0, 0.25, 1);
   every_hit_is_listed(scenes::cave(300, 16.0, 4), 30.0, 1.0, 2);
   every_hit_is_listed(scenes::boxes(60, 16.0, 5), 8.0, 0.25, 3);
   every_hit_is_listed(scenes::boxes(60, 16.0, 6), 30.0, 0.003, 4);
 }
 
-/// From the cell's corners, where viewers see most of the difference, both ends lie within a wall's interval, and no
-/// point of it is nearer than stated.
-TEST(CandidateWalls, IntervalsAndDistancesHoldForTheCellsCorners) {
+/// The corners of a cell are the worst viewpoints. From there, both ends of a wall are within its interval, and no
+/// point of it is nearer than its `nearest`.
+TEST(CandidateWalls, IntervalsAndDistancesCoverTheCorners) {
   const world::World world = scenes::cave(300, 16.0, 3);
   const WallIndex wall_index(world.walls, 0.1);
   trial::Chance chance(7);
@@ -92,10 +92,9 @@ TEST(CandidateWalls, IntervalsAndDistancesHoldForTheCellsCorners) {
   EXPECT_GT(checked, 10'000u);
 }
 
-/// Lists must be far shorter than the set of all walls.
-/// Blocks are those of the sorted walls, whatever order they were found in, and their bounds hold for each of their
-/// walls.
-TEST(CandidateWalls, BlocksDoNotDependOnTheOrderOfFinding) {
+/// Blocks contain the sorted walls, independent of the order in which they were found, and their bounds apply to each
+/// of their walls.
+TEST(CandidateWalls, BlocksDoNotDependOnSearchOrder) {
   const world::World world = scenes::cave(300, 16.0, 3);
   const WallIndex wall_index(world.walls, 0.1);
   CandidateWalls walls;
@@ -125,6 +124,7 @@ TEST(CandidateWalls, BlocksDoNotDependOnTheOrderOfFinding) {
   }
 }
 
+/// Lists must be far shorter than the set of all walls.
 TEST(Sectors, ListsAreShort) {
   const world::World world = scenes::cave(300, 16.0, 3);
   const WallIndex wall_index(world.walls, 0.1);

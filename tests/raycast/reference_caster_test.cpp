@@ -1,4 +1,7 @@
-// The reference caster against exact arithmetic: rational numbers, and 100 decimal digits for directions.
+// Compares the reference caster with exact arithmetic: rational numbers, and 100 decimal digits for directions.
+//
+// These tests cover the parts of ray casting. Whole scenes are tested in tests/sensors (casters_test.cpp,
+// host_cast_test.cpp, laser_*_test.cpp, ...), since they need sensors: lasers, sonars and their carriers.
 
 #include "raycast/reference_caster.h"
 
@@ -32,7 +35,7 @@ struct ExactHit {
   std::uint32_t model = SF_NO_HIT;
 };
 
-/// The rules of raycast/ray_caster.h for the beam as given, without rounding.
+/// Applies the rules of raycast/ray_caster.h to the given beam, without rounding.
 ExactHit exact_hit(std::span<const world::Segment> walls, const WideBeam& beam, double range_max) {
   const Exact dx(beam.x), dy(beam.y), ox(beam.origin.x), oy(beam.origin.y), contact(SF_CONTACT_DISTANCE);
   ExactHit nearest{Exact(range_max)};
@@ -49,10 +52,10 @@ ExactHit exact_hit(std::span<const world::Segment> walls, const WideBeam& beam, 
   return nearest;
 }
 
-/// [m] error of a hit: that of `exact_bound` with the roundoff of `long double`, for its own sine.
+/// Returns the error bound [m] of a hit: `exact_bound` with the unit roundoff of `long double` and the hit's own sine.
 long double bound_of(const WideHit& hit, double extent) { return 0x1p-64L * 40.0L * extent / hit.sine; }
 
-/// Walls of a millimetre to 10 km, up to 10 000 km from the origin of the world.
+/// Walls from a millimetre to 10 km long, up to 10 000 km from the world's origin.
 TEST(ReferenceCaster, IsExactAmongRandomWalls) {
   Chance chance(5);
   std::size_t met = 0;
@@ -77,8 +80,8 @@ TEST(ReferenceCaster, IsExactAmongRandomWalls) {
   EXPECT_GT(met, 200u);
 }
 
-/// Beams at the corners of a closed outline, and at the numbers next to them, meet one of its walls.
-TEST(ReferenceCaster, NoBeamEscapesAtACorner) {
+/// Beams to the corners of a closed outline, and to adjacent numbers, meet one of its walls.
+TEST(ReferenceCaster, BeamsDoNotPassThroughCorners) {
   Chance chance(6);
   for (int round = 0; round < 40; ++round) {
     const glm::dvec2 eye = 1e4 * chance.in_square(1.0);
@@ -98,7 +101,7 @@ TEST(ReferenceCaster, NoBeamEscapesAtACorner) {
   }
 }
 
-TEST(ReferenceCaster, DirectionsKeepTheirDigitsAtLargeHeadings) {
+TEST(ReferenceCaster, DirectionsAreAccurateAtLargeHeadings) {
   Chance chance(7);
   for (const double most : {4.0, 1e3, 1e6})
     for (int i = 0; i < 50; ++i) {
@@ -111,8 +114,8 @@ TEST(ReferenceCaster, DirectionsKeepTheirDigitsAtLargeHeadings) {
     }
 }
 
-/// One surface, and a beam along x from the origin, whose range is at most 8 m.
-TEST(ReferenceCaster, LimitsOneByOne) {
+/// One surface, and a beam from the origin along x with a range of 8 m.
+TEST(ReferenceCaster, EdgeCases) {
   struct Case {
     const char* why;
     glm::dvec2 a, b;
@@ -142,8 +145,8 @@ TEST(ReferenceCaster, LimitsOneByOne) {
   EXPECT_EQ(nearest_surface(std::span<const world::Segment>(twins), WideBeam{}, 8.0L).model, 1u) << "the first counts";
 }
 
-/// 1 000 beams and 100 000 walls are the most.
-TEST(ReferenceCaster, BoundsItsWorkBeforeItStarts) {
+/// 1 000 beams and 100 000 walls are exactly at the limit.
+TEST(ReferenceCaster, RejectsLargeWorldsAtLoad) {
   base::ThreadPool thread_pool(1);
   world::World world;
   world.file = "large.world";

@@ -1,4 +1,4 @@
-// Queries of the wall index with known results.
+// Queries of the wall index whose results are known.
 
 #include "raycast/wall_index.h"
 
@@ -13,7 +13,7 @@
 namespace sf::raycast {
 namespace {
 
-TEST(WallIndex, FindsEverythingNear) {
+TEST(WallIndex, FindsAllWallsNearAPoint) {
   const world::World world = scenes::boxes(60, 16.0, 5);
   const WallIndex wall_index(world.walls, 0.1);
   std::vector<std::uint32_t> found;
@@ -30,7 +30,7 @@ TEST(WallIndex, FindsEverythingNear) {
   }
 }
 
-TEST(WallIndex, KnowsInsideFromOutside) {
+TEST(WallIndex, DetectsPointsInsideSolids) {
   world::World world;
   scenes::add_room(world, {}, 10.0);
   scenes::add_outline(world, {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, "box");
