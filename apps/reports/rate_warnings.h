@@ -11,10 +11,10 @@ namespace sf::apps {
 
 /// Returns the lowest and highest rate [Hz] of one type.
 std::pair<double, double> rates_of(const sensors::SensorSet::Group& group);
-/// "laser 10 to 13 Hz", for one type.
+/// Returns the rates of one type, such as "laser 10 to 13 Hz".
 std::string rate_text(const sensors::SensorSet::Group& group);
 
-/// Names of the types with sensors that are due between ticks of `interval` [s].
+/// Returns the names of the types with sensors that are due between ticks of `interval` [s].
 std::vector<std::string> types_between_ticks(const sensors::SensorSet& sensor_set, double interval);
 
 /// Warns on standard error about sensors whose rate exceeds the tick rate `rate` [Hz], if they are read only at ticks.

@@ -86,7 +86,7 @@ struct SelfTestReport {
 /// Prints the number of warnings and the first three of them on standard error. @param file for which `check` lists all
 /// warnings
 void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
-/// "file:line: warning: message", one a line.
+/// Returns one line "file:line: warning: message" per warning.
 std::string warnings_text(std::span<const world::Warning> warnings);
 /// Appends the list of all warnings to the JSON object.
 std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings);
@@ -107,22 +107,22 @@ std::string device_list_json(const gpu::DeviceList& list);
 std::string world_report_json(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string run_report_json(const RunReport& facts);
 std::string stream_summary_json(const netio::StreamSummary& summary);
-/// One reading; what is infinite or missing is null.
+/// Returns one reading. Infinite and missing values are null.
 std::string reading_json(const world::World& world, const sensors::SensorSet& sensor_set,
                          const base::ReadingBlock& reading);
 
 std::string device_list_text(const gpu::DeviceList& list);
 std::string world_report_text(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string run_report_text(const RunReport& facts);
-/// "5 lasers exact, within 1.03 nm: beams that graze nothing".
+/// Returns a text such as "5 lasers exact, within 1.03 nm: beams that graze nothing".
 std::string accuracy_statement_text(const sensors::AccuracyStatement& statement);
 std::string stream_summary_text(const netio::StreamSummary& summary);
-/// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
+/// Returns comma-separated values: a heading, then one line per element. Fields of missing values are empty.
 std::string reading_csv(const world::World& world, const sensors::SensorSet& sensor_set,
                         const base::ReadingBlock& reading);
-/// @param recorded the run kept its readings
+/// @param recorded true if the run recorded its readings
 std::string verification_text(const scenarios::Verification& verification, bool recorded);
-/// @param accuracy null: none was asked for
+/// @param accuracy null if not requested
 std::string verification_json(const scenarios::Verification& verification,
                               const scenarios::RecordedAccuracy* accuracy = nullptr);
 std::string recorded_accuracy_text(const scenarios::RecordedAccuracy& accuracy);

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Names may contain any bytes of a world file: invalid UTF-8 is replaced.
+/// Formats JSON. Names may contain any bytes of a world file, so invalid UTF-8 is replaced.
 std::string dump_json(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
@@ -57,7 +57,7 @@ Json warnings_json(const std::vector<world::Warning>& warnings) {
 /// Returns null for infinite numbers, which JSON does not support.
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// For a noisy sensor.
+/// Returns the additional keys of a noisy sensor.
 Json noise_json(double bound_without_noise, double sigma) {
   return {{"bound_without_noise", finite_json(bound_without_noise)}, {"sigma", finite_json(sigma)}};
 }
@@ -86,7 +86,7 @@ std::string_view word_of(base::QualityFlag quality) {
   return kWords[static_cast<std::size_t>(quality)];
 }
 
-/// The columns of one element, by name. Beams also have their bearing and the model that they hit.
+/// Returns the columns of one element, by name. Beams also have their bearing and the model that they hit.
 Json element_json(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
                   std::uint32_t i) {
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
@@ -124,7 +124,7 @@ Json control_json(const ControlReport& f) {
   return json;
 }
 
-/// Non-zero counts by verdict, states beyond the limit per tick, and the senders' clocks.
+/// Returns the non-zero counts by verdict, the states beyond the limit per tick, and the senders' clocks.
 Json states_json(const RunReport& f) {
   Json json{{"by_verdict", Json::object()},
             {"by_clock", Json::object()},

@@ -129,7 +129,7 @@ std::string world_report_text(const world::World& world, const sensors::SensorSe
 
 namespace {
 
-/// Readings and rays with their rates over the whole run and over the sensing time.
+/// Returns readings and rays, with their rates over the whole run and over the sensing time.
 std::string work_text(const RunReport& f) {
   const double sensing = f.farm.place_s + f.farm.lists_s + f.farm.device_s + f.farm.collect_s;
   const auto rows = [&](const char* what, std::uint64_t count) {
@@ -149,7 +149,7 @@ std::string work_text(const RunReport& f) {
   return text;
 }
 
-/// Results of the controllers.
+/// Returns the results of the controllers.
 std::string control_text(const ControlReport& f) {
   if (f.robots == 0) return "";
   std::string text = row("controller", "{}: {} of {} done", f.controller, f.done, counted(f.robots, "robot"));
@@ -164,7 +164,7 @@ std::string control_text(const ControlReport& f) {
   return text;
 }
 
-/// Datagrams that never reached the program.
+/// Returns the number of datagrams that never reached the program.
 std::string drops_text(std::uint64_t drops) {
   return row("dropped by the operating system", "{}: they came faster than they were taken", drops);
 }
@@ -180,7 +180,7 @@ std::string packets_text(const server::PublisherCounts& publisher) {
   return text;
 }
 
-/// "used 120, outlier 2", states rejected because of clocks, and the clocks themselves.
+/// Returns the counts by verdict ("used 120, outlier 2"), the states rejected because of clocks, and the clocks.
 std::string states_text(const RunReport& f) {
   std::string counts;
   const auto add = [&](std::string_view what, std::uint64_t count) {
@@ -273,7 +273,7 @@ std::string run_report_text(const RunReport& f) {
 
 namespace {
 
-/// " (laser 120 with 43320 beams, laneedge 30)".
+/// Returns readings by type: " (laser 120 with 43320 beams, laneedge 30)".
 std::string shares_text(const netio::StreamSummary& summary) {
   std::string text;
   for (const sensors::SensorType* type : sensors::sensor_types()) {

@@ -11,7 +11,7 @@ namespace sf::apps {
 
 namespace {
 
-/// "laser 120, laneedge 30".
+/// Returns readings by type: "laser 120, laneedge 30".
 std::string types_text(const server::LinkCounts& link) {
   std::string text;
   for (const auto& [type, count] : link.whole) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", type, count);

@@ -40,18 +40,18 @@ requires(sizeof...(Args) > 0) std::string row(std::string_view name, fmt::format
   return row(name, fmt::format(form, std::forward<Args>(args)...));
 }
 
-/// "1 port", "2 ports". @param word gets an s for the plural
+/// Returns "1 port", "2 ports". @param word gets an s for the plural
 std::string counted(std::uint64_t count, std::string_view word);
-/// "a, b or c". @param words at least one
+/// Returns "a, b or c". @param words at least one
 std::string join_or(const std::vector<std::string>& words);
-/// "a, b"; "a, b, ... (20 in all)" for more than ten; "none".
+/// Returns "a, b"; "a, b, ... (20 in all)" for more than ten names; "none" for an empty list.
 std::string list_names(const std::vector<std::string_view>& names);
-/// "5 mm", "2.5 uT", "0", "< 1 pm", "-" for infinity; three digits. @param unit "m", "T" or another, which is appended
-/// without a prefix
+/// Returns a quantity with three digits: "5 mm", "2.5 uT", "0", "< 1 pm"; "-" for infinity. @param unit "m" or "T", or
+/// another unit, which has no prefix
 std::string quantity_text(double value, std::string_view unit);
-/// The same for an error bound, rounded up.
+/// The same for an error bound, which is rounded up.
 std::string bound_text(double bound, std::string_view unit);
-/// Three digits of a number >= 0, rounded up.
+/// Returns three digits of a number >= 0, rounded up.
 std::string rounded_up(double value);
 
 }  // namespace sf::apps

@@ -9,7 +9,7 @@
 
 namespace sf::apps {
 
-/// On one line, without its end.
+/// Returns the frame on one line, without a line end.
 std::string v2x_frame_json(const v2x::Frame& frame);
 
 /// Parses the frames in a text, in order: successive JSON objects (including JSON Lines) or an array of objects.
