@@ -17,7 +17,7 @@ struct PacketField {
   std::variant<std::int64_t, double, std::vector<double>> value;
 };
 
-/// "3", "0.25", "1 none inf": numbers of ten digits.
+/// Returns the values, floating-point numbers with ten digits: "3", "0.25", "1 none inf".
 std::string packet_field_text(const PacketField& field);
 
 /// A datagram as judged by a receiver of its type.
