@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Text that is no UTF-8 must not end the program: names come from world files.
+/// Replaces invalid UTF-8, since names come from world files and must not end the program.
 std::string json_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// Returns null if the text is not JSON, or is nested more deeply than any message of the protocol.

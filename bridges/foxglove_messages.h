@@ -50,7 +50,7 @@ enum class StatusLevel { info = 0, warning = 1, error = 2 };
 std::string server_info_text(const ServerInfo& info);
 std::string advertise_text(std::span<const Channel> channels);
 std::string advertise_services_text(std::span<const Service> services);
-/// @param id of the request that this answers; empty: none
+/// @param id of the request that this message answers; empty: none
 std::string parameters_text(std::span<const Parameter> parameters, std::string_view id);
 std::string status_text(StatusLevel level, std::string_view message);
 std::string service_failure_text(std::uint32_t service, std::uint32_t call, std::string_view message);

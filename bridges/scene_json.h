@@ -7,7 +7,7 @@
 
 namespace sf::bridges {
 
-/// The keys are described in docs/bridges.md. Lengths in m, angles in rad, colours as "#rrggbb".
+/// Returns the scene with the keys of docs/bridges.md. Lengths are in m, angles in rad, and colours are "#rrggbb".
 std::string scene_json(const Scene& scene, ViewerMode mode);
 
 }  // namespace sf::bridges

@@ -31,7 +31,7 @@ enum class Interface : std::uint32_t {
   ranger = 62
 };
 
-/// "position2d".
+/// Returns Player's name, such as "position2d".
 std::string_view interface_name(Interface interf);
 
 enum class MessageType : std::uint32_t { data = 1, command = 2, request = 3, ack = 4, sync = 5, nack = 6 };
