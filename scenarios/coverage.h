@@ -48,7 +48,7 @@ struct Coverage {
 };
 /// @pre both have the same geometry
 Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);
-/// Missed and wanted cells, such as "3 of 9159".
+/// Returns the missed and wanted cells, such as "3 of 9159".
 std::string coverage_text(const Coverage& seen);
 
 /// [-] Fraction of the cells known in both maps that are free in one and occupied in the other.

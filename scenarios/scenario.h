@@ -47,7 +47,7 @@ struct Expectation {
   double limit = 0.0;  ///< in the unit of the measured value
   int line = 0;
 };
-std::string_view expectation_kind_name(Expectation::Kind kind);  ///< its key
+std::string_view expectation_kind_name(Expectation::Kind kind);  ///< returns its key
 
 /// Copies of one robot that replace robots of the world.
 struct FleetSpawn {

@@ -58,7 +58,7 @@ Scenario scenario_of(const Sweep& sweep, std::uint64_t job);
 /// @throws base::InputError at the parameter's line
 std::vector<world::Warning> check_sweep(const Sweep& sweep);
 
-/// A value as in a TOML file; texts without quotes.
+/// Returns a value as in a TOML file, but strings without quotes.
 std::string parameter_value_text(const world::TomlNode& value);
 
 }  // namespace sf::scenarios

@@ -17,7 +17,7 @@ struct JobCounts {
 };
 using JobResults = std::span<const std::optional<JobResult>>;
 JobCounts counts_of(JobResults results);
-/// "12 jobs: 10 pass, 1 missed, 1 failed"; kinds without a job are left out.
+/// Returns "12 jobs: 10 pass, 1 missed, 1 failed", without the kinds that have no jobs.
 std::string job_counts_text(const JobCounts& counts);
 
 // The functions below take the results of all jobs in order; nullopt: a missing result. They do not depend on which
