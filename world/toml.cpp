@@ -52,8 +52,8 @@ std::string in_ascii(const std::string& file, std::string_view text) {
   return plain;
 }
 
-/// Returns the last character of the quoted text that starts at `at`; three quotes start a text of several lines. An
-/// unterminated text ends with its line, and toml++ reports it.
+/// Returns the last character of the quoted text that starts at `at`; three quotes start a multi-line text. An
+/// unterminated text ends at the end of its line; toml++ reports the error.
 std::size_t end_of_text(std::string_view text, std::size_t at, int& line) {
   const char quote = text[at];
   const bool long_one = text.substr(at, 3) == std::string(3, quote);

@@ -134,7 +134,7 @@ PointId id_of(const RoadNetwork& network, PointRef at);
 glm::dvec2 position_of(const RoadNetwork& network, PointRef at);
 /// Returns the driving direction [rad]; nullopt for perimeter points and for lanes without a direction.
 std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
-/// "1.2", as written in the file.
+/// Returns the name as written in the file, such as "1.2".
 std::string lane_name(const RoadNetwork& network, const RoadLane& lane);
 
 /// A transition from one point to another.

@@ -39,7 +39,7 @@ std::string bounds_text(const Bounds& bounds, double unit) {
   return unlimited ? least + " or more" : least + " to " + most;
 }
 
-/// `xmax of 'velocity_bounds'`
+/// Returns "xmax of 'velocity_bounds'" for an element of a tuple, and "'name'" for other keys.
 std::string key_name(const Key& key) {
   std::istringstream names{std::string(key.tuple.substr(std::min<std::size_t>(1, key.tuple.size())))};
   std::string name;
