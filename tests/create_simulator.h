@@ -95,7 +95,7 @@ class CreateSimulator {
   std::uint64_t drives = 0;  ///< commands, refused ones too
   std::uint64_t unknown = 0;
   Bytes streams;      ///< ids
-  bool alone = true;  ///< nobody reads while it sends: what is sent is awaited at the computer's end
+  bool alone = true;  ///< no other thread reads while it sends, so it waits until the data is at the computer's end
 
  private:
   template <class Done>

@@ -1,5 +1,6 @@
-// Builds with sanitizers only. Vulkan's loader closes a driver's library at the end; what the driver leaked then has no
-// name left, and tests/lsan.supp cannot tell it from a leak of ours. So libraries stay loaded.
+// Only for builds with sanitizers. Vulkan's loader closes a driver's library at the end. The driver's leaks then have
+// no symbol names, so tests/lsan.supp cannot distinguish them from leaks of this project. Libraries therefore stay
+// loaded.
 
 #include <dlfcn.h>
 

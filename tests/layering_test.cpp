@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using Modules = std::set<std::string>;
 
-// Modules that each module may include beside itself. `shaders` stands for the compiled kernels, which only their hosts
-// may name.
+// Modules that each module may include, in addition to itself. `shaders` means the compiled kernels, which only their
+// hosts may include.
 const std::map<std::string, Modules> kMayInclude{
     {"base", {}},
     {"gpu", {"base", "shaders"}},
@@ -140,7 +140,7 @@ std::string complain_of_include(const Source& source, const std::string& rest) {
   return why;
 }
 
-/// "path:line: what stands there: what is wrong with it", one for each.
+/// Returns one text "path:line: statement: error" per violation.
 std::vector<std::string> complaints(const Source& source) {
   static const std::regex kInclude("\\s*#\\s*include(.*)");
   static const std::regex kVulkan("\\b(Vk|vk|PFN_vk)[A-Z]\\w*");
@@ -186,7 +186,7 @@ bool is_module(const fs::path& folder) {
          name != "node_modules";
 }
 
-/// Everything of ours that a compiler reads.
+/// Returns all sources of this project, including shaders.
 std::vector<Source> read_sources() {
   std::vector<Source> sources;
   for (const auto& module : fs::directory_iterator(SF_SOURCE_DIR)) {
@@ -252,7 +252,7 @@ TEST(Layering, KernelsReadSharedHeadersOnly) {
   }
 }
 
-// The judge itself: each rule is broken once, and its neighbour that is allowed stands beside it.
+// Tests of the judge: each rule is broken once, next to a similar line that is allowed.
 TEST(LayeringJudge, TakesWhatThePlanAllows) {
   for (const Source& fine :
        std::vector<Source>{{"base/a.cpp", "#include \"base/a.h\"\n#include <vector>\n"},
@@ -277,9 +277,9 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
            {"server/a.cpp", "#include <sys/socket.h>"},                     // sockets are netio's
            {"robots/a.cpp", "#include \"robots/estimation/state.h\""},      // upwards, within one folder
            {"robots/a.cpp", "#include <Eigen/Core>"},                       // Eigen is the estimation's
-           {"v2x/a.cpp", "#include \"netio/packets.h\""},                   // messages know no packets
-           {"control/a.cpp", "#include \"farm/farm.h\""},                   // controllers know no farm
-           {"viz/a.cpp", "#include \"apps/options/options.h\""},            // nobody knows the program
+           {"v2x/a.cpp", "#include \"netio/packets.h\""},                   // messages do not depend on packets
+           {"control/a.cpp", "#include \"farm/farm.h\""},                   // controllers do not depend on the farm
+           {"viz/a.cpp", "#include \"apps/options/options.h\""},            // no module may include the program
            {"shaders/a.comp", "#include \"world/world.h\""},                // kernels read records only
            {"sensors/a.cpp", "#include \"shaders/lib/list_search.glsl\""},  // hosts read compiled kernels only
            {"world/a.cpp", "#include \"shape.h\""},                         // not from the root

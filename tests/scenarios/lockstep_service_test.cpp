@@ -369,7 +369,7 @@ TEST(LockstepService, ALostRobotIsReported) {
   EXPECT_EQ(one.robot(1).state.flags, netio::kDriverLostBit);
 }
 
-/// A silent process without others delays nobody else: it is named once a tick, and keeps its robots.
+/// A silent process delays no other process if it is the only one. It is reported once per tick and keeps its robots.
 TEST(LockstepService, ASilentProcessAloneIsAwaited) {
   Fixture fixture(1, 1, 2.0);
   Driver driver(fixture.port(), {1});
