@@ -1,6 +1,6 @@
 #pragma once
-// Index of the segments around a cell by their bearing from their common centre. It is for large sets of segments of
-// which each beam may meet only a few.
+// Index of the segments around a cell by their bearing from their common centre. It pays off for many segments if each
+// beam can meet only a few of them.
 //
 // Input: segments that include a closed curve around the cell, so a beam from inside hits a segment before it is
 // farther from the centre than all of them. Output for a beam: the segments in the sectors that it crosses between the

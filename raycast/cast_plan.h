@@ -32,7 +32,7 @@ struct ScannerRow {
   BeamPlan plan;
 };
 
-/// Constant after construction. `world` need not outlive it.
+/// Immutable. `world` may be destroyed after construction.
 struct CastPlan {
   /// @param scanners sorted by mover  @param noise false disables noise regardless of their settings
   CastPlan(const world::World& world, std::vector<Scanner> scanners, bool noise);

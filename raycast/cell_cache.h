@@ -16,8 +16,8 @@ struct CellKey {
 
 /// Bookkeeping of the pool: the slot and the chunks of each key. The caller stores the contents.
 ///
-/// Chunks are allocated in pages from a ring. Pages that this tick does not use are evicted. Only `grow` allocates
-/// memory.
+/// Chunks are allocated in pages from a ring. Pages that this tick does not use are evicted. Only the constructor and
+/// `grow` allocate memory.
 class CellCache {
  public:
   /// @param slots largest number of cells  @param chunks largest number of chunks of entries

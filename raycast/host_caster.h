@@ -14,7 +14,8 @@ namespace sf::raycast {
 
 class HostCaster : public Caster {
  public:
-  /// @param share scans scanners at the same point of a mover together; must be false for calls of `scan`
+  /// @param share true: scans scanners at the same point of a mover together; false: for callers of `scan` with single
+  /// scans
   explicit HostCaster(const CasterInputs& in, bool share = true);
 
   void place() override { placed_ = false; }

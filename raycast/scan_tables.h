@@ -83,7 +83,7 @@ struct OutlineTable {
 };
 
 inline constexpr std::uint32_t kNoMover = 0xFFFFFFFFu;
-inline constexpr std::uint32_t kCrowd = 8;  ///< [movers] at one place: more rarely fit without overlaps
+inline constexpr std::uint32_t kCrowd = 8;  ///< [movers] at one place; a larger number rarely fits without overlaps
 
 /// Movers with outlines, sorted by cell of a grid in row-major order. Arrays are padded by a block. If the outlines of
 /// several movers in a crowd are bit-identical, the grid contains only the first two: hits on coincident surfaces
