@@ -2,8 +2,8 @@
 // Plan files of traffic lights (TOML): programs of stages that replace a world's plans, either fixed or actuated by
 // detectors. docs/v2x.md describes the file.
 //
-//   LightPlan plan = read_light_plan("town.toml", world);   // sets the plans of lights with fixed programs
-//   LightActuator lights(plan);                              // world/light_actuator.h runs the other programs
+//   LightPlan plan = parse_light_plan("town.toml", text, world);  // sets the plans of lights with fixed programs
+//   LightActuator lights(world, plan);                            // world/light_actuator.h runs the other programs
 
 #include <cstdint>
 #include <optional>

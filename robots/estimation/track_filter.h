@@ -23,7 +23,7 @@
 
 namespace sf::estimation {
 
-/// What the owner of the filter does with an object whose state is stale.
+/// How the owner of the filter treats an object whose state is stale.
 enum class StalePolicy : std::uint8_t {
   freeze,  ///< keeps it at rest at its last prediction that was not stale
   hide,    ///< hides it from the world until it is measured again

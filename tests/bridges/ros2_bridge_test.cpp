@@ -509,7 +509,7 @@ TEST_F(Ros2BridgeTest, RequestsWaitingForTheRunAreBounded) {
   EXPECT_EQ(answers("sensorfarm/reset", RosServices::kMaxWaiting + 9).size(), RosServices::kMaxWaiting + 9);
 }
 
-// Whatever bytes arrive, the run continues, and requests are finite and name robots.
+// The run continues for any bytes. Requests are finite and name robots.
 TEST_F(Ros2BridgeTest, SurvivesAnyBytes) {
   open();
   publish(true);
