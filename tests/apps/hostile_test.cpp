@@ -18,7 +18,7 @@ constexpr std::size_t kStrangers = 20;  ///< number of sockets
 constexpr int kRounds = 10;
 constexpr int kEach = 20;  ///< datagrams per stranger and round
 
-/// A socket that sends anything and counts what it receives.
+/// Sends arbitrary datagrams and counts the datagrams that it receives.
 struct Stranger {
   netio::Outbox mouth;
   netio::Socket ears;

@@ -28,7 +28,7 @@ TEST(ViewerBounds, AClientThatDoesNotReadSkipsAhead) {
     ASSERT_EQ(said(reader.receive_binary(1)), "101@" + std::to_string(tick)) << "the reader misses none";
   }
   EXPECT_GT(fixture.viewer->server().skipped(), 0u);
-  // What it finally reads are complete ticks, in order, with a gap, up to the newest.
+  // It finally reads complete ticks in order, with a gap, up to the newest one.
   int last = 0, gaps = 0;
   while (last < kTicks) {
     const std::string message = stuck.receive_binary(1);

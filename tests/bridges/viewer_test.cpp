@@ -117,7 +117,7 @@ TEST(Viewer, AnnouncesItsCapabilities) {
   EXPECT_FALSE(has(greeting(ViewerMode::recording, kWebSocketV1), "playbackControl")) << "it does not know that";
 }
 
-/// Whatever their timing: readings are drawn at the poses that robots have in the same tick.
+/// Readings are drawn at the poses of the same tick, however the two are timed.
 TEST(Viewer, TopicsAreSentWithTheStatesOfTheirTick) {
   ViewerFixture fixture;
   Watcher watcher(fixture, {"/clock"});
