@@ -222,7 +222,7 @@ TEST(Library, MessagesNameOptionsOfTheLibrary) {
   expect_in("accuracy: there is no accuracy \"fast\"", messages[2]);
   expect_in("expected robots=N, too", messages[3]);
   const std::string noisy = "position( ctrl \"fasr\" ranger( noise [0.1 0 0] sensor( ) ) )";
-  const Simulation simulation = Simulation::from_text(noisy, {.device = "Host"});
+  const Simulation simulation = Simulation::from_text(noisy);
   ASSERT_EQ(simulation.warnings().size(), 2u);
   for (const std::string& warning : simulation.warnings()) EXPECT_EQ(warning.find("--"), std::string::npos) << warning;
 }
