@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "raycast/reference_caster.h"
-#include "sensors/laser_settings.h"
+#include "sensors/laser.h"
+#include "sensors/laser_modes.h"
+#include "sensors/sensor_set.h"
 #include "tests/sensors/brute_force.h"
 
 namespace sf::bench {
@@ -58,10 +60,12 @@ AccuracyCheck check_accuracy(const Caster& caster, const Scans& scans, std::size
 
 AccuracyCheck check_accuracy(std::span<const base::ReadingBlock> readings, const world::World& world,
                              std::span<const base::Pose> poses, std::size_t robots) {
+  const sensors::SensorSet sensor_set(world);
   AccuracyCheck accuracy;
   for (std::size_t k = 0; k < readings.size(); k += stride(readings.size(), robots)) {
     const base::ReadingBlock& r = readings[k];
-    const sensors::LaserSettings laser = sensors::lasers_of(world.movers[r.mover])[r.sensor];
+    const sensors::LaserSettings& laser =
+        sensor_set.settings_of<sensors::CastLaser>(sensors::kLaser, r.mover)[r.sensor].laser;
     const auto seen = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
     judge_robot(
         seen, r.X_WS, laser, [&](std::size_t i) { return r.values[i]; }, accuracy);

@@ -15,7 +15,8 @@ class FarmLanes final : public LaneReader {
       : scene_(scene),
         states_(robots::states_at_load(scene.world)),
         context_{scene.world, device, thread_pool_, states_},
-        backend_(sensors::laneedge_type.make(context_)),
+        sensors_(sensors::laneedge_type.parse(scene.world)),
+        backend_(sensors::laneedge_type.make(context_, sensors_)),
         batch_(device) {
     for (std::uint32_t row = 0; row < scene.world.movers.size(); ++row) due_.push_back({row, 0});
   }
@@ -49,6 +50,7 @@ class FarmLanes final : public LaneReader {
   base::ThreadPool thread_pool_;
   std::vector<base::Report> states_;
   sensors::SensorContext context_;
+  sensors::ParsedSensors sensors_;
   std::unique_ptr<sensors::SensorBackend> backend_;
   gpu::Batch batch_;
   std::vector<sensors::DueSample> due_;

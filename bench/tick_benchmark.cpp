@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "bench/poison.h"
 #include "control/wander.h"
-#include "sensors/laser_settings.h"
+#include "sensors/laser.h"
 
 namespace sf::bench {
 
@@ -31,10 +31,11 @@ TickBenchmark::TickBenchmark(const world::World& world, gpu::Device& device)
       farm_(world, device, {.reuse_unchanged = false}),
       fleet_(world, &thread_pool_),
       commands_(world.movers.size()),
-      interval_(std::llround(1e9 / sensors::lasers_of(world.movers[0])[0].rate)) {
+      interval_(std::llround(1e9 / farm_.sensor_set().of(sensors::kLaser, 0)[0].rate)) {
   farm_.subscribe_all();
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
-    controllers_.push_back(std::make_unique<control::Wander>(world.movers[row], row, kSeed));
+    controllers_.push_back(
+        std::make_unique<control::Wander>(world.movers[row], farm_.sensor_set().of(sensors::kLaser, row), row, kSeed));
 }
 
 void TickBenchmark::tick(bool wander) {
@@ -70,9 +71,9 @@ std::vector<base::Pose> TickBenchmark::poses() const {
 TickResult run_ticks(const std::string& scene, const world::World& world, gpu::Device& device, bool wander,
                      std::size_t warm_up, std::size_t ticks) {
   TickBenchmark fleet(world, device);
-  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
-  TickResult result{scene, wander ? "wandering" : "standing", world.movers.size(), world.movers.size() * laser.samples,
-                    laser.range_max};
+  const sensors::SensorSpec& laser = fleet.farm().sensor_set().of(sensors::kLaser, 0)[0];
+  TickResult result{scene, wander ? "wandering" : "standing", world.movers.size(), world.movers.size() * laser.elements,
+                    laser.limit};
   result.interval_s = 1e-9 * static_cast<double>(fleet.interval());
   for (std::size_t k = 0; k < warm_up; ++k) fleet.tick(wander);
   const farm::FarmStats before = fleet.farm().stats();

@@ -135,16 +135,6 @@ Json holes_json(const World& world) {
   return holes;
 }
 
-/// Targets of lane edge sensors, by mover and sensor.
-using LaneEdges = std::map<std::pair<std::uint32_t, std::uint32_t>, sensors::LaneEdge>;
-
-LaneEdges lane_edges_by_sensor(const World& world) {
-  LaneEdges edges;
-  for (sensors::LaneEdge& edge : sensors::lane_edges_of(world))
-    edges.emplace(std::pair(edge.row.mover, edge.row.sensor), std::move(edge));
-  return edges;
-}
-
 /// Adds details that a sensor's messages do not contain: poses of its elements, apertures, the corner of a map.
 void add_elements(const record::SensorInfo& sensor, Json& row) {
   using Message = record::StandardTopic::Message;
@@ -180,7 +170,7 @@ Json types_json(const record::RunInfo& info) {
   return types;
 }
 
-Json sensors_json(const record::RunInfo& info, std::uint32_t mover, const LaneEdges& edges) {
+Json sensors_json(const record::RunInfo& info, std::uint32_t mover, std::span<const sensors::LaneEdge> edges) {
   Json list = Json::array();
   std::uint32_t lane_edges = 0;
   for (const record::SensorInfo& sensor : info.movers[mover].sensors) {
@@ -192,10 +182,7 @@ Json sensors_json(const record::RunInfo& info, std::uint32_t mover, const LaneEd
              {"rate", sensor.rate}};
     if (type != nullptr && type->is_scan) row.update(Json{{"fov", sensor.fov}, {"range_max", sensor.range_max}});
     add_elements(sensor, row);
-    if (sensor.type == sensors::kLaneEdge) {
-      const auto edge = edges.find({mover, lane_edges++});
-      if (edge != edges.end()) add_lane_edge(edge->second, row);
-    }
+    if (sensor.type == sensors::kLaneEdge && lane_edges < edges.size()) add_lane_edge(edges[lane_edges++], row);
     list.push_back(std::move(row));
   }
   return list;
@@ -213,22 +200,23 @@ std::size_t shape_number(const world::Mover& mover, std::map<std::string, std::s
 
 void add_movers(const Scene& scene, Json& json) {
   const World& world = scene.world;
-  const LaneEdges edges = lane_edges_by_sensor(world);
   Json shapes = Json::array(), movers = Json::array();
   std::map<std::string, std::size_t> numbers;
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
     const world::Mover& mover = world.movers[row];
-    movers.push_back({{"name", mover.name},
-                      {"frame", scene.info.movers[row].base_frame},
-                      {"space", scene.info.movers[row].space},
-                      {"id", mover.id},
-                      {"tag", mover.is_tag},
-                      {"pose", pose_json(mover.X_WM)},
-                      {"radius", round(mover.radius)},
-                      {"color", mover.model < world.models.size() ? color_of(world.models[mover.model].color) : ""},
-                      {"shape", shape_number(mover, numbers, shapes)},
-                      {"max", {mover.max_forward, mover.max_turn}},
-                      {"sensors", sensors_json(scene.info, row, edges)}});
+    movers.push_back(
+        {{"name", mover.name},
+         {"frame", scene.info.movers[row].base_frame},
+         {"space", scene.info.movers[row].space},
+         {"id", mover.id},
+         {"tag", mover.is_tag},
+         {"pose", pose_json(mover.X_WM)},
+         {"radius", round(mover.radius)},
+         {"color", mover.model < world.models.size() ? color_of(world.models[mover.model].color) : ""},
+         {"shape", shape_number(mover, numbers, shapes)},
+         {"max", {mover.max_forward, mover.max_turn}},
+         {"sensors",
+          sensors_json(scene.info, row, scene.sensor_set.settings_of<sensors::LaneEdge>(sensors::kLaneEdge, row))}});
   }
   json["shapes"] = std::move(shapes);
   json["movers"] = std::move(movers);

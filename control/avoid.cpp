@@ -49,7 +49,7 @@ namespace {
 
 std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
-  if (sensors::lasers_of(mover).empty())
+  if (!sensors::has_laser(mover))
     throw base::InputError(
         fmt::format("controller 'avoid': '{}' has no laser; give it one in the world file", mover.name));
   AvoidSettings avoid;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "sensors/laser.h"
-#include "sensors/laser_settings.h"
 
 namespace sf::control {
 
@@ -21,7 +20,7 @@ struct ClearanceEstimator::Sum {
   double lefts = 0.0, rights = 0.0;
 };
 
-ClearanceEstimator::ClearanceEstimator(const world::Mover& mover) {
+ClearanceEstimator::ClearanceEstimator(const world::Mover& mover, std::span<const sensors::SensorSpec> lasers) {
   double half_width = 0.0;
   for (const world::Segment& s : mover.body) {
     front_ = std::max({front_, s.a.x, s.b.x});
@@ -29,15 +28,15 @@ ClearanceEstimator::ClearanceEstimator(const world::Mover& mover) {
   }
   half_width_ = 1.15 * half_width + 0.01;
 
-  for (const sensors::LaserSettings& laser : sensors::lasers_of(mover)) {
-    View view{{laser.X_MS.x, laser.X_MS.y}, laser.range_max, static_cast<std::uint32_t>(beams_.size()), 0};
-    const std::uint32_t stride = (laser.samples + kBeams - 1) / kBeams;
-    for (std::uint32_t i = 0; i < laser.samples; i += stride) {
-      const double along = laser.samples > 1 ? static_cast<double>(i) / (laser.samples - 1) - 0.5 : 0.0;
+  for (const sensors::SensorSpec& laser : lasers) {
+    View view{{laser.X_MS.x, laser.X_MS.y}, laser.limit, static_cast<std::uint32_t>(beams_.size()), 0};
+    const std::uint32_t stride = (laser.elements + kBeams - 1) / kBeams;
+    for (std::uint32_t i = 0; i < laser.elements; i += stride) {
+      const double along = laser.elements > 1 ? static_cast<double>(i) / (laser.elements - 1) - 0.5 : 0.0;
       const double bearing = base::wrap_angle(laser.X_MS.yaw + along * laser.fov);
       if (std::abs(bearing) > kFarthestBearing) continue;
       beams_.push_back({i, static_cast<float>(std::cos(bearing)), static_cast<float>(std::sin(bearing))});
-      if (std::abs(bearing) < 0.6) range_ = std::max(range_, laser.X_MS.x + laser.range_max - front_);
+      if (std::abs(bearing) < 0.6) range_ = std::max(range_, laser.X_MS.x + laser.limit - front_);
     }
     view.end = static_cast<std::uint32_t>(beams_.size());
     views_.push_back(view);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/reading.h"
+#include "sensors/sensor_type.h"
 #include "world/world.h"
 
 namespace sf::control {
@@ -20,7 +21,8 @@ struct Clearance {
 
 class ClearanceEstimator {
  public:
-  explicit ClearanceEstimator(const world::Mover& mover);
+  /// @param lasers of the mover, in the order of their numbers
+  ClearanceEstimator(const world::Mover& mover, std::span<const sensors::SensorSpec> lasers);
 
   /// Returns the sensor range ahead of the body [m]; 0 without a laser that covers the forward direction.
   double range() const { return range_; }

@@ -46,6 +46,13 @@ const ControllerType* find_controller(std::string_view name) {
   return nullptr;
 }
 
+std::vector<sensors::SensorSpec> ControllerContext::sensors_of(std::uint8_t sensor_type) const {
+  std::optional<sensors::SensorSet> made;
+  const sensors::SensorSet& all = sensor_set != nullptr ? *sensor_set : made.emplace(world);
+  const auto specs = all.of(sensor_type, mover);
+  return {specs.begin(), specs.end()};
+}
+
 ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config) {
   const ControllerType* type = find_controller(config.name);
   if (type == nullptr) {
@@ -60,7 +67,7 @@ ConfiguredController make_controller(const ControllerContext& context, Controlle
   std::unique_ptr<Controller> inner = type->make(own, config.settings);
   config.settings.require_all_read();
   const world::Mover& mover = context.world.movers[context.mover];
-  const bool on_scans = type->on_scans && config.rate == 0.0 && !sensors::lasers_of(mover).empty();
+  const bool on_scans = type->on_scans && config.rate == 0.0 && sensors::has_laser(mover);
   std::optional<OwnLocalization> localization;
   if (shell.localize) localization.emplace(mover);
   return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),

@@ -31,6 +31,9 @@ struct ControllerContext {
                                                     ///< null
   const sensors::SensorSet* sensor_set = nullptr;   ///< sensors of the world; null: created when needed
   const ControllerType* type = nullptr;             ///< type of the controller; set by make_controller
+
+  /// Returns the robot's sensors of one type.
+  std::vector<sensors::SensorSpec> sensors_of(std::uint8_t sensor_type) const;
 };
 
 /// Description of one controller. Defined as `constinit const ControllerType x_controller` next to its class, and

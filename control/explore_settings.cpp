@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "control/explore.h"
 #include "robots/footprint.h"
-#include "sensors/laser_settings.h"
+#include "sensors/laser.h"
 
 namespace sf::control {
 
@@ -52,19 +52,19 @@ maps::GridGeometry read_geometry(const ControllerContext& context, Settings& set
 
 std::unique_ptr<Controller> make_explore(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
-  const std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(mover);
+  const std::vector<sensors::SensorSpec> lasers = context.sensors_of(sensors::kLaser);
   if (lasers.empty())
     throw base::InputError(
         fmt::format("controller 'explore': '{}' has no laser; give it one in the world file", mover.name));
   if (mover.drive == world::Drive::car)
     throw base::InputError(
         fmt::format("controller 'explore': '{}' is a car; expected a drive that turns in place", mover.name));
-  const sensors::LaserSettings& laser = lasers.front();
+  const sensors::SensorSpec& laser = lasers.front();
   ExploreSettings explore;
   explore.geometry = read_geometry(context, settings);
   explore.body = {robots::footprint_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
-  explore.eye = {laser.X_MS, laser.fov, laser.range_max};
-  explore.beams = maps::beam_directions(laser.fov, laser.samples);
+  explore.eye = {laser.X_MS, laser.fov, laser.limit};
+  explore.beams = maps::beam_directions(laser.fov, laser.elements);
   explore.range_min = laser.range_min;
   explore.speed = settings.number("speed", std::min(explore.speed, mover.max_forward), 1e-3, mover.max_forward);
   explore.slow_speed = settings.number("slow_speed", std::min(explore.slow_speed, explore.speed), 1e-3, explore.speed);

@@ -22,21 +22,21 @@ double MagnetKeeping::error_of(const base::ReadingBlock& reading, const base::Po
 namespace {
 
 /// @throws base::InputError for a robot without an array of at least two magnetometers
-void require_array(const world::Mover& mover) {
-  const auto found = std::find_if(mover.sensors.begin(), mover.sensors.end(),
-                                  [](const world::Sensor& sensor) { return sensor.type == "magnetometer"; });
-  if (found == mover.sensors.end())
+void require_array(const ControllerContext& context) {
+  const world::Mover& mover = context.world.movers[context.mover];
+  const std::vector<sensors::SensorSpec> arrays = context.sensors_of(sensors::kMagnetometer);
+  if (arrays.empty())
     throw base::InputError(fmt::format(
         "controller 'magnet-keeping': '{}' has no magnetometers; give it a magnetometer( ) in the world file",
         mover.name));
-  if (sensors::read_magnetometer(*found).X_SE.size() < 2)
+  if (arrays.front().elements < 2)
     throw base::InputError(
         fmt::format("controller 'magnet-keeping': '{}' has an array of one magnetometer; give it two or more (scount)",
                     mover.name));
 }
 
 std::unique_ptr<Controller> make_magnet_keeping(const ControllerContext& context, Settings& settings) {
-  require_array(context.world.movers[context.mover]);
+  require_array(context);
   MagnetSettings magnet;
   magnet.gains = read_gains(settings, magnet.gains);
   magnet.speed = settings.number("speed", magnet.speed, 0.0, context.world.movers[context.mover].max_forward);

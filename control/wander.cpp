@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/time.h"
 #include "control/controllers.h"
+#include "sensors/laser.h"
 
 namespace sf::control {
 
@@ -29,8 +30,9 @@ WanderSettings wander_settings(const world::Mover& mover, double range) {
   return s;
 }
 
-Wander::Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed, std::optional<double> speed)
-    : clearance_estimator_(mover),
+Wander::Wander(const world::Mover& mover, std::span<const sensors::SensorSpec> lasers, std::uint32_t robot,
+               std::uint64_t seed, std::optional<double> speed)
+    : clearance_estimator_(mover, lasers),
       settings_(wander_settings(mover, clearance_estimator_.range())),
       robot_(robot),
       seed_(seed) {
@@ -137,7 +139,7 @@ namespace {
 std::unique_ptr<Controller> make_wander(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
   const double speed = settings.number("speed", 0.8 * mover.max_forward, 0.0, mover.max_forward);
-  return std::make_unique<Wander>(mover, context.mover, context.seed, speed);
+  return std::make_unique<Wander>(mover, context.sensors_of(sensors::kLaser), context.mover, context.seed, speed);
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ class Wander final : public Controller {
  public:
   /// @param robot row of the mover; selects the robot's random numbers
   /// @param speed [m/s] on free ground; nullopt: the speed of `wander_settings`
-  Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed, std::optional<double> speed = {});
+  Wander(const world::Mover& mover, std::span<const sensors::SensorSpec> lasers, std::uint32_t robot,
+         std::uint64_t seed, std::optional<double> speed = {});
 
   /// Depends only on the inputs so far and on (seed, robot).
   base::Twist step(const ControllerInput& input) override;

@@ -154,7 +154,8 @@ std::vector<std::string> run_accuracy(const ExperimentContext& context) {
                   : read_scenario((std::filesystem::path(context.options.folder) / (test.name + ".toml")).string());
     scenario.plant = context.scenario.plant;
     const world::World world = world_of(scenario);
-    VisibleArea reference(world);
+    const sensors::SensorSet sensor_set(world);
+    VisibleArea reference(world, sensor_set);
     const auto modes = type_called(test.sensor).modes;
     for (const sensors::AccuracyMode& mode : modes) {
       if (context.progress) context.progress(done, fmt::format("{}, {}", test.name, mode.word));

@@ -11,15 +11,12 @@
 #include "control/explore.h"
 #include "maps/grid_update.h"
 #include "sensors/laser.h"
-#include "sensors/laser_settings.h"
 
 namespace sf::scenarios {
 
 namespace {
 
 using maps::Cell;
-using sensors::lasers_of;
-using sensors::LaserSettings;
 
 constexpr double kMostWords = 1 << 18;  ///< 61 m x 61 m in cells of 3 cm; bounds memory and time
 
@@ -39,17 +36,16 @@ maps::GridGeometry plan_over(const world::World& world, double cell) {
 
 }  // namespace
 
-RobotMap::RobotMap(const world::World& world, std::uint32_t mover, double cell)
-    : mover_(mover), grid_(plan_over(world, cell)) {
-  const std::vector<LaserSettings> lasers = lasers_of(world.movers[mover]);
-  SF_CHECK(!lasers.empty(), "a map needs a laser: " + world.movers[mover].name);
-  beams_ = maps::beam_directions(lasers[0].fov, lasers[0].samples);
-  range_min_ = lasers[0].range_min;
-  range_max_ = lasers[0].range_max;
-}
+RobotMap::RobotMap(const world::World& world, const sensors::SensorSpec& laser, double cell)
+    : mover_(laser.mover),
+      laser_(laser.sensor),
+      grid_(plan_over(world, cell)),
+      beams_(maps::beam_directions(laser.fov, laser.elements)),
+      range_min_(laser.range_min),
+      range_max_(laser.limit) {}
 
 void RobotMap::add(const base::ReadingBlock& reading) {
-  if (reading.mover != mover_ || reading.type != sensors::kLaser || reading.sensor != 0) return;
+  if (reading.mover != mover_ || reading.type != sensors::kLaser || reading.sensor != laser_) return;
   if (reading.values.size() != beams_.size()) return;
   maps::add_scan(grid_, {reading.X_WS, base::marked_values(reading, ranges_), beams_, range_min_, range_max_});
 }

@@ -10,23 +10,24 @@
 
 #include "base/reading.h"
 #include "maps/grid.h"
+#include "sensors/sensor_type.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
 
-/// The map of one robot, built from the scans of its first laser at their reported poses.
+/// The map of one robot, built from the scans of one of its lasers at their reported poses.
 class RobotMap {
  public:
   /// Uses the grid of the explorer (control/explore.h), or one over the world's extent if the area is too large for
   /// that. Enlarges cells if the map would have more than 4.2 million of them.
-  /// @param cell [m] @pre the mover has a laser
-  RobotMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
-  /// Adds the reading if it is a scan of the robot's first laser.
+  /// @param laser of the robot  @param cell [m]
+  RobotMap(const world::World& world, const sensors::SensorSpec& laser, double cell = 0.03);
+  /// Adds the reading if it is a scan of this laser.
   void add(const base::ReadingBlock& reading);
   const maps::OccupancyGrid& grid() const { return grid_; }
 
  private:
-  std::uint32_t mover_;
+  std::uint32_t mover_, laser_;
   maps::OccupancyGrid grid_;
   std::vector<glm::dvec2> beams_;
   double range_min_ = 0.0, range_max_ = 0.0;  ///< [m]

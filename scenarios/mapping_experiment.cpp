@@ -109,7 +109,8 @@ void run_with(const ExperimentContext& context, const Entrant& entrant, std::vec
   if (!reports(context)) return;
   const world::World world = world_of(scenario);
   std::vector<viz::Track> tracks;
-  VisibleArea reference(world);
+  const sensors::SensorSet sensor_set(world);
+  VisibleArea reference(world, sensor_set);
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Trial& trial = trials[k];
     const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), trial.maps.front().geometry);

@@ -17,6 +17,7 @@
 #include "scenarios/scenario_events.h"
 #include "scenarios/statistics.h"
 #include "scenarios/visible_area.h"
+#include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "world/roads/roads.h"
 
@@ -50,9 +51,8 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
   if (of_driven && std::all_of(rows.begin(), rows.end(),
                                [&](std::uint32_t row) { return options.actors[row].controller.name.empty(); }))
     refuse(fmt::format("'{}' of a robot without a controller; give it one", expectation_kind_name(e.kind)));
-  if (e.kind == Kind::map_coverage && std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
-        return sensors::lasers_of(world.movers[row]).empty();
-      }))
+  if (e.kind == Kind::map_coverage &&
+      std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) { return !sensors::has_laser(world.movers[row]); }))
     refuse(e.robot.empty() ? "no robot has a laser to make a map with; give one a laser"
                            : fmt::format("'{}' has no laser to make a map with; give it one", e.robot));
   if (e.kind == Kind::lights_obeyed && world.lights.empty())
@@ -168,8 +168,8 @@ class Run {
     const bool expected = std::any_of(scenario_.expect.begin(), scenario_.expect.end(), [&](const Expectation& e) {
       return e.kind == Kind::map_coverage && (e.robot.empty() ? !mover.is_tag : e.robot == mover.name);
     });
-    if (expected && simulation_.share().owns(row) && !sensors::lasers_of(mover).empty())
-      maps_.try_emplace(row, world_, row);
+    const auto lasers = simulation_.farm().sensor_set().of(sensors::kLaser, row);
+    if (expected && simulation_.share().owns(row) && !lasers.empty()) maps_.try_emplace(row, world_, lasers.front());
   }
 
   /// Returns the worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.
@@ -188,7 +188,7 @@ class Run {
   void cover(const std::function<void(double)>& progress) {
     base::Bytes block;
     base::ByteWriter out(block);
-    VisibleArea reference(world_);
+    VisibleArea reference(world_, simulation_.farm().sensor_set());
     for (const auto& [row, map] : maps_) {
       const Coverage seen = coverage_of(map.grid(), reference.of(row, map.grid().geometry, [&](double part) {
         progress((static_cast<double>(coverages_.size()) + part) / static_cast<double>(maps_.size()));
@@ -312,11 +312,13 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
   SimulationOptions options = simulation_of(scenario, world);
   check_events(scenario, world, options);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);
+  const sensors::SensorSet sensor_set(world);
   std::vector<control::ConfiguredController> made;  // kept to the end: robots of one shape share their corridors
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     const control::ControllerConfig& config = options.actors[m].controller;
     if (!config.name.empty())
-      made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, config));
+      made.push_back(
+          try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr, nullptr, &sensor_set}, config));
   }
   for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
   return std::move(world.warnings);

@@ -51,7 +51,7 @@ double meeting(glm::dvec2 direction, glm::dvec2 a, glm::dvec2 b) {
 
 }  // namespace
 
-Sight::Sight(std::vector<world::Segment> walls, const sensors::LaserSettings& laser, const maps::OccupancyGrid& robots)
+Sight::Sight(std::vector<world::Segment> walls, const sensors::SensorSpec& laser, const maps::OccupancyGrid& robots)
     : walls_(walls),
       laser_(laser),
       robots_(robots),
@@ -103,7 +103,7 @@ bool Sight::sees(CellAt robot, const Heading& heading, glm::dvec2 p) const {
   const glm::dvec2 origin = maps::middle(robots_.geometry, robot), eye = origin + heading.eye;
   const glm::dvec2 d = base::rotate(-heading.yaw, p - eye);
   const double far = glm::length(d);
-  if (far >= laser_.range_max || std::abs(std::atan2(d.y, d.x)) > 0.5 * laser_.fov) return false;
+  if (far >= laser_.limit || std::abs(std::atan2(d.y, d.x)) > 0.5 * laser_.fov) return false;
   return is_clear(eye, p) && (heading.eye == glm::dvec2{} || is_clear(origin, eye));
 }
 
@@ -210,10 +210,10 @@ std::optional<CellAt> Sight::find_in_triangle(glm::dvec2 p, glm::dvec2 q0, glm::
 }
 
 std::optional<CellAt> Sight::find(glm::dvec2 p) {
-  for (double size = std::min(kFirstSize, laser_.range_max);; size = std::min(kGrowth * size, laser_.range_max)) {
+  for (double size = std::min(kFirstSize, laser_.limit);; size = std::min(kGrowth * size, laser_.limit)) {
     bool open = false;
     if (const auto found = find_within(p, size, open)) return found;
-    if (!open || size >= laser_.range_max) return std::nullopt;
+    if (!open || size >= laser_.limit) return std::nullopt;
   }
 }
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "maps/grid.h"
-#include "sensors/laser_settings.h"
+#include "sensors/sensor_type.h"
 #include "world/wall_tree.h"
 
 namespace sf::scenarios {
@@ -24,7 +24,7 @@ class Sight {
   static constexpr int kHeadings = 16;
 
   /// @param walls visible to the laser @param robots cells whose centres the robot's origin can reach: the free ones
-  Sight(std::vector<world::Segment> walls, const sensors::LaserSettings& laser, const maps::OccupancyGrid& robots);
+  Sight(std::vector<world::Segment> walls, const sensors::SensorSpec& laser, const maps::OccupancyGrid& robots);
 
   /// Returns whether the point is visible from the centre of the cell with any of the headings: in range and field of
   /// view, with no wall in front of it. A wall through the point does not hide it. Poses with the laser inside a wall
@@ -70,7 +70,7 @@ class Sight {
   std::optional<maps::CellAt> find_in_triangle(glm::dvec2 p, glm::dvec2 q0, glm::dvec2 q1) const;
 
   world::WallTree walls_;
-  sensors::LaserSettings laser_;
+  sensors::SensorSpec laser_;
   const maps::OccupancyGrid& robots_;
   std::array<Heading, kHeadings> headings_;
   std::int64_t margin_;              ///< cells around the grid that may contain eyes of its robots

@@ -124,8 +124,9 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   if (!share_->owns(mover)) return robot;
   std::vector<world::Warning> warnings;
   const bool joins = mover >= absent_.size();  // its sensors are not in the farm yet
-  const control::ControllerContext site{world_,  mover,     seed_,
-                                        roads(), &warnings, joins ? nullptr : &farm_.sensor_set()};
+  std::optional<sensors::SensorSet> with_joining;
+  const control::ControllerContext site{
+      world_, mover, seed_, roads(), &warnings, joins ? &with_joining.emplace(world_) : &farm_.sensor_set()};
   control::ConfiguredController made = control::make_controller(site, actor.controller);
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
   robot.controller = std::move(made.controller);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
-#include "sensors/host_backend.h"
 #include "sensors/infrared.h"
 #include "sensors/magnetometer.h"
 #include "sensors/occupancy.h"
@@ -26,7 +26,7 @@ record::SensorInfo& find(record::RunInfo& info, std::uint32_t mover, std::uint8_
                        [&](const record::SensorInfo& s) { return s.type == type && sensor-- == 0; });
 }
 
-void add_ranges(const std::vector<sensors::ConeArray>& arrays, std::uint8_t type, record::RunInfo& info) {
+void add_ranges(std::span<const sensors::ConeArray> arrays, std::uint8_t type, record::RunInfo& info) {
   for (const sensors::ConeArray& array : arrays) {
     auto& topics = find(info, array.row.mover, type, array.row.sensor).standard;
     for (std::uint32_t i = 0; i < array.X_SC.size(); ++i)
@@ -40,44 +40,38 @@ void add_ranges(const std::vector<sensors::ConeArray>& arrays, std::uint8_t type
   }
 }
 
-void add_fields(const world::World& world, record::RunInfo& info) {
-  sensors::for_each_sensor(world, sensors::magnetometer_type, [&](const sensors::MountedSensor& mounted) {
-    const std::vector<base::Pose> elements = sensors::read_magnetometer(mounted.settings).X_SE;
-    auto& topics = find(info, mounted.row.mover, sensors::kMagnetometer, mounted.row.sensor).standard;
-    for (std::uint32_t i = 0; i < elements.size(); ++i)
-      topics.push_back({.message = Message::magnetic_field, .element = i, .X_SE = elements[i]});
-  });
-}
-
-/// Adds the first encoders of each robot, from which its odometry is computed.
-void add_encoders(const world::World& world, record::RunInfo& info) {
-  sensors::for_each_sensor(world, sensors::encoder_type, [&](const sensors::MountedSensor& mounted) {
-    if (mounted.row.sensor > 0) return;
-    const sensors::Encoder e = sensors::read_encoder(mounted.settings, world.movers[mounted.row.mover]);
-    info.movers[mounted.row.mover].encoder = {sensors::kEncoder, e.per_count, e.slip, e.track};
-  });
+/// Calls `body` with each sensor of a type and its settings.
+template <class Settings, class Body>
+void for_each_sensor(const sensors::SensorSet& sensor_set, std::uint8_t type, Body&& body) {
+  const auto settings = sensor_set.settings_of<Settings>(type);
+  for (std::size_t i = 0; i < settings.size(); ++i) body(sensor_set.group(type)->rows[i], settings[i]);
 }
 
 }  // namespace
 
-void add_standard_topics(const world::World& world, record::RunInfo& info) {
-  add_ranges(sensors::cone_arrays_of(world, sensors::sonar_type.word.type, sensors::read_sonar), sensors::kSonar, info);
-  add_ranges(sensors::cone_arrays_of(world, sensors::infrared_type.word.type, sensors::read_infrared),
-             sensors::kInfrared, info);
-  add_fields(world, info);
-  add_encoders(world, info);
-  for (const sensors::Occupancy& map : sensors::occupancies_of(world))
-    find(info, map.row.mover, sensors::kOccupancy, map.row.sensor)
-        .standard.push_back({.message = Message::map, .grid = map.settings.grid});
-  sensors::for_each_sensor(world, sensors::gps_type, [&](const sensors::MountedSensor& mounted) {
-    const double sigma = sensors::read_gps(mounted.settings).noise;
-    find(info, mounted.row.mover, sensors::kGps, mounted.row.sensor)
-        .standard.push_back({.message = Message::fix, .sigma = sigma});
+void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
+  for (const std::uint8_t type : {sensors::kSonar, sensors::kInfrared})
+    add_ranges(sensor_set.settings_of<sensors::ConeArray>(type), type, info);
+  const auto add = [&](const sensors::SensorSpec& row, std::uint8_t type, StandardTopic topic) {
+    find(info, row.mover, type, row.sensor).standard.push_back(std::move(topic));
+  };
+  using sensors::Encoder, sensors::Gps, sensors::Gyro, sensors::Magnetometer, sensors::Occupancy;
+  for_each_sensor<Magnetometer>(sensor_set, sensors::kMagnetometer, [&](const auto& row, const Magnetometer& m) {
+    for (std::uint32_t i = 0; i < m.X_SE.size(); ++i)
+      add(row, sensors::kMagnetometer, {.message = Message::magnetic_field, .element = i, .X_SE = m.X_SE[i]});
   });
-  sensors::for_each_sensor(world, sensors::gyro_type, [&](const sensors::MountedSensor& mounted) {
-    const sensors::Gyro gyro = sensors::read_gyro(mounted.settings);
-    find(info, mounted.row.mover, sensors::kGyro, mounted.row.sensor)
-        .standard.push_back({.message = Message::imu, .sigma = std::hypot(gyro.noise, gyro.bias)});
+  // A robot's odometry is computed from its first encoders.
+  for_each_sensor<Encoder>(sensor_set, sensors::kEncoder, [&](const auto& row, const Encoder& e) {
+    if (row.sensor == 0) info.movers[row.mover].encoder = {sensors::kEncoder, e.per_count, e.slip, e.track};
+  });
+  for_each_sensor<Occupancy>(sensor_set, sensors::kOccupancy, [&](const auto& row, const Occupancy& map) {
+    add(row, sensors::kOccupancy, {.message = Message::map, .grid = map.settings.grid});
+  });
+  for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {
+    add(row, sensors::kGps, {.message = Message::fix, .sigma = gps.noise});
+  });
+  for_each_sensor<Gyro>(sensor_set, sensors::kGyro, [&](const auto& row, const Gyro& gyro) {
+    add(row, sensors::kGyro, {.message = Message::imu, .sigma = std::hypot(gyro.noise, gyro.bias)});
   });
 }
 

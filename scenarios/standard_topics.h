@@ -3,12 +3,12 @@
 // ranges, of magnetometers as magnetic fields, GPS fixes, gyros as IMUs, occupancy maps.
 
 #include "record/run_info.h"
-#include "world/world.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::scenarios {
 
 /// Sets `SensorInfo::standard` of all sensors.
-/// @pre `info` has the sensors of `world`
-void add_standard_topics(const world::World& world, record::RunInfo& info);
+/// @pre `info` has the same sensors
+void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& info);
 
 }  // namespace sf::scenarios

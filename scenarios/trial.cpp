@@ -12,6 +12,7 @@
 #include "raycast/casters.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
+#include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "sensors/settings.h"
 
@@ -48,8 +49,8 @@ class Keeper {
       tracks_.push_back({.name = world.movers[row].name});
       dead_end_detectors_.emplace_back(2.0 * world.movers[row].radius, world.interval);
       helped_.push_back(0);
-      if (maps && simulation.share().owns(row) && !sensors::lasers_of(world.movers[row]).empty())
-        maps_.try_emplace(row, world, row);
+      const auto lasers = simulation.farm().sensor_set().of(sensors::kLaser, row);
+      if (maps && simulation.share().owns(row) && !lasers.empty()) maps_.try_emplace(row, world, lasers.front());
     }
   }
 

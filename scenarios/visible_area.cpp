@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "scenarios/sight.h"
-#include "sensors/laser_settings.h"
+#include "sensors/laser.h"
 #include "world/wall_tree.h"
 
 namespace sf::scenarios {
@@ -20,8 +20,7 @@ namespace {
 
 using maps::Cell;
 using maps::CellAt;
-using sensors::lasers_of;
-using sensors::LaserSettings;
+using sensors::SensorSpec;
 
 std::vector<world::Segment> walls_where(const world::World& world, bool (*take)(const world::Segment&), double z_min,
                                         double z_max) {
@@ -95,7 +94,7 @@ struct Candidate {
 /// Marks the visible cells. Expands from each of them to those within two cells, so that light passes through gaps.
 class Survey {
  public:
-  Survey(const world::World& world, std::uint32_t mover, const LaserSettings& laser, const Positions& positions,
+  Survey(const world::World& world, std::uint32_t mover, const SensorSpec& laser, const Positions& positions,
          const std::function<void(double)>& progress)
       : positions_(positions),
         sight_(walls_seen(world, mover, laser), laser, positions.cells),
@@ -118,7 +117,7 @@ class Survey {
 
  private:
   static std::vector<world::Segment> walls_seen(const world::World& world, std::uint32_t mover,
-                                                const LaserSettings& laser) {
+                                                const SensorSpec& laser) {
     const double z = world.movers[mover].X_WM.z + laser.X_MS.z;
     return walls_where(
         world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
@@ -169,18 +168,11 @@ class Survey {
   std::size_t count_ = 0;  ///< candidates
 };
 
-LaserSettings first_laser(const world::Mover& mover) {
-  const std::vector<LaserSettings> lasers = lasers_of(mover);
-  SF_CHECK(!lasers.empty(), "nothing is seen without a laser: " + mover.name);
-  return lasers[0];
-}
-
 /// All inputs of a visible area other than walls, grid and positions. [m], [rad]
 using Shape = std::array<double, 9>;
 
-Shape shape_of(const world::Mover& m) {
-  const LaserSettings l = first_laser(m);
-  return {m.radius, m.X_WM.z, top_of(m), l.X_MS.x, l.X_MS.y, l.X_MS.z, l.X_MS.yaw, l.fov, l.range_max};
+Shape shape_of(const world::Mover& m, const SensorSpec& l) {
+  return {m.radius, m.X_WM.z, top_of(m), l.X_MS.x, l.X_MS.y, l.X_MS.z, l.X_MS.yaw, l.fov, l.limit};
 }
 
 std::uint64_t hash_of_walls(const world::World& world) {
@@ -221,23 +213,27 @@ std::deque<std::shared_ptr<const SeenArea>> shared_areas;
 
 maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry,
                                  const std::function<void(double)>& progress) {
-  return VisibleArea(world).of(mover, geometry, progress);
+  const sensors::SensorSet sensor_set(world);
+  return VisibleArea(world, sensor_set).of(mover, geometry, progress);
 }
 
-VisibleArea::VisibleArea(const world::World& world) : world_(world), walls_(hash_of_walls(world)) {}
+VisibleArea::VisibleArea(const world::World& world, const sensors::SensorSet& sensor_set)
+    : world_(world), sensor_set_(sensor_set), walls_(hash_of_walls(world)) {}
 
 const maps::OccupancyGrid& VisibleArea::of(std::uint32_t mover, const maps::GridGeometry& geometry,
                                            const std::function<void(double)>& progress) {
   const world::Mover& robot = world_.movers[mover];
   const CellAt start = maps::cell_at(geometry, {robot.X_WM.x, robot.X_WM.y});
-  const Shape shape = shape_of(robot);
+  const auto lasers = sensor_set_.of(sensors::kLaser, mover);
+  SF_CHECK(!lasers.empty(), "nothing is seen without a laser: " + robot.name);
+  const Shape shape = shape_of(robot, lasers.front());
   {
     const std::lock_guard lock(shared_areas_mutex);
     for (const auto& area : shared_areas)
       if (area->is_for(walls_, shape, geometry, start)) return used_.emplace_back(area)->seen;
   }
   Positions positions = positions_of(world_, mover, geometry);
-  maps::OccupancyGrid seen = Survey(world_, mover, first_laser(robot), positions, progress).run();
+  maps::OccupancyGrid seen = Survey(world_, mover, lasers.front(), positions, progress).run();
   used_.push_back(std::make_shared<SeenArea>(SeenArea{walls_, shape, start, std::move(positions), std::move(seen)}));
   const std::lock_guard lock(shared_areas_mutex);
   shared_areas.push_back(used_.back());

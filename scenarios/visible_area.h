@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "maps/grid.h"
+#include "sensors/sensor_set.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
@@ -23,16 +24,17 @@ maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover,
 struct SeenArea;
 
 /// Caches `visible_area` for all worlds with equal walls in this process. Robots of one shape whose positions are
-/// connected share a result. The world must outlive it; its movers may grow.
+/// connected share a result. The world and its sensors must outlive it; they may grow.
 class VisibleArea {
  public:
-  explicit VisibleArea(const world::World& world);
+  VisibleArea(const world::World& world, const sensors::SensorSet& sensor_set);
   /// The result lives as long as this object.
   const maps::OccupancyGrid& of(std::uint32_t mover, const maps::GridGeometry& geometry,
                                 const std::function<void(double)>& progress = {});
 
  private:
   const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
   std::uint64_t walls_;  ///< hash
   std::vector<std::shared_ptr<const SeenArea>> used_;
 };

@@ -46,7 +46,7 @@ void stated_bounds(Fixture& fixture, Checks& checks) {
         const TestFarm test = fixture.measure(std::move(world));
         const auto what = fmt::format("{}, {:g} m wide, {:g} m away", mode, width, far);
         for (const base::ReadingBlock& r : test.readings) {
-          const sensors::LaserSettings laser = sensors::lasers_of(test.world->movers[r.mover])[0];
+          const sensors::LaserSettings& laser = laser_of(test, r);
           for (std::uint32_t i = 0; i < r.values.size(); ++i) {
             if (quality_of(r, i) != QualityFlag::none) continue;
             const Hit met = nearest_hit(test.world->walls, beam_of(r.X_WS, laser, i), laser.range_max);

@@ -24,7 +24,7 @@ void grazing(Fixture& fixture, Checks& checks) {
         const glm::dvec2 p = at(0.0, 50.0 * std::tan(angle));
         add_laser_mover(world, {p.x, p.y, 0.0, tilt - angle}, eye);
         const TestFarm test = fixture.measure(world);
-        check_scan(*test.world, test.readings[0], checks, fmt::format("at {:.0e} rad, {:g} m away", angle, far));
+        check_scan(test, test.readings[0], checks, fmt::format("at {:.0e} rad, {:g} m away", angle, far));
         checks.equal(test.readings[0].hits[0], 0u, "the wall that is grazed is named");
         const Hit met = nearest_hit(test.world->walls, beam_of(test.readings[0].X_WS, eye, 0), eye.range_max);
         off = std::max(off, static_cast<double>(std::fabs(Real{test.readings[0].values[0]} - met.range)));
@@ -67,7 +67,7 @@ void corners(Fixture& fixture, Checks& checks) {
                         laser(3, 2e-9, 20.0));
       const TestFarm test = fixture.measure(world);
       for (const base::ReadingBlock& r : test.readings) {
-        check_scan(*test.world, r, checks, fmt::format("{} corners, {:g} m away", count, far));
+        check_scan(test, r, checks, fmt::format("{} corners, {:g} m away", count, far));
         const Real dx = Real{ring[r.mover].x} - eye.x, dy = Real{ring[r.mover].y} - eye.y;
         // Walls of a ring of 1 000 are hit at nearly a right angle, those of a triangle at 20 degrees or more.
         checks.near(r.values[1], std::hypot(dx, dy), 5e-14, "the middle beam ends in the corner", r.mover);
@@ -117,7 +117,7 @@ void from_inside(Fixture& fixture, Checks& checks) {
     add_block(world, {far - 0.125, far - 3.0}, {far + 0.5, far + 3.0});
     add_laser_mover(world, {far + 0.0625, far + 0.03125, 0.0, 0.1}, laser(721, kTurn, 10.0));
     const TestFarm test = fixture.measure(world);
-    check_scan(*test.world, test.readings[0], checks, fmt::format("{:g} m away", far));
+    check_scan(test, test.readings[0], checks, fmt::format("{:g} m away", far));
   }
 }
 

@@ -59,7 +59,7 @@ void beside(Fixture& fixture, Checks& checks, const world::World& world, const s
     reference.set_poses(poses);
     for (const base::ReadingBlock& r : test.farm->tick(tick * 100'000'000ll, reports)) {
       const auto scan = reference.scan(r.mover, r.sensor, r.sequence);
-      const double allowed = allowed_from_plain_cpp(fixture, *test.world, r);
+      const double allowed = allowed_from_plain_cpp(fixture, test, r);
       for (std::size_t i = 0; i < r.values.size(); ++i, ++all.beams) {
         const bool same = std::abs(r.values[i] - scan.ranges[i]) <= allowed && r.hits[i] == scan.hits[i];
         all.found += !same;

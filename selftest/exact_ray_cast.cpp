@@ -59,13 +59,13 @@ Hit nearest_hit(std::span<const world::Segment> surfaces, const Beam& beam, doub
 
 double rounding(const Hit& m) { return static_cast<double>(2e-15L * (m.arm + m.range) / m.sine); }
 
-void check_scan(const world::World& world, const base::ReadingBlock& reading, Checks& checks, std::string_view what,
+void check_scan(const TestFarm& test, const base::ReadingBlock& reading, Checks& checks, std::string_view what,
                 std::uint32_t stride) {
-  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[reading.mover])[reading.sensor];
+  const sensors::LaserSettings& laser = laser_of(test, reading);
   checks.equal(reading.values.size(), laser.samples, fmt::format("{}: samples", what));
   std::uint64_t hairs = 0;
   for (std::uint32_t i = 0; i < reading.values.size(); i += stride) {
-    const Hit met = nearest_hit(world.walls, beam_of(reading.X_WS, laser, i), laser.range_max);
+    const Hit met = nearest_hit(test.world->walls, beam_of(reading.X_WS, laser, i), laser.range_max);
     if (met.ambiguous) {
       ++hairs;
     } else if (met.model == base::kNoHit) {

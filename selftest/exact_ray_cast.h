@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "base/reading.h"
-#include "selftest/case.h"
-#include "sensors/laser_settings.h"
-#include "world/world.h"
+#include "selftest/fixture.h"
 
 namespace sf::selftest {
 
@@ -37,7 +35,7 @@ double rounding(const Hit& hit);
 
 /// Compares every beam of a scan without noise with `nearest_hit`. Counts ambiguous beams only in a note.
 /// @param stride checks every stride-th beam
-void check_scan(const world::World& world, const base::ReadingBlock& reading, Checks& checks, std::string_view what,
+void check_scan(const TestFarm& test, const base::ReadingBlock& reading, Checks& checks, std::string_view what,
                 std::uint32_t stride = 1);
 
 }  // namespace sf::selftest

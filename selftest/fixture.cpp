@@ -4,16 +4,21 @@
 #include <cmath>
 
 #include "raycast/casters.h"
+#include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 
 namespace sf::selftest {
 
-double allowed_from_plain_cpp(const Fixture& fixture, const world::World& world, const base::ReadingBlock& scan) {
+const sensors::LaserSettings& laser_of(const TestFarm& test, const base::ReadingBlock& scan) {
+  return test.farm->sensor_set().settings_of<sensors::CastLaser>(sensors::kLaser, scan.mover)[scan.sensor].laser;
+}
+
+double allowed_from_plain_cpp(const Fixture& fixture, const TestFarm& test, const base::ReadingBlock& scan) {
   if (casts_any_world(fixture)) return 0.0;
-  const double range_max = sensors::lasers_of(world.movers[scan.mover])[scan.sensor].range_max;
+  const double range_max = laser_of(test, scan).range_max;
   const double farthest = std::max(std::abs(scan.X_WS.x), std::abs(scan.X_WS.y)) + range_max;
   return scan.bound_without_noise +
-         sensors::laser_bound(range_max, false, sensors::reaches_of(world).longest, farthest);
+         sensors::laser_bound(range_max, false, sensors::reaches_of(*test.world).longest, farthest);
 }
 
 void check_range(double got, double plain_cpp, double allowed, Checks& checks, std::string_view what, std::uint64_t i) {

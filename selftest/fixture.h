@@ -33,6 +33,9 @@ struct TestFarm {
   std::span<const base::ReadingBlock> readings;  ///< of the tick at time 0; valid until the next one
 };
 
+/// Returns the settings of the laser that produced a scan.
+const sensors::LaserSettings& laser_of(const TestFarm& test, const base::ReadingBlock& scan);
+
 /// Not thread-safe. The device must outlive it.
 class Fixture {
  public:
@@ -52,7 +55,7 @@ class Fixture {
 
 /// [m] Returns the allowed difference of a scan from plain C++ (sensors/laser_reference.h): 0, or the bounds of both
 /// if the chosen caster has its own bytes.
-double allowed_from_plain_cpp(const Fixture& fixture, const world::World& world, const base::ReadingBlock& scan);
+double allowed_from_plain_cpp(const Fixture& fixture, const TestFarm& test, const base::ReadingBlock& scan);
 /// Compares a range with that of plain C++, bitwise if `allowed` is 0.
 void check_range(double got, double plain_cpp, double allowed, Checks& checks, std::string_view what, std::uint64_t i);
 /// Returns whether the chosen caster accepts worlds of any size and returns the bytes of plain C++.

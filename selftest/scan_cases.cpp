@@ -25,9 +25,9 @@ void check_scans(Fixture& fixture, Checks& checks, std::span<const std::uint32_t
       add_laser_mover(world, {0.21, -0.13, 0.0, 0.5}, laser(count, fov * kDegree, 20.0));
   const TestFarm test = fixture.measure(world);
   for (const base::ReadingBlock& r : test.readings) {
-    const sensors::LaserSettings laser = sensors::lasers_of(test.world->movers[r.mover])[0];
+    const sensors::LaserSettings& laser = laser_of(test, r);
     const auto what = fmt::format("{} samples in {:g} degrees", laser.samples, laser.fov / kDegree);
-    check_scan(*test.world, r, checks, what, stride);
+    check_scan(test, r, checks, what, stride);
     if (laser.fov == 0.0)
       for (const double range : r.values) checks.same(range, r.values[0], what + ": all beams are one");
   }
@@ -60,7 +60,7 @@ void headings(Fixture& fixture, Checks& checks) {
     add_laser_mover(world, {0.21, -0.13, 0.0, yaw}, laser(61, 2.0, 20.0));
   const TestFarm test = fixture.measure(world);
   for (const base::ReadingBlock& r : test.readings)
-    check_scan(*test.world, r, checks, fmt::format("heading {:g}", r.X_WS.yaw));
+    check_scan(test, r, checks, fmt::format("heading {:g}", r.X_WS.yaw));
 }
 
 constexpr Case kScanCases[] = {

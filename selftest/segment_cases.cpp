@@ -22,7 +22,7 @@ void points_given_twice(Fixture& fixture, Checks& checks) {
   world::World world = read;
   add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(61, 0.5, 8.0));
   const TestFarm test = fixture.measure(world);
-  check_scan(*test.world, test.readings[0], checks, "corners given twice");
+  check_scan(test, test.readings[0], checks, "corners given twice");
   checks.same(test.readings[0].values[30], 1.0, "the face in front");
 }
 
@@ -34,7 +34,7 @@ void zero_length(Fixture& fixture, Checks& checks) {
     add_wall(world, p, p);
   add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
   const TestFarm test = fixture.measure(world);
-  check_scan(*test.world, test.readings[0], checks, "walls without length");
+  check_scan(test, test.readings[0], checks, "walls without length");
   checks.same(test.readings[0].values[180], 2.0, "straight through them");
 }
 
@@ -51,7 +51,7 @@ void slivers(Fixture& fixture, Checks& checks) {
       add_laser_mover(world, {far + 1.0 + 0.5 * thick, far - 2.0, 0.0, 0.5 * M_PI}, laser(1, 0.0, 8.0));
       const TestFarm test = fixture.measure(world);
       for (const base::ReadingBlock& r : test.readings)
-        check_scan(*test.world, r, checks, fmt::format("{:g} m thick, {:g} m away", thick, far));
+        check_scan(test, r, checks, fmt::format("{:g} m thick, {:g} m away", thick, far));
     }
 }
 
@@ -67,7 +67,7 @@ void tiny_beside_huge(Fixture& fixture, Checks& checks) {
   }
   add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
   const TestFarm test = fixture.measure(world);
-  for (const base::ReadingBlock& r : test.readings) check_scan(*test.world, r, checks, "nanometres beside 200 km");
+  for (const base::ReadingBlock& r : test.readings) check_scan(test, r, checks, "nanometres beside 200 km");
 }
 
 /// `side` x `side` posts of four walls each on a square metre.
@@ -99,12 +99,12 @@ void a_million(Fixture& fixture, Checks& checks) {
   const double between = (250.0 + 0.75) / kSide;  // four posts
   add_laser_mover(world, {between, between, 0.0, 0.0}, laser(17, kTurn, 0.1));
   const TestFarm test = fixture.measure(std::move(world));
-  check_scan(*test.world, test.readings[0], checks, "between a million walls");
+  check_scan(test, test.readings[0], checks, "between a million walls");
   checks.same(test.readings[0].values[8], 0.1, "along the lane between them");
   world::World fewer = posts(kSide / 2);
   add_laser_mover(fewer, {-1.0, 0.5, 0.0, 0.0}, laser(16, 0.1, 8.0));
   const TestFarm longest = fixture.measure(std::move(fewer));
-  check_scan(*longest.world, longest.readings[0], checks, "a quarter of a million in one direction of one cell");
+  check_scan(longest, longest.readings[0], checks, "a quarter of a million in one direction of one cell");
 }
 
 constexpr Case kSegmentCases[] = {

@@ -35,7 +35,7 @@ void read_at(const Fixture& fixture, TestFarm& test, Checks& checks, std::int64_
   checks.equal(readings[0].sequence, number, what + ": number");
   checks.equal(readings[0].time, now, what + ": time");
   const auto exact = sensors::LaserReference(*test.world, kSeed).scan(0, 0, number);
-  const double allowed = allowed_from_plain_cpp(fixture, *test.world, readings[0]);
+  const double allowed = allowed_from_plain_cpp(fixture, test, readings[0]);
   for (std::size_t i = 0; i < exact.ranges.size(); ++i)
     check_range(readings[0].values[i], exact.ranges[i], allowed, checks, what, i);
 }

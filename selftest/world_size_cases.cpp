@@ -19,7 +19,7 @@ void check_full_turn(Fixture& fixture, Checks& checks, double far, double width,
   add_room(world, {far - 0.4 * width, far - 0.3 * width}, width);
   add_laser_mover(world, {far + 0.137 * width, far - 0.0211 * width, 0.0, 0.3}, laser(samples, kTurn, 2.0 * width));
   const TestFarm test = fixture.measure(world);
-  check_scan(*test.world, test.readings[0], checks, fmt::format("{:g} m wide, {:g} m away", width, far));
+  check_scan(test, test.readings[0], checks, fmt::format("{:g} m wide, {:g} m away", width, far));
 }
 
 void widths(Fixture& fixture, Checks& checks) {
@@ -79,7 +79,7 @@ void far_and_small(Fixture& fixture, Checks& checks) {
   const TestFarm test = fixture.measure(world);
   for (const base::ReadingBlock& reading : test.readings) {
     checks.holds(reading.values[2] < 1e5, "the tower is seen", reading.mover);
-    check_scan(*test.world, reading, checks, "towers");
+    check_scan(test, reading, checks, "towers");
   }
 }
 

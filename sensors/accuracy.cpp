@@ -120,11 +120,12 @@ namespace {
 using Alike = std::tuple<std::uint8_t, double, double, double, std::uint32_t>;
 
 /// @param known bounds computed so far
-const ErrorBound& bound_of(const world::World& world, const SensorType& type, const SensorSpec& row,
+const ErrorBound& bound_of(const world::World& world, const SensorSet::Group& group, std::size_t i,
                            std::map<Alike, ErrorBound>& known) {
+  const SensorSpec& row = group.rows[i];
   const auto [at, is_new] = known.try_emplace(
       Alike{row.mode, row.sigma, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, ErrorBound{});
-  if (is_new) at->second = type.bound(world, row);
+  if (is_new) at->second = group.type->bound(world, group, i);
   return at->second;
 }
 
@@ -136,8 +137,9 @@ std::vector<AccuracyStatement> accuracy_statements(const world::World& world, co
     if (group.type->bound == nullptr) continue;
     const std::size_t first = statements.size();
     std::map<Alike, ErrorBound> known;
-    for (const SensorSpec& row : group.rows) {
-      const ErrorBound& bound = bound_of(world, *group.type, row, known);
+    for (std::size_t i = 0; i < group.rows.size(); ++i) {
+      const SensorSpec& row = group.rows[i];
+      const ErrorBound& bound = bound_of(world, group, i, known);
       const auto same = std::find_if(
           statements.begin() + static_cast<std::ptrdiff_t>(first), statements.end(), [&](const AccuracyStatement& s) {
             return s.mode == row.mode && s.bound.error == bound.error && s.sigma == row.sigma;

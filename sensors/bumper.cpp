@@ -73,28 +73,25 @@ std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
 
 class Bumpers : public HostBackend {
  public:
-  explicit Bumpers(const SensorContext& context);
+  Bumpers(const SensorContext& context, const ParsedSensors& sensors)
+      : HostBackend(context, bumper_type, sensors), switches_(sensors.settings_as<BumperSwitches>()) {}
 
  private:
   void measure(std::span<const HostSample> samples) const override;
 
-  std::vector<std::vector<std::uint32_t>> switches_;  ///< per row: the sectors of each switch
+  const std::vector<BumperSwitches>& switches_;  ///< per row
 };
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_bumpers(const world::World& world) {
   std::vector<SensorSpec> rows;
+  std::vector<BumperSwitches> switches;
   for_each_sensor(world, bumper_type, [&](const MountedSensor& mounted) {
     rows.push_back(mounted.row);
-    rows.back().elements = static_cast<std::uint32_t>(read_bumper(mounted.settings).size());
+    rows.back().elements = static_cast<std::uint32_t>(switches.emplace_back(read_bumper(mounted.settings)).size());
     rows.back().limit = 1.0;
     rows.back().reach = 0.0;
   });
-  return rows;
-}
-
-Bumpers::Bumpers(const SensorContext& context) : HostBackend(context, bumper_type, specs_of(context.world)) {
-  for_each_sensor(context.world, bumper_type,
-                  [this](const MountedSensor& mounted) { switches_.push_back(read_bumper(mounted.settings)); });
+  return {std::move(rows), std::move(switches)};
 }
 
 void Bumpers::measure(std::span<const HostSample> samples) const {
@@ -112,7 +109,7 @@ constexpr PlainForm kForm{kBumper, "bumper", kNumbers};
 
 }  // namespace
 
-std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor) {
+BumperSwitches read_bumper(const world::Sensor& sensor) {
   if (find(sensor, "bcount") != nullptr) return read_bars(sensor);
   const std::uint32_t zones = whole(sensor, "zones", 1, 1, kMostBumperZones);
   refuse_beyond(sensor, "zone[", "zones", zones, kMostBumperZones);
@@ -136,7 +133,7 @@ constinit const SensorType bumper_type = plain<kForm>({
     .base_port = 40000,
     .list = "switches",
     .columns = kColumns,
-    .specs = specs_of,
+    .parse = parse_bumpers,
     .make = make_backend<Bumpers>,
 });
 

@@ -20,9 +20,11 @@ namespace sf::sensors {
 inline constexpr std::uint8_t kBumper = 6;             ///< wire id
 inline constexpr std::uint32_t kMostBumperZones = 32;  ///< per sensor
 
-/// Returns the sectors of each switch, bit k as in base::Report::contact_mask; at least one per switch.
+/// The sectors of each switch of a sensor, bit k as in base::Report::contact_mask; at least one per switch.
+using BumperSwitches = std::vector<std::uint32_t>;
+
 /// @throws base::InputError with file and line.
-std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor);
+BumperSwitches read_bumper(const world::Sensor& sensor);
 
 extern const SensorType bumper_type;
 

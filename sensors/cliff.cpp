@@ -26,33 +26,34 @@ bool passes(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
   return base::cross(b - a, p - a) > 0.0;
 }
 
+/// The points of a sensor, in its frame.
+using Points = std::vector<Pose>;
+
 class Cliffs : public HostBackend {
  public:
-  explicit Cliffs(const SensorContext& context);
+  Cliffs(const SensorContext& context, const ParsedSensors& sensors)
+      : HostBackend(context, cliff_type, sensors),
+        drop_offs_(context.world.floor_holes),
+        points_(sensors.settings_as<Points>()) {}
 
  private:
   void measure(std::span<const HostSample> samples) const override;
 
   DropOffIndex drop_offs_;
-  std::vector<std::vector<Pose>> points_;  ///< per row, in the sensor frame
+  const std::vector<Points>& points_;  ///< per row
 };
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_cliffs(const world::World& world) {
   std::vector<SensorSpec> rows;
+  std::vector<Points> points;
   for_each_sensor(world, cliff_type, [&](const MountedSensor& mounted) {
     rows.push_back(mounted.row);
-    rows.back().elements = static_cast<std::uint32_t>(read_elements(mounted.settings, kMostCliffPoints).size());
+    points.push_back(read_elements(mounted.settings, kMostCliffPoints));
+    rows.back().elements = static_cast<std::uint32_t>(points.back().size());
     rows.back().limit = 1.0;
     rows.back().reach = 0.0;
   });
-  return rows;
-}
-
-Cliffs::Cliffs(const SensorContext& context)
-    : HostBackend(context, cliff_type, specs_of(context.world)), drop_offs_(context.world.floor_holes) {
-  for_each_sensor(context.world, cliff_type, [this](const MountedSensor& mounted) {
-    points_.push_back(read_elements(mounted.settings, kMostCliffPoints));
-  });
+  return {std::move(rows), std::move(points)};
 }
 
 void Cliffs::measure(std::span<const HostSample> samples) const {
@@ -87,7 +88,7 @@ constinit const SensorType cliff_type = plain<kForm>({
     .base_port = 42000,
     .list = "points",
     .columns = kColumns,
-    .specs = specs_of,
+    .parse = parse_cliffs,
     .make = make_backend<Cliffs>,
 });
 

@@ -34,7 +34,7 @@ struct Wheels {
 
 class Encoders : public HostBackend {
  public:
-  explicit Encoders(const SensorContext& context);
+  Encoders(const SensorContext& context, const ParsedSensors& sensors);
 
   void accumulate(std::int64_t now, bool between) override;
   void write_state(std::uint32_t row, base::ByteWriter& out) const override;
@@ -51,25 +51,27 @@ class Encoders : public HostBackend {
   std::int64_t last_ = 0;       ///< [ns] of the last tick
 };
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_encoders(const world::World& world) {
   std::vector<SensorSpec> rows;
+  std::vector<Encoder> encoders;
   for_each_sensor(world, encoder_type, [&](const MountedSensor& mounted) {
     rows.push_back(mounted.row);
-    rows.back().sigma = read_encoder(mounted.settings, world.movers[mounted.row.mover]).slip > 0.0 ? HUGE_VAL : 0.0;
+    encoders.push_back(read_encoder(mounted.settings, world.movers[mounted.row.mover]));
+    rows.back().sigma = encoders.back().slip > 0.0 ? HUGE_VAL : 0.0;
     rows.back().reach = 0.0;
   });
-  return rows;
+  return {std::move(rows), std::move(encoders)};
 }
 
-Encoders::Encoders(const SensorContext& context) : HostBackend(context, encoder_type, specs_of(context.world)) {
-  for_each_sensor(context.world, encoder_type, [&](const MountedSensor& mounted) {
-    const world::Mover& mover = context.world.movers[mounted.row.mover];
-    const Encoder settings = read_encoder(mounted.settings, mover);
-    const base::RandomKey walk{context.seed, base::RandomStream::slip, mounted.row.mover, mounted.row.sensor};
+Encoders::Encoders(const SensorContext& context, const ParsedSensors& sensors)
+    : HostBackend(context, encoder_type, sensors) {
+  for (std::size_t i = 0; i < rows().size(); ++i) {
+    const Encoder& settings = sensors.settings_as<Encoder>()[i];
+    const base::RandomKey walk{context.seed, base::RandomStream::slip, rows()[i].mover, rows()[i].sensor};
     const double slip = context.noise ? settings.slip : 0.0;
     wheels_.push_back({settings, {}, {walk, 0, slip}, {walk, 1, slip}});
-    tracks_.push_back({mover.X_WM});
-  });
+    tracks_.push_back({context.world.movers[rows()[i].mover].X_WM});
+  }
 }
 
 /// Returns false for a relocation. The time since the last pose may exceed a tick when reports are late. Before the
@@ -179,7 +181,7 @@ constinit const SensorType encoder_type = plain<kForm>({
     .base_port = 44000,
     .list = "",
     .columns = kColumns,
-    .specs = specs_of,
+    .parse = parse_encoders,
     .make = make_backend<Encoders>,
 });
 

@@ -22,7 +22,7 @@ struct Receiver {
 
 class GpsReceivers : public HostBackend {
  public:
-  explicit GpsReceivers(const SensorContext& context);
+  GpsReceivers(const SensorContext& context, const ParsedSensors& sensors);
 
  private:
   void measure(std::span<const HostSample> samples) const override;
@@ -32,27 +32,28 @@ class GpsReceivers : public HostBackend {
   std::vector<Receiver> receivers_;  ///< per row
 };
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_receivers(const world::World& world) {
   std::vector<SensorSpec> rows;
+  std::vector<Gps> receivers;
   const double top = top_of_blocking(world);
   for_each_sensor(world, gps_type, [&](const MountedSensor& mounted) {
     SensorSpec row = mounted.row;
-    row.sigma = read_gps(mounted.settings).noise > 0.0 ? HUGE_VAL : 0.0;  // depends on the satellites in sight
+    row.sigma = receivers.emplace_back(read_gps(mounted.settings)).noise > 0.0
+                    ? HUGE_VAL
+                    : 0.0;  // depends on the satellites in sight
     row.rate = rate_of(mounted.settings, kRate);
     row.X_MS.z += mounted.settings.height;
     const double above = top - world.movers[row.mover].X_WM.z - row.X_MS.z;
     row.reach = std::max(0.0, above / std::tan(kLeastElevation));
     rows.push_back(row);
   });
-  return rows;
+  return {std::move(rows), std::move(receivers)};
 }
 
-GpsReceivers::GpsReceivers(const SensorContext& context)
-    : HostBackend(context, gps_type, specs_of(context.world)), visibility_(context.world) {
-  for_each_sensor(context.world, gps_type, [&](const MountedSensor& mounted) {
-    const Gps gps = read_gps(mounted.settings);
+GpsReceivers::GpsReceivers(const SensorContext& context, const ParsedSensors& sensors)
+    : HostBackend(context, gps_type, sensors), visibility_(context.world) {
+  for (const Gps& gps : sensors.settings_as<Gps>())
     receivers_.push_back({context.noise ? gps.noise : 0.0, constellation(gps.satellites)});
-  });
 }
 
 void GpsReceivers::measure(std::span<const HostSample> samples) const {
@@ -103,7 +104,7 @@ constinit const SensorType gps_type = plain<kForm>({
     .base_port = 48000,
     .list = "",
     .columns = kColumns,
-    .specs = specs_of,
+    .parse = parse_receivers,
     .make = make_backend<GpsReceivers>,
 });
 

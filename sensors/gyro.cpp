@@ -29,7 +29,7 @@ base::RandomKey draw_of(std::uint64_t seed, const SensorSpec& row, std::uint64_t
 
 class Gyros : public HostBackend {
  public:
-  explicit Gyros(const SensorContext& context);
+  Gyros(const SensorContext& context, const ParsedSensors& sensors);
 
  private:
   void measure(std::span<const HostSample> samples) const override;
@@ -37,28 +37,29 @@ class Gyros : public HostBackend {
   std::vector<Fixed> gyros_;  ///< per row
 };
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_gyros(const world::World& world) {
   std::vector<SensorSpec> rows;
+  std::vector<Gyro> gyros;
   for_each_sensor(world, gyro_type, [&](const MountedSensor& mounted) {
     rows.push_back(mounted.row);
-    const Gyro gyro = read_gyro(mounted.settings);
+    const Gyro& gyro = gyros.emplace_back(read_gyro(mounted.settings));
     rows.back().limit = gyro.range;
     rows.back().sigma = gyro.bias > 0.0 || gyro.scale_error > 0.0 ? HUGE_VAL : gyro.noise;
     rows.back().reach = 0.0;
   });
-  return rows;
+  return {std::move(rows), std::move(gyros)};
 }
 
-Gyros::Gyros(const SensorContext& context) : HostBackend(context, gyro_type, specs_of(context.world)) {
-  for_each_sensor(context.world, gyro_type, [&](const MountedSensor& mounted) {
-    const Gyro gyro = read_gyro(mounted.settings);
+Gyros::Gyros(const SensorContext& context, const ParsedSensors& sensors) : HostBackend(context, gyro_type, sensors) {
+  for (std::size_t i = 0; i < rows().size(); ++i) {
+    const Gyro& gyro = sensors.settings_as<Gyro>()[i];
     Fixed fixed{.range = gyro.range};
     if (context.noise) {
-      const auto [bias, scale] = base::random_normal(draw_of(context.seed, mounted.row, 0), kRun);
+      const auto [bias, scale] = base::random_normal(draw_of(context.seed, rows()[i], 0), kRun);
       fixed = {gyro.range, 1.0 + gyro.scale_error * scale, gyro.bias * bias, gyro.noise};
     }
     gyros_.push_back(fixed);
-  });
+  }
 }
 
 void Gyros::measure(std::span<const HostSample> samples) const {
@@ -93,7 +94,7 @@ constinit const SensorType gyro_type = plain<kForm>({
     .base_port = 46000,
     .list = "",
     .columns = kColumns,
-    .specs = specs_of,
+    .parse = parse_gyros,
     .make = make_backend<Gyros>,
 });
 

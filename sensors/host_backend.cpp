@@ -12,13 +12,13 @@ constexpr std::size_t kPiece = 64;  // readings per piece of work
 
 }  // namespace
 
-HostBackend::HostBackend(const SensorContext& context, const SensorType& type, std::vector<SensorSpec> rows)
+HostBackend::HostBackend(const SensorContext& context, const SensorType& type, const ParsedSensors& sensors)
     : world_(context.world),
       thread_pool_(context.thread_pool),
       states_(context.states),
       seed_(context.seed),
       type_(type.id),
-      rows_(std::move(rows)) {
+      rows_(sensors.rows) {
   first_.push_back(0);
   for (const SensorSpec& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(type));
   values_.resize(first_.back());

@@ -29,8 +29,7 @@ class HostBackend : public SensorBackend {
   bool on_device() const override { return false; }
 
  protected:
-  /// @param rows the specs of the type's sensors
-  HostBackend(const SensorContext& context, const SensorType& type, std::vector<SensorSpec> rows);
+  HostBackend(const SensorContext& context, const SensorType& type, const ParsedSensors& sensors);
 
   /// Fills in readings. Several pool threads call it concurrently, each reading exactly once.
   virtual void measure(std::span<const HostSample> samples) const = 0;
@@ -46,7 +45,7 @@ class HostBackend : public SensorBackend {
   std::span<const base::Report> states_;
   std::uint64_t seed_;
   std::uint8_t type_;
-  std::vector<SensorSpec> rows_;
+  std::span<const SensorSpec> rows_;
   std::vector<std::size_t> first_;  ///< per row, plus one: index of its first value
   std::vector<double> values_;
   std::vector<HostSample> samples_;

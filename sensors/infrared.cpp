@@ -25,10 +25,6 @@ void tell_response(const ConeArray& array, double range, bool met, double deviat
   out[1] = std::floor(response + 0.5);
 }
 
-std::vector<ConeArray> infrareds_of(const world::World& world) {
-  return cone_arrays_of(world, infrared_type.word.type, read_infrared);
-}
-
 constexpr RangerType kRanger{kInfrared, kInfraredColumns, {"infrared", infrared_comp_spv, false}, tell_response};
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "sview", "fov", "range", "rays"};
@@ -50,9 +46,8 @@ constinit const SensorType infrared_type = plain<kForm>({
     .base_port = 38000,
     .list = "elements",
     .columns = kColumns,
-    .specs = [](const world::World& world) { return ranger_specs(infrareds_of(world)); },
-    .make =
-        [](const SensorContext& context) { return make_ranger_backend(context, infrareds_of(context.world), kRanger); },
+    .parse = [](const world::World& world) { return parse_rangers(world, infrared_type.word.type, read_infrared); },
+    .make = make_ranger_backend<kRanger>,
 });
 
 }  // namespace sf::sensors

@@ -37,7 +37,10 @@ std::vector<Segment> opaque(const world::World& world) {
 
 class IrReceivers : public HostBackend {
  public:
-  explicit IrReceivers(const SensorContext& context);
+  IrReceivers(const SensorContext& context, const ParsedSensors& sensors)
+      : HostBackend(context, irreceiver_type, sensors),
+        walls_(opaque(context.world)),
+        reaches_(reaches_of(context.world)) {}
 
  private:
   void measure(std::span<const HostSample> samples) const override;
@@ -47,7 +50,7 @@ class IrReceivers : public HostBackend {
   base::BoxTree reaches_;  ///< reaches of the world's emitters
 };
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_ir_receivers(const world::World& world) {
   std::vector<SensorSpec> rows;
   double reach = 0.0;
   for (const Emitter& e : world.emitters) reach = std::max({reach, e.range, e.halo});
@@ -56,13 +59,8 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
     rows.back().X_MS.z += 0.5 * mounted.settings.height;
     rows.back().reach = reach;
   });
-  return rows;
+  return {std::move(rows), {}};
 }
-
-IrReceivers::IrReceivers(const SensorContext& context)
-    : HostBackend(context, irreceiver_type, specs_of(context.world)),
-      walls_(opaque(context.world)),
-      reaches_(reaches_of(context.world)) {}
 
 bool IrReceivers::hidden(const Emitter& emitter, glm::dvec2 p, double z) const {
   const glm::dvec2 e{emitter.X_WE.x, emitter.X_WE.y};
@@ -114,7 +112,7 @@ constinit const SensorType irreceiver_type = plain<kForm>({
     .base_port = 50000,
     .list = "",
     .columns = kColumns,
-    .specs = specs_of,
+    .parse = parse_ir_receivers,
     .make = make_backend<IrReceivers>,
 });
 

@@ -38,7 +38,7 @@ constexpr base::QualityFlag kReasons[] = {base::QualityFlag::none, base::Quality
 /// hits.
 class LaneEdges : public SensorBackend {
  public:
-  explicit LaneEdges(const SensorContext& context);
+  LaneEdges(const SensorContext& context, const ParsedSensors& sensors);
 
   void place_movers() override { caster_.place_movers(); }
   bool prepare(std::span<const DueSample> due) override;
@@ -59,7 +59,7 @@ class LaneEdges : public SensorBackend {
   void state(std::size_t i, base::ReadingBlock& block);
 
   base::ThreadPool& thread_pool_;
-  std::vector<LaneEdge> edges_;
+  const std::vector<LaneEdge>& edges_;
   bool noise_;
   bool exact_;  ///< markings are exact outlines, not pixels
   FilteredScene scene_;
@@ -74,9 +74,9 @@ class LaneEdges : public SensorBackend {
   bool bound_ = false;
 };
 
-LaneEdges::LaneEdges(const SensorContext& context)
+LaneEdges::LaneEdges(const SensorContext& context, const ParsedSensors& sensors)
     : thread_pool_(context.thread_pool),
-      edges_(lane_edges_of(context.world)),
+      edges_(sensors.settings_as<LaneEdge>()),
       noise_(context.noise),
       exact_(!uses_raster(context.world)),
       scene_(filter_scene(context.world, exact_)),
@@ -180,10 +180,11 @@ void LaneEdges::collect(std::span<base::ReadingBlock> out) {
   });
 }
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_lane_edges(const world::World& world) {
+  std::vector<LaneEdge> edges = lane_edges_of(world);
   std::vector<SensorSpec> rows;
-  for (const LaneEdge& edge : lane_edges_of(world)) rows.push_back(edge.row);
-  return rows;
+  for (const LaneEdge& edge : edges) rows.push_back(edge.row);
+  return {std::move(rows), std::move(edges)};
 }
 
 constexpr Column kColumns[] = {{"distance_m"}, {"points", 1, true}, {"residual_m"}, {"sigma_m"}};
@@ -199,7 +200,7 @@ constinit const SensorType laneedge_type{
     .columns = kColumns,
     .modes = kLaneEdgeModes,
     .bound = bound_of_lane_edge,
-    .specs = specs_of,
+    .parse = parse_lane_edges,
     .make = make_backend<LaneEdges>,
     .wire_problem = lane_edge_wire_problem,
     .parts = lane_edge_parts,

@@ -102,18 +102,15 @@ base::QualityFlag quality_of(const EdgeReading& reading, double error, double bo
   return gain * error <= bound ? base::QualityFlag::none : base::QualityFlag::grazing;
 }
 
-ErrorBound bound_of_lane_edge(const world::World& world, const SensorSpec& row) {
+ErrorBound bound_of_lane_edge(const world::World& world, const ParsedSensors& sensors, std::size_t at) {
+  const SensorSpec& row = sensors.rows[at];
   if (uses_raster(world)) return {HUGE_VAL, "markings in pixels: each reading carries its sigma"};
   if (row.sigma > 0.0) return {HUGE_VAL, "noise affects the line: each reading carries its sigma"};
   if (row.mode > 0) return {HUGE_VAL, "skipped rays may have met another edge: each reading carries its sigma"};
-  ErrorBound bound{0.0, "one straight edge, visible on both sides; other readings are flagged"};
   const double longest = reaches_of(filter_scene(world, true).world).longest;
-  for_each_of(world, "laneedge", [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-    if (mover != row.mover || number != row.sensor) return;
-    const LaneEdge edge = lane_edge_of(sensor, mover, number);
-    bound.error = lane_edge_bound(edge, longest, reaches_of(world).farthest + edge.fan.range_max);
-  });
-  return bound;
+  const LaneEdge& edge = sensors.settings_as<LaneEdge>()[at];
+  return {lane_edge_bound(edge, longest, reaches_of(world).farthest + edge.fan.range_max),
+          "one straight edge, visible on both sides; other readings are flagged"};
 }
 
 }  // namespace sf::sensors

@@ -38,7 +38,8 @@ double point_error(const LaneEdge& edge, double longest, double farthest);
 double lane_edge_bound(const LaneEdge& edge, double longest, double farthest);
 /// Returns the reason why a distance may exceed `bound` [m], for points with an error up to `error` [m].
 base::QualityFlag quality_of(const EdgeReading& reading, double error, double bound);
-ErrorBound bound_of_lane_edge(const world::World& world, const SensorSpec& sensor);
+/// Implements `SensorType::bound`.
+ErrorBound bound_of_lane_edge(const world::World& world, const ParsedSensors& sensors, std::size_t row);
 
 /// [-] Fraction of range_max above which ranges are "near the maximum" and yield no points.
 inline constexpr double kNearMaximum = 0.99;

@@ -28,27 +28,18 @@ struct Row {
   bool too_near = false;  ///< a surface of its last scan is nearer than its minimum
 };
 
-/// The lasers of a world and their scanners, by mover and in file order.
-struct LaserTables {
-  std::vector<CastLaser> lasers;
+std::vector<raycast::Scanner> scanners_of(const ParsedSensors& sensors) {
   std::vector<raycast::Scanner> scanners;
-};
-
-LaserTables lasers_in(const world::World& world) {
-  LaserTables tables;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    std::uint32_t number = 0;
-    for (const LaserSettings& laser : lasers_of(world.movers[m])) {
-      const CastLaser& cast = tables.lasers.emplace_back(cast_laser(world, laser));
-      tables.scanners.push_back({cast_settings(cast.laser), m, number++, cast.single});
-    }
+  for (const CastLaser& cast : sensors.settings_as<CastLaser>()) {
+    const SensorSpec& row = sensors.rows[scanners.size()];
+    scanners.push_back({cast_settings(cast.laser), row.mover, row.sensor, cast.single});
   }
-  return tables;
+  return scanners;
 }
 
 class Lasers : public SensorBackend {
  public:
-  explicit Lasers(const SensorContext& context) : Lasers(context, lasers_in(context.world)) {}
+  Lasers(const SensorContext& context, const ParsedSensors& sensors);
 
   void place_movers() override { caster_.place_movers(); }
   bool prepare(std::span<const DueSample> due) override {
@@ -62,8 +53,6 @@ class Lasers : public SensorBackend {
   bool on_device() const override { return caster_.on_device(); }
 
  private:
-  Lasers(const SensorContext& context, LaserTables tables);
-
   Row make_row(std::uint32_t i, std::size_t first_sample) const;
   void find_results(std::uint32_t i);
   void shape(std::size_t i);
@@ -75,7 +64,7 @@ class Lasers : public SensorBackend {
   bool noise_;
   double longest_;  ///< [m] longest surface
   raycast::RayCaster caster_;
-  std::vector<CastLaser> lasers_;
+  const std::vector<CastLaser>& lasers_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<DueSample> due_;
   std::vector<double> values_;              ///< [m] samples of all lasers, if any laser is reworked
@@ -83,13 +72,13 @@ class Lasers : public SensorBackend {
   std::vector<base::QualityFlag> quality_;  ///< flags of all lasers' samples
 };
 
-Lasers::Lasers(const SensorContext& context, LaserTables tables)
+Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
     : thread_pool_(context.thread_pool),
       seed_(context.seed),
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
-      caster_(context, context.world, std::move(tables.scanners)),
-      lasers_(std::move(tables.lasers)) {
+      caster_(context, context.world, scanners_of(sensors)),
+      lasers_(sensors.settings_as<CastLaser>()) {
   std::size_t samples = 0;
   for (std::uint32_t i = 0; i < lasers_.size(); ++i) {
     rows_.push_back(make_row(i, samples));
@@ -194,23 +183,29 @@ void Lasers::collect(std::span<base::ReadingBlock> out) {
   });
 }
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+SensorSpec spec_of(const CastLaser& cast, std::uint32_t mover, std::uint32_t number) {
+  const LaserSettings& laser = cast.laser;
+  SensorSpec row{mover,         number,        laser.name,      laser.X_MS, laser.rate, laser.phase,
+                 laser.latency, laser.samples, laser.range_max, 0,          0.0,        cast.mode};
+  row.fov = laser.fov;
+  row.range_min = laser.range_min;
+  row.dependency_radius = row.reach = laser.range_max;
+  const raycast::ScanNoise& noise = laser.noise;
+  row.sigma = noise.angle_sigma > 0.0  // a beam that turns may hit another surface
+                  ? HUGE_VAL
+                  : std::hypot(noise.range_sigma, noise.range_proportional * laser.range_max);
+  return row;
+}
+
+ParsedSensors parse_lasers(const world::World& world) {
   std::vector<SensorSpec> rows;
-  const LaserTables tables = lasers_in(world);
-  for (const CastLaser& cast : tables.lasers) {
-    const LaserSettings& laser = cast.laser;
-    const raycast::Scanner& scanner = tables.scanners[rows.size()];
-    rows.push_back({scanner.mover, scanner.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
-                    laser.samples, laser.range_max, 0, 0.0, cast.mode});
-    rows.back().fov = laser.fov;
-    rows.back().range_min = laser.range_min;
-    rows.back().dependency_radius = rows.back().reach = laser.range_max;
-    const raycast::ScanNoise& noise = laser.noise;
-    rows.back().sigma = noise.angle_sigma > 0.0  // a beam that turns may hit another surface
-                            ? HUGE_VAL
-                            : std::hypot(noise.range_sigma, noise.range_proportional * laser.range_max);
+  std::vector<CastLaser> lasers;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::uint32_t number = 0;
+    for (const LaserSettings& laser : lasers_of(world.movers[m]))
+      rows.push_back(spec_of(lasers.emplace_back(cast_laser(world, laser)), m, number++));
   }
-  return rows;
+  return {std::move(rows), std::move(lasers)};
 }
 
 constexpr Column kColumns[] = {{"range_m", 1, false, 9}};
@@ -228,7 +223,7 @@ constinit const SensorType laser_type{
     .is_scan = true,
     .modes = kLaserModes,
     .bound = bound_of_laser,
-    .specs = specs_of,
+    .parse = parse_lasers,
     .make = make_backend<Lasers>,
     .wire_problem = laser_wire_problem,
     .parts = laser_parts,

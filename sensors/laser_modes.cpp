@@ -46,8 +46,8 @@ double laser_bound(double range_max, bool single, double longest, double farthes
   return raycast::exact_bound(range_max, longest, farthest) + (single ? raycast::single_bound(range_max) : 0.0);
 }
 
-ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor) {
-  const CastLaser cast = cast_laser(world, lasers_of(world.movers[sensor.mover])[sensor.sensor]);
+ErrorBound bound_of_laser(const world::World& world, const ParsedSensors& sensors, std::size_t row) {
+  const CastLaser& cast = sensors.settings_as<CastLaser>()[row];
   const Reaches reaches = reaches_of(world);
   return {laser_bound(cast.laser.range_max, cast.single, reaches.longest, reaches.farthest + cast.laser.range_max),
           "cast beams that do not graze and are not nearer than range_min; the others are flagged"};

@@ -37,6 +37,7 @@ Reaches reaches_of(const world::World& world);
 /// @param farthest [m] largest coordinate of anything in range
 double laser_bound(double range_max, bool single, double longest, double farthest);
 
-ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor);
+/// Implements `SensorType::bound`.
+ErrorBound bound_of_laser(const world::World& world, const ParsedSensors& sensors, std::size_t row);
 
 }  // namespace sf::sensors

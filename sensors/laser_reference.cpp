@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/laser.h"
 #include "sensors/laser_noise.h"
 
 namespace sf::sensors {
 
 LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bool noise)
     : world_(world), seed_(seed), noise_(noise) {
-  for (const world::Mover& mover : world.movers) {
-    poses_.push_back(mover.X_WM);
-    auto& lasers = lasers_.emplace_back();
-    for (const LaserSettings& each : lasers_of(mover)) lasers.push_back(cast_laser(world, each));
-  }
+  for (const world::Mover& mover : world.movers) poses_.push_back(mover.X_WM);
+  lasers_.resize(world.movers.size());
+  const ParsedSensors parsed = laser_type.parse(world);
+  for (std::size_t i = 0; i < parsed.rows.size(); ++i)
+    lasers_[parsed.rows[i].mover].push_back(parsed.settings_as<CastLaser>()[i]);
 }
 
 void LaserReference::set_poses(std::span<const Pose> poses) { poses_.assign(poses.begin(), poses.end()); }

@@ -5,6 +5,7 @@
 //   ranger( sensor( samples 1 fov 6 range [0 5] ) ... )      each block is a laser
 //   ranger( scount N spose[i] [x y yaw] ... sview [0 5 fov] )   each transducer is a laser of one beam
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,9 +36,12 @@ inline constexpr world::SensorKeyword kRangerWord{"ranger", kRangerKeys, kBlockK
 
 /// Returns true for types that are lasers. @param type of a world::Sensor
 inline bool is_laser(std::string_view type) { return type == kLaserWord.type || type == kRangerWord.type; }
+inline bool has_laser(const world::Mover& mover) {
+  return std::any_of(mover.sensors.begin(), mover.sensors.end(), [](const auto& each) { return is_laser(each.type); });
+}
 
 /// Returns the lasers of a mover in file order, numbered as in readings. Neighbours with the same name, such as the
-/// lasers of a ranger, are renamed `name[k]`.
+/// lasers of a ranger, are renamed `name[k]`. Worlds are parsed once, into a SensorSet.
 /// @throws base::InputError with file and line for an invalid setting
 std::vector<LaserSettings> lasers_of(const world::Mover& mover);
 

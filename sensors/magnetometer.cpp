@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "base/random.h"
 #include "sensors/accuracy.h"
+#include "sensors/laser_modes.h"
 #include "sensors/magnetic_field/magnetic_field.h"
 #include "sensors/magnetometer_modes.h"
 #include "sensors/magnetometer_packets.h"
@@ -19,34 +21,27 @@ namespace {
 
 /// One array of a world.
 struct Array {
-  Magnetometer settings;
-  SensorSpec row;
-  FieldBound bound;                ///< largest bound of its elements
+  const Magnetometer& settings;
+  const SensorSpec& row;
   double height = 0.0;             ///< [m] height of its origin in the world; fixed at load (2.5-D world)
   std::size_t values = 0;          ///< index of its first value
+  FieldBound bound;                ///< largest bound of its elements
   std::vector<glm::dvec2> facing;  ///< per element: its x axis in the sensor frame
 };
 
-std::vector<Array> arrays_of(const world::World& world) {
+double height_of(const SensorSpec& row, const world::World& world) {
+  return world.movers[row.mover].X_WM.z + row.X_MS.z;
+}
+
+std::vector<Array> arrays_of(const world::World& world, const ParsedSensors& sensors) {
   std::vector<Array> arrays;
   std::size_t values = 0;
-  const auto type = magnetometer_type.word.type;
-  for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-    Array array{read_magnetometer(sensor), common_spec(sensor, mover, number), {}, 0.0, values};
-    array.row.mode = mode_of("magnetometer", kMagnetometerModes, accuracy_of(sensor), world);
-    array.row.X_MS.z += sensor.height / 2.0;
-    array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
-    array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
-    array.row.dependency_radius =
-        HUGE_VAL;  // the order in which moving magnets are summed depends on all of their positions
-    array.row.depends_on_magnets = true;
-    array.row.reach = 0.0;
-    array.row.sigma = array.settings.sigma;
-    array.height = world.movers[mover].X_WM.z + array.row.X_MS.z;
-    for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
-    values += kMagnetometerColumns * array.settings.X_SE.size();
-    arrays.push_back(std::move(array));
-  });
+  for (const SensorSpec& row : sensors.rows) {
+    const Magnetometer& settings = sensors.settings_as<Magnetometer>()[arrays.size()];
+    Array& array = arrays.emplace_back(Array{settings, row, height_of(row, world), values, {}, {}});
+    for (const Pose& X_SE : settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
+    values += kMagnetometerColumns * settings.X_SE.size();
+  }
   return arrays;
 }
 
@@ -66,7 +61,7 @@ struct Wave {
 
 class Magnetometers : public SensorBackend {
  public:
-  explicit Magnetometers(const SensorContext& context);
+  Magnetometers(const SensorContext& context, const ParsedSensors& sensors);
 
   void place_movers() override {
     for (auto& [mode, wave] : waves_) wave.field.place_movers(states_);
@@ -101,13 +96,13 @@ class Magnetometers : public SensorBackend {
   std::vector<double> values_;         ///< [T] of all arrays
 };
 
-Magnetometers::Magnetometers(const SensorContext& context)
+Magnetometers::Magnetometers(const SensorContext& context, const ParsedSensors& sensors)
     : thread_pool_(context.thread_pool),
       states_(context.states),
       seed_(context.seed),
       noise_(context.noise),
       on_device_(!context.device.is_host()),
-      arrays_(arrays_of(context.world)) {
+      arrays_(arrays_of(context.world, sensors)) {
   const bool magnitudes = any_magnitudes(arrays_);
   for (const Array& array : arrays_)
     if (!waves_.contains(array.row.mode))
@@ -212,10 +207,37 @@ void Magnetometers::collect(std::span<base::ReadingBlock> out) {
   }
 }
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_magnetometers(const world::World& world) {
   std::vector<SensorSpec> rows;
-  for (Array& array : arrays_of(world)) rows.push_back(std::move(array.row));
-  return rows;
+  std::vector<Magnetometer> magnetometers;
+  const auto type = magnetometer_type.word.type;
+  for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    const Magnetometer& m = magnetometers.emplace_back(read_magnetometer(sensor));
+    SensorSpec& row = rows.emplace_back(common_spec(sensor, mover, number));
+    row.mode = mode_of("magnetometer", kMagnetometerModes, accuracy_of(sensor), world);
+    row.X_MS.z += sensor.height / 2.0;
+    row.elements = static_cast<std::uint32_t>(m.X_SE.size());
+    row.limit = std::max(std::abs(m.least), std::abs(m.most));
+    // The order in which moving magnets are summed depends on all of their positions.
+    row.dependency_radius = HUGE_VAL;
+    row.depends_on_magnets = true;
+    row.reach = 0.0;
+    row.sigma = m.sigma;
+  });
+  return {std::move(rows), std::move(magnetometers)};
+}
+
+ErrorBound bound_of_magnetometer(const world::World& world, const ParsedSensors& sensors, std::size_t at) {
+  const SensorSpec& row = sensors.rows[at];
+  std::set<double> heights;
+  for (const Pose& X_SE : sensors.settings_as<Magnetometer>()[at].X_SE) heights.insert(height_of(row, world) + X_SE.z);
+  const double farthest = reaches_of(world).farthest + 1.0;
+  ErrorBound bound;
+  for (const double height : heights)
+    bound.error = std::max(bound.error, field_bound(world, row.mode, height).at(farthest));
+  if (std::isinf(bound.error))
+    bound.condition = "a magnet has the sensor's height, so that the sensor may reach its centre";
+  return bound;
 }
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssensitivity", "ssize", "sum"};
@@ -232,7 +254,7 @@ constinit const SensorType magnetometer_type{
     .columns = kColumns,
     .modes = kMagnetometerModes,
     .bound = bound_of_magnetometer,
-    .specs = specs_of,
+    .parse = parse_magnetometers,
     .make = make_backend<Magnetometers>,
     .wire_problem = magnetometer_wire_problem,
     .parts = magnetometer_parts,

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "sensors/laser_modes.h"
 #include "sensors/magnetic_field/magnet_tree.h"
 #include "sensors/magnetic_field/truncation.h"
 #include "sensors/magnetometer.h"
@@ -64,20 +63,6 @@ std::vector<double> element_heights(const world::Mover& mover, const world::Sens
   std::sort(heights.begin(), heights.end());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
   return heights;
-}
-
-ErrorBound bound_of_magnetometer(const world::World& world, const SensorSpec& row) {
-  ErrorBound bound;
-  const double farthest = reaches_of(world).farthest + 1.0;
-  for_each_of(world, magnetometer_type.word.type,
-              [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-                if (mover != row.mover || number != row.sensor) return;
-                for (const double height : element_heights(world.movers[mover], sensor))
-                  bound.error = std::max(bound.error, field_bound(world, row.mode, height).at(farthest));
-              });
-  if (std::isinf(bound.error))
-    bound.condition = "a magnet has the sensor's height, so that the sensor may reach its centre";
-  return bound;
 }
 
 }  // namespace sf::sensors

@@ -29,6 +29,4 @@ FieldBound field_bound(const world::World& world, std::uint8_t mode, double heig
 /// Returns the heights of the elements in the world [m], each once, ascending.
 std::vector<double> element_heights(const world::Mover& mover, const world::Sensor& sensor);
 
-ErrorBound bound_of_magnetometer(const world::World& world, const SensorSpec& sensor);
-
 }  // namespace sf::sensors

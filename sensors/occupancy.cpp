@@ -16,7 +16,7 @@ namespace {
 
 class Occupancies : public SensorBackend {
  public:
-  explicit Occupancies(const SensorContext& context);
+  Occupancies(const SensorContext& context, const ParsedSensors& sensors);
 
   bool prepare(std::span<const DueSample> due) override {
     due_.assign(due.begin(), due.end());
@@ -33,7 +33,7 @@ class Occupancies : public SensorBackend {
   bool on_device() const override { return false; }  // it has its own batch
 
  private:
-  std::vector<Occupancy> maps_;
+  const std::vector<Occupancy>& maps_;
   MapBatch batch_;
   std::uint32_t flags_;
   std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_laser_;  ///< from (mover, laser) to its maps
@@ -56,8 +56,8 @@ bool on_host(const SensorContext& context) {
   return !raycast::choose_caster(context.device.info().software, context.scene.caster).on_device;
 }
 
-Occupancies::Occupancies(const SensorContext& context)
-    : maps_(occupancies_of(context.world)),
+Occupancies::Occupancies(const SensorContext& context, const ParsedSensors& sensors)
+    : maps_(sensors.settings_as<Occupancy>()),
       batch_(context.device, context.thread_pool, map_settings_of(maps_), on_host(context)),
       flags_(context.true_poses ? maps::kTruePoses : 0) {
   std::size_t values = 0;
@@ -103,10 +103,11 @@ void Occupancies::collect(std::span<base::ReadingBlock> out) {
   }
 }
 
-std::vector<SensorSpec> specs_of(const world::World& world) {
+ParsedSensors parse_occupancies(const world::World& world) {
+  std::vector<Occupancy> maps = occupancies_of(world);
   std::vector<SensorSpec> rows;
-  for (Occupancy& map : occupancies_of(world)) rows.push_back(std::move(map.row));
-  return rows;
+  for (const Occupancy& map : maps) rows.push_back(map.row);
+  return {std::move(rows), std::move(maps)};
 }
 
 constexpr std::string_view kKeys[] = {"cell", "words", "offset", "laser", "log_odds"};
@@ -122,7 +123,7 @@ constinit const SensorType occupancy_type{
     .list = "words",
     .columns = kColumns,
     .derived_from = kLaser,
-    .specs = specs_of,
+    .parse = parse_occupancies,
     .make = make_backend<Occupancies>,
     .wire_problem = occupancy_wire_problem,
     .parts = occupancy_parts,

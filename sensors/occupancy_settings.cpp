@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sensors/laser_settings.h"
+#include "sensors/laser.h"
 #include "sensors/occupancy.h"
 #include "sensors/settings.h"
 
@@ -71,25 +71,24 @@ std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
 }
 
 /// Returns the number of the laser that fills the map.
-std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover,
-                       const std::vector<LaserSettings>& lasers) {
+std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover, std::span<const SensorSpec> lasers) {
   if (lasers.empty())
     refuse(sensor, "laser", "a map needs a laser on the same robot; give it a laser( ) or remove the map");
   const world::Setting* named = find(sensor, "laser");
   if (named == nullptr) return 0;
   const auto found =
-      std::find_if(lasers.begin(), lasers.end(), [&](const LaserSettings& laser) { return laser.name == named->text; });
+      std::find_if(lasers.begin(), lasers.end(), [&](const SensorSpec& laser) { return laser.name == named->text; });
   if (found != lasers.end()) return static_cast<std::uint32_t>(found - lasers.begin());
   std::string names;
-  for (const LaserSettings& laser : lasers) names += (names.empty() ? "" : ", ") + laser.name;
+  for (const SensorSpec& laser : lasers) names += (names.empty() ? "" : ", ") + laser.name;
   refuse(sensor, "laser", fmt::format("'{}' has no laser '{}'; it has {}", mover.name, named->text, names));
 }
 
-void fill_from(const world::Sensor& sensor, const LaserSettings& laser, MapSettings& settings) {
+void fill_from(const world::Sensor& sensor, const SensorSpec& laser, MapSettings& settings) {
   settings.fov = laser.fov;
-  settings.samples = laser.samples;
+  settings.samples = laser.elements;
   settings.range_min = laser.range_min;
-  settings.range_max = laser.range_max;
+  settings.range_max = laser.limit;
   if (settings.samples > kMostMapBeams)
     refuse(sensor, "laser",
            fmt::format("laser '{}' has {} samples; maps are made of at most {}", laser.name, settings.samples,
@@ -100,13 +99,14 @@ void fill_from(const world::Sensor& sensor, const LaserSettings& laser, MapSetti
                        laser.name, settings.range_max, maps::kMaxRangeCells, settings.grid.cell));
 }
 
-Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number) {
+/// @param lasers of the mover
+Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number,
+                       std::span<const SensorSpec> lasers) {
   Occupancy map;
   map.row = common_spec(sensor, m, number);
   map.row.rate = rate_of(sensor, kDefaultRate);
   map.settings.grid = grid_of(sensor, mover.X_WM);
   map.settings.odds = odds_of(sensor);
-  const std::vector<LaserSettings> lasers = lasers_of(mover);
   map.laser = laser_of(sensor, mover, lasers);
   fill_from(sensor, lasers[map.laser], map.settings);
   map.row.elements = maps::words(map.settings.grid);
@@ -121,8 +121,11 @@ Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, s
 
 std::vector<Occupancy> occupancies_of(const world::World& world) {
   std::vector<Occupancy> all;
+  std::vector<SensorSpec> lasers;  // of all movers
   for_each_of(world, occupancy_type.word.type, [&](const world::Sensor& sensor, std::uint32_t m, std::uint32_t number) {
-    all.push_back(occupancy_of(sensor, world.movers[m], m, number));
+    if (all.empty()) lasers = laser_type.parse(world).rows;
+    const auto [first, last] = std::ranges::equal_range(lasers, m, {}, &SensorSpec::mover);
+    all.push_back(occupancy_of(sensor, world.movers[m], m, number, {first, last}));
   });
   return all;
 }

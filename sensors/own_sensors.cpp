@@ -28,10 +28,11 @@ struct Added : OwnType {
 /// Added types by id, at a fixed address for the rest of the program.
 std::array<std::unique_ptr<Added>, kLastOwnId + 1> added;
 
-std::vector<SensorSpec> specs_in(const world::World& world, const OwnType& type) {
+/// The user's objects have a state, so each backend creates its own.
+ParsedSensors parse_own_sensors(const world::World& world, const OwnType& type) {
   std::vector<SensorSpec> rows;
   for (const OwnSensor& each : own_sensors(world, type)) rows.push_back(each.spec);
-  return rows;
+  return {std::move(rows), {}};
 }
 
 std::string wire_problem_of(const Added& type, const SensorSpec& sensor, WireFormat wire) {
@@ -46,8 +47,8 @@ std::string wire_problem_of(const Added& type, const SensorSpec& sensor, WireFor
 template <std::uint8_t kId>
 SensorType functions_of() {
   SensorType type;
-  type.specs = [](const world::World& world) { return specs_in(world, *added[kId]); };
-  type.make = [](const SensorContext& context) { return make_own_backend(context, *added[kId]); };
+  type.parse = [](const world::World& world) { return parse_own_sensors(world, *added[kId]); };
+  type.make = [](const SensorContext& context, const ParsedSensors&) { return make_own_backend(context, *added[kId]); };
   type.wire_problem = [](const SensorSpec& sensor, WireFormat wire) {
     return wire_problem_of(*added[kId], sensor, wire);
   };

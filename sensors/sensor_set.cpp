@@ -9,7 +9,7 @@ namespace sf::sensors {
 
 SensorSet::SensorSet(const world::World& world) {
   for (const SensorType* type : sensor_types()) {
-    Group group{type, type->specs(world), {}};
+    Group group{type->parse(world), type, {}};
     if (group.rows.empty()) continue;
     std::uint32_t at = 0;
     for (std::uint32_t m = 0; m <= world.movers.size(); ++m) {

@@ -17,10 +17,9 @@ class SensorSet {
   /// @throws base::InputError with file and line for a sensor with invalid settings
   explicit SensorSet(const world::World& world);
 
-  /// The sensors of one type, at least one, by mover and in file order.
-  struct Group {
+  /// The sensors of one type, at least one.
+  struct Group : ParsedSensors {
     const SensorType* type = nullptr;
-    std::vector<SensorSpec> rows;
     std::vector<std::uint32_t> first;  ///< per mover, plus one: index of its first row
   };
   /// Returns the sensor types of this world, by id.
@@ -30,6 +29,19 @@ class SensorSet {
 
   /// Returns one mover's sensors of one type; may be empty.
   std::span<const SensorSpec> of(std::uint8_t type, std::uint32_t mover) const;
+  /// Returns the further settings of all sensors of one type, or of one mover's, in the order of their specs; may be
+  /// empty. @pre the type's `parse` stores a std::vector<Settings>
+  template <class Settings>
+  std::span<const Settings> settings_of(std::uint8_t type) const {
+    const Group* found = group(type);
+    return found == nullptr ? std::span<const Settings>() : std::span(found->settings_as<Settings>());
+  }
+  template <class Settings>
+  std::span<const Settings> settings_of(std::uint8_t type, std::uint32_t mover) const {
+    const auto rows = of(type, mover);
+    return rows.empty() ? std::span<const Settings>()
+                        : settings_of<Settings>(type).subspan(group(type)->first[mover], rows.size());
+  }
   /// Returns the spec of the sensor that produced a reading.
   const SensorSpec& row(const base::ReadingBlock& reading) const;
   std::size_t count() const;                        ///< number of sensors of all types

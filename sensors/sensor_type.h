@@ -6,6 +6,7 @@
 // shaders/CMakeLists.txt. A type without a kernel uses HOST and has no shader. Rays are horizontal
 // (raycast/ray_caster.h).
 
+#include <any>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -70,6 +71,18 @@ struct SensorSpec {
   double sigma = 0.0;
   /// [m] from the sensor: surfaces farther away have no effect on a reading. Infinite: any surface may have an effect.
   double reach = HUGE_VAL;
+};
+
+/// The sensors of one type in a world, parsed once, when the world's SensorSet is created.
+struct ParsedSensors {
+  std::vector<SensorSpec> rows;  ///< by mover and in file order
+  std::any settings;  ///< a vector of further settings, one per row, in a form of the type's own; may be empty
+
+  /// Returns the further settings. @pre `settings` holds a std::vector<Settings>
+  template <class Settings>
+  const std::vector<Settings>& settings_as() const {
+    return std::any_cast<const std::vector<Settings>&>(settings);
+  }
 };
 
 inline base::RangeLimits limits_of(const SensorSpec& sensor) { return {sensor.range_min, sensor.limit}; }
@@ -159,13 +172,13 @@ struct SensorType {
   std::span<const AccuracyMode> modes;  ///< the first is `exact`; empty: no other mode
   /// Returns the error bound of one sensor's readings without noise. Null: no bound is stated, neither here nor in
   /// readings.
-  ErrorBound (*bound)(const world::World& world, const SensorSpec& sensor) = nullptr;
+  ErrorBound (*bound)(const world::World& world, const ParsedSensors& sensors, std::size_t row) = nullptr;
 
-  /// Returns the specs of all sensors of this type, by mover and in file order.
-  /// @throws base::InputError with file and line for invalid settings
-  std::vector<SensorSpec> (*specs)(const world::World& world);
-  /// Creates the backend of a world with such sensors. @throws base::DeviceError when the device cannot hold its tables
-  std::unique_ptr<SensorBackend> (*make)(const SensorContext& context);
+  /// Parses all sensors of this type. @throws base::InputError with file and line for invalid settings
+  ParsedSensors (*parse)(const world::World& world);
+  /// Creates the backend of a world with such sensors. @param sensors result of `parse`; must outlive the backend
+  /// @throws base::DeviceError when the device cannot hold its tables
+  std::unique_ptr<SensorBackend> (*make)(const SensorContext& context, const ParsedSensors& sensors);
 
   /// Returns the reason why `wire` cannot carry this sensor's readings, with a remedy; empty if it can.
   std::string (*wire_problem)(const SensorSpec& sensor, WireFormat wire);
@@ -195,10 +208,10 @@ inline std::size_t element_width(const SensorType& type) {
   return width;
 }
 
-/// Implements `SensorType::make` for a backend that needs only the context.
+/// Implements `SensorType::make` for a backend that is constructed from these two.
 template <class Made>
-std::unique_ptr<SensorBackend> make_backend(const SensorContext& context) {
-  return std::make_unique<Made>(context);
+std::unique_ptr<SensorBackend> make_backend(const SensorContext& context, const ParsedSensors& sensors) {
+  return std::make_unique<Made>(context, sensors);
 }
 
 /// Returns the farm's own sensor types, by id, generated from sensors/CMakeLists.txt.

@@ -50,10 +50,6 @@ void tell_range(const ConeArray& array, double range, bool met, double deviate, 
   out[0] = std::clamp(met ? range + sigma * deviate : range, array.range_min, array.range_max);
 }
 
-std::vector<ConeArray> sonars_of(const world::World& world) {
-  return cone_arrays_of(world, sonar_type.word.type, read_sonar);
-}
-
 constexpr RangerType kRanger{kSonar, 1, {"sonar", sonar_comp_spv, true}, tell_range};
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize",  "sview",    "fov",
@@ -78,9 +74,8 @@ constinit const SensorType sonar_type = plain<kForm>({
     .base_port = 36000,
     .list = "transducers",
     .columns = kColumns,
-    .specs = [](const world::World& world) { return ranger_specs(sonars_of(world)); },
-    .make =
-        [](const SensorContext& context) { return make_ranger_backend(context, sonars_of(context.world), kRanger); },
+    .parse = [](const world::World& world) { return parse_rangers(world, sonar_type.word.type, read_sonar); },
+    .make = make_ranger_backend<kRanger>,
 });
 
 }  // namespace sf::sensors

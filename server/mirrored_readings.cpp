@@ -41,7 +41,7 @@ MirroredReadings::MirroredReadings(const world::World& world, const sensors::Sen
               static_cast<std::uint16_t>(row.sensor)}] = i;
     by_mover_[row.mover].push_back(i);
   }
-  for (const sensors::LaneEdge& edge : sensors::lane_edges_of(world))
+  for (const sensors::LaneEdge& edge : sensor_set.settings_of<sensors::LaneEdge>(sensors::kLaneEdge))
     perpendiculars_[streams_.at({sensors::kLaneEdge, static_cast<std::uint16_t>(world.movers[edge.row.mover].id),
                                  static_cast<std::uint16_t>(edge.row.sensor)})] = edge.perpendicular;
 }

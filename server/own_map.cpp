@@ -9,7 +9,6 @@
 #include "netio/own_end.h"
 #include "netio/packets.h"
 #include "sensors/laser.h"
-#include "sensors/laser_settings.h"
 #include "sensors/occupancy_packets.h"
 
 namespace sf::server {
@@ -41,24 +40,25 @@ world::Sensor whole_world(const world::Extent& extent, double range) {
   return sensor;
 }
 
-sensors::Occupancy settings_of(const world::World& world, std::uint32_t mover) {
-  for (sensors::Occupancy& map : sensors::occupancies_of(world))
-    if (map.row.mover == mover) return map;
-  const std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(world.movers[mover]);
+sensors::Occupancy settings_of(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover) {
+  const auto maps = sensor_set.settings_of<sensors::Occupancy>(sensors::kOccupancy, mover);
+  if (!maps.empty()) return maps.front();
+  const std::span<const sensors::SensorSpec> lasers = sensor_set.of(sensors::kLaser, mover);
   if (lasers.empty())
     throw base::InputError("--map: '" + world.movers[mover].name +
                            "' has no laser to make a map with; expected laser( ... ) in its definition");
   world::World with;
   with.movers = {world.movers[mover]};
-  with.movers[0].sensors.push_back(whole_world(world.extent, lasers[0].range_max));
+  with.movers[0].sensors.push_back(whole_world(world.extent, lasers[0].limit));
   return sensors::occupancies_of(with).front();
 }
 
 }  // namespace
 
-OwnMap::OwnMap(const world::World& world, std::uint32_t mover, const OwnMapOptions& options)
-    : settings_(settings_of(world, mover)),
-      X_ML_(sensors::lasers_of(world.movers[mover])[settings_.laser].X_MS),
+OwnMap::OwnMap(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+               const OwnMapOptions& options)
+    : settings_(settings_of(world, sensor_set, mover)),
+      X_ML_(sensor_set.of(sensors::kLaser, mover)[settings_.laser].X_MS),
       options_(options),
       robot_(static_cast<std::uint16_t>(world.movers[mover].id)),
       session_(netio::random_session()),

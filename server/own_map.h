@@ -1,7 +1,7 @@
 #pragma once
 // The occupancy map that a robot builds from its own scans (thesis, 4.4), and its packets.
 //
-//   OwnMap map(world, mover, {.receiver = {address, 52008}});
+//   OwnMap map(world, sensor_set, mover, {.receiver = {address, 52008}});
 //   map.add(scan, X_WS);      // each reading of its laser
 //   map.send(now);            // once a step
 
@@ -14,6 +14,7 @@
 #include "netio/outbox.h"
 #include "sensors/occupancy.h"
 #include "sensors/occupancy_host.h"
+#include "sensors/sensor_set.h"
 #include "world/world.h"
 
 namespace sf::server {
@@ -36,7 +37,8 @@ class OwnMap {
   /// second, in cells of 3 cm, doubled until its range and the map size fit the limits.
   /// @throws base::InputError for a robot without lasers, for invalid settings, and for a map that the wire format
   /// cannot carry
-  OwnMap(const world::World& world, std::uint32_t mover, const OwnMapOptions& options);
+  OwnMap(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+         const OwnMapOptions& options);
 
   /// Adds a reading of the map's laser that is newer than the last; ignores all others.
   /// @param X_WM of the robot at the reading's time

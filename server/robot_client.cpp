@@ -60,9 +60,10 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       utc_(options.utc ? options.utc : utc_now) {
   if (options.cameras) cameras_.emplace(world, mover, tag_of(options, world.movers[mover]), *options.cameras);
   if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
-  if (options.map) map_.emplace(world, mover, *options.map);
+  if (options.map) map_.emplace(world, sensor_set, mover, *options.map);
   if (options.create) create_.emplace(*options.create, world.movers[mover].X_WM, world.movers[mover].track);
-  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
+  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr, nullptr, &sensor_set},
+                                   options.controller);
 }
 
 void RobotClient::receive(std::int64_t now) {

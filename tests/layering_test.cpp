@@ -143,6 +143,7 @@ std::string complain_of_include(const Source& source, const std::string& rest) {
 /// Returns one text "path:line: statement: error" per violation.
 std::vector<std::string> complaints(const Source& source) {
   static const std::regex kInclude("\\s*#\\s*include(.*)");
+  static const std::regex kParser("\\blasers_of\\(");
   static const std::regex kVulkan("\\b(Vk|vk|PFN_vk)[A-Z]\\w*");
   const std::string module = module_of(source.path);
   std::vector<std::string> found;
@@ -155,6 +156,8 @@ std::vector<std::string> complaints(const Source& source) {
       why = complain_of_include(source, m[1]);
     } else if (module != "gpu" && module != "tests" && std::regex_search(line, kVulkan)) {
       why = "names a type of Vulkan outside gpu";
+    } else if (module != "sensors" && module != "tests" && std::regex_search(line, kParser)) {
+      why = "parses settings again, which sensors::SensorSet has";
     }
     if (!why.empty()) found.push_back(source.path + ":" + std::to_string(number) + ": " + line + ": " + why);
   }
@@ -263,6 +266,7 @@ TEST(LayeringJudge, TakesWhatThePlanAllows) {
                            {"shaders/a.comp", "#include \"raycast/records.h\"\n"},
                            {"apps/a.cpp", "#include <CLI/CLI.hpp>\n#include \"netio/inbox.h\"\n"},
                            {"tests/a.cpp", "#include <nlohmann/json.hpp>\n#include \"gpu/device_vk.h\"\n"},
+                           {"sensors/a.cpp", "for (auto& laser : lasers_of(mover)) {"},
                            {"world/a.cpp", "// #include \"gpu/device.h\"\nstruct Vkontakte {};\n"}})
     EXPECT_TRUE(complaints(fine).empty()) << testing::PrintToString(complaints(fine));
 }
@@ -288,6 +292,7 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
            {"world/a.cpp", "  #  include<vulkan/vulkan.h>"},                // Vulkan's header
            {"world/a.cpp", "VkDevice device;"},                             // Vulkan's types
            {"farm/a.cpp", "vkQueueSubmit(queue);"},                         // Vulkan's functions
+           {"viz/a.cpp", "for (auto& laser : lasers_of(mover)) {"},         // settings are parsed once
            {"record/a.cpp", "#include <vtkImageData.h>"},                   // VTK's door is viz
            {"apps/a.h", "#include <CLI/CLI.hpp>"},                          // in a header
            {"viz/a.h", "#include <vtkNew.h>"},                              // in a header, in the right module

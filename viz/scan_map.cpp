@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/echo.h"
-#include "sensors/laser_settings.h"
 
 namespace sf::viz {
 
@@ -30,17 +29,16 @@ maps::GridGeometry grid_over(const world::Extent& extent) {
 
 ScanMap::ScanMap(const maps::GridGeometry& geometry) : odds_(geometry, kRule) {}
 
-void ScanMap::add(const world::World& world, const base::ReadingBlock& scan) {
-  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[scan.mover])[scan.sensor];
+void ScanMap::add(const world::World& world, const sensors::SensorSpec& laser, const base::ReadingBlock& scan) {
   const double behind = 0.5 * odds_.geometry.cell;
   const double range_min = laser.range_min > 0.0 ? laser.range_min + behind : 0.0;
-  const double range_max = std::min(laser.range_max, maps::kMaxRangeCells * odds_.geometry.cell);
+  const double range_max = std::min(laser.limit, maps::kMaxRangeCells * odds_.geometry.cell);
   ranges_.assign(scan.values.begin(), scan.values.end());
   base::mark_too_near(scan.quality, ranges_);
   for (double& range : ranges_) range += behind;
   ends_.resize(ranges_.size());
-  std::vector<glm::dvec2>& beams = beams_[{laser.fov, laser.samples}];
-  if (beams.empty()) beams = maps::beam_directions(laser.fov, laser.samples);
+  std::vector<glm::dvec2>& beams = beams_[{laser.fov, laser.elements}];
+  if (beams.empty()) beams = maps::beam_directions(laser.fov, laser.elements);
   const auto traced = maps::trace_scan(odds_.geometry, {scan.X_WS, ranges_, beams, range_min, range_max}, ends_);
   for (std::size_t k = 0; k < scan.hits.size(); ++k) {
     const bool moves = scan.hits[k] != base::kNoHit && world.models[scan.hits[k]].mover != world::kNone;

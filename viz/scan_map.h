@@ -11,6 +11,7 @@
 
 #include "base/reading.h"
 #include "maps/grid_update.h"
+#include "sensors/sensor_type.h"
 #include "world/world.h"
 
 namespace sf::viz {
@@ -24,11 +25,11 @@ class ScanMap {
  public:
   explicit ScanMap(const maps::GridGeometry& geometry);
 
-  /// Adds a noise-free scan of one of the world's lasers. A beam that ends on a mover frees its cells. A range beyond
-  /// maps::kMaxRangeCells cells has no echo. An echo counts half a cell behind its range: the wall then gets a cell
-  /// that is mostly solid, regardless of rounding, and lines of cells, which deviate up to half a cell from their
+  /// Adds a noise-free scan of `laser`, which is in this world. A beam that ends on a mover frees its cells. A range
+  /// beyond maps::kMaxRangeCells cells has no echo. An echo counts half a cell behind its range: the wall then gets a
+  /// cell that is mostly solid, regardless of rounding, and lines of cells, which deviate up to half a cell from their
   /// beams, free no cell behind it.
-  void add(const world::World& world, const base::ReadingBlock& scan);
+  void add(const world::World& world, const sensors::SensorSpec& laser, const base::ReadingBlock& scan);
   maps::OccupancyGrid states() const { return maps::to_occupancy(odds_); }
 
  private:

@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "sensors/laser_settings.h"
+#include "sensors/laser.h"
 #include "viz/color.h"
 #include "viz/theme.h"
 
@@ -20,9 +20,9 @@ double headroom(const world::World& world) {
   double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
   for (const world::Mover& mover : world.movers) {
     for (const world::Segment& s : mover.body) top = std::max(top, mover.X_WM.z + s.z_max);
-    for (const sensors::LaserSettings& laser : sensors::lasers_of(mover))
-      top = std::max(top, mover.X_WM.z + laser.X_MS.z);
   }
+  for (const sensors::SensorSpec& laser : sensors::laser_type.parse(world).rows)
+    top = std::max(top, world.movers[laser.mover].X_WM.z + laser.X_MS.z);
   return top;
 }
 

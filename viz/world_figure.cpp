@@ -9,7 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "sensors/laser_settings.h"
+#include "sensors/laser.h"
+#include "sensors/laser_modes.h"
 #include "viz/axes.h"
 #include "viz/color.h"
 #include "viz/labels.h"
@@ -25,8 +26,9 @@ namespace sf::viz {
 namespace {
 
 using base::Pose;
-using sensors::lasers_of;
+using sensors::CastLaser;
 using sensors::LaserSettings;
+using sensors::ParsedSensors;
 using world::Mover;
 using world::World;
 
@@ -50,19 +52,19 @@ std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const
 
 /// Draws a few fields of view one by one, so that overlaps are visible. Draws many as one translucent union, with thin
 /// outlines up to a limit.
-void draw_views(Axes& axes, const World& world) {
+void draw_views(Axes& axes, const World& world, const ParsedSensors& lasers) {
   const bool many = crowded(world);
   std::map<std::uint32_t, std::vector<Line>> unions;
-  for (const Mover& mover : world.movers) {
-    for (const LaserSettings& laser : lasers_of(mover)) {
-      std::vector<glm::dvec2> outline = view_outline(axes, world, compose(mover.X_WM, laser.X_MS), laser);
-      const std::uint32_t edge = mix(laser.color, theme::kFrame, 0.3);
-      if (!many) axes.canvas().polygon(outline, with_opacity(laser.color, 0.13));
-      outline.push_back(outline.front());
-      if (!many) axes.canvas().polyline(outline, theme::kHairline, with_opacity(edge, 0.55));
-      auto& edges = unions[laser.color | theme::kBlack];
-      for (std::size_t i = 0; many && i + 1 < outline.size(); ++i) edges.push_back({outline[i], outline[i + 1]});
-    }
+  for (std::size_t k = 0; k < lasers.rows.size(); ++k) {
+    const LaserSettings& laser = lasers.settings_as<CastLaser>()[k].laser;
+    const Pose X_WS = compose(world.movers[lasers.rows[k].mover].X_WM, laser.X_MS);
+    std::vector<glm::dvec2> outline = view_outline(axes, world, X_WS, laser);
+    const std::uint32_t edge = mix(laser.color, theme::kFrame, 0.3);
+    if (!many) axes.canvas().polygon(outline, with_opacity(laser.color, 0.13));
+    outline.push_back(outline.front());
+    if (!many) axes.canvas().polyline(outline, theme::kHairline, with_opacity(edge, 0.55));
+    auto& edges = unions[laser.color | theme::kBlack];
+    for (std::size_t i = 0; many && i + 1 < outline.size(); ++i) edges.push_back({outline[i], outline[i + 1]});
   }
   for (const auto& [color, edges] : unions) {
     if (!many) continue;
@@ -107,19 +109,20 @@ void draw_names(Axes& axes, const World& world) {
 }
 
 /// "laser 270 deg, 8 m": the common value of all lasers with one colour, or their range of values.
-std::vector<LegendItem> view_legend(const World& world, const world::Extent& shown) {
+std::vector<LegendItem> view_legend(const World& world, const ParsedSensors& lasers, const world::Extent& shown) {
   struct Seen {
     std::set<double> fovs, ranges;
   };
   std::map<std::uint32_t, Seen> by_color;
-  for (const Mover& mover : world.movers)
-    for (const LaserSettings& laser : lasers_of(mover)) {
-      const glm::dvec2 at{mover.X_WM.x, mover.X_WM.y};
-      if (!is_in_view({&at, 1}, shown, laser.range_max)) continue;
-      Seen& seen = by_color[laser.color | theme::kBlack];
-      seen.fovs.insert(std::round(laser.fov * 1800.0 / M_PI) / 10.0);
-      seen.ranges.insert(laser.range_max);
-    }
+  for (std::size_t k = 0; k < lasers.rows.size(); ++k) {
+    const LaserSettings& laser = lasers.settings_as<CastLaser>()[k].laser;
+    const Pose& X_WM = world.movers[lasers.rows[k].mover].X_WM;
+    const glm::dvec2 at{X_WM.x, X_WM.y};
+    if (!is_in_view({&at, 1}, shown, laser.range_max)) continue;
+    Seen& seen = by_color[laser.color | theme::kBlack];
+    seen.fovs.insert(std::round(laser.fov * 1800.0 / M_PI) / 10.0);
+    seen.ranges.insert(laser.range_max);
+  }
   const auto span = [](const std::set<double>& values) {
     return values.size() == 1 ? fmt::format("{:g}", *values.begin())
                               : fmt::format("{:g} to {:g}", *values.begin(), *values.rbegin());
@@ -132,8 +135,9 @@ std::vector<LegendItem> view_legend(const World& world, const world::Extent& sho
   return items;
 }
 
-/// @param world the part that the figure shows
-std::vector<LegendItem> legend_of(const World& world, const World& whole, const world::Extent& shown) {
+/// @param world the part that the figure shows  @param lasers of the whole world
+std::vector<LegendItem> legend_of(const World& world, const World& whole, const ParsedSensors& lasers,
+                                  const world::Extent& shown) {
   std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
   const auto ground = road_legend(world);
   items.insert(items.end(), ground.begin(), ground.end());
@@ -145,7 +149,7 @@ std::vector<LegendItem> legend_of(const World& world, const World& whole, const 
   if (const auto robot = first(false); robot != world.movers.end())
     items.push_back({LegendMark::robot, body_color(world, *robot), "robot and heading"});
   if (first(true) != world.movers.end()) items.push_back({LegendMark::dashed, theme::kTag, "follows a tag"});
-  const auto views = view_legend(whole, shown);
+  const auto views = view_legend(whole, lasers, shown);
   items.insert(items.end(), views.begin(), views.end());
   const auto carried = crowded(whole) ? std::vector<LegendItem>() : sensor_legend(world);
   items.insert(items.end(), carried.begin(), carried.end());
@@ -154,11 +158,9 @@ std::vector<LegendItem> legend_of(const World& world, const World& whole, const 
 
 std::string count(std::size_t n, const char* one) { return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s"); }
 
-std::string subtitle_of(const World& world) {
+std::string subtitle_of(const World& world, std::size_t lasers) {
   const auto tags = static_cast<std::size_t>(
       std::count_if(world.movers.begin(), world.movers.end(), [](const Mover& m) { return m.is_tag; }));
-  std::size_t lasers = 0;
-  for (const Mover& mover : world.movers) lasers += lasers_of(mover).size();
   std::string text = count(world.movers.size() - tags, "robot") + ", ";
   if (lasers > 0) text += count(lasers, "laser") + ", ";
   if (tags > 0) text += count(tags, "tag") + ", ";
@@ -173,18 +175,19 @@ std::string subtitle_of(const World& world) {
 }  // namespace
 
 void draw_world(const World& world, const std::string& path, const Page& page) {
+  const ParsedSensors lasers = sensors::laser_type.parse(world);
   FigureOptions options;
   options.title = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
-  options.subtitle = subtitle_of(world);
+  options.subtitle = subtitle_of(world, lasers.rows.size());
   options.extent = world.extent;
   options.page = page;
-  options.legend = legend_of(in_view(world, options), world, lay_out(options).shown);
+  options.legend = legend_of(in_view(world, options), world, lasers, lay_out(options).shown);
   Axes axes(std::move(options));
   draw_lane_markings(axes, world);
   draw_floor_holes(axes, world);
   draw_magnets(axes, world);
   draw_emitters(axes, world);
-  draw_views(axes, world);
+  draw_views(axes, world, lasers);
   draw_walls(axes, world, WallColors::of_models);
   draw_lights(axes, world);
   for (const Mover& mover : world.movers) draw_body(axes, mover, mover.X_WM, body_color(world, mover));

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "base/bearing.h"
-#include "sensors/laser_settings.h"
 #include "world/path_geometry.h"
 
 namespace sf::viz {
@@ -155,8 +154,7 @@ PolyData trajectories_geometry(const world::World& world, std::span<const std::v
   return data;
 }
 
-void ScanGeometry::add(const world::World& world, const base::ReadingBlock& scan) {
-  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[scan.mover])[scan.sensor];
+void ScanGeometry::add(const sensors::SensorSpec& laser, const base::ReadingBlock& scan) {
   const base::Pose& X_WS = scan.X_WS;
   for (std::size_t i = 0; i < scan.values.size(); ++i) {
     const double bearing = bearing_of(laser, static_cast<std::uint32_t>(i));

@@ -6,6 +6,7 @@
 
 #include "base/reading.h"
 #include "sensors/magnetic_field/records.h"
+#include "sensors/sensor_type.h"
 #include "viz/tracks.h"
 #include "viz/vtk_files.h"
 #include "world/world.h"
@@ -41,7 +42,8 @@ PolyData trajectories_geometry(const world::World& world, std::span<const std::v
 class ScanGeometry {
  public:
   explicit ScanGeometry(bool beams) : beams_(beams) {}
-  void add(const world::World& world, const base::ReadingBlock& scan);
+  /// @param laser of the scan
+  void add(const sensors::SensorSpec& laser, const base::ReadingBlock& scan);
   const PolyData& data() const { return data_; }
 
  private:

@@ -215,9 +215,10 @@ viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world:
                                 const record::SensorTypeInfo& type, const std::vector<Channel>& channels,
                                 std::size_t width) {
   viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
+  const sensors::SensorSet sensor_set(world);
   const std::size_t drawn = std::min({channels.size(), kMostHeatMaps, std::max<std::size_t>(1, kMostPanels / width)});
   for (std::size_t i = 0; i < drawn; ++i) {
-    const SensorElements elements = elements_of(world, type, channels[i].mover, channels[i].sensor);
+    const SensorElements elements = elements_of(sensor_set, type.id, channels[i].mover, channels[i].sensor);
     std::size_t offset = 0;
     for (const record::ColumnInfo& column : type.columns)
       for (std::uint32_t k = 0; k < column.width && figure.panels.size() < kMostPanels; ++k)

@@ -11,7 +11,7 @@ namespace sf::apps {
 
 bool has_laser(const RecordingPart& part, const world::World& world) {
   for (std::size_t m = 0; m < part.chosen.size(); ++m)
-    if (part.chosen[m] != 0 && !sensors::lasers_of(world.movers[m]).empty()) return true;
+    if (part.chosen[m] != 0 && sensors::has_laser(world.movers[m])) return true;
   return false;
 }
 

@@ -25,6 +25,8 @@ class ScanReplay {
   ScanReplay(const RecordingPart& part, const world::World& world, gpu::Device& device);
   /// Returns the scans of all chosen lasers at a tick. Ticks may be requested in any order. Valid until the next call.
   std::span<const base::ReadingBlock> scans_at(std::size_t tick);
+  /// Returns the laser of a scan.
+  const sensors::SensorSpec& laser(const base::ReadingBlock& scan) const { return farm_.sensor_set().row(scan); }
 
  private:
   const RecordingPart& part_;

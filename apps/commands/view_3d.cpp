@@ -48,7 +48,7 @@ int view_3d(const ViewOptions& options) {
   scene.field = field_grid(world, device, options.height);
   scene.frame = [&](std::size_t row) {
     viz::ScanGeometry beams(true);
-    for (const base::ReadingBlock& scan : replay.scans_at(ticks[row])) beams.add(world, scan);
+    for (const base::ReadingBlock& scan : replay.scans_at(ticks[row])) beams.add(replay.laser(scan), scan);
     return viz::Frame3d{viz::bodies_geometry(world, poses_at(part, ticks[row])), beams.data()};
   };
   const auto first = std::lower_bound(scene.times.begin(), scene.times.end(), options.time - 1e-9);

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/bearing.h"
 #include "sensors/infrared.h"
-#include "sensors/laser_settings.h"
 #include "sensors/sonar.h"
 #include "viz/ticks.h"
 
@@ -15,20 +13,15 @@ namespace sf::apps {
 
 namespace {
 
-SensorElements cones_of(const std::vector<sensors::ConeArray>& arrays, std::uint32_t mover, std::uint32_t sensor) {
-  for (const sensors::ConeArray& array : arrays) {
-    if (array.row.mover != mover || array.row.sensor != sensor) continue;
-    SensorElements elements{{}, array.range_min, array.range_max};
-    for (const base::Pose& X_SC : array.X_SC) elements.bearings.push_back(X_SC.yaw);
-    return elements;
-  }
-  return {};
+SensorElements cones_of(const sensors::ConeArray& array) {
+  SensorElements elements{{}, array.range_min, array.range_max};
+  for (const base::Pose& X_SC : array.X_SC) elements.bearings.push_back(X_SC.yaw);
+  return elements;
 }
 
-SensorElements beams_of(const sensors::LaserSettings& laser) {
-  SensorElements elements{{}, laser.range_min, laser.range_max};
-  for (std::uint32_t i = 0; i < laser.samples; ++i)
-    elements.bearings.push_back(base::bearing_of(laser.fov, laser.samples, i));
+SensorElements beams_of(const sensors::SensorSpec& laser) {
+  SensorElements elements{{}, laser.range_min, laser.limit};
+  for (std::uint32_t i = 0; i < laser.elements; ++i) elements.bearings.push_back(sensors::bearing_of(laser, i));
   return elements;
 }
 
@@ -40,15 +33,13 @@ double degrees_of(double bearing) {
 
 }  // namespace
 
-SensorElements elements_of(const world::World& world, const record::SensorTypeInfo& type, std::uint32_t mover,
+SensorElements elements_of(const sensors::SensorSet& sensor_set, std::uint8_t type, std::uint32_t mover,
                            std::uint32_t sensor) {
-  if (type.id == sensors::kSonar)
-    return cones_of(sensors::cone_arrays_of(world, "sonar", &sensors::read_sonar), mover, sensor);
-  if (type.id == sensors::kInfrared)
-    return cones_of(sensors::cone_arrays_of(world, "infrared", &sensors::read_infrared), mover, sensor);
-  if (!type.is_scan) return {};
-  const std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(world.movers[mover]);
-  return sensor < lasers.size() ? beams_of(lasers[sensor]) : SensorElements{};
+  const std::span<const sensors::SensorSpec> rows = sensor_set.of(type, mover);
+  if (sensor >= rows.size()) return {};
+  if (type == sensors::kSonar || type == sensors::kInfrared)
+    return cones_of(sensor_set.settings_of<sensors::ConeArray>(type, mover)[sensor]);
+  return sensor_set.group(type)->type->is_scan ? beams_of(rows[sensor]) : SensorElements{};
 }
 
 std::vector<std::size_t> element_rows(const SensorElements& elements, std::size_t count, std::size_t every) {

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "record/run_info.h"
-#include "world/world.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::apps {
 
@@ -17,7 +16,7 @@ struct SensorElements {
 };
 
 /// @param sensor 0-based index among the mover's sensors of that type
-SensorElements elements_of(const world::World& world, const record::SensorTypeInfo& type, std::uint32_t mover,
+SensorElements elements_of(const sensors::SensorSet& sensor_set, std::uint8_t type, std::uint32_t mover,
                            std::uint32_t sensor);
 
 /// Returns every `every`-th of `count` elements as rows from the top: sorted by bearing in (−180°, 180°] with the

@@ -36,7 +36,7 @@ Devices::Devices(const world::World& world, const sensors::SensorSet& sensor_set
   }
   rows_.push_back({.interf = Interface::simulation, .name = "sensorfarm"});
   rows_.push_back({.interf = Interface::map, .name = "walls"});
-  const SensorGeometry geometry(world);
+  const SensorGeometry geometry(world, sensor_set);
   for (std::uint32_t mover = 0; mover < world.movers.size(); ++mover)
     if (!world.movers[mover].is_tag || sensor_set.count_of(mover) > 0) add_robot(mover, geometry);
 }

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "sensors/encoder.h"
-#include "sensors/host_backend.h"
 
 namespace sf::bridges::player {
 
@@ -18,12 +17,12 @@ Exchange::Exchange(const Scene& scene, const Devices& devices)
 /// Resets to the start of a run: odometry at 0, no requests.
 void Exchange::begin() {
   robots_.assign(scene_.world.movers.size(), {});
-  sensors::for_each_sensor(scene_.world, sensors::encoder_type, [this](const sensors::MountedSensor& mounted) {
-    const std::uint32_t mover = mounted.row.mover;
-    if (mounted.row.sensor > 0) return;
-    robots_[mover].odometry = Odometry(sensors::read_encoder(mounted.settings, scene_.world.movers[mover]).track);
+  for (std::uint32_t mover = 0; mover < robots_.size(); ++mover) {
+    const auto encoders = scene_.sensor_set.settings_of<sensors::Encoder>(sensors::kEncoder, mover);
+    if (encoders.empty()) continue;
+    robots_[mover].odometry = Odometry(encoders.front().track);
     robots_[mover].encoder = devices_.slot_of(sensors::kEncoder, mover, 0);
-  });
+  }
 }
 
 void Exchange::publish(const base::TickRecord& tick, const RunState& state) {

@@ -8,7 +8,6 @@
 
 #include "base/report.h"
 #include "sensors/bumper.h"
-#include "sensors/host_backend.h"
 #include "sensors/infrared.h"
 #include "sensors/sonar.h"
 
@@ -114,23 +113,16 @@ base::Bytes body_geometry(const world::Mover& mover) {
   return out;
 }
 
-SensorGeometry::SensorGeometry(const world::World& world)
-    : world_(world),
-      sonars_(sensors::cone_arrays_of(world, sensors::sonar_type.word.type, sensors::read_sonar)),
-      infrareds_(sensors::cone_arrays_of(world, sensors::infrared_type.word.type, sensors::read_infrared)) {
-  sensors::for_each_sensor(world, sensors::bumper_type, [this](const sensors::MountedSensor& mounted) {
-    bumpers_.push_back(sensors::read_bumper(mounted.settings));
-  });
-}
-
 const sensors::ConeArray& SensorGeometry::cones(std::uint8_t type, std::size_t row) const {
-  return (type == sensors::kSonar ? sonars_ : infrareds_)[row];
+  return sensor_set_.settings_of<sensors::ConeArray>(type)[row];
 }
 
 base::Bytes SensorGeometry::geometry(Interface interf, std::uint8_t type, const sensors::SensorSpec& spec,
                                      std::size_t row) const {
   if (interf == Interface::laser) return scanner_geometry(spec);
-  if (interf == Interface::bumper) return bumper_geometry(bumpers_[row], world_.movers[spec.mover]);
+  if (interf == Interface::bumper)
+    return bumper_geometry(sensor_set_.settings_of<sensors::BumperSwitches>(sensors::kBumper)[row],
+                           world_.movers[spec.mover]);
   if (interf == Interface::sonar || interf == Interface::ir) return array_geometry(cones(type, row));
   if (interf != Interface::ranger) return {};
   const base::Pose one;

@@ -9,7 +9,7 @@
 #include "bridges/player/protocol.h"
 #include "bridges/player/xdr.h"
 #include "sensors/cones/cone_array.h"
-#include "world/world.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::bridges::player {
 
@@ -22,7 +22,9 @@ base::Bytes body_geometry(const world::Mover& mover);
 /// The geometry of a world's sensors.
 class SensorGeometry {
  public:
-  explicit SensorGeometry(const world::World& world);
+  /// Both must outlive it.
+  SensorGeometry(const world::World& world, const sensors::SensorSet& sensor_set)
+      : world_(world), sensor_set_(sensor_set) {}
 
   /// @param type of the sensor @param row of its spec in `sensors::SensorSet::group(type)`
   /// @return empty if the interface has no such request
@@ -33,8 +35,7 @@ class SensorGeometry {
   const sensors::ConeArray& cones(std::uint8_t type, std::size_t row) const;
 
   const world::World& world_;
-  std::vector<sensors::ConeArray> sonars_, infrareds_;
-  std::vector<std::vector<std::uint32_t>> bumpers_;  ///< sectors per switch
+  const sensors::SensorSet& sensor_set_;
 };
 
 }  // namespace sf::bridges::player

@@ -29,7 +29,7 @@ std::vector<raycast::Cone> cones_of(const std::vector<ConeArray>& arrays) {
 
 class Rangers : public SensorBackend {
  public:
-  Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& type);
+  Rangers(const SensorContext& context, const std::vector<ConeArray>& arrays, const RangerType& type);
 
   void place_movers() override { cones_.place_movers(); }
   bool prepare(std::span<const DueSample> due) override;
@@ -53,7 +53,7 @@ class Rangers : public SensorBackend {
   std::span<const base::Report> states_;
   std::uint64_t seed_;
   bool noise_;
-  std::vector<ConeArray> arrays_;
+  const std::vector<ConeArray>& arrays_;
   RangerType type_;
   raycast::ConeCaster cones_;
   std::vector<std::uint32_t> first_cones_;  ///< per array
@@ -67,12 +67,12 @@ class Rangers : public SensorBackend {
   std::vector<std::size_t> cones_ends_;  ///< per due array: end of its cones
 };
 
-Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& type)
+Rangers::Rangers(const SensorContext& context, const std::vector<ConeArray>& arrays, const RangerType& type)
     : thread_pool_(context.thread_pool),
       states_(context.states),
       seed_(context.seed),
       noise_(context.noise),
-      arrays_(std::move(arrays)),
+      arrays_(arrays),
       type_(type),
       cones_(context, cones_of(arrays_), type.kernel),
       last_(arrays_.size(), kNever) {
@@ -165,7 +165,8 @@ void Rangers::collect(std::span<base::ReadingBlock> out) {
 
 }  // namespace
 
-std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
+ParsedSensors parse_rangers(const world::World& world, std::string_view type, ReadConeArray read) {
+  std::vector<ConeArray> arrays = cone_arrays_of(world, type, read);
   std::vector<SensorSpec> rows;
   for (const ConeArray& array : arrays) {
     rows.push_back(array.row);
@@ -175,12 +176,12 @@ std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
     // With a firing cycle, a reading contains echoes of earlier readings, so it cannot be reused.
     if (array.turns == 1) rows.back().dependency_radius = reach;
   }
-  return rows;
+  return {std::move(rows), std::move(arrays)};
 }
 
-std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, std::vector<ConeArray> arrays,
+std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, const ParsedSensors& sensors,
                                                    const RangerType& type) {
-  return std::make_unique<Rangers>(context, std::move(arrays), type);
+  return std::make_unique<Rangers>(context, sensors.settings_as<ConeArray>(), type);
 }
 
 bool has_fired(std::uint32_t number, std::uint32_t turns, std::uint64_t sequence, std::uint64_t last) {

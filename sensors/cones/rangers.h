@@ -22,13 +22,18 @@ struct RangerType {
   void (*write_reading)(const ConeArray& array, double range, bool met, double deviate, std::span<double> out);
 };
 
-/// Returns the specs of the arrays for `SensorType::specs`.
-std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays);
+/// Implements `SensorType::parse`; the further settings are ConeArrays.
+ParsedSensors parse_rangers(const world::World& world, std::string_view type, ReadConeArray read);
 
 /// Creates the backend. A reading updates the transducers that fired since its sensor's last reading: every transducer
 /// after a whole cycle or for the first reading. The others keep their values.
-std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, std::vector<ConeArray> arrays,
+std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, const ParsedSensors& sensors,
                                                    const RangerType& type);
+/// Implements `SensorType::make`.
+template <const RangerType& kType>
+std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, const ParsedSensors& sensors) {
+  return make_ranger_backend(context, sensors, kType);
+}
 
 /// Returns true when transducer `number` fires in a reading after `last`, up to and including `sequence`. Both are
 /// sequence numbers, which also count skipped readings. @param turns readings per cycle

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "robots/fleet.h"
+#include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
 #include "tests/units.h"
@@ -27,6 +28,13 @@ sensors::LaserSettings laser(double fov, std::uint32_t samples, double range_max
   l.samples = samples;
   l.range_max = range_max;
   return l;
+}
+
+// Returns the lasers of the mover in that row.
+std::vector<sensors::SensorSpec> lasers_in(const world::World& world, std::uint32_t row = 0) {
+  const sensors::SensorSet sensor_set(world);
+  const auto specs = sensor_set.of(sensors::kLaser, row);
+  return {specs.begin(), specs.end()};
 }
 
 // Returns the range along a bearing to walls and the bodies of other movers, by brute force.
@@ -51,7 +59,8 @@ double cast(const world::World& world, std::span<const base::Report> reports, st
 // A fleet with `wander` and ideal lasers.
 struct WanderWalk {
   explicit WanderWalk(const world::World& w, std::uint64_t seed = 1) : world(w), fleet(world) {
-    for (std::uint32_t row = 0; row < world.movers.size(); ++row) wanderers.emplace_back(world.movers[row], row, seed);
+    for (std::uint32_t row = 0; row < world.movers.size(); ++row)
+      wanderers.emplace_back(world.movers[row], lasers_in(world, row), row, seed);
   }
   void tick() {
     std::vector<Twist> commands;
@@ -135,7 +144,7 @@ TEST(Wander, DrivesForwardWhenTouchedFromBehind) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 181, 8.0)));
   const auto first_twist = [&](double range, std::uint32_t contact_mask) {
-    Wander wander(world.movers[0], 0, 1);
+    Wander wander(world.movers[0], lasers_in(world), 0, 1);
     const std::vector<double> ranges(181, range);
     const ReadingBlock block{.mover = 0, .sensor = 0, .type = 1, .values = ranges};
     base::Report state{.X_WM = world.movers[0].X_WM, .contact_mask = contact_mask};
@@ -230,7 +239,7 @@ TEST(Wander, StaysFiniteWhateverItReads) {
   mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 37, 8.0)));
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const double range : {0.0, 1e-300, 0.3, 8.0, inf, -inf, -1.0, nan}) {
-    Wander wander(mover, 0, 1);
+    Wander wander(mover, lasers_in(world), 0, 1);
     const std::vector<double> ranges(37, range);
     const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
     for (int i = 0; i < 200; ++i) {
@@ -247,7 +256,7 @@ TEST(Wander, IgnoresReadingsThatAreNotItsOwnLasers) {
   world::Mover& mover = scenes::add_create(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 3, 8.0)));
   const std::vector<double> zeros(3, 0.0), few;
-  Wander wander(mover, 0, 1);
+  Wander wander(mover, lasers_in(world), 0, 1);
   const std::vector<ReadingBlock> blocks{
       {.sensor = 7, .type = 1, .values = zeros}, {.type = 9, .values = zeros}, {.type = 1, .values = few}};
   EXPECT_GT(wander.step({0, {}, blocks, false}).forward, 0.3);
@@ -255,7 +264,7 @@ TEST(Wander, IgnoresReadingsThatAreNotItsOwnLasers) {
 
 TEST(Wander, BacksOffAfterAContactThenTurns) {
   world::World world = scenes::empty_world();
-  Wander wander(scenes::add_create(world, {}), 0, 1);
+  Wander wander(scenes::add_create(world, {}), {}, 0, 1);
   EXPECT_GT(wander.step({0, {}, {}, false}).forward, 0.0);
   EXPECT_LT(wander.step({kTick, {}, {}, true}).forward, 0.0);
   const Twist later = wander.step({20 * kTick, {}, {}, false});
@@ -292,7 +301,7 @@ TEST(Wander, DistancesDependOnBodySpeedAndRange) {
 struct Eyes {
   Eyes() {
     scenes::add_create(world, {}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 181, 8.0)));
-    wander.emplace(world.movers[0], 0, 1);
+    wander.emplace(world.movers[0], lasers_in(world), 0, 1);
   }
   /// @param front [m] range of the 3 middle beams, including 0.165 m to the body's front
   Twist look(double seconds, double front, double right = 8.0, double left = 8.0, double yaw = 0.0,
@@ -375,7 +384,7 @@ TEST(Wander, BacksOffBrieflyAndTurnsByARandomAngle) {
   std::set<double> backs, turns;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Eyes eyes;
-    eyes.wander.emplace(eyes.world.movers[0], 0, seed);
+    eyes.wander.emplace(eyes.world.movers[0], lasers_in(eyes.world), 0, seed);
     double seconds = 0.0, yaw = 0.0;
     EXPECT_NEAR(eyes.look(seconds, 8.0, 8.0, 8.0, 0.0, true).forward, -0.2, 1e-12);
     while (eyes.look(seconds += 0.01, 8.0).forward < 0.0) ASSERT_LT(seconds, 0.81);
@@ -401,9 +410,9 @@ struct Look {
 
 TEST(ClearanceEstimator, AheadIsMeasuredInTheLaneFromTheFront) {
   world::World world = scenes::empty_world();
-  world::Mover mover = scenes::add_square(world, {});
+  world::Mover& mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, 0, 0, 0})));
-  const ClearanceEstimator estimator(mover);
+  const ClearanceEstimator estimator(mover, lasers_in(world));
   EXPECT_NEAR(estimator.range(), 1.9, 1e-12);
   for (const Look& look : {Look{1.1, 1.0, "0.1 on the body, 0.2 to its front"}, Look{2.0, 1.9, "nothing in range"},
                            Look{5.0, 1.9, "beyond range"}, Look{0.0, 0.0, "within the body"}}) {
@@ -417,21 +426,21 @@ TEST(ClearanceEstimator, AheadIsMeasuredInTheLaneFromTheFront) {
 TEST(ClearanceEstimator, LaneIsSlightlyWiderThanTheBody) {
   for (const auto& [aside, ahead] : {std::pair{0.0, 1.0}, {0.235, 1.0}, {-0.235, 1.0}, {0.245, 1.9}, {-0.245, 1.9}}) {
     world::World world = scenes::empty_world();
-    world::Mover mover = scenes::add_square(world, {});
+    world::Mover& mover = scenes::add_square(world, {});
     mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, aside, 0, 0})));
     const std::vector<double> ranges{1.1};
     const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
-    EXPECT_NEAR(ClearanceEstimator(mover).estimate(blocks).ahead, ahead, 1e-6) << aside;
+    EXPECT_NEAR(ClearanceEstimator(mover, lasers_in(world)).estimate(blocks).ahead, ahead, 1e-6) << aside;
   }
 }
 
 TEST(ClearanceEstimator, IgnoresObstaclesOutsideTheLane) {
   world::World world = scenes::empty_world();
-  world::Mover mover = scenes::add_square(world, {});
+  world::Mover& mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 3, 4.0)));
   const std::vector<double> ranges{0.5, 3.0, 1.5};  // right, ahead, left
   const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
-  const Clearance c = ClearanceEstimator(mover).estimate(blocks);
+  const Clearance c = ClearanceEstimator(mover, lasers_in(world)).estimate(blocks);
   EXPECT_NEAR(c.ahead, 2.8, 1e-6);
   EXPECT_NEAR(c.left, 1.5, 1e-6);
   EXPECT_NEAR(c.right, 0.5, 1e-6);

@@ -42,6 +42,11 @@ TEST(Coverage, CountsOnlyFreeCellsOfTheReference) {
   EXPECT_DOUBLE_EQ(disagreement(map, reference), 1.0 / 3.0);
 }
 
+/// Returns the map of the first laser of the first robot.
+RobotMap map_of(const world::World& world, double cell = 0.03) {
+  return RobotMap(world, sensors::laser_type.parse(world).rows.at(0), cell);
+}
+
 /// One missed cell suffices.
 TEST(Coverage, IsNeverRoundedUpToAll) {
   EXPECT_EQ(coverage_text({9159, 3}), "3 of 9159") << "missed, not seen";
@@ -51,12 +56,12 @@ TEST(Coverage, IsNeverRoundedUpToAll) {
 /// Other cells would be offset from the explorer's by part of a cell, and could be unknown in its map.
 TEST(Coverage, UsesTheCellsOfTheExplorer) {
   const world::World world = mapping_world();
-  EXPECT_EQ(RobotMap(world, 0).grid().geometry, control::grid_around(world));
+  EXPECT_EQ(map_of(world).grid().geometry, control::grid_around(world));
 }
 
 TEST(Coverage, ReadingsOfOtherRobotsAreIgnored) {
   const world::World world = mapping_world();
-  RobotMap map(world, 0);
+  RobotMap map = map_of(world);
   const sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
   const std::vector<double> ranges(laser.samples, 1.0);
   const base::ReadingBlock own{.type = sensors::kLaser, .X_WS = {0.0, 0.0, 0.1, 0.0}, .values = ranges};
@@ -79,7 +84,7 @@ TEST(Coverage, ReadingsOfOtherRobotsAreIgnored) {
 /// Rounding of a line may free a cell whose centre is inside a wall; such cells are not required.
 TEST(Coverage, CellsInsideObstaclesAreNotRequired) {
   const world::World world = mapping_world();
-  const RobotMap map(world, 0);
+  const RobotMap map = map_of(world);
   const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
   for (std::int64_t row = 0; row < maps::rows(seen.geometry); ++row)
     for (std::int64_t column = 0; column < maps::columns(seen.geometry); ++column) {
@@ -93,7 +98,7 @@ TEST(Coverage, CellsInsideObstaclesAreNotRequired) {
 /// 3 m x 3 m without three boxes of 0.25 m^2 and the tree; no cell beyond the walls.
 TEST(Coverage, TheVisibleAreaIsTheRoom) {
   const world::World world = mapping_world();
-  const RobotMap map(world, 0);
+  const RobotMap map = map_of(world);
   const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
   double area = 0.0;
   for (std::int64_t row = 0; row < maps::rows(seen.geometry); ++row)
@@ -199,7 +204,7 @@ TEST(Coverage, LightPassesThroughGaps) {
   for (const auto& [from, to] : {std::pair{-1.5, 0.0}, {0.05, 1.5}})
     world.walls.push_back({.a = {from, 0.35}, .b = {to, 0.35}, .z_max = 0.5});
   world::update_extent_and_hash(world);
-  const RobotMap map(world, 0);
+  const RobotMap map = map_of(world);
   const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
   int beyond = 0;
   for (int i = 0; i < 30; ++i) beyond += seen.at(maps::cell_at(seen.geometry, {0.025, 0.5 + 0.03 * i})) == Cell::free;
@@ -211,7 +216,7 @@ TEST(Coverage, LargeWorldsHaveLargeCells) {
   world::World world = mapping_world();
   world.walls.push_back({.a = {-900.0, -500.0}, .b = {900.0, 500.0}, .z_max = 0.5});
   world::update_extent_and_hash(world);
-  const maps::GridGeometry grid = RobotMap(world, 0).grid().geometry;
+  const maps::GridGeometry grid = map_of(world).grid().geometry;
   EXPECT_LE(maps::words(grid), 1u << 18);
   EXPECT_GT(maps::words(grid), 1u << 17);
   EXPECT_TRUE(maps::is_valid(grid));
@@ -226,8 +231,9 @@ TEST(Coverage, EqualRobotsShareTheirReference) {
   world.movers.resize(3, world.movers[0]);
   world.movers[1].X_WM.x += 0.1;
   world.movers[2].radius += 0.02;
-  VisibleArea area(world);
-  const maps::GridGeometry grid = RobotMap(world, 0, 0.1).grid().geometry;
+  const sensors::SensorSet sensor_set(world);
+  VisibleArea area(world, sensor_set);
+  const maps::GridGeometry grid = map_of(world, 0.1).grid().geometry;
   const maps::OccupancyGrid& first = area.of(0, grid);
   EXPECT_EQ(&area.of(1, grid), &first);
   EXPECT_EQ(first.words, visible_area(world, 1, grid).words);
@@ -241,7 +247,7 @@ TEST(Coverage, StopsAtWalls) {
   world::Segment wall{.a = from, .b = to, .z_max = 0.5, .solid_left = false};
   world.walls.push_back(wall);
   world::update_extent_and_hash(world);
-  const RobotMap map(world, 0);
+  const RobotMap map = map_of(world);
   const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
   for (std::int64_t column = 0; column < maps::columns(seen.geometry); ++column) {
     const maps::CellAt north = maps::cell_at(seen.geometry, {maps::middle(seen.geometry, {column, 0}).x, 0.2});

@@ -17,6 +17,8 @@
 #include "scenarios/runner.h"
 #include "scenarios/simulation.h"
 #include "scenarios/verification.h"
+#include "sensors/laser.h"
+#include "sensors/laser_modes.h"
 #include "sensors/sensor_type.h"
 #include "tests/cluster/thread_ranks.h"
 #include "tests/device.h"
@@ -166,6 +168,9 @@ TEST(Joining, AcceptsAController) {
   simulation.add_robot(world, {.name = "b", .like = "a", .X_WM = {8.0, 8.0, 0.0, 0.0}, .actor = {}});
   for (int tick = 0; tick < 20; ++tick) simulation.step();
   EXPECT_TRUE(simulation.status(1).drives);
+  const auto lasers = simulation.farm().sensor_set().settings_of<sensors::CastLaser>(sensors::kLaser, 1);
+  ASSERT_EQ(lasers.size(), 2u);
+  EXPECT_EQ(lasers[1].laser.samples, 7u) << "those of its original";
   EXPECT_GT(simulation.step().reports[1].X_WM.x, 8.1);
 }
 

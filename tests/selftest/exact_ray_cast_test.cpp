@@ -242,7 +242,7 @@ Outcome judged(const TestFarm& test, std::span<const double> values, std::uint32
   base::ReadingBlock reading = test.readings[0];
   reading.values = values;
   Checks checks;
-  check_scan(*test.world, reading, checks, "scan", stride);
+  check_scan(test, reading, checks, "scan", stride);
   return checks.outcome();
 }
 

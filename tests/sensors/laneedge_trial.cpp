@@ -70,9 +70,9 @@ struct EdgeRig::State {
   base::ThreadPool thread_pool;
   std::vector<base::Report> states;
   sensors::SensorContext context;
+  sensors::ParsedSensors sensors;
   std::unique_ptr<sensors::SensorBackend> backend;
   gpu::Batch batch;
-  std::size_t rows;
   std::vector<base::ReadingBlock> blocks;
   std::unique_ptr<EdgeRig> twin;  ///< on the host, for a raster; null for rigs on a chosen device
 
@@ -82,9 +82,9 @@ struct EdgeRig::State {
         states(robots::states_at_load(world)),
         context{world, on != nullptr ? *on : device(), thread_pool, states, seed, noise,
                 true,  {.caster = caster_of(on)}},
-        backend(sensors::laneedge_type.make(context)),
-        batch(context.device),
-        rows(sensors::laneedge_type.specs(world).size()) {
+        sensors(sensors::laneedge_type.parse(world)),
+        backend(sensors::laneedge_type.make(context, sensors)),
+        batch(context.device) {
     if (on == nullptr && w.road_resolution > 0.0)
       twin = std::make_unique<EdgeRig>(w, seed, threads, noise, &host_device());
   }
@@ -128,7 +128,7 @@ std::vector<sensors::EdgeReading> EdgeRig::read(std::uint64_t sequence, std::vec
   if (poses.empty())
     for (const world::Mover& mover : s_->world.movers) poses.push_back(mover.X_WM);
   std::vector<sensors::DueSample> due;
-  for (std::uint32_t row = 0; row < s_->rows; ++row) due.push_back({row, sequence});
+  for (std::uint32_t row = 0; row < s_->sensors.rows.size(); ++row) due.push_back({row, sequence});
   std::vector<sensors::EdgeReading> readings = read_some(due, poses);
   if (s_->twin == nullptr) return readings;
   const auto on_host = s_->twin->read_some(due, poses);

@@ -254,7 +254,7 @@ TEST(OwnSensors, PacketsRoundTripWithinTheirUnits) {
   add_type("scripted", 20);
   const SensorType& type = *find_sensor_type(20);
   const world::World world = world_with("scripted( rows 2 )");
-  const SensorSpec spec = type.specs(world)[0];
+  const SensorSpec spec = type.parse(world).rows[0];
   const std::vector<double> values{1.23456, 3.0, -7.5, NAN};
   base::ReadingBlock reading;
   reading.values = values;
@@ -267,9 +267,9 @@ TEST(OwnSensors, PacketsRoundTripWithinTheirUnits) {
   EXPECT_EQ(back[1], 3.0);
   EXPECT_EQ(back[2], -7.5);
   EXPECT_TRUE(std::isnan(back[3]));
-  const SensorSpec large = type.specs(world_with("scripted( rows 157 )"))[0];  // 314 numbers, one too many
+  const SensorSpec large = type.parse(world_with("scripted( rows 157 )")).rows[0];  // 314 numbers, one too many
   expect_in("it can be recorded, but not sent", type.wire_problem(large, WireFormat::farm));
-  EXPECT_EQ(type.wire_problem(type.specs(world_with("scripted( rows 156 )"))[0], WireFormat::farm), "");
+  EXPECT_EQ(type.wire_problem(type.parse(world_with("scripted( rows 156 )")).rows[0], WireFormat::farm), "");
 }
 
 }  // namespace

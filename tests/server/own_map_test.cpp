@@ -42,6 +42,9 @@ struct MapTest : testing::Test {
   OwnMapOptions options(sensors::WireFormat wire = sensors::WireFormat::farm) const {
     return {netio::bound_endpoint(receiver), wire};
   }
+  OwnMap map_of(const world::World& world, sensors::WireFormat wire = sensors::WireFormat::farm) const {
+    return OwnMap(world, sensors::SensorSet(world), 0, options(wire));
+  }
   /// Returns the datagrams received since the last call.
   std::vector<base::Bytes> datagrams() {
     std::vector<base::Bytes> all;
@@ -69,7 +72,7 @@ struct MapTest : testing::Test {
 
 TEST_F(MapTest, SendsTheMapOfItsScans) {
   const world::World world = map_world();
-  OwnMap map(world, 0, options());
+  OwnMap map(world, sensors::SensorSet(world), 0, options());
   map.send(0, true);
   EXPECT_EQ(receive(), 0u) << "no scan yet";
 
@@ -102,7 +105,7 @@ TEST_F(MapTest, SendsTheMapOfItsScans) {
 }
 
 TEST_F(MapTest, IsSentAtItsRate) {
-  OwnMap map(map_world(), 0, options());
+  OwnMap map = map_of(map_world());
   map.add(scan(0), {});
   for (std::int64_t time = 0; time < 3 * kSecond; time += kSecond / 10) map.send(time, false);
   EXPECT_EQ(receive(), 3u);
@@ -111,7 +114,7 @@ TEST_F(MapTest, IsSentAtItsRate) {
 }
 
 TEST_F(MapTest, AcceptsOnlyNewScansOfItsLaser) {
-  OwnMap map(map_world(), 0, options());
+  OwnMap map = map_of(map_world());
   map.add(scan(kSecond), {});
   base::ReadingBlock other = scan(2 * kSecond);
   other.sensor = 1;
@@ -131,8 +134,8 @@ TEST_F(MapTest, AcceptsOnlyNewScansOfItsLaser) {
 }
 
 TEST_F(MapTest, UsesTheSettingsOfItsOccupancy) {
-  OwnMap map(map_world({{"cell", {0.1}, "", 0, ""}, {"words", {4, 3}, "", 0, ""}, {"rate", {5}, "", 0, ""}}, true), 0,
-             options());
+  OwnMap map =
+      map_of(map_world({{"cell", {0.1}, "", 0, ""}, {"words", {4, 3}, "", 0, ""}, {"rate", {5}, "", 0, ""}}, true));
   EXPECT_EQ(map.settings().settings.grid.word_columns, 4u);
   EXPECT_EQ(map.settings().settings.grid.cell, 0.1);
   map.add(scan(0), {});
@@ -141,7 +144,7 @@ TEST_F(MapTest, UsesTheSettingsOfItsOccupancy) {
 }
 
 TEST_F(MapTest, SendsTheThesisLayout) {
-  OwnMap map(map_world({{"words", {30, 30}, "", 0, ""}}, true), 0, options(sensors::WireFormat::thesis));
+  OwnMap map = map_of(map_world({{"words", {30, 30}, "", 0, ""}}, true), sensors::WireFormat::thesis);
   map.add(scan(0), {-1, 0.5, 0, 0});
   map.send(0, true);
   for (const base::Bytes& bytes : datagrams()) assembler.add_plain_part(bytes);
@@ -151,19 +154,19 @@ TEST_F(MapTest, SendsTheThesisLayout) {
 TEST_F(MapTest, LargeWorldsAndRangesGetLargerCells) {
   world::World world = map_world();
   world.extent = {-4000.0, -4000.0, 4000.0, 4000.0};
-  const OwnMap wide(world, 0, options());
+  const OwnMap wide = map_of(world);
   EXPECT_TRUE(maps::is_valid(wide.settings().settings.grid));
   EXPECT_EQ(wide.settings().settings.grid.cell, 3.84) << "3 cm times 128: at most 1024 x 1024 words of 4 cells";
   world = map_world();
   sensors::LaserSettings far = map_laser();
   far.range_max = 80.0;
   world.movers[0].sensors = {sensors::laser_sensor(far)};
-  EXPECT_EQ(OwnMap(world, 0, options()).settings().settings.grid.cell, 0.12) << "at most 1022 cells of range";
+  EXPECT_EQ(map_of(world).settings().settings.grid.cell, 0.12) << "at most 1022 cells of range";
 }
 
 std::string map_refusal(const world::World& world, const OwnMapOptions& options) {
   try {
-    OwnMap map(world, 0, options);
+    OwnMap map(world, sensors::SensorSet(world), 0, options);
   } catch (const base::InputError& error) {
     return error.what();
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sensors/laser.h"
 #include "tests/viz/scenes.h"
 
 namespace sf::viz {
@@ -28,12 +29,13 @@ constexpr maps::GridGeometry kPlan{0.0, 8.0, 1.0, 3, 2};
 
 /// Adds one beam along +x from the centre of cell (0, 2). @param met row of the model that was hit
 void add_beam(ScanMap& map, const world::World& world, double range, std::uint32_t met = 0) {
+  const sensors::SensorSpec laser = sensors::laser_type.parse(world).rows.at(0);
   base::ReadingBlock scan;
   scan.X_WS = {0.5, 5.5, 0.0, 0.0};
   scan.values = {&range, 1};
-  const std::uint32_t hit = range < sensors::lasers_of(world.movers[0])[0].range_max ? met : base::kNoHit;
+  const std::uint32_t hit = range < laser.limit ? met : base::kNoHit;
   scan.hits = {&hit, 1};
-  map.add(world, scan);
+  map.add(world, laser, scan);
 }
 
 TEST(ScanMap, EndIsOccupiedAndPathIsFree) {
@@ -95,14 +97,14 @@ TEST(ScanMap, FindsTheWallsOfARoom) {
   room.movers.push_back(scenes::make_robot(room, 0, {}, 0, 8.0));
   scenes::edit_laser(room.movers[0])->fov = 2 * M_PI;
   scenes::edit_laser(room.movers[0])->samples = 1441;
-  const sensors::LaserSettings laser = sensors::lasers_of(room.movers[0])[0];
+  const sensors::SensorSpec laser = sensors::laser_type.parse(room).rows.at(0);
   ScanMap map(grid_over(room.extent));
   for (double x = 1.0; x < 6.0; x += 1.0) {
-    const std::vector<double> ranges = scenes::scan(room, {x, 2.0, 0, 0}, laser.fov, 1441, laser.range_max);
+    const std::vector<double> ranges = scenes::scan(room, {x, 2.0, 0, 0}, laser.fov, 1441, laser.limit);
     base::ReadingBlock scan;
     scan.X_WS = {x, 2.0, 0, 0};
     scan.values = ranges;
-    map.add(room, scan);
+    map.add(room, laser, scan);
   }
   const maps::OccupancyGrid grid = map.states();
   const auto at = [&](double x, double y) { return grid.at(maps::cell_at(grid.geometry, {x, y})); };

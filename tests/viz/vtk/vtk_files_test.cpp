@@ -19,6 +19,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "sensors/laser.h"
 #include "tests/viz/png.h"
 #include "tests/viz/scenes.h"
 #include "viz/world_geometry.h"
@@ -113,8 +114,9 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   scan.bound = 0.25;
   scan.time = 1'500'000'000;
   ScanGeometry dots(false), beams(true);
-  dots.add(world, scan);
-  beams.add(world, scan);
+  const sensors::SensorSpec spec = sensors::laser_type.parse(world).rows.at(0);
+  dots.add(spec, scan);
+  beams.add(spec, scan);
   write_poly_data(dots.data(), scenes::own_file("dots.vtp"));
   write_poly_data(beams.data(), scenes::own_file("beams.vtp"));
   const auto reader = read_poly_data(scenes::own_file("dots.vtp"));
