@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
+#include "base/time.h"
 #include "selftest/exact_ray_cast.h"
 #include "selftest/suite.h"
 #include "sensors/laser_reference.h"
@@ -89,6 +90,30 @@ void plain_cpp(Fixture& fixture, Checks& checks) {
   checks.note(fmt::format("{} of {} beams are not the same to the bit", all.found, all.beams));
 }
 
+/// Readings after a year and at tick 1e9, with noise.
+void tick_1e9(Fixture& fixture, Checks& checks) {
+  constexpr std::int64_t kPeriod = base::kSecond / 10;
+  world::World world;
+  add_room(world, {-2.0, -2.0}, 4.0);
+  sensors::LaserSettings eye = laser(61, 3.0, 8.0);
+  eye.noise = {.range_sigma = 0.01, .angle_sigma = 0.001};
+  add_laser_mover(world, {0.2, 0.1, 0.0, 0.0}, eye);
+  TestFarm test = fixture.measure(std::move(world), {.seed = kSeed});
+  const sensors::LaserReference reference(*test.world, kSeed);
+  for (const std::int64_t tick : {315'569'520ll, 1'000'000'000ll, 1'000'000'001ll}) {
+    const auto what = fmt::format("tick {}", tick);
+    const auto readings = test.farm->tick(tick * kPeriod, {});
+    checks.equal(readings.size(), 1u, what + ": readings");
+    if (readings.empty()) return;
+    checks.equal(readings[0].sequence, tick, what + ": number");
+    checks.equal(readings[0].time, tick * kPeriod, what + ": time");
+    const auto scan = reference.scan(0, 0, readings[0].sequence);
+    const double allowed = allowed_from_plain_cpp(fixture, test, readings[0]);
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i)
+      check_range(readings[0].values[i], scan.ranges[i], allowed, checks, what, i);
+  }
+}
+
 /// Computes the same beam by the same formula in 32 bits, as a caster in world coordinates would.
 double in_32_bits(glm::dvec2 eye, double yaw, const world::Segment& s) {
   const auto f = [](double x) { return static_cast<float>(x); };
@@ -126,6 +151,7 @@ constexpr Case kDeviceCases[] = {
      "scans of seven fleets compared with plain C++: bitwise in software, one count of the wire elsewhere", plain_cpp},
     {"devices", "where-32-bits-break", "m",
      "the same rays in 32-bit world coordinates: errors noted; the farm within rounding", where_32_bits_break},
+    {"times", "tick-1e9", "m", "readings after a year and at tick 1e9, with noise: plain C++'s to the bit", tick_1e9},
 };
 
 }  // namespace

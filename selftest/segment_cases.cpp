@@ -5,26 +5,10 @@
 #include "selftest/exact_ray_cast.h"
 #include "selftest/fixture.h"
 #include "selftest/suite.h"
-#include "world/stage/stage.h"
 
 namespace sf::selftest {
 
 namespace {
-
-/// Corners repeated two and three times, as written by drawing programs.
-void points_given_twice(Fixture& fixture, Checks& checks) {
-  const world::World read =
-      world::build_world("twice.world",
-                         "model( name \"post\" pose [2 0 0 0] size [2 2 1] block( points 7 point[0] [0 0] "
-                         "point[1] [0 0] point[2] [1 0] point[3] [1 1] point[4] [1 1] point[5] [1 1] "
-                         "point[6] [0 1] z [0 1] ) )");
-  for (const world::Segment& s : read.walls) checks.holds(s.a.x != s.b.x || s.a.y != s.b.y, "no wall without length");
-  world::World world = read;
-  add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(61, 0.5, 8.0));
-  const TestFarm test = fixture.measure(world);
-  check_scan(test, test.readings[0], checks, "corners given twice");
-  checks.same(test.readings[0].values[30], 1.0, "the face in front");
-}
 
 /// A wall of zero length among others, added without the reader: it is never hit and hides nothing.
 void zero_length(Fixture& fixture, Checks& checks) {
@@ -108,8 +92,6 @@ void a_million(Fixture& fixture, Checks& checks) {
 }
 
 constexpr Case kSegmentCases[] = {
-    {"segments", "points-given-twice", "m",
-     "outlines with repeated corners: no wall of zero length is made, the rest is exact", points_given_twice},
     {"segments", "zero-length", "m", "walls of zero length are never hit: the others, within rounding", zero_length},
     {"segments", "slivers", "m", "blocks 1 mm to 1e-12 m thick: their faces, within rounding", slivers},
     {"segments", "tiny-beside-huge", "m", "walls of nanometres beside walls of 200 km, aimed at: within rounding",

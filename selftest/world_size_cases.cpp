@@ -83,6 +83,21 @@ void far_and_small(Fixture& fixture, Checks& checks) {
   }
 }
 
+/// The smallest and largest values of a pose.
+void poses(Fixture& fixture, Checks& checks) {
+  constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
+  for (const double x : {kDenormal, -kDenormal, 1e-310, std::numeric_limits<double>::min(), 1e7, -1e7})
+    for (const double yaw : {0.0, kDenormal, -1e-310}) {
+      world::World world;
+      add_wall(world, {x + 2.0, -1.0}, {x + 2.0, 1.0});
+      add_laser_mover(world, {}, laser(1, 0.0, 8.0));
+      TestFarm test = fixture.measure(world);
+      const base::Report report{.mover = 0, .X_WM = {x, kDenormal, 0.0, yaw}};
+      const auto readings = test.farm->tick(1'000'000'000, {&report, 1});
+      checks.same(readings[0].values[0], 2.0, fmt::format("x {:g}, yaw {:g}", x, yaw));
+    }
+}
+
 constexpr Case kWorldSizeCases[] = {
     {"places", "world-widths", "m", "rooms 1 mm to 1 000 km wide: exact walls, within rounding of 64 bits", widths},
     {"places", "far-origins", "m", "rooms of all widths 0, 1e5 and 1e7 m away: the walls as doubles have them",
@@ -93,6 +108,7 @@ constexpr Case kWorldSizeCases[] = {
      ranges},
     {"places", "far-and-small", "m", "towers of 10 m at 99.9 km in 1 000 km: within rounding of 64 bits",
      far_and_small},
+    {"numbers", "in-poses", "m", "denormal and largest poses: sums are exact, so no bit is off", poses},
 };
 
 }  // namespace

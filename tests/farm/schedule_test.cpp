@@ -27,7 +27,7 @@ TEST(Schedule, DueAtPhasePlusWholePeriods) {
 
 /// Reading k starts at phase + k / rate, rounded to a nanosecond, also for odd rates and after a year.
 TEST(Schedule, ExactToANanosecondAfterAYear) {
-  for (const double rate : {1.0, 10.0, 13.37, 30.0, 37.5, 1.0 / 3.0, 333.3, 1000.0})
+  for (const double rate : {1.0, 10.0, 13.37, 30.0, 37.5, 1.0 / 3.0, 333.3, 1000.0, 1e6})
     for (const double years : {0.0, 0.1, 1.0, 10.0})
       for (int i = 1; i <= 200; ++i) {
         const auto k = static_cast<std::uint64_t>(years * 31'556'952.0 * rate) + static_cast<std::uint64_t>(i);

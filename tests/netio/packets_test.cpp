@@ -339,6 +339,8 @@ TEST(Packets, RejectsStatesBeyondTheirLimits) {
       EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * at.limit)), PacketStatus::accepted) << at.offset;
       EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * std::nextafter(at.limit, kInf))), PacketStatus::out_of_range)
           << at.offset;
+      for (const double tiny : {0.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min()})
+        EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * tiny)), PacketStatus::accepted) << at.offset;
     }
   };
   for (const Limit& at : v2v) check(v2v_example(), at);

@@ -38,6 +38,15 @@ TEST(Advance, ManySmallStepsEqualOneLargeStep) {
   expect_pose(X, advance({0.3, -0.2, 0, 2}, {0.4, -0.1, 0.7}, 10.0), 1e-11);
 }
 
+/// An arc of 1 m radius. Each step rounds a pose three times by half a grain of 2 m.
+TEST(Advance, StepsOfAMicrosecondAndOfTenSecondsStayOnTheArc) {
+  const auto on_arc = [](double angle) { return Pose{std::sin(angle), 1.0 - std::cos(angle), 0.0, angle}; };
+  Pose X;
+  for (int i = 0; i < 1'000'000; ++i) X = advance(X, {0.3, 0, 0.3}, 1e-6);
+  expect_pose(X, on_arc(0.3), 1e6 * 3 * 2.2e-16);
+  expect_pose(advance({}, {0.3, 0, 0.3}, 10.0), on_arc(3.0), 1e-14);
+}
+
 TEST(Advance, TinyTurnsAgreeWithTheStraightLine) {
   // Near the threshold of the series.
   for (const double turn : {1e-9, 1.9e-4, 2.1e-4}) {

@@ -78,6 +78,7 @@ TEST(LaserPackets, PlainRangesRoundAndSaturate) {
   EXPECT_EQ(plain(-0.001), 0.0);      // noise below zero
   EXPECT_EQ(plain(-1e300), 0.0);
   EXPECT_EQ(plain(-kInf), 0.0);
+  for (std::uint32_t word = 0; word <= 0xFFFF; ++word) EXPECT_EQ(plain(word / 1e3), word / 1e3);
 }
 
 TEST(LaserPackets, ExtendedRangesRoundAndSaturate) {

@@ -5,9 +5,13 @@
 
 #include <cmath>
 
+#include "sensors/gyro.h"
 #include "sensors/infrared.h"
+#include "sensors/laneedge.h"
 #include "sensors/laser.h"
 #include "sensors/laser_packets.h"
+#include "sensors/magnetometer.h"
+#include "sensors/occupancy.h"
 #include "sensors/sonar.h"
 #include "tests/sensors/chance.h"
 
@@ -102,6 +106,59 @@ TEST(WireLimits, ReadsTheExpectedRanges) {
     row.range_min = c.least, row.limit = c.most;
     for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis})
       EXPECT_EQ(received({laser, wire, 1e-3, kPlainRange}, row, c.range), c.read) << c.why;
+  }
+}
+
+/// Returns the number `at` of a reading with one element as a receiver reads it; the others are 0.
+double received(std::uint8_t type, std::size_t at, double value) {
+  const SensorType* const sensor_type = find_sensor_type(type);
+  std::vector<double> values(element_width(*sensor_type)), read(values.size());
+  values[at] = value;
+  const SensorSpec row;
+  base::Bytes bytes;
+  const std::uint8_t packet = sensor_type->encode(row, {.type = type, .values = values}, WireFormat::farm, 0, bytes);
+  EXPECT_EQ(sensor_type->decode(row, bytes, packet, WireFormat::farm).fault, PayloadError::none) << value;
+  sensor_type->read(row, bytes, packet, WireFormat::farm, read);
+  return read[at];
+}
+
+/// The last word of each number, the values next to it, and values whose words would wrap.
+TEST(WireLimits, WordsSaturateAndDoNotWrap) {
+  constexpr double kField = 21.47483647, kTurn = 2147.483647, kInf = HUGE_VAL;
+  for (const auto& [value, read] :
+       {std::pair{65'534.0, 65'534.0}, {65'536.0, 65'535.0}, {131'072.0, 65'535.0}, {-1.0, 0.0}})
+    EXPECT_EQ(received(kLaneEdge, 1, value), read) << value << " points";
+  for (const std::size_t at : {2u, 3u}) {
+    EXPECT_EQ(received(kLaneEdge, at, 4294.967294), 4294.967294);
+    for (const double none : {4294.967295, 4294.967296, 8589.934592, kInf})
+      EXPECT_TRUE(std::isnan(received(kLaneEdge, at, none))) << none;
+  }
+  for (std::size_t at = 0; at < kMagnetometerColumns; ++at)
+    for (const auto& [value, read] : {std::pair{kField, kField},
+                                      {21.47483648, kField},
+                                      {42.94967296, kField},
+                                      {-21.47483648, -21.47483648},
+                                      {-21.4748365, -21.47483648},
+                                      {5e-324, 0.0}})
+      EXPECT_EQ(received(kMagnetometer, at, value), read) << value << " T";
+  for (const auto& [value, read] : {std::pair{kTurn, kTurn},
+                                    {2147.483648, kTurn},
+                                    {4294.967296, kTurn},
+                                    {-2147.483648, -kTurn},
+                                    {-2147.483649, -kTurn}})
+    EXPECT_EQ(received(kGyro, 0, value), read) << value << " rad/s";
+}
+
+TEST(WireLimits, OrderAndSignArePreserved) {
+  for (const SensorType* type : built_in_sensor_types()) {
+    if (type->id == kLaneEdge || type->id == kOccupancy) continue;  // values beyond the wire are none; words
+    double before = -HUGE_VAL;
+    for (const double value : {-HUGE_VAL, -1e300, -4294967296.0, -2147483648.0, -1.0, 0.0, 1.0, 65'536.0, 2147483647.0,
+                               2147483648.0, 4294967296.0, 1e300, HUGE_VAL}) {
+      const double read = received(type->id, 0, value);
+      EXPECT_TRUE(read >= before && (value <= 0.0 ? read <= 0.0 : read >= 0.0)) << type->name << ": " << value;
+      before = read;
+    }
   }
 }
 

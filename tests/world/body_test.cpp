@@ -55,6 +55,20 @@ TEST_F(Bodies, NoblocksRemovesOnlyTheDefaultBox) {
   }
 }
 
+/// Drawing programs write corners two and three times.
+TEST_F(Bodies, RepeatedCornersMakeNoWall) {
+  const World world = read(
+      "model( size [2 2 1] block( points 7 z [0 1] point[0] [0 0] point[1] [0 0] point[2] [1 0] "
+      "point[3] [1 1] point[4] [1 1] point[5] [1 1] point[6] [0 1] ) )");
+  EXPECT_EQ(world.walls.size(), 4u);
+  for (const Segment& s : world.walls) EXPECT_EQ(glm::length(s.b - s.a), 2.0);
+}
+
+TEST_F(Bodies, DenormalsAreNumbers) {
+  for (const std::string x : {"5e-324", "-5e-324", "1e-310", "-0", "2.3e-308"})
+    EXPECT_EQ(extent_of(read("model( pose [" + x + " 0 0 0] size [1 1 1] )")), "-0.5 -0.5 0.5 0.5") << x;
+}
+
 TEST_F(Bodies, SolidPartOfAPictureFillsTheSize) {
   const World world = read("model( size [20 10 1]\n bitmap \"pad.pgm\" )");
   EXPECT_EQ(extent_of(world), "-10 -5 10 5");

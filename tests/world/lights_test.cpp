@@ -28,6 +28,17 @@ TEST(SignalAt, EachPhaseBeginsAtTheEndOfThePrevious) {
   EXPECT_EQ(signal_at(light, 5.0 + 24.0 * 1e6 + 9.0).state, LightState::yellow);
 }
 
+/// Half a second into each second of a whole turn, counted in integers. Doubles are 4 ns apart there.
+TEST(SignalAt, KeepsItsPlanForAYear) {
+  constexpr std::int64_t kYear = 31'556'952;  // [s]
+  for (std::int64_t second = kYear; second < kYear + 24; ++second) {
+    const std::int64_t into = (second - 5) % 24, end = into < 8 ? 8 : into < 10 ? 10 : 24;
+    const Signal signal = signal_at(plan(), static_cast<double>(second) + 0.5);
+    EXPECT_EQ(signal.state, into < 8 ? LightState::green : into < 10 ? LightState::yellow : LightState::red) << second;
+    EXPECT_NEAR(signal.left, static_cast<double>(end - into) - 0.5, 1e-7) << second;
+  }
+}
+
 TEST(SignalAt, PlanAlsoRunsBeforeItsOffset) {
   EXPECT_EQ(signal_at(plan(), 4.0).state, LightState::red);
   EXPECT_EQ(signal_at(plan(), 4.0).left, 1.0);

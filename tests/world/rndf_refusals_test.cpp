@@ -118,6 +118,8 @@ TEST(RndfRefusals, Numbers) {
       {"checkpoint 1.1.2 1", "checkpoint 1.1.2", "small.rndf:14: the checkpoint's id is missing"},
       {"40.000000 -83.000000", "91.000000 -83.000000",
        "small.rndf:17: the latitude is '91.000000'; expected degrees from -90 to 90"},
+      {"40.000000 -83.000000", "-90.0001 -83.000000", "small.rndf:17: the latitude is '-90.0001'"},
+      {"40.000000 -83.000000", "1e999 -83.000000", "small.rndf:17: the latitude is '1e999'"},
       {"40.000000 -83.000000", "40.000000 -181.000000", "small.rndf:17: the longitude is '-181.000000'"},
       {"40.000000 -83.000000", "nan -83.000000", "small.rndf:17: the latitude is 'nan'; expected a number"},
       {"40.000000 -83.000000", "40.000000 inf", "small.rndf:17: the longitude is 'inf'"},

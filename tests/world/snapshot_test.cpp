@@ -80,11 +80,15 @@ TEST(Snapshot, NonFiniteNumbersAreRejected) {
     World world = rooms();
     world.movers[0].sensors.push_back({.type = "laser", .settings = {{.key = "fov", .numbers = {90.0}}}});
     world.movers[0].body.push_back(world.walls[0]);
+    world.magnets.push_back({{1.0, 2.0}, 0.0, 1.0, 0.01, 0});
+    world.lane_markings.push_back({{{0.0, 0.0}, {1.0, 0.0}}, 0.1});
     update_extent_and_hash(world);
     EXPECT_NO_THROW(from_snapshot(snapshot(world)));
     for (double* const number :
          {&world.walls[0].a.x, &world.walls[1].z_max, &world.movers[0].X_WM.yaw, &world.movers[0].body[0].b.y,
-          &world.movers[0].sensors.back().settings[0].numbers[0], &world.interval}) {
+          &world.movers[0].sensors.back().settings[0].numbers[0], &world.movers[0].sensors.back().X_MS.z,
+          &world.magnets.back().moment, &world.lane_markings.back().width, &world.lane_markings.back().line[1].x,
+          &world.interval}) {
       const double good = std::exchange(*number, bad);
       update_extent_and_hash(world);
       EXPECT_THROW(from_snapshot(snapshot(world)), base::InputError);
