@@ -77,12 +77,14 @@ enum State : std::uint8_t { kTouching = 1, kMovesIn = 2 };
 }  // namespace
 
 FleetTiles::FleetTiles(cluster::Ranks& ranks, const world::World& world)
+    : FleetTiles(ranks, world, sensors::SensorSet(world)) {}
+
+FleetTiles::FleetTiles(cluster::Ranks& ranks, const world::World& world, const sensors::SensorSet& sensor_set)
     : ranks_(ranks),
       v2v_ranges_(world.movers.size()),
-      costs_(costs_of(world, sensors::SensorSet(world))),
+      costs_(costs_of(world, sensor_set)),
       tiles_(tiles_of(world, costs_, ranks.size())),
       blocks_(ranks.size()) {
-  const sensors::SensorSet sensor_set(world);
   wall_reach_ = ghost_reach_ = reach_of(world, sensor_set);
   const bool magnets = std::any_of(sensor_set.groups().begin(), sensor_set.groups().end(), [](const auto& group) {
     return std::any_of(group.rows.begin(), group.rows.end(), [](const auto& row) { return row.depends_on_magnets; });

@@ -65,6 +65,7 @@ class FleetTiles final : public farm::ReadingExchange {
   std::uint64_t passed_on() const { return passed_on_; }
 
  private:
+  FleetTiles(cluster::Ranks& ranks, const world::World& world, const sensors::SensorSet& sensor_set);
   void send_state(std::uint32_t mover, unsigned rank, bool passed);
   void take_state(base::ByteReader& in);
   void set_present(std::uint32_t mover, bool here);
