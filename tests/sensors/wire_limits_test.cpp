@@ -117,7 +117,6 @@ double received(std::uint8_t type, std::size_t at, double value) {
   const SensorSpec row;
   base::Bytes bytes;
   const std::uint8_t packet = sensor_type->encode(row, {.type = type, .values = values}, WireFormat::farm, 0, bytes);
-  EXPECT_EQ(sensor_type->decode(row, bytes, packet, WireFormat::farm).fault, PayloadError::none) << value;
   sensor_type->read(row, bytes, packet, WireFormat::farm, read);
   return read[at];
 }
