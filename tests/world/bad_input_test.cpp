@@ -33,7 +33,7 @@ const std::vector<Bad>& corpus() {
       {"half a number", "model(\n size [1x 2 3] )", 2, "not a number"},
       {"infinite number", "model( size [1e999 2 3] )", 1, "not a number"},
       {"not a number", "model( size [-nan 2 3] )", 1, "not a number"},
-      {"infinity by name", "model( pose [infinity 0 0 0] )", 1, "not a number"},
+      {"infinity by name", "model( pose [infinity 0 0 0] )", 1, "found 'infinity'"},
       {"a hexadecimal number", "model( pose [0x10 0 0 0] )", 1, "not a number"},
       {"two dots", "model( size [1.2.3 2 3] )", 1, "not a number"},
       {"huge length", "model( pose [1e8 0 0 0] )", 1, "too large"},
