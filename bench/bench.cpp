@@ -20,7 +20,6 @@
 #include "bench/embree_caster.h"
 #include "bench/farm_caster.h"
 #include "bench/field_comparison.h"
-#include "bench/fleet_runs.h"
 #include "bench/grid.h"
 #include "bench/lane_comparison.h"
 #include "bench/large_fleet.h"
@@ -34,18 +33,11 @@ namespace sf::bench {
 
 namespace {
 
-/// Results that are measured once and reported several times.
 struct Session {
   gpu::Device device;
-  Book book;
-  std::map<std::string, Comparison> comparisons;
-  std::vector<FieldComparison> fields;
-  std::vector<LaneComparison> lanes;
-  std::vector<ConeComparison> cones;
-  std::vector<MapComparison> maps;
-  std::vector<AccuracyModeComparison> accuracy_modes;
-  std::vector<LargeFleetResult> large_fleets;
-  std::vector<Curve> curves;
+  std::vector<Report> reports;
+  std::map<std::string, Comparison> comparisons;  ///< measured once and reported several times
+  std::vector<Curve> curves;                      ///< for the picture
 };
 
 struct ScanCase {
@@ -69,7 +61,7 @@ const Comparison& scan_comparison(Session& session, const ScanCase& c) {
        {EmbreeUse{8, false}, EmbreeUse{8, true}, EmbreeUse{16, false}, EmbreeUse{16, true}, EmbreeUse{1, false}})
     if (auto caster = make_embree_caster(scans, use)) casters.push_back(std::move(caster));
   const Comparison comparison = compare(scans, casters, "embree", c.repeats);
-  session.book.scans.push_back(comparison);
+  session.reports.push_back(scan_report(comparison));
   return session.comparisons[name] = comparison;
 }
 
@@ -112,7 +104,7 @@ void report_ticks(benchmark::State& state, Session& session, const TickCase& c) 
   world::World world = large ? scenes::cave(1500, 48.0, 3) : load_cave();
   scenes::add_robots(world, c.robots, scenes::laser(361, M_PI, c.range), 1);
   const TickResult result = run_ticks(large ? "large cave" : "cave", world, session.device, c.wander, kWarmUp, c.ticks);
-  session.book.ticks.push_back(result);
+  session.reports.push_back(tick_report(result));
   report(state, result.ticks, result.rays, result.accuracy, result.hash);
   state.counters["x_real_time"] = result.interval_s / result.typical.wall_s;
 }
@@ -126,12 +118,6 @@ constexpr FieldCase kFieldCases[] = {
     {"field/200000_magnets/10000", [] { return sheet_scene(10'000, 200'000, 10.0, 31); }},
     {"field/200000_magnets/100/no_cutoff", [] { return sheet_scene(100, 200'000, 0.0, 11); }}};
 
-void report_field(benchmark::State& state, Session& session, const FieldCase& c) {
-  for (auto _ : state) session.fields.push_back(compare(c.scene(), session.device));
-  for (const FieldMethodResult& e : session.fields.back().method_results)
-    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
-}
-
 struct LaneCase {
   const char* name;
   double resolution;  ///< [m] 0: exact markings
@@ -140,21 +126,8 @@ constexpr LaneCase kLaneCases[] = {
     {"laneedge/exact/10000", 0.0}, {"laneedge/raster_5mm/10000", 0.005}, {"laneedge/raster_20mm/10000", 0.02}};
 constexpr std::size_t kLaneTurns = 15;
 
-void report_lanes(benchmark::State& state, Session& session, const LaneCase& c) {
-  const LaneScene scene = make_lane_scene(20, 10'000, c.resolution);
-  for (auto _ : state) session.lanes.push_back(compare_lanes(session.device, scene, kLaneTurns));
-  for (const LaneMethodResult& e : session.lanes.back().method_results)
-    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
-}
-
 constexpr std::uint32_t kConeCases[] = {100, 1'000};
 constexpr std::size_t kConeTurns = 31;
-
-void report_cones(benchmark::State& state, Session& session, std::uint32_t robots) {
-  for (auto _ : state) session.cones.push_back(compare_cones(session.device, make_cone_scene(robots), kConeTurns));
-  for (const ConeMethodResult& e : session.cones.back().method_results)
-    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
-}
 
 struct MapCase {
   const char* name;
@@ -167,20 +140,8 @@ constexpr MapCase kMapCases[] = {{"maps/1000/0.75m", 1'000, 0.75, false},
                                  {"maps/200/8m", 200, 8.0, false}};
 constexpr std::size_t kMapTurns = 25;
 
-void report_maps(benchmark::State& state, Session& session, const MapCase& c) {
-  for (auto _ : state) session.maps.push_back(compare_maps(session.device, c.robots, c.range, c.weighs, kMapTurns));
-  for (const MapMethodResult& e : session.maps.back().method_results)
-    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
-}
-
 constexpr std::uint32_t kLargeFleet = 10'000;
 constexpr std::size_t kLargeFleetTicks = 60;
-
-void report_large_fleet(benchmark::State& state, Session& session) {
-  for (auto _ : state) session.large_fleets.push_back(drive_large_fleet(session.device, kLargeFleet, kLargeFleetTicks));
-  state.counters["p50 [ms]"] = 1e3 * session.large_fleets.back().p50_s;
-  state.counters["p99 [ms]"] = 1e3 * session.large_fleets.back().p99_s;
-}
 
 struct CurveCase {
   const char* name;
@@ -191,30 +152,9 @@ constexpr CurveCase kCurveCases[] = {
     {"curves/wandering", [](gpu::Device& device) { return robots_curve(device, true, 30'000); }},
     {"curves/city", [](gpu::Device& device) { return segments_curve(device, 10'000'000); }}};
 
-void report_curve(benchmark::State& state, Session& session, const CurveCase& c) {
-  for (auto _ : state) session.curves.push_back(c.measure(session.device));
-  state.counters["exponent"] = session.curves.back().exponent;
-}
-
 constexpr double kModeRanges[] = {8.0, 0.75};
 constexpr std::uint32_t kModeRobots = 1'000;
 constexpr std::size_t kModeTurns = 21;
-
-void report_accuracy_modes(benchmark::State& state, Session& session, double range) {
-  for (auto _ : state)
-    session.accuracy_modes.push_back(compare_accuracy_modes(session.device, kModeRobots, range, kModeTurns));
-  for (const AccuracyModeResult& e : session.accuracy_modes.back().entries)
-    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
-}
-
-void report_measurements(benchmark::State& state, std::vector<Measurement>& facts,
-                         const std::function<std::vector<Measurement>()>& measure) {
-  for (auto _ : state)
-    for (const Measurement& fact : measure()) {
-      state.counters[fact.what] = fact.value;
-      facts.push_back(fact);
-    }
-}
 
 const char* method_key(std::size_t which) {
   constexpr const char* kKeys[kMethods] = {"farm",           "grid",     "grid_native",     "embree8",
@@ -222,61 +162,70 @@ const char* method_key(std::size_t which) {
   return kKeys[which];
 }
 
-void register_all(Session& session) {
-  const auto once = [](benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMillisecond)->Iterations(1); };
-  std::vector<Measurement>& facts = session.book.facts;
-  std::vector<Measurement>& prices = session.book.prices;
-  // Must run first: a child process counts at least the resident memory of its parent.
-  once(benchmark::RegisterBenchmark(
-      "price/program", [&prices](benchmark::State& s) { report_measurements(s, prices, measure_program); }));
+/// Registers a measurement that runs once.
+void register_once(const std::string& name, Session& session, const std::function<Report()>& measure) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [&session, measure](benchmark::State& state) {
+                                 for (auto _ : state) session.reports.push_back(measure());
+                                 for (const auto& [counter, value] : session.reports.back().counters)
+                                   state.counters[counter] = value;
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(1);
+}
+
+/// @param repeats of the measurement, which are reported one by one
+void register_repeats(const std::string& name, std::size_t repeats,
+                      const std::function<void(benchmark::State&)>& measure) {
+  benchmark::RegisterBenchmark(name.c_str(), measure)
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(static_cast<benchmark::IterationCount>(repeats));
+}
+
+void register_comparisons(Session& session) {
   for (const ScanCase& c : kScanCases)
     for (std::size_t which = 0; which < kMethods; ++which)
-      benchmark::RegisterBenchmark(fmt::format("scan/cave/{}/{}m/{}", c.robots, c.range, method_key(which)).c_str(),
-                                   [&session, &c, which](benchmark::State& s) { report_scan(s, session, c, which); })
-          ->UseManualTime()
-          ->Unit(benchmark::kMillisecond)
-          ->Iterations(static_cast<benchmark::IterationCount>(c.repeats));
+      register_repeats(fmt::format("scan/cave/{}/{}m/{}", c.robots, c.range, method_key(which)), c.repeats,
+                       [&session, &c, which](benchmark::State& s) { report_scan(s, session, c, which); });
   for (const TickCase& c : kTickCases)
-    benchmark::RegisterBenchmark(
-        fmt::format("tick/{}/{}m/{}", c.robots, c.range, c.wander ? "wandering" : "standing").c_str(),
-        [&session, &c](benchmark::State& s) { report_ticks(s, session, c); })
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond)
-        ->Iterations(static_cast<benchmark::IterationCount>(c.ticks));
+    register_repeats(fmt::format("tick/{}/{}m/{}", c.robots, c.range, c.wander ? "wandering" : "standing"), c.ticks,
+                     [&session, &c](benchmark::State& s) { report_ticks(s, session, c); });
+  gpu::Device& device = session.device;
   for (const FieldCase& c : kFieldCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_field(s, session, c); }));
+    register_once(c.name, session, [&] { return compare_fields(c.scene(), device); });
   for (const LaneCase& c : kLaneCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_lanes(s, session, c); }));
+    register_once(c.name, session,
+                  [&] { return compare_lanes(device, make_lane_scene(20, 10'000, c.resolution), kLaneTurns); });
   for (const std::uint32_t robots : kConeCases)
-    once(benchmark::RegisterBenchmark(fmt::format("sonar/cave/{}", robots).c_str(),
-                                      [&session, robots](benchmark::State& s) { report_cones(s, session, robots); }));
+    register_once(fmt::format("sonar/cave/{}", robots), session,
+                  [&device, robots] { return compare_cones(device, make_cone_scene(robots), kConeTurns); });
   for (const double range : kModeRanges)
-    once(benchmark::RegisterBenchmark(
-        fmt::format("accuracy_modes/cave/{}/{}m", kModeRobots, range).c_str(),
-        [&session, range](benchmark::State& s) { report_accuracy_modes(s, session, range); }));
-  once(benchmark::RegisterBenchmark(fmt::format("large_fleet/{}", kLargeFleet).c_str(),
-                                    [&session](benchmark::State& s) { report_large_fleet(s, session); }));
+    register_once(fmt::format("accuracy_modes/cave/{}/{}m", kModeRobots, range), session,
+                  [&device, range] { return compare_accuracy_modes(device, kModeRobots, range, kModeTurns); });
+  register_once(fmt::format("large_fleet/{}", kLargeFleet), session,
+                [&device] { return drive_large_fleet(device, kLargeFleet, kLargeFleetTicks); });
   for (const CurveCase& c : kCurveCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_curve(s, session, c); }));
+    register_once(c.name, session,
+                  [&] { return curve_report(session.curves.emplace_back(c.measure(session.device))); });
   for (const MapCase& c : kMapCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_maps(s, session, c); }));
-  once(benchmark::RegisterBenchmark("start",
-                                    [&facts](benchmark::State& s) { report_measurements(s, facts, measure_start); }));
-  once(benchmark::RegisterBenchmark("price/features", [&](benchmark::State& s) {
-    report_measurements(s, prices, [&session] { return measure_features(session.device); });
-  }));
-  once(benchmark::RegisterBenchmark("small_ticks", [&](benchmark::State& s) {
-    report_measurements(s, facts, [&session] { return measure_ticks(session.device); });
-  }));
-  once(benchmark::RegisterBenchmark("fleets", [&](benchmark::State& s) {
-    report_measurements(s, facts, [&session] { return measure_fleets(session.device); });
-  }));
-  once(benchmark::RegisterBenchmark("beside_stage", [&](benchmark::State& s) {
-    report_measurements(s, facts, [&session] { return measure_beside_stage(session.device); });
-  }));
-  once(benchmark::RegisterBenchmark("lists", [&](benchmark::State& s) {
-    report_measurements(s, facts, [&session] { return measure_lists(session.device); });
-  }));
+    register_once(c.name, session, [&] { return compare_maps(device, c.robots, c.range, c.weighs, kMapTurns); });
+}
+
+void register_all(Session& session) {
+  const auto add = [&session](const char* name, const char* file, auto measure) {
+    register_once(name, session,
+                  [&session, file, measure] { return measurement_report(file, measure(session.device)); });
+  };
+  // Must run first: a child process counts at least the resident memory of its parent.
+  add("price/program", "prices", [](gpu::Device&) { return measure_program(); });
+  register_comparisons(session);
+  add("start", "facts", [](gpu::Device&) { return measure_start(); });
+  add("price/features", "prices", measure_features);
+  add("small_ticks", "facts", measure_ticks);
+  add("fleets", "facts", measure_fleets);
+  add("beside_stage", "facts", measure_beside_stage);
+  add("lists", "facts", measure_lists);
 }
 
 int run(int argc, char** argv) {
@@ -295,20 +244,9 @@ int run(int argc, char** argv) {
   register_all(session);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
-  if (!folder.empty()) {
-    write_csv(session.book, folder);
-    write_csv(session.fields, folder);
-    write_lanes(session.lanes, folder);
-    write_cones(session.cones, folder);
-    write_maps(session.maps, folder);
-    write_accuracy_modes(session.accuracy_modes, folder);
-    write_large_fleet(session.large_fleets, folder);
-    write_curves(session.curves, folder);
-  }
+  if (!folder.empty()) write_csv(session.reports, folder);
   if (!pictures.empty()) draw_curves(session.curves, pictures);
-  fmt::print("{}{}{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
-             cone_table(session.cones), map_table(session.maps), accuracy_mode_table(session.accuracy_modes),
-             large_fleet_table(session.large_fleets), curves_table(session.curves));
+  fmt::print("{}", tables(session.reports));
   return 0;
 }
 

@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "bench/cone_methods.h"
-#include "bench/report.h"
+#include "base/thread_pool.h"
+#include "bench/farm_rounds.h"
+#include "bench/grid.h"
 #include "bench/scans.h"
+#include "sensors/cones/cone_array.h"
 #include "sensors/sonar.h"
 #include "tests/sensors/cone_trial.h"
 #include "tests/sensors/edit_laser.h"
@@ -19,9 +24,97 @@ namespace sf::bench {
 
 namespace {
 
+class ConeMethod {
+ public:
+  virtual ~ConeMethod() = default;
+  virtual std::string name() const = 0;
+  /// Overwrites the results of the last turn.
+  virtual void poison() = 0;
+  /// The timed part: from poses to ranges.
+  virtual void measure(std::size_t round) = 0;
+  /// [m] NaN if it was not written.
+  virtual double range(std::size_t robot, std::size_t transducer) const = 0;
+};
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class FarmCones final : public ConeMethod {
+ public:
+  FarmCones(const ConeScene& scene, gpu::Device& device) : farm_(scene.world, device, scene.rounds, 40'000'000) {}
+  std::string name() const override { return "farm"; }
+  void poison() override { farm_.poison(); }
+  void measure(std::size_t round) override { farm_.tick(round); }
+  double range(std::size_t robot, std::size_t transducer) const override {
+    return farm_.readings()[robot].values[transducer];
+  }
+
+ private:
+  FarmRounds farm_;
+};
+
+class PlainCones final : public ConeMethod {
+ public:
+  PlainCones(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays, std::string name, Walk walk)
+      : scene_(scene), arrays_(arrays), name_(std::move(name)), walk_(walk), transducers_(arrays[0].X_SC.size()) {
+    const sensors::ConeArray& array = arrays_[0];
+    grid_ = make_grid(scene.world, scene.world.movers[0].X_WM.z + array.row.X_MS.z, 0.5);
+    raycast::ScanSettings fan;
+    fan.fov = array.fov;
+    fan.samples = array.rays;
+    for (std::uint32_t i = 0; i < array.rays; ++i) {
+      const double bearing = bearing_of(fan, i);
+      beams_.push_back({std::cos(bearing), std::sin(bearing)});
+    }
+    values_.assign(arrays_.size() * transducers_, kNaN);
+    ranges_.resize(thread_pool_.threads(), std::vector<double>(array.rays));
+    hits_.resize(thread_pool_.threads(), std::vector<std::uint32_t>(array.rays));
+  }
+  std::string name() const override { return name_; }
+  void poison() override { std::fill(values_.begin(), values_.end(), kNaN); }
+  void measure(std::size_t round) override {
+    thread_pool_.parallel_for(arrays_.size(), kRobotsPerPiece,
+                              [&](std::size_t first, std::size_t last, unsigned thread) {
+                                for (std::size_t i = first; i < last; ++i)
+                                  hear_ring(i, scene_.rounds[round][i], thread);
+                              });
+  }
+  double range(std::size_t robot, std::size_t transducer) const override {
+    return values_[robot * transducers_ + transducer];
+  }
+
+ private:
+  void hear_ring(std::size_t robot, const base::Pose& X_WM, unsigned thread) {
+    const sensors::ConeArray& array = arrays_[robot];
+    const base::Pose X_WS = base::compose(X_WM, array.row.X_MS);
+    std::vector<double>& ranges = ranges_[thread];
+    for (std::size_t k = 0; k < transducers_; ++k) {
+      walk_(grid_, base::compose(X_WS, array.X_SC[k]), beams_, array.range_max, ranges.data(), hits_[thread].data());
+      values_[robot * transducers_ + k] = std::max(array.range_min, *std::min_element(ranges.begin(), ranges.end()));
+    }
+  }
+
+  const ConeScene& scene_;
+  const std::vector<sensors::ConeArray>& arrays_;
+  std::string name_;
+  Walk walk_;
+  std::size_t transducers_;
+  SegmentGrid grid_;
+  std::vector<glm::dvec2> beams_;
+  base::ThreadPool thread_pool_;
+  std::vector<double> values_;
+  std::vector<std::vector<double>> ranges_;  ///< scratch per thread
+  std::vector<std::vector<std::uint32_t>> hits_;
+};
+
 constexpr std::size_t kRounds = 4;
 constexpr std::size_t kJudgedRobots = 25;  // per round
 constexpr std::size_t kPlain = 1;          // index of the method that ratios refer to
+
+/// Result of one method.
+struct ConeMethodResult : Timing {
+  double worst = 0.0;      ///< [m] largest error relative to the nearest ray, over a sample of all rounds
+  std::uint64_t hash = 0;  ///< of all ranges of round 0
+};
 
 /// Returns the Pioneer's sonar ring from worlds/robots.inc without its firing order.
 world::Sensor pioneers_ring() {
@@ -33,14 +126,13 @@ world::Sensor pioneers_ring() {
   return ring;
 }
 
-Cost measure_once(ConeMethod& method, std::size_t round, const ConeComparison& comparison) {
+Cost measure_once(ConeMethod& method, std::size_t round, std::size_t robots, std::size_t cones) {
   method.poison();
   const Cost start = now();
   method.measure(round);
   const Cost cost = since(start);
-  for (std::size_t i = 0; i < comparison.cones; ++i)
-    SF_CHECK(!std::isnan(method.range(i % comparison.robots, i / comparison.robots)),
-             method.name() + " left cones unanswered");
+  for (std::size_t i = 0; i < cones; ++i)
+    SF_CHECK(!std::isnan(method.range(i % robots, i / robots)), method.name() + " left cones unanswered");
   return cost;
 }
 
@@ -90,51 +182,40 @@ ConeScene make_cone_scene(std::uint32_t robots) {
   return scene;
 }
 
-ConeComparison compare_cones(gpu::Device& device, const ConeScene& scene, std::size_t repeats) {
+Report compare_cones(gpu::Device& device, const ConeScene& scene, std::size_t repeats) {
   const auto arrays = sensors::cone_arrays_of(scene.world, "sonar", sensors::read_sonar);
   std::vector<std::unique_ptr<ConeMethod>> methods;
-  methods.push_back(make_farm_cones(scene, device));
-  methods.push_back(make_plain_cones(scene, arrays, "plain C++ grid, -O3", walk_portable));
-  methods.push_back(make_plain_cones(scene, arrays, "plain C++ grid, -O3 -march=native", walk_native));
-  const std::size_t cones = arrays.size() * arrays[0].X_SC.size();
-  ConeComparison comparison{
-      arrays.size(), cones, cones * arrays[0].rays, kRounds * kJudgedRobots * arrays[0].X_SC.size(), {}};
+  methods.push_back(std::make_unique<FarmCones>(scene, device));
+  methods.push_back(std::make_unique<PlainCones>(scene, arrays, "plain C++ grid, -O3", walk_portable));
+  methods.push_back(std::make_unique<PlainCones>(scene, arrays, "plain C++ grid, -O3 -march=native", walk_native));
+  const std::size_t robots = arrays.size(), cones = robots * arrays[0].X_SC.size(), rays = cones * arrays[0].rays;
+  std::vector<ConeMethodResult> results;
   for (const auto& method : methods) {
-    comparison.method_results.emplace_back().method = method->name();
+    results.emplace_back().method = method->name();
     for (std::size_t round = kRounds; round-- > 0;) {
-      measure_once(*method, round, comparison);
-      check_accuracy(scene, arrays, *method, round, comparison.method_results.back());
+      measure_once(*method, round, robots, cones);
+      check_accuracy(scene, arrays, *method, round, results.back());
     }
-    comparison.method_results.back().hash = hash_of(*method, arrays.size(), arrays[0].X_SC.size());
+    results.back().hash = hash_of(*method, arrays.size(), arrays[0].X_SC.size());
   }
-  take_turns(comparison.method_results, repeats, methods[kPlain]->name(),
-             [&](std::size_t k, std::size_t turn) { return measure_once(*methods[k], turn % kRounds, comparison); });
-  return comparison;
-}
+  take_turns(results, repeats, methods[kPlain]->name(),
+             [&](std::size_t k, std::size_t turn) { return measure_once(*methods[k], turn % kRounds, robots, cones); });
 
-void write_cones(const std::vector<ConeComparison>& comparisons, const std::string& folder) {
-  if (comparisons.empty()) return;
-  std::string text =
-      "method,robots,cones,rays,turns,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_plain,cpu_ratio_to_plain,"
-      "max_error_m,judged,hash\n";
-  for (const ConeComparison& o : comparisons)
-    for (const ConeMethodResult& e : o.method_results)
-      text += fmt::format("\"{}\",{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{},{}\n", e.method, o.robots,
-                          o.cones, o.rays, e.repeats.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
-                          1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst,
-                          o.checked, base::hash_hex(e.hash));
-  write(folder + "/cones.csv", text);
-}
-
-std::string cone_table(const std::vector<ConeComparison>& comparisons) {
-  std::string text;
-  for (const ConeComparison& o : comparisons) {
-    text += fmt::format("\nsonar rings: {} robots, {} cones, {} rays\n", o.robots, o.cones, o.rays);
-    text += heading("Mrays/s") + "  max err m\n";
-    for (const ConeMethodResult& e : o.method_results)
-      text += row(e, static_cast<double>(o.rays)) + fmt::format(" {:>10.1e}\n", e.worst);
-  }
-  return text;
+  Report report{"cones", "",
+                "method,robots,cones,rays,turns,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_plain,"
+                "cpu_ratio_to_plain,max_error_m,judged,hash"};
+  report.text = fmt::format("\nsonar rings: {} robots, {} cones, {} rays\n{}  max err m\n", robots, cones, rays,
+                            heading("Mrays/s"));
+  const auto csv = [&](const ConeMethodResult& e) {
+    return fmt::format("\"{}\",{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{},{}\n", e.method, robots, cones,
+                       rays, e.repeats.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
+                       mrays_per_s(rays, e.typical), e.ratio, e.cpu_ratio, e.worst,
+                       kRounds * kJudgedRobots * arrays[0].X_SC.size(), base::hash_hex(e.hash));
+  };
+  add_methods(report, results, csv, [&](const ConeMethodResult& e) {
+    return row(e, static_cast<double>(rays)) + fmt::format(" {:>10.1e}\n", e.worst);
+  });
+  return report;
 }
 
 }  // namespace sf::bench

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <fstream>
 
-#include "bench/report.h"
 #include "bench/tick_benchmark.h"
 #include "bench/tiles.h"
 #include "tests/sensors/scenes.h"
@@ -118,27 +117,20 @@ Curve segments_curve(gpu::Device& device, std::size_t most) {
   return curve;
 }
 
-std::string curves_table(const std::vector<Curve>& curves) {
-  std::string text;
-  for (const Curve& curve : curves) {
-    text +=
-        fmt::format("\n{}: cpu time grows with the power {:.2f} of {}\n{:>12} {:>10} {:>10} {:>10} {:>12}\n",
-                    curve.what, curve.exponent, curve.unit, curve.unit, "wall ms", "cpu ms", "load s", "memory MiB");
-    for (const CurvePoint& p : curve.points)
-      text += fmt::format("{:>12.0f} {:>10.3f} {:>10.3f} {:>10.3f} {:>12.1f}\n", p.count, 1e3 * p.wall_s, 1e3 * p.cpu_s,
-                          p.load_s, p.memory / (1u << 20));
+Report curve_report(const Curve& curve) {
+  Report report{"curves", "", "curve,unit,count,wall_ms_median,cpu_ms_median,load_s,memory_mib,exponent"};
+  report.counters = {{"exponent", curve.exponent}};
+  report.text =
+      fmt::format("\n{}: cpu time grows with the power {:.2f} of {}\n{:>12} {:>10} {:>10} {:>10} {:>12}\n", curve.what,
+                  curve.exponent, curve.unit, curve.unit, "wall ms", "cpu ms", "load s", "memory MiB");
+  for (const CurvePoint& p : curve.points) {
+    const double wall = 1e3 * p.wall_s, cpu = 1e3 * p.cpu_s, memory = p.memory / (1u << 20);
+    report.rows += fmt::format("{},{},{:.0f},{:.4f},{:.4f},{:.4f},{:.1f},{:.3f}\n", curve.what, curve.unit, p.count,
+                               wall, cpu, p.load_s, memory, curve.exponent);
+    report.text +=
+        fmt::format("{:>12.0f} {:>10.3f} {:>10.3f} {:>10.3f} {:>12.1f}\n", p.count, wall, cpu, p.load_s, memory);
   }
-  return text;
-}
-
-void write_curves(const std::vector<Curve>& curves, const std::string& folder) {
-  if (curves.empty()) return;
-  std::string text = "curve,unit,count,wall_ms_median,cpu_ms_median,load_s,memory_mib,exponent\n";
-  for (const Curve& curve : curves)
-    for (const CurvePoint& p : curve.points)
-      text += fmt::format("{},{},{:.0f},{:.4f},{:.4f},{:.4f},{:.1f},{:.3f}\n", curve.what, curve.unit, p.count,
-                          1e3 * p.wall_s, 1e3 * p.cpu_s, p.load_s, p.memory / (1u << 20), curve.exponent);
-  write(folder + "/curves.csv", text);
+  return report;
 }
 
 void draw_curves(const std::vector<Curve>& curves, const std::string& folder) {

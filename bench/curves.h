@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/report.h"
 #include "gpu/device.h"
 
 namespace sf::bench {
@@ -30,9 +31,7 @@ Curve robots_curve(gpu::Device& device, bool wander, std::uint32_t most);
 /// 100 to `most` segments: blocks of 6 m, streets of 4 m, 100 robots wandering in the middle, 361 beams to 8 m.
 Curve segments_curve(gpu::Device& device, std::size_t most);
 
-std::string curves_table(const std::vector<Curve>& curves);
-/// Writes curves.csv; does nothing without curves.
-void write_curves(const std::vector<Curve>& curves, const std::string& folder);
+Report curve_report(const Curve& curve);
 /// Draws cost.png; does nothing without curves. Both axes are logarithmic, so that a line's slope is its exponent.
 void draw_curves(const std::vector<Curve>& curves, const std::string& folder);
 

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "bench/field_methods.h"
-#include "bench/report.h"
 #include "sensors/magnetometer.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -17,6 +16,12 @@ namespace {
 
 constexpr std::size_t kJudgedRobots = 7;  // per turn
 constexpr const char* kReference = "plain C++, -O3";
+
+/// Result of one method.
+struct FieldMethodResult : Timing {
+  double max_error = 0.0;   ///< relative to the largest field, over a sample of all turns
+  std::size_t checked = 0;  ///< number of elements
+};
 
 /// Creates arrays as in the thesis on robots at random positions in the extent, 8.5 cm above the ground.
 FieldScene fleet_on(std::string name, world::World world, std::uint32_t arrays, std::size_t repeats) {
@@ -73,58 +78,48 @@ FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutof
   return fleet_on("one a square metre", std::move(world), arrays, repeats);
 }
 
-FieldComparison compare(const FieldScene& scene, gpu::Device& device) {
+Report compare_fields(const FieldScene& scene, gpu::Device& device) {
   gpu::Device host{std::string(gpu::kHostDevice)};  // must outlive its farm
   std::vector<std::unique_ptr<FieldMethod>> methods;
   methods.push_back(make_farm_method(scene, device));
   methods.push_back(make_plain_method(scene, kReference, sum_portable));
   methods.push_back(make_plain_method(scene, "plain C++, -O3 -march=native", sum_native));
   methods.push_back(make_farm_method(scene, host));
-  FieldComparison comparison{
-      scene.name, scene.world.movers.size(), scene.world.magnets.size(), scene.world.magnet_cutoff, 0.0, {}};
+  std::vector<FieldMethodResult> results;
   for (const auto& method : methods) {
     method->sum(scene.repeats);  // warm-up
-    comparison.method_results.emplace_back().method = method->name();
+    results.emplace_back().method = method->name();
   }
   const double before = methods[0]->pairs();
   double largest = 0.0;
-  take_turns(comparison.method_results, scene.repeats, kReference, [&](std::size_t k, std::size_t turn) {
+  take_turns(results, scene.repeats, kReference, [&](std::size_t k, std::size_t turn) {
     methods[k]->poison();
     const Cost start = now();
     methods[k]->sum(turn);
     const Cost cost = since(start);
-    check_accuracy(scene, *methods[k], turn, comparison.method_results[k], largest);
+    check_accuracy(scene, *methods[k], turn, results[k], largest);
     return cost;
   });
-  comparison.pairs = (methods[0]->pairs() - before) / static_cast<double>(scene.repeats);
-  for (FieldMethodResult& method_result : comparison.method_results) method_result.max_error /= largest;
-  return comparison;
-}
+  for (FieldMethodResult& method_result : results) method_result.max_error /= largest;
 
-void write_csv(const std::vector<FieldComparison>& comparisons, const std::string& folder) {
-  if (comparisons.empty()) return;
-  std::string text =
-      "scene,method,arrays,elements,magnets,cutoff_m,pairs,turns,wall_ms_median,cpu_ms_median,gpairs_per_s,"
-      "ratio_to_plain,cpu_ratio_to_plain,max_error_of_largest,judged\n";
-  for (const FieldComparison& o : comparisons)
-    for (const FieldMethodResult& e : o.method_results)
-      text += fmt::format("\"{}\",\"{}\",{},{},{},{:g},{:.0f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{}\n",
-                          o.scene, e.method, o.arrays, o.arrays * kArrayElements, o.magnets, o.cutoff_m, o.pairs,
-                          e.repeats.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
-                          1e-9 * o.pairs / e.typical.wall_s, e.ratio, e.cpu_ratio, e.max_error, e.checked);
-  write(folder + "/field.csv", text);
-}
-
-std::string table(const std::vector<FieldComparison>& comparisons) {
-  std::string text;
-  for (const FieldComparison& o : comparisons) {
-    text += fmt::format("\nmagnets, {}: {} arrays of {} over {} magnets, cut-off {:g} m, {:.3g} pairs\n", o.scene,
-                        o.arrays, kArrayElements, o.magnets, o.cutoff_m, o.pairs);
-    text += heading("Mpairs/s") + "    max err\n";
-    for (const FieldMethodResult& e : o.method_results)
-      text += row(e, o.pairs) + fmt::format(" {:>10.1e}\n", e.max_error);
-  }
-  return text;
+  const world::World& world = scene.world;
+  const std::size_t arrays = world.movers.size(), magnets = world.magnets.size();
+  const double pairs = (methods[0]->pairs() - before) / static_cast<double>(scene.repeats);
+  Report report{"field", "",
+                "scene,method,arrays,elements,magnets,cutoff_m,pairs,turns,wall_ms_median,cpu_ms_median,gpairs_per_s,"
+                "ratio_to_plain,cpu_ratio_to_plain,max_error_of_largest,judged"};
+  report.text =
+      fmt::format("\nmagnets, {}: {} arrays of {} over {} magnets, cut-off {:g} m, {:.3g} pairs\n{}    max err\n",
+                  scene.name, arrays, kArrayElements, magnets, world.magnet_cutoff, pairs, heading("Mpairs/s"));
+  const auto csv = [&](const FieldMethodResult& e) {
+    return fmt::format("\"{}\",\"{}\",{},{},{},{:g},{:.0f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{}\n",
+                       scene.name, e.method, arrays, arrays * kArrayElements, magnets, world.magnet_cutoff, pairs,
+                       e.repeats.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, 1e-9 * pairs / e.typical.wall_s,
+                       e.ratio, e.cpu_ratio, e.max_error, e.checked);
+  };
+  add_methods(report, results, csv,
+              [&](const FieldMethodResult& e) { return row(e, pairs) + fmt::format(" {:>10.1e}\n", e.max_error); });
+  return report;
 }
 
 }  // namespace sf::bench

@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "bench/lane_methods.h"
-#include "bench/report.h"
 #include "raycast/reference_caster.h"
 #include "sensors/lane_markings/host_fit.h"
 #include "tests/sensors/brute_force.h"
@@ -19,6 +18,13 @@ namespace {
 
 constexpr std::size_t kJudged = 60;
 constexpr std::size_t kPlain = 1;  ///< index of the method that ratios refer to
+
+/// Result of one method.
+struct LaneMethodResult : Timing {
+  double worst = 0.0;      ///< [m] largest difference from the reference, over readings that both produce
+  std::size_t alone = 0;   ///< number of readings that only one of the two produces
+  std::uint64_t hash = 0;  ///< of all readings of round 0
+};
 
 Cost read_once(LaneReader& reader, std::size_t round, std::size_t sensors) {
   reader.poison();
@@ -64,7 +70,7 @@ void check_accuracy(const LaneReader& reader, const std::vector<sensors::EdgeRea
 
 }  // namespace
 
-LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::size_t repeats) {
+Report compare_lanes(gpu::Device& device, const LaneScene& scene, std::size_t repeats) {
   const auto known = know(scene);
   gpu::Device host{std::string(gpu::kHostDevice)};  // must outlive its farm
   std::vector<std::unique_ptr<LaneReader>> readers;
@@ -73,7 +79,9 @@ LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::s
   readers.push_back(make_plain_lanes(scene, *known, true));
   readers.push_back(make_farm_lanes(scene, host));
   const std::size_t sensors = known->rows.size();
-  LaneComparison comparison{sensors, sensors * known->job.beams.size(), scene.world.road_resolution, 0, {}};
+  const std::size_t rays = sensors * known->job.beams.size();
+  std::size_t seen = 0;  // sensors that see an edge in round 0
+  std::vector<LaneMethodResult> results;
 
   for (const auto& reader : readers)
     for (std::size_t round = scene.rounds.size(); round-- > 0;) read_once(*reader, round, sensors);
@@ -88,40 +96,30 @@ LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::s
     for (std::size_t i = 0; i < sensors; ++i) {
       const sensors::EdgeReading r = reader->reading(i);
       method_result.hash = base::hash_bytes(&r, sizeof r, method_result.hash);
-      if (comparison.method_results.empty()) comparison.seen += std::isnan(r.distance) ? 0 : 1;
+      if (results.empty()) seen += std::isnan(r.distance) ? 0 : 1;
     }
-    comparison.method_results.push_back(std::move(method_result));
+    results.push_back(std::move(method_result));
   }
-  take_turns(comparison.method_results, repeats, readers[kPlain]->name(), [&](std::size_t k, std::size_t turn) {
+  take_turns(results, repeats, readers[kPlain]->name(), [&](std::size_t k, std::size_t turn) {
     return read_once(*readers[k], turn % scene.rounds.size(), sensors);
   });
-  return comparison;
-}
 
-void write_lanes(const std::vector<LaneComparison>& comparisons, const std::string& folder) {
-  if (comparisons.empty()) return;
-  std::string text =
-      "paint,method,sensors,rays,seen,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
-      "max_difference_m,readings_alone,hash\n";
-  for (const LaneComparison& o : comparisons)
-    for (const LaneMethodResult& e : o.method_results)
-      text += fmt::format("\"{}\",\"{}\",{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{},{}\n",
-                          o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact", e.method,
-                          o.sensors, o.rays, o.seen, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
-                          e.cpu_ratio, e.worst, e.alone, base::hash_hex(e.hash));
-  write(folder + "/lanes.csv", text);
-}
-
-std::string lane_table(const std::vector<LaneComparison>& comparisons) {
-  std::string text;
-  for (const LaneComparison& o : comparisons) {
-    text += fmt::format("\n{} lane edge sensors, {} rays, {}: {} see an edge\n", o.sensors, o.rays,
-                        o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact paint", o.seen);
-    text += heading("Mrays/s") + "  max diff m  alone\n";
-    for (const LaneMethodResult& e : o.method_results)
-      text += row(e, static_cast<double>(o.rays)) + fmt::format(" {:>11.1e} {:>6}\n", e.worst, e.alone);
-  }
-  return text;
+  const double resolution = scene.world.road_resolution;
+  Report report{"lanes", "",
+                "paint,method,sensors,rays,seen,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
+                "max_difference_m,readings_alone,hash"};
+  const std::string raster = fmt::format("raster of {:g} m", resolution);
+  report.text = fmt::format("\n{} lane edge sensors, {} rays, {}: {} see an edge\n{}  max diff m  alone\n", sensors,
+                            rays, resolution > 0.0 ? raster : "exact paint", seen, heading("Mrays/s"));
+  const auto csv = [&](const LaneMethodResult& e) {
+    return fmt::format("\"{}\",\"{}\",{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{},{}\n",
+                       resolution > 0.0 ? raster : "exact", e.method, sensors, rays, seen, 1e3 * e.typical.wall_s,
+                       1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio, e.worst, e.alone, base::hash_hex(e.hash));
+  };
+  add_methods(report, results, csv, [&](const LaneMethodResult& e) {
+    return row(e, static_cast<double>(rays)) + fmt::format(" {:>11.1e} {:>6}\n", e.worst, e.alone);
+  });
+  return report;
 }
 
 }  // namespace sf::bench

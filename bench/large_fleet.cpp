@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "bench/report.h"
 #include "bench/tiles.h"
 #include "scenarios/simulation.h"
 #include "server/reading_publisher.h"
@@ -16,6 +15,7 @@ namespace sf::bench {
 
 namespace {
 
+constexpr const char* kStages[] = {"move", "place", "scans", "device", "collect", "encode", "send"};
 constexpr std::size_t kWarmUp = 10;
 constexpr std::size_t kReceiveBuffer = 256u << 20;  // [byte] more than two ticks of packets
 
@@ -111,7 +111,7 @@ class LargeFleet {
 
 }  // namespace
 
-LargeFleetResult drive_large_fleet(gpu::Device& device, std::uint32_t robots, std::size_t ticks) {
+Report drive_large_fleet(gpu::Device& device, std::uint32_t robots, std::size_t ticks) {
   LargeFleet fleet(device, robots);
   for (std::size_t k = 0; k < kWarmUp; ++k) fleet.tick();
   const netio::OutboxCounts sent = fleet.sent();
@@ -119,65 +119,42 @@ LargeFleetResult drive_large_fleet(gpu::Device& device, std::uint32_t robots, st
   const double move_s = fleet.simulation().move_seconds(), encode_s = fleet.encode_s();
   const std::uint64_t received = fleet.received();
 
-  LargeFleetResult result{.robots = robots};
+  std::vector<Cost> costs;
   std::vector<double> walls;
   for (std::size_t k = 0; k < ticks; ++k) {
-    result.ticks.push_back(fleet.tick());
-    walls.push_back(result.ticks.back().wall_s);
+    costs.push_back(fleet.tick());
+    walls.push_back(costs.back().wall_s);
   }
-  const auto n = static_cast<double>(ticks);
   const netio::OutboxCounts after = fleet.sent();
-  result.p50_s = percentile(walls, 0.5);
-  result.p99_s = percentile(walls, 0.99);
-  result.move_s = (fleet.simulation().move_seconds() - move_s) / n;
-  result.encode_s = (fleet.encode_s() - encode_s) / n;
-  result.send_s = (after.busy_s - sent.busy_s) / n;
-  result.stages = minus(fleet.simulation().farm().stats(), stages);
-  result.datagrams = after.sent - sent.sent;
-  result.bytes = after.sent_bytes - sent.sent_bytes;
-  result.received = fleet.received() - received;
-  result.dropped = after.dropped - sent.dropped;
-  result.hash = fleet.simulation().farm().hash();
   SF_CHECK(after.failed == 0, after.first_failure);
-  return result;
-}
-
-std::string large_fleet_table(const std::vector<LargeFleetResult>& results) {
-  std::string text;
-  if (!results.empty())
-    text += fmt::format(
-        "\nlarge fleets: laser, lane edge, magnetometers, packets\n{:<8} {:>8} {:>8} {:>8} | {:>6} {:>6} {:>7} {:>7} "
-        "{:>7} {:>7} {:>7} | {:>10} {:>9} {:>8}  {}\n",
-        "robots", "p50 ms", "p99 ms", "cpu ms", "move", "place", "scans", "device", "collect", "encode", "send",
-        "packets/t", "MB/t", "lost", "hash");
-  for (const LargeFleetResult& r : results) {
-    const auto n = static_cast<double>(r.ticks.size());
-    text += fmt::format(
-        "{:<8} {:>8.2f} {:>8.2f} {:>8.2f} | {:>6.2f} {:>6.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>7.2f} | {:>10.0f} "
-        "{:>9.2f} {:>8}  {}\n",
-        r.robots, 1e3 * r.p50_s, 1e3 * r.p99_s, 1e3 * median(r.ticks).cpu_s, 1e3 * r.move_s, 1e3 * r.stages.place_s / n,
-        1e3 * r.stages.lists_s / n, 1e3 * r.stages.device_s / n, 1e3 * r.stages.collect_s / n, 1e3 * r.encode_s,
-        1e3 * r.send_s, static_cast<double>(r.datagrams) / n, 1e-6 * static_cast<double>(r.bytes) / n,
-        r.dropped + r.datagrams - r.received, base::hash_hex(r.hash));
-  }
-  return text;
-}
-
-void write_large_fleet(const std::vector<LargeFleetResult>& results, const std::string& folder) {
-  if (results.empty()) return;
-  std::string text =
+  const farm::FarmStats sum = minus(fleet.simulation().farm().stats(), stages);
+  const auto n = static_cast<double>(ticks);
+  const double p50 = 1e3 * percentile(walls, 0.5), p99 = 1e3 * percentile(walls, 0.99), cpu = 1e3 * median(costs).cpu_s;
+  // [ms] of `kStages`; move: decisions, motion and contacts; send: the sending thread
+  const double times[] = {1e3 * (fleet.simulation().move_seconds() - move_s) / n,
+                          1e3 * sum.place_s / n,
+                          1e3 * sum.lists_s / n,
+                          1e3 * sum.device_s / n,
+                          1e3 * sum.collect_s / n,
+                          1e3 * (fleet.encode_s() - encode_s) / n,
+                          1e3 * (after.busy_s - sent.busy_s) / n};
+  const std::uint64_t datagrams = after.sent - sent.sent, lost = datagrams - (fleet.received() - received);
+  const std::uint64_t dropped = after.dropped - sent.dropped;
+  const double packets = static_cast<double>(datagrams) / n;
+  const double bytes = static_cast<double>(after.sent_bytes - sent.sent_bytes) / n;
+  const std::string hash = base::hash_hex(fleet.simulation().farm().hash());
+  return {
+      "large_fleet",
+      fmt::format("\nlarge fleets: laser, lane edge, magnetometers, packets\n{:<8} {:>8} {:>8} {:>8} | {:>7} | "
+                  "{:>10} {:>9} {:>8}  {}\n",
+                  "robots", "p50 ms", "p99 ms", "cpu ms", fmt::join(kStages, " "), "packets/t", "MB/t", "lost", "hash"),
       "robots,ticks,wall_ms_p50,wall_ms_p99,cpu_ms_median,move_ms,place_ms,scans_ms,device_ms,collect_ms,encode_ms,"
-      "send_ms,packets_per_tick,bytes_per_tick,never_sent,not_received,hash\n";
-  for (const LargeFleetResult& r : results) {
-    const auto n = static_cast<double>(r.ticks.size());
-    text += fmt::format(
-        "{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.0f},{:.0f},{},{},{}\n",
-        r.robots, r.ticks.size(), 1e3 * r.p50_s, 1e3 * r.p99_s, 1e3 * median(r.ticks).cpu_s, 1e3 * r.move_s,
-        1e3 * r.stages.place_s / n, 1e3 * r.stages.lists_s / n, 1e3 * r.stages.device_s / n,
-        1e3 * r.stages.collect_s / n, 1e3 * r.encode_s, 1e3 * r.send_s, static_cast<double>(r.datagrams) / n,
-        static_cast<double>(r.bytes) / n, r.dropped, r.datagrams - r.received, base::hash_hex(r.hash));
-  }
-  write(folder + "/large_fleet.csv", text);
+      "send_ms,packets_per_tick,bytes_per_tick,never_sent,not_received,hash",
+      fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.0f},{:.0f},{},{},{}\n", robots, ticks, p50, p99, cpu,
+                  fmt::join(times, ","), packets, bytes, dropped, lost, hash),
+      fmt::format("{:<8} {:>8.2f} {:>8.2f} {:>8.2f} | {:>7.2f} | {:>10.0f} {:>9.2f} {:>8}  {}\n", robots, p50, p99, cpu,
+                  fmt::join(times, " "), packets, 1e-6 * bytes, dropped + lost, hash),
+      {{"p50 [ms]", p50}, {"p99 [ms]", p99}}};
 }
 
 }  // namespace sf::bench

@@ -9,7 +9,6 @@
 #include "base/hash.h"
 #include "base/thread_pool.h"
 #include "bench/farm_rounds.h"
-#include "bench/report.h"
 #include "bench/scans.h"
 #include "maps/grid_update.h"
 #include "sensors/occupancy_batch.h"
@@ -131,6 +130,12 @@ class PlainMapper : public Mapper {
   std::vector<std::vector<std::uint32_t>> ends_;  ///< per thread
 };
 
+/// Result of one method.
+struct MapMethodResult : Timing {
+  std::size_t different = 0;  ///< words in all maps that differ from the plain mapper's
+  std::uint64_t hash = 0;     ///< of all maps after the last turn
+};
+
 void check_accuracy(const Mapper& mapper, const Mapper& plain, std::size_t robots, MapMethodResult& method_result) {
   for (std::uint32_t i = 0; i < robots; ++i) {
     const auto words = mapper.words(i);
@@ -142,51 +147,39 @@ void check_accuracy(const Mapper& mapper, const Mapper& plain, std::size_t robot
 
 }  // namespace
 
-MapComparison compare_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t repeats) {
+Report compare_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t repeats) {
   const Scans scans = make_scans("cave", load_cave(), robots, scenes::laser(361, M_PI, range));
   const std::vector<Round> rounds = rounds_of(scans, device);
   const std::vector<sensors::MapSettings> map_settings = map_settings_of(scans, weighs);
   std::vector<std::unique_ptr<Mapper>> mappers;
   mappers.push_back(std::make_unique<FarmMapper>(device, map_settings));
   mappers.push_back(std::make_unique<PlainMapper>(map_settings, weighs));
-  MapComparison comparison{robots, scans.rays(), range, weighs, {}};
+  std::vector<MapMethodResult> results;
   for (const auto& mapper : mappers) {
     mapper->update(rounds[0]);
-    comparison.method_results.emplace_back().method = mapper->name();
+    results.emplace_back().method = mapper->name();
   }
-  take_turns(comparison.method_results, repeats, mappers.back()->name(), [&](std::size_t k, std::size_t turn) {
+  take_turns(results, repeats, mappers.back()->name(), [&](std::size_t k, std::size_t turn) {
     const Cost start = now();
     mappers[k]->update(rounds[turn % rounds.size()]);
     return since(start);
   });
-  for (std::size_t k = 0; k < mappers.size(); ++k)
-    check_accuracy(*mappers[k], *mappers.back(), robots, comparison.method_results[k]);
-  return comparison;
-}
+  for (std::size_t k = 0; k < mappers.size(); ++k) check_accuracy(*mappers[k], *mappers.back(), robots, results[k]);
 
-void write_maps(const std::vector<MapComparison>& comparisons, const std::string& folder) {
-  if (comparisons.empty()) return;
-  std::string text =
-      "robots,beams,range_m,log_odds,method,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
-      "words_different,hash\n";
-  for (const MapComparison& o : comparisons)
-    for (const MapMethodResult& e : o.method_results)
-      text += fmt::format("{},{},{:g},{},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", o.robots, o.beams, o.range_m,
-                          o.weighs ? 1 : 0, e.method, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
-                          e.cpu_ratio, e.different, base::hash_hex(e.hash));
-  write(folder + "/maps.csv", text);
-}
-
-std::string map_table(const std::vector<MapComparison>& comparisons) {
-  std::string text;
-  for (const MapComparison& o : comparisons) {
-    text += fmt::format("\n{} maps of 3 cm cells, {} beams up to {:g} m{}\n", o.robots, o.beams, o.range_m,
-                        o.weighs ? ", log odds" : "");
-    text += heading("Mbeams/s") + "  words that differ\n";
-    for (const MapMethodResult& e : o.method_results)
-      text += row(e, static_cast<double>(o.beams)) + fmt::format(" {:>18}\n", e.different);
-  }
-  return text;
+  Report report{"maps", "",
+                "robots,beams,range_m,log_odds,method,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
+                "words_different,hash"};
+  report.text = fmt::format("\n{} maps of 3 cm cells, {} beams up to {:g} m{}\n{}  words that differ\n", robots,
+                            scans.rays(), range, weighs ? ", log odds" : "", heading("Mbeams/s"));
+  const auto csv = [&](const MapMethodResult& e) {
+    return fmt::format("{},{},{:g},{},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", robots, scans.rays(), range,
+                       weighs ? 1 : 0, e.method, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio,
+                       e.different, base::hash_hex(e.hash));
+  };
+  add_methods(report, results, csv, [&](const MapMethodResult& e) {
+    return row(e, static_cast<double>(scans.rays())) + fmt::format(" {:>18}\n", e.different);
+  });
+  return report;
 }
 
 }  // namespace sf::bench

@@ -1,12 +1,16 @@
 #include "bench/measurements.h"
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "base/error.h"
 #include "bench/comparison.h"
+#include "bench/cost.h"
 #include "bench/farm_caster.h"
 #include "bench/poison.h"
 #include "farm/farm.h"
+#include "scenarios/runner.h"
+#include "scenarios/simulation.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {
@@ -100,6 +104,41 @@ std::vector<Measurement> measure_lists(gpu::Device& device) {
     facts.push_back({"lists of a new cell" + at + ", one core", 1e6 * (first.cpu_s - later.cpu_s) / cells, "us"});
     facts.push_back({"first tick of 1000 robots" + at, 1e3 * first.wall_s, "ms"});
   }
+  return facts;
+}
+
+namespace {
+
+constexpr std::uint32_t kHospitalRobots = 1'000;
+constexpr int kHospitalTicks = 200;
+
+Measurement simville(gpu::Device& device) {
+  const auto scenario = scenarios::read_scenario(std::string(SF_SOURCE_DIR) + "/experiments/simville.toml");
+  const auto result = scenarios::run_scenario(scenario, device);
+  SF_CHECK(result.status() == scenarios::ScenarioStatus::passed, "SimVille's traffic did not do what it should");
+  return {"SimVille's traffic, 52 robots", result.simulated / result.wall, "x real time"};
+}
+
+/// @return real-time factor, and the hash of all readings
+std::pair<double, std::uint64_t> wander_in(const world::World& world, gpu::Device& device) {
+  scenarios::Simulation simulation(world, device, {});
+  const double start = now().wall_s;
+  for (int k = 0; k < kHospitalTicks; ++k) simulation.step();
+  return {kHospitalTicks * world.interval / (now().wall_s - start), simulation.farm().hash()};
+}
+
+}  // namespace
+
+std::vector<Measurement> measure_fleets(gpu::Device& device) {
+  std::vector<Measurement> facts{simville(device)};
+  const std::string hospital = std::string(SF_SOURCE_DIR) + "/../shared/data/stage/benchmark/hospital.world";
+  if (!std::filesystem::exists(hospital)) return facts;
+  world::World world = world::load_world(hospital, {.sensors = sensors::world_file_words()});
+  world::clone_robots(world, kHospitalRobots, 1);
+  const auto [first, hash] = wander_in(world, device);
+  const auto [second, same] = wander_in(world, device);
+  SF_CHECK(hash == same, "two runs in the hospital differ");
+  facts.push_back({"Stage's hospital, 1000 wandering", std::max(first, second), "x real time"});
   return facts;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Single measurements: start-up, empty ticks, lists.
+// Single measurements: start-up, empty ticks, whole fleets, lists.
 
 #include <string>
 #include <vector>
@@ -20,6 +20,11 @@ std::vector<Measurement> measure_start();
 
 /// Measures ticks with almost no work, and one sensor with much work.
 std::vector<Measurement> measure_ticks(gpu::Device& device);
+
+/// Runs whole fleets in closed loop with controllers, motion and all sensors, relative to simulated time: SimVille's
+/// traffic (experiments/simville.toml, whose expectations must be met) and, if the file exists, 1000 wandering robots
+/// in Stage's hospital (two runs with equal readings).
+std::vector<Measurement> measure_fleets(gpu::Device& device);
 
 /// Measures the cost of building the lists of a new cell.
 std::vector<Measurement> measure_lists(gpu::Device& device);

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bench/comparison.h"
@@ -11,28 +12,41 @@
 
 namespace sf::bench {
 
-/// All results.
-struct Book {
-  std::vector<Comparison> scans;
-  std::vector<TickResult> ticks;
-  std::vector<Measurement> facts;
-  std::vector<Measurement> prices;
+/// One result: rows of a CSV file, and the same as text.
+struct Report {
+  std::string file;     ///< name without folder and ending; reports with the same name share a file
+  std::string title;    ///< above the texts of a file; may be empty
+  std::string columns;  ///< first line of the file, without a line end
+  std::string rows = {};
+  std::string text = {};
+  std::vector<std::pair<std::string, double>> counters = {};  ///< shown by Google Benchmark
 };
+
+/// Adds one row per method, with its median wall time as a counter. @param csv, text return the row of a method
+template <class Result, class Csv, class Text>
+void add_methods(Report& report, const std::vector<Result>& results, Csv&& csv, Text&& text) {
+  for (const Result& result : results) {
+    report.rows += csv(result);
+    report.text += text(result);
+    report.counters.emplace_back(result.method + " [ms]", 1e3 * result.typical.wall_s);
+  }
+}
 
 /// Returns the heading for `row`s. @param rate unit of the third column
 std::string heading(std::string_view rate);
 /// Returns a method, its times [ms], `count` per second [M/s], and its ratios, without a line end.
 std::string row(const Timing& timing, double count);
 
-/// Replaces the content of `file` by `text`. @throws base::InputError if it cannot be written
-void write(const std::string& file, const std::string& text);
+Report scan_report(const Comparison& comparison);
+Report tick_report(const TickResult& result);
+/// @param file "facts" or "prices"
+Report measurement_report(const std::string& file, const std::vector<Measurement>& measurements);
 
-/// Writes scans.csv, ticks.csv, facts.csv and prices.csv into `folder`. Keeps the old files of parts without
-/// measurements.
+/// Writes the files of all reports into `folder`. Keeps the old files of parts without measurements.
 /// @throws base::InputError if a file cannot be written
-void write_csv(const Book& book, const std::string& folder);
+void write_csv(const std::vector<Report>& reports, const std::string& folder);
 
-/// Returns the same as text.
-std::string tables(const Book& book);
+/// Returns the texts of all reports, by file.
+std::string tables(const std::vector<Report>& reports);
 
 }  // namespace sf::bench
