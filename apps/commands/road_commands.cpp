@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apps/processes/stop_signals.h"
 #include "apps/reports/report.h"
@@ -15,6 +17,8 @@
 namespace sf::apps {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::string ending_of(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
@@ -28,6 +32,13 @@ bool is_mission(const std::string& file) { return ending_of(file) == ".mdf"; }
 
 void append(std::vector<world::Warning>& all, const std::vector<world::Warning>& more) {
   all.insert(all.end(), more.begin(), more.end());
+}
+
+/// [m] of all lanes
+double lane_length(const world::RoadNetwork& network) {
+  double length = 0.0;
+  for (const world::RoadLane& lane : network.lanes) length += length_of(lane);
+  return length;
 }
 
 int check_network(const CheckOptions& options) {
@@ -51,18 +62,23 @@ int check_mission(const CheckOptions& options) {
   return 0;
 }
 
+/// Names contain the bytes of a file: invalid UTF-8 is replaced.
+std::string with_road_warnings(const Json& json, const std::vector<world::Warning>& warnings) {
+  return with_warnings(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", warnings);
+}
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+
 }  // namespace
 
 std::string road_report_text(const RoadReport& facts) {
   const world::RoadNetwork& network = facts.network;
   const world::RoadCounts& c = network.counts;
   const world::Extent& e = network.extent;
-  double length = 0.0;
-  for (const world::RoadLane& lane : network.lanes) length += length_of(lane);
   std::string text = warnings_text(facts.warnings);
   text += fmt::format("{}\n", network.name.empty() ? network.file : network.name);
   text += row("segments", c.segments);
-  text += row("lanes", "{} ({:.1f} m in all)", c.lanes, length);
+  text += row("lanes", "{} ({:.1f} m in all)", c.lanes, lane_length(network));
   text += row("zones", c.zones);
   text += row("spots", c.spots);
   text += row("points", "{} ({} of lanes)", c.points, c.lane_waypoints);
@@ -105,6 +121,41 @@ std::optional<int> draw_roads(const DrawOptions& options) {
   viz::draw_roads(network, options.out, options.page);
   print_message("wrote {}", options.out);
   return 0;
+}
+
+std::string road_report_json(const RoadReport& facts) {
+  const world::RoadCounts& c = facts.network.counts;
+  const world::Extent& e = facts.network.extent;
+  return with_road_warnings(
+      {{"network", facts.network.name},
+       {"roads",
+        {{"segments", c.segments},
+         {"lanes", c.lanes},
+         {"zones", c.zones},
+         {"spots", c.spots},
+         {"lane_waypoints", c.lane_waypoints},
+         {"points", c.points},
+         {"exits", c.exits},
+         {"stops", c.stops},
+         {"checkpoints", c.checkpoints}}},
+       {"lane_length_m", rounded(lane_length(facts.network), 1e-3)},
+       {"stripes", facts.lane_markings},
+       {"scale", facts.network.scale},
+       {"extent", {rounded(e.x_min, 1e-6), rounded(e.y_min, 1e-6), rounded(e.x_max, 1e-6), rounded(e.y_max, 1e-6)}}},
+      facts.warnings);
+}
+
+std::string mission_report_json(const MissionReport& facts) {
+  Json checkpoints = Json::array(), limits = Json::array();
+  for (const auto& checkpoint : facts.mission.checkpoints) checkpoints.push_back(checkpoint.id);
+  for (const world::SpeedLimit& limit : facts.mission.speed_limits)
+    limits.push_back({{"id", limit.id}, {"least_mph", limit.least_mph}, {"most_mph", limit.most_mph}});
+  return with_road_warnings({{"mission", facts.mission.name},
+                             {"rndf", facts.mission.rndf_name},
+                             {"checked_against", facts.network.empty() ? Json() : Json(facts.network)},
+                             {"checkpoints", checkpoints},
+                             {"speed_limits", limits}},
+                            facts.warnings);
 }
 
 }  // namespace sf::apps
