@@ -16,7 +16,7 @@
 #include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::library {
 

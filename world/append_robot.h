@@ -43,6 +43,9 @@ std::uint32_t append_robot(World& world, const World& from, std::uint32_t origin
 std::uint32_t append_robot_of(World& world, const std::string& file, const std::string& name,
                               const LoadOptions& options);
 
+/// Returns the pose of a part at `X_WM` after its robot has moved from `X_before` to `X_after`.
+Pose moved_with(const Pose& X_before, const Pose& X_after, const Pose& X_WM);
+
 /// Returns whether both rows have the same type, body, drive and sensors.
 bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b);
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "tests/fuzz/require.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace {
 

@@ -24,7 +24,7 @@
 #include "tests/device.h"
 #include "tests/farm/small_farm.h"
 #include "world/append_robot.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::scenarios {
 namespace {

@@ -14,7 +14,7 @@
 #include "shaders/test_openness.comp.h"
 #include "tests/device.h"
 #include "tests/refusal.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::sensors {
 namespace {

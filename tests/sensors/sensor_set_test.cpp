@@ -8,7 +8,7 @@
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 #include "sensors/sonar.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::sensors {
 namespace {

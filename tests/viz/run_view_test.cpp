@@ -6,7 +6,7 @@
 
 #include "base/report.h"
 #include "viz/theme.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::viz {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::viz {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/files.h"
 #include "base/random.h"
 #include "tests/world/read_world.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::world {
 namespace {

@@ -13,7 +13,7 @@
 #include "tests/robots/scenes.h"
 #include "tests/world/read_world.h"
 #include "world/free_space.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 #include "world/wall_tree.h"
 
 namespace sf::world {

@@ -1,4 +1,4 @@
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 #include <fmt/format.h>
 

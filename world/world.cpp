@@ -1,10 +1,17 @@
+#include "world/world.h"
+
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
+#include "base/error.h"
+#include "base/files.h"
 #include "base/hash.h"
 #include "world/outlines.h"
 #include "world/path_geometry.h"
+#include "world/ros_map.h"
 #include "world/serialization.h"
+#include "world/stage/build_world.h"
 
 namespace sf::world {
 
@@ -173,6 +180,20 @@ void translate(World& world, double dx, double dy) {
   for (Model& model : world.models) move(model.X_WM);
   for (Mover& mover : world.movers) move(mover.X_WM);
   update_extent_and_hash(world);
+}
+
+World load_world(const std::string& file, const LoadOptions& options) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (is_ros_map(file)) return load_ros_map(file, options);
+  if (ending == ".rndf" || ending == ".rdf" || ending == ".mdf")
+    throw base::InputError(file, 0, "is not a world, but can be part of one: a world file with road( rndf \"FILE\" )");
+  if (ending == ".toml")
+    throw base::InputError(file, 0,
+                           "is not a world: scenarios go with `run` and `test`, sweeps with `sweep`, testbeds with "
+                           "`vps`; expected a world file (.world) or a ROS map (.yaml)");
+  return build_world(file, base::read_text(file), options);
 }
 
 }  // namespace sf::world
