@@ -78,7 +78,7 @@ DdsEndpoint request_reader(const ServiceType& service, const std::string& id) {
   const std::string type = std::string(service.type) + "_Request";
   return {.topic = "rq" + std::string(service.name) + "Request",
           .type = dds_type(type),
-          .user_data = id + type_user_data(type, ros_definition(service.request)),
+          .user_data = id + type_user_data(type, record::with_dependencies(service.request)),
           .depth = kDepth,
           .requests = true};
 }
@@ -87,7 +87,7 @@ DdsEndpoint reply_writer(const ServiceType& service, const std::string& id) {
   const std::string type = std::string(service.type) + "_Response";
   return {.topic = "rr" + std::string(service.name) + "Reply",
           .type = dds_type(type),
-          .user_data = id + type_user_data(type, ros_definition(service.response)),
+          .user_data = id + type_user_data(type, record::with_dependencies(service.response)),
           .depth = kDepth};
 }
 
@@ -228,8 +228,9 @@ void Ros2Bridge::add_services() {
   }
   if (!scene_.simulated) return;
   for (const ActionTopic& topic : StepsAction::kTopics)
-    action_writers_.push_back(add_writer("rt" + std::string(topic.name), topic.type, ros_definition(topic.fields),
-                                         topic.latched ? 1 : kDepth, topic.latched));
+    action_writers_.push_back(add_writer("rt" + std::string(topic.name), topic.type,
+                                         record::with_dependencies(topic.fields), topic.latched ? 1 : kDepth,
+                                         topic.latched));
 }
 
 /// Adds the same services again, for clients that the participant above ignores.
@@ -254,7 +255,7 @@ void Ros2Bridge::add_fast(OpenFastServices open, const std::set<std::string>& ad
 /// Publishes the data behind `ros2 node list`: the participant's nodes and their readers and writers.
 void Ros2Bridge::announce() {
   if (discovery_ == kNone) {
-    discovery_ = add_writer("ros_discovery_info", kDiscovery, ros_definition(kDiscoveryFields), 1, true);
+    discovery_ = add_writer("ros_discovery_info", kDiscovery, record::with_dependencies(kDiscoveryFields), 1, true);
     writers_.pop_back();  // belongs to the participant, not to the node
   }
   record::CdrWriter cdr(batch_.add(discovery_));

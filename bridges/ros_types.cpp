@@ -1,88 +1,142 @@
 #include "bridges/ros_types.h"
 
-#include <algorithm>
-#include <array>
-#include <set>
-#include <sstream>
+#include <fmt/format.h>
 
-#include "bridges/type_hash.h"
-#include "record/schemas.h"
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <sstream>
+#include <vector>
+
+#include "netio/signature.h"
 
 namespace sf::bridges {
 
 namespace {
 
-struct Definition {
-  std::string_view name;  ///< package/Name
-  std::string_view fields;
+/// Ids of primitive types (type_description_interfaces/msg/FieldType). `char` is uint8 in ROS 2.
+const std::map<std::string_view, int> kTypeIds{
+    {"int8", 2},   {"uint8", 3},    {"int16", 4},    {"uint16", 5}, {"int32", 6}, {"uint32", 7}, {"int64", 8},
+    {"uint64", 9}, {"float32", 10}, {"float64", 11}, {"bool", 15},  {"byte", 16}, {"char", 3},   {"string", 17},
 };
+constexpr int kNested = 1, kBoundedString = 21;                     // in place of the above
+constexpr int kArray = 48, kBoundedSequence = 96, kSequence = 144;  // added to the above
 
-// Types that do not occur in recordings, without their constants.
-constexpr std::array kDefinitions = {
-    Definition{"action_msgs/GoalInfo", "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp\n"},
-    Definition{"action_msgs/GoalStatus", "action_msgs/GoalInfo goal_info\nint8 status\n"},
-    Definition{"geometry_msgs/Accel", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
-    Definition{"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
-    Definition{"rmw_dds_common/Gid", "char[16] data\n"},
-    Definition{"rmw_dds_common/NodeEntitiesInfo",
-               "string<=256 node_namespace\nstring<=256 node_name\n"
-               "rmw_dds_common/Gid[] reader_gid_seq\nrmw_dds_common/Gid[] writer_gid_seq\n"},
-    Definition{"simulation_interfaces/Bounds", "uint8 type\ngeometry_msgs/Vector3[] points\n"},
-    Definition{"simulation_interfaces/EntityCategory", "uint8 category\n"},
-    Definition{"simulation_interfaces/EntityFilters",
-               "string filter\nsimulation_interfaces/EntityCategory[] categories\n"
-               "simulation_interfaces/TagsFilter tags\nsimulation_interfaces/Bounds bounds\n"},
-    Definition{"simulation_interfaces/EntityInfo",
-               "simulation_interfaces/EntityCategory category\nstring description\nstring[] tags\n"},
-    Definition{"simulation_interfaces/EntityState",
-               "std_msgs/Header header\ngeometry_msgs/Pose pose\n"
-               "geometry_msgs/Twist twist\ngeometry_msgs/Accel acceleration\n"},
-    Definition{"simulation_interfaces/NamedPose",
-               "string name\nstring description\nstring[] tags\ngeometry_msgs/Pose pose\n"},
-    Definition{"simulation_interfaces/Resource", "string uri\nstring resource_string\n"},
-    Definition{"simulation_interfaces/Result", "uint8 result\nstring error_message\n"},
-    Definition{"simulation_interfaces/SimulationState", "uint8 state\n"},
-    Definition{"simulation_interfaces/SpawnEntity",
-               "string name\nbool allow_renaming\nsimulation_interfaces/Resource entity_resource\n"
-               "string entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n"},
-    Definition{"simulation_interfaces/SpawnResult", "simulation_interfaces/Result result\nstring entity_name\n"},
-    Definition{"simulation_interfaces/Spawnable",
-               "simulation_interfaces/Resource entity_resource\nstring description\n"
-               "simulation_interfaces/Bounds spawn_bounds\n"},
-    Definition{"simulation_interfaces/WorldResource",
-               "string name\nsimulation_interfaces/Resource world_resource\nstring description\nstring[] tags\n"},
-    Definition{"simulation_interfaces/action/SimulateSteps_Feedback",
-               "uint64 completed_steps\nuint64 remaining_steps\n"},
-    Definition{"simulation_interfaces/action/SimulateSteps_Goal", "uint64 steps\n"},
-    Definition{"simulation_interfaces/action/SimulateSteps_Result", "simulation_interfaces/Result result\n"},
-    Definition{"simulation_interfaces/SimulatorFeatures",
-               "uint16[] features\nstring[] spawn_formats\nstring custom_info\n"},
-    Definition{"simulation_interfaces/TagsFilter", "string[] tags\nuint8 filter_mode\n"},
-    Definition{"unique_identifier_msgs/UUID", "uint8[16] uuid\n"},
+struct Field {
+  std::string name;
+  int type_id = 0;
+  std::uint32_t capacity = 0, string_capacity = 0;
+  std::string nested;  ///< "package/msg/Name"; empty: a primitive type
 };
+using Fields = std::vector<Field>;
 
-/// Converts "package/Name" to "package/msg/Name". Parts of actions already have full names.
-std::string message_name(const std::string& type) {
-  const std::size_t slash = type.find('/');
-  if (type.find('/', slash + 1) != std::string::npos) return type;
-  return type.substr(0, slash) + "/msg" + type.substr(slash);
+std::optional<std::uint32_t> number(std::string_view digits) {
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return value;
 }
 
-void add_needed(std::string_view fields, std::set<std::string>& added, std::string& text) {
-  std::istringstream lines{std::string(fields)};
-  for (std::string line; std::getline(lines, line);) {
-    const std::string type = line.substr(0, line.find_first_of(" [<"));
-    if (type.find('/') == std::string::npos || !added.insert(type).second) continue;
-    text += std::string(80, '=') + "\nMSG: " + type + "\n";
-    const auto own = std::find_if(kDefinitions.begin(), kDefinitions.end(),
-                                  [&](const Definition& definition) { return definition.name == type; });
-    if (own == kDefinitions.end()) {
-      text += record::schema_text(message_name(type));  // with all types that it uses
-    } else {
-      text += own->fields;
-      add_needed(own->fields, added, text);
+/// Converts "package/Name" to "package/msg/Name". Parts of actions already have full names.
+std::string whole_name(std::string_view type) {
+  const std::size_t slash = type.find('/');
+  if (type.find('/', slash + 1) != std::string_view::npos) return std::string(type);
+  return std::string(type.substr(0, slash)) + "/msg" + std::string(type.substr(slash));
+}
+
+/// Removes "[3]", "[<=3]" or "[]" from the end of `type`.
+bool read_extent(std::string_view& type, Field& field) {
+  const std::size_t bracket = type.find('[');
+  if (bracket == std::string_view::npos) return true;
+  if (type.back() != ']') return false;
+  std::string_view extent = type.substr(bracket + 1, type.size() - bracket - 2);
+  type = type.substr(0, bracket);
+  field.type_id = extent.empty() ? kSequence : kArray;
+  if (extent.empty()) return true;
+  if (extent.starts_with("<=")) {
+    field.type_id = kBoundedSequence;
+    extent.remove_prefix(2);
+  }
+  const auto capacity = number(extent);
+  field.capacity = capacity.value_or(0);
+  return capacity.has_value();
+}
+
+std::optional<Field> read_field(std::string_view type, const std::string& name) {
+  Field field{.name = name};
+  if (name.empty() || !read_extent(type, field)) return std::nullopt;
+  if (type.find('/') != std::string_view::npos) {
+    field.nested = whole_name(type);
+    field.type_id += kNested;
+  } else if (type.starts_with("string<=")) {
+    const auto capacity = number(type.substr(8));
+    if (!capacity) return std::nullopt;
+    field.string_capacity = *capacity;
+    field.type_id += kBoundedString;
+  } else {
+    const auto known = kTypeIds.find(type);
+    if (known == kTypeIds.end()) return std::nullopt;
+    field.type_id += known->second;
+  }
+  return field;
+}
+
+/// Parses a line of a definition.
+/// @return false: it cannot be parsed
+bool read_line(const std::string& line, Fields& fields) {
+  std::istringstream words(line.substr(0, line.find('#')));
+  std::string type, name, rest;
+  words >> type >> name >> rest;
+  if (type.empty()) return true;
+  if (name.find('=') != std::string::npos || rest.starts_with('=')) return true;  // a constant
+  const auto field = read_field(type, name);
+  if (field) fields.push_back(*field);
+  return field.has_value();
+}
+
+/// Types by full name. Empty if the text cannot be parsed.
+std::map<std::string, Fields> read_types(std::string_view type, std::string_view text) {
+  std::map<std::string, Fields> types;
+  std::string current(type);
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  types[current];
+  while (std::getline(lines, line)) {
+    if (line.starts_with("====")) continue;
+    if (line.starts_with("MSG: ")) {
+      current = whole_name(std::string_view(line).substr(5));
+      types[current].clear();
+    } else if (!read_line(line, types[current])) {
+      return {};
     }
   }
+  // An IDL structure needs a member, so add one to an empty message.
+  for (auto& [name, fields] : types)
+    if (fields.empty()) fields.push_back({.name = "structure_needs_at_least_one_member", .type_id = 3});
+  return types;
+}
+
+std::string type_description_json(const std::string& name, const Fields& fields) {
+  std::string json = fmt::format(R"({{"type_name": "{}", "fields": [)", name);
+  for (const Field& field : fields)
+    json += fmt::format(
+        R"({}{{"name": "{}", "type": {{"type_id": {}, "capacity": {}, "string_capacity": {}, "nested_type_name": "{}"}}}})",
+        &field == fields.data() ? "" : ", ", field.name, field.type_id, field.capacity, field.string_capacity,
+        field.nested);
+  return json + "]}";
+}
+
+/// Adds all types that `name` uses.
+/// @return false: a type is missing
+bool add_needed(const std::string& name, const std::map<std::string, Fields>& types, std::set<std::string>& needed) {
+  const auto found = types.find(name);
+  if (found == types.end()) return false;
+  for (const Field& field : found->second)
+    if (!field.nested.empty() && needed.insert(field.nested).second && !add_needed(field.nested, types, needed))
+      return false;
+  return true;
 }
 
 }  // namespace
@@ -93,11 +147,20 @@ std::string dds_type(std::string_view type) {
   return name + "::dds_::" + std::string(type.substr(type.rfind('/') + 1)) + "_";
 }
 
-std::string ros_definition(std::string_view fields) {
-  std::string text(fields);
-  std::set<std::string> added;
-  add_needed(fields, added, text);
-  return text;
+std::string type_hash(std::string_view type, std::string_view text) {
+  const auto types = read_types(type, text);
+  const std::string name(type);
+  std::set<std::string> needed;
+  if (!add_needed(name, types, needed)) return {};
+  std::string json = R"({"type_description": )" + type_description_json(name, types.at(name)) +
+                     R"(, "referenced_type_descriptions": [)";
+  for (const std::string& other : needed)
+    json += (other == *needed.begin() ? "" : ", ") + type_description_json(other, types.at(other));
+  json += "]}";
+  std::string hash = "RIHS01_";
+  for (const std::uint8_t byte : netio::sha256({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()}))
+    hash += fmt::format("{:02x}", byte);
+  return hash;
 }
 
 std::string type_user_data(std::string_view type, std::string_view definition) {

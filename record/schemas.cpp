@@ -104,6 +104,48 @@ constexpr std::array kDefinitions = {
                "string world\nuint64 world_hash\nuint64 seed\nstring mode\nfloat64 interval\n"
                "bool readings\nfloat64 odometry_rate\nsensorfarm_msgs/Kind[] kinds\n"
                "sensorfarm_msgs/Mover[] movers\nsensorfarm_msgs/Option[] options\n"},
+
+    // Types of services and of discovery, without their constants.
+    Definition{"action_msgs/GoalInfo", "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp\n"},
+    Definition{"action_msgs/GoalStatus", "action_msgs/GoalInfo goal_info\nint8 status\n"},
+    Definition{"geometry_msgs/Accel", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    Definition{"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+    Definition{"rmw_dds_common/Gid", "char[16] data\n"},
+    Definition{"rmw_dds_common/NodeEntitiesInfo",
+               "string<=256 node_namespace\nstring<=256 node_name\n"
+               "rmw_dds_common/Gid[] reader_gid_seq\nrmw_dds_common/Gid[] writer_gid_seq\n"},
+    Definition{"simulation_interfaces/Bounds", "uint8 type\ngeometry_msgs/Vector3[] points\n"},
+    Definition{"simulation_interfaces/EntityCategory", "uint8 category\n"},
+    Definition{"simulation_interfaces/EntityFilters",
+               "string filter\nsimulation_interfaces/EntityCategory[] categories\n"
+               "simulation_interfaces/TagsFilter tags\nsimulation_interfaces/Bounds bounds\n"},
+    Definition{"simulation_interfaces/EntityInfo",
+               "simulation_interfaces/EntityCategory category\nstring description\nstring[] tags\n"},
+    Definition{"simulation_interfaces/EntityState",
+               "std_msgs/Header header\ngeometry_msgs/Pose pose\n"
+               "geometry_msgs/Twist twist\ngeometry_msgs/Accel acceleration\n"},
+    Definition{"simulation_interfaces/NamedPose",
+               "string name\nstring description\nstring[] tags\ngeometry_msgs/Pose pose\n"},
+    Definition{"simulation_interfaces/Resource", "string uri\nstring resource_string\n"},
+    Definition{"simulation_interfaces/Result", "uint8 result\nstring error_message\n"},
+    Definition{"simulation_interfaces/SimulationState", "uint8 state\n"},
+    Definition{"simulation_interfaces/SpawnEntity",
+               "string name\nbool allow_renaming\nsimulation_interfaces/Resource entity_resource\n"
+               "string entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n"},
+    Definition{"simulation_interfaces/SpawnResult", "simulation_interfaces/Result result\nstring entity_name\n"},
+    Definition{"simulation_interfaces/Spawnable",
+               "simulation_interfaces/Resource entity_resource\nstring description\n"
+               "simulation_interfaces/Bounds spawn_bounds\n"},
+    Definition{"simulation_interfaces/WorldResource",
+               "string name\nsimulation_interfaces/Resource world_resource\nstring description\nstring[] tags\n"},
+    Definition{"simulation_interfaces/action/SimulateSteps_Feedback",
+               "uint64 completed_steps\nuint64 remaining_steps\n"},
+    Definition{"simulation_interfaces/action/SimulateSteps_Goal", "uint64 steps\n"},
+    Definition{"simulation_interfaces/action/SimulateSteps_Result", "simulation_interfaces/Result result\n"},
+    Definition{"simulation_interfaces/SimulatorFeatures",
+               "uint16[] features\nstring[] spawn_formats\nstring custom_info\n"},
+    Definition{"simulation_interfaces/TagsFilter", "string[] tags\nuint8 filter_mode\n"},
+    Definition{"unique_identifier_msgs/UUID", "uint8[16] uuid\n"},
 };
 
 const Definition& find(std::string_view name) {

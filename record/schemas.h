@@ -1,5 +1,5 @@
 #pragma once
-// The message types of a recording, with their names and definitions in ROS 2.
+// The message types of recordings and bridges, with their names and definitions in ROS 2.
 
 #include <string>
 #include <string_view>

@@ -1,10 +1,9 @@
 // Type hashes compared with those that ROS 2 Jazzy publishes for the same types.
 
-#include "bridges/type_hash.h"
+#include "bridges/ros_types.h"
 
 #include <gtest/gtest.h>
 
-#include "bridges/ros_types.h"
 #include "record/schemas.h"
 
 namespace sf::bridges {
@@ -29,7 +28,7 @@ TEST(TypeHash, MatchesRos2) {
 
 TEST(TypeHash, ReadsConstantsCommentsDefaultsAndBounds) {
   const std::string gid = "rmw_dds_common/Gid gid\nrmw_dds_common/NodeEntitiesInfo[] node_entities_info_seq\n";
-  EXPECT_EQ(type_hash("rmw_dds_common/msg/ParticipantEntitiesInfo", ros_definition(gid)),
+  EXPECT_EQ(type_hash("rmw_dds_common/msg/ParticipantEntitiesInfo", record::with_dependencies(gid)),
             "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e")
       << "arrays and bounded strings";
   const std::string plain = type_hash("a/msg/B", "uint8 x\nfloat64 y\n");
