@@ -17,7 +17,7 @@
 #include "bridges/fast_services.h"
 #include "bridges/ros_services.h"
 #include "netio/rate_limited_log.h"
-#include "record/tick_messages.h"
+#include "record/topics.h"
 
 namespace sf::bridges {
 

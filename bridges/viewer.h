@@ -19,7 +19,7 @@
 #include "bridges/last_tick.h"
 #include "bridges/viewer_sessions.h"
 #include "bridges/web_server.h"
-#include "record/tick_messages.h"
+#include "record/topics.h"
 
 namespace sf::bridges {
 

@@ -17,7 +17,7 @@
 #include "bridges/foxglove_bytes.h"
 #include "bridges/foxglove_messages.h"
 #include "bridges/web_server.h"
-#include "record/tick_messages.h"
+#include "record/topics.h"
 
 namespace sf::bridges {
 

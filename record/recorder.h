@@ -20,7 +20,7 @@
 #include "record/mcap_writer.h"
 #include "record/recording_files.h"
 #include "record/run_info.h"
-#include "record/tick_messages.h"
+#include "record/topics.h"
 
 namespace sf::record {
 

@@ -4,7 +4,7 @@ cmake_minimum_required(VERSION 3.25)
 set(files sensors/x.h sensors/x.cpp shaders/x.comp tests/sensors/x_test.cpp)
 
 if(DEFINED CASE_DIR)
-  include(${SOURCE}/cmake/Sensors.cmake)
+  include(${SOURCE}/cmake/FarmSensor.cmake)
   set(CMAKE_SOURCE_DIR ${CASE_DIR})
   farm_sensor(${ID} x ${WHERE})
   if(TWICE)

@@ -1,4 +1,4 @@
-#include "record/tick_messages.h"
+#include "record/topics.h"
 
 #include <algorithm>
 #include <cmath>

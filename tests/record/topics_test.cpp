@@ -1,6 +1,6 @@
 // Topics of a run, and the topics on which a tick sends messages.
 
-#include "record/tick_messages.h"
+#include "record/topics.h"
 
 #include <gtest/gtest.h>
 
