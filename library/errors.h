@@ -1,14 +1,18 @@
 #pragma once
 // Converts errors of the farm to those of the public interface.
 
+#include <string>
 #include <type_traits>
 
 #include "base/error.h"
 #include "cluster/failure.h"
-#include "library/words.h"
 #include "sensorfarm/simulation.h"
 
 namespace sf::library {
+
+/// Returns `message` with the library's options (sensorfarm::Options, and the arguments of Python, which have the same
+/// names) in place of those of the command line, which messages of the farm name.
+std::string in_own_words(std::string message);
 
 /// Returns `call()`. @throws sensorfarm::DeviceError for base::DeviceError, sensorfarm::Error for base::InputError, and
 /// the matching one for an error of any rank

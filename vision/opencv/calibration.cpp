@@ -1,7 +1,7 @@
 // Calibration with a chessboard (Z. Zhang, "A flexible new technique for camera calibration", 2000), using OpenCV's
 // calib3d and, for boards with tags, aruco.
 
-#include "vision/opencv/calibration.h"
+#include "vision/opencv/plugin.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,6 @@
 #include "base/error.h"
 #include "vision/opencv/images.h"
 #include "vision/opencv/markers.h"
-#include "vision/opencv/placement.h"
 
 namespace sf::vision {
 

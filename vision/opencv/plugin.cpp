@@ -1,11 +1,8 @@
 // The function table of the plug-in.
 
-#include "vision/opencv/calibration.h"
+#include "vision/opencv/plugin.h"
 #include "vision/opencv/images.h"
 #include "vision/opencv/markers.h"
-#include "vision/opencv/placement.h"
-#include "vision/opencv/sources.h"
-#include "vision/opencv/video.h"
 
 extern "C" {
 extern const sf::vision::OpenCv sensorfarm_opencv;

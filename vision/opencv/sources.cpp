@@ -1,6 +1,6 @@
 // Devices and videos with OpenCV's videoio, and folders of images.
 
-#include "vision/opencv/sources.h"
+#include "vision/opencv/plugin.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "vision/opencv/images.h"
-#include "vision/opencv/video.h"
 
 namespace sf::vision {
 

@@ -1,4 +1,4 @@
-#include "library/words.h"
+#include "library/errors.h"
 
 #include <array>
 #include <string_view>
