@@ -1,8 +1,6 @@
 #pragma once
 // Sums of magnetic fields in plain C++: the kernel's arithmetic on tables laid out for vectorization.
 
-#include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 

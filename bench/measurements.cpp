@@ -7,7 +7,6 @@
 #include "bench/comparison.h"
 #include "bench/cost.h"
 #include "bench/farm_caster.h"
-#include "bench/poison.h"
 #include "farm/farm.h"
 #include "scenarios/runner.h"
 #include "scenarios/simulation.h"

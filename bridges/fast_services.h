@@ -2,13 +2,7 @@
 // Services for clients of rmw_fastrtps, by Fast DDS in a separate process. A malicious datagram may crash that process,
 // which is then restarted, but never the run.
 
-#include <condition_variable>
-#include <deque>
-#include <functional>
 #include <memory>
-#include <mutex>
-#include <string>
-#include <thread>
 #include <vector>
 
 #include "bridges/dds.h"

@@ -2,8 +2,6 @@
 // A Player server (playerstage.sourceforge.net): programs written for a Create, a Pioneer or Stage read virtual sensors
 // and drive robots (docs/bridges.md).
 
-#include <memory>
-
 #include "bridges/bridge.h"
 #include "bridges/player/server.h"
 #include "netio/endpoint.h"

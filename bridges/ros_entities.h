@@ -2,7 +2,6 @@
 // Robots as entities of simulation_interfaces.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "bridges/web_access.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include "base/hash.h"

@@ -9,7 +9,6 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/suggest.h"
 #include "bridges/ros_entities.h"
 #include "world/append_robot.h"
 

@@ -7,22 +7,8 @@ namespace sf::control {
 
 namespace {
 
-constexpr std::array<std::array<int, 2>, kHeadings> kSteps = {{{1, 0},
-                                                               {2, 1},
-                                                               {1, 1},
-                                                               {1, 2},
-                                                               {0, 1},
-                                                               {-1, 2},
-                                                               {-1, 1},
-                                                               {-2, 1},
-                                                               {-1, 0},
-                                                               {-2, -1},
-                                                               {-1, -1},
-                                                               {-1, -2},
-                                                               {0, -1},
-                                                               {1, -2},
-                                                               {1, -1},
-                                                               {2, -1}}};
+constexpr std::array<int, 2> kSteps[] = {{1, 0},  {2, 1},   {1, 1},   {1, 2},   {0, 1},  {-1, 2}, {-1, 1}, {-2, 1},
+                                         {-1, 0}, {-2, -1}, {-1, -1}, {-1, -2}, {0, -1}, {1, -2}, {1, -1}, {2, -1}};
 
 // Costs: a step of one node at full speed costs 10.
 constexpr std::uint32_t kTurnCost = 40;  // per heading

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 #include "record/schemas.h"

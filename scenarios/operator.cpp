@@ -1,7 +1,6 @@
 #include "scenarios/operator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
 #include "base/elapsed.h"

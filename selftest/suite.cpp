@@ -1,6 +1,5 @@
 #include "selftest/suite.h"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 

@@ -1,7 +1,5 @@
 #include "vision/rendered_robots.h"
 
-#include <algorithm>
-
 #include "vision/opencv.h"
 
 namespace sf::vision {

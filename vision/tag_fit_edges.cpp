@@ -1,7 +1,6 @@
 // Finds the edges of a tag with sub-pixel accuracy.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 

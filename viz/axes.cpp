@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "viz/color.h"
 #include "viz/scales.h"
 #include "viz/theme.h"
 

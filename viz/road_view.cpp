@@ -1,7 +1,6 @@
 #include "viz/road_view.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "viz/color.h"
 #include "viz/theme.h"

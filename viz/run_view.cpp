@@ -8,7 +8,6 @@
 
 #include "base/report.h"
 #include "viz/labels.h"
-#include "viz/mover_layer.h"
 #include "viz/signal_layer.h"
 #include "viz/theme.h"
 #include "viz/ticks.h"

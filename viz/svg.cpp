@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "viz/png.h"
 
 namespace sf::viz {

@@ -9,7 +9,6 @@
 #include "viz/mover_layer.h"
 #include "viz/road_layer.h"
 #include "viz/signal_layer.h"
-#include "viz/theme.h"
 #include "viz/wall_layer.h"
 
 namespace sf::viz {

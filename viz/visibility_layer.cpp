@@ -1,7 +1,6 @@
 #include "viz/visibility_layer.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sf::viz {
 namespace {

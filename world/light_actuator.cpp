@@ -1,7 +1,6 @@
 #include "world/light_actuator.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace sf::world {

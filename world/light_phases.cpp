@@ -1,7 +1,6 @@
 #include "world/light_phases.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sf::world {
 

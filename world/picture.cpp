@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
-
 #include "base/error.h"
 #include "base/files.h"
 #include "base/plugin.h"

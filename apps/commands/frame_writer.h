@@ -2,7 +2,6 @@
 // A thread that paints and writes the frames of a run.
 
 #include <condition_variable>
-#include <cstdint>
 #include <deque>
 #include <exception>
 #include <functional>

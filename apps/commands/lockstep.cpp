@@ -1,8 +1,6 @@
 #include "apps/commands/lockstep.h"
 
-#include <algorithm>
 #include <optional>
-#include <span>
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 #include "apps/commands/commands.h"
 #include "apps/processes/stop_signals.h"

@@ -1,7 +1,6 @@
 #pragma once
 // Outputs of a run: any combination of a recording, a video and the network.
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>

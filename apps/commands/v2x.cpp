@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <iterator>
 
 #include "apps/commands/commands.h"
 #include "apps/options/default_robot.h"

@@ -2,7 +2,6 @@
 // Runs scenarios in separate processes. A controller that ends its process fails only its scenario.
 
 #include <functional>
-#include <vector>
 
 #include "apps/options/options.h"
 #include "scenarios/runner.h"

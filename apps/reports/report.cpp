@@ -1,7 +1,6 @@
 #include "apps/reports/report.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "apps/reports/text.h"
 #include "base/error.h"

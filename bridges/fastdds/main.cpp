@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <string>
 

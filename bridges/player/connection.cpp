@@ -1,7 +1,5 @@
 #include "bridges/player/connection.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 namespace sf::bridges::player {

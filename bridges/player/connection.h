@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <map>
 #include <span>
-#include <vector>
 
 #include "base/bytes.h"
 #include "bridges/player/protocol.h"

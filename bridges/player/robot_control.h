@@ -2,7 +2,6 @@
 // Executes commands of Player clients for one robot, in the frame of its odometry: velocities, a heading to keep, or a
 // pose to reach.
 
-#include <cstdint>
 #include <optional>
 
 #include "base/pose.h"

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/elapsed.h"
-#include "base/error.h"
 #include "bridges/player/readings.h"
 #include "bridges/player/xdr.h"
 

@@ -24,7 +24,6 @@ constexpr double kMaxModels = 500'000;
 constexpr std::uint32_t kStageRed = 0xFFFF0000u;  // colour of a model without one
 
 // --- Words
-// --------------------------------------------------------------------------------------------------------------
 
 KeyScope key_scope(EntityKind kind) {
   switch (kind) {
@@ -55,7 +54,6 @@ void count_unmodelled(BuildState& b, const Entity& entity, const std::string& ty
 }
 
 // --- Names
-// --------------------------------------------------------------------------------------------------------------
 
 std::string unique_name(BuildState& b, const Entity& entity, const std::string& wanted) {
   charge(b.context, entity.at, b.context.usage.name_bytes, static_cast<double>(wanted.size()), 1e8,
@@ -77,7 +75,6 @@ std::string joined(const std::string& parent, const std::string& name) {
 }
 
 // --- Models
-// -------------------------------------------------------------------------------------------------------------
 
 Size default_size(const Entity& entity) {
   if (entity.type == "light") return {0.12, 0.12, 0.6};
