@@ -185,48 +185,45 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
 
 /// Key and value range of an expectation.
 struct Rule {
-  Expectation::Kind kind;
+  std::string_view key;
   bool is_flag;
   double most;
 };
-constexpr std::array<Rule, 11> kRules{{{Expectation::Kind::no_collision, true, 0.0},
-                                       {Expectation::Kind::contacts, false, 1e9},
-                                       {Expectation::Kind::mean_error, false, 1e6},
-                                       {Expectation::Kind::mean_abs_error, false, 1e6},
-                                       {Expectation::Kind::map_coverage, false, 1.0},
-                                       {Expectation::Kind::lights_obeyed, true, 0.0},
-                                       {Expectation::Kind::done, true, 0.0},
-                                       {Expectation::Kind::distance, false, 1e9},
-                                       {Expectation::Kind::checkpoints, false, 1e9},
-                                       {Expectation::Kind::all_checkpoints, false, 1e9},
-                                       {Expectation::Kind::tick_p99, false, 1e9}}};
+/// By Expectation::Kind.
+constexpr Rule kRules[] = {{"no_collision", true, 0.0},  {"contacts", false, 1e9},
+                           {"mean_error", false, 1e6},   {"mean_abs_error", false, 1e6},
+                           {"map_coverage", false, 1.0}, {"lights_obeyed", true, 0.0},
+                           {"done", true, 0.0},          {"distance", false, 1e9},
+                           {"checkpoints", false, 1e9},  {"all_checkpoints", false, 1e9},
+                           {"tick_p99_ms", false, 1e9}};
 
 /// Reads `key = value`, for the worst of all robots, or `key = { robot = value, ... }`.
-void read_expectation(const Reader& reader, const TomlNode& node, const Rule& rule, Scenario& scenario) {
+void read_expectation(const Reader& reader, const TomlNode& node, Expectation::Kind kind, Scenario& scenario) {
+  const Rule& rule = kRules[static_cast<std::size_t>(kind)];
   if (rule.is_flag) {
     if (node.kind != NodeKind::flag || !node.flag) reader.fail(node, fmt::format("'{}' expects true", node.key));
-    scenario.expect.push_back({rule.kind, "", 0.0, node.line});
+    scenario.expect.push_back({kind, "", 0.0, node.line});
     return;
   }
   if (node.kind != NodeKind::table) {
-    scenario.expect.push_back({rule.kind, "", reader.number(node, node.key, 0.0, rule.most), node.line});
+    scenario.expect.push_back({kind, "", reader.number(node, node.key, 0.0, rule.most), node.line});
     return;
   }
-  if (rule.kind == Expectation::Kind::tick_p99 || rule.kind == Expectation::Kind::all_checkpoints)
+  if (kind == Expectation::Kind::tick_p99 || kind == Expectation::Kind::all_checkpoints)
     reader.fail(node, fmt::format("'{}' expects a number", node.key));
   for (const TomlNode& item : node.items)
-    scenario.expect.push_back({rule.kind, item.key, reader.number(item, node.key, 0.0, rule.most), item.line});
+    scenario.expect.push_back({kind, item.key, reader.number(item, node.key, 0.0, rule.most), item.line});
 }
 
 void read_expectations(const Reader& reader, const TomlNode& root, Scenario& scenario) {
   const TomlNode* table = reader.table(root, "expect");
   if (table == nullptr) return;
   std::vector<std::string_view> keys;
-  for (const Rule& rule : kRules) keys.push_back(expectation_kind_name(rule.kind));
+  for (const Rule& rule : kRules) keys.push_back(rule.key);
   reader.require_known(*table, keys);
   for (const TomlNode& node : table->items)
-    for (const Rule& rule : kRules)
-      if (expectation_kind_name(rule.kind) == node.key) read_expectation(reader, node, rule, scenario);
+    read_expectation(reader, node, static_cast<Expectation::Kind>(std::ranges::find(keys, node.key) - keys.begin()),
+                     scenario);
 }
 
 void read_plant(const Reader& reader, const TomlNode& root, Scenario& scenario) {
@@ -289,12 +286,7 @@ std::string world_file(const Reader& reader, const TomlNode& root) {
 
 }  // namespace
 
-std::string_view expectation_kind_name(Expectation::Kind kind) {
-  constexpr std::array<std::string_view, 11> kNames{"no_collision", "contacts",        "mean_error", "mean_abs_error",
-                                                    "map_coverage", "lights_obeyed",   "done",       "distance",
-                                                    "checkpoints",  "all_checkpoints", "tick_p99_ms"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
+std::string_view expectation_kind_name(Expectation::Kind kind) { return kRules[static_cast<std::size_t>(kind)].key; }
 
 std::string_view plant_name(Plant plant) { return plant == Plant::ideal ? "ideal" : "thesis"; }
 
