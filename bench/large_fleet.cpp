@@ -150,7 +150,7 @@ Report drive_large_fleet(gpu::Device& device, std::uint32_t robots, std::size_t 
                   "robots", "p50 ms", "p99 ms", "cpu ms", fmt::join(kStages, " "), "packets/t", "MB/t", "lost", "hash"),
       "robots,ticks,wall_ms_p50,wall_ms_p99,cpu_ms_median,move_ms,place_ms,scans_ms,device_ms,collect_ms,encode_ms,"
       "send_ms,packets_per_tick,bytes_per_tick,never_sent,not_received,hash",
-      fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.0f},{:.0f},{},{},{}\n", robots, ticks, p50, p99, cpu,
+      fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.0f},{},{},{},{}\n", robots, ticks, p50, p99, cpu,
                   fmt::join(times, ","), packets, bytes, dropped, lost, hash),
       fmt::format("{:<8} {:>8.2f} {:>8.2f} {:>8.2f} | {:>7.2f} | {:>10.0f} {:>9.2f} {:>8}  {}\n", robots, p50, p99, cpu,
                   fmt::join(times, " "), packets, 1e-6 * bytes, dropped + lost, hash),
