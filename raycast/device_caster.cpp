@@ -218,7 +218,7 @@ SensorStats DeviceCaster::stats() const {
 
 constinit const CasterType device_caster{
     .name = "vulkan",
-    .summary = "the device's kernels",
+    .summary = "kernels on the device",
     .on_device = true,
     .describe = [] { return std::string("Vulkan kernels"); },
     .bound = exact_bound,

@@ -165,7 +165,7 @@ SensorStats HostCaster::stats() const {
 
 constinit const CasterType host_caster{
     .name = "host",
-    .summary = "the host's vector code, with the same results",
+    .summary = "vector code on the host, with the same results",
     .describe = [] { return std::string("host, ") + vector_instructions(); },
     .bound = exact_bound,
     .make = [](const CasterInputs& in) -> std::unique_ptr<Caster> { return std::make_unique<HostCaster>(in); },

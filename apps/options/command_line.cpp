@@ -111,8 +111,8 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   app.set_help_all_flag("--help-all", "Print this message with all options and exit");
   app.set_version_flag("--version", std::string("sensorfarm ") + SF_VERSION);
   app.add_option_function<int>("--interrupted-code", set_interrupted_code,
-                               "Exit code of a command that a signal stops before its work is complete (default: 128 "
-                               "and the signal's number, as 130 after Ctrl-C)")
+                               "Exit code of a command that a signal stops before it is complete (default: 128 plus "
+                               "the signal number, e.g. 130 after Ctrl-C)")
       ->check(whole(0, 255))
       ->type_name("CODE");
   wrap_help(app);

@@ -16,9 +16,9 @@ struct Section {
 
 /// Lists every command once, which a test checks.
 const Section kSections[] = {
-    {"Every day", {"run", "check", "view", "plot", "test"}},
+    {"Common", {"run", "check", "view", "plot", "test"}},
     {"Run", {"experiment", "sweep", "serve", "robot", "merge"}},
-    {"Look", {"draw", "sense", "field", "explain", "map", "listen", "dump"}},
+    {"Inspect", {"draw", "sense", "field", "explain", "map", "listen", "dump"}},
     {"Testbed", {"vps", "calibrate", "light", "start", "object", "v2x"}},
     {"Analyse", {"export", "tradeoff"}},
     {"Check", {"devices", "selftest", "verify", "help"}},

@@ -60,7 +60,7 @@ std::string caster_help() {
   for (const raycast::CasterType* type : raycast::casters())
     casters.push_back(fmt::format("{}: {}", type->name, type->summary));
   return fmt::format(
-      "Ray caster. {} (default: $SENSORFARM_CASTER, else auto: host where the device is software, else vulkan)",
+      "Ray caster. {} (default: $SENSORFARM_CASTER, or auto: host if the device is software, otherwise vulkan)",
       fmt::join(casters, "; "));
 }
 
@@ -69,13 +69,12 @@ std::string caster_help() {
 void add_device(CLI::App& app, DeviceOption& o) {
   app.add_option("--device", o.device,
                  "Vulkan device, by its row in `devices` or part of its name, or host: no device, with the same "
-                 "results (default: the "
-                 "best device; without any, the host)")
+                 "results (default: the best device, or the host if there is none)")
       ->envname("SENSORFARM_DEVICE")
       ->type_name("NAME")
       ->group(kDevice);
   app.add_flag("--require-vulkan", o.require_vulkan,
-               "Without a usable Vulkan device, end with exit code 3 rather than compute on the host (also "
+               "Exit with code 3 if no Vulkan device is usable, instead of computing on the host (also "
                "SENSORFARM_REQUIRE_VULKAN=1)")
       ->group(kDevice);
   // Read where farms are created (raycast/casters.h).
@@ -87,21 +86,21 @@ void add_device(CLI::App& app, DeviceOption& o) {
 
 void add_world(CLI::App& app, WorldOptions& o) {
   o.load.sensors = sensors::world_file_words();
-  app.add_option("world", o.world,
-                 "World file: Stage .world (3.x or 4.x), or ROS map .yaml; check and draw also take .rndf, check .mdf")
+  app.add_option(
+         "world", o.world,
+         "World file: Stage .world (3.x or 4.x) or ROS map .yaml; check and draw also accept .rndf, and check .mdf")
       ->required()
       ->transform(base::installed_file)
       ->type_name("FILE");
   app.add_flag("--stage-obstacles", o.load.stage_obstacles,
-               "As in Stage, floor plans with obstacle_return 0 stop no robot")
+               "As in Stage, floor plans with obstacle_return 0 do not stop robots")
       ->group(kWorld);
   app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance")
       ->group(kWorld);
-  app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls")->group(kWorld);
-  app.add_flag(
-         "--strict", o.load.strict,
-         "Refuse road networks and missions with any error, even where its meaning is clear, and files of outlines "
-         "with any row that has no walls or no valid height")
+  app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Treat unknown cells of a ROS map as walls")->group(kWorld);
+  app.add_flag("--strict", o.load.strict,
+               "Reject road networks and missions with any error, even if the meaning is clear, and outline files with "
+               "any row that has no walls or no valid height")
       ->group(kWorld);
 }
 
@@ -109,15 +108,15 @@ CLI::Option* add_accuracy(CLI::App& app, std::string& words, const std::string& 
   std::vector<std::string> known;
   for (const std::string_view word : sensors::accuracy_words()) known.emplace_back(word);
   return app
-      .add_option(
-          "--accuracy", words,
-          help + ": " + join_or(known) + "; several for several types, as in \"laser:skip2 near3\" (docs/accuracy.md)")
+      .add_option("--accuracy", words,
+                  help + ": " + join_or(known) +
+                      "; combine several for different types, as in \"laser:skip2 near3\" (docs/accuracy.md)")
       ->check(not_empty("a word"))
       ->type_name("WORDS");
 }
 
 void add_accuracy(CLI::App& app, WorldOptions& o) {
-  add_accuracy(app, o.load.accuracy, "Accuracy mode of all sensors, in place of the world's")->group(kAccuracy);
+  add_accuracy(app, o.load.accuracy, "Accuracy mode of all sensors, overriding the world's")->group(kAccuracy);
 }
 
 void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o) {
@@ -138,12 +137,12 @@ void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o) {
   add_choice<ErrorMeasure, ErrorMeasure>(
       app, "--by", o.accuracy_target.by,
       {{"max", ErrorMeasure::max}, {"p99", ErrorMeasure::p99}, {"median", ErrorMeasure::median}},
-      "Error that --max-error limits: the largest, the 99th percentile or the median")
+      "Error statistic that --max-error limits: the largest, the 99th percentile or the median")
       ->default_str("max")
       ->group(kAccuracy);
   app.add_option_function<std::string>(
          "--min-rate", [&o](const std::string& text) { o.accuracy_target.least_rate = *read_rate(text); },
-         "Ticks per second to reach; selects the most accurate modes that do")
+         "Ticks per second to reach; selects the most accurate modes that reach it")
       ->check(readable(read_rate, "a rate above zero such as 10Hz"))
       ->type_name("HZ")
       ->group(kAccuracy);
@@ -162,12 +161,11 @@ void add_automatic(CLI::App& app, AccuracyTargetOptions& o) {
 
 void add_no_return(CLI::App& app, NoReturnOption& o) {
   add_choice<bool, bool>(app, "--no-return", o.no_return_inf, {{"max", false}, {"inf", true}},
-                         "Range of a beam without a return: max (range_max) or inf (null in JSON)")
+                         "Range reported for a beam without a return: max (range_max) or inf (null in JSON)")
       ->default_str("max");
-  add_choice<bool, bool>(
-      app, "--too-near", o.too_near_min, {{"inf", false}, {"min", true}},
-      "Range of a surface nearer than the sensor's minimum, in ROS messages, recordings and CSV: inf "
-      "(-infinity, REP 117) or min (range_min)")
+  add_choice<bool, bool>(app, "--too-near", o.too_near_min, {{"inf", false}, {"min", true}},
+                         "Range reported for a surface nearer than the sensor's minimum, in ROS messages, recordings "
+                         "and CSV: inf (-infinity, REP 117) or min (range_min)")
       ->default_str("inf");
 }
 
@@ -175,7 +173,7 @@ CLI::Option* add_compression(CLI::App& app, CompressionOption& o) {
   using record::Compression;
   return add_choice<Compression, Compression>(
              app, "--compression", o.compression, {{"zstd", Compression::zstd}, {"none", Compression::none}},
-             "Compression of recordings: zstd, or none, twice as large, of which a kill loses no tick")
+             "Compression of recordings: zstd, or none (twice as large, but no tick is lost if the process is killed)")
       ->default_str("zstd");
 }
 
@@ -188,8 +186,7 @@ void add_wire(CLI::App& app, WireOption& o) {
 }
 
 void add_peers(CLI::App& app, PeersOption& o) {
-  app.add_option("--peers", o.peers,
-                 "File of addresses and keys, by which packets are checked and signed (docs/robots.md)")
+  app.add_option("--peers", o.peers, "File of addresses and keys used to check and sign packets (docs/robots.md)")
       ->check(not_empty("a file"))
       ->type_name("FILE");
 }
@@ -202,13 +199,13 @@ void add_bind(CLI::App& app, BindOption& o) {
 }
 
 void add_from(CLI::App& app, ReceiveOptions& o) {
-  app.add_option("--from", o.from, "Accept packets from this host only (default: from the first farm that sends)")
+  app.add_option("--from", o.from, "Accept packets only from this host (default: the first farm that sends)")
       ->check(not_empty("a host"))
       ->type_name("HOST");
 }
 
 void add_silence(CLI::App& app, ReceiveOptions& o) {
-  app.add_option("--silence", o.silence, "Stop after this long without packets [s], counted from the first packet on")
+  app.add_option("--silence", o.silence, "Stop after this long without packets [s], once the first has arrived")
       ->check(in_seconds(0.1, 1e6))
       ->type_name("S")
       ->capture_default_str();
@@ -241,7 +238,7 @@ void add_ports(CLI::App& app, PortOptions& o) {
         ->capture_default_str()
         ->group(kPorts);
   }
-  app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot (default: 8, or the least that fits)")
+  app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot (default: 8, or the minimum that fits)")
       ->check(whole(1, 65535))
       ->type_name("N")
       ->group(kPorts);
@@ -249,14 +246,14 @@ void add_ports(CLI::App& app, PortOptions& o) {
 }
 
 void add_bridges(CLI::App& app, BridgeOptions& o) {
-  app.add_option("--ros2", o.ros2, "A node of ROS 2 in that domain (default: ROS_DOMAIN_ID, or 0)")
+  app.add_option("--ros2", o.ros2, "Open a ROS 2 node in this domain (default: ROS_DOMAIN_ID, or 0)")
       ->expected(0, 1)
       ->check(whole(0, bridges::kDdsMaxDomain))
       ->type_name("[DOMAIN]")
       ->group(kBridgeGroup);
   app.add_option("--player", o.player,
-                 "Player server for clients of Player, all robots at this port, and robot K alone K - 1 ports on "
-                 "(default: 127.0.0.1:6665; 0: any free ones)")
+                 "Open a Player server with all robots on this port, and robot K alone on this port + K - 1 (default: "
+                 "127.0.0.1:6665; 0: any free ports)")
       ->expected(0, 1)
       ->default_str("6665")
       ->type_name("[HOST:]PORT")
@@ -264,7 +261,7 @@ void add_bridges(CLI::App& app, BridgeOptions& o) {
   const auto read = [&o](const std::string& text) { o.view = bridges::read_web_address(text); };
   app.add_option_function<std::string>(
          "--view", read,
-         "Show it live in a browser, and to Foxglove's viewers, at this address (default 127.0.0.1:8765)")
+         "Serve a live view at this address, for a browser and for Foxglove's viewers (default: 127.0.0.1:8765)")
       ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))
       ->expected(0, 1)
       ->default_str("8765")
@@ -286,8 +283,8 @@ void add_naming(CLI::App& app, NamingOption& o) {
       ->default_str("robot")
       ->group(kNaming);
   add_choice(app, "--odometry", o.naming.odometry, choices(record::kOdometrySources),
-             "The topic odom, and odom -> base_link: encoders (of robots without them: exact), exact (without errors, "
-             "from the start pose on) or truth (the pose in the world)")
+             "Source of the topic odom and of odom -> base_link: encoders (exact for robots without them), exact "
+             "(without errors, from the start pose) or truth (the pose in the world)")
       ->default_str("encoders")
       ->group(kNaming);
   std::vector<std::string> nodes;
@@ -298,8 +295,8 @@ void add_naming(CLI::App& app, NamingOption& o) {
   };
   app.add_option_function<std::vector<std::string>>(
          "--external", set,
-         "Nodes elsewhere: localizer (the farm leaves out map -> odom), mapper (map -> odom and /map) or filter "
-         "(odom -> base_link), or several")
+         "External nodes, whose output the farm leaves out: localizer (map -> odom), mapper (map -> odom and /map) or "
+         "filter (odom -> base_link), or several")
       ->check(one_of(nodes))
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -335,7 +332,7 @@ void check_naming(const CLI::App& sub, const char* readings_option) {
 }
 
 void add_threads(CLI::App& app, ThreadsOption& o) {
-  app.add_option("--threads", o.threads, "Threads of the host (0: all); readings do not depend on it")
+  app.add_option("--threads", o.threads, "Host threads (0: all); readings do not depend on their number")
       ->check(whole(0, 256))
       ->type_name("N");
 }
@@ -363,7 +360,7 @@ void add_page(CLI::App& app, PageOption& o) {
            if (const auto size = read_size(text)) o.page.width = size->x, o.page.height = size->y;
            refuse_large_font(o.page);
          },
-         "Width of the picture on paper, or width and greatest height [mm]; 88 is one column (default: 226 or so)")
+         "Printed width of the picture, or width and maximum height [mm]; 88 is one column (default: about 226)")
       ->check(readable(read_size, "W or WxH [mm] with W from 50 to 1000 and H from 30 to 1000, such as 88 or 170x120"))
       ->type_name("W[xH]")
       ->group("Picture");
@@ -373,22 +370,22 @@ void add_page(CLI::App& app, PageOption& o) {
            o.page.font_size = points;
            refuse_large_font(o.page);
          },
-         "Size of the letters of axes and legends [pt], with which lines and marks grow (default: 7.2)")
+         "Font size of axes and legends [pt]; lines and markers scale with it (default: 7.2)")
       ->check(number(5.0, 24.0))
       ->type_name("PT")
       ->group("Picture");
-  app.add_option("--dpi", o.page.dpi, "Dots per inch of PNG pictures (default: 180)")
+  app.add_option("--dpi", o.page.dpi, "Resolution of PNG pictures [dots per inch] (default: 180)")
       ->check(number(50.0, 1200.0))
       ->type_name("N")
       ->group("Picture");
   app.add_flag_callback(
-         "--no-title", [&o] { o.page.title = false; }, "Neither title nor subtitle, for a caption's sake")
+         "--no-title", [&o] { o.page.title = false; }, "Omit title and subtitle, for pictures with a caption")
       ->group("Picture");
 }
 
 void add_line_styles(CLI::App& app, PageOption& o) {
   add_choice<bool, bool>(app, "--line-styles", o.page.line_styles, {{"varied", true}, {"solid", false}},
-                         "Dashes of curves: varied (known without colours, too) or solid (default: varied)")
+                         "Dashes of curves: varied (distinguishable without colour) or solid (default: varied)")
       ->group("Picture");
 }
 
@@ -403,7 +400,7 @@ void add_map_colors(CLI::App& app, PageOption& o) {
 void add_extent(CLI::App& app, PageOption& o) {
   app.add_option_function<std::string>(
          "--extent", [&o](const std::string& text) { o.page.extent = read_extent(text); },
-         "Area of the world to show [m] (default: all of it)")
+         "Area of the world to show [m] (default: the whole world)")
       ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"))
       ->type_name("XMIN,YMIN,XMAX,YMAX")
       ->group("Picture");
@@ -412,13 +409,13 @@ void add_extent(CLI::App& app, PageOption& o) {
 void add_format(CLI::App& app, std::string& format) {
   add_choice(
       app, "--format", {"png", "svg", "pdf"}, [&format](const std::string& word) { format = word; },
-      "Kind of the pictures (default: png)")
+      "File format of the pictures (default: png)")
       ->group("Picture");
 }
 
 CLI::Option* add_robot_names(CLI::App& app, const std::string& option, std::vector<std::string>& names,
                              const std::string& help) {
-  return app.add_option(option, names, help + "; may be repeated, and names may have commas")
+  return app.add_option(option, names, help + "; may be repeated; names may contain commas")
       ->allow_extra_args(false)
       ->check(not_empty("the name of a robot"))
       ->type_name("NAME,...");
@@ -448,7 +445,7 @@ void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted) {
   CLI::Option* const extent =
       app.add_option_function<std::string>(
              "--video-extent", [&o](const std::string& text) { o.video_extent = read_extent(text); },
-             "Area of the world to show [m] (default: all of it)")
+             "Area of the world to show [m] (default: the whole world)")
           ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"));
   in_group(extent, "XMIN,YMIN,XMAX,YMAX");
   CLI::Option* const follow =
@@ -467,11 +464,11 @@ void add_video(CLI::App& app, VideoOptions& o, const std::string& help) {
 }
 
 void add_part(CLI::App& app, PartOption& o) {
-  add_robot_names(app, "--robots", o.robots, "Names of the robots to take (default: all)");
-  app.add_option("--from", o.from, "Begin of the part to take [s] (default: 0)")
+  add_robot_names(app, "--robots", o.robots, "Names of the robots to include (default: all)");
+  app.add_option("--from", o.from, "Start of the time range [s] (default: 0)")
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S");
-  app.add_option("--to", o.to, "End of the part to take [s] (default: the recording's)")
+  app.add_option("--to", o.to, "End of the time range [s] (default: the end of the recording)")
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S");
 }
@@ -483,7 +480,7 @@ void add_recording(CLI::App& app, RecordingOption& o) {
 void add_sensor_type(CLI::App& app, SenseOptions& o) {
   std::vector<std::pair<std::string, std::uint8_t>> types;
   for (const sensors::SensorType* type : sensors::sensor_types()) types.emplace_back(type->name, type->id);
-  add_choice(app, "--type", o.type, types, "Type of its sensor (default: the first that it has)");
+  add_choice(app, "--type", o.type, types, "Type of the sensor (default: the robot's first)");
 }
 
 void add_seed(CLI::App& app, SeedOption& o, const std::string& what) {
@@ -491,7 +488,7 @@ void add_seed(CLI::App& app, SeedOption& o, const std::string& what) {
 }
 
 void add_robots(CLI::App& app, CloneOptions& o) {
-  auto* robots = app.add_option("--robots", o.robots, "Replace the robots by this many copies of one, at free poses")
+  auto* robots = app.add_option("--robots", o.robots, "Replace the robots with this many copies of one, at free poses")
                      ->check(whole(1, 65535))
                      ->type_name("N");
   app.add_option("--of", o.of, "Robot to copy (default: the first with sensors)")
@@ -502,25 +499,24 @@ void add_robots(CLI::App& app, CloneOptions& o) {
 }
 
 void add_robot_from(CLI::App& app, WorldOptions& o) {
-  CLI::Option* const from =
-      app.add_option("--robot-from", o.robot_from,
-                     "Robot of another world file, or a type that it defines, for a world without robots such as a ROS "
-                     "map, and to copy (docs/worlds.md)")
-          ->check(not_empty("FILE:NAME such as worlds/robots.inc:create"))
-          ->type_name("FILE:NAME");
+  CLI::Option* const from = app.add_option("--robot-from", o.robot_from,
+                                           "Robot or robot type of another world file: added to a world without "
+                                           "robots, such as a ROS map, or copied by --robots (docs/worlds.md)")
+                                ->check(not_empty("FILE:NAME such as worlds/robots.inc:create"))
+                                ->type_name("FILE:NAME");
   if (CLI::Option* const of = app.get_option_no_throw("--of"); of != nullptr) from->excludes(of);
 }
 
 void add_in_process(CLI::App& app, InProcessOption& o) {
   app.add_flag("--in-process", o.in_process,
-               "Run plug-ins and Python in this process, as for a debugger. Default: in a child process, whose end is "
-               "reported");
+               "Run plug-ins and Python in this process, e.g. for a debugger (default: in a child process, so that a "
+               "crash is reported)");
 }
 
 void add_timeout(CLI::App& app, double& seconds, const std::string& job) {
   app.add_option(
          "--timeout", seconds,
-         fmt::format("Seconds of wall-clock time per {}, after which it is ended and has failed (default: none)", job))
+         fmt::format("Wall-clock time limit per {} [s], after which it is stopped and fails (default: none)", job))
       ->check(in_seconds(1e-3, 1e9))
       ->type_name("S");
 }
@@ -535,14 +531,13 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
       ->check([=](const std::string& name) { return control::names_a_file(name) ? std::string() : known(name); })
       ->type_name("NAME")
       ->capture_default_str();
-  app.add_option(
-         "--set", o.set,
-         "A setting of the controller, such as kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\" (may be repeated)")
+  app.add_option("--set", o.set,
+                 "Setting of the controller, such as kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\" (may be repeated)")
       ->check(readable(read_setting, "KEY=VALUE such as kp=0.5"))
       ->type_name("KEY=VALUE");
   app.add_flag("--localize", o.localize,
-               "The controller drives by the pose that the robot's own encoders, gyro and GPS receiver tell "
-               "(same as --set localize=true)");
+               "Use the pose estimated from the robot's own encoders, gyro and GPS receiver for control (same as --set "
+               "localize=true)");
   add_in_process(app, o);
 }
 

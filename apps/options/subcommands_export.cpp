@@ -32,17 +32,17 @@ void add_export(CLI::App& app, Call& call) {
       ->required()
       ->check(not_empty("a folder"))
       ->type_name("DIR");
-  sub->add_flag("--vtk", o.vtk, "Walls, roads, robots, trajectories, scans, occupancy and field as VTK files");
-  add_every(*sub, o.every, "Simulated time between the files of a series of --vtk [s]");
+  sub->add_flag("--vtk", o.vtk, "Write walls, roads, robots, trajectories, scans, occupancy and field as VTK files");
+  add_every(*sub, o.every, "Simulated time between the files of a VTK series [s]");
   add_height(*sub, o.height);
   add_part(*sub, o);
   add_device(*sub, o);
 }
 
 void add_view(CLI::App& app, Call& call) {
-  constexpr const char* kGroup = "VTK's window";
+  constexpr const char* kGroup = "VTK window";
   CLI::App* sub = app.add_subcommand(
-      "view", "Show a recorded run in a browser, with its time to choose, and to Foxglove's viewers, or in a window");
+      "view", "Show a recorded run in a browser with a time slider, in Foxglove's viewers, or in a window");
   auto& o = add_command(*sub, call, view, [sub] {
     for (const char* name : {"--robots", "--from", "--to"})
       if (sub->count(name) > 0 && sub->count("--3d") + sub->count("--frames") == 0)
@@ -52,28 +52,28 @@ void add_view(CLI::App& app, Call& call) {
   add_recording(*sub, o);
   sub->add_option_function<std::string>(
          "--port", [&o](const std::string& text) { o.port = *bridges::read_web_address(text); },
-         "TCP port, and address where others are to see it (default 127.0.0.1:8765; port 0: any free one)")
+         "TCP port of the page, and HOST to open it to other machines (default: 127.0.0.1:8765; port 0: any free port)")
       ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))
       ->type_name("[HOST:]PORT");
   auto* frames = sub->add_option("--frames", o.frames,
-                                 "Folder for the frames of a video as PNG files, for any encoder, in place of the page")
+                                 "Folder for the frames of a video as PNG files, for any encoder, instead of the page")
                      ->check(not_empty("a folder"))
                      ->excludes("--port")
                      ->type_name("DIR");
   add_video_look(*sub, o, frames);
   auto* window =
-      sub->add_flag("--3d", o.three_d, "In three dimensions (VTK): walls, robots, beams, magnetic field, a time slider")
+      sub->add_flag("--3d", o.three_d, "Open a 3-D window (VTK): walls, robots, beams, magnetic field, a time slider")
           ->excludes(frames)
           ->group(kGroup);
   add_every(*sub, o.every, "Simulated time between two frames [s]")->needs(window)->group(kGroup);
   add_height(*sub, o.height)->needs(window)->group(kGroup);
-  sub->add_option("--time", o.time, "Simulated time to begin with [s]")
+  sub->add_option("--time", o.time, "Simulated time to start at [s]")
       ->needs(window)
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);
-  sub->add_option("--screenshot", o.screenshot, "PNG file to write instead of opening the window for a user")
+  sub->add_option("--screenshot", o.screenshot, "PNG file to write instead of opening a window")
       ->needs(window)
       ->check(new_file("view.png"))
       ->type_name("FILE")

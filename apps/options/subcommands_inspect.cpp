@@ -18,7 +18,7 @@ namespace {
 void add_devices(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("devices",
                                      "List the Vulkan devices with their self-checks, the chosen one, and why others "
-                                     "are refused (exit 3 when none is usable)");
+                                     "are refused (exit code 3 if none is usable)");
   auto& o = add_command(*sub, call, devices);
   add_examples(*sub, {"--json"});
   add_json(*sub, o);
@@ -26,7 +26,8 @@ void add_devices(CLI::App& app, Call& call) {
 }
 
 void add_check(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("check", "Summarize a world as read, with the line of every warning");
+  CLI::App* sub =
+      app.add_subcommand("check", "Summarize a world as the farm reads it, and list every warning with its line");
   auto& o = add_command(*sub, call, check);
   add_examples(*sub, {"worlds/cave.world", "worlds/simville/simville.mdf --rndf worlds/simville/simville.rndf"});
   add_world(*sub, o);
@@ -34,14 +35,14 @@ void add_check(CLI::App& app, Call& call) {
   sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
       ->check(not_empty("a file"))
       ->type_name("FILE");
-  sub->add_option("--rate", o.rate, "Ticks per second of a later `serve --rate`: names the sensors that are faster")
+  sub->add_option("--rate", o.rate, "Intended `serve --rate` in ticks per second: lists the sensors that are faster")
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
   add_json(*sub, o);
 }
 
 void add_draw(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("draw", "Draw a world as read, seen from above");
+  CLI::App* sub = app.add_subcommand("draw", "Draw a world from above, as the farm reads it");
   auto& o = add_command(*sub, call, draw);
   add_examples(*sub, {"worlds/simville/simville.world -o simville.png"});
   add_world(*sub, o);
@@ -51,12 +52,12 @@ void add_draw(CLI::App& app, Call& call) {
 }
 
 void add_field(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("field", "Draw the magnetic field of a world at one height, and along a line");
+  CLI::App* sub = app.add_subcommand("field", "Plot the magnetic field of a world at one height and along a line");
   auto& o = add_command(*sub, call, field);
   add_examples(*sub, {"worlds/six_magnets.world --height 0.05 -o field.png"});
   add_world(*sub, o);
   add_device(*sub, o);
-  sub->add_option("--height", o.height, "Height in the world [m]")
+  sub->add_option("--height", o.height, "Height of the plane [m]")
       ->required()
       ->check(number(-1e6, 1e6))
       ->type_name("Z");
@@ -65,21 +66,21 @@ void add_field(CLI::App& app, Call& call) {
   add_line_styles(*sub, o);
   sub->add_option_function<std::string>(
          "--line", [&o](const std::string& text) { o.line = read_line(text); },
-         "Ends of the profile's line [m] (default: along the magnets)")
+         "End points of the profile [m] (default: along the magnets)")
       ->check(readable(read_line, "X0,Y0,X1,Y1 of two points such as -1,0,2,0.5"))
       ->type_name("X0,Y0,X1,Y1");
   sub->add_option_function<std::string>(
          "--extent", [&o](const std::string& text) { o.extent = read_extent(text); },
-         "Area that the map must show [m] (default: all magnets)")
+         "Area that the map shows at least [m] (default: all magnets)")
       ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"))
       ->type_name("XMIN,YMIN,XMAX,YMAX");
-  sub->add_option("--csv", o.csv, "CSV file to write with the profile's numbers")
+  sub->add_option("--csv", o.csv, "CSV file to write the profile to")
       ->check(new_file("profile.csv"))
       ->type_name("FILE");
 }
 
 void add_sense(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("sense", "Take one reading of one sensor, without noise, to check a world");
+  CLI::App* sub = app.add_subcommand("sense", "Compute one reading of one sensor, without noise, to check a world");
   auto& o = add_command(*sub, call, sense);
   add_examples(*sub, {"worlds/rooms.world --pose 1,2,90", "worlds/rooms.world --robot roomba1 --type laser --json"});
   add_world(*sub, o);
@@ -89,14 +90,13 @@ void add_sense(CLI::App& app, Call& call) {
   add_no_return(*sub, o);
   sub->add_option_function<std::string>(
          "--pose", [&o](const std::string& text) { o.pose = read_pose(text); },
-         "Pose of the robot [m, degrees] (default: its own)")
+         "Pose of the robot [m, degrees] (default: its pose in the world)")
       ->check(readable(read_pose, "X,Y,YAW_DEG such as 1.5,-2,90"))
       ->type_name("X,Y,YAW_DEG");
-  sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
+  sub->add_option("--robot", o.robot, "Name of the robot (default: the first with a sensor)")->type_name("NAME");
   add_robot_from(*sub, o);
   add_sensor_type(*sub, o);
-  sub->add_option("--sensor", o.sensor,
-                  "Number of its sensor, from 0: of that type, or through all its types where none is named")
+  sub->add_option("--sensor", o.sensor, "Number of the sensor, from 0: within --type, or across all types without it")
       ->check(whole(0, 65535))
       ->type_name("N")
       ->capture_default_str();
@@ -104,7 +104,8 @@ void add_sense(CLI::App& app, Call& call) {
 
 void add_plot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "plot", "Draw trajectories, an occupancy map, readings and lights from a recorded run, or metrics of a sweep");
+      "plot",
+      "Plot trajectories, an occupancy map, readings and traffic lights of a recorded run, or the metrics of a sweep");
   auto& o = add_command(*sub, call, plot, [sub] {
     if (sub->count("--video") == 0) return;
     for (const std::string option :
@@ -126,23 +127,23 @@ void add_plot(CLI::App& app, Call& call) {
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_format(*sub, o.format);
-  sub->add_flag("--csv", o.csv, "Write every plotted curve as a CSV file beside its figure")->group("Picture");
+  sub->add_flag("--csv", o.csv, "Also write every plotted curve as a CSV file next to its figure")->group("Picture");
   add_page(*sub, o);
   add_line_styles(*sub, o);
   add_map_colors(*sub, o);
   add_extent(*sub, o);
   add_robot_names(*sub, "--label", o.labels,
-                  "Robots to name in the trajectories, in colours over the others, or all (default: up to ten)");
-  auto* elements =
-      sub->add_option("--elements", o.elements,
-                      "Elements of sensors to draw, as curves (default: all; of more than seven a heat map)")
-          ->delimiter(',')
-          ->allow_extra_args(false)
-          ->check(whole(0, UINT32_MAX))
-          ->type_name("N,...");
-  sub->add_flag("--curves", o.curves, "Readings of many elements as curves in place of heat maps")->excludes(elements);
+                  "Robots to label and colour in the plot of trajectories, or all (default: up to ten)");
+  auto* elements = sub->add_option("--elements", o.elements,
+                                   "Sensor elements to plot as curves (default: all; more than seven as a heat map)")
+                       ->delimiter(',')
+                       ->allow_extra_args(false)
+                       ->check(whole(0, UINT32_MAX))
+                       ->type_name("N,...");
+  sub->add_flag("--curves", o.curves, "Plot the readings of many elements as curves instead of heat maps")
+      ->excludes(elements);
   constexpr const char* kSweeps = "Sweeps (docs/sweeps.md)";
-  sub->add_option("--over", o.over, "Parameter along x (default: the first whose values are numbers and differ)")
+  sub->add_option("--over", o.over, "Parameter on the x axis (default: the first with different numeric values)")
       ->check(not_empty("the name of a parameter"))
       ->type_name("PARAMETER")
       ->group(kSweeps);
@@ -150,9 +151,9 @@ void add_plot(CLI::App& app, Call& call) {
   add_choice<AxisScale, AxisScale>(
       *sub, "--x-axis", o.x_axis,
       {{"auto", AxisScale::automatic}, {"linear", AxisScale::linear}, {"log", AxisScale::logarithmic}},
-      "Scale of x: auto is log where successive values have about equal ratios (default: auto)")
+      "Scale of the x axis: auto selects log if successive values have about equal ratios (default: auto)")
       ->group(kSweeps);
-  add_video(*sub, o, "Video to write in place of the pictures (VP9 in WebM, by FFmpeg)");
+  add_video(*sub, o, "Video to write instead of pictures (VP9 in WebM, encoded by FFmpeg)");
   add_part(*sub, o);
   add_device(*sub, o);
 }
@@ -164,9 +165,11 @@ void add_v2x(CLI::App& app, Call& call) {
                                      "export a world's traffic lights as messages");
   auto& o = add_command(*sub, call, v2x_messages, [sub] {
     const auto action = sub->get_option("action")->as<std::string>();
-    if (sub->count("--xml") > 0 && action != "decode") throw CLI::ValidationError("--xml", "goes with decode");
+    if (sub->count("--xml") > 0 && action != "decode")
+      throw CLI::ValidationError("--xml", "requires the action decode");
     for (const std::string option : {"--time", "--latitude", "--longitude"})
-      if (sub->count(option) > 0 && action != "export") throw CLI::ValidationError(option, "goes with export");
+      if (sub->count(option) > 0 && action != "export")
+        throw CLI::ValidationError(option, "requires the action export");
   });
   add_examples(*sub, {"decode spat.hex", "decode --xml map.bin", "encode spat.json > spat.hex",
                       "export worlds/simville/simville.world --time 9"});
@@ -184,8 +187,8 @@ void add_v2x(CLI::App& app, Call& call) {
       ->check(not_empty("a file"))
       ->transform(base::installed_file)
       ->type_name("FILE");
-  sub->add_flag("--xml", o.xml, "Decode to XML (XER) in place of JSON");
-  sub->add_option("--time", o.time, "Simulated time [s] of the SPaT; time 0 is the year's start in UTC")
+  sub->add_flag("--xml", o.xml, "Decode to XML (XER) instead of JSON");
+  sub->add_option("--time", o.time, "Simulated time [s] of the SPaT; time 0 is the start of the year in UTC")
       ->check(in_seconds(0.0, 31'536'000.0))
       ->type_name("S")
       ->capture_default_str()
@@ -196,7 +199,7 @@ void add_v2x(CLI::App& app, Call& call) {
 void add_explain(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "explain",
-      "Report what a world makes the farm build and compute, and the cost of each sensor type on this machine");
+      "Report the structures and computations that a world requires, and the cost of each sensor type on this machine");
   auto& o = add_command(*sub, call, explain);
   add_examples(*sub, {"worlds/simville/simville.world"});
   add_world(*sub, o);

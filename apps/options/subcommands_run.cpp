@@ -64,40 +64,43 @@ void add_run(CLI::App& app, Call& call) {
   add_robots(*sub, o);
   add_robot_from(*sub, o);
   add_controller(*sub, o);
-  sub->add_option("--drive", o.drive, "Robot to drive; all others stand (may be repeated; default: every robot)")
+  sub->add_option("--drive", o.drive, "Robot to drive; all others stay at rest (may be repeated; default: every robot)")
       ->check(not_empty("the name of a robot"))
       ->allow_extra_args(false)
       ->type_name("NAME");
   add_no_return(*sub, o);
   add_ports(*sub, o);
-  sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; without end beside bridges)")
+  sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; unlimited with bridges)")
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S");
   add_threads(*sub, o);
-  auto* record = sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)")
+  auto* record = sub->add_option("--record", o.record, "Folder for the recording of the run (run.mcap)")
                      ->check(not_empty("a folder"))
                      ->type_name("DIR");
   sub->add_flag("--record-readings", o.record_readings,
-                "Record the readings too, not only the states from which they can be computed")
+                "Also record the readings, not only the states from which they can be recomputed")
       ->needs(record);
   add_compression(*sub, o)->needs(record);
-  sub->add_option("--checkpoint", o.checkpoint, "Keep a check point of the run every S simulated seconds (--record)")
+  sub->add_option("--checkpoint", o.checkpoint,
+                  "Write a checkpoint of the run every S simulated seconds (with --record)")
       ->check(in_seconds(0.001, 1e9))
       ->needs(record)
       ->type_name("S");
   sub->add_flag("--resume", o.resume,
-                "Compute a run that was cut short again, with the same bytes, and compare it with its check points")
+                "Recompute an interrupted run, with the same bytes, and compare it with its checkpoints")
       ->needs(record);
-  add_video(*sub, o, "Video of the run to write (VP9 in WebM, by FFmpeg)");
-  auto* tiles = sub->add_flag("--tiles", o.tiles, "Ranks (mpirun) each know and sense one part of the world");
-  sub->add_option("--balance", o.balance, "Cut the parts anew every S simulated seconds, by the time they take")
+  add_video(*sub, o, "Video of the run to write (VP9 in WebM, encoded by FFmpeg)");
+  auto* tiles =
+      sub->add_flag("--tiles", o.tiles, "Divide the world into tiles: each rank (mpirun) holds and senses one");
+  sub->add_option("--balance", o.balance, "Rebalance the tiles every S simulated seconds by the time that they take")
       ->check(in_seconds(0.001, 1e9))
       ->needs(tiles)
       ->type_name("S");
-  auto* speed = sub->add_option("--speed", o.speed,
-                                "Simulated over real time (0: as fast as possible; default: 0, and 1 beside bridges)")
-                    ->check(number(0.0, 1e6))
-                    ->type_name("X");
+  auto* speed =
+      sub->add_option("--speed", o.speed,
+                      "Ratio of simulated to real time (0: as fast as possible; default: 0, or 1 with bridges)")
+          ->check(number(0.0, 1e6))
+          ->type_name("X");
   sub->add_flag_callback(
          "--real-time", [&o] { o.speed = 1.0; }, "Run in real time: --speed 1")
       ->excludes(speed);
@@ -109,7 +112,8 @@ void add_run(CLI::App& app, Call& call) {
 }
 
 void add_forget(CLI::App& app, ForgetOption& o) {
-  app.add_option("--forget", o.forget, "Silence after which a robot is no obstacle any more [s], at least 2 (0: never)")
+  app.add_option("--forget", o.forget,
+                 "Silence after which a robot is no longer an obstacle [s], at least 2 (0: never)")
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
@@ -122,8 +126,8 @@ CLI::Option* add_clock(CLI::App& app, const std::string& name, estimation::Clock
              {{"estimated", ClockSource::estimated},
               {"trusted", ClockSource::trusted},
               {"arrival", ClockSource::arrival}},
-             "Time of states: timestamps, on clocks estimated from the packets or trusted (Unix time, by PTP or NTP), "
-             "or the time of arrival")
+             "Time of states: timestamps on clocks that are estimated from the packets or trusted (Unix time, "
+             "synchronized by PTP or NTP), or the time of arrival")
       ->default_str("estimated");
 }
 
@@ -131,35 +135,35 @@ void add_filter(CLI::App& app, FilterOptions& o) {
   using estimation::StalePolicy;
   constexpr const char* kGroup = "States of robots and tags (docs/estimation.md)";
   app.add_option("--stale-after", o.stale_after,
-                 "Readings say that their robot's state is stale when it is older than this [s]")
+                 "Age at which a robot's state is stale, which its readings then state [s]")
       ->check(in_seconds(0.01, 1e6))
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);
-  auto* filter = app.add_flag("--filter", o.filter,
-                              "Filter states (extended Kalman filter): late ones count at the time of their timestamp, "
-                              "wrong ones are refused, and each reading has the state predicted to its time")
-                     ->group(kGroup);
+  auto* filter =
+      app.add_flag("--filter", o.filter,
+                   "Filter states with an extended Kalman filter: late states are applied at their timestamps, "
+                   "outliers are rejected, and each reading uses the state predicted to its time")
+          ->group(kGroup);
   add_choice<StalePolicy, StalePolicy>(
       app, "--stale", o.stale,
       {{"freeze", StalePolicy::freeze}, {"hide", StalePolicy::hide}, {"drop", StalePolicy::drop}},
-      "A stale robot or tag stands (freeze), is out of the world (hide), or likewise with its sender's clock forgotten "
-      "(drop)")
+      "Stale robots and tags stay in place (freeze), leave the world (hide), or leave it and lose their sender's clock "
+      "estimate (drop)")
       ->default_str("freeze")
       ->needs(filter)
       ->group(kGroup);
   add_clock(app, "--clock", o.clock)->needs(filter)->group(kGroup);
   app.add_option("--link-delay", o.link_delay,
-                 "Least delay of packets to the farm [s], which packets cannot show (--clock estimated)")
+                 "Minimum delay of packets to the farm [s], which packets do not reveal (--clock estimated)")
       ->check(in_seconds(0.0, 10.0))
       ->needs(filter)
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);
-  app.add_option(
-         "--hypotheses", o.hypotheses,
-         "Gaussians of a state whose heading is uncertain after losses; 1: a single one, with a covariance that "
-         "is too small then")
+  app.add_option("--hypotheses", o.hypotheses,
+                 "Number of Gaussians for a state whose heading is uncertain after losses; with 1, the covariance is "
+                 "too small then")
       ->check(whole(1, 64))
       ->needs(filter)
       ->type_name("N")
@@ -177,7 +181,7 @@ void refuse_with_lockstep(const CLI::App& sub) {
     if (option->count() > 0 && (of_ports || name == "--spat" || name == "--stale-lights" || name == "--rate" ||
                                 name == "--radio" || name == "--forget" || name == "--mirror" || name == "--filter" ||
                                 name == "--stale-after" || option->get_group() == kBridgeGroup))
-      throw CLI::ValidationError(name, "does not go with --lockstep");
+      throw CLI::ValidationError(name, "cannot be used with --lockstep");
   }
 }
 
@@ -186,24 +190,24 @@ void check_serve(const CLI::App& sub) {
   check_naming(sub);
   if (sub.count("--link-delay") > 0 && sub.count("--clock") > 0 &&
       sub.get_option("--clock")->as<std::string>() != "estimated")
-    throw CLI::ValidationError("--link-delay", "is for clocks that are estimated: leave it out, or --clock");
+    throw CLI::ValidationError("--link-delay", "applies to estimated clocks only: leave out --link-delay or --clock");
 }
 
 void add_lockstep(CLI::App& app, ServeOptions& o) {
   constexpr const char* kGroup = "Lockstep (docs/packets.md)";
   auto* lockstep = app.add_flag("--lockstep", o.lockstep,
-                                "Move the robots: clients command them tick by tick (COMMAND, STEP), as fast as the "
-                                "machine allows, with the same readings in each run")
+                                "Simulate the robots: clients command them tick by tick (COMMAND, STEP), as fast as "
+                                "the machine allows, with the same readings in every run")
                        ->group(kGroup);
-  app.add_option("--wait-for", o.wait_for, "Robots that clients have subscribed before the first tick")
+  app.add_option("--wait-for", o.wait_for, "Number of robots that clients must subscribe before the first tick")
       ->check(whole(1, 65536))
       ->needs(lockstep)
       ->type_name("N")
       ->capture_default_str()
       ->group(kGroup);
   app.add_option("--lockstep-timeout", o.lockstep_timeout,
-                 "Time that clients wait for another [s]; then its robots are left out and stand, the others go on, "
-                 "and the exit code is 1 (0: without end)")
+                 "Longest wait for a client [s]; then its robots stop and are left out, the others continue, and the "
+                 "exit code is 1 (0: wait forever)")
       ->check(in_seconds(0.0, 1e6))
       ->needs(lockstep)
       ->type_name("S")
@@ -230,8 +234,8 @@ void add_serve(CLI::App& app, Call& call) {
       ->type_name("PORT")
       ->capture_default_str();
   sub->add_option("--rate", o.rate,
-                  "Ticks per second; sensors are then read at ticks only (default: the world's interval_sim, with "
-                  "sensors at their own times)")
+                  "Ticks per second; if given, sensors are read only at ticks (default: the world's interval_sim, with "
+                  "sensors read at their own times)")
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
   sub->add_option("--radio", o.radio, "Radio range of V2V [m]: states of robots within it are relayed (0: none)")
@@ -243,24 +247,23 @@ void add_serve(CLI::App& app, Call& call) {
   add_lockstep(*sub, o);
   add_filter(*sub, o);
   sub->add_option("--mirror", o.mirror,
-                  "Address of an observer that gets a copy of every packet of a reading (`vps --readings`)")
+                  "Address of an observer that receives a copy of every reading packet (`vps --readings`)")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
   sub->add_option("--spat", o.spat,
-                  "UDP port on which to listen for SPaT of traffic lights, which replace the world's plans, as V2I at "
-                  "the farm's port do")
+                  "UDP port to receive SPaT of traffic lights on, which overrides the world's plans, as V2I at the "
+                  "farm's port does")
       ->check(whole(1, 65535))
       ->type_name("PORT");
   using server::StaleLights;
   add_choice<StaleLights, StaleLights>(
       *sub, "--stale-lights", o.stale_lights, {{"dark", StaleLights::dark}, {"plan", StaleLights::plan}},
-      "A light that was heard and is silent for 2 s is dark, which robots treat as a stop sign, or follows the world's "
-      "plan")
+      "State of a received light after 2 s of silence: dark, which robots treat as a stop sign, or by the world's plan")
       ->default_str("dark");
-  auto* record =
-      sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
-          ->check(not_empty("a folder"))
-          ->type_name("DIR");
+  auto* record = sub->add_option("--record", o.record,
+                                 "Folder for the recording of states, their quality, and readings (run.mcap)")
+                     ->check(not_empty("a folder"))
+                     ->type_name("DIR");
   add_compression(*sub, o)->needs(record);
   add_robots(*sub, o);
   add_robot_from(*sub, o);
@@ -270,7 +273,7 @@ void add_serve(CLI::App& app, Call& call) {
 }
 
 void add_farm(CLI::App& app, FarmOptions& o) {
-  app.add_option("--server", o.server, "Host of the farm that serves")
+  app.add_option("--server", o.server, "Host of the farm (`sensorfarm serve`)")
       ->check(not_empty("a host"))
       ->type_name("HOST")
       ->capture_default_str();
@@ -287,7 +290,7 @@ void add_link(CLI::App& app, LinkOptions& o) {
       ->type_name("S")
       ->group(kGroup);
   app.add_option("--jitter", o.jitter,
-                 "Additional random delay, uniform from 0 to this; packets may overtake each other [s]")
+                 "Additional random delay, uniform from 0 to this [s]; packets may overtake each other")
       ->check(in_seconds(0.0, 3600.0))
       ->type_name("S")
       ->group(kGroup);
@@ -295,28 +298,26 @@ void add_link(CLI::App& app, LinkOptions& o) {
     app.add_option(name, value, text)->check(number(0.0, 1.0))->type_name("P")->group(kGroup);
   };
   add_fraction("--loss", o.loss, "Fraction of packets lost in each direction, 0 to 1");
-  add_fraction("--duplicate", o.duplicate, "Fraction of packets that come twice, 0 to 1");
-  add_fraction("--corrupt", o.corrupt, "Fraction of packets of which one bit is flipped, 0 to 1");
+  add_fraction("--duplicate", o.duplicate, "Fraction of packets that are duplicated, 0 to 1");
+  add_fraction("--corrupt", o.corrupt, "Fraction of packets with one flipped bit, 0 to 1");
 }
 
 void add_cameras(CLI::App& app, RobotOptions& o) {
   constexpr const char* kGroup = "Positions from cameras (docs/vps.md)";
-  auto* cameras =
-      app.add_option("--cameras", o.cameras,
-                     "Know its own pose by TAG packets to this UDP port alone (`sensorfarm vps --send`), and "
-                     "stand while they fail; what it says to the farm is this pose, filtered")
-          ->check(whole(1, 65535))
-          ->type_name("PORT")
-          ->group(kGroup);
+  auto* cameras = app.add_option("--cameras", o.cameras,
+                                 "UDP port for TAG packets (`sensorfarm vps --send`), the robot's only source of its "
+                                 "pose: it stops while they are missing, and reports the filtered pose to the farm")
+                      ->check(whole(1, 65535))
+                      ->type_name("PORT")
+                      ->group(kGroup);
   add_clock(app, "--clock", o.camera_clock)->needs(cameras)->group(kGroup);
-  app.add_option("--tag", o.tag, "Id of the tag that it carries (default: the robot's id)")
+  app.add_option("--tag", o.tag, "Id of the robot's tag (default: the robot's id)")
       ->check(whole(1, 65535))
       ->type_name("ID")
       ->group(kGroup);
-  app.add_option(
-         "--truth", o.truth,
-         "Report its true state, as the light that cameras see, to a renderer (`sensorfarm vps --robots PORT`); "
-         "clocks of both machines must agree")
+  app.add_option("--truth", o.truth,
+                 "Send the true state to a renderer of camera images (`sensorfarm vps --robots PORT`); the clocks of "
+                 "both machines must agree")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT")
       ->group(kGroup);
@@ -324,8 +325,8 @@ void add_cameras(CLI::App& app, RobotOptions& o) {
 
 void add_robot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("robot",
-                                     "Run one simulated robot as a process of its own, with sensors from a farm that "
-                                     "serves (exit 1 when nothing came from the farm)");
+                                     "Run one simulated robot in its own process, with sensors served by a farm (exit "
+                                     "code 1 if the farm sends nothing)");
   auto& o = add_command(*sub, call, robot, [sub] { require_any(*sub, {"--tag"}, {"--cameras", "--truth"}); });
   add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
                       "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
@@ -337,43 +338,44 @@ void add_robot(CLI::App& app, Call& call) {
   add_ports(*sub, o);
   sub->add_option("--name", o.robot, "Name of the robot in the world")->required()->type_name("NAME");
   add_robot_from(*sub, o);
-  sub->add_option("--rate", o.rate, "Decisions and packets per second (default: the controller's own)")
+  sub->add_option("--rate", o.rate, "Decisions and packets per second (default: the controller's rate)")
       ->check(number(0.1, 1000.0))
       ->type_name("HZ");
-  sub->add_option("--stop-after", o.stop_after, "Silence of the farm after which the robot stands [s] (0: never)")
+  sub->add_option("--stop-after", o.stop_after, "Silence of the farm after which the robot stops [s] (0: never)")
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
   add_forget(*sub, o);
   add_peers(*sub, o);
-  sub->add_option("--spat", o.spat,
-                  "UDP port on which to listen for SPaT of traffic lights (`sensorfarm light`, 9010), in place of the "
-                  "farm's lights")
+  sub->add_option(
+         "--spat", o.spat,
+         "UDP port to receive SPaT of traffic lights on (`sensorfarm light`, 9010), instead of the farm's lights")
       ->check(whole(1, 65535))
       ->type_name("PORT");
   add_cameras(*sub, o);
   sub->add_option("--map", o.map,
-                  "Make a map of the robot's own scans and send it there (`sensorfarm map --listen PORT`)")
+                  "Build a map from the robot's own scans and send it to this address (`sensorfarm map --listen PORT`)")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
-  auto* serial = sub->add_option("--serial", o.serial,
-                                 "Serial line of a real iRobot Create, which drives in place of the simulated robot")
-                     ->check(not_empty("a device such as /dev/ttyUSB0"))
-                     ->type_name("DEVICE");
+  auto* serial =
+      sub->add_option("--serial", o.serial, "Serial line of a real iRobot Create, which replaces the simulated robot")
+          ->check(not_empty("a device such as /dev/ttyUSB0"))
+          ->type_name("DEVICE");
   sub->add_option("--baud", o.baud, "Speed of the serial line: 57600 (Create) or 115200 (Create 2)")
       ->check(one_of({"9600", "19200", "38400", "57600", "115200"}))
       ->needs(serial)
       ->type_name("BAUD")
       ->capture_default_str();
-  sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal arrives (`sensorfarm start`)");
+  sub->add_flag("--wait-for-start", o.wait_for_start, "Wait for the start signal before driving (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");
   add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");
 }
 
 void add_light(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("light",
-                                     "Send traffic lights, of a world or a plan, as SAE J2735 messages over UDP, as "
-                                     "lights of streets do (SPaT at a rate, MAP once a second), and as V2I to a farm");
+  CLI::App* sub =
+      app.add_subcommand("light",
+                         "Send the traffic lights of a world or a plan as SAE J2735 messages over UDP, like real "
+                         "traffic lights (SPaT at a rate, MAP once a second), and as V2I to a farm");
   auto& o = add_command(*sub, call, light, [sub] {
     require_any(*sub, {"--port", "--latitude", "--longitude"}, {"--send"});
     require_any(*sub, {"--peers"}, {"--farm"});
@@ -387,16 +389,16 @@ void add_light(CLI::App& app, Call& call) {
       ->type_name("FILE");
   sub->add_option("--send", o.send, "Host to send SPaT and MAP to")->check(not_empty("a host"))->type_name("HOST");
   sub->add_option("--farm", o.farm,
-                  "Farm (`sensorfarm serve`) to send V2I to, and to hear robots from for the plan's detectors")
+                  "Farm (`sensorfarm serve`) to send V2I to, and to receive robot states from for the plan's detectors")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
   add_peers(*sub, o);
-  sub->add_option("--port", o.ports, "UDP port there; may be repeated, one per receiver")
+  sub->add_option("--port", o.ports, "UDP port of the receiver; may be repeated for several receivers")
       ->check(whole(1, 65535))
       ->allow_extra_args(false)
       ->type_name("PORT")
       ->capture_default_str();
-  sub->add_option("--rate", o.rate, "SPaT and V2I per second of each intersection")
+  sub->add_option("--rate", o.rate, "SPaT and V2I messages per second for each intersection")
       ->check(number(0.1, 100.0))
       ->type_name("HZ")
       ->capture_default_str();
@@ -405,8 +407,8 @@ void add_light(CLI::App& app, Call& call) {
       ->type_name("S")
       ->capture_default_str();
   sub->add_option("--set", o.set,
-                  "Hold a light in one state, in place of its plan: green, yellow, red, flashing red, "
-                  "flashing yellow or dark; may be repeated")
+                  "Hold a light in one state, overriding its plan: green, yellow, red, flashing red, flashing yellow "
+                  "or dark; may be repeated")
       ->check(readable(read_setting, "NAME=STATE such as 'light1=flashing red'"))
       ->allow_extra_args(false)
       ->type_name("NAME=STATE");
@@ -416,7 +418,7 @@ void add_light(CLI::App& app, Call& call) {
 
 void add_start(CLI::App& app, Call& call) {
   CLI::App* sub =
-      app.add_subcommand("start", "Send the start signal to waiting robots, through the farm (not acknowledged)");
+      app.add_subcommand("start", "Send the start signal to waiting robots through the farm (not acknowledged)");
   auto& o = add_command(*sub, call, start);
   add_examples(*sub, {"--robot 2"});
   add_farm(*sub, o);
@@ -426,14 +428,14 @@ void add_start(CLI::App& app, Call& call) {
 
 void add_object(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "object", "Open and close doors: take an object out of a farm's world, or put it back (not acknowledged)");
+      "object", "Open and close doors: remove an object from a farm's world, or put it back (not acknowledged)");
   auto& o = add_command(*sub, call, object);
   add_examples(*sub, {"absent --tag 3", "present --tag 3 --server 192.168.1.5"});
   add_farm(*sub, o);
   add_peers(*sub, o);
   using State = ObjectOptions::State;
   add_choice<State, State>(*sub, "state", o.state, {{"present", State::present}, {"absent", State::absent}},
-                           "What the object is to be")
+                           "New state of the object")
       ->required();
   sub->add_option("--tag", o.tag, "Id of the object's tag (tag<ID> in the world file)")
       ->required()
@@ -442,9 +444,9 @@ void add_object(CLI::App& app, Call& call) {
 }
 
 void add_listen(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "listen",
-      "Receive the packets of `run --send` on every robot's ports, count and check them (exit 1 when none was valid)");
+  CLI::App* sub = app.add_subcommand("listen",
+                                     "Receive the packets of `run --send` on every robot's ports, and count and check "
+                                     "them (exit code 1 if none is valid)");
   auto& o = add_command(*sub, call, listen);
   add_examples(*sub, {"worlds/cave.world --robots 4"});
   add_world(*sub, o);
@@ -472,14 +474,13 @@ CLI::Option* add_ports_to_bind(CLI::App& app, const std::string& name, std::vect
 }
 
 void add_dump(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "dump",
-      "Print packets in words, one line each: those of a capture file (tcpdump -w) or those that come to ports "
-      "(exit 1 when none was valid)");
+  CLI::App* sub = app.add_subcommand("dump",
+                                     "Print packets as text, one per line, from a capture file (tcpdump -w) or from "
+                                     "UDP ports (exit code 1 if none is valid)");
   auto& o = add_command(*sub, call, dump, [sub] {
     if (sub->count("file") + sub->count("--port") == 0) throw CLI::RequiredError("file (or --port)");
     for (const std::string option : {"--bind", "--duration"})
-      if (sub->count("file") > 0 && sub->count(option) > 0) throw CLI::ValidationError(option, "goes with --port");
+      if (sub->count("file") > 0 && sub->count(option) > 0) throw CLI::ValidationError(option, "requires --port");
   });
   add_examples(*sub, {"traffic.pcap", "--port 9000 --json"});
   auto* file = sub->add_option("file", o.file, "Capture file in the classic pcap format")->type_name("FILE");
@@ -494,8 +495,8 @@ void add_dump(CLI::App& app, Call& call) {
 }
 
 void add_map(CLI::App& app, Call& call) {
-  CLI::App* sub =
-      app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
+  CLI::App* sub = app.add_subcommand(
+      "map", "Show the occupancy maps that robots send, live in a terminal, and save them as pictures");
   auto& o = add_command(*sub, call, map, [sub] {
     require_any(*sub, kPageOptions, {"--out"});
     require_any(*sub, {"--map-colors"}, {"--out"});

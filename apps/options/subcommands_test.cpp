@@ -19,7 +19,8 @@ namespace {
 
 void add_experiment(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "experiment", "Run an experiment: trials, statistics beside the thesis' and figures, in one folder");
+      "experiment",
+      "Run an experiment and write its trials, its statistics compared with the thesis, and its figures to one folder");
   auto& o = add_command(*sub, call, experiment, [sub] {
     if (sub->count("--list") + sub->count("experiment") == 0) throw CLI::RequiredError("experiment (or --list)");
   });
@@ -43,7 +44,7 @@ void add_experiment(CLI::App& app, Call& call) {
       "Create). "
       "Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
   add_compression(*sub, o);
-  sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: those of sensorfarm)")
+  sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: sensorfarm's own)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_in_process(*sub, o);
@@ -51,7 +52,7 @@ void add_experiment(CLI::App& app, Call& call) {
 }
 
 void add_test(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("test", "Run scenarios and check their expectations (exit 1 when one fails)");
+  CLI::App* sub = app.add_subcommand("test", "Run scenarios and check their expectations (exit code 1 if one fails)");
   auto& o = add_command(*sub, call, test_scenarios);
   add_examples(*sub, {"experiments/mapping.toml --junit results.xml"});
   sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")
@@ -61,7 +62,7 @@ void add_test(CLI::App& app, Call& call) {
   sub->add_option("--junit", o.junit, "Write the results as JUnit XML")
       ->check(new_file("junit.xml"))
       ->type_name("FILE");
-  sub->add_option("--jobs", o.jobs, "Number of scenarios at a time, each in a process of its own")
+  sub->add_option("--jobs", o.jobs, "Number of scenarios to run in parallel, each in its own process")
       ->check(whole(1, 1024))
       ->type_name("N")
       ->capture_default_str();
@@ -71,10 +72,10 @@ void add_test(CLI::App& app, Call& call) {
 }
 
 void add_sweep(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("sweep",
-                                     "Run a scenario over a grid or a sample of its keys, each point with several "
-                                     "seeds, into one folder; again, it goes on with what is missing (exit 1 when a "
-                                     "job failed or missed an expectation)");
+  CLI::App* sub = app.add_subcommand(
+      "sweep",
+      "Run a scenario over a grid or a sample of parameters, with several seeds per point, into one folder; a repeated "
+      "call runs only the missing jobs (exit code 1 if a job fails or misses an expectation)");
   auto& o = add_command(*sub, call, sweep, [sub] {
     if (sub->count("--out") + sub->count("--list") == 0) throw CLI::RequiredError("--out (or --list)");
   });
@@ -84,39 +85,40 @@ void add_sweep(CLI::App& app, Call& call) {
       ->required()
       ->transform(base::installed_file)
       ->type_name("FILE");
-  auto* out = sub->add_option("-o,--out", o.out, "Folder of results and tables; several machines may share it")
+  auto* out = sub->add_option("-o,--out", o.out, "Folder for results and tables; several machines may share it")
                   ->check(not_empty("a folder"))
                   ->type_name("DIR");
   auto* list =
-      sub->add_flag("--list", o.list, "Print the points and the number of jobs, and run nothing")->excludes(out);
+      sub->add_flag("--list", o.list, "Print the points and the number of jobs without running any")->excludes(out);
   sub->add_option("--jobs", o.jobs, "Number of processes (default: one per core; in Slurm, SLURM_CPUS_PER_TASK)")
       ->check(whole(1, 1024))
       ->type_name("N");
   auto* share =
-      sub->add_option("--share", o.share, "Run one of N shares, e.g. 2/8 (default: all; under srun, that of the task)")
+      sub->add_option("--share", o.share, "Run one of N shares, e.g. 2/8 (default: all; under srun, the task's share)")
           ->check(readable(read_share, "a share K/N, such as 2/8"))
           ->excludes(list)
           ->type_name("K/N");
-  auto* retry = sub->add_flag("--retry", o.retry, "Run failed jobs once more")->excludes(list);
-  auto* merge = sub->add_flag("--merge", o.merge, "Run nothing: write the tables of what is there, missing jobs marked")
+  auto* retry = sub->add_flag("--retry", o.retry, "Rerun failed jobs")->excludes(list);
+  auto* merge = sub->add_flag("--merge", o.merge,
+                              "Write the tables of existing results without running jobs; missing jobs are marked")
                     ->excludes(list)
                     ->excludes(share)
                     ->excludes(retry);
   sub->add_flag_callback(
-         "--no-plots", [&o] { o.plots = false; }, "Tables alone; `plot DIR` draws the plots later")
+         "--no-plots", [&o] { o.plots = false; }, "Write tables only; `plot DIR` draws the plots later")
       ->excludes(list);
-  auto* slurm =
-      sub->add_flag("--slurm", o.slurm, "Run nothing: write the batch script of a Slurm job array for what is missing")
-          ->excludes(list)
-          ->excludes(share)
-          ->excludes(merge);
-  sub->add_option("--tasks", o.tasks, "Largest number of tasks of the job array")
+  auto* slurm = sub->add_flag("--slurm", o.slurm,
+                              "Write the batch script of a Slurm job array for the missing jobs without running any")
+                    ->excludes(list)
+                    ->excludes(share)
+                    ->excludes(merge);
+  sub->add_option("--tasks", o.tasks, "Maximum number of tasks in the job array")
       ->check(whole(1, 100'000))
       ->needs(slurm)
       ->capture_default_str()
       ->type_name("N");
   sub->add_option("--sbatch", o.sbatch,
-                  "Option of sbatch for the script, e.g. --sbatch=--time=1:00:00; may be repeated")
+                  "Option of sbatch to add to the script, e.g. --sbatch=--time=1:00:00; may be repeated")
       ->needs(slurm)
       ->expected(1)
       ->type_name("OPTION");
@@ -126,13 +128,13 @@ void add_sweep(CLI::App& app, Call& call) {
 }
 
 void add_merge(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("merge", "Put the recordings of a run's ranks together (docs/cluster.md)");
+  CLI::App* sub = app.add_subcommand("merge", "Merge the recordings of a run's ranks (docs/cluster.md)");
   auto& o = add_command(*sub, call, merge);
   add_examples(*sub, {"out/run -o out/whole"});
-  sub->add_option("places", o.places, "Folders with rank-0.mcap and so on, or these files")
+  sub->add_option("places", o.places, "Folders that contain rank-0.mcap, rank-1.mcap, ..., or the files themselves")
       ->required()
       ->type_name("DIR");
-  sub->add_option("-o,--out", o.out, "Folder for the result (run.mcap)")
+  sub->add_option("-o,--out", o.out, "Folder for the merged recording (run.mcap)")
       ->required()
       ->check(not_empty("a folder"))
       ->type_name("DIR");
@@ -140,8 +142,8 @@ void add_merge(CLI::App& app, Call& call) {
 
 void add_verify(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("verify",
-                                     "Recompute a recorded run, on this device and in plain C++, and compare bit by "
-                                     "bit (exit 1 when something differs)");
+                                     "Recompute a recorded run on this device and in plain C++, and compare bit by bit "
+                                     "(exit code 1 if anything differs)");
   auto& o = add_command(*sub, call, verify);
   add_examples(*sub, {"out/run"});
   add_recording(*sub, o);
@@ -151,11 +153,11 @@ void add_verify(CLI::App& app, Call& call) {
                      ->type_name("N")
                      ->capture_default_str();
   sub->add_flag_callback(
-         "--all", [&o] { o.sample = 0; }, "Recompute every laser scan in plain C++, which may take long")
+         "--all", [&o] { o.sample = 0; }, "Recompute every laser scan in plain C++, which may take a long time")
       ->excludes(sample);
   add_accuracy(
       *sub, o.accuracy,
-      "Recompute the run in another accuracy mode too, and print the distribution of its errors against exact");
+      "Also recompute the run in another accuracy mode, and print the distribution of its errors relative to exact");
   add_threads(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
@@ -163,7 +165,7 @@ void add_verify(CLI::App& app, Call& call) {
 
 void add_tradeoff(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "tradeoff", "Measure speed and error of every accuracy mode of a world's sensors on this machine");
+      "tradeoff", "Measure the speed and error of every accuracy mode of a world's sensors on this machine");
   auto& o = add_command(*sub, call, tradeoff, [sub] {
     require_any(*sub, kPageOptions, {"--out"});
     require_any(*sub, {"--format"}, {"--out"});
@@ -194,15 +196,15 @@ bool is_case_or_group(const std::string& name) {
 void add_selftest(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("selftest",
                                      "Test the farm on this machine at the limits of its range: worlds, beams, "
-                                     "magnets, times, numbers (exit 1 when an answer is wrong)");
+                                     "magnets, times, numbers (exit code 1 if an answer is wrong)");
   auto& o = add_command(*sub, call, selftest);
   add_examples(*sub, {"--list"});
-  auto* list = sub->add_flag("--list", o.list, "List all cases with their answers");
-  sub->add_option("case", o.cases, "Cases or groups of them (default: all)")
+  auto* list = sub->add_flag("--list", o.list, "List all cases with their expected answers");
+  sub->add_option("case", o.cases, "Cases or groups of cases (default: all)")
       ->check([](const std::string& name) {
         return is_case_or_group(name)
                    ? std::string()
-                   : "'" + name + "' is neither a case nor a group; `sensorfarm selftest --list` names them";
+                   : "'" + name + "' is neither a case nor a group; `sensorfarm selftest --list` lists them";
       })
       ->type_name("NAME")
       ->excludes(list);

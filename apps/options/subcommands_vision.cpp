@@ -14,19 +14,19 @@ namespace sf::apps {
 namespace {
 
 void add_rendered(CLI::App& app, VpsOptions& o) {
-  constexpr const char* kGroup = "Rendered images, whose truth is known";
-  auto* rendered = app.add_option("--rendered", o.rendered,
-                                  "Render the cameras' images of a testbed with this number of moving tags")
-                       ->check(whole(1, 1000))
-                       ->type_name("TAGS")
-                       ->group(kGroup);
+  constexpr const char* kGroup = "Rendered images, with known ground truth";
+  auto* rendered =
+      app.add_option("--rendered", o.rendered, "Render the camera images of a testbed with this many moving tags")
+          ->check(whole(1, 1000))
+          ->type_name("TAGS")
+          ->group(kGroup);
   app.add_option("--speed", o.speed, "Speed of the fastest rendered tag [m/s]")
       ->check(number(0.0, 100.0))
       ->type_name("V")
       ->capture_default_str()
       ->needs(rendered)
       ->group(kGroup);
-  app.add_option("--occluders", o.occluders, "Number of discs that pass above the rendered tags")
+  app.add_option("--occluders", o.occluders, "Number of discs that pass over the rendered tags and occlude them")
       ->check(whole(0, 100))
       ->type_name("N")
       ->needs(rendered)
@@ -47,7 +47,8 @@ void refuse_bind_alone(const CLI::App& sub) {
 
 void add_vps(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "vps", "Virtual positioning system: find tags in the images of overhead cameras and send a TAG packet for each");
+      "vps",
+      "Virtual positioning system: detect tags in the images of overhead cameras and send a TAG packet for each");
   auto& o = add_command(*sub, call, vps, [sub] {
     refuse_bind_alone(*sub);
     require_any(*sub, {"--seed"}, {"--rendered", "--robots"});
@@ -74,27 +75,25 @@ void add_vps(CLI::App& app, Call& call) {
       ->type_name("CAMERA=SOURCE");
   add_rendered(*sub, o);
   add_seed(*sub, o, "Seed of rendered images");
-  sub->add_option(
-         "--images", o.images,
-         "Stop after this number of images of each camera (0: all; of rendered ones 30, or with --real-time all)")
+  sub->add_option("--images", o.images,
+                  "Stop after this number of images per camera (0: all, but 30 if rendered without --real-time)")
       ->check(whole(0, 1'000'000'000))
       ->type_name("N");
-  add_until(*sub, o, "Stop after this time in the images [s] (0: at their end, or at Ctrl-C)");
+  add_until(*sub, o, "Stop after this long by the images' times [s] (0: at the end of the images, or at Ctrl-C)");
   sub->add_flag("--real-time", o.real_time, "Process videos, folders and rendered images at the cameras' rate");
-  sub->add_option("--send", o.send, "Address of the TAG packets of tags without an address in the file")
+  sub->add_option("--send", o.send, "Address for TAG packets of tags that have no address in the file")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
   add_peers(*sub, o);
   sub->add_option("--track", o.track, "CSV file to write every pose and velocity to")
       ->check(new_file("track.csv"))
       ->type_name("FILE");
-  auto* overlay =
-      sub->add_option("--overlay", o.overlay,
-                      "Folder for pictures of all images with ids and poses, or a video (*.avi) of them; at "
-                      "most 20000 of each camera")
-          ->check(not_empty("a folder or a video"))
-          ->type_name("PATH");
-  sub->add_option("--every", o.every, "Draw over one image in N only")
+  auto* overlay = sub->add_option("--overlay", o.overlay,
+                                  "Folder for the images with ids and poses drawn over them, or a video (*.avi) of "
+                                  "these; at most 20000 per camera")
+                      ->check(not_empty("a folder or a video"))
+                      ->type_name("PATH");
+  sub->add_option("--every", o.every, "Draw over only one image in N")
       ->check(whole(1, 1'000'000))
       ->needs(overlay)
       ->type_name("N")
@@ -103,10 +102,9 @@ void add_vps(CLI::App& app, Call& call) {
       ->check(not_empty("a world"))
       ->needs(overlay)
       ->type_name("WORLD");
-  sub->add_option(
-         "--readings", o.readings,
-         "UDP port for readings of the world's robots (`serve --mirror`): their beams and lane edges are drawn "
-         "from where the cameras see their tags")
+  sub->add_option("--readings", o.readings,
+                  "UDP port for readings of the world's robots (`serve --mirror`): draws their beams and lane edges at "
+                  "the poses that the cameras measure")
       ->check(whole(1, 65535))
       ->needs("--world")
       ->type_name("PORT");
@@ -114,10 +112,10 @@ void add_vps(CLI::App& app, Call& call) {
 }
 
 void add_calibrate(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "calibrate",
-      "Print the [[camera]] section of a testbed file, with the residual: the intrinsics from images of a chessboard, "
-      "or the pose from images of surveyed tags");
+  CLI::App* sub =
+      app.add_subcommand("calibrate",
+                         "Calibrate a camera and print its [[camera]] section of a testbed file, with the residual: "
+                         "intrinsics from images of a chessboard, or the pose from images of surveyed tags");
   auto& o = add_command(*sub, call, calibrate, [sub] {
     for (const char* board : {"--columns", "--rows", "--square"})
       if (sub->count(board) > 0 && sub->count("--survey") > 0)
@@ -126,7 +124,8 @@ void add_calibrate(CLI::App& app, Call& call) {
   add_examples(*sub, {"photographs --columns 9 --rows 6 --square 0.025 --name north > lab.toml",
                       "photographs --columns 6 --rows 4 --square 0.04 --charuco aruco_4x4_50 --marker 0.03",
                       "/dev/video0 --survey lab.toml --name north"});
-  sub->add_option("images", o.images, "Folder of images, or a video, of the chessboard in different places and tilts")
+  sub->add_option("images", o.images,
+                  "Folder of images, or a video, of the chessboard at different positions and tilts")
       ->required()
       ->type_name("SOURCE");
   sub->add_option("--columns", o.columns, "Inner corners along a row of the board")
@@ -137,24 +136,23 @@ void add_calibrate(CLI::App& app, Call& call) {
       ->check(whole(3, 100))
       ->type_name("N")
       ->capture_default_str();
-  sub->add_option("--square", o.square, "Side of a square [m]")
+  sub->add_option("--square", o.square, "Side length of a square [m]")
       ->check(number(1e-4, 10.0))
       ->type_name("M")
       ->capture_default_str();
   auto* charuco = sub->add_option("--charuco", o.charuco,
                                   "The board has tags of this dictionary, such as aruco_4x4_50, in its white squares "
-                                  "(ChArUco): images of a part of it count too")
+                                  "(ChArUco), so images may show only a part of it")
                       ->check(not_empty("a dictionary"))
                       ->type_name("DICTIONARY");
-  auto* marker = sub->add_option("--marker", o.marker, "Side of these tags [m]")
+  auto* marker = sub->add_option("--marker", o.marker, "Side length of these tags [m]")
                      ->check(number(1e-4, 10.0))
                      ->type_name("M")
                      ->needs(charuco);
   charuco->needs(marker);
-  sub->add_option(
-         "--survey", o.testbed,
-         "Find the camera's pose instead: testbed file with its intrinsics and sections [[survey]], whose tags "
-         "the images show")
+  sub->add_option("--survey", o.testbed,
+                  "Estimate the camera's pose instead: testbed file with its intrinsics and with [[survey]] sections "
+                  "for the tags in the images")
       ->check(not_empty("a testbed file"))
       ->excludes(charuco)
       ->type_name("FILE");

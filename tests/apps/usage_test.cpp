@@ -87,7 +87,7 @@ TEST(Usage, HelpGroupsTheCommands) {
   const std::string help = run_program({"help"}).out;
   std::size_t before = 0;
   for (const char* text :
-       {"\nEvery day:\n  run ", "\nRun:\n", "\nLook:\n", "\nTestbed:\n", "\nAnalyse:\n", "\nCheck:\n"}) {
+       {"\nCommon:\n  run ", "\nRun:\n", "\nInspect:\n", "\nTestbed:\n", "\nAnalyse:\n", "\nCheck:\n"}) {
     const std::size_t at = help.find(text);
     ASSERT_NE(at, std::string::npos) << text;
     EXPECT_GT(at, before) << text;
@@ -208,9 +208,9 @@ TEST(Usage, ContradictoryOptionsAreRejected) {
     EXPECT_EQ(run_program(words).code, 0) << more[1] << " says the same";
   }
   for (const auto& [arguments, said] : std::vector<Wrong>{
-           {{"serve", world, "--filter", "--clock", "trusted", "--link-delay", "0.1"}, "--link-delay: is for clocks"},
-           {{"serve", world, "--lockstep", "--spat", "9010"}, "--spat: does not go with --lockstep"},
-           {{"serve", world, "--lockstep", "--stale-lights", "plan"}, "--stale-lights: does not go with --lockstep"},
+           {{"serve", world, "--filter", "--clock", "trusted", "--link-delay", "0.1"}, "--link-delay: applies to estimated clocks"},
+           {{"serve", world, "--lockstep", "--spat", "9010"}, "--spat: cannot be used with --lockstep"},
+           {{"serve", world, "--lockstep", "--stale-lights", "plan"}, "--stale-lights: cannot be used with --lockstep"},
            {{"calibrate", out, "--survey", "lab.toml", "--rows", "6"}, "--rows: is of a chessboard"},
            {{"run", world, "--robots", "2", "--of", "roomba1", "--robot-from", "a.inc:b"}, "excludes"}})
     expect_refused(arguments, said);

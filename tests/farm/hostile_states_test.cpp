@@ -105,7 +105,7 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
 void expect_the_same_from_all(const world::World& world, std::uint64_t seed) {
   const std::uint64_t hash = under_siege(world, seed, 2, &raycast::host_caster);
   EXPECT_EQ(under_siege(world, seed, 1, &raycast::host_caster), hash) << "one thread";
-  EXPECT_EQ(under_siege(world, seed, 2, &raycast::device_caster), hash) << "the device's kernels";
+  EXPECT_EQ(under_siege(world, seed, 2, &raycast::device_caster), hash) << "kernels on the device";
 }
 
 TEST(HostileStates, MatchTheReferenceAmongBoxes) {
