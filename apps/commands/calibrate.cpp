@@ -21,8 +21,9 @@ namespace {
 
 vision::Chessboard board_of(const CalibrateOptions& options) {
   if (!options.charuco.empty() && options.marker >= options.square)
-    throw base::InputError(fmt::format("--marker {:g} is no tag inside a square of --square {:g}; expected less",
-                                       options.marker, options.square));
+    throw base::InputError(
+        fmt::format("--marker {:g} does not fit into a square of --square {:g}; expected a smaller tag", options.marker,
+                    options.square));
   return {static_cast<int>(options.columns), static_cast<int>(options.rows), options.square, options.charuco,
           options.marker};
 }
@@ -53,10 +54,10 @@ void warn_of_residual(const vision::Placement& found) {
   const auto suspect = std::min_element(found.tags.begin(), found.tags.end(), [](const auto& a, const auto& b) {
     return a.without.value_or(HUGE_VAL) < b.without.value_or(HUGE_VAL);
   });
-  const std::string hint =
-      suspect->without && *suspect->without < 0.5 * found.residual
-          ? fmt::format("; without tag {} it would be {:.3f} px: is its place right?", suspect->id, *suspect->without)
-          : ": a place, a heading, the side of a tag or the intrinsics may be wrong";
+  const std::string hint = suspect->without && *suspect->without < 0.5 * found.residual
+                               ? fmt::format("; without tag {} it would be {:.3f} px: check the tag's position",
+                                             suspect->id, *suspect->without)
+                               : ": a position, a heading, the side of a tag or the intrinsics may be wrong";
   print_message("warning: the residual is large{}", hint);
 }
 
@@ -89,7 +90,7 @@ int calibrate(const CalibrateOptions& options) {
     text += found.residuals[i] ? fmt::format("# Image {}: {:.3f} px\n", i + 1, *found.residuals[i])
                                : fmt::format("# Image {}: no chessboard\n", i + 1);
   print(text + vision::camera_section(camera));
-  print_message("position and orientation are not calibrated: replace them by the camera's place in the world");
+  print_message("position and orientation are not calibrated: replace them with the camera's pose in the world");
   return 0;
 }
 

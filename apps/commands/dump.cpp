@@ -215,7 +215,7 @@ void dump_file(const DumpOptions& options, Printer& printer) {
   while (!stop_requested() && (options.count == 0 || printer.datagrams() < options.count) && reader.next(datagram))
     printer.print(datagram);
   if (reader.other_records() > 0)
-    print_message("{} without a whole UDP datagram", counted(reader.other_records(), "record"));
+    print_message("{} without a complete UDP datagram", counted(reader.other_records(), "record"));
   if (reader.is_damaged()) print_message("{}: damaged after {}", options.file, counted(reader.records(), "record"));
 }
 

@@ -40,7 +40,7 @@ std::string folder_of(const ExperimentOptions& options) {
   if (const fs::path shipped = base::installed_file("experiments/lane-edge-p.toml"); fs::exists(shipped, error))
     return shipped.parent_path().string();
   throw base::InputError(
-      "the folder 'experiments' is neither here, above the program nor installed; name it with --files");
+      "cannot find the folder 'experiments' here, above the program or in the installation; name it with --files");
 }
 
 int list_all() {
@@ -73,7 +73,7 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
                                         if (ranks == nullptr || ranks->rank() == 0) progress.show(part, note);
                                       });
   } catch (const scenarios::Interrupted&) {
-    print_message("interrupted: no report was written; {} has the trials that were finished", options.out);
+    print_message("interrupted: no report was written; {} has the completed trials", options.out);
     return interrupted_code();
   }
   for (const std::string& file : files) print_message("wrote {}", file);

@@ -31,15 +31,15 @@ std::string rates_of(const scenarios::SensorTypeCost& k) {
 std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
   const auto each = [&](std::uint64_t count) { return static_cast<double>(count) / ticks; };
   std::string text = fmt::format("{:.4g} readings", k.readings);
-  if (k.reused > 0.0) text += fmt::format(", {:.4g} of them given again since nothing moved", k.reused);
+  if (k.reused > 0.0) text += fmt::format(", {:.4g} of them reused because nothing moved", k.reused);
   if (k.work.rays > 0)
     text += fmt::format(", {:.4g} rays, {:.3g} lists rebuilt", each(k.work.rays), each(k.work.cells_built));
   if (k.work.uncertain > 0)
-    text += fmt::format(", {:.2g} % of beams decided in 64 bits against all",
+    text += fmt::format(", {:.2g} % of beams tested in 64 bits against all surfaces",
                         100.0 * static_cast<double>(k.work.uncertain) / static_cast<double>(k.work.rays));
   if (k.work.movers_in_range > 0)
     text += fmt::format(
-        ", {:.4g} movers near, {:.0f} % of them hidden or out of view", each(k.work.movers_in_range),
+        ", {:.4g} movers nearby, {:.0f} % of them hidden or out of view", each(k.work.movers_in_range),
         100.0 - 100.0 * static_cast<double>(k.work.movers_visible) / static_cast<double>(k.work.movers_in_range));
   if (k.work.host_scans > 0) text += fmt::format(", {:.4g} scans cast on the host", each(k.work.host_scans));
   if (k.work.dipoles > 0) text += fmt::format(", {:.4g} magnets summed", each(k.work.dipoles));
@@ -49,14 +49,14 @@ std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
 std::string costs_of(const scenarios::SensorTypeCost& k, const scenarios::Explanation& e) {
   std::string text =
       fmt::format("{}: {} on {}, {}\n", k.type, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
-  text += row("a tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
+  text += row("per tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
               k.source.empty() ? "alone" : fmt::format("with the {}s", k.source), 1e3 * (k.tick - e.silent));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
   std::string_view label = "accuracy";
   for (const sensors::AccuracyStatement& s : e.statements)
     if (s.type->name == k.type) text += row(std::exchange(label, ""), apps::accuracy_statement_text(s));
-  text += row("kernels",
-              k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
+  text +=
+      row("kernels", k.kernels.empty() ? "none: computed on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
   if (k.tables.empty()) return text;
   std::string tables;
   for (const gpu::DeviceAllocation& h : k.tables)
@@ -70,15 +70,15 @@ std::string explanation_text(const scenarios::Explanation& e) {
   std::string text;
   for (const scenarios::SensorTypeCost& cost : e.types) text += costs_of(cost, e);
   text += "together\n";
-  text += row("a tick", "{:.3f} ms with all subscribed, {:.4f} ms without subscribers", 1e3 * e.all, 1e3 * e.silent);
+  text += row("per tick", "{:.3f} ms with all subscribed, {:.4f} ms without subscribers", 1e3 * e.all, 1e3 * e.silent);
   text += row("caster", e.caster);
-  text += row("to start", "{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first);
+  text += row("start-up", "{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first);
   if (e.resident > 0)
-    text += row("memory", bytes_text(e.resident) + " resident, the driver and this measurement included");
+    text += row("memory", bytes_text(e.resident) + " resident, including the driver and this measurement");
   for (const scenarios::WallSlice& s : e.slices)
-    text += row("slice", "z = {:g} m: {} of {} wall segments can be met by {}", s.z, s.walls, e.walls,
+    text += row("slice", "z = {:g} m: {} of {} wall segments can be hit by {}", s.z, s.walls, e.walls,
                 counted(s.sensors, "laser"));
-  if (!e.absent.empty()) text += row("not built", "{}: the world has none", fmt::join(e.absent, ", "));
+  if (!e.absent.empty()) text += row("not built", "{}: none in the world", fmt::join(e.absent, ", "));
   return text;
 }
 

@@ -146,7 +146,7 @@ int export_recording(const ExportOptions& options) {
   const std::vector<std::string> files = options.vtk ? write_vtk(part, options) : write_csv(part, options.out);
   for (const std::string& file : files) print_message("wrote {}", file);
   if (!options.vtk && part.recording.readings.empty())
-    print_message("no readings: the run was not recorded with --record-readings, or these robots have no sensor");
+    print_message("no readings: the run was recorded without --record-readings, or these robots have no sensors");
   return 0;
 }
 

@@ -26,8 +26,8 @@ void refuse_without_magnets(const world::World& world) {
   const bool carried = std::any_of(world.movers.begin(), world.movers.end(),
                                    [](const world::Mover& mover) { return !mover.magnets.empty(); });
   if (world.magnets.empty() && !carried)
-    throw base::InputError(world.file, 0,
-                           "has no magnets, so it has no field; give a model a 'magnetic_moment' (10000 is 1 A m^2)");
+    throw base::InputError(
+        world.file, 0, "has no magnets and therefore no field; give a model a 'magnetic_moment' (10000 is 1 A m^2)");
 }
 
 void write_csv(const std::string& path, const viz::FieldView& view, const viz::FieldSamples& samples) {

@@ -97,7 +97,7 @@ std::string beyond_walls(const world::World& world, const base::Pose& X) {
   for (const world::Segment& wall : world.walls) walls = base::united(walls, base::box_of(wall.a, wall.b));
   const glm::dvec2 p{X.x, X.y}, size = walls.max - walls.min;
   if (!(std::min(size.x, size.y) >= kArea) || base::meet(walls, base::box_of(p, p))) return "";
-  return fmt::format("outside of all walls (x {:g} to {:g} m, y {:g} to {:g} m)", walls.min.x, walls.max.x, walls.min.y,
+  return fmt::format("outside all walls (x {:g} to {:g} m, y {:g} to {:g} m)", walls.min.x, walls.max.x, walls.min.y,
                      walls.max.y);
 }
 

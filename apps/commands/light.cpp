@@ -73,7 +73,7 @@ void require_farm(const LightOptions& options, const world::LightPlan& plan) {
                                   [](const world::LightDetector& detector) { return detector.p.has_value(); });
   if (options.farm.empty() && place != plan.detectors.end())
     print_message(
-        "warning: detector '{}' receives robot states through a farm, but there is none: add --farm HOST:PORT",
+        "warning: detector '{}' receives robot states through a farm, but no farm is given: add --farm HOST:PORT",
         place->name);
 }
 
@@ -165,7 +165,7 @@ int light(const LightOptions& options) {
   install_stop_handlers();
   std::string to = sender.to();
   if (radio) to += fmt::format("{}{} (V2I)", to.empty() ? "" : " and ", radio->to());
-  print_message("{} of {} to {} at {:g} Hz; Ctrl-C ends it", counted(world.lights.size(), "light"),
+  print_message("{} of {} to {} at {:g} Hz; press Ctrl-C to stop", counted(world.lights.size(), "light"),
                 counted(sender.intersections().size(), "intersection"), to, options.rate);
   run(options, sender, radio ? &*radio : nullptr, actuator);
   const netio::OutboxCounts counts = sender.counts();

@@ -64,8 +64,8 @@ void LightRadio::send(std::span<const world::SignalForecast> forecasts, std::int
 std::string LightRadio::summary() const {
   std::uint64_t sent = 0;
   for (const netio::V2vSocket& socket : sockets_) sent += socket.sent().sent;
-  return fmt::format("V2I to {}: sent {}; {}heard {}", farm_, counted(sent, "packet"),
-                     answered_ ? "" : "nothing came from there; ", counted(heard_, "state"));
+  return fmt::format("V2I to {}: sent {}; {}received {}", farm_, counted(sent, "packet"),
+                     answered_ ? "" : "no packets from there; ", counted(heard_, "state"));
 }
 
 }  // namespace sf::apps

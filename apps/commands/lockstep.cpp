@@ -27,7 +27,7 @@ namespace {
 /// @throws base::InputError if it would wait for more robots than the world has
 scenarios::LockstepServiceOptions lockstep_options(const ServeOptions& options, const world::World& world) {
   if (options.wait_for > count_robots(world))
-    throw base::InputError(fmt::format("--wait-for {}, but {} has {}: the first tick would never come",
+    throw base::InputError(fmt::format("--wait-for {}, but {} has {}: the first tick would never start",
                                        options.wait_for, world.file, counted(count_robots(world), "robot")));
   scenarios::LockstepServiceOptions lockstep{.seed = options.seed, .no_return_inf = options.no_return_inf};
   lockstep.lockstep = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
@@ -78,7 +78,7 @@ int serve_lockstep(const ServeOptions& options) {
   try {
     scenarios::LockstepService service(world, device, chosen);
     const std::string since = why_unsigned(options, chosen.lockstep.peers, robots_of(world));
-    if (!since.empty()) warn_of_exposure(chosen.lockstep.bind.address, "drive robots, and be sent readings", since);
+    if (!since.empty()) warn_of_exposure(chosen.lockstep.bind.address, "drive robots and receive readings", since);
     std::optional<record::Recorder> recorder;
     if (!options.record.empty()) {
       const std::string caster = raycast::describe_caster(device.info().software);
@@ -90,7 +90,7 @@ int serve_lockstep(const ServeOptions& options) {
       service.record_to(*recorder);
     }
     install_stop_handlers();
-    print_message("serving {} of {} in lockstep on {}:{}, {:g} s a tick, on {}; Ctrl-C ends it",
+    print_message("serving {} of {} in lockstep on {}:{}, {:g} s per tick, on {}; press Ctrl-C to stop",
                   counted(service.lockstep().robots(), "robot"), world.file, options.bind,
                   service.lockstep().inbox().port(), world.interval, device.info().name);
     service.run(stop_requested(), options.duration);
@@ -105,8 +105,8 @@ int serve_lockstep(const ServeOptions& options) {
     return facts.recording_error.empty() && facts.lockstep->lost_robots == 0 ? 0 : 1;
   } catch (const netio::PortInUse&) {
     throw base::InputError(netio::endpoint_text(chosen.lockstep.bind) +
-                           " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
-                           "(--port N, or --port 0 for any free one) and tell the clients");
+                           " is in use, perhaps by another `sensorfarm serve`: stop that one, or serve on another port "
+                           "(--port N, or --port 0 for any free one) and give it to the clients");
   }
 }
 

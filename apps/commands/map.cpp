@@ -207,9 +207,9 @@ void Display::print_status() const {
   for (const Source& source : sources_)
     print_message("port {}: {} complete maps, {} incomplete, {} datagrams used and {} ignored{}", source.port,
                   source.assembler.complete_maps(), source.assembler.incomplete_maps(), source.used, source.left_out,
-                  source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
+                  source.assembler.map() != nullptr && source.assembler.true_poses() ? ", built from true poses" : "");
   if (const std::uint64_t drops = port_listener_.socket_drops(); drops > 0)
-    print_message("{} dropped by the operating system: they came faster than they were taken",
+    print_message("{} dropped by the operating system: they arrived faster than they were read",
                   counted(drops, "datagram"));
 }
 

@@ -14,7 +14,7 @@ scenarios::MergedRecording merge_until_stopped(const MergeOptions& options) {
   try {
     return scenarios::merge_recordings(options.places, options.out, [] { return stop_requested().load(); });
   } catch (const base::Interrupted&) {
-    throw Incomplete("interrupted: nothing was written, and what was there stays");
+    throw Incomplete("interrupted: nothing was written, and existing files are unchanged");
   }
 }
 
@@ -25,7 +25,8 @@ int merge(const MergeOptions& options) {
   const scenarios::MergedRecording merged = merge_until_stopped(options);
   for (const std::string& damage : merged.damage) print_message("{}", damage);
   if (merged.truncated)
-    print_message("a rank did not finish its recording: merged are the {} ticks that all have", merged.ticks);
+    print_message("a rank did not finish its recording: only the {} ticks that all ranks recorded are merged",
+                  merged.ticks);
   print(row("ticks", merged.ticks) +
         row("recording", "{} ({:.1f} MB)", merged.file, static_cast<double>(merged.bytes) * 1e-6));
   return merged.damage.empty() ? 0 : 1;

@@ -36,9 +36,9 @@ void begin_numbered_files(const std::string& folder, const std::string& prefix, 
     if (!fs::remove(file, error) && error)
       throw base::InputError(
           file.string(), 0,
-          "is of an earlier call and cannot be removed (" + error.message() + "); name another folder");
+          "was written by an earlier call and cannot be removed (" + error.message() + "); name another folder");
   if (!old.empty())
-    print_message("removed {} of an earlier call, {}NNNNNN{}, from {}", counted(old.size(), "file"), prefix, suffix,
+    print_message("removed {} of an earlier call ({}NNNNNN{}) from {}", counted(old.size(), "file"), prefix, suffix,
                   folder);
 }
 

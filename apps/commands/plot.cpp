@@ -101,7 +101,7 @@ viz::TrackLabels labels_of(const RecordingPart& part, const PlotOptions& options
   for (const std::string& label : labels)
     if (std::find(names.begin(), names.end(), label) == names.end())
       throw base::InputError(part.recording.file, 0,
-                             fmt::format("--label: no robot '{}' is drawn; there is {}", label, list_names(names)));
+                             fmt::format("--label: no robot '{}' is drawn; drawn are {}", label, list_names(names)));
   return {.all = false, .names = labels};
 }
 
@@ -113,11 +113,10 @@ void draw_paths(const RecordingPart& part, const world::World& world, const Plot
       viz::draw_trajectories(world, tracks, trajectories, "robot", options.page, labels_of(part, options, tracks));
   Written{}(trajectories);
   if (tracks.size() > viz::kLabelledTracks && options.labels.empty())
-    print_message("{} robots have no labels in it; --label NAME,... or --label all names them", tracks.size());
+    print_message("{} robots have no label in it; label them with --label NAME,... or --label all", tracks.size());
   if (left_out > 0 && !options.labels.empty())
-    print_message(
-        "{} of the labels are left out, for want of room; --label NAME,... of fewer robots, or a larger --size",
-        left_out);
+    print_message("{} labels are left out for lack of space; label fewer robots with --label NAME,..., or raise --size",
+                  left_out);
   if (options.csv) Written{}(write_trajectories_csv(part, folder));
 }
 
@@ -153,8 +152,8 @@ int plot_sweep(const PlotOptions& options, const std::string& jobs) {
   if (!options.robots.empty() || !options.labels.empty() || !options.elements.empty() || options.curves ||
       options.csv || !options.video.empty() || options.from > 0.0 || std::isfinite(options.to))
     throw base::InputError(options.recording, 0,
-                           "is a sweep's folder; --robots, --label, --elements, --curves, --csv, --video, --from and "
-                           "--to go with recordings");
+                           "is the folder of a sweep; --robots, --label, --elements, --curves, --csv, --video, --from "
+                           "and --to apply to recordings");
   const std::string folder = options.out.empty() ? options.recording + "/plots" : options.out;
   const scenarios::SweepPlots plots = scenarios::draw_sweep(
       jobs, base::read_text(jobs, kLargestTable), folder, {options.over, options.x_axis, options.format, options.page});
@@ -170,7 +169,7 @@ int plot(const PlotOptions& options) {
   if (const std::string jobs = options.recording + "/jobs.csv"; std::filesystem::is_regular_file(jobs))
     return plot_sweep(options, jobs);
   if (!options.over.empty() || options.x_axis != viz::AxisScale::automatic)
-    throw base::InputError(options.recording, 0, "--over and --x-axis go with the folder of a sweep");
+    throw base::InputError(options.recording, 0, "--over and --x-axis apply to the folder of a sweep");
   RecordingPart part = open_part(options.recording, options);
   if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;
   const world::World world = scenarios::recorded_world(part.recording);

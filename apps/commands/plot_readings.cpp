@@ -159,7 +159,7 @@ viz::SeriesOptions fields(const record::Recording& recording, const std::vector<
                           const PlotOptions& options) {
   viz::SeriesOptions figure{"Magnetic field", "", {}};
   // Signed, since a difference of magnitudes may be negative.
-  viz::Panel difference{"last element less the first", "difference of |B| [G]", {}};
+  viz::Panel difference{"last element minus first", "difference of |B| [G]", {}};
   const std::size_t drawn = std::min(channels.size(), kMostMagnetometers);
   for (std::size_t i = 0; i < drawn; ++i) {
     figure.panels.push_back(fields_of(channels[i], width, options));
@@ -285,10 +285,11 @@ void check_elements(const record::Recording& recording, const PlotOptions& optio
         most = std::max(most, element_count(channel, record::element_width(type)));
   for (const std::uint32_t element : options.elements)
     if (element >= most)
-      throw base::InputError(recording.file, 0,
-                             most == 0 ? "has no readings for --elements; record them with `run --record-readings`"
-                                       : fmt::format("has no sensor with an element {}; they are numbered from 0 to {}",
-                                                     element, most - 1));
+      throw base::InputError(
+          recording.file, 0,
+          most == 0
+              ? "has no readings for --elements; record them with `run --record-readings`"
+              : fmt::format("has no sensor with an element {}; elements are numbered from 0 to {}", element, most - 1));
 }
 
 std::string csv_of(const viz::SeriesOptions& figure) {

@@ -64,12 +64,14 @@ unsigned threads_of(const RunOptions& options, const cluster::Ranks* ranks) {
 
 void check_for_ranks(const RunOptions& options) {
   if (options.automatic)
-    throw base::InputError("--auto measures each machine: with several ranks, name the accuracy modes themselves");
+    throw base::InputError(
+        "--auto measures each machine separately: with several ranks, give the accuracy modes with --accuracy");
   if (!options.video.empty())
     throw base::InputError(
-        "a video shows the fleet of one process: record the run (--record DIR), and then `plot DIR --video FILE`");
+        "a video can show the fleet of one process only: record the run (--record DIR), then use `plot DIR --video "
+        "FILE`");
   if (options.BridgeOptions::any())
-    throw base::InputError("bridges show the fleet of one process: leave them out, or run without mpirun");
+    throw base::InputError("bridges can show the fleet of one process only: leave them out, or run without mpirun");
 }
 
 void add_up(cluster::Ranks& ranks, RunReport& facts, std::optional<std::uint64_t> passed_on) {

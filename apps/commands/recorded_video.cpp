@@ -71,7 +71,7 @@ void write_recorded_video(RecordingPart& part, const VideoOptions& options, cons
   }
   const VideoFacts facts = video.finish();
   print_message("wrote {}: {}", facts.file, video_text(facts));
-  heed_stop(options.frames.empty() ? "interrupted: the video ends early, and can be played"
+  heed_stop(options.frames.empty() ? "interrupted: the video ends early but can be played"
                                    : "interrupted: the frames end early");
 }
 

@@ -95,7 +95,7 @@ std::string mission_report_text(const MissionReport& facts) {
   const world::Mdf& mission = facts.mission;
   std::string text = warnings_text(facts.warnings);
   text += fmt::format("{}\n", mission.name.empty() ? mission.file : mission.name);
-  text += row("made for", mission.rndf_name.empty() ? "-" : mission.rndf_name);
+  text += row("written for", mission.rndf_name.empty() ? "-" : mission.rndf_name);
   text += row("checked against", facts.network.empty() ? "nothing (--rndf FILE)" : facts.network);
   text += row("checkpoints", mission.checkpoints.size());
   text += row("speed limits", mission.speed_limits.size());
@@ -112,7 +112,7 @@ std::optional<int> check_roads(const CheckOptions& options) {
 
 std::optional<int> draw_roads(const DrawOptions& options) {
   if (is_mission(options.world))
-    throw base::InputError(options.world, 0, "a mission has no picture; draw the .rndf file that it was made for");
+    throw base::InputError(options.world, 0, "a mission cannot be drawn; draw the .rndf file that it was written for");
   if (!is_network(options.world)) return std::nullopt;
   std::vector<world::Warning> warnings;
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict);

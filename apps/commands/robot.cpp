@@ -44,7 +44,7 @@ std::optional<netio::SigningKey> key_of(const RobotOptions& options, const std::
   const std::optional<netio::SigningKey> key = own != nullptr ? own->key : std::nullopt;
   if (key) require_signable({*own}, options.wire);
   if (!options.peers.empty() && !key)
-    print_message("warning: {} has no key of {} (id {}): its packets are not signed", options.peers, mover.name,
+    print_message("warning: {} has no key for {} (id {}): its packets are not signed", options.peers, mover.name,
                   mover.id);
   return key;
 }
@@ -110,15 +110,15 @@ int robot(const RobotOptions& options) {
                               client_options(options, world, world.movers[mover]));
   if (options.spat > 0 && !netio::is_loopback(process.link().farm().address))
     print_message(
-        "warning: --spat {} takes the states of lights from whoever reaches this machine, since these messages are not "
+        "warning: --spat {} accepts light states from anyone who can reach this machine, since these messages are not "
         "signed",
         options.spat);
   install_stop_handlers();
-  print_message("{} (id {}) drives by '{}' {} with the farm at {}{}; Ctrl-C ends it", world.movers[mover].name,
-                world.movers[mover].id, options.controller,
+  print_message("{} (id {}) runs controller '{}' {} with the farm at {}{}; press Ctrl-C to stop",
+                world.movers[mover].name, world.movers[mover].id, options.controller,
                 process.on_scans() ? "on each new scan" : fmt::format("at {:g} Hz", process.rate()),
                 netio::endpoint_text(process.link().farm()),
-                waits_for_start(options) ? ", once it is given the start signal" : "");
+                waits_for_start(options) ? ", after the start signal" : "");
   process.run(stop_requested(), options.duration);
   const server::RobotClientStats facts = process.stats();
   print(options.json ? with_warnings(robot_client_json(facts), world.warnings) : robot_client_text(facts));

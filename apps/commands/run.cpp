@@ -72,7 +72,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
   return simulation;
 }
 
-const char* const kRemedy = "; or name the robots that are driven (--drive NAME)";
+const char* const kRemedy = "; or name the robots to drive (--drive NAME)";
 
 /// Runs `act()`. If a controller refuses one of several robots, adds a remedy to the error. Some controllers refuse
 /// when they are created, others when they start.
@@ -401,8 +401,8 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   const double ticks = std::round(duration / ground->world.interval);
   if (ticks < 1.0)
     print_message(
-        "--duration {:g} simulates nothing, since a tick takes {:g} s; give a longer one, or none for 60 s (no end "
-        "with bridges)",
+        "--duration {:g} simulates nothing, since a tick takes {:g} s; give a longer duration, or leave it out for 60 "
+        "s (unlimited with bridges)",
         duration, ground->world.interval);
   if (options.tiles && ranks == nullptr)
     print_message("--tiles has no effect in one process: start several (mpirun -n N sensorfarm run ...)");

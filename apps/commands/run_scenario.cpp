@@ -23,7 +23,7 @@ std::optional<scenarios::Scenario> scenario_of(RunOptions& options) {
   if (!options.duration && (kept || !options.BridgeOptions::any())) options.duration = scenario.duration;
   if (!scenario.expect.empty())
     print_message(
-        "{}: {} not judged by `run`; `sensorfarm test` judges them", options.world,
+        "{}: {} not checked by `run`; use `sensorfarm test`", options.world,
         scenario.expect.size() == 1 ? "1 expectation is" : fmt::format("{} expectations are", scenario.expect.size()));
   return scenario;
 }

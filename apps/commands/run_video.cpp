@@ -178,9 +178,10 @@ class RunVideo::Work {
           shown_[{static_cast<std::uint32_t>(mover), sensor.type, number}] = {mover, &sensor, {}, {}};
       }
       if (shown_.size() == before)
-        throw base::InputError(world_.file, 0,
-                               fmt::format("'{}' has no laser, sonar or infrared sensor, whose readings a video shows",
-                                           world_.movers[mover].name));
+        throw base::InputError(
+            world_.file, 0,
+            fmt::format("'{}' has no laser, sonar or infrared sensor whose readings a video could show",
+                        world_.movers[mover].name));
     }
   }
 

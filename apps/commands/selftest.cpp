@@ -38,8 +38,8 @@ int list_cases() {
 }
 
 std::string error_of(const Case& c, const Outcome& o) {
-  if (c.unit.empty()) return "right or wrong";
-  if (o.allowed == 0.0 && o.error == 0.0) return "0: the same to the bit";
+  if (c.unit.empty()) return "pass or fail";
+  if (o.allowed == 0.0 && o.error == 0.0) return "0: bitwise equal";
   return fmt::format("{:.2g} of {:.2g} {}", o.error, o.allowed, c.unit);
 }
 
@@ -60,7 +60,7 @@ std::size_t SelfTestReport::passed() const {
 
 std::string self_test_text(const SelfTestReport& test) {
   std::string text =
-      fmt::format("{:<9} {:<27} {:>8}  {:<30}\n", "group", "case", "checks", "closest call: error of allowed");
+      fmt::format("{:<9} {:<27} {:>8}  {:<30}\n", "group", "case", "checks", "closest call: error of limit");
   std::uint64_t checks = 0;
   for (const auto& [c, o] : test.cases) {
     text += line_of(*c, o);

@@ -36,7 +36,7 @@ namespace {
 std::optional<netio::Endpoint> mirror_of(const ServeOptions& options) {
   if (options.mirror.empty()) return std::nullopt;
   if (options.wire == sensors::WireFormat::thesis)
-    throw base::InputError("--mirror: the thesis' packets do not say whose readings they are; use `--wire farm`");
+    throw base::InputError("--mirror: packets in the thesis' layout do not identify the robot; use `--wire farm`");
   netio::AddressBook book;
   return read_address(book, options.mirror, "--mirror");
 }
@@ -102,8 +102,8 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
 /// Adds the command-line option that resolves the error.
 base::InputError port_in_use(const netio::Endpoint& bind) {
   return base::InputError(netio::endpoint_text(bind) +
-                          " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
-                          "(--port N, or --port 0 for any free one) and tell the robots (robot --port N)");
+                          " is in use, perhaps by another `sensorfarm serve`: stop that one, or serve on another port "
+                          "(--port N, or --port 0 for any free one) and give it to the robots (robot --port N)");
 }
 
 /// Adds the names of the movers.
@@ -156,7 +156,7 @@ int serve(const ServeOptions& options) {
     const std::string since =
         why_unsigned(options, chosen.receiver.peers, senders_of(options, world, service.lights().ids()));
     if (!since.empty())
-      warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings", since);
+      warn_of_exposure(chosen.receiver.bind.address, "report robot states and receive readings", since);
     if (!options.record.empty()) {
       recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software),
                        record::RecordingPart{.compression = options.compression});
@@ -168,8 +168,9 @@ int serve(const ServeOptions& options) {
     install_stop_handlers();  // before addresses are printed, which scripts wait for
     LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false);
     if (!live.empty()) service.record_to(live);
-    print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),
-                  world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);
+    print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; press Ctrl-C to stop",
+                  counted(service.robots(), "robot"), world.file, options.bind, service.port(),
+                  1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
     RunReport facts = report_of(service.stats(), world, device.info());
     facts.strayed = strayed.names();

@@ -149,7 +149,7 @@ void draw_plots(const SweepFolder& folder, const std::string& jobs) {
     for (const std::string& note : plots.notes) print_message(note);
     if (!plots.files.empty()) print_message("wrote {} in {}", counted(plots.files.size(), "plot"), plots_folder);
   } catch (const base::InputError& error) {
-    print_message("no plots, `plot {}` draws them later: {}", folder.path(), error.what());
+    print_message("no plots (`plot {}` can draw them later): {}", folder.path(), error.what());
   }
 }
 
@@ -159,7 +159,7 @@ int write_tables(const SweepOptions& options, const Sweep& sweep, const SweepFol
   const scenarios::JobCounts counts = scenarios::counts_of(results);
   print(markdown_of_points(sweep, results, kRowsShown) + "\n" + job_counts_text(counts) + "\n");
   print_failures(results);
-  for (const std::string& line : scenarios::missing_values(results, 10)) print_message("left out of means: {}", line);
+  for (const std::string& line : scenarios::missing_values(results, 10)) print_message("excluded from means: {}", line);
   for (const std::string& file : files) print_message("wrote {}", file);
   if (options.plots) draw_plots(folder, csv_of_jobs(sweep, results));
   return counts.good() ? 0 : 1;

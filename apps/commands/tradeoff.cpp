@@ -65,15 +65,15 @@ void draw(const std::string& world, const std::string& device, const std::vector
           {g.sensor,
            fmt::format("{} per second", counted_as(g.sensor)),
            fmt::format(
-               "error of all [{}]: median, 99 %, largest; of what is covered: ring the bound, cross the largest",
+               "error of all [{}]: median, 99 %, largest; of covered elements: ring the bound, cross the largest",
                g.unit),
            {}});
     panels.back().points.push_back(
         {g.mode, g.rate, g.median, g.p99, g.max, g.front, {g.covered, g.covered_max, g.bound}});
   }
   viz::draw_tradeoff("Speed against error: " + world,
-                     "whole ticks on " + device + "; blue: none is as fast with 99 % of errors as small", panels, file,
-                     page);
+                     "whole ticks on " + device + "; blue: Pareto-optimal in speed and 99th percentile of errors",
+                     panels, file, page);
 }
 
 void write(const TradeoffOptions& options, const world::World& world, const gpu::Device& device,
@@ -106,10 +106,10 @@ std::string mode_results_text(const std::vector<scenarios::ModeResult>& results)
                         g.covered > 0.0 ? quantity_text(g.covered_max, g.unit) : "-", bound_text(g.bound, g.unit),
                         quantity_text(g.median, g.unit), quantity_text(g.p99, g.unit), quantity_text(g.max, g.unit),
                         g.front ? "*" : "");
-  text += "* no other mode of the type is as fast with 99 % of errors as small\n";
+  text += "* Pareto-optimal: no other mode of the type is both faster and more accurate (99th percentile)\n";
   text +=
-      "A bound holds for the part that it covers; the others are flagged, and may be off by as much as all are.\n"
-      "All is measured without noise.\n\n";
+      "A bound holds for the covered elements; the others are flagged and may have any of the errors of all.\nAll "
+      "errors are measured without noise.\n\n";
   for (const scenarios::ModeResult& g : results) text += fmt::format("{:<13} {:<8} {}\n", g.sensor, g.mode, g.what);
   return text + "\n";
 }
@@ -120,7 +120,7 @@ void choose_accuracy(world::World& world, gpu::Device& device, const AccuracyTar
   install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
   const auto results = measure(world, device, seed, threads);
-  if (stop_requested()) throw Incomplete("interrupted while accuracy modes were measured: nothing was run");
+  if (stop_requested()) throw Incomplete("interrupted while measuring accuracy modes: nothing was run");
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
   print_message("measured; {}: --accuracy \"{}\"", target_text(target), words);
   sensors::set_accuracy(world, words);
@@ -136,9 +136,9 @@ int measure_alone(const TradeoffOptions& options) {
   const auto results = measure(world, device, options.seed, options.threads);
   if (stop_requested()) throw Incomplete("interrupted: nothing was written");
   if (results.empty())
-    throw base::InputError(world.file, 0,
-                           "has no sensor that can be measured in more than one way; give a robot a laser( ), a "
-                           "laneedge( ) or a magnetometer( )");
+    throw base::InputError(
+        world.file, 0,
+        "has no sensor with more than one accuracy mode; give a robot a laser( ), a laneedge( ) or a magnetometer( )");
   if (!options.out.empty()) write(options, world, device, results);
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
   const std::string text = options.json        ? with_warnings(mode_results_json(results, target), world.warnings)
@@ -153,7 +153,8 @@ int measure_alone(const TradeoffOptions& options) {
 int tradeoff(const TradeoffOptions& options) {
   return with_ranks([&](cluster::Ranks* ranks) {
     on_all(ranks, [&] {
-      if (ranks != nullptr) throw base::InputError("tradeoff measures the speed of one process: run it without mpirun");
+      if (ranks != nullptr)
+        throw base::InputError("tradeoff measures the speed of a single process: run it without mpirun");
     });
     return measure_alone(options);
   });

@@ -32,7 +32,7 @@ std::string content_of(const std::string& file) {
     text.append(part.data(), static_cast<std::size_t>(std::cin.gcount()));
     if (text.size() > kMaxFrameFile) throw base::InputError("-", 0, fmt::format("more than {} bytes", kMaxFrameFile));
   }
-  if (text.empty()) throw base::InputError("-", 0, "standard input is empty; frames expected");
+  if (text.empty()) throw base::InputError("-", 0, "standard input is empty; expected frames");
   return text;
 }
 
@@ -52,7 +52,7 @@ class Decoder {
     frame.padding.assign(all.begin() + static_cast<std::ptrdiff_t>(result.size), all.end());
     v2x::encode(frame, again_);
     if (!std::equal(all.begin(), all.end(), again_.begin(), again_.end()))
-      print_message("{}: encodes to other bytes, since its sender does not follow X.691", place(line));
+      print_message("{}: encodes to other bytes, since its sender does not conform to X.691", place(line));
     ++frames_;
     if (options_.xml) {
       put_xml(frame);
@@ -111,9 +111,9 @@ void decode_line(Decoder& decoder, std::string line, int number) {
   if (line.starts_with("0x") || line.starts_with("0X")) line.erase(0, 2);
   const auto bytes = v2x::read_hex(line);
   if (!bytes && line.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos) {
-    decoder.complain(number, 0, fmt::format("{} hexadecimal digits; two for each byte expected", line.size()));
+    decoder.complain(number, 0, fmt::format("{} hexadecimal digits; expected two per byte", line.size()));
   } else if (!bytes) {
-    decoder.complain(number, 0, "hexadecimal digits expected, the bytes of one frame a line");
+    decoder.complain(number, 0, "expected hexadecimal digits, one frame per line");
   } else {
     decoder.decode(*bytes, number, true);
   }
@@ -142,7 +142,7 @@ int encode(const V2xOptions& options) {
     v2x::encode(frame, bytes);
     if (bytes.size() > v2x::kMaxFrame)
       throw base::InputError(options.file, 0,
-                             fmt::format("a frame of {} bytes; at most {} expected", bytes.size(), v2x::kMaxFrame));
+                             fmt::format("a frame of {} bytes; expected at most {}", bytes.size(), v2x::kMaxFrame));
     print(v2x::hex_text(bytes) + "\n");
   });
   return 0;

@@ -23,8 +23,8 @@ namespace {
 std::string line_of(const scenarios::Comparison& c, const std::string& by) {
   const std::string verdict =
       c.different > 0   ? fmt::format("{} of {} numbers DIFFER, by up to {:.3g}", c.different, c.values, c.largest)
-      : c.largest > 0.0 ? fmt::format("within what their modes may be off by: up to {:.3g}", c.largest)
-                        : "the same to the bit";
+      : c.largest > 0.0 ? fmt::format("within the error bounds of their modes: up to {:.3g}", c.largest)
+                        : "bitwise equal";
   std::string text = row(c.type, "{}, {}, {}", counted(c.readings, "reading"), by, verdict);
   if (c.different > 0) text += row("", "first: " + c.first);
   return text;
@@ -38,8 +38,8 @@ std::string error_text(double error, const std::string& unit) {
 std::string verdict_of(const scenarios::Verification& v) {
   if (v.faulty()) return "NOT SOUND";
   if (!v.sound()) return v.interrupted ? "nothing was compared: interrupted" : "nothing could be compared";
-  if (v.interrupted) return "sound as far as it went: interrupted";
-  return v.truncated ? "sound up to its end: the recording was not finished" : "sound";
+  if (v.interrupted) return "sound up to the interruption";
+  return v.truncated ? "sound up to its end, but the recording was not finished" : "sound";
 }
 
 scenarios::VerifyOptions verify_options(const VerifyOptions& options, Progress& progress) {
@@ -74,7 +74,7 @@ std::string recorded_accuracy_text(const scenarios::RecordedAccuracy& a) {
   }
   if (a.types.empty()) text += "no sensor of the recorded world has accuracy modes\n";
   for (const scenarios::ModeErrors& t : a.types)
-    if (t.noisy) text += fmt::format("{}: the recorded sensors have noise, which these errors leave out\n", t.sensor);
+    if (t.noisy) text += fmt::format("{}: the recorded sensors have noise, which these errors exclude\n", t.sensor);
   for (const std::string& note : a.notes) text += note + "\n";
   if (a.interrupted) text += "interrupted: not all ticks were computed\n";
   return text + (a.within_bounds() ? "\n" : "AN ERROR IS BEYOND ITS STATED BOUND\n\n");
@@ -90,9 +90,11 @@ std::string verification_text(const scenarios::Verification& v, bool readings_re
     text += row("", "a sample: {} of {} scans, spread evenly over the run (--all: every one)", v.reference.readings,
                 v.scans);
   if (!readings_recorded && v.reference.readings > 0)
-    text += row("note", "the run kept no readings (run --record-readings): what its poses give here was checked");
+    text += row(
+        "note",
+        "the run has no recorded readings (run --record-readings): readings computed here from its poses were checked");
   for (const std::string& skipped : v.skipped) text += row("skipped", skipped);
-  if (v.missing > 0) text += row("missing", counted(v.missing, "recorded reading") + " that no sensor was due to make");
+  if (v.missing > 0) text += row("missing", counted(v.missing, "recorded reading") + " for which no sensor was due");
   for (const std::string& damage : v.damage) text += row("damage", damage);
   return text + row("verdict", verdict_of(v));
 }

@@ -47,7 +47,7 @@ int view_3d(const ViewOptions& options) {
   const std::vector<std::size_t> ticks = ticks_apart(part, options.every);
   viz::Scene3d scene;
   scene.times = times_of(part, ticks);
-  if (scene.times.empty()) throw base::InputError(part.recording.file, 0, "has no tick, so there is nothing to see");
+  if (scene.times.empty()) throw base::InputError(part.recording.file, 0, "has no ticks, so there is nothing to show");
 
   gpu::Device device = open_device(options);
   ScanReplay replay(part, world, device);
@@ -154,7 +154,7 @@ int view(const ViewOptions& options) {
   info.world = recording.info.world;
   scenarios::Replay replay(recording, info);
   if (replay.left_out() > 0)
-    print_message("{} are left out: their sensors are of types that this program has otherwise, or not at all",
+    print_message("{} are left out: their sensor types differ in this program, or are missing",
                   counted(replay.left_out(), "reading"));
   bridges::Viewer viewer({world, sensor_set, info, false},
                          {options.port, bridges::ViewerMode::recording, replay.start(), replay.end()});

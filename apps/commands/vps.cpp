@@ -83,7 +83,7 @@ class Overlay {
              std::span<const vision::Frame> frames, std::uint64_t number) {
     if (path_.empty() || number % every_ != 0 || pictures_ > kMostPictures) return;
     if (pictures_++ == kMostPictures)
-      return print_message("--overlay ends after {} pictures of each camera; --every N draws fewer", kMostPictures);
+      return print_message("--overlay ends after {} pictures per camera; draw fewer with --every N", kMostPictures);
     const auto lines = readings_ ? readings_->lines(tags) : std::span<const vision::PlaneLine>{};
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].image.pixels.empty()) continue;
@@ -108,7 +108,7 @@ class Overlay {
       for (const vision::TestbedCamera& each : testbed_.cameras) sources.emplace_back(each.camera.name, each.source);
     for (const auto& [camera, source] : sources)
       if (std::error_code ignored; std::filesystem::equivalent(source, path_, ignored))
-        throw base::InputError(path_, 0, "holds the images of camera '" + camera + "'; name another --overlay");
+        throw base::InputError(path_, 0, "contains the images of camera '" + camera + "'; name another --overlay");
   }
   /// Opens one video per camera: tags.avi, or with several cameras tags-north.avi and so on.
   void open_videos() {
@@ -152,7 +152,7 @@ std::unique_ptr<CameraInputs> open(const VpsOptions& options, const vision::Test
   const netio::Endpoint listen{netio::resolve(options.bind), options.robots};
   auto inputs = robot_inputs(testbed, listen, options.seed, stop_requested());
   robots = &*inputs;
-  print_message("renders robots that report their true states to {} (robot --truth {}); Ctrl-C ends it",
+  print_message("rendering robots that report their true states to {} (robot --truth {}); press Ctrl-C to stop",
                 netio::endpoint_text(listen), netio::endpoint_text(listen));
   return inputs;
 }

@@ -22,8 +22,8 @@ netio::Endpoint read_own_address(const std::string& text, const std::string& opt
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
   if (error != std::errc() || end != port.data() + port.size() || colon == 0)
     throw base::InputError(
-        fmt::format("{}: '{}' is not an address; expected a port, or HOST:PORT; where neither follows, "
-                    "write the option last, or {}=PORT",
+        fmt::format("{}: '{}' is not an address; expected a port or HOST:PORT; to use the default, write the option "
+                    "last, or give {}=PORT",
                     option, text, option));
   if (colon != std::string::npos) endpoint.address = netio::resolve(text.substr(0, colon));
   return endpoint;

@@ -98,7 +98,7 @@ std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, i
     if (const std::string word = unknown_option(*used[0], argc, argv); !word.empty())
       what = fmt::format("'{}' was not expected{}", word, suggest_option(word, options_of(*used[0])));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
-    what = what.substr(0, what.find(':')) + " needs a value after it";
+    what = what.substr(0, what.find(':')) + " requires a value";
   return fmt::format("{}; see `sensorfarm {} --help`", what, used[0]->get_name());
 }
 

@@ -34,7 +34,7 @@ std::vector<scenarios::Actor> actors_of_world(const world::World& world, const R
   };
   const auto count = std::count_if(world.movers.begin(), world.movers.end(), own);
   if (count == 0) return {};
-  print_message("{} driven as the world file says (ctrl); --drive NAME drives a robot by '{}'",
+  print_message("{} driven by the controller in the world file (ctrl); use --drive NAME to drive a robot by '{}'",
                 count == 1 ? "1 robot is" : fmt::format("{} robots are", count), options.controller);
   std::vector<scenarios::Actor> actors;
   for (const world::Mover& mover : world.movers)

@@ -19,9 +19,8 @@ world::World load_with_robots(const WorldOptions& options, const CloneOptions& c
   if (copies) world::read_unread(world);  // free positions must avoid all walls
   if (!added.empty() && options.robot_from.empty())
     print_message(
-        "{} has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "
-        "degrees, 8 m; for a robot of yours, give --robot-from FILE:NAME, or write a world that includes this file "
-        "(docs/worlds.md)",
+        "{} has no robot; using the default robot 'roomba1' (id 1), a Create with a laser of 361 rays, 180 degrees, 8 "
+        "m; for another robot, give --robot-from FILE:NAME, or write a world that includes this file (docs/worlds.md)",
         options.world);
   if (copies) world::clone_robots(world, std::max(1u, clones.robots), clones.seed, added.empty() ? clones.of : added);
   print_warnings(options.world, world.warnings);

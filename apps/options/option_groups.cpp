@@ -322,13 +322,13 @@ void check_naming(const CLI::App& sub, const char* readings_option) {
                      std::any_of(nodes.begin(), nodes.end(), [](const std::string& node) { return node != "mapper"; });
   if (option_text("--topics") == "sensor" && other)
     throw CLI::ValidationError("--topics",
-                               "sensor has no frame odom, and true odometry: leave out --odometry encoders and exact, "
-                               "--external localizer and filter, or choose other names");
+                               "sensor has no frame odom and uses true odometry: leave out --odometry encoders or "
+                               "exact and --external localizer or filter, or choose other names");
   if (readings_option == nullptr || odometry.empty() || odometry == "truth") return;
   if (sub.count(readings_option) + sub.count("--ros2") + sub.count("--view") == 0)
     throw CLI::ValidationError(
-        "--odometry",
-        fmt::format("{} requires {}: recordings without readings have the true pose", odometry, readings_option));
+        "--odometry", fmt::format("{} requires {}: recordings without readings contain the true pose only", odometry,
+                                  readings_option));
 }
 
 void add_threads(CLI::App& app, ThreadsOption& o) {
@@ -347,8 +347,8 @@ void refuse_large_font(const viz::Page& page) {
   if (page.width == 0.0 || page.width >= viz::kWidthPerPoint * page.font_size) return;
   throw CLI::ValidationError(
       "--font-size",
-      fmt::format("{:g} points need a width of {:g} mm or more; --size {:g} has room for {:.3g} points", page.font_size,
-                  viz::kWidthPerPoint * page.font_size, page.width, page.width / viz::kWidthPerPoint));
+      fmt::format("{:g} points require a width of at least {:g} mm; --size {:g} allows at most {:.3g} points",
+                  page.font_size, viz::kWidthPerPoint * page.font_size, page.width, page.width / viz::kWidthPerPoint));
 }
 
 }  // namespace

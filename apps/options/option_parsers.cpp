@@ -110,7 +110,7 @@ Validator new_file(const std::string& example) {
     std::error_code ignored;
     if (text.empty()) return std::string("expected a file, got ''");
     if (text.back() != '/' && !std::filesystem::is_directory(text, ignored)) return std::string();
-    return fmt::format("expected a file, and '{}' is a folder; write {}", text,
+    return fmt::format("expected a file, but '{}' is a folder; write {}", text,
                        (std::filesystem::path(text) / example).string());
   };
 }
@@ -121,7 +121,7 @@ Validator picture() {
     const std::string suffix = file.extension().string();
     if (const std::string problem = is_file(text); !problem.empty()) return problem;
     if (viz::format_of(text)) return std::string();
-    return fmt::format("pictures are PNG, SVG or PDF files, and '{}' ends in {}; write {}", text, suffix,
+    return fmt::format("pictures are PNG, SVG or PDF files, but '{}' ends in {}; write {}", text, suffix,
                        file.replace_extension(".png").string());
   };
 }

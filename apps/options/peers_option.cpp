@@ -16,8 +16,8 @@ std::vector<netio::Peer> peers_of(const PeersOption& options, const world::World
   const bool keys =
       std::any_of(peers.begin(), peers.end(), [](const netio::Peer& peer) { return peer.key.has_value(); });
   if (keys && server::is_open_to_others(options.peers))
-    print_message("warning: {} has keys, and others may read or change it; `chmod 600 {}` keeps it to its owner",
-                  options.peers, options.peers);
+    print_message("warning: {} contains keys, and other users can read or change it; run `chmod 600 {}`", options.peers,
+                  options.peers);
   return peers;
 }
 
@@ -43,8 +43,7 @@ void require_signable(const std::vector<netio::Peer>& peers, sensors::WireFormat
   for (const netio::Peer& peer : peers)
     if (peer.kind == netio::PeerKind::robot && peer.key)
       throw base::InputError(
-          "readings of --wire thesis cannot be signed, but --peers has a key of a robot: leave out "
-          "one of them");
+          "readings of --wire thesis cannot be signed, but --peers has the key of a robot: leave out one of the two");
 }
 
 }  // namespace sf::apps

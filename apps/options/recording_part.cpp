@@ -53,7 +53,7 @@ RecordingPart open_part(const std::string& directory, const PartOption& wanted) 
   const std::string until = std::isfinite(wanted.to) ? fmt::format(" to {:g} s", wanted.to) : " on";
   if (last < first && recording.ticks > 0)
     throw base::InputError(recording.file, 0,
-                           fmt::format("has no tick from {:g} s{}; it lasts from 0 to {:g} s{}", wanted.from, until,
+                           fmt::format("has no tick from {:g} s{}; it covers 0 to {:g} s{}", wanted.from, until,
                                        1e-9 * static_cast<double>(recording.end_time),
                                        wanted.from > wanted.to ? ", and --from must be below --to" : ""));
   std::erase_if(recording.lights, outside);

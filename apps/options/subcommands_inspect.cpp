@@ -112,12 +112,12 @@ void add_plot(CLI::App& app, Call& call) {
          {"--format", "--csv", "--size", "--dpi", "--no-title", "--extent", "--font-size", "--line-styles",
           "--map-colors", "--label", "--elements", "--curves", "--over", "--x-axis"})
       if (sub->count(option) > 0)
-        throw CLI::ValidationError(option, "changes figures, and --video writes no figures; leave one of the two out");
+        throw CLI::ValidationError(option, "changes figures, but --video writes none; leave out one of the two");
     if (sub->count("--out") == 0) return;
     const std::filesystem::path folder = sub->get_option("--out")->as<std::string>();
     const std::filesystem::path file = sub->get_option("--video")->as<std::string>();
     throw CLI::ValidationError("--out",
-                               fmt::format("is the folder of figures, and --video writes no figures; write --video {}",
+                               fmt::format("is the folder of figures, but --video writes none; write --video {}",
                                            (folder / file.filename()).string()));
   });
   add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 88 --no-title --robots robot1,robot2",

@@ -40,7 +40,7 @@ void refuse_options_of_worlds(const CLI::App& run) {
                                     {"--localize", "settings"},
                                     {"--drive", "controller"}})
     if (run.count(option) > 0)
-      throw CLI::ValidationError(option, fmt::format("is for worlds; a scenario states `{}`: change {}", key, world));
+      throw CLI::ValidationError(option, fmt::format("applies to worlds; a scenario sets `{}`: change {}", key, world));
 }
 
 void check_run(const CLI::App& run) {

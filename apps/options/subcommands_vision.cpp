@@ -119,7 +119,7 @@ void add_calibrate(CLI::App& app, Call& call) {
   auto& o = add_command(*sub, call, calibrate, [sub] {
     for (const char* board : {"--columns", "--rows", "--square"})
       if (sub->count(board) > 0 && sub->count("--survey") > 0)
-        throw CLI::ValidationError(board, "is of a chessboard, and --survey looks for tags");
+        throw CLI::ValidationError(board, "describes a chessboard, but --survey uses tags");
   });
   add_examples(*sub, {"photographs --columns 9 --rows 6 --square 0.025 --name north > lab.toml",
                       "photographs --columns 6 --rows 4 --square 0.04 --charuco aruco_4x4_50 --marker 0.03",

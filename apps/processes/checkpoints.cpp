@@ -25,7 +25,7 @@ Checkpoints::Checkpoints(const std::string& folder, std::uint64_t run, std::uint
 
 void Checkpoints::read(const std::string& head) {
   if (!std::filesystem::exists(file_))
-    throw base::InputError(file_, 0, "there is no run to resume: create one with --record and --checkpoint S");
+    throw base::InputError(file_, 0, "no run to resume: create one with --record and --checkpoint S");
   const std::string text = base::read_text(file_);
   const std::size_t whole = text.rfind('\n') + 1;  // the last line may be truncated
   std::filesystem::resize_file(file_, whole);
@@ -34,12 +34,13 @@ void Checkpoints::read(const std::string& head) {
   std::getline(lines, line);
   if (line != head)
     throw base::InputError(
-        file_, 1, "is of another run: expected the same world, robots, seed and controllers as without --resume");
+        file_, 1,
+        "belongs to another run: expected the same world, robots, seed and controllers as in the interrupted run");
   for (int number = 2; std::getline(lines, line); ++number) {
     std::uint64_t tick = 0;
     Point point;
     if (std::sscanf(line.c_str(), "%" SCNu64 " %" SCNx64 " %" SCNx64, &tick, &point.readings, &point.states) != 3)
-      throw base::InputError(file_, number, "is not a check point: expected a tick and two hashes");
+      throw base::InputError(file_, number, "is not a checkpoint: expected a tick and two hashes");
     known_[tick] = point;
   }
 }
@@ -64,10 +65,11 @@ void Checkpoints::update(std::uint64_t ticks, std::uint64_t readings, std::span<
   if (known == known_.end())
     append(fmt::format("{} {} {}", ticks, base::hash_hex(point.readings), base::hash_hex(point.states)), false);
   else if (point != known->second)
-    throw base::InputError(file_, 0,
-                           fmt::format("the run differs from the one that is resumed, at tick {}: expected the same "
-                                       "program, world and plug-ins",
-                                       ticks));
+    throw base::InputError(
+        file_, 0,
+        fmt::format(
+            "the run differs from the interrupted run at tick {}: expected the same program, world and plug-ins",
+            ticks));
 }
 
 }  // namespace sf::apps

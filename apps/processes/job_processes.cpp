@@ -47,7 +47,7 @@ class Board {
   explicit Board(std::size_t seats)
       : size_(sizeof(Counts) + seats * sizeof(Seat)),
         memory_(mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
-    if (memory_ == MAP_FAILED) throw base::InputError("no memory to share with processes");
+    if (memory_ == MAP_FAILED) throw base::InputError("no memory to share with child processes");
     new (memory_) Counts;
   }
   ~Board() { munmap(memory_, size_); }
@@ -112,8 +112,7 @@ class Children {
     const pid_t pid = fork();
     if (pid < 0)
       throw base::InputError(
-          fmt::format("no more processes can be started: {}; expected --jobs to be smaller, or the limit of processes "
-                      "(ulimit -u) to be larger",
+          fmt::format("no more processes can be started: {}; lower --jobs, or raise the limit of processes (ulimit -u)",
                       std::strerror(errno)));
     if (pid > 0) {
       setpgid(pid, pid);  // parent and child both call it, since either may run first
@@ -188,8 +187,8 @@ class Children {
                          base::goes_on(seat.calls));
     if (children_[slot].late) {
       const std::string who = base::under_way(seat.calls);
-      return fmt::format("it took more than {:g} s (--timeout){}", calls_.timeout,
-                         who.empty() ? "" : "; under way was " + who);
+      return fmt::format("it took longer than {:g} s (--timeout){}", calls_.timeout,
+                         who.empty() ? "" : "; it was running " + who);
     }
     const std::string limit = WIFSIGNALED(status) ? memory_limit_note() : "";
     if (!seat.calls.finished) {
@@ -219,7 +218,7 @@ class Children {
     } else if (row != kNoRow || code != kFine) {
       const std::string cause = cause_of(slot, status);
       // Outside of any job, the error is not the job's fault, and another process would fail in the same way.
-      if (row == kNoRow) throw base::InputError("a process died outside of any job: " + cause);
+      if (row == kNoRow) throw base::InputError("a process died outside any job: " + cause);
       calls_.died(row, cause);
       ++board_.done();
     } else {

@@ -14,7 +14,7 @@ std::string memory_limit_note() {
     if (getrlimit(resource, &limit) == 0) least = std::min(least, limit.rlim_cur);
   }
   if (least == RLIM_INFINITY) return "";
-  return fmt::format("; memory is limited to {} MiB (ulimit -v), which not all libraries survive: raise it",
+  return fmt::format("; memory is limited to {} MiB (ulimit -v), which some libraries cannot handle: raise the limit",
                      least >> 20);
 }
 

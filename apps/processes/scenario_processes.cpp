@@ -81,7 +81,7 @@ class ResultFile {
   void put(std::size_t row, const ScenarioResult& result) const {
     const base::Bytes bytes = bytes_of(row, result);
     if (::write(descriptor_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
-      throw std::runtime_error(std::string("its result cannot be passed on: ") + std::strerror(errno));
+      throw std::runtime_error(std::string("its result cannot be passed to the parent: ") + std::strerror(errno));
   }
 
   /// Reads the results added since the last call.

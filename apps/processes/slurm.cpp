@@ -39,7 +39,7 @@ std::string ranges_of(const std::vector<std::uint64_t>& numbers) {
 void check_directive(const std::string& text, const char* what) {
   if (text.find_first_of("\"\\\r\n") == std::string::npos) return;
   throw base::InputError(fmt::format(
-      "{} '{}' cannot be used in a batch script; expected no quotes, backslashes and line ends", what, text));
+      "{} '{}' cannot be used in a batch script; expected no quotes, backslashes or line ends", what, text));
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ std::optional<Share> share_of_slurm_step() {
   const auto index = whole_of(procid), count = whole_of(ntasks);
   if (!index || !count || *index >= *count)
     throw base::InputError(fmt::format(
-        "SLURM_PROCID is '{}' and SLURM_NTASKS '{}'; expected a task's number and the number of tasks, or --share K/N",
+        "SLURM_PROCID is '{}' and SLURM_NTASKS '{}'; expected a task number and the number of tasks, or --share K/N",
         procid, ntasks));
   return Share{*index, *count};
 }
@@ -82,12 +82,10 @@ std::string batch_script_text(const BatchScript& script) {
   check_directive(script.name, "the name");
   check_directive(script.log, "the folder");
   std::string text = fmt::format(
-      "#!/bin/bash\n"
-      "# Written by `sensorfarm sweep --slurm`: jobs without a result, by shares. The same command writes it again "
-      "for\n"
-      "# what is missing then. SENSORFARM may hold another command, such as: apptainer exec sensorfarm.sif sensorfarm\n"
-      "#SBATCH --job-name=\"{}\"\n#SBATCH --array={}\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={}\n"
-      "#SBATCH --output=\"{}\"\n",
+      "#!/bin/bash\n# Written by `sensorfarm sweep --slurm`: jobs without a result, by shares. Run the same command "
+      "again to\n# rewrite it for the jobs missing then. SENSORFARM may contain another command, such as: apptainer "
+      "exec sensorfarm.sif sensorfarm\n#SBATCH --job-name=\"{}\"\n#SBATCH --array={}\n#SBATCH --ntasks=1\n#SBATCH "
+      "--cpus-per-task={}\n#SBATCH --output=\"{}\"\n",
       script.name, ranges_of(script.tasks), script.cpus, script.log);
   for (const std::string& directive : script.directives) {
     if (!directive.starts_with('-') || directive.find_first_of("\r\n") != std::string::npos)

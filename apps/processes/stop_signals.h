@@ -17,7 +17,7 @@ class Incomplete : public std::runtime_error {
 };
 
 /// For commands that write several files, each of them complete. @throws Incomplete if a stop was requested
-void heed_stop(const char* what = "interrupted: the files that were written are whole, others are not there");
+void heed_stop(const char* what = "interrupted: written files are complete, others are missing");
 
 /// Exit code of such a command: 128 plus the signal's number, as in shells (130 after Ctrl-C).
 int interrupted_code();

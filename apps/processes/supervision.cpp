@@ -96,13 +96,13 @@ class Supervisor {
     if (finished_at_) {
       const double most = stops_ > 0 ? kPatience : base::seconds_to_end();
       if (base::seconds_since(std::max(*finished_at_, since_)) < most) return;
-      return end(fmt::format("{}, {:g} s after {}: it ends with the process", base::goes_on(page_.calls), most,
+      return end(fmt::format("{} {:g} s after {}: it is stopped with the process", base::goes_on(page_.calls), most,
                              stops_ > 0 ? "the request to stop" : "the end of the program"));
     }
     const std::string calls = base::under_way(page_.calls);
     turns_in_calls_ = calls.empty() ? 0 : turns_in_calls_ + 1;
     if (stops_ == 0 || base::seconds_since(since_) < kPatience || turns_in_calls_ < kTurnsInCalls) return;
-    end(fmt::format("{} does not return, {:g} s after the request to stop: it ends without a report", calls,
+    end(fmt::format("{} has not returned {:g} s after the request to stop: exiting without a report", calls,
                     kPatience));
   }
 
@@ -130,7 +130,7 @@ class Supervisor {
     }
     const std::string how = by_signal ? base::signal_text(number) : fmt::format("exit code {}", number);
     std::string what = base::blame(page_.calls, how);
-    if (what.empty()) what = fmt::format("the process was ended ({}), outside of any call of a plug-in", how);
+    if (what.empty()) what = fmt::format("the process was terminated ({}) outside any call of a plug-in", how);
     if (by_signal) what += memory_limit_note();
     Progress::clear();
     print_message("{}", what);

@@ -13,7 +13,7 @@
 namespace sf::apps {
 
 std::string error_summary_text(const control::ErrorSummary& facts) {
-  return fmt::format("mean {:.4f}, mean of its size {:.4f}, of {}", facts.mean, facts.abs_mean,
+  return fmt::format("mean {:.4f}, mean absolute {:.4f}, of {}", facts.mean, facts.abs_mean,
                      counted(facts.steps, "step"));
 }
 
@@ -72,7 +72,7 @@ std::vector<Standing> ControlMetrics::standing(const world::World& world, const 
     if (!stands(m)) continue;
     const double seconds = 1e-9 * static_cast<double>(time_ - rests_[m].since);
     std::string reason = ends[m].reason;
-    if (reason.empty()) reason = rests_[m].contact ? "something that it touches stops it" : "no reason stated";
+    if (reason.empty()) reason = rests_[m].contact ? "blocked by contact" : "no reason given";
     Standing& all = by_reason[reason];
     all.reason = reason;
     if (all.names.size() < Standing::kNamed) all.names.push_back(world.movers[m].name);

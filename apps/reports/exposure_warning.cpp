@@ -13,10 +13,11 @@ void warn_of_exposure(std::uint32_t address, const std::string& can, const std::
   if (address == 0) {
     std::string own;
     for (const std::uint32_t each : netio::own_addresses()) own += (own.empty() ? "" : " or ") + netio::ipv4_text(each);
-    reached = own.empty() ? "every interface, of which this machine has none but loopback" : "whoever reaches " + own;
+    reached = own.empty() ? "every interface (this machine has only loopback)" : "whoever reaches " + own;
   }
   print_message(
-      "warning: {0} {1} opens it to {2}: anyone there can {3}, since {4}; {0} 127.0.0.1 keeps it to this machine",
+      "warning: {0} {1} opens the port to {2}: anyone there can {3}, since {4}; use {0} 127.0.0.1 to allow this "
+      "machine only",
       option, bound, reached, can, since);
 }
 

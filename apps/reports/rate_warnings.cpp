@@ -59,8 +59,8 @@ void warn_of_fast_sensors(const sensors::SensorSet& sensor_set, double rate) {
   }
   if (fast > 0)
     print_message(
-        "--rate {:g} is too low for {} ({}): they give one reading a tick; leave --rate out, and "
-        "they are read at their own times, or give at least --rate {:g}",
+        "--rate {:g} is too low for {} ({}): they give one reading per tick; leave out --rate to read them at their "
+        "own times, or give at least --rate {:g}",
         rate, counted(fast, "sensor"), types, most);
 }
 
@@ -73,8 +73,8 @@ void warn_of_many_times(const sensors::SensorSet& sensor_set) {
   for (const auto& [rate, phase] : times) a_second += rate;
   if (a_second > kManyTimes)
     print_message(
-        "sensors are due at up to {:.0f} different times a second, each a batch of its own: this "
-        "will be slow; lower their rates, or give them one rate and phase",
+        "sensors are due at up to {:.0f} different times per second, each in a batch of its own, which is slow; lower "
+        "their rates, or give them the same rate and phase",
         a_second);
 }
 

@@ -15,7 +15,8 @@ void print_warnings(const std::string& file, const std::vector<world::Warning>& 
   std::string lines = warnings_text(std::span(warnings).first(std::min(count, kFirst)));
   lines.pop_back();  // `print_message` adds the line end
   print_message("{}{}:\n{}", counted(count, "warning"),
-                count > kFirst ? fmt::format(", the first 3 here, all with `sensorfarm check {}`", file) : "", lines);
+                count > kFirst ? fmt::format("; the first 3 follow, `sensorfarm check {}` lists all", file) : "",
+                lines);
 }
 
 std::string warnings_text(std::span<const world::Warning> warnings) {
@@ -28,7 +29,7 @@ std::string warnings_text(std::span<const world::Warning> warnings) {
 void print_damage(const record::Recording& recording) {
   for (const std::string& damage : recording.damage) print_message("{}: {}", recording.file, damage);
   if (recording.truncated)
-    print_message("{} was not finished; its {} whole ticks are taken", recording.file, recording.ticks);
+    print_message("{} was not finished; using its {} complete ticks", recording.file, recording.ticks);
 }
 
 std::size_t count_robots(const world::World& world) {

@@ -46,23 +46,24 @@ std::string rates_text(const world::World& world, const sensors::SensorSet& sens
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     rates += (rates.empty() ? "" : ", ") + rate_text(group);
   const std::vector<std::string> between = types_between_ticks(sensor_set, world.interval);
-  return row("rates", rates) + (between.empty() ? "" : row("", "read between ticks too: {}", fmt::join(between, ", ")));
+  return row("rates", rates) +
+         (between.empty() ? "" : row("", "also read between ticks: {}", fmt::join(between, ", ")));
 }
 
 std::string paint_text(const world::World& world) {
   if (world.lane_markings.empty()) return "";
   const double cell = world.road_resolution;
-  return row("paint", "{}, seen {}", counted(world.lane_markings.size(), "stripe"),
+  return row("paint", "{}, sensed {}", counted(world.lane_markings.size(), "stripe"),
              cell > 0.0 ? fmt::format("as a raster of {:g} m", cell) : "exactly");
 }
 
 std::string magnets_text(const world::World& world) {
   const std::size_t magnets = count_magnets(world);
   if (magnets == 0) return "";
-  if (world.magnet_cutoff == 0.0) return row("magnets", "{}, all of them felt everywhere", magnets);
+  if (world.magnet_cutoff == 0.0) return row("magnets", "{}, without cutoff", magnets);
   const sensors::MagnetSummary facts = sensors::summarize_magnets(world);
-  return row("magnets", "{}, felt within {:g} m", magnets, facts.cutoff_m) +
-         row("", "what is left out is at most {} T ({} Gauss), {:g} m above the ground", rounded_up(facts.bound_T),
+  return row("magnets", "{}, cut off at {:g} m", magnets, facts.cutoff_m) +
+         row("", "the omitted field is at most {} T ({} Gauss), {:g} m above the ground", rounded_up(facts.bound_T),
              rounded_up(1e4 * facts.bound_T), facts.height_m);
 }
 
@@ -72,7 +73,7 @@ std::string street_text(const world::World& world) {
   if (!world.lights.empty()) text += row("traffic lights", world.lights.size());
   if (docks > 0) text += row("docks", docks);
   if (walls > 0) text += row("virtual walls", walls);
-  if (!world.floor_holes.empty()) text += row("holes", "{}, seen by cliff sensors only", world.floor_holes.size());
+  if (!world.floor_holes.empty()) text += row("holes", "{}, visible to cliff sensors only", world.floor_holes.size());
   if (!world.paths.empty()) text += row("paths", world.paths.size());
   return text;
 }
@@ -141,11 +142,10 @@ std::string work_text(const RunReport& f) {
   if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
   if (f.farm.missed > 0)
     text +=
-        row("missed", "{} beside {} readings: newer ones were due at the same tick", f.farm.missed, f.farm.readings);
+        row("missed", "{}, besides {} readings: newer ones were due at the same tick", f.farm.missed, f.farm.readings);
   if (work.host_scans > 0)
     text += row("cast on the host", "{} scans: too many surfaces around them for the device's lists", work.host_scans);
-  if (f.farm.reused > 0)
-    text += row("given again", "{} of {} readings: nothing had moved", f.farm.reused, f.farm.readings);
+  if (f.farm.reused > 0) text += row("reused", "{} of {} readings: nothing had moved", f.farm.reused, f.farm.readings);
   return text;
 }
 
@@ -158,7 +158,7 @@ std::string control_text(const ControlReport& f) {
   if (f.has_goals) text += row("checkpoints", "{} passed", f.checkpoints);
   constexpr std::size_t kLines = 5;
   for (std::size_t i = 0; i < std::min(f.standing.size(), kLines); ++i)
-    text += row(i == 0 ? "stand at the end" : "", standing_text(f.standing[i]));
+    text += row(i == 0 ? "at rest at the end" : "", standing_text(f.standing[i]));
   if (f.standing.size() > kLines)
     text += row("", "and robots for {} (--json has all)", counted(f.standing.size() - kLines, "other reason"));
   return text;
@@ -166,7 +166,7 @@ std::string control_text(const ControlReport& f) {
 
 /// Returns the number of datagrams that never reached the program.
 std::string drops_text(std::uint64_t drops) {
-  return row("dropped by the operating system", "{}: they came faster than they were taken", drops);
+  return row("dropped by the operating system", "{}: they arrived faster than they were read", drops);
 }
 
 std::string packets_text(const server::PublisherCounts& publisher) {
@@ -176,7 +176,7 @@ std::string packets_text(const server::PublisherCounts& publisher) {
   if (packets.failed + packets.dropped > 0)
     text +=
         row("packets not sent", "{} failed ({}), {} dropped", packets.failed, packets.first_failure, packets.dropped);
-  if (publisher.not_numbers > 0) text += row("packets not made", "{}: not a number in them", publisher.not_numbers);
+  if (publisher.not_numbers > 0) text += row("packets not built", "{}: readings with NaN", publisher.not_numbers);
   return text;
 }
 
@@ -190,14 +190,14 @@ std::string states_text(const RunReport& f) {
     add(name(static_cast<estimation::Verdict>(k)), f.states.states[k]);
   for (const auto refused : {estimation::ClockVerdict::future, estimation::ClockVerdict::late})
     add(fmt::format("{} by its clock", name(refused)), f.states.clocks[static_cast<std::size_t>(refused)]);
-  add("beyond the limit of a tick", f.states.flooded);
+  add("beyond the limit per tick", f.states.flooded);
   std::string text = row("states", counts.empty() ? "none" : counts);
   constexpr std::size_t kLines = 5;
   for (std::size_t i = 0; i < std::min(f.clocks.size(), kLines); ++i) {
     const auto& [who, clock] = f.clocks[i];
     text += row(i == 0 ? "clocks" : "", "{} {:+.6f} s{}{}", who, 1e-9 * static_cast<double>(clock.offset),
                 clock.drift_known ? fmt::format(", {:+.1f} ppm", 1e6 * clock.drift) : "",
-                clock.steps > 0 ? ", set " + counted(clock.steps, "time") : "");
+                clock.steps > 0 ? ", stepped " + counted(clock.steps, "time") : "");
   }
   if (f.clocks.size() > kLines) text += row("", "and {} more (--json has all)", f.clocks.size() - kLines);
   return text;
@@ -222,7 +222,7 @@ std::string strayed_text(const std::vector<std::string>& names) {
 
 std::string run_report_text(const RunReport& f) {
   const double ticks = f.ticks > 0 ? static_cast<double>(f.ticks) : 1.0;
-  const auto stage = [&](double seconds) { return fmt::format("{:8.3f} ms a tick", seconds * 1e3 / ticks); };
+  const auto stage = [&](double seconds) { return fmt::format("{:8.3f} ms per tick", seconds * 1e3 / ticks); };
   std::string text = f.interrupted ? "Stopped before the end.\n" : "";
   text += row("device", device_text(f));
   text += row("caster", f.caster);
@@ -241,19 +241,20 @@ std::string run_report_text(const RunReport& f) {
   if (f.filtered) text += states_text(f);
   const server::LightCounts& heard = f.lights.heard;
   if (heard.packets + heard.messages + heard.others + heard.invalid + heard.refused > 0)
-    text += row("lights heard", "{} V2I, {} SPaT; {} of others or MAP, {} invalid, {} refused", heard.packets,
+    text += row("lights received", "{} V2I, {} SPaT; {} of others or MAP, {} invalid, {} refused", heard.packets,
                 heard.messages, heard.others, heard.invalid, heard.refused);
-  if (heard.silences > 0) text += row("  silent", counted(heard.silences, "time") + " a light that was heard");
+  if (heard.silences > 0)
+    text += row("  silent", counted(heard.silences, "time") + " that a received light fell silent");
   if (f.lights.sent > 0) text += row("lights sent", counted(f.lights.sent, "packet"));
   if (f.relayed.states + f.relayed.starts > 0)
-    text += row("packets passed on", "{} V2V in {}, {} START", f.relayed.states,
-                counted(f.relayed.datagrams, "datagram"), f.relayed.starts);
+    text += row("packets relayed", "{} V2V in {}, {} START", f.relayed.states, counted(f.relayed.datagrams, "datagram"),
+                f.relayed.starts);
   if (f.relayed.waited > 0)
-    text += row("  waited for", counted(f.relayed.waited, "time") + ": more robots ask for V2V than a tick serves");
+    text += row("  waited for", counted(f.relayed.waited, "time") + ": more robots request V2V than one tick serves");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (!f.recording.empty())
     text += row("recording", "{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6);
-  if (!f.recording_error.empty()) text += row("", "NOT WHOLE: {}", f.recording_error);
+  if (!f.recording_error.empty()) text += row("", "INCOMPLETE: {}", f.recording_error);
   if (!f.video.file.empty()) text += row("video", "{} ({})", f.video.file, video_text(f.video));
   text += row("time: move", stage(f.move_s));
   text += row("  place movers", stage(f.farm.place_s));
@@ -265,7 +266,7 @@ std::string run_report_text(const RunReport& f) {
     text += row("  other ranks", stage(f.shared->wait_s));
     text += row("ranks", "{}; {:.0f} bytes sent per robot and tick, slowest rank {:.2f} x the mean in sensing",
                 f.shared->ranks, f.shared->bytes, f.shared->imbalance);
-    if (f.shared->passed_on) text += row("tiles", "{} robots passed on between them", *f.shared->passed_on);
+    if (f.shared->passed_on) text += row("tiles", "{} robots handed over between them", *f.shared->passed_on);
   }
   text += row("hash of readings", base::hash_hex(f.hash));
   return text;

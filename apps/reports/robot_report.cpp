@@ -33,7 +33,7 @@ std::string link_text(const server::LinkCounts& link) {
   text += row("sensor packets", netio::packet_counts_text(in.packets));
   if (link.stale > 0) text += row("", counted(link.stale, "reading") + " of a stale state");
   text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
-  if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
+  if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " implausibly far ahead");
   if (link.socket_drops > 0) text += row("", counted(link.socket_drops, "packet") + " dropped by the operating system");
   if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " restarted");
   text += row("V2V and START", netio::packet_counts_text(link.packets));
@@ -47,8 +47,8 @@ std::string link_text(const server::LinkCounts& link) {
 }  // namespace
 
 std::string robot_client_text(const server::RobotClientStats& f) {
-  std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
-  if (!f.started) text += "The start signal did not come.\n";
+  std::string text = f.answered ? "" : fmt::format("No packets from the farm at {}.\n", f.farm);
+  if (!f.started) text += "The start signal did not arrive.\n";
   text += row("robot", "{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : "");
   text += row("ran", "{:.2f} s, {}", f.wall_s, counted(f.steps, "step"));
   text += link_text(f.link);
@@ -59,14 +59,15 @@ std::string robot_client_text(const server::RobotClientStats& f) {
       text += row("", "{} failed ({}), {} dropped", f.map->sent.failed, f.map->sent.first_failure, f.map->sent.dropped);
   }
   if (f.create)
-    text += row("Create", "{}, {} with a wrong checksum, {} outside of frames; started {}, line opened {}",
+    text += row("Create", "{}, {} with a wrong checksum, {} outside frames; started {}, line opened {}",
                 counted(f.create->frames, "frame"), f.create->wrong_checksums, counted(f.create->skipped_bytes, "byte"),
                 counted(f.create->starts, "time"), counted(f.create->lines, "time"));
   if (f.listens_for_spat)
     text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.lights.messages, "message"),
                 f.lights.others, f.lights.invalid);
   if (f.lights.packets > 0) text += row("V2I", "{} of lights", counted(f.lights.packets, "packet"));
-  if (f.lights.silences > 0) text += row("  silent", counted(f.lights.silences, "time") + " a light that was heard");
+  if (f.lights.silences > 0)
+    text += row("  silent", counted(f.lights.silences, "time") + " that a received light fell silent");
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
   if (f.cameras) {
@@ -74,11 +75,11 @@ std::string robot_client_text(const server::RobotClientStats& f) {
                 f.cameras->states.states[static_cast<std::size_t>(estimation::Verdict::used)]);
     const server::PositionErrors& e = f.cameras->errors;
     if (e.count > 0)
-      text += row("position error", "{:.1f} mm RMS, {:.1f} mm and {:.2f} degrees largest", 1e3 * e.rms(),
+      text += row("position error", "RMS {:.1f} mm, largest {:.1f} mm and {:.2f} degrees", 1e3 * e.rms(),
                   1e3 * e.largest, e.largest_heading * 180.0 / M_PI);
   }
   text += row("contacts", "{} that began", f.contacts);
-  if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings or positions");
+  if (f.stops > 0) text += row("stopped", counted(f.stops, "time") + " for lack of readings or positions");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (f.error.steps > 0) text += row("control error", error_summary_text(f.error));
   if (f.localization.steps > 0) text += row("localization error", localization_error_text(f.localization));

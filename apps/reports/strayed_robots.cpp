@@ -17,7 +17,7 @@ void StrayedRobots::write(const base::TickRecord& tick) {
     if (outside_[m] || world_.movers[m].is_tag || std::isnan(X_WM.x) || known_.contains({X_WM.x, X_WM.y})) continue;
     if (std::find(outside_.begin(), outside_.end(), true) == outside_.end())
       print_message(
-          "'{}' is outside of the known space of {} at ({:.2f}, {:.2f}) after {:.1f} s; the summary names all",
+          "'{}' left the known space of {} at ({:.2f}, {:.2f}) after {:.1f} s; the summary lists all robots that do",
           world_.movers[m].name, world_.ros_map, X_WM.x, X_WM.y, 1e-9 * static_cast<double>(tick.time));
     outside_[m] = true;
   }

@@ -26,7 +26,7 @@ void keep_output_apart() {
   const int own = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   const bool is_apart = own >= 0 && dup2(STDERR_FILENO, STDOUT_FILENO) >= 0 && (apart = fdopen(own, "w")) != nullptr;
   if (!is_apart)
-    throw base::InputError(std::string("standard output cannot be kept for JSON: ") + std::strerror(errno));
+    throw base::InputError(std::string("standard output cannot be reserved for JSON: ") + std::strerror(errno));
 }
 
 bool flush_output() { return std::fflush(output()) == 0 && std::ferror(output()) == 0; }

@@ -106,7 +106,7 @@ class Reader {
     Members members{*this, object(json)};
     const Input& id = members.required("messageId");
     if (id != Spat::kMessageId && id != MapData::kMessageId)
-      fail(fmt::format("messageId is {}; 19 (SPaT) or 18 (MAP) expected", shown(id)));
+      fail(fmt::format("messageId is {}; expected 19 (SPaT) or 18 (MAP)", shown(id)));
     const Input& value = members.required("value");
     within("value", [&] {
       if (id == Spat::kMessageId) {
@@ -298,7 +298,7 @@ void read_frames(const std::string& file, const std::string& text, const std::fu
   std::istringstream stream(text);
   int line = 1;
   std::size_t counted = 0;
-  if ((stream >> std::ws).eof()) throw base::InputError(file, 0, "no frame in it; JSON expected");
+  if ((stream >> std::ws).eof()) throw base::InputError(file, 0, "no frame in it; expected JSON");
   while (!(stream >> std::ws).eof()) {
     const auto at = static_cast<std::size_t>(stream.tellg());
     line += static_cast<int>(std::count(text.begin() + counted, text.begin() + at, '\n'));
@@ -308,7 +308,7 @@ void read_frames(const std::string& file, const std::string& text, const std::fu
       stream >> json;
     } catch (const Input::exception& error) {
       const std::string what = error.what();
-      throw base::InputError(file, line, "no JSON from here on: " + what.substr(what.find("] ") + 2));
+      throw base::InputError(file, line, "not JSON from here on: " + what.substr(what.find("] ") + 2));
     }
     const auto read = [&](const Input& one) { take(Reader(file, line).frame(one)); };
     if (json.is_array()) {

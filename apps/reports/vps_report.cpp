@@ -33,21 +33,22 @@ std::string vps_report_text(const VpsReport& r) {
   std::string text = row("cameras", r.cameras) + row("images", r.counts.images);
   if (r.counts.unreadable > 0) text += row("", "{} of them unreadable", r.counts.unreadable);
   if (r.counts.frozen > 0)
-    text += row("", "{} of them the same as the one before: a camera is frozen", r.counts.frozen);
+    text += row("", "{} of them identical to the previous one: a camera is frozen", r.counts.frozen);
   if (r.truth) {
     text += row("robots", "{} rendered, by {}", r.truth->robots, counted(r.truth->accepted, "packet"));
     if (r.truth->refused > 0)
-      text += row("", "{} refused: no V2V, or of a robot without a tag in the dictionary", r.truth->refused);
+      text += row("", "{} rejected: not V2V, or from a robot without a tag in the dictionary", r.truth->refused);
   }
   if (r.counts.images > 0)
-    text += row("processing", "{:.1f} images/s, {:.1f} ms of CPU time an image", images / r.processing_s,
+    text += row("processing", "{:.1f} images/s, {:.1f} ms of CPU time per image", images / r.processing_s,
                 1e3 * r.processing_cpu_s / images);
   text += row("sightings", "{}; {} tracked", r.counts.sightings, counted(r.tags.size(), "tag"));
   if (r.counts.unlisted > 0) text += row("", "{} with ids that the file does not list", r.counts.unlisted);
-  if (r.counts.unfitted > 0) text += row("", "{} refused: fewer than three sides with an edge", r.counts.unfitted);
+  if (r.counts.unfitted > 0) text += row("", "{} rejected: fewer than three sides with an edge", r.counts.unfitted);
   if (r.counts.misfitted > 0)
-    text += row("", "{} refused: side or shape not as stated (tag_side, tag_height, calibration?)", r.counts.misfitted);
-  if (r.refused > 0) text += row("", "{} refused: too far from the tag's last place, or out of order", r.refused);
+    text += row("", "{} rejected: unexpected side or shape (check tag_side, tag_height and the calibration)",
+                r.counts.misfitted);
+  if (r.refused > 0) text += row("", "{} rejected: too far from the tag's last position, or out of order", r.refused);
   if (r.accuracy) text += accuracy_text(*r.accuracy);
   if (r.sent) {
     text += row("packets", "{} sent, {} failed", r.sent->sent, r.sent->failed + r.sent->dropped);

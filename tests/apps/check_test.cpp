@@ -86,7 +86,7 @@ TEST(Check, RatesAreReported) {
 
   const Outcome text = run_program({"check", world, "--rate", "10"});
   EXPECT_NE(text.out.find("laser 5 to 13 Hz"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("read between ticks too: laser, gyro"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("also read between ticks: laser, gyro"), std::string::npos) << text.out;
   EXPECT_NE(text.err.find("--rate 10 is too low for 1 sensor (laser 5 to 13 Hz)"), std::string::npos) << text.err;
   EXPECT_TRUE(run_program({"check", world, "--rate", "13"}).err.empty());
 }

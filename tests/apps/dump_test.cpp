@@ -118,7 +118,7 @@ TEST(Dump, ACaptureIsPrintedAsText) {
   for (std::size_t i = 0; i < found.size(); ++i)
     EXPECT_EQ(found[i].substr(0, i == 6 ? expected[i].size() : std::string::npos), expected[i]);
   EXPECT_EQ(outcome.err,
-            "sensorfarm: 1 record without a whole UDP datagram\n"
+            "sensorfarm: 1 record without a complete UDP datagram\n"
             "sensorfarm: 9 datagrams: accepted 7, too short 1, bad magic 1\n");
 }
 

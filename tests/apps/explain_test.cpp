@@ -13,7 +13,7 @@ TEST(Explain, ListsWhichTablesAreBuilt) {
   const Outcome outcome = run_program({"explain", our_world("simville/simville.world")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* text : {"laser: 6 sensors on 6 robots", "magnets summed", "caster", "subscribed alone",
-                           "none: it is read on the host", "not built", "wall segments"})
+                           "none: computed on the host", "not built", "wall segments"})
     EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
 }
 

@@ -187,7 +187,7 @@ TEST_F(Recorded, WithoutALaserThereIsNoMap) {
 TEST_F(Recorded, MissingPartsAreRejected) {
   const std::string out = folder_.path("x");
   expect_refused(with("plot", {"-o", out, "--robots", "one,three"}), "has no robot 'three'; it has one, two");
-  expect_refused(with("export", {"-o", out, "--from", "5"}), "has no tick from 5 s on; it lasts from 0 to 2.9 s");
+  expect_refused(with("export", {"-o", out, "--from", "5"}), "has no tick from 5 s on; it covers 0 to 2.9 s");
   expect_refused(with("export", {"-o", out, "--from", "2", "--to", "1"}),
                  "has no tick from 2 s to 1 s");  // reversed
   expect_refused(with("export", {}), "--out");

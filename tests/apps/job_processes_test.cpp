@@ -110,7 +110,7 @@ TEST_F(JobProcesses, InputAndDeviceErrorsEndAll) {
 TEST_F(JobProcesses, AFaultOutsideOfAnyJobEndsAll) {
   JobCalls all = calls();
   all.begin = [] { throw std::runtime_error("no luck"); };
-  EXPECT_EQ(refusal(all), "input: a process died outside of any job: its process ended with exit code 1: no luck");
+  EXPECT_EQ(refusal(all), "input: a process died outside any job: its process ended with exit code 1: no luck");
   EXPECT_TRUE(died_.empty());
 }
 

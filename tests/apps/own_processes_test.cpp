@@ -167,9 +167,9 @@ TEST(OwnProcesses, TimeIsLimitedOnRequest) {
   const Bench bench;
   const Outcome outcome = run_program({"test", bench.scenario("a", "loop"), bench.scenario("b", ""), "--timeout", "3"});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_TRUE(has(outcome.out,
-                  "it took more than 3 s (--timeout); under way was controller 'test-ends' of robot 'r0' "
-                  "at 1.000 s simulated"))
+  EXPECT_TRUE(has(
+      outcome.out,
+      "it took longer than 3 s (--timeout); it was running controller 'test-ends' of robot 'r0' at 1.000 s simulated"))
       << outcome.out;
   EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("b.toml"))) << outcome.out;
 }

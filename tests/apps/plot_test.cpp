@@ -74,8 +74,8 @@ TEST_F(PaperFigures, ManyElementsAreAHeatMapOrChosenCurves) {
   EXPECT_FALSE(contains(chosen, ">one 1<"));
   EXPECT_TRUE(contains(chosen, "stroke-dasharray")) << "known in grey print";
   EXPECT_FALSE(contains(figure("sonar", {"--elements", "0,3,7", "--line-styles", "solid"}), "stroke-dasharray"));
-  EXPECT_TRUE(
-      contains(refusal({"--elements", "500"}), "has no sensor with an element 500; they are numbered from 0 to 180"));
+  EXPECT_TRUE(contains(refusal({"--elements", "500"}),
+                       "has no sensor with an element 500; elements are numbered from 0 to 180"));
   EXPECT_TRUE(contains(figure("laser"), ">bearing (element)<")) << "scans, too";
 }
 
@@ -99,7 +99,7 @@ TEST_F(PaperFigures, ElevenRobotsHaveTheRequestedLabels) {
   EXPECT_FALSE(contains(some, ">other4<"));
   const std::string all = figure("trajectories", {"--label", "all"});
   EXPECT_TRUE(contains(all, ">other3<") && contains(all, ">other4<"));
-  EXPECT_TRUE(contains(refusal({"--label", "nobody"}), "--label: no robot 'nobody' is drawn; there is one, other2"));
+  EXPECT_TRUE(contains(refusal({"--label", "nobody"}), "--label: no robot 'nobody' is drawn; drawn are one, other2"));
   EXPECT_TRUE(contains(figure("trajectories", {"--robots", "one,other3"}), ">other3<")) << "up to ten are named";
 }
 
@@ -122,12 +122,11 @@ TEST_F(PaperFigures, FigureOptionsAreRejectedForVideos) {
     return refused.err;
   };
   EXPECT_TRUE(contains(message("x.webm", {"-o", "d"}),
-                       "--out: is the folder of figures, and --video writes no figures; "
-                       "write --video d/x.webm"));
+                       "--out: is the folder of figures, but --video writes none; write --video d/x.webm"));
   EXPECT_TRUE(contains(message("x.webm", {"--line-styles", "solid"}),
-                       "--line-styles: changes figures, and --video writes no figures; leave one of the two out"));
+                       "--line-styles: changes figures, but --video writes none; leave out one of the two"));
   EXPECT_TRUE(contains(message("x", {"-o", "d"}), "videos are WebM files; write x.webm"));
-  EXPECT_TRUE(contains(message(".", {}), "expected a file, and '.' is a folder; write ./run.webm"));
+  EXPECT_TRUE(contains(message(".", {}), "expected a file, but '.' is a folder; write ./run.webm"));
   EXPECT_TRUE(contains(message(folder_->path(""), {}), folder_->path("run.webm")));
 }
 
@@ -157,7 +156,7 @@ TEST_F(PaperFigures, IntegersAreSteps) {
 }
 
 TEST_F(PaperFigures, SweepOptionsAreRejected) {
-  EXPECT_TRUE(contains(refusal({"--over", "kp"}), "--over and --x-axis go with the folder of a sweep"));
+  EXPECT_TRUE(contains(refusal({"--over", "kp"}), "--over and --x-axis apply to the folder of a sweep"));
 }
 
 /// Names may contain commas; all options with several names use the same rule.

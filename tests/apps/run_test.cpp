@@ -235,7 +235,7 @@ TEST(Run, AControllerWithoutItsSensorIsRejected) {
 TEST(Run, OnlyNamedRobotsAreDriven) {
   Words words =
       run_words("simville/simville.world", {"--duration", "2", "--controller", "route", "--set", "tour=true"});
-  const std::string hint = "; or name the robots that are driven (--drive NAME)";
+  const std::string hint = "; or name the robots to drive (--drive NAME)";
   const Outcome all = run_program(words);
   EXPECT_EQ(all.code, 2);
   EXPECT_EQ(count_lines(all.err), 1u) << all.err;

@@ -66,9 +66,9 @@ TEST(SelfTest, TheReportListsEachResult) {
   EXPECT_FALSE(report.sound());
   EXPECT_EQ(report.passed(), 3u);
   EXPECT_EQ(apps::self_test_text(report),
-            "group     case                          checks  closest call: error of allowed\n"
-            "a         plain                              3  right or wrong                 ok\n"
-            "a         bits                              20  0: the same to the bit         ok\n"
+            "group     case                          checks  closest call: error of limit\n"
+            "a         plain                              3  pass or fail                   ok\n"
+            "a         bits                              20  0: bitwise equal               ok\n"
             "b         near                               4  0.25 of 0.5 m                  ok\n"
             "          one\n"
             "          two\n"

@@ -67,7 +67,7 @@ TEST(Sense, AnImpossiblePoseIsAWarning) {
             std::string::npos);
   EXPECT_EQ(run_program({"sense", world, "--pose", "-1,0,0"}).err.find("warning"), std::string::npos);
   const std::string rooms = our_world("rooms.world");
-  EXPECT_NE(run_program({"sense", rooms, "--pose", "1000,2000,0"}).err.find("is outside of all walls (x "),
+  EXPECT_NE(run_program({"sense", rooms, "--pose", "1000,2000,0"}).err.find("is outside all walls (x "),
             std::string::npos);
   EXPECT_EQ(run_program({"sense", rooms, "--pose", "1,2,0"}).err.find("warning"), std::string::npos);
 }

@@ -253,7 +253,7 @@ TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
 /// last and the first element.
 viz::SeriesOptions fields_of(const record::Recording& recording) {
   viz::SeriesOptions options{"Magnetic field", recording.info.world + ": 2 sensors", {}};
-  viz::Panel difference{"last element less the first", "difference of |B| [G]", {}};
+  viz::Panel difference{"last element minus first", "difference of |B| [G]", {}};
   for (std::uint32_t mover = 0; mover < 2; ++mover) {
     const std::string& name = recording.info.movers[mover].name;
     viz::Series first{"element 0", {}, {}}, last{"element 1", {}, {}}, more{name, {}, {}};

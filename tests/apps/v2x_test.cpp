@@ -139,9 +139,8 @@ TEST(V2x, BadFramesAreReportedAndTheOthersDecoded) {
   const Outcome outcome = run_program({"v2x", "decode", file});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(count_lines(outcome.out), 2u);
-  EXPECT_NE(outcome.err.find(file + ":2: 7 hexadecimal digits; two for each byte expected\n"), std::string::npos);
-  EXPECT_NE(outcome.err.find(file + ":3: hexadecimal digits expected, the bytes of one frame a line\n"),
-            std::string::npos);
+  EXPECT_NE(outcome.err.find(file + ":2: 7 hexadecimal digits; expected two per byte\n"), std::string::npos);
+  EXPECT_NE(outcome.err.find(file + ":3: expected hexadecimal digits, one frame per line\n"), std::string::npos);
   EXPECT_NE(outcome.err.find(file + ":4: messageId: 20 (BasicSafetyMessage) is neither SPaT (19) nor MAP (18)\n"),
             std::string::npos);
   EXPECT_NE(outcome.err.find(file + ":5: "), std::string::npos);
@@ -186,21 +185,21 @@ TEST(V2x, JsonErrorsNameTheirComponent) {
       refusal("protected-Movement-Allowed", "green").find("eventState: found \"green\"; expected one of unavailable, "),
       std::string::npos);
   EXPECT_EQ(refusal("\"SPAT\"", "\"MapData\""), "value: 'SPAT' is missing");
-  EXPECT_EQ(refusal("\"messageId\": 19", "\"messageId\": 20"), "messageId is 20; 19 (SPaT) or 18 (MAP) expected");
-  EXPECT_EQ(refusal("[{\n", "7, [{\n").find("no JSON from here on: "), 0u);
-  EXPECT_EQ(refusal("}]}]}]}}}", "}]}]}]}}").find("no JSON from here on: "), 0u);
+  EXPECT_EQ(refusal("\"messageId\": 19", "\"messageId\": 20"), "messageId is 20; expected 19 (SPaT) or 18 (MAP)");
+  EXPECT_EQ(refusal("[{\n", "7, [{\n").find("not JSON from here on: "), 0u);
+  EXPECT_EQ(refusal("}]}]}]}}}", "}]}]}]}}").find("not JSON from here on: "), 0u);
 }
 
 /// In place of a frame, its id and a component: recursion must not be as deep as the nesting of a stranger's lists.
 TEST(V2x, DeeplyNestedJsonIsRejected) {
   const std::string open(200'000, '['), closed = open + std::string(200'000, ']');
   EXPECT_EQ(refusal(kJson, closed), "found a list of 1; expected an object");
-  EXPECT_EQ(refusal("19", closed), "messageId is a list of 1; 19 (SPaT) or 18 (MAP) expected");
+  EXPECT_EQ(refusal("19", closed), "messageId is a list of 1; expected 19 (SPaT) or 18 (MAP)");
   EXPECT_EQ(refusal("35176", closed),
             "value.SPAT.intersections[0].timeStamp: found a list of 1; expected a whole number from 0 to 65535");
   EXPECT_EQ(refusal("\"revision\"", "\"x\": " + closed + ", \"revision\""),
             "value.SPAT.intersections[0]: 'x' is not a component here");
-  EXPECT_EQ(refusal(kJson, open).find("no JSON from here on: "), 0u);
+  EXPECT_EQ(refusal(kJson, open).find("not JSON from here on: "), 0u);
 }
 
 TEST(V2x, ExportsTheLightsOfAWorld) {

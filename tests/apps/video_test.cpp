@@ -110,7 +110,7 @@ TEST_F(Video, FramesOfAnEarlierCallAreRemoved) {
   for (const std::string& name : others) folder.write("f/" + name, "");
   folder.write("f/1000000.png", "");  // the frame after 999999
   const std::string message = write("5");
-  EXPECT_NE(message.find("removed 41 files of an earlier call, NNNNNN.png, from " + frames), std::string::npos)
+  EXPECT_NE(message.find("removed 41 files of an earlier call (NNNNNN.png) from " + frames), std::string::npos)
       << message;
   EXPECT_TRUE(std::filesystem::exists(frames + "/000009.png"));
   EXPECT_FALSE(std::filesystem::exists(frames + "/000010.png"));

@@ -167,7 +167,7 @@ TEST(Vps, PicturesAreNotWrittenIntoAFolderOfImages) {
   const Outcome outcome =
       run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--overlay", folder.path("p")});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("holds the images of camera 'a'; name another --overlay"), std::string::npos)
+  EXPECT_NE(outcome.err.find("contains the images of camera 'a'; name another --overlay"), std::string::npos)
       << outcome.err;
   EXPECT_TRUE(std::filesystem::exists(folder.path("p/a-000002.png")));
 }

@@ -101,9 +101,9 @@ TEST(Warnings, ControllersOfTheWorldFileTakePrecedence) {
   const std::string world = folder.write("two.world", robots);
   const Outcome outcome = run_program({"run", world, "--duration", "0.5", "--controller", "explore", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(
-      outcome.err.find("1 robot is driven as the world file says (ctrl); --drive NAME drives a robot by 'explore'"),
-      std::string::npos)
+  EXPECT_NE(outcome.err.find("1 robot is driven by the controller in the world file (ctrl); use --drive NAME to drive "
+                             "a robot by 'explore'"),
+            std::string::npos)
       << outcome.err;
   const Json facts(outcome.out);
   ASSERT_EQ(facts.size("/warnings"), 1u);

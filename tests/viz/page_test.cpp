@@ -69,7 +69,7 @@ SeriesOptions series() {
   SeriesOptions options{.title = "Readings of several kinds",
                         .subtitle = "a world: three sensors, of which all are shown"};
   options.panels = {{"robot one", "distance to the lane edge [m]", {wave("roomba1", 1e-6), wave("roomba2", 2e-6)}},
-                    {"last element less the first", "left [counts]", {wave("pioneer", 1e6)}, false, true},
+                    {"last element minus first", "left [counts]", {wave("pioneer", 1e6)}, false, true},
                     {"robot two", "element (bearing)", {}, false, false, ranges()}};
   return options;
 }
