@@ -1,7 +1,10 @@
 #include "base/suggest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 namespace sf::base {
 
@@ -15,6 +18,17 @@ std::string suggest(std::string_view word, std::span<const std::string_view> can
     nearest = candidate;
   }
   return nearest.empty() ? std::string() : "; did you mean '" + std::string(nearest) + "'?";
+}
+
+std::string suggest(std::string_view word, std::span<const std::string_view> candidates, std::string_view text) {
+  const std::string suggestion = suggest(word, candidates);
+  if (suggestion.empty() || text.empty()) return fmt::format("{}{}{}", suggestion, text.empty() ? "" : "; ", text);
+  const char first = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return fmt::format("{} {}{}", suggestion, first, text.substr(1));
+}
+
+std::string expected_one_of(std::string_view word, std::span<const std::string_view> candidates) {
+  return suggest(word, candidates, fmt::format("expected one of: {}", fmt::join(candidates, ", ")));
 }
 
 std::uint32_t edit_distance(std::string_view a, std::string_view b) {

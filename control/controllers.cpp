@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "control/control_shell.h"
 #include "control/own_controllers.h"
 #include "sensors/laser_settings.h"
@@ -59,7 +60,7 @@ ConfiguredController make_controller(const ControllerContext& context, Controlle
     std::vector<std::string_view> names;
     for (const ControllerType* known : controllers()) names.push_back(known->name);
     throw base::InputError(
-        fmt::format("there is no controller '{}'; expected one of: {}", config.name, fmt::join(names, ", ")));
+        fmt::format("there is no controller '{}'{}", config.name, base::expected_one_of(config.name, names)));
   }
   const ControlShellSettings shell = read_control_shell_settings(config.settings, type->stops_on_bumper);
   ControllerContext own = context;

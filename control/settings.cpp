@@ -33,8 +33,8 @@ std::optional<T> value_as(const Value& value, Read&& read) {
   return typed != nullptr ? std::optional<T>(*typed) : std::nullopt;
 }
 
-std::string suggest(const std::string& word, const std::vector<std::string>& words) {
-  return base::suggest(word, std::vector<std::string_view>(words.begin(), words.end()));
+std::string expected_one_of(const std::string& word, const std::vector<std::string>& words) {
+  return base::expected_one_of(word, std::vector<std::string_view>(words.begin(), words.end()));
 }
 
 }  // namespace
@@ -95,8 +95,7 @@ std::string Settings::text(std::string_view key, const std::string& fallback) {
 std::string Settings::choice(std::string_view key, const std::string& fallback, const std::vector<std::string>& words) {
   const std::string word = text(key, fallback);
   if (std::find(words.begin(), words.end(), word) == words.end())
-    refuse(key, fmt::format("'{}' of {} is '{}'{}; expected one of: {}", key, owner_, word, suggest(word, words),
-                            fmt::join(words, ", ")));
+    refuse(key, fmt::format("'{}' of {} is '{}'{}", key, owner_, word, expected_one_of(word, words)));
   return word;
 }
 
@@ -126,10 +125,9 @@ void Settings::require_all_read() const {
     std::vector<std::string> known = asked_;
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
-    const std::string suggestion = suggest(settings_[i].key, known);
     if (known.empty()) refuse(settings_[i].key, fmt::format("{} has no settings, nor '{}'", owner_, settings_[i].key));
-    refuse(settings_[i].key, fmt::format("{} has no setting '{}'{}; expected one of: {}", owner_, settings_[i].key,
-                                         suggestion, fmt::join(known, ", ")));
+    refuse(settings_[i].key,
+           fmt::format("{} has no setting '{}'{}", owner_, settings_[i].key, expected_one_of(settings_[i].key, known)));
   }
 }
 

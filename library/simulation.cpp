@@ -10,6 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
+#include "base/suggest.h"
 #include "cluster/failure.h"
 #include "cluster/shares.h"
 #include "control/own_controller.h"
@@ -291,13 +292,13 @@ void Simulation::State::take(const base::TickRecord& record) {
 }
 
 const library::ReadingTable& Simulation::State::table(std::string_view type) const {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const library::ReadingTable& table : tables) {
     if (table.view().type == type) return table;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", table.view().type);
+    known.push_back(table.view().type);
   }
-  throw base::InputError(fmt::format("{} has no sensor of type '{}'; expected one of: {}", world.file, type,
-                                     known.empty() ? "none" : known));
+  throw base::InputError(fmt::format("{} has no sensor of type '{}'{}", world.file, type,
+                                     known.empty() ? "; it has no sensors" : base::expected_one_of(type, known)));
 }
 
 const viz::TopView& Simulation::State::top_view(const ImageOptions& wanted) {

@@ -34,8 +34,7 @@ const CasterType* caster_named(std::string_view word, std::string_view where) {
     if (type->name == word) return type;
   const std::vector<std::string> words = caster_words();
   const std::vector<std::string_view> known(words.begin(), words.end());
-  throw base::InputError(fmt::format("{}there is no caster '{}'; expected one of: {}{}", where, word,
-                                     fmt::join(known, ", "), base::suggest(std::string(word), known)));
+  throw base::InputError(fmt::format("{}there is no caster '{}'{}", where, word, base::expected_one_of(word, known)));
 }
 
 const CasterType& choose_caster(bool software, const CasterType* asked) {

@@ -18,8 +18,8 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
     names.push_back(world.movers[i].name);
   }
   throw base::InputError(scenario.file, line,
-                         fmt::format("{} has no mover '{}'{}; expected one of its movers", scenario.world, robot,
-                                     base::suggest(robot, names)));
+                         fmt::format("{} has no mover '{}'{}", scenario.world, robot,
+                                     base::suggest(robot, names, "expected one of its movers")));
 }
 
 world::World world_of(const Scenario& scenario) { return world_of(scenario, {.sensors = sensors::world_file_words()}); }

@@ -95,8 +95,7 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
   if (control::find_controller(name) != nullptr) return name;
   std::vector<std::string_view> names{"none"};
   for (const control::ControllerType* type : control::controllers()) names.push_back(type->name);
-  reader.fail(*node, fmt::format("there is no controller '{}'{}; expected one of: {}", name, base::suggest(name, names),
-                                 fmt::join(names, ", ")));
+  reader.fail(*node, fmt::format("there is no controller '{}'{}", name, base::expected_one_of(name, names)));
 }
 
 /// If the table has no controller, the fallback's applies. Settings are replaced as a whole, not key by key.

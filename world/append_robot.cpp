@@ -100,13 +100,13 @@ RobotsOfFile read_robots(const std::string& file, const LoadOptions& options) {
   names.insert(names.end(), robots.defined.begin(), robots.defined.end());
   if (names.empty())
     throw base::InputError(file, 0, "has no robots; expected a world file with one, or with define NAME position( )");
-  const std::string problem = name.empty() ? "no robot of it is named, as in FILE:NAME"
-                                           : fmt::format("has no robot '{}'{}", name, base::suggest(name, names));
   const std::size_t more = names.size() > kShown ? names.size() - kShown : 0;
-  names.resize(names.size() - more);
+  const std::vector<std::string_view> shown(names.begin(), names.end() - static_cast<std::ptrdiff_t>(more));
+  const std::string expected =
+      fmt::format("expected one of: {}{}", fmt::join(shown, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
   throw base::InputError(file, 0,
-                         fmt::format("{}; expected one of: {}{}", problem, fmt::join(names, ", "),
-                                     more > 0 ? fmt::format(" and {} more", more) : ""));
+                         name.empty() ? "requires the name of a robot, as in FILE:NAME; " + expected
+                                      : fmt::format("has no robot '{}'{}", name, base::suggest(name, names, expected)));
 }
 
 /// Appends to `name` until no model of `world` has it.
@@ -141,10 +141,9 @@ std::uint32_t robot_like(const World& world, const std::string& like) {
     if (of_type == kNone && world.models[mover.model].type == like) of_type = row;
   }
   if (of_type != kNone) return of_type;
-  throw base::InputError(
-      world.file, 0,
-      fmt::format("has no robot or type of robots '{}'{}; expected the name of a robot of this world", like,
-                  base::suggest(like, names)));
+  throw base::InputError(world.file, 0,
+                         fmt::format("has no robot or type of robots '{}'{}", like,
+                                     base::suggest(like, names, "expected the name of a robot of this world")));
 }
 
 void check_name(const World& world, const std::string& name) {

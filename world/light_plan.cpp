@@ -78,8 +78,8 @@ std::uint32_t PlanReader::row(const TomlNode& node, std::string_view text, const
                               std::string_view what) const {
   const auto at = std::find(names.begin(), names.end(), text);
   if (at == names.end())
-    reader_.fail(node, fmt::format("no {} is called '{}'{}; there are {}", what, text, base::suggest(text, names),
-                                   names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    reader_.fail(node, fmt::format("no {} is called '{}'{}", what, text,
+                                   names.empty() ? "; there is none" : base::expected_one_of(text, names)));
   return static_cast<std::uint32_t>(at - names.begin());
 }
 
@@ -146,8 +146,8 @@ void PlanReader::read_states(const TomlNode& table, const LightProgram& program,
     const std::uint32_t light = row(item, item.key, own, "light of this program");
     const auto word = std::find(kWords.begin(), kWords.end(), item.text);
     if (item.kind != Kind::text || word == kWords.end())
-      reader_.fail(item, fmt::format("'{}' expects a state in quotes{}: {}", item.key, base::suggest(item.text, kWords),
-                                     fmt::join(kWords, ", ")));
+      reader_.fail(item,
+                   fmt::format("'{}' expects a state in quotes{}", item.key, base::expected_one_of(item.text, kWords)));
     stage.states[light] = static_cast<LightState>(word - kWords.begin());
   }
 }

@@ -67,8 +67,8 @@ void TomlReader::require_kind(const TomlNode& root, std::string_view expected) c
 void TomlReader::require_known(const TomlNode& table, std::span<const std::string_view> known) const {
   for (const TomlNode& item : table.items)
     if (std::find(known.begin(), known.end(), item.key) == known.end())
-      fail(item, fmt::format("unknown key '{}'{}; expected one of: {}", item.key,
-                             item.key.size() > 40 ? "" : base::suggest(item.key, known), fmt::join(known, ", ")));
+      fail(item, fmt::format("unknown key '{}'{}", item.key,
+                             base::expected_one_of(item.key.size() > 40 ? "" : item.key, known)));
 }
 
 double TomlReader::number(const TomlNode& table, std::string_view key, double fallback, double least, double most,

@@ -44,8 +44,8 @@ const vision::Camera& find_camera(const vision::Testbed& testbed, const std::str
     if (each.camera.name == name) return each.camera;
     names.push_back(each.camera.name);
   }
-  throw base::InputError(fmt::format("--name: {} has no camera '{}'{}; expected one of: {}", testbed.file, name,
-                                     base::suggest(name, names), fmt::join(names, ", ")));
+  throw base::InputError(
+      fmt::format("--name: {} has no camera '{}'{}", testbed.file, name, base::expected_one_of(name, names)));
 }
 
 void warn_of_residual(const vision::Placement& found) {

@@ -38,8 +38,8 @@ void hold_state(world::World& world, world::LightPlan& plan, const std::string& 
     if (light.name == name) found = &light;
   }
   if (found == nullptr)
-    throw base::InputError(fmt::format("--set {}: no light of that name{}; the world's lights are {}", setting,
-                                       base::suggest(name, names), fmt::join(names, ", ")));
+    throw base::InputError(
+        fmt::format("--set {}: no light of that name{}", setting, base::expected_one_of(name, names)));
   const auto states = world::words_of(world::LightState{});
   const auto state = std::find(states.begin(), states.end(), word);
   if (state == states.end())

@@ -169,8 +169,8 @@ std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
   for (const vision::TestbedCamera& each : testbed.cameras) names.push_back(each.camera.name);
   for (const auto& [name, source] : chosen)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw base::InputError(fmt::format("--input: {} has no camera '{}'{}; expected one of: {}", testbed.file, name,
-                                         base::suggest(name, names), fmt::join(names, ", ")));
+      throw base::InputError(
+          fmt::format("--input: {} has no camera '{}'{}", testbed.file, name, base::expected_one_of(name, names)));
   std::vector<std::unique_ptr<vision::ImageSource>> sources;
   for (const vision::TestbedCamera& each : testbed.cameras) {
     std::string source = each.source;

@@ -87,10 +87,10 @@ std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, i
     std::vector<std::string_view> names;
     for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
       names.emplace_back(sub->get_name());
-    const std::string what =
-        argc > 1 ? fmt::format("'{}' is not a subcommand{}; expected one of", argv[1], base::suggest(argv[1], names))
-                 : "expected a subcommand:";
-    return fmt::format("{} {}; see `sensorfarm --help`", what, fmt::join(names, ", "));
+    if (argc > 1)
+      return fmt::format("'{}' is not a subcommand{}; see `sensorfarm --help`", argv[1],
+                         base::expected_one_of(argv[1], names));
+    return fmt::format("expected a subcommand: {}; see `sensorfarm --help`", fmt::join(names, ", "));
   }
   std::string what = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) what = explain_extras(app, *used[0], argc, argv);
@@ -99,7 +99,7 @@ std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, i
       what = fmt::format("'{}' was not expected{}", word, suggest_option(word, options_of(*used[0])));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
     what = what.substr(0, what.find(':')) + " requires a value";
-  return fmt::format("{}; see `sensorfarm {} --help`", what, used[0]->get_name());
+  return fmt::format("{} `sensorfarm {} --help`", what + (what.ends_with('?') ? " See" : "; see"), used[0]->get_name());
 }
 
 }  // namespace

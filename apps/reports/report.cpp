@@ -44,7 +44,7 @@ void refuse_robot(const world::World& world, const std::string& name, const std:
     if (!mover.is_tag) robots.push_back(mover.name);
   throw base::InputError(
       world.file, 0,
-      fmt::format("has no robot '{}'{}; it has {}", name, base::suggest(name, names), list_names(robots)));
+      fmt::format("has no robot '{}'{}", name, base::suggest(name, names, "it has " + list_names(robots))));
 }
 
 std::size_t count_docks(const world::World& world) {

@@ -74,9 +74,9 @@ TEST(RobotFrom, MistakesAreReported) {
   const Folder folder;
   const std::string map = write_map(folder), file = folder.write("own.inc", kOwn);
   expect_refused({"run", map, "--robot-from", file + ":scuot"},
-                 "own.inc: has no robot 'scuot'; did you mean 'scout'?; expected one of: scout");
+                 "own.inc: has no robot 'scuot'; did you mean 'scout'? Expected one of: scout");
   expect_refused({"run", map, "--robot-from", file},
-                 "no robot of it is named, as in FILE:NAME; expected one of: scout");
+                 "requires the name of a robot, as in FILE:NAME; expected one of: scout");
   expect_refused({"run", map, "--robot-from", folder.path("none.inc") + ":a"}, "none.inc: no such file");
   expect_refused({"run", map, "--robot-from", ""}, "expected FILE:NAME");
   expect_refused({"run", SF_SOURCE_DIR "/experiments/mapping.toml", "--robot-from", file + ":scout"},

@@ -28,5 +28,13 @@ TEST(Suggest, ShortWordsAllowOneEdit) {
   EXPECT_EQ(suggest("spaax", longer), "") << "three slips";
 }
 
+TEST(Suggest, ExpectedWordsFollowTheSuggestion) {
+  const std::vector<std::string_view> words{"fov", "z"};
+  EXPECT_EQ(expected_one_of("fow", words), "; did you mean 'fov'? Expected one of: fov, z");
+  EXPECT_EQ(expected_one_of("abc", words), "; expected one of: fov, z");
+  EXPECT_EQ(suggest("fow", words, "it has none"), "; did you mean 'fov'? It has none");
+  EXPECT_EQ(suggest("fow", words, ""), "; did you mean 'fov'?");
+}
+
 }  // namespace
 }  // namespace sf::base

@@ -105,11 +105,11 @@ TEST(Settings, MisspeltKeysAndWordsGetASuggestion) {
     return std::string();
   };
   EXPECT_EQ(refusal_after({"sped", RawText{""}, "--set sped: "}),
-            "--set sped: controller 'c' has no setting 'sped'; did you mean 'speed'?; expected one of: side, speed");
+            "--set sped: controller 'c' has no setting 'sped'; did you mean 'speed'? Expected one of: side, speed");
   EXPECT_EQ(refusal_after({"gap", 1.0, "f:1: "}),
             "f:1: controller 'c' has no setting 'gap'; expected one of: side, speed");
   EXPECT_EQ(refusal_after({"side", std::string("rigth"), "f:1: "}),
-            "f:1: 'side' of controller 'c' is 'rigth'; did you mean 'right'?; expected one of: left, right");
+            "f:1: 'side' of controller 'c' is 'rigth'; did you mean 'right'? Expected one of: left, right");
 }
 
 TEST(Settings, ReturnsTheFallbackWithoutTheKey) {

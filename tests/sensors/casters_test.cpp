@@ -102,7 +102,7 @@ TEST(Casters, HaveTheNamesOfTheTable) {
   EXPECT_EQ(&raycast::choose_caster(false, &raycast::reference_caster), &raycast::reference_caster);
   const std::string refusal = refusal_of<base::InputError>([] { raycast::caster_named("refrence"); });
   EXPECT_EQ(refusal,
-            "there is no caster 'refrence'; expected one of: auto, vulkan, host, reference; did you mean 'reference'?");
+            "there is no caster 'refrence'; did you mean 'reference'? Expected one of: auto, vulkan, host, reference");
 }
 
 }  // namespace

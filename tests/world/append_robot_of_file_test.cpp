@@ -94,15 +94,15 @@ TEST_F(RobotOfFile, MayBeARobotOfAWorld) {
 TEST_F(RobotOfFile, UnknownNamesListTheExistingOnes) {
   const std::string file = write("own.world", kInclude + "\nscout( name \"bob\" )\nmodel( name \"tag1\" )\n");
   EXPECT_EQ(error(file, "scuot"),
-            "own.world: has no robot 'scuot'; did you mean 'scout'?; expected one of: bob, scout, wheeled");
+            "own.world: has no robot 'scuot'; did you mean 'scout'? Expected one of: bob, scout, wheeled");
   EXPECT_EQ(error(file, "bobb"),
-            "own.world: has no robot 'bobb'; did you mean 'bob'?; expected one of: bob, scout, wheeled");
+            "own.world: has no robot 'bobb'; did you mean 'bob'? Expected one of: bob, scout, wheeled");
   EXPECT_EQ(error(file, "box"),
-            "own.world: has no robot 'box'; did you mean 'bob'?; expected one of: bob, scout, wheeled")
+            "own.world: has no robot 'box'; did you mean 'bob'? Expected one of: bob, scout, wheeled")
       << "is no robot";
   EXPECT_NE(error(file, "tag1").find("has no robot 'tag1'"), std::string::npos);
   EXPECT_EQ(error(file, ""),
-            "own.world: no robot of it is named, as in FILE:NAME; expected one of: bob, scout, wheeled");
+            "own.world: requires the name of a robot, as in FILE:NAME; expected one of: bob, scout, wheeled");
 }
 
 TEST_F(RobotOfFile, FilesWithoutRobotsAreRejected) {

@@ -408,7 +408,9 @@ TEST(Stage, UnknownTypeIsKeptWithASuggestion) {
   const World world = read_world("define mybot position()\n\nmybto( size [1 1 1] )");
   EXPECT_EQ(world.unmodelled.at("mybto"), 1);
   EXPECT_EQ(world.walls.size(), 4u);
-  EXPECT_NE(warnings_of(world).find("3: unknown type 'mybto'; did you mean 'mybot'?"), std::string::npos)
+  EXPECT_NE(
+      warnings_of(world).find("3: unknown type 'mybto' is kept as a body that does nothing; did you mean 'mybot'?"),
+      std::string::npos)
       << warnings_of(world);
 }
 

@@ -48,9 +48,9 @@ std::string suggested(const BuildState& b, const std::string& type) {
 void count_unmodelled(BuildState& b, const Entity& entity, const std::string& type, bool is_known) {
   ++b.world.unmodelled[type];
   if (!b.warned_types.insert(type).second) return;
-  const std::string what = is_known ? fmt::format("'{}' is not modelled", type)
-                                    : fmt::format("unknown type '{}'{}", type, suggested(b, type));
-  warn(b.context, entity.at, what + (is_known ? ": " : " ") + "kept as a body that does nothing");
+  warn(b.context, entity.at,
+       is_known ? fmt::format("'{}' is not modelled: kept as a body that does nothing", type)
+                : fmt::format("unknown type '{}' is kept as a body that does nothing{}", type, suggested(b, type)));
 }
 
 // --- Names
