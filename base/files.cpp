@@ -44,7 +44,7 @@ int open_regular(const std::string& file, std::size_t& size) {
   struct stat status = {};
   if (::fstat(in.number, &status) != 0) fail_to_read(file);
   if (!S_ISREG(status.st_mode))
-    throw InputError(file, 0, "not a file but a folder, a device or a pipe; give the path of an existing file");
+    throw InputError(file, 0, "a folder, a device or a pipe, not a file; give the path of an existing file");
   size = static_cast<std::size_t>(status.st_size);
   return std::exchange(in.number, -1);
 }
@@ -75,14 +75,14 @@ std::string read_bytes(const std::string& file, std::size_t most) {
     if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // the file grew after its size was read
   }
   bytes.resize(have);
-  if (bytes.empty()) throw InputError(file, 0, "is empty; was it saved, or copied whole?");
+  if (bytes.empty()) throw InputError(file, 0, "is empty; was it saved or copied completely?");
   return bytes;
 }
 
 std::string read_text(const std::string& file, std::size_t most) {
   std::string text = read_bytes(file, most);
   if (text.find_first_not_of(" \t\r\n\v\f") == std::string::npos)
-    throw InputError(file, 0, "holds nothing but blanks; was it saved, or copied whole?");
+    throw InputError(file, 0, "contains only whitespace; was it saved or copied completely?");
   return text;
 }
 

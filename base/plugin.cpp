@@ -26,10 +26,10 @@ void require_whole(const std::string& file) {
   const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(0, in.tellg()));
   const auto require = [&](std::uint64_t first, std::uint64_t count) {
     if (count <= size && first <= size - count) return;
-    throw InputError(file, 0,
-                     fmt::format("is cut off: it has {} bytes, and its header names bytes up to {}; copy or "
-                                 "build it again",
-                                 size, first + count));
+    throw InputError(
+        file, 0,
+        fmt::format("is truncated: it has {} bytes, but its header refers to byte {}; copy or build it again", size,
+                    first + count));
   };
   Elf64_Ehdr header{};
   in.seekg(0).read(reinterpret_cast<char*>(&header), sizeof header);
@@ -54,13 +54,12 @@ const void* load_plugin(const char* name, const char* without, const char* libra
   const void* symbol = module != nullptr ? dlsym(module, name) : nullptr;
   if (symbol != nullptr) return symbol;
   const char* const why = dlerror();
-  const std::string remedy =
-      file.find('/') != std::string::npos
-          ? fmt::format("install {}", library)
-          : fmt::format(
-                "this installation lacks it; install the Debian package of sensorfarm, or put the file into {}; "
-                "it needs {}",
-                fmt::join(plugin_folders(), " or "), library);
+  const std::string remedy = file.find('/') != std::string::npos
+                                 ? fmt::format("install {}", library)
+                                 : fmt::format(
+                                       "this installation lacks it; install the Debian package of sensorfarm, or put "
+                                       "the file into {}; it requires {}",
+                                       fmt::join(plugin_folders(), " or "), library);
   throw InputError(file, 0,
                    fmt::format("cannot be loaded, so {} ({}): {}", without, why != nullptr ? why : "?", remedy));
 }

@@ -214,7 +214,7 @@ void finish_plugin_calls(int code) {
   calls.code = code;
   calls.finished = true;
   if (&calls != &own_calls || called(calls).empty()) return;
-  late_line = fmt::format("sensorfarm: {}, {:g} s after the end of the program\n", goes_on(calls), end_limit);
+  late_line = fmt::format("sensorfarm: {} {:g} s after the end of the program\n", goes_on(calls), end_limit);
   std::signal(SIGALRM, on_late);
   const double whole = std::floor(end_limit);
   const itimerval once{.it_interval = {},
@@ -224,7 +224,7 @@ void finish_plugin_calls(int code) {
 
 std::string goes_on(const PluginCalls& calls) {
   const Suspects suspects = called(calls);
-  return fmt::format("a thread of {} goes on", suspects.empty() ? "a plug-in" : names_of(suspects));
+  return fmt::format("a thread of {} is still running", suspects.empty() ? "a plug-in" : names_of(suspects));
 }
 
 std::string under_way(const PluginCalls& calls) { return named(calls, ""); }

@@ -146,11 +146,10 @@ namespace {
 void note_fewer_threads(unsigned got, unsigned wanted) {
   static std::atomic<bool> noted{false};
   if (!noted.exchange(true))
-    std::fprintf(
-        stderr,
-        "sensorfarm: only %u of %u threads can be started, so it is slower: the limits of processes (ulimit -u) "
-        "or of memory (ulimit -v) allow no more\n",
-        got, wanted);
+    std::fprintf(stderr,
+                 "sensorfarm: only %u of %u threads can be started, so it runs slower: the limits of processes (ulimit "
+                 "-u) or of memory (ulimit -v) allow no more\n",
+                 got, wanted);
 }
 
 }  // namespace

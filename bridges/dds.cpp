@@ -6,7 +6,7 @@ namespace sf::bridges {
 
 const DdsLibrary& dds_library() {
   static const auto* const loaded = static_cast<const DdsLibrary*>(
-      base::load_plugin(kDdsSymbol, "nodes of ROS 2 cannot be reached", "Cyclone DDS 0.10 (Debian: libddsc0debian)"));
+      base::load_plugin(kDdsSymbol, "ROS 2 nodes cannot be reached", "Cyclone DDS 0.10 (Debian: libddsc0debian)"));
   return *loaded;
 }
 

@@ -146,8 +146,8 @@ class FastProcess : public FastServices {
     ::kill(made.pid, SIGKILL);
     ::waitpid(made.pid, nullptr, 0);
     throw std::runtime_error(answered ? std::string(first.bytes.begin(), first.bytes.end())
-                                      : fmt::format("{} does not start: keep it with the plug-ins, and Fast DDS 2.9 "
-                                                    "(libfastrtps2.9) installed",
+                                      : fmt::format("{} does not start: it must be in the folder of the plug-ins, and "
+                                                    "Fast DDS 2.9 (libfastrtps2.9) installed",
                                                     file_));
   }
 
@@ -166,7 +166,7 @@ class FastProcess : public FastServices {
       std::unique_lock lock(mutex_);
       if (stop_) return;
       lock.unlock();
-      if (from) options_.dds.log(fmt::format("the process with Fast DDS {}, and is started again", how));
+      if (from) options_.dds.log(fmt::format("the process with Fast DDS {}; restarting it", how));
       lock.lock();
       if (changed_.wait_for(lock, kBeforeRestart, [this] { return stop_; })) return;
       lock.unlock();
@@ -202,7 +202,7 @@ class FastProcess : public FastServices {
     }
     process_ = {};
     changed_.notify_all();
-    return WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status)) : "ended";
+    return WIFSIGNALED(status) ? fmt::format("was terminated by signal {}", WTERMSIG(status)) : "ended";
   }
 
   /// Body of `writer_`. After the process has exited, write() fails instead of raising a signal.

@@ -21,9 +21,9 @@ void PlayerBridge::take(Requests& requests) { exchange_.take(requests); }
 std::string PlayerBridge::describe() const {
   const netio::Endpoint first = endpoint();
   std::string line = fmt::format("Player server on {}", netio::endpoint_text(first));
-  if (server_.ports() == 2) line += fmt::format(" for all robots, robot 2 alone on port {}", first.port + 1);
+  if (server_.ports() == 2) line += fmt::format(" for all robots, port {} for robot 2 alone", first.port + 1);
   if (server_.ports() > 2)
-    line += fmt::format(" for all robots, robots 2 to {} alone on ports {} to {}", server_.ports(), first.port + 1,
+    line += fmt::format(" for all robots, ports {1} to {2} for robots 2 to {0} alone", server_.ports(), first.port + 1,
                         first.port + server_.ports() - 1);
   return line;
 }

@@ -244,10 +244,10 @@ void Ros2Bridge::add_fast(OpenFastServices open, const std::set<std::string>& ad
   for (const ServiceType& service : services_.types())
     options.services.push_back({request_reader(service, {}), reply_writer(service, {})});
   try {
-    if (!options_.loopback && addresses.empty()) throw std::runtime_error("Cyclone DDS uses no address of IPv4 here");
+    if (!options_.loopback && addresses.empty()) throw std::runtime_error("Cyclone DDS uses no IPv4 address here");
     fast_ = open(options);
   } catch (const std::runtime_error& error) {
-    why_no_fast_ = fmt::format("; services do not answer clients of rmw_fastrtps: {}", error.what());
+    why_no_fast_ = fmt::format("; services do not answer rmw_fastrtps clients: {}", error.what());
   }
 }
 

@@ -65,7 +65,7 @@ std::string find_entities(record::CdrReader& cdr, const record::RunInfo& info, c
   const auto bounds = cdr.get<std::uint8_t>();
   for (std::uint32_t left = 3 * cdr.get_count(kVector); left > 0; --left) cdr.get<double>();
   if (!cdr.good()) return {};
-  if (categories + tags + bounds > 0) return "entities have no categories, tags or bounds here";
+  if (categories + tags + bounds > 0) return "entities have no categories, tags or bounds";
   if (pattern.size() > 256 || !is_simple(pattern)) return "a filter consists of up to 256 characters, '.' and \".*\"";
   for (std::size_t row = 0; row < movers.size(); ++row)
     if (!base::is_absent(movers[row].X_WM) && matches(pattern, info.movers[row].frame)) rows.push_back(row);

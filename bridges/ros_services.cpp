@@ -41,7 +41,7 @@ constexpr std::string_view kSpawn =
     "string entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n";
 constexpr std::string_view kUuid = "unique_identifier_msgs/UUID goal_id\n";
 constexpr const char* kNoEntity = "no entity of that name is present";
-constexpr const char* kManySpawns = "64 robots wait to join; ask again";
+constexpr const char* kManySpawns = "64 robots are waiting to join; try again";
 constexpr std::size_t kLeastSpawn = 90;  // [byte] of a SpawnEntity
 constexpr std::string_view kSuccess = "bool success\nstring message\n";
 
@@ -138,7 +138,7 @@ struct RosServices::Handlers {
     if (!wanted.frame.empty() && wanted.frame != "world")
       return of.add_result(call, kUnsupported, "poses are in the frame \"world\""), true;
     if (!wanted.pose || wanted.twist || wanted.acceleration)
-      return of.add_result(call, kUnsupported, "only poses are set; velocities are commanded by cmd_vel"), true;
+      return of.add_result(call, kUnsupported, "only poses can be set; velocities are commanded by cmd_vel"), true;
     if (!wanted.valid)
       return of.add_result(call, kInvalidPose, "expected a finite position, and a turn about z of length 1"), true;
     requests.placements.push_back({row, wanted.X_WM});
@@ -186,7 +186,7 @@ struct RosServices::Handlers {
     if (!request.good()) return false;
     for (const NamedPose& pose : named_poses_of(of.scene_))
       if (pose.name == name) return answer_bounds(of, call, pose.mover, nullptr);
-    return answer_bounds(of, call, ~0u, "no pose of that name is known");
+    return answer_bounds(of, call, ~0u, "no pose has that name");
   }
 
   static bool get_spawnables(RosServices& of, Call call, CdrReader& request, Requests&) {
@@ -299,7 +299,7 @@ struct RosServices::Handlers {
     const auto refuse = [&](std::uint8_t code, const std::string& why) { answer_world(of, call, code, why); };
     constexpr std::uint8_t kFormat = 101, kNone = 102;
     if (uri.empty() && text.empty()) return refuse(kNone, "expected a URI that /get_available_worlds lists"), true;
-    if (uri.empty()) return refuse(kUnsupported, "worlds are loaded by their URIs, not from text"), true;
+    if (uri.empty()) return refuse(kUnsupported, "worlds are loaded by URI, not from text"), true;
     const std::vector<AvailableWorld>& worlds = of.worlds();
     const auto found = std::find_if(worlds.begin(), worlds.end(), [&](const auto& each) { return each.uri == uri; });
     const bool is_format = uri.ends_with(".world") || uri.ends_with(".yaml");
@@ -375,7 +375,7 @@ struct RosServices::Handlers {
     const auto wanted = request.get<std::uint8_t>();
     if (!request.good()) return false;
     if (wanted > kPaused)
-      return of.add_result(call, kUnsupported, "a run is stopped (0), played (1) or paused (2)"), true;
+      return of.add_result(call, kUnsupported, "expected stopped (0), playing (1) or paused (2)"), true;
     const std::uint8_t present = of.stopped_ ? kStopped : of.state_.paused ? kPaused : kPlaying;
     if (wanted == present) return of.add_result(call, kAlready), true;
     if (wanted == kPaused && present == kStopped) return of.stopped_ = false, of.add_result(call, kOk), true;
@@ -412,7 +412,7 @@ struct RosServices::Handlers {
     const auto scope = request.get<std::uint8_t>();
     if (!request.good()) return false;
     if (std::find(kScopes.begin(), kScopes.end(), scope) == kScopes.end())
-      return of.add_result(call, kUnsupported, "time and state are reset together only: scope 0, 3, 7 or 255"), true;
+      return of.add_result(call, kUnsupported, "time and state can only be reset together: scope 0, 3, 7 or 255"), true;
     if (scope == 3 && of.movers_.size() > of.loaded_)
       return of.add_result(call, kUnsupported, "every reset removes spawned entities: scope 0, 7 or 255"), true;
     return reset(of, call, request, requests);
@@ -576,7 +576,7 @@ bool RosServices::take(std::size_t service, std::span<const std::uint8_t> messag
   if (!cdr.good()) return false;
   const Handlers::Row& row = Handlers::kRows[service];
   if (!row.simulated || waiting_.size() < kMaxWaiting) return row.handler(*this, call, cdr, requests);
-  add_result(call, kFailed, "too many requests wait for the run");
+  add_result(call, kFailed, "too many requests are waiting for the run");
   return true;
 }
 
@@ -621,7 +621,7 @@ bool RosServices::finish_goal(Call& call, bool& ticked, bool began_again) {
   StepsAction::Goal* const goal = steps_.find(call.goal);
   if (goal == nullptr || !goal->is_active()) return true;
   if (began_again || !state_.paused)
-    return steps_.end(*goal, StepsAction::Status::aborted, kFailed, "the run went on or began again"), true;
+    return steps_.end(*goal, StepsAction::Status::aborted, kFailed, "the run continued or restarted"), true;
   if (!std::exchange(ticked, false)) return false;
   steps_.step(*goal);
   if (goal->completed < goal->steps) return false;
@@ -649,9 +649,9 @@ bool RosServices::finish(Call& call, bool& ticked, bool began_again) {
   }
   if (call.until == Until::state) {
     const bool done = state_.paused == call.paused;
-    return add_result(call, done ? kOk : kFailed, done ? "" : "another user chose otherwise"), true;
+    return add_result(call, done ? kOk : kFailed, done ? "" : "another user changed the setting"), true;
   }
-  if (began_again || !state_.paused) return add_result(call, kFailed, "the run went on or began again"), true;
+  if (began_again || !state_.paused) return add_result(call, kFailed, "the run continued or restarted"), true;
   if (!std::exchange(ticked, false) || --call.steps > 0) return false;
   add_result(call, kOk);
   return true;

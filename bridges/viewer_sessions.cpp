@@ -127,7 +127,7 @@ void ViewerSessions::received(ClientId id, bool is_text, std::span<const std::ui
   if (found == clients_.end()) return;
   if (is_text) return received_text(id, found->second, payload_text(bytes));
   const std::optional<ClientBinary> message = parse_client_binary(bytes);
-  if (!message) return complain(id, "A binary message that is none of the protocol's.");
+  if (!message) return complain(id, "This binary message is not part of the protocol.");
   if (const auto* const publish = std::get_if<ClientPublish>(&*message)) published(id, found->second, *publish);
   if (const auto* const service = std::get_if<ServiceCall>(&*message)) call(id, *service);
   if (const auto* const request = std::get_if<PlaybackRequest>(&*message)) play(id, *request);
@@ -135,7 +135,7 @@ void ViewerSessions::received(ClientId id, bool is_text, std::span<const std::ui
 
 void ViewerSessions::received_text(ClientId id, Client& client, std::string_view text) {
   const std::optional<ClientText> message = parse_client_text(text);
-  if (!message) return complain(id, "A text message that is none of the protocol's.");
+  if (!message) return complain(id, "This text message is not part of the protocol.");
   using Op = ClientText::Op;
   switch (message->op) {
     case Op::subscribe:
@@ -171,7 +171,7 @@ void ViewerSessions::subscribe(ClientId id, Client& client, const ClientText::Su
   if (subscription.channel >= topic_count_)
     return complain(id, fmt::format("There is no channel {}.", subscription.channel));
   if (client.topic_of.count(subscription.id) > 0 || client.subscription_of.count(subscription.channel) > 0)
-    return complain(id, fmt::format("Subscription {} of channel {}: one of both is subscribed already.",
+    return complain(id, fmt::format("Subscription {} of channel {}: the subscription or the channel is already in use.",
                                     subscription.id, subscription.channel));
   client.topic_of[subscription.id] = subscription.channel;
   client.subscription_of[subscription.channel] = subscription.id;
@@ -194,7 +194,7 @@ void ViewerSessions::unsubscribe(Client& client, std::uint32_t subscription) {
 
 void ViewerSessions::advertise(ClientId id, Client& client, const ClientText::Advertised& channel) {
   if (movers_.count(channel.topic) == 0)
-    return complain(id, fmt::format("{} takes no messages here; robots take /NAME/cmd_vel.", channel.topic));
+    return complain(id, fmt::format("{} accepts no messages; robots accept /NAME/cmd_vel.", channel.topic));
   if (twist_type(channel.type) == TwistType::none || (channel.encoding != "cdr" && channel.encoding != "json"))
     return complain(id,
                     fmt::format("{}: expected geometry_msgs/msg/Twist or TwistStamped in cdr or json, not {} in {}.",
@@ -220,7 +220,7 @@ void ViewerSessions::call(ClientId id, const ServiceCall& request) {
   const auto fail = [&](const std::string& why) { send(id, service_failure_text(request.service, request.call, why)); };
   if (!is_controlled() || request.service < kPause || request.service > kReset)
     return fail(fmt::format("There is no service {}.", request.service));
-  if (request.encoding != "cdr" && request.encoding != "json") return fail("Encodings are cdr and json.");
+  if (request.encoding != "cdr" && request.encoding != "json") return fail("Expected the encoding cdr or json.");
   if (request.service == kPause) {
     const std::optional<bool> paused = read_bool(request);
     if (!paused) return fail("Expected std_srvs/srv/SetBool_Request.");
@@ -259,7 +259,7 @@ void ViewerSessions::play(ClientId id, const PlaybackRequest& request) {
 
 /// Returns why a parameter cannot be set, or an empty string if it was set.
 std::string ViewerSessions::set(const Parameter& parameter) {
-  if (!is_controlled()) return parameter.name + " cannot be set: robots elsewhere do not wait.";
+  if (!is_controlled()) return parameter.name + " cannot be set: robots in other processes do not wait.";
   if (parameter.name == kPaused) {
     const bool* const paused = std::get_if<bool>(&parameter.value);
     if (paused == nullptr) return "/paused is true or false.";

@@ -207,10 +207,10 @@ std::string WebServer::Implementation::refuse(const Request& request, bool needs
   if (has_token) return {};
   const std::string_view host = view(request[http::field::host]);
   if (!is_loopback(options.address.host))
-    return needs_token ? "This needs the token: take the whole URL that sensorfarm printed." : "";
-  if (!is_own_name(host)) return "Foreign name of this machine: use http://localhost or 127.0.0.1.";
+    return needs_token ? "The token is missing: use the complete URL that sensorfarm printed." : "";
+  if (!is_own_name(host)) return "This host name is not accepted: use http://localhost or 127.0.0.1.";
   if (needs_token && !is_known_origin(view(request[http::field::origin]), host))
-    return fmt::format("Pages of {} may not connect here without the token.", view(request[http::field::origin]));
+    return fmt::format("Pages of {} cannot connect without the token.", view(request[http::field::origin]));
   return {};
 }
 
@@ -232,7 +232,7 @@ void Connection::received_request(Error error) {
   const Request& request = parser_->get();
   if (websocket::is_upgrade(request)) return open(request);
   if (request.method() != http::verb::get && request.method() != http::verb::head)
-    return respond(refusal(request, http::status::method_not_allowed, "GET and HEAD alone are served."));
+    return respond(refusal(request, http::status::method_not_allowed, "Only GET and HEAD are supported."));
   respond(file(request));
 }
 
@@ -259,7 +259,7 @@ void Connection::open(const Request& request) {
   if (!why.empty()) return respond(refusal(request, http::status::forbidden, why));
   if (server_.is_full())
     return respond(refusal(request, http::status::service_unavailable,
-                           fmt::format("{} viewers are connected already.", server_.options.limits.clients)));
+                           fmt::format("{} viewers are already connected.", server_.options.limits.clients)));
   protocol_ = choose_protocol(request, server_.options.protocols);
   if (protocol_.empty())
     return respond(

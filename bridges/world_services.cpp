@@ -150,7 +150,7 @@ std::vector<NamedPose> named_poses_of(const Scene& scene) {
     if (dock.kind == world::Emitter::Kind::dock)
       poses.push_back({"dock_" + scene.world.models[dock.model].name, "a dock's beam", {"dock"}, dock.X_WE});
   for (const world::Path& path : scene.world.paths)
-    poses.push_back({"path_" + path.name, "the begin of a path", {"path"}, path.pieces.front().X_WP});
+    poses.push_back({"path_" + path.name, "the start of a path", {"path"}, path.pieces.front().X_WP});
   return poses;
 }
 
@@ -185,14 +185,16 @@ Spawn get_spawn(CdrReader& cdr, const Scene& scene, const std::vector<base::Repo
   const EntityState pose = get_stamped_pose(cdr);
   const auto refused = [](std::uint8_t code, const std::string& why) { return Spawn{code, why, {}}; };
   if (uri.empty() && text.empty()) return refused(kNoResource, "expected a URI that /get_spawnables lists");
-  if (uri.empty()) return refused(kUnsupported, "robots are spawned by a URI that /get_spawnables lists, not by text");
-  if (!is_namespace(space) && !space.empty()) return refused(kNamespaceInvalid, "expected names divided by '/'");
-  if (!space.empty()) return refused(kUnsupported, "an entity's topics are below its name, in no other namespace");
+  if (uri.empty())
+    return refused(kUnsupported, "robots are spawned by a URI that /get_spawnables lists, not from text");
+  if (!is_namespace(space) && !space.empty()) return refused(kNamespaceInvalid, "expected names separated by '/'");
+  if (!space.empty())
+    return refused(kUnsupported, "an entity's topics are in the namespace of its name; expected no other");
   std::uint32_t like = 0;
   try {
     like = world::robot_like(scene.world, uri);
   } catch (const base::InputError& error) {
-    if (is_model_file(uri)) return refused(kUnsupportedFormat, "no files are spawned: see /get_spawnables");
+    if (is_model_file(uri)) return refused(kUnsupportedFormat, "files cannot be spawned: see /get_spawnables");
     return refused(kNotFound, error.what());
   }
   if (!pose.frame.empty() && pose.frame != "world") return refused(kPoseInvalid, "poses are in the frame \"world\"");
@@ -202,7 +204,7 @@ Spawn get_spawn(CdrReader& cdr, const Scene& scene, const std::vector<base::Repo
   spawn.joining = {name, uri, pose.X_WM, std::make_shared<Outcome>()};
   std::string& chosen = spawn.joining.name;
   if (name.empty()) {
-    if (!renaming) return refused(kNameInvalid, "a name is needed unless renaming is allowed");
+    if (!renaming) return refused(kNameInvalid, "a name is required unless renaming is allowed");
     chosen = free_name(uri, scene, taken);
   }
   const bool returns = is_removed(chosen, like, scene, movers) && !taken.contains(chosen);

@@ -18,7 +18,7 @@ bool is_rank() {
 std::unique_ptr<Ranks> join() {
   if (!is_rank()) return nullptr;
   const auto start = reinterpret_cast<Ranks* (*)()>(const_cast<void*>(
-      base::load_plugin(kMpiSymbol, "ranks of mpirun cannot work together; without mpirun the run needs no MPI",
+      base::load_plugin(kMpiSymbol, "ranks of mpirun cannot communicate; without mpirun the run requires no MPI",
                         "Open MPI 4.1 (Debian: libopenmpi3)")));
   std::unique_ptr<Ranks> ranks(start());
   if (!ranks) throw base::InputError("MPI did not start: check `mpirun -n 2 hostname`, or run without mpirun");

@@ -66,7 +66,7 @@ std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Setting
 
 constinit const ControllerType avoid_controller{
     .name = "avoid",
-    .summary = "the thesis' obstacle avoidance: straight on, slower near obstacles, turns away before contact",
+    .summary = "the thesis' obstacle avoidance: drives straight, slows down near obstacles, turns away before contact",
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_avoid,

@@ -34,8 +34,8 @@ base::Twist ControlShell::step(const ControllerInput& given) {
 double ControlShell::error() const { return stepped_ ? inner_->error() : Controller::error(); }
 
 std::string ControlShell::stop_reason() const {
-  if (state_ == ControlShellState::start) return "the start signal was not given";
-  if (state_ == ControlShellState::wait) return "its bumper is pressed, or something refused its last motion";
+  if (state_ == ControlShellState::start) return "the start signal has not arrived";
+  if (state_ == ControlShellState::wait) return "its bumper is pressed, or its last motion was blocked";
   return state_ == ControlShellState::control ? stop_reason_of(*inner_) : "";
 }
 

@@ -85,7 +85,7 @@ std::unique_ptr<Controller> make_convoy(const ControllerContext& context, Settin
 
 constinit const ControllerType convoy_controller{
     .name = "convoy",
-    .summary = "follows another robot over the roads at a gap, lets others merge",
+    .summary = "follows another robot along the roads at a fixed gap and lets others merge",
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_convoy,

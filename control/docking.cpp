@@ -89,7 +89,7 @@ base::Twist Docking::follow_beams(const base::Pose& X_WM) {
 }
 
 std::string Docking::stop_reason() const {
-  return contact_ && !done_ ? "it touches something that is not the dock's face" : "";
+  return contact_ && !done_ ? "it touches something other than the dock's face" : "";
 }
 
 namespace {
@@ -108,7 +108,7 @@ const world::Emitter& find_dock(const ControllerContext& context, Settings& sett
     found = &emitter;
   }
   if (found == nullptr)
-    settings.refuse("dock", name.empty() ? "'docking' needs a dock; the world has none"
+    settings.refuse("dock", name.empty() ? "'docking' requires a dock, but the world has none"
                                          : fmt::format("the world has no dock '{}'", name));
   return *found;
 }
@@ -135,7 +135,7 @@ std::unique_ptr<Controller> make_docking(const ControllerContext& context, Setti
 
 constinit const ControllerType docking_controller{
     .name = "docking",
-    .summary = "drives onto a dock by its infrared beams",
+    .summary = "drives onto a dock, guided by its infrared beams",
     .rate = 10.0,
     .stops_on_bumper = false,
     .make = make_docking,

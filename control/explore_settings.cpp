@@ -81,7 +81,7 @@ std::unique_ptr<Controller> make_explore(const ControllerContext& context, Setti
 
 constinit const ControllerType explore_controller{
     .name = "explore",
-    .summary = "maps an area by laser: drives to unexplored cells and avoids all contacts",
+    .summary = "maps an area by laser: drives to unexplored cells and avoids contacts",
     .rate = 10.0,
     .stops_on_bumper = false,
     .make = make_explore,

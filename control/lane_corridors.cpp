@@ -86,10 +86,10 @@ std::uint32_t LaneCorridors::node_of(PointRef at) const {
 std::uint32_t LaneCorridors::add_way(Way way, const world::Curve& line) {
   points_ += line.s.back() / step_ + 2.0;
   if (!(points_ <= kMaxWayPoints))
-    throw base::InputError(fmt::format(
-        "a robot of radius {:g} m is too small for these roads: each of their lines has a point every quarter of the "
-        "radius, and all together may have {:g}; expected a larger body",
-        body_.radius, kMaxWayPoints));
+    throw base::InputError(
+        fmt::format("a robot of radius {:g} m is too small for these roads: their lines have a point every quarter of "
+                    "the radius, and at most {:g} points in all; expected a larger body",
+                    body_.radius, kMaxWayPoints));
   sample(way, line, step_);
   ways_.push_back(std::move(way));
   return static_cast<std::uint32_t>(ways_.size() - 1);

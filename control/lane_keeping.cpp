@@ -59,8 +59,8 @@ std::unique_ptr<Controller> make_lane_keeping(const ControllerContext& context, 
   if (settings.has("half_width")) lane.half_width = settings.number("half_width", 0.0, 1e-3, 1e3);
   if (!lane.half_width && !task.known())
     settings.refuse("half_width",
-                    "'lane-keeping' needs the lane's width, and the world has no path; expected a path( "
-                    "... ) in the world file, or the setting 'half_width' [m]");
+                    "'lane-keeping' requires the lane's width, but the world has no path; expected a path( ... ) in "
+                    "the world file, or the setting 'half_width' [m]");
   lane.side = std::sin(sensor->X_MS.yaw) < 0.0 ? -1.0 : 1.0;
   const std::string side = settings.choice("side", lane.side > 0.0 ? "left" : "right", {"left", "right"});
   lane.side = side == "left" ? 1.0 : -1.0;

@@ -48,7 +48,7 @@ std::unique_ptr<Controller> make_magnet_keeping(const ControllerContext& context
 
 constinit const ControllerType magnet_keeping_controller{
     .name = "magnet-keeping",
-    .summary = "follows a line of magnets by an array of magnetometers, with P or PI steering",
+    .summary = "follows a line of magnets with an array of magnetometers, with P or PI steering",
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_magnet_keeping,

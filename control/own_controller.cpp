@@ -169,7 +169,7 @@ std::unique_ptr<Controller> make_own_controller(const ControllerContext& context
   } catch (...) {
     refuse("it threw something that is not a std::exception");
   }
-  if (inner == nullptr) refuse("it made none");
+  if (inner == nullptr) refuse("it returned none");
   return std::make_unique<OwnController>(context, std::move(inner));
 }
 

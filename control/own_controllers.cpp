@@ -24,14 +24,13 @@ void check_entry(const sensorfarm::ControllerEntry& entry, const std::string& fr
         from, 0, fmt::format("a controller cannot be called '{}': expected a word without / : , =", entry.name));
   for (const ControllerType* type : controllers())
     if (type->name == entry.name)
-      throw base::InputError(from, 0,
-                             fmt::format("there is a controller '{}' already; choose another name", entry.name));
+      throw base::InputError(from, 0, fmt::format("a controller '{}' already exists; choose another name", entry.name));
   if (!(entry.rate > 0.0 && entry.rate <= 1e4))
     throw base::InputError(from, 0,
                            fmt::format("controller '{}' has a rate of {} Hz: expected more than 0, at most 10000",
                                        entry.name, entry.rate));
   if (!entry.make)
-    throw base::InputError(from, 0, fmt::format("controller '{}' has no function that makes it", entry.name));
+    throw base::InputError(from, 0, fmt::format("controller '{}' has no function that creates it", entry.name));
 }
 
 }  // namespace

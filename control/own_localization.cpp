@@ -23,7 +23,7 @@ estimation::LocalizationOptions options_of(const world::Mover& mover) {
   estimation::LocalizationOptions options;
   const world::Sensor* encoder = first_sensor(mover, "encoder");
   if (encoder == nullptr)
-    throw base::InputError("'localize' estimates a robot's pose by its own sensors, and '" + mover.name +
+    throw base::InputError("'localize' estimates a robot's pose from its own sensors, but '" + mover.name +
                            "' has no encoders; expected encoder( ... ) in its definition, and gyro( ... ) and "
                            "gps( ... ) for a pose that does not drift");
   const sensors::Encoder wheels = sensors::read_encoder(*encoder, mover);

@@ -50,8 +50,8 @@ PathFollower::PathFollower(std::uint8_t type, std::string_view sensor, const PiG
 
 std::string PathFollower::stop_reason() const {
   if (done_ || std::isfinite(error_)) return {};
-  return fresh_ ? fmt::format("its {} sees nothing to follow", sensor_)
-                : fmt::format("no new reading comes from its {}", sensor_);
+  return fresh_ ? fmt::format("its {} detects nothing to follow", sensor_)
+                : fmt::format("no new readings arrive from its {}", sensor_);
 }
 
 base::Twist PathFollower::step(const ControllerInput& input) {

@@ -9,7 +9,7 @@
 namespace sf::control {
 
 Patrol::Patrol(PatrolSettings settings) : settings_(std::move(settings)) {
-  SF_CHECK(!settings_.points.empty(), "a patrol of no points");
+  SF_CHECK(!settings_.points.empty(), "a patrol without points");
 }
 
 // V2V states contain no footprint, so robots are considered up to a metre beyond the stopping distance.
@@ -21,9 +21,9 @@ base::Twist Patrol::step(const ControllerInput& input) {
     return glm::length(settings_.points[target_] - glm::dvec2{X_WM.x, X_WM.y}) <= settings_.reach;
   };
   if (there()) next(input.time);
-  stop_reason_ = input.time < until_ ? "it pauses at an end of its way"
+  stop_reason_ = input.time < until_ ? "it pauses at an end of its path"
                  : there()           ? "it is at its only point"
-                 : obstructed(input) ? "another robot stands in its way"
+                 : obstructed(input) ? "another robot blocks its way"
                                      : "";
   if (*stop_reason_ != '\0') return {};
   return drive_to_point(X_WM, settings_.points[target_],
@@ -79,7 +79,7 @@ std::unique_ptr<Controller> make_patrol(const ControllerContext& context, Settin
 
 constinit const ControllerType patrol_controller{
     .name = "patrol",
-    .summary = "drives through given points, back and forth; stands while another robot is in the way",
+    .summary = "drives back and forth through given points; stops while another robot is in the way",
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_patrol,

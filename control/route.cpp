@@ -68,7 +68,7 @@ base::Twist Route::step(const ControllerInput& input) {
 
 std::string Route::stop_reason() const {
   if (done_) return "";
-  if (who_ == base::kNoId) return started_ ? why_ : "the start signal was not given";
+  if (who_ == base::kNoId) return started_ ? why_ : "the start signal has not arrived";
   for (const world::Mover& mover : site_.world.movers)
     if (!mover.is_tag && mover.id == who_) return fmt::format("'{}' {}", mover.name, why_);
   return fmt::format("robot {} {}", who_, why_);
@@ -107,7 +107,7 @@ std::unique_ptr<Controller> make_route_controller(const ControllerContext& conte
   ConvoyState convoy;
   if (follows) {
     if (!settings.has("leader"))
-      settings.refuse("leader", "a convoy needs 'leader', the number of the robot to follow");
+      settings.refuse("leader", "a convoy requires 'leader', the number of the robot to follow");
     convoy.leader = static_cast<std::uint32_t>(settings.number("leader", 0, 0, 4294967294.0));
   } else if (settings.has("merge_behind")) {
     convoy = {static_cast<std::uint32_t>(settings.number("merge_behind", 0, 0, 4294967294.0)), true};
@@ -128,7 +128,7 @@ std::unique_ptr<Controller> make_route(const ControllerContext& context, Setting
 
 constinit const ControllerType route_controller{
     .name = "route",
-    .summary = "drives over the roads from checkpoint to checkpoint, obeying stop lines, lights and the right of way",
+    .summary = "drives along the roads from checkpoint to checkpoint, obeying stop lines, lights and the right of way",
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_route,

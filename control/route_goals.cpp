@@ -59,11 +59,11 @@ RouteGoals::RouteGoals(const ControllerContext& context, Settings& settings)
   loop_ = settings.flag("loop", false);
   tour_ = settings.flag("tour", false);
   if (tour_) draw_from(roads);
-  if (tour_ && !goals_.empty()) settings.refuse("tour", "'tour' draws checkpoints; expected it without a list of them");
+  if (tour_ && !goals_.empty())
+    settings.refuse("tour", "'tour' draws random checkpoints; expected no list of checkpoints");
   if (goals_.empty() && lots_.empty())
     settings.refuse("checkpoints",
-                    fmt::format("there is nowhere to go; expected 'checkpoints' (some of {}), 'mission', "
-                                "'park' or 'tour true'",
+                    fmt::format("no destination; expected 'checkpoints' (some of {}), 'mission', 'park' or 'tour true'",
                                 ids_of(roads)));
 }
 

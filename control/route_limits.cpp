@@ -86,7 +86,8 @@ void Route::limit_by_conflict_zones(const ControllerInput& input, Limit& limit) 
       if (ahead > kApproachDistance || end <= progress_.s() || right_of_way_.committed(ahead, speed)) continue;
       const bool room = room_beyond(end);
       if (room && right_of_way_.may_enter(leg.way, conflict_zone)) continue;
-      limit.stop_in(std::max(ahead, 0.0), room ? "others go first where their ways meet" : "the lane ahead is full");
+      limit.stop_in(std::max(ahead, 0.0),
+                    room ? "others have the right of way where routes cross" : "the lane ahead is full");
       if (!room && speed < 0.01 && ahead < 0.3) {
         full = true;
         if (blocked_way_ != leg.way) blocked_since_ = -1;
@@ -131,10 +132,10 @@ void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
     if (way.in_zone && way.from != world::kNone) {
       const double ahead = leg.start - corridors_->body().front - margin - s;
       if (!right_of_way_.committed(ahead, std::abs(input.state.velocity.forward)) && !right_of_way_.zone_free(way.zone))
-        limit.stop_in(std::max(ahead, 0.0), "another robot drives about in the zone");
+        limit.stop_in(std::max(ahead, 0.0), "another robot is driving in the zone");
     }
     if (cusp_after(*corridors_, plan_, i)) {
-      limit.stop_in(std::max(end_of(leg) - s, 0.0), "its way ends");
+      limit.stop_in(std::max(end_of(leg) - s, 0.0), "its route ends");
       break;
     }
   }
@@ -154,7 +155,7 @@ void Route::limit_by_others(Limit& limit) const {
     const double most = free > 1e-3 ? free / settings_.headway : 0.0;
     if (most >= limit.speed) continue;
     limit.speed = most;
-    limit.why = std::abs(other.speed) < kStandstill ? "stands in its way" : "is in its way";
+    limit.why = std::abs(other.speed) < kStandstill ? "blocks its way" : "is in its way";
     limit.who = right_of_way_.road_users()[other.row].id;
   }
 }

@@ -25,8 +25,8 @@ void Route::start(const ControllerInput& input) {
     const auto place = locate_on_road(*corridors_, X_WM);
     if (!place)
       throw base::InputError(
-          fmt::format("robot '{}' stands at ({:.2f}, {:.2f}), where no lane of '{}' runs in its "
-                      "direction; place it on a lane or in a parking spot",
+          fmt::format("robot '{}' is at ({:.2f}, {:.2f}), where no lane of '{}' runs in its direction; place it on a "
+                      "lane or in a parking spot",
                       site_.world.movers[site_.mover].name, X_WM.x, X_WM.y, site_.roads->file));
     plan_ = plan_from(*corridors_, *place);
   }
@@ -48,7 +48,7 @@ void Route::check_goals() const {
 
 void Route::refuse(const world::RoadCheckpoint& goal) const {
   throw base::InputError(fmt::format(
-      "robot '{}' finds no way to checkpoint {} (way-point {}) in '{}'; choose others, or add exits",
+      "robot '{}' has no route to checkpoint {} (way-point {}) in '{}'; choose other checkpoints, or add exits",
       site_.world.movers[site_.mover].name, goal.id, point_id_text(id_of(*site_.roads, goal.at)), site_.roads->file));
 }
 

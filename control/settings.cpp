@@ -125,7 +125,8 @@ void Settings::require_all_read() const {
     std::vector<std::string> known = asked_;
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
-    if (known.empty()) refuse(settings_[i].key, fmt::format("{} has no settings, nor '{}'", owner_, settings_[i].key));
+    if (known.empty())
+      refuse(settings_[i].key, fmt::format("{} has no settings; remove '{}'", owner_, settings_[i].key));
     refuse(settings_[i].key,
            fmt::format("{} has no setting '{}'{}", owner_, settings_[i].key, expected_one_of(settings_[i].key, known)));
   }

@@ -139,7 +139,7 @@ void Batch::download(const Buffer& table, std::size_t offset, std::size_t size) 
 }
 
 void Batch::submit() {
-  SF_CHECK(!vk_->submitted, "a batch is submitted again before it was waited for");
+  SF_CHECK(!vk_->submitted, "a batch is submitted again before its wait");
   if (vk_->device->is_host()) return;
   std::array<VkCommandBuffer, 3> used{};
   std::uint32_t count = 0;

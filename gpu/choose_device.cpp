@@ -146,7 +146,7 @@ int choose_device(DeviceCandidates& candidates, const std::string& wanted) {
   for (std::size_t row = 0; row < candidates.info.size(); ++row) {
     DeviceInfo& info = candidates.info[row];
     info.chosen = static_cast<int>(row) == best;
-    if (!info.chosen && info.reason.empty()) info.reason = "usable, but another ranks higher; name it with --device";
+    if (!info.chosen && info.reason.empty()) info.reason = "usable, but another ranks higher; select it with --device";
   }
   return best;
 }

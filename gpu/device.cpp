@@ -46,7 +46,7 @@ std::string no_device_message(const Instance& instance, const DeviceCandidates& 
     return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)" + limits_text() + suggestion;
   std::string line = "no usable Vulkan device among " + std::to_string(candidates.info.size()) + ":";
   for (const DeviceInfo& info : candidates.info) line += " " + info.name + " " + info.reason + ";";
-  return line + " name another with --device or SENSORFARM_DEVICE, or install a driver" + limits_text() + suggestion;
+  return line + " select another with --device or SENSORFARM_DEVICE, or install a driver" + limits_text() + suggestion;
 }
 
 /// Opens the device `vk.physical`. @return "" or the reason for the failure
@@ -132,7 +132,7 @@ std::string refusal_of_host(const std::string& wanted, bool require_vulkan, bool
   if (require_vulkan)
     return "is not a Vulkan device, but one is required (--require-vulkan, SENSORFARM_REQUIRE_VULKAN or --caster "
            "vulkan)";
-  return other_chosen ? "usable, but a Vulkan device ranks higher; name it with --device host" : "";
+  return other_chosen ? "usable, but a Vulkan device ranks higher; select it with --device host" : "";
 }
 
 }  // namespace
@@ -172,14 +172,13 @@ Device Device::or_host(const std::string& wanted, bool require_vulkan) {
     if (device.is_host() && require_vulkan)
       throw base::DeviceError(
           "a Vulkan device is required (--require-vulkan, SENSORFARM_REQUIRE_VULKAN or --caster vulkan), but the host "
-          "is "
-          "named (--device, SENSORFARM_DEVICE); leave out one of them");
+          "is selected (--device, SENSORFARM_DEVICE); leave out one of the two");
     return device;
   } catch (const base::DeviceError& error) {
     if (!wanted.empty() || require_vulkan) throw;
     Device device{std::string(kHostDevice)};
     device.vk_->notice =
-        std::string(error.what()) + "; computing on the host, with the same results (--require-vulkan refuses that)";
+        std::string(error.what()) + "; computing on the host, with the same results (--require-vulkan rejects this)";
     return device;
   }
 }

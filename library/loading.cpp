@@ -28,7 +28,7 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
   world::World world =
       source.text.empty() ? world::load_world(source.file, load) : world::build_world(source.file, source.text, load);
   if (!options.robot_from.empty() && !options.of.empty())
-    throw base::InputError("of and robot_from both name the robot that is copied; expected one of them");
+    throw base::InputError("of and robot_from both name the robot to copy; expected one of them");
   using scenarios::OwnRobot;
   const std::string lent = scenarios::lend_robot(
       world, options.robot_from, options.robots > 0 ? OwnRobot::for_copies : OwnRobot::needs_room, load);

@@ -211,7 +211,7 @@ void Simulation::State::put(std::size_t row, const Pose& pose) {
   if (row >= poses.size())
     throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
   if (!present[row])
-    throw base::InputError(fmt::format("'{}' was removed; add it again to place it", robots[row].name));
+    throw base::InputError(fmt::format("'{}' was removed; add it again before placing it", robots[row].name));
   if (!std::isfinite(pose.x + pose.y + pose.z + pose.yaw))
     throw base::InputError(fmt::format("the pose of '{}' is not finite", robots[row].name));
   simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw});
@@ -263,7 +263,7 @@ void Simulation::State::add_tables(std::vector<library::ReadingTable>& before) {
 
 void Simulation::State::remove(std::size_t row) {
   if (row >= poses.size() || present[row] == 0)
-    throw base::InputError(fmt::format("there is no robot in row {} to be removed", row));
+    throw base::InputError(fmt::format("row {} has no robot to remove", row));
   simulation->remove_robot(static_cast<std::uint32_t>(row));
   present[row] = 0, contacts[row] = 0, done[row] = 0;
   poses[row] = {NAN, NAN, NAN, NAN}, velocities[row] = {};
@@ -389,7 +389,7 @@ unsigned Simulation::ranks() const { return state_->ranks == nullptr ? 1 : state
 std::span<const std::uint8_t> Simulation::owned() const { return state_->owned; }
 
 std::uint64_t Simulation::hash() const {
-  if (rank() > 0) throw Error("the hash of all ranks' readings is known to rank 0 alone");
+  if (rank() > 0) throw Error("only rank 0 has the hash of all ranks' readings");
   return state_->simulation->farm().hash();
 }
 

@@ -50,8 +50,8 @@ std::string merge_problem(std::span<const OccupancyGrid* const> grids) {
   const std::int64_t across = box.right - box.left;
   const std::int64_t down = box.bottom - box.top;
   if (across <= kMaxWordColumns && down <= kMaxWordColumns && across * down <= kMaxWords) return "";
-  return "maps that lie so far apart cannot be merged: one of " + std::to_string(4 * across) + " x " +
-         std::to_string(4 * down) + " cells would hold them all; merge those that are neighbours";
+  return "maps so far apart cannot be merged: a map of " + std::to_string(4 * across) + " x " +
+         std::to_string(4 * down) + " cells would be required; merge neighbouring maps";
 }
 
 OccupancyGrid merge(std::span<const OccupancyGrid* const> grids, MergePolicy precedence) {

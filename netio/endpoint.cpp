@@ -19,7 +19,7 @@ std::uint32_t resolve(const std::string& host) {
   const int failure = getaddrinfo(host.c_str(), nullptr, &hints, &found);
   if (failure != 0) {
     throw base::InputError("no IPv4 address for '" + host + "' (" + gai_strerror(failure) +
-                           "): give a dotted address such as 127.0.0.1, or a host name this machine knows");
+                           "): give a dotted address such as 127.0.0.1, or a host name that this machine can resolve");
   }
   const std::uint32_t address = ntohl(reinterpret_cast<const sockaddr_in*>(found->ai_addr)->sin_addr.s_addr);
   freeaddrinfo(found);

@@ -21,7 +21,7 @@ constexpr std::size_t kSubscribeChannel = 1;
 void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, const std::string& what) {
   for (const std::uint32_t id : ids) {
     if (id >= smallest && id <= kMaxId) continue;
-    throw base::InputError(what + " id " + std::to_string(id) + " does not fit a packet, which holds " +
+    throw base::InputError(what + " id " + std::to_string(id) + " does not fit into a packet, which holds " +
                            std::to_string(smallest) + " to " + std::to_string(kMaxId) + ": number the world's " + what +
                            "s within these");
   }

@@ -65,7 +65,7 @@ void OpenSockets::keep_new_ones_to_loopback() const {
     constexpr char kInterface[] = "lo";  // older kernels allow this only for root; the filter is enough
     setsockopt(descriptor, SOL_SOCKET, SO_BINDTODEVICE, kInterface, sizeof kInterface);
     if (!take_loopback_only(descriptor))
-      throw base::InputError("sockets cannot be kept to this machine: the kernel refuses filters");
+      throw base::InputError("sockets cannot be restricted to this machine: the kernel rejects filters");
   }
 }
 

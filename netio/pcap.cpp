@@ -101,7 +101,7 @@ PcapReader::PcapReader(std::span<const std::uint8_t> file, const std::string& na
   if (find_link(link_) == nullptr)
     throw base::InputError(name, 0,
                            "captured on a link of type " + std::to_string(link_) +
-                               "; Ethernet, Linux cooked, loopback and raw IP are known");
+                               "; expected Ethernet, Linux cooked, loopback or raw IP");
   rest_ = file.subspan(kFileHeader);
 }
 

@@ -13,7 +13,7 @@ namespace {
 /// Returns "a V2V of 131 bytes", with the expected size.
 std::string size_text(std::span<const std::uint8_t> bytes, bool is_short) {
   if (bytes.size() < kHeaderBytes)
-    return fmt::format("{} bytes: every packet begins with a header of {} bytes", bytes.size(), kHeaderBytes);
+    return fmt::format("{} bytes: every packet starts with a header of {} bytes", bytes.size(), kHeaderBytes);
   const PacketForm* const form = find_packet_form(static_cast<Type>(bytes[kTypeAt]));
   const std::string size = form == nullptr
                                ? fmt::format("a packet of type {} and {} bytes", bytes[kTypeAt], bytes.size())
@@ -49,9 +49,9 @@ std::string rejection_text(PacketStatus reason, std::span<const std::uint8_t> by
     case PacketStatus::too_long:
       return size_text(bytes, reason == PacketStatus::too_short);
     case PacketStatus::bad_magic:
-      return "it does not begin with SFPK: is it meant for another program, or in the form of --wire thesis?";
+      return "it does not start with SFPK: is it meant for another program, or in the layout of --wire thesis?";
     case PacketStatus::unknown_version:
-      return fmt::format("version {} of the protocol: expected {}; update the sender", unsigned{bytes[kVersionAt]},
+      return fmt::format("protocol version {}: expected {}; update the sender", unsigned{bytes[kVersionAt]},
                          unsigned{kVersion});
     case PacketStatus::unknown_type:
       return fmt::format("type {} is unknown", type);
@@ -61,7 +61,9 @@ std::string rejection_text(PacketStatus reason, std::span<const std::uint8_t> by
       return "a number in it is out of range";
     case PacketStatus::wrong_direction:
       return fmt::format(
-          "type {} is not for this service: it is the farm's own, or the other of lockstep and real time", type);
+          "type {} is not for this service: only the farm sends it, or it belongs to the other mode (lockstep or real "
+          "time)",
+          type);
     case PacketStatus::unknown_robot:
       return fmt::format("the world has no robot with id {}; it has {}", id, ids_text(robots));
     case PacketStatus::unknown_tag:
@@ -69,9 +71,10 @@ std::string rejection_text(PacketStatus reason, std::span<const std::uint8_t> by
     case PacketStatus::unknown_light:
       return fmt::format("the world has no intersection with id {}", id);
     case PacketStatus::unproven:
-      return "they lack the token of their address: the sender has to copy it from the CHALLENGE that answers them";
+      return "they lack the token of their address: the sender must copy it from the CHALLENGE sent in reply";
     case PacketStatus::stale:
-      return "their sequence is not newer than that of an accepted one: it has to grow with every packet of a session";
+      return "their sequence number is not newer than that of an accepted packet: it must increase with every packet "
+             "of a session";
     default:
       return std::string(name(reason));
   }

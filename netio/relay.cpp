@@ -9,7 +9,7 @@ namespace sf::netio {
 
 Relay::Relay(std::span<const std::uint32_t> robots, const RelayOptions& options, std::span<const std::uint32_t> lights)
     : options_(options), robots_(robots.size()), neighbour_tree_(robots.size()) {
-  SF_CHECK(options.most >= kMinShare && options.budget >= kMinShare, "a relay that passes nothing on");
+  SF_CHECK(options.most >= kMinShare && options.budget >= kMinShare, "a relay without a receiver");
   for (std::size_t i = 0; i < robots.size(); ++i) robots_[i].id = robots[i];
   std::sort(robots_.begin(), robots_.end(), [](const Robot& a, const Robot& b) { return a.id < b.id; });
   for (const std::uint32_t id : lights) lights_.push_back({.id = id});

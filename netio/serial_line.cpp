@@ -30,8 +30,8 @@ speed_t speed_of(unsigned baud) {
   const char* remedy = "check the cable and the name";
   if (error == ENOENT) remedy = "`ls /dev/ttyUSB* /dev/ttyACM*` lists those of this machine";
   if (error == EACCES)
-    remedy = "its users are a group, mostly `dialout`: sudo usermod -aG dialout $USER, and log in again";
-  if (error == EBUSY) remedy = "another program uses it; end that one";
+    remedy = "add yourself to its group, usually `dialout`: sudo usermod -aG dialout $USER, and log in again";
+  if (error == EBUSY) remedy = "another program uses it; stop that program";
   if (error == ENOTTY) remedy = "it is not a serial line; expected one such as /dev/ttyUSB0";
   throw base::InputError("cannot open the serial line '" + device + "': " + error_text(error) + "; " + remedy);
 }

@@ -33,19 +33,18 @@ bool is_refusal(PacketStatus reason) {
 /// @param lag [us] of the counter
 std::string reason_text(PacketStatus reason, std::uint64_t lag) {
   if (reason == PacketStatus::accepted)
-    return "whose signature is not checked: --peers has no key for it here, and the sender uses one; start `serve` "
-           "with "
-           "--peers and that key, or the sender without";
+    return "whose signature is not checked: the sender uses a key, but --peers has none for it here; start `serve` "
+           "with --peers and that key, or the sender without";
   if (reason == PacketStatus::wrong_source)
-    return "from another address than --peers has for it here, or than another sender with this id has until it leaves "
-           "or is silent for 2 s";
+    return "from an address other than the one in --peers here, or than that of another sender with this id, which has "
+           "it until it leaves or is silent for 2 s";
   if (reason == PacketStatus::not_signed)
-    return "without a signature: --peers has a key for it here, and the sender uses none (start it with --peers, too)";
+    return "without a signature: --peers has a key for it here, but the sender uses none (start it with --peers, too)";
   if (reason == PacketStatus::wrong_signature)
     return "with a wrong signature: the sender's key differs from the one in --peers here; compare both files";
   return fmt::format(
-      "with a counter {:.1f} s behind an earlier one: the sender's clock was set back (or someone sends "
-      "old packets again); set that clock, or restart `serve`",
+      "with a counter {:.1f} s behind an earlier one: the sender's clock was set back (or someone replays old "
+      "packets); set that clock, or restart `serve`",
       1e-6 * static_cast<double>(lag));
 }
 
@@ -62,16 +61,16 @@ std::string trouble_text(const SignatureTrouble& trouble, const std::string& who
       return fmt::format("has another key for {} than --peers here: compare both files", who);
     case PacketStatus::wrong_source:
       return fmt::format(
-          "takes {} from another address: --peers has one for it there, or another sender has this id until it leaves "
-          "or is silent for 2 s",
+          "accepts {} from another address only: --peers has one for it there, or another sender has this id until it "
+          "leaves or is silent for 2 s",
           who);
     default:
       return trouble.of_farm
                  ? fmt::format(
-                       "has had packets of {} with later times: this machine's clock was set back, and "
-                       "reads {:.1f} s {} than the farm's; set it, or restart `serve`",
+                       "has received packets of {} with later times: this machine's clock was set back, and reads "
+                       "{:.1f} s {} than the farm's; set it, or restart `serve`",
                        who, std::abs(behind), behind < 0.0 ? "more" : "less")
-                 : "sends times before those that it sent: its clock was set back; set it, or restart this process";
+                 : "sends earlier times than before: its clock was set back; set it, or restart this process";
   }
 }
 

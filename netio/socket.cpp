@@ -19,11 +19,11 @@ namespace {
 std::string remedy(int error) {
   switch (error) {
     case EADDRINUSE:
-      return "another program has this port; end it or choose another port";
+      return "another program uses this port; stop it or choose another port";
     case EADDRNOTAVAIL:
-      return "this machine does not have that address; use one that `ip address` lists, or 0.0.0.0 for all";
+      return "this machine does not have that address; use an address that `ip address` lists, or 0.0.0.0 for all";
     case EACCES:
-      return "ports below 1024 need root; choose a higher one";
+      return "ports below 1024 require root; choose a higher port";
     default:
       return "check the address and the port";
   }
@@ -107,7 +107,7 @@ void raise_open_file_limit(std::size_t count) {
     limit.rlim_cur = count;
     if (setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
   }
-  throw base::InputError(std::to_string(count) + " open files are needed and this machine allows " +
+  throw base::InputError(std::to_string(count) + " open files are required, but this machine allows " +
                          std::to_string(limit.rlim_max) + ": raise the hard limit (`ulimit -Hn`), or use fewer robots");
 }
 

@@ -46,7 +46,7 @@ Socket listen_tcp(const Endpoint& bind) {
   bind_socket(listener, bind, "TCP");
   if (listen(listener.descriptor(), kBacklog) == 0) return listener;
   throw PortInUse("cannot listen on TCP " + endpoint_text(bind) + ": " + error_text(errno) +
-                  "; another program has this port; end it or choose another port");
+                  "; another program uses this port; stop it or choose another port");
 }
 
 Socket accept_tcp(const Socket& listener, Endpoint& peer) {

@@ -107,8 +107,7 @@ void add_robot(py::module_& module) {
       .def_readonly("columns", &SensorInfo::columns)
       .def_readonly("limit", &SensorInfo::limit)
       .def_readonly("bearings", &SensorInfo::bearings);
-  py::class_<Robot>(module, "Robot", py::module_local(),
-                    "A robot or tag as it is at the start: metres, radians, m/s, rad/s.")
+  py::class_<Robot>(module, "Robot", py::module_local(), "A robot or tag at the start: metres, radians, m/s, rad/s.")
       .def_readonly("name", &Robot::name)
       .def_readonly("id", &Robot::id)
       .def_readonly("row", &Robot::row)
@@ -133,7 +132,7 @@ void add_input(py::module_& module) {
       .def_readonly("bound_without_noise", &OwnedReading::bound_without_noise)
       .def_readonly("sigma", &OwnedReading::sigma)
       .def_readonly("flags", &OwnedReading::flags);
-  py::class_<Neighbour>(module, "Neighbour", py::module_local(), "Another robot, as it broadcasts itself (V2V).")
+  py::class_<Neighbour>(module, "Neighbour", py::module_local(), "Another robot, by its V2V broadcasts.")
       .def_readonly("id", &Neighbour::id)
       .def_readonly("pose", &Neighbour::pose)
       .def_readonly("velocity", &Neighbour::velocity)
@@ -145,7 +144,8 @@ void add_input(py::module_& module) {
       .def_readonly("pose", &OwnedLight::pose)
       .def_readonly("state", &OwnedLight::state)
       .def_readonly("left", &OwnedLight::left);
-  py::class_<OwnedInput>(module, "Input", py::module_local(), "The knowledge of a robot when its controller is called.")
+  py::class_<OwnedInput>(module, "Input", py::module_local(),
+                         "The input of a controller's step: all that is known to its robot.")
       .def_readonly("time", &OwnedInput::time)
       .def_readonly("pose", &OwnedInput::pose)
       .def_readonly("velocity", &OwnedInput::velocity)
@@ -169,7 +169,7 @@ void add_settings(py::module_& module) {
   const auto numbers = [](Given s, Key k, const std::vector<double>& f) {
     return s.read([&](Settings& from) { return from.numbers(k, f); });
   };
-  py::class_<LentSettings>(module, "Settings", py::module_local(), "Settings by key; each is read in __init__.")
+  py::class_<LentSettings>(module, "Settings", py::module_local(), "Settings by key; each must be read in __init__.")
       .def("number", number, key, fallback, py::arg("least") = -kInfinity, py::arg("most") = kInfinity)
       .def("flag", flag, key, fallback)
       .def("text", text, key, fallback)

@@ -65,7 +65,7 @@ struct PySimulation {
 template <class Call>
 auto in_farm(const PySimulation& s, Call&& call) {
   if (s.process != getpid())
-    throw Error("this simulation was made before the process was forked; expected one that this process has made");
+    throw Error("this simulation was created before the process was forked; expected one that this process created");
   return in_farm(call);
 }
 
@@ -247,13 +247,14 @@ void add_state(py::class_<PySimulation>& c) {
           "(robots, 3): forward, left [m/s], turn [rad/s].")
       .def_property_readonly(
           "contacts", [](const PySimulation& s) { return truth(s, s.farm.contacts()); },
-          "(robots,): a wall or a robot stopped it.")
+          "(robots,): stopped by a wall or a robot.")
       .def_property_readonly(
-          "done", [](const PySimulation& s) { return truth(s, s.farm.done()); }, "(robots,): its controller is done.")
+          "done", [](const PySimulation& s) { return truth(s, s.farm.done()); }, "(robots,): the controller is done.")
       .def_property_readonly(
-          "present", [](const PySimulation& s) { return truth(s, s.farm.present()); }, "(robots,): it was not removed.")
+          "present", [](const PySimulation& s) { return truth(s, s.farm.present()); },
+          "(robots,): the robot has not been removed.")
       .def_property_readonly(
-          "robots", [](const PySimulation& s) { return s.farm.robots(); }, "Of each row, as at the start.")
+          "robots", [](const PySimulation& s) { return s.farm.robots(); }, "Of each row, at the start.")
       .def_property_readonly(
           "types", [](const PySimulation& s) { return s.farm.types(); }, "Sensor types of this world.")
       .def_property_readonly(
@@ -266,18 +267,19 @@ void add_state(py::class_<PySimulation>& c) {
           "tick", [](const PySimulation& s) { return s.farm.tick(); }, "Number of the last tick, from 0.")
       .def_property_readonly(
           "hash", [](const PySimulation& s) { return s.farm.hash(); },
-          "Of all readings so far: that of `sensorfarm run`.")
+          "Hash of all readings so far, as of `sensorfarm run`.")
       .def_property_readonly(
           "rank", [](const PySimulation& s) { return s.farm.rank(); }, "Number of this process, below `ranks`.")
       .def_property_readonly(
           "ranks", [](const PySimulation& s) { return s.farm.ranks(); }, "Processes that share the fleet.")
       .def_property_readonly(
           "owned", [](const PySimulation& s) { return truth(s, s.farm.owned()); },
-          "(robots,): this rank has its readings and commands it.")
+          "(robots,): this rank commands the robot and has its readings.")
       .def_property_readonly(
           "description", [](const PySimulation& s) { return s.farm.description(); }, "Device and caster, in one line.")
       .def_property_readonly(
-          "warnings", [](const PySimulation& s) { return s.farm.warnings(); }, "Of the world file, and of the device.")
+          "warnings", [](const PySimulation& s) { return s.farm.warnings(); },
+          "Warnings about the world file and the device.")
       .def("__len__", [](const PySimulation& s) { return s.farm.size(); });
 }
 
@@ -327,7 +329,7 @@ void add_simulation(py::module_& module) {
           },
           py::arg("text"), py::arg("name") = "given.world")
       .def("step", &step, py::arg("twists") = py::none(),
-           "One tick. twists: (robots, 3) of forward, left [m/s], turn [rad/s]; None: as they are.")
+           "One tick. twists: (robots, 3) of forward, left [m/s], turn [rad/s]; None: unchanged.")
       .def(
           "reset",
           [](PySimulation& s, std::optional<std::uint64_t> seed) {
@@ -342,13 +344,13 @@ void add_simulation(py::module_& module) {
            "Adds a copy of a robot at (x, y, z [m], yaw [rad]), at rest, and returns its row.")
       .def(
           "remove_robot", [](PySimulation& s, std::size_t row) { in_farm(s, [&] { s.farm.remove_robot(row); }); },
-          py::arg("row"), "Takes a robot out of the world; its row stays.")
+          py::arg("row"), "Removes a robot from the world; its row remains.")
       .def(
           "draw", [](const PySimulation& s, Text file) { in_farm(s, [&] { s.farm.draw(file); }); }, py::arg("file"),
           "Writes a picture of the world at this time: PNG, SVG or PDF by its suffix.")
       .def("image", &image, py::arg("width") = 640, py::arg("height") = 480, py::arg("view") = py::none(),
-           "(height, width, 3) uint8: the world from above at this time, of which view = (x_min, y_min, x_max, y_max) "
-           "[m] is shown at least.")
+           "(height, width, 3) uint8: the world from above at this time; shows at least view = (x_min, y_min, x_max, "
+           "y_max) [m].")
       .def("finish_recording", [](PySimulation& s) { in_farm(s, [&] { s.farm.finish_recording(); }); });
   add_state(c), add_readings(c);
 }

@@ -37,8 +37,8 @@ std::uint32_t count_sensing_movers(const std::vector<Scanner>& scanners) {
 const CasterInputs& checked(const CasterInputs& in) {
   if (in.context.device.is_host())
     throw base::DeviceError(
-        "the caster 'vulkan' needs a Vulkan device, but the device is the host; choose the caster 'host' or 'auto', or "
-        "a Vulkan device (Debian: mesa-vulkan-drivers)");
+        "the caster 'vulkan' requires a Vulkan device, but the device is the host; choose the caster 'host' or 'auto', "
+        "or a Vulkan device (Debian: mesa-vulkan-drivers)");
   return in;
 }
 

@@ -174,7 +174,7 @@ void MessageIndexCheck::finish_index() {
   if (state_ == State::whole && !indexed_.empty()) {
     std::sort(messages_.begin(), messages_.end());
     std::sort(indexed_.begin(), indexed_.end());
-    if (messages_ != indexed_) note_damage(contents_, at_, "the message indexes do not fit the chunk's messages");
+    if (messages_ != indexed_) note_damage(contents_, at_, "the message indexes do not match the chunk's messages");
   }
   state_ = State::none;
 }
@@ -188,9 +188,9 @@ void check_summary(View file, const McapRecord& footer, McapLayout layout, McapC
   const auto refuse = [&](const std::string& what) { note_damage(contents, footer.at, what); };
   if (!in.good() || in.left() > 0) return refuse("malformed footer");
   if (layout.data_end == 0) return refuse("no end of the data before the footer");
-  if (from != layout.data_end) return refuse("the summary is not where the footer says");
+  if (from != layout.data_end) return refuse("the summary is not at the position in the footer");
   if (crc != 0 && crc != crc32_of(file.subspan(from, covered - from)))
-    return refuse("the summary does not fit its CRC: bytes were changed after writing");
+    return refuse("the CRC of the summary does not match: bytes were changed after writing");
   if (!contents.damage.empty()) return;  // the statistics do not include omitted data
 
   Summary summary;
@@ -199,9 +199,9 @@ void check_summary(View file, const McapRecord& footer, McapLayout layout, McapC
   for (std::size_t at = 0; next_record(records, from, at, record); at = record.end() - from)
     if (!record.whole || !read_summary_record(record, summary))
       return note_damage(contents, record.at, "malformed summary");
-  if (offsets != summary.offsets_start) return refuse("the summary's offsets are not where the footer says");
+  if (offsets != summary.offsets_start) return refuse("the summary's offsets are not at the position in the footer");
   const std::string wrong = contradiction(summary, layout, contents);
-  if (!wrong.empty()) refuse("the " + wrong + " do not fit the data");
+  if (!wrong.empty()) refuse("the " + wrong + " do not match the data");
 }
 
 }  // namespace sf::record

@@ -55,7 +55,7 @@ void read_schema(const McapRecord& record, McapContents& contents) {
   if (!in.good() || schema.id == 0) return note_damage(contents, record.at, "malformed schema");
   const auto [known, is_new] = contents.schemas.try_emplace(schema.id, schema);
   if (!is_new && !(known->second == schema))
-    note_damage(contents, record.at, "a schema is repeated with other content");
+    note_damage(contents, record.at, "a schema is repeated with different content");
 }
 
 void read_channel(const McapRecord& record, McapContents& contents) {
@@ -69,7 +69,8 @@ void read_channel(const McapRecord& record, McapContents& contents) {
   const bool known = channel.schema == 0 || contents.schemas.contains(channel.schema);
   if (!in.good() || !known) return note_damage(contents, record.at, "malformed channel");
   const auto [at, is_new] = contents.channels.try_emplace(channel.id, channel);
-  if (!is_new && !(at->second == channel)) note_damage(contents, record.at, "a channel is repeated with other content");
+  if (!is_new && !(at->second == channel))
+    note_damage(contents, record.at, "a channel is repeated with different content");
 }
 
 void read_message(const McapRecord& record, McapContents& contents) {
@@ -101,7 +102,7 @@ void read_chunk_records(View records, std::size_t offset, bool whole, Reading& r
     const McapMessage& message = contents.messages.back();
     reading.index.add({message.channel, message.log_time, at});
   }
-  if (whole && at < records.size()) note_damage(contents, offset + at, "a record goes beyond its chunk");
+  if (whole && at < records.size()) note_damage(contents, offset + at, "a record extends beyond its chunk");
 }
 
 McapLayout::Chunk read_chunk_head(ByteReader& in, const McapRecord& record, std::uint32_t& crc) {
@@ -124,8 +125,8 @@ std::string decompress(const McapLayout::Chunk& chunk, View& bytes, Reading& rea
            "' left out: expected zstd or none; `mcap decompress FILE -o OUT` (mcap.dev) converts the file";
   const std::uint64_t most = (std::uint64_t{1} << 30) + kMaxDecompressed * reading.file.size() - reading.decompressed;
   if (chunk.size > most)
-    return "chunk left out: it states " + std::to_string(chunk.size) + " bytes of records, and at most " +
-           std::to_string(most) + " more are decompressed of a file of this size";
+    return "chunk left out: its header states " + std::to_string(chunk.size) + " bytes of records, but at most " +
+           std::to_string(most) + " more are decompressed from a file of this size";
   const auto size = static_cast<std::size_t>(chunk.size);
   // Memory that is never written costs nothing, and malformed chunks may state any size.
   auto records = std::make_unique_for_overwrite<std::uint8_t[]>(size);
@@ -155,7 +156,7 @@ void read_chunk(const McapRecord& record, Reading& reading) {
   const std::string wrong = decompress(chunk, records, reading);
   if (!wrong.empty()) return note_damage(contents, record.at, wrong);
   if (record.whole && crc != 0 && crc32_of(records) != crc) {
-    return note_damage(contents, record.at, "chunk left out: its CRC does not fit");
+    return note_damage(contents, record.at, "chunk left out: its CRC does not match");
   }
   if (record.whole) reading.index.begin_chunk(record);
   read_chunk_records(records, offset, record.whole, reading);
@@ -177,7 +178,7 @@ void read_attachment(const McapRecord& record, Reading& reading) {
   const auto crc = in.get<std::uint32_t>();
   if (!in.good()) return note_damage(contents, record.at, "malformed attachment");
   if (crc != 0 && crc != crc32_of(record.body.first(covered))) {
-    return note_damage(contents, record.at, "attachment left out: its CRC does not fit");
+    return note_damage(contents, record.at, "attachment left out: its CRC does not match");
   }
   reading.layout.attachments.push_back({record.at, record.end() - record.at, attachment.log_time,
                                         attachment.create_time, attachment.data.size(), attachment.name,
@@ -202,7 +203,7 @@ void check_data_end(const McapRecord& record, Reading& reading) {
   const auto crc = in.get<std::uint32_t>();
   if (!in.good() || in.left() > 0) return note_damage(reading.contents, record.at, "malformed end of the data");
   if (crc != 0 && crc != crc32_of(reading.file.first(record.at)))
-    note_damage(reading.contents, record.at, "the data does not fit its CRC: bytes were changed after writing");
+    note_damage(reading.contents, record.at, "the CRC of the data does not match: bytes were changed after writing");
 }
 
 void read_record(const McapRecord& record, Reading& reading) {
@@ -262,7 +263,7 @@ McapContents read_mcap(View file, const std::string& name) {
   if (at + kRecordHead <= file.size() && record.opcode == Opcode::chunk) read_chunk(record, reading);
   if (file.size() > kMcapMagic.size() && is_magic(file.last(kMcapMagic.size()))) {
     contents.truncated = false;
-    note_damage(contents, at, "no record fits here, before the end of the file: a length or an opcode was changed");
+    note_damage(contents, at, "no valid record here before the end of the file: a length or an opcode was changed");
   }
   return std::move(contents);
 }

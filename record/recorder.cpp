@@ -139,9 +139,9 @@ void Recorder::check_topics(const TickMessages& messages) const {
   std::size_t count = channels_of_.size();
   for (const Topic& topic : messages.topics()) count += channels_of_.contains(topic.name) ? 0 : 1;
   if (count <= kMaxChannels) return;
-  throw base::InputError(
-      file_.path(), 0,
-      "needs " + std::to_string(count) + " topics, and a file holds 65535: record fewer robots, or no readings");
+  throw base::InputError(file_.path(), 0,
+                         "needs " + std::to_string(count) +
+                             " topics, but a file holds at most 65535: record fewer robots, or no readings");
 }
 
 /// Adds channels for the topics that do not have one yet.

@@ -125,7 +125,7 @@ void read_messages(const McapContents& contents, Recording& recording) {
     const std::string& name = contents.channels.at(message.channel).topic;
     if (read_message(message, type_of(contents, message), name, topics, fleet, recording)) continue;
     if (recording.damage.size() >= kMaxDamage) continue;
-    recording.damage.push_back(name + " at " + std::to_string(message.log_time) + " ns: not understood, left out");
+    recording.damage.push_back(name + " at " + std::to_string(message.log_time) + " ns: malformed, left out");
   }
 }
 

@@ -41,7 +41,7 @@ GrowingFile::GrowingFile(const std::string& path) : path_(path) {
   if (error)
     throw base::InputError(
         directory.string(), 0,
-        "cannot be made a directory: " + error.message() + "; choose one in a directory that you may write to");
+        "cannot be created as a directory: " + error.message() + "; choose one in a directory that you can write to");
 
   create();
   try {
@@ -79,7 +79,8 @@ void GrowingFile::refuse_second_writer() {
 }
 
 void GrowingFile::refuse() const {
-  throw base::InputError(path_, 0, "another run is being recorded here: wait for it, or choose another directory");
+  throw base::InputError(path_, 0,
+                         "another run is being recorded here: wait until it ends, or choose another directory");
 }
 
 GrowingFile::~GrowingFile() {

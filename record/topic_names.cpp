@@ -127,8 +127,8 @@ void name_by_types(const RunInfo& info, TopicStyle style, MoverInfo& mover, std:
     const int number = counts[name]++;
     const std::string topic = unique(name, topics, 1);
     if (info.record_readings && topic != (number == 0 ? name : name + "_" + std::to_string(number)))
-      notes.push_back(fmt::format("sensor '{}' of '{}' has the topic {}/{}: a name before it is taken", sensor.name,
-                                  mover.name, mover.space, topic));
+      notes.push_back(fmt::format("sensor '{}' of '{}' has the topic {}/{}, since an earlier name is taken",
+                                  sensor.name, mover.name, mover.space, topic));
     sensor.topic = mover.space + "/" + topic;
     sensor.frame = prefix + unique(ros_name(type.name, "sensor"), frames, 1);
     name_standard_topics(sensor, sensor.topic);

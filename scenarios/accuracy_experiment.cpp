@@ -172,14 +172,13 @@ std::vector<std::string> run_accuracy(const ExperimentContext& context) {
 }
 
 constexpr std::string_view kReasons =
-    "All modes have the same seeds, so that rows differ by the mode only. "
-    "On the thesis' path a quarter of the rays keeps the lane as well as all of them: 2 mm of noise on each ray, the "
-    "bend and the delay of a second have a far larger effect than fewer points. "
-    "Magnets beyond 3 m are not missed; without those beyond 1 m, the mean error grows by 3 %. "
-    "For a map of 3 cm a cell, ranges in 32 bits change no cell, and one beam of eight (every 4 degrees) is enough: "
-    "the robot passes all obstacles closely, and gaps between two beams are seen from other poses. "
-    "Wrong cells are on walls' faces, where the noise of 3 mm decides, not the mode. "
-    "Thin obstacles that are passed once may be missed: docs/accuracy.md lists the limits of each mode.";
+    "All modes have the same seeds, so rows differ only by mode. On the thesis' path, a quarter of the rays keeps the "
+    "lane as well as all rays: 2 mm of noise on each ray, the bend and the delay of a second have a far larger effect "
+    "than fewer points. Magnets beyond 3 m are not missed; without those beyond 1 m, the mean error grows by 3 %. For "
+    "a map of 3 cm per cell, ranges in 32 bits change no cell, and one beam of eight (every 4 degrees) is enough: the "
+    "robot passes all obstacles closely, and sees the gaps between two beams from other poses. Wrong cells are on "
+    "walls' faces, where the noise of 3 mm decides, not the mode. Thin obstacles that the robot passes only once may "
+    "be missed: docs/accuracy.md lists the limits of each mode.";
 
 }  // namespace
 

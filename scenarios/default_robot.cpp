@@ -59,7 +59,7 @@ std::string lend_robot(world::World& world, const std::string& from, OwnRobot us
   if (has_robot(world) && use == OwnRobot::where_needed) return "";
   if (has_robot(world) && use == OwnRobot::needs_room)
     throw base::InputError(world.file, 0,
-                           "has robots of its own; --robot-from is for worlds without, such as ROS maps, and for "
+                           "has its own robots; --robot-from is for worlds without robots, such as ROS maps, and for "
                            "copies: expected --robots N, too");
   const std::size_t colon = std::min(from.rfind(':'), from.size());
   const std::string name = colon == from.size() ? "" : from.substr(colon + 1);

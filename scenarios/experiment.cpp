@@ -113,12 +113,13 @@ std::string counted(std::uint64_t count, std::string_view one) {
 namespace {
 
 std::string readings_of(const netio::LinkModel& link) {
-  std::string text = "Readings come at once";
+  std::string text = "Readings arrive at once";
   if (link.jitter > 0.0)
-    text = fmt::format("Readings come {:g} to {:g} s late", link.delay, link.delay + link.jitter);
+    text = fmt::format("Readings arrive {:g} to {:g} s late", link.delay, link.delay + link.jitter);
   else if (link.delay > 0.0)
-    text = fmt::format("Readings come {:g} s late", link.delay);
-  return text + (link.loss > 0.0 ? fmt::format(", {:g} % of them never.", 100.0 * link.loss) : ", and none is lost.");
+    text = fmt::format("Readings arrive {:g} s late", link.delay);
+  return text +
+         (link.loss > 0.0 ? fmt::format(", {:g} % of them are lost.", 100.0 * link.loss) : ", and none is lost.");
 }
 
 }  // namespace

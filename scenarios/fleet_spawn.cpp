@@ -69,10 +69,11 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
     try {
       poses = control::start_poses(roads, drawn, scenario.seed, apart);
     } catch (const base::InputError&) {
-      throw base::InputError(scenario.file, scenario.fleet.line,
-                             fmt::format("{} robots {:.2f} m apart do not fit on the lanes of {} with the {} that "
-                                         "remain there; use fewer",
-                                         wanted, apart, roads.file, stays.size()));
+      throw base::InputError(
+          scenario.file, scenario.fleet.line,
+          fmt::format(
+              "{} robots {:.2f} m apart do not fit on the lanes of {} besides the {} that remain there; use fewer",
+              wanted, apart, roads.file, stays.size()));
     }
     std::erase_if(poses, [&](const base::Pose& X) { return !clear(X, radius, world, stays); });
   }

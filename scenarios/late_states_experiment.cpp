@@ -84,11 +84,10 @@ std::string csv_of(const std::vector<Row>& rows) {
 std::string report_of(const ExperimentContext& context, const std::vector<Row>& rows) {
   const StateLinkOptions& states = *context.scenario.states;
   std::string text = fmt::format(
-      "# Lane keeping by late states\n\n{}\n\nStates at {:g} Hz, {:g} to {:g} s late, {:g} % of them lost; `1 s late`: "
-      "{:g} to {:g} s, {:g} %. Errors are true distances of the robot's origin from the lane's middle; the amplitude "
-      "is "
-      "that on the first straight. kp `own`: the controller's default.\n\n| kp | m/s | states | mean abs [mm] | "
-      "amplitude [mm] | largest [mm] | left its lane | end reached |\n|---|---|---|---|---|---|---|---|\n",
+      "# Lane keeping with late states\n\n{}\n\nStates at {:g} Hz, {:g} to {:g} s late, {:g} % of them lost; `1 s "
+      "late`: {:g} to {:g} s, {:g} %. Errors are true distances of the robot's origin from the lane's middle; the "
+      "amplitude is that on the first straight. kp `own`: the controller's default.\n\n| kp | m/s | states | mean abs "
+      "[mm] | amplitude [mm] | largest [mm] | left its lane | end reached |\n|---|---|---|---|---|---|---|---|\n",
       setup_of(context, {}), states.rate, states.link.delay, states.link.delay + states.link.jitter,
       100.0 * states.link.loss, kSecond.delay, kSecond.delay + kSecond.jitter, 100.0 * kSecond.loss);
   for (const Row& r : rows)
@@ -104,7 +103,7 @@ std::string draw(const ExperimentContext& context, const std::vector<Row>& rows,
     if (row.speed == speed && row.kp == 0.0) tracks.push_back(row.track);
   const std::string file = in_folder(context, fmt::format("trajectories-{:g}.png", speed));
   viz::draw_along_paths(
-      world_of(context.scenario), tracks, fmt::format("Lane keeping at {:g} m/s by late states", speed),
+      world_of(context.scenario), tracks, fmt::format("Lane keeping at {:g} m/s with late states", speed),
       fmt::format("plant {}, seed {}", plant_name(*context.scenario.plant), context.options.seed), file);
   return file;
 }
@@ -127,15 +126,13 @@ std::vector<std::string> run_late_states(const ExperimentContext& context) {
 }
 
 constexpr std::string_view kLateReasons =
-    "A tenth of a second does not stop a robot at 0.5 m/s: with its own gain it keeps its lane by the newest states as "
-    "by the true ones, since extrapolation from the arrival errs along the path, and the distance to the edge hardly "
-    "depends on that. The filter removes a part of the oscillation that late states add. "
-    "The thesis' gain leaves the lane at 0.5 m/s with any states, the true ones too: a P law needs an error of v / (R "
-    "k) in the bend. "
-    "States one second late stop the controller's own gain with and without the filter; numbers of runs that left "
-    "their "
-    "lane compare nothing. With the thesis' gain and speed the filter removes nine tenths of the error that the second "
-    "adds, and more than half of the amplitude.";
+    "A tenth of a second does not stop a robot at 0.5 m/s: with its own gain it keeps its lane equally well with the "
+    "newest states and the true ones, since extrapolation from the arrival errs along the path, which hardly affects "
+    "the distance to the edge. The filter removes part of the oscillation that late states add. With the thesis' gain "
+    "the robot leaves the lane at 0.5 m/s with any states, even the true ones: a P law needs an error of v / (R k) in "
+    "the bend. With states one second late the controller's own gain fails with and without the filter; figures of "
+    "runs that left their lane are not comparable. With the thesis' gain and speed, the filter removes nine tenths of "
+    "the error added by the delay of one second, and more than half of the amplitude.";
 
 }  // namespace
 
@@ -143,7 +140,7 @@ extern const ExperimentType late_states_experiment;
 
 constinit const ExperimentType late_states_experiment{
     .name = "late-states",
-    .summary = "lane keeping at 0.1 and 0.5 m/s by true, late and filtered states",
+    .summary = "lane keeping at 0.1 and 0.5 m/s with true, late and filtered states",
     .plant = Plant::thesis,
     .reasons = kLateReasons,
     .run = run_late_states,

@@ -57,20 +57,24 @@ std::string csv_of(const std::vector<Mapped>& rows) {
 
 std::string report_of(const ExperimentContext& context, const std::vector<Mapped>& rows) {
   std::string text = fmt::format(
-      "# {}\n\n{}\n\nThe robot makes the map at its own poses, 3 cm a cell. `cells missed` are cells that could be "
-      "seen free from some collision-free pose connected to the start, and are unexplored in the map. `wrong` is the "
-      "part of known cells that are free here and occupied in that reference, or the "
-      "other way round (cells on walls' faces go either way).\n\n"
-      "`scrapes` are contacts that began. `by hand`: a supervisor takes a robot that has stood in contact for {:g} s, "
-      "puts it back {:g} m along its way and turns it by {:.0f} degrees away from the contact. A `dead end`: the "
-      "direction of turns in place (its own or by hand) reversed {} times within a body's length; it lasts until the "
-      "robot is farther away "
-      "than that. `stuck` is time in dead ends or standing in contact. `explore` turns back and forth to look around, "
-      "so dead "
-      "ends are not counted there.\n\n"
+      "# {}\n"
+      "\n"
+      "{}\n"
+      "\n"
+      "The robot builds the map at its own poses, with cells of 3 cm. `cells missed` are cells that are visible as "
+      "free from a collision-free pose connected to the start, but unexplored in the map. `wrong` is the part of known "
+      "cells that are free here and occupied in that reference, or the other way round (cells on walls' faces go "
+      "either way).\n"
+      "\n"
+      "`scrapes` are contacts that began. `by hand`: a supervisor takes a robot that has been stuck in contact for "
+      "{:g} s, puts it back {:g} m along its path and turns it by {:.0f} degrees away from the contact. A `dead end`: "
+      "the direction of turns in place (its own or by hand) reversed {} times within a body's length; it lasts until "
+      "the robot is farther away than that. `stuck` is the time in dead ends or stopped in contact. `explore` turns "
+      "back and forth to look around, so dead ends are not counted there.\n"
+      "\n"
       "| controller | trial | time [s] | done | scrapes | by hand | dead ends | stuck [s] | driven [m] | cells missed "
-      "| "
-      "wrong |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "| wrong |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n",
       context.scenario.name, setup_of(context, {}), kSupervisor.patience, kSupervisor.back,
       kSupervisor.turn * 180.0 / M_PI, kReversals);
   for (const Mapped& m : rows)
@@ -147,16 +151,13 @@ std::vector<std::string> run_mapping(const ExperimentContext& context) {
 }
 
 constexpr std::string_view kMappingReasons =
-    "The thesis gives no numbers of its mapping; its maps are figures 44 and 45. "
-    "Its avoidance as described looks at the front third of its view alone: a point 0.10 to 0.165 m off the axis "
-    "leaves that third before the disc of the robot has passed, so it scrapes. "
-    "Its control logic then waits for the bumper to be released, which was done by a supervisor in the laboratory; "
-    "alone "
-    "it waits for ever, so results are given without and with one. "
-    "It has no goal either: it maps the areas that it happens to pass, and never finishes. "
-    "The plant, Player's driver of the Create unless told otherwise, changes little: the avoidance drives straight or "
-    "turns in place, which that driver changes little, and `explore` has no contacts and misses no cells with "
-    "either.";
+    "The thesis gives no numbers of its mapping; its maps are figures 44 and 45. Its avoidance as described considers "
+    "only the front third of its view: a point 0.10 to 0.165 m off the axis leaves that third before the disc of the "
+    "robot has passed, so it scrapes. Its control logic then waits for the bumper to be released, which was done by a "
+    "supervisor in the laboratory; without one it waits forever, so results are given without and with a supervisor. "
+    "It has no goal either: it maps the areas that it happens to pass, and never finishes. The plant, by default "
+    "Player's driver of the Create, changes little: the avoidance drives straight or turns in place, which that driver "
+    "changes little, and `explore` has no contacts and misses no cells with either.";
 
 }  // namespace
 

@@ -42,7 +42,8 @@ struct Part {
       for (const auto& [key, value] : found->pairs)
         (key == "part" ? number : parts) = static_cast<unsigned>(std::strtoul(value.c_str(), nullptr, 10));
     if (parts < 2 || number >= parts)
-      throw base::InputError(name, 0, "no recording of a rank: expected one of `mpirun -n N sensorfarm run --record`");
+      throw base::InputError(
+          name, 0, "not the recording of a rank: expected one written by `mpirun -n N sensorfarm run --record`");
     find_ticks();
   }
 
@@ -84,7 +85,8 @@ Parts open_parts(std::span<const std::string> places) {
     for (const std::string& file : files_at(place)) {
       auto part = std::make_unique<Part>(file);
       const auto [at, is_new] = found.try_emplace(part->number, nullptr);
-      if (!is_new) throw base::InputError(file, 0, "is the same rank's as " + at->second->name + ": give one of them");
+      if (!is_new)
+        throw base::InputError(file, 0, "belongs to the same rank as " + at->second->name + ": give one of them");
       at->second = std::move(part);
     }
   if (!found.contains(0)) throw base::InputError("the recording of rank 0 is missing: rank-0.mcap has the states");
@@ -98,7 +100,7 @@ Parts open_parts(std::span<const std::string> places) {
     if (at->second->parts != parts)
       throw base::InputError(
           at->second->name, 0,
-          fmt::format("is of a run with {} ranks, and rank 0's of one with {}", at->second->parts, parts));
+          fmt::format("belongs to a run with {} ranks, but rank 0's to one with {}", at->second->parts, parts));
     all.push_back(std::move(at->second));
   }
   return all;
@@ -115,7 +117,7 @@ void check_same_run(const Part& first, const Part& other) {
                         !b.attachments.empty() && a.channels.size() == b.channels.size() &&
                         same(a.messages[0].data, b.messages[0].data) &&
                         same(a.attachments[0].data, b.attachments[0].data);
-  if (!together) throw base::InputError(other.name, 0, "is of another run than " + first.name);
+  if (!together) throw base::InputError(other.name, 0, "belongs to another run than " + first.name);
 }
 
 /// Writes the parts as one recording.
@@ -243,7 +245,7 @@ MergedRecording merge_recordings(std::span<const std::string> places, const std:
   MergedRecording merged;
   for (const auto& part : parts) {
     if (part->contents.truncated && part->ticks.size() == 1)
-      throw base::InputError(part->name, 0, "was cut off before its first tick: there is nothing to merge");
+      throw base::InputError(part->name, 0, "was cut off before its first tick: nothing to merge");
   }
   record::GrowingFile file(folder + "/" + record::RecordingPart{}.file());
   const record::Compression compression = parts[0]->contents.compression.value_or(record::Compression::none);

@@ -88,7 +88,7 @@ void Operator::apply_fleet_changes() {
   if (loads_worlds_)
     world_ = std::move(requests_.world);
   else
-    refuse(*requests_.world->outcome, "this run loads no other world");
+    refuse(*requests_.world->outcome, "this run cannot load another world");
 }
 
 bridges::WorldChange Operator::take_world() {

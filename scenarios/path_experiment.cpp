@@ -72,10 +72,22 @@ std::string report_of(const ExperimentContext& context, const std::vector<Trial>
                         trials[k].counts.front().travelled);
   }
   return fmt::format(
-      "# {}\n\n{}\n\nTable {} of the thesis, all eight columns:\n\n{}\n"
-      "| trial | time on the path [s] | errors | contacts | end reached | driven [m] |\n|---|---|---|---|---|---|\n{}\n"
-      "## Why ours and the thesis' differ\n\n{}\n\nMore in docs/experiments.md. `statistics.csv` has the numbers, "
-      "`trial-<k>/` each run whole (`sensorfarm plot`).\n",
+      "# {}\n"
+      "\n"
+      "{}\n"
+      "\n"
+      "Table {} of the thesis, all eight columns:\n"
+      "\n"
+      "{}\n"
+      "| trial | time on the path [s] | errors | contacts | end reached | driven [m] |\n"
+      "|---|---|---|---|---|---|\n"
+      "{}\n"
+      "## Why these results differ from the thesis'\n"
+      "\n"
+      "{}\n"
+      "\n"
+      "More in docs/experiments.md. `statistics.csv` has the numbers, `trial-<k>/` each run whole (`sensorfarm "
+      "plot`).\n",
       context.scenario.name, setup_of(context, {}), table.number, table_of(statistics, table), ends,
       context.type.reasons);
 }
@@ -100,22 +112,20 @@ std::vector<std::string> run_path(const ExperimentContext& context) {
 constexpr std::string_view kEdgeReasons =
     "The plant: for any P loop the mean error is the bend's angle over gain and time, (pi/2) / (kp T), so a robot that "
     "executes commands unchanged has twice the thesis' mean; the thesis drove through Player's driver of the Create, "
-    "which "
-    "halves radii and so doubles the gain, and with it (plant `thesis`) means and deviations agree. "
-    "The extremes do not: the thesis' robot was off to the left by twice as much, and once by 0.871 m, which a lane of "
-    "half a metre cannot give. "
-    "Its lane widths are not printed; ours are 0.50, 0.60 and 0.45 m, and where they change the error jumps by half "
-    "the change. "
-    "Its delays and noise are not printed either; ours were chosen to match the magnets' tables, not these. "
-    "The overshoot in the bend is the P law's own, not the line fit's: the experiment `sweeps` shows both.";
+    "which halves radii and so doubles the gain, and with it (plant `thesis`) means and deviations agree. The extremes "
+    "do not: the thesis' robot was off to the left by twice as much, and once by 0.871 m, which is impossible in a "
+    "lane of half a metre. Its lane widths are not printed; those used here are 0.50, 0.60 and 0.45 m, and where they "
+    "change the error jumps by half the change. Its delays and noise are not printed either; those used here were "
+    "chosen to match the magnets' tables, not these. The overshoot in the bend is the P law's own, not the line fit's: "
+    "the experiment `sweeps` shows both.";
 constexpr std::string_view kMagnetReasons =
-    "The gains: the thesis prints kp = 0.01 and ki = 0.006 without a unit; ours (0.09 and 0.0055 rad/s per Gauss, "
-    "doubled by the driver) follow from its means, which for any P loop are (pi/2) / (kp T). "
-    "The printed ratio of the two cannot be: whatever their unit, such a loop has a mean near 0 and is unstable with "
-    "the delay that the thesis mentions. "
-    "The delay of about one second is our choice, made to give these tables their swing. "
+    "The gains: the thesis prints kp = 0.01 and ki = 0.006 without a unit; those used here (0.09 and 0.0055 rad/s per "
+    "Gauss, doubled by the driver) follow from its means, which for any P loop are (pi/2) / (kp T). The printed ratio "
+    "of the two is impossible: whatever their unit, such a loop has a mean near 0 and is unstable with the delay that "
+    "the thesis mentions. The delay of about one second was chosen to reproduce the oscillation in these tables. "
     "Differences remain in the extremes, up to half of the thesis' to the left: its pattern of magnets and the "
-    "disturbances of its laboratory are known by a figure alone, and ours are a plain row with 2 mGauss of noise.";
+    "disturbances of its laboratory are known only from a figure, while this world has a plain row with 2 mGauss of "
+    "noise.";
 
 }  // namespace
 

@@ -13,15 +13,16 @@ world::World recorded_world(const record::Recording& recording) {
   world::World world = world::from_snapshot(recording.info.snapshot);
   for (const record::JoinedMover& joined : recording.info.joined) {
     if (joined.original >= world.movers.size())
-      throw base::InputError(
-          recording.file, 0,
-          fmt::format("'{}' joined as a copy of row {}, which its world lacks", joined.name, joined.original));
+      throw base::InputError(recording.file, 0,
+                             fmt::format("'{}' joined as a copy of row {}, which does not exist in its world",
+                                         joined.name, joined.original));
     world::append_robot(world, joined.original, joined.name, joined.X_WM);
   }
   if (world.movers.size() != recording.states.size())
-    throw base::InputError(recording.file, 0,
-                           fmt::format("has the states of {} movers, and its world has {}: not one recording",
-                                       recording.states.size(), world.movers.size()));
+    throw base::InputError(
+        recording.file, 0,
+        fmt::format("has the states of {} movers, but its world has {}: the two do not belong together",
+                    recording.states.size(), world.movers.size()));
   return world;
 }
 

@@ -60,8 +60,8 @@ void choose_plain(const world::World& world, record::RunInfo& info) {
     if (!world.movers[row].is_tag) robots.push_back(row);
   if (robots.size() != 1)
     throw base::InputError(world.file, 0,
-                           fmt::format("has {} robots, and plain names of topics are for one: expected --topics robot "
-                                       "or nav2, or a world with one robot",
+                           fmt::format("has {} robots, but plain topic names are for a single robot: expected --topics "
+                                       "robot or nav2, or a world with one robot",
                                        robots.size()));
   info.movers[robots[0]].plain = true;
 }

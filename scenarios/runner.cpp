@@ -50,13 +50,13 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
   const bool of_driven = e.kind == Kind::checkpoints || e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error;
   if (of_driven && std::all_of(rows.begin(), rows.end(),
                                [&](std::uint32_t row) { return options.actors[row].controller.name.empty(); }))
-    refuse(fmt::format("'{}' of a robot without a controller; give it one", expectation_kind_name(e.kind)));
+    refuse(fmt::format("'{}' of a robot without a controller; give the robot one", expectation_kind_name(e.kind)));
   if (e.kind == Kind::map_coverage &&
       std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) { return !sensors::has_laser(world.movers[row]); }))
-    refuse(e.robot.empty() ? "no robot has a laser to make a map with; give one a laser"
-                           : fmt::format("'{}' has no laser to make a map with; give it one", e.robot));
+    refuse(e.robot.empty() ? "no robot has a laser to build a map with; give one a laser"
+                           : fmt::format("'{}' has no laser to build a map with; give it one", e.robot));
   if (e.kind == Kind::lights_obeyed && world.lights.empty())
-    refuse(world.file + " has no lights to be obeyed; leave this out");
+    refuse(world.file + " has no traffic lights; leave this out");
 }
 
 /// Returns the line of the file that sets the mover's controller.
@@ -301,14 +301,12 @@ ScenarioStatus ScenarioResult::status() const {
 std::vector<world::Warning> check_scenario(const Scenario& scenario) {
   world::World world = world_of(scenario);
   if (std::llround(scenario.duration / world.interval) < 1)
-    throw base::InputError(
-        scenario.file, scenario.duration_line,
-        fmt::format("'duration' {:g} s is less than a tick of {:g} s, so nothing would be simulated; "
-                    "expected at least one tick",
-                    scenario.duration, world.interval));
+    throw base::InputError(scenario.file, scenario.duration_line,
+                           fmt::format("'duration' {:g} s is shorter than a tick of {:g} s, so nothing would be "
+                                       "simulated; expected at least one tick",
+                                       scenario.duration, world.interval));
   if (std::all_of(world.movers.begin(), world.movers.end(), [](const world::Mover& mover) { return mover.is_tag; }))
-    world.warnings.push_back(
-        {scenario.world, 0, "has no robot, so nothing drives: add one to a world that includes it"});
+    world.warnings.push_back({scenario.world, 0, "has no robot to drive: add one to a world that includes it"});
   SimulationOptions options = simulation_of(scenario, world);
   check_events(scenario, world, options);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);

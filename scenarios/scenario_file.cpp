@@ -176,7 +176,7 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
     setup.controller_line = driver == nullptr ? node.line : driver->line;
     const auto [other, fresh] = lines.emplace(setup.name, setup.line);
     if (!fresh)
-      reader.fail(node, fmt::format("the robot '{}' is configured at line {} already; expected one [[robot]] for each",
+      reader.fail(node, fmt::format("the robot '{}' is already configured at line {}; expected one [[robot]] per robot",
                                     setup.name, other->second));
     scenario.robot_setups.push_back(std::move(setup));
   }

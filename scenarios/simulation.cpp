@@ -90,9 +90,8 @@ void Simulation::warn_of_long_ways() {
     if (outline.edges.empty() || way <= robots::Fleet::kMostTested * outline.step) continue;
     warnings_.push_back(
         {world_.file, 0,
-         fmt::format("'{}' may travel {:.4g} m in a tick of {:g} s: near obstacles it ends a tick "
-                     "after {:.4g} m of it, tested in steps of {:.2g} m; lower its velocity_bounds, or "
-                     "the world's interval_sim",
+         fmt::format("'{}' may travel {:.4g} m in a tick of {:g} s, but near obstacles a tick ends after {:.4g} m, "
+                     "tested in steps of {:.2g} m; lower its velocity_bounds, or the world's interval_sim",
                      mover.name, way, world_.interval, robots::Fleet::kMostTested * outline.step, outline.step)});
     return;
   }
@@ -238,7 +237,7 @@ std::uint32_t Simulation::bring_back(std::uint32_t mover, const JoiningRobot& ro
 void Simulation::remove_robot(std::uint32_t mover) {
   share_->check_may_join();
   if (mover >= absent_.size() || absent_[mover])
-    throw base::InputError(fmt::format("there is no robot in row {} to be removed", mover));
+    throw base::InputError(fmt::format("row {} has no robot to remove", mover));
   settle();
   set_absent(mover, true);
   controls_[mover] = {};

@@ -48,7 +48,7 @@ void set_value(TomlNode& root, const std::string& path, const TomlNode& value) {
   for (std::size_t at = 0; at <= path.size();) {
     const std::size_t end = std::min(path.find('.', at), path.size());
     if (node->kind != TomlNode::Kind::table && node->kind != TomlNode::Kind::list)
-      throw base::InputError(fmt::format("'{}' is a value and has no keys below it", node->key));
+      throw base::InputError(fmt::format("'{}' is a value and has no subkeys", node->key));
     node = &item_of(*node, path.substr(at, end - at), path.starts_with("robot."));
     at = end + 1;
   }

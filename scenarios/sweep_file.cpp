@@ -108,9 +108,9 @@ void check_name(const TomlReader& reader, const Leaf& leaf, std::set<std::string
                                 ? "'seed' is not a parameter; expected seeds = N or seeds = [...] instead"
                                 : "'name' is not a parameter; expected a key that changes the run");
   if (("." + leaf.name + ".").find("..") != std::string::npos)
-    reader.fail(*leaf.node, fmt::format("'{}' has an empty part; expected keys joined by points", leaf.name));
+    reader.fail(*leaf.node, fmt::format("'{}' has an empty part; expected keys separated by dots", leaf.name));
   if (!names.insert(leaf.name).second)
-    reader.fail(*leaf.node, fmt::format("'{}' is a parameter already; expected it once", leaf.name));
+    reader.fail(*leaf.node, fmt::format("'{}' is already a parameter; expected it once", leaf.name));
 }
 
 void check_choices(const TomlReader& reader, const Leaf& leaf) {
@@ -143,8 +143,8 @@ void check_number_of_jobs(const TomlReader& reader, const Sweep& sweep, std::siz
     if (!parameter.sampled) jobs *= static_cast<double>(parameter.values.size());
   if (jobs > kMostJobsNumber)
     throw base::InputError(reader.file(), 0,
-                           fmt::format("has {:.4g} jobs (points x seeds); expected {} at most: take fewer values or "
-                                       "seeds, or a sample in place of the grid",
+                           fmt::format("has {:.4g} jobs (points x seeds); expected {} at most: use fewer values or "
+                                       "seeds, or a sample instead of the grid",
                                        jobs, kMostJobs));
 }
 
@@ -214,7 +214,7 @@ std::vector<std::uint64_t> seeds_of(const TomlReader& reader, const TomlNode& ro
   }
   if (seeds.empty()) reader.fail(*node, "'seeds' expects at least one: a number of seeds, or a list of them");
   if (std::set<std::uint64_t>(seeds.begin(), seeds.end()).size() != seeds.size())
-    reader.fail(*node, "'seeds' has one of them twice; expected different ones");
+    reader.fail(*node, "'seeds' contains a duplicate; expected distinct seeds");
   return seeds;
 }
 

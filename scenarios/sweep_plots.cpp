@@ -90,15 +90,16 @@ std::string value_name(const SweepJobs& jobs, const Parameter& p, const std::str
 std::string metric_name(const std::string& metric) {
   const std::size_t of = metric.find(" of ");
   const std::string base = metric.substr(0, of), robot = of == std::string::npos ? "" : metric.substr(of);
-  const std::pair<std::string_view, std::string_view> kNames[] = {{"met", "part of runs that met their expectations"},
-                                                                  {"contacts", "contacts"},
-                                                                  {"mean_error", "|mean error|"},
-                                                                  {"mean_abs_error", "mean |error|"},
-                                                                  {"map_coverage", "part of the map seen"},
-                                                                  {"red_lights_passed", "red lights passed"},
-                                                                  {"done", "part of runs that were done"},
-                                                                  {"distance", "distance [m]"},
-                                                                  {"all_checkpoints", "checkpoints of all robots"}};
+  const std::pair<std::string_view, std::string_view> kNames[] = {
+      {"met", "fraction of runs that met their expectations"},
+      {"contacts", "contacts"},
+      {"mean_error", "|mean error|"},
+      {"mean_abs_error", "mean |error|"},
+      {"map_coverage", "fraction of the map seen"},
+      {"red_lights_passed", "red lights passed"},
+      {"done", "fraction of runs that were done"},
+      {"distance", "distance [m]"},
+      {"all_checkpoints", "checkpoints of all robots"}};
   for (const auto& [word, name] : kNames) {
     if (base != word) continue;
     const std::size_t unit = std::min(name.find(" ["), name.size());
@@ -127,7 +128,7 @@ class SweepPlotter {
 
   void draw(const std::string& file) {
     if (varied_.empty()) {
-      plots_.notes.emplace_back("no parameter has two values: there is nothing to plot");
+      plots_.notes.emplace_back("no parameter has two values: nothing to plot");
       return;
     }
     metrics_ = jobs_.metrics;
@@ -196,9 +197,9 @@ class SweepPlotter {
     for (const std::string& text : x.values) values.push_back(*number_of(text));
     if (choice_.x_axis == viz::AxisScale::automatic) return viz::is_geometric(values);
     if (values.front() > 0.0) return true;
-    throw base::InputError(
-        file, 0,
-        fmt::format("{} = {}: a logarithmic axis has values above 0 only", jobs_.parameters[x.row], x.values.front()));
+    throw base::InputError(file, 0,
+                           fmt::format("{} = {}: a logarithmic axis allows only values above 0",
+                                       jobs_.parameters[x.row], x.values.front()));
   }
 
   /// Returns "mean and 95 % interval (Student), n = 3 per point; 2 results left out".
@@ -212,7 +213,7 @@ class SweepPlotter {
       seeds += point.status.size();
     }
     const bool part = is_met(metric) || metrics_[metric] == "done";
-    std::string text = part       ? "part and 95 % interval (Wilson), "
+    std::string text = part       ? "fraction and 95 % interval (Wilson), "
                        : most < 2 ? "one result per point: no interval"
                                   : "mean and 95 % interval (Student's t), ";
     if (part || most > 1)

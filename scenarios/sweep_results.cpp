@@ -114,8 +114,8 @@ SweepFolder::SweepFolder(const Sweep& sweep, std::string path) : path_(std::move
   if (!fs::exists(mark)) write_whole(mark, id);
   if (base::read_text(mark, 1u << 10) != id)
     throw base::InputError(path_, 0,
-                           fmt::format("has the results of another sweep, or of {} before a change of it or of its "
-                                       "scenario; name another folder, or remove this one",
+                           fmt::format("contains the results of another sweep, or of {} before it or its scenario "
+                                       "changed; name another folder, or remove this one",
                                        sweep.file));
 }
 

@@ -117,7 +117,7 @@ std::vector<Point> all_points() {
 }
 
 const std::map<std::string, std::string> kAxes{{"delay", "delay of readings [s]"},
-                                               {"loss", "part of readings lost [-]"},
+                                               {"loss", "fraction of readings lost [-]"},
                                                {"rate", "rate of sensor and controller [Hz]"},
                                                {"gain", "kp [rad/s per m]"}};
 
@@ -161,10 +161,9 @@ std::string draw(const ExperimentContext& context, const std::vector<Point>& poi
 std::string report_of(const ExperimentContext& context, const std::vector<Point>& points) {
   std::string text =
       "# Sweeps of the lane edge loop\n\n" + setup_of(context, {}) +
-      "\n\nOne parameter is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
-      "or loss. `exact edge`: the exact distance across the robot (one ray) in place of the line through 61 "
-      "rays. `owed` is the mean error inherent in a P loop on this bend: (pi/2) / (kp T), the gain "
-      "doubled by the plant `thesis`.\n";
+      "\n\nOne parameter is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter or loss. "
+      "`exact edge`: the exact distance across the robot (one ray) instead of the line through 61 rays. `owed` is the "
+      "mean error inherent in a P loop on this bend: (pi/2) / (kp T), the gain doubled by the plant `thesis`.\n";
   std::string sweep;
   for (const Point& p : points) {
     if (p.sweep != sweep)
@@ -200,12 +199,11 @@ std::vector<std::string> run_sweeps(const ExperimentContext& context) {
 
 constexpr std::string_view kSweepReasons =
     "The thesis has no such sweeps; it blames delays and updates at 10 Hz for its oscillation, and the linear fit of "
-    "the edge for the over- and undershoot in the bend. "
-    "Here the overshoot stays without delay and with the exact edge: to turn at v / R a P law must have an error of "
-    "v / (R k), and it shrinks as the gain k grows. "
-    "The line fit has a small part of the largest error, where the bend begins and ends. "
-    "Delay, loss and rate make the loop swing, but less than the thesis states, since it is slow (about 1 rad/s). "
-    "With the plant `ideal` the gain is half, and every error about twice as large.";
+    "the edge for the over- and undershoot in the bend. Here the overshoot remains without delay and with the exact "
+    "edge: to turn at v / R a P law requires an error of v / (R k), which shrinks as the gain k grows. The line fit "
+    "contributes a small part of the largest error, where the bend begins and ends. Delay, loss and rate make the loop "
+    "oscillate, but less than the thesis states, since the loop is slow (about 1 rad/s). With the plant `ideal` the "
+    "gain is half, and every error about twice as large.";
 
 }  // namespace
 
@@ -214,7 +212,7 @@ extern const ExperimentType sweeps_experiment;
 constinit const ExperimentType sweeps_experiment{
     .name = "sweeps",
     .summary =
-        "the lane edge loop over delay, loss, rate and gain, each also with an exact edge in place of the line fit",
+        "the lane edge loop over delay, loss, rate and gain, each also with an exact edge instead of the line fit",
     .plant = Plant::thesis,
     .reasons = kSweepReasons,
     .run = run_sweeps,

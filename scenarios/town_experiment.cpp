@@ -58,17 +58,15 @@ std::vector<std::string> run_town(const ExperimentContext& context) {
 
 constexpr std::string_view kTownReasons =
     "The thesis names SimVille as the testbed and gives no numbers of traffic in it, so nothing here is compared. "
-    "Contacts and red lights passed must be zero; metres and checkpoints measure how well traffic flows, and "
-    "depend on the order in which robots meet. "
-    "The plant is `ideal` by default, since the thesis has no numbers here that its driver would explain. "
-    "The mean error of a robot on a route is its distance from the middle of its lane; convoys and pedestrians have "
-    "none.";
+    "Contacts and red lights passed must be zero; metres and checkpoints measure the flow of traffic and depend on the "
+    "order in which robots meet. The plant is `ideal` by default, since the thesis has no numbers here that its driver "
+    "would explain. The mean error of a robot on a route is its distance from the middle of its lane; convoys and "
+    "pedestrians have none.";
 constexpr std::string_view kMagicReasons =
-    "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. "
-    "Contacts are those of three Pioneers that wander without a map or V2V and do not see behind them, and of "
-    "obstacles that patrol among them without yielding; where two meet, it counts for both that were stopped. "
-    "The plant is `ideal` by default, since Player's driver of the Create is not a Pioneer's. "
-    "Trials differ by the robots' start poses and random turns.";
+    "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. Contacts are those "
+    "of three Pioneers that wander without a map or V2V and do not see behind them, and of obstacles that patrol among "
+    "them without yielding; where two meet, each stopped robot counts one. The plant is `ideal` by default, since "
+    "Player's driver of the Create is not a Pioneer's. Trials differ by the robots' start poses and random turns.";
 
 }  // namespace
 

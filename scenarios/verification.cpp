@@ -143,11 +143,12 @@ class Verifier {
       result_.skipped.push_back(
           fmt::format("{} readings of bumpers: where a robot was touched is not recorded", unfelt_));
     if (near_maps_ > 0)
-      result_.skipped.push_back(fmt::format(
-          "{} occupancy maps: earlier versions took surfaces nearer than a laser's minimum for obstacles", near_maps_));
+      result_.skipped.push_back(
+          fmt::format("{} occupancy maps: earlier versions treated surfaces nearer than a laser's minimum as obstacles",
+                      near_maps_));
     if (recording_.readings.empty() && farm_.sensor_set().group(sensors::kLaser) == nullptr)
       result_.skipped.emplace_back(
-          "all readings: the run kept none, and no robot has a laser to compare with plain C++");
+          "all readings: none were recorded, and no robot has a laser to compare with plain C++");
   }
 
   /// A service's readings are those that robots subscribed to, at times of its clock. Only scans can be recomputed,
@@ -172,12 +173,11 @@ class Verifier {
     }
     cast_again();
     result_.ticks = recording_.ticks;
-    if (recording_.readings.empty()) result_.skipped.push_back("no robot asked for readings");
+    if (recording_.readings.empty()) result_.skipped.push_back("no robot requested readings");
     if (lost > 0)
       result_.skipped.push_back(fmt::format("{} scans: the states at their times are missing or damaged", lost));
     if (others > 0)
-      result_.skipped.push_back(
-          fmt::format("{} readings of other sensors: a service measures when it is asked", others));
+      result_.skipped.push_back(fmt::format("{} readings of other sensors: a service measures on request", others));
   }
 
   void look_at_tick(std::size_t tick) {

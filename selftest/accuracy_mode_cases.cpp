@@ -97,7 +97,7 @@ void near_magnets(Fixture& fixture, Checks& checks) {
 constexpr Case kAccuracyModeCases[] = {
     {"modes", "stated-bounds", "m", "scans in 64 and in 32 bits, 1 mm to 1 000 km wide: within the stated bounds",
      stated_bounds},
-    {"modes", "skipped-beams", "", "cast beams equal those of exact scans to the bit, the others are flagged",
+    {"modes", "skipped-beams", "", "cast beams are bitwise equal to those of exact scans, the others are flagged",
      skipped_beams},
     {"modes", "near-magnets", "T", "magnets of 1e-3 to 1e3 A m^2 left out: within the stated bounds", near_magnets},
 };

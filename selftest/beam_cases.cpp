@@ -43,7 +43,7 @@ void parallel(Fixture& fixture, Checks& checks) {
       add_wall(world, {12.0, -5.0}, {12.0, 5.0});
       add_laser_mover(world, {from, beside, 0.0, 0.0}, laser(1, 0.0, 100.0));
       const TestFarm test = fixture.measure(world);
-      checks.same(test.readings[0].values[0], 12.0 - from, fmt::format("{:g} m beside, from {:g}", beside, from));
+      checks.same(test.readings[0].values[0], 12.0 - from, fmt::format("{:g} m aside, from {:g}", beside, from));
       checks.equal(test.readings[0].hits[0], 1u, "the wall across is named");
     }
 }
@@ -125,12 +125,12 @@ constexpr Case kBeamCases[] = {
     {"beams", "grazing", "m", "walls met at 0.1 to 1e-9 rad: rounding of 64 bits divided by the sine, 2e-4 m at 1e-9",
      grazing},
     {"beams", "parallel", "m",
-     "beams along a wall, 1 m to 1e-300 m beside it and in its line: the wall across, to the bit", parallel},
+     "beams along a wall, 1 m to 1e-300 m away from it and in line with it: the wall across, bitwise", parallel},
     {"beams", "shared-corners", "m",
      "beams into the corners of polygons: the corner's distance, rounding over the walls' sine", corners},
     {"beams", "touching-corners", "m",
      "between two blocks that touch in one corner: its distance, rounding at 45 degrees", touching_corners},
-    {"beams", "from-on-a-wall", "m", "0 into the wall to the bit, the other walls off it within rounding",
+    {"beams", "from-on-a-wall", "m", "exactly 0 into the wall, the other walls away from it within rounding",
      from_on_a_wall},
     {"beams", "from-inside", "m", "inside overlapping blocks: the nearest surface, within rounding", from_inside},
 };

@@ -57,14 +57,14 @@ void Checks::refused(const std::function<void()>& call, std::string_view word, s
   std::string said;
   try {
     call();
-    said = "was taken";
+    said = "was accepted";
   } catch (const base::InputError& error) {
     said = error.what();
   } catch (const base::DeviceError& error) {
     said = error.what();
   }
-  holds(said.find(word) != std::string::npos && said != "was taken",
-        fmt::format("{}: expected a refusal that names '{}', not: {}", what, word, said));
+  holds(said.find(word) != std::string::npos && said != "was accepted",
+        fmt::format("{}: expected a rejection that names '{}', got: {}", what, word, said));
 }
 
 void Checks::note(std::string text) {

@@ -87,7 +87,7 @@ void plain_cpp(Fixture& fixture, Checks& checks) {
   beside(fixture, checks, crowd(0.0, sparse), "every 7th beam", all);
   beside(fixture, checks, crowd(0.0, laser(12, 2.0 * M_PI, 100.0)), "12 beams of 100 m", all);
   beside(fixture, checks, crowd(0.0, laser(181, 1e-3, 0.05)), "a range of 5 cm", all);
-  checks.note(fmt::format("{} of {} beams are not the same to the bit", all.found, all.beams));
+  checks.note(fmt::format("{} of {} beams are not bitwise equal", all.found, all.beams));
 }
 
 /// Readings after a year and at tick 1e9, with noise.

@@ -44,7 +44,7 @@ void a_hundred_thousand(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kSide = 320, kRobots = 100'000;
   if (!casts_any_world(fixture)) {
     checks.holds(true, "left out");
-    return checks.note("left out: more beams and surfaces than the chosen caster takes");
+    return checks.note("left out: more beams and surfaces than the chosen caster supports");
   }
   world::World world;
   for (std::uint32_t i = 0; i < kRobots; ++i) {
@@ -62,9 +62,9 @@ void a_hundred_thousand(Fixture& fixture, Checks& checks) {
 
 constexpr Case kFleetCases[] = {
     {"fleets", "nobody", "", "a world without robots, with walls and without: no readings, no error", nobody},
-    {"fleets", "coincident", "m", "100 robots in one place: each other's outlines within rounding, equal to the bit",
+    {"fleets", "coincident", "m", "100 robots in one place: each other's outlines within rounding, bitwise equal",
      coincident},
-    {"fleets", "a-hundred-thousand", "m", "100 000 robots in rows: each the back of the next, 0.75 m to the bit",
+    {"fleets", "a-hundred-thousand", "m", "100 000 robots in rows: each sees the back of the next, exactly 0.75 m away",
      a_hundred_thousand},
 };
 

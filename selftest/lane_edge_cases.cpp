@@ -120,7 +120,7 @@ void equal_points(Fixture& fixture, Checks& checks) {
     checks.same(said.points, samples, "they are counted");
   }
   checks.near(read(fixture, world, {}, {{"samples", {3}}, {"fov", {1.0}}}).distance, 0.45L, 1e-13,
-              "a degree apart they are one");
+              "a degree apart they are an edge");
 }
 
 /// Points ahead and behind on one line through the sensor.
@@ -151,7 +151,7 @@ constexpr Case kLaneEdgeCases[] = {
      "vertical, horizontal and tilted, 0 to 1e7 m away: four roundings of the paint's corners over cos^2", angles},
     {"edges", "through-the-sensor", "m", "an edge through the sensor: 0, within the touch of 1 nm", through_the_sensor},
     {"edges", "edge-ranges", "of range",
-     "range_max 1 um to 10 km: half of it, rounding of 64 bits; beyond both ends refused by name", ranges},
+     "range_max 1 um to 10 km: half of it, rounding of 64 bits; rejected by name beyond both ends", ranges},
     {"edges", "one-point", "m", "one point, or none, is no edge; a single ray is its own reading", one_point},
     {"edges", "equal-points", "m", "points that coincide within 1e-7 are no edge", equal_points},
     {"edges", "collinear-points", "m",

@@ -147,7 +147,7 @@ constexpr Case kMagnetCases[] = {
     {"magnets", "far-fields", "of |B|",
      "200 magnets in a line 0, 1e5, 1e7 m away: differences are taken in 64 bits, 1e-13", far_origins},
     {"magnets", "cancelling-pairs", "of |B|",
-     "1 000 magnets in opposite pairs: nothing is left to the bit; beside them, 1e-13 of magnitudes", cancelling_pairs},
+     "1 000 magnets in opposite pairs: exactly 0; next to them, 1e-13 of magnitudes", cancelling_pairs},
     {"magnets", "saturation", "T",
      "1e12 A m^2 at 0 and 1e-6 m: readings stay at the sensitivity of 21.47 T, one rounding", saturated},
 };

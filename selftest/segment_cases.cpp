@@ -51,7 +51,7 @@ void tiny_beside_huge(Fixture& fixture, Checks& checks) {
   }
   add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
   const TestFarm test = fixture.measure(world);
-  for (const base::ReadingBlock& r : test.readings) check_scan(test, r, checks, "nanometres beside 200 km");
+  for (const base::ReadingBlock& r : test.readings) check_scan(test, r, checks, "nanometres next to 200 km");
 }
 
 /// `side` x `side` posts of four walls each on a square metre.
@@ -94,7 +94,7 @@ void a_million(Fixture& fixture, Checks& checks) {
 constexpr Case kSegmentCases[] = {
     {"segments", "zero-length", "m", "walls of zero length are never hit: the others, within rounding", zero_length},
     {"segments", "slivers", "m", "blocks 1 mm to 1e-12 m thick: their faces, within rounding", slivers},
-    {"segments", "tiny-beside-huge", "m", "walls of nanometres beside walls of 200 km, aimed at: within rounding",
+    {"segments", "tiny-beside-huge", "m", "walls of nanometres next to walls of 200 km, aimed at: within rounding",
      tiny_beside_huge},
     {"segments", "a-million-in-one-cell", "m",
      "a million walls on a square metre: exact, on the device or, beyond its lists, on the host", a_million},

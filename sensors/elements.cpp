@@ -20,7 +20,7 @@ Pose element_pose(const world::Sensor& sensor, const world::Setting& setting, bo
   const Pose pose{sensor.metres_per_unit * p[0], sensor.metres_per_unit * p[1], z,
                   sensor.radians_per_unit * p[least - 1]};
   if (std::max({std::abs(pose.x), std::abs(pose.y), std::abs(pose.z)}) <= kFarthest) return pose;
-  refuse(sensor, setting.key, fmt::format("'{}' is farther than {:g} m from its sensor", setting.key, kFarthest));
+  refuse(sensor, setting.key, fmt::format("'{}' is more than {:g} m from its sensor", setting.key, kFarthest));
 }
 
 Pose element(const world::Sensor& sensor, std::uint32_t i, std::uint32_t count) {

@@ -51,7 +51,7 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   edge.single = fan.samples <= 2;
   if (!edge.single && !(fan.fov > 0.0))
     refuse(sensor, "fov",
-           "a line needs rays of different bearings; expected a 'fov' above 0, or 'samples 1' for one ray");
+           "a line requires rays with different bearings; expected a 'fov' above 0, or 'samples 1' for one ray");
   fan.name = sensor.name;
   fan.X_MS = sensor.X_MS;
   fan.X_MS.z += 0.5 * sensor.height;

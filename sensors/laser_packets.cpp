@@ -121,7 +121,7 @@ std::string laser_wire_problem(const SensorSpec& sensor, WireFormat wire) {
   if (wire == WireFormat::farm || fits_plain(sensor)) return "";
   return std::to_string(sensor.elements) + " samples up to " + std::to_string(sensor.limit) +
          " m do not fit the thesis' layout, which holds 361 rays up to 65.535 m: lower `samples` or `range_max`, or "
-         "send the farm's own packets (`--wire farm`)";
+         "use the farm's packets (`--wire farm`)";
 }
 
 std::uint32_t laser_parts(const SensorSpec& sensor, WireFormat wire) {

@@ -236,7 +236,7 @@ ErrorBound bound_of_magnetometer(const world::World& world, const ParsedSensors&
   for (const double height : heights)
     bound.error = std::max(bound.error, field_bound(world, row.mode, height).at(farthest));
   if (std::isinf(bound.error))
-    bound.condition = "a magnet has the sensor's height, so that the sensor may reach its centre";
+    bound.condition = "a magnet is at the sensor's height, so the sensor can reach its centre";
   return bound;
 }
 

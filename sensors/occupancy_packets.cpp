@@ -59,7 +59,7 @@ std::string occupancy_wire_problem(const SensorSpec& sensor, WireFormat wire) {
   if (fits) return "";
   return fmt::format(
       "a map of {} x {} words does not fit the thesis' layout, which holds {} words, at most {} in a row or column: "
-      "lower `words`, or send the farm's own packets (`--wire farm`)",
+      "lower `words`, or use the farm's packets (`--wire farm`)",
       sensor.across, rows, maps::kMaxPlainWords, maps::kMaxPlainSide);
 }
 

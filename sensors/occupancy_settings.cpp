@@ -73,7 +73,7 @@ std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
 /// Returns the number of the laser that fills the map.
 std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover, std::span<const SensorSpec> lasers) {
   if (lasers.empty())
-    refuse(sensor, "laser", "a map needs a laser on the same robot; give it a laser( ) or remove the map");
+    refuse(sensor, "laser", "a map requires a laser on the same robot; give it a laser( ) or remove the map");
   const world::Setting* named = find(sensor, "laser");
   if (named == nullptr) return 0;
   const auto found =
@@ -90,9 +90,9 @@ void fill_from(const world::Sensor& sensor, const SensorSpec& laser, MapSettings
   settings.range_min = laser.range_min;
   settings.range_max = laser.limit;
   if (settings.samples > kMostMapBeams)
-    refuse(sensor, "laser",
-           fmt::format("laser '{}' has {} samples; maps are made of at most {}", laser.name, settings.samples,
-                       kMostMapBeams));
+    refuse(
+        sensor, "laser",
+        fmt::format("laser '{}' has {} samples; maps support at most {}", laser.name, settings.samples, kMostMapBeams));
   if (!(settings.range_max <= maps::kMaxRangeCells * settings.grid.cell))
     refuse(sensor, "cell",
            fmt::format("laser '{}' has a range of {:g} m, which is more than {:g} cells of {:g} m; raise 'cell'",

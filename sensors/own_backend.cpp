@@ -87,8 +87,8 @@ class OwnSensors final : public SensorBackend {
     stride_ = most * type.columns.size();
     if (!type.spirv.empty() && context.device.is_host())
       throw base::DeviceError(
-          fmt::format("{} has a kernel of its own ({}), which needs a Vulkan device; install a "
-                      "driver (Debian: mesa-vulkan-drivers), or leave out --device host",
+          fmt::format("{} has its own kernel ({}), which requires a Vulkan device; install a driver (Debian: "
+                      "mesa-vulkan-drivers), or leave out --device host",
                       names_.front(), type.entry.kernel));
     if (!type.spirv.empty()) kernel_ = std::make_unique<OwnKernel>(context, type, sensors_.size(), most);
     values_.resize(sensors_.size() * stride_);
@@ -205,7 +205,7 @@ std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& typ
     } catch (const std::exception& error) {
       refuse(sensor, "", base::one_line(error.what()));
     }
-    if (own.sensor == nullptr) refuse(sensor, "", fmt::format("sensor type '{}' made none", type.entry.name));
+    if (own.sensor == nullptr) refuse(sensor, "", fmt::format("sensor type '{}' returned none", type.entry.name));
     own.spec.elements = std::clamp(own.sensor->elements(), 1u, 1u << 20);
     found.push_back(std::move(own));
   });

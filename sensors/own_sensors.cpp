@@ -83,7 +83,7 @@ void check_entry(const sensorfarm::SensorEntry& entry, const std::string& from) 
   for (const SensorType* type : sensor_types())
     if (type->id == entry.id || type->name == entry.name || type->word.type == entry.name ||
         type->other_word.type == entry.name)
-      refuse(fmt::format("sensor type '{}' with id {}: there is '{}' with id {} already; choose another", entry.name,
+      refuse(fmt::format("sensor type '{}' with id {}: '{}' with id {} already exists; choose another", entry.name,
                          entry.id, type->name, type->id));
   if (entry.columns.empty()) refuse(fmt::format("sensor type '{}' has no column", entry.name));
   for (const sensorfarm::SensorColumn& column : entry.columns)
@@ -93,7 +93,7 @@ void check_entry(const sensorfarm::SensorEntry& entry, const std::string& from) 
   if (!(entry.rate > 0.0 && entry.rate <= 1e6))
     refuse(
         fmt::format("sensor type '{}' has a rate of {} Hz; expected more than 0, at most 1e6", entry.name, entry.rate));
-  if (!entry.make) refuse(fmt::format("sensor type '{}' has no function that makes sensors", entry.name));
+  if (!entry.make) refuse(fmt::format("sensor type '{}' has no function that creates sensors", entry.name));
 }
 
 std::vector<std::uint32_t> read_kernel(const std::string& file) {

@@ -45,8 +45,7 @@ bool plausible(Word word, const PlainNumber& number) {
 
 std::string plain_wire_problem(const PlainForm& form, WireFormat wire) {
   if (wire == WireFormat::farm) return "";
-  return fmt::format("the thesis has no layout for {} readings: send the farm's own packets (`--wire farm`)",
-                     form.name);
+  return fmt::format("the thesis has no layout for {} readings: use the farm's packets (`--wire farm`)", form.name);
 }
 
 std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,

@@ -100,8 +100,8 @@ void refuse_beyond(const world::Sensor& sensor, std::string_view prefix, std::st
     if (!setting.key.starts_with(prefix) || bracket == std::string::npos) continue;
     if (std::strtoull(setting.key.c_str() + bracket + 1, nullptr, 10) < count) continue;
     refuse(sensor, setting.key,
-           fmt::format("'{}' is beyond '{} {}', which counts from 0; raise '{}' (at most {}) or leave it out",
-                       setting.key, counter, count, counter, most));
+           fmt::format("'{}' is beyond '{} {}' (numbered from 0); raise '{}' (at most {}) or leave it out", setting.key,
+                       counter, count, counter, most));
   }
 }
 

@@ -25,8 +25,8 @@ std::uint32_t read_turns(const world::Sensor& sensor, std::uint32_t transducers)
   const std::uint32_t arrays = whole(sensor, "arrays", 1, 1, transducers);
   if (transducers % arrays != 0)
     refuse(sensor, "arrays",
-           fmt::format("'arrays {}' does not divide the {} transducers of 'scount' evenly; arrays fire side by side, "
-                       "each of them one transducer at a time",
+           fmt::format("'arrays {}' does not divide the {} transducers of 'scount' evenly; arrays fire in parallel, "
+                       "each with one transducer at a time",
                        arrays, transducers));
   return all ? 1 : transducers / arrays;
 }

@@ -104,7 +104,7 @@ void CreateDrive::stop() {
 }
 
 std::string CreateDrive::problem(std::int64_t now) const {
-  if (!line_) return fmt::format("the serial line {} is lost", options_.device);
+  if (!line_) return fmt::format("the serial line {} was disconnected", options_.device);
   if (silent(now) || !last_)
     return fmt::format("the Create on {} is silent: switched off, or not at {} baud", options_.device, options_.baud);
   if (frame_.wheel_drop) return "the Create is lifted";

@@ -188,8 +188,8 @@ void Lockstep::check_timeout(std::int64_t now) {
     if (!is_done(process)) missing_.insert(missing_.end(), process.movers.begin(), process.movers.end());
   }
   if (held_up && first_step_ && now - std::max(*first_step_, changed_) >= limit) {
-    log_.write(fmt::format("tick {}: no command or STEP for {:g} s from {}; left out and standing from now on, while "
-                           "the others go on",
+    log_.write(fmt::format("tick {}: no command or STEP for {:g} s from {}; it is left out and stays at rest from now "
+                           "on, while the others continue",
                            published_.tick(), options_.timeout, names_of(missing_)),
                now);
     counts_.lost_robots += missing_.size();

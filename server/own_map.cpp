@@ -46,7 +46,7 @@ sensors::Occupancy settings_of(const world::World& world, const sensors::SensorS
   const std::span<const sensors::SensorSpec> lasers = sensor_set.of(sensors::kLaser, mover);
   if (lasers.empty())
     throw base::InputError("--map: '" + world.movers[mover].name +
-                           "' has no laser to make a map with; expected laser( ... ) in its definition");
+                           "' has no laser to build a map with; expected laser( ... ) in its definition");
   world::World with;
   with.movers = {world.movers[mover]};
   with.movers[0].sensors.push_back(whole_world(world.extent, lasers[0].limit));

@@ -37,7 +37,7 @@ const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
     if (found != nullptr) reader.fail(*node, fmt::format("a peer has '{}' or '{}', not both", found->key, key));
     found = node;
   }
-  if (found == nullptr) reader.fail(table, "a peer needs robot = ID, tag = ID, light = ID, or start = true");
+  if (found == nullptr) reader.fail(table, "a peer requires robot = ID, tag = ID, light = ID, or start = true");
   return *found;
 }
 
@@ -104,7 +104,7 @@ void require_own_key(const TomlReader& reader, const TomlNode& table, const Peer
   if (!peer.key) return;
   const auto [other, is_new] = keys.emplace(*peer.key, peer.kind);
   if (!is_new && (peer.kind != PeerKind::tag || other->second != PeerKind::tag))
-    reader.fail(*world::find(table, "key"), "another peer has this key; expected a key of its own, except for tags");
+    reader.fail(*world::find(table, "key"), "another peer has this key; expected a unique key, except for tags");
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ std::vector<Peer> parse_peers(const std::string& file, std::string_view text, co
   reader.require_known(root, kKeys);
   const std::vector<const TomlNode*> tables = reader.tables(root, "peer");
   if (tables.empty())
-    throw base::InputError(file, 0, "has no peer; expected a section [[peer]] for each, see docs/robots.md");
+    throw base::InputError(file, 0, "has no peer; expected a [[peer]] section for each, see docs/robots.md");
   if (tables.size() > kMaxPeers) reader.fail(*tables[kMaxPeers], fmt::format("more than {} peers", kMaxPeers));
 
   const WireNames names = world != nullptr ? wire_names(*world) : WireNames{};
@@ -126,14 +126,15 @@ std::vector<Peer> parse_peers(const std::string& file, std::string_view text, co
     reader.require_known(*table, kPeerKeys);
     Peer& peer = peers.emplace_back();
     read_identity(reader, *table, world != nullptr ? &names : nullptr, peer);
-    if (!seen.emplace(peer.kind, peer.id).second) reader.fail(kind_node(reader, *table), "this peer is there twice");
+    if (!seen.emplace(peer.kind, peer.id).second) reader.fail(kind_node(reader, *table), "this peer is listed twice");
     read_address(reader, *table, peer);
     read_key(reader, *table, peer);
     require_own_key(reader, *table, peer, keys);
   }
   for (std::size_t i = 0; i < peers.size(); ++i)
     if (!peers[i].address && !peers[i].key)
-      reader.fail(*tables[i], "a peer needs an address or a key, or both: without, nothing of it is checked");
+      reader.fail(*tables[i],
+                  "a peer requires an address, a key, or both: without either, none of its packets are checked");
   return peers;
 }
 

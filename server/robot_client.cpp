@@ -27,8 +27,7 @@ std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& move
   const std::uint32_t tag = options.tag > 0 ? options.tag : mover.id;
   if (tag >= netio::kMinTag && tag <= netio::kMaxId) return tag;
   throw base::InputError(
-      fmt::format("{} has the id {}, which no tag has; expected the id of the tag that it carries (robot --tag), from "
-                  "{} to {}",
+      fmt::format("{} has the id {}, which no tag has; expected the id of its tag (robot --tag), from {} to {}",
                   mover.name, mover.id, netio::kMinTag, netio::kMaxId));
 }
 

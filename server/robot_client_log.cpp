@@ -43,16 +43,17 @@ void RobotClientLog::note_link(const RobotLink& link, std::optional<bool> lost, 
   if (!problem_logged_ && link.listens() && now - link.last_answer().value_or(0) >= kAnswerIn) {
     problem_logged_ = true;
     stands_ = reading_timeout_ > 0;
-    log_.write(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
-                           "world and these ports? {}",
-                           farm, reading_timeout_ > 0 ? "It stops until readings arrive" : "It continues"),
-               now);
+    log_.write(
+        fmt::format("no packets from the farm at {} for 3 s; is `sensorfarm serve` running there with this world and "
+                    "these ports? {}",
+                    farm, reading_timeout_ > 0 ? "The robot stops until readings arrive" : "The robot continues"),
+        now);
   }
   if (lost && was_lost_ != *lost) {
     was_lost_ = *lost;
     stops_ += was_lost_ ? 1 : 0;
-    log_.write(was_lost_ ? fmt::format("no camera sees {} any more: it stops until one does", robot_)
-                         : fmt::format("cameras see {}", robot_),
+    log_.write(was_lost_ ? fmt::format("no camera detects {} any more: it stops until one does", robot_)
+                         : fmt::format("cameras detect {}", robot_),
                now);
   }
   if (stands_ == readings_timed_out(link, now) || !link.last_reading()) return;
@@ -60,14 +61,14 @@ void RobotClientLog::note_link(const RobotLink& link, std::optional<bool> lost, 
   stops_ += stands_ ? 1 : 0;
   log_.write(stands_ ? fmt::format("no reading from the farm at {} for {:g} s: {} stops until one arrives", farm,
                                    1e-9 * static_cast<double>(reading_timeout_), robot_)
-                     : fmt::format("readings arrive: {} drives on", robot_),
+                     : fmt::format("readings arrive: {} continues", robot_),
              now);
 }
 
 void RobotClientLog::note_create(const std::string& problem, bool answered, std::int64_t now) {
   if (problem == create_problem_ || (!answered && now < kAnswerIn)) return;
   create_problem_ = problem;
-  log_.write(problem.empty() ? fmt::format("the Create is ready: {} drives on", robot_)
+  log_.write(problem.empty() ? fmt::format("the Create is ready: {} continues", robot_)
                              : fmt::format("{}: {} stops", problem, robot_),
              now);
 }

@@ -196,8 +196,8 @@ void Service::warn_of_missed(std::int64_t now) {
   if (warned_of_missed_ || only_at_ticks_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
   warned_of_missed_ = true;
   receiver_.log().write(
-      "this machine is too slow for the sensors' rates: readings are missed; lower the rates, or let fewer robots ask "
-      "for them",
+      "this machine is too slow for the sensors' rates: readings are missed; lower the rates, or let fewer robots "
+      "subscribe",
       now);
 }
 

@@ -165,12 +165,14 @@ void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::E
   if (logged == expected) return;
   logged = expected;
   const std::string sender = sender_text(packet.header);
-  log_.write(refused ? fmt::format("{} is at {} by the table of peers; what {} says as the same is dropped", sender,
-                                   netio::ipv4_text(expected.address), netio::endpoint_text(who))
-                     : fmt::format("{} is heard from {}; what {} says as the same is dropped until that one leaves or "
-                                   "is silent for 2 s",
-                                   sender, netio::endpoint_text(expected), netio::endpoint_text(who)),
-             now);
+  log_.write(
+      refused
+          ? fmt::format("{} is at {} in the table of peers; packets with its id from {} are dropped", sender,
+                        netio::ipv4_text(expected.address), netio::endpoint_text(who))
+          : fmt::format(
+                "{} is at {}; packets with its id from {} are dropped until that sender leaves or is silent for 2 s",
+                sender, netio::endpoint_text(expected), netio::endpoint_text(who)),
+      now);
 }
 
 }  // namespace sf::server

@@ -16,7 +16,7 @@ constexpr std::size_t kFragment = 16384;  ///< [byte] unit of fragmented lengths
 }  // namespace
 
 std::uint64_t BitReader::bits(unsigned count) {
-  if (count > left()) fail(fmt::format("{} more bits expected, and {} are left", count, left()));
+  if (count > left()) fail(fmt::format("expected {} more bits, but {} are left", count, left()));
   if (!good()) return 0;
   std::uint64_t value = 0;
   while (count > 0) {
@@ -43,9 +43,9 @@ base::Bytes BitReader::octets() {
     } else {
       length = bits(6) * kFragment;
       more = true;
-      if (good() && (length == 0 || length > 4 * kFragment)) fail("a fragment of 1 to 4 times 16384 octets expected");
+      if (good() && (length == 0 || length > 4 * kFragment)) fail("expected a fragment of 1 to 4 times 16384 octets");
     }
-    if (length * 8 > left()) fail(fmt::format("{} octets expected, and {} are left", length, left() / 8));
+    if (length * 8 > left()) fail(fmt::format("expected {} octets, but {} are left", length, left() / 8));
     for (std::size_t i = 0; i < length && good(); ++i) all.push_back(static_cast<std::uint8_t>(bits(8)));
   }
   return all;

@@ -48,7 +48,7 @@ std::string_view message_id_name(std::uint64_t id) {
       return " (an ETSI MAPEM, whose header is not supported)";
     case 0x0380:
     case 0x0381:
-      return " (a message of IEEE 1609.2; the frame within it is expected)";
+      return " (a message of IEEE 1609.2; expected the frame within it)";
     default:
       return "";
   }

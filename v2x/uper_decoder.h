@@ -45,7 +45,7 @@ inline void decode(BitReader& in, ExtensibleBits& value, const BitString& bits) 
 
 inline void decode(BitReader& in, std::string& value, const Text& text) {
   const std::size_t size = 1 + in.bits(width_of(text.max - 1));
-  if (size > text.max) in.fail(fmt::format("a text of {} characters; at most {} expected", size, text.max));
+  if (size > text.max) in.fail(fmt::format("a text of {} characters; expected at most {}", size, text.max));
   value.clear();
   for (std::size_t i = 0; i < size && in.good(); ++i) value += static_cast<char>(in.bits(7));
 }
@@ -63,7 +63,7 @@ void decode(BitReader& in, T& value, Described);
 template <class T, class Item>
 void decode(BitReader& in, std::vector<T>& list, const ListOf<Item>& type) {
   const std::size_t size = type.min + in.bits(width_of(type.max - type.min));
-  if (size > type.max) in.fail(fmt::format("a list of {}; at most {} expected", size, type.max));
+  if (size > type.max) in.fail(fmt::format("a list of {}; expected at most {}", size, type.max));
   list.clear();
   for (std::size_t i = 0; i < size && in.good(); ++i) {
     decode(in, list.emplace_back(), type.item);

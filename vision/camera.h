@@ -37,7 +37,7 @@ struct Camera {
 /// digits, '_' and '-', starting with a letter or a digit.
 bool is_camera_name(std::string_view name);
 inline constexpr const char* kCameraNameForm =
-    "a name of letters, digits, '_' and '-', which begins with a letter or a digit, of at most 64";
+    "a name of letters, digits, '_' and '-', at most 64 characters, starting with a letter or a digit";
 
 /// Returns the pixel of a point in normalised coordinates.
 glm::dvec2 distort(const Intrinsics& intrinsics, glm::dvec2 normalised);

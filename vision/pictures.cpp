@@ -32,7 +32,7 @@ std::string decode(const std::string& file, const std::string& bytes, std::uint3
   } catch (const std::exception& error) {
     return error.what();
   }
-  if (picture.empty()) return "OpenCV finds it broken or cut short";
+  if (picture.empty()) return "OpenCV reports that it is corrupt or truncated";
   const bool as_expected =
       picture.depth() == CV_8U && picture.cols == static_cast<int>(width) && picture.rows == static_cast<int>(height);
   if (!as_expected) return "its pixels differ from its header";

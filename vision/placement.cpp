@@ -167,7 +167,7 @@ double spread_of(const std::vector<glm::dvec3>& points) {
   throw base::InputError(
       from, 0,
       fmt::format("of the {} surveyed tags of {}, camera '{}' saw {}{}, with {} points: {}; expected four points that "
-                  "are not on one line: four tags, or one whose section [[survey]] has a heading. Not seen: {}",
+                  "are not on one line: four tags, or one whose [[survey]] section has a heading. Not seen: {}",
                   testbed.surveyed.size(), testbed.file, camera.name, ids.size(),
                   ids.empty() ? "" : fmt::format(" ({})", fmt::join(ids, ", ")), points, problem,
                   found.unseen.empty() ? "none" : fmt::format("{}", fmt::join(found.unseen, ", "))));
@@ -201,9 +201,9 @@ void judge(const Points& points, std::size_t first, std::size_t last, const Surv
 
 Placement place_camera(const Testbed& testbed, const Camera& camera, ImageSource& images, const std::string& from) {
   if (testbed.surveyed.empty())
-    throw base::InputError(testbed.file, 0,
-                           "has no surveyed tags; expected sections [[survey]] with id = 3 and position = [x, y, z] "
-                           "(docs/vps.md)");
+    throw base::InputError(
+        testbed.file, 0,
+        "has no surveyed tags; expected [[survey]] sections with id = 3 and position = [x, y, z] (docs/vps.md)");
   auto seen = look(testbed, camera, images, from);
   Placement result{.camera = camera};
   Points points;

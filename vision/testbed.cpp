@@ -58,8 +58,8 @@ void read_intrinsics(const TomlReader& reader, const TomlNode& table, Intrinsics
   if (is_invertible(into)) return;
   const TomlNode* distortion = world::find(table, "distortion");
   reader.fail(distortion != nullptr ? *distortion : length,
-              "'distortion' folds the image: two points are at one pixel, or the lens covers more than 80 degrees off "
-              "its axis; expected coefficients from a calibration with points all over the image");
+              "'distortion' folds the image: two points map to one pixel, or the lens covers more than 80 degrees off "
+              "its axis; expected coefficients from a calibration with points across the whole image");
 }
 
 void read_pose(const TomlReader& reader, const TomlNode& table, Camera& into) {
@@ -102,7 +102,7 @@ TestbedCamera read_camera(const TomlReader& reader, const TomlNode& table, const
 std::vector<TestbedCamera> read_cameras(const TomlReader& reader, const TomlNode& root) {
   const auto tables = reader.tables(root, "camera");
   if (tables.empty())
-    throw base::InputError(reader.file(), 0, "has no camera; expected a section [[camera]] for each, see docs/vps.md");
+    throw base::InputError(reader.file(), 0, "has no camera; expected a [[camera]] section for each, see docs/vps.md");
   if (tables.size() > kMaxCameras)
     reader.fail(*tables[kMaxCameras],
                 fmt::format("'camera' has {} sections; expected at most {}", tables.size(), kMaxCameras));
@@ -148,7 +148,7 @@ void read_survey(const TomlReader& reader, const TomlNode& root, std::map<std::u
       tag.heading = reader.number(*table, "heading", 0.0, -360.0, 360.0, "degrees") * kDegree;
     const auto number = static_cast<std::uint32_t>(reader.whole(*table, "id", 0, 65535));
     if (!into.emplace(number, tag).second)
-      reader.fail(id, fmt::format("two sections [[survey]] have the id {}", number));
+      reader.fail(id, fmt::format("two [[survey]] sections have the id {}", number));
   }
 }
 
@@ -177,7 +177,7 @@ Testbed parse_testbed(const std::string& file, std::string_view text) {
     const TomlNode& id = required(reader, *table, "id", "id = 12");
     const auto number = static_cast<std::uint32_t>(reader.whole(*table, "id", 0, 65535));
     if (!testbed.tags.emplace(number, read_tag(reader, *table, testbed.tag)).second)
-      reader.fail(id, fmt::format("two sections [[tag]] have the id {}", number));
+      reader.fail(id, fmt::format("two [[tag]] sections have the id {}", number));
   }
   read_survey(reader, root, testbed.surveyed);
   return testbed;

@@ -75,7 +75,7 @@ void choose_settings(AVCodecContext& codec, const VideoFormat& format) {
 bool begin(Video& video, const char* path, const VideoFormat& format, std::string& why) {
   const AVCodec* const encoder = avcodec_find_encoder_by_name("libvpx-vp9");
   if (encoder == nullptr) {
-    why = "this FFmpeg has no encoder of VP9 (libvpx-vp9)";
+    why = "this FFmpeg has no VP9 encoder (libvpx-vp9)";
     return false;
   }
   const auto failed = [&](int code) {
@@ -95,7 +95,7 @@ bool begin(Video& video, const char* path, const VideoFormat& format, std::strin
                                     AV_PIX_FMT_YUV420P, SWS_BILINEAR | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr,
                                     nullptr, nullptr));
   if (!video.codec || !video.frame || !video.packet || video.stream == nullptr || !video.scaler) {
-    why = "too little memory";
+    why = "not enough memory";
     return false;
   }
   const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);

@@ -43,7 +43,7 @@ PixelImage paint_pixels(const Drawing& drawing, double scale) {
                    {}};
   if (!drawing_backend().pixels(drawing, scale, image.rgb))
     throw base::InputError(fmt::format(
-        "cannot paint a picture of {} x {} pixels: too little memory; take fewer dots per inch or a smaller size",
+        "cannot paint a picture of {} x {} pixels: not enough memory; use fewer dots per inch or a smaller size",
         image.width, image.height));
   return image;
 }
@@ -53,13 +53,13 @@ void save_picture(const Drawing& drawing, const std::string& path, const Page& p
   if (format == PictureFormat::svg) return write_picture(path, to_svg(drawing, page_scale(page)));
   if (format == PictureFormat::pdf) {
     std::string bytes;
-    SF_CHECK(drawing_backend().pdf(drawing, page_scale(page), bytes), "Cairo made no PDF");
+    SF_CHECK(drawing_backend().pdf(drawing, page_scale(page), bytes), "Cairo did not create a PDF");
     return write_picture(path, bytes);
   }
   const double scale = page_scale(page) * page.dpi / kPixelsPerInch;
   if (scale * std::max(drawing.width, drawing.height) > kLargestPicture)
     throw base::InputError(path, 0,
-                           fmt::format("the picture would be {:.0f} x {:.0f} pixels, more than {:g} along a side; take "
+                           fmt::format("the picture would be {:.0f} x {:.0f} pixels, more than {:g} along a side; use "
                                        "fewer dots per inch or a smaller size",
                                        drawing.width * scale, drawing.height * scale, kLargestPicture));
   const PixelImage image = paint_pixels(drawing, scale);

@@ -33,7 +33,7 @@ std::string encode_png(std::span<const std::uint8_t> rgb, int width, int height,
   std::size_t length = 0;
   const std::unique_ptr<void, decltype(&std::free)> file(
       error == 0 ? spng_get_png_buffer(png.get(), &length, &error) : nullptr, &std::free);
-  SF_CHECK(file != nullptr && error == 0, std::string("spng made no PNG: ") + spng_strerror(error));
+  SF_CHECK(file != nullptr && error == 0, std::string("spng did not create a PNG: ") + spng_strerror(error));
   return {static_cast<const char*>(file.get()), length};
 }
 

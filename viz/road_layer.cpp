@@ -100,7 +100,7 @@ void draw_magnets(Axes& axes, const world::World& world) {
 
 std::vector<LegendItem> road_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (!world.lane_markings.empty()) items.push_back({LegendMark::block, theme::kAsphaltBand, "road, with its paint"});
+  if (!world.lane_markings.empty()) items.push_back({LegendMark::block, theme::kAsphaltBand, "road with markings"});
   const auto has = [&](bool north) {
     return std::any_of(world.magnets.begin(), world.magnets.end(),
                        [&](const world::Magnet& m) { return (m.moment > 0.0) == north; });

@@ -50,8 +50,8 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, const
     metres += path_length(track);
     contacts += contact_count(track);
   }
-  return fmt::format("{}: {} robots, {:.4g} s, {:.0f} m driven, {} contact{}; robots and lights as they are at the end",
-                     world.name, tracks.size(), end.time, metres, contacts, contacts == 1 ? "" : "s");
+  return fmt::format("{}: {} robots, {:.4g} s, {:.0f} m driven, {} contact{}; robots and lights at the end", world.name,
+                     tracks.size(), end.time, metres, contacts, contacts == 1 ? "" : "s");
 }
 
 FigureOptions plan_of(const World& world, std::span<const Track> tracks, const TownFinalState& end,
@@ -61,15 +61,15 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, const T
   options.subtitle = subtitle_of(world, tracks, end);
   options.extent = world.extent;
   options.legend = wall_legend(world, WallColors::of_models);
-  options.legend.push_back({LegendMark::block, theme::kAsphaltBand, "street, with its paint"});
+  options.legend.push_back({LegendMark::block, theme::kAsphaltBand, "street with markings"});
   const auto has = [&](Group group) { return std::find(groups.begin(), groups.end(), group) != groups.end(); };
   const auto add = [&](Group group, const char* body, const char* way) {
     if (!has(group)) return;
     options.legend.push_back({LegendMark::robot, color_of(group), body});
     options.legend.push_back({LegendMark::line, color_of(group), way});
   };
-  add(Group::car, "car", "its way");
-  add(Group::convoy, "in a convoy", "its way");
+  add(Group::car, "car", "its route");
+  add(Group::convoy, "in a convoy", "its route");
   if (has(Group::convoy)) options.legend.push_back({LegendMark::line, theme::kInk, "follows"});
   if (has(Group::other)) options.legend.push_back({LegendMark::dot, theme::kOtherRobot, "pedestrian"});
   for (const LegendItem& item : lights_legend(world, end.time)) options.legend.push_back(item);

@@ -93,8 +93,8 @@ std::vector<LegendItem> wall_legend(const world::World& world, WallColors colors
     return paint_of(world, seen[static_cast<std::size_t>(kind)]->model, kind, colors);
   };
   if (seen[0]) items.push_back({LegendMark::block, paint(Kind::solid).fill, "wall", paint(Kind::solid).edge});
-  if (seen[1]) items.push_back({LegendMark::dashed, paint(Kind::passable).edge, "seen, stops no robot"});
-  if (seen[2]) items.push_back({LegendMark::dotted, paint(Kind::unseen).edge, "not seen by lasers"});
+  if (seen[1]) items.push_back({LegendMark::dashed, paint(Kind::passable).edge, "visible, does not stop robots"});
+  if (seen[2]) items.push_back({LegendMark::dotted, paint(Kind::unseen).edge, "invisible to lasers"});
   if (seen[3]) items.push_back({LegendMark::dashed, paint(Kind::overhead).edge, "overhead"});
   return items;
 }

@@ -163,7 +163,7 @@ std::uint32_t append_robot(World& world, const World& from, std::uint32_t origin
   SF_CHECK(original < from.movers.size(), "a copy of a robot that does not exist");
   if (world.movers.size() >= kMostMovers)
     throw base::InputError(
-        fmt::format("'{}' cannot join: a run has at most {} robots, counting those that left", name, kMostMovers));
+        fmt::format("'{}' cannot join: a run has at most {} robots, including those that left", name, kMostMovers));
   const auto row = static_cast<std::uint32_t>(world.movers.size());
   const Pose X_join{X_WM.x, X_WM.y, from.movers[original].X_WM.z, X_WM.yaw};
   const std::vector<std::uint32_t> rows = append_models(world, from, original, name, X_join);

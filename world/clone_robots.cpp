@@ -124,7 +124,7 @@ void clone_robots(World& world, std::uint32_t count, std::uint64_t seed) { clone
 
 void clone_robots(World& world, std::uint32_t count, std::uint64_t seed, const std::string& of) {
   const std::uint32_t original = robot_to_copy(world, of);
-  if (count == 0) throw base::InputError(world.file, 0, "asked for 0 robots: ask for at least 1");
+  if (count == 0) throw base::InputError(world.file, 0, "0 robots requested; expected at least 1");
   copy_robots(world, original, free_poses(world, world.movers[original], count, seed), {});
 }
 

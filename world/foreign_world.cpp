@@ -113,11 +113,10 @@ void refuse_xml(const std::string& file, std::string_view text) {
   if (root.empty()) return;
   for (const Kind& kind : kElements)
     if (root == kind.mark) refuse_world_of(file, 0, kind.program, kind.how);
-  throw base::InputError(
-      file, 0,
-      fmt::format(
-          "is XML with the root <{}>, of no known simulator; expected a Stage world or the .yaml of a ROS map: {}",
-          root.substr(0, 40), kModels));
+  throw base::InputError(file, 0,
+                         fmt::format("is XML with the root <{}>, which belongs to no known simulator; expected a Stage "
+                                     "world or the .yaml of a ROS map: {}",
+                                     root.substr(0, 40), kModels));
 }
 
 template <class Marks>
@@ -127,8 +126,8 @@ bool begins_with(std::string_view text, const Marks& marks) {
 
 [[noreturn]] void refuse_outlines(const std::string& file) {
   throw base::InputError(file, 0,
-                         "seems to be a file of outlines (well-known text, CSV or GeoJSON); expected a world: name it "
-                         "by model( outlines \"FILE\" size [0 0 HEIGHT] )");
+                         "seems to be a file of outlines (well-known text, CSV or GeoJSON); expected a world: include "
+                         "it with model( outlines \"FILE\" size [0 0 HEIGHT] )");
 }
 
 void refuse_yaml(const std::string& file, std::string_view text) {
@@ -193,12 +192,12 @@ void refuse_foreign(const std::string& file, std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (const std::string ascii = ascii_of_utf16(text); !ascii.empty()) {
     refuse_foreign(file, ascii);
-    throw base::InputError(file, 0, "is a text in UTF-16: save it as UTF-8");
+    throw base::InputError(file, 0, "is UTF-16 text: save it as UTF-8");
   }
   if (begins_with(text, kPictures))
     throw base::InputError(file, 0,
-                           "is a picture; expected a world: name it by model( bitmap \"FILE\" size [x y z] ), or as "
-                           "`image` in the .yaml of a ROS map");
+                           "is a picture; expected a world: include it with model( bitmap \"FILE\" size [x y z] ), or "
+                           "as `image` in the .yaml of a ROS map");
   if (is_stl(text)) refuse_world_of(file, 0, "STL", kModels);
   skip_blanks(text);
   for (const Kind& kind : kBeginnings)

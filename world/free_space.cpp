@@ -270,13 +270,13 @@ std::string PlaceCheck::problem(const Mover& robot, const Pose& X_WM) const {
   if (plan_ != nullptr) {
     const glm::dvec2 at = base::rotate(-plan_->X_WM.yaw, p - glm::dvec2{plan_->X_WM.x, plan_->X_WM.y});
     if (2.0 * std::abs(at.x) > plan_->size.x || 2.0 * std::abs(at.y) > plan_->size.y)
-      return "outside of '" + plan_->name + "'";
+      return "outside '" + plan_->name + "'";
   }
   const Heights heights = heights_of(robot, X_WM.z);
   if (winding_number(walls_, p, [&](const Segment& wall) { return heights.meet(wall); }) != 0) return "within a wall";
   const std::uint32_t model = model_in(walls_, robot, X_WM);
   if (model != kNone) return "partly in a wall of '" + world_.models[model].name + "'";
-  return is_known(known_, p) ? "" : "in the map's unknown area";
+  return is_known(known_, p) ? "" : "in the unknown area of the map";
 }
 
 std::string PlaceCheck::start_problem(const Mover& robot) const {
@@ -312,8 +312,7 @@ std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32
     if (draw(k)) continue;
     throw base::InputError(world.file, 0,
                            "placed " + std::to_string(k) + " of " + std::to_string(count) + " robots like '" +
-                               robot.name +
-                               "': there is no free place for more; make the world larger or ask for fewer");
+                               robot.name + "': no free space is left; make the world larger or request fewer");
   }
   return poses;
 }

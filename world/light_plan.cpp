@@ -86,7 +86,7 @@ std::uint32_t PlanReader::row(const TomlNode& node, std::string_view text, const
 void PlanReader::require_new(const TomlNode& node, const std::string& name,
                              std::vector<std::string_view>& names) const {
   if (std::find(names.begin(), names.end(), name) != names.end())
-    reader_.fail(node, fmt::format("'{}' is there twice", name));
+    reader_.fail(node, fmt::format("'{}' is listed twice", name));
 }
 
 LightDetector PlanReader::read_detector(const TomlNode& table) const {
@@ -102,7 +102,8 @@ LightDetector PlanReader::read_detector(const TomlNode& table) const {
     detector.radius = reader_.number(table, "radius", 0.0, 1e-3, 1e3, "metres");
   }
   const TomlNode* calls = find(table, "calls");
-  if (calls == nullptr && !detector.p) reader_.fail(table, "a detector needs a place ('at', 'radius') or 'calls'");
+  if (calls == nullptr && !detector.p)
+    reader_.fail(table, "a detector requires a position ('at', 'radius') or 'calls'");
   if (calls == nullptr) return detector;
   if (calls->kind != Kind::list || calls->items.size() > kMaxCalls)
     reader_.fail(*calls, fmt::format("'calls' expects up to {} times [from, to] in seconds", kMaxCalls));
@@ -120,10 +121,10 @@ void PlanReader::read_length(const TomlNode& table, LightStage& stage) const {
   const TomlNode* duration = find(table, "duration");
   const TomlNode* least = find(table, "min");
   if ((duration == nullptr) == (least == nullptr))
-    reader_.fail(table, "a stage needs 'duration', or 'min', 'max', 'gap' and 'detectors', in seconds");
+    reader_.fail(table, "a stage requires 'duration', or 'min', 'max', 'gap' and 'detectors', in seconds");
   for (const std::string_view key : {"max", "gap"})
     if (duration != nullptr && find(table, key) != nullptr)
-      reader_.fail(*find(table, key), fmt::format("a stage with a 'duration' has no '{}'", key));
+      reader_.fail(*find(table, key), fmt::format("a stage with a 'duration' cannot have '{}'", key));
   if (duration != nullptr) {
     stage.shortest = stage.longest = reader_.number(*duration, "duration", kLeast, kMaxSeconds, "seconds");
     return;
@@ -132,7 +133,7 @@ void PlanReader::read_length(const TomlNode& table, LightStage& stage) const {
   stage.longest =
       reader_.number(required(table, "max", "max = 20, in seconds"), "max", stage.shortest, kMaxSeconds, "seconds");
   stage.gap = reader_.number(required(table, "gap", "gap = 2, in seconds"), "gap", 0.0, kMaxSeconds, "seconds");
-  if (stage.detectors.empty()) reader_.fail(*least, "a stage with 'min' and 'max' needs 'detectors'");
+  if (stage.detectors.empty()) reader_.fail(*least, "a stage with 'min' and 'max' requires 'detectors'");
 }
 
 void PlanReader::read_states(const TomlNode& table, const LightProgram& program, LightStage& stage) const {
@@ -160,9 +161,9 @@ LightStage PlanReader::read_stage(const TomlNode& table, const LightProgram& pro
     stage.detectors.push_back(row(*name, name->text, detectors_, "detector"));
   read_length(table, stage);
   stage.on_call = reader_.flag(table, "on_call");
-  if (stage.on_call && stage.detectors.empty()) reader_.fail(table, "a stage that is 'on_call' needs 'detectors'");
+  if (stage.on_call && stage.detectors.empty()) reader_.fail(table, "a stage that is 'on_call' requires 'detectors'");
   if (!stage.detectors.empty() && stage.shortest == stage.longest && !stage.on_call)
-    reader_.fail(*find(table, "detectors"), "a stage of fixed length has 'detectors' only with on_call = true");
+    reader_.fail(*find(table, "detectors"), "a stage of fixed length can have 'detectors' only with on_call = true");
   stage.yellow = reader_.number(table, "yellow", 2.0, 0.0, kMaxSeconds, "seconds");
   stage.clear = reader_.number(table, "clear", 1.0, 0.0, kMaxSeconds, "seconds");
   return stage;
@@ -179,14 +180,14 @@ LightProgram PlanReader::read_program(const TomlNode& table) {
   }
   const auto stages = reader_.tables(table, "stage");
   if (stages.empty() || stages.size() > kMaxStages)
-    reader_.fail(table, fmt::format("a program needs [[program.stage]], 1 to {} of them", kMaxStages));
+    reader_.fail(table, fmt::format("a program requires 1 to {} [[program.stage]] sections", kMaxStages));
   for (const TomlNode* stage : stages) program.stages.push_back(read_stage(*stage, program));
   program.offset = reader_.number(table, "offset", 0.0, -kMaxSeconds, kMaxSeconds, "seconds");
   if (is_actuated(program) && find(table, "offset") != nullptr)
-    reader_.fail(*find(table, "offset"), "an actuated program has no 'offset': its stages have no fixed times");
+    reader_.fail(*find(table, "offset"), "an actuated program cannot have an 'offset': its stages have no fixed times");
   const auto always = [](const LightStage& stage) { return !stage.on_call; };
   if (std::none_of(program.stages.begin(), program.stages.end(), always))
-    reader_.fail(table, "every stage is 'on_call'; expected one that the lights rest in");
+    reader_.fail(table, "every stage is 'on_call'; expected one in which the lights can rest");
   return program;
 }
 
@@ -220,12 +221,13 @@ void PlanReader::read_wave(const TomlNode& table, LightPlan& plan) const {
     };
     const auto program = std::find_if(plan.programs.begin(), plan.programs.end(), has);
     if (program == plan.programs.end() || is_actuated(*program))
-      reader_.fail(*names[k], fmt::format("'{}' is in no program of fixed stages; a wave needs one", names[k]->text));
+      reader_.fail(*names[k],
+                   fmt::format("'{}' is in no program of fixed stages; a wave requires one", names[k]->text));
     const std::optional<double> green = first_green(*program, lights[k]);
     if (!green) reader_.fail(*names[k], fmt::format("'{}' is never green in its program", names[k]->text));
     if (cycle && std::abs(*cycle - cycle_of(*program)) > 1e-6)
       reader_.fail(*names[k], fmt::format("the cycle of '{}' is {:g} s, that of the lights before it {:g} s; a wave "
-                                          "needs one cycle (yellow and clear times count)",
+                                          "requires equal cycles (including yellow and clear times)",
                                           names[k]->text, cycle_of(*program), *cycle));
     cycle = cycle_of(*program);
     program->offset = green_at - *green;
@@ -237,7 +239,7 @@ LightPlan PlanReader::read(const TomlNode& root) {
   reader_.require_known(root, kPlanKeys);
   LightPlan plan;
   const auto detectors = reader_.tables(root, "detector"), programs = reader_.tables(root, "program");
-  if (programs.empty()) reader_.fail(root, "no program; expected a section [[program]], see docs/v2x.md");
+  if (programs.empty()) reader_.fail(root, "no program; expected a [[program]] section, see docs/v2x.md");
   if (programs.size() > kMaxPrograms || detectors.size() > kMaxDetectors)
     reader_.fail(root, fmt::format("more than {} programs or {} detectors", kMaxPrograms, kMaxDetectors));
   plan.detectors.reserve(detectors.size());  // names refer to it

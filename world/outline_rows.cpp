@@ -24,9 +24,9 @@ struct Signature {
 constexpr std::array kSignatures{
     Signature{"SQLite format 3\0"sv, true, ""},
     Signature{"\0\0\x27\x0A"sv, true, ""},
-    Signature{"\xFF\xFE"sv, false, "a text in UTF-16: save it as UTF-8"},
-    Signature{"\xFE\xFF"sv, false, "a text in UTF-16: save it as UTF-8"},
-    Signature{"PK\x03\x04"sv, false, "a ZIP archive (an XLSX file is one, too): unpack it, or save the table as CSV"},
+    Signature{"\xFF\xFE"sv, false, "UTF-16 text: save it as UTF-8"},
+    Signature{"\xFE\xFF"sv, false, "UTF-16 text: save it as UTF-8"},
+    Signature{"PK\x03\x04"sv, false, "a ZIP archive (or an XLSX file): unpack it, or save the table as CSV"},
     Signature{"\x1F\x8B"sv, false, "compressed: unpack it with gunzip"},
     Signature{"<"sv, false, "XML or HTML: convert it, e.g. with ogr2ogr -f GPKG"}};
 
@@ -43,7 +43,7 @@ std::string first_bytes(const std::string& file) {
 
 const GdalPlugin& gdal_plugin() {
   static const auto* const loaded = static_cast<const GdalPlugin*>(
-      base::load_plugin(kGdalSymbol, "outlines are read from tables in text alone", "GDAL 3.6 (Debian: libgdal32)"));
+      base::load_plugin(kGdalSymbol, "outlines can be read from text tables only", "GDAL 3.6 (Debian: libgdal32)"));
   return *loaded;
 }
 
@@ -52,7 +52,7 @@ std::unique_ptr<OutlineRows> open_with_gdal(const std::string& file) {
   try {
     plugin = &gdal_plugin();
   } catch (const base::InputError& error) {
-    throw base::InputError(file, 0, fmt::format("needs GDAL: {}", error.what()));
+    throw base::InputError(file, 0, fmt::format("requires GDAL: {}", error.what()));
   }
   return plugin->open(file);
 }

@@ -65,7 +65,7 @@ class OutlineTable : public OutlineRows {
   }
 
   std::string columns() const override {
-    if (names_.empty()) return "its first line does not name its columns";
+    if (names_.empty()) return "its first line does not name the columns";
     std::string text = "its columns are ";
     for (std::size_t i = 0; i < std::min(names_.size(), kShownColumns); ++i)
       text += fmt::format("{}{}", i > 0 ? ", " : "", shown(i));
@@ -87,7 +87,7 @@ class OutlineTable : public OutlineRows {
     if (takes_separator()) return false;
     if (record_.line().find('\r') != kNoColumn)
       throw base::InputError(file_, record_.first_line(),
-                             "a line ends in CR alone; convert the ends of lines to LF (tr '\\r' '\\n')");
+                             "a line ends in CR alone; convert line ends to LF (tr '\\r' '\\n')");
     const char before = separator_;
     if (!is_stated_) choose_separator();
     read_record();
@@ -109,8 +109,8 @@ class OutlineTable : public OutlineRows {
     if (separator_ != ' ' || names_.empty() || is_uneven_ || record_.size() == names_.size()) return;
     is_uneven_ = true;
     remarks_.push_back(
-        fmt::format("line {} has {} fields under {} names, since two blanks have an empty field between them: heights "
-                    "may not be read; separate fields by tabs, or by one blank each",
+        fmt::format("line {} has {} fields for {} names, since two blanks enclose an empty field: heights may not be "
+                    "read; separate fields by tabs or single blanks",
                     record_.first_line(), record_.size(), names_.size()));
   }
 
@@ -128,18 +128,18 @@ class OutlineTable : public OutlineRows {
     if (record_.size() < 2) return;
     if (names_.empty()) {
       remarks_.emplace_back(
-          "the first line does not name the columns, so those without geometries are ignored, heights too");
+          "the first line does not name the columns, so columns without geometries, such as heights, are ignored");
     } else {
-      remarks_.push_back(fmt::format(
-          "no line before the first geometry has a known name of a column, such as 'WKT' or 'height' ({}), so "
-          "heights are not read",
-          columns()));
+      remarks_.push_back(
+          fmt::format("no line before the first geometry has a known column name such as 'WKT' or 'height' ({}), so "
+                      "heights are not read",
+                      columns()));
     }
   }
 
   void take_names() {
     if (std::any_of(names_.begin(), names_.end(), [](const std::string& name) { return !name.empty(); }))
-      remarks_.push_back(fmt::format("line {} names the columns; what is before it is not read", record_.first_line()));
+      remarks_.push_back(fmt::format("line {} names the columns; earlier lines are not read", record_.first_line()));
     names_.clear();
     for (std::size_t i = 0; i < record_.size(); ++i) {  // the first of equal names counts
       names_.emplace_back(record_.field(i));
@@ -153,7 +153,7 @@ class OutlineTable : public OutlineRows {
       return lower_case(name).find("height") != std::string::npos;
     });
     if (height_ == kNoColumn && like != names_.end())
-      remarks_.push_back(fmt::format("no column is named 'height', so heights are not read, such as those of {}",
+      remarks_.push_back(fmt::format("no column is named 'height', so heights such as those of {} are not read",
                                      shown(static_cast<std::size_t>(like - names_.begin()))));
   }
 
@@ -245,8 +245,8 @@ class OutlineTable : public OutlineRows {
   void add_rival(std::size_t column) {
     rival_ = column;
     remarks_.push_back(
-        fmt::format("columns {0} and {1} both have walls: those of {0} are read, which has them first; name the right "
-                    "one 'WKT', or leave the other out",
+        fmt::format("columns {0} and {1} both have walls: column {0}, the first, is read; name the right column 'WKT', "
+                    "or remove the other",
                     shown(geometry_), shown(column)));
   }
 

@@ -18,8 +18,8 @@ constexpr double kMaxWalls = 5e7;   // per file
 
 [[noreturn]] void refuse_pairs(std::size_t corners) {
   throw base::InputError(
-      fmt::format("a ring of {} corners: its check for crossings takes the file beyond 1e+09 pairs of edges; simplify "
-                  "it (ST_Simplify, ogr2ogr -simplify)",
+      fmt::format("a ring of {} corners: its check for crossings exceeds the file's limit of 1e+09 pairs of edges; "
+                  "simplify it (ST_Simplify, ogr2ogr -simplify)",
                   corners));
 }
 

@@ -33,7 +33,7 @@ class UnitCheck {
       srid_ = geometry.srid;
       const SystemUnits units = units_of_epsg(srid_);
       metres_per_unit_ = units.metres_per_unit;
-      if (units.is_degrees) degrees_ = "the SRID states that the coordinates are degrees";
+      if (units.is_degrees) degrees_ = "the SRID states that the coordinates are in degrees";
     }
     if (!row.degrees.empty()) degrees_ = row.degrees;
     if (row.metres_per_unit > 0.0) metres_per_unit_ = row.metres_per_unit;
@@ -51,7 +51,7 @@ class UnitCheck {
     if (in_range_ && (is_small || !degrees_.empty()))
       return fmt::format(
           "{}, but they are read as lengths; project them first, for example with ogr2ogr -t_srs EPSG:32632",
-          degrees_.empty() ? "the coordinates appear to be degrees" : degrees_);
+          degrees_.empty() ? "the coordinates appear to be in degrees" : degrees_);
     if (metres_per_unit_ == 0.0 || std::abs(metres_per_unit_ / metres_per_unit - 1.0) < 1e-9) return {};
     return fmt::format(
         "the file's coordinate system has a unit of {:.8g} m, but its coordinates are read in the world's, {:g} m; "
@@ -89,7 +89,7 @@ class OutlineReader {
     bool built = false;
     if (!row.behind_quote.empty())
       faults_.add(OutlineFault::quote, row,
-                  fmt::format("text after a closing quote, '{}'; expected a separator or the end of the line",
+                  fmt::format("text after a closing quote: '{}'; expected a separator or the end of the line",
                               base::one_line(row.behind_quote.substr(0, kShownHeight))));
     try {
       built = build(row);

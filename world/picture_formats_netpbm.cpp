@@ -29,7 +29,7 @@ struct Format {
 };
 
 [[noreturn]] void fail(const Cursor& c, const std::string& message) {
-  throw base::InputError(c.file, 0, "broken Netpbm picture: " + message);
+  throw base::InputError(c.file, 0, "corrupt Netpbm picture: " + message);
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
@@ -63,7 +63,7 @@ std::uint32_t next_number(Cursor& c) {
     value = value * 10 + static_cast<std::uint32_t>(c.bytes[c.at] - '0');
     if (value > 1'000'000) fail(c, "a number is too large");
   }
-  if (c.at == begin) fail(c, "expected a number; the file is cut short or not a picture of its kind");
+  if (c.at == begin) fail(c, "expected a number; the file is truncated or not such a picture");
   return value;
 }
 
@@ -71,7 +71,7 @@ std::uint32_t next_number(Cursor& c) {
 std::uint32_t next_bit(Cursor& c) {
   skip_blanks(c);
   if (c.at == c.bytes.size() || (c.bytes[c.at] != '0' && c.bytes[c.at] != '1'))
-    fail(c, "expected 0 or 1; the file is cut short or not a picture of its kind");
+    fail(c, "expected 0 or 1; the file is truncated or not such a picture");
   return static_cast<std::uint32_t>(c.bytes[c.at++] - '0');
 }
 
@@ -85,7 +85,7 @@ std::uint8_t next_sample(Cursor& c, const Format& format) {
     for (std::size_t i = 0; i < format.bytes_per_sample(); ++i)
       sample = sample * 256 + static_cast<std::uint8_t>(c.bytes[c.at++]);
   }
-  if (sample > format.white) fail(c, fmt::format("a pixel of {}, above its largest value {}", sample, format.white));
+  if (sample > format.white) fail(c, fmt::format("a pixel value of {}, above the maximum {}", sample, format.white));
   return static_cast<std::uint8_t>(sample * 255 / format.white);
 }
 
@@ -123,7 +123,7 @@ void decode_netpbm(const std::string& bytes, GridBuilder& grid) {
     fail(c, fmt::format("a largest value of {}; expected 1 to 65535", format.white));
   if (format.binary) end_header(c, least_bytes(format, grid.grid()));
   if (bytes.size() - c.at < least_bytes(format, grid.grid()))
-    fail(c, "fewer pixels than in its header; it is cut short");
+    fail(c, "fewer pixels than the header states; it is truncated");
 
   std::vector<std::uint8_t> rgba(std::size_t{width} * 4, 255);
   for (std::uint32_t y = 0; y < grid.grid().height; ++y) {

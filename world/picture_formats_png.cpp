@@ -19,7 +19,7 @@ using Decoder = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 
 void check(const GridBuilder& grid, int result) {
   if (result != 0)
-    throw base::InputError(grid.file(), 0, fmt::format("broken PNG: {}; save it again", spng_strerror(result)));
+    throw base::InputError(grid.file(), 0, fmt::format("corrupt PNG: {}; save it again", spng_strerror(result)));
 }
 
 bool stores_alpha(spng_ctx* png, const spng_ihdr& header) {

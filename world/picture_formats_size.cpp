@@ -18,7 +18,7 @@ struct Bytes {
 
   [[noreturn]] void fail(const std::string& message) const { throw base::InputError(file, 0, message); }
   std::uint64_t byte(std::size_t at) const {
-    if (at >= bytes.size()) fail("the picture is cut short; save it again");
+    if (at >= bytes.size()) fail("the picture is truncated; save it again");
     return static_cast<std::uint8_t>(bytes[at]);
   }
   std::uint64_t big16(std::size_t at) const { return byte(at) << 8 | byte(at + 1); }
@@ -44,7 +44,7 @@ PictureSize jpeg_size(const Bytes& b) {
   PictureSize size;
   int scans = 0;
   for (std::size_t at = 2;;) {
-    if (b.byte(at) != 0xFF) b.fail("broken JPEG: expected a marker; save it again");
+    if (b.byte(at) != 0xFF) b.fail("corrupt JPEG: expected a marker; save it again");
     const std::uint64_t marker = b.byte(at + 1);
     if (marker == 0xD9) break;
     if (marker == 0xFF) {  // a fill byte
@@ -57,7 +57,7 @@ PictureSize jpeg_size(const Bytes& b) {
     if (++scans > kMaxScans) b.fail("a JPEG of more than 100 scans; save it without progressive coding");
     at = behind_scan(b, at);
   }
-  if (scans == 0) b.fail("broken JPEG: it has no pixels; save it again");
+  if (scans == 0) b.fail("corrupt JPEG: it has no pixels; save it again");
   return size;
 }
 
@@ -76,7 +76,7 @@ PictureSize bmp_size(const Bytes& b) {
 // Requires the trailer, since libgif leaves the rest of a truncated file black.
 PictureSize gif_size(const Bytes& b) {
   const std::size_t last = b.bytes.find_last_not_of('\0');
-  if (last == std::string_view::npos || b.bytes[last] != ';') b.fail("the picture is cut short; save it again");
+  if (last == std::string_view::npos || b.bytes[last] != ';') b.fail("the picture is truncated; save it again");
   return {b.little16(6), b.little16(8)};
 }
 

@@ -93,12 +93,11 @@ void add_map(World& world, const std::string& file, const std::string& text, con
     };
     add_walls(world, map, read_grid(map, is_wall, &changed));
     if (changed > 0)
-      world.warnings.push_back(
-          {file, map.image_line,
-           fmt::format("alpha decides {} cells: it is averaged with the colours, as in map_server, so that transparent "
-                       "black is occupied; with 'transparent: unknown' in this file, transparent cells are unknown, as "
-                       "in newer versions of Nav2",
-                       changed)});
+      world.warnings.push_back({file, map.image_line,
+                                fmt::format("alpha affects {} cells: it is averaged with the colours, as in "
+                                            "map_server, so transparent black is occupied; with 'transparent: unknown' "
+                                            "in this file, transparent cells are unknown, as in newer versions of Nav2",
+                                            changed)});
   } catch (const base::InputError& error) {
     throw base::InputError(file, map.image_line, fmt::format("'image': {}", error.what()));
   }

@@ -108,9 +108,8 @@ RosMap::Mode mode_of(const Yaml& yaml, std::vector<Warning>& warnings) {
   }
   if (mode != "raw") fail(yaml, node, fmt::format("'mode' is '{}'; expected trinary, scale or raw", written));
   warn(yaml, node, warnings,
-       "'mode: raw' has percentages of occupancy, up to 100; they are compared with 'occupied_thresh' and "
-       "'free_thresh', "
-       "'negate' is not used, and values above 100 are unknown");
+       "'mode: raw' stores occupancy percentages up to 100; they are compared with 'occupied_thresh' and "
+       "'free_thresh', 'negate' is not used, and values above 100 are unknown");
   return RosMap::Mode::raw;
 }
 
@@ -131,7 +130,7 @@ void check_map_keys(const Yaml& yaml, std::vector<Warning>& warnings) {
     const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "";
     if (written.size() >= kMaxKeyWarnings) return;
     if (!written.insert(key).second)
-      warn(yaml, pair.first, warnings, fmt::format("'{}' is given twice; the first one counts", key));
+      warn(yaml, pair.first, warnings, fmt::format("'{}' is given twice; the first one is used", key));
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
       warn(yaml, pair.first, warnings, fmt::format("unknown key '{}' is ignored{}", key, base::suggest(key, kKeys)));
   }

@@ -97,7 +97,7 @@ struct RowReader {
       value = in.get<std::uint8_t>() != 0;
     } else if constexpr (std::is_enum_v<T>) {
       const auto word = in.get<std::uint8_t>();
-      if (word >= words_of(T{}).size()) throw base::InputError("broken world snapshot: unknown word");
+      if (word >= words_of(T{}).size()) throw base::InputError("corrupt world snapshot: unknown word");
       value = static_cast<T>(word);
     } else if constexpr (std::is_arithmetic_v<T>) {
       value = in.get<T>();
@@ -131,7 +131,7 @@ struct RowReader {
   }
   std::uint32_t count(std::size_t row_size) {
     const auto rows = in.get<std::uint32_t>();
-    if (!in.good() || rows > in.left() / row_size) throw base::InputError("broken world snapshot: cut short");
+    if (!in.good() || rows > in.left() / row_size) throw base::InputError("corrupt world snapshot: truncated");
     return rows;
   }
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 5;
 
-[[noreturn]] void refuse(const std::string& reason) { throw base::InputError("broken world snapshot: " + reason); }
+[[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
 
 // Checks that row numbers refer to existing rows, because users of a world rely on it.
 void check_links(const World& world) {
@@ -70,7 +70,7 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   check_rows(world);
   const std::uint64_t hash = world.hash;
   update_extent_and_hash(world);
-  if (world.hash != hash) refuse("its content does not have the hash it was saved with");
+  if (world.hash != hash) refuse("its content does not match its stored hash");
   return world;
 }
 

@@ -46,7 +46,7 @@ std::string in_ascii(const std::string& file, std::string_view text) {
     comment = comment || (c == '#' && !quoted);
     if (static_cast<unsigned char>(c) < 0x80) continue;
     if (!comment)
-      throw base::InputError(file, line, "a character beyond ASCII; expected such only in comments of their own line");
+      throw base::InputError(file, line, "a non-ASCII character; allowed only in comments on their own line");
     c = '?';
   }
   return plain;
@@ -84,7 +84,7 @@ void check_keys(const std::string& file, std::string_view text) {
     if (c == '.' && ++points > kDeepest)
       throw base::InputError(
           file, line,
-          fmt::format("nested too deep: a key of more than {0} parts; expected {0} levels at most", kDeepest));
+          fmt::format("nested too deeply: a key of more than {0} parts; expected at most {0} levels", kDeepest));
     if (c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}' || c == '\n') points = 0;
   }
 }
@@ -95,7 +95,7 @@ TomlNode plain(const std::string& file, const toml::node& node, int depth) {
   TomlNode out;
   out.line = line_of(node.source());
   if (depth > kDeepest)
-    throw base::InputError(file, out.line, fmt::format("nested too deep; expected {} levels at most", kDeepest));
+    throw base::InputError(file, out.line, fmt::format("nested too deeply; expected at most {} levels", kDeepest));
   if (const toml::table* table = node.as_table()) {
     for (const auto& [key, inner] : *table) {
       TomlNode& item = out.items.emplace_back(plain(file, inner, depth + 1));

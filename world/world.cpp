@@ -188,11 +188,11 @@ World load_world(const std::string& file, const LoadOptions& options) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (is_ros_map(file)) return load_ros_map(file, options);
   if (ending == ".rndf" || ending == ".rdf" || ending == ".mdf")
-    throw base::InputError(file, 0, "is not a world, but can be part of one: a world file with road( rndf \"FILE\" )");
+    throw base::InputError(file, 0, "is not a world, but a world file can include it with road( rndf \"FILE\" )");
   if (ending == ".toml")
     throw base::InputError(file, 0,
-                           "is not a world: scenarios go with `run` and `test`, sweeps with `sweep`, testbeds with "
-                           "`vps`; expected a world file (.world) or a ROS map (.yaml)");
+                           "is not a world: use `run` or `test` for scenarios, `sweep` for sweeps, `vps` for testbeds; "
+                           "expected a world file (.world) or a ROS map (.yaml)");
   return build_world(file, base::read_text(file), options);
 }
 

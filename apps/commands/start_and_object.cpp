@@ -30,7 +30,7 @@ std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const n
   if (own == nullptr || !own->key)
     throw base::InputError(
         options.peers, 0,
-        fmt::format("has no key for {}; expected a section [[peer]] with {} and key", start ? "START" : "the object",
+        fmt::format("has no key for {}; expected a [[peer]] section with {} and key", start ? "START" : "the object",
                     start ? "start = true" : fmt::format("tag = {}", claim.id)));
   return netio::PacketSigner(*own->key);
 }

@@ -197,8 +197,8 @@ class Children {
       if (const std::string who = base::blame(seat.calls, how); !who.empty()) return who + limit;
     }
     if (WIFSIGNALED(status))
-      return fmt::format("its process was ended by signal {} ({}){}", WTERMSIG(status), strsignal(WTERMSIG(status)),
-                         limit);
+      return fmt::format("its process was terminated by signal {} ({}){}", WTERMSIG(status),
+                         strsignal(WTERMSIG(status)), limit);
     const bool failed = seat.calls.finished && seat.calls.code == kFailed;
     return fmt::format("its process ended with exit code {}{}{}",
                        seat.calls.finished ? seat.calls.code.load() : WEXITSTATUS(status), failed ? ": " : "",

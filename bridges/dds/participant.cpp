@@ -235,8 +235,8 @@ void require_descriptors() {
   }
   for (const int one : opened) ::close(one);
   if (opened.size() < kNeeded)
-    throw std::runtime_error("only " + std::to_string(opened.size()) + " more files and sockets may be opened, and " +
-                             std::to_string(kNeeded) + " are needed; raise the limit (ulimit -n)");
+    throw std::runtime_error("only " + std::to_string(opened.size()) + " more files and sockets can be opened, but " +
+                             std::to_string(kNeeded) + " are required; raise the limit (ulimit -n)");
 }
 
 std::unique_ptr<DdsParticipant> open(const DdsOptions& options) {

@@ -59,7 +59,7 @@ std::unique_ptr<DdsParticipant> open(const base::Bytes& settings) {
 int serve() {
   Frame frame;
   if (!read_frame(0, frame, kMaxFrame) || frame.kind != FrameKind::open) {
-    std::fprintf(stderr, "sensorfarm_fastdds: a part of `sensorfarm run --ros2`, which starts it\n");
+    std::fprintf(stderr, "sensorfarm_fastdds: started by `sensorfarm run --ros2`; not for direct use\n");
     return 2;
   }
   ::alarm(kMaxStart);

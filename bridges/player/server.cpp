@@ -138,12 +138,11 @@ void Server::note_full(const netio::Endpoint& peer) {
   if (now < next_line_) return;
   next_line_ = now + std::chrono::seconds(10);
   const std::uint64_t count = refused_ - std::exchange(stated_, refused_.load());
-  log_.write(
-      fmt::format("Player: {} refused, the last from {}: {} are connected, the most at a time, of which none has "
-                  "been silent for long enough ({:g} s) to make room",
-                  count == 1 ? "1 program" : fmt::format("{} programs", count), netio::endpoint_text(peer),
-                  connections_.size(), silent_),
-      std::chrono::nanoseconds(now.time_since_epoch()).count());
+  log_.write(fmt::format("Player: {} refused, the last from {}: {} are connected, which is the limit, and none has "
+                         "been silent long enough ({:g} s) to be disconnected",
+                         count == 1 ? "1 program" : fmt::format("{} programs", count), netio::endpoint_text(peer),
+                         connections_.size(), silent_),
+             std::chrono::nanoseconds(now.time_since_epoch()).count());
 }
 
 void Server::receive(std::uint64_t key) {

@@ -17,7 +17,7 @@ class FollowWall : public sensorfarm::Controller {
       : distance_(settings.number("distance", 0.8, 0.1, 5.0)), speed_(0.6 * robot.max_forward) {
     for (const sensorfarm::SensorInfo& sensor : robot.sensors)
       if (sensor.type == "laser" && sensor.number == 0) bearings_ = sensor.bearings;
-    if (bearings_.empty()) throw std::invalid_argument("it has no laser; follow_wall needs one");
+    if (bearings_.empty()) throw std::invalid_argument("it has no laser; follow_wall requires one");
   }
 
   sensorfarm::Twist step(const sensorfarm::Input& input) override {

@@ -120,7 +120,7 @@ class Reading:
         """(elements,): 0, or the reason why the bound does not hold (docs/accuracy.md)."""
 
 class Neighbour:
-    """Another robot, as it broadcasts itself (V2V)."""
+    """Another robot, by its V2V broadcasts."""
     @property
     def id(self) -> int: ...
     @property

@@ -165,7 +165,7 @@ TEST(ExperimentReport, SweepsMatchTheColumnsOfTheirFile) {
   EXPECT_EQ(looked_at, 5u);
 
   for (const auto& [sweep, axis] :
-       {std::pair{"delay-ideal", "delay of readings [s]"}, {"loss-thesis", "part of readings lost [-]"}}) {
+       {std::pair{"delay-ideal", "delay of readings [s]"}, {"loss-thesis", "fraction of readings lost [-]"}}) {
     viz::SeriesOptions figure{.title = std::string("Lane edge loop: ") + sweep,
                               .subtitle = "seed 3",
                               .panels = {},

@@ -213,7 +213,7 @@ TEST_F(Recorded, ParaViewGetsSeries) {
   }
   const Outcome shorter = run_program(with("export", {"--vtk", "-o", folder_.path("v"), "--every", "2"}));
   ASSERT_EQ(shorter.code, 0) << shorter.err;
-  expect_in("removed 3 files of an earlier call, robots_NNNNNN.vtp", shorter.err);
+  expect_in("removed 3 files of an earlier call (robots_NNNNNN.vtp)", shorter.err);
   for (const std::string name : {"robots", "scans"}) {
     EXPECT_TRUE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000001.vtp")));
     EXPECT_FALSE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000002.vtp")))
@@ -364,7 +364,7 @@ TEST(Export, TagsHaveNoTrajectoriesAndMagnetsHaveAField) {
 
   const Outcome csv = run_program({"export", folder.path("r"), "-o", folder.path("c")});
   EXPECT_EQ(csv.code, 0);
-  expect_in("no readings: the run was not recorded with --record-readings", csv.err);
+  expect_in("no readings: the run was recorded without --record-readings", csv.err);
   EXPECT_FALSE(std::filesystem::exists(folder.path("c/lights.csv"))) << "no lights";
 }
 

@@ -44,7 +44,7 @@ struct Hall {
     Words words{"serve", world, "--port", port, "--json", "--laser-port", lasers};
     words.insert(words.end(), more.begin(), more.end());
     auto farm = std::make_unique<Program>(words);
-    EXPECT_TRUE(farm->says("; Ctrl-C ends it")) << farm->err();
+    EXPECT_TRUE(farm->says("; press Ctrl-C to stop")) << farm->err();
     return farm;
   }
   std::unique_ptr<Program> robot(const std::string& name, const Words& more = {}) const {
@@ -169,7 +169,7 @@ TEST(Faults, AClockJumpOfAnHourStopsNoRobot) {
   Program farm(
       {"serve", hall.world, "--port", hall.port, "--json", "--laser-port", hall.lasers, "--filter", "--peers", peers},
       moved);
-  ASSERT_TRUE(farm.says("; Ctrl-C ends it")) << farm.err();
+  ASSERT_TRUE(farm.says("; press Ctrl-C to stop")) << farm.err();
   Program robot({"robot", hall.world, "--name", "roomba1", "--port", hall.port, "--laser-port", hall.lasers, "--json",
                  "--peers", peers},
                 moved);

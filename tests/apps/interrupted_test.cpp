@@ -75,7 +75,7 @@ TEST_F(Interrupted, EachCommandEndsWithTheSignalsCode) {
 
 TEST_F(Interrupted, FilesAreCompleteOrAbsent) {
   const Outcome exported = stopped({"export", record(), "-o", folder.path("csv")});
-  EXPECT_NE(exported.err.find("interrupted: the files that were written are whole"), std::string::npos) << exported.err;
+  EXPECT_NE(exported.err.find("interrupted: written files are complete"), std::string::npos) << exported.err;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path("csv"))) {
     EXPECT_EQ(entry.path().extension(), ".csv");
     EXPECT_TRUE(read_file(entry.path()).ends_with("\n"));

@@ -82,7 +82,7 @@ TEST_F(JobProcesses, ADeadChildIsReplacedAndItsCauseReported) {
                                  if (row == 1) _exit(7);
                                  if (row == 2) throw std::runtime_error("out of luck");
                                })));
-  const std::map<std::size_t, std::string> expected{{0, "its process was ended by signal 9 (Killed)"},
+  const std::map<std::size_t, std::string> expected{{0, "its process was terminated by signal 9 (Killed)"},
                                                     {1, "its process ended with exit code 7"},
                                                     {2, "its process ended with exit code 1: out of luck"}};
   EXPECT_EQ(died_, expected);

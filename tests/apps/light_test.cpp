@@ -61,7 +61,7 @@ TEST(Light, AKeyMismatchIsReported) {
   };
   Program farm(with({"serve", our_world("simville/simville.world"), "--port", port, "--peers", peers("farm.toml", '1')},
                     town_ports()));
-  ASSERT_TRUE(farm.says("Ctrl-C ends it")) << farm.err();
+  ASSERT_TRUE(farm.says("press Ctrl-C to stop")) << farm.err();
   Program light(
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--peers", peers("light.toml", '2')});
   EXPECT_TRUE(light.says("has another key for intersection 1 than --peers here")) << light.err();
@@ -73,11 +73,11 @@ TEST(Light, RunsAPlanWithAFarm) {
   const std::string port = std::to_string(free_ports(1));
   const Words ports = town_ports();
   Program farm(with({"serve", our_world("simville/simville.world"), "--port", port, "--json"}, ports));
-  ASSERT_TRUE(farm.says("Ctrl-C ends it")) << farm.err();
+  ASSERT_TRUE(farm.says("press Ctrl-C to stop")) << farm.err();
   Program robot(with({"robot", our_world("simville/simville.world"), "--name", "roomba0", "--controller", "route",
                       "--set", "tour=true", "--stop-after", "0", "--port", port, "--json"},
                      ports));
-  ASSERT_TRUE(robot.says("Ctrl-C ends it")) << robot.err();
+  ASSERT_TRUE(robot.says("press Ctrl-C to stop")) << robot.err();
   const Outcome light = run_program(
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
   EXPECT_EQ(light.code, 0) << light.err;
@@ -97,7 +97,7 @@ TEST(Light, RunsAPlanWithAFarm) {
 TEST(Light, CtrlCEndsItAtOnce) {
   Program light({"light", our_world("simville/simville.world"), "--send", "127.0.0.1", "--port",
                  std::to_string(free_ports(1)), "--rate", "0.1"});
-  ASSERT_TRUE(light.says("Ctrl-C ends it"));
+  ASSERT_TRUE(light.says("press Ctrl-C to stop"));
   const auto start = std::chrono::steady_clock::now();
   light.signal(SIGINT);
   EXPECT_EQ(light.wait().code, 0);

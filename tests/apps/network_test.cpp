@@ -358,7 +358,7 @@ TEST(Serve, StrangersAreCountedAndDropped) {
   ASSERT_TRUE(until([&] {
     one.say({-1.0, 0.5, 0.0, 0.0});
     impostor.say({2.0, 0.0, 0.0, 0.0});
-    return service.program.err().find("is dropped until") != std::string::npos;
+    return service.program.err().find("are dropped until") != std::string::npos;
   }));
   nobody.say({0.0, 0.0, 0.0, 0.0});
   netio::Outbox mouth;
@@ -388,7 +388,7 @@ TEST(Serve, StrangersAreReportedOncePerBindingUntilALeave) {
   }));
   ASSERT_TRUE(prove(again));
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
-  ASSERT_TRUE(service.program.says("says as the same is dropped"));
+  ASSERT_TRUE(service.program.says("are dropped"));
   one.leave();
   // It owns the id from here on, though less than two seconds have passed.
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
@@ -396,7 +396,7 @@ TEST(Serve, StrangersAreReportedOncePerBindingUntilALeave) {
   service.program.signal(SIGINT);
   const Outcome outcome = service.program.wait();
   EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;  // the service's address, and the stranger
-  EXPECT_NE(outcome.err.find("roomba1 (id 1) is heard from 127.0.0.1:"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("roomba1 (id 1) is at 127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_EQ(Json(outcome.out).number("/received/wrong source"), 5);
 }
 
@@ -408,11 +408,11 @@ TEST(Serve, AddressesBeyondThisMachineCauseAWarning) {
   Words wide = listen;
   wide.insert(wide.end(), {"--bind", "0.0.0.0"});
   const Outcome warned = run_program(wide);
-  EXPECT_NE(warned.err.find("warning: --bind 0.0.0.0 opens it to "), std::string::npos) << warned.err;
-  EXPECT_NE(warned.err.find("--bind 127.0.0.1 keeps it to this machine"), std::string::npos) << warned.err;
+  EXPECT_NE(warned.err.find("warning: --bind 0.0.0.0 opens the port to "), std::string::npos) << warned.err;
+  EXPECT_NE(warned.err.find("use --bind 127.0.0.1 to allow this machine only"), std::string::npos) << warned.err;
   EXPECT_EQ(run_program(listen).err.find("warning"), std::string::npos);
   const Outcome served = run_program({"serve", world, "--port", "0", "--duration", "0.1", "--bind", "0.0.0.0"});
-  EXPECT_NE(served.err.find("anyone there can say where robots are"), std::string::npos) << served.err;
+  EXPECT_NE(served.err.find("anyone there can report robot states"), std::string::npos) << served.err;
   EXPECT_NE(served.err.find("since packets are not signed (--peers has keys)"), std::string::npos) << served.err;
 }
 
@@ -429,10 +429,10 @@ TEST(Serve, TheWarningNamesSendersWithoutAKey) {
     return run_program(words).err;
   };
   const std::string err = err_with(some + "[[peer]]\nrobot = 2" + key('2'));
-  EXPECT_NE(err.find("peers.toml has no key for START; --bind 127.0.0.1 keeps it"), std::string::npos) << err;
+  EXPECT_NE(err.find("peers.toml has no key for START; use --bind 127.0.0.1 to allow"), std::string::npos) << err;
   EXPECT_NE(err_with(some).find("has no key for roomba2, START;"), std::string::npos) << err_with(some);
   const std::string all = some + "[[peer]]\nrobot = 2" + key('2') + "[[peer]]\nstart = true" + key('3');
-  EXPECT_EQ(err_with(all).find("opens it to"), std::string::npos) << err_with(all);
+  EXPECT_EQ(err_with(all).find("opens the port to"), std::string::npos) << err_with(all);
   EXPECT_NE(err_with(all, {"--spat", std::to_string(free_ports(1))}).find("has no key for SPaT (--spat);"),
             std::string::npos);
 }
@@ -444,9 +444,9 @@ TEST(Serve, APlayerServerBeyondThisMachineCausesAWarning) {
     return run_program({"run", world, "--duration", "0.1", "--player", place}).err;
   };
   const std::string err = err_at("0.0.0.0:0");
-  EXPECT_NE(err.find("warning: --player 0.0.0.0 opens it to "), std::string::npos) << err;
+  EXPECT_NE(err.find("warning: --player 0.0.0.0 opens the port to "), std::string::npos) << err;
   EXPECT_NE(err.find("read sensors and drive robots, since Player has no passwords"), std::string::npos) << err;
-  EXPECT_EQ(err_at("0").find("opens it to"), std::string::npos);
+  EXPECT_EQ(err_at("0").find("opens the port to"), std::string::npos);
 }
 
 /// The default stride is 8 if that fits; otherwise the command prints the stride.

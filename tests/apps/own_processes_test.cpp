@@ -114,7 +114,7 @@ TEST(OwnProcesses, RunReportsEachExit) {
     EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' ended the process (")) << end.how << outcome.err;
     EXPECT_TRUE(has(outcome.err, end.reason)) << end.how << outcome.err;
     const Outcome plotted = run_program({"verify", bench.folder.path("run")});
-    EXPECT_TRUE(has(plotted.out + plotted.err, "whole ticks are taken")) << end.how << plotted.out << plotted.err;
+    EXPECT_TRUE(has(plotted.out + plotted.err, "complete ticks")) << end.how << plotted.out << plotted.err;
   }
 }
 
@@ -223,7 +223,7 @@ TEST(OwnProcesses, TheFirstStopRequestEndsACallThatNeverReturns) {
       program.signal(signal);
       const Outcome outcome = program.wait();
       EXPECT_EQ(outcome.code, 1) << how << outcome.err;
-      EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' at 1.000 s simulated does not return"))
+      EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' at 1.000 s simulated has not returned"))
           << how << outcome.err;
       std::filesystem::remove_all(bench.folder.path("run"));
     }
@@ -238,7 +238,7 @@ TEST(OwnProcesses, AStopRequestEndsCallsThatBeginLater) {
   words[1] = two;
   const Outcome outcome = run_program(words);
   EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "of robot 'r1' at 1.000 s simulated does not return")) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "of robot 'r1' at 1.000 s simulated has not returned")) << outcome.err;
 }
 
 /// An exit handler that waits for a thread, as Python's does: the report is printed, and a stop request ends it.
@@ -254,7 +254,7 @@ TEST(OwnProcesses, ARunningThreadIsEndedByAStopRequest) {
     const Outcome outcome = program.wait();
     if (here) continue;  // ends like any program: by the signal, or with a code if it arrived before the end
     EXPECT_EQ(outcome.code, 1) << outcome.err;
-    EXPECT_TRUE(has(outcome.err, "a thread of controller 'test-ends' of robot 'r0' goes on")) << outcome.err;
+    EXPECT_TRUE(has(outcome.err, "a thread of controller 'test-ends' of robot 'r0' is still running")) << outcome.err;
   }
 }
 
@@ -267,7 +267,7 @@ TEST(OwnProcesses, ARunningThreadIsEnded) {
   for (Program* program : {&child, &here, &test}) {
     const Outcome outcome = program->wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
-    EXPECT_TRUE(has(outcome.out + outcome.err, "a thread of controller 'test-ends' of robot 'r0' goes on"))
+    EXPECT_TRUE(has(outcome.out + outcome.err, "a thread of controller 'test-ends' of robot 'r0' is still running"))
         << outcome.out << outcome.err;
   }
 }
@@ -409,9 +409,9 @@ TEST(OwnProcesses, TruncatedLibrariesAreRejected) {
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     return outcome.err;
   };
-  EXPECT_TRUE(has(refusal(whole.substr(0, whole.size() / 2)), "cut.so: is cut off: it has "));  // half of it
-  EXPECT_TRUE(has(refusal(whole.substr(0, 4096)), "is cut off"));         // ends after the first page
-  EXPECT_TRUE(has(refusal(whole.substr(0, 100)), "is cut off"));          // ends in the section table
+  EXPECT_TRUE(has(refusal(whole.substr(0, whole.size() / 2)), "cut.so: is truncated: it has "));  // half of it
+  EXPECT_TRUE(has(refusal(whole.substr(0, 4096)), "is truncated"));       // ends after the first page
+  EXPECT_TRUE(has(refusal(whole.substr(0, 100)), "is truncated"));        // ends in the section table
   EXPECT_TRUE(has(refusal(""), "cannot be loaded as a shared library"));  // empty
   EXPECT_TRUE(has(refusal(std::string(9000, 'x')), "cannot be loaded as a shared library"));  // not a library
 }

@@ -18,7 +18,7 @@ TEST(Peers, AStartSignalNeedsTheKeyOfItsTable) {
   const std::string file = folder.write("peers.toml", peer("robot = 1"));
   const Outcome refused = run_program({"start", "--peers", file});
   EXPECT_EQ(refused.code, 2);
-  EXPECT_NE(refused.err.find(file + ": has no key for START; expected a section [[peer]] with start = true"),
+  EXPECT_NE(refused.err.find(file + ": has no key for START; expected a [[peer]] section with start = true"),
             std::string::npos)
       << refused.err;
   EXPECT_EQ(run_program({"start", "--peers", folder.write("start.toml", peer("start = true"))}).code, 0);
@@ -32,7 +32,7 @@ TEST(Peers, WarnsOfAReadableKeyFile) {
     std::filesystem::permissions(file, perms::owner_read | perms::owner_write | others);
     const Outcome outcome = run_program({"start", "--peers", file});
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_EQ(outcome.err.find("warning: " + file + " has keys, and others") != std::string::npos,
+    EXPECT_EQ(outcome.err.find("warning: " + file + " contains keys, and other users") != std::string::npos,
               others != perms::none)
         << outcome.err;
     EXPECT_EQ(outcome.err.find("aaaa"), std::string::npos) << "keys are never printed";

@@ -95,7 +95,7 @@ TEST(PlayerProgram, WrongAddressesAreRejected) {
   const auto refusal = [](const std::string& address) {
     return run_program({"run", our_world("rooms.world"), "--duration", "1", "--player", address}).err;
   };
-  expect_in("--player: '66650' is not an address; expected a port, or HOST:PORT", refusal("66650"));
+  expect_in("--player: '66650' is not an address; expected a port or HOST:PORT", refusal("66650"));
   expect_in("--player: 'nobody' is not an address", refusal("nobody"));
   expect_in("does not have that address", refusal("192.0.2.1:6665"));
 }

@@ -93,7 +93,7 @@ TEST_F(PaperFigures, ADifferenceOfMagnitudesIsSigned) {
 TEST_F(PaperFigures, ElevenRobotsHaveTheRequestedLabels) {
   EXPECT_FALSE(contains(figure("trajectories"), ">other3<"));
   const Outcome plotted = run_program({"plot", folder_->path("r"), "-o", folder_->path("p")});
-  EXPECT_TRUE(contains(plotted.err, "11 robots have no labels in it; --label NAME,...")) << plotted.err;
+  EXPECT_TRUE(contains(plotted.err, "11 robots have no label in it; label them with --label NAME,...")) << plotted.err;
   const std::string some = figure("trajectories", {"--label", "one,other3"});
   EXPECT_TRUE(contains(some, ">one<") && contains(some, ">other3<"));
   EXPECT_FALSE(contains(some, ">other4<"));
@@ -107,7 +107,7 @@ TEST_F(PaperFigures, LabelsWithoutRoomAreCounted) {
   const Outcome plotted = run_program({"plot", folder_->path("r"), "-o", folder_->path("p"), "--size", "50x30",
                                        "--font-size", "8.3", "--label", "all"});
   EXPECT_EQ(plotted.code, 0) << plotted.err;
-  EXPECT_TRUE(contains(plotted.err, " of the labels are left out, for want of room")) << plotted.err;
+  EXPECT_TRUE(contains(plotted.err, " labels are left out for lack of space")) << plotted.err;
 }
 
 /// A video is a single file, drawn without figures.
@@ -143,8 +143,8 @@ TEST_F(PaperFigures, OccupancyHasTheGreysOfRos) {
 TEST_F(PaperFigures, FiguresFitAColumnAndItsLetters) {
   EXPECT_TRUE(contains(figure("bumper", {"--size", "50", "--font-size", "8"}).substr(0, 300), "width=\"49."));
   EXPECT_TRUE(contains(figure("bumper", {"--size", "88x40", "--no-title"}).substr(0, 300), "height=\"39."));
-  EXPECT_TRUE(contains(refusal({"--size", "50", "--font-size", "12"}), "12 points need a width of 72 mm or more"));
-  EXPECT_TRUE(contains(refusal({"--font-size", "12", "--size", "50"}), "has room for 8.33 points")) << "in any order";
+  EXPECT_TRUE(contains(refusal({"--size", "50", "--font-size", "12"}), "12 points require a width of at least 72 mm"));
+  EXPECT_TRUE(contains(refusal({"--font-size", "12", "--size", "50"}), "allows at most 8.33 points")) << "in any order";
   EXPECT_TRUE(contains(refusal({"--size", "49"}), "W from 50 to 1000"));
   EXPECT_TRUE(contains(refusal({"--size", "50x29"}), "H from 30 to 1000"));
   EXPECT_TRUE(contains(refusal({"--font-size", "4"}), "--font-size"));
@@ -225,7 +225,7 @@ TEST(SweepPlotsCommand, AreDrawnBySweepAndByPlot) {
   folder.write("bare/plots", "");  // a file blocks the folder
   const Outcome blocked = run_program({"sweep", file, "-o", folder.path("bare")});
   EXPECT_EQ(blocked.code, 0) << "the tables are written: " << blocked.err;
-  EXPECT_TRUE(contains(blocked.err, "no plots, `plot ")) << blocked.err;
+  EXPECT_TRUE(contains(blocked.err, "no plots (`plot ")) << blocked.err;
   for (const Words& words : {Words{"--over", "kp"}, {"--robots", "one"}, {"--elements", "1"}, {"--label", "one"}}) {
     Words plot{"plot", folder.path("out")};
     plot.insert(plot.end(), words.begin(), words.end());

@@ -153,7 +153,7 @@ struct Service {
   /// @param rate of ticks; empty: the world's
   explicit Service(const std::string& text = kRoom, const Words& rate = {"--rate", "50"})
       : world(folder.write("room.world", text)), program(words(rate)) {
-    if (!program.says("; Ctrl-C ends it")) return;
+    if (!program.says("; press Ctrl-C to stop")) return;
     const std::string said = program.err();
     port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
   }

@@ -27,7 +27,7 @@ TEST(RobotFrom, ReplacesTheDefaultRobotOfAMap) {
   const Outcome one = run_program({"run", map, "--robot-from", own, "--duration", "1", "--json"});
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_EQ(Json(one.out).number("/robots"), 1);
-  EXPECT_EQ(one.err.find("it is lent"), std::string::npos) << one.err;
+  EXPECT_EQ(one.err.find("using the default robot"), std::string::npos) << one.err;
   const Outcome many = run_program({"run", map, "--robot-from", own, "--robots", "5", "--duration", "1", "--json"});
   ASSERT_EQ(many.code, 0) << many.err;
   EXPECT_EQ(Json(many.out).number("/robots"), 5);
@@ -42,7 +42,7 @@ TEST(RobotFrom, ReplacesTheDefaultRobotOfAMap) {
     Words all = words;
     all.insert(all.end(), {"--robot-from", own});
     const Outcome outcome = run_program(all);
-    EXPECT_EQ(outcome.err.find("it is lent"), std::string::npos) << words[0] << outcome.err;
+    EXPECT_EQ(outcome.err.find("using the default robot"), std::string::npos) << words[0] << outcome.err;
     EXPECT_EQ(outcome.code, words[0] == "robot" ? 1 : 0) << words[0] << outcome.err;  // no farm answers
   }
 }
@@ -55,7 +55,7 @@ TEST(RobotFrom, IsClonedInAnyWorld) {
       run_program({"run", cave, "--robot-from", own, "--robots", "3", "--duration", "0.5", "--json"});
   ASSERT_EQ(copies.code, 0) << copies.err;
   EXPECT_EQ(Json(copies.out).number("/robots"), 3);
-  expect_refused({"run", cave, "--robot-from", own}, "has robots of its own; --robot-from is for worlds without");
+  expect_refused({"run", cave, "--robot-from", own}, "has its own robots; --robot-from is for worlds without");
 }
 
 /// Like worlds, FILE may also be an installed file.
@@ -80,7 +80,7 @@ TEST(RobotFrom, MistakesAreReported) {
   expect_refused({"run", map, "--robot-from", folder.path("none.inc") + ":a"}, "none.inc: no such file");
   expect_refused({"run", map, "--robot-from", ""}, "expected FILE:NAME");
   expect_refused({"run", SF_SOURCE_DIR "/experiments/mapping.toml", "--robot-from", file + ":scout"},
-                 "is for worlds; a scenario states `world`");
+                 "applies to worlds; a scenario sets `world`");
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct FarmService {
   explicit FarmService(const std::string& wire = "farm")
       : world(folder.write("room.world", wire == "farm" ? kRoom : kSmallRoom)),
         program({"serve", world, "--port", "0", "--json", "--wire", wire, "--laser-port", lasers}) {
-    if (!program.says("; Ctrl-C ends it")) return;
+    if (!program.says("; press Ctrl-C to stop")) return;
     const std::string said = program.err();
     port = std::to_string(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
   }
@@ -83,7 +83,7 @@ struct RobotsTest : testing::Test {
     silent =
         std::make_unique<Program>(Words{"robot", world, "--name", "roomba1", "--port", std::to_string(free_ports(1)),
                                         "--laser-port", std::to_string(free_ports(48)), "--duration", "3.3"});
-    EXPECT_TRUE(silent->says("; Ctrl-C ends it"));
+    EXPECT_TRUE(silent->says("; press Ctrl-C to stop"));
   }
   static void TearDownTestSuite() {
     silent.reset();
@@ -105,7 +105,7 @@ TEST_F(RobotsTest, SeveralDriveByTheirReadings) {
   const auto three = service.robot("roomba3", {"--duration", "2", "--loss", "1", "--wait-for-start"});
   const auto four =
       service.robot("roomba4", {"--duration", "2", "--loss", "0.3", "--delay", "0.02", "--jitter", "0.15"});
-  ASSERT_TRUE(two->says("once it is given the start signal"));
+  ASSERT_TRUE(two->says("after the start signal"));
   constexpr int kStarts = 3;
   for (int i = 0; i < kStarts; ++i) {
     const Outcome started = run_program({"start", "--port", service.port, "--robot", "2"});
@@ -273,8 +273,8 @@ TEST_F(RobotsTest, ASilentFarmIsReportedOnce) {
   const Outcome outcome = silent->wait();
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;
-  EXPECT_NE(outcome.err.find("nothing came from the farm at 127.0.0.1:"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.out.find("Nothing came from the farm"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("no packets from the farm at 127.0.0.1:"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("No packets from the farm"), std::string::npos) << outcome.out;
 }
 
 }  // namespace sf

@@ -95,7 +95,7 @@ TEST(RunScenario, RejectsOptionsThatTheScenarioDefines) {
                               Words{"--set", "speed=0.1"}, Words{"--localize"}, Words{"--drive", "roomba0"}}) {
     Words arguments{"run", kTown, "--duration", "1"};
     arguments.insert(arguments.end(), option.begin(), option.end());
-    expect_refused(arguments, "is for worlds; a scenario states");
+    expect_refused(arguments, "applies to worlds; a scenario sets");
   }
 }
 

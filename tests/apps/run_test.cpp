@@ -116,13 +116,13 @@ TEST(Run, ReportsStoppedRobotsAndReasons) {
               "--duration",   "12"};
   const Outcome text = run_program(words);
   EXPECT_EQ(text.code, 0) << text.err;
-  EXPECT_NE(text.out.find("stand at the end   roomba0 for "), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find(" s: 'roomba1' stands in its way\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("at rest at the end   roomba0 for "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find(" s: 'roomba1' blocks its way\n"), std::string::npos) << text.out;
   EXPECT_EQ(text.out.find("up to"), std::string::npos) << "one robot, one time: " << text.out;
   words.push_back("--json");
   const Json facts(run_program(words).out);
   ASSERT_EQ(facts.size("/control/standing"), 1u);
-  EXPECT_EQ(facts.text("/control/standing/0/reason"), "'roomba1' stands in its way");
+  EXPECT_EQ(facts.text("/control/standing/0/reason"), "'roomba1' blocks its way");
   EXPECT_EQ(facts.text("/control/standing/0/names/0"), "roomba0");
   EXPECT_EQ(facts.number("/control/standing/0/robots"), 1);
   EXPECT_GT(facts.number("/control/standing/0/longest_s"), 3.0);
@@ -137,8 +137,8 @@ TEST(Run, RobotsStoppedForOneReasonShareALine) {
   const Outcome outcome = run_program(
       {"run", world, "--robots", "5", "--duration", "5", "--controller", "lane-keeping", "--set", "half_width=0.2"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("stand at the end   roomba1, roomba2, roomba3 and 2 more for up to 5 s: its lane edge "
-                             "sensor sees nothing to follow\n"),
+  EXPECT_NE(outcome.out.find("at rest at the end   roomba1, roomba2, roomba3 and 2 more for up to 5 s: its lane edge "
+                             "sensor detects nothing to follow\n"),
             std::string::npos)
       << outcome.out;
 }
@@ -154,9 +154,9 @@ TEST(Run, TheReasonOfMostRobotsIsFirst) {
       {"run", world, "--json", "--duration", "5", "--controller", "lane-keeping", "--set", "half_width=0.2"});
   const Json facts(outcome.out);
   ASSERT_EQ(facts.size("/control/standing"), 2u) << outcome.out << outcome.err;
-  EXPECT_EQ(facts.text("/control/standing/0/reason"), "no new reading comes from its lane edge sensor");
+  EXPECT_EQ(facts.text("/control/standing/0/reason"), "no new readings arrive from its lane edge sensor");
   EXPECT_EQ(facts.number("/control/standing/0/robots"), 2);
-  EXPECT_EQ(facts.text("/control/standing/1/reason"), "its lane edge sensor sees nothing to follow");
+  EXPECT_EQ(facts.text("/control/standing/1/reason"), "its lane edge sensor detects nothing to follow");
   EXPECT_EQ(facts.number("/control/standing/1/robots"), 1);
 }
 
@@ -239,7 +239,7 @@ TEST(Run, OnlyNamedRobotsAreDriven) {
   const Outcome all = run_program(words);
   EXPECT_EQ(all.code, 2);
   EXPECT_EQ(count_lines(all.err), 1u) << all.err;
-  EXPECT_NE(all.err.find("robot 'khepera6' stands at"), std::string::npos) << all.err;
+  EXPECT_NE(all.err.find("robot 'khepera6' is at"), std::string::npos) << all.err;
   EXPECT_NE(all.err.find(hint), std::string::npos) << all.err;
 
   Words alone = words;
@@ -292,7 +292,7 @@ TEST(Run, OnlyExistingRobotsAndClonesMayBeNamed) {
 TEST(Run, AFolderThatCannotBeCreatedIsReportedWithARemedy) {
   const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.1", "--record", "/proc/x"}));
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("that you may write to"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("that you can write to"), std::string::npos) << outcome.err;
 }
 
 TEST(Run, TheSameSeedGivesTheSameBytesForAnyThreadCount) {
@@ -322,7 +322,7 @@ TEST(Run, MoreRobotsThanFitAreRejected) {
   const Outcome outcome = run_program(run_words("rooms.world", {"--robots", "60000"}));
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(count_lines(outcome.err), 1u);
-  EXPECT_NE(outcome.err.find("no free place"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("no free space"), std::string::npos) << outcome.err;
 }
 
 TEST(Run, RecordingsAreCompressedByDefault) {
@@ -565,10 +565,10 @@ TEST(Run, CheckPointsAreWrittenOnDemandAndAResumedRunMeetsThem) {
 
   const Outcome other = recorded("kept", {"--duration", "1", "--resume", "--seed", "2"});
   EXPECT_EQ(other.code, 2);
-  EXPECT_NE(other.err.find("checkpoints:1: is of another run"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("checkpoints:1: belongs to another run"), std::string::npos) << other.err;
   const Outcome none = recorded("plain", {"--duration", "1", "--resume"});
   EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.err.find("there is no run to resume"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("no run to resume"), std::string::npos) << none.err;
 }
 
 }  // namespace sf

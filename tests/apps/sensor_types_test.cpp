@@ -159,7 +159,7 @@ TEST_F(Kinds, CheckReportsTheEffectOfACutoff) {
   // 1 A m^2 at 2 m, at the height of the elements: 1e-7 / 2^3 T plus a rounding margin, so the text rounds up.
   EXPECT_NEAR(facts.number("/field_truncation_T"), 1.25e-8, 1e-12);
   EXPECT_GT(facts.number("/field_truncation_T"), 1.25e-8);
-  EXPECT_NE(run("check", cut, {}).out.find("what is left out is at most 1.26e-08 T"), std::string::npos);
+  EXPECT_NE(run("check", cut, {}).out.find("the omitted field is at most 1.26e-08 T"), std::string::npos);
 }
 
 TEST_F(Kinds, EveryCommandReportsTheLineOfInvalidSettings) {
@@ -215,7 +215,7 @@ TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
   const Words bases = free_bases(base);
   words.insert(words.end(), bases.begin(), bases.end());
   Program program(words);
-  ASSERT_TRUE(program.says("; Ctrl-C ends it")) << program.err();
+  ASSERT_TRUE(program.says("; press Ctrl-C to stop")) << program.err();
   const std::string said = program.err();
   const auto service = static_cast<std::uint16_t>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
 

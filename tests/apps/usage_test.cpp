@@ -196,10 +196,10 @@ TEST(Usage, ContradictoryOptionsAreRejected) {
                                               {"--external", "mapper,filter"}}) {
     Words words = sensor;
     words.insert(words.end(), more.begin(), more.end());
-    expect_refused(words, "--topics: sensor has no frame odom, and true odometry");
+    expect_refused(words, "--topics: sensor has no frame odom and uses true odometry");
     words[0] = "serve";
     words.erase(words.begin() + 4);  // --record-readings
-    expect_refused(words, "--topics: sensor has no frame odom, and true odometry");
+    expect_refused(words, "--topics: sensor has no frame odom and uses true odometry");
   }
   for (const Words& more : std::vector<Words>{{"--odometry", "truth"}, {"--external", "mapper"}}) {
     Words words = sensor;
@@ -208,10 +208,11 @@ TEST(Usage, ContradictoryOptionsAreRejected) {
     EXPECT_EQ(run_program(words).code, 0) << more[1] << " says the same";
   }
   for (const auto& [arguments, said] : std::vector<Wrong>{
-           {{"serve", world, "--filter", "--clock", "trusted", "--link-delay", "0.1"}, "--link-delay: applies to estimated clocks"},
+           {{"serve", world, "--filter", "--clock", "trusted", "--link-delay", "0.1"},
+            "--link-delay: applies to estimated clocks"},
            {{"serve", world, "--lockstep", "--spat", "9010"}, "--spat: cannot be used with --lockstep"},
            {{"serve", world, "--lockstep", "--stale-lights", "plan"}, "--stale-lights: cannot be used with --lockstep"},
-           {{"calibrate", out, "--survey", "lab.toml", "--rows", "6"}, "--rows: is of a chessboard"},
+           {{"calibrate", out, "--survey", "lab.toml", "--rows", "6"}, "--rows: describes a chessboard"},
            {{"run", world, "--robots", "2", "--of", "roomba1", "--robot-from", "a.inc:b"}, "excludes"}})
     expect_refused(arguments, said);
 }
@@ -297,21 +298,21 @@ TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
            {{"plot"}, "recording is required"},            // no recording
            {{"run", world, "--duraton", "3"}, "'--duraton' was not expected; did you mean '--duration'?"},
            {{"--json", "check", world}, "options must follow the subcommand"},
-           {{"check", world, "another"}, "'another' was not expected"},  // two worlds
-           {{"run", world, "--duration"}, "--duration needs a value"},   // cut off
-           {{"run", world, "--duration", "-1"}, "from 0 to"},            // negative time
-           {{"run", world, "--duration", "nan"}, "got 'nan'"},           // would never end
-           {{"run", world, "--duration", "inf"}, "got 'inf'"},           // would never end
-           {{"run", world, "--duration", "5s"}, "got '5s'"},             // a unit
-           {{"run", world, "--robots", "0"}, "from 1 to 65535"},         // minimum
-           {{"run", world, "--robots", "65536"}, "from 1 to 65535"},     // ids are 16 bits
-           {{"run", world, "--robots", "2.5"}, "got '2.5'"},             // not an integer
-           {{"run", world, "--seed", "-1"}, "got '-1'"},                 // must not wrap
-           {{"run", world, "--threads", "257"}, "from 0 to 256"},        // maximum
-           {{"run", world, "--send", ""}, "expected a host"},            // an unset variable in a script
-           {{"run", world, "--record", ""}, "expected a folder"},        // the same
-           {{"test", "x.toml", "--junit", ""}, "expected a file"},       // the same
-           {{"run", world, "--record-readings"}, "requires --record"},   // no recording
+           {{"check", world, "another"}, "'another' was not expected"},    // two worlds
+           {{"run", world, "--duration"}, "--duration requires a value"},  // cut off
+           {{"run", world, "--duration", "-1"}, "from 0 to"},              // negative time
+           {{"run", world, "--duration", "nan"}, "got 'nan'"},             // would never end
+           {{"run", world, "--duration", "inf"}, "got 'inf'"},             // would never end
+           {{"run", world, "--duration", "5s"}, "got '5s'"},               // a unit
+           {{"run", world, "--robots", "0"}, "from 1 to 65535"},           // minimum
+           {{"run", world, "--robots", "65536"}, "from 1 to 65535"},       // ids are 16 bits
+           {{"run", world, "--robots", "2.5"}, "got '2.5'"},               // not an integer
+           {{"run", world, "--seed", "-1"}, "got '-1'"},                   // must not wrap
+           {{"run", world, "--threads", "257"}, "from 0 to 256"},          // maximum
+           {{"run", world, "--send", ""}, "expected a host"},              // an unset variable in a script
+           {{"run", world, "--record", ""}, "expected a folder"},          // the same
+           {{"test", "x.toml", "--junit", ""}, "expected a file"},         // the same
+           {{"run", world, "--record-readings"}, "requires --record"},     // no recording
            {{"run", world, "--wire", "telegraph"}, "expected farm or thesis"},
            {{"sense", world, "--no-return", "0"}, "expected max or inf"},
            {{"sense", world, "--pose", "1,2"}, "expected X,Y,YAW_DEG"},                     // no heading
@@ -484,7 +485,7 @@ TEST(NoDevice, TheHostContradictsTheRequirement) {
     words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = run_program(words);
     EXPECT_EQ(outcome.code, 3) << outcome.err;
-    EXPECT_NE(outcome.err.find("but the host is named"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("but the host is selected"), std::string::npos) << outcome.err;
   }
 }
 

@@ -107,10 +107,11 @@ TEST(Verify, WithoutReadingsAndLasers) {
   ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", run}).code, 0);
   const Outcome outcome = run_program({"verify", run});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.out,
-            "  ticks              10\n"
-            "  skipped            all readings: the run kept none, and no robot has a laser to compare with plain C++\n"
-            "  verdict            nothing could be compared\n");
+  EXPECT_EQ(
+      outcome.out,
+      "  ticks              10\n"
+      "  skipped            all readings: none were recorded, and no robot has a laser to compare with plain C++\n"
+      "  verdict            nothing could be compared\n");
   EXPECT_FALSE(Json(run_program({"verify", run, "--json"}).out).flag("/sound"));
 }
 
@@ -167,7 +168,8 @@ TEST(Verify, ATruncatedRecordingIsIncomplete) {
   std::filesystem::resize_file(file, whole * 3 / 4);
   const Outcome part = run_program({"verify", file});
   EXPECT_EQ(part.code, 0) << part.out;
-  EXPECT_NE(part.out.find("verdict            sound up to its end: the recording was not finished"), std::string::npos)
+  EXPECT_NE(part.out.find("verdict            sound up to its end, but the recording was not finished"),
+            std::string::npos)
       << part.out;
   EXPECT_TRUE(Json(run_program({"verify", file, "--json"}).out).flag("/truncated"));
 

@@ -34,8 +34,8 @@ Said said_by(const Folder& folder, const std::string& command, const Words& more
 
 void expect_first_three(const Said& said) {
   const std::string& err = said.outcome.err;
-  EXPECT_NE(err.find("sensorfarm: 5 warnings, the first 3 here, all with `sensorfarm check " + said.file + "`:\n" +
-                     said.file + ":2: warning: unknown property 'colour'"),
+  EXPECT_NE(err.find("sensorfarm: 5 warnings; the first 3 follow, `sensorfarm check " + said.file + "`:\n" + said.file +
+                     ":2: warning: unknown property 'colour'"),
             std::string::npos)
       << err;
   EXPECT_NE(err.find(said.file + ":5: warning: unknown property 'velocty_bounds' of 'position' is ignored; did you "
@@ -89,7 +89,7 @@ TEST(Warnings, ScenariosReportWarningsOfTheirWorlds) {
   const Outcome outcome = run_program(
       {"test", folder.write("a.toml", "world = \"slips.world\"\nduration = 0.2\n[expect]\ncontacts = 9\n")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("sensorfarm: 5 warnings, the first 3 here"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("sensorfarm: 5 warnings; the first 3 follow"), std::string::npos) << outcome.err;
 }
 
 // A robot with a controller in the world file keeps it; the command line's drives the others.
@@ -111,7 +111,7 @@ TEST(Warnings, ControllersOfTheWorldFileTakePrecedence) {
   EXPECT_NE(facts.text("/warnings/0/message").find("ctrl \"fasr\" names a plug-in of Stage"), std::string::npos);
   const Outcome ordered =
       run_program({"run", world, "--duration", "0.5", "--controller", "explore", "--drive", "roomba1"});
-  EXPECT_EQ(ordered.err.find("as the world file says"), std::string::npos) << ordered.err;
+  EXPECT_EQ(ordered.err.find("by the controller in the world file"), std::string::npos) << ordered.err;
 }
 
 TEST(Warnings, MissionsOfARunReportTheirMistakes) {
@@ -160,7 +160,7 @@ TEST(Warnings, RoadsWithMistakesAreAcceptedUnlessStrict) {
   EXPECT_EQ(strict.code, 2);
   EXPECT_EQ(strict.err,
             "sensorfarm: " + rndf +
-                ":6: 'num_waypoints' says 7, but lane 1.1 has 2; correct the number, or add or remove entries\n");
+                ":6: 'num_waypoints' is 7, but lane 1.1 has 2; correct the number, or add or remove entries\n");
   const std::string world = folder.write("slips.world", "road( rndf \"slips.rndf\" )\n");
   EXPECT_EQ(Json(run_program({"check", world, "--json"}).out).size("/warnings"), 2u);
   EXPECT_EQ(run_program({"check", world, "--strict"}).code, 2);

@@ -611,7 +611,7 @@ TEST_F(PlayerTest, OtherRequestsOfEachInterfaceAreRefused) {
 TEST_F(PlayerTest, PortsInUseAreNamed) {
   const std::string refusal = refusal_of([&] { PlayerBridge(run.scene, run.bridge.endpoint()); });
   expect_in(std::to_string(run.bridge.endpoint().port), refusal);
-  expect_in("another program has this port", refusal);
+  expect_in("another program uses this port", refusal);
   expect_in("beyond 65535", refusal_of([&] { PlayerBridge(run.scene, {netio::kLoopback, 65535}); }));
 }
 
@@ -624,8 +624,8 @@ TEST_F(PlayerTest, DescribesWhichRobotIsOnWhichPort) {
   const PlayerRun one("name \"e\"\nposition( )\n"), two("name \"e\"\nposition( ) position( )\n"),
       four("name \"e\"\nposition( ) position( ) position( ) position( )\n");
   EXPECT_EQ(described(one), "");
-  EXPECT_EQ(described(two), " for all robots, robot 2 alone on port " + port(two, 1));
-  EXPECT_EQ(described(four), " for all robots, robots 2 to 4 alone on ports " + port(four, 1) + " to " + port(four, 3));
+  EXPECT_EQ(described(two), " for all robots, port " + port(two, 1) + " for robot 2 alone");
+  EXPECT_EQ(described(four), " for all robots, ports " + port(four, 1) + " to " + port(four, 3));
 }
 
 TEST(PlayerOdometry, IsThatOfTheEncoders) {

@@ -190,8 +190,8 @@ TEST_F(Ros2BridgeTest, NamesTopicsAsRos2Does) {
   EXPECT_LT(network.reader("rt/scout/cmd_vel"), network.readers.size());
   EXPECT_EQ(network.reader("rt/tag/cmd_vel"), network.readers.size()) << "tags are not driven";
   EXPECT_EQ(bridge->describe(),
-            "ROS 2: node /sensorfarm in domain 7, on this machine; services do not answer clients of rmw_fastrtps: it "
-            "is not installed");
+            "ROS 2: node /sensorfarm in domain 7, on this machine; services do not answer rmw_fastrtps clients: it is "
+            "not installed");
 }
 
 TEST_F(Ros2BridgeTest, AServiceIsReadOnly) {
@@ -325,7 +325,7 @@ TEST_F(Ros2BridgeTest, AResetIsAnsweredOnceTheRunHasRestarted) {
   for (const int scope : {0, 3, 7, 255}) EXPECT_TRUE(resets(scope)) << scope;
   EXPECT_EQ(answers("reset_simulation", 2),
             (std::vector<std::pair<int, std::string>>(
-                2, {0, "time and state are reset together only: scope 0, 3, 7 or 255"})));
+                2, {0, "time and state can only be reset together: scope 0, 3, 7 or 255"})));
   time = -100'000'000;
   publish(false, 1);
   EXPECT_EQ(answers("reset_simulation", 6).size(), 6u);

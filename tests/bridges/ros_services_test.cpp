@@ -73,7 +73,7 @@ TEST_F(RosServicesTest, Entities) {
   for (const auto& [categories, tags, bounds] : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
     EXPECT_EQ(filtered("", static_cast<std::uint8_t>(categories), static_cast<std::uint8_t>(tags),
                        static_cast<std::uint8_t>(bounds)),
-              "0 entities have no categories, tags or bounds here");
+              "0 entities have no categories, tags or bounds");
   for (const std::string& pattern : {std::string(257, '.'), std::string("*a"), std::string("a*"), std::string("a^")})
     EXPECT_EQ(filtered(pattern, 0, 0, 0), "0 a filter consists of up to 256 characters, '.' and \".*\"") << pattern;
   for (const auto& [pattern, names] : {std::pair{"", "scout tag "},
@@ -94,11 +94,11 @@ TEST_F(RosServicesTest, Changes) {
   EXPECT_EQ(result("/set_simulation_state", state(1)), "101 ") << "plays already";
   EXPECT_FALSE(asked.paused || asked.reset);
   for (const int wanted : {3, 4, 255})
-    EXPECT_EQ(result("/set_simulation_state", state(wanted)), "0 a run is stopped (0), played (1) or paused (2)");
+    EXPECT_EQ(result("/set_simulation_state", state(wanted)), "0 expected stopped (0), playing (1) or paused (2)");
   EXPECT_EQ(result("/step_simulation", number(std::uint64_t{1})), "4 the run is not paused");
   EXPECT_EQ(result("/sensorfarm/step"), "0 the run is not paused");
-  EXPECT_EQ(result("/set_simulation_state", state(2), look(false)), "4 another user chose otherwise");
-  EXPECT_EQ(result("/sensorfarm/pause", number(true), look(false)), "0 another user chose otherwise");
+  EXPECT_EQ(result("/set_simulation_state", state(2), look(false)), "4 another user changed the setting");
+  EXPECT_EQ(result("/sensorfarm/pause", number(true), look(false)), "0 another user changed the setting");
   EXPECT_EQ(result("/set_simulation_state", state(2), look(true)), "1 ");
   EXPECT_TRUE(asked.paused && *asked.paused && !asked.reset);
   EXPECT_EQ(result("/set_simulation_state", state(2)), "101 ") << "is paused already";
@@ -107,12 +107,12 @@ TEST_F(RosServicesTest, Changes) {
     EXPECT_EQ(asked.steps, 0u);
   }
   EXPECT_EQ(result("/step_simulation", number(std::uint64_t{1'000'000}), look(false)),
-            "4 the run went on or began again");
+            "4 the run continued or restarted");
   EXPECT_EQ(asked.steps, 1'000'000u);
   look(true)();
   EXPECT_EQ(result(
                 "/sensorfarm/step", [](auto&) {}, look(true, 1)),
-            "0 the run went on or began again");
+            "0 the run continued or restarted");
   EXPECT_EQ(asked.steps, 1u);
   EXPECT_EQ(result(
                 "/sensorfarm/step", [](auto&) {}, step(true, 1)),
@@ -123,7 +123,7 @@ TEST_F(RosServicesTest, Changes) {
   EXPECT_TRUE(asked.reset && !asked.paused);
   for (const int scope : {1, 2, 4, 6, 8, 254})
     EXPECT_EQ(result("/reset_simulation", state(scope)),
-              "0 time and state are reset together only: scope 0, 3, 7 or 255");
+              "0 time and state can only be reset together: scope 0, 3, 7 or 255");
   EXPECT_EQ(result("/reset_simulation", state(255), step(true, 3)), "1 ");
   EXPECT_EQ(result("/set_simulation_state", state(1), look(false, 3)), "1 ");
   EXPECT_TRUE(asked.paused && !*asked.paused);

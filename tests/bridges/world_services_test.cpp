@@ -98,7 +98,7 @@ TEST_F(WorldServicesTest, NamedPosesMatchTheirTags) {
   EXPECT_EQ(names({"dock", "path"}, 1), "");
   for (const auto& [name, code, box] : {std::tuple{"start_scout", "1 ", kBox},
                                         {"dock_tag", "1 ", "0"},
-                                        {"start_tag", "2 no pose of that name is known", "0"}}) {
+                                        {"start_tag", "2 no pose has that name", "0"}}) {
     Reply reply(ask("/get_named_pose_bounds", text(name)));
     EXPECT_EQ(reply.result(), code);
     EXPECT_EQ(bounds(reply), box);
@@ -383,7 +383,7 @@ TEST_F(StepsActionTest, EveryGoalEnds) {
   EXPECT_EQ(ended(2), "4 1 ") << "it can be asked for again";
   EXPECT_EQ(ended(99), "0 0 ") << "unknown";
   EXPECT_TRUE(send(3, 5));
-  EXPECT_EQ(ended(3, look(false)), "6 4 the run went on or began again");
+  EXPECT_EQ(ended(3, look(false)), "6 4 the run continued or restarted");
 }
 
 TEST_F(StepsActionTest, GoalsAreCanceled) {

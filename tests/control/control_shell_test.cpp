@@ -85,11 +85,11 @@ class Stating final : public Controller, public StatesStopReason {
 TEST(ControlShell, StatesItsStopReason) {
   ControlShell shell(std::make_unique<Stating>(), {.on_signal = true});
   shell.step({.started = false});
-  EXPECT_EQ(stop_reason_of(shell), "the start signal was not given");
+  EXPECT_EQ(stop_reason_of(shell), "the start signal has not arrived");
   shell.step({});
   EXPECT_EQ(stop_reason_of(shell), "it has one");
   shell.step({.contact = true});
-  EXPECT_EQ(stop_reason_of(shell), "its bumper is pressed, or something refused its last motion");
+  EXPECT_EQ(stop_reason_of(shell), "its bumper is pressed, or its last motion was blocked");
   int count = 0;
   EXPECT_EQ(stop_reason_of(Counting(1, count)), "") << "not every controller can";
 }
@@ -167,7 +167,7 @@ TEST(MakeController, NamesTheControllerInErrors) {
       {"wander", {{"wait_on_bumper", 1.0, at}}, "expects true or false"},
       {"wander", {{"kp", 1.0, at}}, "has no setting 'kp'; expected one of: localize, speed, start, wait_on_bumper"},
       {"wander", {{"localize", true, at}}, "has no encoders; expected encoder( ... )"},
-      {"lane-keeping", {}, "needs the lane's width"},
+      {"lane-keeping", {}, "requires the lane's width"},
       {"lane-keeping", {{"half_width", 0.0, at}}, "'half_width'"},
       {"lane-keeping", {{"half_width", 0.3, at}, {"kp", -1.0, at}}, "s.toml:3: 'kp'"},
       {"lane-keeping", {{"half_width", 0.3, at}, {"speed", 9.0, at}}, "'speed'"},

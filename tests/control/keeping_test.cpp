@@ -209,17 +209,17 @@ TEST(LaneKeeping, StatesItsStopReason) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5)});
   controller->step({});
-  EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor");
+  EXPECT_EQ(stop_reason_of(*controller), "no new readings arrive from its lane edge sensor");
   const std::vector<double> none{kNaN};
   const base::ReadingBlock blind{.type = sensors::kLaneEdge, .values = none};
   controller->step({.readings = {&blind, 1}});
-  EXPECT_EQ(stop_reason_of(*controller), "its lane edge sensor sees nothing to follow");
+  EXPECT_EQ(stop_reason_of(*controller), "its lane edge sensor detects nothing to follow");
   const std::vector<double> edge{0.3};
   const base::ReadingBlock seen{.type = sensors::kLaneEdge, .sequence = 1, .values = edge};
   controller->step({.time = kTick, .readings = {&seen, 1}});
   EXPECT_EQ(stop_reason_of(*controller), "") << "it drives";
   controller->step({.time = 10 * kTick, .readings = {&seen, 1}});
-  EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor") << "the same for too long";
+  EXPECT_EQ(stop_reason_of(*controller), "no new readings arrive from its lane edge sensor") << "the same for too long";
 }
 
 TEST(LaneKeeping, GivenWidthOverridesThePath) {

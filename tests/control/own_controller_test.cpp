@@ -106,7 +106,7 @@ TEST(OwnController, NamesMustBeNewAndUsable) {
       add_own_controller({name, "", rate, true, [](const auto&, auto&) { return nullptr; }}, "mine.so");
     });
   };
-  expect_in("mine.so: there is a controller 'wander' already", add("wander"));
+  expect_in("mine.so: a controller 'wander' already exists", add("wander"));
   for (const char* name : {"", "none", "a b", "a/b", "a:b", "x.so"}) expect_in("cannot be called", add(name));
   for (const double rate : {0.0, -1.0, 1e5, double{NAN}}) expect_in("a rate of", add("fine", rate));
 }

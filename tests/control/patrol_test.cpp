@@ -71,7 +71,7 @@ TEST(Patrol, StopsForRobotsInItsWay) {
     Patrol patrol({.points = {{0, 0}, {5, 0}}});
     const std::vector<Neighbour> others{{.id = 2, .state = {.X_WM = {s.other.x, s.other.y, 0, 0}}}};
     EXPECT_EQ(walk(patrol, {}, 1, others).standing > 0.0, s.stands) << s.why;
-    EXPECT_EQ(patrol.stop_reason(), s.stands ? "another robot stands in its way" : "") << s.why;
+    EXPECT_EQ(patrol.stop_reason(), s.stands ? "another robot blocks its way" : "") << s.why;
     EXPECT_GE(patrol.v2v_range(), length(s.other));
   }
   Patrol patrol({.points = {{0, 0}, {5, 0}}});

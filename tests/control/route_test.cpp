@@ -47,7 +47,7 @@ TEST(Route, WaitsForTheStartSignal) {
     EXPECT_EQ(command.forward, 0.0);
     EXPECT_EQ(command.turn, 0.0);
     EXPECT_EQ(t.controllers[0]->intent().checkpoint, base::kNoId);
-    EXPECT_EQ(t.route(0).stop_reason(), "the start signal was not given");
+    EXPECT_EQ(t.route(0).stop_reason(), "the start signal has not arrived");
   }
   t.time = 5'100'000'000;
   t.tick();
@@ -233,7 +233,7 @@ TEST(Route, RejectsUndrivableRoutes) {
   const Pose lane = on_lane(simville(), "1.1", 1.0);
   EXPECT_NE(refusal(go({99}), lane).find("'checkpoints' names 99"), std::string::npos);
   EXPECT_NE(refusal(go({1.5}), lane).find("names 1.5"), std::string::npos);
-  EXPECT_NE(refusal({}, lane).find("nowhere to go"), std::string::npos);
+  EXPECT_NE(refusal({}, lane).find("no destination"), std::string::npos);
   EXPECT_NE(refusal({{"park", std::string("13.9"), ""}}, lane).find("no parking spot '13.9'"), std::string::npos);
   EXPECT_NE(refusal({{"mission", std::string("none.mdf"), ""}}, lane).find("none.mdf"), std::string::npos);
   EXPECT_NE(refusal(go({1}), {5.3, 5.0, 0, 0}).find("no lane"), std::string::npos);
@@ -252,7 +252,7 @@ TEST(Route, ReportsUnreachableGoals) {
     t.tick();
     FAIL() << "no exception";
   } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("no way to checkpoint 4 (way-point 1.3.6)"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("no route to checkpoint 4 (way-point 1.3.6)"), std::string::npos)
         << error.what();
   }
 }
@@ -311,14 +311,14 @@ TEST(Route, StopsBehindAStoppedRobot) {
   EXPECT_GT(t.distance(0, 1), 0.37);
   EXPECT_LT(t.distance(0, 1), 0.5);
   EXPECT_EQ(t.contacts, 0);
-  EXPECT_EQ(t.route(1).stop_reason(), "'robot1' stands in its way");
+  EXPECT_EQ(t.route(1).stop_reason(), "'robot1' blocks its way");
 }
 
 TEST(Route, StatesItsStopReasonAtAStopSign) {
   Streets t;
   t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8}));
   t.begin();
-  EXPECT_EQ(t.route(0).stop_reason(), "the start signal was not given") << "before its first step";
+  EXPECT_EQ(t.route(0).stop_reason(), "the start signal has not arrived") << "before its first step";
   std::set<std::string> reasons;
   while (!t.controllers[0]->done() && t.time < 1'000'000'000'000) {
     t.tick();

@@ -82,7 +82,7 @@ TEST(Choose, MatchesRowOrPartOfNameOrDriverIgnoringCase) {
 TEST(Choose, GivesAReasonForEveryOtherDevice) {
   DeviceCandidates candidates = five();
   EXPECT_EQ(choose_device(candidates, ""), 2);
-  EXPECT_EQ(candidates.info[0].reason, "usable, but another ranks higher; name it with --device");
+  EXPECT_EQ(candidates.info[0].reason, "usable, but another ranks higher; select it with --device");
   EXPECT_EQ(candidates.info[4].reason, "has no compute queue");
   candidates = five();
   EXPECT_EQ(choose_device(candidates, "iris"), 1);

@@ -41,7 +41,7 @@ TEST(Device, UnknownNameListsEveryDeviceAndReason) {
     const std::size_t devices = list_devices("").devices.size() - 1;  // excludes the host
     EXPECT_EQ(text.find("no usable Vulkan device among " + std::to_string(devices) + ": "), 0u) << text;
     EXPECT_NE(text.find("does not match 'no such device';"), std::string::npos) << text;
-    EXPECT_NE(text.find("name another with --device"), std::string::npos) << text;
+    EXPECT_NE(text.find("select another with --device"), std::string::npos) << text;
   }
 }
 

@@ -120,7 +120,7 @@ TEST(Batch, SubmitAndWaitAreSeparate) {
   batch.end();
   batch.wait();  // nothing was submitted
   batch.submit();
-  EXPECT_DEATH(batch.submit(), "a batch is submitted again before it was waited for");
+  EXPECT_DEATH(batch.submit(), "a batch is submitted again before its wait");
   batch.wait();
   batch.wait();
   batch.submit();  // destroyed without `wait`: the destructor waits

@@ -216,7 +216,7 @@ TEST(Library, MessagesNameOptionsOfTheLibrary) {
       refusal_of<Error>([] { Simulation simulation(kCave, {.accuracy = "fast"}); }),
       refusal_of<Error>([] { Simulation simulation(kCave, {.robot_from = "worlds/robots.inc:create"}); })};
   for (const std::string& message : messages) EXPECT_EQ(message.find("--"), std::string::npos) << message;
-  expect_in("name another with device", messages[0]);
+  expect_in("select another with device", messages[0]);
   expect_in("did you mean 'host'?", messages[0]);
   expect_in("(require_vulkan, SENSORFARM_REQUIRE_VULKAN or caster=\"vulkan\")", messages[1]);
   expect_in("accuracy: there is no accuracy \"fast\"", messages[2]);

@@ -28,14 +28,14 @@ TEST(RejectionText, NamesTheFaultAndTheRemedy) {
   bytes.resize(140);
   EXPECT_EQ(rejection_text(PacketStatus::too_long, bytes, kRobots), "a V2V of 140 bytes is too long: expected 132");
   EXPECT_EQ(rejection_text(PacketStatus::too_short, std::span(bytes).first(3), kRobots),
-            "3 bytes: every packet begins with a header of 64 bytes");
+            "3 bytes: every packet starts with a header of 64 bytes");
   EXPECT_EQ(rejection_text(PacketStatus::unknown_robot, v2v(), kRobots),
             "the world has no robot with id 7; it has 1, 2");
   EXPECT_EQ(rejection_text(PacketStatus::unknown_robot, v2v(300), {}),
             "the world has no robot with id 300; it has none");
   bytes[kVersionAt] = 1;
   EXPECT_EQ(rejection_text(PacketStatus::unknown_version, bytes, kRobots),
-            "version 1 of the protocol: expected 2; update the sender");
+            "protocol version 1: expected 2; update the sender");
 }
 
 /// Includes packets of processes in lockstep.

@@ -214,8 +214,8 @@ TEST(RelayBounds, LightReceivesTheNearestInTheSameTick) {
 
 TEST(RelayBounds, TurnHoldsAtLeastFourStates) {
   const Rows ids{0, 1};
-  EXPECT_DEATH(Relay(ids, {.most = Relay::kMinShare - 1}), "passes nothing on");
-  EXPECT_DEATH(Relay(ids, {.budget = Relay::kMinShare - 1}), "passes nothing on");
+  EXPECT_DEATH(Relay(ids, {.most = Relay::kMinShare - 1}), "without a receiver");
+  EXPECT_DEATH(Relay(ids, {.budget = Relay::kMinShare - 1}), "without a receiver");
 }
 
 /// Robots with few neighbours use little of the budget, so more than two are served.

@@ -464,7 +464,7 @@ TEST(Socket, RaisesButNeverLowersTheOpenFileLimit) {
       raise_open_file_limit(66);
       fine = false;
     } catch (const base::InputError& error) {
-      fine = fine && std::string(error.what()).find("66 open files are needed") != std::string::npos;
+      fine = fine && std::string(error.what()).find("66 open files are required") != std::string::npos;
     }
     std::exit(fine ? 0 : 1);
   };

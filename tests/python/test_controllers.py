@@ -190,7 +190,7 @@ class Program(unittest.TestCase):
                 errors = started.communicate()[1]
                 self.assertLess(time.monotonic() - begin, 4, how)
                 self.assertEqual(started.returncode, 1, how + errors)
-                self.assertIn("controller 'Ends' of robot 'roomba1' at 1.000 s simulated does not return", errors)
+                self.assertIn("controller 'Ends' of robot 'roomba1' at 1.000 s simulated has not returned", errors)
 
     def test_children_end_with_the_run(self):
         with tempfile.TemporaryDirectory() as folder:

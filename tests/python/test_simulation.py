@@ -338,7 +338,7 @@ class Processes(unittest.TestCase):
                 os._exit(0)
             os.close(writer)
             with os.fdopen(reader) as answer:
-                self.assertRegex(answer.read(), "made before the process was forked; .* True$")
+                self.assertRegex(answer.read(), "created before the process was forked; .* True$")
             os.waitpid(child, 0)
 
 
@@ -357,9 +357,9 @@ class Faults(unittest.TestCase):
                 (sensorfarm.Error, "there is no row 2", lambda: sim.put(2, (0, 0, 0, 0))),
                 (sensorfarm.Error, "expected finite numbers", lambda: sim.step([[0, 0, float("nan")], [0, 0, 0]])),
                 (sensorfarm.DeviceError, "does not match 'nonsuch'", lambda: room(device="nonsuch")),
-                (sensorfarm.DeviceError, "name another with device or", lambda: room(device="nonsuch")),
+                (sensorfarm.DeviceError, "select another with device or", lambda: room(device="nonsuch")),
                 (sensorfarm.DeviceError, r"\(require_vulkan, ", lambda: room(device="host", require_vulkan=True)),
-                (sensorfarm.Error, "robots of its own; robot_from is", lambda: room(robot_from="worlds/robots.inc:create")),
+                (sensorfarm.Error, "its own robots; robot_from is", lambda: room(robot_from="worlds/robots.inc:create")),
                 (TypeError, "'robotz' is not an option", lambda: room(robotz=1)),
                 (TypeError, "'robots' has a value of another type", lambda: room(robots=-1)),
                 (TypeError, "put", lambda: sim.put(0, (0, 0))),

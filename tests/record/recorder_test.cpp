@@ -322,7 +322,7 @@ TEST(Recorder, RejectsASecondRecorderWhileTheFirstExists) {
 }
 
 TEST(Recorder, RejectsAnUnwritableFolderWithTheReason) {
-  EXPECT_NE(message_of([] { Recorder("/dev/null/run", sample_info(false)); }).find("cannot be made a directory"),
+  EXPECT_NE(message_of([] { Recorder("/dev/null/run", sample_info(false)); }).find("cannot be created as a directory"),
             std::string::npos);  // below a file
   const std::string directory = fresh_directory("occupied");
   fs::create_directories(directory + "/run.mcap.new");

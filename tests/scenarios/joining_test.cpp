@@ -326,7 +326,7 @@ TEST(Joining, ErrorsOfEventsNameLineAndRemedy) {
       {"[[event]]\nat = 1\nadd = \"b\"\nlike = \"q\"\npose = [0, 0, 0]\n", "joining.toml:5: "},
       {"[[event]]\nat = 3\nadd = \"b\"\nlike = \"a\"\npose = [0, 0, 0]\n",
        "joining.toml:5: 'b' would join after the end"},
-      {later + "remove = \"a\"\n" + later + "remove = \"a\"\n", "joining.toml:8: there is no robot in row 0"},
+      {later + "remove = \"a\"\n" + later + "remove = \"a\"\n", "joining.toml:8: row 0 has no robot"},
   };
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(joining_refusal(text).substr(0, said.size()), said) << text;
 }

@@ -44,9 +44,9 @@ TEST(CheckScenario, ErrorsOfARunAreFoundAtTheirLines) {
       {path + "[default]\ncontroller = \"none\"\n[expect]\nmean_error = 1\n",
        "test.toml:5: 'mean_error' of a robot without a controller"},
       // Nothing would be simulated, and `no_collision` would be met: zero, and less than half of a tick of 0.1 s.
-      {rooms + "duration = 0\n", "test.toml:2: 'duration' 0 s is less than a tick of 0.1 s"},
-      {rooms + "duration = 1e-9\n", "test.toml:2: 'duration' 1e-09 s is less than a tick of 0.1 s"},
-      {rooms + "duration = 0.049\n", "test.toml:2: 'duration' 0.049 s is less than a tick of 0.1 s"},
+      {rooms + "duration = 0\n", "test.toml:2: 'duration' 0 s is shorter than a tick of 0.1 s"},
+      {rooms + "duration = 1e-9\n", "test.toml:2: 'duration' 1e-09 s is shorter than a tick of 0.1 s"},
+      {rooms + "duration = 0.049\n", "test.toml:2: 'duration' 0.049 s is shorter than a tick of 0.1 s"},
   };
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(run_refusal(text).substr(0, said.size()), said) << text;
 }

@@ -186,7 +186,7 @@ TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
       {w + "[[robot]]\nname = \"a\"\npose = [1, 2]\n", "test.toml:4: 'pose' expects [x, y, yaw]"},
       {w + "[[robot]]\nname = \"a\"\npose = [1, 2, inf]\n", "test.toml:4: 'pose' expects a number"},
       {w + "[[robot]]\nname = \"a\"\n[[robot]]\nname = \"b\"\n[[robot]]\nname = \"a\"\n",
-       "test.toml:6: the robot 'a' is configured at line 2 already; expected one [[robot]] for each"},
+       "test.toml:6: the robot 'a' is already configured at line 2; expected one [[robot]] per robot"},
       {w + "[expect]\nno_collisions = true\n",
        "test.toml:3: unknown key 'no_collisions'; did you mean 'no_collision'?"},
       {w + "[expect]\nno_collision = false\n", "test.toml:3: 'no_collision' expects true"},

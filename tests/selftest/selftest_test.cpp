@@ -150,9 +150,9 @@ TEST(Suite, EveryKindOfCheckNamesItsFailure) {
   EXPECT_EQ(failure([](Checks& c) { c.equal(6, 7u, "count", 5); }), "count: 6, expected 7 [5]");
   EXPECT_EQ(failure([](Checks& c) { c.holds(false, "holds", 6); }), "holds [6]");
   EXPECT_EQ(failure([](Checks& c) { c.refused([] {}, "word", "call"); }),
-            "call: expected a refusal that names 'word', not: was taken [0]");
+            "call: expected a rejection that names 'word', got: was accepted [0]");
   EXPECT_EQ(failure([](Checks& c) { c.refused([] { throw base::InputError("y"); }, "x", "call"); }),
-            "call: expected a refusal that names 'x', not: y [0]");
+            "call: expected a rejection that names 'x', got: y [0]");
   EXPECT_EQ(outcome_of([](Fixture&, Checks&) { throw base::InputError("thrown"); }).failure,
             "it ended with: thrown [0]");
 }

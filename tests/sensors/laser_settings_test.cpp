@@ -124,7 +124,7 @@ TEST(Lasers, WarnsAboutALaserWithoutARobot) {
   const World world = read("laser()");
   EXPECT_TRUE(world.movers.empty());
   EXPECT_EQ(world.walls.size(), 4u);
-  EXPECT_NE(warnings_of(world).find("carried by no robot"), std::string::npos);
+  EXPECT_NE(warnings_of(world).find("not mounted on a robot"), std::string::npos);
 }
 
 TEST(Lasers, LaserNamedLaneedgeIsALaneEdgeSensor) {

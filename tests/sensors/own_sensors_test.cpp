@@ -195,7 +195,7 @@ TEST(OwnSensors, KernelsMeasureAndTheHostMayFinish) {
     const farm::Farm none(world, host_device());
     ADD_FAILURE() << "a kernel ran on the host";
   } catch (const base::DeviceError& error) {
-    expect_in("(openness) has a kernel of its own", error.what());
+    expect_in("(openness) has its own kernel", error.what());
     expect_in("mesa-vulkan-drivers", error.what());
   }
   std::filesystem::remove(file);

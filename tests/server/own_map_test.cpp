@@ -176,7 +176,7 @@ std::string map_refusal(const world::World& world, const OwnMapOptions& options)
 TEST_F(MapTest, RejectsUnsupportedMaps) {
   world::World blind = map_world();
   blind.movers[0].sensors.clear();
-  EXPECT_NE(map_refusal(blind, options()).find("has no laser to make a map with"), std::string::npos);
+  EXPECT_NE(map_refusal(blind, options()).find("has no laser to build a map with"), std::string::npos);
   EXPECT_NE(map_refusal(map_world(), options(sensors::WireFormat::thesis)).find("does not fit the thesis' layout"),
             std::string::npos);
 }

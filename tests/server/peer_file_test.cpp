@@ -85,10 +85,10 @@ TEST(PeerFile, ErrorsNameTheirLine) {
   expect("[[peer]]\nrobot = 1\nkey = 12", "peers.toml:3", "text in quotes");
   expect("[[peer]]\nrobot = 1\nkey = \"\"", "peers.toml:3", "text in quotes");
   // Such a peer would not be checked at all, not even the last of two.
-  expect("[[peer]]\nrobot = 1", "peers.toml:1", "needs an address or a key");
-  expect("[[peer]]\nstart = true", "peers.toml:1", "needs an address or a key");
+  expect("[[peer]]\nrobot = 1", "peers.toml:1", "requires an address, a key");
+  expect("[[peer]]\nstart = true", "peers.toml:1", "requires an address, a key");
   expect("[[peer]]\nrobot = 1\naddress = \"10.0.0.1\"\n[[peer]]\nlight = 4", "peers.toml:4",
-         "needs an address or a key");
+         "requires an address, a key");
 }
 
 /// Boundaries: one digit fewer and more, and a character that is not a digit, at either place of a byte.

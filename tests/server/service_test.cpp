@@ -36,7 +36,7 @@ TEST(Service, ARobotWithoutALinkDoesNotMove) {
   EXPECT_FALSE(robot.answered);
   EXPECT_EQ(robot.steps, 6u) << "the time before the first reading counts as silence from 0.5 s on";
   EXPECT_EQ(f.service->stats().inbox.total(), 0u);
-  EXPECT_EQ(count_of(f.log.read_all(), "It stops until readings arrive"), 1u);
+  EXPECT_EQ(count_of(f.log.read_all(), "The robot stops until readings arrive"), 1u);
 }
 
 /// When a service stops, the robot does not drive on by its last scan. It stops after two and a half periods of its
@@ -50,7 +50,7 @@ TEST(Service, ARobotStopsWhileNoReadingArrives) {
   EXPECT_NE(f.log.read_all().find("for 0.625 s: robot1 stops until one arrives"), std::string::npos);
   f.run(10);
   EXPECT_GT(f.client->stats().steps, steps + 5);
-  EXPECT_NE(f.log.read_all().find("readings arrive: robot1 drives on"), std::string::npos);
+  EXPECT_NE(f.log.read_all().find("readings arrive: robot1 continues"), std::string::npos);
   EXPECT_EQ(f.client->stats().stops, 1u) << "going on is no stop";
 }
 
@@ -202,7 +202,7 @@ TEST(Service, ARobotAtAnotherAddressIsRefusedAndLoggedOnce) {
   f.run(10);
   EXPECT_FALSE(f.client->stats().answered);
   EXPECT_EQ(f.service->stats().inbox.dropped(), f.service->stats().inbox[netio::PacketStatus::wrong_source]);
-  EXPECT_EQ(count_of(f.log.read_all(), "robot1 (id 1) is at 127.0.0.2 by the table of peers"), 1u);
+  EXPECT_EQ(count_of(f.log.read_all(), "robot1 (id 1) is at 127.0.0.2 in the table of peers"), 1u);
 }
 
 /// Sends states of robot 2, in any order of sequence.

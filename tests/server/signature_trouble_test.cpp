@@ -59,7 +59,7 @@ TEST(SignatureTrouble, BothSidesLogAMissingKey) {
 TEST(SignatureTrouble, BothSidesLogAFarmWithoutTheKey) {
   Fixture f;
   const std::string log = lines_with(f, kKey);
-  EXPECT_EQ(count(log, "whose signature is not checked: --peers has no key for it here"), 1u) << log;
+  EXPECT_EQ(count(log, "whose signature is not checked: the sender uses a key"), 1u) << log;
   EXPECT_EQ(count(log, "does not sign its packets: start `serve` with --peers and the key of robot 1, too"), 1u) << log;
 }
 
@@ -68,8 +68,8 @@ TEST(SignatureTrouble, BothSidesLogAnotherAddress) {
   settings.peers = {{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt}};
   Fixture f(settings);
   const std::string log = lines_with(f, std::nullopt);
-  EXPECT_EQ(count(log, "is at 127.0.0.2 by the table of peers"), 1u) << log;
-  EXPECT_EQ(count(log, "takes robot 1 from another address: --peers has one for it there"), 1u) << log;
+  EXPECT_EQ(count(log, "is at 127.0.0.2 in the table of peers"), 1u) << log;
+  EXPECT_EQ(count(log, "accepts robot 1 from another address only: --peers has one for it there"), 1u) << log;
   EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
 }
 
@@ -93,8 +93,8 @@ TEST(SignatureTrouble, OtherSendersAtAnotherAddressAreLoggedOnce) {
   sender.flush();
   receiver.receive_pending(0);
   const std::string lines = log.read_all();
-  EXPECT_EQ(count(lines, "the sender of START is at 127.0.0.2 by the table of peers"), 1u) << lines;
-  EXPECT_EQ(count(lines, "intersection 7 is at 127.0.0.2 by the table of peers"), 1u) << lines;
+  EXPECT_EQ(count(lines, "the sender of START is at 127.0.0.2 in the table of peers"), 1u) << lines;
+  EXPECT_EQ(count(lines, "intersection 7 is at 127.0.0.2 in the table of peers"), 1u) << lines;
 }
 
 /// A robot whose clock was an hour ahead has left; now its clock is right.
@@ -116,7 +116,8 @@ TEST(SignatureTrouble, BothSidesLogAClockThatWasSetBack) {
   ASSERT_EQ(f.service->stats().inbox[netio::PacketStatus::accepted], 2u);
   const std::string log = lines_with(f, kKey);
   EXPECT_EQ(count(log, "with a counter 3600.0 s behind an earlier one: the sender's clock was set back"), 1u) << log;
-  EXPECT_EQ(count(log, "has had packets of robot 1 with later times: this machine's clock was set back"), 1u) << log;
+  EXPECT_EQ(count(log, "has received packets of robot 1 with later times: this machine's clock was set back"), 1u)
+      << log;
   EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
 }
 

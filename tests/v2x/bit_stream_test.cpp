@@ -55,12 +55,12 @@ TEST(BitStream, ReadingBeyondTheEndIsAPermanentFault) {
   EXPECT_EQ(in.bits(0), 0u);  // needs nothing
   EXPECT_TRUE(in.good());
   EXPECT_EQ(in.bits(1), 0u);
-  EXPECT_EQ(in.fault(), "1 more bits expected, and 0 are left");
+  EXPECT_EQ(in.fault(), "expected 1 more bits, but 0 are left");
   in.fail("a later one");
   in.fail_within("b");
   in.fail_within("[2]");
   in.fail_within("a");
-  EXPECT_EQ(in.fault(), "a[2].b: 1 more bits expected, and 0 are left");
+  EXPECT_EQ(in.fault(), "a[2].b: expected 1 more bits, but 0 are left");
 }
 
 TEST(BitStream, LengthsChangeTheirFormAtTheirLimits) {

@@ -133,14 +133,14 @@ TEST(Frame, AFlippedBitIsReadOrRejected) {
 }
 
 TEST(Frame, ErrorsNameThePlaceAndTheReason) {
-  EXPECT_EQ(error_of(""), "1 more bits expected, and 0 are left");
+  EXPECT_EQ(error_of(""), "expected 1 more bits, but 0 are left");
   EXPECT_EQ(error_of("00140100"), "messageId: 20 (BasicSafetyMessage) is neither SPaT (19) nor MAP (18)");
   EXPECT_EQ(error_of("7FFF00"), "messageId: 32767 is neither SPaT (19) nor MAP (18)");
-  EXPECT_EQ(error_of("0381004003"),
-            "messageId: 897 (a message of IEEE 1609.2; the frame within it is expected) is "
-            "neither SPaT (19) nor MAP (18)");
-  EXPECT_EQ(error_of("001300"), "SPAT: 1 more bits expected, and 0 are left");
-  EXPECT_EQ(error_of("001305000000"), "5 octets expected, and 3 are left");
+  EXPECT_EQ(
+      error_of("0381004003"),
+      "messageId: 897 (a message of IEEE 1609.2; expected the frame within it) is neither SPaT (19) nor MAP (18)");
+  EXPECT_EQ(error_of("001300"), "SPAT: expected 1 more bits, but 0 are left");
+  EXPECT_EQ(error_of("001305000000"), "expected 5 octets, but 3 are left");
 }
 
 TEST(Frame, NumbersAboveTheirBoundsAreRejected) {

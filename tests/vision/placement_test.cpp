@@ -123,11 +123,10 @@ TEST(Placement, ReadsTwoHundredImages) {
 /// Boundaries: no survey, no image, one point too few, points on a line; the minimum that suffices.
 TEST(Placement, ReportsMissingInput) {
   Testbed testbed = survey(false);
-  EXPECT_EQ(
-      refusal(testbed, ImagesInMemory({})),
-      "album: of the 5 surveyed tags of lab.toml, camera 'distorted' saw 0, with 0 points: too few; expected four "
-      "points that are not on one line: four tags, or one whose section [[survey]] has a heading. Not seen: 1, 2, "
-      "3, 4, 5");
+  EXPECT_EQ(refusal(testbed, ImagesInMemory({})),
+            "album: of the 5 surveyed tags of lab.toml, camera 'distorted' saw 0, with 0 points: too few; expected "
+            "four points that are not on one line: four tags, or one whose [[survey]] section has a heading. Not seen: "
+            "1, 2, 3, 4, 5");
   EXPECT_NE(refusal(testbed, pictures(testbed, 3)).find("saw 3 (1, 2, 3), with 3 points: too few"), std::string::npos);
   EXPECT_NE(
       refusal(testbed, ImagesInMemory({Image{64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9)}})).find("is 64 x 48"),

@@ -94,7 +94,7 @@ TEST(Testbed, ErrorsHaveFileLineAndRemedy) {
            {kCamera + "exposure = -1\n", "t.toml:6: 'exposure' expects a number from 0 to 1"},
            {kCamera + "[[tag]]\nside = 0.1\n", "'id' is missing; expected id = 12"},
            {kCamera + "[[tag]]\nid = 65536\n", "t.toml:7: 'id' expects a whole number from 0 to 65535"},
-           {kCamera + "[[tag]]\nid = 1\n[[tag]]\nid = 1\n", "t.toml:9: two sections [[tag]] have the id 1"},
+           {kCamera + "[[tag]]\nid = 1\n[[tag]]\nid = 1\n", "t.toml:9: two [[tag]] sections have the id 1"},
            {kCamera + "[[tag]]\nid = 1\noffset = [1, 2]\n", "t.toml:8: 'offset' expects [x, y, yaw]"}})
     EXPECT_NE(error_of(each.text).find(each.expected), std::string::npos) << error_of(each.text) << "\n" << each.text;
 }
@@ -173,7 +173,7 @@ TEST(Testbed, ReadsSurveyedTags) {
   EXPECT_EQ(refusal("[[survey]]\nid = 3\n"),
             "t.toml:6: 'position' is missing; expected position = [x, y, z] of the tag's centre in metres");
   EXPECT_EQ(refusal("[[survey]]\nid = 3\nposition = [1, 2, 3]\n[[survey]]\nid = 3\nposition = [1, 2, 3]\n"),
-            "t.toml:10: two sections [[survey]] have the id 3");
+            "t.toml:10: two [[survey]] sections have the id 3");
   std::string many;
   for (std::size_t i = 0; i <= kMaxSurveyed; ++i)
     many += "[[survey]]\nid = " + std::to_string(i) + "\nposition = [1, 2, 3]\n";

@@ -37,8 +37,8 @@ const std::vector<Bad>& corpus() {
       {"a hexadecimal number", "model( pose [0x10 0 0 0] )", 1, "not a number"},
       {"two dots", "model( size [1.2.3 2 3] )", 1, "not a number"},
       {"huge length", "model( pose [1e8 0 0 0] )", 1, "too large"},
-      {"property without value", "model(\n size\n color \"red\" )", 2, "needs a value"},
-      {"property at the end", "name", 1, "needs a value"},
+      {"property without value", "model(\n size\n color \"red\" )", 2, "requires a value"},
+      {"property at the end", "name", 1, "requires a value"},
       {"number where a property belongs", "model( 3 )", 1, "expected a property"},
       {"string at the top", "\"x\"", 1, "expected include"},
       {"pose too short", "model(\n pose [1 2] )", 2, "[x y z yaw]"},
@@ -59,7 +59,7 @@ const std::vector<Bad>& corpus() {
       {"bitmap without area", "model( size [0 1 1] bitmap \"bitmaps/cave.png\" )", 1, "above zero"},
       {"define without a body", "define a model\nmodel()", 1, "expected '('"},
       {"define without a base", "define a (", 1, "define NEW-NAME"},
-      {"define of itself", "\ndefine a a( )", 2, "defined by itself"},
+      {"define of itself", "\ndefine a a( )", 2, "defined in terms of itself"},
       {"block without points", "model(\n block( z [0 1] ) )", 2, "'points' is missing"},
       {"block with one point", "model( block( points 1 point[0] [0 0] ) )", 1, "from 2"},
       {"block with half a point", "model( block( points 2.5 ) )", 1, "whole number"},
@@ -74,7 +74,7 @@ const std::vector<Bad>& corpus() {
       {"acceleration of one number", "position( acceleration_bounds [1] )", 1, "[xmin xmax"},
       {"no track", "position(\n track 0 )", 2, "'track' is 0 m; expected more than 0"},
       {"unknown command law", "position( command_law \"other\" )", 1, "\"direct\" or \"player_create\""},
-      {"light without a plan", "\nlight( )", 2, "a light needs 'phases'"},
+      {"light without a plan", "\nlight( )", 2, "a light requires 'phases'"},
       {"light that lacks a phase", "light( phases 2\n phase[0] [\"red\" 1] )", 1, "'phase[1]' is missing"},
       {"phase without a time", "light( phases 1\n phase[0] [\"red\"] )", 2, "[\"state\" seconds]"},
       {"phase turned round", "light( phases 1\n phase[0] [1 \"red\"] )", 2, "[\"state\" seconds]"},
@@ -91,14 +91,14 @@ const std::vector<Bad>& corpus() {
       {"stop line of point 0", "light( phases 1 phase[0] [\"red\" 1]\n stop_lines \"1.2.0\" )", 2, "'1.2.0'"},
       {"stop line of a number too large", "light( phases 1 phase[0] [\"red\" 1]\n stop_lines \"1.32769.3\" )", 2,
        "'1.32769.3'"},
-      {"light on a robot", "position(\n light( phases 1 phase[0] [\"red\" 1] ) )", 2, "does not move"},
+      {"light on a robot", "position(\n light( phases 1 phase[0] [\"red\" 1] ) )", 2, "cannot move"},
       {"unknown emitter", "model(\n ir_emitter \"torch\" )", 2, "\"virtual_wall\" or \"dock\""},
-      {"emitter on a robot", "position(\n ir_emitter \"dock\" )", 2, "does not move"},
+      {"emitter on a robot", "position(\n ir_emitter \"dock\" )", 2, "cannot move"},
       {"emitter without reach", "model( ir_emitter \"dock\"\n ir_range 0 )", 2, "more than 0"},
       {"emitter without a beam", "model( ir_emitter \"dock\"\n ir_fov 0 )", 2, "more than 0, to 360"},
       {"emitter of more than a turn", "model( ir_emitter \"dock\"\n ir_fov 361 )", 2, "'ir_fov' is 361 degrees"},
       {"halo below zero", "model( ir_emitter \"dock\"\n ir_halo -1 )", 2, "0 or more"},
-      {"hole in a robot", "position(\n cliff_return 1 )", 2, "does not move"},
+      {"hole in a robot", "position(\n cliff_return 1 )", 2, "cannot move"},
       {"hole that is a line", "model(\n cliff_return 1 block( points 2 point[0] [0 0] point[1] [1 0] ) )", 2,
        "at least three corners"},
       {"hole that crosses itself",
@@ -140,7 +140,7 @@ TEST(BadInput, MacrosThatDoubleEachTimeAreRejected) {
   for (int i = 1; i < 60; ++i) {
     text += fmt::format("define a{0} model( a{1}() a{1}() )\n", i, i - 1);
   }
-  EXPECT_NE(error_of(text).find("grow to more than"), std::string::npos);
+  EXPECT_NE(error_of(text).find("expand to more than"), std::string::npos);
 }
 
 class Files : public ::testing::Test {

@@ -74,10 +74,9 @@ TEST_F(Bodies, SolidPartOfAPictureFillsTheSize) {
   EXPECT_EQ(extent_of(world), "-10 -5 10 5");
   EXPECT_EQ(world.walls.size(), 4u);
   EXPECT_EQ(world.models[0].pixel, 5.0);
-  EXPECT_EQ(
-      warnings_of(world),
-      "2: the picture's solid part is scaled to 'size', as in Stage: its margins of 1 (left), 3 (right), 2 (below) "
-      "and 4 (above) of 8 x 8 pixels are left out; the world key old_shapes 1 counts them\n");
+  EXPECT_EQ(warnings_of(world),
+            "2: the picture's solid part is scaled to 'size', as in Stage: its margins of 1 (left), 3 (right), 2 "
+            "(below) and 4 (above) of 8 x 8 pixels are left out; the world key old_shapes 1 includes them\n");
   const World old = read("old_shapes 1\nmodel( size [20 10 1] bitmap \"pad.pgm\" )");
   EXPECT_EQ(extent_of(old), "-7.5 -2.5 2.5 0");
   EXPECT_EQ(old.models[0].pixel, 2.5);
@@ -103,7 +102,7 @@ TEST_F(Bodies, BlocksWithAPictureAreInMetres) {
   const Segment& block = inside.walls.back();
   EXPECT_NEAR(block.a.x, 0.0, 1e-12);
   EXPECT_NEAR(block.a.y, 1.0, 1e-12) << "the square's upper left corner";
-  EXPECT_NE(warnings_of(inside).find("'model' has blocks, too: their points count in metres"), std::string::npos);
+  EXPECT_NE(warnings_of(inside).find("'model' also has blocks: their points are in metres"), std::string::npos);
 
   // A block from -10 to 30 m shrinks everything to half its width.
   const World outside = read(
@@ -123,7 +122,7 @@ TEST_F(Bodies, BoundaryAndBlocksAreKeptWithAWarning) {
   const World world = read("model( size [2 2 1]\n boundary 1 " + std::string(kSquare) + " )");
   EXPECT_EQ(world.walls.size(), 12u);
   EXPECT_EQ(warnings_of(world),
-            "2: 'model' has a boundary and blocks: Stage leaves the boundary out, here both stay\n");
+            "2: 'model' has a boundary and blocks: Stage omits the boundary, the farm keeps both\n");
 }
 
 TEST_F(Bodies, RaisedBlocksAreAWarning) {
@@ -157,10 +156,9 @@ TEST_F(Bodies, TransparentDarkPixelsAreFreeWithAWarning) {
       "\x5cr\xff\x01\x04\x82\x01\xf0\x04\x0d\x9e\x64\0\0\0\0IEND\xae\x42\x60\x82",
       72);
   write("clear.png", png);
-  EXPECT_EQ(
-      warnings_of(read("model( size [2 1 1] bitmap \"clear.png\" )")),
-      "1: 1 dark pixels of the picture are transparent, so they are free; Stage ignores transparency and takes them "
-      "for walls\n1: the picture has no dark pixel, so it has no walls\n");
+  EXPECT_EQ(warnings_of(read("model( size [2 1 1] bitmap \"clear.png\" )")),
+            "1: 1 dark pixels of the picture are transparent and therefore free; Stage ignores transparency and treats "
+            "them as walls\n1: the picture has no dark pixel, so it has no walls\n");
 }
 
 /// Stage searches the folder of the world file, even for files that an include refers to.

@@ -30,7 +30,7 @@ TEST(ForeignWorlds, AreNamedByTheirRootElement) {
   expect_said("<svg>", "SVG");
   expect_said("<COLLADA xmlns=\"x\">", "COLLADA");
   expect_said("<OpenDRIVE>", "OpenDRIVE");
-  expect_said("<sdformat>", "the root <sdformat>, of no known simulator");
+  expect_said("<sdformat>", "the root <sdformat>, which belongs to no known simulator");
 }
 
 TEST(ForeignWorlds, AreNamedByTheirFirstBytes) {
@@ -64,16 +64,16 @@ TEST(ForeignWorlds, AreNamedInUtf16) {
     expect_said(mark + wide("<?xml version='1.0'?><sdf/>", true), "Gazebo");
     expect_said(mark.empty() ? wide("<sdf/>", false) : "\xFE\xFF" + wide("<sdf/>", false), "Gazebo");
   }
-  expect_said("\xFF\xFE" + wide("model( )", true), "is a text in UTF-16: save it as UTF-8");
+  expect_said("\xFF\xFE" + wide("model( )", true), "is UTF-16 text: save it as UTF-8");
 }
 
 TEST(ForeignWorlds, ErrorsOnPicturesAndOutlinesSayWhereTheyBelong) {
-  expect_said("\x89PNG\r\n\x1a\n", "is a picture; expected a world: name it by model( bitmap");
+  expect_said("\x89PNG\r\n\x1a\n", "is a picture; expected a world: include it with model( bitmap");
   expect_said("P5\n2 2\n255\nabcd", "is a picture");
-  expect_said("POLYGON ((0 0, 1 0, 1 1))", "by model( outlines");
-  expect_said("WKT,height\n\"POINT (0 0)\",1\n", "by model( outlines");
-  expect_said("{ \"type\": \"FeatureCollection\" }", "by model( outlines");
-  expect_said("{ \"type\": \"Point\", \"coordinates\": [0, 0] }", "by model( outlines");
+  expect_said("POLYGON ((0 0, 1 0, 1 1))", "with model( outlines");
+  expect_said("WKT,height\n\"POINT (0 0)\",1\n", "with model( outlines");
+  expect_said("{ \"type\": \"FeatureCollection\" }", "with model( outlines");
+  expect_said("{ \"type\": \"Point\", \"coordinates\": [0, 0] }", "with model( outlines");
 }
 
 TEST(ForeignWorlds, PlayerConfigurationNamesItsWorld) {

@@ -47,7 +47,7 @@ TEST_F(HostileFiles, OnlyRegularFilesAreRead) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string& image : {std::string("/dev/zero"), pipe, folder_.string()}) {
     const std::string map = write("m.yaml", kMap + "image: " + image + "\n");
-    expect_error(map, "m.yaml:3: 'image': " + image + ": not a file but a folder, a device or a pipe");
+    expect_error(map, "m.yaml:3: 'image': " + image + ": a folder, a device or a pipe, not a file");
     expect_error(image, "not a file");
   }
   expect_error(write("m.yaml", kMap + "image: none.pgm\n"),
@@ -59,7 +59,7 @@ TEST_F(HostileFiles, OnlyRegularFilesAreRead) {
 /// `include "robots.inc"` in a user's world works in any folder, like `run worlds/cave.world`.
 TEST_F(HostileFiles, IncludesAreFoundAmongTheInstalledWorlds) {
   const std::string world = write("own.world", "include \"shipped.inc\"\nposition( name \"mine\" )\n");
-  expect_error(world, "or among the installed worlds");
+  expect_error(world, "and the installed worlds");
   std::filesystem::create_directories(path("data/worlds"));
   write("data/worlds/shipped.inc", "define wheels position( size [0.3 0.3 0.2] )\n");
   setenv("SENSORFARM_DATA", path("data").c_str(), 1);
@@ -70,7 +70,7 @@ TEST_F(HostileFiles, IncludesAreFoundAmongTheInstalledWorlds) {
 TEST_F(HostileFiles, EmptyFileIsNotAWorld) {
   for (const char* name : {"a.world", "a.yaml"}) {
     expect_error(write(name, ""), "is empty");
-    expect_error(write(name, " \n\t\r\n"), "nothing but blanks");
+    expect_error(write(name, " \n\t\r\n"), "only whitespace");
   }
   write("a.inc", "");
   expect_error(write("b.world", "include \"a.inc\"\n"), "a.inc: is empty");
@@ -130,9 +130,9 @@ TEST(HostileWorlds, SamplesOfAllSensorsAreBoundedTogether) {
   std::string text = "define eye laser( samples 1000000 )\nposition(\n";
   EXPECT_EQ(error_of(text + "eye() )"), "");
   for (int i = 0; i < 11; ++i) text += "eye()\n";
-  EXPECT_EQ(error_of(text + ")"),
-            "test.world:1: this makes 11000000 samples of sensors of the world; expected at most 10000000: give fewer "
-            "'samples'");
+  EXPECT_EQ(
+      error_of(text + ")"),
+      "test.world:1: the world now has 11000000 samples of sensors; expected at most 10000000: give fewer 'samples'");
 }
 
 TEST(HostileWorlds, OutlineSelfChecksAreBounded) {
@@ -186,12 +186,12 @@ std::string repeated(const std::string& piece, int times) {
 // Each part of a key is a table in a table. The recursive destruction of deep tables overflowed the stack.
 TEST(HostileToml, KeysOfManyPartsAreRejected) {
   const std::string deep = repeated("a.", 150'000) + "a";
-  const std::string says = "f.toml:2: nested too deep: a key of more than 32 parts";
+  const std::string says = "f.toml:2: nested too deeply: a key of more than 32 parts";
   for (const std::string& text : {"\n" + deep + " = 1", "\n[" + deep + "]", "\n[[" + deep + "]]",
                                   "\nx = { " + deep + " = 1 }", "\n" + repeated("\"a\" . ", 100) + "a = 1"})
     EXPECT_EQ(toml_error(text).substr(0, says.size()), says) << text.substr(0, 40);
   EXPECT_EQ(toml_error(repeated("a.", 30) + "a = 1"), "");
-  EXPECT_NE(toml_error("[" + repeated("a.", 20) + "a]\n" + repeated("b.", 20) + "b = 1").find("nested too deep"),
+  EXPECT_NE(toml_error("[" + repeated("a.", 20) + "a]\n" + repeated("b.", 20) + "b = 1").find("nested too deeply"),
             std::string::npos);
 }
 

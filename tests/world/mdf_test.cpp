@@ -85,9 +85,9 @@ TEST(Mdf, MissingEndsAreWarnings) {
 
 TEST(Mdf, WrongFilesAreRejected) {
   const std::vector<std::tuple<std::string, std::string, std::string>> corpus{
-      {"num_checkpoints 3", "num_checkpoints 4", "go.mdf:6: 'num_checkpoints' says 4, but there are 3"},
+      {"num_checkpoints 3", "num_checkpoints 4", "go.mdf:6: 'num_checkpoints' is 4, but there are 3"},
       {"num_checkpoints 3\n", "", "go.mdf: 'num_checkpoints' is missing"},
-      {"num_speed_limits 2", "num_speed_limits 1", "go.mdf:12: 'num_speed_limits' says 1, but there are 2"},
+      {"num_speed_limits 2", "num_speed_limits 1", "go.mdf:12: 'num_speed_limits' is 1, but there are 2"},
       {"MDF_name go\n", "", "go.mdf: 'MDF_name' is missing"},
       {"MDF_name go\n", "MDF_name go\nMDF_name go\n", "go.mdf:2: 'MDF_name' is given twice"},
       {"RNDF small\n", "RNDF small\nRNDF_name small\n", "go.mdf:3: 'RNDF_name' is given twice"},
@@ -98,12 +98,12 @@ TEST(Mdf, WrongFilesAreRejected) {
       {"1 0 15", "1 20 15", "go.mdf:13: speeds from 20 to 15 miles per hour"},
       {"1 0 15", "1 -5 15", "go.mdf:13: speeds from -5 to 15"},
       {"1 0 15", "1 0 fast", "go.mdf:13: the highest speed is 'fast'"},
-      {"3 5 25", "1 5 25", "go.mdf:14: 1 has a speed limit in line 13 already"},
+      {"3 5 25", "1 5 25", "go.mdf:14: 1 already has a speed limit in line 13"},
       {"checkpoints\n", "5\ncheckpoints\n", "go.mdf:5: '5' stands alone"},
       {"end_checkpoints", "end_speed_limits", "go.mdf:10: 'end_speed_limits' has no matching start"},
-      {"checkpoints\n", "num_segments 3\n", "go.mdf:5: 'num_segments' stands in an RNDF; expected an MDF"},
+      {"checkpoints\n", "num_segments 3\n", "go.mdf:5: 'num_segments' belongs in an RNDF; expected an MDF"},
       {"checkpoints\n", "/* checkpoints\n", "go.mdf:5: this comment is never closed"},
-      {"checkpoints\n", "(checkpoints)\n", "go.mdf:5: '(checkpoints)' is no statement"}};
+      {"checkpoints\n", "(checkpoints)\n", "go.mdf:5: '(checkpoints)' is not a statement"}};
   for (const auto& [from, to, error] : corpus)
     EXPECT_EQ(mdf_refusal(mdf_with(from, to)).substr(0, error.size()), error) << from << " -> " << to;
   EXPECT_EQ(mdf_refusal(kSmallMdf), "");

@@ -186,7 +186,7 @@ TEST(OutlineLayers, CurvesBecomeChordsWithinAMicrometre) {
 
 TEST(OutlineLayers, SystemsInDegreesAndSeveralLayersAreNamed) {
   const std::vector<Feature> house{{"POLYGON ((11 48,11 49,12 49,11 48))", NAN}};
-  expect_in("the file states that the coordinates are degrees, but they are read as lengths",
+  expect_in("the file states that the coordinates are in degrees, but they are read as lengths",
             read_layers(write_layer("GPKG", "degrees.gpkg", house, wkbUnknown, {}, 4326)).warnings);
   expect_in("coordinates of GeoJSON are degrees unless its member 'crs' states another system",
             read_layers_of("degrees.json",
@@ -217,8 +217,8 @@ TEST(OutlineLayers, SridOfATableStatesItsUnit) {
   EXPECT_EQ(warnings("999999"), "") << "an unknown one";
   EXPECT_EQ(warnings("4294967295"), "");
   expect_in("has a unit of 0.30480061 m", warnings("2263"));
-  expect_in("the SRID states that the coordinates are degrees", warnings("4326"));
-  expect_in("the SRID states that the coordinates are degrees", warnings("7844"));  // Australia
+  expect_in("the SRID states that the coordinates are in degrees", warnings("4326"));
+  expect_in("the SRID states that the coordinates are in degrees", warnings("7844"));  // Australia
 }
 
 TEST(OutlineLayers, FlagIsNotAHeight) {
@@ -231,7 +231,7 @@ TEST(OutlineLayers, FlagIsNotAHeight) {
       "geometry": {{"type": "LineString", "coordinates": [[0, 0], [900, 0]]}}}})",
                        height);
   };
-  const std::string word = "a height is true or false, and is read as 1 or 0";
+  const std::string word = "a height is true or false, which is read as 1 or 0";
   for (const char* number : {"5", "5.5"})  // GDAL reads both as one column
     expect_in(word, read_layers_of("flags.json", R"({"type": "FeatureCollection", "features": [)" + feature("true") +
                                                      "," + feature(number) + "]}")
@@ -267,7 +267,7 @@ TEST(OutlineLayers, FilesDoNotAccessTheNetwork) {
       {"href": "http://127.0.0.1:9/system"}}, "features": [{"type": "Feature", "properties": {"height": "7"},
       "geometry": {"type": "LineString", "coordinates": [[0, 0], [900, 0]]}}]})");
   EXPECT_EQ(found.walls[0][4], 7.0);
-  expect_in("the file names a place in the network, which is not used", found.warnings);
+  expect_in("the file refers to a network location, which is not used", found.warnings);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(OutlineTableForms, BlanksSeparateIfNothingElseDoes) {
   EXPECT_EQ(read_table("WKT WKT name height\n\"" + kLine + "\" \"" + kLine + "\" \"a, \"\"b\"\"\" 6.5\n").heights(),
             "6.5 ");
   EXPECT_EQ(read_table("WKT name height\n\"" + kLine + "\"  7\n").heights(), "7 ") << "an empty name";
-  expect_in("line 2 has 4 fields under 3 names, since two blanks have an empty field between them",
+  expect_in("line 2 has 4 fields for 3 names, since two blanks enclose an empty field",
             read_table("WKT name height\n\"" + kLine + "\" hall  7\n").warnings);
   EXPECT_EQ(read_table("WKT \"a, b\" height\n\"" + kLine + "\" hall 7\n").heights(), "7 ");
   EXPECT_EQ(read_table("roof height,the wkt,height\n2,\"" + kLine + "\",7\n").heights(), "7 ") << "names with blanks";
@@ -91,9 +91,9 @@ TEST(OutlineTableForms, TextAfterAClosingQuoteIsReported) {
   const auto faults = [](const std::string& row) { return read_table("WKT,height\n" + row).warnings; };
   EXPECT_EQ(faults("\"" + kLine + "\" ,\"7\" \n"), "") << "blanks are none";
   EXPECT_EQ(faults("\"" + kLine + "\"x,7\n"),
-            "2: text after a closing quote, 'x'; expected a separator or the end of the line: ignored\n");
-  expect_in("2: text after a closing quote, 'm'", faults("\"" + kLine + "\",\"7\"m\n"));
-  expect_in("2: text after a closing quote, 'hi'", faults("\"" + kLine + "\",\"say \\\"hi, you\\\"\"\n"));
+            "2: text after a closing quote: 'x'; expected a separator or the end of the line: ignored\n");
+  expect_in("2: text after a closing quote: 'm'", faults("\"" + kLine + "\",\"7\"m\n"));
+  expect_in("2: text after a closing quote: 'hi'", faults("\"" + kLine + "\",\"say \\\"hi, you\\\"\"\n"));
   expect_in("line 1: the text after a closing quote is ignored", read_table("WKT,\"a\"b\n" + kLine + ",7").warnings);
 }
 
@@ -102,16 +102,16 @@ TEST(OutlineTableForms, NamesMayFollowTitlesAndComments) {
   for (const std::string before :
        {"Buildings of X, 2020\n", "# made by\n", ";;;\n", "a b c\n\nd\n", "\"Buildings\nof X\"\n"})
     EXPECT_EQ(read_table(before + table).heights(), "5 ") << before;
-  EXPECT_EQ(read_table("Buildings\n" + table).warnings, "0: line 2 names the columns; what is before it is not read\n");
+  EXPECT_EQ(read_table("Buildings\n" + table).warnings, "0: line 2 names the columns; earlier lines are not read\n");
   EXPECT_EQ(read_table(";;;\n" + table).warnings, "");
   for (const std::string line : {"SEP=;", "sep=;", "\"sep=;\"", "\xEF\xBB\xBFSep=;"})
     EXPECT_EQ(read_table(line + "\r\n" + table).heights(), "5 ") << line;
   EXPECT_EQ(read_table("sep=\t\nWKT\theight\n" + kLine + "\t5").heights(), "5 ");
   expect_in(
-      "no line before the first geometry has a known name of a column, such as 'WKT' or 'height' (its columns are "
+      "no line before the first geometry has a known column name such as 'WKT' or 'height' (its columns are "
       "'Buildings'), so heights are not read",
       read_table("Buildings\nid;outline;h\n1;\"" + kLine + "\";5\n").warnings);
-  expect_in("no column is named 'height', so heights are not read, such as those of 'Height (m)'",
+  expect_in("no column is named 'height', so heights such as those of 'Height (m)' are not read",
             read_table("WKT,Height (m)\n\"" + kLine + "\",5\n").warnings);
   const TableRead rows = read_table("id,kind,outline\n1,way,\n2,way,\"" + kLine + "\"\n");
   EXPECT_EQ(rows.walls.size(), 1u);
@@ -135,7 +135,7 @@ TEST(OutlineTableForms, EmptyGeometryDoesNotDecideTheColumn) {
   EXPECT_EQ(empty.area(), 25.0) << "that with a name is empty in its first row";
   const TableRead late = read_table("geom,envelope\n," + square + "\n" + other + "," + square + "\n");
   EXPECT_EQ(late.area(), 192.0);
-  expect_in("columns 'envelope' and 'geom' both have walls: those of 'envelope' are read", late.warnings);
+  expect_in("columns 'envelope' and 'geom' both have walls: column 'envelope', the first, is read", late.warnings);
   expect_in("columns 'roof' and 'foot' both have walls", read_table("roof,foot\n" + square + "," + other).warnings);
   EXPECT_EQ(read_table("centre,outline,geom\nPOINT (1 1)," + square + ",POINT (1 1)\n").warnings, "")
       << "one has walls";

@@ -76,8 +76,9 @@ TEST(OutlineTable, GeometryIsFoundWithoutAHeader) {
   for (const std::string& text : {"7;" + kSquare + ";hall, old;6", "7|hall|" + kSquare, "sep=;\n1;" + kSquare,
                                   "SRID=32632;" + kSquare + ";hall"}) {
     EXPECT_EQ(read_table(text).area(), 96.0) << text;
-    EXPECT_EQ(read_table(text).warnings,
-              "0: the first line does not name the columns, so those without geometries are ignored, heights too\n")
+    EXPECT_EQ(
+        read_table(text).warnings,
+        "0: the first line does not name the columns, so columns without geometries, such as heights, are ignored\n")
         << text;
   }
   EXPECT_EQ(read_table("sep=;\nid;WKT;height\n1;" + kSquare + ";4").heights(), "4 ");

@@ -235,7 +235,7 @@ TEST(Outlines, FirstFaultIsAnErrorInStrictMode) {  // as in versions that did no
 
 TEST(Outlines, FileWithoutWallsIsAnErrorWithItsColumns) {
   const std::pair<const char*, const char*> cases[] = {
-      {"", "outlines.csv: the file has no outlines with walls; its first line does not name its columns; expected"},
+      {"", "outlines.csv: the file has no outlines with walls; its first line does not name the columns; expected"},
       {"\n  \n", "outlines.csv: the file has no outlines"},
       {"id;name\n1;hall\n",
        "outlines.csv:2: has no geometry; the file has no outlines with walls; its columns are 'id', 'name'; "
@@ -245,8 +245,8 @@ TEST(Outlines, FileWithoutWallsIsAnErrorWithItsColumns) {
       {"POLYGON EMPTY", "outlines.csv:1: the geometry is EMPTY; the file"},
       {"LINESTRING (0 0, 0 0)", "outlines.csv:1: the geometry has no extent; the file has no outlines with walls"},
       {"W\0K\0T", "outlines.csv: the file has no outlines with walls; its columns are 'W'"},
-      {"\xFF\xFEW", "outlines.csv: is a text in UTF-16: save it as UTF-8"},
-      {"\xFE\xFF", "outlines.csv: is a text in UTF-16: save it as UTF-8"},
+      {"\xFF\xFEW", "outlines.csv: is UTF-16 text: save it as UTF-8"},
+      {"\xFE\xFF", "outlines.csv: is UTF-16 text: save it as UTF-8"},
       {"PK\x03\x04", "outlines.csv: is a ZIP archive"},
       {"\x1F\x8B", "outlines.csv: is compressed"},
       {"<?xml ?>", "outlines.csv: is XML or HTML"},
@@ -258,8 +258,8 @@ TEST(Outlines, FileWithoutWallsIsAnErrorWithItsColumns) {
 
 TEST(Outlines, DegreesAreNotMetres) {
   const std::string house = "POLYGON ((11.5755 48.1372, 11.5756 48.1372, 11.5756 48.1373))\n";
-  expect_in("0: the coordinates appear to be degrees", warnings_of(town_of(house)));
-  expect_in("0: the SRID states that the coordinates are degrees",
+  expect_in("0: the coordinates appear to be in degrees", warnings_of(town_of(house)));
+  expect_in("0: the SRID states that the coordinates are in degrees",
             warnings_of(town_of("SRID=4326;LINESTRING (0 0, 12 0)")));
   EXPECT_EQ(warnings_of(town_of("SRID=32632;LINESTRING (0 0, 12 0)")), "");
   EXPECT_EQ(warnings_of(town_of("SRID=4087;LINESTRING (0 0, 1200 0)")), "") << "a projection among EPSG's angles";
@@ -286,7 +286,7 @@ TEST(Outlines, WorkForCrossingsIsBounded) {  // it is quadratic if all edges ove
   EXPECT_EQ(town_of(zigzag + ",0 -1))").walls.size(), 50'003u);
   const World world = town_of(comb + ",-1 0))");
   EXPECT_EQ(world.walls.size(), 1u);
-  expect_in("2: a ring of 50002 corners: its check for crossings takes the file beyond 1e+09 pairs",
+  expect_in("2: a ring of 50002 corners: its check for crossings exceeds the file's limit of 1e+09 pairs",
             warnings_of(world));
 }
 
@@ -296,7 +296,7 @@ TEST(Outlines, RequireAStaticModelWithoutAnotherBody) {
             "test.world:1: 'outlines' are for static models; give robots and tags a 'block'");
   for (const char* other : {"block( points 2 point[0] [0 0] point[1] [1 1] )", "boundary 1", "cliff_return 1"})
     expect_in("'outlines' are the whole body of a model", error_of("model( " + outlines + " " + other + " )"));
-  expect_in("test.world:1: cannot find the outlines \"none.csv\"; expected them beside this file",
+  expect_in("test.world:1: cannot find the outlines \"none.csv\"; expected them; searched the folders of this file",
             error_of("model( outlines \"none.csv\" )"));
   expect_in("1: 'model' has outlines but no 'size': walls without a height of their own are 0.1 m high",
             warnings_of(read_world("model( " + outlines + " )")));

@@ -46,7 +46,7 @@ TEST(Overlaps, AreOneWarningWithACount) {
                                  "bot( name \"d\" pose [5.1 0 0 0] )\nbot( name \"e\" pose [9 0 0 0] )\n");
   EXPECT_EQ(warnings_of(world),
             "3: 4 robots overlap others at the start: 'a', 'b', 'c' and 1 more; 'b' starts at (0, 0), in 'a': expected "
-            "poses apart\n");
+            "separate poses\n");
 }
 
 /// Each robot in a crowd looks for only one partner, so a crowd takes no longer than separate robots.
@@ -65,7 +65,7 @@ TEST(Overlaps, WorkIsLimited) {
   for (int i = 0; i < 3'000; ++i) text += fmt::format("rod( pose [{} {} 0 45] )\n", 0.01 * i, -0.01 * i);
   const World world = read_world(text);
   EXPECT_FALSE(find_overlaps(world).complete);
-  EXPECT_NE(warnings_of(world).find("too many robots near one another"), std::string::npos);
+  EXPECT_NE(warnings_of(world).find("too many robots near each other"), std::string::npos);
 }
 
 }  // namespace

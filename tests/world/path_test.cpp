@@ -114,7 +114,7 @@ TEST(Path, DoubleLineIsTwoStripes) {
 }
 
 TEST(Path, ErrorsNameTheirLine) {
-  EXPECT_EQ(error_of("path( )"), "test.world:1: a path needs 'pieces', and a straight[i] or an arc[i] for each");
+  EXPECT_EQ(error_of("path( )"), "test.world:1: a path requires 'pieces', and a straight[i] or an arc[i] for each");
   EXPECT_EQ(error_of("path( pieces 2\nstraight[0] [1 1] )"),
             "test.world:1: expected either straight[1] or arc[1]: 'pieces' is 2");
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1] arc[0] [1 90 1] )"),
@@ -131,7 +131,7 @@ TEST(Path, ErrorsNameTheirLine) {
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [1e7 1] left \"broken_white\"\ndash [1e-6 1e-6] )"),
             "test.world:2: 'dash' gives more than 1000000 dashes; expected longer ones");
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1] magnetic_moment 1 )"),
-            "test.world:1: magnets need both a 'magnetic_moment' other than 0 and a 'magnet_spacing' above zero");
+            "test.world:1: magnets require both a 'magnetic_moment' other than 0 and a 'magnet_spacing' above zero");
   EXPECT_EQ(error_of("model(\npath( pieces 1 straight[0] [1 1] ) )"),
             "test.world:2: 'path' is part of a model; expected it at the top level");
 }

@@ -26,11 +26,11 @@ TEST(RndfRefusals, Ids) {
       {"segment 2\n", "segment 1\n", "small.rndf:30: segment 1 is already in line 6"},
       {"zone 3\n", "zone 2\n", "small.rndf:39: zone or segment 2 is already in line 30"},
       {"lane 1.2\n", "lane 1.1\n", "small.rndf:21: lane 1.1 is already in line 9"},
-      {"lane 1.2\n", "lane 2.2\n", "small.rndf:21: lane 2.2 stands in segment 1; expected 1.1"},
-      {"lane 1.2\n", "lane 1.0\n", "small.rndf:21: lane 1.0 stands in segment 1"},
-      {"spot 3.1\n", "spot 4.1\n", "small.rndf:50: spot 4.1 stands in zone 3"},
-      {"spot 3.1\n", "spot 3.0\n", "small.rndf:50: spot 3.0 stands in zone 3"},
-      {"perimeter 3.0\n", "perimeter 3.1\n", "small.rndf:42: perimeter 3.1 stands in zone 3; expected 3.0"},
+      {"lane 1.2\n", "lane 2.2\n", "small.rndf:21: lane 2.2 is in segment 1; expected 1.1"},
+      {"lane 1.2\n", "lane 1.0\n", "small.rndf:21: lane 1.0 is in segment 1"},
+      {"spot 3.1\n", "spot 4.1\n", "small.rndf:50: spot 4.1 is in zone 3"},
+      {"spot 3.1\n", "spot 3.0\n", "small.rndf:50: spot 3.0 is in zone 3"},
+      {"perimeter 3.0\n", "perimeter 3.1\n", "small.rndf:42: perimeter 3.1 is in zone 3; expected 3.0"},
       {"1.1.2 40", "1.1.1 40", "small.rndf:18: way-point 1.1.1 is already in line 17"},
       {"1.1.2 40", "1.2.2 40", "small.rndf:18: way-point 1.2.2 stands in lane 1.1; expected 1.1.1, 1.1.2"},
       {"1.1.2 40", "1.1.0 40", "small.rndf:18: way-point 1.1.0 stands in lane 1.1"},
@@ -62,16 +62,16 @@ TEST(RndfRefusals, References) {
 
 TEST(RndfRefusals, Counts) {
   expect_refused({
-      {"num_segments 2", "num_segments 3", "small.rndf:2: 'num_segments' says 3, but the file has 2"},
-      {"num_segments 2", "num_segments 1", "small.rndf:2: 'num_segments' says 1, but the file has 2"},
+      {"num_segments 2", "num_segments 3", "small.rndf:2: 'num_segments' is 3, but the file has 2"},
+      {"num_segments 2", "num_segments 1", "small.rndf:2: 'num_segments' is 1, but the file has 2"},
       {"num_segments 2\n", "", "small.rndf:1: 'num_segments' is missing in the file; expected 'num_segments 2'"},
-      {"num_zones 1", "num_zones 0", "small.rndf:3: 'num_zones' says 0, but the file has 1"},
-      {"num_lanes 2", "num_lanes 1", "small.rndf:7: 'num_lanes' says 1, but segment 1 has 2"},
-      {"num_waypoints 3", "num_waypoints 4", "small.rndf:10: 'num_waypoints' says 4, but lane 1.1 has 3"},
+      {"num_zones 1", "num_zones 0", "small.rndf:3: 'num_zones' is 0, but the file has 1"},
+      {"num_lanes 2", "num_lanes 1", "small.rndf:7: 'num_lanes' is 1, but segment 1 has 2"},
+      {"num_waypoints 3", "num_waypoints 4", "small.rndf:10: 'num_waypoints' is 4, but lane 1.1 has 3"},
       {"num_waypoints 3\n", "", "small.rndf:9: 'num_waypoints' is missing in lane 1.1"},
-      {"num_spots 1", "num_spots 2", "small.rndf:40: 'num_spots' says 2, but zone 3 has 1"},
+      {"num_spots 1", "num_spots 2", "small.rndf:40: 'num_spots' is 2, but zone 3 has 1"},
       {"num_perimeterpoints 4", "num_perimeterpoints 3",
-       "small.rndf:43: 'num_perimeterpoints' says 3, but perimeter 3.0 has 4"},
+       "small.rndf:43: 'num_perimeterpoints' is 3, but perimeter 3.0 has 4"},
       {"3.1.2 40.001350 -82.997500\n", "", "small.rndf:50: spot 3.1 has 1 points; expected two"},
       {"3.1.2 40.001350 -82.997500\n", "3.1.2 40.001350 -82.9975\n3.1.3 40.0014 -82.9975\n",
        "small.rndf:50: spot 3.1 has 3 points; expected two"},
@@ -126,7 +126,7 @@ TEST(RndfRefusals, Numbers) {
       {"40.000000 -83.000000", "40.000000", "small.rndf:17: the longitude is missing"},
       {"40.000000 -83.000000", "40,000000 -83,000000", "small.rndf:17: the latitude is '40,000000'"},
       {"40.000000 -83.000000", "40.000000 -83.000000 5", "small.rndf:17: '5' was not expected"},
-      {"1.1.1 40", "1.1 40", "small.rndf:17: the way-point is '1.1'; expected three numbers joined by points"},
+      {"1.1.1 40", "1.1 40", "small.rndf:17: the way-point is '1.1'; expected three numbers separated by dots"},
       {"1.1.1 40", "1.1.1.1 40", "small.rndf:17: the way-point is '1.1.1.1'"},
       {"1.1.1 40", "1.1.99999 40", "small.rndf:17: the way-point is '1.1.99999'"},
       {"exit 1.1.3 2.1.1", "exit 1.1.3", "small.rndf:16: the entry of this exit is missing"},
@@ -139,13 +139,13 @@ TEST(RndfRefusals, Numbers) {
 
 TEST(RndfRefusals, Places) {
   expect_refused({
-      {"segment 1\n", "stop 1.1.3\nsegment 1\n", "small.rndf:6: 'stop' stands in the file; expected it in a lane"},
+      {"segment 1\n", "stop 1.1.3\nsegment 1\n", "small.rndf:6: 'stop' is in the file; expected it in a lane"},
       {"num_lanes 2\n", "num_lanes 2\nexit 1.1.3 2.1.1\n",
-       "small.rndf:8: 'exit' stands in segment 1; expected it in a lane or a perimeter"},
+       "small.rndf:8: 'exit' is in segment 1; expected it in a lane or a perimeter"},
       {"segment 1\n", "1.1.1 40 -83\nsegment 1\n",
-       "small.rndf:6: '1.1.1' stands in the file; expected way-points in lanes"},
-      {"segment 1\n", "lane 1.1\nsegment 1\n", "small.rndf:6: 'lane' stands in the file; expected it in a segment"},
-      {"end_zone\n", "end_zone\nend_zone\n", "small.rndf:57: 'end_zone' stands in the file; expected it in a zone"},
+       "small.rndf:6: '1.1.1' is in the file; expected way-points only in lanes"},
+      {"segment 1\n", "lane 1.1\nsegment 1\n", "small.rndf:6: 'lane' is in the file; expected it in a segment"},
+      {"end_zone\n", "end_zone\nend_zone\n", "small.rndf:57: 'end_zone' is in the file; expected it in a zone"},
       {"lane_width 12\n", "lane_width 12\nlane_width 13\n", "small.rndf:12: 'lane_width' is given twice in lane 1.1"},
       {"RNDF_name small\n", "", "small.rndf: 'RNDF_name' is missing"},
       {"zone_name Lot\nperimeter 3.0\n", "zone_name Lot\n/*", "small.rndf:42: this comment is never closed"},
@@ -157,11 +157,11 @@ TEST(RndfRefusals, OtherFiles) {
   EXPECT_EQ(refusal_of(""), "small.rndf: 'RNDF_name' is missing; expected a route network definition file");
   EXPECT_NE(refusal_of("MDF_name x\nRNDF y\n").find("this is an MDF"), std::string::npos);
   EXPECT_NE(refusal_of("hello world\n").find("'RNDF_name' is missing"), std::string::npos);
-  EXPECT_NE(refusal_of("{\"json\": 1}\n").find(":1: '{\"json\":' is no statement"), std::string::npos);
+  EXPECT_NE(refusal_of("{\"json\": 1}\n").find(":1: '{\"json\":' is not a statement"), std::string::npos);
   EXPECT_NE(refusal_of("\x89PNG\r\n\x1a\n").find(":1: "), std::string::npos);
   EXPECT_NE(refusal_of(std::string("RNDF_name x\nnum\0segments", 24)).find(":2: byte 0x00 is not text"),
             std::string::npos);
-  EXPECT_NE(refusal_of(std::string(5'000'000, 'a')).find("is no statement"), std::string::npos);
+  EXPECT_NE(refusal_of(std::string(5'000'000, 'a')).find("is not a statement"), std::string::npos);
   std::string words;
   for (char a = 'a'; a <= 'z'; ++a)
     for (char b = 'a'; b <= 'z'; ++b) words += std::string{a, b, '\n'};

@@ -19,35 +19,35 @@ struct Slip {
 TEST(RndfSlips, UnambiguousMistakesAreWarnings) {
   const RoadCounts fine = count(small_rndf());
   const std::vector<Slip> corpus{
-      {"num_waypoints 3", "num_waypoints 122", "10: 'num_waypoints' says 122, but lane 1.1 has 3; 3 are used"},
-      {"num_waypoints 3", "num_waypoints 2", "10: 'num_waypoints' says 2, but lane 1.1 has 3; 3 are used"},
+      {"num_waypoints 3", "num_waypoints 122", "10: 'num_waypoints' is 122, but lane 1.1 has 3; 3 are used"},
+      {"num_waypoints 3", "num_waypoints 2", "10: 'num_waypoints' is 2, but lane 1.1 has 3; 3 are used"},
       {"num_waypoints 3\n", "", "9: 'num_waypoints' is missing in lane 1.1; 3 are used"},
       {"num_waypoints 3", "num_waypoints many",
        "10: 'num_waypoints' is 'many', not a number above zero; the actual entries are counted"},
       {"num_lanes 2\n", "", "6: 'num_lanes' is missing in segment 1; 2 are used"},
-      {"num_lanes 2\n", "num_lanes 2\nnum_lanes 3\n", "8: 'num_lanes' is given twice in segment 1; the first counts"},
-      {"num_segments 2", "num_segments 3", "2: 'num_segments' says 3, but the file has 2; 2 are used"},
-      {"num_zones 1", "num_zones 0", "3: 'num_zones' says 0, but the file has 1; 1 is used"},
-      {"num_spots 1", "num_spots 9", "40: 'num_spots' says 9, but zone 3 has 1; 1 is used"},
+      {"num_lanes 2\n", "num_lanes 2\nnum_lanes 3\n", "8: 'num_lanes' is given twice in segment 1; the first is used"},
+      {"num_segments 2", "num_segments 3", "2: 'num_segments' is 3, but the file has 2; 2 are used"},
+      {"num_zones 1", "num_zones 0", "3: 'num_zones' is 0, but the file has 1; 1 is used"},
+      {"num_spots 1", "num_spots 9", "40: 'num_spots' is 9, but zone 3 has 1; 1 is used"},
       {"num_perimeterpoints 4", "num_perimeterpoints 5",
-       "43: 'num_perimeterpoints' says 5, but perimeter 3.0 has 4; 4 are used"},
+       "43: 'num_perimeterpoints' is 5, but perimeter 3.0 has 4; 4 are used"},
       {"RNDF_name small\n", "", "0: 'RNDF_name' is missing; it has no name"},
       {"exit 3.0.3 1.2.1", "exit 1.2.2 3.0.1", "44: exit 1.2.2 stands in perimeter 3.0; it is assigned to 1.2"},
       {"exit 1.1.3 2.1.1", "exit 1.2.2 2.1.1", "16: exit 1.2.2 stands in lane 1.1; it is assigned to 1.2"},
       {"stop 1.1.3", "stop 1.2.2", "15: stop 1.2.2 stands in lane 1.1; it is assigned to 1.2"},
       {"checkpoint 1.1.2 1", "checkpoint 1.2.2 1", "14: checkpoint 1.2.2 stands in lane 1.1; it is assigned to 1.2"},
       {"exit 1.1.3 2.1.1\n", "exit 1.1.3 2.1.1\nexit 1.1.3 2.1.1\n",
-       "17: exit 1.1.3 to 2.1.1 is already in line 16; it counts once"},
-      {"stop 1.1.3\n", "stop 1.1.3\nstop 1.1.3\n", "16: stop 1.1.3 is given twice; it counts once"},
+       "17: exit 1.1.3 to 2.1.1 is already in line 16; it is used once"},
+      {"stop 1.1.3\n", "stop 1.1.3\nstop 1.1.3\n", "16: stop 1.1.3 is given twice; it is used once"},
       {"checkpoint 1.1.2 1\n", "checkpoint 1.1.2 1\ncheckpoint 1.1.2 1\n",
-       "15: checkpoint 1 is already in line 14; it counts once"},
+       "15: checkpoint 1 is already in line 14; it is used once"},
       {"lane_width 12\n", "lane_width 12\nlane_width 12\n",
-       "12: 'lane_width' is given twice in lane 1.1; the first counts"},
+       "12: 'lane_width' is given twice in lane 1.1; the first is used"},
       {"lane_width 12", "lane_width 12 feet",
        "11: 'feet' was not expected after '12'; it and the rest of the line are ignored"},
       {"1.1.1 40.000000 -83.000000", "1.1.1 40.000000 -83.000000 (corner)",
        "17: '(corner)' was not expected after '-83.000000'; it and the rest of the line are ignored"},
-      {"left_boundary double_yellow", "left_boundary", "12: 'left_boundary' is ''; no marking is assumed"},
+      {"left_boundary double_yellow", "left_boundary", "12: 'left_boundary' is ''; assuming no marking"},
   };
   for (const Slip& slip : corpus) {
     const std::string text = small_with(slip.from, slip.to);
@@ -84,7 +84,7 @@ TEST(RndfSlips, AmbiguousMistakesAreRejected) {
       {{"stop 1.1.3", "stop 3.0.1"}, "small.rndf:15: the stop names 3.0.1; expected a way-point of a lane"},
       {{"checkpoint 1.1.2 1", "checkpoint 3.0.1 1"}, "small.rndf:14: checkpoint 1 names 3.0.1, a point of a zone's"},
       {{"checkpoint 3.1.2 2", "checkpoint 3.1.2 1"},
-       "small.rndf:52: checkpoint 1 is already in line 14; expected an id"},
+       "small.rndf:52: checkpoint 1 is already in line 14; expected a unique id"},
       {{"lane 1.2\n", "lane 1.1\n"}, "small.rndf:21: lane 1.1 is already in line 9"},
       {{"lane 1.2\n", "lane one\n"}, "small.rndf:21: the lane's id is 'one'"},
       {{"segment 2\n", "segment 1\n"}, "small.rndf:30: segment 1 is already in line 6"},
@@ -93,11 +93,11 @@ TEST(RndfSlips, AmbiguousMistakesAreRejected) {
       {{"lane_width 12\n", "lane_width 12\nlane_width 13\n"}, "small.rndf:12: 'lane_width' is given twice in lane 1.1"},
       {{"left_boundary double_yellow", "left_boundary dashed"}, "small.rndf:12: 'left_boundary' is 'dashed'"},
       {{"1.2.1 40.000050 -82.998000\n1.2.2 40.000050 -83.000000\n", ""},
-       "small.rndf:22: 'num_waypoints' says 2, but lane 1.2 has 0"},
+       "small.rndf:22: 'num_waypoints' is 2, but lane 1.2 has 0"},
       {{"num_waypoints 2\nlane_width 12\nleft_boundary double_yellow\nright_boundary broken_white\n1.2.1 40.000050 "
         "-82.998000\n1.2.2 40.000050 -83.000000\n",
         "num_waypoints none\n"},
-       "small.rndf:22: 'num_waypoints' says none, but lane 1.2 has 0"},
+       "small.rndf:22: 'num_waypoints' is none, but lane 1.2 has 0"},
   };
   for (const auto& [change, error] : corpus) {
     // A point with a wrong number is missing elsewhere, so more errors may follow.
@@ -110,11 +110,10 @@ TEST(RndfSlips, AmbiguousMistakesAreRejected) {
 TEST(RndfSlips, TruncatedFileIsRejected) {
   const std::string whole(kSmallRndf);
   const std::string cut = refusal_of(whole.substr(0, whole.find("1.1.3 40")), false);
-  EXPECT_NE(cut.find("small.rndf:10: 'num_waypoints' says 3, but lane 1.1 has 2: the file is cut short"),
+  EXPECT_NE(cut.find("small.rndf:10: 'num_waypoints' is 3, but lane 1.1 has 2: the file is truncated"),
             std::string::npos)
       << cut;
-  EXPECT_NE(cut.find("small.rndf:2: 'num_segments' says 2, but the file has 1: the file is cut short"),
-            std::string::npos)
+  EXPECT_NE(cut.find("small.rndf:2: 'num_segments' is 2, but the file has 1: the file is truncated"), std::string::npos)
       << cut;
 }
 
@@ -127,10 +126,10 @@ TEST(RndfSlips, AllProblemsAreReportedInOneRun) {
             "small.rndf:16: the exit leads to way-point 9.1.1, which does not exist; expected one of this file\n"
             "small.rndf:36: the latitude is '41,001000'; expected a number such as -77.205045\n"
             "small.rndf:51: the width is 'wide'; expected a number such as -77.205045\n"
-            "small.rndf:7: warning: 'num_lanes' says 7, but segment 1 has 2; 2 are used\n"
+            "small.rndf:7: warning: 'num_lanes' is 7, but segment 1 has 2; 2 are used\n"
             "small.rndf: 3 problems without a clear meaning: the file is not used");
   EXPECT_EQ(refusal_of(text),
-            "small.rndf:7: 'num_lanes' says 7, but segment 1 has 2; correct the number, or add or remove entries")
+            "small.rndf:7: 'num_lanes' is 7, but segment 1 has 2; correct the number, or add or remove entries")
       << "strictly the first one ends it";
 }
 
@@ -145,7 +144,7 @@ TEST(RndfSlips, OneMistakeIsOneProblem) {
 // Lanes of a segment without a header are not zones.
 TEST(RndfSlips, RejectedLanesAreNotZones) {
   const std::string said = refusal_of(small_with("segment 1\n", ""), false);
-  EXPECT_NE(said.find("'num_segments' says 2, but the file has 1"), std::string::npos) << said;
+  EXPECT_NE(said.find("'num_segments' is 2, but the file has 1"), std::string::npos) << said;
   EXPECT_EQ(said.find("num_zones"), std::string::npos) << said;
 }
 
@@ -175,15 +174,15 @@ const std::string kMission =
 
 TEST(MdfSlips, UnambiguousMistakesAreWarnings) {
   const std::vector<Slip> corpus{
-      {"num_speed_limits 2", "num_speed_limits 68", "9: 'num_speed_limits' says 68, but there are 2; 2 are used"},
+      {"num_speed_limits 2", "num_speed_limits 68", "9: 'num_speed_limits' is 68, but there are 2; 2 are used"},
       {"num_speed_limits 2\n", "", "0: 'num_speed_limits' is missing; 2 are used"},
-      {"num_checkpoints 2", "num_checkpoints 1", "4: 'num_checkpoints' says 1, but there are 2; 2 are used"},
+      {"num_checkpoints 2", "num_checkpoints 1", "4: 'num_checkpoints' is 1, but there are 2; 2 are used"},
       {"num_checkpoints 2", "num_checkpoints",
        "4: 'num_checkpoints' is '', not a number; the actual entries are counted"},
       {"MDF_name go\n", "", "0: 'MDF_name' is missing; it has no name"},
-      {"RNDF small\n", "RNDF small\nRNDF_name small\n", "3: 'RNDF_name' is given twice; the first counts"},
+      {"RNDF small\n", "RNDF small\nRNDF_name small\n", "3: 'RNDF_name' is given twice; the first is used"},
       {"1 0 15\n", "1 0 15 mph\n", "10: 'mph' was not expected after '15'; it and the rest of the line are ignored"},
-      {"1 0 15\n", "1 0 15\n1 0 15\n", "11: 1 has a speed limit in line 10 already; it counts once"},
+      {"1 0 15\n", "1 0 15\n1 0 15\n", "11: 1 already has a speed limit in line 10; it is used once"},
   };
   for (const Slip& slip : corpus) {
     const std::string text = with(kMission, slip.from, slip.to);

@@ -228,7 +228,7 @@ TEST(RndfFiles, InvalidFilesAreRejectedForTheirReason) {
   }
   const Rndf twice = read_rndf(shared("terminus_negative/duplicate_exit_it.rndf"));
   EXPECT_EQ(count(twice).exits, 1u);
-  EXPECT_EQ(lines_of(twice.warnings), "12: exit 1.1.2 to 2.1.2 is already in line 11; it counts once\n");
+  EXPECT_EQ(lines_of(twice.warnings), "12: exit 1.1.2 to 2.1.2 is already in line 11; it is used once\n");
 }
 
 }  // namespace

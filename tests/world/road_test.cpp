@@ -46,10 +46,10 @@ TEST(Road, AllLanesUnlessNamed) {
 }
 
 TEST(Road, ErrorsNameTheirLine) {
-  EXPECT_EQ(error_of("\nroad( )"), "test.world:2: a road needs its network: rndf \"FILE\"");
+  EXPECT_EQ(error_of("\nroad( )"), "test.world:2: a road requires its network: rndf \"FILE\"");
   EXPECT_EQ(error_of("road(\nrndf \"nowhere.rndf\" )"),
-            "test.world:2: cannot find the road network \"nowhere.rndf\"; expected it beside this file, beside the "
-            "world file, along $STAGEPATH or among the installed worlds");
+            "test.world:2: cannot find the road network \"nowhere.rndf\"; searched the folders of this file and of the "
+            "world file, $STAGEPATH and the installed worlds");
   const std::string unknown = error_of(road("magnetic_moment 1 magnet_spacing 0.1 magnet_lanes \"6.1 99.1\""));
   EXPECT_EQ(unknown.substr(0, unknown.find(" has")),
             "test.world:2: 'magnet_lanes' is \"6.1 99.1\"; expected \"all\", or lanes that " SF_SOURCE_DIR
@@ -63,7 +63,7 @@ TEST(Road, NetworkAloneIsNotAWorld) {
     load_world(SF_SOURCE_DIR "/worlds/simville/simville.rndf");
     FAIL();
   } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("is not a world, but can be part of one"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("is not a world, but a world file can include it"), std::string::npos)
         << error.what();
   }
 }

@@ -60,7 +60,7 @@ TEST(RoadNetwork, Widths) {
   const RoadNetwork plain = build_network(rndf, {}, warnings);
   EXPECT_NEAR(plain.lanes[0].width, 12 * kFoot, 1e-12);
   EXPECT_NEAR(plain.lanes[2].width, 12 * kFoot, 1e-12);
-  EXPECT_EQ(lines_of(warnings), "32: lane 2.1 has no lane_width; 12 ft is assumed\n");
+  EXPECT_EQ(lines_of(warnings), "32: lane 2.1 has no lane_width; assuming 12 ft\n");
   const RoadNetwork wide = small("lane_width_m = 0.5\n[lanes.\"1.2\"]\nwidth_m = 0.6");
   EXPECT_EQ(wide.lanes[0].width, 0.5);
   EXPECT_EQ(wide.lanes[1].width, 0.6);

@@ -121,7 +121,7 @@ TEST(Sidecar, CommentsMayBeInAnyLanguage) {
     }
     return std::string();
   };
-  const std::string expected = ": a character beyond ASCII; expected such only in comments of their own line";
+  const std::string expected = ": a non-ASCII character; allowed only in comments on their own line";
   EXPECT_EQ(refused("scale = 1\nLDƒ = 2\n"), "a.toml:2" + expected) << "where toml++ loses its way";
   EXPECT_EQ(refused("\xC2\xA0scale = 1\n"), "a.toml:1" + expected) << "a blank that is none";
   EXPECT_EQ(refused("\"a#\" = 1 # ƒ\n"), "a.toml:1" + expected) << "a quote may hide what looks like a comment";

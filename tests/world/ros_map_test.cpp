@@ -144,7 +144,7 @@ TEST_F(RosMap, ImpossiblePosesAreNamed) {
   EXPECT_EQ(where(1, 1), "");
   EXPECT_EQ(where(0, 0), "within a wall");
   EXPECT_EQ(where(2.35, 1), "partly in a wall of 'map'");
-  EXPECT_EQ(where(-6, 1), "in the map's unknown area");
+  EXPECT_EQ(where(-6, 1), "in the unknown area of the map");
   EXPECT_EQ(where(-10.1, 1), "outside of 'map'");
 }
 
@@ -195,10 +195,9 @@ TEST_F(RosMap, PicturesAreNotIncludes) {
     }
     return std::string();
   };
-  EXPECT_EQ(
-      refusal("\ninclude \"house.pgm\"\n"),
-      "w.world:2: \"house.pgm\" is a picture; expected the file of the ROS map: include \"house.yaml\"; or name it "
-      "as a floor plan: model( bitmap \"house.pgm\" size [x y z] )");
+  EXPECT_EQ(refusal("\ninclude \"house.pgm\"\n"),
+            "w.world:2: \"house.pgm\" is a picture; expected the file of the ROS map: include \"house.yaml\"; or use "
+            "it as a floor plan: model( bitmap \"house.pgm\" size [x y z] )");
   EXPECT_NE(refusal("include \"alone.PNG\"").find("expected the .yaml file of the ROS map, which names the picture"),
             std::string::npos);
   EXPECT_NE(refusal("include \"none.pgm\"").find("is a picture"), std::string::npos) << "whether it is there or not";
@@ -305,7 +304,7 @@ TEST_F(RosMap, UnknownKeysAndRepeatedOnesAreWarnings) {
   ASSERT_EQ(world.warnings.size(), 2u);
   EXPECT_EQ(world.warnings[0].line, 7);
   EXPECT_EQ(world.warnings[0].message, "unknown key 'occupied_tresh' is ignored; did you mean 'occupied_thresh'?");
-  EXPECT_EQ(world.warnings[1].message, "'negate' is given twice; the first one counts");
+  EXPECT_EQ(world.warnings[1].message, "'negate' is given twice; the first one is used");
 }
 
 TEST_F(RosMap, WorldsOfOtherSimulatorsAreNamed) {

@@ -115,7 +115,7 @@ TEST(Snapshot, RowsThatBreakInvariantsAreRejected) {
     try {
       from_snapshot(snapshot(world));
     } catch (const base::InputError& error) {
-      return std::string(error.what()).find("broken world snapshot") != std::string::npos;
+      return std::string(error.what()).find("corrupt world snapshot") != std::string::npos;
     }
     return false;
   };

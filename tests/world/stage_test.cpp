@@ -43,7 +43,7 @@ TEST(Stage, LastOfTwoEqualPropertiesCounts) {
   const World world = read_world("model( size [1 1 1]\n size [2 2 2] )");
   EXPECT_EQ(world.models[0].size.x, 2.0);
   EXPECT_EQ(warnings_of(world),
-            "2: 'size' is given twice in the same 'model': the last one counts, not that of line 1\n");
+            "2: 'size' is given twice in the same 'model': the last one is used, not that of line 1\n");
 }
 
 /// From a published benchmark world that has its fifth corner twice.
@@ -55,8 +55,7 @@ TEST(Stage, LastOfTwoEqualIndicesCounts) {
                                    "[0 1] ) )")
                             .hash);
   EXPECT_EQ(warnings_of(world),
-            "5: 'point[2]' is given twice in the same 'block': the last one counts, not that of line "
-            "4\n");
+            "5: 'point[2]' is given twice in the same 'block': the last one is used, not that of line 4\n");
 }
 
 // Radians in an angle in degrees, millimetres in a range in metres.
@@ -190,8 +189,7 @@ TEST(Stage, MissingPointIsTheOriginAsInStage) {  // Block::Load of Stage 3 and 4
   const World whole = read_world(
       "model( size [2 1 1]\n block( points 4 point[0] [0 0] point[1] [2 0] point[2] [2 1] point[3] [0 0] z [0 1] ) )");
   EXPECT_EQ(world.hash, whole.hash);
-  EXPECT_EQ(warnings_of(world),
-            "2: 'point[0]' (and 1 more) of this 'block' is missing: it counts as [0 0], as in Stage\n");
+  EXPECT_EQ(warnings_of(world), "2: 'point[0]' (and 1 more) of this 'block' is missing: [0 0] is used, as in Stage\n");
   EXPECT_EQ(warnings_of(whole), "");
 }
 
@@ -254,10 +252,9 @@ TEST(Stage, NoiseVarianceOfStageIsAWarningUnlessTheFileDecides) {
     return read_world(
         fmt::format("{}\nposition( ranger( sensor( noise [{} 0 0] ) sensor( noise [{} 0 0] ) ) )", key, noise, noise));
   };
-  EXPECT_EQ(
-      warnings_of(world("", "0.1")),
-      "2: the first number of 'noise' is a standard deviation, in Stage a variance: --stage-noise or the world key "
-      "stage_noise 1 reads it so, stage_noise 0 says that it is a standard deviation\n");
+  EXPECT_EQ(warnings_of(world("", "0.1")),
+            "2: the first number of 'noise' is a standard deviation here, but a variance in Stage: --stage-noise or "
+            "the world key stage_noise 1 reads it as a variance, stage_noise 0 confirms a standard deviation\n");
   EXPECT_EQ(warnings_of(world("stage_noise 0", "0.1")), "");
   EXPECT_EQ(warnings_of(world("", "0")), "");
   EXPECT_EQ(world("stage_noise 0", "0.04").movers[0].sensors[0].settings[0].numbers[0], 0.04);
@@ -349,7 +346,7 @@ TEST(Stage, TagPoseWithoutATagIsIgnoredWithAWarning) {
       "position( name \"roomba1\" tag_pose [1 0 0 0]\n model( name \"tag3\" tag_pose [1 0 0 0] ) )\n"
       "model( tag_pose [1 0 0 0] )");
   EXPECT_EQ(only_mover(world).X_MT.x, 0.0);
-  for (const char* const line : {"1: 'tag_pose' is ignored: expected it on a model named tag<N>",
+  for (const char* const line : {"1: 'tag_pose' is ignored: expected it on a free-standing model named tag<N>",
                                  "2: 'tag_pose' is ignored", "3: 'tag_pose' is ignored"})
     EXPECT_NE(warnings_of(world).find(line), std::string::npos) << line;
 }
@@ -372,7 +369,7 @@ TEST(Stage, OtherNamesLinkNothing) {
 TEST(Stage, RobotOnARobotIsCarried) {
   const World world = read_world("position( name \"r\" position( name \"tag3\" ) )");
   EXPECT_EQ(only_mover(world).body.size(), 8u);
-  EXPECT_NE(warnings_of(world).find("'tag3' is carried by 'r'"), std::string::npos);
+  EXPECT_NE(warnings_of(world).find("'tag3' is mounted on 'r'"), std::string::npos);
 }
 
 TEST(Stage, TagOnAShelfMovesByItself) {
@@ -467,13 +464,12 @@ TEST(Stage, WanderIsTheOnlyKnownStagePlugin) {
   EXPECT_EQ(world.movers.at(1).controller, "");
   EXPECT_EQ(world.movers.at(3).controller, "");
   EXPECT_EQ(world.movers.at(4).controller, "wander") << "what else it says is the plug-in's";
-  EXPECT_EQ(
-      warnings_of(world),
-      "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, or "
-      "write ctrl \"wander\"\n"
-      "6: 'ctrl' is for robots, and 'e' is not a robot: write it into the robot's own parentheses\n"
-      "4: 5 robots overlap others at the start: 'a', 'b', 'c' and 2 more; 'c' starts at (0, 0), in 'a': expected poses "
-      "apart\n");
+  EXPECT_EQ(warnings_of(world),
+            "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, "
+            "or write ctrl \"wander\"\n"
+            "6: 'ctrl' is for robots, but 'e' is not a robot: write it inside the robot's parentheses\n"
+            "4: 5 robots overlap others at the start: 'a', 'b', 'c' and 2 more; 'c' starts at (0, 0), in 'a': expected "
+            "separate poses\n");
 }
 
 TEST(Stage, MisplacedBlocksAndSensorsAreReported) {
@@ -507,7 +503,7 @@ TEST(Stage, MagnetOfARobotMovesWithIt) {
 
 TEST(Stage, MagnetWithoutAWidthHasNoRadius) {
   EXPECT_EQ(error_of("\nmodel( size [0 0.1 0.1] magnetic_moment 1 )"),
-            "test.world:2: a magnet needs a 'size' above zero in x and y: half the smaller one is its radius");
+            "test.world:2: a magnet requires a 'size' above zero in x and y: half the smaller one is its radius");
 }
 
 TEST(Stage, GivenSensorTypesClaimTheirSensors) {
@@ -530,7 +526,7 @@ TEST(Stage, GivenSensorTypesClaimTheirSensors) {
   EXPECT_EQ(warnings_of(world),
             "3: unknown property 'scont' of 'magnetometer' is ignored; did you mean 'scount'?\n"
             "4: unknown property 'range_max' of 'laser' is ignored\n"
-            "5: 'magnetometer' is carried by no robot: kept as a body that measures nothing\n");
+            "5: 'magnetometer' is not mounted on a robot: kept as a body that measures nothing\n");
 }
 
 TEST(Stage, ColoursByNameNumberAndRandomly) {
@@ -556,7 +552,7 @@ TEST(Stage, EmptyWorldIsAWorld) {
   EXPECT_TRUE(world.models.empty());
   EXPECT_EQ(world.extent.x_max, 0.0);
   EXPECT_EQ(world.name, "test");
-  const std::string nothing = "0: nothing in this file is known as a wall, a robot or any other model";
+  const std::string nothing = "0: no wall, robot or other known model in this file";
   EXPECT_NE(warnings_of(world).find(nothing), std::string::npos);
   for (const char* text : {"FORMAT 0.7", "window( size [1 1] )", "define a model( )", "bumper2( size [0 0 0] )"})
     EXPECT_NE(warnings_of(read_world(text)).find(nothing), std::string::npos) << text;
@@ -603,7 +599,7 @@ TEST(Stage, ManyRobotsInAWallAreOneWarning) {
 TEST(Stage, RobotOutsideTheFloorPlanIsAWarning) {
   const std::string plan = "model( name \"plan\" bitmap \"bitmaps/cave.png\" size [16 16 0.5] )\n";
   EXPECT_NE(warnings_of(read_world(plan + "position( name \"bob\" pose [9 0 0 0] )"))
-                .find("2: 'bob' starts at (9, 0), outside of 'plan'; expected"),
+                .find("2: 'bob' starts at (9, 0), outside 'plan'; expected"),
             std::string::npos);
   const World beside = read_world(
       "model( bitmap \"bitmaps/cave.png\" size [1 1 0.5] )\nmodel( pose [5 5 0 0] )\n"

@@ -84,7 +84,7 @@ TEST(Light, StopLinesMustExistInWorldsWithRoads) {
 
 TEST(Light, UncountedPhasesAreReported) {
   EXPECT_EQ(warnings_of(read_world("light( phases 1 phase[0] [\"red\" 1]\nphase[1] [\"green\" 1] )")),
-            "2: 'phase[1]' is not used: 'phases' says 1\n");
+            "2: 'phase[1]' is not used: 'phases' is 1\n");
 }
 
 TEST(Emitter, HasTheCreatesDefaults) {

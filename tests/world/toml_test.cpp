@@ -70,7 +70,7 @@ TEST(Toml, NestingIsLimited) {
   std::string deep;
   for (int i = 0; i < 32; ++i) deep += i == 0 ? "[a" : ".a";
   EXPECT_EQ(toml_refusal(deep + "]\n"), "");
-  EXPECT_NE(toml_refusal(deep + ".a.a]\n").find("nested too deep"), std::string::npos);
+  EXPECT_NE(toml_refusal(deep + ".a.a]\n").find("nested too deeply"), std::string::npos);
 }
 
 }  // namespace

@@ -259,7 +259,7 @@ std::string show_scene(const Scene3d& scene, PixelImage* picture) {
   // only client disconnects, which would break VTK's connection.
   const std::unique_ptr<Display, decltype(&XCloseDisplay)> display(XOpenDisplay(nullptr), &XCloseDisplay);
   if (display == nullptr)
-    return "no display: the window needs X11; set DISPLAY, or run it under xvfb-run, or take `view DIR` in a browser";
+    return "no display: the window needs X11; set DISPLAY, run it under xvfb-run, or use `view DIR` in a browser";
   vtkObject::GlobalWarningDisplayOff();
   Window window(scene);
   if (picture != nullptr)

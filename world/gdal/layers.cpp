@@ -46,7 +46,7 @@ class Guard {
   }
   static CPLHTTPResult* refuse(const char*, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*,
                                void*) {
-    CPLError(CE_Failure, CPLE_AppDefined, "the file names a place in the network, which is not used");
+    CPLError(CE_Failure, CPLE_AppDefined, "the file refers to a network location, which is not used");
     auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
     result->nStatus = 1;
     return result;
@@ -149,11 +149,12 @@ class Layers : public OutlineRows {
   std::string remark() const override {
     std::string text = messages_.empty() ? "" : "GDAL: " + messages_;
     if (layers_.size() > 1)
-      text += fmt::format("{}all {} layers are read ({}); keep one alone by ogr2ogr -f GPKG ONE.gpkg FILE LAYER",
-                          text.empty() ? "" : "; ", layers_.size(), quoted(names_));
-    if (is_json_ && has_numbers_ && has_flags(file_))
       text +=
-          fmt::format("{}a height is true or false, and is read as 1 or 0; expected numbers", text.empty() ? "" : "; ");
+          fmt::format("{}all {} layers are read ({}); extract a single one with ogr2ogr -f GPKG ONE.gpkg FILE LAYER",
+                      text.empty() ? "" : "; ", layers_.size(), quoted(names_));
+    if (is_json_ && has_numbers_ && has_flags(file_))
+      text += fmt::format("{}a height is true or false, which is read as 1 or 0; expected numbers",
+                          text.empty() ? "" : "; ");
     return text;
   }
 
@@ -171,7 +172,7 @@ class Layers : public OutlineRows {
     if (units.is_degrees)
       degrees_ = is_json_
                      ? "coordinates of GeoJSON are degrees unless its member 'crs' states another system (RFC 7946)"
-                     : "the file states that the coordinates are degrees";
+                     : "the file states that the coordinates are in degrees";
   }
   void read(OutlineRow& row) {
     const OGRGeometryH geometry = OGR_F_GetGeometryRef(feature_);

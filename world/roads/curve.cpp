@@ -126,7 +126,7 @@ std::vector<glm::dvec2> directions(const std::vector<glm::dvec2>& p) {
 }  // namespace
 
 Curve smooth_curve(std::span<const glm::dvec2> waypoints, const Sampling& sampling) {
-  SF_CHECK(!waypoints.empty(), "a curve through no points");
+  SF_CHECK(!waypoints.empty(), "a curve without points");
   std::vector<glm::dvec2> p;
   std::vector<std::size_t> row;
   for (const glm::dvec2& at : waypoints) {

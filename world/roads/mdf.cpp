@@ -37,8 +37,7 @@ class MdfReader {
     check_name();
     if (!ended_) warn(statements_.line(), "'end_file' is missing at the end of the file");
     if (ended_ && next())
-      warn(now().line,
-           fmt::format("{} comes after 'end_file'; it and all later lines are ignored", quoted(now().keyword)));
+      warn(now().line, fmt::format("{} follows 'end_file'; it and all later lines are ignored", quoted(now().keyword)));
     check_count("num_checkpoints", mdf_.checkpoints.size());
     check_count("num_speed_limits", mdf_.speed_limits.size());
     diagnostics_.throw_errors();
@@ -85,19 +84,19 @@ class MdfReader {
     const bool is_block = word.ends_with("checkpoints") || word.ends_with("speed_limits");
     if (!word.starts_with("num_") && (is_block || before->second != now().rest))
       statements_.fail(what + "; expected it once");
-    diagnostics_.add_warning(now().line, what, "expected it once", "the first counts");
+    diagnostics_.add_warning(now().line, what, "expected it once", "the first is used");
     return true;
   }
 
   void unknown() {
     const std::string_view word = now().keyword;
     if (word == "num_segments" || word == "segment")
-      throw WrongFormatError(mdf_.file, now().line, fmt::format("'{}' stands in an RNDF; expected an MDF", word));
+      throw WrongFormatError(mdf_.file, now().line, fmt::format("'{}' belongs in an RNDF; expected an MDF", word));
     const bool plain = word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") ==
                        std::string_view::npos;
     if (!plain || word.size() > 40 || unknown_.size() > 20) {
       const std::string message =
-          fmt::format("{} is no statement; expected a keyword of MDF such as 'checkpoints'", quoted(word));
+          fmt::format("{} is not a statement; expected an MDF keyword such as 'checkpoints'", quoted(word));
       if (seen_.empty()) throw WrongFormatError(mdf_.file, now().line, message);
       statements_.fail(message);
     }
@@ -158,9 +157,9 @@ class MdfReader {
                                       fmt::format("expected '{} {}'", keyword, have), taken);
     const auto [count, line] = said->second;
     if (count < 0 || static_cast<std::size_t>(count) == have) return;
-    const std::string what = fmt::format("'{}' says {}, but there are {}", keyword, count, have);
+    const std::string what = fmt::format("'{}' is {}, but there are {}", keyword, count, have);
     if (!ended_ && static_cast<std::size_t>(count) > have)
-      return diagnostics_.add_error(line, what + ": the file is cut short");
+      return diagnostics_.add_error(line, what + ": the file is truncated");
     diagnostics_.add_warning(line, what, "correct the number, or add or remove entries", taken);
   }
 
@@ -168,8 +167,8 @@ class MdfReader {
     if (block_ == Block::checkpoints) return checkpoint();
     if (block_ == Block::speed_limits) return speed_limit();
     statements_.fail(
-        fmt::format("{} stands alone; expected numbers between 'checkpoints' and 'end_checkpoints' or 'speed_limits' "
-                    "and 'end_speed_limits'",
+        fmt::format("{} is outside any list; expected numbers between 'checkpoints' and 'end_checkpoints' or "
+                    "'speed_limits' and 'end_speed_limits'",
                     quoted(now().keyword)));
   }
 
@@ -189,10 +188,10 @@ class MdfReader {
                       now().fields[0], now().fields[1]));
     const auto [old, fresh] = limited_.emplace(limit.id, limit);
     if (!fresh) {
-      const std::string what = fmt::format("{} has a speed limit in line {} already", limit.id, old->second.line);
+      const std::string what = fmt::format("{} already has a speed limit in line {}", limit.id, old->second.line);
       const bool same = old->second.least_mph == limit.least_mph && old->second.most_mph == limit.most_mph;
       if (!same) statements_.fail(what + "; expected one for each segment or zone");
-      return diagnostics_.add_warning(limit.line, what, "expected one for each segment or zone", "it counts once");
+      return diagnostics_.add_warning(limit.line, what, "expected one for each segment or zone", "it is used once");
     }
     mdf_.speed_limits.push_back(limit);
   }

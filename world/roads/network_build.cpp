@@ -57,7 +57,7 @@ double lane_width(Builder& b, const RndfSegment& segment, const RndfLane& lane, 
   if (b.sidecar.lane_width) return *b.sidecar.lane_width;
   if (!lane.width_ft)
     b.warn(lane.line,
-           fmt::format("lane {}.{} has no lane_width; {} ft is assumed", segment.id, lane.number, kLaneWidthFt));
+           fmt::format("lane {}.{} has no lane_width; assuming {} ft", segment.id, lane.number, kLaneWidthFt));
   return lane.width_ft.value_or(kLaneWidthFt) * kFoot * b.sidecar.scale;
 }
 
@@ -71,10 +71,9 @@ void trace_lane(Builder& b, RoadLane& lane, const RndfLane& from) {
   lane.centre = smooth_curve(waypoints, {b.network.tolerance, 0.5 * lane.width, kMaxSamples - b.samples});
   b.samples += lane.centre.points.size();
   if (b.samples >= kMaxSamples)
-    throw base::InputError(b.rndf.file, from.line,
-                           fmt::format("more than {} points make its lanes smooth; check the coordinates or split the "
-                                       "network",
-                                       kMaxSamples));
+    throw base::InputError(
+        b.rndf.file, from.line,
+        fmt::format("its lanes require more than {} points; check the coordinates or split the network", kMaxSamples));
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const std::size_t knot = lane.centre.knots[i];
     const glm::dvec2 tangent = lane.centre.tangents[knot];
@@ -120,7 +119,7 @@ void add_zone(Builder& b, const RndfZone& from) {
   for (const RndfSpot& spot : from.spots) {
     if (!spot.width_ft && !b.sidecar.spot_width)
       b.warn(spot.line,
-             fmt::format("spot {}.{} has no spot_width; {} ft is assumed", from.id, spot.number, kSpotWidthFt));
+             fmt::format("spot {}.{} has no spot_width; assuming {} ft", from.id, spot.number, kSpotWidthFt));
     const double width = spot.width_ft.value_or(kSpotWidthFt) * kFoot * b.sidecar.scale;
     b.network.spots.push_back(
         {row, spot.number, b.sidecar.spot_width.value_or(width), b.place(spot.points[0]), b.place(spot.points[1])});
@@ -186,10 +185,10 @@ void join(Builder& b) {
     exit.length = way.s.back();
     samples += way.points.size();
     if (samples > kMaxExitSamples)
-      throw base::InputError(b.rndf.file, 0,
-                             fmt::format("more than {} points make its exits smooth; check the coordinates or split "
-                                         "the network",
-                                         kMaxExitSamples));
+      throw base::InputError(
+          b.rndf.file, 0,
+          fmt::format("its exits require more than {} points; check the coordinates or split the network",
+                      kMaxExitSamples));
   }
   std::sort(network.checkpoints.begin(), network.checkpoints.end(),
             [](const RoadCheckpoint& x, const RoadCheckpoint& y) { return x.id < y.id; });

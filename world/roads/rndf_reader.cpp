@@ -147,8 +147,7 @@ Rndf RndfReader::read() {
     warn(statements_.line(), "'end_file' is missing at the end of the file");
     close();
   } else if (next()) {
-    warn(now().line,
-         fmt::format("{} comes after 'end_file'; it and all later lines are ignored", quoted(now().keyword)));
+    warn(now().line, fmt::format("{} follows 'end_file'; it and all later lines are ignored", quoted(now().keyword)));
   }
   check_references(rndf_, unread_, diagnostics_);
   diagnostics_.throw_errors();
@@ -185,7 +184,7 @@ void RndfReader::unknown() {
   if (is_extension(keyword)) return warn_once(keyword, fmt::format("'{}' is known but not modelled; ignored", keyword));
   if (!is_word(keyword) || keyword.size() > 40) {
     const std::string message =
-        fmt::format("{} is no statement; expected a keyword of RNDF such as 'segment' or 'exit'", quoted(keyword));
+        fmt::format("{} is not a statement; expected an RNDF keyword such as 'segment' or 'exit'", quoted(keyword));
     if (rndf_.segments.empty()) throw WrongFormatError(statements_.file(), now().line, message);
     statements_.fail(message);
   }
@@ -201,7 +200,7 @@ bool RndfReader::repeats(std::string_view keyword) {
   const std::string what = fmt::format("'{}' is given twice in {}", keyword, open_.back().name);
   const bool clear = before->second == now().rest ? keyword != "perimeter" : keyword.starts_with("num_");
   if (!clear) statements_.fail(what + "; expected it once");
-  diagnostics_.add_warning(now().line, what, "expected it once", "the first counts");
+  diagnostics_.add_warning(now().line, what, "expected it once", "the first is used");
   return true;
 }
 
@@ -213,7 +212,7 @@ void RndfReader::apply(std::string_view keyword, const Rule& rule) {
     const bool above = std::any_of(open_.begin(), open_.end(), may);
     if (!rule.unwinds || !above)
       statements_.fail(fmt::format(
-          "'{}' stands in {}; expected it in a {}{}", keyword, open_.back().name, rndf_block_name(rule.blocks[0]),
+          "'{}' is in {}; expected it in a {}{}", keyword, open_.back().name, rndf_block_name(rule.blocks[0]),
           rule.blocks.size() > 1 ? fmt::format(" or a {}", rndf_block_name(rule.blocks[1])) : ""));
     while (!may(open_.back())) close_implied(fmt::format("before '{}'", keyword));
   }
@@ -240,11 +239,11 @@ void RndfReader::check_declared(const Open& open, std::string_view keyword, std:
   }
   const int count = said->second.count, line = said->second.line;
   if (static_cast<std::size_t>(count) == have || (count < 0 && have > 0)) return;
-  const std::string what = fmt::format("'{}' says {}, but {} has {}", keyword, said->second.text, open.name, have);
+  const std::string what = fmt::format("'{}' is {}, but {} has {}", keyword, said->second.text, open.name, have);
   const char* remedy = "correct the number, or add or remove entries";
   if (have == 0 && !may_be_none) return diagnostics_.add_error(line, fmt::format("{}; {}", what, remedy));
   if (cut_ && static_cast<std::size_t>(std::max(count, 0)) > have)
-    return diagnostics_.add_error(line, what + ": the file is cut short");
+    return diagnostics_.add_error(line, what + ": the file is truncated");
   diagnostics_.add_warning(line, what, remedy, fmt::format("{} used", counted(have)));
 }
 

@@ -39,8 +39,7 @@ void RndfReader::read_declared_count(int least, std::string_view what) {
 void RndfReader::claim(PointId id, std::string_view what) {
   const auto [old, fresh] = claimed_.emplace(id, now().line);
   if (!fresh)
-    statements_.fail(
-        fmt::format("{} {} is already in line {}; expected an id of its own", what, shown(id), old->second));
+    statements_.fail(fmt::format("{} {} is already in line {}; expected a unique id", what, shown(id), old->second));
 }
 
 void RndfReader::begin_segment() {
@@ -56,8 +55,8 @@ void RndfReader::begin_lane() {
   statements_.expect_fields(1);
   const int segment = rndf_.segments.back().id;
   if (id.segment != segment || id.lane == 0)
-    statements_.fail(fmt::format("lane {}.{} stands in segment {}; expected {}.1, {}.2, ...", id.segment, id.lane,
-                                 segment, segment, segment));
+    statements_.fail(fmt::format("lane {}.{} is in segment {}; expected {}.1, {}.2, ...", id.segment, id.lane, segment,
+                                 segment, segment));
   claim(id, "lane");
   RndfLane lane;
   lane.number = id.lane;
@@ -79,7 +78,7 @@ void RndfReader::begin_perimeter() {
   statements_.expect_fields(1);
   if (id != key(zone().id))
     statements_.fail(
-        fmt::format("perimeter {}.{} stands in zone {}; expected {}.0", id.segment, id.lane, zone().id, zone().id));
+        fmt::format("perimeter {}.{} is in zone {}; expected {}.0", id.segment, id.lane, zone().id, zone().id));
   open(RndfBlock::perimeter, fmt::format("perimeter {}.0", zone().id));
 }
 
@@ -87,8 +86,8 @@ void RndfReader::begin_spot() {
   const PointId id = statements_.pair(0, "the spot's id");
   statements_.expect_fields(1);
   if (id.segment != zone().id || id.lane == 0)
-    statements_.fail(fmt::format("spot {}.{} stands in zone {}; expected {}.1, {}.2, ...", id.segment, id.lane,
-                                 zone().id, zone().id, zone().id));
+    statements_.fail(fmt::format("spot {}.{} is in zone {}; expected {}.1, {}.2, ...", id.segment, id.lane, zone().id,
+                                 zone().id, zone().id));
   claim(id, "spot");
   RndfSpot spot;
   spot.number = id.lane;
@@ -115,7 +114,7 @@ std::vector<RndfPoint>& RndfReader::points() {
     default:
       break;
   }
-  statements_.fail(fmt::format("{} stands in {}; expected way-points in lanes, perimeters and spots only",
+  statements_.fail(fmt::format("{} is in {}; expected way-points only in lanes, perimeters and spots",
                                quoted(now().keyword), open_.back().name));
 }
 
@@ -130,7 +129,7 @@ PointId RndfReader::key_of_block() const {
 PointId RndfReader::own(PointId id, std::string_view what) const {
   const PointId here = key_of_block();
   if (id.segment == here.segment && id.lane == here.lane && id.point > 0) return id;
-  statements_.fail(fmt::format("{} {} stands in {}; expected {}.{}.1, {}.{}.2, ...", what, point_id_text(id),
+  statements_.fail(fmt::format("{} {} is in {}; expected {}.{}.1, {}.{}.2, ...", what, point_id_text(id),
                                open_.back().name, here.segment, here.lane, here.segment, here.lane));
 }
 
@@ -140,8 +139,8 @@ PointId RndfReader::own_or_known(PointId id, std::string_view what) {
   const PointId here = key_of_block();
   if (diagnostics_.strict() || id.point == 0 || (id.segment == here.segment && id.lane == here.lane))
     return own(id, what);
-  diagnostics_.add_warning(now().line, fmt::format("{} {} stands in {}", what, point_id_text(id), open_.back().name),
-                           "", fmt::format("it is assigned to {}.{}", id.segment, id.lane));
+  diagnostics_.add_warning(now().line, fmt::format("{} {} is in {}", what, point_id_text(id), open_.back().name), "",
+                           fmt::format("it is assigned to {}.{}", id.segment, id.lane));
   return id;
 }
 
@@ -159,10 +158,10 @@ void RndfReader::waypoint() {
   claim(point.id, "way-point");
   const int expected = row.empty() ? 1 : row.back().id.point + 1;
   if (point.id.point < expected)
-    statements_.fail(fmt::format("way-point {} comes after {}; expected them in driving direction, 1, 2, 3, ...",
+    statements_.fail(fmt::format("way-point {} follows {}; expected them in driving direction, 1, 2, 3, ...",
                                  point_id_text(point.id), point_id_text(row.back().id)));
   if (point.id.point > expected && open_.back().seen.emplace("gap", "").second)
-    warn(now().line, fmt::format("way-point {} follows where {} was expected; numbers are missing",
+    warn(now().line, fmt::format("way-point {} found where {} was expected; numbers are missing",
                                  point_id_text(point.id), expected));
   row.push_back(point);
   unread_.erase(id);
@@ -172,7 +171,7 @@ void RndfReader::read_boundary(Boundary& boundary) {
   const auto read = now().fields.empty() ? std::nullopt : boundary_of(now().fields[0]);
   const std::string what = fmt::format("'{}' is {}", now().keyword, quoted(now().rest));
   const std::string remedy = fmt::format("expected one of {}", boundary_words());
-  if (now().fields.empty()) return diagnostics_.add_warning(now().line, what, remedy, "no marking is assumed");
+  if (now().fields.empty()) return diagnostics_.add_warning(now().line, what, remedy, "assuming no marking");
   if (!read) statements_.fail(what + "; " + remedy);
   statements_.expect_fields(1);
   boundary = *read;
@@ -198,7 +197,7 @@ void RndfReader::read_exit() {
     return diagnostics_.add_warning(now().line,
                                     fmt::format("exit {} to {} is already in line {}", point_id_text(exit.from),
                                                 point_id_text(exit.to), old->second),
-                                    "expected it once", "it counts once");
+                                    "expected it once", "it is used once");
   (open_.back().block == RndfBlock::lane ? lane().exits : zone().exits).push_back(exit);
 }
 
@@ -207,7 +206,7 @@ void RndfReader::read_stop() {
   statements_.expect_fields(1);
   if (!stops_.insert(stop.at).second)
     return diagnostics_.add_warning(now().line, fmt::format("stop {} is given twice", point_id_text(stop.at)),
-                                    "expected it once", "it counts once");
+                                    "expected it once", "it is used once");
   lane().stops.push_back(stop);
 }
 
@@ -218,8 +217,8 @@ void RndfReader::read_checkpoint() {
   const auto [old, fresh] = checkpoints_.emplace(checkpoint.id, checkpoint);
   if (!fresh) {
     const std::string what = fmt::format("checkpoint {} is already in line {}", checkpoint.id, old->second.line);
-    if (old->second.at != at) statements_.fail(what + "; expected an id of its own");
-    return diagnostics_.add_warning(now().line, what, "expected an id of its own", "it counts once");
+    if (old->second.at != at) statements_.fail(what + "; expected a unique id");
+    return diagnostics_.add_warning(now().line, what, "expected a unique id", "it is used once");
   }
   (open_.back().block == RndfBlock::lane ? lane().checkpoints : spot().checkpoints).push_back(checkpoint);
 }

@@ -166,7 +166,7 @@ PointId StatementReader::numbers(std::string_view text, int count, std::string_v
   }
   if (good && at == last) return {parts[0], parts[1], parts[2]};
   fail(fmt::format("{} is {}; expected {} such as {}", what, quoted(text),
-                   count == 2 ? "two numbers joined by a point" : "three numbers joined by points",
+                   count == 2 ? "two numbers separated by a dot" : "three numbers separated by dots",
                    count == 2 ? "1.2" : "1.2.3"));
 }
 

@@ -50,8 +50,8 @@ void add_settings(BuildState& b, const Entity& entity, std::span<const std::stri
       setting.numbers[0] = std::sqrt(setting.numbers[0] / b.context.metres_per_unit);
     if (has_noise && !b.context.noise.stated && sensor.type == "ranger")
       warn_once(b.context, property.at,
-                "the first number of 'noise' is a standard deviation, in Stage a variance: --stage-noise or the world "
-                "key stage_noise 1 reads it so, stage_noise 0 says that it is a standard deviation");
+                "the first number of 'noise' is a standard deviation here, but a variance in Stage: --stage-noise or "
+                "the world key stage_noise 1 reads it as a variance, stage_noise 0 confirms a standard deviation");
     sensor.settings.push_back(std::move(setting));
   }
 }
@@ -62,7 +62,7 @@ void add_sensors(BuildState& b, const Entity& entity, const Model& model, const 
                  double height, const std::string& name) {
   if (model.mover == kNone) {
     warn(b.context, entity.at,
-         fmt::format("'{}' is carried by no robot: kept as a body that measures nothing", entity.word));
+         fmt::format("'{}' is not mounted on a robot: kept as a body that measures nothing", entity.word));
     return;
   }
   auto& sensors = b.world.movers[model.mover].sensors;
@@ -107,7 +107,7 @@ void add_magnet(BuildState& b, const Entity& entity, const Model& model, const S
                 std::min(size.x, size.y) / 2.0,
                 static_cast<std::uint32_t>(b.world.models.size())};
   if (!(magnet.radius > 0.0))
-    fail(context, entity.at, "a magnet needs a 'size' above zero in x and y: half the smaller one is its radius");
+    fail(context, entity.at, "a magnet requires a 'size' above zero in x and y: half the smaller one is its radius");
   auto& magnets = model.mover == kNone ? b.world.magnets : b.world.movers[model.mover].magnets;
   magnets.push_back(magnet);
 }

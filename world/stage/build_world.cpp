@@ -47,8 +47,7 @@ void warn_of_nothing(BuildState& b, const Entity& root) {
     return kind != EntityKind::unknown && kind != EntityKind::ignored;
   });
   if (has_known || !b.world.walls.empty() || !b.world.movers.empty()) return;
-  warn(b.context, {0, 0},
-       "nothing in this file is known as a wall, a robot or any other model: is it a Stage world? The world is empty");
+  warn(b.context, {0, 0}, "no wall, robot or other known model in this file: is it a Stage world? The world is empty");
 }
 
 /// @param option the user's option, which overrides the file
@@ -106,14 +105,14 @@ void warn_of_places(BuildState& b) {
 void warn_of_overlaps(BuildState& b) {
   const Overlaps found = find_overlaps(b.world);
   if (!found.complete)
-    warn(b.context, b.locations[0], "this world has too many robots near one another to look for overlaps of all");
+    warn(b.context, b.locations[0], "this world has too many robots near each other to check all for overlaps");
   if (found.robots.empty()) return;
   const auto& [first, second] = found.pairs[0];
   warn(b.context, b.locations[second],
-       fmt::format("{} robots overlap others at the start: {}; '{}' starts at ({:g}, {:g}), in '{}': expected poses "
-                   "apart",
-                   found.robots.size(), names_of(b.world, found.robots), b.world.movers[second].name,
-                   b.world.movers[second].X_WM.x, b.world.movers[second].X_WM.y, b.world.movers[first].name));
+       fmt::format(
+           "{} robots overlap others at the start: {}; '{}' starts at ({:g}, {:g}), in '{}': expected separate poses",
+           found.robots.size(), names_of(b.world, found.robots), b.world.movers[second].name,
+           b.world.movers[second].X_WM.x, b.world.movers[second].X_WM.y, b.world.movers[first].name));
 }
 
 }  // namespace

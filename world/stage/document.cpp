@@ -30,7 +30,7 @@ Entity begin_entity(ParseState& r, const Token& word) {
   Entity entity{.word = word.text, .type = word.text, .at = location(r, word)};
   if (const auto macro = r.macros.find(word.text); macro != r.macros.end()) {
     if (r.weight + macro->second.weight > kMaxWeight) {
-      fail(r, word.line, fmt::format("the macros of this world grow to more than {} properties", kMaxWeight));
+      fail(r, word.line, fmt::format("the macros of this world expand to more than {} properties", kMaxWeight));
     }
     const SourceLocation at = entity.at;
     entity = macro->second;
@@ -93,7 +93,7 @@ void read_define(ParseState& r) {
     fail(r, line, "expected: define NEW-NAME BASE-TYPE ( ... )");
   }
   if (name.text == base.text)
-    fail(r, line, fmt::format("'{}' is defined by itself; name another base type", name.text));
+    fail(r, line, fmt::format("'{}' is defined in terms of itself; use another base type", name.text));
   ++r.at;
   if (next(r).kind != TokenKind::open) {
     fail(r, line, fmt::format("expected '(' after 'define {} {}', found {}", name.text, base.text, shown(next(r))));
@@ -107,8 +107,8 @@ void read_define(ParseState& r) {
   const bool same_text = before.file == r.file && before.line == name.line;
   if (!fresh && !same_text) {
     warn(r, line,
-         fmt::format("'{}' is defined again; the first one counts ({}:{})", name.text, r.document.files[before.file],
-                     before.line));
+         fmt::format("'{}' is defined again; the first definition ({}:{}) is used", name.text,
+                     r.document.files[before.file], before.line));
   }
 }
 
@@ -134,7 +134,7 @@ void refuse_picture(const ParseState& r, int line, const std::string& name, cons
       yaml = fmt::format("the file of the ROS map: include \"{}\"",
                          std::filesystem::path(name).replace_extension(suffix).string());
   fail(r, line,
-       fmt::format("\"{}\" is a picture; expected {}; or name it as a floor plan: model( bitmap \"{}\" size [x y z] )",
+       fmt::format("\"{}\" is a picture; expected {}; or use it as a floor plan: model( bitmap \"{}\" size [x y z] )",
                    name, yaml, name));
 }
 
@@ -148,8 +148,8 @@ void read_include(ParseState& r) {
   refuse_picture(r, line, name, found);
   if (found.empty()) {
     fail(r, line,
-         fmt::format("cannot find the include \"{}\"; expected it beside this file, beside the world file, "
-                     "along $STAGEPATH or among the installed worlds",
+         fmt::format("cannot find the include \"{}\"; searched the folders of this file and of the world file, "
+                     "$STAGEPATH and the installed worlds",
                      name));
   }
   if (is_ros_map(found)) {
@@ -177,7 +177,7 @@ void read_include(ParseState& r) {
 
 void read_item(ParseState& r, std::unordered_set<std::string>& written) {
   const Token& token = now(r);
-  if (token.kind == TokenKind::close) fail(r, token.line, "this ')' closes nothing");
+  if (token.kind == TokenKind::close) fail(r, token.line, "this ')' has no matching '('");
   if (token.kind != TokenKind::word) {
     fail(r, token.line, fmt::format("expected include, define, a property or an entity, found {}", shown(token)));
   }

@@ -23,7 +23,7 @@ bool is_floor_hole(const StageContext& context, const Entity& entity) {
 void add_floor_holes(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
                      const Pose& X_B) {
   const SourceLocation at = find(entity, "cliff_return")->at;
-  if (model.mover != kNone) fail(b.context, at, "a hole in the floor does not move; expected it outside moving models");
+  if (model.mover != kNone) fail(b.context, at, "a hole in the floor cannot move; expected it outside moving models");
   if (model.is_bitmap || flag(b.context, entity, "boundary", false))
     fail(b.context, at, "'cliff_return' expects blocks or a box, neither a bitmap nor a boundary");
   const auto row = static_cast<std::uint32_t>(b.world.models.size());
@@ -46,7 +46,7 @@ void add_emitter(BuildState& b, const Entity& entity, const Model& model, const 
   const Property* property = find(entity, "ir_emitter");
   if (property == nullptr) return;
   if (model.mover != kNone)
-    fail(context, property->at, "an infrared emitter does not move; expected it outside moving models");
+    fail(context, property->at, "an infrared emitter cannot move; expected it outside moving models");
   for (const char* key : {"ir_fov", "ir_range"})
     if (const Property* said = find(entity, key); said != nullptr) warn_of_units(b, *said, property->key);
   Emitter emitter = kVirtualWall;

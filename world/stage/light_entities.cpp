@@ -33,12 +33,12 @@ LightPhase read_phase(const StageContext& context, const Entity& entity, std::ui
 
 std::vector<LightPhase> read_phases(StageContext& context, const Entity& entity) {
   const std::uint32_t count = whole(context, entity, "phases", 0, 1, kMaxPhases);
-  if (count == 0) fail(context, entity.at, "a light needs 'phases', and a phase[i] [\"state\" seconds] for each");
+  if (count == 0) fail(context, entity.at, "a light requires 'phases', and a phase[i] [\"state\" seconds] for each");
   std::vector<LightPhase> phases;
   for (std::uint32_t i = 0; i < count; ++i) phases.push_back(read_phase(context, entity, i, count));
   const std::string beyond = fmt::format("phase[{}]", count);
   if (const Property* extra = find(entity, beyond))
-    warn(context, extra->at, fmt::format("'{}' is not used: 'phases' says {}", beyond, count));
+    warn(context, extra->at, fmt::format("'{}' is not used: 'phases' is {}", beyond, count));
   return phases;
 }
 
@@ -64,7 +64,7 @@ std::vector<std::string> read_stop_lines(const StageContext& context, const Enti
 
 void add_light(BuildState& b, const Entity& entity, const Model& model) {
   StageContext& context = b.context;
-  if (model.mover != kNone) fail(context, entity.at, "a light does not move; expected it outside moving models");
+  if (model.mover != kNone) fail(context, entity.at, "a light cannot move; expected it outside moving models");
   Light light;
   light.name = model.name;
   light.model = static_cast<std::uint32_t>(b.world.models.size());

@@ -18,7 +18,7 @@ std::optional<MagnetRow> read_magnet_row(const StageContext& context, const Enti
   const double moment = number(context, entity, "magnetic_moment", 0.0);
   if (row.spacing == 0.0 && moment == 0.0) return std::nullopt;
   if (!(row.spacing > 0.0 && moment != 0.0 && std::abs(moment) <= kMaxMoment))
-    fail(context, entity.at, "magnets need both a 'magnetic_moment' other than 0 and a 'magnet_spacing' above zero");
+    fail(context, entity.at, "magnets require both a 'magnetic_moment' other than 0 and a 'magnet_spacing' above zero");
   row.moment = kMomentUnit * moment;
   const auto size =
       tuple(context, entity, "magnet_size", 2, "[width length]").value_or(std::vector<double>{0.025, 0.1});

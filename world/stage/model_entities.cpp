@@ -103,10 +103,10 @@ Segment surface_of(BuildState& b, const Entity& entity, const Model& model) {
   if (!model.is_bitmap || surface.stops_robots || context.obstacles.applies) return surface;
   surface.stops_robots = true;
   if (!context.obstacles.stated)
-    warn_once(
-        context, location_of(entity, "obstacle_return"),
-        "floor plans stop robots, also with 'obstacle_return 0'; in Stage robots drive through this one: "
-        "--stage-obstacles or the world key stage_obstacles 1 lets them, stage_obstacles 0 says that it stops them");
+    warn_once(context, location_of(entity, "obstacle_return"),
+              "floor plans stop robots, also with 'obstacle_return 0'; in Stage robots drive through this one: "
+              "--stage-obstacles or the world key stage_obstacles 1 allows that, stage_obstacles 0 confirms that it "
+              "stops them");
   return surface;
 }
 
@@ -183,7 +183,7 @@ Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const 
 bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
   if (said.kind != EntityKind::position && !packet_id_of(said.name)) return false;
   if (parent.mover == kNone) return true;
-  warn(b.context, entity.at, fmt::format("'{}' is carried by '{}' and moves with it", said.name, parent.name));
+  warn(b.context, entity.at, fmt::format("'{}' is mounted on '{}' and moves with it", said.name, parent.name));
   return false;
 }
 
@@ -206,7 +206,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
     own.X_MP = {};
   } else if (!controller.empty()) {
     warn(b.context, location_of(entity, "ctrl"),
-         fmt::format("'ctrl' is for robots, and '{}' is not a robot: write it into the robot's own parentheses",
+         fmt::format("'ctrl' is for robots, but '{}' is not a robot: write it inside the robot's parentheses",
                      said.name));
   }
 

@@ -93,17 +93,16 @@ void warn_of_picture(StageContext& context, const Entity& entity, const TracedBi
                      entity.word, grid.width, grid.height, size.x, size.y));
   if (plan.hidden > 0)
     warn(context, at,
-         fmt::format("{} dark pixels of the picture are transparent, so they are free; Stage ignores transparency and "
-                     "takes them for walls",
+         fmt::format("{} dark pixels of the picture are transparent and therefore free; Stage ignores transparency and "
+                     "treats them as walls",
                      plan.hidden));
   if (plan.runs.empty()) warn(context, at, "the picture has no dark pixel, so it has no walls");
   const auto& [low, high] = plan.solid;
   if (context.old_shapes || (low.i == 0 && low.j == 0 && high.i == grid.width && high.j == grid.height)) return;
-  warn(
-      context, at,
-      fmt::format("the picture's solid part is scaled to 'size', as in Stage: its margins of {} (left), {} (right), {} "
-                  "(below) and {} (above) of {} x {} pixels are left out; the world key old_shapes 1 counts them",
-                  low.i, grid.width - high.i, low.j, grid.height - high.j, grid.width, grid.height));
+  warn(context, at,
+       fmt::format("the picture's solid part is scaled to 'size', as in Stage: its margins of {} (left), {} (right), "
+                   "{} (below) and {} (above) of {} x {} pixels are left out; the world key old_shapes 1 includes them",
+                   low.i, grid.width - high.i, low.j, grid.height - high.j, grid.width, grid.height));
 }
 
 }  // namespace sf::world

@@ -48,11 +48,11 @@ Block read_block(StageContext& context, const Entity& entity, const std::string&
   }
   if (!missing.empty())
     warn(context, entity.at,
-         fmt::format("'{}'{} of this '{}' is missing: it counts as [0 0], as in Stage", missing[0],
+         fmt::format("'{}'{} of this '{}' is missing: [0 0] is used, as in Stage", missing[0],
                      missing.size() > 1 ? fmt::format(" (and {} more)", missing.size() - 1) : "", entity.word));
   const std::string beyond = fmt::format("{}point[{}]", prefix, count);
   if (const Property* extra = find(entity, beyond)) {
-    warn(context, extra->at, fmt::format("'{}' is not used: 'points' says {}", beyond, count));
+    warn(context, extra->at, fmt::format("'{}' is not used: 'points' is {}", beyond, count));
   }
   if (const auto z = tuple(context, entity, prefix + "z", 2, "[min max]")) {
     const SourceLocation at = find(entity, prefix + "z")->at;
@@ -204,10 +204,10 @@ void warn_of_parts(StageContext& context, const Entity& entity, const Parts& par
                      entity.word));
   if (parts.boundary && has_blocks && !parts.bitmap && !parts.noblocks)
     warn(context, location_of(entity, "boundary"),
-         fmt::format("'{}' has a boundary and blocks: Stage leaves the boundary out, here both stay", entity.word));
+         fmt::format("'{}' has a boundary and blocks: Stage omits the boundary, the farm keeps both", entity.word));
   if (has_blocks && (parts.bitmap || (parts.boundary && parts.noblocks)))
     warn(context, location_of(entity, parts.bitmap ? "bitmap" : "boundary"),
-         fmt::format("'{}' has blocks, too: their points count in metres from its middle, as in Stage; the world key "
+         fmt::format("'{}' also has blocks: their points are in metres from its middle, as in Stage; the world key "
                      "old_shapes 1 scales them to 'size'",
                      entity.word));
 }
@@ -236,7 +236,7 @@ std::vector<Segment> shape_of(StageContext& context, BitmapCache& bitmaps, const
   if (parts.noblocks && context.old_shapes) return {};
   std::vector<Block> blocks = read_blocks(context, entity);
   if (parts.bitmap && (size.x <= 0.0 || size.y <= 0.0))
-    fail(context, find(entity, "bitmap")->at, "a bitmap needs a 'size' above zero in x and y");
+    fail(context, find(entity, "bitmap")->at, "a bitmap requires a 'size' above zero in x and y");
   const TracedBitmap* plan = parts.bitmap ? &bitmap_of(context, bitmaps, entity) : nullptr;
   count_segments(context, entity, plan != nullptr ? plan->runs.size() : 0, blocks);
   if (!context.old_shapes) warn_of_parts(context, entity, parts, !blocks.empty());

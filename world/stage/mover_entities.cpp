@@ -57,9 +57,9 @@ Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag) {
   if (length(glm::dvec2{X_MT.x, X_MT.y}) > kMaxTagReach || std::abs(X_MT.z) > kMaxTagReach)
     fail(context, said->at, fmt::format("'tag_pose' expects a tag within {} m of its model's origin", kMaxTagReach));
   if (is_tag) return X_MT;
-  warn(context, said->at,
-       "'tag_pose' is ignored: expected it on a model named tag<N> (N from 1) that nothing carries, which follows tag "
-       "packets");
+  warn(
+      context, said->at,
+      "'tag_pose' is ignored: expected it on a free-standing model named tag<N> (N from 1), which follows tag packets");
   return {};
 }
 

@@ -72,7 +72,7 @@ Property read_property(ParseState& r) {
     ++r.at;
   } else {
     fail(r, line,
-         fmt::format("'{}' needs a value (a number, a \"string\" or a [tuple]) or a body in parentheses; found {}",
+         fmt::format("'{}' requires a value (a number, a \"string\" or a [tuple]) or a body in parentheses; found {}",
                      property.key, shown(now(r))));
   }
   return property;
@@ -86,7 +86,7 @@ void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_s
   const auto [old, fresh] = rows.emplace(property.key, static_cast<std::uint32_t>(entity.properties.size()));
   if (!written.insert(property.key).second)
     warn(r, property.at.line,
-         fmt::format("'{}' is given twice in the same '{}': the last one counts, not that of line {}", property.key,
+         fmt::format("'{}' is given twice in the same '{}': the last one is used, not that of line {}", property.key,
                      entity.word, entity.properties[old->second].at.line));
   if (fresh) {
     entity.properties.push_back(std::move(property));

@@ -42,7 +42,7 @@ PathPiece read_arc(const StageContext& context, const Property& property) {
 std::vector<PathPiece> read_pieces(BuildState& b, const Entity& entity) {
   const StageContext& context = b.context;
   const std::uint32_t count = whole(context, entity, "pieces", 0, 1, kMaxPieces);
-  if (count == 0) fail(context, entity.at, "a path needs 'pieces', and a straight[i] or an arc[i] for each");
+  if (count == 0) fail(context, entity.at, "a path requires 'pieces', and a straight[i] or an arc[i] for each");
   std::vector<PathPiece> pieces;
   Pose X = pose(b.context, entity, "pose");
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -148,7 +148,7 @@ void count_paint(StageContext& context, const Entity& entity, const Path& path, 
     const std::string key = fmt::format("{}[{}]", piece.curvature == 0.0 ? "straight" : "arc", i);
     charge(context, location_of(entity, key), context.usage.paint_points, (paint.twice ? 2.0 : 1.0) * points,
            kMaxPaintPoints, "points of paint along paths",
-           "give '" + key + "' a smaller radius, a shorter way, longer dashes or no paint");
+           "give '" + key + "' a smaller radius, a shorter path, longer dashes or no paint");
   }
 }
 

@@ -31,9 +31,8 @@ void warn_once(StageContext& context, SourceLocation at, std::string_view differ
 void charge(const StageContext& context, SourceLocation at, double& used, double more, double most,
             std::string_view what, std::string_view remedy) {
   if (used + more > most)
-    fail(
-        context, at,
-        fmt::format("this makes {:.0f} {} of the world; expected at most {:.0f}: {}", used + more, what, most, remedy));
+    fail(context, at,
+         fmt::format("the world now has {:.0f} {}; expected at most {:.0f}: {}", used + more, what, most, remedy));
   used += more;
 }
 
@@ -95,8 +94,8 @@ std::string file_of(const StageContext& context, const Entity& entity, std::stri
   const std::string file = find_file(context.document, at, name);
   if (file.empty()) {
     fail(context, at,
-         fmt::format("cannot find the {} \"{}\"; expected {} beside this file, beside the world file, "
-                     "along $STAGEPATH or among the installed worlds",
+         fmt::format("cannot find the {} \"{}\"; expected {}; searched the folders of this file and of the world file, "
+                     "$STAGEPATH and the installed worlds",
                      key, name, key.ends_with('s') ? "them" : "it"));
   }
   return file;
@@ -133,8 +132,7 @@ std::optional<std::vector<double>> tuple(const StageContext& context, const Enti
     values.push_back(value.number);
   }
   if (values.size() < least) {
-    fail(context, property->at,
-         fmt::format("'{}' has {} of the numbers it needs; expected {}", key, values.size(), meaning));
+    fail(context, property->at, fmt::format("'{}' has only {} numbers; expected {}", key, values.size(), meaning));
   }
   return values;
 }

@@ -16,12 +16,12 @@ constexpr double kMaxRoads = 100;
 RoadNetwork read_network(BuildState& b, const Entity& entity) {
   const Property* rndf = find(entity, "rndf");
   const std::string name = text(b.context, entity, "rndf", "");
-  if (rndf == nullptr || name.empty()) fail(b.context, entity.at, "a road needs its network: rndf \"FILE\"");
+  if (rndf == nullptr || name.empty()) fail(b.context, entity.at, "a road requires its network: rndf \"FILE\"");
   const std::string file = find_file(b.context.document, rndf->at, name);
   if (file.empty())
     fail(b.context, rndf->at,
-         fmt::format("cannot find the road network \"{}\"; expected it beside this file, beside the world file, "
-                     "along $STAGEPATH or among the installed worlds",
+         fmt::format("cannot find the road network \"{}\"; searched the folders of this file and of the world file, "
+                     "$STAGEPATH and the installed worlds",
                      name));
   return load_roads(file, b.context.warnings, b.options.strict);
 }

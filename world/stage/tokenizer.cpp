@@ -136,7 +136,7 @@ bool scan_bracket(Scanner& s) {
 
 [[noreturn]] void refuse_character(const Scanner& s) {
   const char c = s.text[s.at];
-  if (c == ',') throw base::InputError(s.file, s.line, "unexpected ','; values are separated by blanks: [1 2 3]");
+  if (c == ',') throw base::InputError(s.file, s.line, "unexpected ','; separate values by blanks: [1 2 3]");
   const bool printable = c > ' ' && c < '\x7f';
   const std::string shown = printable ? std::string(1, c) : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
   throw base::InputError(
