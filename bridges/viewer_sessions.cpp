@@ -262,14 +262,14 @@ std::string ViewerSessions::set(const Parameter& parameter) {
   if (!is_controlled()) return parameter.name + " cannot be set: robots in other processes do not wait.";
   if (parameter.name == kPaused) {
     const bool* const paused = std::get_if<bool>(&parameter.value);
-    if (paused == nullptr) return "/paused is true or false.";
+    if (paused == nullptr) return "Expected /paused true or false.";
     wishes_.pause(*paused);
     return {};
   }
   if (parameter.name == kSpeed) {
     const double* const speed = std::get_if<double>(&parameter.value);
     if (speed == nullptr || !std::isfinite(*speed) || *speed < 0.0)
-      return "/speed is simulated over real time, above 0, or 0: as fast as the machine allows.";
+      return "Expected /speed above 0 (ratio of simulated to real time), or 0: as fast as the machine allows.";
     wishes_.speed(real_speed(*speed));
     return {};
   }

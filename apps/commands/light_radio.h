@@ -31,7 +31,7 @@ class LightRadio {
   void report_trouble(std::int64_t now);
 
   const std::string& to() const { return farm_; }
-  /// "V2I to 127.0.0.1:9000: sent 12; heard 30 states"
+  /// "V2I to 127.0.0.1:9000: sent 12; received 30 states"
   std::string summary() const;
 
  private:

@@ -268,8 +268,8 @@ struct RunOptions : WorldOptions,
   std::string send;         ///< host; empty: none
   bool tiles = false;       ///< each rank owns a part of the world
   double balance = 0.0;     ///< [s] simulated time between rebalancing of tiles; 0: never
-  double checkpoint = 0.0;  ///< [s] simulated time between check points; 0: none
-  bool resume = false;      ///< restart an interrupted run and compare it with its check points
+  double checkpoint = 0.0;  ///< [s] simulated time between checkpoints; 0: none
+  bool resume = false;      ///< restart an interrupted run and compare it with its checkpoints
 };
 
 struct ServeOptions : WorldOptions,

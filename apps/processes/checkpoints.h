@@ -15,8 +15,8 @@ namespace sf::apps {
 class Checkpoints {
  public:
   /// @param run hash of everything that the run's results depend on @param every [tick] 0: adds none
-  /// @param resume compares with the check points in the file; otherwise starts a new file
-  /// @throws base::InputError if there is nothing to resume, the check points belong to another run, or the file cannot
+  /// @param resume compares with the checkpoints in the file; otherwise starts a new file
+  /// @throws base::InputError if there is nothing to resume, the checkpoints belong to another run, or the file cannot
   /// be written
   Checkpoints(const std::string& folder, std::uint64_t run, std::uint64_t every, bool resume);
 

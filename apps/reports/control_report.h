@@ -26,7 +26,7 @@ struct Standing {
   double seconds = 0.0;  ///< [s] longest time at rest
   static constexpr std::size_t kNamed = 3;
 };
-/// Returns "roomba0 for 598 s: 'roomba1' stands in its way".
+/// Returns "roomba0 for 598 s: 'roomba1' blocks its way".
 std::string standing_text(const Standing& standing);
 
 /// Combined results of the robots in a run that have a controller.

@@ -483,7 +483,7 @@ def read_sensor(word):
     name, _, port = word.partition("=")
     name, _, number = name.partition(".")
     if name not in [sensor[0] for sensor in SENSORS.values()]:
-        raise argparse.ArgumentTypeError("'%s' is no sensor type" % name)
+        raise argparse.ArgumentTypeError("'%s' is not a sensor type" % name)
     return (name, int(number or 0)) + ((int(port),) if port else ())
 
 
@@ -506,7 +506,7 @@ def read_farm(word):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="A robot beside a sensor farm: sends its pose, prints its readings.")
+    parser = argparse.ArgumentParser(description="Connects a robot to a sensor farm: sends its pose, prints its readings.")
     parser.add_argument("--robot", type=int, required=True, help="id, 0 to 65535")
     parser.add_argument("--farm", type=read_farm, default=("127.0.0.1", 9000), metavar="HOST:PORT")
     parser.add_argument("--pose", type=read_pose, default=(0.0, 0.0, 0.0, 0.0), metavar="X,Y,DEGREES")
@@ -517,7 +517,7 @@ def main():
     # "-1,0.5,30" is a value of --pose, not an option.
     options = parser.parse_args("\0".join(sys.argv[1:]).replace("--pose\0", "--pose=").split("\0"))
     if not (0 <= options.robot <= 65535 and 1.0 <= options.rate <= 1000.0):
-        parser.error("--robot takes 0 to 65535, --rate 1 to 1000")
+        parser.error("expected --robot from 0 to 65535 and --rate from 1 to 1000")
     try:
         encode_v2v(options.pose)
         client = Client(options.robot, options.farm, options.sensor or [("laser", 0)], options.neighbours,

@@ -121,7 +121,7 @@ class Lockstep(Client):
                 self._fetch_ahead()
                 continue
             if time.monotonic() - heard > self.timeout:
-                raise TimeoutError("the farm at %s:%d has said nothing for %g s at tick %d: it has ended, or left out "
+                raise TimeoutError("no packet from the farm at %s:%d for %g s at tick %d: it has ended, or left out "
                                    "this process" % (*self.farm, self.timeout, self.tick))
             wait = min(2 * wait, 0.5)
             if self.tick == self.wanted:
@@ -213,7 +213,7 @@ def read_ids(word):
     first, _, last = word.partition("-")
     ids = list(range(int(first), int(last or first) + 1))
     if not ids or ids[0] < 0 or ids[-1] >= EVERY_ROBOT + 1:
-        raise argparse.ArgumentTypeError("'%s' are no ids from 0 to 65535" % word)
+        raise argparse.ArgumentTypeError("'%s' is not a range of ids from 0 to 65535" % word)
     return ids
 
 
@@ -229,7 +229,7 @@ def main():
     parser.add_argument("--ticks", type=int, default=600, metavar="N")
     parser.add_argument("--key", type=read_key_of, action="append", default=[], metavar="ROBOT=FILE",
                         help="64 hexadecimal digits: the key of a robot (may be repeated)")
-    parser.add_argument("--timeout", type=float, default=10.0, metavar="S", help="patience with a silent farm")
+    parser.add_argument("--timeout", type=float, default=10.0, metavar="S", help="time to wait for a silent farm [s]")
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     fleet = None

@@ -27,7 +27,7 @@ class Environment:
         arguments, options = self._arguments
         if options.get("record"):
             raise TypeError(f"an environment that records (record={options['record']!r}) cannot be copied: both would "
-                            "write the same folder; make another one with a folder of its own")
+                            "write the same folder; create another one with its own folder")
         state = {"at_reset": self._at_reset, "spec": self.spec, "closed": self.closed,
                  "spaces": {name: getattr(self, name) for name in self._spaces}}
         return _made, (type(self), arguments, options), state

@@ -102,7 +102,7 @@ function select(row) {
   drawing.maps.clear();
   const actions = [];
   if (row >= 0 && scene.mode === 'run' && !scene.movers[row].tag) {
-    const drive = Object.assign(document.createElement('button'), { id: 'drive', textContent: 'Drive', title: 'Drive with the arrow keys, in place of the controller (D)', onclick: toggleDriving });
+    const drive = Object.assign(document.createElement('button'), { id: 'drive', textContent: 'Drive', title: 'Drive with the arrow keys, instead of the controller (D)', onclick: toggleDriving });
     drive.setAttribute('aria-pressed', 'false');
     actions.push(drive);
   }
@@ -143,7 +143,7 @@ function toggleDriving() {
   if (!$('drive')) return;
   driving = true;
   $('drive').setAttribute('aria-pressed', 'true');
-  notice('Arrow keys drive the robot; D or Escape ends it. Its controller does not take over again until a restart.');
+  notice('Arrow keys drive the robot; D or Escape stops driving. Its controller takes over again only after a restart.');
   sendDrive();
 }
 function stopDriving() {
@@ -224,8 +224,8 @@ function showLegend() {
   const states = [...new Set(Object.values(drawing.drawn.lights))].sort(), words = ['dark', 'red', 'yellow', 'green', 'flashing red', 'flashing yellow'];
   for (const state of states) items.push([swatch((c) => drawSignal(c, 11, 7, 4.5, state)), `light, ${words[state]}`]);
   const line = (color, width) => swatch((c) => { c.strokeStyle = color; c.lineWidth = width; c.moveTo(2, 7); c.lineTo(20, 7); c.stroke(); });
-  if (drawing.drawn.hits > 0) items.push([swatch((c) => { c.fillStyle = theme.view; c.fillRect(9, 5, 4, 4); }), 'echo of the laser']);
-  if (drawing.drawn.edges > 0) items.push([line(theme.lane, 3), 'lane edge as sensed']);
+  if (drawing.drawn.hits > 0) items.push([swatch((c) => { c.fillStyle = theme.view; c.fillRect(9, 5, 4, 4); }), 'laser echo']);
+  if (drawing.drawn.edges > 0) items.push([line(theme.lane, 3), 'sensed lane edge']);
   if (drawing.drawn.fields > 0) items.push([line(theme.magnetometer, 2), 'magnetic field']);
   if (drawing.drawn.maps > 0) items.push([swatch((c) => { c.fillStyle = theme.map; c.fillRect(4, 2, 7, 10); c.fillStyle = fade(theme.mapFree, 0.35); c.fillRect(11, 2, 7, 10); }), 'map: occupied, free']);
   if (drawing.drawn.contacts > 0) items.push([swatch((c) => { c.strokeStyle = theme.contact; c.lineWidth = 1.8; c.arc(11, 7, 5, 0, 7); c.moveTo(8.5, 4.5); c.lineTo(13.5, 9.5); c.moveTo(8.5, 9.5); c.lineTo(13.5, 4.5); c.stroke(); }), 'contact']);
@@ -272,7 +272,7 @@ function fillPopups() {
     label.append(box, text);
     return label;
   }));
-  const keys = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow it'], ['D', 'drive it'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'a recording: one second back, on'], ['Esc', 'close, end driving, select none']];
+  const keys = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow the robot'], ['D', 'drive the robot'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'recording: one second back, forward'], ['Esc', 'close, stop driving, clear the selection']];
   const table = document.createElement('table');
   for (const [key, text] of keys) {
     const row = table.insertRow();
@@ -410,7 +410,7 @@ function connect() {
   connection.addEventListener('close', () => {
     stopDriving();
     showStatus('lost', 'not connected');
-    notice(opened ? 'The run has ended, or the connection broke. Trying again.' : 'No connection. Trying again.', 0);
+    notice(opened ? 'The run has ended, or the connection was lost. Reconnecting.' : 'No connection. Retrying.', 0);
     setTimeout(reconnect, 1500);
   });
   connection.addEventListener('info', ({ detail }) => {

@@ -117,15 +117,15 @@ export class Panel {
     this.scene.movers.forEach(({ name, id }, row) => { if (!wanted || name.toLowerCase().includes(wanted) || String(id) === wanted) found.push(row); });
     this.#rows = found.slice(0, listed);
     this.list.replaceChildren(...this.#rows.map((row) => this.#item(row)));
-    if (found.length > listed) this.list.append(element('li', { className: 'more', textContent: `${found.length - listed} more: type a part of the name` }));
+    if (found.length > listed) this.list.append(element('li', { className: 'more', textContent: `${found.length - listed} more: type part of the name` }));
     const count = this.scene.movers.length;
     document.getElementById('count').textContent = wanted ? `${found.length} of ${count}` : `${count} ${count === 1 ? 'robot' : 'robots'}`;
   }
 
   /** Counts of the fleet; a click selects the next counted robot. Commands of robots in other processes are unknown. */
   #makeSummary() {
-    const rows = [['contact', 'in contact', (fleet, i) => fleet.inContact(i), 'Robots that a wall or a robot stops now'], ['outside', 'outside', (fleet, i) => fleet.isOutside(i), 'Robots beyond the box around the world']];
-    if (this.scene.mode !== 'service') rows.splice(1, 0, ['stuck', 'stuck', (fleet, i) => fleet.isStuck(i), 'Robots that are commanded to move and have hardly moved for 3 s of simulated time']);
+    const rows = [['contact', 'in contact', (fleet, i) => fleet.inContact(i), 'Robots now stopped by a wall or a robot'], ['outside', 'outside', (fleet, i) => fleet.isOutside(i), 'Robots outside the world's bounding box']];
+    if (this.scene.mode !== 'service') rows.splice(1, 0, ['stuck', 'stuck', (fleet, i) => fleet.isStuck(i), 'Robots commanded to move that have hardly moved for 3 s of simulated time']);
     this.counts = rows.map(([id, text, counts, title]) => {
       const button = element('button', { title, disabled: true, onclick: () => {
         if (button.rows.length > 0) this.choose(button.rows.find((row) => row > this.selected) ?? button.rows[0]);
