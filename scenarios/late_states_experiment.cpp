@@ -110,7 +110,7 @@ std::string draw(const ExperimentContext& context, const std::vector<Row>& rows,
 
 std::vector<std::string> run_late_states(const ExperimentContext& context) {
   if (!context.scenario.states || world_of(context.scenario).paths.empty())
-    throw base::InputError(context.scenario.file, 0, "'late-states' needs [states], and a path( ... ) in its world");
+    throw base::InputError(context.scenario.file, 0, "'late-states' requires [states] and a path( ... ) in its world");
   std::vector<Row> rows = all_rows();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (context.progress)

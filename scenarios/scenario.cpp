@@ -28,7 +28,7 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
   if (!std::filesystem::is_regular_file(scenario.world) && !scenario.file.empty())
     throw base::InputError(
         scenario.file, scenario.world_line,
-        fmt::format("there is no world '{}'; expected a file, named from this one's folder", scenario.world));
+        fmt::format("there is no world '{}'; expected a file, relative to this file's folder", scenario.world));
   world::World world = world::load_world(scenario.world, load);
   if (scenario.fleet.robots > 0) spawn_fleet(scenario, world);
   if (scenario.tick > 0.0) world.interval = scenario.tick;

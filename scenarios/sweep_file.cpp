@@ -227,7 +227,7 @@ std::string scenario_file_of(const TomlReader& reader, const TomlNode& root) {
       std::filesystem::exists(beside) ? beside.lexically_normal().string() : base::installed_file(file);
   if (!std::filesystem::is_regular_file(found))
     reader.fail(*world::find(root, "scenario"),
-                fmt::format("there is no scenario '{}'; expected a file, named from this one's folder", file));
+                fmt::format("there is no scenario '{}'; expected a file, relative to this file's folder", file));
   return found;
 }
 

@@ -102,7 +102,7 @@ void one_point(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -0.01}, {0.5, 0.01}}, 0.1});
   const LaneEdgeReading one = read(fixture, world, {}, {{"samples", {3}}, {"fov", {60}}});
-  checks.same(one.distance, kNone, "one point is no edge");
+  checks.same(one.distance, kNone, "one point is not an edge");
   checks.same(one.points, 1.0, "it is counted");
   checks.near(read(fixture, world, {}, {{"samples", {1}}, {"fov", {0}}}).distance, 0.45L, 6e-14,
               "a single ray's range is its reading");
@@ -116,7 +116,7 @@ void equal_points(Fixture& fixture, Checks& checks) {
   world.lane_markings.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
   for (const double samples : {3.0, 61.0}) {
     const LaneEdgeReading said = read(fixture, world, {}, {{"samples", {samples}}, {"fov", {1e-6}}});
-    checks.same(said.distance, kNone, "points closer than 1e-7 of their distance are no edge");
+    checks.same(said.distance, kNone, "points closer than 1e-7 of their distance are not an edge");
     checks.same(said.points, samples, "they are counted");
   }
   checks.near(read(fixture, world, {}, {{"samples", {3}}, {"fov", {1.0}}}).distance, 0.45L, 1e-13,
@@ -134,7 +134,7 @@ void collinear_with_the_sensor(Fixture& fixture, Checks& checks) {
   const LaneEdgeReading along = read(fixture, world, {}, fan);
   checks.same(along.distance, kNone, "a line along the perpendicular is met nowhere");
   checks.same(along.points, 3.0, "its points are counted");
-  checks.near(read(fixture, world, {}, across).distance, 0, 1e-15, "across it, the line goes through the sensor");
+  checks.near(read(fixture, world, {}, across).distance, 0, 1e-15, "across it, the line passes through the sensor");
 }
 
 void out_of_sight(Fixture& fixture, Checks& checks) {
@@ -152,8 +152,8 @@ constexpr Case kLaneEdgeCases[] = {
     {"edges", "through-the-sensor", "m", "an edge through the sensor: 0, within the touch of 1 nm", through_the_sensor},
     {"edges", "edge-ranges", "of range",
      "range_max 1 um to 10 km: half of it, rounding of 64 bits; rejected by name beyond both ends", ranges},
-    {"edges", "one-point", "m", "one point, or none, is no edge; a single ray is its own reading", one_point},
-    {"edges", "equal-points", "m", "points that coincide within 1e-7 are no edge", equal_points},
+    {"edges", "one-point", "m", "one point, or none, is not an edge; a single ray is its own reading", one_point},
+    {"edges", "equal-points", "m", "points that coincide within 1e-7 are not an edge", equal_points},
     {"edges", "collinear-points", "m",
      "points in one line with the sensor: no edge along the perpendicular, 0 across it", collinear_with_the_sensor},
     {"edges", "out-of-sight", "m", "edges along the perpendicular, behind, and at the end of the range: none",

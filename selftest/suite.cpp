@@ -22,7 +22,7 @@ std::span<const Case> cases() {
 
 const Case& failing_case() {
   static constexpr Case kFailure{"", "failure", "", "fails on purpose",
-                                 [](Fixture&, Checks& checks) { checks.holds(false, "asked to fail"); }};
+                                 [](Fixture&, Checks& checks) { checks.holds(false, "fails on purpose"); }};
   return kFailure;
 }
 

@@ -34,7 +34,7 @@ const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
   for (const std::string_view key : kKindKeys) {
     const TomlNode* node = world::find(table, key);
     if (node == nullptr) continue;
-    if (found != nullptr) reader.fail(*node, fmt::format("a peer has '{}' or '{}', not both", found->key, key));
+    if (found != nullptr) reader.fail(*node, fmt::format("a peer can have '{}' or '{}', not both", found->key, key));
     found = node;
   }
   if (found == nullptr) reader.fail(table, "a peer requires robot = ID, tag = ID, light = ID, or start = true");

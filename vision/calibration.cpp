@@ -25,7 +25,7 @@ struct Extent {
     if (width == 0) width = image.width, height = image.height;
     if (image.width != width || image.height != height)
       throw base::InputError(from, 0,
-                             fmt::format("image {} is {} x {}, and the first is {} x {}; expected images of one camera",
+                             fmt::format("image {} is {} x {}, but the first is {} x {}; expected images of one camera",
                                          images, image.width, image.height, width, height));
     if (static_cast<std::int64_t>(images) * width * height > kMaxCalibrationPixels)
       throw base::InputError(from, 0,

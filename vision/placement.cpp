@@ -87,7 +87,7 @@ std::map<std::uint32_t, Seen> look(const Testbed& testbed, const Camera& camera,
     if (image.pixels.empty()) continue;
     if (image.width != camera.intrinsics.width || image.height != camera.intrinsics.height)
       throw base::InputError(from, 0,
-                             fmt::format("image {} is {} x {}, and camera '{}' has size = [{}, {}]; expected the size "
+                             fmt::format("image {} is {} x {}, but camera '{}' has size = [{}, {}]; expected the size "
                                          "with which it was calibrated",
                                          i + 1, image.width, image.height, camera.name, camera.intrinsics.width,
                                          camera.intrinsics.height));

@@ -41,8 +41,8 @@ std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
     if (image.width != camera.intrinsics.width || image.height != camera.intrinsics.height)
       throw base::InputError(
           s.testbed.file, 0,
-          fmt::format("camera '{}' has size = [{}, {}], and its source gives images of {} x {}; "
-                      "expected the size with which it was calibrated",
+          fmt::format("camera '{}' has size = [{}, {}], but its source provides images of {} x {}; expected the size "
+                      "with which it was calibrated",
                       camera.name, camera.intrinsics.width, camera.intrinsics.height, image.width, image.height));
   }
   std::vector<std::uint8_t> frozen(frames.size(), 0);  // std::vector<bool> is not safe to share between threads

@@ -73,8 +73,8 @@ void warn_of_many_times(const sensors::SensorSet& sensor_set) {
   for (const auto& [rate, phase] : times) a_second += rate;
   if (a_second > kManyTimes)
     print_message(
-        "sensors are due at up to {:.0f} different times per second, each in a batch of its own, which is slow; lower "
-        "their rates, or give them the same rate and phase",
+        "sensors are due at up to {:.0f} different times per second, each in its own batch, which is slow; lower their "
+        "rates, or give them the same rate and phase",
         a_second);
 }
 

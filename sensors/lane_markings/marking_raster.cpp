@@ -85,12 +85,11 @@ MarkingRaster::MarkingRaster(const std::vector<world::LaneMarking>& lane_marking
   const double down = (box.max.y - box.min.y + 2.0 * margin) / block + 3.0;
   const double bytes = 4.0 * across * down + 16.0 * length_of_all / block;
   if (!lane_markings.empty() && !(bytes <= static_cast<double>(most_bytes)))
-    throw base::InputError(
-        file, 0,
-        fmt::format("road_resolution {:g} m needs {:.0f} MiB for the pixels of this road; expected at "
-                    "most {}; use a coarser one, from {:.2g} m, or 0 for exact paint",
-                    cell, bytes / (1 << 20), most_bytes >> 20,
-                    cell * std::sqrt(bytes / static_cast<double>(most_bytes)) * 1.05));
+    throw base::InputError(file, 0,
+                           fmt::format("road_resolution {:g} m requires {:.0f} MiB for the pixels of this road; "
+                                       "expected at most {}; use a coarser one, from {:.2g} m, or 0 for exact paint",
+                                       cell, bytes / (1 << 20), most_bytes >> 20,
+                                       cell * std::sqrt(bytes / static_cast<double>(most_bytes)) * 1.05));
   if (lane_markings.empty()) {
     directory_.assign(1, std::numeric_limits<std::uint32_t>::max() >> 1);
     return;

@@ -186,7 +186,7 @@ TEST(Calibration, ReportsMissingInput) {
             std::string::npos);
   EXPECT_NE(error_of(ImagesInMemory({})).find("found in 0 of 0 images"), std::string::npos);
   EXPECT_EQ(error_of(ImagesInMemory({grey_image(64, 48), grey_image(48, 64)})),
-            "album: image 2 is 48 x 64, and the first is 64 x 48; expected images of one camera");
+            "album: image 2 is 48 x 64, but the first is 64 x 48; expected images of one camera");
 }
 
 TEST(Calibration, LimitsItsWork) {

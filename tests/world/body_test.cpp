@@ -171,7 +171,7 @@ TEST_F(Bodies, FileThatStageFindsElsewhereIsAWarning) {
   EXPECT_EQ(world.walls.size(), 4u) << "the one beside the include";
   const std::string warnings = warnings_of(world);
   EXPECT_EQ(warnings.substr(0, 18), "2: the picture is ") << warnings;
-  EXPECT_NE(warnings.find("inc/full.pgm; Stage takes "), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("inc/full.pgm; Stage uses "), std::string::npos) << warnings;
   EXPECT_EQ(warnings_of(read("include \"inc/plan.inc\"\nplan( bitmap \"full.pgm\" )")), "") << "written in the world";
 }
 

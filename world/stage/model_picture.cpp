@@ -70,7 +70,7 @@ const TracedBitmap& bitmap_of(StageContext& context, BitmapCache& bitmaps, const
   const SourceLocation at = find(entity, "bitmap")->at;
   const std::string file = file_of(context, entity, "bitmap");
   const std::string other = file_in_stage(context.document, text(context, entity, "bitmap", ""), file);
-  if (!other.empty()) warn(context, at, fmt::format("the picture is {}; Stage takes {}", file, other));
+  if (!other.empty()) warn(context, at, fmt::format("the picture is {}; Stage uses {}", file, other));
   try {
     if (bitmaps.count(file) == 0) bitmaps.emplace(file, trace_plan(file));
   } catch (const base::InputError& error) {
