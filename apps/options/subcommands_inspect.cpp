@@ -181,7 +181,7 @@ void add_v2x(CLI::App& app, Call& call) {
       ->required();
   sub->add_option(
          "file", o.file,
-         "To decode: hexadecimal digits, one frame a line, or binary, one frame after another; to encode: JSON "
+         "To decode: hexadecimal digits, one frame per line, or binary, one frame after another; to encode: JSON "
          "as decode prints it (both: - is standard input); to export: a world file")
       ->required()
       ->check(not_empty("a file"))
