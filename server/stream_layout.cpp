@@ -74,7 +74,7 @@ StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& 
     throw base::InputError(std::string(error.what()) + " (base: " + bases + "; stride: --ports-per-robot)");
   }
   if (!chosen && layout.stride != kUsualStride)
-    layout.notes.push_back(fmt::format("{} ports per robot, the minimum for this world's sensors", layout.stride));
+    layout.notes.push_back(fmt::format("ports per robot: {}, the minimum for this world's sensors", layout.stride));
   return layout;
 }
 

@@ -43,7 +43,7 @@ std::uint32_t find_robot(const world::World& world, const sensors::SensorSet& se
   }
   if (options.robot.empty()) refuse_blind_world(world, options.type);
   throw base::InputError(world.file, 0,
-                         "has no robot '" + options.robot + "'; with sensors it has " + list_names(names));
+                         "has no robot '" + options.robot + "'; robots with sensors: " + list_names(names));
 }
 
 /// "laser 0 to 2, magnetometer 0".

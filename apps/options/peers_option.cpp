@@ -24,7 +24,7 @@ std::vector<netio::Peer> peers_of(const PeersOption& options, const world::World
 std::string why_unsigned(const PeersOption& options, std::span<const netio::Peer> peers,
                          const std::vector<NamedPeer>& senders) {
   if (std::none_of(peers.begin(), peers.end(), [](const netio::Peer& peer) { return peer.key.has_value(); }))
-    return "packets are not signed (--peers has keys)";
+    return "packets are not signed (sign them with --peers)";
   std::vector<std::string> without;
   for (const NamedPeer& sender : senders) {
     const netio::Peer* const peer = sender.claim ? netio::find(peers, sender.claim->kind, sender.claim->id) : nullptr;

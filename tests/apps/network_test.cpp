@@ -413,7 +413,7 @@ TEST(Serve, AddressesBeyondThisMachineCauseAWarning) {
   EXPECT_EQ(run_program(listen).err.find("warning"), std::string::npos);
   const Outcome served = run_program({"serve", world, "--port", "0", "--duration", "0.1", "--bind", "0.0.0.0"});
   EXPECT_NE(served.err.find("anyone there can report robot states"), std::string::npos) << served.err;
-  EXPECT_NE(served.err.find("since packets are not signed (--peers has keys)"), std::string::npos) << served.err;
+  EXPECT_NE(served.err.find("since packets are not signed (sign them with --peers)"), std::string::npos) << served.err;
 }
 
 /// A table with only some keys: the command names the senders that may be unsigned. With all keys, there is no warning.

@@ -126,7 +126,7 @@ TEST_F(Kinds, AMissingSensorIsRejectedWithTheAvailableOnes) {
            {{world, "--robot", "blind"}, "blind has no sensor"},
            {{lasers, "--type", "magnetometer"}, "no robot has such a sensor; give one a magnetometer( )"},
            {{lasers, "--type", "magnetometer", "--robot", "a"}, "a has no magnetometer 0; it has laser 0 to 1"},
-           {{lasers, "--type", "magnetometer", "--robot", "b"}, "no robot 'b'; with sensors it has none"},
+           {{lasers, "--type", "magnetometer", "--robot", "b"}, "no robot 'b'; robots with sensors: none"},
            {{none}, "no robot has such a sensor; give one a laser( )"},
        }) {
     Words words{"sense"};

@@ -323,7 +323,7 @@ TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
            {{"sense", world, "--sensor", "65535"}, "roomba1 has no sensor 65535"},          // the largest valid index
            {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},      // exists, but has no sensors
            {{"sense", world, "--type", "lidar"}, "--type: expected laser"},  // another program's word
-           {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
+           {{"sense", world, "--robot", "bob"}, "no robot 'bob'; robots with sensors: roomba1, roomba2"},
            {{"serve", world, "--rate", "0"}, "from 0.1 to 10000"},  // would never tick
            {{"serve", world, "--port", "65536"}, "from 0 to 65535"},
            {{"serve", world, "--radio", "-1"}, "from 0 to 1e+09"},   // a distance
