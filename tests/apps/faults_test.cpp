@@ -31,7 +31,7 @@ const char* const kOverhead =
     "focal = [400, 400]\nposition = [0, 0, 2.2]\n[[tag]]\nid = 1\n";
 
 constexpr const char* kStands = "stops until one arrives";
-constexpr const char* kGoesOn = "drives on";
+constexpr const char* kGoesOn = "continues";
 
 /// A farm on a port that it keeps across restarts, and the files that it needs.
 struct Hall {

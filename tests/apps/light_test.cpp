@@ -82,7 +82,7 @@ TEST(Light, RunsAPlanWithAFarm) {
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
   EXPECT_EQ(light.code, 0) << light.err;
   EXPECT_NE(light.err.find("7 lights of 2 intersections to 127.0.0.1:" + port + " (V2I) at 20 Hz"), std::string::npos);
-  EXPECT_EQ(light.err.find("nothing came"), std::string::npos) << light.err;
+  EXPECT_EQ(light.err.find("no packets from"), std::string::npos) << light.err;
   robot.signal(SIGINT);
   const Json told(robot.wait().out);
   EXPECT_GE(told.number("/lights/packets"), 4.0);

@@ -260,12 +260,12 @@ TEST(Vps, ARobotDrivesByItsPackets) {
                  "--controller", "patrol",
                  "--set",        "points=[0 0 0.3 0]",
                  "--json"});
-  ASSERT_TRUE(robot.says("cameras see roomba1")) << robot.err();
+  ASSERT_TRUE(robot.says("cameras detect roomba1")) << robot.err();
   vps.signal(SIGSTOP);
   EXPECT_TRUE(robot.says("no camera detects roomba1 any more")) << robot.err();
-  const std::size_t seen = times_said(robot, "cameras see roomba1");
+  const std::size_t seen = times_said(robot, "cameras detect roomba1");
   vps.signal(SIGCONT);
-  EXPECT_TRUE(says_often(robot, "cameras see roomba1", seen + 1)) << robot.err();
+  EXPECT_TRUE(says_often(robot, "cameras detect roomba1", seen + 1)) << robot.err();
   for (Program* each : {&robot, &vps, &serve}) each->signal(SIGINT);
   const Json drove(robot.wait().out), looked(vps.wait().out), served(serve.wait().out);
   EXPECT_GE(drove.number("/stops"), 1);

@@ -146,7 +146,7 @@ TEST(MagnetometerSettings, RejectsInvalidSettingsWithFileAndLine) {
        [](auto& s) {
          put(s, "spose[3]", {0, 2e6, 0});
        },
-       "farther than"},
+       "more than"},
       {"sensitivity the wrong way round",
        [](auto& s) {
          put(s, "ssensitivity", {1, -1});

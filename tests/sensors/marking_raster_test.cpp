@@ -102,7 +102,7 @@ TEST(MarkingRaster, RejectsTooManyPixels) {
     const MarkingRaster raster({marking({0, 0}, {5000, 5000}, 0.1)}, 0.001, 1.0, "hand.world");
     ADD_FAILURE();
   } catch (const base::InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("hand.world: road_resolution 0.001 m needs"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("hand.world: road_resolution 0.001 m requires"), std::string::npos) << e.what();
   }
 }
 

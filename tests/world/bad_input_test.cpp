@@ -23,7 +23,7 @@ const std::vector<Bad>& corpus() {
       {"string without end", "name \"x\nmodel()", 1, "closing quote"},
       {"string without end at the end of the file", "\n\nname \"x", 3, "closing quote"},
       {"parenthesis without end", "model(\n pose [0 0 0 0]\n", 1, "never closed"},
-      {"parenthesis that closes nothing", "model()\n)", 2, "closes nothing"},
+      {"parenthesis that closes nothing", "model()\n)", 2, "no matching '('"},
       {"tuple without end", "model(\n size [1 2", 2, "never closed"},
       {"tuple that holds a parenthesis", "model(\n size [1 2 )", 2, "tuple of 'size'"},
       {"tuple with a wrong line", "model(\n size [1 2\n ) ]", 3, "tuple of 'size'"},
@@ -202,7 +202,7 @@ TEST_F(Files, InvalidPictureIsNamed) {
 
 TEST_F(Files, BrokenPictureIsNamed) {
   write("x.png", "\x89PNG\r\n\x1a\n and then nothing");
-  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("broken PNG"), std::string::npos);
+  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("corrupt PNG"), std::string::npos);
   write("y.pgm", "P5 3 3 255\nabc");
   EXPECT_NE(error(write("b.world", "model( bitmap \"y.pgm\" )")).find("fewer pixels"), std::string::npos);
   write("z.pgm", "P2 20000 1 255\n0");

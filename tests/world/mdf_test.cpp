@@ -99,7 +99,7 @@ TEST(Mdf, WrongFilesAreRejected) {
       {"1 0 15", "1 -5 15", "go.mdf:13: speeds from -5 to 15"},
       {"1 0 15", "1 0 fast", "go.mdf:13: the highest speed is 'fast'"},
       {"3 5 25", "1 5 25", "go.mdf:14: 1 already has a speed limit in line 13"},
-      {"checkpoints\n", "5\ncheckpoints\n", "go.mdf:5: '5' stands alone"},
+      {"checkpoints\n", "5\ncheckpoints\n", "go.mdf:5: '5' is outside any list"},
       {"end_checkpoints", "end_speed_limits", "go.mdf:10: 'end_speed_limits' has no matching start"},
       {"checkpoints\n", "num_segments 3\n", "go.mdf:5: 'num_segments' belongs in an RNDF; expected an MDF"},
       {"checkpoints\n", "/* checkpoints\n", "go.mdf:5: this comment is never closed"},

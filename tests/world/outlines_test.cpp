@@ -296,7 +296,7 @@ TEST(Outlines, RequireAStaticModelWithoutAnotherBody) {
             "test.world:1: 'outlines' are for static models; give robots and tags a 'block'");
   for (const char* other : {"block( points 2 point[0] [0 0] point[1] [1 1] )", "boundary 1", "cliff_return 1"})
     expect_in("'outlines' are the whole body of a model", error_of("model( " + outlines + " " + other + " )"));
-  expect_in("test.world:1: cannot find the outlines \"none.csv\"; expected them; searched the folders of this file",
+  expect_in("test.world:1: cannot find the outlines \"none.csv\"; searched the folders of this file",
             error_of("model( outlines \"none.csv\" )"));
   expect_in("1: 'model' has outlines but no 'size': walls without a height of their own are 0.1 m high",
             warnings_of(read_world("model( " + outlines + " )")));

@@ -145,7 +145,7 @@ TEST_F(RosMap, ImpossiblePosesAreNamed) {
   EXPECT_EQ(where(0, 0), "within a wall");
   EXPECT_EQ(where(2.35, 1), "partly in a wall of 'map'");
   EXPECT_EQ(where(-6, 1), "in the unknown area of the map");
-  EXPECT_EQ(where(-10.1, 1), "outside of 'map'");
+  EXPECT_EQ(where(-10.1, 1), "outside 'map'");
 }
 
 TEST_F(RosMap, KnownAreaTurnsWithTheMap) {
@@ -259,7 +259,7 @@ TEST_F(RosMap, AlphaIsAveragedInTrinaryMode) {
   EXPECT_NEAR(area(world), 3 * 0.25, 1e-12) << "transparent black, black, and grey 10";
   ASSERT_EQ(world.warnings.size(), 1u);
   EXPECT_EQ(world.warnings[0].line, 1);
-  EXPECT_NE(world.warnings[0].message.find("alpha decides 3 cells"), std::string::npos) << world.warnings[0].message;
+  EXPECT_NE(world.warnings[0].message.find("alpha affects 3 cells"), std::string::npos) << world.warnings[0].message;
 
   const World old = load(yaml + "transparent: unknown\n");
   EXPECT_NEAR(area(old), 2 * 0.25, 1e-12) << "black and grey 89";

@@ -60,7 +60,7 @@ constexpr Limit kLimits[] = {
     {kMagnets, "magnet_spacing 2.5", "", "magnets require both"},
     {kMagnets, "magnet_spacing 1 magnet_size [0.1 0]", "magnet_spacing 1 magnet_size [0.1 -1]", "[width length]"},
     {kMagnets, "magnet_spacing 1 magnet_size [0.1 1]", "magnet_spacing 1 magnet_size [0 1]", "[width length]"},
-    {"position( laser( samples {} ) )", "10000000", "10000001", "this makes 10000001 samples of sensors"},
+    {"position( laser( samples {} ) )", "10000000", "10000001", "the world now has 10000001 samples of sensors"},
     {"position( velocity_bounds [0 {}] )", "0.0001", "0", "expected more than 0"},
     {"position( wheelbase {} )", "0.0001", "0", "'wheelbase' is 0 m; expected more than 0"},
 };

@@ -94,9 +94,9 @@ std::string file_of(const StageContext& context, const Entity& entity, std::stri
   const std::string file = find_file(context.document, at, name);
   if (file.empty()) {
     fail(context, at,
-         fmt::format("cannot find the {} \"{}\"; expected {}; searched the folders of this file and of the world file, "
-                     "$STAGEPATH and the installed worlds",
-                     key, name, key.ends_with('s') ? "them" : "it"));
+         fmt::format("cannot find the {} \"{}\"; searched the folders of this file and of the world file, $STAGEPATH "
+                     "and the installed worlds",
+                     key, name));
   }
   return file;
 }
