@@ -294,7 +294,7 @@ void read_geometry(std::string_view text, double arc_error, WellKnownGeometry& g
   if (binary.size() >= kMinDigits && binary.size() % 2 == 1 &&
       binary.find_first_not_of(kDigits) == std::string_view::npos)
     throw base::InputError(
-        fmt::format("expected an even number of hexadecimal digits, found {}; is the field cut short?", binary.size()));
+        fmt::format("expected an even number of hexadecimal digits, found {}; is the field truncated?", binary.size()));
   TextReader in(text);
   geometry.clear();
   geometry.srid = in.srid();

@@ -243,7 +243,7 @@ TEST(Pictures, GifIsRead) {
   std::ofstream(file, std::ios::binary) << bytes;
   EXPECT_EQ(read(bytes, file).channel(0), (Values{0, 255, 255, 0, 0, 0}));
   std::filesystem::remove(file);
-  EXPECT_NE(error_of_picture(bytes.substr(0, bytes.size() - 1)).find("cut short"), std::string::npos);
+  EXPECT_NE(error_of_picture(bytes.substr(0, bytes.size() - 1)).find("truncated"), std::string::npos);
 }
 
 TEST(Pictures, OtherFormatsAreNamed) {
