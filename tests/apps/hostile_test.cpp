@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <limits>
 #include <random>
 
 #include "netio/outbox.h"

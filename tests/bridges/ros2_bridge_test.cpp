@@ -10,7 +10,6 @@
 #include <array>
 #include <condition_variable>
 #include <cstdlib>
-#include <map>
 #include <random>
 #include <set>
 

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "base/hash.h"
 #include "raycast/casters.h"
 #include "robots/kinematics.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <set>
 
 #include "raycast/casters.h"
 #include "sensors/laser.h"

@@ -1,8 +1,6 @@
 #pragma once
 // One valid packet of each type: the worked examples of docs/packets.md.
 
-#include <cmath>
-#include <string>
 #include <vector>
 
 #include "base/bytes.h"

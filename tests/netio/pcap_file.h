@@ -2,7 +2,6 @@
 // Capture files in the classic pcap format, written byte by byte.
 
 #include <string>
-#include <vector>
 
 #include "base/bytes.h"
 

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "record/recorder.h"
 #include "record/recording.h"
 #include "tests/record/sample.h"

@@ -10,8 +10,6 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "base/time.h"
 #include "control/lane_corridors.h"

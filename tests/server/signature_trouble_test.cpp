@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "base/elapsed.h"
 #include "netio/outbox.h"
 #include "netio/signature.h"
