@@ -62,8 +62,7 @@ TEST(Dump, SignalMessagesArePrintedAsText) {
     text += run_program({"dump", folder.write("lights.pcap", signal_capture(hex[i]))}).out;
   EXPECT_NE(text.find(": MAP of intersection 1: "), std::string::npos) << text;
   EXPECT_NE(text.find(": SPaT of intersection 1: group 1 "), std::string::npos) << text;
-  const Outcome json = run_program({"dump", "--json", folder.write("lights.pcap", signal_capture(hex[0]))});
-  EXPECT_EQ(json.code, 0);
+  const Outcome json = run_successfully({"dump", "--json", folder.write("lights.pcap", signal_capture(hex[0]))});
   EXPECT_EQ(Json(json.out).text("/name"), "MAP");
   // Bytes after a frame are not part of it, and the datagram is not a farm packet either.
   EXPECT_EQ(run_program({"dump", folder.write("lights.pcap", signal_capture(hex[0], 1))}).code, 1);
@@ -89,8 +88,7 @@ TEST(Dump, ACaptureIsPrintedAsText) {
         vector_of("start"), vector_of("neighbours"), base::Bytes{'S', 'F', 'P', 'K'}, base::Bytes(70, 7)})
     file.add(test::ipv4(test::udp(9000, 10'056, packet)), 1'700'000'000, 1000 * ++time);
   file.add(test::ipv4(test::udp(1, 2, {}), 0, 6));
-  const Outcome outcome = run_program({"dump", folder.write("a.pcap", file.text())});
-  EXPECT_EQ(outcome.code, 0);
+  const Outcome outcome = run_successfully({"dump", folder.write("a.pcap", file.text())});
   const std::string way = " 10.0.0.1:9000 > 10.0.0.2:10056: ";
   const std::vector<std::string> expected{
       "1700000000.000001" + way +
@@ -124,8 +122,7 @@ TEST(Dump, ACaptureIsPrintedAsText) {
 
 TEST(Dump, JsonHasOneObjectPerDatagram) {
   const Folder folder;
-  const Outcome outcome = run_program({"dump", folder.write("a.pcap", all_vectors()), "--json"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"dump", folder.write("a.pcap", all_vectors()), "--json"});
   const std::vector<std::string> found = lines_of(outcome.out);
   std::size_t i = 0;
   for (const std::string& path : test::vector_files()) {
@@ -192,9 +189,7 @@ TEST(Dump, WrongFilesAndArgumentsAreRejected) {
                                                {"dump", "a.pcap", "--port", "9000"},
                                                {"dump", "a.pcap", "--bind", "0.0.0.0"},
                                                {"dump", "--port", "0"}}) {
-    const Outcome outcome = run_program(words);
-    EXPECT_EQ(outcome.code, 2) << testing::PrintToString(words);
-    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    expect_refused(words);
   }
 }
 

@@ -121,9 +121,8 @@ TEST(ExperimentReport, SweepsMatchTheColumnsOfTheirFile) {
   if (instrumented()) GTEST_SKIP() << "140 runs: 8 s without instruments";
   const Folder folder;
   folder.write("sweeps.toml", short_path("2", "lane-keeping"));
-  const Outcome outcome = run_program(
+  run_successfully(
       {"experiment", "sweeps", "--trials", "1", "--seed", "3", "-o", folder.path("out"), "--files", folder.path()});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/sweeps.csv")));
   ASSERT_EQ(records.size(), 4u * (2 * 7 + 2 * 6 + 5 + 4)) << "four laws";
   const auto rows = table_rows(read_file(folder.path("out/report.md")));
@@ -234,9 +233,8 @@ TEST(ExperimentReport, LateStatesMatchTheirRows) {
   const std::string file =
       folder.write("late-states.toml",
                    short_path("4", "lane-keeping", "[states]\nrate = 10\ndelay = 0.08\nposition_sigma = 0.01\n"));
-  const Outcome outcome = run_program({"experiment", "late-states", "--trials", "1", "--seed", "3", "-o",
-                                       folder.path("out"), "--files", folder.path()});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"experiment", "late-states", "--trials", "1", "--seed", "3", "-o", folder.path("out"), "--files",
+                    folder.path()});
   const std::map<std::string, std::pair<std::optional<netio::LinkModel>, bool>> kinds{
       {"true", {}},
       {"newest", {netio::LinkModel{.delay = 0.08}, false}},

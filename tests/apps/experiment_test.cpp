@@ -20,34 +20,19 @@ std::string scenario(const std::string& more) {
   return "world = \"" + our_world("rooms.world") + "\"\nduration = 1\nrobots = 2\n" + more;
 }
 
-TEST(Experiment, ListsAll) {
-  const Outcome outcome = run_program({"experiment", "--list"});
-  EXPECT_EQ(outcome.code, 0);
-  for (const char* name :
-       {"lane-edge-p ", "lane-edge-pi", "magnet-p ", "magnet-pi", "mapping", "simville", "minimagic"})
-    EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
-}
-
 TEST(Experiment, WrongUsageIsRejected) {
-  const Outcome unknown = run_program({"experiment", "lane-edge", "-o", "x"});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_NE(unknown.err.find("lane-edge-pi"), std::string::npos);
+  expect_refused({"experiment", "lane-edge", "-o", "x"}, "lane-edge-pi");
   const Outcome nowhere = run_program({"experiment", "mapping"});
   EXPECT_EQ(nowhere.code, 2);
   EXPECT_NE(nowhere.err.find("--out"), std::string::npos) << nowhere.err;
-  const Outcome nothing = run_program({"experiment"});
-  EXPECT_EQ(nothing.code, 2);
-  EXPECT_EQ(count_lines(nothing.err), 1u) << nothing.err;
-  const Outcome folder = run_program({"experiment", "mapping", "-o", "x", "--files", "/nowhere"});
-  EXPECT_EQ(folder.code, 2);
-  EXPECT_NE(folder.err.find("/nowhere/mapping.toml"), std::string::npos) << folder.err;
+  expect_refused({"experiment"});
+  expect_refused({"experiment", "mapping", "-o", "x", "--files", "/nowhere"}, "/nowhere/mapping.toml");
 }
 
 TEST(Experiment, WritesItsFolder) {
   const Folder folder;
-  const Outcome outcome = run_program({"experiment", "lane-edge-p", "--trials", "1", "-o", folder.path("out"),
-                                       "--files", SF_SOURCE_DIR "/experiments"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"experiment", "lane-edge-p", "--trials", "1", "-o", folder.path("out"), "--files",
+                    SF_SOURCE_DIR "/experiments"});
   const std::string csv = read_file(folder.path("out/statistics.csv"));
   EXPECT_EQ(csv.rfind("trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max\n1,", 0), 0u) << csv;
   ASSERT_EQ(count_lines(csv), 2u);
@@ -133,8 +118,7 @@ TEST(Experiment, AStopLeavesNoPartialTrial) {
   EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path("out/report.md")));
   for (const auto& trial : std::filesystem::directory_iterator(folder.path("out"))) {
-    const Outcome verified = run_program({"verify", trial.path().string(), "--sample", "1"});
-    EXPECT_EQ(verified.code, 0) << trial.path() << verified.out << verified.err;
+    run_successfully({"verify", trial.path().string(), "--sample", "1"});
   }
 }
 
@@ -142,8 +126,7 @@ TEST(TestCommand, ReportsPassesAndFailuresWithReasons) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
   const std::string bad = folder.write("bad.toml", scenario("[expect]\ncontacts = 1000\ndone = true\n"));
-  const Outcome pass = run_program({"test", good});
-  EXPECT_EQ(pass.code, 0) << pass.err;
+  const Outcome pass = run_successfully({"test", good});
   EXPECT_NE(pass.out.find("pass"), std::string::npos);
   EXPECT_EQ(pass.out.find("FAIL"), std::string::npos) << pass.out;
   const Outcome fail = run_program({"test", good, bad, good, "--junit", folder.path("out.xml")});
@@ -157,11 +140,7 @@ TEST(TestCommand, BadFilesAreRejectedBeforeAnyRun) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario(""));
   const std::string bad = folder.write("bad.toml", scenario("duraton = 3\n"));
-  const Outcome outcome = run_program({"test", good, bad});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
-  EXPECT_NE(outcome.err.find("bad.toml:4: unknown key 'duraton'; did you mean 'duration'?"), std::string::npos)
-      << outcome.err;
+  expect_refused({"test", good, bad}, "bad.toml:4: unknown key 'duraton'; did you mean 'duration'?");
   EXPECT_EQ(run_program({"test", folder.path("none.toml")}).code, 2);
 }
 
@@ -169,19 +148,13 @@ TEST(TestCommand, ControllersAreCheckedBeforeAnyRun) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
   const std::string bad = folder.write("bad.toml", scenario("[default]\ncontroller = \"lane-keeping\"\n"));
-  const Outcome outcome = run_program({"test", good, bad, "--junit", folder.path("out.xml")});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
-  EXPECT_NE(outcome.err.find("bad.toml:5: controller 'lane-keeping'"), std::string::npos) << outcome.err;
+  expect_refused({"test", good, bad, "--junit", folder.path("out.xml")}, "bad.toml:5: controller 'lane-keeping'");
 }
 
 TEST(TestCommand, AnUnwritableFolderIsReportedBeforeAnyRun) {
   const Folder folder;
   const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
-  const Outcome outcome = run_program({"test", good, "--junit", folder.path("none/out.xml")});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
-  EXPECT_NE(outcome.err.find("none/out.xml: cannot be written"), std::string::npos) << outcome.err;
+  expect_refused({"test", good, "--junit", folder.path("none/out.xml")}, "none/out.xml: cannot be written");
 }
 
 TEST(TestCommand, NoExpectationsIsASeparateResult) {
@@ -195,22 +168,12 @@ TEST(TestCommand, NoExpectationsIsASeparateResult) {
 }
 
 TEST(RunController, ReceivesSettings) {
-  const std::string world = our_world("testpath/testpath.world");
-  const Words words{"run", world, "--duration", "1", "--controller", "lane-keeping"};
-  const auto with = [&](const std::string& set) {
-    Words all = words;
-    all.insert(all.end(), {"--set", set});
-    return run_program(all);
-  };
-  EXPECT_EQ(with("kp=0.7").code, 0);
-  const Outcome text = with("kp=much");
-  EXPECT_EQ(text.code, 2);
-  EXPECT_NE(text.err.find("--set kp: 'kp'"), std::string::npos) << text.err;
-  const Outcome unknown = with("kq=1");
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_NE(unknown.err.find("kq"), std::string::npos) << unknown.err;
-  EXPECT_EQ(with("kp").code, 2);
-  EXPECT_EQ(run_program({"run", world, "--controller", "nobody"}).code, 2);
+  const Words words{"run", our_world("testpath/testpath.world"), "--duration", "1", "--controller", "lane-keeping"};
+  run_successfully(with(words, {"--set", "kp=0.7"}));
+  expect_refused(with(words, {"--set", "kp=much"}), "--set kp: 'kp'");
+  expect_refused(with(words, {"--set", "kq=1"}), "kq");
+  expect_refused(with(words, {"--set", "kp"}));
+  expect_refused({"run", words[1], "--controller", "unknown"});
 }
 
 }  // namespace

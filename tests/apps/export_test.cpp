@@ -14,7 +14,6 @@
 #include "record/reading_messages.h"
 #include "record/recording.h"
 #include "tests/apps/program.h"
-#include "tests/apps/refused.h"
 #include "tests/instrumented.h"
 #include "tests/refusal.h"
 #include "tests/viz/png.h"
@@ -55,14 +54,11 @@ light( name "lamp" pose [0 3 0 0] phases 2 phase[0] ["green" 2] phase[1] ["red" 
 class Recorded : public testing::Test {
  protected:
   void SetUp() override {
-    const Outcome outcome = run_program({"run", folder_.write("w.world", kRecordedWorld), "--duration", "3", "--record",
-                                         folder_.path("r"), "--record-readings"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    run_successfully({"run", folder_.write("w.world", kRecordedWorld), "--duration", "3", "--record", folder_.path("r"),
+                      "--record-readings"});
   }
-  Words with(const std::string& command, const Words& more) const {
-    Words words{command, folder_.path("r")};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+  Words recorded(const std::string& command, const Words& more) const {
+    return with({command, folder_.path("r")}, more);
   }
   record::Recording recording() const { return record::open_recording(folder_.path("r")); }
 
@@ -70,8 +66,7 @@ class Recorded : public testing::Test {
 };
 
 TEST_F(Recorded, TrajectoriesAreExportedToTheBit) {
-  const Outcome outcome = run_program(with("export", {"-o", folder_.path("csv")}));
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully(recorded("export", {"-o", folder_.path("csv")}));
   const Rows rows = rows_of(folder_.path("csv/trajectories.csv"));
   const record::Recording expected = recording();
   ASSERT_EQ(rows.size(), 1 + expected.states[0].size() + expected.states[1].size());
@@ -89,7 +84,7 @@ TEST_F(Recorded, TrajectoriesAreExportedToTheBit) {
 }
 
 TEST_F(Recorded, ReadingsAreExportedToTheBit) {
-  ASSERT_EQ(run_program(with("export", {"-o", folder_.path("csv")})).code, 0);
+  ASSERT_EQ(run_program(recorded("export", {"-o", folder_.path("csv")})).code, 0);
   const record::Recording expected = recording();
   std::size_t checked = 0;
   for (const record::SensorTypeInfo& type : expected.info.sensor_types) {
@@ -114,7 +109,8 @@ TEST_F(Recorded, ReadingsAreExportedToTheBit) {
 
 TEST_F(Recorded, APartIsExported) {
   ASSERT_EQ(
-      run_program(with("export", {"-o", folder_.path("csv"), "--robots", "one", "--from", "1", "--to", "2"})).code, 0);
+      run_program(recorded("export", {"-o", folder_.path("csv"), "--robots", "one", "--from", "1", "--to", "2"})).code,
+      0);
   const Rows rows = rows_of(folder_.path("csv/trajectories.csv"));
   ASSERT_EQ(rows.size(), 1u + 11u) << "from tick to tick, both among them";
   EXPECT_EQ(rows[1][0], "1");
@@ -125,7 +121,7 @@ TEST_F(Recorded, APartIsExported) {
 }
 
 TEST_F(Recorded, LightsAreExported) {
-  ASSERT_EQ(run_program(with("export", {"-o", folder_.path("csv")})).code, 0);
+  ASSERT_EQ(run_program(recorded("export", {"-o", folder_.path("csv")})).code, 0);
   const Rows rows = rows_of(folder_.path("csv/lights.csv"));
   ASSERT_EQ(rows.size(), 31u);
   EXPECT_EQ(rows[1][1], "lamp");
@@ -139,8 +135,7 @@ TEST_F(Recorded, LightsAreExported) {
 }
 
 TEST_F(Recorded, EverySensorTypeAndTheLightsArePlotted) {
-  const Outcome outcome = run_program(with("plot", {"-o", folder_.path("p"), "--csv"}));
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully(recorded("plot", {"-o", folder_.path("p"), "--csv"}));
   for (const char* name : {"sonar", "encoder", "gps", "lights"})
     EXPECT_GT(count_lines(read_file(folder_.path(std::string("p/") + name + ".csv"))), 2u) << name;
   scenes::expect_painted(folder_.path("p/lights.png"), {{viz::theme::kLightGreen, 30}, {viz::theme::kLightRed, 30}});
@@ -156,51 +151,51 @@ TEST_F(Recorded, EverySensorTypeAndTheLightsArePlotted) {
 
 TEST_F(Recorded, PlotsAreSvgOrPdfOnDemand) {
   ASSERT_EQ(
-      run_program(with("plot", {"-o", folder_.path("p"), "--format", "svg", "--size", "85", "--robots", "one"})).code,
+      run_program(recorded("plot", {"-o", folder_.path("p"), "--format", "svg", "--size", "85", "--robots", "one"}))
+          .code,
       0);
   const std::string svg = read_file(folder_.path("p/trajectories.svg"));
   EXPECT_NE(svg.find(">one</text>"), std::string::npos);
   EXPECT_EQ(svg.find(">two</text>"), std::string::npos) << "not asked for";
   EXPECT_FALSE(std::filesystem::exists(folder_.path("p/trajectories.png")));
-  ASSERT_EQ(run_program(with("plot", {"-o", folder_.path("p"), "--format", "pdf", "--no-title"})).code, 0);
+  ASSERT_EQ(run_program(recorded("plot", {"-o", folder_.path("p"), "--format", "pdf", "--no-title"})).code, 0);
   for (const char* name : {"trajectories", "occupancy", "gps", "lights"})
     EXPECT_TRUE(read_file(folder_.path(std::string("p/") + name + ".pdf")).starts_with("%PDF-")) << name;
-  ASSERT_EQ(run_program(with("plot", {"-o", folder_.path("n"), "--format", "svg", "--no-title"})).code, 0);
+  ASSERT_EQ(run_program(recorded("plot", {"-o", folder_.path("n"), "--format", "svg", "--no-title"})).code, 0);
   EXPECT_EQ(read_file(folder_.path("n/trajectories.svg")).find(">Trajectories<"), std::string::npos);
 }
 
 TEST_F(Recorded, APlotStatesTheDurationOfItsPart) {
   for (const auto& [from, to, said] : {std::tuple{"0", "10", "2 robots, 2.9 s, "}, {"1", "2", "2 robots, 1 s, "}}) {
-    ASSERT_EQ(run_program(with("plot", {"-o", folder_.path("p"), "--format", "svg", "--from", from, "--to", to})).code,
-              0);
+    ASSERT_EQ(
+        run_program(recorded("plot", {"-o", folder_.path("p"), "--format", "svg", "--from", from, "--to", to})).code,
+        0);
     EXPECT_NE(read_file(folder_.path("p/trajectories.svg")).find(said), std::string::npos) << said;
   }
 }
 
 TEST_F(Recorded, WithoutALaserThereIsNoMap) {
-  const Outcome outcome = run_program(with("plot", {"-o", folder_.path("p"), "--robots", "two"}));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully(recorded("plot", {"-o", folder_.path("p"), "--robots", "two"}));
   expect_in("no occupancy.png: none of these robots has a laser", outcome.err);
   EXPECT_FALSE(std::filesystem::exists(folder_.path("p/occupancy.png")));
 }
 
 TEST_F(Recorded, MissingPartsAreRejected) {
   const std::string out = folder_.path("x");
-  expect_refused(with("plot", {"-o", out, "--robots", "one,three"}), "has no robot 'three'; it has one, two");
-  expect_refused(with("export", {"-o", out, "--from", "5"}), "has no tick from 5 s on; it covers 0 to 2.9 s");
-  expect_refused(with("export", {"-o", out, "--from", "2", "--to", "1"}),
+  expect_refused(recorded("plot", {"-o", out, "--robots", "one,three"}), "has no robot 'three'; it has one, two");
+  expect_refused(recorded("export", {"-o", out, "--from", "5"}), "has no tick from 5 s on; it covers 0 to 2.9 s");
+  expect_refused(recorded("export", {"-o", out, "--from", "2", "--to", "1"}),
                  "has no tick from 2 s to 1 s");  // reversed
-  expect_refused(with("export", {}), "--out");
-  expect_refused(with("export", {"-o", out, "--every", "0"}), "--every");
-  expect_refused(with("plot", {"-o", out, "--format", "eps"}), "expected png, svg or pdf");
+  expect_refused(recorded("export", {}), "--out");
+  expect_refused(recorded("export", {"-o", out, "--every", "0"}), "--every");
+  expect_refused(recorded("plot", {"-o", out, "--format", "eps"}), "expected png, svg or pdf");
   expect_refused({"export", folder_.path("none"), "-o", out}, "no such recording");
   EXPECT_FALSE(std::filesystem::exists(out));
-  expect_refused(with("export", {"-o", "/proc/none"}), "/proc/none");
+  expect_refused(recorded("export", {"-o", "/proc/none"}), "/proc/none");
 }
 
 TEST_F(Recorded, ParaViewGetsSeries) {
-  const Outcome outcome = run_program(with("export", {"--vtk", "-o", folder_.path("v"), "--every", "1"}));
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully(recorded("export", {"--vtk", "-o", folder_.path("v"), "--every", "1"}));
   for (const char* name : {"walls.vtp", "trajectories.vtp", "occupancy.vti"})
     EXPECT_TRUE(read_file(folder_.path(std::string("v/") + name)).starts_with("<?xml")) << name;
   EXPECT_FALSE(std::filesystem::exists(folder_.path("v/field.vti"))) << "no magnets";
@@ -211,8 +206,7 @@ TEST_F(Recorded, ParaViewGetsSeries) {
     EXPECT_TRUE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000002.vtp")));
     EXPECT_FALSE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000003.vtp")));
   }
-  const Outcome shorter = run_program(with("export", {"--vtk", "-o", folder_.path("v"), "--every", "2"}));
-  ASSERT_EQ(shorter.code, 0) << shorter.err;
+  const Outcome shorter = run_successfully(recorded("export", {"--vtk", "-o", folder_.path("v"), "--every", "2"}));
   expect_in("removed 3 files of an earlier call (robots_NNNNNN.vtp)", shorter.err);
   for (const std::string name : {"robots", "scans"}) {
     EXPECT_TRUE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000001.vtp")));
@@ -286,7 +280,7 @@ std::vector<glm::dvec2> vtk_middles(const std::string& file) {
 /// The known cells are within the 3 m range of the robot in the lower left quarter; the occupied ones belong to the
 /// wall below it.
 TEST_F(Recorded, ParaViewsMapBeginsAtTheLowerLeft) {
-  ASSERT_EQ(run_program(with("export", {"--vtk", "-o", folder_.path("v")})).code, 0);
+  ASSERT_EQ(run_program(recorded("export", {"--vtk", "-o", folder_.path("v")})).code, 0);
   const std::vector<double> cells = vtk_numbers(folder_.path("v/occupancy.vti"));
   const std::vector<glm::dvec2> middles = vtk_middles(folder_.path("v/occupancy.vti"));
   ASSERT_EQ(cells.size(), middles.size());
@@ -307,9 +301,8 @@ TEST_F(Recorded, ParaViewsMapBeginsAtTheLowerLeft) {
 
 TEST_F(Recorded, ParaViewGetsTheRequestedPart) {
   const std::string out = folder_.path("v"), ways = out + "/trajectories.vtp", map = out + "/occupancy.vti";
-  const Outcome outcome = run_program(
-      with("export", {"--vtk", "-o", out, "--robots", "one", "--from", "1", "--to", "2", "--every", "0.5"}));
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully(
+      recorded("export", {"--vtk", "-o", out, "--robots", "one", "--from", "1", "--to", "2", "--every", "0.5"}));
   EXPECT_EQ(vtk_head(ways, "<Piece", "NumberOfLines"), "1");
   EXPECT_EQ(vtk_head(ways, "<Piece", "NumberOfPoints"), "11") << "from tick to tick, both among them";
   EXPECT_EQ(vtk_head(ways, "\"time\"", "RangeMin"), "1");
@@ -337,7 +330,7 @@ TEST_F(Recorded, ParaViewGetsTheRequestedPart) {
   ASSERT_EQ(std::sscanf(vtk_head(map, "<ImageData", "WholeExtent").c_str(), "0 %d 0 %d", &columns, &rows), 2);
   EXPECT_NEAR(bottom + 0.03 * rows, 4.0, 1e-9);
   EXPECT_EQ(vtk_head(map, "\"state\"", "RangeMax"), "2") << "free cells";
-  EXPECT_EQ(run_program(with("export", {"--vtk", "-o", folder_.path("w"), "--robots", "two"})).code, 0);
+  EXPECT_EQ(run_program(recorded("export", {"--vtk", "-o", folder_.path("w"), "--robots", "two"})).code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_.path("w/scans.pvd"))) << "none of these has a laser";
 }
 
@@ -349,8 +342,8 @@ TEST(Export, TagsHaveNoTrajectoriesAndMagnetsHaveAField) {
       "position( name \"one\" size [0.3 0.3 0.1] )\nmodel( name \"tag1\" pose [1 0 0 0] size [0.3 0.3 0.5] )\n"
       "model( pose [0 1 -0.1 0] size [0.025 0.025 0.1] magnetic_moment 10000 magnetometer_return 1 )\n");
   ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", folder.path("r")}).code, 0);
-  const Outcome vtk = run_program({"export", folder.path("r"), "--vtk", "-o", folder.path("v"), "--height", "0.25"});
-  ASSERT_EQ(vtk.code, 0) << vtk.err;
+  const Outcome vtk =
+      run_successfully({"export", folder.path("r"), "--vtk", "-o", folder.path("v"), "--height", "0.25"});
   EXPECT_EQ(vtk_head(folder.path("v/trajectories.vtp"), "<Piece", "NumberOfLines"), "1");
   EXPECT_FALSE(std::filesystem::exists(folder.path("v/occupancy.vti")));
   const std::string origin = vtk_head(folder.path("v/field.vti"), "<ImageData", "Origin");
@@ -362,8 +355,7 @@ TEST(Export, TagsHaveNoTrajectoriesAndMagnetsHaveAField) {
   EXPECT_LT(length(middles[static_cast<std::size_t>(most)] - glm::dvec2{0.0, 1.0}), 0.02) << "above the magnet";
   EXPECT_EQ(vtk.err.find("no readings"), std::string::npos) << vtk.err;
 
-  const Outcome csv = run_program({"export", folder.path("r"), "-o", folder.path("c")});
-  EXPECT_EQ(csv.code, 0);
+  const Outcome csv = run_successfully({"export", folder.path("r"), "-o", folder.path("c")});
   expect_in("no readings: the run was recorded without --record-readings", csv.err);
   EXPECT_FALSE(std::filesystem::exists(folder.path("c/lights.csv"))) << "no lights";
 }
@@ -404,10 +396,10 @@ class VirtualDisplay {
 };
 
 TEST_F(Recorded, WithoutADisplayTheWindowFails) {
-  expect_refused(with("view", {"--3d"}), "no display");
-  const Outcome outcome = run_program(with("view", {"--3d"}), {{"DISPLAY", ":64999"}});
+  expect_refused(recorded("view", {"--3d"}), "no display");
+  const Outcome outcome = run_program(recorded("view", {"--3d"}), {{"DISPLAY", ":64999"}});
   EXPECT_EQ(outcome.code, 2) << "a display that is not there";
-  expect_refused(with("view", {"--from", "1"}), "--3d");
+  expect_refused(recorded("view", {"--from", "1"}), "--3d");
 }
 
 TEST_F(Recorded, TheWindowShowsTheRun) {
@@ -415,9 +407,8 @@ TEST_F(Recorded, TheWindowShowsTheRun) {
   if (instrumented()) GTEST_SKIP() << "the driver's own leaks would be reported";
   const VirtualDisplay display;
   const auto shown_at = [&](const std::string& time) {
-    const Outcome outcome = run_program(with("view", {"--3d", "--screenshot", folder_.path("s.png"), "--time", time}),
-                                        display.environment());
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    run_successfully(recorded("view", {"--3d", "--screenshot", folder_.path("s.png"), "--time", time}),
+                     display.environment());
     return scenes::read_png(folder_.path("s.png"));
   };
   const scenes::Picture begin = shown_at("0"), end = shown_at("2.9");
@@ -439,7 +430,7 @@ TEST_F(Recorded, TheWindowClosesOnDemand) {
   if (!succeeds("command -v Xvfb")) GTEST_SKIP() << "no Xvfb on this machine (Debian: xvfb)";
   if (instrumented()) GTEST_SKIP() << "the driver's own leaks would be reported";
   const VirtualDisplay display;
-  Program window(with("view", {"--3d"}), display.environment());
+  Program window(recorded("view", {"--3d"}), display.environment());
   ASSERT_TRUE(window.says("the slider chooses the time")) << window.err();
   window.signal(SIGTERM);
   EXPECT_EQ(window.wait().code, 0) << window.err();

@@ -39,15 +39,13 @@ struct Hall {
   std::string lasers = std::to_string(free_ports(48));
 
   std::unique_ptr<Program> serve(const Words& more = {}) const {
-    Words words{"serve", world, "--port", port, "--json", "--laser-port", lasers};
-    words.insert(words.end(), more.begin(), more.end());
+    const Words words = with({"serve", world, "--port", port, "--json", "--laser-port", lasers}, more);
     auto farm = std::make_unique<Program>(words);
     EXPECT_TRUE(farm->says("; press Ctrl-C to stop")) << farm->err();
     return farm;
   }
   std::unique_ptr<Program> robot(const std::string& name, const Words& more = {}) const {
-    Words words{"robot", world, "--name", name, "--port", port, "--laser-port", lasers, "--json"};
-    words.insert(words.end(), more.begin(), more.end());
+    const Words words = with({"robot", world, "--name", name, "--port", port, "--laser-port", lasers, "--json"}, more);
     return std::make_unique<Program>(words);
   }
   /// Long enough for the other robots, which started earlier, to be served.
@@ -77,8 +75,7 @@ TEST(Faults, ARobotSurvivesTheRestartOfItsFarm) {
   EXPECT_GE(ended(*robot).number("/stops"), 1.0);
   ended(*farm);
   // The killed farm's recording contains every tick that was written.
-  const Outcome verified = run_program({"verify", hall.folder.path("first"), "--json"});
-  EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+  run_successfully({"verify", hall.folder.path("first"), "--json"});
 }
 
 TEST(Faults, AStoppedFarmResumesWithItsClocks) {
@@ -120,8 +117,7 @@ TEST(Faults, ARestartedLightIsAcceptedAgain) {
   EXPECT_EQ(light->wait().signal, SIGKILL);
   Words again = words;
   for (const char* word : {"--duration", "2.7"}) again.emplace_back(word);
-  const Outcome outcome = run_program(again);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully(again);
   EXPECT_EQ(outcome.err.find("heard 0"), std::string::npos) << outcome.err;
   const Json told = ended(*robot), service = ended(*farm);
   EXPECT_GE(told.number("/lights/packets"), 10.0) << "without a pause in what the farm says";
@@ -145,8 +141,7 @@ TEST(Faults, ARestartedCameraIsAcceptedAgain) {
     EXPECT_EQ(camera.wait().signal, SIGKILL);
   }
   for (const char* word : {"--duration", "3.2"}) words.emplace_back(word);
-  const Outcome outcome = run_program(words);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully(words);
   // The first process sent only a few: these are from the second.
   EXPECT_GE(ended(*farm).number("/received/accepted"), 15.0);
 }

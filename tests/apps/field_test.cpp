@@ -32,9 +32,8 @@ TEST(Field, WritesAPicture) {
 /// Directly above a magnet of 1 A m^2, 12.5 cm from its centre, next to another: more than a Gauss.
 TEST(Field, WritesNumbersAlongALine) {
   const Folder folder;
-  const Outcome outcome = run_program({"field", magnets(folder), "--height", "0.075", "-o", folder.path("x.png"),
-                                       "--line", "0,-1,0,1", "--extent", "-1,-1,1,1", "--csv", folder.path("x.csv")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"field", magnets(folder), "--height", "0.075", "-o", folder.path("x.png"), "--line", "0,-1,0,1",
+                    "--extent", "-1,-1,1,1", "--csv", folder.path("x.csv")});
   std::istringstream csv(read_file(folder.path("x.csv")));
   std::string line, middle;
   std::getline(csv, line);
@@ -80,9 +79,7 @@ TEST(Field, RejectsInvalidArguments) {
       {{"field", folder.path("none.world"), "--height", "1", "-o", png}, "none.world"},
   };
   for (const Refusal& refusal : refusals) {
-    const Outcome outcome = run_program(refusal.arguments);
-    EXPECT_EQ(outcome.code, 2) << refusal.says << ": " << outcome.err;
-    EXPECT_NE(outcome.err.find(refusal.says), std::string::npos) << outcome.err;
+    expect_refused(refusal.arguments, refusal.says);
   }
 }
 

@@ -23,9 +23,8 @@ Outcome stopped(const Words& words, int by = SIGINT) {
 class Interrupted : public testing::Test {
  protected:
   std::string record() const {
-    const Outcome outcome = run_program(
+    run_successfully(
         {"run", our_world("cave.world"), "--robots", "40", "--duration", "60", "--record", folder.path("r")});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
     return folder.path("r");
   }
   std::string scenario() const {
@@ -95,17 +94,14 @@ TEST_F(Interrupted, ByOtherSignalsAndWithAnotherCode) {
   EXPECT_EQ(stopped(run, SIGTERM).code, 128 + SIGTERM);
   EXPECT_EQ(stopped(run, SIGHUP).code, 128 + SIGHUP);
   for (const char* code : {"0", "1", "255"}) {
-    Words words{"--interrupted-code", code};
-    words.insert(words.end(), run.begin(), run.end());
+    Words words = with({"--interrupted-code", code}, run);
     EXPECT_EQ(stopped(words).code, std::stoi(code));
     words.erase(words.begin() + 2, words.end());
     words.push_back("selftest");
     EXPECT_EQ(stopped(words).code, std::stoi(code)) << "also where a check was not completed";
   }
   for (const char* wrong : {"256", "-1", "x"}) {
-    const Outcome refused = run_program({"--interrupted-code", wrong, "devices"});
-    EXPECT_EQ(refused.code, 2) << wrong;
-    EXPECT_NE(refused.err.find("--interrupted-code"), std::string::npos) << refused.err;
+    expect_refused({"--interrupted-code", wrong, "devices"}, "--interrupted-code");
   }
 }
 
@@ -134,10 +130,7 @@ TEST_F(Interrupted, StoppingServicesIsSuccess) {
 }
 
 /// A signal that arrives after all work is done changes nothing.
-TEST_F(Interrupted, ASignalAfterCompletionChangesNothing) {
-  const Outcome outcome = run_program({"selftest", "ranges"});
-  EXPECT_EQ(outcome.code, 0) << outcome.out;
-}
+TEST_F(Interrupted, ASignalAfterCompletionChangesNothing) { run_successfully({"selftest", "ranges"}); }
 
 }  // namespace
 }  // namespace sf

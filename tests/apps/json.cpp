@@ -61,4 +61,6 @@ std::vector<std::string> Json::keys() const {
   return names;
 }
 
+Json run_json(const Words& arguments) { return Json(run_successfully(arguments).out); }
+
 }  // namespace sf

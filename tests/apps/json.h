@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/apps/program.h"
+
 namespace sf {
 
 class Json {
@@ -27,5 +29,8 @@ class Json {
   struct Tree;
   std::unique_ptr<Tree> tree_;
 };
+
+/// Runs the program, expects success, and reads its standard output.
+Json run_json(const Words& arguments);
 
 }  // namespace sf

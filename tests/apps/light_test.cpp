@@ -22,11 +22,6 @@ Words town_ports() {
   return words;
 }
 
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 }  // namespace
 
 TEST(Light, ARobotReceivesIt) {
@@ -46,9 +41,8 @@ TEST(Light, ARobotReceivesIt) {
 }
 
 TEST(Light, EndsAfterItsDuration) {
-  const Outcome outcome = run_program({"light", our_world("simville/simville.world"), "--send", "127.0.0.1", "--port",
-                                       std::to_string(free_ports(1)), "--duration", "0.1"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"light", our_world("simville/simville.world"), "--send", "127.0.0.1",
+                                            "--port", std::to_string(free_ports(1)), "--duration", "0.1"});
   EXPECT_NE(outcome.err.find("sent "), std::string::npos) << outcome.err;
 }
 
@@ -78,9 +72,8 @@ TEST(Light, RunsAPlanWithAFarm) {
                       "--set", "tour=true", "--stop-after", "0", "--port", port, "--json"},
                      ports));
   ASSERT_TRUE(robot.says("press Ctrl-C to stop")) << robot.err();
-  const Outcome light = run_program(
+  const Outcome light = run_successfully(
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
-  EXPECT_EQ(light.code, 0) << light.err;
   EXPECT_NE(light.err.find("7 lights of 2 intersections to 127.0.0.1:" + port + " (V2I) at 20 Hz"), std::string::npos);
   EXPECT_EQ(light.err.find("no packets from"), std::string::npos) << light.err;
   robot.signal(SIGINT);
@@ -126,9 +119,7 @@ TEST(Light, WrongArgumentsAreRejected) {
            {{"light", "--send", "127.0.0.1", "--port", "9010", "9011", world}, "was not expected"},
            {{"light", world, "--send", "127.0.0.1", "--port", "0"}, "--port"},
            {{"light", world, "--send", "127.0.0.1", "--rate", "0"}, "--rate"}}) {
-    const Outcome outcome = run_program(c.words);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_NE(outcome.err.find(c.said), std::string::npos) << outcome.err;
+    expect_refused(c.words, c.said);
   }
 }
 

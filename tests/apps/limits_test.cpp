@@ -89,15 +89,14 @@ class Limits : public testing::Test {
   void SetUp() override { ASSERT_EQ(rows.size(), 6u) << "the table has changed its form"; }
   Outcome run(Words words) const {
     words.insert(words.begin() + 1, world);
-    const Outcome outcome = run_program(words);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = run_successfully(words);
     return outcome;
   }
   /// Records one tick of all robots, which do not move.
   record::Recording recorded(const Words& more = {}) const {
-    Words words{"run",          "--controller", "avoid", "--set",    "speed=0",        "--set",
-                "slow_speed=0", "--duration",   "0.1",   "--record", folder.path("r"), "--record-readings"};
-    words.insert(words.end(), more.begin(), more.end());
+    const Words words = with({"run", "--controller", "avoid", "--set", "speed=0", "--set", "slow_speed=0", "--duration",
+                              "0.1", "--record", folder.path("r"), "--record-readings"},
+                             more);
     run(words);
     return record::open_recording(folder.path("r"));
   }

@@ -55,9 +55,7 @@ struct LockstepServer {
     port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
   }
   static Words words(const Words& more) {
-    Words all{"serve", our_world("cave.world"), "--lockstep", "--robots", "3", "--port", "0", "--json"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+    return with({"serve", our_world("cave.world"), "--lockstep", "--robots", "3", "--port", "0", "--json"}, more);
   }
   Json end(int code = 0) {
     program.signal(SIGINT);

@@ -41,10 +41,9 @@ struct Bench {
   }
   std::string file() const { return folder.path("pid"); }
   Words run(const std::string& how, const Words& more = {}) const {
-    Words words{"run",        world,   "--duration",    "2", "--controller", kPlugin + ":test-ends", "--set",
-                "how=" + how, "--set", "file=" + file()};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return with({"run", world, "--duration", "2", "--controller", kPlugin + ":test-ends", "--set", "how=" + how,
+                 "--set", "file=" + file()},
+                more);
   }
   /// Returns the process id that a controller has written, after a moment in which the process may end; 0 if it has
   /// ended.
@@ -178,8 +177,7 @@ TEST(OwnProcesses, TimeIsLimitedOnRequest) {
 TEST(OwnProcesses, ChildrenOfControllersAreEnded) {
   for (const char* how : {"child", "daemon"}) {
     const Bench bench;
-    const Outcome outcome = run_program({"test", bench.scenario("a", how, ", file = \"" + bench.file() + "\"")});
-    EXPECT_EQ(outcome.code, 0) << how << outcome.out << outcome.err;
+    run_successfully({"test", bench.scenario("a", how, ", file = \"" + bench.file() + "\"")});
     EXPECT_EQ(bench.left_running(), 0) << how;
     EXPECT_FALSE(read_file(bench.file()).empty()) << how;
     std::filesystem::remove(bench.file());
@@ -192,20 +190,17 @@ TEST(OwnProcesses, ChildrenOfControllersAreEnded) {
 /// Otherwise the copy would drive the robots a second time, into the same recording.
 TEST(OwnProcesses, AForkThatReturnsEndsAndTheOriginalContinues) {
   const Bench bench;
-  const Outcome outcome = run_program(bench.run("copy", {"--record", bench.folder.path("run")}));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully(bench.run("copy", {"--record", bench.folder.path("run")}));
   EXPECT_EQ(outcome.out.find("robots"), outcome.out.rfind("robots")) << outcome.out;
   EXPECT_EQ(run_program({"verify", bench.folder.path("run")}).code, 0);
 }
 
 TEST(OwnProcesses, ClosedStreamsAndAnotherFolderLoseNothing) {
   const Bench bench;
-  const Outcome tested = run_program({"test", bench.scenario("a", "close"), bench.scenario("b", "chdir")});
-  EXPECT_EQ(tested.code, 0) << tested.out << tested.err;
+  run_successfully({"test", bench.scenario("a", "close"), bench.scenario("b", "chdir")});
   const std::string here = std::filesystem::current_path();
   const std::string relative = std::filesystem::relative(bench.folder.path("run"), here);
-  const Outcome outcome = run_program(bench.run("chdir", {"--record", relative}));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully(bench.run("chdir", {"--record", relative}));
   EXPECT_EQ(run_program({"verify", bench.folder.path("run")}).code, 0);
 }
 
@@ -299,8 +294,7 @@ TEST(OwnProcesses, ExitHandlersDoNotChangeTheExitCode) {
 TEST(OwnProcesses, OutputOfControllersIsNotInJson) {
   const Bench bench;
   for (const Words& more : {Words{"--json"}, Words{"--json", "--in-process"}}) {
-    const Outcome outcome = run_program(bench.run("print", more));
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = run_successfully(bench.run("print", more));
     EXPECT_EQ(Json(outcome.out).number("/robots"), 1.0) << outcome.out;
     EXPECT_TRUE(has(outcome.err, "a controller prints")) << outcome.err;
   }
@@ -390,8 +384,7 @@ TEST(OwnProcesses, AMemoryLimitIsReportedForChildren) {
   const std::string sweep = folder.write("s.toml", "scenario = \"a.toml\"\nseeds = 1\n");
   for (const char* kilobytes : {"200000", "240000", "262144", "280000"})
     for (const Words& words : {Words{"test", scenario}, Words{"sweep", sweep, "-o", folder.path(kilobytes)}}) {
-      Words all{"-c", std::string("ulimit -v ") + kilobytes + "; exec \"$0\" \"$@\"", SF_PROGRAM};
-      all.insert(all.end(), words.begin(), words.end());
+      const Words all = with({"-c", std::string("ulimit -v ") + kilobytes + "; exec \"$0\" \"$@\"", SF_PROGRAM}, words);
       const Outcome outcome = Program(all, {}, "", "", "sh").wait();
       EXPECT_EQ(outcome.signal, 0) << kilobytes << words[0];
       if (outcome.code != 0) {

@@ -16,11 +16,8 @@ std::string peer(const std::string& what) { return "[[peer]]\n" + what + "\nkey 
 TEST(Peers, AStartSignalNeedsTheKeyOfItsTable) {
   const Folder folder;
   const std::string file = folder.write("peers.toml", peer("robot = 1"));
-  const Outcome refused = run_program({"start", "--peers", file});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_NE(refused.err.find(file + ": has no key for START; expected a [[peer]] section with start = true"),
-            std::string::npos)
-      << refused.err;
+  expect_refused({"start", "--peers", file},
+                 file + ": has no key for START; expected a [[peer]] section with start = true");
   EXPECT_EQ(run_program({"start", "--peers", folder.write("start.toml", peer("start = true"))}).code, 0);
 }
 
@@ -30,8 +27,7 @@ TEST(Peers, WarnsOfAReadableKeyFile) {
   using std::filesystem::perms;
   for (const perms others : {perms::none, perms::group_read}) {
     std::filesystem::permissions(file, perms::owner_read | perms::owner_write | others);
-    const Outcome outcome = run_program({"start", "--peers", file});
-    EXPECT_EQ(outcome.code, 0);
+    const Outcome outcome = run_successfully({"start", "--peers", file});
     EXPECT_EQ(outcome.err.find("warning: " + file + " contains keys, and other users") != std::string::npos,
               others != perms::none)
         << outcome.err;
@@ -41,10 +37,8 @@ TEST(Peers, WarnsOfAReadableKeyFile) {
 
 TEST(Peers, AServiceRejectsUnknownIdsAndUnsignedReadings) {
   const Folder folder;
-  const Outcome unknown = run_program({"serve", kWorld, "--peers", folder.write("a.toml", peer("robot = 77"))});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_NE(unknown.err.find("a.toml:2: the world has no robot with the id 77; it has 1, 2"), std::string::npos)
-      << unknown.err;
+  expect_refused({"serve", kWorld, "--peers", folder.write("a.toml", peer("robot = 77"))},
+                 "a.toml:2: the world has no robot with the id 77; it has 1, 2");
   const Outcome thesis =
       run_program({"serve", kWorld, "--wire", "thesis", "--peers", folder.write("b.toml", peer("robot = 1"))});
   EXPECT_EQ(thesis.code, 2);

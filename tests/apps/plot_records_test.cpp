@@ -38,11 +38,9 @@ std::vector<std::string> files_of(const std::string& folder) {
 
 TEST(PlotRecord, DrawsARecordedRun) {
   const Folder folder;
-  const Outcome ran = run_program(
+  run_successfully(
       {"run", folder.write("w.world", kWorld), "--duration", "3", "--record", folder.path("r"), "--record-readings"});
-  ASSERT_EQ(ran.code, 0) << ran.err;
-  const Outcome plotted = run_program({"plot", folder.path("r"), "-o", folder.path("p"), "--format", "svg", "--csv"});
-  ASSERT_EQ(plotted.code, 0) << plotted.err;
+  run_successfully({"plot", folder.path("r"), "-o", folder.path("p"), "--format", "svg", "--csv"});
   std::string names;
   for (const std::string& name : files_of(folder.path("p"))) {
     const bool is_table = name.ends_with(".csv");

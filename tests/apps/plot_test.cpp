@@ -32,9 +32,8 @@ class PaperFigures : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new Folder;
-    const Outcome ran = run_program({"run", folder_->write("w.world", world_text()), "--duration", "3", "--record",
-                                     folder_->path("r"), "--record-readings"});
-    ASSERT_EQ(ran.code, 0) << ran.err;
+    run_successfully({"run", folder_->write("w.world", world_text()), "--duration", "3", "--record", folder_->path("r"),
+                      "--record-readings"});
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -44,8 +43,7 @@ class PaperFigures : public testing::Test {
   /// Runs `plot` with these arguments and returns one of the figures.
   static std::string figure(const std::string& name, Words words = {}) {
     words.insert(words.begin(), {"plot", folder_->path("r"), "-o", folder_->path("p"), "--format", "svg"});
-    const Outcome plotted = run_program(words);
-    EXPECT_EQ(plotted.code, 0) << plotted.err;
+    run_successfully(words);
     return read_file(folder_->path("p/" + name + ".svg"));
   }
   static std::string refusal(Words words) {
@@ -104,9 +102,8 @@ TEST_F(PaperFigures, ElevenRobotsHaveTheRequestedLabels) {
 }
 
 TEST_F(PaperFigures, LabelsWithoutRoomAreCounted) {
-  const Outcome plotted = run_program({"plot", folder_->path("r"), "-o", folder_->path("p"), "--size", "50x30",
-                                       "--font-size", "8.3", "--label", "all"});
-  EXPECT_EQ(plotted.code, 0) << plotted.err;
+  const Outcome plotted = run_successfully({"plot", folder_->path("r"), "-o", folder_->path("p"), "--size", "50x30",
+                                            "--font-size", "8.3", "--label", "all"});
   EXPECT_TRUE(contains(plotted.err, " labels are left out for lack of space")) << plotted.err;
 }
 
@@ -169,10 +166,7 @@ TEST(NamesWithCommas, AreAcceptedByEveryOption) {
   const std::string record = folder.path("r"), out = folder.path("p");
   ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", record}).code, 0);
   const auto svg = [&](const Words& more) {
-    Words words{"plot", record, "-o", out, "--format", "svg"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome plotted = run_program(words);
-    EXPECT_EQ(plotted.code, 0) << plotted.err;
+    run_successfully(with({"plot", record, "-o", out, "--format", "svg"}, more));
     return read_file(out + "/trajectories.svg");
   };
   const auto shows = [&](const std::string& text, const char* name) {
@@ -188,9 +182,8 @@ TEST(NamesWithCommas, AreAcceptedByEveryOption) {
   const Outcome unknown = run_program({"plot", record, "-o", out, "--label", "a,x"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_TRUE(contains(unknown.err, "no robot 'x' is drawn")) << unknown.err;
-  const Outcome frames = run_program({"view", record, "--frames", folder.path("f"), "--video-size", "64x64",
-                                      "--video-follow", "a,b,c, d", "--robots", "c, d"});
-  EXPECT_EQ(frames.code, 0) << frames.err;
+  run_successfully({"view", record, "--frames", folder.path("f"), "--video-size", "64x64", "--video-follow", "a,b,c, d",
+                    "--robots", "c, d"});
   const Outcome empty = run_program({"plot", record, "-o", out, "--robots", "a,,c, d"});
   EXPECT_EQ(empty.code, 2);
   EXPECT_TRUE(contains(empty.err, "has no robot ''")) << empty.err;
@@ -202,8 +195,7 @@ TEST(SweepPlotsCommand, AreDrawnBySweepAndByPlot) {
   const std::string file = folder.write("sweep.toml",
                                         "scenario = \"small.toml\"\nseeds = 2\n[grid]\nrobots = [1, 2, 3]\n"
                                         "link.delay = [0, 0.5]\n");
-  const Outcome ran = run_program({"sweep", file, "-o", folder.path("out")});
-  ASSERT_EQ(ran.code, 0) << ran.err;
+  const Outcome ran = run_successfully({"sweep", file, "-o", folder.path("out")});
   EXPECT_TRUE(contains(ran.err, " plots in ")) << ran.err;
   for (const char* name : {"distance.png", "distance_multiples.png", "met.png", "contacts.png"})
     EXPECT_TRUE(fs::exists(folder.path("out/plots/" + std::string(name)))) << name;
@@ -213,23 +205,19 @@ TEST(SweepPlotsCommand, AreDrawnBySweepAndByPlot) {
   ASSERT_EQ(run_program({"plot", folder.path("out")}, no_device()).code, 0) << "needs no device";
   EXPECT_EQ(read_file(folder.path("out/plots/distance.png")), before);
 
-  const Outcome paper = run_program({"plot", folder.path("out"), "-o", folder.path("figures"), "--format", "svg",
-                                     "--size", "50", "--font-size", "8", "--over", "link.delay"},
-                                    no_device());
-  ASSERT_EQ(paper.code, 0) << paper.err;
+  run_successfully({"plot", folder.path("out"), "-o", folder.path("figures"), "--format", "svg", "--size", "50",
+                    "--font-size", "8", "--over", "link.delay"},
+                   no_device());
   const std::string svg = read_file(folder.path("figures/distance.svg"));
   EXPECT_TRUE(contains(svg, ">link.delay [s]<") && contains(svg, ">distance [m]<") && contains(svg, ">robots = 2<"));
 
   ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("bare"), "--no-plots"}).code, 0);
   EXPECT_FALSE(fs::exists(folder.path("bare/plots")));
   folder.write("bare/plots", "");  // a file blocks the folder
-  const Outcome blocked = run_program({"sweep", file, "-o", folder.path("bare")});
-  EXPECT_EQ(blocked.code, 0) << "the tables are written: " << blocked.err;
+  const Outcome blocked = run_successfully({"sweep", file, "-o", folder.path("bare")});
   EXPECT_TRUE(contains(blocked.err, "no plots (`plot ")) << blocked.err;
   for (const Words& words : {Words{"--over", "kp"}, {"--robots", "one"}, {"--elements", "1"}, {"--label", "one"}}) {
-    Words plot{"plot", folder.path("out")};
-    plot.insert(plot.end(), words.begin(), words.end());
-    const Outcome refused = run_program(plot, no_device());
+    const Outcome refused = run_program(with({"plot", folder.path("out")}, words), no_device());
     EXPECT_EQ(refused.code, 2) << words[0];
     EXPECT_EQ(count_lines(refused.err), 1u) << refused.err;
   }

@@ -18,6 +18,7 @@
 
 #include "base/error.h"
 #include "netio/socket.h"
+#include "tests/refusal.h"
 
 extern char** environ;
 
@@ -170,6 +171,28 @@ Outcome Program::wait() {
 
 Outcome run_program(const Words& arguments, const Environment& environment) {
   return Program(arguments, environment).wait();
+}
+
+Outcome run_successfully(const Words& arguments, const Environment& environment) {
+  const Outcome outcome = run_program(arguments, environment);
+  EXPECT_EQ(outcome.code, 0) << testing::PrintToString(arguments) << "\n" << outcome.out << outcome.err;
+  return outcome;
+}
+
+void expect_refused(const Words& arguments, const std::string& said, const std::string& also) {
+  const Outcome outcome = run_program(arguments);
+  SCOPED_TRACE(testing::PrintToString(arguments));
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind("sensorfarm: ", 0), 0u) << outcome.err;
+  expect_in(said, outcome.err);
+  expect_in(also, outcome.err);
+  EXPECT_EQ(outcome.out, "");
+}
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
 }
 
 bool succeeds(const std::string& command) { return std::system((command + " >/dev/null 2>&1").c_str()) == 0; }

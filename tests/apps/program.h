@@ -69,6 +69,13 @@ class Program {
 
 /// Runs the program until it ends.
 Outcome run_program(const Words& arguments, const Environment& environment = {});
+/// Runs the program and expects success.
+Outcome run_successfully(const Words& arguments, const Environment& environment = {});
+/// Runs the program and expects a refusal: exit code 2 and one line with `said` and `also`.
+void expect_refused(const Words& arguments, const std::string& said = "", const std::string& also = "");
+
+/// Returns `words` followed by `more`.
+Words with(Words words, const Words& more);
 
 /// True if this machine's shell runs `command` without an error.
 bool succeeds(const std::string& command);

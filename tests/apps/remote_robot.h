@@ -160,9 +160,7 @@ struct Service {
 
  private:
   Words words(const Words& rate) const {
-    Words all{"serve", world, "--port", "0", "--json", "--laser-port", std::to_string(lasers)};
-    all.insert(all.end(), rate.begin(), rate.end());
-    return all;
+    return with({"serve", world, "--port", "0", "--json", "--laser-port", std::to_string(lasers)}, rate);
   }
 };
 

@@ -46,35 +46,12 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
-TEST(Roads, JsonCountsObjects) {
-  const Folder folder;
-  const Outcome outcome = run_program({"check", folder.write("two.rndf", kRoads), "--json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const Json facts(outcome.out);
-  EXPECT_EQ(facts.text("/network"), "two");
-  EXPECT_EQ(facts.number("/roads/segments"), 1);
-  EXPECT_EQ(facts.number("/roads/lanes"), 2);
-  EXPECT_EQ(facts.number("/roads/zones"), 0);
-  EXPECT_EQ(facts.number("/roads/spots"), 0);
-  EXPECT_EQ(facts.number("/roads/lane_waypoints"), 4);
-  EXPECT_EQ(facts.number("/roads/points"), 4);
-  EXPECT_EQ(facts.number("/roads/exits"), 1);
-  EXPECT_EQ(facts.number("/roads/stops"), 1);
-  EXPECT_EQ(facts.number("/roads/checkpoints"), 1);
-  EXPECT_EQ(facts.number("/stripes"), 3);  // two yellow lines and a stop line
-  EXPECT_EQ(facts.number("/scale"), 1);
-  EXPECT_NEAR(facts.number("/lane_length_m"), 2 * 85.394, 0.01);
-  EXPECT_EQ(facts.size("/warnings"), 1u);
-  EXPECT_EQ(facts.number("/warnings/0/line"), 7);
-}
-
 TEST(Roads, NamesWithAnyBytesGiveValidJson) {
   const Folder folder;
-  const Outcome outcome = run_program(
+  const Outcome outcome = run_successfully(
       {"check",
        folder.write("two.rndf", replaced(kRoads, "RNDF_name two", "RNDF_name a\"b\\c\xFF\xC3\xA4\xED\xA0\x80")),
        "--json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::string bad = "\xEF\xBF\xBD";
   EXPECT_EQ(Json(outcome.out).text("/network"), "a\"b\\c" + bad + "\xC3\xA4" + bad + bad + bad);
 }
@@ -82,8 +59,7 @@ TEST(Roads, NamesWithAnyBytesGiveValidJson) {
 TEST(Roads, TextNamesWarningsWithTheirLine) {
   const Folder folder;
   const std::string file = folder.write("two.rndf", kRoads);
-  const Outcome outcome = run_program({"check", file});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"check", file});
   EXPECT_NE(outcome.out.find(file + ":7: warning: lane 1.1 has no lane_width; assuming 12 ft"), std::string::npos);
   EXPECT_NE(outcome.out.find("lanes              2 (170.8 m in all)"), std::string::npos) << outcome.out;
 }
@@ -91,8 +67,7 @@ TEST(Roads, TextNamesWarningsWithTheirLine) {
 TEST(Roads, SidecarIsRead) {
   const Folder folder;
   folder.write("two.toml", "scale = 0.5\nlane_width_m = 0.5\n");
-  const Outcome outcome = run_program({"check", folder.write("two.rndf", kRoads), "--json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"check", folder.write("two.rndf", kRoads), "--json"});
   EXPECT_EQ(Json(outcome.out).number("/scale"), 0.5);
   EXPECT_EQ(Json(outcome.out).size("/warnings"), 0u);
 }
@@ -115,16 +90,13 @@ TEST(Roads, AcceptsBothSuffixesInAnyCase) {
 
 TEST(Roads, IsDrawn) {
   const Folder folder;
-  const Outcome outcome = run_program({"draw", folder.write("two.rndf", kRoads), "-o", folder.path("two.png")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"draw", folder.write("two.rndf", kRoads), "-o", folder.path("two.png")});
   scenes::expect_painted(folder.path("two.png"), {{viz::theme::kAsphalt, 1000}});
 }
 
 TEST(Missions, WithoutTheirNetwork) {
   const Folder folder;
-  const Outcome outcome = run_program({"check", folder.write("go.mdf", kMission), "--json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const Json facts(outcome.out);
+  const Json facts = run_json({"check", folder.write("go.mdf", kMission), "--json"});
   EXPECT_EQ(facts.text("/mission"), "go");
   EXPECT_EQ(facts.text("/rndf"), "two");
   EXPECT_TRUE(facts.is_null("/checked_against"));
@@ -137,8 +109,7 @@ TEST(Missions, AgainstTheirNetwork) {
   const Folder folder;
   const std::string rndf = folder.write("two.rndf", kRoads);
   const std::string mission = folder.write("go.mdf", kMission);
-  const Outcome fine = run_program({"check", mission, "--rndf", rndf, "--json"});
-  ASSERT_EQ(fine.code, 0) << fine.err;
+  const Outcome fine = run_successfully({"check", mission, "--rndf", rndf, "--json"});
   EXPECT_EQ(Json(fine.out).text("/checked_against"), rndf);
   EXPECT_EQ(Json(fine.out).number("/warnings/0/line"), 10);  // a speed limit for 9, which does not exist
 
@@ -151,20 +122,14 @@ TEST(Missions, AgainstTheirNetwork) {
 TEST(Missions, WrongUsageIsRejected) {
   const Folder folder;
   const std::string rndf = folder.write("two.rndf", kRoads);
-  const Outcome no_mission = run_program({"check", rndf, "--rndf", rndf});
-  EXPECT_EQ(no_mission.code, 2);
-  EXPECT_NE(no_mission.err.find("use --rndf with `check` of an .mdf file"), std::string::npos) << no_mission.err;
-  const Outcome no_picture = run_program({"draw", folder.write("go.mdf", kMission), "-o", folder.path("x.png")});
-  EXPECT_EQ(no_picture.code, 2);
-  EXPECT_NE(no_picture.err.find("a mission cannot be drawn"), std::string::npos) << no_picture.err;
+  expect_refused({"check", rndf, "--rndf", rndf}, "use --rndf with `check` of an .mdf file");
+  expect_refused({"draw", folder.write("go.mdf", kMission), "-o", folder.path("x.png")}, "a mission cannot be drawn");
 }
 
 TEST(Roads, PublicFilesHaveTheirCounts) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
-  const Outcome outcome = run_program({"check", folder + "darpa_sample/uce_rndf_1_final_event.rndf", "--json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const Json facts(outcome.out);
+  const Json facts = run_json({"check", folder + "darpa_sample/uce_rndf_1_final_event.rndf", "--json"});
   EXPECT_EQ(facts.number("/roads/points"), 941);
   EXPECT_EQ(facts.number("/roads/lane_waypoints"), 628);
   EXPECT_EQ(facts.number("/roads/checkpoints"), 170);

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
-#include "tests/apps/refused.h"
 
 namespace sf {
 namespace {
@@ -24,24 +23,20 @@ const char* const kOwn = "define scout position( size [0.4 0.3 0.2] laser( sampl
 TEST(RobotFrom, ReplacesTheDefaultRobotOfAMap) {
   const Folder folder;
   const std::string map = write_map(folder), own = folder.write("own.inc", kOwn) + ":scout";
-  const Outcome one = run_program({"run", map, "--robot-from", own, "--duration", "1", "--json"});
-  ASSERT_EQ(one.code, 0) << one.err;
+  const Outcome one = run_successfully({"run", map, "--robot-from", own, "--duration", "1", "--json"});
   EXPECT_EQ(Json(one.out).number("/robots"), 1);
   EXPECT_EQ(one.err.find("using the default robot"), std::string::npos) << one.err;
-  const Outcome many = run_program({"run", map, "--robot-from", own, "--robots", "5", "--duration", "1", "--json"});
-  ASSERT_EQ(many.code, 0) << many.err;
+  const Outcome many =
+      run_successfully({"run", map, "--robot-from", own, "--robots", "5", "--duration", "1", "--json"});
   EXPECT_EQ(Json(many.out).number("/robots"), 5);
-  const Outcome sense = run_program({"sense", map, "--robot-from", own});
-  EXPECT_EQ(sense.code, 0) << sense.err;
+  const Outcome sense = run_successfully({"sense", map, "--robot-from", own});
   EXPECT_NE(sense.err.find("scout1 at ("), std::string::npos) << sense.err;
   EXPECT_NE(run_program({"sense", map}).err.find("give --robot-from FILE:NAME"), std::string::npos);
   for (const Words& words : std::vector<Words>{{"serve", map, "--port", "0", "--duration", "0.2"},
                                                {"serve", map, "--lockstep", "--port", "0", "--duration", "0.2"},
                                                {"robot", map, "--name", "scout1", "--port", "9", "--duration", "0.1"},
                                                {"explain", map}}) {
-    Words all = words;
-    all.insert(all.end(), {"--robot-from", own});
-    const Outcome outcome = run_program(all);
+    const Outcome outcome = run_program(with(words, {"--robot-from", own}));
     EXPECT_EQ(outcome.err.find("using the default robot"), std::string::npos) << words[0] << outcome.err;
     EXPECT_EQ(outcome.code, words[0] == "robot" ? 1 : 0) << words[0] << outcome.err;  // no farm answers
   }
@@ -64,8 +59,7 @@ TEST(RobotFrom, FilesAreFoundAsWorldsAre) {
   const std::string map = write_map(folder);
   for (const char* own :
        {"worlds/robots.inc:create", "worlds/simville/simville.world:car", "worlds/simville/simville.world:roomba0"}) {
-    const Outcome outcome = run_program({"serve", map, "--robot-from", own, "--port", "0", "--duration", "0.1"});
-    EXPECT_EQ(outcome.code, 0) << own << ": " << outcome.err;
+    const Outcome outcome = run_successfully({"serve", map, "--robot-from", own, "--port", "0", "--duration", "0.1"});
     EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << own << ": " << outcome.err;
   }
 }

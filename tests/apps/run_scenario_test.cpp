@@ -6,7 +6,6 @@
 #include "scenarios/runner.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
-#include "tests/apps/refused.h"
 #include "tests/device.h"
 
 namespace sf {
@@ -40,11 +39,7 @@ object = "tag1"
 present = false
 )";
 
-Json run_json(const Words& arguments) {
-  const Outcome outcome = run_program(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return Json(outcome.out);
-}
+Json run_json(const Words& arguments) { return run_json(arguments); }
 
 TEST(RunScenario, TheTownOfTheReadmeDrivesAMinuteWithoutContact) {
   const Json facts = run_json({"run", kTown, "--duration", "60", "--json"});
@@ -93,26 +88,13 @@ TEST(RunScenario, RejectsOptionsThatTheScenarioDefines) {
   for (const Words& option : {Words{"--robots", "3"}, Words{"--robots", "3", "--of", "roomba0"}, Words{"--seed", "2"},
                               Words{"--seed", "1"}, Words{"--controller", "wander"}, Words{"--controller", "avoid"},
                               Words{"--set", "speed=0.1"}, Words{"--localize"}, Words{"--drive", "roomba0"}}) {
-    Words arguments{"run", kTown, "--duration", "1"};
-    arguments.insert(arguments.end(), option.begin(), option.end());
-    expect_refused(arguments, "applies to worlds; a scenario sets");
+    expect_refused(with({"run", kTown, "--duration", "1"}, option), "applies to worlds; a scenario sets");
   }
 }
 
 TEST(RunScenario, ReportsThatExpectationsAreNotChecked) {
-  const Outcome outcome = run_program({"run", kTown, "--duration", "1"});
-  EXPECT_EQ(outcome.code, 0);
+  const Outcome outcome = run_successfully({"run", kTown, "--duration", "1"});
   EXPECT_NE(outcome.err.find("9 expectations are not judged"), std::string::npos) << outcome.err;
-}
-
-// Its recording is verified like that of a world.
-TEST(RunScenario, ItsRecordingVerifies) {
-  const Folder folder;
-  folder.write("room.world", kDoorRoom);
-  const std::string file = folder.write("door.toml", kDoorScenario + kDoor);
-  ASSERT_EQ(run_program({"run", file, "--record", folder.path("r"), "--record-readings"}).code, 0);
-  const Outcome outcome = run_program({"verify", folder.path("r")});
-  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
 }
 
 }  // namespace

@@ -20,17 +20,9 @@ namespace sf {
 
 namespace {
 
-Words run_words(const std::string& world, const Words& more) {
-  Words words{"run", our_world(world), "--json"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
+Words run_words(const std::string& world, const Words& more) { return with({"run", our_world(world), "--json"}, more); }
 
-Json run(const std::string& world, const Words& more) {
-  const Outcome outcome = run_program(run_words(world, more));
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  return Json(outcome.out);
-}
+Json run(const std::string& world, const Words& more) { return run_json(run_words(world, more)); }
 
 std::string hash(const std::string& world, const Words& more) { return run(world, more).text("/hash"); }
 
@@ -73,8 +65,7 @@ TEST(Run, TheSummaryListsFacts) {
 TEST(Run, SensingRatesCoverTheFourStages) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"a\" laser( samples 361 noise [0.01 0 0] ) )\n");
-  const Outcome outcome = run_program({"run", world, "--robots", "20", "--duration", "5"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"run", world, "--robots", "20", "--duration", "5"});
   const std::string& text = outcome.out;
   double seconds = 0.0;
   for (const std::string stage : {"\n    place movers ", "\n    lists, scans ", "\n    device ", "\n    collect "}) {
@@ -91,22 +82,6 @@ TEST(Run, SensingRatesCoverTheFourStages) {
   EXPECT_NEAR(unit * std::stod(rate), wanted, 0.051 * unit + 1.1e-4 / seconds * wanted) << text;
 }
 
-TEST(Run, ControllersReportTheirResults) {
-  const Words words{"--controller", "lane-keeping", "--duration", "60"};
-  const Json facts = run("testpath/testpath.world", words);
-  EXPECT_EQ(facts.text("/control/controller"), "lane-keeping");
-  EXPECT_EQ(facts.number("/control/robots"), 1);
-  EXPECT_EQ(facts.number("/control/done"), 1);
-  EXPECT_GT(facts.number("/control/error/steps"), 400);  // 10 per second over 5 m at 0.1 m/s
-  EXPECT_GT(facts.number("/control/error/abs_mean"), 0.001);
-  EXPECT_GT(facts.number("/control/error/abs_mean"), facts.number("/control/error/mean") + 1e-3) << "it overshoots";
-  EXPECT_LT(facts.number("/control/error/abs_mean"), 0.2);
-  EXPECT_FALSE(facts.has("/control/checkpoints"));
-  const Outcome wanders = run_program({"run", our_world("cave.world"), "--robots", "2", "--duration", "0.5"});
-  EXPECT_NE(wanders.out.find("wander: 0 of 2 robots done"), std::string::npos) << wanders.out;
-  EXPECT_EQ(wanders.out.find("control error"), std::string::npos) << "wander has none: " << wanders.out;
-}
-
 /// In SimVille, roomba1 blocks roomba0's lane if only roomba0 is driven.
 TEST(Run, ReportsStoppedRobotsAndReasons) {
   Words words{"run",          our_world("simville/simville.world"),
@@ -114,8 +89,7 @@ TEST(Run, ReportsStoppedRobotsAndReasons) {
               "--set",        "mission=simville.mdf",
               "--drive",      "roomba0",
               "--duration",   "12"};
-  const Outcome text = run_program(words);
-  EXPECT_EQ(text.code, 0) << text.err;
+  const Outcome text = run_successfully(words);
   EXPECT_NE(text.out.find("at rest at the end   roomba0 for "), std::string::npos) << text.out;
   EXPECT_NE(text.out.find(" s: 'roomba1' blocks its way\n"), std::string::npos) << text.out;
   EXPECT_EQ(text.out.find("up to"), std::string::npos) << "one robot, one time: " << text.out;
@@ -134,9 +108,8 @@ TEST(Run, ReportsStoppedRobotsAndReasons) {
 TEST(Run, RobotsStoppedForOneReasonShareALine) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laneedge( ) )\n");
-  const Outcome outcome = run_program(
+  const Outcome outcome = run_successfully(
       {"run", world, "--robots", "5", "--duration", "5", "--controller", "lane-keeping", "--set", "half_width=0.2"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("at rest at the end   roomba1, roomba2, roomba3 and 2 more for up to 5 s: its lane edge "
                              "sensor detects nothing to follow\n"),
             std::string::npos)
@@ -166,9 +139,8 @@ TEST(Run, ClonesAreOfTheFirstRobotWithSensorsOrANamedOne) {
       "w.world",
       "position( name \"dummy\" pose [-2 0 0 0] )\nposition( name \"roomba7\" pose [2 0 0 0] laser( samples 5 ) )\n");
   const auto rays = [&](const Words& more) {
-    Words words{"run", world, "--json", "--duration", "1", "--robots", "4"};
-    words.insert(words.end(), more.begin(), more.end());
-    return Json(run_program(words).out).number("/rays");
+    return Json(run_program(with({"run", world, "--json", "--duration", "1", "--robots", "4"}, more)).out)
+        .number("/rays");
   };
   EXPECT_EQ(rays({}), 4 * 5 * 10);
   EXPECT_EQ(rays({"--of", "roomba7"}), 4 * 5 * 10);
@@ -179,12 +151,7 @@ TEST(Run, ClonesAreOfTheFirstRobotWithSensorsOrANamedOne) {
       {{"--robots", "4", "--of", ""}, "expected the name of a robot, got ''"},
   };
   for (const auto& [more, said] : refused) {
-    Words words{"run", world, "--duration", "0.1"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome outcome = run_program(words);
-    EXPECT_EQ(outcome.code, 2) << outcome.out;
-    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+    expect_refused(with({"run", world, "--duration", "0.1"}, more), said);
   }
 }
 
@@ -223,11 +190,7 @@ TEST(Run, AControllerWithoutItsSensorIsRejected) {
       {{"docking"}, "has no infrared receiver; give it an irreceiver( )"},
   };
   for (const auto& [controller, said] : cases) {
-    Words words = run_words("rooms.world", {"--duration", "1", "--controller"});
-    words.insert(words.end(), controller.begin(), controller.end());
-    const Outcome outcome = run_program(words);
-    EXPECT_EQ(outcome.code, 2) << outcome.err;
-    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+    expect_refused(with(run_words("rooms.world", {"--duration", "1", "--controller"}), controller), said);
   }
 }
 
@@ -236,29 +199,21 @@ TEST(Run, OnlyNamedRobotsAreDriven) {
   Words words =
       run_words("simville/simville.world", {"--duration", "2", "--controller", "route", "--set", "tour=true"});
   const std::string hint = "; or name the robots to drive (--drive NAME)";
-  const Outcome all = run_program(words);
-  EXPECT_EQ(all.code, 2);
-  EXPECT_EQ(count_lines(all.err), 1u) << all.err;
-  EXPECT_NE(all.err.find("robot 'khepera6' is at"), std::string::npos) << all.err;
-  EXPECT_NE(all.err.find(hint), std::string::npos) << all.err;
+  expect_refused(words, "robot 'khepera6' is at", hint);
 
-  Words alone = words;
-  alone.insert(alone.end(), {"--drive", "khepera6"});
-  const Outcome off_the_lane = run_program(alone);
+  const Outcome off_the_lane = run_program(with(words, {"--drive", "khepera6"}));
   EXPECT_EQ(off_the_lane.code, 2);
   EXPECT_EQ(off_the_lane.err.find(hint), std::string::npos) << "it is the one that is named: " << off_the_lane.err;
 
   words.insert(words.end(), {"--drive", "roomba0", "--drive", "roomba3"});
-  const Outcome two = run_program(words);
-  ASSERT_EQ(two.code, 0) << two.err;
+  const Outcome two = run_successfully(words);
   EXPECT_EQ(Json(two.out).number("/control/robots"), 2);
   EXPECT_EQ(Json(two.out).number("/robots"), 8);
 }
 
 TEST(Run, ADrivenRobotsPathDoesNotDependOnTheOption) {
   const auto some = [](const Words& drive) {
-    Words more{"--duration", "3"};
-    more.insert(more.end(), drive.begin(), drive.end());
+    const Words more = with({"--duration", "3"}, drive);
     return hash("rooms.world", more);
   };
   const std::string all = some({});
@@ -280,19 +235,14 @@ TEST(Run, OnlyExistingRobotsAndClonesMayBeNamed) {
       {"", "expected the name of a robot, got ''"},
   };
   for (const auto& [name, said] : refused) {
-    const Outcome outcome = run_program(run_words("rooms.world", {"--duration", "0.1", "--drive", name}));
-    EXPECT_EQ(outcome.code, 2) << name;
-    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+    expect_refused(run_words("rooms.world", {"--duration", "0.1", "--drive", name}), said);
   }
   // The world may follow the option.
   EXPECT_EQ(run_program({"run", "--drive", "roomba1", our_world("rooms.world"), "--duration", "0.1"}).code, 0);
 }
 
 TEST(Run, AFolderThatCannotBeCreatedIsReportedWithARemedy) {
-  const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.1", "--record", "/proc/x"}));
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("that you can write to"), std::string::npos) << outcome.err;
+  expect_refused(run_words("cave.world", {"--duration", "0.1", "--record", "/proc/x"}), "that you can write to");
 }
 
 TEST(Run, TheSameSeedGivesTheSameBytesForAnyThreadCount) {
@@ -302,8 +252,7 @@ TEST(Run, TheSameSeedGivesTheSameBytesForAnyThreadCount) {
   EXPECT_NE(hash("rooms.world", {"--duration", "3", "--seed", "8"}), first);
   const std::string many = hash("cave.world", seven);
   for (const std::string threads : {"1", "2", "3"}) {
-    Words words = seven;
-    words.insert(words.end(), {"--threads", threads});
+    const Words words = with(seven, {"--threads", threads});
     EXPECT_EQ(hash("cave.world", words), many) << threads;
   }
 }
@@ -319,17 +268,13 @@ TEST(Run, RealTimeRunsAtTheSpeedOfTheClock) {
 }
 
 TEST(Run, MoreRobotsThanFitAreRejected) {
-  const Outcome outcome = run_program(run_words("rooms.world", {"--robots", "60000"}));
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(count_lines(outcome.err), 1u);
-  EXPECT_NE(outcome.err.find("no free space"), std::string::npos) << outcome.err;
+  expect_refused(run_words("rooms.world", {"--robots", "60000"}), "no free space");
 }
 
 TEST(Run, RecordingsAreCompressedByDefault) {
   const Folder folder;
   const auto bytes = [&](const std::string& name, Words options) {
-    Words words{"--robots", "4", "--duration", "3", "--record", folder.path(name)};
-    words.insert(words.end(), options.begin(), options.end());
+    const Words words = with({"--robots", "4", "--duration", "3", "--record", folder.path(name)}, options);
     return run("cave.world", words).number("/recording_bytes");
   };
   const double compressed = bytes("a", {}), plain = bytes("b", {"--compression", "none"});
@@ -347,16 +292,14 @@ TEST(Run, ARecordingIsDrawnElsewhere) {
             static_cast<double>(std::filesystem::file_size(folder.path("here/run.mcap"))));
   std::filesystem::create_directory(folder.path("there"));
   std::filesystem::rename(folder.path("here/run.mcap"), folder.path("there/run.mcap"));
-  const Outcome outcome = run_program({"plot", folder.path("there"), "-o", folder.path("deep/pictures")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"plot", folder.path("there"), "-o", folder.path("deep/pictures")});
   expect_pictures(folder.path("deep/pictures"));
 }
 
 TEST(Run, RecordingDoesNotChangeTheRun) {
   const Folder folder;
   const Words plain{"--robots", "3", "--duration", "2"};
-  Words recorded = plain;
-  recorded.insert(recorded.end(), {"--record", folder.path("r"), "--record-readings"});
+  const Words recorded = with(plain, {"--record", folder.path("r"), "--record-readings"});
   EXPECT_EQ(hash("cave.world", recorded), hash("cave.world", plain));
 }
 
@@ -416,15 +359,13 @@ TEST(Run, TheHashCoversBeamsWithoutReturn) {
   const Folder folder;
   const std::string open = folder.write("open.world", "position( name \"a\" laser( samples 3 range_max 5 ) )\n");
   const auto hash_of = [&](const std::string& no_return) {
-    const Outcome outcome = run_program({"run", open, "--json", "--duration", "1", "--no-return", no_return});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Outcome outcome = run_successfully({"run", open, "--json", "--duration", "1", "--no-return", no_return});
     return Json(outcome.out).text("/hash");
   };
   EXPECT_NE(hash_of("inf"), hash_of("max")) << "every beam";
   EXPECT_EQ(hash_of("inf"), hash_of("inf"));
   const Words closed{"--robots", "2", "--duration", "1"};  // within range of a wall in any direction
-  Words infinite = closed;
-  infinite.insert(infinite.end(), {"--no-return", "inf"});
+  const Words infinite = with(closed, {"--no-return", "inf"});
   EXPECT_EQ(hash("rooms.world", infinite), hash("rooms.world", closed)) << "no beam";
 }
 
@@ -434,8 +375,7 @@ TEST(Run, AKilledRunCanBeDrawn) {
   ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 120'000)) << program.err();
   program.signal(SIGKILL);
   EXPECT_EQ(program.wait().signal, SIGKILL);
-  const Outcome outcome = run_program({"plot", folder.path("r"), "-o", folder.path("p")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"plot", folder.path("r"), "-o", folder.path("p")});
   EXPECT_NE(outcome.err.find("was not finished"), std::string::npos) << outcome.err;
   expect_pictures(folder.path("p"));
 }
@@ -452,8 +392,7 @@ TEST(Run, StoppingEarlyIsReportedByTheExitCode) {
     EXPECT_TRUE(facts.flag("/interrupted"));
     EXPECT_GT(facts.number("/ticks"), 0);
     EXPECT_LT(facts.number("/simulated_s"), 1e6);
-    const Outcome verified = run_program({"verify", folder.path("r")});
-    EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+    const Outcome verified = run_successfully({"verify", folder.path("r")});
     EXPECT_EQ(verified.err.find("was not finished"), std::string::npos) << verified.err;
   }
 }
@@ -469,18 +408,15 @@ TEST(Run, AFileThatMayNotGrowEndsARecordingWithAMessage) {
   EXPECT_EQ(outcome.signal, 0) << "SIGXFSZ is " << SIGXFSZ;
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("run.mcap: cannot take more than"), std::string::npos) << outcome.err;
-  const Outcome verified = run_program({"verify", folder.path("r")});
-  EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+  run_successfully({"verify", folder.path("r")});
 }
 
 TEST(Run, ARecordingOfNoTicksIsSound) {
   const Folder folder;
   run("cave.world", {"--robots", "2", "--duration", "0", "--record", folder.path("r")});
-  const Outcome verified = run_program({"verify", folder.path("r")});
-  EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+  const Outcome verified = run_successfully({"verify", folder.path("r")});
   EXPECT_NE(verified.out.find("sound"), std::string::npos) << verified.out;
-  const Outcome plotted = run_program({"plot", folder.path("r")});
-  EXPECT_EQ(plotted.code, 0) << plotted.err;
+  run_successfully({"plot", folder.path("r")});
 }
 
 TEST(Run, TheSpellingOfAWorldsPathDoesNotChangeARecording) {
@@ -492,8 +428,7 @@ TEST(Run, TheSpellingOfAWorldsPathDoesNotChangeARecording) {
   std::string first;
   for (const char* spelt : {"worlds/w.world", "./worlds//w.world", "worlds/inc/../w.world"}) {
     const std::string record = folder.path("r" + std::to_string(first.size()));
-    const Outcome outcome = run_program({"run", folder.path(spelt), "--duration", "1", "--record", record});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    run_successfully({"run", folder.path(spelt), "--duration", "1", "--record", record});
     const std::string bytes = read_file(record + "/run.mcap");
     if (first.empty()) first = bytes;
     EXPECT_TRUE(bytes == first) << spelt;
@@ -531,10 +466,7 @@ TEST(Run, AFileThatIsNotARecordingIsRejected) {
   const Folder folder;
   std::filesystem::create_directory(folder.path("r"));
   folder.write("r/run.mcap", "this is no recording, whatever its name says");
-  const Outcome outcome = run_program({"plot", folder.path("r")});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-  EXPECT_NE(outcome.err.find("run.mcap"), std::string::npos);
+  expect_refused({"plot", folder.path("r")}, "run.mcap");
 }
 
 /// Returns the ticks in a run's check points; none without the file.
@@ -549,9 +481,7 @@ static std::vector<std::string> check_points(const std::string& folder) {
 TEST(Run, CheckPointsAreWrittenOnDemandAndAResumedRunMeetsThem) {
   const Folder folder;
   const auto recorded = [&](const std::string& name, const Words& more) {
-    Words words = run_words("rooms.world", {"--robots", "2", "--record", folder.path(name)});
-    words.insert(words.end(), more.begin(), more.end());
-    return run_program(words);
+    return run_program(with(run_words("rooms.world", {"--robots", "2", "--record", folder.path(name)}), more));
   };
   EXPECT_EQ(recorded("plain", {"--duration", "1"}).code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder.path("plain/checkpoints")));

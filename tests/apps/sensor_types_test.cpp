@@ -52,9 +52,7 @@ struct Kinds : testing::Test {
 
 /// Runs `command` with its world and `words`, and the options that all of these tests need.
 Outcome run(const std::string& command, const std::string& world, const Words& more) {
-  Words words{command, world};
-  words.insert(words.end(), more.begin(), more.end());
-  return run_program(words);
+  return run_program(with({command, world}, more));
 }
 
 /// Two free port bases.
@@ -129,12 +127,7 @@ TEST_F(Kinds, AMissingSensorIsRejectedWithTheAvailableOnes) {
            {{lasers, "--type", "magnetometer", "--robot", "b"}, "no robot 'b'; robots with sensors: none"},
            {{none}, "no robot has such a sensor; give one a laser( )"},
        }) {
-    Words words{"sense"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    const Outcome outcome = run_program(words);
-    EXPECT_EQ(outcome.code, 2) << said;
-    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find(said), std::string::npos) << said << " is not in: " << outcome.err;
+    expect_refused(with({"sense"}, arguments), said);
   }
 }
 
@@ -165,10 +158,7 @@ TEST_F(Kinds, CheckReportsTheEffectOfACutoff) {
 TEST_F(Kinds, EveryCommandReportsTheLineOfInvalidSettings) {
   const std::string bad = folder.write("bad.world", "position\n(\n  magnetometer( scount 99 )\n)\n");
   for (const std::string command : {"check", "sense", "run", "serve", "listen"}) {
-    const Outcome outcome = run_program({command, bad});
-    EXPECT_EQ(outcome.code, 2) << command;
-    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find("bad.world:3: "), std::string::npos) << outcome.err;
+    expect_refused({command, bad}, "bad.world:3: ");
   }
 }
 
@@ -176,12 +166,10 @@ TEST_F(Kinds, EveryPacketArrivesOnEitherWire) {
   for (const std::string wire : {"farm", "thesis"}) {
     unsigned base = 0;
     const Words bases = free_bases(base);
-    Words listen{"listen", world, "--json", "--wire", wire, "--silence", "100"};
-    listen.insert(listen.end(), bases.begin(), bases.end());
+    const Words listen = with({"listen", world, "--json", "--wire", wire, "--silence", "100"}, bases);
     Program listener(listen);
     ASSERT_TRUE(listener.says("listening on 4 ports")) << listener.err();
-    Words words{"--duration", "2", "--send", "127.0.0.1", "--json", "--wire", wire};
-    words.insert(words.end(), bases.begin(), bases.end());
+    const Words words = with({"--duration", "2", "--send", "127.0.0.1", "--json", "--wire", wire}, bases);
     const Outcome sent = run("run", world, words);
     ASSERT_EQ(sent.code, 0) << sent.err;
     listener.signal(SIGINT);
@@ -291,8 +279,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
   EXPECT_EQ(first.values[0], now.number("/sensors/0/field_T"));
   EXPECT_EQ(first.values[7], now.number("/sensors/1/vector_T/2"));
 
-  const Outcome plot = run_program({"plot", folder.path("r"), "-o", folder.path("p")});
-  EXPECT_EQ(plot.code, 0) << plot.err;
+  const Outcome plot = run_successfully({"plot", folder.path("r"), "-o", folder.path("p")});
   viz::draw_series(fields_of(recording), folder.path("expected.png"));
   EXPECT_TRUE(read_file(folder.path("p/magnetometer.png")) == read_file(folder.path("expected.png")));
   EXPECT_FALSE(std::filesystem::exists(folder.path("p/lane_edge.png"))) << "nobody has one";

@@ -48,8 +48,7 @@ std::map<std::string, fs::file_time_type> results_of(const std::string& out) {
 TEST(SweepCommand, TablesDoNotDependOnTheNumberOfProcesses) {
   const Folder folder;
   const std::string file = write_sweep(folder, "1", "contacts = 1000\n");
-  const Outcome one = run_program({"sweep", file, "-o", folder.path("one"), "--jobs", "1"});
-  ASSERT_EQ(one.code, 0) << one.err;
+  const Outcome one = run_successfully({"sweep", file, "-o", folder.path("one"), "--jobs", "1"});
   EXPECT_NE(one.out.find("24 jobs: 24 pass\n"), std::string::npos) << one.out;
   EXPECT_EQ(one.err.find('\r'), std::string::npos) << "quiet where nobody watches: " << one.err;
   ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("three"), "--jobs", "3"}).code, 0);
@@ -57,8 +56,7 @@ TEST(SweepCommand, TablesDoNotDependOnTheNumberOfProcesses) {
 
   // Shares in any order; the last one writes the tables.
   for (const char* share : {"3/3", "1/3"}) {
-    const Outcome part = run_program({"sweep", file, "-o", folder.path("parts"), "--share", share});
-    EXPECT_EQ(part.code, 0) << part.err;
+    const Outcome part = run_successfully({"sweep", file, "-o", folder.path("parts"), "--share", share});
     EXPECT_NE(part.err.find("8 jobs: 8 pass"), std::string::npos) << part.err;
     EXPECT_FALSE(fs::exists(folder.path("parts/jobs.csv")));
   }
@@ -152,9 +150,7 @@ TEST(SweepCommand, AFailureAffectsOnlyItsJob) {
       folder.write("sweep.toml",
                    "scenario = \"small.toml\"\n[grid]\ndefault.settings = [{ kp = 0.5 }, { kp = 0.5, ki = 0.1 }]\n"
                    "default.controller = [\"lane-keeping\", \"wander\"]\n");
-  const Outcome early = run_program({"sweep", file, "-o", folder.path("out")});
-  EXPECT_EQ(early.code, 2) << "found with the first point's other values";
-  EXPECT_NE(early.err.find("sweep.toml:4: default.controller = wander"), std::string::npos) << early.err;
+  expect_refused({"sweep", file, "-o", folder.path("out")}, "sweep.toml:4: default.controller = wander");
 
   const std::string pairs = folder.write("pairs.toml",
                                          "scenario = \"small.toml\"\n[grid]\n"
@@ -201,8 +197,7 @@ TEST(SweepCommand, SlurmScriptsListMissingJobs) {
   const std::string file = write_sweep(folder, "0.5");
   const std::string out = folder.path("o u t");
   Words words{"sweep", file, "-o", out, "--slurm", "--tasks", "4", "--jobs", "2", "--sbatch=--time=5"};
-  const Outcome first = run_program(words);
-  ASSERT_EQ(first.code, 0) << first.err;
+  run_successfully(words);
   const std::string path = out + "/sweep.sbatch", script = read_file(path);
   for (const char* line : {"#SBATCH --array=0-3\n", "#SBATCH --cpus-per-task=2\n", "#SBATCH --time=5\n"})
     EXPECT_NE(script.find(line), std::string::npos) << line << script;
@@ -229,8 +224,7 @@ TEST(SweepCommand, ListsFiftyPoints) {
     for (int i = 2; i <= points; ++i) values += ", " + std::to_string(i);
     const std::string file =
         folder.write("sweep.toml", "scenario = \"small.toml\"\n[grid]\nrobots = [" + values + "]\n");
-    const Outcome list = run_program({"sweep", file, "--list"}, no_device());
-    ASSERT_EQ(list.code, 0) << list.err;
+    const Outcome list = run_successfully({"sweep", file, "--list"}, no_device());
     EXPECT_EQ(count_lines(list.out), 1u + std::min(points, 50) + (points > 50 ? 1u : 0u)) << list.out;
     EXPECT_NE(list.out.find("     0  robots = 1\n"), std::string::npos) << list.out;
     EXPECT_NE(list.out.find("    48  robots = 49\n"), std::string::npos) << list.out;
@@ -261,8 +255,7 @@ TEST(SweepCommand, WrongUsageIsRejected) {
                 .find("SLURM_PROCID is '2'"),
             std::string::npos);
   EXPECT_EQ(run_program({"sweep", file, "-o", folder.path("out"), "--require-vulkan"}, no_device()).code, 3);
-  const Outcome list = run_program({"sweep", file, "--list"}, no_device());
-  EXPECT_EQ(list.code, 0) << "needs no device: " << list.err;
+  const Outcome list = run_successfully({"sweep", file, "--list"}, no_device());
   EXPECT_NE(list.out.find("12 points x 2 seeds = 24 jobs"), std::string::npos) << list.out;
 }
 

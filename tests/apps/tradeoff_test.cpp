@@ -95,8 +95,7 @@ TEST(Tradeoff, JsonMatchesTheFile) {
 
 /// The terminal states the scope of a bound: a mode that leaves beams out shows how many it covers, and their error.
 TEST(Tradeoff, BoundsAreShownWithTheErrorsThatTheyCover) {
-  const Outcome outcome = run_program({"tradeoff", our_world("cave.world"), "--robots", "10"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"tradeoff", our_world("cave.world"), "--robots", "10"});
   const std::size_t at = outcome.out.find("laser         skip2");
   ASSERT_NE(at, std::string::npos) << outcome.out;
   const std::string line = outcome.out.substr(at, outcome.out.find('\n', at) - at);
@@ -108,8 +107,7 @@ TEST(Tradeoff, BoundsAreShownWithTheErrorsThatTheyCover) {
 }
 
 TEST(Tradeoff, AutoPrintsOnlyTheModes) {
-  const Outcome outcome = run_program({"tradeoff", our_world("rooms.world"), "--auto", "--max-error", "1nm"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"tradeoff", our_world("rooms.world"), "--auto", "--max-error", "1nm"});
   EXPECT_EQ(outcome.out, "exact\n");
 }
 
@@ -127,8 +125,7 @@ TEST(Tradeoff, WrongUsageIsRejected) {
 
 TEST(AccuracyOption, ChangesReadingsAndPrintsTheMode) {
   const Words sense{"sense", our_world("rooms.world"), "--json"};
-  Words skip = sense;
-  skip.insert(skip.end(), {"--accuracy", "skip2"});
+  const Words skip = with(sense, {"--accuracy", "skip2"});
   const Outcome exact = run_program(sense), some = run_program(skip);
   EXPECT_EQ(some.code, 0) << some.err;
   expect_says(exact, "\"accuracy\":\"exact\"");
@@ -151,9 +148,8 @@ TEST(AccuracyOption, RejectsUnknownModes) {
 }
 
 TEST(AccuracyOption, AutoMeasuresFirst) {
-  const Outcome outcome = run_program(
+  const Outcome outcome = run_successfully(
       {"run", our_world("rooms.world"), "--robots", "2", "--duration", "1", "--auto", "--max-error", "1nm"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
   expect_says(outcome, "measured; with every error within 1 nm: --accuracy \"exact\"");
 }
 
@@ -167,8 +163,7 @@ TEST(AccuracyOption, AutoPrintsItsTarget) {
       {{"--min-rate", "1"}, "at 1 Hz or more: "},
   };
   for (const auto& [wish, said] : wishes) {
-    Words words{"run", our_world("rooms.world"), "--duration", "0", "--auto"};
-    words.insert(words.end(), wish.begin(), wish.end());
+    const Words words = with({"run", our_world("rooms.world"), "--duration", "0", "--auto"}, wish);
     expect_says(run_program(words), "measured; " + said + "--accuracy \"");
   }
 }

@@ -56,12 +56,10 @@ std::string refusal(const std::string& from, const std::string& to) {
 TEST(V2x, FramesSurviveARoundTripThroughJson) {
   const Folder folder;
   const std::string hex = upper(frames());
-  const Outcome decoded = run_program({"v2x", "decode", folder.write("frames.hex", hex)});
-  ASSERT_EQ(decoded.code, 0) << decoded.err;
+  const Outcome decoded = run_successfully({"v2x", "decode", folder.write("frames.hex", hex)});
   EXPECT_EQ(decoded.err, "");
   EXPECT_EQ(count_lines(decoded.out), count_lines(hex));
-  const Outcome encoded = run_program({"v2x", "encode", folder.write("frames.json", decoded.out)});
-  EXPECT_EQ(encoded.code, 0) << encoded.err;
+  const Outcome encoded = run_successfully({"v2x", "encode", folder.write("frames.json", decoded.out)});
   EXPECT_EQ(encoded.out, hex);
 }
 
@@ -87,16 +85,14 @@ TEST(V2x, AFrameWithExtensionsMayFollowAnother) {
   const std::size_t end = encoded.out.find('\n');
   EXPECT_EQ(encoded.out.substr(end + 1, 4), "8013");
   const std::string bytes = binary(encoded.out.substr(0, end)) + binary(encoded.out.substr(end + 1));
-  const Outcome decoded = run_program({"v2x", "decode", folder.write("two.bin", bytes)});
-  EXPECT_EQ(decoded.code, 0) << decoded.err;
+  const Outcome decoded = run_successfully({"v2x", "decode", folder.write("two.bin", bytes)});
   EXPECT_EQ(count_lines(decoded.out), 2u) << decoded.out;
   EXPECT_EQ(decoded.out.find("padding"), std::string::npos);
 }
 
 TEST(V2x, JsonUsesTheNamesOfTheStandard) {
   const Folder folder;
-  const Outcome encoded = run_program({"v2x", "encode", folder.write("spat.json", kJson)});
-  ASSERT_EQ(encoded.code, 0) << encoded.err;
+  const Outcome encoded = run_successfully({"v2x", "encode", folder.write("spat.json", kJson)});
   const std::string hex = encoded.out.substr(0, encoded.out.size() - 1);
   const Outcome decoded =
       run_program({"v2x", "decode", folder.write("spat.hex", "# a comment\r\n\r\n 0x" + hex + "00\r\n")});
@@ -114,8 +110,7 @@ TEST(V2x, JsonUsesTheNamesOfTheStandard) {
 TEST(V2x, XmlIsOneDocument) {
   const Folder folder;
   const std::string hex = frames().substr(0, frames().find('\n') + 1);
-  const Outcome one = run_program({"v2x", "decode", "--xml", folder.write("one.hex", hex)});
-  EXPECT_EQ(one.code, 0) << one.err;
+  const Outcome one = run_successfully({"v2x", "decode", "--xml", folder.write("one.hex", hex)});
   EXPECT_EQ(one.out.find("<?xml version=\"1.0\"?>\n<MessageFrame>\n  <messageId>"), 0u) << one.out;
   const Outcome two = run_program({"v2x", "decode", "--xml", folder.write("two.hex", hex + hex)});
   EXPECT_EQ(two.out.find("<?xml version=\"1.0\"?>\n<MessageFrames>\n  <MessageFrame>\n"), 0u) << two.out;
@@ -160,9 +155,7 @@ TEST(V2x, ManyBadFramesAreCounted) {
 TEST(V2x, FilesWithoutAFrameAreRejected) {
   const Folder folder;
   for (const std::string content : {"\n\n", "# nothing\n"}) {
-    const Outcome outcome = run_program({"v2x", "decode", folder.write("none.hex", content)});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_NE(outcome.err.find("no frame"), std::string::npos) << outcome.err;
+    expect_refused({"v2x", "decode", folder.write("none.hex", content)}, "no frame");
   }
   EXPECT_EQ(run_program({"v2x", "decode", folder.path("missing")}).code, 2);
   EXPECT_EQ(run_program({"v2x", "encode", folder.write("blank", " \n")}).code, 2);
@@ -204,12 +197,10 @@ TEST(V2x, DeeplyNestedJsonIsRejected) {
 
 TEST(V2x, ExportsTheLightsOfAWorld) {
   const Folder folder;
-  const Outcome exported = run_program({"v2x", "export", our_world("simville/simville.world"), "--time", "9"});
-  ASSERT_EQ(exported.code, 0) << exported.err;
+  const Outcome exported = run_successfully({"v2x", "export", our_world("simville/simville.world"), "--time", "9"});
   EXPECT_EQ(count_lines(exported.out), 4u);
   EXPECT_NE(exported.err.find("intersection 1: light1, light2, light3, light4; 4 stop lines\n"), std::string::npos);
-  const Outcome decoded = run_program({"v2x", "decode", folder.write("lights.hex", exported.out)});
-  ASSERT_EQ(decoded.code, 0) << decoded.err;
+  const Outcome decoded = run_successfully({"v2x", "decode", folder.write("lights.hex", exported.out)});
   const Json map(decoded.out.substr(0, decoded.out.find('\n')));
   EXPECT_EQ(map.number("/value/MapData/intersections/0/laneSet/0/connectsTo/0/signalGroup"), 1);
   const std::string rest = decoded.out.substr(decoded.out.find('\n') + 1);
@@ -220,9 +211,7 @@ TEST(V2x, ExportsTheLightsOfAWorld) {
   EXPECT_EQ(spat.number(events + "0/timing/minEndTime"), 100);
   EXPECT_EQ(spat.text(events + "1/eventState"), "stop-And-Remain");
 
-  const Outcome none = run_program({"v2x", "export", our_world("rooms.world")});
-  EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.err.find("no traffic lights in this world"), std::string::npos) << none.err;
+  expect_refused({"v2x", "export", our_world("rooms.world")}, "no traffic lights in this world");
 }
 
 TEST(V2x, WrongArgumentsAreRejected) {
@@ -234,9 +223,7 @@ TEST(V2x, WrongArgumentsAreRejected) {
                                                {"v2x", "encode", "--xml", file},
                                                {"v2x", "decode", file, file},
                                                {"v2x", "decode", "--time", "3", file}}) {
-    const Outcome outcome = run_program(words);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_NE(outcome.err.find("see `sensorfarm v2x --help`"), std::string::npos) << outcome.err;
+    expect_refused(words, "see `sensorfarm v2x --help`");
   }
 }
 

@@ -17,8 +17,8 @@ namespace {
 
 /// Records two seconds of a world with many sensor types.
 std::string record(const Folder& folder, const Words& more = {}) {
-  Words words{"run", our_world("minimagic/minimagic.world"), "--duration", "2", "--record", folder.path("run")};
-  words.insert(words.end(), more.begin(), more.end());
+  const Words words =
+      with({"run", our_world("minimagic/minimagic.world"), "--duration", "2", "--record", folder.path("run")}, more);
   EXPECT_EQ(run_program(words).code, 0);
   return folder.path("run");
 }
@@ -80,22 +80,19 @@ TEST(Verify, ChecksASampleByDefault) {
 
 TEST(Verify, ASoundRunPasses) {
   const Folder folder;
-  const Outcome outcome = run_program({"verify", record(folder, {"--record-readings"})});
-  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  const Outcome outcome = run_successfully({"verify", record(folder, {"--record-readings"})});
   EXPECT_NE(outcome.out.find("verdict            sound"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("plain C++ against the recording"), std::string::npos) << outcome.out;
 }
 
 TEST(Verify, NoReturnMayBeInfinite) {
   const Folder folder;
-  const Outcome outcome = run_program({"verify", record(folder, {"--record-readings", "--no-return", "inf"})});
-  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  run_successfully({"verify", record(folder, {"--record-readings", "--no-return", "inf"})});
 }
 
 TEST(Verify, WithoutReadings) {
   const Folder folder;
-  const Outcome outcome = run_program({"verify", record(folder), "--json", "--sample", "5"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"verify", record(folder), "--json", "--sample", "5"});
   EXPECT_NE(outcome.out.find("\"sound\": true"), std::string::npos) << outcome.out;
 }
 
@@ -105,8 +102,7 @@ TEST(Verify, WithoutReadingsAndLasers) {
   const std::string world = folder.path("blind.world"), run = folder.path("run");
   std::ofstream(world) << "position(pose [1 1 0 0] drive \"diff\")\n";
   ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", run}).code, 0);
-  const Outcome outcome = run_program({"verify", run});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"verify", run});
   EXPECT_EQ(
       outcome.out,
       "  ticks              10\n"
@@ -166,8 +162,7 @@ TEST(Verify, ATruncatedRecordingIsIncomplete) {
   const std::string file = altered(folder, 99) + "/run.mcap";
   const auto whole = std::filesystem::file_size(file);
   std::filesystem::resize_file(file, whole * 3 / 4);
-  const Outcome part = run_program({"verify", file});
-  EXPECT_EQ(part.code, 0) << part.out;
+  const Outcome part = run_successfully({"verify", file});
   EXPECT_NE(part.out.find("verdict            sound up to its end, but the recording was not finished"),
             std::string::npos)
       << part.out;
@@ -188,8 +183,7 @@ TEST(Verify, AnotherAccuracyModeHasItsErrors) {
   const Folder folder;
   const std::string run = folder.path("run");
   ASSERT_EQ(run_program({"run", our_world("simville/simville.world"), "--duration", "1", "--record", run}).code, 0);
-  const Outcome outcome = run_program({"verify", run, "--accuracy", "skip2 near1", "--json"});
-  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  const Outcome outcome = run_successfully({"verify", run, "--accuracy", "skip2 near1", "--json"});
   const Json facts(outcome.out);
   EXPECT_TRUE(facts.flag("/sound")) << "by the recorded mode";
   EXPECT_EQ(facts.text("/accuracy/mode"), "skip2 near1");
@@ -202,8 +196,7 @@ TEST(Verify, AnotherAccuracyModeHasItsErrors) {
     EXPECT_LE(facts.number(at + "/median"), facts.number(at + "/p99"));
     EXPECT_LE(facts.number(at + "/p99"), facts.number(at + "/max"));
   }
-  const Outcome text = run_program({"verify", run, "--accuracy", "exact"});
-  EXPECT_EQ(text.code, 0) << text.err;
+  const Outcome text = run_successfully({"verify", run, "--accuracy", "exact"});
   EXPECT_NE(text.out.find("Errors of \"exact\" against exact at the recorded poses, both without noise, "),
             std::string::npos)
       << text.out;
@@ -213,19 +206,13 @@ TEST(Verify, AnotherAccuracyModeHasItsErrors) {
 TEST(Verify, UnknownModesAreRejectedWithTheKnownOnes) {
   const Folder folder;
   const std::string run = record(folder);
-  const Outcome unknown = run_program({"verify", run, "--accuracy", "skip3"});
-  EXPECT_EQ(unknown.code, 2);
-  EXPECT_EQ(unknown.out, "");
-  EXPECT_NE(unknown.err.find("--accuracy: there is no accuracy \"skip3\"; expected one of \"exact\", \"single\", "
-                             "\"skip2\", \"skip4\""),
-            std::string::npos)
-      << unknown.err;
+  expect_refused({"verify", run, "--accuracy", "skip3"},
+                 "--accuracy: there is no accuracy \"skip3\"; expected one of \"exact\", \"single\", "
+                 "\"skip2\", \"skip4\"");
 }
 
 TEST(Verify, WrongUsageIsRejected) {
-  const Outcome nothing = run_program({"verify", "/nowhere"});
-  EXPECT_EQ(nothing.code, 2);
-  EXPECT_NE(nothing.err.find("/nowhere"), std::string::npos);
+  expect_refused({"verify", "/nowhere"}, "/nowhere");
   EXPECT_EQ(run_program({"verify"}).code, 2);
 }
 

@@ -22,15 +22,13 @@ class Video : public testing::Test {
   }
   /// Two robots that wander for `seconds`.
   Words run(const std::string& video, const std::string& seconds, const Words& more = {}) const {
-    Words words{"run", our_world("cave.world"), "--robots", "2",     "--duration", seconds, "--video",
-                video, "--video-size",          "160x120",  "--json"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return with({"run", our_world("cave.world"), "--robots", "2", "--duration", seconds, "--video", video,
+                 "--video-size", "160x120", "--json"},
+                more);
   }
   std::string record(const std::string& seconds) const {
-    const Outcome outcome = run_program(
+    run_successfully(
         {"run", our_world("cave.world"), "--robots", "2", "--duration", seconds, "--record", folder.path("r")});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
     return folder.path("r");
   }
   /// Checks with another program, if it is installed: "codec,frames" and the duration.
@@ -47,13 +45,12 @@ class Video : public testing::Test {
 
 /// Ten seconds of ticks give ten seconds of video, divided by the speed.
 TEST_F(Video, DurationIsThatOfTheRunDividedByTheSpeed) {
-  const Outcome one = run_program(run(folder.path("one.webm"), "10"));
-  ASSERT_EQ(one.code, 0) << one.err;
+  const Outcome one = run_successfully(run(folder.path("one.webm"), "10"));
   EXPECT_NE(one.out.find("\"frames\": 250"), std::string::npos) << one.out;
   EXPECT_NE(one.out.find("\"seconds\": 10.0"), std::string::npos) << one.out;
   EXPECT_EQ(one.err.find('\r'), std::string::npos) << "progress in a pipe";
-  const Outcome four = run_program(run(folder.path("four.webm"), "10", {"--video-speed", "4", "--video-fps", "10"}));
-  ASSERT_EQ(four.code, 0) << four.err;
+  const Outcome four =
+      run_successfully(run(folder.path("four.webm"), "10", {"--video-speed", "4", "--video-fps", "10"}));
   EXPECT_NE(four.out.find("\"frames\": 25,"), std::string::npos) << four.out;
   expect_probed(folder.path("one.webm"), "vp9,250\n10.000000\n");
   expect_probed(folder.path("four.webm"), "vp9,25\n2.500000\n");
@@ -61,8 +58,7 @@ TEST_F(Video, DurationIsThatOfTheRunDividedByTheSpeed) {
 
 /// Frames depend only on states: those of a run and of its recording are the same.
 TEST_F(Video, ARecordingHasTheSameVideoAsItsRun) {
-  const Outcome ran = run_program(run(folder.path("run.webm"), "4", {"--record", folder.path("r")}));
-  ASSERT_EQ(ran.code, 0) << ran.err;
+  run_successfully(run(folder.path("run.webm"), "4", {"--record", folder.path("r")}));
   const Outcome plotted =
       run_program({"plot", folder.path("r"), "--video", folder.path("plot.webm"), "--video-size", "160x120"});
   ASSERT_EQ(plotted.code, 0) << plotted.err;
@@ -73,8 +69,7 @@ TEST_F(Video, ARecordingHasTheSameVideoAsItsRun) {
 
 /// A video does not change the run.
 TEST_F(Video, ReadingsDoNotDependOnIt) {
-  const Outcome with = run_program(run(folder.path("v.webm"), "2", {"--video-readings", "roomba1"}));
-  ASSERT_EQ(with.code, 0) << with.err;
+  const Outcome with = run_successfully(run(folder.path("v.webm"), "2", {"--video-readings", "roomba1"}));
   const Outcome without = run_program({"run", our_world("cave.world"), "--robots", "2", "--duration", "2", "--json"});
   const auto hash = [](const Outcome& outcome) {
     return outcome.out.substr(outcome.out.find("\"hash\"")).substr(0, 30);
@@ -84,9 +79,8 @@ TEST_F(Video, ReadingsDoNotDependOnIt) {
 
 TEST_F(Video, FramesArePngFilesForOtherEncoders) {
   const std::string recording = record("2");
-  const Outcome outcome = run_program({"view", recording, "--frames", folder.path("f"), "--video-fps", "10",
-                                       "--video-size", "160x120", "--from", "0.5", "--video-readings", "roomba1"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"view", recording, "--frames", folder.path("f"), "--video-fps", "10",
+                                            "--video-size", "160x120", "--from", "0.5", "--video-readings", "roomba1"});
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path("f")))
     count += entry.path().extension() == ".png";
@@ -191,9 +185,7 @@ TEST_F(Video, WithoutFfmpegTheMessageNamesItsPackage) {
 TEST_F(Video, WrongOptionsAreReported) {
   const std::string world = our_world("cave.world");
   const auto message = [&](const Words& more) {
-    Words words{"run", world, "--robots", "2", "--duration", "0.1"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome outcome = run_program(words);
+    const Outcome outcome = run_program(with({"run", world, "--robots", "2", "--duration", "0.1"}, more));
     EXPECT_EQ(outcome.code, 2) << more.front();
     return outcome.err;
   };
@@ -214,12 +206,9 @@ TEST_F(Video, WrongOptionsAreReported) {
            {{"--video-fps", "10"}, "--video-fps requires --video"}})
     EXPECT_NE(message(more).find(part), std::string::npos) << part;
   const std::string blind = folder.write("w.world", "position( name \"a\" pose [0 0 0 0] gps( ) )\n");
-  const Outcome refused = run_program({"run", blind, "--duration", "0.1", "--video", video, "--video-readings", "a"});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_NE(refused.err.find("'a' has no laser, sonar or infrared sensor"), std::string::npos) << refused.err;
-  const Outcome plotted = run_program({"plot", record("0.1"), "--video", video, "--csv"});
-  EXPECT_EQ(plotted.code, 2);
-  EXPECT_NE(plotted.err.find("--csv: changes figures"), std::string::npos) << plotted.err;
+  expect_refused({"run", blind, "--duration", "0.1", "--video", video, "--video-readings", "a"},
+                 "'a' has no laser, sonar or infrared sensor");
+  expect_refused({"plot", record("0.1"), "--video", video, "--csv"}, "--csv: changes figures");
 }
 
 }  // namespace

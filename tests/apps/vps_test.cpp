@@ -154,8 +154,7 @@ TEST(Vps, DrawsEachSecondImage) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("p/a-000001.png")));
   EXPECT_TRUE(std::filesystem::exists(folder.path("p/a-000004.png")));
   EXPECT_TRUE(std::filesystem::exists(folder.path("p/b-000001.png")));
-  const Outcome video = run_program(to_video);
-  ASSERT_EQ(video.code, 0) << video.err;
+  run_successfully(to_video);
   const Outcome read = run_program({"vps", testbed, "--input", "a=" + folder.path("tags.avi"), "--json"});
   EXPECT_NE(read.out.find("\"images\": 3,\n  \"unreadable\": 0"), std::string::npos) << read.out << read.err;
 }
@@ -312,9 +311,7 @@ TEST(Calibrate, ReportsErrors) {
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.err.find("a chessboard with 7 x 5 inner corners was found in 0 of 2 images"), std::string::npos)
       << none.err;
-  const Outcome device = run_program({"calibrate", folder.path("none")});
-  EXPECT_EQ(device.code, 2);
-  EXPECT_NE(device.err.find("does not exist"), std::string::npos) << device.err;
+  expect_refused({"calibrate", folder.path("none")}, "does not exist");
   for (const char* name : {"a/b", "-a", "a b"}) {
     const Outcome named = run_program({"calibrate", folder.path("p"), fmt::format("--name={}", name)});
     EXPECT_NE(named.code, 0) << name;
@@ -346,12 +343,7 @@ TEST(Vps, ReportsErrors) {
             "'size' of all cameras is 128 Mpx together; rendered images (--rendered, --robots) have at most "
             "64 Mpx"},
            {{folder.path("none.toml")}, "none.toml"}}) {
-    Words words{"vps"};
-    words.insert(words.end(), each.arguments.begin(), each.arguments.end());
-    const Outcome outcome = run_program(words);
-    EXPECT_EQ(outcome.code, 2) << each.expected;
-    EXPECT_NE(outcome.err.find(each.expected), std::string::npos) << outcome.err;
-    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    expect_refused(with({"vps"}, each.arguments), each.expected);
   }
 }
 

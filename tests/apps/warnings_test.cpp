@@ -27,8 +27,7 @@ struct Said {
 
 Said said_by(const Folder& folder, const std::string& command, const Words& more = {}) {
   const std::string file = folder.write("slips.world", kSlips);
-  Words words{command, file};
-  words.insert(words.end(), more.begin(), more.end());
+  const Words words = with({command, file}, more);
   return {file, run_program(words)};
 }
 
@@ -86,9 +85,8 @@ TEST(Warnings, JsonListsAll) {
 TEST(Warnings, ScenariosReportWarningsOfTheirWorlds) {
   const Folder folder;
   folder.write("slips.world", kSlips);
-  const Outcome outcome = run_program(
+  const Outcome outcome = run_successfully(
       {"test", folder.write("a.toml", "world = \"slips.world\"\nduration = 0.2\n[expect]\ncontacts = 9\n")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("sensorfarm: 5 warnings; the first 3 follow"), std::string::npos) << outcome.err;
 }
 
@@ -99,11 +97,10 @@ TEST(Warnings, ControllersOfTheWorldFileTakePrecedence) {
       "position( name \"roomba1\" size [0.3 0.3 0.1] ctrl \"wander\" laser( ) )\n"
       "position( name \"roomba2\" pose [2 0 0 0] size [0.3 0.3 0.1] ctrl \"fasr\" laser( ) )\n";
   const std::string world = folder.write("two.world", robots);
-  const Outcome outcome = run_program({"run", world, "--duration", "0.5", "--controller", "explore", "--json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("1 robot is driven by the controller in the world file (ctrl); use --drive NAME to drive "
-                             "a robot by 'explore'"),
-            std::string::npos)
+  const Outcome outcome = run_successfully({"run", world, "--duration", "0.5", "--controller", "explore", "--json"});
+  EXPECT_NE(
+      outcome.err.find("1 robot is driven as the world file says (ctrl); --drive NAME drives a robot by 'explore'"),
+      std::string::npos)
       << outcome.err;
   const Json facts(outcome.out);
   ASSERT_EQ(facts.size("/warnings"), 1u);
@@ -121,9 +118,8 @@ TEST(Warnings, MissionsOfARunReportTheirMistakes) {
   ASSERT_NE(at, std::string::npos);
   mission.replace(at, mission.find('\n', at) - at, "num_speed_limits 99");
   const std::string file = folder.write("go.mdf", mission);
-  const Outcome outcome = run_program({"run", our_world("simville/simville.world"), "--duration", "0.2", "--json",
-                                       "--controller", "route", "--set", "mission=" + file, "--drive", "roomba0"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully({"run", our_world("simville/simville.world"), "--duration", "0.2", "--json",
+                                            "--controller", "route", "--set", "mission=" + file, "--drive", "roomba0"});
   EXPECT_NE(outcome.err.find("sensorfarm: 1 warning:\n" + file), std::string::npos) << outcome.err;
   EXPECT_EQ(Json(outcome.out).text("/warnings/0/file"), file);
 }
@@ -145,14 +141,12 @@ end_file
 TEST(Warnings, RoadsWithMistakesAreAcceptedUnlessStrict) {
   const Folder folder;
   const std::string rndf = folder.write("slips.rndf", kSlippedRoads);
-  const Outcome check = run_program({"check", rndf, "--json"});
-  ASSERT_EQ(check.code, 0) << check.err;
+  const Outcome check = run_successfully({"check", rndf, "--json"});
   const Json facts(check.out);
   ASSERT_EQ(facts.size("/warnings"), 2u);
   EXPECT_EQ(facts.number("/warnings/0/line"), 6);
   EXPECT_EQ(facts.number("/warnings/1/line"), 4);
-  const Outcome draw = run_program({"draw", rndf, "-o", folder.path("slips.png")});
-  EXPECT_EQ(draw.code, 0);
+  const Outcome draw = run_successfully({"draw", rndf, "-o", folder.path("slips.png")});
   EXPECT_NE(draw.err.find("sensorfarm: 2 warnings:\n" + rndf + ":6: warning: 'num_waypoints' says 7"),
             std::string::npos)
       << draw.err;
