@@ -102,93 +102,67 @@ TEST(OptionParserRecords, MatchTheirRecord) {
   expect_golden("option_parsers", places() + numbers() + validators() + words() + batch_script());
 }
 
-/// True if a command accepts a value of an option. The value is checked before the missing arguments.
-static bool takes(const std::string& command, const std::string& option, const std::string& value) {
-  const std::string word = option + "=" + value;
+/// True if a value of "COMMAND --OPTION" is accepted. The value is checked before the missing arguments.
+static bool takes(const std::string& option, const std::string& value) {
+  const std::size_t space = option.find(' ');
+  const std::string command = option.substr(0, space), name = option.substr(space + 1), word = name + "=" + value;
   const char* const words[] = {"sensorfarm", command.c_str(), word.c_str()};
   testing::internal::CaptureStderr();
   parse_command_line(3, words);
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_EQ(said.find("was not expected"), std::string::npos) << said;
-  return said.find(option + ": expected ") == std::string::npos;
+  const std::string err = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(err.find("was not expected"), std::string::npos) << err;
+  return err.find(name + ": expected ") == std::string::npos;
 }
 
 /// The smallest and largest values of options, and the next ones beyond.
 TEST(OptionLimits, AreEnforced) {
   struct Range {
-    const char *command, *option, *below, *first, *last, *above;
+    const char *below, *first, *last, *above;
   };
-  for (const Range& r :
-       std::initializer_list<Range>{{"export", "--height", "-1000001", "-1e6", "1e6", "1000001"},
-                                    {"export", "--every", "0.0009", "0.001", "1e6", "1000001"},
-                                    {"view", "--time", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"check", "--rate", "0.09", "0.1", "10000", "10001"},
-                                    {"field", "--height", "-1000001", "-1e6", "1e6", "1000001"},
-                                    {"field", "--dpi", "49.9", "50", "1200", "1200.1"},
-                                    {"sense", "--sensor", "-1", "0", "65535", "65536"},
-                                    {"run", "--duration", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"run", "--checkpoint", "0.0009", "0.001", "1e9", "1.001e9"},
-                                    {"run", "--balance", "0.0009", "0.001", "1e9", "1.001e9"},
-                                    {"run", "--speed", "-0.1", "0", "1e6", "1000001"},
-                                    {"run", "--threads", "-1", "0", "256", "257"},
-                                    {"run", "--robots", "0", "1", "65535", "65536"},
-                                    {"run", "--seed", "-1", "0", "18446744073709551615", "18446744073709551616"},
-                                    {"run", "--laser-port", "0", "1", "65535", "65536"},
-                                    {"run", "--ports-per-robot", "0", "1", "65535", "65536"},
-                                    {"run", "--ros2", "-1", "0", "232", "233"},
-                                    {"serve", "--forget", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"serve", "--stale-after", "0.009", "0.01", "1e6", "1000001"},
-                                    {"serve", "--link-delay", "-0.1", "0", "10", "10.01"},
-                                    {"serve", "--hypotheses", "0", "1", "64", "65"},
-                                    {"serve", "--wait-for", "0", "1", "65536", "65537"},
-                                    {"serve", "--lockstep-timeout", "-0.1", "0", "1e6", "1000001"},
-                                    {"serve", "--port", "-1", "0", "65535", "65536"},
-                                    {"serve", "--rate", "0.09", "0.1", "10000", "10001"},
-                                    {"serve", "--radio", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"serve", "--spat", "0", "1", "65535", "65536"},
-                                    {"robot", "--port", "0", "1", "65535", "65536"},
-                                    {"robot", "--delay", "-0.1", "0", "3600", "3600.1"},
-                                    {"robot", "--jitter", "-0.1", "0", "3600", "3600.1"},
-                                    {"robot", "--loss", "-0.1", "0", "1", "1.001"},
-                                    {"robot", "--duplicate", "-0.1", "0", "1", "1.001"},
-                                    {"robot", "--corrupt", "-0.1", "0", "1", "1.001"},
-                                    {"robot", "--cameras", "0", "1", "65535", "65536"},
-                                    {"robot", "--tag", "0", "1", "65535", "65536"},
-                                    {"robot", "--rate", "0.09", "0.1", "1000", "1000.1"},
-                                    {"robot", "--stop-after", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"robot", "--spat", "0", "1", "65535", "65536"},
-                                    {"light", "--port", "0", "1", "65535", "65536"},
-                                    {"light", "--rate", "0.09", "0.1", "100", "100.1"},
-                                    {"light", "--time", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"light", "--latitude", "-89.1", "-89", "89", "89.1"},
-                                    {"light", "--longitude", "-180", "-179.9", "179.9", "180"},
-                                    {"start", "--robot", "-1", "0", "65535", "65536"},
-                                    {"listen", "--silence", "0.09", "0.1", "1e6", "1000001"},
-                                    {"listen", "--duration", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"dump", "--count", "-1", "0", "1000000000000", "1000000000001"},
-                                    {"plot", "--from", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"plot", "--to", "-0.1", "0", "1e9", "1.001e9"},
-                                    {"experiment", "--trials", "0", "1", "1000", "1001"},
-                                    {"test", "--jobs", "0", "1", "1024", "1025"},
-                                    {"sweep", "--jobs", "0", "1", "1024", "1025"},
-                                    {"sweep", "--tasks", "0", "1", "100000", "100001"},
-                                    {"sweep", "--timeout", "0.0009", "0.001", "1e9", "1.001e9"},
-                                    {"verify", "--sample", "-1", "0", "18446744073709551615", "18446744073709551616"},
-                                    {"vps", "--rendered", "0", "1", "1000", "1001"},
-                                    {"vps", "--speed", "-0.1", "0", "100", "100.1"},
-                                    {"vps", "--occluders", "-1", "0", "100", "101"},
-                                    {"vps", "--robots", "0", "1", "65535", "65536"},
-                                    {"vps", "--images", "-1", "0", "1000000000", "1000000001"},
-                                    {"vps", "--every", "0", "1", "1000000", "1000001"},
-                                    {"calibrate", "--columns", "2", "3", "100", "101"},
-                                    {"calibrate", "--rows", "2", "3", "100", "101"},
-                                    {"calibrate", "--square", "0.00009", "0.0001", "10", "10.01"},
-                                    {"calibrate", "--marker", "0.00009", "0.0001", "10", "10.01"}}) {
-    const auto taken = [&](const char* value) { return takes(r.command, r.option, value); };
-    EXPECT_TRUE(taken(r.first) && taken(r.last)) << r.command << " " << r.option;
-    EXPECT_FALSE(taken(r.below)) << r.command << " " << r.option << "=" << r.below;
-    EXPECT_FALSE(taken(r.above)) << r.command << " " << r.option << "=" << r.above;
-  }
+  const std::pair<Range, std::vector<std::string>> limits[] = {
+      {{"-1000001", "-1e6", "1e6", "1000001"}, {"export --height", "field --height"}},
+      {{"0.0009", "0.001", "1e6", "1000001"}, {"export --every"}},
+      {{"-0.1", "0", "1e9", "1.001e9"},
+       {"view --time", "run --duration", "serve --forget", "serve --radio", "robot --stop-after", "light --time",
+        "listen --duration", "plot --from", "plot --to"}},
+      {{"0.09", "0.1", "10000", "10001"}, {"check --rate", "serve --rate"}},
+      {{"49.9", "50", "1200", "1200.1"}, {"field --dpi"}},
+      {{"-1", "0", "65535", "65536"}, {"sense --sensor", "serve --port", "start --robot"}},
+      {{"0.0009", "0.001", "1e9", "1.001e9"}, {"run --checkpoint", "run --balance", "sweep --timeout"}},
+      {{"-0.1", "0", "1e6", "1000001"}, {"run --speed", "serve --lockstep-timeout"}},
+      {{"-1", "0", "256", "257"}, {"run --threads"}},
+      {{"0", "1", "65535", "65536"},
+       {"run --robots", "run --laser-port", "run --ports-per-robot", "serve --spat", "robot --port", "robot --cameras",
+        "robot --tag", "robot --spat", "light --port", "vps --robots"}},
+      {{"-1", "0", "18446744073709551615", "18446744073709551616"}, {"run --seed", "verify --sample"}},
+      {{"-1", "0", "232", "233"}, {"run --ros2"}},
+      {{"0.009", "0.01", "1e6", "1000001"}, {"serve --stale-after"}},
+      {{"-0.1", "0", "10", "10.01"}, {"serve --link-delay"}},
+      {{"0", "1", "64", "65"}, {"serve --hypotheses"}},
+      {{"0", "1", "65536", "65537"}, {"serve --wait-for"}},
+      {{"-0.1", "0", "3600", "3600.1"}, {"robot --delay", "robot --jitter"}},
+      {{"-0.1", "0", "1", "1.001"}, {"robot --loss", "robot --duplicate", "robot --corrupt"}},
+      {{"0.09", "0.1", "1000", "1000.1"}, {"robot --rate"}},
+      {{"0.09", "0.1", "100", "100.1"}, {"light --rate"}},
+      {{"-89.1", "-89", "89", "89.1"}, {"light --latitude"}},
+      {{"-180", "-179.9", "179.9", "180"}, {"light --longitude"}},
+      {{"0.09", "0.1", "1e6", "1000001"}, {"listen --silence"}},
+      {{"-1", "0", "1000000000000", "1000000000001"}, {"dump --count"}},
+      {{"0", "1", "1000", "1001"}, {"experiment --trials", "vps --rendered"}},
+      {{"0", "1", "1024", "1025"}, {"test --jobs", "sweep --jobs"}},
+      {{"0", "1", "100000", "100001"}, {"sweep --tasks"}},
+      {{"-0.1", "0", "100", "100.1"}, {"vps --speed"}},
+      {{"-1", "0", "100", "101"}, {"vps --occluders"}},
+      {{"-1", "0", "1000000000", "1000000001"}, {"vps --images"}},
+      {{"0", "1", "1000000", "1000001"}, {"vps --every"}},
+      {{"2", "3", "100", "101"}, {"calibrate --columns", "calibrate --rows"}},
+      {{"0.00009", "0.0001", "10", "10.01"}, {"calibrate --square", "calibrate --marker"}}};
+  for (const auto& [range, options] : limits)
+    for (const std::string& option : options) {
+      EXPECT_TRUE(takes(option, range.first) && takes(option, range.last)) << option;
+      EXPECT_FALSE(takes(option, range.below)) << option << "=" << range.below;
+      EXPECT_FALSE(takes(option, range.above)) << option << "=" << range.above;
+    }
 }
 
 /// Up to ten names in full, and units of quantities at their limits.

@@ -7,7 +7,6 @@
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
-#include "viz/road_view.h"
 
 namespace sf {
 

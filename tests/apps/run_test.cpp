@@ -12,6 +12,7 @@
 #include "tests/apps/file_size_limit.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/refusal.h"
 #include "tests/viz/png.h"
 #include "viz/trajectory_figure.h"
 #include "world/world.h"
@@ -110,10 +111,10 @@ TEST(Run, RobotsStoppedForOneReasonShareALine) {
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laneedge( ) )\n");
   const Outcome outcome = run_successfully(
       {"run", world, "--robots", "5", "--duration", "5", "--controller", "lane-keeping", "--set", "half_width=0.2"});
-  EXPECT_NE(outcome.out.find("at rest at the end   roomba1, roomba2, roomba3 and 2 more for up to 5 s: its lane edge "
-                             "sensor detects nothing to follow\n"),
-            std::string::npos)
-      << outcome.out;
+  expect_in(
+      "at rest at the end   roomba1, roomba2, roomba3 and 2 more for up to 5 s: its lane edge "
+      "sensor detects nothing to follow\n",
+      outcome.out);
 }
 
 /// The reason that stops most robots is first, though the other is first in the alphabet.

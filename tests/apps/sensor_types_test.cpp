@@ -17,6 +17,7 @@
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/netio/documented.h"
+#include "tests/refusal.h"
 #include "viz/series_figure.h"
 
 namespace sf {
@@ -399,9 +400,7 @@ TEST(LaneEdge, ABoundHoldsOrIsFlagged) {
   EXPECT_FALSE(straight.has("/unsure"));
   EXPECT_LT(straight.number("/bound"), 1.1e-8);
   EXPECT_EQ(sense("1,0,100").has("/unsure"), !sense("1,0,100").is_null("/distance_m")) << "looks along the lane";
-  EXPECT_NE(run("check", lane, {}).out.find("laneedge exact, within 10.1 nm: one straight edge, visible"),
-            std::string::npos)
-      << run("check", lane, {}).out;
+  expect_in("laneedge exact, within 10.1 nm: one straight edge, visible", run("check", lane, {}).out);
 }
 
 TEST(LaneEdge, WorksWithEveryCommand) {

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "base/installation.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 

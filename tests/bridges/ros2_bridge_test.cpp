@@ -15,7 +15,6 @@
 
 #include "base/error.h"
 #include "record/cdr.h"
-#include "record/schemas.h"
 
 namespace sf::bridges {
 namespace {

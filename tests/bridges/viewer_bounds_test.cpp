@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "tests/bridges/viewer_fixture.h"
+#include "tests/refusal.h"
 
 namespace sf::bridges {
 
@@ -171,12 +172,9 @@ TEST(ViewerBounds, ConnectionsWaitForDescriptors) {
 TEST(ViewerBounds, AnAddressInUseIsNamed) {
   const ViewerFixture fixture;
   const Scene scene{fixture.world, fixture.sensor_set, fixture.info};
-  try {
-    Viewer(scene, {{"127.0.0.1", fixture.port()}});
-    FAIL() << "two listen at one port";
-  } catch (const std::exception& error) {
-    EXPECT_NE(std::string(error.what()).find(std::to_string(fixture.port())), std::string::npos) << error.what();
-  }
+  expect_in(std::to_string(fixture.port()), refusal_of<std::exception>([&] {
+              Viewer(scene, {{"127.0.0.1", fixture.port()}});
+            }));
 }
 
 TEST(ViewerBounds, EndsWithClientsConnected) {

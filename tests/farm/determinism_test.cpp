@@ -6,7 +6,6 @@
 #include "raycast/casters.h"
 #include "robots/kinematics.h"
 #include "tests/farm/small_farm.h"
-#include "tests/sensors/chance.h"
 #include "tests/sensors/edit_laser.h"
 
 namespace sf::farm {

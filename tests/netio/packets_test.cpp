@@ -17,8 +17,6 @@ namespace {
 
 using sf::test::documented;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 PacketStatus reason_of(const base::Bytes& bytes) {
   Packet packet;
   return decode(bytes, packet);
@@ -314,7 +312,7 @@ TEST(Packets, OtherVersionsAreUnknown) {
 }
 
 TEST(Packets, RejectsNanAndInfinityInStates) {
-  for (const double bad : {kNan, kInf, -kInf}) {
+  for (const double bad : {kNaN, kInf, -kInf}) {
     for (std::size_t i = 0; i < 7; ++i)
       EXPECT_EQ(reason_of(patched(v2v_example(), 64 + 8 * i, bad)), PacketStatus::not_finite) << i;
     for (std::size_t i = 0; i < 13; ++i)
@@ -323,7 +321,7 @@ TEST(Packets, RejectsNanAndInfinityInStates) {
 }
 
 TEST(Packets, NotFiniteTakesPrecedenceOverOutOfRange) {
-  EXPECT_EQ(reason_of(patched(patched(v2v_example(), 64, 1e300), 112, kNan)), PacketStatus::not_finite);
+  EXPECT_EQ(reason_of(patched(patched(v2v_example(), 64, 1e300), 112, kNaN)), PacketStatus::not_finite);
 }
 
 TEST(Packets, RejectsStatesBeyondTheirLimits) {
@@ -391,13 +389,13 @@ TEST(Packets, OrientationsAreUnitQuaternions) {
 TEST(Packets, RejectedBytesDoNotChangeThePacket) {
   Packet packet;
   packet.header.sequence = 77;
-  decode(patched(v2v_example(), 64, kNan), packet);
+  decode(patched(v2v_example(), 64, kNaN), packet);
   EXPECT_EQ(packet.header.sequence, 77u);
 }
 
 TEST(Packets, EncodingInvalidNumbersAborts) {
   base::Bytes out;
-  EXPECT_DEATH(encode({}, V2v{.X_WR = {kNan, 0, 0, 0}}, out), "not finite");
+  EXPECT_DEATH(encode({}, V2v{.X_WR = {kNaN, 0, 0, 0}}, out), "not finite");
   EXPECT_DEATH(encode({.time = -1}, Subscribe{}, out), "timestamp -1");
   EXPECT_DEATH(encode({.robot = 0}, Tag{}, out), "tag id 0");
   EXPECT_DEATH(encode_reading({}, 0, {}, out), "type 0 is not a reading type");
@@ -548,8 +546,8 @@ TEST(Packets, RejectsValuesAndCommandsBeyondTheirLimits) {
   EXPECT_EQ(with(82, std::uint16_t{2}), Status::too_long);
   EXPECT_EQ(with(82, std::uint16_t{4}), Status::too_short);
   for (const std::size_t at : {96u, 104u, 112u, 120u})
-    for (const double bad : {kNan, kInf}) EXPECT_EQ(with(at, bad), Status::not_finite) << at;
-  EXPECT_EQ(with(128, kNan), Status::not_finite);
+    for (const double bad : {kNaN, kInf}) EXPECT_EQ(with(at, bad), Status::not_finite) << at;
+  EXPECT_EQ(with(128, kNaN), Status::not_finite);
   EXPECT_EQ(with(128, -1e-300), Status::out_of_range);
   EXPECT_EQ(with(128, 0.0), Status::accepted);
   EXPECT_EQ(with(128, kInf), Status::accepted) << "no bound is stated";
@@ -570,7 +568,7 @@ TEST(Packets, RejectsValuesAndCommandsBeyondTheirLimits) {
       EXPECT_EQ(speed(-1000.0), Status::accepted);
       EXPECT_EQ(speed(1000.1), Status::out_of_range);
       EXPECT_EQ(speed(-1000.1), Status::out_of_range);
-      EXPECT_EQ(speed(kNan), Status::not_finite);
+      EXPECT_EQ(speed(kNaN), Status::not_finite);
     }
     const auto robot = [&](std::uint32_t id) { return reason_of(patched(command_example(), 104 + 32 * row, id)); };
     EXPECT_EQ(robot(65'535), Status::accepted);

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "tests/netio/pcap_file.h"
+#include "tests/refusal.h"
 
 namespace sf::netio {
 namespace {
@@ -57,12 +58,7 @@ Bytes file_of(std::uint32_t link, const Bytes& frame) {
 }
 
 std::string pcap_refusal(const Bytes& file) {
-  try {
-    PcapReader(file, "file");
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { PcapReader(file, "file"); });
 }
 
 TEST(Pcap, ReadsBothByteOrdersAndTimeUnits) {

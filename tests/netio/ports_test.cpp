@@ -5,17 +5,13 @@
 #include <vector>
 
 #include "base/error.h"
+#include "tests/refusal.h"
 
 namespace sf::netio {
 namespace {
 
 std::string refusal(const std::vector<SensorPorts>& uses) {
-  try {
-    require_ports(uses);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { require_ports(uses); });
 }
 
 SensorPorts use(std::uint32_t robot, std::uint32_t sensors, PortRule rule = {}) {
@@ -77,9 +73,7 @@ TEST(Ports, NamesBothTypesInTheMessage) {
   const SensorPorts others{0, 9, {10000, 8}, "tug", 0, "magnetometer"};
   EXPECT_EQ(refusal({lasers, {0, 9, {20000, 8}, "tug", 0, "magnetometer"}}), "");
   const std::string text = refusal({lasers, others});
-  EXPECT_NE(text.find("'roomba' (id 1) laser 0 and robot 'tug' (id 0) magnetometer 8 share port 10008"),
-            std::string::npos)
-      << text;
+  expect_in("'roomba' (id 1) laser 0 and robot 'tug' (id 0) magnetometer 8 share port 10008", text);
   EXPECT_NE(text.find("change the base port of laser or the base port of magnetometer"), std::string::npos) << text;
   // Two types of one robot on one base port: the message does not blame its id.
   SensorPorts scan{1, 1, {52000, 8}, "roomba", 0, "laser", "--laser-port"};

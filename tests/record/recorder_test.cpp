@@ -15,6 +15,7 @@
 #include "record/recording.h"
 #include "record/ros_messages.h"
 #include "tests/record/sample.h"
+#include "tests/refusal.h"
 
 namespace sf::record {
 namespace {
@@ -27,15 +28,6 @@ using test::SampleTick;
 
 void write_ticks(Recorder& recorder, std::uint64_t first, std::uint64_t count) {
   for (std::uint64_t tick = first; tick < first + count; ++tick) recorder.write(SampleTick(tick).record);
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "nothing thrown";
 }
 
 constexpr RecordingPart kUncompressed{.compression = Compression::none};
@@ -275,7 +267,7 @@ TEST(Recorder, FailedStartKeepsTheOlderRecording) {
   }
   RunInfo info = sample_info(false);
   info.movers.resize(40'000);  // two topics each
-  EXPECT_NE(message_of([&] { Recorder(directory, info); }).find("needs 80008 topics"), std::string::npos);
+  EXPECT_NE(refusal_of([&] { Recorder(directory, info); }).find("needs 80008 topics"), std::string::npos);
   EXPECT_EQ(open_recording(directory).ticks, 5u);
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }
@@ -313,7 +305,7 @@ TEST(Recorder, RejectsASecondRecorderWhileTheFirstExists) {
   const std::string directory = fresh_directory("second");
   {
     Recorder first(directory, sample_info(false));
-    EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("another run is being recorded here"),
+    EXPECT_NE(refusal_of([&] { Recorder(directory, sample_info(false)); }).find("another run is being recorded here"),
               std::string::npos);
     write_ticks(first, 0, 2);
   }
@@ -322,11 +314,11 @@ TEST(Recorder, RejectsASecondRecorderWhileTheFirstExists) {
 }
 
 TEST(Recorder, RejectsAnUnwritableFolderWithTheReason) {
-  EXPECT_NE(message_of([] { Recorder("/dev/null/run", sample_info(false)); }).find("cannot be created as a directory"),
+  EXPECT_NE(refusal_of([] { Recorder("/dev/null/run", sample_info(false)); }).find("cannot be created as a directory"),
             std::string::npos);  // below a file
   const std::string directory = fresh_directory("occupied");
   fs::create_directories(directory + "/run.mcap.new");
-  EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("Is a directory"), std::string::npos);
+  EXPECT_NE(refusal_of([&] { Recorder(directory, sample_info(false)); }).find("Is a directory"), std::string::npos);
 }
 
 /// Limits the size of all files of this process, like a full disk.
@@ -359,7 +351,7 @@ TEST(Recorder, FullDiskIsReportedAndKeepsEarlierTicks) {
     write_ticks(recorder, 0, 2);
     const std::uint64_t whole = recorder.size();
     const FullDisk disk(whole + 5000);
-    told = message_of([&] {
+    told = refusal_of([&] {
       for (kept = 2; kept < 100; ++kept) write_ticks(recorder, kept, 1);
     });
     EXPECT_NO_THROW(recorder.finish());  // no more data to lose
@@ -380,7 +372,7 @@ TEST(Recorder, FullDiskIsReportedForCompressedTicks) {
   {
     Recorder recorder(directory, sample_info(true));
     const FullDisk disk(recorder.size() + 5000);
-    told = message_of([&] {
+    told = refusal_of([&] {
       for (; written < 100; ++written) write_ticks(recorder, written, 1);
     });
     EXPECT_NO_THROW(recorder.finish());
@@ -398,13 +390,13 @@ TEST(Recorder, FullDiskIsReportedForCompressedTicks) {
 TEST(Recorder, FullDiskAtTheEndIsReported) {
   Recorder recorder(fresh_directory("full_end"), sample_info(false));
   const FullDisk disk(recorder.size());
-  EXPECT_NE(message_of([&] { recorder.finish(); }).find("cannot take more than"), std::string::npos);
+  EXPECT_NE(refusal_of([&] { recorder.finish(); }).find("cannot take more than"), std::string::npos);
 }
 
 TEST(Recorder, FullDiskAtTheStartLeavesNothing) {
   const std::string directory = fresh_directory("full_start");
   const FullDisk disk(100);
-  EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("cannot take more"), std::string::npos);
+  EXPECT_NE(refusal_of([&] { Recorder(directory, sample_info(false)); }).find("cannot take more"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(directory));
 }
 

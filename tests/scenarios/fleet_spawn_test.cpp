@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scenarios/run_metrics.h"
+#include "tests/refusal.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -115,14 +116,8 @@ TEST(FleetSpawn, MistakesAreRejectedAtTheirLine) {
       {kTown + "robots = 500\nplace = \"lanes\"\n", "test.toml:2: 500 robots 0.50 m apart do not fit"},
   };
   for (const auto& [text, said] : kCorpus) {
-    std::string what;
-    try {
-      world_of(parse(text));
-    } catch (const base::InputError& error) {
-      what = error.what();
-      what = what.find("test.toml") == std::string::npos ? what : what.substr(what.find("test.toml"));
-    }
-    EXPECT_EQ(what.substr(0, said.size()), said) << text;
+    const std::string error = refusal_from("test.toml", [&] { world_of(parse(text)); });
+    EXPECT_EQ(error.substr(0, said.size()), said) << text;
   }
 }
 

@@ -23,6 +23,7 @@
 #include "tests/cluster/thread_ranks.h"
 #include "tests/device.h"
 #include "tests/farm/small_farm.h"
+#include "tests/refusal.h"
 #include "world/append_robot.h"
 #include "world/stage/build_world.h"
 
@@ -295,13 +296,7 @@ ScenarioResult run_events(const std::string& events) {
 }
 
 std::string joining_refusal(const std::string& events) {
-  try {
-    run_events(events);
-  } catch (const base::InputError& error) {
-    const std::string what = error.what();
-    return what.substr(what.find("joining.toml"));
-  }
-  return "";
+  return refusal_from("joining.toml", [&] { run_events(events); });
 }
 
 const std::string kAdd = "[[event]]\nat = 1\nadd = \"b\"\nlike = \"a\"\npose = [8, 8, 0]\ncontroller = \"wander\"\n";

@@ -17,8 +17,8 @@
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
+#include "sensors/laser.h"
 #include "tests/device.h"
-#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {

@@ -13,6 +13,7 @@
 #include "scenarios/verification.h"
 #include "sensors/laser_settings.h"
 #include "tests/device.h"
+#include "tests/refusal.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::scenarios {
@@ -119,14 +120,10 @@ TEST(Simulation, RecordsTheLights) {
 }
 
 std::string event_refusal(const std::string& event) {
-  try {
+  return refusal_from("test.toml", [&] {
     check_scenario(parse_scenario(SF_SOURCE_DIR "/experiments/test.toml",
                                   "world = \"../worlds/minimagic/minimagic.world\"\n[[event]]\n" + event));
-  } catch (const base::InputError& error) {
-    const std::string what = error.what();
-    return what.substr(what.find("test.toml"));
-  }
-  return {};
+  });
 }
 
 TEST(ObjectEvent, ErrorsNameLineAndRemedy) {

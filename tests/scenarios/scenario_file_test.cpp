@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "scenarios/scenario.h"
+#include "tests/refusal.h"
 
 namespace sf::scenarios {
 namespace {
@@ -15,15 +16,10 @@ Scenario parse_text(const std::string& text) { return parse_scenario(kFile, kWor
 
 /// Returns the error from the file's name on; empty without an error.
 std::string refusal(const std::string& text, bool make = false) {
-  try {
+  return refusal_from("test.toml", [&] {
     const Scenario scenario = parse_scenario(kFile, text);
     if (make) simulation_of(scenario, world_of(scenario));
-  } catch (const base::InputError& error) {
-    const std::string what = error.what();
-    const auto at = what.find("test.toml");
-    return at == std::string::npos ? what : what.substr(at);
-  }
-  return {};
+  });
 }
 
 TEST(ScenarioFile, DefaultsOfAFileWithOnlyAWorld) {
@@ -211,16 +207,12 @@ TEST(ScenarioFile, MistakesAgainstTheWorldAreRejectedAtTheirLine) {
   };
   for (const auto& [text, said] : kCorpus) {
     const Scenario scenario = parse_scenario(kFile, text);
-    std::string what;
-    try {
+    const std::string error = refusal_from("test.toml", [&] {
       const world::World world = world_of(scenario);
       SimulationOptions options = simulation_of(scenario, world);
       control::make_controller({world}, options.actors[0].controller);
-    } catch (const base::InputError& error) {
-      what = error.what();
-      what = what.find("test.toml") == std::string::npos ? what : what.substr(what.find("test.toml"));
-    }
-    EXPECT_EQ(what.substr(0, said.size()), said) << text;
+    });
+    EXPECT_EQ(error.substr(0, said.size()), said) << text;
   }
 }
 

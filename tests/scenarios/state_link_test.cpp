@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "base/time.h"
-#include "robots/fleet.h"
 #include "robots/kinematics.h"
 #include "scenarios/lane_errors.h"
 #include "scenarios/scenario.h"

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "scenarios/sweep_jobs.h"
+#include "tests/refusal.h"
 
 namespace sf::scenarios {
 namespace {
@@ -163,14 +164,7 @@ TEST(SweepJobs, ReadsItsTableBack) {
 
 TEST(SweepJobs, DamageIsReportedWithItsLine) {
   const std::string head = "job,point,a,seed,status,x,simulated_s,hash,message\n";
-  const auto error = [&](const std::string& text) {
-    try {
-      read_sweep_jobs("jobs.csv", text);
-    } catch (const base::InputError& e) {
-      return std::string(e.what());
-    }
-    return std::string();
-  };
+  const auto error = [&](const std::string& text) { return refusal_of([&] { read_sweep_jobs("jobs.csv", text); }); };
   EXPECT_NE(error("time,x\n").find("jobs.csv:1: is not a sweep's table"), std::string::npos);
   EXPECT_NE(error(head + "0,0,1\n").find("jobs.csv:2: has 3 fields; expected 9"), std::string::npos);
   EXPECT_NE(error(head + "0,0,1,1,pass,one,1,ff,\n").find("jobs.csv:2: 'one' of x is not a number"), std::string::npos);

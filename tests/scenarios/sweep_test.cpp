@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "scenarios/sweep_sample.h"
+#include "tests/refusal.h"
 
 namespace sf::scenarios {
 namespace {
@@ -20,13 +21,7 @@ constexpr const char* kTown = "scenario = \"../simville.toml\"\n";
 
 /// Returns the error from the file's name on; empty without an error.
 std::string sweep_refusal(const std::string& text) {
-  try {
-    check_sweep(parse_sweep(kSweepFile, text));
-  } catch (const base::InputError& error) {
-    const std::string what = error.what();
-    return what.substr(what.find("test.toml"));
-  }
-  return {};
+  return refusal_from("test.toml", [&] { check_sweep(parse_sweep(kSweepFile, text)); });
 }
 
 std::vector<double> values_of(const std::string& parameter) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "tests/create_simulator.h"
+#include "tests/refusal.h"
 
 namespace sf::server {
 namespace {
@@ -179,20 +180,15 @@ TEST_F(CreateTest, StopsTheRobotOnDestruction) {
   EXPECT_TRUE(create.streams.empty());
 }
 
-std::string refusal_of(const std::string& device, unsigned baud = 57600) {
-  try {
-    CreateDrive drive({device, baud}, {}, 0.258);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
+std::string line_refusal(const std::string& device, unsigned baud = 57600) {
+  return refusal_of([&] { CreateDrive({device, baud}, {}, 0.258); });
 }
 
 TEST(CreateDrive, RejectsAFileThatIsNotASerialLine) {
-  EXPECT_NE(refusal_of("/dev/ttyNONE0").find("`ls /dev/ttyUSB*"), std::string::npos);
-  EXPECT_NE(refusal_of("/dev/null").find("is not a serial line"), std::string::npos);
+  EXPECT_NE(line_refusal("/dev/ttyNONE0").find("`ls /dev/ttyUSB*"), std::string::npos);
+  EXPECT_NE(line_refusal("/dev/null").find("is not a serial line"), std::string::npos);
   CreateSimulator create;
-  EXPECT_NE(refusal_of(create.device(), 12345).find("expected 9600"), std::string::npos);
+  EXPECT_NE(line_refusal(create.device(), 12345).find("expected 9600"), std::string::npos);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "netio/socket.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "tests/refusal.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::server {
@@ -165,12 +166,7 @@ TEST_F(MapTest, LargeWorldsAndRangesGetLargerCells) {
 }
 
 std::string map_refusal(const world::World& world, const OwnMapOptions& options) {
-  try {
-    OwnMap map(world, sensors::SensorSet(world), 0, options);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { OwnMap(world, 0, options); });
 }
 
 TEST_F(MapTest, RejectsUnsupportedMaps) {

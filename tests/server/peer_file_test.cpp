@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "tests/refusal.h"
 
 namespace sf::server {
 namespace {
@@ -32,12 +33,7 @@ std::vector<netio::Peer> parse(const std::string& text) {
 
 /// Returns the error of a file.
 std::string error_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "none";
+  return refusal_of([&] { parse(text); });
 }
 
 TEST(PeerFile, ReadsAddressesAndKeys) {

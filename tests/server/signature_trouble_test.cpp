@@ -8,7 +8,6 @@
 #include "netio/v2i.h"
 #include "server/state_receiver.h"
 #include "tests/server/fixture.h"
-#include "tests/units.h"
 
 namespace sf::server {
 namespace {
