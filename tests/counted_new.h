@@ -1,5 +1,5 @@
 #pragma once
-// Counts what the calling thread allocates: a program's own `new`, replaced. To be included by one source of a program.
+// Counts allocations of the calling thread by replacing `new`. Include it in one source of a program.
 
 #include <cstdint>
 #include <cstdlib>
@@ -10,8 +10,8 @@ namespace sf::counted {
 inline thread_local bool counting = false;
 inline thread_local std::uint64_t allocations = 0;
 
-/// What the calling thread allocates in the first of `most` laps in which it allocates nothing, else in the last. Which
-/// thread meets what, and so whose scratch has to grow, is the scheduler's choice; who has met everything is done.
+/// Runs up to `most` laps until one allocates nothing. The scheduler decides which thread needs a larger scratch
+/// buffer, and when. @return allocations of the last lap
 template <class Lap>
 std::uint64_t when_warm(int most, Lap lap) {
   for (int k = 0; k < most; ++k) {
@@ -26,7 +26,7 @@ std::uint64_t when_warm(int most, Lap lap) {
 
 }  // namespace sf::counted
 
-// All of them, since sanitizers compare which one allocated with which one frees; out of line for the same reason.
+// Replaces every form, out of line, since sanitizers compare the forms that allocate and free.
 #define SF_COUNTED [[gnu::noinline]]
 SF_COUNTED void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   if (sf::counted::counting) ++sf::counted::allocations;

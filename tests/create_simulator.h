@@ -38,21 +38,21 @@ class CreateSimulator {
       if (*end >= 0) close(std::exchange(*end, -1));
   }
 
-  /// Takes commands until `count` drive commands came in all; false after ten seconds.
+  /// Processes commands until `count` drive commands have been received; false after ten seconds.
   bool driven(std::uint64_t count) {
     return awaited([&] { return drives >= count; });
   }
-  /// Takes commands until it is in that mode.
-  bool comes_to(Mode wanted) {
+  /// Processes commands until it is in that mode.
+  bool reaches(Mode wanted) {
     return awaited([&] { return mode == wanted; });
   }
 
-  /// Takes commands until it is asked for its stream.
+  /// Processes commands until its stream is requested.
   bool streaming() {
     return awaited([&] { return !streams.empty(); });
   }
 
-  /// Frames of its stream, each after 15 ms of motion.
+  /// Sends frames of its stream, each after 15 ms of motion.
   void run(int frames) {
     for (int k = 0; k < frames; ++k) {
       move();
@@ -65,7 +65,7 @@ class CreateSimulator {
     for (int k = 0; alone && k < 10'000 && waiting() < before + static_cast<int>(bytes.size()); ++k)
       poll(nullptr, 0, 1);
   }
-  /// Of its state now, and what it rolled since the last one.
+  /// Returns a frame of its state and the motion since the previous frame.
   Bytes frame() {
     Bytes bytes{19, 0};
     for (const std::uint8_t id : streams) {
@@ -81,7 +81,7 @@ class CreateSimulator {
     bytes.push_back(static_cast<std::uint8_t>(256 - sum));
     return bytes;
   }
-  /// Switched off and on.
+  /// Switches it off and on.
   void restart() {
     mode = off;
     streams.clear();
@@ -89,7 +89,7 @@ class CreateSimulator {
   }
 
   Mode mode = off;
-  base::Pose X;              ///< where it is
+  base::Pose X;              ///< pose in the world
   int right = 0, left = 0;   ///< [mm/s]
   int bumps = 0, drops = 0;  ///< bits as in packet 7
   std::uint64_t drives = 0;  ///< commands, refused ones too

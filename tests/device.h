@@ -1,5 +1,5 @@
 #pragma once
-// One Vulkan device per test program, and the host in its place.
+// One Vulkan device per test program, and the host as a device.
 
 #include <string>
 

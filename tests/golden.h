@@ -2,7 +2,7 @@
 // Golden records: texts in tests/MODULE/golden/NAME.txt that a test's results are compared with, line by line. Numbers
 // may differ by a tolerance, so that another mathematical library passes; colours (#rrggbb) and words may not.
 //
-// With SENSORFARM_RECORDS=FOLDER set, what was found is written to FOLDER/NAME.txt, to be looked at.
+// With SENSORFARM_RECORDS=FOLDER set, results are also written to FOLDER/NAME.txt.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ inline std::size_t number_length(std::string_view text) {
   return end > sign && text[sign] != '.' ? end : 0;
 }
 
-/// Equal but for numbers that are close. What an element of an SVG file contains is its text, and equal.
+/// True if both are equal except for close numbers. The content of an SVG element is text, which must be equal.
 inline bool alike(std::string_view a, std::string_view b, double tolerance) {
   bool numbers = true;
   while (!a.empty() && !b.empty()) {
@@ -60,7 +60,7 @@ inline bool alike(std::string_view a, std::string_view b, double tolerance) {
   return a.empty() && b.empty();
 }
 
-/// Where a file to be looked at goes; empty: nowhere.
+/// Returns the path of a file to inspect; empty without SENSORFARM_RECORDS.
 inline std::string shown_file(const std::string& name) {
   const char* const folder = std::getenv("SENSORFARM_RECORDS");
   return folder == nullptr ? "" : fmt::format("{}/{}", folder, name);

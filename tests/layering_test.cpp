@@ -110,7 +110,7 @@ std::string complain_of_quoted(const Source& source, const std::string& target) 
   if (!known) return "is not a full path from the root";
   if (from == to || kMayIncludeAnything.count(from) > 0) return "";
   const auto row = kMayInclude.find(from);
-  if (row == kMayInclude.end()) return "stands in a module that is not in the plan";
+  if (row == kMayInclude.end()) return "is in a module that is not in the plan";
   if (row->second.count(to) == 0) return "points from " + from + " to " + to + ", which is not in the plan";
   if (to == "shaders" && !std::regex_match(target, std::regex("shaders/\\w+\\.comp\\.h")))
     return "is not a compiled kernel";
@@ -276,7 +276,7 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
            {"base/a.cpp", "#include \"world/world.h\""},                    // upwards
            {"world/a.cpp", "#include \"robots/fleet.h\""},                  // upwards, one floor
            {"netio/a.cpp", "#include \"record/mcap.h\""},                   // sideways
-           {"farm/a.cpp", "#include \"netio/inbox.h\""},                    // the farm knows no sockets
+           {"farm/a.cpp", "#include \"netio/inbox.h\""},                    // the farm has no sockets
            {"netio/a.cpp", "#include \"server/service.h\""},                // upwards, within one folder
            {"server/a.cpp", "#include <sys/socket.h>"},                     // sockets are netio's
            {"robots/a.cpp", "#include \"robots/estimation/state.h\""},      // upwards, within one folder
@@ -300,7 +300,7 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
            {"apps/a.cpp", "#include <poll.h>"},                             // sockets are netio's
            {"robots/a.cpp", "#include <netinet/in.h>"},                     // sockets are netio's
            {"control/a.cpp", "#include <pybind11/embed.h>"},                // Python's headers
-           {"python/a.cpp", "#include \"farm/farm.h\""},                    // Python knows the public interface only
+           {"python/a.cpp", "#include \"farm/farm.h\""},                    // Python uses the public interface only
            {"base/a.cpp", "#include HEADER"}})                              // cannot be judged
     EXPECT_EQ(complaints(broken).size(), 1u) << broken.path << ": " << broken.text;
 }

@@ -1,5 +1,4 @@
-// Every test program has a folder of its own for temporary files, gone when it ends: programs run at once, and tests
-// give their files fixed names.
+// A temporary folder per test program, removed at its end: programs run concurrently, and tests use fixed file names.
 
 #include <unistd.h>
 

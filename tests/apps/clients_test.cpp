@@ -98,7 +98,7 @@ void expect_readings(Service& service, unsigned ports, const std::string& progra
   Words words = first;
   for (const std::string& word :
        Words{"--robot", "1", "--farm", "127.0.0.1:" + std::to_string(service.port), "--pose", "-1,0.5,30", "--rate",
-             "50", "--sensor", "laser=" + std::to_string(service.hears(1)), "--sensor",
+             "50", "--sensor", "laser=" + std::to_string(service.laser_port(1)), "--sensor",
              "sonar.0=" + std::to_string(ports + 8), "--sensor", "gps.0=" + std::to_string(ports + 24)})
     words.push_back(word);
   const Folder folder;
@@ -117,7 +117,7 @@ void expect_readings(Service& service, unsigned ports, const std::string& progra
 
   // A stranger's scan at the same port is counted and dropped: by then, two more scans have been accepted.
   netio::Outbox stranger;
-  stranger.queue({netio::kLoopback, static_cast<std::uint16_t>(service.hears(1))},
+  stranger.queue({netio::kLoopback, static_cast<std::uint16_t>(service.laser_port(1))},
                  test::read_vectors(SF_SOURCE_DIR "/tests/netio/vectors/laser.txt").at(0).bytes);
   stranger.flush();
   const auto scans = [&] { return count_of(read_file(out), "laser 0 of robot 1 at "); };

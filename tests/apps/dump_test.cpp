@@ -151,7 +151,7 @@ TEST(Dump, ATruncatedDatagramIsReported) {
   file.add(frame);
   std::string text = file.text();
   const Outcome outcome = run_program({"dump", folder.write("a.pcap", text + "rest")});
-  EXPECT_EQ(outcome.code, 1) << "nothing valid";
+  EXPECT_EQ(outcome.code, 1) << "no valid datagram";
   EXPECT_NE(outcome.out.find(": cut off by the capture, 69 bytes\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("a.pcap: damaged after 1 record\n"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("nothing received, cut off by the capture 1\n"), std::string::npos) << outcome.err;
@@ -193,7 +193,7 @@ TEST(Dump, WrongFilesAndArgumentsAreRejected) {
 TEST(Dump, ReceivedDatagramsArePrinted) {
   const unsigned port = free_ports(2);
   Program dump({"dump", "--port", std::to_string(port) + "-" + std::to_string(port + 1), "--count", "5"});
-  ASSERT_TRUE(dump.says("listening on 2 ports")) << dump.err();
+  ASSERT_TRUE(dump.prints("listening on 2 ports")) << dump.err();
   netio::Outbox outbox;
   for (const base::Bytes& packet :
        {vector_of("leave"), vector_of("challenge"), base::Bytes(1500, 1), vector_of("command"), vector_of("values")}) {

@@ -325,7 +325,7 @@ TEST(ExperimentReport, ATownMatchesTheColumnsOfItsFile) {
     EXPECT_EQ(rows[i][3], record.at("checkpoints"));
     EXPECT_EQ(rows[i][4], record.at("full_stops"));
     EXPECT_EQ(rows[i][5], record.at("reds_passed"));
-    EXPECT_EQ(record.at("mean_abs_error_m"), "") << "without a lane there is none";
+    EXPECT_EQ(record.at("mean_abs_error_m"), "") << "the world has no lanes";
     EXPECT_GT(std::stod(record.at("driven_m")), 0.1);
   }
 }

@@ -130,7 +130,7 @@ TEST(TestCommand, ReportsPassesAndFailuresWithReasons) {
   EXPECT_NE(pass.out.find("pass"), std::string::npos);
   EXPECT_EQ(pass.out.find("FAIL"), std::string::npos) << pass.out;
   const Outcome fail = run_program({"test", good, bad, good, "--junit", folder.path("out.xml")});
-  EXPECT_EQ(fail.code, 1) << "one of them failed, and not the last";
+  EXPECT_EQ(fail.code, 1) << "the second of three failed";
   EXPECT_NE(fail.out.find("FAIL done"), std::string::npos) << fail.out;
   const std::string xml = read_file(folder.path("out.xml"));
   EXPECT_NE(xml.find("<testsuite name=\"bad\" tests=\"2\" failures=\"1\""), std::string::npos) << xml;

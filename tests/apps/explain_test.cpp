@@ -36,7 +36,7 @@ TEST(Explain, AsJson) {
   double held = 0.0;
   for (std::size_t i = 0; i < json.size("/types/0/tables"); ++i)
     held += json.number("/types/0/tables/" + std::to_string(i) + "/bytes");
-  EXPECT_EQ(held, json.number("/types/0/bytes")) << "what its tables hold together";
+  EXPECT_EQ(held, json.number("/types/0/bytes")) << "the sum of its tables";
   EXPECT_EQ(json.size("/slices"), 1u) << "all at one height";
   EXPECT_EQ(json.number("/slices/0/sensors"), 3);
   EXPECT_GT(json.number("/slices/0/walls"), 0.0);
@@ -45,7 +45,7 @@ TEST(Explain, AsJson) {
   EXPECT_GT(json.number("/tick_s"), 0.0);
   EXPECT_GT(json.number("/resident_bytes"), json.number("/types/0/bytes"));
   EXPECT_GT(json.size("/absent"), 0u);
-  EXPECT_NE(outcome.out.find("magnet"), std::string::npos) << "no magnets, so nothing is built for them";
+  EXPECT_NE(outcome.out.find("magnet"), std::string::npos) << "no magnets, so no tables for them";
 }
 
 /// If the host casts, it has no kernel. An unknown caster is refused.
@@ -68,7 +68,7 @@ TEST(Explain, UsesTheRequestedCaster) {
   const Outcome both =
       run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "vulkan", "--json"},
                   {{"SENSORFARM_CASTER", "host"}});
-  EXPECT_EQ(Json(both.out).text("/caster"), "Vulkan kernels") << "the command line comes before the environment";
+  EXPECT_EQ(Json(both.out).text("/caster"), "Vulkan kernels") << "the command line overrides the environment";
 }
 
 /// Uncertain beams are counted; the text shows their share of all beams.

@@ -156,7 +156,7 @@ TEST_F(Recorded, PlotsAreSvgOrPdfOnDemand) {
       0);
   const std::string svg = read_file(folder_.path("p/trajectories.svg"));
   EXPECT_NE(svg.find(">one</text>"), std::string::npos);
-  EXPECT_EQ(svg.find(">two</text>"), std::string::npos) << "not asked for";
+  EXPECT_EQ(svg.find(">two</text>"), std::string::npos) << "not selected";
   EXPECT_FALSE(std::filesystem::exists(folder_.path("p/trajectories.png")));
   ASSERT_EQ(run_program(recorded("plot", {"-o", folder_.path("p"), "--format", "pdf", "--no-title"})).code, 0);
   for (const char* name : {"trajectories", "occupancy", "gps", "lights"})
@@ -386,7 +386,7 @@ TEST(Export, CellsOfAFieldAreAtLeastAMillimetre) {
 class VirtualDisplay {
  public:
   VirtualDisplay() : server_({"-displayfd", "2", "-screen", "0", "1300x900x24"}, {}, "", "", "Xvfb") {
-    if (server_.says("\n")) name_ = ":" + std::to_string(std::atoi(server_.err().c_str()));
+    if (server_.prints("\n")) name_ = ":" + std::to_string(std::atoi(server_.err().c_str()));
   }
   Environment environment() const { return {{"DISPLAY", name_}}; }
 
@@ -431,7 +431,7 @@ TEST_F(Recorded, TheWindowClosesOnDemand) {
   if (instrumented()) GTEST_SKIP() << "the driver's own leaks would be reported";
   const VirtualDisplay display;
   Program window(recorded("view", {"--3d"}), display.environment());
-  ASSERT_TRUE(window.says("the slider chooses the time")) << window.err();
+  ASSERT_TRUE(window.prints("the slider chooses the time")) << window.err();
   window.signal(SIGTERM);
   EXPECT_EQ(window.wait().code, 0) << window.err();
 }

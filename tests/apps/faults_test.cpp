@@ -28,8 +28,8 @@ const char* const kOverhead =
     "dictionary = \"aruco_4x4_50\"\ntag_side = 0.15\ntag_height = 0.2\n[[camera]]\nname = \"a\"\nsize = [320, 240]\n"
     "focal = [400, 400]\nposition = [0, 0, 2.2]\n[[tag]]\nid = 1\n";
 
-constexpr const char* kStands = "stops until one arrives";
-constexpr const char* kGoesOn = "continues";
+constexpr const char* kStops = "stops until one arrives";
+constexpr const char* kResumes = "continues";
 
 /// A farm on a port that it keeps across restarts, and the files that it needs.
 struct Hall {
@@ -41,7 +41,7 @@ struct Hall {
   std::unique_ptr<Program> serve(const Words& more = {}) const {
     const Words words = with({"serve", world, "--port", port, "--json", "--laser-port", lasers}, more);
     auto farm = std::make_unique<Program>(words);
-    EXPECT_TRUE(farm->says("; press Ctrl-C to stop")) << farm->err();
+    EXPECT_TRUE(farm->prints("; press Ctrl-C to stop")) << farm->err();
     return farm;
   }
   std::unique_ptr<Program> robot(const std::string& name, const Words& more = {}) const {
@@ -69,9 +69,9 @@ TEST(Faults, ARobotSurvivesTheRestartOfItsFarm) {
   hall.drive_for_a_while("roomba2");
   farm->signal(SIGKILL);
   EXPECT_EQ(farm->wait().signal, SIGKILL);
-  ASSERT_TRUE(robot->says(kStands)) << robot->err();
+  ASSERT_TRUE(robot->prints(kStops)) << robot->err();
   farm = hall.serve();
-  ASSERT_TRUE(robot->says(kGoesOn)) << robot->err();
+  ASSERT_TRUE(robot->prints(kResumes)) << robot->err();
   EXPECT_GE(ended(*robot).number("/stops"), 1.0);
   ended(*farm);
   // The killed farm's recording contains every tick that was written.
@@ -84,9 +84,9 @@ TEST(Faults, AStoppedFarmResumesWithItsClocks) {
   const auto robot = hall.robot("roomba1");
   hall.drive_for_a_while("roomba2");
   farm->signal(SIGSTOP);
-  ASSERT_TRUE(robot->says(kStands)) << robot->err();
+  ASSERT_TRUE(robot->prints(kStops)) << robot->err();
   farm->signal(SIGCONT);
-  ASSERT_TRUE(robot->says(kGoesOn)) << robot->err();
+  ASSERT_TRUE(robot->prints(kResumes)) << robot->err();
   ended(*robot);
   EXPECT_EQ(ended(*farm).size("/states/clocks"), 2u);
 }
@@ -119,8 +119,8 @@ TEST(Faults, ARestartedLightIsAcceptedAgain) {
   for (const char* word : {"--duration", "2.7"}) again.emplace_back(word);
   const Outcome outcome = run_successfully(again);
   EXPECT_EQ(outcome.err.find("heard 0"), std::string::npos) << outcome.err;
-  const Json told = ended(*robot), service = ended(*farm);
-  EXPECT_GE(told.number("/lights/packets"), 10.0) << "without a pause in what the farm says";
+  const Json driven = ended(*robot), service = ended(*farm);
+  EXPECT_GE(driven.number("/lights/packets"), 10.0) << "without a pause in the farm's packets";
   EXPECT_GE(service.number("/lights/packets"), 10.0);
   EXPECT_GE(service.number("/received/wrong source"), 1.0) << "the second was refused while the first was bound";
 }
@@ -162,7 +162,7 @@ TEST(Faults, AClockJumpOfAnHourStopsNoRobot) {
   Program farm(
       {"serve", hall.world, "--port", hall.port, "--json", "--laser-port", hall.lasers, "--filter", "--peers", peers},
       moved);
-  ASSERT_TRUE(farm.says("; press Ctrl-C to stop")) << farm.err();
+  ASSERT_TRUE(farm.prints("; press Ctrl-C to stop")) << farm.err();
   Program robot({"robot", hall.world, "--name", "roomba1", "--port", hall.port, "--laser-port", hall.lasers, "--json",
                  "--peers", peers},
                 moved);

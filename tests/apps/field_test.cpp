@@ -26,7 +26,7 @@ TEST(Field, WritesAPicture) {
   const scenes::Picture picture = scenes::read_png(folder.path("six.png"));
   std::set<std::uint32_t> colours;
   for (int x = 0; x < picture.width; ++x) colours.insert(picture.at(x, picture.height / 3));
-  EXPECT_GT(colours.size(), 50u) << "the map runs from nothing to the field above the magnets";
+  EXPECT_GT(colours.size(), 50u) << "the map ranges from zero to the field above the magnets";
 }
 
 /// Directly above a magnet of 1 A m^2, 12.5 cm from its centre, next to another: more than a Gauss.
@@ -50,7 +50,7 @@ TEST(Field, WritesNumbersAlongALine) {
   EXPECT_EQ(along, 1.0);
   EXPECT_NEAR(y, 0.0, 1e-12);
   EXPECT_EQ(z, 0.075);
-  EXPECT_NEAR(field, 1.5143, 1e-4) << "1.024 upwards, and the other one's 0.427 upwards and 0.434 aside";
+  EXPECT_NEAR(field, 1.5143, 1e-4) << "1.024 upwards, plus the other magnet's 0.427 upwards and 0.434 sideways";
 }
 
 struct Refusal {

@@ -19,21 +19,21 @@ constexpr int kEach = 20;  ///< datagrams per stranger and round
 
 /// Sends arbitrary datagrams and counts the datagrams that it receives.
 struct Stranger {
-  netio::Outbox mouth;
-  netio::Socket ears;
+  netio::Outbox outbox;
+  netio::Socket receiver;
   netio::ReceiveBatch batch{64};
-  std::uint64_t sent = 0;  ///< [byte]
-  std::uint64_t told = 0;  ///< [byte]
+  std::uint64_t sent = 0;      ///< [byte]
+  std::uint64_t received = 0;  ///< [byte]
 
   Stranger() : Stranger(netio::open_udp({netio::kLoopback, 0})) {}
-  explicit Stranger(netio::Socket socket) : mouth(netio::duplicate(socket)), ears(std::move(socket)) {}
-  void say(const netio::Endpoint& to, const base::Bytes& bytes) {
-    mouth.queue(to, bytes);
+  explicit Stranger(netio::Socket socket) : outbox(netio::duplicate(socket)), receiver(std::move(socket)) {}
+  void send(const netio::Endpoint& to, const base::Bytes& bytes) {
+    outbox.queue(to, bytes);
     sent += bytes.size();
   }
-  void hear() {
-    while (const std::size_t count = batch.fill(ears))
-      for (std::size_t i = 0; i < count; ++i) told += batch.bytes(i).size();
+  void receive() {
+    while (const std::size_t count = batch.fill(receiver))
+      for (std::size_t i = 0; i < count; ++i) received += batch.bytes(i).size();
   }
 };
 
@@ -84,14 +84,14 @@ TEST(Hostile, OneRobotIsServedAndNoOneIsFlooded) {
   ASSERT_NE(service.port, 0u) << service.program.err();
   const netio::Endpoint farm{netio::kLoopback, static_cast<std::uint16_t>(service.port)};
   const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,180");  // the other robot is behind it
-  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  Robot one(1, service.port, service.laser_port(1)), two(2, service.port, service.laser_port(2));
   std::vector<Stranger> strangers(kStrangers);
   std::mt19937 random(11);  // NOLINT: the same every time
 
   const auto served = [&] {
     return until([&] {
-      one.say({-1.0, 0.5, 0.0, M_PI});
-      const std::vector<double> ranges = one.hear();
+      one.send_state({-1.0, 0.5, 0.0, M_PI});
+      const std::vector<double> ranges = one.receive();
       bool same = ranges.size() == expected.size();
       for (std::size_t i = 0; same && i < ranges.size(); ++i) same = std::fabs(ranges[i] - expected[i]) <= 0.000501;
       return same;
@@ -100,13 +100,13 @@ TEST(Hostile, OneRobotIsServedAndNoOneIsFlooded) {
   ASSERT_TRUE(served());
   for (int round = 0; round < kRounds; ++round) {
     for (Stranger& stranger : strangers) {
-      for (int i = 0; i < kEach; ++i) stranger.say(farm, anything(random));
-      stranger.mouth.flush();
+      for (int i = 0; i < kEach; ++i) stranger.send(farm, anything(random));
+      stranger.outbox.flush();
     }
     // A valid robot that is as far away and as fast as a packet can express, and returns.
-    two.say({round % 2 == 0 ? 1e7 : -1e7, 1e7, 0.0, -1e6});
+    two.send_state({round % 2 == 0 ? 1e7 : -1e7, 1e7, 0.0, -1e6});
     ASSERT_TRUE(served()) << round;
-    for (Stranger& stranger : strangers) stranger.hear();
+    for (Stranger& stranger : strangers) stranger.receive();
   }
   ASSERT_TRUE(service.program.running());
   service.program.signal(SIGINT);
@@ -115,9 +115,9 @@ TEST(Hostile, OneRobotIsServedAndNoOneIsFlooded) {
   EXPECT_LT(count_lines(outcome.err), 10u + 30u) << outcome.err;  // a burst of 20, then 5 a second
 
   for (Stranger& stranger : strangers) {
-    stranger.hear();
-    EXPECT_GT(stranger.told, 0u) << "it is asked where it is";
-    EXPECT_LE(stranger.told, stranger.sent);
+    stranger.receive();
+    EXPECT_GT(stranger.received, 0u) << "its address is challenged";
+    EXPECT_LE(stranger.received, stranger.sent);
   }
   const Json facts(outcome.out);
   EXPECT_GT(facts.number("/received/unproven"), kRounds * static_cast<double>(kStrangers));

@@ -17,7 +17,7 @@ namespace sf::apps {
 namespace {
 
 /// Counts that children report to this process, in shared memory.
-struct Told {
+struct Counts {
   std::atomic<int> begun{0};
   std::atomic<int> runs[8] = {};
   std::atomic<bool> go{false};
@@ -25,16 +25,16 @@ struct Told {
 
 class JobProcesses : public testing::Test {
  protected:
-  JobProcesses() { new (memory_) Told; }
-  ~JobProcesses() override { munmap(memory_, sizeof(Told)); }
-  Told& told() { return *static_cast<Told*>(memory_); }
+  JobProcesses() { new (memory_) Counts; }
+  ~JobProcesses() override { munmap(memory_, sizeof(Counts)); }
+  Counts& counts() { return *static_cast<Counts*>(memory_); }
 
   /// Counts calls and runs `job`. Stops after a minute, which no test needs.
   JobCalls calls(std::function<void(std::size_t row)> job = [](std::size_t) {}) {
-    return {.begin = [this] { ++told().begun; },
+    return {.begin = [this] { ++counts().begun; },
             .run =
                 [this, job](std::size_t row) {
-                  ++told().runs[row];
+                  ++counts().runs[row];
                   job(row);
                 },
             .died = [this](std::size_t row, const std::string& cause) { died_[row] = cause; },
@@ -55,25 +55,25 @@ class JobProcesses : public testing::Test {
   std::map<std::size_t, std::string> died_;
 
  private:
-  void* memory_ = mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* memory_ = mmap(nullptr, sizeof(Counts), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   int polls_ = 0;
 };
 
 TEST_F(JobProcesses, EachJobIsDoneOnce) {
   for (const unsigned processes : {1u, 2u, 5u}) {
-    for (auto& runs : told().runs) runs = 0;
+    for (auto& runs : counts().runs) runs = 0;
     EXPECT_TRUE(run_in_processes(5, processes, calls()));
     for (std::size_t row = 0; row < 8; ++row)
-      EXPECT_EQ(told().runs[row], row < 5 ? 1 : 0) << row << " of " << processes;
+      EXPECT_EQ(counts().runs[row], row < 5 ? 1 : 0) << row << " of " << processes;
   }
   EXPECT_TRUE(died_.empty());
 }
 
 TEST_F(JobProcesses, ThereAreNoMoreChildrenThanJobs) {
   EXPECT_TRUE(run_in_processes(2, 8, calls()));
-  EXPECT_EQ(told().begun, 2);
+  EXPECT_EQ(counts().begun, 2);
   EXPECT_TRUE(run_in_processes(0, 8, calls()));
-  EXPECT_EQ(told().begun, 2);
+  EXPECT_EQ(counts().begun, 2);
 }
 
 TEST_F(JobProcesses, ADeadChildIsReplacedAndItsCauseReported) {
@@ -86,24 +86,24 @@ TEST_F(JobProcesses, ADeadChildIsReplacedAndItsCauseReported) {
                                                     {1, "its process ended with exit code 7"},
                                                     {2, "its process ended with exit code 1: out of luck"}};
   EXPECT_EQ(died_, expected);
-  EXPECT_EQ(told().runs[3], 1);
-  EXPECT_EQ(told().begun, 4);
+  EXPECT_EQ(counts().runs[3], 1);
+  EXPECT_EQ(counts().begun, 4);
 }
 
 /// The second job waits until the first, whose child died, is reported as done.
 TEST_F(JobProcesses, JobsWhoseChildDiedAreDone) {
   JobCalls all = calls([this](std::size_t row) {
     if (row == 0) _exit(7);
-    while (!told().go) std::this_thread::yield();
+    while (!counts().go) std::this_thread::yield();
   });
-  all.wait = [this](std::size_t done) { told().go = told().go || done == 1; };
+  all.wait = [this](std::size_t done) { counts().go = counts().go || done == 1; };
   EXPECT_TRUE(run_in_processes(2, 2, all));
 }
 
 TEST_F(JobProcesses, InputAndDeviceErrorsEndAll) {
   EXPECT_EQ(refusal(calls([](std::size_t) { throw base::InputError("no such file"); })), "input: no such file");
   EXPECT_EQ(refusal(calls([](std::size_t) { throw base::DeviceError("no device"); })), "device: no device");
-  EXPECT_EQ(told().runs[1], 0);
+  EXPECT_EQ(counts().runs[1], 0);
   EXPECT_TRUE(died_.empty());
 }
 
@@ -122,9 +122,9 @@ TEST_F(JobProcesses, ChildrenLeaveCtrlCToTheirParent) {
 /// A job that never returns is ended.
 TEST_F(JobProcesses, StopEndsChildrenAtOnce) {
   JobCalls all = calls([](std::size_t) { pause(); });
-  all.stop = [this] { return told().runs[0] > 0; };
+  all.stop = [this] { return counts().runs[0] > 0; };
   EXPECT_FALSE(run_in_processes(2, 1, all));
-  EXPECT_EQ(told().runs[1], 0);
+  EXPECT_EQ(counts().runs[1], 0);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ struct Json::Tree {
     static const nlohmann::ordered_json kNothing;
     const nlohmann::ordered_json::json_pointer where(pointer);
     if (root.contains(where)) return root.at(where);
-    ADD_FAILURE() << "nothing at " << pointer;
+    ADD_FAILURE() << "no value at " << pointer;
     return kNothing;
   }
 };

@@ -28,7 +28,7 @@ TEST(Light, ARobotReceivesIt) {
   const std::string world = our_world("simville/simville.world");
   const std::string spat = std::to_string(free_ports(1));
   Program light({"light", world, "--send", "127.0.0.1", "--port", spat, "--set", "light1=flashing red"});
-  ASSERT_TRUE(light.says("7 lights of 2 intersections to 127.0.0.1:" + spat + " at 10 Hz"));
+  ASSERT_TRUE(light.prints("7 lights of 2 intersections to 127.0.0.1:" + spat + " at 10 Hz"));
   // There is no farm: the robot has no readings, but still receives the lights.
   const Outcome robot =
       run_program(with({"robot", world, "--name", "roomba0", "--controller", "route", "--set", "tour=true",
@@ -55,11 +55,11 @@ TEST(Light, AKeyMismatchIsReported) {
   };
   Program farm(with({"serve", our_world("simville/simville.world"), "--port", port, "--peers", peers("farm.toml", '1')},
                     town_ports()));
-  ASSERT_TRUE(farm.says("press Ctrl-C to stop")) << farm.err();
+  ASSERT_TRUE(farm.prints("press Ctrl-C to stop")) << farm.err();
   Program light(
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--peers", peers("light.toml", '2')});
-  EXPECT_TRUE(light.says("has another key for intersection 1 than --peers here")) << light.err();
-  EXPECT_TRUE(farm.says("intersection 1 at 127.0.0.1:")) << farm.err();
+  EXPECT_TRUE(light.prints("has another key for intersection 1 than --peers here")) << light.err();
+  EXPECT_TRUE(farm.prints("intersection 1 at 127.0.0.1:")) << farm.err();
 }
 
 /// Two seconds of an actuated plan, with a farm whose robot is at a detector.
@@ -67,18 +67,18 @@ TEST(Light, RunsAPlanWithAFarm) {
   const std::string port = std::to_string(free_ports(1));
   const Words ports = town_ports();
   Program farm(with({"serve", our_world("simville/simville.world"), "--port", port, "--json"}, ports));
-  ASSERT_TRUE(farm.says("press Ctrl-C to stop")) << farm.err();
+  ASSERT_TRUE(farm.prints("press Ctrl-C to stop")) << farm.err();
   Program robot(with({"robot", our_world("simville/simville.world"), "--name", "roomba0", "--controller", "route",
                       "--set", "tour=true", "--stop-after", "0", "--port", port, "--json"},
                      ports));
-  ASSERT_TRUE(robot.says("press Ctrl-C to stop")) << robot.err();
+  ASSERT_TRUE(robot.prints("press Ctrl-C to stop")) << robot.err();
   const Outcome light = run_successfully(
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
   EXPECT_NE(light.err.find("7 lights of 2 intersections to 127.0.0.1:" + port + " (V2I) at 20 Hz"), std::string::npos);
   EXPECT_EQ(light.err.find("no packets from"), std::string::npos) << light.err;
   robot.signal(SIGINT);
-  const Json told(robot.wait().out);
-  EXPECT_GE(told.number("/lights/packets"), 4.0);
+  const Json report(robot.wait().out);
+  EXPECT_GE(report.number("/lights/packets"), 4.0);
   farm.signal(SIGINT);
   const Json facts(farm.wait().out);
   EXPECT_GE(facts.number("/lights/packets"), 20.0) << "of both intersections";
@@ -90,7 +90,7 @@ TEST(Light, RunsAPlanWithAFarm) {
 TEST(Light, CtrlCEndsItAtOnce) {
   Program light({"light", our_world("simville/simville.world"), "--send", "127.0.0.1", "--port",
                  std::to_string(free_ports(1)), "--rate", "0.1"});
-  ASSERT_TRUE(light.says("press Ctrl-C to stop"));
+  ASSERT_TRUE(light.prints("press Ctrl-C to stop"));
   const auto start = std::chrono::steady_clock::now();
   light.signal(SIGINT);
   EXPECT_EQ(light.wait().code, 0);

@@ -183,11 +183,11 @@ struct RosRanges {
 
 TEST_F(Limits, InRosMessages) {
   recorded();
-  const RosRanges told(folder.path("r/run.mcap"));
+  const RosRanges messages(folder.path("r/run.mcap"));
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (const std::string topic : {"/scan", "/sonar/range", "/infrared/range"}) {
-      const auto found = told.by_topic.find("/r" + std::to_string(i) + topic);
-      ASSERT_NE(found, told.by_topic.end()) << topic;
+      const auto found = messages.by_topic.find("/r" + std::to_string(i) + topic);
+      ASSERT_NE(found, messages.by_topic.end()) << topic;
       for (const float range : found->second) EXPECT_EQ(range, value_of(rows[i].ros)) << rows[i].name << topic;
     }
 }

@@ -13,7 +13,7 @@ namespace {
 
 /// Returns the greeting that the WebSocket sends to a viewer.
 std::string greeting_of(Program& program) {
-  EXPECT_TRUE(program.says("view on http://127.0.0.1:")) << program.err();
+  EXPECT_TRUE(program.prints("view on http://127.0.0.1:")) << program.err();
   const std::string err = program.err();
   const std::string before = "view on http://127.0.0.1:";
   const int port = std::atoi(err.c_str() + err.find(before) + before.size());

@@ -14,7 +14,7 @@ namespace {
 /// Returns the dynamic linker's log of libraries loaded at start and later.
 std::string loaded_by(const Words& arguments) {
   const Outcome outcome = run_successfully(arguments, {{"LD_DEBUG", "files"}});
-  EXPECT_NE(outcome.err.find("libfmt.so"), std::string::npos) << "the linker says nothing";
+  EXPECT_NE(outcome.err.find("libfmt.so"), std::string::npos) << "the linker prints no log";
   return outcome.err;
 }
 

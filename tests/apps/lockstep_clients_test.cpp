@@ -50,7 +50,7 @@ std::string hash_of_avoid() {
 /// Three copies of the cave's robot, served in lockstep.
 struct LockstepServer {
   explicit LockstepServer(const Words& more) : program(words(more)) {
-    if (!program.says("; press Ctrl-C to stop")) return;
+    if (!program.prints("; press Ctrl-C to stop")) return;
     const std::string said = program.err();
     port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
   }

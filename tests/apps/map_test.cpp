@@ -63,7 +63,7 @@ TEST(Map, ReceivesBothWireFormatsFromARun) {
   for (const std::string wire : {"farm", "thesis"}) {
     const unsigned port = free_ports(120);
     Program map(listen(port, {"--wire", wire, "-o", folder.path(wire + ".png")}));
-    ASSERT_TRUE(map.says("listening for maps on 1 port"));
+    ASSERT_TRUE(map.prints("listening for maps on 1 port"));
     EXPECT_EQ(run_program(run(world, port, wire)).code, 0);
     const Outcome outcome = map.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -80,7 +80,7 @@ TEST(Map, MergesSeveralAndIgnoresInvalidPackets) {
   const unsigned port = free_ports(120);
   Program map({"map", "--listen", std::to_string(port), "--listen", std::to_string(port + 8), "--silence", "3",
                "--merge", "-o", folder.path("both.png")});
-  ASSERT_TRUE(map.says("listening for maps on 2 ports"));
+  ASSERT_TRUE(map.prints("listening for maps on 2 ports"));
   netio::Outbox outbox;
   for (std::size_t n = 0; n < 64; ++n)
     outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, base::Bytes(31 * n, std::uint8_t(n)));
@@ -130,7 +130,7 @@ TEST(Map, SequencesThatJumpAreDropped) {
   for (const bool followed : {false, true}) {
     const unsigned port = free_ports(1);
     Program map(listen(port, {}));
-    ASSERT_TRUE(map.says("listening for maps on 1 port"));
+    ASSERT_TRUE(map.prints("listening for maps on 1 port"));
     netio::Outbox farm;
     for (const std::uint32_t sequence : {0u, 1u}) send_map(farm, port, sequence, 2);
     send_map(farm, port, 1'000'000, 1);
@@ -147,7 +147,7 @@ TEST(Map, SequencesThatJumpAreDropped) {
 TEST(Map, DatagramsDroppedByTheKernelAreReported) {
   const unsigned port = free_ports(1);
   Program map(listen(port, {}));
-  ASSERT_TRUE(map.says("listening for maps on 1 port"));
+  ASSERT_TRUE(map.prints("listening for maps on 1 port"));
   map.signal(SIGSTOP);
   netio::Outbox farm;
   for (int i = 0; i < 30'000; ++i) farm.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, base::Bytes(1'000));
@@ -176,7 +176,7 @@ TEST(Map, DuplicatePortsAreRejected) {
 TEST(Map, PortsMayBeGivenInAnyOrder) {
   const unsigned port = free_ports(2);
   Program map({"map", "--listen", std::to_string(port + 1), "--listen", std::to_string(port), "--silence", "0.3"});
-  ASSERT_TRUE(map.says("listening for maps on 2 ports"));
+  ASSERT_TRUE(map.prints("listening for maps on 2 ports"));
   netio::Outbox outbox;
   for (const unsigned to : {port, port, port + 1})
     outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(to)}, base::Bytes(3));

@@ -14,7 +14,7 @@ namespace sf {
 namespace {
 
 struct Exchange {
-  Outcome sent, heard;
+  Outcome sent, received;
 };
 
 /// Runs `run` of a world for some seconds, and `listen` at the same time. @param ports as `listen` counts them
@@ -24,16 +24,16 @@ Exchange exchange(const std::string& world, const std::string& ports, const std:
   Words listen{"listen", "--silence", "100"}, run{"run", "--send", "127.0.0.1", "--duration", seconds};
   for (Words* command : {&listen, &run}) command->insert(command->end(), words.begin(), words.end());
   Program listener(listen);
-  EXPECT_TRUE(listener.says("listening on " + ports)) << listener.err();
+  EXPECT_TRUE(listener.prints("listening on " + ports)) << listener.err();
   const Outcome sent = run_successfully(run);
   listener.signal(SIGINT);
   return {sent, listener.wait()};
 }
 
 void run_to_listener(const std::string& wire) {
-  const auto [sent, heard] = exchange(our_world("cave.world"), "4 ports", "3", {"--robots", "4", "--wire", wire});
-  EXPECT_EQ(heard.code, 0) << heard.err;
-  const Json out(sent.out), in(heard.out);
+  const auto [sent, received] = exchange(our_world("cave.world"), "4 ports", "3", {"--robots", "4", "--wire", wire});
+  EXPECT_EQ(received.code, 0) << received.err;
+  const Json out(sent.out), in(received.out);
   EXPECT_EQ(out.number("/packets/sent"), 4 * 30);
   EXPECT_EQ(out.number("/packets/failed"), 0);
   EXPECT_EQ(in.number("/packets"), 4 * 30);
@@ -67,8 +67,8 @@ TEST(SendAndListen, ReadingsBetweenTicksAreSent) {
       folder.write("w.world",
                    "interval_sim 100\nmodel( size [6 4 1] boundary 1 noblocks 0 )\n"
                    "position( name \"roomba1\" laser( samples 9 rate 20 ) laser( samples 9 rate 7 ) )\n");
-  const auto [sent, heard] = exchange(world, "2 ports", "3", {});
-  const Json in(heard.out);
+  const auto [sent, received] = exchange(world, "2 ports", "3", {});
+  const Json in(received.out);
   EXPECT_EQ(Json(sent.out).number("/packets/sent"), 59 + 21) << "20 Hz and 7 Hz, from 0 to 2.9 s";
   EXPECT_EQ(in.number("/good"), 59 + 21);
   EXPECT_EQ(in.number("/lost"), 0);
@@ -80,7 +80,7 @@ TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 2 range_max 8 ) )\n");
   const unsigned base = free_ports(16);
   Program listener({"listen", world, "--json", "--laser-port", std::to_string(base), "--silence", "100"});
-  ASSERT_TRUE(listener.says("listening on 1 port")) << listener.err();
+  ASSERT_TRUE(listener.prints("listening on 1 port")) << listener.err();
   netio::Outbox farm, other;
   const std::uint8_t scan[] = {2, 0, 0xe8, 3, 0xe8, 3};
   base::Bytes packet;
@@ -113,26 +113,26 @@ TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
 TEST(SendAndListen, InRealTimeReadingsArriveWhenTheyAreDue) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 9 rate 50 ) )\n");
-  std::size_t heard = 0, times = 0;
+  std::size_t received = 0, times = 0;
   for (int trial = 0; trial < 8 && times < 30; ++trial) {
     const unsigned base = free_ports(16);
-    const netio::Socket ears = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 8)});
+    const netio::Socket receiver = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 8)});
     Program run(
         {"run", world, "--duration", "2", "--real-time", "--send", "127.0.0.1", "--laser-port", std::to_string(base)});
     netio::ReceiveBatch batch(16);
-    heard = times = 0;
+    received = times = 0;
     until([&] {
       for (int i = 0; i < 20; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
-        const std::size_t count = batch.fill(ears);
-        heard += count;
+        const std::size_t count = batch.fill(receiver);
+        received += count;
         times += count > 0;
       }
-      return heard >= 96 || !run.running();
+      return received >= 96 || !run.running();
     });
     EXPECT_EQ(run.wait().code, 0);
-    EXPECT_GE(heard, 90u);
+    EXPECT_GE(received, 90u);
   }
-  EXPECT_GE(times, 30u) << "all at once at the end of each tick, that would be 20 times";
+  EXPECT_GE(times, 30u) << "20 if all were sent at the end of each tick";
 }
 
 TEST(SendAndListen, AListenerEndsWithoutPackets) {
@@ -164,7 +164,7 @@ TEST(SendAndListen, CollidingPortsAreRejectedAtLoad) {
     EXPECT_EQ(count_lines(outcome.err), 1u);
     EXPECT_NE(outcome.err.find("roomba1"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("roomba2"), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find("--ports-per-robot"), std::string::npos) << "says what to do: " << outcome.err;
+    EXPECT_NE(outcome.err.find("--ports-per-robot"), std::string::npos) << "names the remedy: " << outcome.err;
   }
 }
 
@@ -191,20 +191,20 @@ TEST(SendAndListen, ATakenPortIsReported) {
 TEST(Serve, ReadingsAtReportedPosesMatchSense) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  Robot one(1, service.port, service.laser_port(1)), two(2, service.port, service.laser_port(2));
   const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,30");
   // Its states are accepted from the first packet on, but the scan may still be from its pose at load.
   std::vector<double> ranges;
   const bool agreed = until([&] {
-    one.say({-1.0, 0.5, 0.0, M_PI / 6});
-    ranges = one.hear();
+    one.send_state({-1.0, 0.5, 0.0, M_PI / 6});
+    ranges = one.receive();
     bool same = ranges.size() == expected.size();
     for (std::size_t i = 0; same && i < ranges.size(); ++i) same = std::fabs(ranges[i] - expected[i]) <= 0.000501;
     return same;
   });
   EXPECT_TRUE(agreed) << testing::PrintToString(ranges);
   // The other robot has sent nothing, so nothing is sent to it.
-  EXPECT_TRUE(two.hear().empty());
+  EXPECT_TRUE(two.receive().empty());
   service.program.signal(SIGTERM);
   const Outcome outcome = service.program.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -221,11 +221,11 @@ TEST(Serve, SensorsAreReadBetweenTicks) {
   Service service(fast_room(), {});
   ASSERT_NE(service.port, 0u) << service.program.err();
   EXPECT_EQ(service.program.err().find("--rate"), std::string::npos) << service.program.err();
-  Robot one(1, service.port, service.hears(1));
+  Robot one(1, service.port, service.laser_port(1));
   std::size_t near = 0;
   EXPECT_TRUE(until([&] {
-    one.say({-1.0, 0.5, 0.0, 0.0});
-    one.hear();
+    one.send_state({-1.0, 0.5, 0.0, 0.0});
+    one.receive();
     near = 0;
     for (std::size_t i = 1; i < one.stamps().size(); ++i) near += one.stamps()[i] - one.stamps()[i - 1] < 60'000'000;
     return near >= 20;
@@ -239,10 +239,10 @@ TEST(Serve, ARateTooLowForASensorIsReported) {
   const std::string said = service.program.err();
   EXPECT_NE(said.find("--rate 10 is too low for 2 sensors (laser 50 Hz)"), std::string::npos) << said;
   EXPECT_NE(said.find("at least --rate 50"), std::string::npos) << said;
-  Robot one(1, service.port, service.hears(1));
+  Robot one(1, service.port, service.laser_port(1));
   ASSERT_TRUE(until([&] {
-    one.say({-1.0, 0.5, 0.0, 0.0});
-    one.hear();
+    one.send_state({-1.0, 0.5, 0.0, 0.0});
+    one.receive();
     return one.stamps().size() >= 5;
   }));
   service.program.signal(SIGINT);
@@ -253,9 +253,9 @@ TEST(Serve, ARateTooLowForASensorIsReported) {
 TEST(Serve, FilteredStatesBeyondTheLimitPerTickAreCounted) {
   Service service(kRoom, {"--rate", "0.1", "--filter"});
   ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.hears(1));
+  Robot one(1, service.port, service.laser_port(1));
   ASSERT_TRUE(prove(one));
-  for (int i = 0; i < 200; ++i) one.say({-1.0, 0.5, 0.0, 0.0});
+  for (int i = 0; i < 200; ++i) one.send_state({-1.0, 0.5, 0.0, 0.0});
   service.program.signal(SIGINT);
   EXPECT_GE(Json(service.program.wait().out).number("/states/beyond_limit"), 200 - 2 * 64);
 }
@@ -263,13 +263,13 @@ TEST(Serve, FilteredStatesBeyondTheLimitPerTickAreCounted) {
 TEST(Serve, RobotsSeeEachOther) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  Robot one(1, service.port, service.laser_port(1)), two(2, service.port, service.laser_port(2));
   // A robot at the origin looks along x, where the near side of the other is 1 m from the laser.
   std::vector<double> ranges;
   const bool seen = until([&] {
-    one.say({0.0, 0.0, 0.0, 0.0});
-    two.say({1.25, 0.0, 0.0, 0.0});
-    ranges = one.hear();
+    one.send_state({0.0, 0.0, 0.0, 0.0});
+    two.send_state({1.25, 0.0, 0.0, 0.0});
+    ranges = one.receive();
     return ranges.size() == 91 && std::fabs(ranges[45] - 1.0) <= 0.000501;
   });
   EXPECT_TRUE(seen) << testing::PrintToString(ranges);
@@ -281,16 +281,16 @@ TEST(Serve, ATagIsAtItsMount) {
   Service service(std::string(kRoom) +
                   "model( name \"tag1\" pose [-2 1.5 0 0] size [0.2 0.4 0.2] tag_pose [0.5 0 0.1 90] )\n");
   ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.hears(1));
+  Robot one(1, service.port, service.laser_port(1));
   std::uint32_t sequence = 0;
   std::vector<double> ranges;
   const bool seen = until([&] {
     base::Bytes tag;
     netio::encode({.robot = 1, .sequence = sequence++},
                   netio::Tag{.position = {1.5, 0.5, 3.0}, .orientation = {0, 0, 1, 0}}, tag);
-    one.say({0.0, 0.0, 0.0, 0.0});
+    one.send_state({0.0, 0.0, 0.0, 0.0});
     one.send(tag);
-    ranges = one.hear();
+    ranges = one.receive();
     return ranges.size() == 91 && std::fabs(ranges[45] - 1.2) <= 0.000501;
   });
   EXPECT_TRUE(seen) << testing::PrintToString(ranges);
@@ -299,12 +299,12 @@ TEST(Serve, ATagIsAtItsMount) {
 TEST(Serve, StatesAreRelayedWithinRadioRange) {
   Service service(kRoom, {"--rate", "50", "--radio", "3"});
   ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  Robot one(1, service.port, service.laser_port(1)), two(2, service.port, service.laser_port(2));
   const auto turn = [&](double x) {
     one.ask();
-    one.say({-1.0, 0.0, 0.0, 0.0});
-    two.say({x, 0.0, 0.0, 0.0});
-    one.hear(), two.hear();
+    one.send_state({-1.0, 0.0, 0.0, 0.0});
+    two.send_state({x, 0.0, 0.0, 0.0});
+    one.receive(), two.receive();
   };
   ASSERT_TRUE(until([&] { return turn(2.5), one.stamps().size() >= 5 && two.stamps().size() >= 5; }));
   EXPECT_EQ(one.states(), 0u) << "3.5 m apart";
@@ -324,11 +324,11 @@ TEST(Serve, AFollowedRobotWaitsForItsFollower) {
                   "1\" pose [3.9 0.75 0 0] )\n" + car + "2\" pose [2.4 0.75 0 0] )\n");
   ASSERT_NE(service.port, 0u) << service.program.err();
   const std::string port = std::to_string(service.port);
-  Robot two(2, service.port, service.hears(2));
+  Robot two(2, service.port, service.laser_port(2));
   Program one({"robot", service.world, "--name", "roomba1", "--port", port, "--json", "--controller", "route", "--set",
                "tour=true", "--wait-for-start", "--duration", "3"});
-  const auto turn = [&] { two.ask(), two.say({2.4, 0.75, 0.0, 0.0}, 1); };
-  ASSERT_TRUE(until([&] { return turn(), two.states() >= 3; })) << "from then on each hears the other";
+  const auto turn = [&] { two.ask(), two.send_state({2.4, 0.75, 0.0, 0.0}, 1); };
+  ASSERT_TRUE(until([&] { return turn(), two.states() >= 3; })) << "from then on each receives the other's states";
   EXPECT_EQ(run_program({"start", "--port", port, "--robot", "1"}).code, 0);
   ASSERT_TRUE(until([&] { return turn(), !one.running(); }));
   const Json facts(one.wait().out);
@@ -340,22 +340,23 @@ TEST(Serve, StrangersAreCountedAndDropped) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
   const unsigned spare = service.lasers + 1;
-  Robot one(1, service.port, service.hears(1)), impostor(1, service.port, spare), nobody(99, service.port, spare + 1);
+  Robot one(1, service.port, service.laser_port(1)), impostor(1, service.port, spare),
+      unknown(99, service.port, spare + 1);
   ASSERT_TRUE(until([&] {
-    one.say({-1.0, 0.5, 0.0, 0.0});
-    return !one.hear().empty();
+    one.send_state({-1.0, 0.5, 0.0, 0.0});
+    return !one.receive().empty();
   }));
   ASSERT_TRUE(prove(impostor));
   // On a busy machine, a robot may have been silent for two seconds: it sends again before every try.
   ASSERT_TRUE(until([&] {
-    one.say({-1.0, 0.5, 0.0, 0.0});
-    impostor.say({2.0, 0.0, 0.0, 0.0});
+    one.send_state({-1.0, 0.5, 0.0, 0.0});
+    impostor.send_state({2.0, 0.0, 0.0, 0.0});
     return service.program.err().find("are dropped until") != std::string::npos;
   }));
-  nobody.say({0.0, 0.0, 0.0, 0.0});
-  netio::Outbox mouth;
-  mouth.queue({netio::kLoopback, static_cast<std::uint16_t>(service.port)}, base::Bytes{1, 2, 3});
-  mouth.flush();
+  unknown.send_state({0.0, 0.0, 0.0, 0.0});
+  netio::Outbox outbox;
+  outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(service.port)}, base::Bytes{1, 2, 3});
+  outbox.flush();
   base::Bytes no_number = one.state({});
   const double nan = std::nan("");
   std::memcpy(no_number.data() + netio::kHeaderBytes, &nan, sizeof nan);
@@ -373,18 +374,18 @@ TEST(Serve, StrangersAreCountedAndDropped) {
 TEST(Serve, StrangersAreReportedOncePerBindingUntilALeave) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.hears(1)), again(1, service.port, service.lasers + 1);
+  Robot one(1, service.port, service.laser_port(1)), again(1, service.port, service.lasers + 1);
   ASSERT_TRUE(until([&] {
-    one.say({-1.0, 0.5, 0.0, 0.0});
-    return !one.hear().empty();
+    one.send_state({-1.0, 0.5, 0.0, 0.0});
+    return !one.receive().empty();
   }));
   ASSERT_TRUE(prove(again));
-  for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
-  ASSERT_TRUE(service.program.says("are dropped"));
+  for (int i = 0; i < 5; ++i) again.send_state({2.0, 0.0, 0.0, 0.0});
+  ASSERT_TRUE(service.program.prints("are dropped"));
   one.leave();
   // It owns the id from here on, though less than two seconds have passed.
-  for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
-  ASSERT_TRUE(until([&] { return one.overhears(again); }));
+  for (int i = 0; i < 5; ++i) again.send_state({2.0, 0.0, 0.0, 0.0});
+  ASSERT_TRUE(until([&] { return one.receives_for(again); }));
   service.program.signal(SIGINT);
   const Outcome outcome = service.program.wait();
   EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;  // the service's address, and the stranger
@@ -449,9 +450,9 @@ TEST(SendAndListen, PortsPerRobotFitTheSensors) {
     robots += " )\n";
   }
   const std::string world = folder.write("w.world", robots);
-  const Outcome heard = exchange(world, "34 ports", "0.3", {}).heard;
-  EXPECT_NE(heard.err.find("17 ports per robot"), std::string::npos) << heard.err;
-  const Json in(heard.out);
+  const Outcome received = exchange(world, "34 ports", "0.3", {}).received;
+  EXPECT_NE(received.err.find("17 ports per robot"), std::string::npos) << received.err;
+  const Json in(received.out);
   EXPECT_EQ(in.number("/good"), 34 * 3);
   EXPECT_EQ(in.number("/silent_ports"), 0);
   expect_refused({"serve", world, "--port", "0", "--ports-per-robot", "8"}, "raise the stride to at least 17");
@@ -463,11 +464,11 @@ TEST(SendAndListen, TheThesisFormatOmitsUnsupportedSensors) {
       folder.write("w.world",
                    "position( name \"roomba1\" laser( samples 2 ) infrared( scount 1 spose[0] [0 0 0] ) )\n"
                    "position( name \"roomba2\" pose [2 0 0 0] laser( samples 2 ) laser( samples 400 ) )\n");
-  const auto [sent, heard] = exchange(world, "2 ports", "0.3", {"--wire", "thesis"});
+  const auto [sent, received] = exchange(world, "2 ports", "0.3", {"--wire", "thesis"});
   EXPECT_NE(sent.err.find("left out: roomba1.infrared"), std::string::npos) << sent.err;
   EXPECT_NE(sent.err.find("left out: roomba2.laser:1: 400 samples"), std::string::npos) << sent.err;
   EXPECT_EQ(count_lines(sent.err), 2u) << sent.err;
-  const Json in(heard.out);
+  const Json in(received.out);
   EXPECT_EQ(in.number("/good"), 2 * 3);
   EXPECT_EQ(in.number("/packets"), 2 * 3);
   EXPECT_EQ(Json(sent.out).number("/packets/sent"), 2 * 3);

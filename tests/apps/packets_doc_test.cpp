@@ -67,7 +67,7 @@ TEST(PacketsPage, ItsRobotProvesItsAddressAndIsServed) {
     script.replace(script.find(from), from.size(), to);
   };
   replace("9000", std::to_string(service.port));
-  replace("10000 + 7 * 8 + 0", std::to_string(service.hears(1)));
+  replace("10000 + 7 * 8 + 0", std::to_string(service.laser_port(1)));
   replace("128, 7, 0", "128, 1, 0");
   const std::string out = printed(service.folder, script);
   EXPECT_EQ(out.front(), '[') << out;

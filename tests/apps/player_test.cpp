@@ -26,7 +26,7 @@ struct PlayerProgram {
     words.insert(words.begin() + 1, folder.write("two.world", bridges::player::kTwoRobots));
     program.emplace(words);
     const std::string said = "Player server on 127.0.0.1:";
-    EXPECT_TRUE(program->says(said));
+    EXPECT_TRUE(program->prints(said));
     const std::string err = program->err();
     server.port = static_cast<std::uint16_t>(std::atoi(err.c_str() + err.find(said) + said.size()));
   }
@@ -85,7 +85,7 @@ TEST(PlayerProgram, AServiceIsRead) {
     EXPECT_EQ(message.header.type, MessageType::data);
     XdrReader xdr(message.payload);
     for (int k = 0; k < 6; ++k) xdr.get_double();
-    EXPECT_EQ(xdr.get(), 0u) << "a service knows no contacts";
+    EXPECT_EQ(xdr.get(), 0u) << "a service has no contacts";
   }
   EXPECT_EQ(serve.end().code, 0);
 }
@@ -95,7 +95,7 @@ TEST(PlayerProgram, WrongAddressesAreRejected) {
     return run_program({"run", our_world("rooms.world"), "--duration", "1", "--player", address}).err;
   };
   expect_in("--player: '66650' is not an address; expected a port or HOST:PORT", refusal("66650"));
-  expect_in("--player: 'nobody' is not an address", refusal("nobody"));
+  expect_in("--player: 'nowhere' is not an address", refusal("nowhere"));
   expect_in("does not have that address", refusal("192.0.2.1:6665"));
 }
 

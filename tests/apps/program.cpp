@@ -118,7 +118,7 @@ bool Program::running() {
   return !ended_;
 }
 
-bool Program::says(const std::string& text) {
+bool Program::prints(const std::string& text) {
   const auto deadline = Clock::now() + std::chrono::minutes(1);
   while (err().find(text) == std::string::npos) {
     if (!running() || Clock::now() > deadline) return err().find(text) != std::string::npos;
@@ -156,7 +156,7 @@ Outcome Program::wait() {
   const auto deadline = Clock::now() + std::chrono::minutes(2);
   while (running()) {
     if (Clock::now() > deadline) {
-      ADD_FAILURE() << "did not end within two minutes; it said: " << err();
+      ADD_FAILURE() << "did not end within two minutes; standard error: " << err();
       kill(pid_, SIGKILL);
     }
     nap();

@@ -52,7 +52,7 @@ class Program {
   std::string err() const;
   bool running();
   /// Waits until `text` is on standard error; false if the program ends first, or after a minute.
-  bool says(const std::string& text);
+  bool prints(const std::string& text);
   /// Waits until the program handles the signal; false if it ends first, or after a minute.
   bool handles(int number);
   void signal(int number) const;

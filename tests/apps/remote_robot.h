@@ -28,12 +28,12 @@ bot( name "roomba2" pose [2 1 0 0] )
 /// A remote robot: one socket to send from, one to receive its sensor on.
 class Robot {
  public:
-  Robot(std::uint16_t id, unsigned service, unsigned hears)
+  Robot(std::uint16_t id, unsigned service, unsigned port)
       : id_(id),
         v2v_socket_({.farm = {netio::kLoopback, static_cast<std::uint16_t>(service)},
                      .robot = id,
                      .others = {id == 1 ? 2u : 1u}}),
-        socket_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
+        socket_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(port)})),
         batch_(16) {}
 
   base::Bytes state(const base::Pose& X_WR, std::uint32_t follows = netio::kNone) {
@@ -47,7 +47,7 @@ class Robot {
     netio::encode(header, state, bytes);
     return bytes;
   }
-  void say(const base::Pose& X_WR, std::uint32_t follows = netio::kNone) { send(state(X_WR, follows)); }
+  void send_state(const base::Pose& X_WR, std::uint32_t follows = netio::kNone) { send(state(X_WR, follows)); }
   void send(const base::Bytes& bytes) {
     challenged();
     v2v_socket_.send(bytes);
@@ -78,7 +78,7 @@ class Robot {
   }
 
   /// True if a reading for `other` arrives at this robot.
-  bool overhears(const Robot& other) {
+  bool receives_for(const Robot& other) {
     bool found = false;
     batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) {
       netio::Packet packet;
@@ -89,7 +89,7 @@ class Robot {
   }
 
   /// Returns the ranges of the newest pending scan; empty if there is none.
-  std::vector<double> hear() {
+  std::vector<double> receive() {
     std::vector<double> ranges;
     batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> datagram, const netio::Endpoint&) {
       netio::Packet packet;
@@ -137,7 +137,7 @@ inline bool until(const std::function<bool()>& done) {
 inline bool prove(Robot& robot) {
   return until([&] {
     if (robot.challenged()) return true;
-    robot.say({});
+    robot.send_state({});
     return false;
   });
 }
@@ -152,11 +152,11 @@ struct Service {
   /// @param rate of ticks; empty: the world's
   explicit Service(const std::string& text = kRoom, const Words& rate = {"--rate", "50"})
       : world(folder.write("room.world", text)), program(words(rate)) {
-    if (!program.says("; press Ctrl-C to stop")) return;
+    if (!program.prints("; press Ctrl-C to stop")) return;
     const std::string said = program.err();
     port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
   }
-  unsigned hears(unsigned robot) const { return lasers + 8 * robot; }
+  unsigned laser_port(unsigned robot) const { return lasers + 8 * robot; }
 
  private:
   Words words(const Words& rate) const {

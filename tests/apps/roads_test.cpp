@@ -127,7 +127,7 @@ TEST(Missions, WrongUsageIsRejected) {
 
 TEST(Roads, PublicFilesHaveTheirCounts) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data next to the sources";
   const Json facts = run_json({"check", folder + "darpa_sample/uce_rndf_1_final_event.rndf", "--json"});
   EXPECT_EQ(facts.number("/roads/points"), 941);
   EXPECT_EQ(facts.number("/roads/lane_waypoints"), 628);

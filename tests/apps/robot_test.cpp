@@ -43,7 +43,7 @@ struct FarmService {
   explicit FarmService(const std::string& wire = "farm")
       : world(folder.write("room.world", wire == "farm" ? kRoom : kSmallRoom)),
         program({"serve", world, "--port", "0", "--json", "--wire", wire, "--laser-port", lasers}) {
-    if (!program.says("; press Ctrl-C to stop")) return;
+    if (!program.prints("; press Ctrl-C to stop")) return;
     const std::string said = program.err();
     port = std::to_string(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
   }
@@ -82,7 +82,7 @@ struct RobotsTest : testing::Test {
     silent =
         std::make_unique<Program>(Words{"robot", world, "--name", "roomba1", "--port", std::to_string(free_ports(1)),
                                         "--laser-port", std::to_string(free_ports(48)), "--duration", "3.3"});
-    EXPECT_TRUE(silent->says("; press Ctrl-C to stop"));
+    EXPECT_TRUE(silent->prints("; press Ctrl-C to stop"));
   }
   static void TearDownTestSuite() {
     silent.reset();
@@ -104,7 +104,7 @@ TEST_F(RobotsTest, SeveralDriveByTheirReadings) {
   const auto three = service.robot("roomba3", {"--duration", "2", "--loss", "1", "--wait-for-start"});
   const auto four =
       service.robot("roomba4", {"--duration", "2", "--loss", "0.3", "--delay", "0.02", "--jitter", "0.15"});
-  ASSERT_TRUE(two->says("after the start signal"));
+  ASSERT_TRUE(two->prints("after the start signal"));
   constexpr int kStarts = 3;
   for (int i = 0; i < kStarts; ++i) {
     const Outcome started = run_successfully({"start", "--port", service.port, "--robot", "2"});
@@ -242,7 +242,7 @@ TEST(Robot, DrivesACreateOnASerialLine) {
     ASSERT_TRUE(create.driven(steps)) << robot.err();
   }
   robot.signal(SIGINT);
-  EXPECT_TRUE(create.comes_to(CreateSimulator::passive));
+  EXPECT_TRUE(create.reaches(CreateSimulator::passive));
   EXPECT_EQ(create.right, 0);
   const Outcome outcome = robot.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;

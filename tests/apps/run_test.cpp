@@ -102,7 +102,7 @@ TEST(Run, ReportsStoppedRobotsAndReasons) {
   EXPECT_EQ(facts.number("/control/standing/0/robots"), 1);
   EXPECT_GT(facts.number("/control/standing/0/longest_s"), 3.0);
   const Json drives = run("cave.world", {"--robots", "3", "--duration", "5"});
-  EXPECT_EQ(drives.size("/control/standing"), 0u) << "who drives does not stand";
+  EXPECT_EQ(drives.size("/control/standing"), 0u) << "driving robots are not listed";
 }
 
 /// Five robots with the same reason share one line, which names three of them.
@@ -204,7 +204,7 @@ TEST(Run, OnlyNamedRobotsAreDriven) {
 
   const Outcome off_the_lane = run_program(with(words, {"--drive", "khepera6"}));
   EXPECT_EQ(off_the_lane.code, 2);
-  EXPECT_EQ(off_the_lane.err.find(hint), std::string::npos) << "it is the one that is named: " << off_the_lane.err;
+  EXPECT_EQ(off_the_lane.err.find(hint), std::string::npos) << "it is the named robot: " << off_the_lane.err;
 
   words.insert(words.end(), {"--drive", "roomba0", "--drive", "roomba3"});
   const Outcome two = run_successfully(words);
@@ -352,7 +352,7 @@ TEST(Run, CountsContactsAsInItsPicture) {
   }
   EXPECT_EQ(facts.number("/contacts"), static_cast<double>(began));
   EXPECT_GT(began, 0u);
-  EXPECT_LT(began, touching) << "or the two could not be told apart";
+  EXPECT_LT(began, touching) << "so that the two differ";
 }
 
 /// The hash covers the values that are sent and recorded.
@@ -449,7 +449,7 @@ TEST(Plot, AStopLeavesNoPartialPicture) {
   const Folder folder;
   run("cave.world", {"--robots", "20", "--duration", "300", "--record", folder.path("r")});
   Program plot({"plot", folder.path("r"), "-o", folder.path("p")});
-  ASSERT_TRUE(plot.says("wrote")) << plot.err();
+  ASSERT_TRUE(plot.prints("wrote")) << plot.err();
   plot.signal(SIGINT);
   const Outcome outcome = plot.wait();
   EXPECT_EQ(outcome.signal, 0);
@@ -492,7 +492,7 @@ TEST(Run, CheckPointsAreWrittenOnDemandAndAResumedRunMeetsThem) {
   ASSERT_EQ(recorded("kept", {"--duration", "2", "--checkpoint", "0.5", "--resume"}).code, 0);
   EXPECT_EQ(check_points(folder.path("kept")), (std::vector<std::string>{"5", "10", "15", "20"}));
   ASSERT_EQ(recorded("kept", {"--duration", "3", "--resume"}).code, 0);
-  EXPECT_EQ(check_points(folder.path("kept")).size(), 4u) << "none is asked for";
+  EXPECT_EQ(check_points(folder.path("kept")).size(), 4u) << "without --checkpoint";
 
   const Outcome other = recorded("kept", {"--duration", "1", "--resume", "--seed", "2"});
   EXPECT_EQ(other.code, 2);

@@ -107,7 +107,7 @@ TEST_F(Kinds, WithoutATypeNumbersCountAllKinds) {
   const std::string twice =
       folder.write("twice.world", "position( name \"a\" laser( ) laser( ) magnetometer( ) magnetometer( ) )\n");
   const Json last(run("sense", twice, {"--sensor", "3", "--json"}).out);
-  EXPECT_EQ(last.text("/type"), "magnetometer") << "behind all lasers, not one";
+  EXPECT_EQ(last.text("/type"), "magnetometer") << "after the ports of all lasers";
   EXPECT_EQ(last.number("/sensor"), 1);
 }
 
@@ -169,7 +169,7 @@ TEST_F(Kinds, EveryPacketArrivesOnEitherWire) {
     const Words bases = free_bases(base);
     const Words listen = with({"listen", world, "--json", "--wire", wire, "--silence", "100"}, bases);
     Program listener(listen);
-    ASSERT_TRUE(listener.says("listening on 4 ports")) << listener.err();
+    ASSERT_TRUE(listener.prints("listening on 4 ports")) << listener.err();
     const Words words = with({"--duration", "2", "--send", "127.0.0.1", "--json", "--wire", wire}, bases);
     const Outcome sent = run("run", world, words);
     ASSERT_EQ(sent.code, 0) << sent.err;
@@ -204,7 +204,7 @@ TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
   const Words bases = free_bases(base);
   words.insert(words.end(), bases.begin(), bases.end());
   Program program(words);
-  ASSERT_TRUE(program.says("; press Ctrl-C to stop")) << program.err();
+  ASSERT_TRUE(program.prints("; press Ctrl-C to stop")) << program.err();
   const std::string said = program.err();
   const auto service = static_cast<std::uint16_t>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
 
@@ -213,8 +213,8 @@ TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
   const netio::Socket arrays = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 48)});
   netio::V2vSocket v2v_socket({.farm = {netio::kLoopback, service}, .robot = id, .others = {}});
   netio::ReceiveBatch batch(16);
-  std::size_t heard = 0;
-  for (std::uint32_t sequence = 0; sequence < 3000 && heard < 3; ++sequence) {
+  std::size_t received = 0;
+  for (std::uint32_t sequence = 0; sequence < 3000 && received < 3; ++sequence) {
     base::Bytes request;
     netio::encode({.robot = id, .sequence = sequence}, netio::Subscribe{1u << kMagnetometer}, request);
     v2v_socket.send(request);
@@ -228,10 +228,10 @@ TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
       EXPECT_EQ(netio::sensor_type_of(packet.header.type), kMagnetometer);
       EXPECT_EQ(batch.bytes(i).size(), 64u + 4u + 2u * 16u);
     }
-    heard += count;
+    received += count;
   }
-  EXPECT_GE(heard, 3u);
-  EXPECT_EQ(batch.fill(lasers), 0u) << "nobody asked for scans";
+  EXPECT_GE(received, 3u);
+  EXPECT_EQ(batch.fill(lasers), 0u) << "scans were not requested";
   program.signal(SIGINT);
   const Json facts(program.wait().out);
   EXPECT_EQ(facts.number("/rays"), 0);
@@ -283,11 +283,11 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
   const Outcome plot = run_successfully({"plot", folder.path("r"), "-o", folder.path("p")});
   viz::draw_series(fields_of(recording), folder.path("expected.png"));
   EXPECT_TRUE(read_file(folder.path("p/magnetometer.png")) == read_file(folder.path("expected.png")));
-  EXPECT_FALSE(std::filesystem::exists(folder.path("p/lane_edge.png"))) << "nobody has one";
+  EXPECT_FALSE(std::filesystem::exists(folder.path("p/lane_edge.png"))) << "no robot has one";
 
   ASSERT_EQ(run("run", world, record).code, 0);
   EXPECT_EQ(run_program({"plot", folder.path("r"), "-o", folder.path("q")}).code, 0);
-  EXPECT_FALSE(std::filesystem::exists(folder.path("q/magnetometer.png"))) << "nothing was recorded to draw";
+  EXPECT_FALSE(std::filesystem::exists(folder.path("q/magnetometer.png"))) << "no recorded readings to draw";
 }
 
 /// Robots drive by their lasers: other sensors, at any rate, do not change their motion.

@@ -51,7 +51,7 @@ TEST(SweepCommand, TablesDoNotDependOnTheNumberOfProcesses) {
   const std::string file = write_sweep(folder, "1", "contacts = 1000\n");
   const Outcome one = run_successfully({"sweep", file, "-o", folder.path("one"), "--jobs", "1"});
   EXPECT_NE(one.out.find("24 jobs: 24 pass\n"), std::string::npos) << one.out;
-  EXPECT_EQ(one.err.find('\r'), std::string::npos) << "quiet where nobody watches: " << one.err;
+  EXPECT_EQ(one.err.find('\r'), std::string::npos) << "no progress without a terminal: " << one.err;
   ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("three"), "--jobs", "3"}).code, 0);
   EXPECT_EQ(tables_of(folder, "three"), tables_of(folder, "one"));
 
@@ -83,7 +83,7 @@ Outcome interrupted(const std::string& file, int end, std::string& out) {
 }
 
 /// Interrupts with `end` in the middle, and continues from there.
-void interrupt_and_go_on(int end) {
+void interrupt_and_continue(int end) {
   const Folder folder;
   const std::string file = write_sweep(folder, "20");
   std::string out = folder.path("out");
@@ -111,8 +111,8 @@ void interrupt_and_go_on(int end) {
   EXPECT_EQ(tables_of(folder, fs::path(out).filename()), tables_of(folder, "undisturbed"));
 }
 
-TEST(SweepCommand, AKilledSweepContinues) { interrupt_and_go_on(SIGKILL); }
-TEST(SweepCommand, CtrlCKeepsFinishedJobs) { interrupt_and_go_on(SIGINT); }
+TEST(SweepCommand, AKilledSweepContinues) { interrupt_and_continue(SIGKILL); }
+TEST(SweepCommand, CtrlCKeepsFinishedJobs) { interrupt_and_continue(SIGINT); }
 
 TEST(SweepCommand, MissedExpectationsShowInTablesAndExitCode) {
   const Folder folder;
@@ -210,7 +210,7 @@ TEST(SweepCommand, SlurmScriptsListMissingJobs) {
   for (const char* number : {"1", "3"}) EXPECT_TRUE(succeeds(task + number + " bash '" + path + "'")) << number;
   ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("here")}).code, 0);
   EXPECT_EQ(tables_of(folder, "o u t"), tables_of(folder, "here"));
-  EXPECT_NE(run_program(words).out.find("24 jobs: "), std::string::npos) << "nothing is missing: the tables";
+  EXPECT_NE(run_program(words).out.find("24 jobs: "), std::string::npos) << "no job is missing: prints the tables";
 }
 
 /// Fifty points are listed, and the number of the rest.

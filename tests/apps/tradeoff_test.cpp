@@ -62,7 +62,7 @@ TEST(Tradeoff, WritesATableAFileAndAPicture) {
       EXPECT_LE(number(row[4]), number(row[8])) << name;
       EXPECT_GT(number(row[5]), 0.0) << name;
     } else {
-      EXPECT_EQ(row[4] + row[5], "") << name << ": neither error nor bound of nothing";
+      EXPECT_EQ(row[4] + row[5], "") << name << ": neither error nor bound without covered values";
     }
     const bool leaves_out = row[1].rfind("skip", 0) == 0;
     EXPECT_EQ(covered < 1.0, leaves_out || name == "laneedge exact") << name << ": " << covered;

@@ -503,7 +503,7 @@ TEST(Devices, TheChosenDeviceIsPrinted) {
     facts.flag(row + "/software");
     const bool is_chosen = facts.flag(row + "/chosen");
     chosen += is_chosen;
-    EXPECT_EQ(facts.text(row + "/reason").empty(), is_chosen) << "who is refused is told why";
+    EXPECT_EQ(facts.text(row + "/reason").empty(), is_chosen) << "each rejected device has a reason";
     if (!is_chosen) continue;
     EXPECT_EQ(facts.text(row + "/self_check"), "passed");
   }

@@ -47,7 +47,7 @@ std::string altered(const Folder& folder, std::uint64_t tick) {
 
 TEST(Verify, AnAlteredReadingExitsWithOne) {
   const Folder folder;
-  EXPECT_EQ(run_program({"verify", altered(folder, 99)}).code, 0) << "nothing was altered";
+  EXPECT_EQ(run_program({"verify", altered(folder, 99)}).code, 0) << "no reading was altered";
   const Outcome outcome = run_program({"verify", altered(folder, 2)});
   EXPECT_EQ(outcome.code, 1) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("1 of "), std::string::npos) << outcome.out;
@@ -58,7 +58,7 @@ TEST(Verify, AnAlteredReadingExitsWithOne) {
   const Json facts(json.out);
   EXPECT_FALSE(facts.flag("/sound"));
   EXPECT_EQ(facts.number("/again/0/different"), 1);
-  EXPECT_EQ(facts.number("/reference/different"), 1) << "so short a run is looked at whole";
+  EXPECT_EQ(facts.number("/reference/different"), 1) << "a short run is verified completely";
 }
 
 /// By default, verifies a sample and prints its size; every scan of a run with no more scans than that.
@@ -134,7 +134,7 @@ TEST(Verify, DamageIsReported) {
   EXPECT_FALSE(facts.flag("/sound"));
   EXPECT_GE(facts.size("/damage"), 1u);
   EXPECT_NE(outcome.err.find(facts.text("/damage/0")), std::string::npos) << outcome.err;
-  EXPECT_GT(facts.number("/ticks"), 0) << "what is left is looked at";
+  EXPECT_GT(facts.number("/ticks"), 0) << "the rest is verified";
   EXPECT_EQ(facts.number("/reference/different"), 0);
 }
 

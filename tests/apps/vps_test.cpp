@@ -246,8 +246,8 @@ TEST(Vps, ARobotDrivesByItsPackets) {
                     truth = std::to_string(ports + 2);
   Program serve({"serve", world, "--port", farm, "--laser-port", lasers, "--filter", "--json"});
   Program vps({"vps", folder.write("t.toml", testbed), "--robots", truth, "--send", "127.0.0.1:" + cameras, "--json"});
-  ASSERT_TRUE(serve.says("; press Ctrl-C to stop")) << serve.err();
-  ASSERT_TRUE(vps.says("; press Ctrl-C to stop")) << vps.err();
+  ASSERT_TRUE(serve.prints("; press Ctrl-C to stop")) << serve.err();
+  ASSERT_TRUE(vps.prints("; press Ctrl-C to stop")) << vps.err();
   Program robot({"robot",        world,
                  "--name",       "roomba1",
                  "--port",       farm,
@@ -259,9 +259,9 @@ TEST(Vps, ARobotDrivesByItsPackets) {
                  "--controller", "patrol",
                  "--set",        "points=[0 0 0.3 0]",
                  "--json"});
-  ASSERT_TRUE(robot.says("cameras detect roomba1")) << robot.err();
+  ASSERT_TRUE(robot.prints("cameras detect roomba1")) << robot.err();
   vps.signal(SIGSTOP);
-  EXPECT_TRUE(robot.says("no camera detects roomba1 any more")) << robot.err();
+  EXPECT_TRUE(robot.prints("no camera detects roomba1 any more")) << robot.err();
   const std::size_t seen = times_said(robot, "cameras detect roomba1");
   vps.signal(SIGCONT);
   EXPECT_TRUE(says_often(robot, "cameras detect roomba1", seen + 1)) << robot.err();

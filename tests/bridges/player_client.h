@@ -176,7 +176,7 @@ class TestClient {
     std::size_t have = 0;
     while (have < size) {
       pollfd readable{socket_, POLLIN, 0};
-      if (poll(&readable, 1, kPatience) <= 0) return ADD_FAILURE() << "nothing came", base::Bytes();
+      if (poll(&readable, 1, kPatience) <= 0) return ADD_FAILURE() << "no data arrived", base::Bytes();
       const ssize_t n = recv(socket_, bytes.data() + have, size - have, 0);
       if (n <= 0) return {};
       have += static_cast<std::size_t>(n);

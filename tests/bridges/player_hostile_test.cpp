@@ -137,7 +137,7 @@ TEST(PlayerHostile, RequestsOfAWrongLengthChangeNothing) {
   EXPECT_EQ(commands[0].twist.forward, 0.3);
   run.tick();
   const Message data = good.receive();
-  EXPECT_EQ(XdrReader(data.payload).get_double(), 0.0) << "its odometry began where it stands";
+  EXPECT_EQ(XdrReader(data.payload).get_double(), 0.0) << "its odometry starts at its pose";
 }
 
 TEST(PlayerHostile, OversizedMessagesAreNotAwaited) {
@@ -276,7 +276,7 @@ TEST(PlayerHostile, SlowClientsSkipAhead) {
     last = sequence.get();
     ++scans;
   }
-  EXPECT_LT(scans, kScans) << "and the newest came";
+  EXPECT_LT(scans, kScans) << "the newest arrived";
 }
 
 TEST(PlayerHostile, UnsentDataIsBounded) {

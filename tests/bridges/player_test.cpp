@@ -162,7 +162,7 @@ TEST_F(PlayerTest, ClosedDevicesAreSilent) {
   client.access(kLaserDevice, Access::close);
   run.tick({run.reading(sensors::kLaser, {1.0, 2.0, 3.0})});
   client.send(MessageType::request, kPosition, 1);
-  EXPECT_EQ(client.receive().header.type, MessageType::ack) << "nothing before it";
+  EXPECT_EQ(client.receive().header.type, MessageType::ack) << "no message before it";
 }
 
 TEST_F(PlayerTest, ScansHaveNoNaNAndNoNegativeRange) {
@@ -224,7 +224,7 @@ TEST_F(PlayerTest, TheFirstRangesOfARangerIncludeItsConfiguration) {
   XdrReader numbers(config.payload);
   for (const double value : {-M_PI / 2, M_PI / 2, M_PI / 2, 0.0, 8.0, 0.0, 5.0})
     EXPECT_NEAR(numbers.get_double(), value, 1e-12);
-  EXPECT_EQ(ask(ranger, 4, config.payload), MessageType::ack) << "setting it changes nothing";
+  EXPECT_EQ(ask(ranger, 4, config.payload), MessageType::ack) << "setting it has no effect";
 }
 
 /// Clients compute the bearing of range i of an element as its minimum angle plus i times the resolution.
@@ -329,7 +329,7 @@ TEST_F(PlayerTest, VelocitiesBecomeCommands) {
   EXPECT_EQ(asked.commands[0].mover, 0u);
   EXPECT_EQ(asked.commands[0].twist.left, 0.1);
   EXPECT_EQ(asked.commands[0].twist.turn, -0.3);
-  EXPECT_TRUE(run.asked().commands.empty()) << "asked once";
+  EXPECT_TRUE(run.asked().commands.empty()) << "requested once";
   drive(0.1, 0.0, 0.0), drive(0.5, 0.0, 0.0);
   EXPECT_EQ(run.asked().commands.size(), 1u) << "the newest";
 }
@@ -344,7 +344,7 @@ TEST_F(PlayerTest, InvalidAndUnsubscribedCommandsAreIgnored) {
   stranger.request(kPosition, 1);
   EXPECT_TRUE(run.asked().commands.empty());
   drive(1e6, 0.0, 0.0);
-  EXPECT_EQ(run.asked().commands.size(), 1u) << "the limit itself";
+  EXPECT_EQ(run.asked().commands.size(), 1u) << "at the limit";
 }
 
 TEST_F(PlayerTest, ModesAreAcknowledgedAndStopNoRobot) {
@@ -368,7 +368,7 @@ TEST_F(PlayerTest, RobotsStopWithoutMotorsAndUsers) {
 TEST_F(PlayerTest, CarsSteerByTheAngleOfTheirWheels) {
   client.send(MessageType::command, kPosition, 3, xdr_of(0.4, 0.5));
   settle();
-  EXPECT_EQ(run.asked().commands.at(0).twist.turn, 0.5) << "a rate, for robots that are no cars";
+  EXPECT_EQ(run.asked().commands.at(0).twist.turn, 0.5) << "a rate, for robots other than cars";
   PlayerRun cars("name \"c\"\nposition( name \"car\" drive \"car\" wheelbase 0.5 size [0.6 0.3 0.2] )\n");
   TestClient driver(cars.port());
   driver.banner(), driver.open(kPosition);
@@ -497,7 +497,7 @@ TEST_F(PlayerTest, PosesAreAcceptedUpToAMillionMetres) {
   const double most = 1e6, more = std::nextafter(most, 2 * most);
   const auto set = [&](double x, double y, double yaw) {
     const MessageType answer = ask(kSimulation, 2, named_pose("ben", x, y, yaw));
-    EXPECT_EQ(ask(kPosition, 5, xdr_of(x, y, yaw)), answer) << "odometry likewise";
+    EXPECT_EQ(ask(kPosition, 5, xdr_of(x, y, yaw)), answer) << "the same limits for odometry";
     return answer;
   };
   EXPECT_EQ(set(most, -most, 9.0), MessageType::ack);

@@ -43,7 +43,7 @@ PlayerVectors read_player_vectors(const std::string& path) {
 struct PlayerVectorsTest : testing::Test {
   void SetUp() override {
     const std::string path = SF_SOURCE_DIR "/../shared/data/player/golden_vectors.txt";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data beside the sources";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data next to the sources";
     vectors = read_player_vectors(path);
     ASSERT_GT(vectors.bytes.size(), 15u);
   }

@@ -184,7 +184,7 @@ TEST_F(Ros2BridgeTest, NamesTopicsAsRos2Does) {
   EXPECT_LT(network.writer("rt/robot_2/odom"), network.writers.size());
   EXPECT_TRUE(network.writers[network.writer("rt/tf_static")].latched);
   EXPECT_FALSE(network.writers[network.writer("rt/clock")].latched);
-  EXPECT_EQ(network.writer("rt/scout/cmd_vel"), network.writers.size()) << "commands are heard there";
+  EXPECT_EQ(network.writer("rt/scout/cmd_vel"), network.writers.size()) << "commands are received there";
   EXPECT_LT(network.reader("rt/scout/cmd_vel"), network.readers.size());
   EXPECT_EQ(network.reader("rt/tag/cmd_vel"), network.readers.size()) << "tags are not driven";
   EXPECT_EQ(bridge->describe(),
@@ -410,7 +410,7 @@ TEST_F(Ros2BridgeTest, RobotsArePlacedAtValidPoses) {
                                 {placement("scout", "world", pose, {}), 1},  // version 1.0 has no flags
                                 {placement("scout", "map", pose, flags), 0},
                                 {placement("scout", "", pose, {true, true, false}), 0},
-                                {placement("nobody", "", pose, flags), 2},
+                                {placement("missing", "", pose, flags), 2},
                                 {placement("robot_2", "", pose, flags), 2},  // absent
                                 {placement("scout", "", tilted, flags), 101},
                                 {placement("scout", "", infinite, flags), 101},
@@ -422,7 +422,7 @@ TEST_F(Ros2BridgeTest, RobotsArePlacedAtValidPoses) {
   EXPECT_EQ(requests.placements[0].mover, 0u);
   EXPECT_EQ(requests.placements[0].X_WM.x, 3.0);
   EXPECT_EQ(requests.placements[0].X_WM.y, -4.0);
-  EXPECT_EQ(requests.placements[0].X_WM.z, 0.1) << "the floor's height is kept";
+  EXPECT_EQ(requests.placements[0].X_WM.z, 0.1) << "the height above the floor is unchanged";
   EXPECT_NEAR(requests.placements[0].X_WM.yaw, 1.0, 1e-12);
   const auto done = answers("set_entity_state", cases.size());
   ASSERT_EQ(done.size(), cases.size());

@@ -41,7 +41,7 @@ TEST_F(RosServicesTest, FeaturesAndStates) {
 
 TEST_F(RosServicesTest, Entities) {
   step(false)();
-  for (const auto& [name, row] : {std::pair{"scout", 0}, {"robot_2", 1}, {"tag", 2}, {"nobody", -1}, {"", -1}}) {
+  for (const auto& [name, row] : {std::pair{"scout", 0}, {"robot_2", 1}, {"tag", 2}, {"missing", -1}, {"", -1}}) {
     Reply one(ask("/get_entity_state", number(std::string_view(name))));
     const bool present = row == 0 || row == 2;
     EXPECT_EQ(one.result(), present ? "1 " : "2 no entity of that name is present") << name;

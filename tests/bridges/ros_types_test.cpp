@@ -50,7 +50,7 @@ TEST(TypeHash, IsEmptyForAnIncompleteDefinition) {
   for (const char* text : {"b/C c\n", "unknown x\n", "uint8\n", "uint8[ x\n", "uint8[a] x\n", "string<=a x\n",
                            "b/C c\n====\nMSG: b/C\nd/E e\n"})
     EXPECT_EQ(type_hash("a/msg/B", text), "") << text;
-  EXPECT_EQ(type_user_data("a/msg/B", "unknown x\n"), "") << "nothing rather than a wrong hash";
+  EXPECT_EQ(type_user_data("a/msg/B", "unknown x\n"), "") << "no hash rather than a wrong one";
 }
 
 TEST(RosTypes, AreNamedAsInDds) {

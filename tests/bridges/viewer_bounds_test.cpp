@@ -54,7 +54,7 @@ TEST(ViewerBounds, NoMoreUpdatesAreSkippedThanTheLimitRequires) {
     fixture.tick(tick);
     other.settle();
     const std::uint64_t now = fixture.viewer->server().skipped();
-    ASSERT_LE(now, skipped + 1) << "room for one tick is made";
+    ASSERT_LE(now, skipped + 1) << "frees space for one tick";
     skipped = now;
   }
   EXPECT_GT(skipped, 0u);

@@ -96,7 +96,7 @@ std::string transcript(ViewerMode mode, const char* protocol) {
       {"no such service", call_of(4, "json", "{}")},
       {"a twist", "\x01" + four_bytes(1) + R"({"linear":{"x":0.25}})"},
       {"no twist", "\x01" + four_bytes(1) + "{"},
-      {"a channel of nobody", "\x01" + four_bytes(7) + "{}"},
+      {"an unknown channel", "\x01" + four_bytes(7) + "{}"},
       {"play at 2 from 2.5 s", playback('\0', 2.0F, 2'500'000'000)},
       {"pause where it is", playback('\1', 1.0F, std::nullopt)},
       {"play at 0 from before the start", playback('\0', 0.0F, 5)},

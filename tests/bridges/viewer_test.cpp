@@ -110,7 +110,8 @@ TEST(Viewer, AnnouncesItsCapabilities) {
     EXPECT_TRUE(has(run, part)) << part << " in " << run;
   EXPECT_FALSE(has(run, "playbackControl"));
   const std::string service = greeting(ViewerMode::service, kSdkV1);
-  EXPECT_FALSE(has(service, "clientPublish") || has(service, "services")) << "robots elsewhere obey nobody here";
+  EXPECT_FALSE(has(service, "clientPublish") || has(service, "services"))
+      << "viewers cannot command the robots of a service";
   const std::string recording = greeting(ViewerMode::recording, kSdkV1);
   EXPECT_TRUE(has(recording, "playbackControl") && has(recording, "\"dataEndTime\":{\"sec\":5,\"nsec\":0}"))
       << recording;
@@ -201,7 +202,7 @@ TEST(Viewer, ShowsTheTickBeforeAPauseAfterSkippedTicks) {
   std::string last;
   while (last != "101@50") {
     last = said(client.receive_binary(1));
-    ASSERT_FALSE(last.empty()) << "the last tick never came";
+    ASSERT_FALSE(last.empty()) << "the last tick did not arrive";
   }
 }
 
@@ -223,7 +224,7 @@ TEST(Viewer, AcceptsParametersAndServices) {
   Requests requests = fixture.requests();
   EXPECT_EQ(requests.paused, true);
   EXPECT_EQ(requests.speed, 2.5);
-  EXPECT_FALSE(fixture.requests().paused) << "asked for once";
+  EXPECT_FALSE(fixture.requests().paused) << "requested once";
 
   client.text(R"({"op":"setParameters","parameters":[{"name":"/speed","value":0}]})");
   client.text(R"({"op":"getParameters","id":"g","parameterNames":["/speed"]})");
@@ -252,7 +253,7 @@ TEST(Viewer, PausesAfterOneMoreTick) {
   Watcher client(fixture);
   client.text(R"({"op":"setParameters","id":"s","parameters":[{"name":"/paused","value":true}]})");
   client.settle();
-  EXPECT_FALSE(fixture.requests().paused) << "the next tick's readings are to be kept";
+  EXPECT_FALSE(fixture.requests().paused) << "the next tick's readings must be stored";
   fixture.viewer->publish(tick, {});
   EXPECT_EQ(fixture.requests().paused, true);
   EXPECT_FALSE(fixture.requests().paused);

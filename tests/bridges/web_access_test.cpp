@@ -65,7 +65,7 @@ TEST(WebAccess, TokensAreNewAndComparedCompletely) {
   EXPECT_FALSE(same_token(token.substr(1), token));
   EXPECT_FALSE(same_token(token + "0", token));
   EXPECT_FALSE(same_token("", token));
-  EXPECT_FALSE(same_token("", "")) << "no token opens nothing";
+  EXPECT_FALSE(same_token("", "")) << "an empty token grants no access";
 }
 
 }  // namespace sf::bridges

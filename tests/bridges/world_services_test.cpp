@@ -146,7 +146,7 @@ TEST_F(WorldServicesTest, SpawnsOrGivesAReason) {
       {{.space = "a/1b"}, "105 "},
       {{.space = "a//b"}, "105 "},
       {{.space = "/fleet"}, "0 "},
-      {{.uri = "nobody"}, "2 "},
+      {{.uri = "missing"}, "2 "},
       {{.frame = "scout"}, "109 "},
       {{.x = NAN}, "109 "},
       {{.x = 1.1e7}, "109 "},
@@ -205,7 +205,7 @@ TEST_F(WorldServicesTest, WaitingRobotsAreBounded) {
 }
 
 TEST_F(WorldServicesTest, DeletesEntities) {
-  EXPECT_EQ(result("/delete_entity", text("nobody")), "2 no entity of that name is present");
+  EXPECT_EQ(result("/delete_entity", text("missing")), "2 no entity of that name is present");
   EXPECT_EQ(result("/delete_entity", text("robot_2")), "2 no entity of that name is present");
   EXPECT_EQ(result("/delete_entity", text("scout"), done(false)), "4 no room");
   EXPECT_EQ(result("/delete_entity", text("scout"),
@@ -380,7 +380,7 @@ TEST_F(StepsActionTest, EveryGoalEnds) {
   EXPECT_EQ(feedback(), "1/1 ");
   EXPECT_EQ(ended(2, step(true)), "4 1 ") << "the result waits for the last step";
   EXPECT_EQ(feedback(), "2/0 ");
-  EXPECT_EQ(ended(2), "4 1 ") << "it can be asked for again";
+  EXPECT_EQ(ended(2), "4 1 ") << "it can be requested again";
   EXPECT_EQ(ended(99), "0 0 ") << "unknown";
   EXPECT_TRUE(send(3, 5));
   EXPECT_EQ(ended(3, look(false)), "6 4 the run continued or restarted");
@@ -389,7 +389,7 @@ TEST_F(StepsActionTest, EveryGoalEnds) {
 TEST_F(StepsActionTest, GoalsAreCanceled) {
   look(true)();
   EXPECT_EQ(cancel(1), "2 0") << "unknown";
-  EXPECT_EQ(cancel(0), "1 0") << "there is none";
+  EXPECT_EQ(cancel(0), "1 0") << "no goal exists";
   EXPECT_TRUE(send(1, 5) && send(2, 7) && send(3, 1));
   step(true)();
   EXPECT_EQ(cancel(1), "0 1");

@@ -27,7 +27,7 @@ TEST(Latency, DeliversReadingsLaterAndUnchanged) {
       if (r.mover == 1) expected.push_back(keep(r));
     for (const auto& r : later.tick(k * kShortTick, reports_at(late, k))) {
       if (r.mover == 0) {
-        EXPECT_EQ(r.time, k * kShortTick) << "no latency: at once";
+        EXPECT_EQ(r.time, k * kShortTick) << "no latency: delivered immediately";
         continue;
       }
       delivered.push_back(keep(r));

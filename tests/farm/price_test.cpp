@@ -40,11 +40,11 @@ TEST(Price, AbsentTypesUseNoMemory) {
 
   for (int i = 0; i < 400; ++i) world.magnets.push_back(scenes::magnet({0.02 * i, 0.0}));
   world.lane_markings.push_back({{{-4.0, 0.0}, {4.0, 0.0}}, 0.1});
-  EXPECT_EQ(held_for(world), lasers) << "magnets and paint that nobody measures";
+  EXPECT_EQ(held_for(world), lasers) << "magnets and paint without sensors for them";
 
   world.movers[0].sensors.push_back(scenes::five());
   const auto both = held_for(world);
-  EXPECT_EQ(both.at("laser"), lasers.at("laser")) << "another type costs the lasers nothing";
+  EXPECT_EQ(both.at("laser"), lasers.at("laser")) << "another type adds no work for lasers";
   EXPECT_TRUE(both.contains("magnetometer"));
   EXPECT_FALSE(both.contains("laneedge"));
 }
@@ -66,11 +66,12 @@ TEST(Price, TypesSubscribedLaterGiveTheSameReadings) {
     mover.sensors.push_back(trial::cones("infrared", trial::ring(4, 0.1)));
   }
   auto caster = &raycast::host_caster;
-  const auto readings = [&](const std::vector<std::uint32_t>& heard) {
+  const auto readings = [&](const std::vector<std::uint32_t>& subscribed) {
     Farm farm(world, device(), {.reuse_unchanged = false, .scene = {.caster = caster}});
     std::vector<Kept> kept;
     for (int k = 0; k < 12; ++k) {
-      for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, heard[static_cast<std::size_t>(k / 3)]);
+      for (std::uint32_t m = 0; m < world.movers.size(); ++m)
+        farm.subscribe(m, subscribed[static_cast<std::size_t>(k / 3)]);
       for (const auto& r : farm.tick(k * 100'000'000ll, reports_at(world, k)))
         if (k >= 9) kept.push_back(keep(r));
     }

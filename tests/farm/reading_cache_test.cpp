@@ -111,24 +111,24 @@ void expect_same(std::span<const base::ReadingBlock> p, std::span<const base::Re
 /// @return number of reused readings
 std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) {
   Farm again(world, device(), {.seed = seed});
-  Farm anew(world, device(), {.seed = seed, .reuse_unchanged = false});
+  Farm fresh(world, device(), {.seed = seed, .reuse_unchanged = false});
   Day day(world, seed);
   trial::Chance chance(seed + 100);
-  for (Farm* farm : {&again, &anew}) farm->subscribe_all();
+  for (Farm* farm : {&again, &fresh}) farm->subscribe_all();
   for (int k = 0; k < ticks; ++k) {
     const std::vector<base::Report> reports = day.next();
     const std::uint32_t deaf = chance.below(static_cast<std::uint32_t>(world.movers.size()));
     const std::uint32_t types = chance.below(4) == 0 ? chance.below(1u << 12) : kAllSensorTypes;
-    for (Farm* farm : {&again, &anew}) farm->subscribe(deaf, types);
+    for (Farm* farm : {&again, &fresh}) farm->subscribe(deaf, types);
     for (std::int64_t due = again.next_due(); due < k * kTick / 2; due = again.next_due()) {
       const std::vector<base::Report> on_the_way = day.next();
-      expect_same(again.sample(due, on_the_way), anew.sample(due, on_the_way));
+      expect_same(again.sample(due, on_the_way), fresh.sample(due, on_the_way));
     }
-    expect_same(again.tick(k * kTick / 2, reports), anew.tick(k * kTick / 2, reports));
+    expect_same(again.tick(k * kTick / 2, reports), fresh.tick(k * kTick / 2, reports));
     if (testing::Test::HasFatalFailure()) return 0;
   }
-  EXPECT_EQ(again.hash(), anew.hash());
-  EXPECT_EQ(anew.stats().reused, 0u);
+  EXPECT_EQ(again.hash(), fresh.hash());
+  EXPECT_EQ(fresh.stats().reused, 0u);
   return again.stats().reused;
 }
 
@@ -168,7 +168,7 @@ struct Pair {
     const auto readings = farm.tick(std::exchange(now, now + kTick), reports);
     EXPECT_FALSE(readings.empty());
     const std::uint64_t again = farm.stats().reused - before.reused;
-    EXPECT_TRUE(again == 0 || again == readings.size()) << "some of them only";
+    EXPECT_TRUE(again == 0 || again == readings.size()) << "only some";
     EXPECT_EQ(farm.stats().batches - before.batches, again == 0 ? 1u : 0u);
     return again > 0;
   }
@@ -183,7 +183,7 @@ TEST(ReadingCache, MeasuresASensorAtRestTwice) {
   Pair pair;
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   EXPECT_FALSE(pair.again_with(far));
-  EXPECT_FALSE(pair.again_with(far)) << "the second is the one that is kept";
+  EXPECT_FALSE(pair.again_with(far)) << "the second reading is stored";
   for (int k = 0; k < 5; ++k) EXPECT_TRUE(pair.again_with(far));
   EXPECT_EQ(pair.farm.stats().work.rays, 2u * kBeams);
 }
@@ -205,12 +205,12 @@ TEST(ReadingCache, ChecksOldAndNewPositionsOfOthers) {
   Pair pair;
   pair.settle(far);
   EXPECT_TRUE(pair.again_with(farther)) << "out of sight";
-  EXPECT_FALSE(pair.again_with(near)) << "comes";
-  EXPECT_FALSE(pair.again_with(near)) << "seen to be calm again: kept";
-  EXPECT_TRUE(pair.again_with(near)) << "stands in sight";
+  EXPECT_FALSE(pair.again_with(near)) << "approaches";
+  EXPECT_FALSE(pair.again_with(near)) << "at rest again: stored";
+  EXPECT_TRUE(pair.again_with(near)) << "at rest in sight";
   EXPECT_FALSE(pair.again_with({1.0, 0.0, 0.0, 0.1})) << "turns";
   pair.settle({1.0, 0.0, 0.0, 0.1});
-  EXPECT_FALSE(pair.again_with(far)) << "goes";
+  EXPECT_FALSE(pair.again_with(far)) << "leaves";
   pair.settle(far);
   EXPECT_FALSE(pair.again_with({0.1, 2.16, 0.0, 0.0})) << "touches the range with its rim";
   pair.settle(far);
@@ -218,7 +218,7 @@ TEST(ReadingCache, ChecksOldAndNewPositionsOfOthers) {
   pair.settle(far);
   EXPECT_FALSE(pair.again_with({-2.15, 0.1, 0.0, 0.0})) << "behind it too";
   pair.settle(far);
-  EXPECT_TRUE(pair.again_with({0.0, 2.66, 0.0, 0.0})) << "passes outside of it, and is near nobody who is not";
+  EXPECT_TRUE(pair.again_with({0.0, 2.66, 0.0, 0.0})) << "out of range of the sensor at rest";
 }
 
 /// The range is measured from the sensor, which may be off its robot's centre.
@@ -252,7 +252,7 @@ TEST(ReadingCache, MotionBetweenReadingsInvalidates) {
   EXPECT_EQ(pair.farm.stats().reused, 2u);
   pair.farm.tick(7 * kTick, near);  // not due
   pair.farm.tick(8 * kTick, near);
-  EXPECT_EQ(pair.farm.stats().reused, 2u) << "moved when nothing was due";
+  EXPECT_EQ(pair.farm.stats().reused, 2u) << "moved while no sensor was due";
 }
 
 TEST(ReadingCache, NeverReusesNoisyReadings) {

@@ -16,7 +16,7 @@ namespace {
 
 TEST(Schedule, DueAtPhasePlusWholePeriods) {
   EXPECT_EQ(readings_started(-1, 10.0, 0.0), 0u) << "before time began";
-  EXPECT_EQ(readings_started(0, 10.0, 0.0), 1u) << "the first at once";
+  EXPECT_EQ(readings_started(0, 10.0, 0.0), 1u) << "the first immediately";
   EXPECT_EQ(readings_started(kSecond / 10 - 2, 10.0, 0.0), 1u) << "2 ns early";
   EXPECT_EQ(readings_started(kSecond / 10, 10.0, 0.0), 2u) << "on time";
   EXPECT_EQ(readings_started(kSecond, 10.0, 0.0), 11u);
@@ -77,7 +77,7 @@ TEST(Schedule, NextDueIsTheEarliestSubscribedSensor) {
   scenes::edit_laser(world.movers[2])->rate = 10.0;
   scenes::edit_laser(world.movers[2])->phase = 0.03;
   Farm farm(world, device());
-  EXPECT_EQ(farm.next_due(), kNever) << "nobody is heard";
+  EXPECT_EQ(farm.next_due(), kNever) << "no subscriptions";
   farm.subscribe(2, kAllSensorTypes);
   EXPECT_EQ(farm.next_due(), 30'000'000) << "its phase";
   farm.subscribe(1, kAllSensorTypes);
@@ -87,11 +87,11 @@ TEST(Schedule, NextDueIsTheEarliestSubscribedSensor) {
   EXPECT_EQ(farm.sample(30'000'000, {}).size(), 1u);
   EXPECT_EQ(farm.next_due(), 76'923'077);
   farm.subscribe(0, 1u << 9);
-  EXPECT_EQ(farm.next_due(), 76'923'077) << "another type of it is heard";
+  EXPECT_EQ(farm.next_due(), 76'923'077) << "another of its types is subscribed";
   farm.subscribe(0, 1u << sensors::kLaser);
   EXPECT_EQ(farm.next_due(), 40'000'000) << "0 and 20 ms went by unheard";
   EXPECT_EQ(farm.stats().missed, 0u);
-  EXPECT_EQ(farm.stats().ticks, 1u) << "samples are no ticks";
+  EXPECT_EQ(farm.stats().ticks, 1u) << "samples are not ticks";
 }
 
 /// Sensors faster than the ticks deliver all readings when the farm samples at their due times; each reading has its
@@ -142,7 +142,7 @@ TEST(Schedule, CountsMissedReadings) {
   EXPECT_EQ(farm.stats().missed, 10u * 4u);
   farm.subscribe(0, 0u);
   farm.tick(2 * kSecond, {});
-  EXPECT_EQ(farm.stats().missed, 10u * 4u + 9u) << "of those that are heard";
+  EXPECT_EQ(farm.stats().missed, 10u * 4u + 9u) << "of subscribed sensors";
 }
 
 TEST(Schedule, RatesAndPhasesInAFarm) {
@@ -208,7 +208,7 @@ TEST(Schedule, ComputesNothingForUnsubscribedSensors) {
   const auto readings = farm.tick(kSecond / 10, {});
   ASSERT_EQ(readings.size(), 1u);
   EXPECT_EQ(readings[0].mover, 2u);
-  EXPECT_EQ(readings[0].sequence, 1u) << "numbered by when it is due: the first was not heard";
+  EXPECT_EQ(readings[0].sequence, 1u) << "numbered by when it is due: the first was not subscribed";
   EXPECT_EQ(farm.stats().work.rays, kBeams);
   farm.subscribe(2, ~(1u << 1));
   EXPECT_TRUE(farm.tick(kSecond / 5, {}).empty());

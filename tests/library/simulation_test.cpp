@@ -117,7 +117,7 @@ TEST(Library, ReadingsAreTheFarmsOwnTable) {
   const double before = first.row(7)[180];
   drive(simulation, 3);
   const Readings second = simulation.readings("laser");
-  EXPECT_EQ(first.values, second.values) << "nothing was copied";
+  EXPECT_EQ(first.values, second.values) << "no data was copied";
   EXPECT_NE(second.row(7)[180], before);
   // Hits are indices of models.
   EXPECT_LT(second.hits_of(0)[180], simulation.models().size());
@@ -202,8 +202,8 @@ TEST(Library, ErrorsIncludeFileAndLine) {
   expect_in("nowhere.world: no such file", refusal_of<Error>([] { Simulation simulation("nowhere.world"); }));
   expect_in("mine.world:2: ",
             refusal_of<Error>([] { Simulation::from_text("\nposition( size [1\n", {}, "mine.world"); }));
-  expect_in("there is no controller 'nobody'",
-            refusal_of<Error>([] { Simulation simulation(kCave, {.controller = "nobody"}); }));
+  expect_in("there is no controller 'unknown'",
+            refusal_of<Error>([] { Simulation simulation(kCave, {.controller = "unknown"}); }));
   expect_in("there is no caster 'gpu'", refusal_of<Error>([] { Simulation simulation(kCave, {.caster = "gpu"}); }));
   EXPECT_THROW(Simulation(kCave, {.device = "no such device"}), DeviceError);
 }

@@ -31,7 +31,7 @@ TEST(AccuracyWord, BoundsAreRoundedUp) {
     ASSERT_GE(back, bound);
     ASSERT_LE(back, 1.0443 * bound);
   }
-  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 1.0})).bound, std::exp2(1.0 / 16.0)) << "never the bound itself";
+  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 1.0})).bound, std::exp2(1.0 / 16.0)) << "always above the bound";
 }
 
 TEST(AccuracyWord, Saturates) {

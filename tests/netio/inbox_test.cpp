@@ -60,7 +60,7 @@ struct InboxTest : testing::Test {
     return bytes;
   }
   /// Receives a packet with the token of its source.
-  PacketStatus say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kSender) {
+  PacketStatus send(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kSender) {
     if (bytes.size() >= kHeaderBytes) write_session_token(bytes, {kSession, inbox.token(who)});
     return inbox.accept(bytes, who, now, packet);
   }
@@ -71,26 +71,26 @@ TEST(Inbox, AcceptsOvertakenStatesOnRequest) {
   chosen.take_late = true;
   Inbox inbox(chosen);
   Packet packet;
-  const auto say = [&](base::Bytes bytes, std::int64_t now, const Endpoint& who = kSender) {
+  const auto send = [&](base::Bytes bytes, std::int64_t now, const Endpoint& who = kSender) {
     write_session_token(bytes, {kSession, inbox.token(who)});
     return inbox.accept(bytes, who, now, packet);
   };
-  EXPECT_EQ(say(v2v(7, 5), 0), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(7, 5), 0), PacketStatus::accepted);
   EXPECT_FALSE(packet.late);
-  EXPECT_EQ(say(v2v(7, 4), 1), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(7, 4), 1), PacketStatus::accepted);
   EXPECT_TRUE(packet.late);
-  EXPECT_EQ(say(v2v(7, 5), 2), PacketStatus::accepted) << "a replay, which the filter refuses";
+  EXPECT_EQ(send(v2v(7, 5), 2), PacketStatus::accepted) << "a replay, which the filter refuses";
   EXPECT_TRUE(packet.late);
-  EXPECT_EQ(say(v2v(7, 4), 3, kOtherSender), PacketStatus::wrong_source);
-  EXPECT_EQ(say(subscribe(9, 0), 4), PacketStatus::accepted);
-  EXPECT_EQ(say(subscribe(8, 0), 5), PacketStatus::stale) << "only states have a time of their own";
+  EXPECT_EQ(send(v2v(7, 4), 3, kOtherSender), PacketStatus::wrong_source);
+  EXPECT_EQ(send(subscribe(9, 0), 4), PacketStatus::accepted);
+  EXPECT_EQ(send(subscribe(8, 0), 5), PacketStatus::stale) << "only states have their own time";
   base::Bytes leave;
   encode({.robot = 7}, Leave{}, leave);
-  EXPECT_EQ(say(leave, 6), PacketStatus::accepted);
-  EXPECT_EQ(say(v2v(7, 6), 7), PacketStatus::stale) << "after a LEAVE";
+  EXPECT_EQ(send(leave, 6), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(7, 6), 7), PacketStatus::stale) << "after a LEAVE";
   // A late state does not extend the binding: two seconds after the last state in order, the id is free.
-  EXPECT_EQ(say(v2v(3, 5), 10), PacketStatus::accepted);
-  EXPECT_EQ(say(v2v(3, 4), kSecond), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(3, 5), 10), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(3, 4), kSecond), PacketStatus::accepted);
   EXPECT_FALSE(inbox.is_active(3, 2 * kSecond + 10));
 }
 
@@ -100,74 +100,74 @@ TEST(Inbox, LockstepAcceptsItsOwnPacketTypes) {
   chosen.lockstep = true;
   Inbox inbox(chosen), plain(options());
   Packet packet;
-  const auto say = [&](Inbox& to, base::Bytes bytes, std::int64_t now, std::uint32_t session = kSession,
-                       const Endpoint& who = kSender) {
+  const auto send = [&](Inbox& to, base::Bytes bytes, std::int64_t now, std::uint32_t session = kSession,
+                        const Endpoint& who = kSender) {
     write_session_token(bytes, {session, to.token(who)});
     return to.accept(bytes, who, now, packet);
   };
   for (const base::Bytes& bytes : {command_example(), step_example(), fetch_example()}) {
-    EXPECT_EQ(say(plain, bytes, 0), PacketStatus::wrong_direction);
-    EXPECT_EQ(say(inbox, bytes, 0), PacketStatus::stale) << "nobody has subscribed";
+    EXPECT_EQ(send(plain, bytes, 0), PacketStatus::wrong_direction);
+    EXPECT_EQ(send(inbox, bytes, 0), PacketStatus::stale) << "before any SUBSCRIBE";
   }
-  EXPECT_EQ(say(inbox, subscribe(0, 0), 0), PacketStatus::accepted);
+  EXPECT_EQ(send(inbox, subscribe(0, 0), 0), PacketStatus::accepted);
   for (const base::Bytes& bytes : {command_example(), step_example(), fetch_example()}) {
-    EXPECT_EQ(say(inbox, bytes, 1), PacketStatus::accepted);
-    EXPECT_EQ(say(inbox, bytes, 1), PacketStatus::accepted) << "repeated";
-    EXPECT_EQ(say(inbox, bytes, 1, kSession + 1), PacketStatus::stale) << "of a process before";
-    EXPECT_EQ(say(inbox, bytes, 1, kSession, kOtherSender), PacketStatus::wrong_source);
-    EXPECT_EQ(say(inbox, patched<std::uint16_t>(bytes, 6, 9), 1), PacketStatus::unknown_robot);
+    EXPECT_EQ(send(inbox, bytes, 1), PacketStatus::accepted);
+    EXPECT_EQ(send(inbox, bytes, 1), PacketStatus::accepted) << "repeated";
+    EXPECT_EQ(send(inbox, bytes, 1, kSession + 1), PacketStatus::stale) << "of a process before";
+    EXPECT_EQ(send(inbox, bytes, 1, kSession, kOtherSender), PacketStatus::wrong_source);
+    EXPECT_EQ(send(inbox, patched<std::uint16_t>(bytes, 6, 9), 1), PacketStatus::unknown_robot);
   }
   for (const base::Bytes& bytes : {state_example(), values_example(), v2v(7, 9), tag_example(), start_example()})
-    EXPECT_EQ(say(inbox, bytes, 2), PacketStatus::wrong_direction);
-  EXPECT_EQ(say(inbox, leave_example(), 60 * kSecond), PacketStatus::accepted) << "after a long silence, too";
+    EXPECT_EQ(send(inbox, bytes, 2), PacketStatus::wrong_direction);
+  EXPECT_EQ(send(inbox, leave_example(), 60 * kSecond), PacketStatus::accepted) << "after a long silence, too";
   EXPECT_FALSE(inbox.address(7));
   EXPECT_EQ(inbox.accept(step_example(), kSender, 0, packet), PacketStatus::unproven);
   base::Bytes challenge;
   ASSERT_TRUE(inbox.challenge(packet, kSender, 0, challenge));
   for (const base::Bytes& bytes : {command_example(), step_example(), fetch_example()})
-    EXPECT_LE(challenge.size(), bytes.size()) << "nothing is amplified";
+    EXPECT_LE(challenge.size(), bytes.size()) << "no amplification";
 }
 
 TEST_F(InboxTest, ReachesAndCountsEveryReason) {
   base::Bytes long_packet = v2v_example();
   long_packet.push_back(0);
-  EXPECT_EQ(say({}), PacketStatus::too_short);
-  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 0, 'X')), PacketStatus::bad_magic);
-  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 4, 1)), PacketStatus::unknown_version);
-  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 5, 0)), PacketStatus::unknown_type);
-  EXPECT_EQ(say(long_packet), PacketStatus::too_long);
-  EXPECT_EQ(say(patched(v2v_example(), 64, std::numeric_limits<double>::quiet_NaN())), PacketStatus::not_finite);
-  EXPECT_EQ(say(patched(v2v_example(), 64, 2e7)), PacketStatus::out_of_range);
-  EXPECT_EQ(say(reading_example()), PacketStatus::wrong_direction);
-  EXPECT_EQ(say(v2v(8, 0)), PacketStatus::unknown_robot);
-  EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)),
+  EXPECT_EQ(send({}), PacketStatus::too_short);
+  EXPECT_EQ(send(patched<std::uint8_t>(v2v_example(), 0, 'X')), PacketStatus::bad_magic);
+  EXPECT_EQ(send(patched<std::uint8_t>(v2v_example(), 4, 1)), PacketStatus::unknown_version);
+  EXPECT_EQ(send(patched<std::uint8_t>(v2v_example(), 5, 0)), PacketStatus::unknown_type);
+  EXPECT_EQ(send(long_packet), PacketStatus::too_long);
+  EXPECT_EQ(send(patched(v2v_example(), 64, std::numeric_limits<double>::quiet_NaN())), PacketStatus::not_finite);
+  EXPECT_EQ(send(patched(v2v_example(), 64, 2e7)), PacketStatus::out_of_range);
+  EXPECT_EQ(send(reading_example()), PacketStatus::wrong_direction);
+  EXPECT_EQ(send(v2v(8, 0)), PacketStatus::unknown_robot);
+  EXPECT_EQ(send(patched<std::uint16_t>(tag_example(), 6, 7)),
             PacketStatus::unknown_tag);  // robots and tags have separate ids
-  EXPECT_EQ(say(v2i_example()), PacketStatus::unknown_light);
-  EXPECT_EQ(say(leave_of_keyed()), PacketStatus::not_signed);
-  EXPECT_EQ(say(signed_leave()), PacketStatus::wrong_signature);  // changed by its token
+  EXPECT_EQ(send(v2i_example()), PacketStatus::unknown_light);
+  EXPECT_EQ(send(leave_of_keyed()), PacketStatus::not_signed);
+  EXPECT_EQ(send(signed_leave()), PacketStatus::wrong_signature);  // changed by its token
   EXPECT_EQ(inbox.accept(signed_leave(), kSender, 0, packet), PacketStatus::unproven);
   // The counter of the unproven packet was not recorded. It is a LEAVE of a robot that has never sent a packet.
   EXPECT_EQ(inbox.accept(proven_leave(kSender), kSender, 0, packet), PacketStatus::stale);
   EXPECT_EQ(inbox.accept(proven_leave(kSender), kSender, 0, packet), PacketStatus::replayed);
-  EXPECT_EQ(say(v2v_example()), PacketStatus::accepted);
-  EXPECT_EQ(say(v2v(7, 10), 0, kOtherSender), PacketStatus::wrong_source);
+  EXPECT_EQ(send(v2v_example()), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(7, 10), 0, kOtherSender), PacketStatus::wrong_source);
   for (std::size_t i = 0; i < kPacketStatuses; ++i)
     EXPECT_EQ(inbox.counts().of[i], 1u) << name(static_cast<PacketStatus>(i));
   EXPECT_EQ(inbox.counts().dropped(), kPacketStatuses - 1);
 }
 
 TEST_F(InboxTest, DroppedPacketsDoNotActivateARobot) {
-  say(patched(v2v_example(), 64, 2e7));
-  say(reading_example());
+  send(patched(v2v_example(), 64, 2e7));
+  send(reading_example());
   EXPECT_FALSE(inbox.is_active(7, 0));
   EXPECT_FALSE(inbox.address(7));
 }
 
 TEST_F(InboxTest, StateAndSubscribeActivateForTwoSeconds) {
-  say(v2v(7, 0), 0);
+  send(v2v(7, 0), 0);
   EXPECT_TRUE(inbox.is_active(7, 2 * kSecond - 1));
   EXPECT_FALSE(inbox.is_active(7, 2 * kSecond));
-  say(subscribe(0, 0), 3 * kSecond);
+  send(subscribe(0, 0), 3 * kSecond);
   EXPECT_TRUE(inbox.is_active(7, 5 * kSecond - 1));
   EXPECT_FALSE(inbox.is_active(7, 5 * kSecond));
   EXPECT_FALSE(inbox.is_active(3, 0));
@@ -176,23 +176,23 @@ TEST_F(InboxTest, StateAndSubscribeActivateForTwoSeconds) {
 
 TEST_F(InboxTest, LeaveEndsBindingAndSubscription) {
   const auto leave = [](std::uint16_t robot) { return patched<std::uint16_t>(leave_example(), 6, robot); };
-  EXPECT_EQ(say(leave(8)), PacketStatus::unknown_robot);
-  EXPECT_EQ(say(leave(7)), PacketStatus::stale);  // no state before
-  say(v2v(7, 5));
-  say(subscribe(0, 1u << 2));
-  EXPECT_EQ(say(leave(7), 1, kOtherSender), PacketStatus::wrong_source);
+  EXPECT_EQ(send(leave(8)), PacketStatus::unknown_robot);
+  EXPECT_EQ(send(leave(7)), PacketStatus::stale);  // no state before
+  send(v2v(7, 5));
+  send(subscribe(0, 1u << 2));
+  EXPECT_EQ(send(leave(7), 1, kOtherSender), PacketStatus::wrong_source);
   EXPECT_TRUE(inbox.is_active(7, 1));
-  EXPECT_EQ(say(leave(7), 1), PacketStatus::accepted);
+  EXPECT_EQ(send(leave(7), 1), PacketStatus::accepted);
   EXPECT_FALSE(inbox.is_active(7, 1));
   EXPECT_FALSE(inbox.address(7));
-  EXPECT_EQ(say(v2v(7, 0), 2, kOtherSender), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(7, 0), 2, kOtherSender), PacketStatus::accepted);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all types, not the subscription of the previous sender
   EXPECT_EQ(inbox.address(7), kOtherSender);
 }
 
 TEST_F(InboxTest, ReportsTheIdUsedByStrangers) {
-  say(v2v(7, 0));
-  EXPECT_EQ(say(v2v(7, 1), 0, kOtherSender), PacketStatus::wrong_source);
+  send(v2v(7, 0));
+  EXPECT_EQ(send(v2v(7, 1), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_EQ(packet.header.robot, 7);
   EXPECT_EQ(packet.header.sequence, 1u);
 }
@@ -224,7 +224,7 @@ TEST_F(InboxTest, AcceptsAnAddressOnceItReturnsItsToken) {
 TEST_F(InboxTest, ForgedAddressesHaveNoEffect) {
   base::Bytes forged = v2v(7, 5);
   EXPECT_EQ(inbox.accept(forged, kOtherSender, 0, packet), PacketStatus::unproven);
-  EXPECT_EQ(say(v2v(7, 0)), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(7, 0)), PacketStatus::accepted);
   EXPECT_EQ(inbox.accept(forged, kSender, 1, packet),
             PacketStatus::unproven);  // without a token no state of Alice is accepted
   base::Bytes leave = leave_example();
@@ -234,11 +234,11 @@ TEST_F(InboxTest, ForgedAddressesHaveNoEffect) {
   EXPECT_FALSE(inbox.challenge(packet, kSender, 1, none));  // a LEAVE gets no challenge
   EXPECT_TRUE(inbox.is_active(7, 1));
   // After LEAVE, and after two seconds, the next sender must prove its address, too.
-  say(leave_example(), 2);
+  send(leave_example(), 2);
   EXPECT_EQ(inbox.accept(v2v(7, 9), kOtherSender, 3, packet), PacketStatus::unproven);
   EXPECT_EQ(inbox.accept(v2v(7, 9), kOtherSender, 5 * kSecond, packet), PacketStatus::unproven);
   EXPECT_FALSE(inbox.address(7));
-  EXPECT_EQ(say(v2v(7, 9), 5 * kSecond, kOtherSender), PacketStatus::accepted);
+  EXPECT_EQ(send(v2v(7, 9), 5 * kSecond, kOtherSender), PacketStatus::accepted);
 }
 
 TEST_F(InboxTest, LimitsChallengesPerTenthOfASecond) {
@@ -261,7 +261,7 @@ TEST_F(InboxTest, LimitsChallengesSeparatelyWithAndWithoutKeys) {
   }
   for (std::size_t i = 0; i < Inbox::kMaxChallenges; ++i)
     ASSERT_TRUE(inbox.challenge(genuine, kSender, kSecond, out)) << i;
-  EXPECT_FALSE(inbox.challenge(genuine, kSender, kSecond, out)) << "they have a limit of their own";
+  EXPECT_FALSE(inbox.challenge(genuine, kSender, kSecond, out)) << "their limit is separate";
 }
 
 TEST_F(InboxTest, TagsDoNotActivateRobots) {
@@ -277,39 +277,39 @@ TEST_F(InboxTest, TagsDoNotActivateRobots) {
 TEST_F(InboxTest, DefaultSubscriptionIncludesAllTypes) {
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));   // not active
   EXPECT_FALSE(inbox.is_subscribed(99, kLaser, 0));  // unknown
-  say(v2v(7, 0), 0);
+  send(v2v(7, 0), 0);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 0));
-  say(subscribe(0, 1u << 2), 0);
+  send(subscribe(0, 1u << 2), 0);
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));
   EXPECT_TRUE(inbox.is_subscribed(7, 2, 0));
-  say(v2v(7, 1), kSecond);  // states do not change the subscription
+  send(v2v(7, 1), kSecond);  // states do not change the subscription
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, kSecond));
-  say(subscribe(1, 0), kSecond);  // 0 selects all types again
+  send(subscribe(1, 0), kSecond);  // 0 selects all types again
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, kSecond));
   EXPECT_TRUE(inbox.is_subscribed(7, 31, kSecond));
 }
 
 TEST_F(InboxTest, SilenceResetsTheSubscription) {
-  say(subscribe(0, 1u << 2), 0);
-  say(v2v(7, 0), 2 * kSecond);
+  send(subscribe(0, 1u << 2), 0);
+  send(v2v(7, 0), 2 * kSecond);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2 * kSecond));
 }
 
 TEST_F(InboxTest, StrangersCannotSubscribe) {
-  say(v2v(7, 0), 0);
-  EXPECT_EQ(say(subscribe(0, 1u << 2), 0, kOtherSender), PacketStatus::wrong_source);
+  send(v2v(7, 0), 0);
+  EXPECT_EQ(send(subscribe(0, 1u << 2), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 0));
 }
 
 TEST_F(InboxTest, StatesOfOthersRequireSubscription) {
-  say(v2v(7, 0), 0);
+  send(v2v(7, 0), 0);
   EXPECT_FALSE(inbox.wants_neighbours(7, 0));  // states of robots are not included in "all types"
-  say(subscribe(0, 0), 0);
+  send(subscribe(0, 0), 0);
   EXPECT_FALSE(inbox.wants_neighbours(7, 0));
-  say(subscribe(1, kNeighboursBit), 0);
+  send(subscribe(1, kNeighboursBit), 0);
   EXPECT_TRUE(inbox.wants_neighbours(7, 0));
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));  // no other type was requested
-  say(subscribe(2, kNeighboursBit | 1u << kLaser), 0);
+  send(subscribe(2, kNeighboursBit | 1u << kLaser), 0);
   EXPECT_TRUE(inbox.wants_neighbours(7, 0) && inbox.is_subscribed(7, kLaser, 0));
   EXPECT_FALSE(inbox.wants_neighbours(7, 2 * kSecond));  // silent
   EXPECT_FALSE(inbox.wants_neighbours(3, 0));            // no packet yet
@@ -322,28 +322,28 @@ TEST_F(InboxTest, LightsMustProveTheirAddressObjectsNeedNot) {
   InboxOptions lit = options();
   lit.lights = {2};
   Inbox crossing(lit);
-  const auto say_as = [&](base::Bytes bytes, std::uint32_t token) {
+  const auto send_as = [&](base::Bytes bytes, std::uint32_t token) {
     write_session_token(bytes, {kSession, token});
     return crossing.accept(bytes, kSender, 0, packet);
   };
-  EXPECT_EQ(say_as(v2i_example(), 0), PacketStatus::unproven);
+  EXPECT_EQ(send_as(v2i_example(), 0), PacketStatus::unproven);
   EXPECT_FALSE(crossing.light_address(2, 0));
-  EXPECT_EQ(say_as(v2i_example(), crossing.token(kSender)), PacketStatus::accepted);
+  EXPECT_EQ(send_as(v2i_example(), crossing.token(kSender)), PacketStatus::accepted);
   EXPECT_EQ(crossing.light_address(2, kClientTimeout - 1), kSender);
   EXPECT_FALSE(crossing.light_address(2, kClientTimeout)) << "silent";
   EXPECT_EQ(crossing.light_session_token(2).token, kSession);
-  EXPECT_EQ(say_as(object_example(), 0), PacketStatus::accepted);
-  EXPECT_EQ(say_as(object_example(), 0), PacketStatus::stale);
-  EXPECT_EQ(say_as(tag_example(), 0), PacketStatus::accepted) << "a tag's camera is another sender";
+  EXPECT_EQ(send_as(object_example(), 0), PacketStatus::accepted);
+  EXPECT_EQ(send_as(object_example(), 0), PacketStatus::stale);
+  EXPECT_EQ(send_as(tag_example(), 0), PacketStatus::accepted) << "a tag's camera is another sender";
   EXPECT_EQ(crossing.object_address(12), kSender);
 }
 
 TEST_F(InboxTest, AnySenderMayStartRobots) {
-  say(v2v(7, 0), 0);
-  EXPECT_EQ(say(start_example(), 0, kOtherSender), PacketStatus::accepted);  // from any source
-  EXPECT_EQ(say(start_example(), 0, kOtherSender), PacketStatus::accepted);  // and again
-  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 3), 0, kOtherSender), PacketStatus::accepted);
-  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 8), 0, kOtherSender), PacketStatus::unknown_robot);
+  send(v2v(7, 0), 0);
+  EXPECT_EQ(send(start_example(), 0, kOtherSender), PacketStatus::accepted);  // from any source
+  EXPECT_EQ(send(start_example(), 0, kOtherSender), PacketStatus::accepted);  // and again
+  EXPECT_EQ(send(patched<std::uint16_t>(start_example(), 6, 3), 0, kOtherSender), PacketStatus::accepted);
+  EXPECT_EQ(send(patched<std::uint16_t>(start_example(), 6, 8), 0, kOtherSender), PacketStatus::unknown_robot);
   EXPECT_FALSE(inbox.is_active(3, 0));  // START does not activate the robot
   EXPECT_EQ(inbox.address(7), kSender);
 }

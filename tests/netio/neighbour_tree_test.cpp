@@ -95,7 +95,7 @@ TEST(NeighbourTree, ReturnsAnyRowsWithoutACentre) {
     ASSERT_EQ(rows.size(), 1u);
     found.insert(rows[0]);
   }
-  EXPECT_EQ(found, (std::set<std::uint32_t>{1, 2})) << "neither itself nor what is old";
+  EXPECT_EQ(found, (std::set<std::uint32_t>{1, 2})) << "neither itself nor old places";
   tree.build({});
   EXPECT_TRUE(tree.find({.own = 0, .range = 1.0, .max_count = 1}).empty());
   EXPECT_TRUE(tree.find({glm::dvec2{}, 0, 1.0, 1}).empty());

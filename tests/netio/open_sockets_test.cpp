@@ -48,7 +48,7 @@ TEST(OpenSockets, ReturnsAddressesOfNewSockets) {
   const OpenSockets before;
   EXPECT_TRUE(before.addresses().empty());
   const Socket to_all = open_udp({0, 0});
-  EXPECT_TRUE(before.addresses().empty()) << "0.0.0.0 is no address of an interface";
+  EXPECT_TRUE(before.addresses().empty()) << "0.0.0.0 is not an interface's address";
   const Socket one = open_udp({kLoopback + 2, 0}), again = open_udp({kLoopback + 2, 0}),
                other = open_udp({kLoopback + 3, 0});
   EXPECT_EQ(before.addresses(), (std::set<std::string>{"127.0.0.3", "127.0.0.4"}));

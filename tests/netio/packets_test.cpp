@@ -192,7 +192,7 @@ TEST(Packets, NeighboursContainWholeV2v) {
   EXPECT_EQ(reason_of({whole.begin(), whole.begin() + kHeaderBytes}), PacketStatus::too_short) << "none";
   base::Bytes longer = whole;
   longer.resize(kHeaderBytes + kMaxNeighbours * kV2vBytes);
-  EXPECT_EQ(reason_of(longer), PacketStatus::accepted) << "what is in it is judged one by one";
+  EXPECT_EQ(reason_of(longer), PacketStatus::accepted) << "its states are checked one by one";
   longer.push_back(0);
   EXPECT_EQ(reason_of(longer), PacketStatus::too_long);
 }
@@ -440,7 +440,7 @@ TEST(Packets, TimeToAChangeIsRoundedUp) {
     ASSERT_LT(sent_left(left), left + 0.001);
   }
   EXPECT_EQ(sent_left(0.0), 0.0);
-  EXPECT_EQ(sent_left(6.5 + 1e-12), 6.5) << "the rounding of sums is no millisecond";
+  EXPECT_EQ(sent_left(6.5 + 1e-12), 6.5) << "rounding errors of sums are ignored";
   EXPECT_DOUBLE_EQ(sent_left(1e9), 1e-3 * 0xFFFFFFFE) << "49 days at most";
   EXPECT_EQ(sent_left(std::numeric_limits<double>::infinity()), std::numeric_limits<double>::infinity());
 }

@@ -47,25 +47,25 @@ struct PeersTest : testing::Test {
   PacketStatus accept(const base::Bytes& bytes, const Endpoint& who = kPeerSource) {
     return inbox.accept(bytes, who, 0, packet);
   }
-  PacketStatus say(const base::Bytes& bytes, PacketSigner* signer, const Endpoint& who = kPeerSource) {
+  PacketStatus feed(const base::Bytes& bytes, PacketSigner* signer, const Endpoint& who = kPeerSource) {
     return accept(ready(bytes, signer, who), who);
   }
 };
 
 TEST_F(PeersTest, RobotWithAKeyMustSign) {
   PacketSigner forger(kTagKey, 1'000'000);
-  EXPECT_EQ(say(peer_v2v(7, 0), nullptr), PacketStatus::not_signed);
-  EXPECT_EQ(say(peer_v2v(7, 0), &forger), PacketStatus::wrong_signature);
+  EXPECT_EQ(feed(peer_v2v(7, 0), nullptr), PacketStatus::not_signed);
+  EXPECT_EQ(feed(peer_v2v(7, 0), &forger), PacketStatus::wrong_signature);
   EXPECT_FALSE(inbox.is_active(7, 0));
   const base::Bytes first = ready(peer_v2v(7, 0), &robot), second = ready(peer_v2v(7, 1), &robot);
   EXPECT_EQ(accept(second), PacketStatus::accepted);
   EXPECT_EQ(accept(second), PacketStatus::replayed);
   EXPECT_EQ(accept(first), PacketStatus::stale) << "overtaken: signed and new, but an older state";
   EXPECT_EQ(accept(first), PacketStatus::replayed);
-  EXPECT_EQ(say(subscribe_example(), &robot), PacketStatus::accepted);
-  EXPECT_EQ(say(leave_example(), nullptr), PacketStatus::not_signed) << "nobody else ends its participation";
+  EXPECT_EQ(feed(subscribe_example(), &robot), PacketStatus::accepted);
+  EXPECT_EQ(feed(leave_example(), nullptr), PacketStatus::not_signed) << "no other sender may end its participation";
   EXPECT_TRUE(inbox.is_active(7, 0));
-  EXPECT_EQ(say(leave_example(), &robot), PacketStatus::accepted);
+  EXPECT_EQ(feed(leave_example(), &robot), PacketStatus::accepted);
   EXPECT_EQ(inbox.counts()[PacketStatus::not_signed], 2u);
   EXPECT_EQ(inbox.counts()[PacketStatus::wrong_signature], 1u);
   EXPECT_EQ(inbox.counts()[PacketStatus::replayed], 2u);
@@ -91,21 +91,21 @@ TEST_F(PeersTest, LimitsSignatureChecksForStrangers) {
     ASSERT_EQ(accept(forged), PacketStatus::wrong_signature);
   EXPECT_EQ(accept(request), PacketStatus::unproven) << "the last that is checked: a CHALLENGE is its answer";
   EXPECT_EQ(accept(request), PacketStatus::wrong_signature) << "not checked";
-  EXPECT_EQ(say(peer_v2v(7, 1), &robot), PacketStatus::accepted) << "robots at proven addresses are not concerned";
+  EXPECT_EQ(feed(peer_v2v(7, 1), &robot), PacketStatus::accepted) << "robots at proven addresses are not concerned";
   EXPECT_EQ(inbox.accept(request, kPeerSource, kSecond, packet), PacketStatus::unproven) << "later";
 }
 
 TEST_F(PeersTest, RobotWithoutAKeyNeedsNoSignature) {
-  EXPECT_EQ(say(peer_v2v(3, 0), nullptr), PacketStatus::accepted);
-  EXPECT_EQ(say(peer_v2v(3, 1), &robot), PacketStatus::accepted) << "its trailer is dropped";
+  EXPECT_EQ(feed(peer_v2v(3, 0), nullptr), PacketStatus::accepted);
+  EXPECT_EQ(feed(peer_v2v(3, 1), &robot), PacketStatus::accepted) << "its trailer is dropped";
   EXPECT_EQ(inbox.signer(3), nullptr);
   EXPECT_EQ(inbox.signer(99), nullptr);
 }
 
 TEST_F(PeersTest, TagWithAKeyMustSign) {
   PacketSigner camera(kTagKey, 0);
-  EXPECT_EQ(say(tag_example(), nullptr), PacketStatus::not_signed);
-  EXPECT_EQ(say(tag_example(), &robot), PacketStatus::wrong_signature);
+  EXPECT_EQ(feed(tag_example(), nullptr), PacketStatus::not_signed);
+  EXPECT_EQ(feed(tag_example(), &robot), PacketStatus::wrong_signature);
   const base::Bytes tag = ready(tag_example(), &camera);
   EXPECT_EQ(accept(tag), PacketStatus::accepted);
   EXPECT_EQ(accept(tag), PacketStatus::replayed);
@@ -115,9 +115,9 @@ TEST_F(PeersTest, TagWithAKeyMustSign) {
 TEST_F(PeersTest, OnlyTheSenderOfStartSignsIt) {
   PacketSigner user(kStartKey, 1);
   const base::Bytes to_one = patched<std::uint16_t>(start_example(), 6, 7);
-  EXPECT_EQ(say(start_example(), nullptr), PacketStatus::not_signed);
-  EXPECT_EQ(say(to_one, &robot), PacketStatus::wrong_signature) << "the robot's own key starts nobody";
-  EXPECT_EQ(say(to_one, &user), PacketStatus::accepted);
+  EXPECT_EQ(feed(start_example(), nullptr), PacketStatus::not_signed);
+  EXPECT_EQ(feed(to_one, &robot), PacketStatus::wrong_signature) << "a robot's key is not valid for START";
+  EXPECT_EQ(feed(to_one, &user), PacketStatus::accepted);
   const base::Bytes to_all = ready(start_example(), &user);
   EXPECT_EQ(accept(to_all), PacketStatus::accepted);
   EXPECT_EQ(accept(to_all), PacketStatus::replayed);
@@ -125,10 +125,10 @@ TEST_F(PeersTest, OnlyTheSenderOfStartSignsIt) {
 
 /// Boundary: another port of the same address, and an address one higher.
 TEST_F(PeersTest, AcceptsOnlyTheConfiguredAddress) {
-  EXPECT_EQ(say(peer_v2v(5, 0), nullptr, kElsewhere), PacketStatus::wrong_source);
+  EXPECT_EQ(feed(peer_v2v(5, 0), nullptr, kElsewhere), PacketStatus::wrong_source);
   EXPECT_FALSE(inbox.is_active(5, 0));
-  EXPECT_EQ(say(peer_v2v(5, 0), nullptr, {kLoopback, 5999}), PacketStatus::accepted);
-  EXPECT_EQ(say(peer_v2v(5, 1), nullptr, kPeerSource), PacketStatus::wrong_source)
+  EXPECT_EQ(feed(peer_v2v(5, 0), nullptr, {kLoopback, 5999}), PacketStatus::accepted);
+  EXPECT_EQ(feed(peer_v2v(5, 1), nullptr, kPeerSource), PacketStatus::wrong_source)
       << "bound by its first sender as without";
 }
 
@@ -160,7 +160,7 @@ TEST_F(PeersTest, RefusalsAreNoLargerAndLimited) {
   ASSERT_EQ(decode(answer, refusal), PacketStatus::accepted);
   EXPECT_EQ(std::get<Refusal>(refusal.body).reason, PacketStatus::wrong_source);
   ++answer[kHeaderBytes];
-  EXPECT_EQ(decode(answer, refusal), PacketStatus::out_of_range) << "a reason of later versions is no reason yet";
+  EXPECT_EQ(decode(answer, refusal), PacketStatus::out_of_range) << "reasons of later versions are unknown";
   std::size_t more = 0;
   while (inbox.refuse(packet, PacketStatus::not_signed, 100'000'001, answer)) ++more;
   EXPECT_EQ(more + 1, Inbox::kMaxRefusals) << "in 0.1 s";
@@ -187,8 +187,8 @@ TEST_F(PeersTest, ReportsTheLagOfACounter) {
 }
 
 TEST_F(PeersTest, UnknownIdsTakePrecedence) {
-  EXPECT_EQ(say(peer_v2v(8, 0), nullptr), PacketStatus::unknown_robot);
-  EXPECT_EQ(say(reading_example(), nullptr), PacketStatus::wrong_direction);
+  EXPECT_EQ(feed(peer_v2v(8, 0), nullptr), PacketStatus::unknown_robot);
+  EXPECT_EQ(feed(reading_example(), nullptr), PacketStatus::wrong_direction);
 }
 
 /// The window keeps late states for the filter.
@@ -197,16 +197,16 @@ TEST(Peers, OvertakenStatesAreLateNotReplayed) {
   chosen.take_late = true;
   Inbox inbox(chosen);
   Packet packet;
-  const auto say = [&](std::uint32_t sequence) {
+  const auto feed = [&](std::uint32_t sequence) {
     base::Bytes bytes = peer_v2v(7, sequence);
     write_session_token(bytes, {77, inbox.token(kPeerSource)});
     sign(bytes, kRobotKey, 1000 + sequence);
     return inbox.accept(bytes, kPeerSource, 0, packet);
   };
-  EXPECT_EQ(say(100), PacketStatus::accepted);
-  EXPECT_EQ(say(37), PacketStatus::accepted) << "63 behind";
+  EXPECT_EQ(feed(100), PacketStatus::accepted);
+  EXPECT_EQ(feed(37), PacketStatus::accepted) << "63 behind";
   EXPECT_TRUE(packet.late);
-  EXPECT_EQ(say(36), PacketStatus::replayed) << "64 behind";
+  EXPECT_EQ(feed(36), PacketStatus::replayed) << "64 behind";
 }
 
 constexpr std::uint32_t kFarm = 11, kOwn = 22;  ///< sessions
@@ -220,10 +220,10 @@ struct SignedSocketTest : testing::Test {
   void SetUp() override {
     base::Bytes challenge;
     encode({.robot = 7}, Challenge{3}, challenge);
-    ASSERT_EQ(hear(challenge, {kFarm, kOwn}, &signer), 1u);
+    ASSERT_EQ(receive(challenge, {kFarm, kOwn}, &signer), 1u);
   }
   /// @return number of states and other packets that pass
-  std::size_t hear(const base::Bytes& bytes, const SessionToken& session_token, PacketSigner* by) {
+  std::size_t receive(const base::Bytes& bytes, const SessionToken& session_token, PacketSigner* by) {
     farm.queue({kLoopback, bound_endpoint(socket.socket()).port}, bytes, session_token, by);
     farm.flush();
     wait_readable(socket.socket(), socket.socket(), 1000);
@@ -240,9 +240,9 @@ struct SignedSocketTest : testing::Test {
 TEST_F(SignedSocketTest, RefusalChangesNothing) {
   base::Bytes refusal;
   encode({.robot = 7, .time = 9}, Refusal{PacketStatus::wrong_signature}, refusal);
-  EXPECT_EQ(hear(refusal, {kFarm, kOwn + 1}, nullptr), 0u);
+  EXPECT_EQ(receive(refusal, {kFarm, kOwn + 1}, nullptr), 0u);
   EXPECT_EQ(socket.trouble().count, 0u) << "of another session";
-  EXPECT_EQ(hear(refusal, {kFarm + 1, kOwn}, nullptr), 0u);
+  EXPECT_EQ(receive(refusal, {kFarm + 1, kOwn}, nullptr), 0u);
   EXPECT_TRUE(socket.trouble().of_farm);
   EXPECT_EQ(socket.trouble().reason, PacketStatus::wrong_signature);
   EXPECT_EQ(socket.trouble().farm_time, 9);
@@ -268,34 +268,34 @@ base::Bytes neighbours() {
 }
 
 TEST_F(SignedSocketTest, AcceptsEachSignedPacketOnce) {
-  EXPECT_EQ(hear(neighbours(), {kFarm, kOwn}, nullptr), 0u);
+  EXPECT_EQ(receive(neighbours(), {kFarm, kOwn}, nullptr), 0u);
   EXPECT_EQ(socket.counts()[PacketStatus::not_signed], 1u);
   PacketSigner forger(kTagKey, 1'000'000);
-  EXPECT_EQ(hear(start_example(), {kFarm, kOwn}, &forger), 0u);
+  EXPECT_EQ(receive(start_example(), {kFarm, kOwn}, &forger), 0u);
   EXPECT_EQ(socket.counts()[PacketStatus::wrong_signature], 1u);
-  EXPECT_EQ(hear(neighbours(), {kFarm, kOwn}, &signer), 1u);
-  EXPECT_EQ(hear(start_example(), {kFarm, kOwn}, &signer), 1u);
+  EXPECT_EQ(receive(neighbours(), {kFarm, kOwn}, &signer), 1u);
+  EXPECT_EQ(receive(start_example(), {kFarm, kOwn}, &signer), 1u);
   PacketSigner again(kRobotKey, 1000);
-  EXPECT_EQ(hear(start_example(), {kFarm, kOwn}, &again), 0u);
+  EXPECT_EQ(receive(start_example(), {kFarm, kOwn}, &again), 0u);
   EXPECT_EQ(socket.counts()[PacketStatus::replayed], 1u);
 }
 
 /// Boundary: the robot's clock is ahead of the farm's, and so are its counters.
 TEST_F(SignedSocketTest, OwnPacketsSentBackDoNotAdvanceTheWindow) {
   PacketSigner own(kRobotKey, 1'000'000);
-  EXPECT_EQ(hear(v2v_example(), {kOwn, 3}, &own), 0u);
+  EXPECT_EQ(receive(v2v_example(), {kOwn, 3}, &own), 0u);
   EXPECT_EQ(socket.counts()[PacketStatus::wrong_source], 1u);
-  EXPECT_EQ(hear(neighbours(), {kFarm, kOwn}, &signer), 1u);
+  EXPECT_EQ(receive(neighbours(), {kFarm, kOwn}, &signer), 1u);
 }
 
 TEST_F(SignedSocketTest, SendsSignedPackets) {
-  const Socket ears = open_udp({kLoopback, 0});
-  V2vSocket client({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .key = kRobotKey});
+  const Socket receiver = open_udp({kLoopback, 0});
+  V2vSocket client({.farm = {kLoopback, bound_endpoint(receiver).port}, .robot = 7, .key = kRobotKey});
   SignatureChecker checker(kRobotKey);
   ReceiveBatch batch(1);
   for (int i = 0; i < 2; ++i) {
     client.send(v2v_example());
-    while (batch.fill(ears) == 0) wait_readable(ears, ears, 1000);
+    while (batch.fill(receiver) == 0) wait_readable(receiver, receiver, 1000);
     EXPECT_EQ(checker.check(batch.bytes(0)), PacketStatus::accepted) << "each with its own counter";
   }
 }

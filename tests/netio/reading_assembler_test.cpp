@@ -19,7 +19,7 @@ struct Parts {
   ReadingAssembler assembler{6};
   std::int64_t now = 0;
 
-  PartStatus say(std::uint32_t sequence, std::uint32_t part, std::uint32_t parts = 3, std::int64_t time = 0) {
+  PartStatus send(std::uint32_t sequence, std::uint32_t part, std::uint32_t parts = 3, std::int64_t time = 0) {
     return assembler.take({sequence, part, parts, time}, now, [&](std::span<double> values) {
       values[2 * part] = values[2 * part + 1] = 10.0 * sequence + part;
     });
@@ -33,7 +33,7 @@ struct Parts {
 /// Readings of one number in one part.
 struct Plain {
   ReadingAssembler assembler{1};
-  PartStatus say(std::uint32_t sequence, std::int64_t now = 0) {
+  PartStatus send(std::uint32_t sequence, std::int64_t now = 0) {
     return assembler.take({sequence, 0, 1, now}, now, [&](std::span<double> values) { values[0] = sequence; });
   }
   double value() const { return assembler.newest() ? assembler.newest()->values[0] : NAN; }
@@ -46,11 +46,11 @@ TEST(ReadingAssembler, HasNoReadingInitially) {
 
 TEST(ReadingAssembler, LastPartCompletesTheReading) {
   Parts p;
-  EXPECT_EQ(p.say(4, 2), PartStatus::incomplete);  // in any order
-  EXPECT_EQ(p.say(4, 0), PartStatus::incomplete);
+  EXPECT_EQ(p.send(4, 2), PartStatus::incomplete);  // in any order
+  EXPECT_EQ(p.send(4, 0), PartStatus::incomplete);
   EXPECT_TRUE(p.values().empty());
   p.now = 9;
-  EXPECT_EQ(p.say(4, 1), PartStatus::complete);
+  EXPECT_EQ(p.send(4, 1), PartStatus::complete);
   EXPECT_EQ(p.values(), (std::vector<double>{40, 40, 41, 41, 42, 42}));
   EXPECT_EQ(p.assembler.newest()->sequence, 4u);
   EXPECT_EQ(p.assembler.newest()->arrival, 9);
@@ -68,82 +68,82 @@ TEST(ReadingAssembler, ValuesOfMissingPartsAreNotANumber) {
 
 TEST(ReadingAssembler, PartsOfTwoReadingsMayInterleave) {
   Parts p;
-  p.say(1, 0);
-  p.say(2, 0);
-  p.say(1, 1);
-  p.say(2, 2);
-  EXPECT_EQ(p.say(1, 2), PartStatus::complete);
+  p.send(1, 0);
+  p.send(2, 0);
+  p.send(1, 1);
+  p.send(2, 2);
+  EXPECT_EQ(p.send(1, 2), PartStatus::complete);
   EXPECT_EQ(p.values()[0], 10.0);
-  EXPECT_EQ(p.say(2, 1), PartStatus::complete);
+  EXPECT_EQ(p.send(2, 1), PartStatus::complete);
   EXPECT_EQ(p.values()[0], 20.0);
 }
 
 TEST(ReadingAssembler, NewerCompleteReadingAbandonsOlderOnes) {
   Parts p;
-  p.say(1, 0);
-  for (const std::uint32_t part : {0u, 1u, 2u}) p.say(2, part);
-  EXPECT_EQ(p.say(1, 1), PartStatus::late);
-  EXPECT_EQ(p.say(1, 2), PartStatus::late);
+  p.send(1, 0);
+  for (const std::uint32_t part : {0u, 1u, 2u}) p.send(2, part);
+  EXPECT_EQ(p.send(1, 1), PartStatus::late);
+  EXPECT_EQ(p.send(1, 2), PartStatus::late);
   EXPECT_EQ(p.values()[0], 20.0);
 }
 
 TEST(ReadingAssembler, RepetitionsAreDuplicates) {
   Parts p;
-  p.say(1, 0);
-  EXPECT_EQ(p.say(1, 0), PartStatus::duplicate);  // while parts are missing
-  p.say(1, 1);
-  p.say(1, 2);
-  EXPECT_EQ(p.say(1, 2), PartStatus::duplicate);  // after it is complete
+  p.send(1, 0);
+  EXPECT_EQ(p.send(1, 0), PartStatus::duplicate);  // while parts are missing
+  p.send(1, 1);
+  p.send(1, 2);
+  EXPECT_EQ(p.send(1, 2), PartStatus::duplicate);  // after it is complete
 }
 
 TEST(ReadingAssembler, LimitsReadingsInProgress) {
   Parts p;
-  for (std::uint32_t sequence = 0; sequence <= ReadingAssembler::kMaxPartial; ++sequence) p.say(sequence, 0);
-  EXPECT_EQ(p.say(0, 1), PartStatus::late);  // abandoned for the newest reading
-  p.say(1, 1);
-  EXPECT_EQ(p.say(1, 2), PartStatus::complete);  // the oldest in progress
+  for (std::uint32_t sequence = 0; sequence <= ReadingAssembler::kMaxPartial; ++sequence) p.send(sequence, 0);
+  EXPECT_EQ(p.send(0, 1), PartStatus::late);  // abandoned for the newest reading
+  p.send(1, 1);
+  EXPECT_EQ(p.send(1, 2), PartStatus::complete);  // the oldest in progress
 }
 
 TEST(ReadingAssembler, DropsPartsThatContradictTheirReading) {
   Parts p;
-  p.say(1, 0);
-  EXPECT_EQ(p.say(1, 1, 2), PartStatus::late);     // different number of parts
-  EXPECT_EQ(p.say(1, 1, 3, 7), PartStatus::late);  // different time of measurement
-  EXPECT_EQ(p.say(1, 1, 3, 0), PartStatus::incomplete);
+  p.send(1, 0);
+  EXPECT_EQ(p.send(1, 1, 2), PartStatus::late);     // different number of parts
+  EXPECT_EQ(p.send(1, 1, 3, 7), PartStatus::late);  // different time of measurement
+  EXPECT_EQ(p.send(1, 1, 3, 0), PartStatus::incomplete);
 }
 
 TEST(ReadingAssembler, NeverReturnsToAnOlderReading) {
   Plain p;
-  EXPECT_EQ(p.say(5), PartStatus::complete);
-  EXPECT_EQ(p.say(4), PartStatus::late);
+  EXPECT_EQ(p.send(5), PartStatus::complete);
+  EXPECT_EQ(p.send(4), PartStatus::late);
   EXPECT_EQ(p.value(), 5.0);
-  EXPECT_EQ(p.say(9), PartStatus::complete);
+  EXPECT_EQ(p.send(9), PartStatus::complete);
   EXPECT_EQ(p.assembler.lost(), 3u);  // 6, 7, 8; losses before the first reading do not count
 }
 
 TEST(ReadingAssembler, SequencesWrap) {
   Plain p;
-  EXPECT_EQ(p.say(0xFFFFFFFEu), PartStatus::complete);
-  EXPECT_EQ(p.say(1), PartStatus::complete);
-  EXPECT_EQ(p.say(0xFFFFFFFFu), PartStatus::late);  // arrives late
-  EXPECT_EQ(p.assembler.lost(), 1u);                // 0
+  EXPECT_EQ(p.send(0xFFFFFFFEu), PartStatus::complete);
+  EXPECT_EQ(p.send(1), PartStatus::complete);
+  EXPECT_EQ(p.send(0xFFFFFFFFu), PartStatus::late);  // arrives late
+  EXPECT_EQ(p.assembler.lost(), 1u);                 // 0
 }
 
 TEST(ReadingAssembler, RestartedSenderIsAcceptedAfterTwoSeconds) {
   Plain p;
-  p.say(5000, 0);
-  EXPECT_EQ(p.say(0, 2 * kSecond - 1), PartStatus::late);
+  p.send(5000, 0);
+  EXPECT_EQ(p.send(0, 2 * kSecond - 1), PartStatus::late);
   EXPECT_EQ(p.assembler.restarts(), 0u);
-  EXPECT_EQ(p.say(1, 2 * kSecond), PartStatus::complete);
+  EXPECT_EQ(p.send(1, 2 * kSecond), PartStatus::complete);
   EXPECT_EQ(p.value(), 1.0);
   EXPECT_EQ(p.assembler.restarts(), 1u);
-  EXPECT_EQ(p.say(2, 2 * kSecond + 1), PartStatus::complete);
+  EXPECT_EQ(p.send(2, 2 * kSecond + 1), PartStatus::complete);
 }
 
 TEST(ReadingAssembler, NewerReadingsAfterSilenceAreNotARestart) {
   Plain p;
-  p.say(5, 0);
-  EXPECT_EQ(p.say(7, 10 * kSecond), PartStatus::complete);
+  p.send(5, 0);
+  EXPECT_EQ(p.send(7, 10 * kSecond), PartStatus::complete);
   EXPECT_EQ(p.assembler.restarts(), 0u);
   EXPECT_EQ(p.assembler.lost(), 1u);
 }
@@ -153,9 +153,9 @@ TEST(ReadingAssembler, DropsJumps) {
   Plain p;
   std::uint64_t whole = 0;
   for (std::uint32_t i = 0; i < 72; ++i) {
-    whole += p.say(1000 + i, i * kTick) == PartStatus::complete;
-    EXPECT_EQ(p.say(100'000 + i, i * kTick + 1), PartStatus::jump);
-    EXPECT_EQ(p.say(0x80000000u, i * kTick + 2), PartStatus::jump);
+    whole += p.send(1000 + i, i * kTick) == PartStatus::complete;
+    EXPECT_EQ(p.send(100'000 + i, i * kTick + 1), PartStatus::jump);
+    EXPECT_EQ(p.send(0x80000000u, i * kTick + 2), PartStatus::jump);
   }
   EXPECT_EQ(whole, 72u);
   EXPECT_EQ(p.assembler.lost(), 0u);
@@ -181,10 +181,10 @@ TEST(ReadingAssembler, JumpLimitsAreInclusive) {
 
 TEST(ReadingAssembler, AcceptsAnotherSenderAfterRestart) {
   Plain p;
-  p.say(5000, 0);
+  p.send(5000, 0);
   p.assembler.restart();
   EXPECT_FALSE(p.assembler.newest());
-  EXPECT_EQ(p.say(0, 1), PartStatus::complete);
+  EXPECT_EQ(p.send(0, 1), PartStatus::complete);
   EXPECT_EQ(p.assembler.restarts(), 1u);
 }
 
@@ -206,10 +206,10 @@ TEST(ReadingAssembler, HandlesAnyArrivalOrder) {
     std::optional<std::uint32_t> newest;
     for (const auto& [sequence, part] : pieces) {
       came[sequence].insert(part);
-      if (p.say(sequence, part) == PartStatus::complete) {
+      if (p.send(sequence, part) == PartStatus::complete) {
         ++whole;
         ASSERT_TRUE(!newest || newer(sequence, *newest));
-        ASSERT_EQ(came[sequence].size(), 3u) << "whole before its parts came";
+        ASSERT_EQ(came[sequence].size(), 3u) << "complete before its parts arrived";
         newest = sequence;
       }
       if (!newest) continue;

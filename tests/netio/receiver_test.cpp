@@ -116,15 +116,15 @@ TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
 
 TEST(Receiver, HeaderlessPartsBelongToThePrecedingReading) {
   Receiver receiver(receiver_options(true));
-  const auto say = [&](std::uint8_t part, std::uint8_t value, std::int64_t now) {
+  const auto send = [&](std::uint8_t part, std::uint8_t value, std::int64_t now) {
     return receiver.accept(0, base::Bytes{part, 2, value}, now);
   };
-  EXPECT_EQ(say(0, 10, 5), PartStatus::incomplete);
-  ASSERT_EQ(say(1, 11, 6), PartStatus::complete);
+  EXPECT_EQ(send(0, 10, 5), PartStatus::incomplete);
+  ASSERT_EQ(send(1, 11, 6), PartStatus::complete);
   EXPECT_EQ(receiver.newest(0)->time, 5);
-  EXPECT_EQ(say(0, 20, 7), PartStatus::incomplete);  // its second part is lost
-  EXPECT_EQ(say(0, 30, 8), PartStatus::incomplete);
-  ASSERT_EQ(say(1, 31, 9), PartStatus::complete);
+  EXPECT_EQ(send(0, 20, 7), PartStatus::incomplete);  // its second part is lost
+  EXPECT_EQ(send(0, 30, 8), PartStatus::incomplete);
+  ASSERT_EQ(send(1, 31, 9), PartStatus::complete);
   EXPECT_EQ(receiver.newest(0)->values[0], 30.0);
   EXPECT_EQ(receiver.newest(0)->values[1], 31.0);
 }

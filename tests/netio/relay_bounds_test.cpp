@@ -18,26 +18,26 @@ using Rows = std::vector<std::uint32_t>;
 TEST(RelayBounds, ForwardsStatesWithinRange) {
   RelayFixture crowd(4, {.range = 10.0});
   crowd.all_ask();
-  crowd.say(0, {0, 0});
-  crowd.say(1, {6, 8});                         // exactly at the range
-  crowd.say(2, {-6, -std::nextafter(8.0, 9)});  // the next double beyond
-  crowd.say(3, {1000, 0});
+  crowd.send(0, {0, 0});
+  crowd.send(1, {6, 8});                         // exactly at the range
+  crowd.send(2, {-6, -std::nextafter(8.0, 9)});  // the next double beyond
+  crowd.send(3, {1000, 0});
   EXPECT_EQ(crowd.pass().states, 2u);
-  auto heard = crowd.received();
-  EXPECT_EQ(heard[0], Rows{1});
-  EXPECT_EQ(heard[1], Rows{0});
+  auto received_states = crowd.received();
+  EXPECT_EQ(received_states[0], Rows{1});
+  EXPECT_EQ(received_states[1], Rows{0});
   // A robot without a new state keeps its position; its old state is not forwarded.
-  crowd.say(1, {6, 8});
+  crowd.send(1, {6, 8});
   crowd.pass();
-  heard = crowd.received();
-  EXPECT_EQ(heard.size(), 1u);
-  EXPECT_EQ(heard[0], Rows{1});
+  received_states = crowd.received();
+  EXPECT_EQ(received_states.size(), 1u);
+  EXPECT_EQ(received_states[0], Rows{1});
 }
 
 TEST(RelayBounds, RangeOfZeroForwardsNothing) {
   RelayFixture crowd(3, {.range = 0.0});
   crowd.all_ask();
-  for (const std::uint32_t id : {1u, 2u}) crowd.say(id, {0, 0});  // at one place; robot 0 without one
+  for (const std::uint32_t id : {1u, 2u}) crowd.send(id, {0, 0});  // at one place; robot 0 without one
   crowd.take(kBroadcastId, Start{});
   const RelayCounts counts = crowd.pass();
   EXPECT_EQ(counts.states + counts.waited, 0u);
@@ -47,14 +47,14 @@ TEST(RelayBounds, RangeOfZeroForwardsNothing) {
 TEST(RelayBounds, RobotWithoutAPositionReceivesAllInTurn) {
   RelayFixture crowd(13, {.range = 10.0, .most = Relay::kMinShare});
   crowd.ask(0);
-  std::set<std::uint32_t> heard;
+  std::set<std::uint32_t> received_states;
   for (int pass = 0; pass < 3; ++pass) {
-    for (std::uint32_t id = 1; id < 13; ++id) crowd.say(id, {1000.0 * id, 0});
+    for (std::uint32_t id = 1; id < 13; ++id) crowd.send(id, {1000.0 * id, 0});
     EXPECT_EQ(crowd.pass().states, 4u);
     const Rows states = crowd.received()[0];
-    heard.insert(states.begin(), states.end());
+    received_states.insert(states.begin(), states.end());
   }
-  EXPECT_EQ(heard.size(), 12u);
+  EXPECT_EQ(received_states.size(), 12u);
 }
 
 TEST(RelayBounds, PacksStatesNearestFirst) {
@@ -62,7 +62,7 @@ TEST(RelayBounds, PacksStatesNearestFirst) {
     RelayFixture crowd(others + 1);
     crowd.ask(0);
     Rows nearest;
-    for (std::uint32_t id = 0; id <= others; ++id) crowd.say(id, {0.1 * id, 0});
+    for (std::uint32_t id = 0; id <= others; ++id) crowd.send(id, {0.1 * id, 0});
     for (std::uint32_t id = 1; id <= std::min(others, 64u); ++id) nearest.push_back(id);
     const RelayCounts counts = crowd.pass();
     EXPECT_EQ(counts.states, nearest.size());
@@ -75,9 +75,9 @@ TEST(RelayBounds, PacksStatesNearestFirst) {
 TEST(RelayBounds, ForwardedPacketsCarryTheReceiversSession) {
   RelayFixture crowd(12);
   crowd.ask(5);
-  for (const std::uint32_t id : crowd.ids) crowd.say(id, {0, 0});
+  for (const std::uint32_t id : crowd.ids) crowd.send(id, {0, 0});
   for (std::uint32_t pass = 0, next = 0; pass < 2; ++pass) {
-    crowd.say(0, {0, 0});
+    crowd.send(0, {0, 0});
     crowd.pass(1000 + pass);
     crowd.received();
     for (const base::Bytes& bytes : crowd.datagrams) {
@@ -106,7 +106,7 @@ TEST(RelayBounds, BudgetHoldsForAnyNumberOfSubscribers) {
       RelayFixture crowd(count);
       crowd.all_ask();
       for (const std::uint32_t id : crowd.ids)
-        crowd.say(id, localised ? glm::dvec2{0.3 * (id % 32), 0.3 * (id / 32)} : glm::dvec2{});
+        crowd.send(id, localised ? glm::dvec2{0.3 * (id % 32), 0.3 * (id / 32)} : glm::dvec2{});
       const RelayCounts counts = crowd.pass();
       const std::size_t share = 16'384 / count;  // 32, and 16
       EXPECT_EQ(counts.states, count * share);
@@ -122,7 +122,7 @@ TEST(RelayBounds, RobotsTakeTurnsWhenTheBudgetIsSpent) {
   RelayFixture crowd(30, {.budget = 10 * Relay::kMinShare});
   crowd.all_ask();
   for (std::uint32_t pass = 0; pass < 6; ++pass) {
-    for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
+    for (const std::uint32_t id : crowd.ids) crowd.send(id, {0.1 * id, 0});
     const RelayCounts counts = crowd.pass();
     EXPECT_EQ(counts.states, 40u);
     EXPECT_EQ(counts.waited, 20u);
@@ -140,10 +140,10 @@ TEST(RelayBounds, UnusedTurnPassesToTheNextRobot) {
   RelayFixture crowd(4, {.budget = Relay::kMinShare});
   crowd.all_ask();
   const auto served = [&] {
-    for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
+    for (const std::uint32_t id : crowd.ids) crowd.send(id, {0.1 * id, 0});
     crowd.pass();
-    const auto heard = crowd.received();
-    return heard.size() == 1 ? heard.begin()->first : kNone;
+    const auto received_states = crowd.received();
+    return received_states.size() == 1 ? received_states.begin()->first : kNone;
   };
   EXPECT_EQ(served(), 0u);
   crowd.ask(1, 1u << 1);
@@ -162,7 +162,7 @@ TEST(RelayBounds, TurnIncludesAllStatesSinceTheLastTurn) {
   for (int pass = 0; pass < 400; ++pass) {
     std::set<std::uint32_t> spoke;
     for (const std::uint32_t id : crowd.ids)
-      if (random() % 3 == 0) crowd.say(id, {0, 0}), spoke.insert(id);
+      if (random() % 3 == 0) crowd.send(id, {0, 0}), spoke.insert(id);
     for (const std::uint32_t id : crowd.ids) {
       const bool asks = random() % 8 != 0;
       crowd.ask(id, asks ? kNeighboursBit : 1u << 1);
@@ -171,9 +171,9 @@ TEST(RelayBounds, TurnIncludesAllStatesSinceTheLastTurn) {
       due[id].erase(id);
     }
     crowd.pass();
-    auto heard = crowd.received();
+    auto received_states = crowd.received();
     for (const std::uint32_t id : crowd.ids) {
-      const Rows came = heard[id];
+      const Rows came = received_states[id];
       waits[id] = came.empty() && !due[id].empty() ? waits[id] + 1 : 0;
       EXPECT_LE(waits[id], 4);
       if (came.empty()) continue;
@@ -189,12 +189,12 @@ TEST(RelayBounds, LightsReceiveRobotsWithinRange) {
   RelayFixture crowd(3, {.range = 10.0}, {kNorth, kSouth});
   crowd.shine(kNorth, {0, 100});
   crowd.shine(kSouth, {0, -100});
-  crowd.say(0, {0, 90});  // exactly at the range
-  crowd.say(1, {0, std::nextafter(-90.0, 0)});
-  crowd.say(2, {0, -95});
+  crowd.send(0, {0, 90});  // exactly at the range
+  crowd.send(1, {0, std::nextafter(-90.0, 0)});
+  crowd.send(2, {0, -95});
   crowd.pass();  // no robot has subscribed
-  const auto heard = crowd.received();
-  EXPECT_EQ(heard, (std::map<std::uint32_t, Rows>{{kNorth, {0}}, {kSouth, {2}}}));
+  const auto received_states = crowd.received();
+  EXPECT_EQ(received_states, (std::map<std::uint32_t, Rows>{{kNorth, {0}}, {kSouth, {2}}}));
 }
 
 /// Independent of the budget left to robots, and once, even if others wait for the same states.
@@ -204,10 +204,10 @@ TEST(RelayBounds, LightReceivesTheNearestInTheSameTick) {
   crowd.shine(kNorth, {0, 0});
   Rows nearest(64);
   std::iota(nearest.begin(), nearest.end(), 0u);
-  for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
+  for (const std::uint32_t id : crowd.ids) crowd.send(id, {0.1 * id, 0});
   crowd.pass();
   EXPECT_EQ(crowd.received()[kNorth], nearest);
-  crowd.say(9, {0, 0});
+  crowd.send(9, {0, 0});
   EXPECT_GT(crowd.pass().waited, 0u);
   EXPECT_EQ(crowd.received()[kNorth], Rows{9});
 }
@@ -222,7 +222,7 @@ TEST(RelayBounds, TurnHoldsAtLeastFourStates) {
 TEST(RelayBounds, UnusedSharesServeOtherRobots) {
   RelayFixture crowd(8, {.range = 1.0, .budget = 2 * Relay::kMinShare});
   crowd.all_ask();
-  for (const std::uint32_t id : crowd.ids) crowd.say(id, {100.0 * (id / 2), 0});  // in pairs
+  for (const std::uint32_t id : crowd.ids) crowd.send(id, {100.0 * (id / 2), 0});  // in pairs
   const RelayCounts counts = crowd.pass();
   EXPECT_GE(counts.states, 5u);
   EXPECT_LE(counts.waited, 3u);

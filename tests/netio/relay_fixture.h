@@ -25,7 +25,7 @@ struct RelayFixture {
   Endpoint where{kLoopback, bound_endpoint(socket).port};
   ReceiveBatch batch{64};
   std::uint32_t sequence = 0;
-  std::vector<base::Bytes> datagrams;  ///< of the last `heard`
+  std::vector<base::Bytes> datagrams;  ///< of the last `received`
 
   /// @param lights ids of intersections
   explicit RelayFixture(std::uint32_t count, const RelayOptions& options = {},
@@ -48,7 +48,7 @@ struct RelayFixture {
     ASSERT_EQ(inbox.accept(bytes, where, 0, packet), PacketStatus::accepted);
     relay.take(packet);
   }
-  void say(std::uint32_t id, glm::dvec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
+  void send(std::uint32_t id, glm::dvec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
   void ask(std::uint32_t id, std::uint32_t types = kNeighboursBit) { take(id, Subscribe{types}); }
   /// Sends a light's position.
   void shine(std::uint32_t light, glm::dvec2 p) {

@@ -36,7 +36,7 @@ struct RelayTest : testing::Test {
     ASSERT_TRUE(inbox.challenge(packet, {kLoopback, bound_endpoint(v2v_socket(id).socket()).port}, 0, answer));
     ASSERT_EQ(v2v_socket(id).accept(answer, 0, packet), PacketStatus::accepted);
   }
-  void say(std::uint32_t id, double x) {
+  void send_state(std::uint32_t id, double x) {
     base::Bytes bytes;
     encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, V2v{.X_WR = {x, 0, 0, 0}}, bytes);
     v2v_socket(id).send(bytes);
@@ -64,7 +64,7 @@ struct RelayTest : testing::Test {
     outbox.flush();
   }
   /// Returns the packets received by a robot. Loopback delivers immediately.
-  std::vector<Packet> heard(std::uint32_t id, std::int64_t now = 0) {
+  std::vector<Packet> received(std::uint32_t id, std::int64_t now = 0) {
     std::vector<Packet> packets;
     V2vSocket& one = v2v_socket(id);
     one.receive([&](std::span<const std::uint8_t> bytes) {
@@ -77,75 +77,75 @@ struct RelayTest : testing::Test {
 
 TEST_F(RelayTest, SendsStatesToSubscribers) {
   ask(3, kNeighboursBit);
-  say(3, 1.0);
-  say(7, 2.0);
+  send_state(3, 1.0);
+  send_state(7, 2.0);
   tick();
-  const auto packets = heard(3);
+  const auto packets = received(3);
   ASSERT_EQ(packets.size(), 1u);  // excludes its own
   EXPECT_EQ(packets[0].header.robot, 7);
   EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 2.0);
-  EXPECT_TRUE(heard(7).empty());  // not subscribed
-  EXPECT_TRUE(heard(9).empty());  // not active
+  EXPECT_TRUE(received(7).empty());  // not subscribed
+  EXPECT_TRUE(received(9).empty());  // not active
   EXPECT_EQ(relay.counts().states, 1u);
 }
 
 TEST_F(RelayTest, SendsTheNewestStateOncePerTick) {
   ask(3, kNeighboursBit);
-  for (const double x : {1.0, 2.0, 3.0}) say(7, x);
-  say(9, 4.0);
+  for (const double x : {1.0, 2.0, 3.0}) send_state(7, x);
+  send_state(9, 4.0);
   tick();
-  auto packets = heard(3);
+  auto packets = received(3);
   ASSERT_EQ(packets.size(), 2u);
   EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 3.0);
   tick();  // no new states
-  EXPECT_TRUE(heard(3).empty());
-  say(7, 5.0);
+  EXPECT_TRUE(received(3).empty());
+  send_state(7, 5.0);
   tick();
-  EXPECT_EQ(heard(3).size(), 1u);
+  EXPECT_EQ(received(3).size(), 1u);
 }
 
 TEST_F(RelayTest, DropsStatesWithoutSubscribers) {
-  say(7, 2.0);
+  send_state(7, 2.0);
   tick();
   ask(3, kNeighboursBit);
   tick();
-  EXPECT_TRUE(heard(3).empty());
+  EXPECT_TRUE(received(3).empty());
 }
 
 TEST_F(RelayTest, SendsNothingToSilentRobots) {
   ask(3, kNeighboursBit);
-  say(7, 2.0);
+  send_state(7, 2.0);
   start(kBroadcastId);
   tick(2 * kSecond);
   EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
 }
 
 TEST_F(RelayTest, SendsStartToAllActiveRobots) {
-  say(3, 0.0);
-  say(7, 0.0);
+  send_state(3, 0.0);
+  send_state(7, 0.0);
   start(kBroadcastId);
   start(kBroadcastId);  // before the tick, sent once
   tick();
   for (const std::uint32_t id : {3u, 7u}) {
-    const auto packets = heard(id);
+    const auto packets = received(id);
     ASSERT_EQ(packets.size(), 1u) << id;
     EXPECT_TRUE(std::holds_alternative<Start>(packets[0].body));
   }
-  EXPECT_TRUE(heard(9).empty());
+  EXPECT_TRUE(received(9).empty());
   tick();
-  EXPECT_TRUE(heard(3).empty());  // once
+  EXPECT_TRUE(received(3).empty());  // once
 }
 
 TEST_F(RelayTest, StartMayAddressOneRobot) {
-  say(3, 0.0);
-  say(7, 0.0);
+  send_state(3, 0.0);
+  send_state(7, 0.0);
   start(7);
   tick();
   EXPECT_EQ(relay.counts().starts, 1u);
-  EXPECT_TRUE(heard(3).empty());
-  EXPECT_EQ(heard(7).size(), 1u);
+  EXPECT_TRUE(received(3).empty());
+  EXPECT_EQ(received(7).size(), 1u);
   tick();
-  EXPECT_TRUE(heard(7).empty());  // once
+  EXPECT_TRUE(received(7).empty());  // once
 }
 
 TEST_F(RelayTest, ForwardsBytesUnchanged) {
@@ -229,7 +229,7 @@ TEST_F(V2vSocketTest, SplitsNeighbours) {
   v2v_socket.receive([&](std::span<const std::uint8_t> one) { reasons.push_back(v2v_socket.accept(one, 0, packet)); });
   EXPECT_EQ(reasons, (std::vector{PacketStatus::accepted, PacketStatus::accepted, PacketStatus::stale,
                                   PacketStatus::wrong_source, PacketStatus::accepted}));
-  EXPECT_EQ(v2v_socket.accept(bytes, 0, packet), PacketStatus::wrong_direction) << "as a whole it says nothing";
+  EXPECT_EQ(v2v_socket.accept(bytes, 0, packet), PacketStatus::wrong_direction) << "NEIGHBOURS must be split first";
 }
 
 TEST_F(V2vSocketTest, ChecksReceivedPackets) {
@@ -273,8 +273,8 @@ TEST_F(V2vSocketTest, AcceptsOnlyPacketsWithItsSession) {
 }
 
 TEST_F(V2vSocketTest, SendsWithTheNewestToken) {
-  const Socket ears = open_udp({kLoopback, 0});
-  V2vSocket client({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .others = {}, .session = kRelayOwn});
+  const Socket sink = open_udp({kLoopback, 0});
+  V2vSocket client({.farm = {kLoopback, bound_endpoint(sink).port}, .robot = 7, .others = {}, .session = kRelayOwn});
   ReceiveBatch batch(1);
   for (const std::uint32_t token : {0u, 9u, 10u}) {
     base::Bytes bytes;
@@ -283,7 +283,7 @@ TEST_F(V2vSocketTest, SendsWithTheNewestToken) {
       ASSERT_EQ(client.accept(bytes, 0, packet), PacketStatus::accepted);
     }
     client.send(v2v_example());
-    while (batch.fill(ears) == 0) wait_readable(ears, ears, 1000);
+    while (batch.fill(sink) == 0) wait_readable(sink, sink, 1000);
     ASSERT_EQ(decode(batch.bytes(0), packet), PacketStatus::accepted);
     EXPECT_EQ(packet.header.session, kRelayOwn);
     EXPECT_EQ(packet.header.token, token);

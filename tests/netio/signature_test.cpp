@@ -74,7 +74,7 @@ TEST(Signature, RejectsEachFlippedBit) {
       const bool size_bit = bit / 16 == kTrailerAt / 2;
       EXPECT_EQ(status, size_bit ? PacketStatus::not_signed : PacketStatus::wrong_signature) << bit;
     }
-    EXPECT_EQ(checker.check(packet), PacketStatus::accepted) << "what is refused does not move the window";
+    EXPECT_EQ(checker.check(packet), PacketStatus::accepted) << "a rejected counter does not move the window";
   }
 }
 

@@ -175,33 +175,33 @@ TEST(StreamMonitor, CountsTypesSeparately) {
 TEST(StreamMonitor, InspectorReceivesStreamAndHeader) {
   auto streams = plans(2);
   std::size_t asked = 99;
-  Header told;
+  Header inspected;
   const auto monitor = listen(streams, false, [&](std::size_t i, const Header& header, auto) {
     asked = i;
-    told = header;
+    inspected = header;
     return PayloadInfo{PacketStatus::out_of_range};
   });
   EXPECT_EQ(monitor->accept(1, reading(1, 0, 6, {1}), kMonitoredFarm, 0), PacketStatus::out_of_range);
   EXPECT_EQ(asked, 1u);
-  EXPECT_EQ(sensor_type_of(told.type), 5);
-  EXPECT_EQ(told.robot, 1u);
-  EXPECT_EQ(told.sequence, 6u);
+  EXPECT_EQ(sensor_type_of(inspected.type), 5);
+  EXPECT_EQ(inspected.robot, 1u);
+  EXPECT_EQ(inspected.sequence, 6u);
 }
 
 struct OnePort : testing::Test {
   std::vector<StreamSpec> streams = plans(2);
   std::unique_ptr<StreamMonitor> monitor = listen(streams);
-  PacketStatus say(std::uint32_t robot, std::uint32_t sensor, std::uint32_t sequence, const base::Bytes& payload) {
+  PacketStatus feed(std::uint32_t robot, std::uint32_t sensor, std::uint32_t sequence, const base::Bytes& payload) {
     return monitor->accept(1, reading(robot, sensor, sequence, payload), kMonitoredFarm, 0);
   }
 };
 
 TEST_F(OnePort, ChecksPayloads) {
-  EXPECT_EQ(say(1, 0, 0, {3, 0, 1}), PacketStatus::accepted);
-  EXPECT_EQ(say(1, 0, 1, {255, 0, 1}), PacketStatus::out_of_range);  // from the inspector
-  EXPECT_EQ(say(1, 0, 2, {}), PacketStatus::too_short);              // the same
-  EXPECT_EQ(say(0, 0, 4, {3, 0, 1}), PacketStatus::wrong_source);    // another robot's
-  EXPECT_EQ(say(1, 1, 5, {3, 0, 1}), PacketStatus::wrong_source);    // another sensor's
+  EXPECT_EQ(feed(1, 0, 0, {3, 0, 1}), PacketStatus::accepted);
+  EXPECT_EQ(feed(1, 0, 1, {255, 0, 1}), PacketStatus::out_of_range);  // from the inspector
+  EXPECT_EQ(feed(1, 0, 2, {}), PacketStatus::too_short);              // the same
+  EXPECT_EQ(feed(0, 0, 4, {3, 0, 1}), PacketStatus::wrong_source);    // another robot's
+  EXPECT_EQ(feed(1, 1, 5, {3, 0, 1}), PacketStatus::wrong_source);    // another sensor's
   EXPECT_EQ(monitor->accept(1, v2v_example(), kMonitoredFarm, 0), PacketStatus::wrong_direction);
   EXPECT_EQ(monitor->accept(1, base::Bytes{1, 2}, kMonitoredFarm, 0), PacketStatus::too_short);
   const StreamSummary sum = monitor->summary();
@@ -212,7 +212,7 @@ TEST_F(OnePort, ChecksPayloads) {
 }
 
 TEST_F(OnePort, CountsLossDuplicatesAndReordering) {
-  for (const std::uint32_t sequence : {0, 1, 1, 5, 4, 6}) say(1, 0, sequence, {3, 0, 1});
+  for (const std::uint32_t sequence : {0, 1, 1, 5, 4, 6}) feed(1, 0, sequence, {3, 0, 1});
   const StreamSummary sum = monitor->summary();
   EXPECT_EQ(sum.good, 6u);
   EXPECT_EQ(sum.duplicates, 1u);
@@ -243,7 +243,7 @@ TEST_F(OnePort, AcceptsOneFarmAtATime) {
 
 TEST_F(OnePort, FaultyPacketDoesNotSelectAFarm) {
   EXPECT_EQ(monitor->accept(1, reading(1, 0, 0, {255, 0, 1}), {kLoopback, 9001}, 0), PacketStatus::out_of_range);
-  EXPECT_EQ(say(1, 0, 0, {3, 0, 1}), PacketStatus::accepted);
+  EXPECT_EQ(feed(1, 0, 0, {3, 0, 1}), PacketStatus::accepted);
 }
 
 TEST(StreamMonitor, MayAcceptPacketsOfOneHostOnly) {
@@ -266,7 +266,7 @@ TEST(StreamMonitor, MayAcceptPacketsOfOneHostOnly) {
 
 /// RFC 3550, appendix A.1: a jump is accepted at the second datagram in sequence.
 TEST_F(OnePort, RejectsASingleJump) {
-  const auto at = [&](std::uint32_t sequence) { return say(1, 0, sequence, {3, 0, 1}); };
+  const auto at = [&](std::uint32_t sequence) { return feed(1, 0, sequence, {3, 0, 1}); };
   EXPECT_EQ(at(0), PacketStatus::accepted);
   EXPECT_EQ(at(StreamMonitor::kMaxDropout), PacketStatus::accepted);
   EXPECT_EQ(at(2 * StreamMonitor::kMaxDropout + 1), PacketStatus::out_of_range);
@@ -335,7 +335,7 @@ TEST_F(FullOutbox, DropsAndCountsDatagrams) {
 
 /// A separate thread sends the same datagrams in the same order, even if several threads put them.
 TEST(Outbox, SeparateThreadSendsAllInOrder) {
-  const Socket ears = open_udp({kLoopback, 0}, {.receive = 8u << 20});
+  const Socket sink = open_udp({kLoopback, 0}, {.receive = 8u << 20});
   constexpr std::uint32_t kBatches = 40, kEach = 16;
   {
     Outbox outbox({.capacity = kEach, .backlog = kBatches});
@@ -344,7 +344,7 @@ TEST(Outbox, SeparateThreadSendsAllInOrder) {
       const std::size_t first = outbox.claim(kEach);
       thread_pool.parallel_for(kEach, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i)
-          outbox.put(first + i, bound_endpoint(ears), base::Bytes(20, static_cast<std::uint8_t>(batch * kEach + i)));
+          outbox.put(first + i, bound_endpoint(sink), base::Bytes(20, static_cast<std::uint8_t>(batch * kEach + i)));
       });
     }
     outbox.flush();
@@ -356,7 +356,7 @@ TEST(Outbox, SeparateThreadSendsAllInOrder) {
   }
   ReceiveBatch batch(64);
   std::uint32_t next = 0;
-  while (const std::size_t taken = batch.fill(ears))
+  while (const std::size_t taken = batch.fill(sink))
     for (std::size_t i = 0; i < taken; ++i, ++next) {
       ASSERT_EQ(batch.bytes(i).size(), 20u);
       ASSERT_EQ(batch.bytes(i)[0], static_cast<std::uint8_t>(next));
@@ -378,29 +378,29 @@ TEST_F(FullOutbox, BacklogIsBounded) {
 
 /// Claimed and returned slots are neither sent nor counted.
 TEST(Outbox, ReturnedSlotsAreNotSent) {
-  const Socket ears = open_udp({kLoopback, 0});
+  const Socket sink = open_udp({kLoopback, 0});
   Outbox outbox;
-  outbox.queue(bound_endpoint(ears), base::Bytes{1});
+  outbox.queue(bound_endpoint(sink), base::Bytes{1});
   outbox.claim(5);
   outbox.give_back(5);
-  outbox.queue(bound_endpoint(ears), base::Bytes{2});
+  outbox.queue(bound_endpoint(sink), base::Bytes{2});
   outbox.flush();
   EXPECT_EQ(outbox.counts().sent, 2u);
   EXPECT_EQ(outbox.counts().queued, 2u);
 }
 
 TEST(Socket, ReportsKernelDrops) {
-  const Socket ears = open_udp({kLoopback, 0}, {.receive = 1});  // the minimum of the kernel
-  const Endpoint to{kLoopback, bound_endpoint(ears).port};
-  EXPECT_EQ(socket_drops(ears), 0u);
+  const Socket sink = open_udp({kLoopback, 0}, {.receive = 1});  // the minimum of the kernel
+  const Endpoint to{kLoopback, bound_endpoint(sink).port};
+  EXPECT_EQ(socket_drops(sink), 0u);
   Outbox outbox;
   for (int i = 0; i < 100; ++i) outbox.queue(to, base::Bytes(1000));
   outbox.flush();
   ReceiveBatch batch(64);
   std::size_t taken = 0;
-  for (std::size_t n = 1; n > 0; taken += n) n = batch.fill(ears);
+  for (std::size_t n = 1; n > 0; taken += n) n = batch.fill(sink);
   EXPECT_LT(taken, 100u);
-  EXPECT_EQ(socket_drops(ears), 100u - taken);
+  EXPECT_EQ(socket_drops(sink), 100u - taken);
 }
 
 TEST(Outbox, FlushesAutomaticallyWhenFull) {

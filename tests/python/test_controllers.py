@@ -202,7 +202,7 @@ class Program(unittest.TestCase):
                     os.kill(int(text.read()), 0)
 
     def test_names(self):
-        self.assertIn("no controller 'Nobody'", self.fails("--controller", FILE + ":Nobody"))
+        self.assertIn("no controller 'Missing'", self.fails("--controller", FILE + ":Missing"))
         self.assertIn("several controllers", self.fails("--controller", FILE))
         self.assertNotIn("_Hidden", self.fails("--controller", FILE))
         self.assertIn("No such file", self.fails("--controller", "nowhere.py:Careful"))

@@ -352,7 +352,7 @@ class Faults(unittest.TestCase):
                 (sensorfarm.Error, "did you mean 'laser'? Expected one of: ", lambda: sim.readings("lazer")),
                 (sensorfarm.Error, "no hits", lambda: sim.hits("gps")),
                 (sensorfarm.Error, "there is no caster 'gpu'", lambda: room(caster="gpu")),
-                (sensorfarm.Error, "there is no controller", lambda: room(controller="nobody")),
+                (sensorfarm.Error, "there is no controller", lambda: room(controller="unknown")),
                 (sensorfarm.Error, "is not finite", lambda: sim.put(0, (0, 0, 0, float("inf")))),
                 (sensorfarm.Error, "there is no row 2", lambda: sim.put(2, (0, 0, 0, 0))),
                 (sensorfarm.Error, "expected finite numbers", lambda: sim.step([[0, 0, float("nan")], [0, 0, 0]])),

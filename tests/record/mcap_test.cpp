@@ -349,7 +349,7 @@ TEST(McapReader, ReadsCompressedChunks) {
   EXPECT_TRUE(good.damage.empty()) << good.damage[0];
   ASSERT_EQ(good.messages.size(), 101u);
   EXPECT_EQ(good.messages[99].sequence, 99u);
-  EXPECT_TRUE(with(records.size(), 0, "zstd", frame).damage.empty()) << "a CRC of 0 is none";
+  EXPECT_TRUE(with(records.size(), 0, "zstd", frame).damage.empty()) << "a CRC of 0 means none";
 
   Bytes cut = frame, longer = frame, twice = frame, other = frame;
   cut.pop_back();
@@ -362,7 +362,7 @@ TEST(McapReader, ReadsCompressedChunks) {
     std::uint32_t crc;
     std::string form;
     Bytes bytes;
-    const char* told;
+    const char* message;
   } bad[] = {{"one byte less than there is", records.size() - 1, crc, "zstd", frame, "malformed"},
              {"one byte more than there is", records.size() + 1, crc, "zstd", frame, "malformed"},
              {"more than memory", ~0ull, crc, "zstd", frame, "at most"},
@@ -375,10 +375,10 @@ TEST(McapReader, ReadsCompressedChunks) {
              {"no frame", records.size(), crc, "zstd", {}, "malformed"},
              {"another form", records.size(), crc, "lz4", frame, "mcap decompress"},
              {"a form with control characters", records.size(), crc, "\x1b[2J", frame, "\\x1b[2J"}};
-  for (const auto& [reason, size, sum, form, bytes, told] : bad) {
+  for (const auto& [reason, size, sum, form, bytes, message] : bad) {
     const McapContents contents = with(size, sum, form, bytes);
     ASSERT_EQ(contents.damage.size(), 1u) << reason;
-    EXPECT_NE(contents.damage[0].find(told), std::string::npos) << reason << ": " << contents.damage[0];
+    EXPECT_NE(contents.damage[0].find(message), std::string::npos) << reason << ": " << contents.damage[0];
     ASSERT_EQ(contents.messages.size(), 1u) << reason;
     EXPECT_EQ(contents.messages[0].sequence, 1000u) << "the next records are read";
   }
@@ -466,18 +466,18 @@ TEST(McapReader, ReportsFlippedBitsInRedundantFieldsOfAnUnfinishedFile) {
   Bytes file = unfinished_file();
   const std::vector<Place> places = places_in(file, kMagic.size(), file.size());
   ASSERT_EQ(places.back().opcode, Opcode::message_index);
-  std::size_t told = 0;
+  std::size_t flips = 0;
   for (std::size_t i = 0; i + 2 < places.size(); ++i) {
     const Opcode opcode = places[i].opcode;
     if (opcode != Opcode::attachment && opcode != Opcode::chunk && opcode != Opcode::message_index) continue;
     for (std::size_t at = places[i].begin; at < places[i].end; ++at)
-      for (unsigned bit = 0; bit < 8; ++bit, ++told) {
+      for (unsigned bit = 0; bit < 8; ++bit, ++flips) {
         file[at] ^= static_cast<std::uint8_t>(1u << bit);
         EXPECT_FALSE(read(file).damage.empty()) << "bit " << bit << " of byte " << at << ", opcode " << int(opcode);
         file[at] ^= static_cast<std::uint8_t>(1u << bit);
       }
   }
-  EXPECT_GT(told, 8u * 250u);
+  EXPECT_GT(flips, 8u * 250u);
   EXPECT_TRUE(read(file).damage.empty());
 }
 

@@ -345,18 +345,18 @@ class FullDisk {
 TEST(Recorder, FullDiskIsReportedAndKeepsEarlierTicks) {
   const std::string directory = fresh_directory("full");
   std::uint64_t kept = 0;
-  std::string told;
+  std::string error;
   {
     Recorder recorder(directory, sample_info(true), kUncompressed);
     write_ticks(recorder, 0, 2);
     const std::uint64_t whole = recorder.size();
     const FullDisk disk(whole + 5000);
-    told = refusal_of([&] {
+    error = refusal_of([&] {
       for (kept = 2; kept < 100; ++kept) write_ticks(recorder, kept, 1);
     });
     EXPECT_NO_THROW(recorder.finish());  // no more data to lose
   }
-  EXPECT_NE(told.find("run.mcap: cannot take more than"), std::string::npos) << told;
+  EXPECT_NE(error.find("run.mcap: cannot take more than"), std::string::npos) << error;
   EXPECT_LT(kept, 100u);
   const Recording recording = open_recording(directory);
   EXPECT_TRUE(recording.truncated);
@@ -368,16 +368,16 @@ TEST(Recorder, FullDiskIsReportedAndKeepsEarlierTicks) {
 TEST(Recorder, FullDiskIsReportedForCompressedTicks) {
   const std::string directory = fresh_directory("full_compressed");
   std::uint64_t written = 0;
-  std::string told;
+  std::string error;
   {
     Recorder recorder(directory, sample_info(true));
     const FullDisk disk(recorder.size() + 5000);
-    told = refusal_of([&] {
+    error = refusal_of([&] {
       for (; written < 100; ++written) write_ticks(recorder, written, 1);
     });
     EXPECT_NO_THROW(recorder.finish());
   }
-  EXPECT_NE(told.find("run.mcap: cannot take more than"), std::string::npos) << told;
+  EXPECT_NE(error.find("run.mcap: cannot take more than"), std::string::npos) << error;
   EXPECT_LT(written, 100u);
   const Recording recording = open_recording(directory);
   EXPECT_TRUE(recording.truncated);

@@ -41,17 +41,17 @@ Encoded of(StandardTopic topic, const std::vector<double>& values) {
 
 TEST(StandardReadings, RangeContainsConeAndLimits) {
   StandardTopic topic{.message = Message::range, .element = 1, .fov = 0.5, .range_min = 0.25, .range_max = 4.0};
-  for (const auto& [range, told] : {std::pair{2.5, 2.5F},
-                                    {4.0, kInfinity},
-                                    {0.25, 0.25F},
-                                    {-HUGE_VAL, -kInfinity},
-                                    {std::nextafter(4.0, 0.0), std::nextafter(4.0F, 0.0F)}}) {
+  for (const auto& [range, published] : {std::pair{2.5, 2.5F},
+                                         {4.0, kInfinity},
+                                         {0.25, 0.25F},
+                                         {-HUGE_VAL, -kInfinity},
+                                         {std::nextafter(4.0, 0.0), std::nextafter(4.0F, 0.0F)}}) {
     Encoded message = of(topic, {9.0, range, 9.0});
     EXPECT_EQ(message.cdr.get<std::uint8_t>(), 0) << "ultrasound";
     EXPECT_EQ(message.cdr.get<float>(), 0.5F);
     EXPECT_EQ(message.cdr.get<float>(), 0.25F);
     EXPECT_EQ(message.cdr.get<float>(), 4.0F);
-    EXPECT_EQ(message.cdr.get<float>(), told);
+    EXPECT_EQ(message.cdr.get<float>(), published);
     EXPECT_EQ(message.cdr.get<float>(), 0.0F) << "variance: unknown";
     EXPECT_TRUE(message.cdr.good());
   }

@@ -141,7 +141,7 @@ TEST(TopicNames, ReportsTakenNames) {
   named({}, {{.name = "c", .sensors = {{.type = 4, .name = "x"}}}}, &notes, false);
   EXPECT_TRUE(notes.empty()) << "no readings, no topic";
   named({}, {kRobot}, &notes);
-  EXPECT_TRUE(notes.empty()) << "a second sensor of a type is no surprise";
+  EXPECT_TRUE(notes.empty()) << "no note for a second sensor of a type";
 }
 
 /// A robot that joins a fleet does not take the name of another robot.

@@ -43,7 +43,7 @@ TEST(TickMessages, EncodesOnlyWantedTopics) {
     wanted[row] = false;
   }
   messages.encode(
-      tick.record, [](const TopicMessage&) { ADD_FAILURE() << "nothing was wanted"; }, wanted);
+      tick.record, [](const TopicMessage&) { ADD_FAILURE() << "no topic was requested"; }, wanted);
 }
 
 TEST(TickMessages, LatchedTopicsAreSentOnlyAtTheBeginning) {
@@ -197,7 +197,7 @@ TEST(TickMessages, OdometryComesFromEncoders) {
   const double rolled[2] = {0.2, 0.2};
   tick.readings.push_back({.mover = 0, .type = 8, .time = 50'000'000, .X_WM = {3.0, 1.0, 0.0, 0.0}, .values = rolled});
   tick.record.readings = tick.readings;
-  std::map<std::string, std::pair<std::string, double>> told;  // frame and x by topic
+  std::map<std::string, std::pair<std::string, double>> odometry;  // frame and x by topic
   std::map<std::string, std::int64_t> times;
   Frames frames;
   messages.begin([&](const TopicMessage&) {});
@@ -207,15 +207,15 @@ TEST(TickMessages, OdometryComesFromEncoders) {
     if (topic.type != kOdometry) return;
     CdrReader cdr(message.bytes);
     const std::string frame = get_header(cdr, times[topic.name]), child = cdr.get_string();
-    told[topic.name] = {frame + " " + child, cdr.get<double>()};
+    odometry[topic.name] = {frame + " " + child, cdr.get<double>()};
     EXPECT_EQ(message.time, times[topic.name]);
   });
-  EXPECT_EQ(told.at("/roomba_1/odom"), std::pair(std::string("roomba_1/odom roomba_1/base_link"), 0.2));
+  EXPECT_EQ(odometry.at("/roomba_1/odom"), std::pair(std::string("roomba_1/odom roomba_1/base_link"), 0.2));
   EXPECT_EQ(times.at("/roomba_1/odom"), 50'000'000);
-  EXPECT_EQ(told.at("/roomba_1/ground_truth/odom"),
+  EXPECT_EQ(odometry.at("/roomba_1/ground_truth/odom"),
             std::pair(std::string("world roomba_1/base_link"), tick.reports[0].X_WM.x));
   EXPECT_EQ(times.at("/roomba_1/ground_truth/odom"), tick.record.time);
-  EXPECT_EQ(told.at("/roomba_1_2/odom").second, 0.0) << "exact, from where it begins";
+  EXPECT_EQ(odometry.at("/roomba_1_2/odom").second, 0.0) << "exact, from where it begins";
   EXPECT_EQ(frames.stamps.at("roomba_1/base_link"), 50'000'000);
   EXPECT_EQ(frames.stamps.at("roomba_1/odom"), 50'000'000);
   EXPECT_EQ(frames.stamps.at("roomba_1_2/base_link"), tick.record.time);
@@ -239,7 +239,7 @@ TEST(TickMessages, AfterAResetOdometryIsDueAtOnce) {
   const auto count = [&](const TopicMessage& message) { ++counts[messages.topics()[message.topic].name]; };
   messages.encode(test::SampleTick(9).record, count);
   messages.encode(test::SampleTick(0).record, count);
-  EXPECT_EQ(counts["/roomba_1/odom"], 1) << "earlier than what was told";
+  EXPECT_EQ(counts["/roomba_1/odom"], 1) << "older than the last published one";
   messages.begin([](const TopicMessage&) {});
   messages.encode(test::SampleTick(0).record, count);
   EXPECT_EQ(counts["/roomba_1/odom"], 2);
@@ -248,16 +248,16 @@ TEST(TickMessages, AfterAResetOdometryIsDueAtOnce) {
 /// Returns the range of the second scan of the sample, and the first field of its first array, in a tick's messages.
 std::pair<float, double> told_values(const RunInfo& info, const base::TickRecord& record) {
   TickMessages messages(info);
-  std::pair<float, double> told{NAN, NAN};
+  std::pair<float, double> ranges{NAN, NAN};
   messages.encode(record, [&](const TopicMessage& message) {
     const std::string& topic = messages.topics()[message.topic].name;
-    if (topic == "/roomba_1/scan_1") told.first = decode_scan(message.bytes)->ranges.at(0);
+    if (topic == "/roomba_1/scan_1") ranges.first = decode_scan(message.bytes)->ranges.at(0);
     std::int64_t time = 0;
     std::vector<double> values;
     if (topic != "/roomba_1/array" || !decode_reading(info.sensor_types[2], message.bytes, time, values)) return;
-    told.second = values.at(0);
+    ranges.second = values.at(0);
   });
-  return told;
+  return ranges;
 }
 
 /// In messages, which have no flags, surfaces that are too near are -infinity (REP 117), or `range_min` on request.

@@ -25,7 +25,7 @@ const Environment kHere{{"ROS_LOCALHOST_ONLY", "1"}};
 TEST(Ros2Program, ARunIsVisibleDrivableAndPausable) {
   const std::string domain = domain_of_program();
   Program run({"run", our_world("rooms.world"), "--ros2", domain}, kHere);
-  ASSERT_TRUE(run.says("node /sensorfarm in domain " + domain + ", on this machine")) << run.err();
+  ASSERT_TRUE(run.prints("node /sensorfarm in domain " + domain + ", on this machine")) << run.err();
   FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
   ASSERT_TRUE(peer.wait([&] { return !peer.endpoints().empty(); }));
   const auto topic = [&](const std::string& ending) {
@@ -58,7 +58,7 @@ TEST(Ros2Program, ARunAcceptsRobotsAndWorlds) {
   Program run({"run", our_world("rooms.world"), "--ros2", domain, "--view", "127.0.0.1:0", "--player", "127.0.0.1:0"},
               kHere);
   const std::string before_port = "view on http://127.0.0.1:";
-  ASSERT_TRUE(run.says(before_port)) << run.err();
+  ASSERT_TRUE(run.prints(before_port)) << run.err();
   const int port = std::atoi(run.err().c_str() + run.err().find(before_port) + before_port.size());
   /// Returns the topics advertised by the live view.
   const auto greeting = [port] {
@@ -115,12 +115,12 @@ TEST(Ros2Program, ARunAcceptsRobotsAndWorlds) {
     record::put_header(cdr, 0, "");
     for (const double value : {1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}) cdr.put(value);
   });
-  EXPECT_TRUE(spawned == 1 || spawned == 101) << spawned << ": taken, by a call whose answer came too early to be read";
+  EXPECT_TRUE(spawned == 1 || spawned == 101) << spawned << ": accepted by an earlier call whose answer was missed";
   EXPECT_TRUE(seen("rt/late/odom"));
   EXPECT_NE(greeting().find("\"/late/odom\""), std::string::npos) << "on the same port";
   EXPECT_EQ(call("load_world", "LoadWorld", load("cave.world")), 1);
   EXPECT_EQ(call("unload_world", "UnloadWorld", [](record::CdrWriter& cdr) { cdr.put(std::uint8_t{0}); }), 1);
-  EXPECT_EQ(greeting().find("/odom\""), std::string::npos) << "without a world there are no robots";
+  EXPECT_EQ(greeting().find("/odom\""), std::string::npos) << "no world, so no robots";
   run.signal(SIGINT);
   EXPECT_EQ(run.wait().code, 0) << run.err();
 }
@@ -142,7 +142,7 @@ TEST(Ros2Program, TooFewDescriptorsAreReported) {
 TEST(Ros2Program, AServiceAnswersQueries) {
   const std::string domain = domain_of_program();
   Program serve({"serve", our_world("rooms.world"), "--port", "0", "--ros2", domain}, kHere);
-  ASSERT_TRUE(serve.says("node /sensorfarm")) << serve.err();
+  ASSERT_TRUE(serve.prints("node /sensorfarm")) << serve.err();
   FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
   const std::size_t ask =
       peer.advertise("rq/get_simulation_stateRequest", "simulation_interfaces::srv::dds_::GetSimulationState_Request_");

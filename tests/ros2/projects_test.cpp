@@ -97,7 +97,7 @@ struct Ros2Projects : testing::Test {
     Words words{"run", world_of(folder, robots), "--ros2", std::to_string(domain)};
     words.insert(words.end(), options.begin(), options.end());
     program.emplace(words, Environment{{"ROS_LOCALHOST_ONLY", "1"}});
-    ASSERT_TRUE(program->says("node /sensorfarm")) << program->err();
+    ASSERT_TRUE(program->prints("node /sensorfarm")) << program->err();
     peer.emplace(domain);
   }
   void TearDown() override {

@@ -60,7 +60,7 @@ struct Ros2Test : testing::Test {
 
   /// Simulates the next tick, or restarts.
   /// @return false: asked to stop
-  bool go_on() {
+  bool advance() {
     const auto next = users.wait(simulation, 0.1 * static_cast<double>(ticks));
     if (next == scenarios::Operator::Next::stop) return false;
     if (next == scenarios::Operator::Next::reset) return users.begin_again(), true;
@@ -73,7 +73,7 @@ struct Ros2Test : testing::Test {
   /// Simulates ticks until `condition` holds.
   /// @return false: it did not within a minute
   bool run_until(const std::function<bool()>& condition) {
-    return peer.wait([&] { return condition() || (go_on(), false); });
+    return peer.wait([&] { return condition() || (advance(), false); });
   }
   /// Does the same for a run that is paused, or will be, and that simulates requested ticks.
   bool run_paused_until(const std::function<bool()>& condition) {
@@ -82,7 +82,7 @@ struct Ros2Test : testing::Test {
       held = peer.wait(condition);
       stop = true;
     });
-    while (go_on()) {
+    while (advance()) {
     }
     watch.join();
     stop = false;
@@ -117,12 +117,12 @@ struct Client {
   bool known() const { return peer.matched_writer(requests); }
   /// Calls until an answer arrives, because a participant may discover the other before it is discovered itself. The
   /// run continues meanwhile.
-  bool connect(const std::vector<std::uint8_t>& fields, const std::function<void()>& go_on) {
+  bool connect(const std::vector<std::uint8_t>& fields, const std::function<void()>& advance) {
     if (!waiting.wait([&] { return known(); })) return false;
     int looked = 0;
     return waiting.wait([&] {
       if (looked++ % 8 == 0) call(fields);  // a reset at each check would leave no tick after which to answer
-      go_on();
+      advance();
       return answers() > 0;
     });
   }
@@ -155,7 +155,7 @@ TEST_F(Ros2Test, EndpointsAreNamedAsInRos2Nodes) {
       if (one.topic == topic && one.type == type) return one;
     return std::nullopt;
   };
-  ASSERT_TRUE(peer.wait([&] { return find("ros_discovery_info", kDiscovery).has_value(); })) << "made last";
+  ASSERT_TRUE(peer.wait([&] { return find("ros_discovery_info", kDiscovery).has_value(); })) << "created last";
   ASSERT_TRUE(peer.wait([&] {
     return find("rt/scout/scan", kScan) && find("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::Twist_") &&
            find("rq/set_simulation_stateRequest", "simulation_interfaces::srv::dds_::SetSimulationState_Request_");
@@ -166,7 +166,7 @@ TEST_F(Ros2Test, EndpointsAreNamedAsInRos2Nodes) {
   ASSERT_TRUE(peer.wait([&] { return find("rt/tf_static", kTransforms).has_value(); }));
   EXPECT_TRUE(find("rt/tf_static", kTransforms)->latched);
   const Endpoint command = *find("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::Twist_");
-  EXPECT_TRUE(!command.writes && !command.reliable) << "writers of any kind are heard";
+  EXPECT_TRUE(!command.writes && !command.reliable) << "writers of any reliability are accepted";
   EXPECT_TRUE(find("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_"));
   ASSERT_FALSE(peer.participants().empty());
   EXPECT_EQ(peer.participants().front(), "enclave=/;");
@@ -189,7 +189,7 @@ TEST_F(Ros2Test, OneServiceHasOneIdentifier) {
 }
 
 TEST_F(Ros2Test, TheNodeIsAnnouncedToLateReaders) {
-  for (int i = 0; i < 3; ++i) go_on();
+  for (int i = 0; i < 3; ++i) advance();
   const std::size_t reader = peer.subscribe("ros_discovery_info", kDiscovery, true);
   ASSERT_TRUE(peer.wait([&] { return !peer.messages(reader).empty(); }));
   const auto nodes = decode_nodes(peer.messages(reader).front());
@@ -210,7 +210,7 @@ TEST_F(Ros2Test, TheNodeIsAnnouncedToLateReaders) {
 }
 
 TEST_F(Ros2Test, LateReadersReceiveTheFramesOfSensors) {
-  for (int i = 0; i < 3; ++i) go_on();
+  for (int i = 0; i < 3; ++i) advance();
   const std::size_t reader = peer.subscribe("rt/tf_static", kTransforms, true);
   ASSERT_TRUE(peer.wait([&] { return !peer.messages(reader).empty(); }));
   const auto frames = decode_transforms(peer.messages(reader).front());
@@ -320,7 +320,7 @@ struct Ros2Commands : Ros2Test {
   bool turns(std::size_t writer, const base::Bytes& command, double turn) {
     return peer.wait([&] {
       peer.send(writer, command);
-      go_on();
+      advance();
       const auto messages = peer.messages(odometry);
       const auto last = messages.empty() ? std::nullopt : decode_odometry(messages.back());
       return last && std::abs(last->velocity[5] - turn) < 1e-9 && std::abs(last->velocity[0]) < 1e-9;
@@ -337,7 +337,7 @@ TEST_F(Ros2Commands, MayBeStamped) {
   const std::size_t stamped = other.advertise("rt/scout/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_");
   EXPECT_TRUE(peer.wait([&] {
     other.send(stamped, encode_twist_stamped(0.0, 0.0, -0.25));
-    go_on();
+    advance();
     const auto messages = peer.messages(odometry);
     const auto last = messages.empty() ? std::nullopt : decode_odometry(messages.back());
     return last && std::abs(last->velocity[5] + 0.25) < 1e-9;
@@ -359,17 +359,17 @@ TEST_F(Ros2Commands, UnreadableOnesAreCountedAndDropped) {
     EXPECT_TRUE(peer.wait([&] {
       const std::uint64_t before = bridge->counts().malformed;
       peer.send(reliable, faulty[i]);
-      go_on();
+      advance();
       return bridge->counts().malformed > before;
     })) << i;
-  EXPECT_TRUE(turns(plain, encode_twist(0.0, 0.0, 0.25), 0.25)) << "others are heard as before";
+  EXPECT_TRUE(turns(plain, encode_twist(0.0, 0.0, 0.25), 0.25)) << "commands to others still arrive";
 }
 
 TEST_F(Ros2Test, APausedRunSimulatesTheStepsRequestedByAService) {
   Client set(peer, cyclone, "set_simulation_state", "simulation_interfaces::srv::dds_::SetSimulationState");
   Client step(peer, cyclone, "step_simulation", "simulation_interfaces::srv::dds_::StepSimulation");
-  ASSERT_TRUE(set.connect({9}, [&] { go_on(); })) << "an unknown state, which is refused";
-  ASSERT_TRUE(step.connect({1, 0, 0, 0, 0, 0, 0, 0}, [&] { go_on(); })) << "not paused, which is refused";
+  ASSERT_TRUE(set.connect({9}, [&] { advance(); })) << "an unknown state, which is refused";
+  ASSERT_TRUE(step.connect({1, 0, 0, 0, 0, 0, 0, 0}, [&] { advance(); })) << "not paused, which is refused";
 
   set.call({2});
   ASSERT_TRUE(run_paused_until([&] { return set.reply().has_value(); }));
@@ -389,8 +389,8 @@ TEST_F(Ros2Test, APausedRunSimulatesTheStepsRequestedByAService) {
 TEST_F(Ros2Test, StandardServicesPauseAndRestart) {
   Client pause(peer, cyclone, "sensorfarm/pause", "std_srvs::srv::dds_::SetBool");
   Client reset(peer, cyclone, "sensorfarm/reset", "std_srvs::srv::dds_::Trigger");
-  ASSERT_TRUE(pause.connect({0}, [&] { go_on(); }));
-  ASSERT_TRUE(reset.connect({0}, [&] { go_on(); }));
+  ASSERT_TRUE(pause.connect({0}, [&] { advance(); }));
+  ASSERT_TRUE(reset.connect({0}, [&] { advance(); }));
   ASSERT_TRUE(run_until([&] { return reset.reply().has_value(); })) << "all those of before, too";
   EXPECT_EQ(reset.reply()->code, 1);
   EXPECT_GE(users.resets(), 1u);
@@ -410,7 +410,7 @@ TEST_F(Ros2Test, AServicePlacesARobot) {
   ASSERT_TRUE(peer.wait([&] { return place.known() && peer.matched_reader(odometry); }));
   EXPECT_TRUE(peer.wait([&] {
     cyclone.send(place.requests, encode_set_pose(17, ++place.calls, "scout", 2.5, -3.0, 1.0));
-    go_on();
+    advance();
     for (const base::Bytes& message : peer.messages(odometry)) {
       const auto pose = decode_odometry(message);
       if (pose && std::hypot(pose->pose.position[0] - 2.5, pose->pose.position[1] + 3.0) < 0.2) return true;
@@ -453,7 +453,7 @@ TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
     record::put_header(cdr, 0, "world");
     for (const double value : {2.0, -2.0, 0.0, 0.0, 0.0, 0.0, 1.0}) cdr.put(value);
   });
-  ASSERT_TRUE(spawn.connect(request, [&] { go_on(); }));
+  ASSERT_TRUE(spawn.connect(request, [&] { advance(); }));
   ASSERT_TRUE(run_until([&] { return spawn.reply().has_value(); }));
   EXPECT_EQ(world.movers.size(), 3u);
   const std::size_t scans = peer.subscribe("rt/late/scan", kScan);
@@ -462,14 +462,14 @@ TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
   EXPECT_TRUE(run_until([&] { return !peer.messages(scans).empty(); }));
   EXPECT_TRUE(peer.wait([&] {
     peer.send(drive, encode_twist(0.0, 0.0, 0.5));
-    go_on();
+    advance();
     const auto messages = peer.messages(odometry);
     const auto last = messages.empty() ? std::nullopt : decode_odometry(messages.back());
     return last && std::abs(last->velocity[5] - 0.5) < 1e-9;
   }));
 
   Client remove(peer, cyclone, "delete_entity", "simulation_interfaces::srv::dds_::DeleteEntity");
-  ASSERT_TRUE(remove.connect(fields_of([](record::CdrWriter& cdr) { cdr.put("late"); }), [&] { go_on(); }));
+  ASSERT_TRUE(remove.connect(fields_of([](record::CdrWriter& cdr) { cdr.put("late"); }), [&] { advance(); }));
   EXPECT_TRUE(simulation.is_absent(2));
 }
 
@@ -482,7 +482,7 @@ TEST_F(Ros2Test, AnActionSimulatesSteps) {
              "simulation_interfaces::action::dds_::SimulateSteps_GetResult");
   const std::size_t feedback = peer.subscribe("rt/simulate_steps/_action/feedback",
                                               "simulation_interfaces::action::dds_::SimulateSteps_FeedbackMessage_");
-  ASSERT_TRUE(set.connect({9}, [&] { go_on(); }));
+  ASSERT_TRUE(set.connect({9}, [&] { advance(); }));
   ASSERT_TRUE(peer.wait([&] { return send.known() && get.known() && peer.matched_reader(feedback); }));
   set.call({2});
   ASSERT_TRUE(run_paused_until([&] { return set.reply().has_value(); }));

@@ -134,7 +134,7 @@ struct Ros2Services : testing::Test {
 };
 
 TEST_F(Ros2Services, BothClientsAreAnsweredOnce) {
-  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  ASSERT_TRUE(run.prints("node /sensorfarm")) << run.err();
   FastClient a(fast, "get_simulation_state", kGetState);
   CycloneClient b(cyclone, "get_simulation_state", kGetState);
   ASSERT_TRUE(connect(a, {0}));
@@ -151,7 +151,7 @@ TEST_F(Ros2Services, BothClientsAreAnsweredOnce) {
 }
 
 TEST_F(Ros2Services, BothClientsStepTheRunOnce) {
-  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  ASSERT_TRUE(run.prints("node /sensorfarm")) << run.err();
   FastClient pause(fast, "sensorfarm/pause", kSetBool), a(fast, "step_simulation", kStep);
   CycloneClient b(cyclone, "step_simulation", kStep);
   const std::size_t clock = fast.subscribe("rt/clock", "rosgraph_msgs::msg::dds_::Clock_");
@@ -175,7 +175,7 @@ TEST_F(Ros2Services, BothClientsStepTheRunOnce) {
 }
 
 TEST_F(Ros2Services, UnreadableRequestsOfFastDdsAreDropped) {
-  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  ASSERT_TRUE(run.prints("node /sensorfarm")) << run.err();
   FastClient client(fast, "step_simulation", kStep);
   ASSERT_TRUE(connect(client, steps(0)));
   const std::size_t from = client.calls.size();
@@ -215,7 +215,7 @@ TEST_F(Ros2Services, ASecondPairOfEndpointsHasTheSameTypes) {
 
 /// A killed process would leave files in /dev/shm.
 TEST_F(Ros2Services, NoSharedMemoryIsUsed) {
-  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  ASSERT_TRUE(run.prints("node /sensorfarm")) << run.err();
   FastClient client(fast, "get_simulation_state", kGetState);
   ASSERT_TRUE(connect(client, {0}));
   for (const std::string& process : {child_of(std::to_string(getpid())), fast_process()}) {
@@ -229,7 +229,7 @@ TEST_F(Ros2Services, NoSharedMemoryIsUsed) {
 
 /// Some malformed datagrams crash Fast DDS 2.9.1. The run continues, and its services answer again.
 TEST_F(Ros2Services, TheRunSurvivesFastDds) {
-  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  ASSERT_TRUE(run.prints("node /sensorfarm")) << run.err();
   FastClient before(fast, "get_simulation_state", kGetState);
   CycloneClient other(cyclone, "get_simulation_state", kGetState);
   ASSERT_TRUE(connect(before, {0}));
@@ -237,7 +237,7 @@ TEST_F(Ros2Services, TheRunSurvivesFastDds) {
   const std::string process = fast_process();
   ASSERT_FALSE(process.empty());
   ASSERT_EQ(kill(std::stoi(process), SIGSEGV), 0);
-  ASSERT_TRUE(run.says("the process with Fast DDS was terminated by signal 11")) << run.err();
+  ASSERT_TRUE(run.prints("the process with Fast DDS was terminated by signal 11")) << run.err();
   other.call({0});
   EXPECT_TRUE(fast.wait([&] { return other.answered(); })) << "clients of Cyclone DDS are answered meanwhile";
   EXPECT_TRUE(connect(before, {0})) << "by the process that was started again";
@@ -248,7 +248,7 @@ TEST_F(Ros2Services, TheRunSurvivesFastDds) {
 
 /// A killed process leaves no child behind.
 TEST_F(Ros2Services, FastDdsEndsWithTheRun) {
-  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  ASSERT_TRUE(run.prints("node /sensorfarm")) << run.err();
   const std::string process = fast_process();
   ASSERT_FALSE(process.empty());
   run.signal(SIGKILL);

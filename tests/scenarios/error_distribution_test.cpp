@@ -36,7 +36,7 @@ TEST(ErrorDistribution, NonFiniteValues) {
   ErrorDistribution d;
   d.add(NAN, NAN, kNone);
   d.add(HUGE_VAL, HUGE_VAL, kNone);
-  EXPECT_EQ(d.max(), 0.0) << "both say that there is nothing";
+  EXPECT_EQ(d.max(), 0.0) << "without any value";
   d.add(1.0, NAN, kNone);
   EXPECT_EQ(d.max(), HUGE_VAL);
   EXPECT_DOUBLE_EQ(d.zero(), 2.0 / 3.0);

@@ -39,7 +39,7 @@ TEST(Explanation, CountsSensorsRobotsAndKernels) {
   EXPECT_LT(k.reused, 1.0) << "they drive";
   const bool software = device().info().software;
   EXPECT_EQ(e.caster.rfind(software ? "host, " : "Vulkan kernels", 0), 0u) << e.caster;
-  EXPECT_EQ(k.kernels.empty(), software) << "nothing is left for a device of software";
+  EXPECT_EQ(k.kernels.empty(), software) << "a software device runs no kernels";
   std::size_t sum = 0;
   for (const gpu::DeviceAllocation& h : k.tables) sum += h.bytes;
   EXPECT_EQ(k.bytes, sum);
@@ -111,7 +111,7 @@ TEST(Explanation, AMissingSensorTypeIsNotBuilt) {
   const Explanation e = explain(lasers(2), device(), 1, 1);
   EXPECT_EQ(e.absent.size(), sensors::sensor_types().size() - 1);
   EXPECT_EQ(std::count(e.absent.begin(), e.absent.end(), "magnetometer"), 1);
-  for (const gpu::DeviceAllocation& h : device().allocations()) EXPECT_EQ(h.owner, "") << "nothing is left behind";
+  for (const gpu::DeviceAllocation& h : device().allocations()) EXPECT_EQ(h.owner, "") << "no allocation remains";
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(FleetSpawn, RowsOfModelsAndMoversMatch) {
     EXPECT_EQ(world.models.at(mover.model).mover, row);
     for (const world::Segment& side : mover.body) EXPECT_EQ(world.models.at(side.model).mover, row);
   }
-  EXPECT_EQ(ids.count(3), 1u) << "who stays keeps its number";
+  EXPECT_EQ(ids.count(3), 1u) << "a remaining robot keeps its number";
   for (const world::Light& light : world.lights) EXPECT_EQ(world.models.at(light.model).name, light.name);
 }
 

@@ -65,7 +65,7 @@ TEST(Intervals, ProportionsHaveWilsonsInterval) {
   const Interval half = proportion_interval(5, 10);
   EXPECT_GT(half.low, binomial_distribution<>::find_lower_bound_on_p(10, 5, 0.025));
   EXPECT_LT(half.high, binomial_distribution<>::find_upper_bound_on_p(10, 5, 0.025));
-  EXPECT_TRUE(std::isnan(proportion_interval(0, 0).mean)) << "of nothing there is no part";
+  EXPECT_TRUE(std::isnan(proportion_interval(0, 0).mean)) << "undefined without samples";
 }
 
 TEST(Intervals, DoneIsAProportion) {

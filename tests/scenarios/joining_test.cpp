@@ -205,7 +205,7 @@ TEST(Joining, RefusalsGiveAReasonAndChangeNothing) {
   EXPECT_PRED2(has, said({.name = "b", .like = "a", .X_WM = {NAN, 0.0, 0.0, 0.0}}), "expected finite numbers");
   EXPECT_PRED2(has, said({.name = "b", .like = "a", .X_WM = {1e9, 0.0, 0.0, 0.0}}), "within 1e+07 m");
   JoiningRobot parks{.name = "b", .like = "a", .X_WM = {}};
-  parks.actor.controller.name = "nobody";
+  parks.actor.controller.name = "unknown";
   EXPECT_NE(said(parks), "none");
   EXPECT_EQ(world.movers.size(), 1u);
   EXPECT_THROW(simulation.remove_robot(1), base::InputError);

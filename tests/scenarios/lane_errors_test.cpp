@@ -43,7 +43,7 @@ TEST(LaneErrors, TheAmplitudeIsThatOfTheStraight) {
   }
   const LaneErrors errors = lane_errors(track_of(points), straight());
   EXPECT_NEAR(errors.amplitude, 0.03, 1e-6);
-  EXPECT_NEAR(errors.max_abs, 0.2, 1e-12) << "of the whole track";
+  EXPECT_NEAR(errors.max_abs, 0.2, 1e-12) << "over the whole track";
   EXPECT_EQ(lane_errors(track_of({{0.9, 0.1}, {0.95, -0.1}}), straight()).amplitude, 0.0) << "none on the straight";
 }
 

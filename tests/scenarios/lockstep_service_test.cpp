@@ -200,7 +200,7 @@ TEST(LockstepService, AProcessMayRequestSeveralTicks) {
     EXPECT_FALSE(one.is_complete());
     other.step({});
     ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return other.is_complete(); }));
-    EXPECT_EQ(fixture.tick(), tick) << "no farther than the slower one asked for";
+    EXPECT_EQ(fixture.tick(), tick) << "not beyond the slower process's request";
   }
   ASSERT_TRUE(play(fixture, {&one, &other}, both));
   EXPECT_EQ(one.tick(), 3u);
@@ -257,7 +257,7 @@ TEST(LockstepService, ErrorsHoldForEveryValueOrAreOmitted) {
     EXPECT_EQ(std::isfinite(straight.errors.at(sensors::kLaser)), c.error) << c.mode;
     EXPECT_EQ(laser.unsure, c.unsure) << c.mode;
     EXPECT_EQ(std::isfinite(laser.bound), c.bound) << c.mode;
-    EXPECT_EQ(straight.errors.at(sensors::kMagnetometer), 0.0) << "there are no magnets";
+    EXPECT_EQ(straight.errors.at(sensors::kMagnetometer), 0.0) << "no magnets";
     EXPECT_LT(straight.accuracies.at(sensors::kMagnetometer).bound, 1e-18) << "the least that the word states";
     EXPECT_LT(straight.errors.at(sensors::kLaneEdge), 1.1e-8);
     EXPECT_FALSE(straight.accuracies.at(sensors::kLaneEdge).unsure);
@@ -335,7 +335,7 @@ TEST(LockstepService, OnlyTheNewestAnswerIsFetched) {
     fixture.service.advance(fixture.now);
     return fixture.service.lockstep().counts().fetched - before;
   };
-  EXPECT_EQ(fetched(one, 0), 0u) << "it is gone";
+  EXPECT_EQ(fetched(one, 0), 0u) << "the answer is discarded";
   EXPECT_EQ(fetched(other, 1), 0u) << "it did not ask for it";
   EXPECT_EQ(fetched(one, 1), one.datagrams());
   EXPECT_EQ(fixture.tick(), 1u);
@@ -392,7 +392,7 @@ TEST(LockstepService, AProcessThatLeavesIsNotAwaited) {
   other.leave();
   one.step({});
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
-  EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0) << "its robot stands";
+  EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0) << "its robot stops";
 }
 
 /// Four processes that send random packets at random times: the farm continues, and then serves a correct one.
@@ -465,7 +465,7 @@ TEST(LockstepService, StatesOfOthersAreSentOnRequest) {
   Fixture fixture(3, 2);
   Driver one(fixture.port(), {1}, {}, netio::kNeighboursBit), other(fixture.port(), {2});
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
-  EXPECT_EQ(one.datagrams(), 3u) << "no sensor type was asked for";
+  EXPECT_EQ(one.datagrams(), 3u) << "no sensor type was requested";
   for (std::uint32_t id : {1u, 2u, 3u}) EXPECT_EQ(one.robot(id).state.X_WR.x, fixture.world.movers[id - 1].X_WM.x);
   EXPECT_THROW(other.robot(1), std::out_of_range);
 }

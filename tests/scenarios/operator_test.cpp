@@ -81,7 +81,7 @@ TEST_F(OperatorTest, APausedRunSimulatesRequestedTicks) {
   };
   for (int i = 0; i < 2; ++i, tick()) ASSERT_EQ(wait(), Operator::Next::tick);
   EXPECT_TRUE(script->last.paused);
-  EXPECT_EQ(script->looks, 2) << "two looks before the steps were asked for";
+  EXPECT_EQ(script->looks, 2) << "two polls before the steps were requested";
   EXPECT_EQ(wait(), Operator::Next::tick);  // continues
   tick();
   EXPECT_FALSE(script->last.paused);
@@ -140,7 +140,7 @@ TEST_F(OperatorTest, ADrivenRobotExecutesItsCommandUntilTheNext) {
   }
   EXPECT_GT(yaw[2], yaw[1]);
   EXPECT_NEAR(yaw[3] - yaw[2], 0.05, 1e-12) << "half a radian per second, for a tick";
-  EXPECT_EQ(yaw[5], yaw[4]) << "a zero command stands; the controller is not asked again";
+  EXPECT_EQ(yaw[5], yaw[4]) << "a zero command stays in effect; the controller does not step";
 }
 
 TEST_F(OperatorTest, PlacedRobotsAreAtTheirNewPose) {
@@ -156,7 +156,7 @@ TEST_F(OperatorTest, ASpeedAppliesFromThenOn) {
   script->act = [&](bridges::Requests& requests) {
     if (ticks == 0) requests.speed = 2.0;
   };
-  ASSERT_EQ(wait(), Operator::Next::tick) << "what was simulated before is not waited for";
+  ASSERT_EQ(wait(), Operator::Next::tick) << "does not wait for earlier ticks";
   tick();
   EXPECT_EQ(script->last.speed, 2.0);
 }

@@ -15,7 +15,7 @@ namespace {
 /// SimVille with robots at rest, and a tick record that tests fill in.
 class Town {
  public:
-  Town() : world_(load()), simulation_(world_, device(), nobody()), metrics_(world_, simulation_) {
+  Town() : world_(load()), simulation_(world_, device(), without_controllers()), metrics_(world_, simulation_) {
     for (std::uint32_t m = 0; m < world_.movers.size(); ++m) reports_.push_back({m, 0, world_.movers[m].X_WM, {}});
     commands_.resize(reports_.size());
     contacts_.resize(reports_.size());
@@ -44,7 +44,7 @@ class Town {
   static world::World load() {
     return world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   }
-  static SimulationOptions nobody() {
+  static SimulationOptions without_controllers() {
     SimulationOptions options;
     options.actor.controller.name.clear();
     return options;

@@ -103,7 +103,7 @@ TEST(RunScenario, DistanceIsTheMinimumOverRobots) {
 TEST(RunScenario, TheControlErrorIsThatOfTheWorstRobot) {
   const std::string world = testing::TempDir() + fmt::format("two_in_a_lane_{}.world", getpid());
   std::ofstream(world) << "include \"" SF_SOURCE_DIR "/worlds/testpath/testpath.world\"\n"
-                       << "create( name \"beside\" pose [1.0 0.06 0 0] create_laneedge( name \"laneedge\" ) )\n";
+                       << "create( name \"offset\" pose [1.0 0.06 0 0] create_laneedge( name \"laneedge\" ) )\n";
   gpu::Device device;
   const auto measured = [&](const std::string& what) {
     const ScenarioResult result =
@@ -115,11 +115,11 @@ TEST(RunScenario, TheControlErrorIsThatOfTheWorstRobot) {
     return std::stod(result.outcomes.at(0).measured);
   };
   const double ahead = measured("mean_abs_error = { roomba0 = 1 }");
-  const double beside = measured("mean_abs_error = { beside = 1 }");
-  EXPECT_LT(ahead, 0.5 * beside);
-  EXPECT_GT(beside, 1e-3);
-  EXPECT_EQ(measured("mean_abs_error = 1"), beside);
-  EXPECT_LT(measured("mean_error = { beside = 1 }"), beside) << "it swings to both sides";
+  const double offset = measured("mean_abs_error = { offset = 1 }");
+  EXPECT_LT(ahead, 0.5 * offset);
+  EXPECT_GT(offset, 1e-3);
+  EXPECT_EQ(measured("mean_abs_error = 1"), offset);
+  EXPECT_LT(measured("mean_error = { offset = 1 }"), offset) << "it swings to both sides";
   std::filesystem::remove(world);
 }
 

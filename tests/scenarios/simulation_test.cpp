@@ -36,7 +36,7 @@ std::vector<std::uint32_t> robots_of(const world::World& world) {
 }
 
 /// All robots remain at rest.
-SimulationOptions nobody(const world::World& world) {
+SimulationOptions without_controllers(const world::World& world) {
   SimulationOptions options;
   options.actor.controller.name.clear();
   options.actors.assign(world.movers.size(), options.actor);
@@ -279,7 +279,7 @@ TEST(Simulation, RobotsReceiveEachOthersStates) {
   world.movers[rows[0]].X_WM = {0.0, 0.0, 0.0, 0.0};
   world.movers[rows[1]].X_WM = {3.0, 0.0, 0.0, M_PI};
   world::update_extent_and_hash(world);
-  SimulationOptions options = nobody(world);
+  SimulationOptions options = without_controllers(world);
   const auto towards = [&](double x) {
     return config_of("patrol", {{"points", std::vector<double>{x, 0.0}, ""}, {"speed", 0.3, ""}});
   };
@@ -310,7 +310,7 @@ TEST(Simulation, UnknownControllersAndSettingsAreRejected) {
 /// With mailboxes, links and V2V.
 TEST(Simulation, ATickAllocatesNothingAfterWarmUp) {
   world::World world = our_world("rooms.world", 12);
-  SimulationOptions options = nobody(world);
+  SimulationOptions options = without_controllers(world);
   options.threads = 1;
   for (const std::uint32_t i : robots_of(world)) {
     options.actors[i].link = {.delay = 0.1, .jitter = 0.2, .loss = 0.1, .seed = 1};

@@ -64,7 +64,7 @@ TEST(StateLink, StatesArriveAtTheirRate) {
   // One state in half a second, extrapolated in between: exact for constant twists.
   EXPECT_LT(Circle({.rate = 2.0}).worst(0, 50), 1e-9);
   Circle silent({.link = {.loss = 1.0}});
-  EXPECT_NEAR(silent.worst(0, 20), 2.0 * std::sin(0.5 * 0.95), 1e-9) << "it stands where it was at load";
+  EXPECT_NEAR(silent.worst(0, 20), 2.0 * std::sin(0.5 * 0.95), 1e-9) << "it stays where it was at load";
 }
 
 /// Means of three runs of experiments/late-states.toml.

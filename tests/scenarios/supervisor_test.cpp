@@ -60,7 +60,7 @@ TEST(Supervisor, IgnoresRobotsThatDoNotWait) {
   ride.report.velocity = {};
   for (int i = 0; i < 9; ++i) EXPECT_TRUE(ride.look(true).empty());
   ride.look(false);
-  for (int i = 0; i < 9; ++i) EXPECT_TRUE(ride.look(true).empty()) << "it waits anew";
+  for (int i = 0; i < 9; ++i) EXPECT_TRUE(ride.look(true).empty()) << "the wait starts again";
 }
 
 TEST(Supervisor, MovesTheRobotBackAlongItsPath) {

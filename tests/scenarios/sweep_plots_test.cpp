@@ -60,7 +60,7 @@ std::string words_of(const std::string& svg) {
 
 TEST(SweepPlots, OneParameterIsALineWithIntervals) {
   const auto files = drawn(table("link.delay", {"0", "0.5", "1"}));
-  ASSERT_EQ(files.size(), 2u) << "the metric, and the part of met expectations";
+  ASSERT_EQ(files.size(), 2u) << "the metric, and the fraction of met expectations";
   EXPECT_EQ(files[0].first, "x");
   EXPECT_EQ(files[1].first, "met");
   EXPECT_TRUE(has_text(files[0].second, "link.delay [s]")) << "with its unit";
@@ -114,7 +114,7 @@ TEST(SweepPlots, ThreeParametersAreSmallMultiplesUpToALimit) {
       for (int c = 0; c < 30; ++c) points.push_back(fmt::format("{},{},{}", a, b, c));
   const SweepPlots plots = draw_sweep("jobs.csv", table("a,b,c", points), plots_folder("three"), {.format = "svg"});
   ASSERT_EQ(plots.files.size(), 2u);
-  ASSERT_EQ(plots.notes.size(), 2u) << "what is not drawn is said";
+  ASSERT_EQ(plots.notes.size(), 2u) << "omitted parts are listed";
   EXPECT_NE(plots.notes[0].find("x: the first 24 of 30"), std::string::npos) << plots.notes[0];
 }
 

@@ -72,7 +72,7 @@ TEST(SweepFolder, ATruncatedResultIsIgnored) {
     std::ofstream(file, std::ios::binary | std::ios::trunc) << whole.substr(0, size);
     EXPECT_FALSE(folder.read(3).has_value()) << size;
   }
-  for (const char* wrong : {"status\tgood\nend\n", "metric\tx\tmuch\nend\n", "hash\t-1\nend\n", "nobody\t1\nend\n"}) {
+  for (const char* wrong : {"status\tgood\nend\n", "metric\tx\tmuch\nend\n", "hash\t-1\nend\n", "unknown\t1\nend\n"}) {
     std::ofstream(file, std::ios::binary | std::ios::trunc) << wrong;
     EXPECT_FALSE(folder.read(3).has_value()) << wrong;
   }

@@ -62,7 +62,7 @@ TEST(SweepFile, EachErrorIsReportedAtItsLine) {
       {town + "[grid]\nduration.long = [1]\n", "test.toml:3: duration.long = 1: 'duration' is a value"},
       {town + "[grid]\nduration = [1]\nevent.3.at = [1]\n", "test.toml:4: event.3.at = 1: "},
       // The second of three parameters is wrong, in a value that is neither first nor last.
-      {town + "[grid]\nduration = [1, 2]\ndefault.controller = [\"wander\", \"nobody\", \"none\"]\nseeds = 1\n",
+      {town + "[grid]\nduration = [1, 2]\ndefault.controller = [\"wander\", \"unknown\", \"none\"]\nseeds = 1\n",
        "test.toml:5: seeds = 1: "},
       {town + "[grid]\nduration = [1, 2]\nplant = [\"ideal\", \"Ideal\", \"thesis\"]\nlink.delay = [0.1]\n",
        "test.toml:4: plant = Ideal: "},

@@ -41,7 +41,7 @@ TEST(Tradeoff, MeasuresEveryModeOfEveryType) {
   EXPECT_EQ(results[0].unit, "m");
   EXPECT_EQ(results.back().unit, "T");
   EXPECT_NEAR(results[2].covered, 31.0 / 61.0, 0.01) << "every other beam of 61";
-  EXPECT_GT(results[2].max, 1000.0 * results[2].bound) << "of all: no bound covers what is left out";
+  EXPECT_GT(results[2].max, 1000.0 * results[2].bound) << "of all values: no bound covers omitted ones";
   EXPECT_EQ(results[0].covered, 1.0);
   EXPECT_GT(results[1].max, 0.0) << "32 bits show";
 }
@@ -93,7 +93,7 @@ TEST(Advice, SelectsTheFastestWithinTheErrors) {
   EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6}), "laser:single magnetometer:near3");
   EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6, .by = ErrorMeasure::p99}), "laser:skip2 magnetometer:near3");
   EXPECT_EQ(advised({.metres = 1e-9, .tesla = 1e-12}), "exact") << "which is always there";
-  EXPECT_EQ(advised({.metres = 1e-3, .tesla = 1e-12}), "laser:single") << "the error itself is allowed";
+  EXPECT_EQ(advised({.metres = 1e-3, .tesla = 1e-12}), "laser:single") << "the limit is inclusive";
 }
 
 /// Ticks add up over sensor types.

@@ -61,7 +61,7 @@ TEST(Verification, ASoundRunPasses) {
   ASSERT_EQ(v.recomputed.size(), 1u);
   EXPECT_EQ(v.recomputed[0].readings, recorded(true).readings.size());
   EXPECT_EQ(v.recomputed[0].values, 61 * v.recomputed[0].readings);
-  EXPECT_EQ(v.reference.readings, v.recomputed[0].readings) << "all of them by default";
+  EXPECT_EQ(v.reference.readings, v.recomputed[0].readings) << "all by default";
   EXPECT_EQ(v.ticks, 20u);
   EXPECT_FALSE(v.interrupted);
 }
@@ -226,7 +226,7 @@ TEST(Verification, A32BitRangeBeyondItsBoundIsDetected) {
 TEST(Verification, WithoutReadingsPlainCppIsComparedWithTheDevice) {
   const Verification v = verify(recorded(false), device(), {});
   EXPECT_TRUE(v.sound());
-  EXPECT_TRUE(v.recomputed.empty()) << "there is nothing to compare with";
+  EXPECT_TRUE(v.recomputed.empty()) << "no reading to compare with";
   EXPECT_GT(v.reference.readings, 100u);
 }
 
@@ -246,7 +246,7 @@ TEST(Verification, DetectsOneBitOfOneBeam) {
   const Verification v = verify(run, device(), {});
   EXPECT_FALSE(v.sound());
   EXPECT_EQ(v.recomputed[0].different, 1u);
-  EXPECT_EQ(v.reference.different, 1u) << "by itself, not by the device's word";
+  EXPECT_EQ(v.reference.different, 1u) << "compared with plain C++, independent of the device";
   EXPECT_LT(v.recomputed[0].largest, 1e-6);
   EXPECT_NE(v.recomputed[0].first.find("sensor 0"), std::string::npos) << v.recomputed[0].first;
 }
@@ -262,7 +262,7 @@ TEST(Verification, DetectsAMovedPose) {
   run.states[2][5].X_WM.x += 1e-6;
   const Verification v = verify(run, device(), {});
   EXPECT_FALSE(v.sound());
-  EXPECT_LT(v.recomputed[0].different, v.recomputed[0].values / 10) << "those who see it, and itself, at one tick";
+  EXPECT_LT(v.recomputed[0].different, v.recomputed[0].values / 10) << "robots that see it, and itself, at one tick";
 }
 
 TEST(Verification, DetectsAReadingThatWasNotDue) {
@@ -278,7 +278,7 @@ TEST(Verification, AnInterruptedVerificationIsNotUnsound) {
   const Verification v = verify(recorded(true), device(), {.progress = [](double) { return false; }});
   EXPECT_EQ(v.ticks, 1u);
   EXPECT_TRUE(v.interrupted);
-  EXPECT_EQ(v.missing, 0u) << "what was not looked at is not missing";
+  EXPECT_EQ(v.missing, 0u) << "unchecked readings are not missing";
 }
 
 /// An empty comparison is not evidence of soundness.

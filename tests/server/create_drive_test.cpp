@@ -39,7 +39,7 @@ struct CreateTest : testing::Test {
 };
 
 TEST_F(CreateTest, DrivesAndTracksItsPose) {
-  EXPECT_FALSE(drive->ready(0)) << "nothing came yet";
+  EXPECT_FALSE(drive->ready(0)) << "no frame yet";
   for (int k = 0; k < 50; ++k) step({0.3, 0, k < 25 ? 0.8 : -0.4});
   EXPECT_TRUE(drive->ready(now));
   create.run(7);
@@ -47,7 +47,7 @@ TEST_F(CreateTest, DrivesAndTracksItsPose) {
   EXPECT_EQ(create.mode, CreateSimulator::safe);
   const base::Pose& X = drive->state().X_WM;
   EXPECT_GT(std::hypot(create.X.x - 1, create.X.y - 2), 0.5) << "it moved";
-  EXPECT_NEAR(X.x, create.X.x, 0.02) << "whole millimetres and degrees, none lost";
+  EXPECT_NEAR(X.x, create.X.x, 0.02) << "whole millimetres and degrees, without loss";
   EXPECT_NEAR(X.y, create.X.y, 0.02);
   EXPECT_NEAR(base::wrap_angle(X.yaw - create.X.yaw), 0.0, 0.02);
   EXPECT_NEAR(drive->state().velocity.forward, 0.3, 0.05);
@@ -88,7 +88,7 @@ TEST_F(CreateTest, StopsWhileLiftedAndResumesWhenPutDown) {
   EXPECT_EQ(create.right, 0);
   create.drops = 0;
   step({0.2, 0, 0});
-  EXPECT_TRUE(create.comes_to(CreateSimulator::safe));
+  EXPECT_TRUE(create.reaches(CreateSimulator::safe));
   step({0.2, 0, 0});
   step({0.2, 0, 0});
   EXPECT_EQ(create.right, 200);
@@ -175,7 +175,7 @@ TEST_F(CreateTest, StopsTheRobotOnDestruction) {
   step({0.2, 0, 0});
   EXPECT_EQ(create.right, 200);
   drive.reset();
-  EXPECT_TRUE(create.comes_to(CreateSimulator::passive));
+  EXPECT_TRUE(create.reaches(CreateSimulator::passive));
   EXPECT_EQ(create.right, 0);
   EXPECT_TRUE(create.streams.empty());
 }

@@ -55,7 +55,7 @@ struct Sender {
   netio::V2vSocket socket;
   std::uint16_t id;
   std::uint32_t sent = 0;
-  std::size_t heard = 0;  ///< received states of robots
+  std::size_t received = 0;  ///< received states of robots
 
   void send(LightState state, double left = 3.0) {
     base::Bytes rows, bytes;
@@ -67,7 +67,7 @@ struct Sender {
     socket.receive([&](std::span<const std::uint8_t> bytes) {
       netio::Packet packet;
       if (socket.accept(bytes, now, packet) != PacketStatus::accepted) return;
-      heard += std::holds_alternative<netio::V2v>(packet.body) ? 1 : 0;
+      received += std::holds_alternative<netio::V2v>(packet.body) ? 1 : 0;
     });
   }
   /// Runs until the farm accepts its packets.
@@ -172,7 +172,7 @@ TEST(LightService, ASilentLightIsDarkOrFollowsItsPlan) {
     room.now = LightListener::kSilence + kTick;
     light.send(LightState::yellow);
     room.service->tick(room.now);
-    EXPECT_EQ(room.shown(0), LightState::yellow) << "heard again at once";
+    EXPECT_EQ(room.shown(0), LightState::yellow) << "received again, and used immediately";
   }
 }
 
@@ -211,12 +211,12 @@ TEST(LightService, ALightReceivesTheRobotsNearIt) {
       robot.listen(room);
       light.receive(room.now);
     }
-    EXPECT_GE(light.heard, 3u);
+    EXPECT_GE(light.received, 3u);
     room.now += netio::kClientTimeout;  // silent: it receives nothing any more
     robot.listen(room);
-    const std::size_t before = light.heard;
+    const std::size_t before = light.received;
     light.receive(room.now);
-    EXPECT_EQ(light.heard, before);
+    EXPECT_EQ(light.received, before);
   }
 }
 

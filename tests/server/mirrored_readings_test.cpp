@@ -64,7 +64,7 @@ void expect_near(glm::dvec2 p, glm::dvec2 q) { EXPECT_NEAR(glm::distance(p, q), 
 }  // namespace
 
 TEST_F(MirroredReadingsTest, BeamsStartAtTheSensorOfTheirRobot) {
-  EXPECT_TRUE(lines({}).empty()) << "nothing came";
+  EXPECT_TRUE(lines({}).empty()) << "no reading arrived";
   readings.accept(packet(sensors::kLaser, {1.0, 1.0, 4.0, 2.0, 2.0}), 0);
   const auto all = lines({2.0, 3.0, 0.0, M_PI / 2});  // the robot faces +y
   ASSERT_EQ(all.size(), 7u) << "five beams, and echoes on each side of the one without";

@@ -64,11 +64,11 @@ TEST_P(PostTest, ParallelEncodingGivesTheSameBytesAndNumbers) {
   const std::uint32_t robots = GetParam();
   const world::World world = fleet(robots);
   const sensors::SensorSet sensor_set(world);
-  const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}, {.receive = 32u << 20});
-  if (netio::receive_buffer(ears) < 2'000 * robots) GTEST_SKIP() << "this user's receive buffers hold too little";
+  const netio::Socket receiver = netio::open_udp({netio::kLoopback, 0}, {.receive = 32u << 20});
+  if (netio::receive_buffer(receiver) < 2'000 * robots) GTEST_SKIP() << "this user's receive buffers hold too little";
   StreamLayout layout;
   layout.stride = 0;  // all on one port
-  layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
+  layout.bases[sensors::kLaser] = netio::bound_endpoint(receiver).port;
   ReadingPublisher post(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
 
   Day day(robots, 5);
@@ -111,7 +111,7 @@ TEST_P(PostTest, ParallelEncodingGivesTheSameBytesAndNumbers) {
     EXPECT_EQ(post.counts().packets.dropped, 0u);
     EXPECT_EQ(post.counts().not_numbers, lost);
     std::size_t next = 0;
-    while (const std::size_t taken = batch.fill(ears))
+    while (const std::size_t taken = batch.fill(receiver))
       for (std::size_t i = 0; i < taken; ++i, ++next) {
         ASSERT_LT(next, expected.size());
         const auto bytes = batch.bytes(i);
@@ -127,10 +127,10 @@ TEST_P(PostTest, ParallelEncodingGivesTheSameBytesAndNumbers) {
 TEST(ReadingPublisher, EachPartHasItsOwnCounter) {
   const world::World world = fleet(1, 400);
   const sensors::SensorSet sensor_set(world);
-  const netio::Socket ears = netio::open_udp({netio::kLoopback, 0});
+  const netio::Socket receiver = netio::open_udp({netio::kLoopback, 0});
   StreamLayout layout;
   layout.stride = 0;
-  layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
+  layout.bases[sensors::kLaser] = netio::bound_endpoint(receiver).port;
   ReadingPublisher publisher(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
   netio::PacketSigner signer(netio::SigningKey{1}, 5);
   const std::vector<double> ranges(400, 1.0);
@@ -144,7 +144,7 @@ TEST(ReadingPublisher, EachPartHasItsOwnCounter) {
   }
   netio::SignatureChecker checker(netio::SigningKey{1});
   netio::ReceiveBatch batch(8);
-  ASSERT_EQ(batch.fill(ears), 4u);
+  ASSERT_EQ(batch.fill(receiver), 4u);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(checker.check(batch.bytes(i)), netio::PacketStatus::accepted) << i;
   EXPECT_EQ(signer.take(), 9u) << "as many as datagrams";
 }
@@ -153,10 +153,11 @@ TEST(ReadingPublisher, EachPartHasItsOwnCounter) {
 TEST(ReadingPublisher, AMirrorReceivesACopyOfEachPacket) {
   const world::World world = fleet(2, 400);
   const sensors::SensorSet sensor_set(world);
-  const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}), mirror = netio::open_udp({netio::kLoopback, 0});
+  const netio::Socket receiver = netio::open_udp({netio::kLoopback, 0}),
+                      mirror = netio::open_udp({netio::kLoopback, 0});
   StreamLayout layout;
   layout.stride = 0;
-  layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
+  layout.bases[sensors::kLaser] = netio::bound_endpoint(receiver).port;
   ReadingPublisher publisher(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)),
                              netio::bound_endpoint(mirror));
   netio::PacketSigner signer(netio::SigningKey{1}, 5);
@@ -173,7 +174,7 @@ TEST(ReadingPublisher, AMirrorReceivesACopyOfEachPacket) {
     publisher.flush();
   }
   netio::ReceiveBatch sent(16), copied(16);
-  ASSERT_EQ(sent.fill(ears), 5u);
+  ASSERT_EQ(sent.fill(receiver), 5u);
   ASSERT_EQ(copied.fill(mirror), 5u);
   for (std::size_t i = 0; i < 5; ++i)
     EXPECT_TRUE(std::ranges::equal(sent.bytes(i), copied.bytes(i))) << i << ": signatures too";

@@ -32,7 +32,7 @@ struct PlayedFarm : Fixture {
                                        [](const netio::Packet&, std::int64_t) {});
   }
   /// Returns the types of the packets received from the robot since the last call.
-  std::vector<Type> heard() {
+  std::vector<Type> received_types() {
     std::vector<Type> types;
     batch.drain(socket, 1000, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
       netio::Packet packet;
@@ -52,7 +52,7 @@ struct PlayedFarm : Fixture {
   }
   /// Makes the robot accept the farm of that session.
   void challenge(std::uint32_t farm) {
-    heard();
+    received_types();
     stamp = {farm, session};
     send({}, netio::Challenge{5});
   }
@@ -94,7 +94,7 @@ TEST(RobotLink, AcceptsOnlyReadingsOfItsFarm) {
   ++f.stamp.session;
   f.send_scan(f.outbox, {.sequence = 1});
   EXPECT_EQ(f.link->counts().readings.packets[PacketStatus::wrong_source], 2u);
-  EXPECT_FALSE(f.link->last_answer()) << "nothing good came";
+  EXPECT_FALSE(f.link->last_answer()) << "no valid packet arrived";
   --f.stamp.session;
   f.now = 7;
   f.send_scan(f.outbox, {.sequence = 1});
@@ -210,7 +210,7 @@ TEST(RobotLink, PartsOfReadingsArriveInAnyOrder) {
   f.send_parts(3, {2, 1, 0});
   f.expect_newest(3);
   f.send_parts(2, {2, 0});
-  EXPECT_EQ(f.scans(), 2u) << "an older one is not wanted";
+  EXPECT_EQ(f.scans(), 2u) << "an older one is dropped";
   f.expect_newest(3);
 }
 
@@ -235,7 +235,7 @@ TEST(RobotLink, DelaysAndLosesPacketsAsTheInjectedLinkDoes) {
     out += loses(stream_of(Type::v2v, 0), sequence);
     ASSERT_EQ(f.link->counts().out.lost, out) << sequence;
   }
-  ASSERT_FALSE(f.heard().empty());
+  ASSERT_FALSE(f.received_types().empty());
   for (std::uint32_t sequence = 0; sequence < 20; ++sequence) {
     for (const auto other : {std::uint16_t{2}, std::uint16_t{3}}) {
       f.send({.robot = other, .sequence = sequence}, netio::V2v{});
@@ -251,11 +251,11 @@ TEST(RobotLink, DelaysAndLosesPacketsAsTheInjectedLinkDoes) {
 TEST(RobotLink, LeavingSendsDelayedPacketsToo) {
   PlayedFarm f({.delay = 1.0});
   f.link->leave(0);
-  EXPECT_TRUE(f.heard().empty()) << "it said nothing";
+  EXPECT_TRUE(f.received_types().empty()) << "it has sent nothing";
   f.link->send_state({}, 0);
-  EXPECT_TRUE(f.heard().empty()) << "not due";
+  EXPECT_TRUE(f.received_types().empty()) << "not due";
   f.link->leave(0);
-  EXPECT_EQ(f.heard(), (std::vector{Type::subscribe, Type::v2v, Type::leave}));
+  EXPECT_EQ(f.received_types(), (std::vector{Type::subscribe, Type::v2v, Type::leave}));
 }
 
 TEST(RobotLink, AnotherFarmHasAnotherClock) {

@@ -23,7 +23,7 @@ TEST(Service, ARobotDrivesByItsReadings) {
   EXPECT_GE(robot.link.whole.at("laser"), 38u) << "the first state is unproven";
   EXPECT_EQ(robot.link.whole.at("laser"), service.publisher.packets.sent);
   EXPECT_EQ(service.inbox.total(), robot.link.sent.sent);
-  EXPECT_EQ(robot.link.sent.sent, 40u + 9u) << "a request each half second, and one at once after the challenge";
+  EXPECT_EQ(robot.link.sent.sent, 40u + 9u) << "a request every half second, and one immediately after the challenge";
   EXPECT_EQ(service.farm.readings, service.publisher.packets.sent) << "the other robot is not active: not computed";
   EXPECT_EQ(f.log.read_all(), "");
 }
@@ -51,7 +51,7 @@ TEST(Service, ARobotStopsWhileNoReadingArrives) {
   f.run(10);
   EXPECT_GT(f.client->stats().steps, steps + 5);
   EXPECT_NE(f.log.read_all().find("readings arrive: robot1 continues"), std::string::npos);
-  EXPECT_EQ(f.client->stats().stops, 1u) << "going on is no stop";
+  EXPECT_EQ(f.client->stats().stops, 1u) << "continuing does not count as a stop";
 }
 
 TEST(Service, AStartSignalReachesTheRobot) {
@@ -111,7 +111,7 @@ TEST(Service, StatesHaveAnAgeWithAndWithoutFilter) {
       const netio::StateQuality q = f.service->receiver().quality(row, f.now);
       return q.stated && q.stale && q.age == base::kNoStateYet;
     };
-    EXPECT_TRUE(no_state(0)) << "nothing came yet";
+    EXPECT_TRUE(no_state(0)) << "no reading yet";
     f.run(10);
     const auto quality = [&] { return f.service->receiver().quality(0, f.now - kTick); };
     EXPECT_TRUE(quality().stated);
@@ -153,7 +153,7 @@ TEST(Service, RobotsWithAndWithoutAKeyDriveTogether) {
     EXPECT_GT(stats.distance_m, 0.05);
     EXPECT_GE(stats.link.whole.at("laser"), 38u) << stats.id;
     EXPECT_EQ(stats.link.readings.packets.dropped(), 0u) << packet_counts_text(stats.link.readings.packets);
-    EXPECT_TRUE(robot->link().is_active(3 - stats.id, f.now)) << "each is sent the other's states";
+    EXPECT_TRUE(robot->link().is_active(3 - stats.id, f.now)) << "each receives the other's states";
   }
   const netio::PacketCounts inbox = f.service->stats().inbox;
   EXPECT_EQ(inbox.dropped(), inbox[netio::PacketStatus::unproven]) << packet_counts_text(inbox);
@@ -208,7 +208,7 @@ TEST(Service, ARobotAtAnotherAddressIsRefusedAndLoggedOnce) {
 /// Sends states of robot 2, in any order of sequence.
 struct Speaker {
   explicit Speaker(Fixture& fixture) : f(fixture), outbox(netio::open_udp({netio::kLoopback, 0})) {}
-  void say(std::uint32_t sequence) {
+  void send(std::uint32_t sequence) {
     base::Bytes packet;
     netio::encode({.robot = 2, .sequence = sequence, .time = f.now}, netio::V2v{}, packet);
     const std::uint32_t token = f.service->receiver().inbox().token(outbox.endpoint());
@@ -224,7 +224,7 @@ TEST(Service, OvertakenStatesAreAcceptedUnlessTheirArrivalCounts) {
   for (const ClockSource source : {ClockSource::estimated, ClockSource::trusted, ClockSource::arrival}) {
     Fixture f({.filter = {.enabled = true, .clock = {.source = source}}});
     Speaker robot(f);
-    for (const std::uint32_t sequence : {5u, 4u}) robot.say(sequence);
+    for (const std::uint32_t sequence : {5u, 4u}) robot.send(sequence);
     f.service->receive_pending(0);
     const netio::PacketCounts inbox = f.service->stats().inbox;
     EXPECT_EQ(inbox.total(), 2u);
@@ -238,7 +238,7 @@ TEST(Service, ReadingsWithALongLatencyHaveAnAge) {
   const netio::Socket port = netio::open_udp({netio::kLoopback, f.reading_port(2)});
   Speaker robot(f);
   for (std::uint32_t tick = 0; tick < 45; ++tick, f.now += kTick) {
-    if (tick % 2 == 0) robot.say(tick);
+    if (tick % 2 == 0) robot.send(tick);
     f.service->tick(f.now);
   }
   std::vector<std::int64_t> ages;
@@ -325,7 +325,7 @@ TEST(Service, ASinkReceivesStatesTheirQualityAndReadings) {
   EXPECT_TRUE(sink.qualities[0].stated);
   EXPECT_GT(sink.qualities[0].covariance[0], 0.0f);
   EXPECT_EQ(sink.qualities[1].age, base::kNoStateYet) << "the other robot is silent";
-  EXPECT_FALSE(base::is_absent(sink.reports[1].X_WM)) << "it stands where the world has it";
+  EXPECT_FALSE(base::is_absent(sink.reports[1].X_WM)) << "it is at its pose in the world";
   for (int i = 0; i < 15; ++i, f.now += kTick) f.service->tick(f.now);
   EXPECT_TRUE(sink.qualities[0].stale);
   EXPECT_TRUE(base::is_absent(sink.reports[0].X_WM)) << "out of the world";
@@ -348,7 +348,7 @@ TEST(Service, APauseOfFiveSecondsIsReportedAndEndsImmediately) {
       }
       if (farm_pauses) {
         f.service->tick(f.now);
-        EXPECT_TRUE(sink.qualities[0].stale) << "nothing was sent meanwhile either";
+        EXPECT_TRUE(sink.qualities[0].stale) << "no packet was sent meanwhile either";
         EXPECT_EQ(sink.qualities[0].age, 50 * kTick + kTick);
         f.now += kTick;
       }

@@ -157,7 +157,7 @@ TEST(SignalMessages, MarksOfRemainingTimes) {
   EXPECT_EQ(marks(8'000, 0.0, 0.0), Marks(80, 80)) << "now, at a mark";
   EXPECT_EQ(marks(8'001, 0.0, 0.0), Marks(81, 81)) << "now, behind a mark";
   EXPECT_EQ(marks(8'000, -1.0, -1.0), Marks(80, 80)) << "overdue";
-  EXPECT_EQ(marks(0, 0.7 + 0.1 + 1e-10, 3.0), Marks(8, 30)) << "the rounding of sums is no tenth of a second";
+  EXPECT_EQ(marks(0, 0.7 + 0.1 + 1e-10, 3.0), Marks(8, 30)) << "rounding errors of sums are ignored";
   EXPECT_EQ(marks(0, 3.0, 2.0), Marks(30, 30)) << "never the latest before the earliest";
   EXPECT_EQ(marks(3'599'990, 0.02, 5.0), Marks(1, 50)) << "in the next hour";
   EXPECT_EQ(marks(3'599'990, 0.01, 0.01), Marks(0, 0)) << "its first mark";

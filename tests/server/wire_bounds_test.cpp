@@ -180,7 +180,7 @@ TEST(WireBounds, AreOmittedIfAWordSaturates) {
   const auto far = [](double metres) { return word_of(laser(1, 1e6), {sensors::kLaser, {metres}, 1e-6}); };
   EXPECT_LT(far(429'496.7294).bound, 0.6e-4) << "the largest word that is a number";
   states_none(far(429'496.7295), 1, "one more");
-  EXPECT_LT(far(kInf).bound, 0.6e-4) << "no return is no number";
+  EXPECT_LT(far(kInf).bound, 0.6e-4) << "no return is not a number";
   EXPECT_TRUE(std::isnan(far(kInf).first.at(0)));
 }
 
