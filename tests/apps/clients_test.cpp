@@ -190,7 +190,7 @@ TEST(Clients, CSignsAsSpecified) {
 }
 
 /// Counters at the edges of the window, as in `ReplayWindow`, a flipped bit and a different key.
-TEST(Clients, PythonRejectsWhatTheFarmRejects) {
+TEST(Clients, PythonRejectsTheSamePacketsAsTheFarm) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
   const Outcome outcome =
       Program({SF_SOURCE_DIR "/tests/apps/clients/signatures.py", kClients}, {}, "", "", "python3").wait();

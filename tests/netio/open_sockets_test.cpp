@@ -26,7 +26,7 @@ TEST(OpenSockets, RestrictsNewSocketsToLoopback) {
   const OpenSockets before;
   const Socket open_to_all = open_udp({0, 0}), kept = open_udp({kLoopback, 0});
   before.keep_new_ones_to_loopback();
-  EXPECT_FALSE(has_filter(old)) << "of somebody else";
+  EXPECT_FALSE(has_filter(old)) << "opened before";
   EXPECT_FALSE(has_filter(kept)) << "bound to loopback already";
   ASSERT_TRUE(has_filter(open_to_all));
   // Datagrams to loopback still arrive.
@@ -35,12 +35,12 @@ TEST(OpenSockets, RestrictsNewSocketsToLoopback) {
   for (const std::uint32_t to : {kLoopback, kLoopback + 1}) sender.queue({to, bound_endpoint(open_to_all).port}, bytes);
   sender.flush();
   ReceiveBatch batch(4);
-  std::size_t came = 0;
-  for (int i = 0; i < 100 && came < 2; ++i) {
+  std::size_t arrived = 0;
+  for (int i = 0; i < 100 && arrived < 2; ++i) {
     wait_readable(open_to_all, open_to_all, 100);
-    came += batch.drain(open_to_all, 4, [](std::span<const std::uint8_t>, const Endpoint&) {});
+    arrived += batch.drain(open_to_all, 4, [](std::span<const std::uint8_t>, const Endpoint&) {});
   }
-  EXPECT_EQ(came, 2u);
+  EXPECT_EQ(arrived, 2u);
 }
 
 TEST(OpenSockets, ReturnsAddressesOfNewSockets) {

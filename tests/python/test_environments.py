@@ -68,7 +68,7 @@ class Single(unittest.TestCase):
 
     def test_seeds(self):
         env, other = single(), single()
-        self.assertTrue((env.reset()[0] != other.reset()[0]).any(), "without a seed none is like another")
+        self.assertTrue((env.reset()[0] != other.reset()[0]).any(), "without a seed, starts differ")
         for seed in (5, numpy.int64(5)):
             numpy.testing.assert_array_equal(env.reset(seed=seed)[0], other.reset(seed=5)[0])
         numpy.testing.assert_array_equal(env.reset()[0], other.reset()[0])
@@ -97,7 +97,7 @@ class Single(unittest.TestCase):
 
 
 class ResetOfSome(unittest.TestCase):
-    def test_the_rest_goes_on(self):
+    def test_the_others_continue(self):
         """Poses, speeds, time, observations and the rest of the episode equal those of a run without the reset."""
         env, plain = vector(max_steps=8), vector(max_steps=8)
         for each in (env, plain):
@@ -115,7 +115,7 @@ class ResetOfSome(unittest.TestCase):
         numpy.testing.assert_array_equal(sim.velocities[2:], same.velocities[2:])
         ends = numpy.array([step[3] for step in go(env, 8)])
         self.assertTrue(ends[2, 2:].all(), "after 3 more steps the rest is 8 steps old")
-        self.assertEqual(ends[:, :2].argmax(axis=0).tolist(), [7, 7], "those of the mask are as old as their reset")
+        self.assertEqual(ends[:, :2].argmax(axis=0).tolist(), [7, 7], "masked ones are as old as their reset")
 
     def test_observations_are_those_of_the_new_poses(self):
         """Readings equal those of a simulation in which all robots are at these poses; speeds are 0."""
@@ -146,7 +146,7 @@ class ResetOfSome(unittest.TestCase):
         self.assertEqual(start(None), start(None))
         self.assertGreater(len({start(seed) for seed in range(6)}), 1)
 
-    def test_a_world_of_its_own_begins(self):
+    def test_a_world_reset_completely_restarts(self):
         """A world whose robots are all in the mask begins as after a full reset; other worlds do not advance."""
         env = vector(worlds=2)
         env.reset(seed=1)
@@ -270,14 +270,14 @@ class Copies(unittest.TestCase):
         numpy.testing.assert_array_equal(env.reset()[0], other.reset()[0])
         numpy.testing.assert_array_equal(env.reset()[0], other.reset()[0])
 
-    def test_samples_go_on(self):
+    def test_samples_continue(self):
         env = single()
         env.action_space.seed(4)
         env.action_space.sample()
         other = copy.deepcopy(env)
         numpy.testing.assert_array_equal(env.action_space.sample(), other.action_space.sample())
 
-    def test_a_copy_is_apart(self):
+    def test_copies_are_independent(self):
         env = vector(seed=3)
         other = copy.deepcopy(env)
         other.reset(seed=5)
@@ -312,7 +312,7 @@ class State(unittest.TestCase):
         self.assertEqual(env.state_space.shape, (3, 7))
         self.assertIn(env.state(), env.state_space)
 
-    def test_agents_have_samples_of_their_own(self):
+    def test_agents_sample_independently(self):
         env = parallel()
         for i, agent in enumerate(env.possible_agents):
             env.action_space(agent).seed(i)

@@ -273,7 +273,7 @@ class Images(unittest.TestCase):
     """Images of the room of 4 m, with 100 pixels per metre."""
     WHOLE = dict(width=400, height=400, view=(-2, -2, 2, 2))
 
-    def test_what_is_where(self):
+    def test_colours_at_known_points(self):
         """Background is white; walls are along the edges, robots at their poses, +y is up."""
         sim = room()
         sim.put(1, (1, 1, 0, 0))
@@ -301,7 +301,7 @@ class Images(unittest.TestCase):
         numpy.testing.assert_array_equal(sim.poses, poses)
         self.assertTrue((sim.image() != before).any())
 
-    def test_images_are_apart_and_repeat(self):
+    def test_images_are_independent_and_repeatable(self):
         """Cached layers do not change the picture, in any order."""
         sim, views = room(), [(-k, -k, k, k) for k in (1, 2, 3, 4, 5, 6)]
         first = [sim.image(50, 40, view) for view in views]
@@ -324,7 +324,7 @@ class Images(unittest.TestCase):
 
 
 class Processes(unittest.TestCase):
-    def test_a_forked_process_makes_its_own(self):
+    def test_a_forked_process_needs_its_own_simulation(self):
         """The child refuses its parent's simulation, and a new one has the parent's readings, with every caster."""
         for caster in ("host", "vulkan", "reference"):
             sim = room(caster=caster)

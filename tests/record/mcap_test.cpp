@@ -437,7 +437,7 @@ std::vector<Place> places_in(const Bytes& file, std::size_t at, std::size_t end)
 
 /// Flips each bit of the bytes in turn. @param mend updates the file's checksum to its new bytes
 template <class Mend>
-void expect_each_flip_told(Bytes file, std::size_t begin, std::size_t end, Mend mend) {
+void expect_each_flip_reported(Bytes file, std::size_t begin, std::size_t end, Mend mend) {
   for (std::size_t at = begin; at < end; ++at)
     for (unsigned bit = 0; bit < 8; ++bit) {
       file[at] ^= static_cast<std::uint8_t>(1u << bit);
@@ -457,7 +457,7 @@ TEST(McapReader, ReportsEachFlippedBitOfAFinishedFile) {
                               writer.finish();
                               return Bytes(writer.pending().begin(), writer.pending().end());
                             }()})
-    expect_each_flip_told(file, 0, file.size(), [](Bytes&) {});
+    expect_each_flip_reported(file, 0, file.size(), [](Bytes&) {});
 }
 
 /// Before its end, a file has CRCs and redundant numbers in attachments, chunks and their indexes. The rest (header,
@@ -494,7 +494,7 @@ TEST(McapReader, ReportsASummaryThatContradictsTheData) {
   for (const Place& place : places_in(file, start, footer + 20)) {
     // Only the footer's own CRC is updated.
     const std::size_t end = place.opcode == Opcode::footer ? place.end - 4 : place.end;
-    expect_each_flip_told(file, place.begin, end, mend);
+    expect_each_flip_reported(file, place.begin, end, mend);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "record/reading_messages.h"
 #include "record/schemas.h"
 #include "tests/record/sample.h"
+#include "tests/refusal.h"
 
 namespace sf::record {
 namespace {
@@ -141,7 +142,7 @@ TEST(Recording, TruncationAtAnyByteKeepsEveryWholeTick) {
   expect_prefixes(sample(Compression::zstd));
 }
 
-void expect_flips_told(Bytes bytes) {
+void expect_flips_reported(Bytes bytes) {
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     const auto bit = static_cast<std::uint8_t>(1u << (5 * at % 8));
     bytes[at] ^= bit;
@@ -157,8 +158,8 @@ void expect_flips_told(Bytes bytes) {
 /// Flips one bit of each byte of a finished file, a different one from byte to byte. `McapReader` has tests with all
 /// bits.
 TEST(Recording, ReportsAFlippedBit) {
-  expect_flips_told(sample(Compression::none).bytes);
-  expect_flips_told(sample(Compression::zstd).bytes);
+  expect_flips_reported(sample(Compression::none).bytes);
+  expect_flips_reported(sample(Compression::zstd).bytes);
 }
 
 TEST(Recording, TruncatedAndGarbledFilesNeitherCrashNorHang) {
@@ -177,18 +178,15 @@ TEST(Recording, TruncatedAndGarbledFilesNeitherCrashNorHang) {
 }
 
 std::string refusal(const Bytes& bytes) {
-  try {
-    read_recording(bytes, "dir/run.mcap");
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "read";
+  return refusal_of([&] { read_recording(bytes, "dir/run.mcap"); });
 }
 
 Bytes finished(McapWriter& writer) {
   writer.finish();
   return {writer.pending().begin(), writer.pending().end()};
 }
+
+void add_world(McapWriter& writer, const Bytes& world) { writer.add_attachment({.name = "world.bin", .data = world}); }
 
 void add_run_info(McapWriter& writer, const RunInfo& info) {
   Bytes message;
@@ -201,7 +199,7 @@ TEST(Recording, RejectsOtherRecordingsWithTheReason) {
   EXPECT_NE(refusal({'P', 'K', 3, 4}).find("dir/run.mcap: not an MCAP file"), std::string::npos);
   EXPECT_NE(refusal({}).find("not an MCAP file"), std::string::npos);
 
-  McapWriter foreign("ros2", "somebody else");
+  McapWriter foreign("ros2", "another program");
   EXPECT_NE(refusal(finished(foreign)).find("not a sensorfarm recording"), std::string::npos);
 
   McapWriter worldless("ros2", "sensorfarm");
@@ -209,15 +207,14 @@ TEST(Recording, RejectsOtherRecordingsWithTheReason) {
   EXPECT_NE(refusal(finished(worldless)).find("no complete world inside"), std::string::npos);
 
   McapWriter empty_world("ros2", "sensorfarm");
-  empty_world.add_attachment({.name = "world.bin", .data = {}});
+  add_world(empty_world, {});
   add_run_info(empty_world, {});
   EXPECT_NE(refusal(finished(empty_world)).find("no complete world inside"), std::string::npos);
 }
 
 TEST(Recording, RejectsADamagedWorldWithTheCause) {
   McapWriter writer("ros2", "sensorfarm");
-  const Bytes world(100, 7);
-  writer.add_attachment({.name = "world.bin", .data = world});
+  add_world(writer, Bytes(100, 7));
   add_run_info(writer, {});
   Bytes bytes = finished(writer);
   *std::search_n(bytes.begin(), bytes.end(), 50, 7) ^= 1;
@@ -227,8 +224,7 @@ TEST(Recording, RejectsADamagedWorldWithTheCause) {
 
 TEST(Recording, SkipsAndReportsStatesOfUnknownMovers) {
   McapWriter writer("ros2", "sensorfarm");
-  const Bytes world = {1};
-  writer.add_attachment({.name = "world.bin", .data = world});
+  add_world(writer, {1});
   add_run_info(writer, {.movers = {{.name = "only"}}});
   Bytes message;
   encode_fleet(SampleTick(0, 2).record, message);
@@ -242,8 +238,7 @@ TEST(Recording, SkipsAndReportsStatesOfUnknownMovers) {
 /// Earlier versions named topics after sensors, without an option that states it.
 TEST(Recording, ReadsTopicsOfEarlierVersions) {
   McapWriter writer("ros2", "sensorfarm");
-  const Bytes world = {1};
-  writer.add_attachment({.name = "world.bin", .data = world});
+  add_world(writer, {1});
   RunInfo info = test::sample_info(true);
   put_naming({.style = TopicStyle::sensor}, info);
   name_frames(info);
@@ -263,8 +258,7 @@ TEST(Recording, ReadsTopicsOfEarlierVersions) {
 
 TEST(Recording, SkipsAndReportsReadingsThatContradictTheirType) {
   McapWriter writer("ros2", "sensorfarm");
-  const Bytes world = {1};
-  writer.add_attachment({.name = "world.bin", .data = world});
+  add_world(writer, {1});
   RunInfo info = test::sample_info(true);
   name_frames(info);
   add_run_info(writer, info);
@@ -274,7 +268,7 @@ TEST(Recording, SkipsAndReportsReadingsThatContradictTheirType) {
   const auto schema = writer.add_schema(type_of(edge), "ros2msg", schema_text(edge));
   const auto own = writer.add_channel(schema, info.movers[0].sensors[3].topic, "cdr");
   const auto other = writer.add_channel(schema, info.movers[0].sensors[2].topic, "cdr");  // of the array type
-  const auto foreign = writer.add_channel(schema, "/somebody/else", "cdr");
+  const auto foreign = writer.add_channel(schema, "/another/program", "cdr");
   writer.add_message({.channel = own, .data = message});
   writer.add_message({.channel = own, .data = std::span(message).first(message.size() - 1)});
   writer.add_message({.channel = other, .data = message});
@@ -287,8 +281,7 @@ TEST(Recording, SkipsAndReportsReadingsThatContradictTheirType) {
 
 TEST(Recording, ReportsDamageAtMostAHundredTimes) {
   McapWriter writer("ros2", "sensorfarm");
-  const Bytes world = {1};
-  writer.add_attachment({.name = "world.bin", .data = world});
+  add_world(writer, {1});
   add_run_info(writer, {.movers = {{.name = "only"}}});
   Bytes message;
   encode_fleet(SampleTick(0, 2).record, message);  // of two movers
@@ -301,21 +294,14 @@ TEST(Recording, ReportsDamageAtMostAHundredTimes) {
 }
 
 TEST(Recording, RejectsAFolderWithoutARecordingWithAdvice) {
-  const auto refusal_of = [](const std::string& directory) -> std::string {
-    try {
-      open_recording(directory);
-    } catch (const base::InputError& error) {
-      return error.what();
-    }
-    return "read";
-  };
-  EXPECT_NE(refusal_of("/nowhere/at/all").find("/nowhere/at/all/run.mcap: no such recording"), std::string::npos);
+  const auto refused = [](const std::string& directory) { return refusal_of([&] { open_recording(directory); }); };
+  EXPECT_NE(refused("/nowhere/at/all").find("/nowhere/at/all/run.mcap: no such recording"), std::string::npos);
   const std::string directory = test::fresh_directory("no_file");
   std::filesystem::create_directories(directory + "/run.mcap");
-  EXPECT_NE(refusal_of(directory).find("is not a file"), std::string::npos);
+  EXPECT_NE(refused(directory).find("is not a file"), std::string::npos);
   std::filesystem::remove(directory + "/run.mcap");
   std::ofstream(directory + "/run.mcap").close();
-  EXPECT_NE(refusal_of(directory).find("not an MCAP file"), std::string::npos);  // empty
+  EXPECT_NE(refused(directory).find("not an MCAP file"), std::string::npos);  // empty
 }
 
 TEST(Recording, AcceptsThePathOfTheFile) {

@@ -10,6 +10,7 @@
 
 #include "record/cdr.h"
 #include "record/reading_messages.h"
+#include "record/schemas.h"
 #include "tests/record/sample.h"
 
 namespace sf::record {
@@ -246,7 +247,7 @@ TEST(TickMessages, AfterAResetOdometryIsDueAtOnce) {
 }
 
 /// Returns the range of the second scan of the sample, and the first field of its first array, in a tick's messages.
-std::pair<float, double> told_values(const RunInfo& info, const base::TickRecord& record) {
+std::pair<float, double> published_values(const RunInfo& info, const base::TickRecord& record) {
   TickMessages messages(info);
   std::pair<float, double> ranges{NAN, NAN};
   messages.encode(record, [&](const TopicMessage& message) {
@@ -265,14 +266,14 @@ TEST(TickMessages, RangesOfSurfacesThatAreTooNearAreMarked) {
   RunInfo info = named_info();
   test::SampleTick tick(0);
   const double range = tick.ranges[1][0] = 0.5, field = tick.ranges[3][0];
-  EXPECT_EQ(told_values(info, tick.record), std::pair(static_cast<float>(range), field)) << "without flags";
+  EXPECT_EQ(published_values(info, tick.record), std::pair(static_cast<float>(range), field)) << "without flags";
 
   const base::QualityFlag near[] = {base::QualityFlag::too_near, base::QualityFlag::none};
   tick.readings[1].quality = std::span(near).first(1);
   tick.readings[3].quality = near;
-  EXPECT_EQ(told_values(info, tick.record), std::pair(-HUGE_VALF, -HUGE_VAL));
+  EXPECT_EQ(published_values(info, tick.record), std::pair(-HUGE_VALF, -HUGE_VAL));
   info.options.emplace_back(kTooNear, "min");
-  EXPECT_EQ(told_values(info, tick.record), std::pair(static_cast<float>(range), field));
+  EXPECT_EQ(published_values(info, tick.record), std::pair(static_cast<float>(range), field));
 }
 
 }  // namespace

@@ -130,19 +130,23 @@ bool play(Fixture& fixture, const std::vector<Driver*>& drivers, const std::func
   return done();
 }
 
+/// Runs all until each has its answer.
+bool play(Fixture& fixture, const std::vector<Driver*>& drivers) {
+  return play(fixture, drivers, [&] {
+    return std::all_of(drivers.begin(), drivers.end(), [](const Driver* driver) { return driver->is_complete(); });
+  });
+}
+
 /// Drives to the last tick.
 /// @return hash of all readings
 std::uint64_t hash_over_udp(Fixture& fixture, const std::vector<Crew*>& crews) {
   std::vector<Driver*> drivers;
   for (Crew* crew : crews) drivers.push_back(&crew->driver);
-  const auto complete = [&] {
-    return std::all_of(drivers.begin(), drivers.end(), [](const Driver* driver) { return driver->is_complete(); });
-  };
   for (int tick = 0; tick < kTicks; ++tick) {
-    EXPECT_TRUE(play(fixture, drivers, complete)) << "tick " << tick;
+    EXPECT_TRUE(play(fixture, drivers)) << "tick " << tick;
     for (Crew* crew : crews) crew->driver.step(crew->decide());
   }
-  EXPECT_TRUE(play(fixture, drivers, complete));
+  EXPECT_TRUE(play(fixture, drivers));
   EXPECT_EQ(fixture.tick(), static_cast<std::uint64_t>(kTicks));
   return fixture.hash();
 }
@@ -180,11 +184,10 @@ TEST(LockstepService, SeveralProcessesDriveLikeOne) {
 TEST(LockstepService, LargeAnswersAreFetched) {
   Fixture fixture(80);
   Driver driver(fixture.port(), ids(1, 80), {0.1, 0.0, 0.1, 6});
-  const auto complete = [&] { return driver.is_complete(); };
-  ASSERT_TRUE(play(fixture, {&driver}, complete));
+  ASSERT_TRUE(play(fixture, {&driver}));
   EXPECT_GT(driver.datagrams(), 2u * server::Lockstep::kPushed);
   driver.step({}, 3);
-  ASSERT_TRUE(play(fixture, {&driver}, complete));
+  ASSERT_TRUE(play(fixture, {&driver}));
   EXPECT_EQ(fixture.tick(), 3u);
   EXPECT_EQ(driver.robot(80).readings.at(sensors::kLaser).size(), driver.robot(1).readings.at(sensors::kLaser).size());
 }
@@ -193,8 +196,7 @@ TEST(LockstepService, LargeAnswersAreFetched) {
 TEST(LockstepService, AProcessMayRequestSeveralTicks) {
   Fixture fixture(2, 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
-  const auto both = [&] { return one.is_complete() && other.is_complete(); };
-  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   one.step({{1, {0.2, 0.0, 0.0}}}, 3);
   for (std::uint64_t tick = 1; tick <= 3; ++tick) {
     EXPECT_FALSE(one.is_complete());
@@ -202,7 +204,7 @@ TEST(LockstepService, AProcessMayRequestSeveralTicks) {
     ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return other.is_complete(); }));
     EXPECT_EQ(fixture.tick(), tick) << "not beyond the slower process's request";
   }
-  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   EXPECT_EQ(one.tick(), 3u);
   EXPECT_DOUBLE_EQ(one.robot(1).state.velocity.forward, 0.2) << "the command held for all three";
 }
@@ -211,10 +213,9 @@ TEST(LockstepService, AProcessMayRequestSeveralTicks) {
 TEST(LockstepService, AnAnswerHasTheReadingsSinceThePreviousOne) {
   Fixture fixture(server::room(5.0));
   Driver driver(fixture.port(), {1});
-  const auto complete = [&] { return driver.is_complete(); };
   std::vector<std::size_t> datagrams;
   for (const std::uint32_t ticks : {1u, 1u, 1u, 2u, 2u, 1u}) {
-    ASSERT_TRUE(play(fixture, {&driver}, complete));
+    ASSERT_TRUE(play(fixture, {&driver}));
     datagrams.push_back(driver.datagrams());
     driver.step({}, ticks);
   }
@@ -251,7 +252,7 @@ TEST(LockstepService, ErrorsHoldForEveryValueOrAreOmitted) {
     settings.accuracy.word = c.mode;
     Fixture fixture(bounds_world(settings));
     Driver driver(fixture.port(), {1, 2});
-    ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+    ASSERT_TRUE(play(fixture, {&driver}));
     const Driven &straight = driver.robot(1), &bend = driver.robot(2);
     const netio::Accuracy& laser = straight.accuracies.at(sensors::kLaser);
     EXPECT_EQ(std::isfinite(straight.errors.at(sensors::kLaser)), c.error) << c.mode;
@@ -272,7 +273,7 @@ TEST(LockstepService, ErrorsHoldForEveryValueOrAreOmitted) {
 TEST(LockstepService, AStepWaitsForItsCommands) {
   Fixture fixture(2);
   Driver driver(fixture.port(), {1, 2});
-  ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&driver}));
   const auto command = [&](std::uint32_t robot, double forward) {
     base::Bytes rows;
     netio::add_row({robot, {forward, 0.0, 0.0}}, rows);
@@ -299,7 +300,7 @@ TEST(LockstepService, UnexpectedPacketsAreCounted) {
   one.send(netio::Step{0, 1, 0});
   one.flush();
   EXPECT_FALSE(fixture.service.advance(0));
-  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   base::Bytes rows;
   netio::add_row({2, {1.0, 0.0, 0.0}}, rows);       // robot of another process
   netio::add_row({40'000, {1.0, 0.0, 0.0}}, rows);  // unknown robot
@@ -324,7 +325,7 @@ TEST(LockstepService, UnexpectedPacketsAreCounted) {
 TEST(LockstepService, OnlyTheNewestAnswerIsFetched) {
   Fixture fixture(2, 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
-  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   one.step({}), other.step({}, 2);
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete(); }));
   const auto fetched = [&](Driver& driver, std::uint64_t tick) {
@@ -344,7 +345,7 @@ TEST(LockstepService, OnlyTheNewestAnswerIsFetched) {
 TEST(LockstepService, AHungProcessIsDroppedByName) {
   Fixture fixture(3, 3, 2.0);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2, 3});
-  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   one.step({});
   const std::int64_t begun = fixture.now;
   ASSERT_TRUE(play(fixture, {&one}, [&] { return fixture.now >= begun + 1'900'000'000; }));
@@ -361,7 +362,7 @@ TEST(LockstepService, AHungProcessIsDroppedByName) {
 TEST(LockstepService, ALostRobotIsReported) {
   Fixture fixture(2, 2, 2.0);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
-  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   EXPECT_EQ(one.robot(1).state.flags, 0u);
   one.step({});
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
@@ -372,23 +373,22 @@ TEST(LockstepService, ALostRobotIsReported) {
 TEST(LockstepService, ASilentProcessAloneIsAwaited) {
   Fixture fixture(1, 1, 2.0);
   Driver driver(fixture.port(), {1});
-  ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&driver}));
   const std::int64_t begun = fixture.now;
   play(fixture, {}, [&] { return fixture.now >= begun + 6'000'000'000; });
   const std::string said = fixture.log.read_all(), name = fixture.world.movers[0].name;
   EXPECT_EQ(said, "sensorfarm: tick 0: waiting for 2 s for the commands or STEP of " + name + " (id 1)\n");
   driver.step({});
-  EXPECT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+  EXPECT_TRUE(play(fixture, {&driver}));
   EXPECT_EQ(fixture.service.lockstep().counts().lost_robots, 0u);
 }
 
 TEST(LockstepService, AProcessThatLeavesIsNotAwaited) {
   Fixture fixture(2, 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
-  const auto both = [&] { return one.is_complete() && other.is_complete(); };
-  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   one.step({}), other.step({{2, {0.2, 0.0, 0.0}}});
-  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   other.leave();
   one.step({});
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
@@ -437,7 +437,7 @@ TEST(LockstepService, RandomPacketsStopNothing) {
   fixture.now += 10'000'000'000;
   Driver driver(fixture.port(), {1, 2, 3});
   for (int i = 0; i < 3; ++i) {
-    ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+    ASSERT_TRUE(play(fixture, {&driver}));
     driver.step({});
   }
 }
@@ -449,7 +449,7 @@ TEST(LockstepService, ARobotThatJoinsLateReceivesEverything) {
   scenes::add_mover(world, {0.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.3, 0.3)).sensors = first.sensors;
   Fixture fixture(std::move(world), 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
-  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   one.step({}, 2), other.step({});
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return other.is_complete(); }));
   one.send(netio::Subscribe{0}, 3);
@@ -464,7 +464,7 @@ TEST(LockstepService, ARobotThatJoinsLateReceivesEverything) {
 TEST(LockstepService, StatesOfOthersAreSentOnRequest) {
   Fixture fixture(3, 2);
   Driver one(fixture.port(), {1}, {}, netio::kNeighboursBit), other(fixture.port(), {2});
-  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  ASSERT_TRUE(play(fixture, {&one, &other}));
   EXPECT_EQ(one.datagrams(), 3u) << "no sensor type was requested";
   for (std::uint32_t id : {1u, 2u, 3u}) EXPECT_EQ(one.robot(id).state.X_WR.x, fixture.world.movers[id - 1].X_WM.x);
   EXPECT_THROW(other.robot(1), std::out_of_range);

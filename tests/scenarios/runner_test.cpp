@@ -53,7 +53,7 @@ TEST(CheckScenario, AValidScenarioPasses) {
 }
 
 /// A caller that does not check first gets the same errors, and no run.
-TEST(RunScenario, RejectsWhateverTheCheckRejects) {
+TEST(RunScenario, RejectsTheSameFilesAsTheCheck) {
   gpu::Device device;
   for (const std::string& text :
        {std::string(kPath) + "[expect]\nlights_obeyed = true\n",
