@@ -58,10 +58,10 @@ TEST(Check, NoisySensorsHaveNoBound) {
   EXPECT_LT(facts.number("/accuracy/2/bound"), 2e-9);
   EXPECT_FALSE(facts.has("/accuracy/2/sigma"));
   const std::string text = run_program({"check", world}).out;
-  for (const std::string said :
+  for (const std::string message :
        {"1 laser exact, no bound, noise of sigma 200 mm; without noise within 1.0",
         "1 laser exact, no bound, noise; without noise within 1.0", "1 laser exact, within 1.0"})
-    EXPECT_NE(text.find(said), std::string::npos) << said << " is not in\n" << text;
+    EXPECT_NE(text.find(message), std::string::npos) << message << " is not in\n" << text;
   const Json reading(run_program({"sense", world, "--json"}).out);
   EXPECT_TRUE(reading.is_null("/bound"));
   EXPECT_LT(reading.number("/bound_without_noise"), 2e-9);

@@ -79,8 +79,8 @@ TEST(Explain, CountsUncertainBeams) {
   const Json json(run_program(as_json).out);
   const double share = 100.0 * json.number("/types/0/doubts") / json.number("/types/0/rays");
   ASSERT_GT(share, 0.0);
-  const std::string text = run_program(words).out, said = " % of beams tested in 64 bits";
-  const std::size_t end = text.find(said), begin = text.rfind(' ', end - 1);
+  const std::string text = run_program(words).out, message = " % of beams tested in 64 bits";
+  const std::size_t end = text.find(message), begin = text.rfind(' ', end - 1);
   ASSERT_NE(end, std::string::npos) << text;
   EXPECT_NEAR(std::stod(text.substr(begin, end - begin)), share, 0.06 * share);
 }

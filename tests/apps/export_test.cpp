@@ -166,11 +166,11 @@ TEST_F(Recorded, PlotsAreSvgOrPdfOnDemand) {
 }
 
 TEST_F(Recorded, APlotStatesTheDurationOfItsPart) {
-  for (const auto& [from, to, said] : {std::tuple{"0", "10", "2 robots, 2.9 s, "}, {"1", "2", "2 robots, 1 s, "}}) {
+  for (const auto& [from, to, message] : {std::tuple{"0", "10", "2 robots, 2.9 s, "}, {"1", "2", "2 robots, 1 s, "}}) {
     ASSERT_EQ(
         run_program(recorded("plot", {"-o", folder_.path("p"), "--format", "svg", "--from", from, "--to", to})).code,
         0);
-    EXPECT_NE(read_file(folder_.path("p/trajectories.svg")).find(said), std::string::npos) << said;
+    EXPECT_NE(read_file(folder_.path("p/trajectories.svg")).find(message), std::string::npos) << message;
   }
 }
 

@@ -102,7 +102,7 @@ TEST(Light, WrongArgumentsAreRejected) {
   const Folder folder;
   struct Case {
     Words words;
-    const char* said;
+    const char* message;
   };
   for (const Case& c : std::vector<Case>{
            {{"light", world}, "expected a receiver: --send HOST for SPaT and MAP, --farm HOST:PORT for V2I, or both"},
@@ -119,7 +119,7 @@ TEST(Light, WrongArgumentsAreRejected) {
            {{"light", "--send", "127.0.0.1", "--port", "9010", "9011", world}, "was not expected"},
            {{"light", world, "--send", "127.0.0.1", "--port", "0"}, "--port"},
            {{"light", world, "--send", "127.0.0.1", "--rate", "0"}, "--rate"}}) {
-    expect_refused(c.words, c.said);
+    expect_refused(c.words, c.message);
   }
 }
 

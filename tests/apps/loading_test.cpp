@@ -22,9 +22,9 @@ TEST(Loading, CommandsWithoutPicturesLoadNoDrawingLibrary) {
   const std::string world = our_world("rooms.world");
   for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"run", world, "--duration", "0.3"},
                                  Words{"sense", world}, Words{"explain", world}}) {
-    const std::string said = loaded_by(arguments);
+    const std::string message = loaded_by(arguments);
     for (const char* library : {"libvtk", "libcairo", "libfreetype", "libpng", "sensorfarm_cairo"})
-      EXPECT_EQ(said.find(library), std::string::npos) << arguments[0] << " loads " << library;
+      EXPECT_EQ(message.find(library), std::string::npos) << arguments[0] << " loads " << library;
   }
 }
 
@@ -36,9 +36,9 @@ TEST(Loading, OnlyPicturesOfOtherFormatsLoadOpenCv) {
   const std::string pgm = folder.write("pgm.world", "model( size [1 1 1] bitmap \"plan.pgm\" )\n");
   const std::string gif = folder.write("gif.world", "model( size [1 1 1]\nbitmap \"plan.gif\" )\n");
   for (const std::string& world : {pgm, our_world("cave.world")}) {
-    const std::string said = loaded_by({"check", world});
+    const std::string message = loaded_by({"check", world});
     for (const char* library : {"sensorfarm_pictures", "libopencv", "libgdal"})
-      EXPECT_EQ(said.find(library), std::string::npos) << world << " loads " << library;
+      EXPECT_EQ(message.find(library), std::string::npos) << world << " loads " << library;
   }
   const Outcome outcome = run_program({"check", gif}, {{"LD_DEBUG", "files"}});
   EXPECT_NE(outcome.err.find("libopencv_imgcodecs"), std::string::npos);
@@ -72,10 +72,10 @@ TEST(Loading, OnlyDevicesLoadTheVulkanLoader) {
 
 TEST(Loading, DrawingLoadsCairoAndNothingOfVtk) {
   const Folder folder;
-  const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
-  EXPECT_NE(said.find("sensorfarm_cairo.so"), std::string::npos);
-  EXPECT_NE(said.find("libcairo.so"), std::string::npos);
-  EXPECT_EQ(said.find("libvtk"), std::string::npos);
+  const std::string message = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
+  EXPECT_NE(message.find("sensorfarm_cairo.so"), std::string::npos);
+  EXPECT_NE(message.find("libcairo.so"), std::string::npos);
+  EXPECT_EQ(message.find("libvtk"), std::string::npos);
 }
 
 /// A program without the drawing module in its folder uses the one that the dynamic linker finds.

@@ -51,8 +51,8 @@ std::string hash_of_avoid() {
 struct LockstepServer {
   explicit LockstepServer(const Words& more) : program(words(more)) {
     if (!program.prints("; press Ctrl-C to stop")) return;
-    const std::string said = program.err();
-    port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+    const std::string message = program.err();
+    port = static_cast<unsigned>(std::atoi(message.c_str() + message.find("127.0.0.1:") + 10));
   }
   static Words words(const Words& more) {
     return with({"serve", our_world("cave.world"), "--lockstep", "--robots", "3", "--port", "0", "--json"}, more);

@@ -236,9 +236,9 @@ TEST(Serve, SensorsAreReadBetweenTicks) {
 TEST(Serve, ARateTooLowForASensorIsReported) {
   Service service(fast_room(), {"--rate", "10"});
   ASSERT_NE(service.port, 0u) << service.program.err();
-  const std::string said = service.program.err();
-  EXPECT_NE(said.find("--rate 10 is too low for 2 sensors (laser 50 Hz)"), std::string::npos) << said;
-  EXPECT_NE(said.find("at least --rate 50"), std::string::npos) << said;
+  const std::string message = service.program.err();
+  EXPECT_NE(message.find("--rate 10 is too low for 2 sensors (laser 50 Hz)"), std::string::npos) << message;
+  EXPECT_NE(message.find("at least --rate 50"), std::string::npos) << message;
   Robot one(1, service.port, service.laser_port(1));
   ASSERT_TRUE(until([&] {
     one.send_state({-1.0, 0.5, 0.0, 0.0});

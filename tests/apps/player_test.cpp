@@ -25,10 +25,10 @@ struct PlayerProgram {
   explicit PlayerProgram(Words words) {
     words.insert(words.begin() + 1, folder.write("two.world", bridges::player::kTwoRobots));
     program.emplace(words);
-    const std::string said = "Player server on 127.0.0.1:";
-    EXPECT_TRUE(program->prints(said));
+    const std::string expected = "Player server on 127.0.0.1:";
+    EXPECT_TRUE(program->prints(expected));
     const std::string err = program->err();
-    server.port = static_cast<std::uint16_t>(std::atoi(err.c_str() + err.find(said) + said.size()));
+    server.port = static_cast<std::uint16_t>(std::atoi(err.c_str() + err.find(expected) + expected.size()));
   }
   Outcome end() {
     program->signal(SIGINT);

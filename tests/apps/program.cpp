@@ -179,13 +179,13 @@ Outcome run_successfully(const Words& arguments, const Environment& environment)
   return outcome;
 }
 
-void expect_refused(const Words& arguments, const std::string& said, const std::string& also) {
+void expect_refused(const Words& arguments, const std::string& message, const std::string& also) {
   const Outcome outcome = run_program(arguments);
   SCOPED_TRACE(testing::PrintToString(arguments));
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
   EXPECT_EQ(outcome.err.rfind("sensorfarm: ", 0), 0u) << outcome.err;
-  expect_in(said, outcome.err);
+  expect_in(message, outcome.err);
   expect_in(also, outcome.err);
   EXPECT_EQ(outcome.out, "");
 }

@@ -71,8 +71,8 @@ class Program {
 Outcome run_program(const Words& arguments, const Environment& environment = {});
 /// Runs the program and expects success.
 Outcome run_successfully(const Words& arguments, const Environment& environment = {});
-/// Runs the program and expects a refusal: exit code 2 and one line with `said` and `also`.
-void expect_refused(const Words& arguments, const std::string& said = "", const std::string& also = "");
+/// Runs the program and expects a refusal: exit code 2 and one line with `message` and `also`.
+void expect_refused(const Words& arguments, const std::string& message = "", const std::string& also = "");
 
 /// Returns `words` followed by `more`.
 Words with(Words words, const Words& more);

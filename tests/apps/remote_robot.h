@@ -153,8 +153,8 @@ struct Service {
   explicit Service(const std::string& text = kRoom, const Words& rate = {"--rate", "50"})
       : world(folder.write("room.world", text)), program(words(rate)) {
     if (!program.prints("; press Ctrl-C to stop")) return;
-    const std::string said = program.err();
-    port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+    const std::string message = program.err();
+    port = static_cast<unsigned>(std::atoi(message.c_str() + message.find("127.0.0.1:") + 10));
   }
   unsigned laser_port(unsigned robot) const { return lasers + 8 * robot; }
 

@@ -44,8 +44,8 @@ struct FarmService {
       : world(folder.write("room.world", wire == "farm" ? kRoom : kSmallRoom)),
         program({"serve", world, "--port", "0", "--json", "--wire", wire, "--laser-port", lasers}) {
     if (!program.prints("; press Ctrl-C to stop")) return;
-    const std::string said = program.err();
-    port = std::to_string(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+    const std::string message = program.err();
+    port = std::to_string(std::atoi(message.c_str() + message.find("127.0.0.1:") + 10));
   }
   std::unique_ptr<Program> robot(const std::string& name, const Words& more) const {
     const Words words = with({"robot", world, "--name", name, "--port", port, "--laser-port", lasers, "--json"}, more);
@@ -196,7 +196,7 @@ TEST(Robot, WrongArgumentsAreRejectedWithTheExpectedOnes) {
   const std::string world = folder.write("room.world", kSmallRoom);
   struct Case {
     Words more;
-    std::string said;
+    std::string message;
   };
   const Case cases[] = {
       {{"--name", "roomba3"}, "has no robot 'roomba3'; did you mean 'roomba2'?"},  // one typo
@@ -213,7 +213,7 @@ TEST(Robot, WrongArgumentsAreRejectedWithTheExpectedOnes) {
       {{"--name", "roomba2", "--server", "no.such.host.invalid"}, "no.such.host.invalid"},
   };
   for (const Case& each : cases) {
-    expect_refused(with({"robot", world, "--duration", "0.1"}, each.more), each.said);
+    expect_refused(with({"robot", world, "--duration", "0.1"}, each.more), each.message);
   }
 }
 

@@ -151,8 +151,8 @@ TEST(Run, ClonesAreOfTheFirstRobotWithSensorsOrANamedOne) {
       {{"--of", "roomba7"}, "--of requires --robots"},
       {{"--robots", "4", "--of", ""}, "expected the name of a robot, got ''"},
   };
-  for (const auto& [more, said] : refused) {
-    expect_refused(with({"run", world, "--duration", "0.1"}, more), said);
+  for (const auto& [more, message] : refused) {
+    expect_refused(with({"run", world, "--duration", "0.1"}, more), message);
   }
 }
 
@@ -176,11 +176,11 @@ TEST(Run, SettingsReachTheirController) {
       {"park=13.99", "there is no parking spot '13.99'"},
       {"loop=yes", "expects true or false; got 'yes'"},
   };
-  for (const auto& [set, said] : refused) {
+  for (const auto& [set, message] : refused) {
     const Outcome outcome = route(set);
     EXPECT_EQ(outcome.code, 2) << set;
     EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
   }
 }
 
@@ -190,8 +190,8 @@ TEST(Run, AControllerWithoutItsSensorIsRejected) {
       {{"lane-keeping", "--set", "half_width=0.2"}, "has no lane edge sensor; give it a laneedge( )"},
       {{"docking"}, "has no infrared receiver; give it an irreceiver( )"},
   };
-  for (const auto& [controller, said] : cases) {
-    expect_refused(with(run_words("rooms.world", {"--duration", "1", "--controller"}), controller), said);
+  for (const auto& [controller, message] : cases) {
+    expect_refused(with(run_words("rooms.world", {"--duration", "1", "--controller"}), controller), message);
   }
 }
 
@@ -235,8 +235,8 @@ TEST(Run, OnlyExistingRobotsAndClonesMayBeNamed) {
       {"roomba1,roomba2", "has no robot 'roomba1,roomba2'; it has roomba1, roomba2"},
       {"", "expected the name of a robot, got ''"},
   };
-  for (const auto& [name, said] : refused) {
-    expect_refused(run_words("rooms.world", {"--duration", "0.1", "--drive", name}), said);
+  for (const auto& [name, message] : refused) {
+    expect_refused(run_words("rooms.world", {"--duration", "0.1", "--drive", name}), message);
   }
   // The world may follow the option.
   EXPECT_EQ(run_program({"run", "--drive", "roomba1", our_world("rooms.world"), "--duration", "0.1"}).code, 0);

@@ -114,11 +114,11 @@ TEST_F(Kinds, WithoutATypeNumbersCountAllKinds) {
 TEST_F(Kinds, AMissingSensorIsRejectedWithTheAvailableOnes) {
   struct Wrong {
     Words arguments;
-    std::string said;
+    std::string message;
   };
   const std::string lasers = folder.write("lasers.world", "position( name \"a\" laser( ) laser( ) )\n");
   const std::string none = folder.write("none.world", "position( name \"a\" )\n");
-  for (const auto& [arguments, said] : std::vector<Wrong>{
+  for (const auto& [arguments, message] : std::vector<Wrong>{
            {{world, "--sensor", "2"}, "one has no sensor 2; it has laser 0, magnetometer 0"},
            {{world, "--type", "laser", "--sensor", "1"}, "one has no laser 1; it has laser 0, magnetometer 0"},
            {{world, "--type", "magnetometer", "--sensor", "1"}, "one has no magnetometer 1; it has laser 0"},
@@ -128,7 +128,7 @@ TEST_F(Kinds, AMissingSensorIsRejectedWithTheAvailableOnes) {
            {{lasers, "--type", "magnetometer", "--robot", "b"}, "no robot 'b'; robots with sensors: none"},
            {{none}, "no robot has such a sensor; give one a laser( )"},
        }) {
-    expect_refused(with({"sense"}, arguments), said);
+    expect_refused(with({"sense"}, arguments), message);
   }
 }
 
@@ -194,8 +194,8 @@ TEST_F(Kinds, KindsOnOnePortAreDistinguished) {
       run("serve", world, {"--port", "0", "--magnetometer-port", "10008", "--ports-per-robot", "8"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-  for (const std::string said : {"laser 0", "magnetometer 0", "share port 10008", "--magnetometer-port"})
-    EXPECT_NE(outcome.err.find(said), std::string::npos) << said << " is not in: " << outcome.err;
+  for (const std::string message : {"laser 0", "magnetometer 0", "share port 10008", "--magnetometer-port"})
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << message << " is not in: " << outcome.err;
 }
 
 TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
@@ -205,8 +205,8 @@ TEST_F(Kinds, ARobotGetsTheRequestedKinds) {
   words.insert(words.end(), bases.begin(), bases.end());
   Program program(words);
   ASSERT_TRUE(program.prints("; press Ctrl-C to stop")) << program.err();
-  const std::string said = program.err();
-  const auto service = static_cast<std::uint16_t>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+  const std::string message = program.err();
+  const auto service = static_cast<std::uint16_t>(std::atoi(message.c_str() + message.find("127.0.0.1:") + 10));
 
   const std::uint16_t id = 1;  // the first robot of the file
   const netio::Socket lasers = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 8)});

@@ -162,9 +162,9 @@ TEST(AccuracyOption, AutoPrintsItsTarget) {
       {{"--max-error", "5mm", "--by", "p99"}, "with 99 % of errors within 5 mm: "},
       {{"--min-rate", "1"}, "at 1 Hz or more: "},
   };
-  for (const auto& [wish, said] : wishes) {
+  for (const auto& [wish, message] : wishes) {
     const Words words = with({"run", our_world("rooms.world"), "--duration", "0", "--auto"}, wish);
-    expect_says(run_program(words), "measured; " + said + "--accuracy \"");
+    expect_says(run_program(words), "measured; " + message + "--accuracy \"");
   }
 }
 

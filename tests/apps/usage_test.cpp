@@ -23,7 +23,7 @@ const Words kSubcommands{"devices", "check",  "draw",     "sense",     "run",  "
 
 struct Wrong {
   Words arguments;
-  std::string said;  ///< text in the line
+  std::string message;  ///< text in the line
 };
 
 }  // namespace
@@ -94,7 +94,7 @@ TEST(Usage, HelpGroupsTheCommands) {
 
 TEST(Usage, MistakesAreReported) {
   const std::string world = our_world("rooms.world");
-  for (const auto& [arguments, said] : std::vector<Wrong>{
+  for (const auto& [arguments, message] : std::vector<Wrong>{
            {{"run", "--hlep"}, "'--hlep' was not expected; did you mean '--help'?"},
            {{"run", "--durration=3"}, "'--durration' was not expected; did you mean '--duration'?"},
            {{"run", world, "--duration", "1m"}, "--duration: expected seconds from 0 to 1e+09, got '1m'"},
@@ -103,7 +103,7 @@ TEST(Usage, MistakesAreReported) {
            {{"export", world}, "expected a recording, such as the folder that `run --record` writes, got"},
            {{"plot", "m.yaml"}, "expected a recording"},
            {{"run", world, "--set", "sped=0.2"}, "has no setting 'sped'; did you mean 'speed'?"}}) {
-    expect_refused(arguments, said);
+    expect_refused(arguments, message);
   }
 }
 
@@ -128,7 +128,7 @@ TEST(Usage, OptionsThatNeedAnotherAreRejectedWithoutIt) {
   const Folder folder;
   const std::string world = our_world("rooms.world"), out = folder.path("out");
   const std::string sweep = SF_SOURCE_DIR "/experiments/sweeps/lane-edge.toml";
-  for (const auto& [arguments, said] : std::vector<Wrong>{
+  for (const auto& [arguments, message] : std::vector<Wrong>{
            {{"run", world, "--of", "roomba0"}, "--of requires --robots"},
            {{"run", world, "--record-readings"}, "--record-readings requires --record"},
            {{"run", world, "--checkpoint", "1"}, "--checkpoint requires --record"},
@@ -176,7 +176,7 @@ TEST(Usage, OptionsThatNeedAnotherAreRejectedWithoutIt) {
            {{"vps", our_world("testbed.toml"), "--seed", "2"}, "--seed requires --rendered or --robots"},
            {{"calibrate", out, "--marker", "0.03"}, "--marker requires --charuco"},
            {{"calibrate", out, "--charuco", "aruco_4x4_50"}, "--charuco requires --marker"}})
-    expect_refused(arguments, said);
+    expect_refused(arguments, message);
 }
 
 /// Options that contradict each other, in any order.
@@ -200,14 +200,14 @@ TEST(Usage, ContradictoryOptionsAreRejected) {
     words.insert(words.end(), {"--duration", "0.1"});
     EXPECT_EQ(run_program(words).code, 0) << more[1] << " says the same";
   }
-  for (const auto& [arguments, said] : std::vector<Wrong>{
+  for (const auto& [arguments, message] : std::vector<Wrong>{
            {{"serve", world, "--filter", "--clock", "trusted", "--link-delay", "0.1"},
             "--link-delay: applies to estimated clocks"},
            {{"serve", world, "--lockstep", "--spat", "9010"}, "--spat: cannot be used with --lockstep"},
            {{"serve", world, "--lockstep", "--stale-lights", "plan"}, "--stale-lights: cannot be used with --lockstep"},
            {{"calibrate", out, "--survey", "lab.toml", "--rows", "6"}, "--rows: describes a chessboard"},
            {{"run", world, "--robots", "2", "--of", "roomba1", "--robot-from", "a.inc:b"}, "excludes"}})
-    expect_refused(arguments, said);
+    expect_refused(arguments, message);
 }
 
 /// Taken names are also printed for recordings; those of sensors only if readings are recorded.
@@ -251,14 +251,14 @@ TEST(Usage, FilesOfOtherCommandsAreRecognized) {
   const std::string testbed = our_world("testbed.toml"), plan = our_world("simville/lights.toml");
   const Folder folder;
   for (const char* command : {"run", "test"}) {
-    for (const auto& [file, said] :
+    for (const auto& [file, message] :
          {std::pair{sweep, "this file is a sweep, for `sensorfarm sweep`; expected a scenario"},
           {testbed, "this file is a testbed, for `sensorfarm vps`"},
           {plan, "this file is a plan of traffic lights, for `sensorfarm light`"},
           {our_world("simville/simville.toml"), "this file is of a road network"}}) {
       const Outcome outcome = run_program({command, file});
       EXPECT_NE(outcome.code, 0);
-      EXPECT_NE((outcome.err + outcome.out).find(said), std::string::npos) << outcome.err << outcome.out;
+      EXPECT_NE((outcome.err + outcome.out).find(message), std::string::npos) << outcome.err << outcome.out;
     }
   }
   expect_refused({"sweep", scenario, "-o", folder.path("o")}, "this file is a scenario, for `sensorfarm run`");
@@ -276,7 +276,7 @@ TEST(Usage, VersionIsPrinted) {
 TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
   const std::string world = our_world("rooms.world");
   const Folder folder;
-  for (const auto& [arguments, said] : std::vector<Wrong>{
+  for (const auto& [arguments, message] : std::vector<Wrong>{
            {{}, "expected a subcommand: devices, check"},  // no arguments
            {{"frob"}, "'frob' is not a subcommand"},       // unknown subcommand
            {{"runn"}, "did you mean 'run'?"},              // one typo
@@ -313,7 +313,7 @@ TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
            {{"draw", world, "-o", folder.path()}, "picture"},  // a folder
            {{"run", world, "--duration", "0.1", "--record", "/proc/none"}, "/proc/none"},
            {{"plot", folder.path()}, "no such recording"}})  // nothing was recorded there
-    expect_refused(arguments, said);
+    expect_refused(arguments, message);
 }
 
 /// A name with an unsupported format is refused before any work is done.

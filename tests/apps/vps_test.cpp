@@ -216,9 +216,9 @@ TEST(Vps, ImagesOfLiveRobotsAreAtLeastAPeriodApart) {
 namespace {
 
 std::size_t times_said(const Program& program, const std::string& text) {
-  const std::string said = program.err();
+  const std::string message = program.err();
   std::size_t count = 0;
-  for (std::size_t at = said.find(text); at != std::string::npos; at = said.find(text, at + 1)) ++count;
+  for (std::size_t at = message.find(text); at != std::string::npos; at = message.find(text, at + 1)) ++count;
   return count;
 }
 

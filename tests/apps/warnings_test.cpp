@@ -32,12 +32,12 @@ Said said_by(const Folder& folder, const std::string& command, const Words& more
   return {file, run_program(words)};
 }
 
-void expect_first_three(const Said& said) {
-  const std::string& err = said.outcome.err;
-  expect_in("sensorfarm: 5 warnings; the first 3 follow, `sensorfarm check " + said.file + "`:\n" + said.file +
+void expect_first_three(const Said& message) {
+  const std::string& err = message.outcome.err;
+  expect_in("sensorfarm: 5 warnings; the first 3 follow, `sensorfarm check " + message.file + "`:\n" + message.file +
                 ":2: warning: unknown property 'colour'",
             err);
-  expect_in(said.file +
+  expect_in(message.file +
                 ":5: warning: unknown property 'velocty_bounds' of 'position' is ignored; did you "
                 "mean 'velocity_bounds'?\n",
             err);
@@ -70,11 +70,11 @@ TEST(Warnings, JsonListsAll) {
            {"serve", {"--json", "--port", "0", "--duration", "0.2"}},
        }) {
     SCOPED_TRACE(command);
-    const Said said = said_by(folder, command, more);
-    ASSERT_EQ(said.outcome.code, 0) << said.outcome.err;
-    const Json facts(said.outcome.out);
+    const Said message = said_by(folder, command, more);
+    ASSERT_EQ(message.outcome.code, 0) << message.outcome.err;
+    const Json facts(message.outcome.out);
     ASSERT_EQ(facts.size("/warnings"), 5u);
-    EXPECT_EQ(facts.text("/warnings/4/file"), said.file);
+    EXPECT_EQ(facts.text("/warnings/4/file"), message.file);
     EXPECT_EQ(facts.number("/warnings/4/line"), 8);
     EXPECT_NE(facts.text("/warnings/4/message").find("'fow'"), std::string::npos);
   }

@@ -119,12 +119,12 @@ class RawClient {
   /// @return its messages meanwhile
   std::string settle() {
     text(R"({"op":"getParameters","parameterNames":[],"id":"settle"})");
-    std::string said;
+    std::string texts;
     while (const auto message = receive()) {
-      if (message->payload.find("settle") != std::string::npos) return said;
-      if (message->opcode == 1) said += message->payload;
+      if (message->payload.find("settle") != std::string::npos) return texts;
+      if (message->opcode == 1) texts += message->payload;
     }
-    return said;
+    return texts;
   }
 
  private:

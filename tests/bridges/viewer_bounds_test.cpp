@@ -26,7 +26,7 @@ TEST(ViewerBounds, AClientThatDoesNotReadSkipsAhead) {
   constexpr int kTicks = 100;
   for (int tick = 1; tick <= kTicks; ++tick) {
     fixture.tick(static_cast<std::uint64_t>(tick));
-    ASSERT_EQ(said(reader.receive_binary(1)), "101@" + std::to_string(tick)) << "the reader misses none";
+    ASSERT_EQ(subscription_tick(reader.receive_binary(1)), "101@" + std::to_string(tick)) << "the reader misses none";
   }
   EXPECT_GT(fixture.viewer->server().skipped(), 0u);
   // It finally reads complete ticks in order, with a gap, up to the newest one.
@@ -34,7 +34,7 @@ TEST(ViewerBounds, AClientThatDoesNotReadSkipsAhead) {
   while (last < kTicks) {
     const std::string message = stuck.receive_binary(1);
     ASSERT_GT(message.size(), 85 * kMany);
-    const int tick = std::stoi(said(message).substr(4));
+    const int tick = std::stoi(subscription_tick(message).substr(4));
     ASSERT_GT(tick, last);
     gaps += tick != last + 1;
     last = tick;
@@ -125,7 +125,7 @@ TEST(ViewerBounds, SubscriptionsAreCheckedAndBounded) {
   client.text(R"({"op":"unsubscribe","subscriptionIds":[7,7,7]})");  // none of its own
   client.settle();
   fixture.tick(1);
-  EXPECT_EQ(said(client.receive_binary(1)), "101@1");
+  EXPECT_EQ(subscription_tick(client.receive_binary(1)), "101@1");
 }
 
 TEST(ViewerBounds, SurvivesAnyBytes) {
@@ -144,7 +144,7 @@ TEST(ViewerBounds, SurvivesAnyBytes) {
   });
   Watcher client(fixture, {"/fleet"});
   fixture.tick(1);
-  EXPECT_EQ(said(client.receive_binary(1)), "101@1");
+  EXPECT_EQ(subscription_tick(client.receive_binary(1)), "101@1");
 }
 
 /// Without descriptors a connection waits, and so does the server: in half a second it uses little CPU time. Once

@@ -89,7 +89,7 @@ struct Watcher : RawClient {
 };
 
 /// Returns "subscription@tick" of a message of a topic whose first field is a time stamp, with ticks every 0.1 s.
-inline std::string said(const std::string& binary) {
+inline std::string subscription_tick(const std::string& binary) {
   std::uint32_t subscription = 0, nanoseconds = 0;
   std::int32_t seconds = 0;
   if (binary.size() < 24) return {};

@@ -129,13 +129,13 @@ TEST(Viewer, TopicsAreSentWithTheStatesOfTheirTick) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   });
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(said(watcher.receive_binary(1)).substr(0, 4), "101@");
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(subscription_tick(watcher.receive_binary(1)).substr(0, 4), "101@");
   watcher.subscribe(102, fixture.channel("/fleet"));
-  std::string last = said(watcher.receive_binary(1));
-  while (last.substr(0, 4) != "102@") last = said(watcher.receive_binary(1));
+  std::string last = subscription_tick(watcher.receive_binary(1));
+  while (last.substr(0, 4) != "102@") last = subscription_tick(watcher.receive_binary(1));
   int clocks = 0;
   for (int i = 0; i < 40; ++i) {
-    const std::string now = said(watcher.receive_binary(1));
+    const std::string now = subscription_tick(watcher.receive_binary(1));
     if (now.substr(0, 4) == "101@") {
       EXPECT_EQ(now.substr(4), last.substr(4)) << "after " << last;
       ++clocks;
@@ -151,9 +151,9 @@ TEST(Viewer, SendsSubscribedTopicsAndTheTime) {
   ViewerFixture fixture;
   Watcher one(fixture, {"/fleet"}), both(fixture, {"/clock", "/fleet"});
   fixture.tick(3);
-  EXPECT_EQ(said(one.receive_binary(1)), "101@3");
+  EXPECT_EQ(subscription_tick(one.receive_binary(1)), "101@3");
   const std::string fleet = both.receive_binary(1), clock = both.receive_binary(1);
-  EXPECT_EQ(said(fleet), "102@3") << "the client's own number";
+  EXPECT_EQ(subscription_tick(fleet), "102@3") << "the client's own number";
   EXPECT_EQ(clock.substr(0, 4), le32(101));
   std::int64_t time = 0;
   std::memcpy(&time, fleet.data() + 4, 8);
@@ -163,12 +163,12 @@ TEST(Viewer, SendsSubscribedTopicsAndTheTime) {
   ASSERT_EQ(now.size(), 8u);
   std::memcpy(&time, now.data(), 8);
   EXPECT_EQ(time, 400'000'000);
-  EXPECT_EQ(said(one.receive_binary(1)), "101@4") << "/clock was never subscribed";
+  EXPECT_EQ(subscription_tick(one.receive_binary(1)), "101@4") << "/clock was never subscribed";
   one.text(R"({"op":"unsubscribe","subscriptionIds":[101]})");
   one.subscribe(9, fixture.channel("/left/odom"));
   one.settle();
   fixture.tick(5);
-  EXPECT_EQ(said(one.receive_binary(1)), "9@5");
+  EXPECT_EQ(subscription_tick(one.receive_binary(1)), "9@5");
 }
 
 TEST(Viewer, SendsLatchedTopicsImmediately) {
@@ -185,7 +185,7 @@ TEST(Viewer, ShowsAPausedRunToNewSubscribers) {
   fixture.tick(7);  // no client is watching
   Watcher late(fixture, {"/fleet"});
   fixture.viewer->publish(RunState{.paused = true});
-  EXPECT_EQ(said(late.receive_binary(1)), "101@7");
+  EXPECT_EQ(subscription_tick(late.receive_binary(1)), "101@7");
 }
 
 TEST(Viewer, ShowsTheTickBeforeAPauseAfterSkippedTicks) {
@@ -201,7 +201,7 @@ TEST(Viewer, ShowsTheTickBeforeAPauseAfterSkippedTicks) {
   fixture.viewer->publish(RunState{.paused = true});
   std::string last;
   while (last != "101@50") {
-    last = said(client.receive_binary(1));
+    last = subscription_tick(client.receive_binary(1));
     ASSERT_FALSE(last.empty()) << "the last tick did not arrive";
   }
 }
@@ -211,7 +211,7 @@ TEST(Viewer, ShowsARestartedRun) {
   Watcher client(fixture, {"/left/odom"});
   for (const int tick : {5, 6, 0, 1}) {
     fixture.tick(static_cast<std::uint64_t>(tick));
-    EXPECT_EQ(said(client.receive_binary(1)), "101@" + std::to_string(tick));
+    EXPECT_EQ(subscription_tick(client.receive_binary(1)), "101@" + std::to_string(tick));
   }
 }
 

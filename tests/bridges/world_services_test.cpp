@@ -62,12 +62,12 @@ struct WorldServicesTest : RosServicesTest {
 const char* const kBox = "1 0.750 0.250 0.500 -0.50 -0.25 0.125";
 
 TEST_F(WorldServicesTest, EntitiesHaveInfoAndBounds) {
-  for (const auto& [name, code, category, said] :
+  for (const auto& [name, code, category, expected] :
        {std::tuple{"scout", 1, 1, "probe"}, {"tag", 1, 4, "model"}, {"robot_2", 2, 0, ""}, {"", 2, 0, ""}}) {
     Reply facts(ask("/get_entity_info", text(name)));
     EXPECT_EQ(facts.result(), code == 1 ? "1 " : "2 no entity of that name is present");
     EXPECT_EQ(facts.cdr.get<std::uint8_t>(), category);
-    EXPECT_EQ(facts.cdr.get_string(), said);
+    EXPECT_EQ(facts.cdr.get_string(), expected);
     EXPECT_EQ(facts.cdr.get_count(5), 0u);
     Reply box(ask("/get_entity_bounds", text(name)));
     EXPECT_EQ(box.result(), code == 1 ? "1 " : "2 no entity of that name is present");

@@ -72,7 +72,7 @@ TEST(DelayLine, ReleasesInOrderOfArrival) {
   const LinkModel model{.delay = 0.01, .jitter = 0.2, .loss = 0.1, .seed = 5};
   std::mt19937 random(3);  // NOLINT: the same every time
   DelayLine line(model);
-  std::uint64_t came = 0, lost = 0, overtaken = 0;
+  std::uint64_t arrived = 0, lost = 0, overtaken = 0;
   std::int64_t last = -1;
   std::uint32_t last_number = 0;
   std::int64_t before = 0;
@@ -86,14 +86,14 @@ TEST(DelayLine, ReleasesInOrderOfArrival) {
       overtaken += number < last_number;
       last_number = number;
       last = arrival;
-      ++came;
+      ++arrived;
     }
     before = now;
     if (!sample_delay(model, {1, 2, n})) ++lost;
     send(line, n, now);
   }
   EXPECT_EQ(line.counts().lost, lost);
-  EXPECT_EQ(line.counts().passed, came);
+  EXPECT_EQ(line.counts().passed, arrived);
   EXPECT_GT(lost, 50u);
   EXPECT_GT(overtaken, 50u);
 }

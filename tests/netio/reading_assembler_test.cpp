@@ -202,14 +202,14 @@ TEST(ReadingAssembler, HandlesAnyArrivalOrder) {
       std::swap(pieces[i], pieces[i + random() % std::min<std::size_t>(12, pieces.size() - i)]);
 
     Parts p;
-    std::map<std::uint32_t, std::set<std::uint32_t>> came;
+    std::map<std::uint32_t, std::set<std::uint32_t>> arrived;
     std::optional<std::uint32_t> newest;
     for (const auto& [sequence, part] : pieces) {
-      came[sequence].insert(part);
+      arrived[sequence].insert(part);
       if (p.send(sequence, part) == PartStatus::complete) {
         ++whole;
         ASSERT_TRUE(!newest || newer(sequence, *newest));
-        ASSERT_EQ(came[sequence].size(), 3u) << "complete before its parts arrived";
+        ASSERT_EQ(arrived[sequence].size(), 3u) << "complete before its parts arrived";
         newest = sequence;
       }
       if (!newest) continue;

@@ -173,11 +173,11 @@ TEST(RelayBounds, TurnIncludesAllStatesSinceTheLastTurn) {
     crowd.pass();
     auto received_states = crowd.received();
     for (const std::uint32_t id : crowd.ids) {
-      const Rows came = received_states[id];
-      waits[id] = came.empty() && !due[id].empty() ? waits[id] + 1 : 0;
+      const Rows arrived = received_states[id];
+      waits[id] = arrived.empty() && !due[id].empty() ? waits[id] + 1 : 0;
       EXPECT_LE(waits[id], 4);
-      if (came.empty()) continue;
-      EXPECT_EQ(came, Rows(due[id].begin(), due[id].end())) << id << " in pass " << pass;
+      if (arrived.empty()) continue;
+      EXPECT_EQ(arrived, Rows(due[id].begin(), due[id].end())) << id << " in pass " << pass;
       due[id].clear();
     }
   }

@@ -159,9 +159,9 @@ TEST_F(RelayTest, ForwardsBytesUnchanged) {
   write_session_token(bytes, v2v_socket(3).farm_session_token());  // except for sender and receiver
   relay.take(packet);
   tick();
-  base::Bytes came;
-  v2v_socket(3).receive([&](std::span<const std::uint8_t> got) { came.assign(got.begin(), got.end()); });
-  EXPECT_EQ(came, bytes);
+  base::Bytes arrived;
+  v2v_socket(3).receive([&](std::span<const std::uint8_t> got) { arrived.assign(got.begin(), got.end()); });
+  EXPECT_EQ(arrived, bytes);
 }
 
 TEST_F(RelayTest, DoesNotForwardTagsAndRequests) {
@@ -207,12 +207,12 @@ TEST_F(V2vSocketTest, AcceptsOnlyPacketsFromTheFarm) {
   stranger.flush();
   farm.queue(to(), v2v_of(3, 0));
   farm.flush();
-  int came = 0;
+  int arrived = 0;
   v2v_socket.receive([&](std::span<const std::uint8_t> bytes) {
-    ++came;
+    ++arrived;
     EXPECT_EQ(v2v_socket.accept(bytes, 0, packet), PacketStatus::accepted);
   });
-  EXPECT_EQ(came, 1);
+  EXPECT_EQ(arrived, 1);
   EXPECT_EQ(v2v_socket.counts()[PacketStatus::wrong_source], 1u);
 }
 

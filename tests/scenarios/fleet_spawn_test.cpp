@@ -115,9 +115,9 @@ TEST(FleetSpawn, MistakesAreRejectedAtTheirLine) {
       {magic + "robots = 2\nplace = \"lanes\"\n", "test.toml:2: robots on lanes, and "},
       {kTown + "robots = 500\nplace = \"lanes\"\n", "test.toml:2: 500 robots 0.50 m apart do not fit"},
   };
-  for (const auto& [text, said] : kCorpus) {
+  for (const auto& [text, message] : kCorpus) {
     const std::string error = refusal_from("test.toml", [&] { world_of(parse(text)); });
-    EXPECT_EQ(error.substr(0, said.size()), said) << text;
+    EXPECT_EQ(error.substr(0, message.size()), message) << text;
   }
 }
 

@@ -192,21 +192,21 @@ std::string refusal(Simulation& simulation, world::World& world, const JoiningRo
 TEST(Joining, RefusalsGiveAReasonAndChangeNothing) {
   world::World world = world_of();
   Simulation simulation(world, device(), options_of("host"));
-  const auto said = [&](const JoiningRobot& robot) { return refusal(simulation, world, robot); };
+  const auto message = [&](const JoiningRobot& robot) { return refusal(simulation, world, robot); };
   const auto has = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_PRED2(has, said({.name = "a", .like = "a", .X_WM = {}}), "the name 'a' is taken");
-  EXPECT_PRED2(has, said({.name = "a.front", .like = "a", .X_WM = {}}), "letters, digits or '_'");
-  EXPECT_PRED2(has, said({.name = "", .like = "a", .X_WM = {}}), "letters, digits or '_'");
-  EXPECT_PRED2(has, said({.name = "9", .like = "a", .X_WM = {}}), "a letter first");
-  EXPECT_PRED2(has, said({.name = std::string(65, 'x'), .like = "a", .X_WM = {}}), "1 to 64");
-  EXPECT_PRED2(has, said({.name = "b", .like = "prob", .X_WM = {}}), "has no robot or type of robots 'prob'");
-  EXPECT_PRED2(has, said({.name = "b", .like = "a", .X_WM = {NAN, 0.0, 0.0, 0.0}}), "expected finite numbers");
-  EXPECT_PRED2(has, said({.name = "b", .like = "a", .X_WM = {1e9, 0.0, 0.0, 0.0}}), "within 1e+07 m");
+  EXPECT_PRED2(has, message({.name = "a", .like = "a", .X_WM = {}}), "the name 'a' is taken");
+  EXPECT_PRED2(has, message({.name = "a.front", .like = "a", .X_WM = {}}), "letters, digits or '_'");
+  EXPECT_PRED2(has, message({.name = "", .like = "a", .X_WM = {}}), "letters, digits or '_'");
+  EXPECT_PRED2(has, message({.name = "9", .like = "a", .X_WM = {}}), "a letter first");
+  EXPECT_PRED2(has, message({.name = std::string(65, 'x'), .like = "a", .X_WM = {}}), "1 to 64");
+  EXPECT_PRED2(has, message({.name = "b", .like = "prob", .X_WM = {}}), "has no robot or type of robots 'prob'");
+  EXPECT_PRED2(has, message({.name = "b", .like = "a", .X_WM = {NAN, 0.0, 0.0, 0.0}}), "expected finite numbers");
+  EXPECT_PRED2(has, message({.name = "b", .like = "a", .X_WM = {1e9, 0.0, 0.0, 0.0}}), "within 1e+07 m");
   JoiningRobot parks{.name = "b", .like = "a", .X_WM = {}};
   parks.actor.controller.name = "unknown";
-  EXPECT_NE(said(parks), "none");
+  EXPECT_NE(message(parks), "none");
   EXPECT_EQ(world.movers.size(), 1u);
   EXPECT_THROW(simulation.remove_robot(1), base::InputError);
   simulation.remove_robot(0);
@@ -323,7 +323,8 @@ TEST(Joining, ErrorsOfEventsNameLineAndRemedy) {
        "joining.toml:5: 'b' would join after the end"},
       {later + "remove = \"a\"\n" + later + "remove = \"a\"\n", "joining.toml:8: row 0 has no robot"},
   };
-  for (const auto& [text, said] : kCorpus) EXPECT_EQ(joining_refusal(text).substr(0, said.size()), said) << text;
+  for (const auto& [text, message] : kCorpus)
+    EXPECT_EQ(joining_refusal(text).substr(0, message.size()), message) << text;
 }
 
 /// Ranks that share a fleet give the readings of a single process, whichever robots join and leave.

@@ -353,8 +353,8 @@ TEST(LockstepService, AHungProcessIsDroppedByName) {
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
   EXPECT_EQ(one.robot(1).state.flags, netio::kDriverLostBit);
   EXPECT_EQ(fixture.service.lockstep().counts().lost_robots, 2u);
-  const std::string said = fixture.log.read_all();
-  expect_in("tick 0: no command or STEP for 2 s from " + fixture.world.movers[1].name + " (id 2), ", said);
+  const std::string message = fixture.log.read_all();
+  expect_in("tick 0: no command or STEP for 2 s from " + fixture.world.movers[1].name + " (id 2), ", message);
   one.step({});
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); })) << "the others go on";
 }
@@ -376,8 +376,8 @@ TEST(LockstepService, ASilentProcessAloneIsAwaited) {
   ASSERT_TRUE(play(fixture, {&driver}));
   const std::int64_t begun = fixture.now;
   play(fixture, {}, [&] { return fixture.now >= begun + 6'000'000'000; });
-  const std::string said = fixture.log.read_all(), name = fixture.world.movers[0].name;
-  EXPECT_EQ(said, "sensorfarm: tick 0: waiting for 2 s for the commands or STEP of " + name + " (id 1)\n");
+  const std::string message = fixture.log.read_all(), name = fixture.world.movers[0].name;
+  EXPECT_EQ(message, "sensorfarm: tick 0: waiting for 2 s for the commands or STEP of " + name + " (id 1)\n");
   driver.step({});
   EXPECT_TRUE(play(fixture, {&driver}));
   EXPECT_EQ(fixture.service.lockstep().counts().lost_robots, 0u);

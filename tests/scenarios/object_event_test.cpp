@@ -136,7 +136,7 @@ TEST(ObjectEvent, ErrorsNameLineAndRemedy) {
       {"at = 1\nobjekt = \"tag1\"\npresent = true\n", "test.toml:4: unknown key 'objekt'; did you mean 'object'?"},
       {"at = 1\nobject = \"pioneer1\"\npresent = false\n", "test.toml:2: 'pioneer1' has sensors or a controller"},
   };
-  for (const auto& [text, said] : kCorpus) EXPECT_EQ(event_refusal(text).substr(0, said.size()), said) << text;
+  for (const auto& [text, message] : kCorpus) EXPECT_EQ(event_refusal(text).substr(0, message.size()), message) << text;
 }
 
 }  // namespace

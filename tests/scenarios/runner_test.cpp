@@ -42,7 +42,7 @@ TEST(CheckScenario, ErrorsOfARunAreFoundAtTheirLines) {
       {rooms + "duration = 1e-9\n", "test.toml:2: 'duration' 1e-09 s is shorter than a tick of 0.1 s"},
       {rooms + "duration = 0.049\n", "test.toml:2: 'duration' 0.049 s is shorter than a tick of 0.1 s"},
   };
-  for (const auto& [text, said] : kCorpus) EXPECT_EQ(run_refusal(text).substr(0, said.size()), said) << text;
+  for (const auto& [text, message] : kCorpus) EXPECT_EQ(run_refusal(text).substr(0, message.size()), message) << text;
 }
 
 TEST(CheckScenario, AValidScenarioPasses) {

@@ -192,9 +192,9 @@ TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
       {w + "[expect]\nall_checkpoints = { a = 1 }\n", "test.toml:3: 'all_checkpoints' expects a number"},
       {w + "expect = []\n", "test.toml:2: 'expect' expects a table"},
   };
-  for (const auto& [text, said] : kCorpus) {
+  for (const auto& [text, message] : kCorpus) {
     const std::string what = refusal(text);
-    EXPECT_EQ(what.substr(0, said.size()), said) << text;
+    EXPECT_EQ(what.substr(0, message.size()), message) << text;
   }
 }
 
@@ -205,14 +205,14 @@ TEST(ScenarioFile, MistakesAgainstTheWorldAreRejectedAtTheirLine) {
       {w + "[[robot]]\nname = \"roomba1\"\n", "test.toml:2: "},
       {w + "[default.settings]\nspeeed = 1\n", "test.toml:3: controller 'wander' has no setting 'speeed'"},
   };
-  for (const auto& [text, said] : kCorpus) {
+  for (const auto& [text, message] : kCorpus) {
     const Scenario scenario = parse_scenario(kFile, text);
     const std::string error = refusal_from("test.toml", [&] {
       const world::World world = world_of(scenario);
       SimulationOptions options = simulation_of(scenario, world);
       control::make_controller({world}, options.actors[0].controller);
     });
-    EXPECT_EQ(error.substr(0, said.size()), said) << text;
+    EXPECT_EQ(error.substr(0, message.size()), message) << text;
   }
 }
 
