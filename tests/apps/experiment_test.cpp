@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <string>
-#include <thread>
 
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
@@ -105,13 +103,8 @@ TEST(Experiment, AStopLeavesNoPartialTrial) {
   const Folder folder;
   Program program({"experiment", "lane-edge-p", "--trials", "200", "-o", folder.path("out"), "--files",
                    SF_SOURCE_DIR "/experiments"});
-  const auto recording = [&] {
-    std::error_code ignored;
-    return std::filesystem::exists(folder.path("out/trial-1/run.mcap"), ignored);
-  };
-  for (int i = 0; i < 12'000 && program.running() && !recording(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  ASSERT_TRUE(recording()) << program.err();
+  ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("out/trial-1/run.mcap")) || !program.running(); }))
+      << program.err();
   program.signal(SIGINT);
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.code, 130) << outcome.err;

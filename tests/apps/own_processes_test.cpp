@@ -13,6 +13,7 @@
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/instrumented.h"
+#include "tests/refusal.h"
 
 namespace sf {
 
@@ -88,8 +89,8 @@ TEST(OwnProcesses, EachExitIsReportedAndOtherScenariosRun) {
   const Outcome outcome = run_program(words);
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   const std::string xml = read_file(bench.folder.path("out.xml"));
-  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("first.toml"))) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("last.toml"))) << outcome.out;
+  expect_in("pass " + bench.folder.path("first.toml"), outcome.out);
+  expect_in("pass " + bench.folder.path("last.toml"), outcome.out);
   EXPECT_TRUE(has(xml, "<testsuite name=\"last\" tests=\"1\" failures=\"0\"")) << xml;
   for (std::size_t i = 0; i < std::size(kEnds); ++i) {
     const std::string name = "end" + std::to_string(i);
@@ -122,10 +123,10 @@ TEST(OwnProcesses, InProcessExitsAreReportedIfHandlersRun) {
   const Bench bench;
   const Outcome exited = run_program(bench.run("exit 0", {"--in-process"}));
   EXPECT_EQ(exited.code, 1);
-  EXPECT_TRUE(has(exited.err, "'r0' ended the process (exit code 0) at 1.000 s simulated")) << exited.err;
+  expect_in("'r0' ended the process (exit code 0) at 1.000 s simulated", exited.err);
   const Outcome crashed = run_program(bench.run("null", {"--in-process"}));
   EXPECT_NE(crashed.code, 0);
-  EXPECT_TRUE(has(crashed.err, "'r0' ended the process (Segmentation fault)")) << crashed.err;
+  expect_in("'r0' ended the process (Segmentation fault)", crashed.err);
   const Outcome tested = run_program({"test", bench.scenario("a", "exit 0"), bench.scenario("b", ""), "--in-process"});
   EXPECT_EQ(tested.code, 1);
   EXPECT_FALSE(has(tested.out, "b.toml")) << tested.out;
@@ -135,7 +136,7 @@ TEST(OwnProcesses, APlugInThreadIsNamedByTheCallThatWaitsForIt) {
   const Bench bench;
   const Outcome outcome = run_program(bench.run("thread"));
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(has(outcome.err, "ended the process (exit code 0)")) << outcome.err;
+  expect_in("ended the process (exit code 0)", outcome.err);
 }
 
 TEST(OwnProcesses, AnExitDuringControllerCreationIsReported) {
@@ -143,9 +144,8 @@ TEST(OwnProcesses, AnExitDuringControllerCreationIsReported) {
   const Outcome outcome = run_program({"test", bench.scenario("bad", "_exit", ", at_once = true"),
                                        bench.scenario("good", ""), "--junit", bench.folder.path("out.xml")});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_TRUE(has(outcome.out, "  FAIL controller 'test-ends' of robot 'r0' ended the process (exit code 0)\n"))
-      << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("good.toml"))) << outcome.out;
+  expect_in("  FAIL controller 'test-ends' of robot 'r0' ended the process (exit code 0)\n", outcome.out);
+  expect_in("pass " + bench.folder.path("good.toml"), outcome.out);
   EXPECT_TRUE(has(read_file(bench.folder.path("out.xml")), "errors=\"1\""));
 }
 
@@ -154,12 +154,12 @@ TEST(OwnProcesses, ExceptionsFailOnlyTheirScenario) {
   const Outcome outcome = run_program(
       {"test", bench.scenario("a", "text"), bench.scenario("b", "number"), bench.scenario("c", ""), "--jobs", "3"});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: \\x1b[2Jred\\x07 sensorfarm: all is well\n")) << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: it threw something that is not a std::exception")) << outcome.out;
+  expect_in("failed at 1.000 s: \\x1b[2Jred\\x07 sensorfarm: all is well\n", outcome.out);
+  expect_in("failed at 1.000 s: it threw something that is not a std::exception", outcome.out);
   // In the order of the files, whatever came first.
   EXPECT_LT(outcome.out.find("a.toml"), outcome.out.find("b.toml"));
   EXPECT_LT(outcome.out.find("b.toml"), outcome.out.find("c.toml"));
-  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("c.toml"))) << outcome.out;
+  expect_in("pass " + bench.folder.path("c.toml"), outcome.out);
 }
 
 TEST(OwnProcesses, TimeIsLimitedOnRequest) {
@@ -170,7 +170,7 @@ TEST(OwnProcesses, TimeIsLimitedOnRequest) {
       outcome.out,
       "it took longer than 3 s (--timeout); it was running controller 'test-ends' of robot 'r0' at 1.000 s simulated"))
       << outcome.out;
-  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("b.toml"))) << outcome.out;
+  expect_in("pass " + bench.folder.path("b.toml"), outcome.out);
 }
 
 /// A process that a controller leaves behind is ended even in a separate group or session.
@@ -211,9 +211,7 @@ TEST(OwnProcesses, TheFirstStopRequestEndsACallThatNeverReturns) {
     for (const int signal : {SIGINT, SIGTERM}) {
       Program program(bench.run(how, {"--record", bench.folder.path("run"), "--json"}));
       const std::string recording = bench.folder.path("run/run.mcap");
-      std::error_code ignored;
-      for (int i = 0; i < 12'000 && program.running() && !std::filesystem::exists(recording, ignored); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      EXPECT_TRUE(until([&] { return std::filesystem::exists(recording); }));
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
       program.signal(signal);
       const Outcome outcome = program.wait();
@@ -233,7 +231,7 @@ TEST(OwnProcesses, AStopRequestEndsCallsThatBeginLater) {
   words[1] = two;
   const Outcome outcome = run_program(words);
   EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "of robot 'r1' at 1.000 s simulated has not returned")) << outcome.err;
+  expect_in("of robot 'r1' at 1.000 s simulated has not returned", outcome.err);
 }
 
 /// An exit handler that waits for a thread, as Python's does: the report is printed, and a stop request ends it.
@@ -242,14 +240,13 @@ TEST(OwnProcesses, ARunningThreadIsEndedByAStopRequest) {
   for (const bool here : {false, true}) {
     const std::string report = bench.folder.path(here ? "here" : "child");
     Program program(bench.run("linger", here ? Words{"--in-process"} : Words{}), {}, report);
-    for (int i = 0; i < 12'000 && program.running() && read_file(report).empty(); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_TRUE(until([&] { return !read_file(report).empty(); }));
     EXPECT_TRUE(has(read_file(report), "robots"));
     program.signal(SIGINT);
     const Outcome outcome = program.wait();
     if (here) continue;  // ends like any program: by the signal, or with a code if it arrived before the end
     EXPECT_EQ(outcome.code, 1) << outcome.err;
-    EXPECT_TRUE(has(outcome.err, "a thread of controller 'test-ends' of robot 'r0' is still running")) << outcome.err;
+    expect_in("a thread of controller 'test-ends' of robot 'r0' is still running", outcome.err);
   }
 }
 
@@ -271,7 +268,7 @@ TEST(OwnProcesses, TheExitTimeMustBeANumber) {
   for (const char* text : {"soon", "0", "-1", "nan", "1e7", "1 s"}) {
     const Outcome outcome = run_program({"--version"}, {{"SENSORFARM_SECONDS_TO_END", text}});
     EXPECT_EQ(outcome.code, 2) << text;
-    EXPECT_TRUE(has(outcome.err, "SENSORFARM_SECONDS_TO_END expects a number of seconds")) << outcome.err;
+    expect_in("SENSORFARM_SECONDS_TO_END expects a number of seconds", outcome.err);
   }
   EXPECT_EQ(run_program({"--version"}, {{"SENSORFARM_SECONDS_TO_END", ""}}).code, 0) << "as if it were not set";
 }
@@ -281,13 +278,13 @@ TEST(OwnProcesses, ExitHandlersDoNotChangeTheExitCode) {
   const Bench bench;
   const Outcome outcome = run_program(bench.run("cover"));
   EXPECT_EQ(outcome.code, 2) << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "failed at 1.000 s: out of luck")) << outcome.err;
+  expect_in("failed at 1.000 s: out of luck", outcome.err);
   const Outcome tested = run_program({"test", bench.scenario("a", "cover")});
   EXPECT_EQ(tested.code, 1) << tested.err;
-  EXPECT_TRUE(has(tested.out, "failed at 1.000 s: out of luck")) << tested.out;
+  expect_in("failed at 1.000 s: out of luck", tested.out);
   const Outcome refused = run_program({"test", bench.scenario("b", "cover", ", at_once = true")});
   EXPECT_EQ(refused.code, 2) << refused.out;
-  EXPECT_TRUE(has(refused.err, "out of luck")) << refused.err;
+  expect_in("out of luck", refused.err);
 }
 
 /// Standard output contains only the report.
@@ -296,7 +293,7 @@ TEST(OwnProcesses, OutputOfControllersIsNotInJson) {
   for (const Words& more : {Words{"--json"}, Words{"--json", "--in-process"}}) {
     const Outcome outcome = run_successfully(bench.run("print", more));
     EXPECT_EQ(Json(outcome.out).number("/robots"), 1.0) << outcome.out;
-    EXPECT_TRUE(has(outcome.err, "a controller prints")) << outcome.err;
+    expect_in("a controller prints", outcome.err);
   }
   EXPECT_TRUE(has(run_program(bench.run("print")).out, "a controller prints"));
 }
@@ -315,7 +312,7 @@ TEST(OwnProcesses, ClosedStandardStreamsStayClosed) {
     EXPECT_EQ(outcome.code, has_output ? 0 : 2) << closed << outcome.err;
     EXPECT_TRUE(has(read_file(junit), "<testsuite name=\"a\" tests=\"1\" failures=\"0\"")) << closed;
     if (std::string(closed) == ">&-") {
-      EXPECT_TRUE(has(outcome.err, "standard output cannot be written")) << outcome.err;
+      expect_in("standard output cannot be written", outcome.err);
     }
   }
 }
@@ -326,10 +323,7 @@ TEST(OwnProcesses, SigintIsHandledEvenIfIgnored) {
   Words words{"-c", "trap '' INT; exec \"$0\" \"$@\"", SF_PROGRAM};
   for (const std::string& word : bench.run("loop", {"--record", bench.folder.path("run")})) words.push_back(word);
   Program program(words, {}, "", "", "sh");
-  std::error_code ignored;
-  const std::string recording = bench.folder.path("run/run.mcap");
-  for (int i = 0; i < 12'000 && program.running() && !std::filesystem::exists(recording, ignored); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_TRUE(until([&] { return std::filesystem::exists(bench.folder.path("run/run.mcap")); }));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   program.signal(SIGINT);
   EXPECT_EQ(program.wait().code, 1);
@@ -344,7 +338,7 @@ TEST(OwnProcesses, AStopRequestEndsTestsAndReportsFinishedOnes) {
   program.signal(SIGINT);
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.code, 128 + SIGINT) << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "interrupted: ")) << outcome.err;
+  expect_in("interrupted: ", outcome.err);
   EXPECT_TRUE(has(read_file(junit), "<error message=\"interrupted\">")) << read_file(junit);
 }
 
@@ -355,8 +349,7 @@ TEST(OwnProcesses, SweepsReportExitsByName) {
       bench.folder.write("sweep.toml", "scenario = \"base.toml\"\nseeds = 2\n[grid]\nduration = [0.5, 2]\n");
   const Outcome outcome = run_program({"sweep", sweep, "-o", bench.folder.path("out"), "--jobs", "1"});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' ended the process (exit code 0) at 1.000 s"))
-      << outcome.err;
+  expect_in("controller 'test-ends' of robot 'r0' ended the process (exit code 0) at 1.000 s", outcome.err);
   EXPECT_TRUE(has(outcome.out + outcome.err, "2 ")) << outcome.out;
 }
 

@@ -190,6 +190,14 @@ void expect_refused(const Words& arguments, const std::string& message, const st
   EXPECT_EQ(outcome.out, "");
 }
 
+bool until(const std::function<bool()>& done) {
+  for (int i = 0; i < 6000; ++i) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
 Words with(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,6 +74,9 @@ Outcome run_program(const Words& arguments, const Environment& environment = {})
 Outcome run_successfully(const Words& arguments, const Environment& environment = {});
 /// Runs the program and expects a refusal: exit code 2 and one line with `message` and `also`.
 void expect_refused(const Words& arguments, const std::string& message = "", const std::string& also = "");
+
+/// Polls `done` for up to a minute.
+bool until(const std::function<bool()>& done);
 
 /// Returns `words` followed by `more`.
 Words with(Words words, const Words& more);

@@ -3,10 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdlib>
-#include <functional>
-#include <thread>
 
 #include "netio/packets.h"
 #include "netio/socket.h"
@@ -123,15 +120,6 @@ class Robot {
   std::uint32_t requests_ = 0;
   std::size_t states_ = 0;
 };
-
-/// Polls for up to a minute.
-inline bool until(const std::function<bool()>& done) {
-  for (int i = 0; i < 3000; ++i) {
-    if (done()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return false;
-}
 
 /// Sends states until it is challenged.
 inline bool prove(Robot& robot) {

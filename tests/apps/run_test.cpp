@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <sstream>
-#include <thread>
 
 #include "record/recording.h"
 #include "tests/apps/file_size_limit.h"
@@ -36,13 +34,9 @@ void expect_pictures(const std::string& folder) {
 
 /// Waits until the recording is larger than the world: then the loop is running.
 bool records(Program& program, const std::string& file, std::uintmax_t bytes) {
-  for (int i = 0; i < 6000 && program.running(); ++i) {
-    std::error_code none_yet;
-    const auto size = std::filesystem::file_size(file, none_yet);
-    if (!none_yet && size > bytes) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
+  std::error_code ignored;  // the file does not exist yet
+  const auto size = [&] { return std::filesystem::exists(file) ? std::filesystem::file_size(file, ignored) : 0; };
+  return until([&] { return size() > bytes || !program.running(); }) && size() > bytes;
 }
 
 }  // namespace

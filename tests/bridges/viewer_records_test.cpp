@@ -42,12 +42,12 @@ std::string record_of(const RawClient::Message& message) {
 /// Returns all messages before the answer to a query with its own id.
 std::string said_until_settled(RawClient& client) {
   client.text(R"({"op":"getParameters","parameterNames":[],"id":"settle"})");
-  std::string said;
+  std::string text;
   while (const auto message = client.receive()) {
-    if (message->payload.find("settle") != std::string::npos) return said;
-    said += record_of(*message);
+    if (message->payload.find("settle") != std::string::npos) return text;
+    text += record_of(*message);
   }
-  return said + "  (end)\n";
+  return text + "  (end)\n";
 }
 
 std::string record_of(const Requests& r) {
