@@ -196,8 +196,7 @@ TEST(Usage, ContradictoryOptionsAreRejected) {
     expect_refused(words, "--topics: sensor has no frame odom and uses true odometry");
   }
   for (const Words& more : std::vector<Words>{{"--odometry", "truth"}, {"--external", "mapper"}}) {
-    Words words = with(sensor, more);
-    words.insert(words.end(), {"--duration", "0.1"});
+    const Words words = with(with(sensor, more), {"--duration", "0.1"});
     EXPECT_EQ(run_program(words).code, 0) << more[1] << " says the same";
   }
   for (const auto& [arguments, message] : std::vector<Wrong>{

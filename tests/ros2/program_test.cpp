@@ -162,9 +162,7 @@ TEST(Ros2Program, AServiceAnswersQueries) {
 TEST(Ros2Program, ReportsTheErrorInOneLine) {
   const std::string world = our_world("rooms.world");
   const auto refusal = [&](const Words& words, const Environment& environment) {
-    Words all{"run", world, "--duration", "0.1"};
-    all.insert(all.end(), words.begin(), words.end());
-    const Outcome outcome = run_program(all, environment);
+    const Outcome outcome = run_program(with({"run", world, "--duration", "0.1"}, words), environment);
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
     return outcome.err;

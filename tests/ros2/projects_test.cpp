@@ -94,8 +94,7 @@ struct Tree {
 struct Ros2Projects : testing::Test {
   void start(const std::vector<std::string>& robots, const Words& options) {
     domain = 1 + (static_cast<unsigned>(getpid()) + 57) % 230;
-    Words words{"run", world_of(folder, robots), "--ros2", std::to_string(domain)};
-    words.insert(words.end(), options.begin(), options.end());
+    const Words words = with({"run", world_of(folder, robots), "--ros2", std::to_string(domain)}, options);
     program.emplace(words, Environment{{"ROS_LOCALHOST_ONLY", "1"}});
     ASSERT_TRUE(program->prints("node /sensorfarm")) << program->err();
     peer.emplace(domain);
