@@ -40,13 +40,13 @@ PayloadInfo inspect_stream(std::size_t, const Header&, std::span<const std::uint
 
 /// Returns a monitor at the first free base port below Linux's ephemeral ports, since other tests run in parallel.
 /// Moves `streams` there.
-std::unique_ptr<StreamMonitor> listen(std::vector<StreamSpec>& streams, bool headerless = false,
-                                      const PayloadInspector& judging = inspect_stream) {
+std::unique_ptr<StreamMonitor> listen(std::vector<StreamSpec>& streams,
+                                      StreamMonitorOptions options = {.inspect = inspect_stream}) {
   for (std::uint32_t base = 12'000; base < 32'000; base += 200) {
     for (StreamSpec& spec : streams) spec.rule.base = base;
+    options.streams = streams;
     try {
-      return std::make_unique<StreamMonitor>(
-          StreamMonitorOptions{.headerless = headerless, .streams = streams, .inspect = judging});
+      return std::make_unique<StreamMonitor>(options);
     } catch (const base::InputError&) {
       continue;  // taken
     }
@@ -142,7 +142,7 @@ TEST(StreamMonitor, ReadingsInSeveralPartsAreCountedByPart) {
 
 TEST(StreamMonitor, WithoutHeadersDatagramsArePayloads) {
   auto streams = plans(1);
-  const auto monitor = listen(streams, true);
+  const auto monitor = listen(streams, {.headerless = true, .inspect = inspect_stream});
   Outbox outbox;
   for (const base::Bytes& payload : {base::Bytes{3, 0, 1}, {3, 0, 1}, {1}, {255, 0, 1}})
     outbox.queue(port_of(streams[0]), payload);
@@ -176,11 +176,11 @@ TEST(StreamMonitor, InspectorReceivesStreamAndHeader) {
   auto streams = plans(2);
   std::size_t asked = 99;
   Header inspected;
-  const auto monitor = listen(streams, false, [&](std::size_t i, const Header& header, auto) {
-    asked = i;
-    inspected = header;
-    return PayloadInfo{PacketStatus::out_of_range};
-  });
+  const auto monitor = listen(streams, {.inspect = [&](std::size_t i, const Header& header, auto) {
+                                asked = i;
+                                inspected = header;
+                                return PayloadInfo{PacketStatus::out_of_range};
+                              }});
   EXPECT_EQ(monitor->accept(1, reading(1, 0, 6, {1}), kMonitoredFarm, 0), PacketStatus::out_of_range);
   EXPECT_EQ(asked, 1u);
   EXPECT_EQ(sensor_type_of(inspected.type), 5);
@@ -248,17 +248,7 @@ TEST_F(OnePort, FaultyPacketDoesNotSelectAFarm) {
 
 TEST(StreamMonitor, MayAcceptPacketsOfOneHostOnly) {
   auto streams = plans(1);
-  streams[0].rule.base = port_of(streams[0]).port;
-  std::unique_ptr<StreamMonitor> monitor;
-  for (std::uint32_t base = 12'000; monitor == nullptr && base < 32'000; base += 200) {
-    streams[0].rule.base = base;
-    try {
-      monitor = std::make_unique<StreamMonitor>(
-          StreamMonitorOptions{.farm = resolve("192.0.2.1"), .streams = streams, .inspect = inspect_stream});
-    } catch (const base::InputError&) {
-      continue;  // taken
-    }
-  }
+  const auto monitor = listen(streams, {.farm = resolve("192.0.2.1"), .inspect = inspect_stream});
   const base::Bytes bytes = reading(0, 0, 0, {3, 0, 1});
   EXPECT_EQ(monitor->accept(0, bytes, kMonitoredFarm, 0), PacketStatus::wrong_source);
   EXPECT_EQ(monitor->accept(0, bytes, {resolve("192.0.2.1"), 1}, 0), PacketStatus::accepted);

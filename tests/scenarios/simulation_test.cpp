@@ -233,40 +233,34 @@ TEST(Simulation, ThreadsChangeNothingBetweenTicks) {
   EXPECT_EQ(hash_after(world, {.seed = 7, .threads = 3}, 30), first);
 }
 
+/// Returns the first of 20 ticks in which the robot has received a reading of its lane edge sensor; -1 if none.
+int first_error_tick(const world::World& world, double delay) {
+  SimulationOptions options;
+  options.actor.controller = config_of("lane-keeping");
+  options.actor.link = {.delay = delay};
+  Simulation simulation(world, device(), options);
+  for (int tick = 0; tick < 20; ++tick) {
+    simulation.step();
+    if (std::isfinite(simulation.controller(0)->error())) return tick;
+  }
+  return -1;
+}
+
 /// The delay counts from the time of measurement, not from the next tick: first at 77 ms, received at the tick after
 /// arrival.
 TEST(Simulation, LinkDelaysCountFromTheMeasurement) {
   for (const auto& [delay, tick] : {std::pair{0.02, 1}, {0.022, 1}, {0.024, 2}, {0.12, 2}}) {
     world::World world = our_world("testpath/testpath.world");
     for (world::Sensor& s : world.movers[0].sensors) s.settings.push_back({"phase", {0.077}, "", 0, ""});
-    SimulationOptions options;
-    options.actor.controller = config_of("lane-keeping");
-    options.actor.link = {.delay = delay};
-    Simulation simulation(world, device(), options);
-    int first = -1;
-    for (int i = 0; i < 20 && first < 0; ++i) {
-      simulation.step();
-      if (std::isfinite(simulation.controller(0)->error())) first = i;
-    }
-    EXPECT_EQ(first, tick) << delay;
+    EXPECT_EQ(first_error_tick(world, delay), tick) << delay;
   }
 }
 
 /// The robot steers towards the lane only after the first reading.
 TEST(Simulation, ADelayedReadingActsAfterItsDelay) {
   const world::World world = our_world("testpath/testpath.world");
-  for (const double delay : {0.0, 0.5, 1.0}) {
-    SimulationOptions options;
-    options.actor.controller = config_of("lane-keeping");
-    options.actor.link = {.delay = delay};
-    Simulation simulation(world, device(), options);
-    int first = -1;
-    for (int i = 0; i < 20 && first < 0; ++i) {
-      simulation.step();
-      if (std::isfinite(simulation.controller(0)->error())) first = i;
-    }
-    EXPECT_EQ(first, std::lround(delay / world.interval)) << delay;
-  }
+  for (const double delay : {0.0, 0.5, 1.0})
+    EXPECT_EQ(first_error_tick(world, delay), std::lround(delay / world.interval)) << delay;
 }
 
 /// Two robots that patrol towards each other stop by V2V; without it they would collide.

@@ -36,38 +36,38 @@ std::string lines_with(Fixture& f, const std::optional<netio::SigningKey>& key) 
   return f.log.read_all();
 }
 
-TEST(SignatureTrouble, BothSidesLogAWrongKey) {
-  Fixture f(with_key());
-  const std::string log = lines_with(f, kOtherKey);
-  EXPECT_EQ(count(log, "robot 1 ("), 1u) << log;
-  EXPECT_EQ(count(log, "with a wrong signature: the sender's key differs from the one in --peers here"), 1u) << log;
-  EXPECT_EQ(count(log, "has another key for robot 1 than --peers here"), 1u) << log;
-  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
-}
-
-TEST(SignatureTrouble, BothSidesLogAMissingKey) {
-  Fixture f(with_key());
-  const std::string log = lines_with(f, std::nullopt);
-  EXPECT_EQ(count(log, "without a signature: --peers has a key for it here"), 1u) << log;
-  EXPECT_EQ(count(log, "refuses packets without a signature of robot 1: start this one with --peers, too"), 1u) << log;
-  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
-}
-
-TEST(SignatureTrouble, BothSidesLogAFarmWithoutTheKey) {
-  Fixture f;
-  const std::string log = lines_with(f, kKey);
-  EXPECT_EQ(count(log, "whose signature is not checked: the sender uses a key"), 1u) << log;
-  EXPECT_EQ(count(log, "does not sign its packets: start `serve` with --peers and the key of robot 1, too"), 1u) << log;
-}
-
-TEST(SignatureTrouble, BothSidesLogAnotherAddress) {
-  Settings settings;
-  settings.peers = {{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt}};
-  Fixture f(settings);
-  const std::string log = lines_with(f, std::nullopt);
-  EXPECT_EQ(count(log, "is at 127.0.0.2 in the table of peers"), 1u) << log;
-  EXPECT_EQ(count(log, "accepts robot 1 from another address only: --peers has one for it there"), 1u) << log;
-  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
+TEST(SignatureTrouble, BothSidesLogKeysAndAddressesThatDiffer) {
+  const netio::Peer elsewhere{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt};
+  const struct {
+    const char* name;
+    std::vector<netio::Peer> peers;
+    std::optional<netio::SigningKey> key;
+    const char *farm, *robot;  ///< lines of the farm and of the robot, one each
+  } cases[] = {{"a wrong key", with_key().peers, kOtherKey,
+                "with a wrong signature: the sender's key differs from the one in --peers here",
+                "has another key for robot 1 than --peers here"},
+               {"a missing key", with_key().peers, std::nullopt, "without a signature: --peers has a key for it here",
+                "refuses packets without a signature of robot 1: start this one with --peers, too"},
+               {"a farm without the key",
+                {},
+                kKey,
+                "whose signature is not checked: the sender uses a key",
+                "does not sign its packets: start `serve` with --peers and the key of robot 1, too"},
+               {"another address",
+                {elsewhere},
+                std::nullopt,
+                "is at 127.0.0.2 in the table of peers",
+                "accepts robot 1 from another address only: --peers has one for it there"}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    Settings settings;
+    settings.peers = c.peers;
+    Fixture f(settings);
+    const std::string log = lines_with(f, c.key);
+    EXPECT_EQ(count(log, c.farm), 1u) << log;
+    EXPECT_EQ(count(log, c.robot), 1u) << log;
+    EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
+  }
 }
 
 /// START and lights have no robot to name.
