@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
-
 #include "netio/outbox.h"
 #include "tests/apps/remote_robot.h"
 #include "tests/netio/vectors.h"
@@ -123,8 +121,7 @@ void expect_readings(Service& service, unsigned ports, const std::string& progra
   const auto scans = [&] { return count_of(read_file(out), "laser 0 of robot 1 at "); };
   const std::size_t before = scans();
   EXPECT_TRUE(until([&] { return scans() >= before + 2 || !client.running(); }));
-  client.signal(SIGINT);
-  const Outcome outcome = client.wait();
+  const Outcome outcome = client.stop();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("accepted "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("wrong source 1"), std::string::npos) << outcome.err;
@@ -153,8 +150,7 @@ TEST(Clients, BothPrintTheReadingsOfSense) {
   ASSERT_NE(service.port, 0u) << service.program.err();
   expect_readings(service, ports, "python3", {kPythonClient});
   expect_readings(service, ports, compiled(service.folder, kCClient), {});
-  service.program.signal(SIGINT);
-  const Json facts(service.program.wait().out);
+  const Json facts(service.program.stop().out);
   EXPECT_GE(facts.number("/received/accepted"), 6) << "of each a request, a state and its last";
   EXPECT_FALSE(facts.has("/received/wrong source"));
   EXPECT_FALSE(facts.has("/received/stale"));
@@ -172,8 +168,7 @@ TEST(Clients, BothSignAndVerifySignatures) {
   ASSERT_NE(service.port, 0u) << service.program.err();
   expect_readings(service, ports, "python3", {kPythonClient, "--key", file});
   expect_readings(service, ports, compiled(service.folder, kCClient), {"--key", file});
-  service.program.signal(SIGINT);
-  const Json facts(service.program.wait().out);
+  const Json facts(service.program.stop().out);
   EXPECT_GE(facts.number("/received/accepted"), 6);
   for (const char* reason : {"not signed", "wrong signature", "replayed"})
     EXPECT_FALSE(facts.has(std::string("/received/") + reason)) << reason;

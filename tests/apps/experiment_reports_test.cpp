@@ -201,9 +201,7 @@ TEST(ExperimentReport, LateStatesMatchTheColumnsOfTheirFile) {
   const Folder folder;
   folder.write("late-states.toml",
                short_path("4", "lane-keeping", "[states]\nrate = 10\ndelay = 0.08\nfilter = true\n"));
-  const Outcome outcome =
-      run_program({"experiment", "late-states", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"experiment", "late-states", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
   const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/late-states.csv")));
   ASSERT_EQ(records.size(), 2u * 2 * 5) << "two gains, two speeds, five kinds of states";
   const auto rows = table_rows(read_file(folder.path("out/report.md")));
@@ -273,9 +271,7 @@ TEST(ExperimentReport, AccuracyMatchesTheColumnsOfItsFile) {
   folder.write("explore.toml", "world = \"small.world\"\nduration = 2\n[default]\ncontroller = \"avoid\"\n");
   folder.write("lane-edge-p.toml", short_path("4", "lane-keeping"));
   folder.write("magnet-p.toml", short_path("4", "magnet-keeping"));
-  const Outcome outcome =
-      run_program({"experiment", "accuracy", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"experiment", "accuracy", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
   const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/accuracy.csv")));
   ASSERT_EQ(records.size(), 3u + 4 + 5) << "modes of the three types";
   const auto rows = table_rows(read_file(folder.path("out/report.md")));
@@ -307,9 +303,7 @@ TEST(ExperimentReport, ATownMatchesTheColumnsOfItsFile) {
   const Folder folder;
   folder.write("minimagic.toml", "world = \"" + our_world("rooms.world") +
                                      "\"\nduration = 5\nrobots = 3\n[default]\ncontroller = \"wander\"\n");
-  const Outcome outcome =
-      run_program({"experiment", "minimagic", "--trials", "2", "-o", folder.path("out"), "--files", folder.path()});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"experiment", "minimagic", "--trials", "2", "-o", folder.path("out"), "--files", folder.path()});
   const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/statistics.csv")));
   const auto rows = table_rows(read_file(folder.path("out/report.md")));
   ASSERT_GE(records.size(), 2u * 3);

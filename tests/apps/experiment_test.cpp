@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -72,8 +71,7 @@ TEST(Experiment, NeedsNoFilesAndTakesAPlant) {
   if (!std::string(SF_BINARY_DIR).starts_with(SF_SOURCE_DIR)) GTEST_SKIP() << "built outside of the sources";
   const Folder folder;
   const Outcome outcome =
-      run_program({"experiment", "lane-edge-p", "--trials", "1", "--plant", "ideal", "-o", folder.path("out")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+      run_successfully({"experiment", "lane-edge-p", "--trials", "1", "--plant", "ideal", "-o", folder.path("out")});
   EXPECT_NE(read_file(folder.path("out/report.md")).find("Plant `ideal`, seed 1, "), std::string::npos);
   for (const char* name : {"report.md", "statistics.csv", "trajectories.png"})
     EXPECT_NE(outcome.err.find("wrote " + folder.path("out/") + name + "\n"), std::string::npos) << outcome.err;
@@ -86,9 +84,7 @@ TEST(Experiment, TheMappingReportMatchesItsFile) {
                "model( size [0.8 0.8 0.5] boundary 1 noblocks 0 )\n"
                "position( name \"a\" size [0.2 0.2 0.1] laser( samples 91 fov 180 range_max 2 ) )\n");
   folder.write("mapping.toml", "world = \"small.world\"\nduration = 2\n[default]\ncontroller = \"avoid\"\n");
-  const Outcome outcome =
-      run_program({"experiment", "mapping", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  run_successfully({"experiment", "mapping", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
   const std::string csv = read_file(folder.path("out/statistics.csv"));
   const std::string report = read_file(folder.path("out/report.md"));
   const std::size_t row = csv.find('\n', csv.find('\n') + 1), end = report.find(" % |\n");
@@ -105,8 +101,7 @@ TEST(Experiment, AStopLeavesNoPartialTrial) {
                    SF_SOURCE_DIR "/experiments"});
   ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("out/trial-1/run.mcap")) || !program.running(); }))
       << program.err();
-  program.signal(SIGINT);
-  const Outcome outcome = program.wait();
+  const Outcome outcome = program.stop();
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path("out/report.md")));
@@ -153,8 +148,7 @@ TEST(TestCommand, AnUnwritableFolderIsReportedBeforeAnyRun) {
 TEST(TestCommand, NoExpectationsIsASeparateResult) {
   const Folder folder;
   const Outcome outcome =
-      run_program({"test", folder.write("idle.toml", scenario("")), "--junit", folder.path("o.xml")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+      run_successfully({"test", folder.write("idle.toml", scenario("")), "--junit", folder.path("o.xml")});
   EXPECT_EQ(outcome.out.find("pass"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("nothing expected"), std::string::npos) << outcome.out;
   EXPECT_NE(read_file(folder.path("o.xml")).find("skipped=\"1\""), std::string::npos);

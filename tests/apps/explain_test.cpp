@@ -20,8 +20,7 @@ TEST(Explain, ListsWhichTablesAreBuilt) {
 /// Lasers of 181 beams: the structures built for them and their cost, in integers where they are known.
 TEST(Explain, AsJson) {
   const Outcome outcome =
-      run_program({"explain", our_world("rooms.world"), "--robots", "3", "--caster", "vulkan", "--json"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+      run_successfully({"explain", our_world("rooms.world"), "--robots", "3", "--caster", "vulkan", "--json"});
   const Json json(outcome.out);
   ASSERT_EQ(json.size("/types"), 1u);
   EXPECT_EQ(json.text("/types/0/type"), "laser");
@@ -51,8 +50,7 @@ TEST(Explain, AsJson) {
 /// If the host casts, it has no kernel. An unknown caster is refused.
 TEST(Explain, UsesTheRequestedCaster) {
   const Outcome host =
-      run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "host", "--json"});
-  EXPECT_EQ(host.code, 0) << host.err;
+      run_successfully({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "host", "--json"});
   const Json json(host.out);
   EXPECT_EQ(json.text("/caster").rfind("host, ", 0), 0u);
   EXPECT_EQ(json.size("/types/0/kernels"), 0u);

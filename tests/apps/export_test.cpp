@@ -432,8 +432,7 @@ TEST_F(Recorded, TheWindowClosesOnDemand) {
   const VirtualDisplay display;
   Program window(recorded("view", {"--3d"}), display.environment());
   ASSERT_TRUE(window.prints("the slider chooses the time")) << window.err();
-  window.signal(SIGTERM);
-  EXPECT_EQ(window.wait().code, 0) << window.err();
+  EXPECT_EQ(window.stop(SIGTERM).code, 0) << window.err();
 }
 
 }  // namespace

@@ -56,8 +56,7 @@ struct Hall {
 };
 
 Json ended(Program& program) {
-  program.signal(SIGINT);
-  const Outcome outcome = program.wait();
+  const Outcome outcome = program.stop();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return Json(outcome.out);
 }
@@ -67,8 +66,7 @@ TEST(Faults, ARobotSurvivesTheRestartOfItsFarm) {
   auto farm = hall.serve({"--record", hall.folder.path("first")});
   const auto robot = hall.robot("roomba1");
   hall.drive_for_a_while("roomba2");
-  farm->signal(SIGKILL);
-  EXPECT_EQ(farm->wait().signal, SIGKILL);
+  EXPECT_EQ(farm->stop(SIGKILL).signal, SIGKILL);
   ASSERT_TRUE(robot->prints(kStops)) << robot->err();
   farm = hall.serve();
   ASSERT_TRUE(robot->prints(kResumes)) << robot->err();
@@ -113,8 +111,7 @@ TEST(Faults, ARestartedLightIsAcceptedAgain) {
   const Words words{"light", hall.world, "--farm", "127.0.0.1:" + hall.port, "--set", "lamp=green"};
   auto light = std::make_unique<Program>(words);
   hall.drive_for_a_while("roomba2");
-  light->signal(SIGKILL);
-  EXPECT_EQ(light->wait().signal, SIGKILL);
+  EXPECT_EQ(light->stop(SIGKILL).signal, SIGKILL);
   Words again = words;
   for (const char* word : {"--duration", "2.7"}) again.emplace_back(word);
   const Outcome outcome = run_successfully(again);
@@ -137,8 +134,7 @@ TEST(Faults, ARestartedCameraIsAcceptedAgain) {
   {
     Program camera(words);
     ASSERT_TRUE(until([&] { return netio::ReceiveBatch(1).fill(here) > 0; })) << camera.err();
-    camera.signal(SIGKILL);
-    EXPECT_EQ(camera.wait().signal, SIGKILL);
+    EXPECT_EQ(camera.stop(SIGKILL).signal, SIGKILL);
   }
   for (const char* word : {"--duration", "3.2"}) words.emplace_back(word);
   run_successfully(words);

@@ -20,8 +20,7 @@ std::string magnets(const Folder& folder) {
 TEST(Field, WritesAPicture) {
   const Folder folder;
   const Outcome outcome =
-      run_program({"field", our_world("six_magnets.world"), "--height", "0.075", "-o", folder.path("six.png")});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+      run_successfully({"field", our_world("six_magnets.world"), "--height", "0.075", "-o", folder.path("six.png")});
   EXPECT_NE(outcome.err.find("wrote"), std::string::npos);
   const scenes::Picture picture = scenes::read_png(folder.path("six.png"));
   std::set<std::uint32_t> colours;

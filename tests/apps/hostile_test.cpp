@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <random>
 
 #include "netio/outbox.h"
@@ -109,8 +108,7 @@ TEST(Hostile, OneRobotIsServedAndNoOneIsFlooded) {
     for (Stranger& stranger : strangers) stranger.receive();
   }
   ASSERT_TRUE(service.program.running());
-  service.program.signal(SIGINT);
-  const Outcome outcome = service.program.wait();
+  const Outcome outcome = service.program.stop();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_LT(count_lines(outcome.err), 10u + 30u) << outcome.err;  // a burst of 20, then 5 a second
 

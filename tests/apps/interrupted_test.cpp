@@ -15,8 +15,7 @@ namespace {
 Outcome stopped(const Words& words, int by = SIGINT) {
   Program program(words);
   EXPECT_TRUE(program.handles(by)) << words[0] << ": " << program.err();
-  program.signal(by);
-  return program.wait();
+  return program.stop(by);
 }
 
 /// A recording of one minute with forty robots, long enough for every command that reads it.

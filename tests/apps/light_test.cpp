@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
-
 #include "base/elapsed.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
@@ -76,11 +74,9 @@ TEST(Light, RunsAPlanWithAFarm) {
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
   EXPECT_NE(light.err.find("7 lights of 2 intersections to 127.0.0.1:" + port + " (V2I) at 20 Hz"), std::string::npos);
   EXPECT_EQ(light.err.find("no packets from"), std::string::npos) << light.err;
-  robot.signal(SIGINT);
-  const Json report(robot.wait().out);
+  const Json report(robot.stop().out);
   EXPECT_GE(report.number("/lights/packets"), 4.0);
-  farm.signal(SIGINT);
-  const Json facts(farm.wait().out);
+  const Json facts(farm.stop().out);
   EXPECT_GE(facts.number("/lights/packets"), 20.0) << "of both intersections";
   EXPECT_GE(facts.number("/lights/sent"), 4.0);
   EXPECT_FALSE(facts.has("/received/stale"));
@@ -92,8 +88,7 @@ TEST(Light, CtrlCEndsItAtOnce) {
                  std::to_string(free_ports(1)), "--rate", "0.1"});
   ASSERT_TRUE(light.prints("press Ctrl-C to stop"));
   const auto start = std::chrono::steady_clock::now();
-  light.signal(SIGINT);
-  EXPECT_EQ(light.wait().code, 0);
+  EXPECT_EQ(light.stop().code, 0);
   EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
 }
 

@@ -36,8 +36,7 @@ TEST(LiveView, ARunIsDrivenAndAServiceIsWatched) {
     EXPECT_EQ(of_service.find(part), std::string::npos) << part << ": " << of_service;
   }
   for (Program* program : {&run, &serve}) {
-    program->signal(SIGTERM);
-    EXPECT_EQ(program->wait().signal, 0) << program->err();
+    EXPECT_EQ(program->stop(SIGTERM).signal, 0) << program->err();
   }
 }
 

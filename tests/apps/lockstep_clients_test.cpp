@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
@@ -58,8 +57,7 @@ struct LockstepServer {
     return with({"serve", our_world("cave.world"), "--lockstep", "--robots", "3", "--port", "0", "--json"}, more);
   }
   Json end(int code = 0) {
-    program.signal(SIGINT);
-    const Outcome outcome = program.wait();
+    const Outcome outcome = program.stop();
     EXPECT_EQ(outcome.code, code) << outcome.err;
     return Json(outcome.out);
   }

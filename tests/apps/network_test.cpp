@@ -26,8 +26,7 @@ Exchange exchange(const std::string& world, const std::string& ports, const std:
   Program listener(listen);
   EXPECT_TRUE(listener.prints("listening on " + ports)) << listener.err();
   const Outcome sent = run_successfully(run);
-  listener.signal(SIGINT);
-  return {sent, listener.wait()};
+  return {sent, listener.stop()};
 }
 
 void run_to_listener(const std::string& wire) {
@@ -94,8 +93,7 @@ TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
   send(farm, 6, 100);
   send(farm, 5, 1'000'000);  // rejected on its own
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  listener.signal(SIGINT);
-  const Outcome outcome = listener.wait();
+  const Outcome outcome = listener.stop();
   const Json in(outcome.out);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(in.number("/packets"), 9);
@@ -145,10 +143,8 @@ TEST(SendAndListen, AListenerEndsWithoutPackets) {
 }
 
 TEST(SendAndListen, ARobotsKindsOnOneBaseAreDistinguished) {
-  const Outcome outcome =
-      run_program({"run", our_world("mapping/mapping.world"), "--send", "127.0.0.1", "--laser-port", "52000"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("change --laser-port or --occupancy-port"), std::string::npos) << outcome.err;
+  expect_refused({"run", our_world("mapping/mapping.world"), "--send", "127.0.0.1", "--laser-port", "52000"},
+                 "change --laser-port or --occupancy-port");
 }
 
 TEST(SendAndListen, CollidingPortsAreRejectedAtLoad) {
@@ -205,8 +201,7 @@ TEST(Serve, ReadingsAtReportedPosesMatchSense) {
   EXPECT_TRUE(agreed) << testing::PrintToString(ranges);
   // The other robot has sent nothing, so nothing is sent to it.
   EXPECT_TRUE(two.receive().empty());
-  service.program.signal(SIGTERM);
-  const Outcome outcome = service.program.wait();
+  const Outcome outcome = service.program.stop(SIGTERM);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json facts(outcome.out);
   EXPECT_EQ(facts.number("/robots"), 2);
@@ -245,8 +240,7 @@ TEST(Serve, ARateTooLowForASensorIsReported) {
     one.receive();
     return one.stamps().size() >= 5;
   }));
-  service.program.signal(SIGINT);
-  EXPECT_GE(Json(service.program.wait().out).number("/missed"), 4 * 4);
+  EXPECT_GE(Json(service.program.stop().out).number("/missed"), 4 * 4);
 }
 
 /// 200 states within at most two ticks.
@@ -256,8 +250,7 @@ TEST(Serve, FilteredStatesBeyondTheLimitPerTickAreCounted) {
   Robot one(1, service.port, service.laser_port(1));
   ASSERT_TRUE(prove(one));
   for (int i = 0; i < 200; ++i) one.send_state({-1.0, 0.5, 0.0, 0.0});
-  service.program.signal(SIGINT);
-  EXPECT_GE(Json(service.program.wait().out).number("/states/beyond_limit"), 200 - 2 * 64);
+  EXPECT_GE(Json(service.program.stop().out).number("/states/beyond_limit"), 200 - 2 * 64);
 }
 
 TEST(Serve, RobotsSeeEachOther) {
@@ -310,8 +303,7 @@ TEST(Serve, StatesAreRelayedWithinRadioRange) {
   EXPECT_EQ(one.states(), 0u) << "3.5 m apart";
   EXPECT_TRUE(until([&] { return turn(1.5), one.states() > 0; }));
   EXPECT_EQ(two.states(), 0u) << "it did not ask";
-  service.program.signal(SIGINT);
-  const Json facts(service.program.wait().out);
+  const Json facts(service.program.stop().out);
   EXPECT_GE(facts.number("/relayed/states"), 1);
   EXPECT_EQ(facts.number("/relayed/datagrams"), facts.number("/relayed/states"));
   EXPECT_EQ(facts.number("/relayed/waited"), 0);
@@ -386,8 +378,7 @@ TEST(Serve, StrangersAreReportedOncePerBindingUntilALeave) {
   // It owns the id from here on, though less than two seconds have passed.
   for (int i = 0; i < 5; ++i) again.send_state({2.0, 0.0, 0.0, 0.0});
   ASSERT_TRUE(until([&] { return one.receives_for(again); }));
-  service.program.signal(SIGINT);
-  const Outcome outcome = service.program.wait();
+  const Outcome outcome = service.program.stop();
   EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;  // the service's address, and the stranger
   EXPECT_NE(outcome.err.find("roomba1 (id 1) is at 127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_EQ(Json(outcome.out).number("/received/wrong source"), 5);

@@ -213,8 +213,7 @@ TEST(OwnProcesses, TheFirstStopRequestEndsACallThatNeverReturns) {
       const std::string recording = bench.folder.path("run/run.mcap");
       EXPECT_TRUE(until([&] { return std::filesystem::exists(recording); }));
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      program.signal(signal);
-      const Outcome outcome = program.wait();
+      const Outcome outcome = program.stop(signal);
       EXPECT_EQ(outcome.code, 1) << how << outcome.err;
       EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' at 1.000 s simulated has not returned"))
           << how << outcome.err;
@@ -242,8 +241,7 @@ TEST(OwnProcesses, ARunningThreadIsEndedByAStopRequest) {
     Program program(bench.run("linger", here ? Words{"--in-process"} : Words{}), {}, report);
     EXPECT_TRUE(until([&] { return !read_file(report).empty(); }));
     EXPECT_TRUE(has(read_file(report), "robots"));
-    program.signal(SIGINT);
-    const Outcome outcome = program.wait();
+    const Outcome outcome = program.stop();
     if (here) continue;  // ends like any program: by the signal, or with a code if it arrived before the end
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     expect_in("a thread of controller 'test-ends' of robot 'r0' is still running", outcome.err);
@@ -325,8 +323,7 @@ TEST(OwnProcesses, SigintIsHandledEvenIfIgnored) {
   Program program(words, {}, "", "", "sh");
   EXPECT_TRUE(until([&] { return std::filesystem::exists(bench.folder.path("run/run.mcap")); }));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  program.signal(SIGINT);
-  EXPECT_EQ(program.wait().code, 1);
+  EXPECT_EQ(program.stop().code, 1);
 }
 
 TEST(OwnProcesses, AStopRequestEndsTestsAndReportsFinishedOnes) {
@@ -335,8 +332,7 @@ TEST(OwnProcesses, AStopRequestEndsTestsAndReportsFinishedOnes) {
   Program program(
       {"test", bench.scenario("a", ""), bench.scenario("b", "sleep"), bench.scenario("c", ""), "--junit", junit});
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-  program.signal(SIGINT);
-  const Outcome outcome = program.wait();
+  const Outcome outcome = program.stop();
   EXPECT_EQ(outcome.code, 128 + SIGINT) << outcome.err;
   expect_in("interrupted: ", outcome.err);
   EXPECT_TRUE(has(read_file(junit), "<error message=\"interrupted\">")) << read_file(junit);

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <cstdlib>
 
 #include "tests/apps/remote_robot.h"
@@ -72,8 +71,7 @@ TEST(PacketsPage, ItsRobotProvesItsAddressAndIsServed) {
   const std::string out = printed(service.folder, script);
   EXPECT_EQ(out.front(), '[') << out;
   EXPECT_GT(count_lines(out), 5u) << out;
-  service.program.signal(SIGINT);
-  const Json facts(service.program.wait().out);
+  const Json facts(service.program.stop().out);
   EXPECT_GE(facts.number("/received/unproven"), 1);
   EXPECT_GT(facts.number("/received/accepted"), 20);
 }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
-
 #include "tests/apps/program.h"
 #include "tests/bridges/player_client.h"
 #include "tests/refusal.h"
@@ -30,10 +28,7 @@ struct PlayerProgram {
     const std::string err = program->err();
     server.port = static_cast<std::uint16_t>(std::atoi(err.c_str() + err.find(expected) + expected.size()));
   }
-  Outcome end() {
-    program->signal(SIGINT);
-    return program->wait();
-  }
+  Outcome end() { return program->stop(); }
   Folder folder;
   std::optional<Program> program;
   netio::Endpoint server;

@@ -169,6 +169,11 @@ Outcome Program::wait() {
   return outcome;
 }
 
+Outcome Program::stop(int number) {
+  signal(number);
+  return wait();
+}
+
 Outcome run_program(const Words& arguments, const Environment& environment) {
   return Program(arguments, environment).wait();
 }

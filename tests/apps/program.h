@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -57,6 +58,8 @@ class Program {
   /// Waits until the program handles the signal; false if it ends first, or after a minute.
   bool handles(int number);
   void signal(int number) const;
+  /// Sends the signal and waits until the program ends.
+  Outcome stop(int number = SIGINT);
   /// Waits until the program ends; kills it after two minutes.
   Outcome wait();
 

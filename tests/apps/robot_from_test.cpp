@@ -47,8 +47,7 @@ TEST(RobotFrom, IsClonedInAnyWorld) {
   const Folder folder;
   const std::string own = folder.write("own.inc", kOwn) + ":scout", cave = our_world("cave.world");
   const Outcome copies =
-      run_program({"run", cave, "--robot-from", own, "--robots", "3", "--duration", "0.5", "--json"});
-  ASSERT_EQ(copies.code, 0) << copies.err;
+      run_successfully({"run", cave, "--robot-from", own, "--robots", "3", "--duration", "0.5", "--json"});
   EXPECT_EQ(Json(copies.out).number("/robots"), 3);
   expect_refused({"run", cave, "--robot-from", own}, "has its own robots; --robot-from is for worlds without");
 }

@@ -51,10 +51,7 @@ struct FarmService {
     const Words words = with({"robot", world, "--name", name, "--port", port, "--laser-port", lasers, "--json"}, more);
     return std::make_unique<Program>(words);
   }
-  Json end() {
-    program.signal(SIGINT);
-    return Json(program.wait().out);
-  }
+  Json end() { return Json(program.stop().out); }
 };
 
 Json facts_of(const std::unique_ptr<Program>& robot, int code = 0) {
@@ -169,8 +166,7 @@ TEST_F(RobotsTest, SendTheirOwnMaps) {
     EXPECT_GT(facts.number("/own_map/scans"), 0);
     EXPECT_GT(facts.number("/own_map/maps"), 0);
   }
-  map.signal(SIGINT);
-  const Outcome outcome = map.wait();
+  const Outcome outcome = map.stop();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), '1'), 0) << outcome.out;
   EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), ' '), 20) << outcome.out;

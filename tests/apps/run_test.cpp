@@ -368,8 +368,7 @@ TEST(Run, AKilledRunCanBeDrawn) {
   const Folder folder;
   Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
   ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 120'000)) << program.err();
-  program.signal(SIGKILL);
-  EXPECT_EQ(program.wait().signal, SIGKILL);
+  EXPECT_EQ(program.stop(SIGKILL).signal, SIGKILL);
   const Outcome outcome = run_successfully({"plot", folder.path("r"), "-o", folder.path("p")});
   EXPECT_NE(outcome.err.find("was not finished"), std::string::npos) << outcome.err;
   expect_pictures(folder.path("p"));
@@ -380,8 +379,7 @@ TEST(Run, StoppingEarlyIsReportedByTheExitCode) {
     const Folder folder;
     Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
     ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 120'000)) << program.err();
-    program.signal(stop);
-    const Outcome outcome = program.wait();
+    const Outcome outcome = program.stop(stop);
     EXPECT_EQ(outcome.code, 128 + stop) << outcome.err;
     const Json facts(outcome.out);
     EXPECT_TRUE(facts.flag("/interrupted"));
@@ -444,8 +442,7 @@ TEST(Plot, AStopLeavesNoPartialPicture) {
   run("cave.world", {"--robots", "20", "--duration", "300", "--record", folder.path("r")});
   Program plot({"plot", folder.path("r"), "-o", folder.path("p")});
   ASSERT_TRUE(plot.prints("wrote")) << plot.err();
-  plot.signal(SIGINT);
-  const Outcome outcome = plot.wait();
+  const Outcome outcome = plot.stop();
   EXPECT_EQ(outcome.signal, 0);
   if (outcome.code != 0) {
     EXPECT_EQ(outcome.code, 130);

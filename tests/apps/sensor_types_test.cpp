@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdlib>
 #include <thread>
 
@@ -141,8 +140,7 @@ TEST_F(SensorTypes, EveryPacketArrivesOnEitherWire) {
     const Words words = with({"--duration", "2", "--send", "127.0.0.1", "--json", "--wire", wire}, bases);
     const Outcome sent = run("run", world, words);
     ASSERT_EQ(sent.code, 0) << sent.err;
-    listener.signal(SIGINT);
-    const Outcome received = listener.wait();
+    const Outcome received = listener.stop();
     const Json out(sent.out), in(received.out);
     EXPECT_EQ(out.number("/packets/sent"), 2 * 20 * 2);
     EXPECT_EQ(out.number("/packets/not_numbers"), 0);
@@ -200,8 +198,7 @@ TEST_F(SensorTypes, ARobotGetsTheRequestedKinds) {
   }
   EXPECT_GE(received, 3u);
   EXPECT_EQ(batch.fill(lasers), 0u) << "scans were not requested";
-  program.signal(SIGINT);
-  const Json facts(program.wait().out);
+  const Json facts(program.stop().out);
   EXPECT_EQ(facts.number("/rays"), 0);
   EXPECT_GT(facts.number("/dipoles"), 0);
 }

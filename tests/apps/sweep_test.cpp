@@ -62,10 +62,9 @@ TEST(SweepCommand, TablesDoNotDependOnTheNumberOfProcesses) {
     EXPECT_FALSE(fs::exists(folder.path("parts/jobs.csv")));
   }
   // As `srun` starts it.
-  const Outcome last =
-      run_program({"sweep", file, "-o", folder.path("parts")},
-                  {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "1"}, {"SLURM_NTASKS", "3"}, {"SLURM_CPUS_PER_TASK", "2"}});
-  EXPECT_EQ(last.code, 0) << last.err;
+  run_successfully(
+      {"sweep", file, "-o", folder.path("parts")},
+      {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "1"}, {"SLURM_NTASKS", "3"}, {"SLURM_CPUS_PER_TASK", "2"}});
   EXPECT_EQ(tables_of(folder, "parts"), tables_of(folder, "one"));
   EXPECT_EQ(count_lines(tables_of(folder, "one")["jobs.csv"]), 1 + kJobs);
 }
@@ -76,8 +75,7 @@ Outcome interrupted(const std::string& file, int end, std::string& out) {
   for (;; out += "x") {
     Program program({"sweep", file, "-o", out, "--jobs", "2"});
     while (program.running() && results_of(out).size() < 4) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    program.signal(end);
-    Outcome outcome = program.wait();
+    Outcome outcome = program.stop(end);
     if (results_of(out).size() < kJobs || out.size() > 200) return outcome;
   }
 }

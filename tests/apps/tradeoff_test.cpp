@@ -33,9 +33,8 @@ double number(const std::string& cell) { return cell.empty() ? NAN : std::stod(c
 
 TEST(Tradeoff, WritesATableAFileAndAPicture) {
   const Folder folder;
-  const Outcome outcome =
-      run_program({"tradeoff", our_world("simville/simville.world"), "-o", folder.path("t"), "--max-error", "5mm"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Outcome outcome = run_successfully(
+      {"tradeoff", our_world("simville/simville.world"), "-o", folder.path("t"), "--max-error", "5mm"});
   for (const char* text : {"covered by a stated bound ---", "--- errors of all ---",
                            "fastest with every error within 5 mm: --accuracy \""})
     expect_says(outcome, text);

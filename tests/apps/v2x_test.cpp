@@ -95,10 +95,7 @@ TEST(V2x, JsonUsesTheNamesOfTheStandard) {
   const Folder folder;
   const Outcome encoded = run_successfully({"v2x", "encode", folder.write("spat.json", kJson)});
   const std::string hex = encoded.out.substr(0, encoded.out.size() - 1);
-  const Outcome decoded =
-      run_program({"v2x", "decode", folder.write("spat.hex", "# a comment\r\n\r\n 0x" + hex + "00\r\n")});
-  ASSERT_EQ(decoded.code, 0) << decoded.err;
-  const Json json(decoded.out);
+  const Json json = run_json({"v2x", "decode", folder.write("spat.hex", "# a comment\r\n\r\n 0x" + hex + "00\r\n")});
   const std::string state = "/value/SPAT/intersections/0/states/0";
   EXPECT_EQ(json.number("/messageId"), 19);
   EXPECT_EQ(json.text("/value/SPAT/intersections/0/status"), "0000000000000000");

@@ -59,8 +59,7 @@ TEST_F(Video, DurationIsThatOfTheRunDividedByTheSpeed) {
 TEST_F(Video, ARecordingHasTheSameVideoAsItsRun) {
   run_successfully(run(folder.path("run.webm"), "4", {"--record", folder.path("r")}));
   const Outcome plotted =
-      run_program({"plot", folder.path("r"), "--video", folder.path("plot.webm"), "--video-size", "160x120"});
-  ASSERT_EQ(plotted.code, 0) << plotted.err;
+      run_successfully({"plot", folder.path("r"), "--video", folder.path("plot.webm"), "--video-size", "160x120"});
   EXPECT_NE(plotted.err.find("plot.webm: 100 frames, 4 s"), std::string::npos) << plotted.err;
   EXPECT_FALSE(read_file(folder.path("run.webm")).empty());
   EXPECT_TRUE(read_file(folder.path("run.webm")) == read_file(folder.path("plot.webm")));
@@ -93,8 +92,7 @@ TEST_F(Video, FramesOfAnEarlierCallAreRemoved) {
   const std::string recording = record("2"), frames = folder.path("f");
   const auto write = [&](const std::string& fps) {
     const Outcome outcome =
-        run_program({"view", recording, "--frames", frames, "--video-fps", fps, "--video-size", "64x64"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+        run_successfully({"view", recording, "--frames", frames, "--video-fps", fps, "--video-size", "64x64"});
     return outcome.err;
   };
   EXPECT_EQ(write("20").find("earlier"), std::string::npos);
@@ -148,8 +146,7 @@ TEST_F(Video, DecodedFramesResembleThePaintedOnes) {
 TEST_F(Video, AStopLeavesAVideoThatPlays) {
   Program program(run(folder.path("v.webm"), "1e6"));
   ASSERT_TRUE(program.handles(SIGINT)) << program.err();
-  program.signal(SIGINT);
-  const Outcome outcome = program.wait();
+  const Outcome outcome = program.stop();
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_NE(outcome.out.find("\"video\""), std::string::npos) << outcome.out;
   expect_probed(folder.path("v.webm"), "vp9,");
@@ -159,8 +156,7 @@ TEST_F(Video, AStoppedPlotReportsThatItsVideoEndsEarly) {
   const std::string recording = record("600");
   Program program({"plot", recording, "--video", folder.path("v.webm"), "--video-size", "160x120"});
   ASSERT_TRUE(program.handles(SIGINT)) << program.err();
-  program.signal(SIGINT);
-  const Outcome outcome = program.wait();
+  const Outcome outcome = program.stop();
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_NE(outcome.err.find("the video ends early"), std::string::npos) << outcome.err;
   expect_probed(folder.path("v.webm"), "vp9,");

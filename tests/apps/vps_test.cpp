@@ -69,9 +69,8 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   const std::string address = netio::endpoint_text(netio::bound_endpoint(socket));
   const std::string peers = folder.write("peers.toml", "[[peer]]\ntag = 2\nkey = \"" + std::string(64, '5') + "\"\n");
   const Outcome outcome =
-      run_program({"vps", testbed, "--rendered", "2", "--images", "4", "--send", address, "--track",
-                   folder.path("track.csv"), "--overlay", folder.path("pictures"), "--peers", peers});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+      run_successfully({"vps", testbed, "--rendered", "2", "--images", "4", "--send", address, "--track",
+                        folder.path("track.csv"), "--overlay", folder.path("pictures"), "--peers", peers});
   EXPECT_NE(outcome.out.find("0, 0 of 6 reported"), std::string::npos) << outcome.out;  // missed, false
   EXPECT_NE(outcome.out.find("6 sent, 0 failed"), std::string::npos) << outcome.out;
   scenes::expect_painted(folder.path("pictures/a-000003.png"), {{0xFF56E078u, 20}, {0xFFFFA028u, 5}});  // tags, x axes
@@ -163,11 +162,8 @@ TEST(Vps, DrawsEachSecondImage) {
 TEST(Vps, PicturesAreNotWrittenIntoAFolderOfImages) {
   const Folder folder;
   const std::string testbed = write_pictures(folder);
-  const Outcome outcome =
-      run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--overlay", folder.path("p")});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("contains the images of camera 'a'; name another --overlay"), std::string::npos)
-      << outcome.err;
+  expect_refused({"vps", testbed, "--input", "a=" + folder.path("p"), "--overlay", folder.path("p")},
+                 "contains the images of camera 'a'; name another --overlay");
   EXPECT_TRUE(std::filesystem::exists(folder.path("p/a-000002.png")));
 }
 
@@ -192,8 +188,7 @@ TEST(Vps, CtrlCEndsItAtOnce) {
   while (vps.running() && !std::filesystem::exists(folder.path("p/a-000000.png")))
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const auto start = std::chrono::steady_clock::now();
-  vps.signal(SIGINT);
-  EXPECT_NE(vps.wait().code, -1);
+  EXPECT_NE(vps.stop().code, -1);
   EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
 }
 

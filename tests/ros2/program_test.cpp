@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdlib>
 
 #include "record/cdr.h"
@@ -48,8 +47,7 @@ TEST(Ros2Program, ARunIsVisibleDrivableAndPausable) {
     const auto last = messages.empty() ? std::nullopt : decode_odometry(messages.back());
     return last && std::abs(last->velocity[5] - 0.125) < 1e-9;
   }));
-  run.signal(SIGINT);
-  EXPECT_EQ(run.wait().code, 0);
+  EXPECT_EQ(run.stop().code, 0);
 }
 
 /// A robot joins the run, then another world replaces it. Files outside the run's folders cannot be named.
@@ -121,8 +119,7 @@ TEST(Ros2Program, ARunAcceptsRobotsAndWorlds) {
   EXPECT_EQ(call("load_world", "LoadWorld", load("cave.world")), 1);
   EXPECT_EQ(call("unload_world", "UnloadWorld", [](record::CdrWriter& cdr) { cdr.put(std::uint8_t{0}); }), 1);
   EXPECT_EQ(greeting().find("/odom\""), std::string::npos) << "no world, so no robots";
-  run.signal(SIGINT);
-  EXPECT_EQ(run.wait().code, 0) << run.err();
+  EXPECT_EQ(run.stop().code, 0) << run.err();
 }
 
 /// Cyclone DDS crashes if it cannot open more descriptors. Below 8, other parts report the error.
@@ -155,8 +152,7 @@ TEST(Ros2Program, AServiceAnswersQueries) {
   }));
   for (const Endpoint& one : peer.endpoints())
     EXPECT_EQ(one.topic.find("cmd_vel"), std::string::npos) << "robots of a service live elsewhere";
-  serve.signal(SIGINT);
-  EXPECT_EQ(serve.wait().code, 0);
+  EXPECT_EQ(serve.stop().code, 0);
 }
 
 TEST(Ros2Program, ReportsTheErrorInOneLine) {

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <csignal>
 #include <fstream>
 #include <map>
 #include <set>
@@ -101,8 +100,7 @@ struct Ros2Projects : testing::Test {
   }
   void TearDown() override {
     if (!program) return;
-    program->signal(SIGINT);
-    EXPECT_EQ(program->wait().code, 0) << program->err();
+    EXPECT_EQ(program->stop().code, 0) << program->err();
   }
   /// @param tf prefix of /tf and /tf_static
   Tree tree(const std::string& tf, std::size_t messages = 10) {

@@ -146,8 +146,7 @@ TEST_F(Ros2Services, BothClientsAreAnsweredOnce) {
   ASSERT_TRUE(fast.wait([&] { return a.answered() && b.answered(); }));
   expect_each_answered_once(a, before_a);
   expect_each_answered_once(b, before_b);
-  run.signal(SIGINT);
-  EXPECT_EQ(run.wait().code, 0);
+  EXPECT_EQ(run.stop().code, 0);
 }
 
 TEST_F(Ros2Services, BothClientsStepTheRunOnce) {
@@ -242,8 +241,7 @@ TEST_F(Ros2Services, TheRunSurvivesFastDds) {
   EXPECT_TRUE(fast.wait([&] { return other.answered(); })) << "clients of Cyclone DDS are answered meanwhile";
   EXPECT_TRUE(connect(before, {0})) << "by the process that was started again";
   EXPECT_NE(fast_process(), process);
-  run.signal(SIGINT);
-  EXPECT_EQ(run.wait().code, 0);
+  EXPECT_EQ(run.stop().code, 0);
 }
 
 /// A killed process leaves no child behind.
@@ -251,8 +249,7 @@ TEST_F(Ros2Services, FastDdsEndsWithTheRun) {
   ASSERT_TRUE(run.prints("node /sensorfarm")) << run.err();
   const std::string process = fast_process();
   ASSERT_FALSE(process.empty());
-  run.signal(SIGKILL);
-  run.wait();
+  run.stop(SIGKILL);
   EXPECT_TRUE(fast.wait([&] {
     std::ifstream state("/proc/" + process + "/stat");
     std::string text;
