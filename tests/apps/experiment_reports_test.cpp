@@ -72,6 +72,16 @@ std::vector<std::vector<std::string>> table_rows(const std::string& report) {
   return rows;
 }
 
+/// Lines of the report's table, each with its record in a CSV file.
+std::vector<std::pair<std::vector<std::string>, CsvRecord>> report_lines(const Folder& folder, const std::string& csv) {
+  const auto rows = table_rows(read_file(folder.path("out/report.md")));
+  const auto records = csv_records(read_file(folder.path("out/" + csv)));
+  EXPECT_EQ(rows.size(), records.size());
+  std::vector<std::pair<std::vector<std::string>, CsvRecord>> lines;
+  for (std::size_t i = 0; i < std::min(rows.size(), records.size()); ++i) lines.emplace_back(rows[i], records[i]);
+  return lines;
+}
+
 /// A table's cell shows a number from the file, times `scale`, with `places` decimals.
 void expect_shown(const std::string& cell, const CsvRecord& record, const std::string& name, double scale, int places) {
   const std::size_t point = cell.find('.');
@@ -202,22 +212,20 @@ TEST(ExperimentReport, LateStatesMatchTheColumnsOfTheirFile) {
   folder.write("late-states.toml",
                short_path("4", "lane-keeping", "[states]\nrate = 10\ndelay = 0.08\nfilter = true\n"));
   run_successfully({"experiment", "late-states", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
-  const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/late-states.csv")));
-  ASSERT_EQ(records.size(), 2u * 2 * 5) << "two gains, two speeds, five kinds of states";
-  const auto rows = table_rows(read_file(folder.path("out/report.md")));
-  ASSERT_EQ(rows.size(), records.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  const auto lines = report_lines(folder, "late-states.csv");
+  ASSERT_EQ(lines.size(), 2u * 2 * 5) << "two gains, two speeds, five kinds of states";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     SCOPED_TRACE(i);
-    const CsvRecord& record = records[i];
-    ASSERT_EQ(rows[i].size(), 8u);
-    EXPECT_EQ(rows[i][0], record.at("kp"));
-    EXPECT_EQ(rows[i][1], record.at("speed"));
-    EXPECT_EQ(rows[i][2], record.at("states"));
-    expect_shown(rows[i][3], record, "abs_mean", 1e3, 1);
-    expect_shown(rows[i][4], record, "amplitude", 1e3, 1);
-    expect_shown(rows[i][5], record, "abs_max", 1e3, 0);
-    EXPECT_EQ(rows[i][6], record.at("left_lane") == "0" ? "no" : "**yes**");
-    EXPECT_EQ(rows[i][7], "**no**");
+    const auto& [cells, record] = lines[i];
+    ASSERT_EQ(cells.size(), 8u);
+    EXPECT_EQ(cells[0], record.at("kp"));
+    EXPECT_EQ(cells[1], record.at("speed"));
+    EXPECT_EQ(cells[2], record.at("states"));
+    expect_shown(cells[3], record, "abs_mean", 1e3, 1);
+    expect_shown(cells[4], record, "amplitude", 1e3, 1);
+    expect_shown(cells[5], record, "abs_max", 1e3, 0);
+    EXPECT_EQ(cells[6], record.at("left_lane") == "0" ? "no" : "**yes**");
+    EXPECT_EQ(cells[7], "**no**");
     EXPECT_EQ(record.at("end_reached"), "0");
     EXPECT_GT(std::stod(record.at("abs_max")), std::stod(record.at("abs_mean")));
   }
@@ -272,28 +280,26 @@ TEST(ExperimentReport, AccuracyMatchesTheColumnsOfItsFile) {
   folder.write("lane-edge-p.toml", short_path("4", "lane-keeping"));
   folder.write("magnet-p.toml", short_path("4", "magnet-keeping"));
   run_successfully({"experiment", "accuracy", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
-  const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/accuracy.csv")));
-  ASSERT_EQ(records.size(), 3u + 4 + 5) << "modes of the three types";
-  const auto rows = table_rows(read_file(folder.path("out/report.md")));
-  ASSERT_EQ(rows.size(), records.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  const auto lines = report_lines(folder, "accuracy.csv");
+  ASSERT_EQ(lines.size(), 3u + 4 + 5) << "modes of the three types";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     SCOPED_TRACE(i);
-    const CsvRecord& record = records[i];
-    ASSERT_EQ(rows[i].size(), 6u);
+    const auto& [cells, record] = lines[i];
+    ASSERT_EQ(cells.size(), 6u);
     EXPECT_EQ(record.at("sensor"), i < 3 ? "laneedge" : i < 7 ? "magnetometer" : "laser");
-    EXPECT_EQ(rows[i][0], record.at("mode"));
+    EXPECT_EQ(cells[0], record.at("mode"));
     if (i < 7) {
-      expect_shown(rows[i][1], record, "abs_mean", 1.0, 4);
-      expect_shown(rows[i][2], record, "abs_max", 1.0, 4);
+      expect_shown(cells[1], record, "abs_mean", 1.0, 4);
+      expect_shown(cells[2], record, "abs_max", 1.0, 4);
       EXPECT_GT(std::stod(record.at("abs_max")), std::stod(record.at("abs_mean")));
     } else {
-      expect_shown(rows[i][1], record, "cells_missed", 100.0, 3);
-      expect_shown(rows[i][2], record, "cells_wrong", 100.0, 3);
+      expect_shown(cells[1], record, "cells_missed", 100.0, 3);
+      expect_shown(cells[2], record, "cells_wrong", 100.0, 3);
     }
-    EXPECT_EQ(std::stod(rows[i][3]), std::stod(record.at("contacts")));
-    expect_shown(rows[i][4], record, "seconds", 1.0, 1);
+    EXPECT_EQ(std::stod(cells[3]), std::stod(record.at("contacts")));
+    expect_shown(cells[4], record, "seconds", 1.0, 1);
     EXPECT_EQ(record.at("seconds"), i < 7 ? "4.0" : "2.0");
-    EXPECT_EQ(rows[i][5], "**no**");
+    EXPECT_EQ(cells[5], "**no**");
     EXPECT_EQ(record.at("done"), "0");
   }
 }
@@ -304,21 +310,19 @@ TEST(ExperimentReport, ATownMatchesTheColumnsOfItsFile) {
   folder.write("minimagic.toml", "world = \"" + our_world("rooms.world") +
                                      "\"\nduration = 5\nrobots = 3\n[default]\ncontroller = \"wander\"\n");
   run_successfully({"experiment", "minimagic", "--trials", "2", "-o", folder.path("out"), "--files", folder.path()});
-  const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/statistics.csv")));
-  const auto rows = table_rows(read_file(folder.path("out/report.md")));
-  ASSERT_GE(records.size(), 2u * 3);
-  ASSERT_EQ(rows.size(), records.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  const auto lines = report_lines(folder, "statistics.csv");
+  ASSERT_GE(lines.size(), 2u * 3);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     SCOPED_TRACE(i);
-    const CsvRecord& record = records[i];
-    ASSERT_EQ(rows[i].size(), 6u);
-    EXPECT_EQ(record.at("trial"), i < records.size() / 2 ? "1" : "2");
-    EXPECT_EQ(rows[i][0], record.at("robot"));
-    expect_shown(rows[i][1], record, "driven_m", 1.0, 2);
-    EXPECT_EQ(rows[i][2], record.at("contacts"));
-    EXPECT_EQ(rows[i][3], record.at("checkpoints"));
-    EXPECT_EQ(rows[i][4], record.at("full_stops"));
-    EXPECT_EQ(rows[i][5], record.at("reds_passed"));
+    const auto& [cells, record] = lines[i];
+    ASSERT_EQ(cells.size(), 6u);
+    EXPECT_EQ(record.at("trial"), i < lines.size() / 2 ? "1" : "2");
+    EXPECT_EQ(cells[0], record.at("robot"));
+    expect_shown(cells[1], record, "driven_m", 1.0, 2);
+    EXPECT_EQ(cells[2], record.at("contacts"));
+    EXPECT_EQ(cells[3], record.at("checkpoints"));
+    EXPECT_EQ(cells[4], record.at("full_stops"));
+    EXPECT_EQ(cells[5], record.at("reds_passed"));
     EXPECT_EQ(record.at("mean_abs_error_m"), "") << "the world has no lanes";
     EXPECT_GT(std::stod(record.at("driven_m")), 0.1);
   }

@@ -253,21 +253,6 @@ TEST(Serve, FilteredStatesBeyondTheLimitPerTickAreCounted) {
   EXPECT_GE(Json(service.program.stop().out).number("/states/beyond_limit"), 200 - 2 * 64);
 }
 
-TEST(Serve, RobotsSeeEachOther) {
-  Service service;
-  ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.laser_port(1)), two(2, service.port, service.laser_port(2));
-  // A robot at the origin looks along x, where the near side of the other is 1 m from the laser.
-  std::vector<double> ranges;
-  const bool seen = until([&] {
-    one.send_state({0.0, 0.0, 0.0, 0.0});
-    two.send_state({1.25, 0.0, 0.0, 0.0});
-    ranges = one.receive();
-    return ranges.size() == 91 && std::fabs(ranges[45] - 1.0) <= 0.000501;
-  });
-  EXPECT_TRUE(seen) << testing::PrintToString(ranges);
-}
-
 /// The tag is mounted half a metre ahead of a box of 0.2 x 0.4 m and rotated by 90 degrees; its height above the lasers
 /// does not lift the box. The robot's own packets, with the same id, state its origin.
 TEST(Serve, ATagIsAtItsMount) {

@@ -39,8 +39,6 @@ object = "tag1"
 present = false
 )";
 
-Json run_json(const Words& arguments) { return run_json(arguments); }
-
 TEST(RunScenario, TheTownOfTheReadmeDrivesAMinuteWithoutContact) {
   const Json facts = run_json({"run", kTown, "--duration", "60", "--json"});
   EXPECT_EQ(facts.number("/contacts"), 0);

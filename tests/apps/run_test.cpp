@@ -349,21 +349,6 @@ TEST(Run, CountsContactsAsInItsPicture) {
   EXPECT_LT(began, touching) << "so that the two differ";
 }
 
-/// The hash covers the values that are sent and recorded.
-TEST(Run, TheHashCoversBeamsWithoutReturn) {
-  const Folder folder;
-  const std::string open = folder.write("open.world", "position( name \"a\" laser( samples 3 range_max 5 ) )\n");
-  const auto hash_of = [&](const std::string& no_return) {
-    const Outcome outcome = run_successfully({"run", open, "--json", "--duration", "1", "--no-return", no_return});
-    return Json(outcome.out).text("/hash");
-  };
-  EXPECT_NE(hash_of("inf"), hash_of("max")) << "every beam";
-  EXPECT_EQ(hash_of("inf"), hash_of("inf"));
-  const Words closed{"--robots", "2", "--duration", "1"};  // within range of a wall in any direction
-  const Words infinite = with(closed, {"--no-return", "inf"});
-  EXPECT_EQ(hash("rooms.world", infinite), hash("rooms.world", closed)) << "no beam";
-}
-
 TEST(Run, AKilledRunCanBeDrawn) {
   const Folder folder;
   Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
@@ -452,13 +437,6 @@ TEST(Plot, AStopLeavesNoPartialPicture) {
     const std::string bytes = read_file(file.path().string());
     EXPECT_NE(bytes.find("IEND"), std::string::npos) << file.path();
   }
-}
-
-TEST(Run, AFileThatIsNotARecordingIsRejected) {
-  const Folder folder;
-  std::filesystem::create_directory(folder.path("r"));
-  folder.write("r/run.mcap", "this is no recording, whatever its name says");
-  expect_refused({"plot", folder.path("r")}, "run.mcap");
 }
 
 /// Returns the ticks in a run's check points; none without the file.
