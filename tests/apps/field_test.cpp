@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/apps/program.h"
+#include "tests/refusal.h"
 #include "tests/viz/png.h"
 
 namespace sf {
@@ -55,7 +56,7 @@ TEST(Field, WritesNumbersAlongALine) {
 TEST(Field, RejectsInvalidArguments) {
   const Folder folder;
   const std::string world = magnets(folder), png = folder.path("x.png");
-  const std::string bare = folder.write("bare.world", "name \"bare\"\n");
+  const std::string bare = folder.write("bare.world", "model( size [1 1 1] )\n");
   const std::pair<Words, std::string> refusals[] = {
       {{"field", bare, "--height", "1", "-o", png}, "has no magnets"},
       {{"field", world, "-o", png}, "--height is required"},
@@ -65,10 +66,13 @@ TEST(Field, RejectsInvalidArguments) {
       {{"field", world, "--height", "1", "-o", png, "--line", "1,2,1,2"}, "X0,Y0,X1,Y1"},
       {{"field", world, "--height", "1", "-o", png, "--extent", "1,2,0,4"}, "XMIN,YMIN,XMAX,YMAX"},
       {{"field", world, "--height", "1", "-o", folder.path("none/x.png")}, "none/x.png"},
-      {{"field", world, "--height", "1", "-o", png, "--csv", folder.path("none/x.csv")}, "none/x.csv"},
       {{"field", folder.path("none.world"), "--height", "1", "-o", png}, "none.world"},
   };
   for (const auto& [arguments, message] : refusals) expect_refused(arguments, message);
+  const std::string csv = folder.path("none/x.csv");
+  const Outcome outcome = run_program({"field", world, "--height", "1", "-o", png, "--csv", csv});
+  EXPECT_EQ(outcome.code, 2);
+  expect_in(csv, outcome.err);
 }
 
 TEST(Field, NeedsADevice) {
