@@ -38,12 +38,6 @@ TEST(Light, ARobotReceivesIt) {
   EXPECT_GE(facts.number("/spat/others"), 1.0) << "MAP, once a second";
 }
 
-TEST(Light, EndsAfterItsDuration) {
-  const Outcome outcome = run_successfully({"light", our_world("simville/simville.world"), "--send", "127.0.0.1",
-                                            "--port", std::to_string(free_ports(1)), "--duration", "0.1"});
-  EXPECT_NE(outcome.err.find("sent "), std::string::npos) << outcome.err;
-}
-
 /// On both sides, as for robots.
 TEST(Light, AKeyMismatchIsReported) {
   const Folder folder;

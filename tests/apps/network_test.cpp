@@ -47,18 +47,6 @@ void run_to_listener(const std::string& wire) {
 TEST(SendAndListen, EveryPacketArrivesAndIsGood) { run_to_listener("farm"); }
 TEST(SendAndListen, EveryPacketArrivesInTheThesisLayout) { run_to_listener("thesis"); }
 
-TEST(SendAndListen, BytesArePrintedInMegabytes) {
-  Words words{"run",          our_world("cave.world"),       "--robots", "4", "--send", "127.0.0.1", "--duration", "10",
-              "--laser-port", std::to_string(free_ports(60))};
-  const std::string text = run_program(words).out;
-  words.push_back("--json");
-  const double bytes = Json(run_program(words).out).number("/packets/bytes");
-  const std::size_t at = text.find(" (", text.find("packets sent"));
-  ASSERT_NE(at, std::string::npos) << text;
-  EXPECT_GT(bytes, 1e5);
-  EXPECT_NEAR(std::stod(text.substr(at + 2)), 1e-6 * bytes, 0.051) << text;
-}
-
 /// A sensor that is due more than once per tick, or between ticks, sends every reading.
 TEST(SendAndListen, ReadingsBetweenTicksAreSent) {
   const Folder folder;

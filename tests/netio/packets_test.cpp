@@ -161,25 +161,6 @@ TEST(Packets, TagRoundTrips) {
 
 TEST(Packets, SubscribeRoundTrips) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).types, 2u); }
 
-TEST(Packets, StartIsOnlyAHeader) {
-  base::Bytes bytes;
-  encode({.robot = 7, .sequence = 3}, Start{}, bytes);
-  EXPECT_EQ(bytes.size(), kHeaderBytes);
-  Packet packet;
-  ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
-  EXPECT_TRUE(std::holds_alternative<Start>(packet.body));
-  EXPECT_EQ(packet.header.type, Type::start);
-  EXPECT_EQ(packet.header.robot, 7);
-}
-
-TEST(Packets, LeaveIsOnlyAHeader) {
-  Packet packet;
-  ASSERT_EQ(decode(leave_example(), packet), PacketStatus::accepted);
-  EXPECT_TRUE(std::holds_alternative<Leave>(packet.body));
-  EXPECT_EQ(packet.header.type, Type::leave);
-  EXPECT_EQ(packet.header.robot, 7);
-}
-
 TEST(Packets, NeighboursContainWholeV2v) {
   static_assert(kMaxNeighbours == 9 && kV2vBytes == 132);
   const base::Bytes whole = neighbours_example();

@@ -332,21 +332,5 @@ TEST(SamplePoints, SeedsAndMethodsDifferAndARandomSampleIsExtended) {
   EXPECT_NEAR(sample_points(SampleMethod::random, 1, 1, 1)[0][0], 0.13387664401253274, 1e-15) << "the engine's first";
 }
 
-/// The mean of a coordinate varies less over hypercubes than over independent points, which is their purpose.
-TEST(SamplePoints, AHypercubesMeanIsCloserToTheMiddle) {
-  double latin = 0.0, random = 0.0;
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const auto error = [&](SampleMethod method) {
-      double sum = 0.0;
-      for (const std::vector<double>& row : sample_points(method, 20, 1, seed)) sum += row[0];
-      return std::pow(sum / 20.0 - 0.5, 2.0);
-    };
-    latin += error(SampleMethod::latin_hypercube) / 200.0;
-    random += error(SampleMethod::random) / 200.0;
-  }
-  EXPECT_NEAR(random, 1.0 / 12.0 / 20.0, 0.0013) << "variance of a mean of 20; three of its deviations";
-  EXPECT_NEAR(latin, 1.0 / 12.0 / 8000.0, 4e-6) << "jitter within intervals alone: 1 / (12 n^3)";
-}
-
 }  // namespace
 }  // namespace sf::scenarios
