@@ -170,7 +170,7 @@ TEST(Faults, AClockJumpOfAnHourStopsNoRobot) {
   EXPECT_EQ(driven.number("/stops"), 0.0) << "its readings never paused";
   EXPECT_GE(driven.number("/readings/laser"), 8.0);
   const Json service = ended(farm);
-  EXPECT_EQ(service.has("/received/replayed"), false) << "counters go on";
+  EXPECT_EQ(service.has("/received/replayed"), false) << "counters continue";
   EXPECT_EQ(service.has("/states/by_verdict/future"), false);
 }
 

@@ -1,4 +1,4 @@
-// Every sensor type with every command: the same arguments, files and packets for all of them.
+// Every sensor type with every command: with the same arguments, files and packets.
 
 #include <gtest/gtest.h>
 

@@ -105,7 +105,7 @@ TEST_F(WorldServicesTest, NamedPosesMatchTheirTags) {
   }
 }
 
-/// Robots of one kind are one spawnable. The answer states what is not searched.
+/// Robots of one kind are one spawnable. The answer names the sources that it omits.
 TEST_F(WorldServicesTest, SpawnablesAreKindsOfRobots) {
   Reply reply(ask("/get_spawnables", [](record::CdrWriter& cdr) {
     cdr.put_count(1);

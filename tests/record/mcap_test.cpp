@@ -521,7 +521,7 @@ TEST(McapReader, MessageIndexesEndWithTheirEntries) {
     ASSERT_FALSE(found.empty()) << reason;
     EXPECT_NE(found[0].find("malformed message index"), std::string::npos) << reason << ": " << found[0];
   }
-  EXPECT_TRUE(damage(Hand().u32(16).u64(5).u64(0).bytes).empty()) << "as it is";
+  EXPECT_TRUE(damage(Hand().u32(16).u64(5).u64(0).bytes).empty()) << "unchanged";
   EXPECT_TRUE(damage(Hand().u32(0).bytes).empty()) << "it may list nothing";
   for (const Bytes& other : {Hand().u32(16).u64(6).u64(0).bytes, Hand().u32(16).u64(5).u64(1).bytes,
                              Hand().u32(32).u64(5).u64(0).u64(5).u64(0).bytes})

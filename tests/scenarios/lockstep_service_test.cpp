@@ -356,7 +356,7 @@ TEST(LockstepService, AHungProcessIsDroppedByName) {
   const std::string message = fixture.log.read_all();
   expect_in("tick 0: no command or STEP for 2 s from " + fixture.world.movers[1].name + " (id 2), ", message);
   one.step({});
-  ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); })) << "the others go on";
+  ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); })) << "the others continue";
 }
 
 TEST(LockstepService, ALostRobotIsReported) {

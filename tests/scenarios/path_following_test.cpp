@@ -112,7 +112,7 @@ TEST(PathFollowing, TheShippedRobotKeepsTheLaneWithItsDefaults) {
           std::min(least, 0.5 * world.paths[0].pieces[at.piece].width - std::abs(at.offset) - world.movers[0].radius);
     }
     EXPECT_TRUE(simulation.all_done()) << controller;
-    EXPECT_GT(least, -0.02) << controller << ": its body but for a finger's width";
+    EXPECT_GT(least, -0.02) << controller << ": its body, except for 2 cm";
     EXPECT_NEAR(0.1 * ticks, 51.0, 5.0) << controller << ": 5.08 m at 0.1 m/s";
   }
 }

@@ -58,7 +58,7 @@ static void read_hex(const char* at, uint8_t* bytes, size_t* size) {
   for (; sscanf(at, " %2x", &byte) == 1; at += 3) bytes[(*size)++] = (uint8_t)byte;
 }
 
-/* Packet `row` of the file NAME.txt beside `path`. */
+/* Packet `row` of the file NAME.txt next to `path`. */
 static size_t read_packet(const char* path, const char* name, unsigned row, uint8_t* bytes) {
   char other[4096], line[8192];
   snprintf(other, sizeof other, "%.*s%s.txt", (int)(strrchr(path, '/') + 1 - path), path, name);
