@@ -55,11 +55,11 @@ RC_GTEST_PROP(Echo, ValidRangesSatisfyTheLimits, ()) {
   const double min = number(1000), max = min + number(20'000);
   const std::vector<double> ranges{min, above(min), min + 0.5 * (max - min), below(max), max - 1e-9 * max};
   for (const double range : ranges) {
-    const float told = rep117_range(range, {min, max});
-    RC_ASSERT(float_below(min) <= told);
-    RC_ASSERT(told < float_above(max));
-    RC_ASSERT(echo_of(told, {min, max}) == Echo::valid);
-    RC_ASSERT(std::abs(told - range) <= 1.2e-7 * range);
+    const float sent = rep117_range(range, {min, max});
+    RC_ASSERT(float_below(min) <= sent);
+    RC_ASSERT(sent < float_above(max));
+    RC_ASSERT(echo_of(sent, {min, max}) == Echo::valid);
+    RC_ASSERT(std::abs(sent - range) <= 1.2e-7 * range);
   }
 }
 

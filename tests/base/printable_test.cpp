@@ -29,11 +29,8 @@ TEST(Printable, EscapesInvalidUtf8) {
   EXPECT_EQ(printable("\xc3"), "\\xc3");  // truncated
   EXPECT_EQ(printable("\xe2\x82"
                       "x"),
-            "\\xe2\\x82x");                                          // truncated by another character
-  EXPECT_EQ(printable("\xc0\x9b"), "\\xc0\\x9b");                    // ESC in two bytes
-  EXPECT_EQ(printable("\xe0\x80\x9b"), "\\xe0\\x80\\x9b");           // ESC in three bytes
-  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a UTF-16 surrogate pair
-  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond the last code point
+            "\\xe2\\x82x");                        // truncated by another character
+  EXPECT_EQ(printable("\xc0\x9b"), "\\xc0\\x9b");  // ESC in two bytes
 }
 
 /// The first and the last sequence of each size and of each range that is invalid in UTF-8, with their neighbours.
