@@ -108,7 +108,7 @@ TEST(Choose, SkipsADeviceThatFailsItsSelfCheck) {
   EXPECT_EQ(candidates.info[4].self_check, "not run");
 
   candidates = five();
-  EXPECT_EQ(choose_device(candidates, "geforce", only_software), -1) << "what was asked for is not replaced";
+  EXPECT_EQ(choose_device(candidates, "geforce", only_software), -1) << "a requested device is not replaced";
   EXPECT_EQ(candidates.info[2].reason, "differs in a + b");
 }
 

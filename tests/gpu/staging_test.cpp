@@ -75,7 +75,7 @@ TEST_F(Staging, CopiesOnlyTheListedBytes) {
     EXPECT_EQ(words(table), (std::vector<std::uint32_t>{9, 1, 2, 9, 9, 9, 9, 9}));
     fill(table, 9);
     run_copies(batch);
-    EXPECT_EQ(words(table), std::vector<std::uint32_t>(8, 9u)) << "a copy is asked for anew each time";
+    EXPECT_EQ(words(table), std::vector<std::uint32_t>(8, 9u)) << "each copy is requested separately";
     batch.download(table, 0, table.bytes());
     run_copies(batch);
     EXPECT_EQ(words(table), (std::vector<std::uint32_t>{1, 1, 2, 2, 2, 1, 1, 2}));
