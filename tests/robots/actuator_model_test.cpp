@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "base/random.h"
+#include "tests/units.h"
 
 namespace sf::robots {
 namespace {
@@ -30,9 +30,8 @@ TEST(ActuatorModel, DirectReturnsTheCommand) {
 }
 
 TEST(ActuatorModel, NonFiniteCommandsBecomeZero) {
-  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  expect_twist(apply_actuator_model(world::Mover{}, {nan, inf, 1.0}), {0.0, 0.0, 1.0});
-  expect_twist(apply_actuator_model(create(), {nan, inf, -inf}), {0.0, 0.0, 0.0});
+  expect_twist(apply_actuator_model(world::Mover{}, {kNaN, kInf, 1.0}), {0.0, 0.0, 1.0});
+  expect_twist(apply_actuator_model(create(), {kNaN, kInf, -kInf}), {0.0, 0.0, 0.0});
 }
 
 // The cases of Player's driver, with radii computed by hand.
@@ -76,7 +75,7 @@ TEST(ActuatorModel, CreateTurnsAboutTwiceAsMuchAsCommanded) {
     const Twist v = apply_actuator_model(create(), {forward, 0.0, turn});
     EXPECT_NEAR(v.forward, forward, 5e-4);
     EXPECT_EQ(v.turn > 0.0, turn > 0.0);
-    EXPECT_GE(std::abs(v.turn), v.forward / 2.0 * (1.0 - 1e-12)) << "2 m is the widest bend it knows";
+    EXPECT_GE(std::abs(v.turn), v.forward / 2.0 * (1.0 - 1e-12)) << "the widest bend has a radius of 2 m";
     if (std::abs(forward / turn) > 3.9) continue;
     EXPECT_NEAR(v.turn / turn, 2.0, 0.15);
   }

@@ -80,12 +80,12 @@ TEST(Sectors, WallThroughTheBodyCountsAsInside) {
 TEST(Sectors, TurnWithTheMover) {
   const world::Segment post = wall({1.2005, 2.01}, {1.2005, 2.012});
   EXPECT_EQ(contact_sectors(square(), {1, 2, 0, 0}, post), bit(0));
-  EXPECT_EQ(contact_sectors(square(), {1, 2, 0, M_PI / 2}, post), bit(24)) << "what was ahead is on the right";
+  EXPECT_EQ(contact_sectors(square(), {1, 2, 0, M_PI / 2}, post), bit(24)) << "the post is now on its right";
 }
 
 TEST(Sectors, AnotherOutlineEqualsItsEdges) {
-  const std::uint32_t beside = contact_sectors(square(), {}, square(), {0.4005, 0, 0, 0});
-  EXPECT_EQ(beside, bit(0) | bit(1) | bit(2) | bit(3) | bit(-1) | bit(-2) | bit(-3) | bit(-4));
+  const std::uint32_t right = contact_sectors(square(), {}, square(), {0.4005, 0, 0, 0});
+  EXPECT_EQ(right, bit(0) | bit(1) | bit(2) | bit(3) | bit(-1) | bit(-2) | bit(-3) | bit(-4));
   EXPECT_EQ(contact_sectors(square(), {}, square(), {0.4011, 0, 0, 0}), 0u);
   EXPECT_EQ(contact_sectors(square(), {}, square(), {0.4005, 0, 0.2, 0}), 0u) << "above";
   EXPECT_EQ(contact_sectors(square(), {}, square(), {0.4 + 0.4 * (M_SQRT2 - 1.0) / 2 + 0.0005, 0, 0, M_PI / 4}),

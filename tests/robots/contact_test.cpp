@@ -77,7 +77,7 @@ TEST(Contact, LastsWhileTouchingAndEndsOnLeaving) {
   const std::uint32_t pressed = fleet.reports()[0].contact_mask;
   EXPECT_NE(pressed, 0u);
   drive(fleet, {{0, 0, 0}}, 10);
-  EXPECT_EQ(fleet.reports()[0].contact_mask, pressed) << "a bumper stays pressed while its robot stands";
+  EXPECT_EQ(fleet.reports()[0].contact_mask, pressed) << "a bumper stays pressed while its robot is at rest";
   EXPECT_EQ(fleet.contacts()[0], 1);
   drive(fleet, {{-0.005, 0, 0}});  // 0.5 mm: still in contact
   EXPECT_EQ(fleet.contacts()[0], 1);
@@ -92,7 +92,7 @@ TEST(Contact, PassingByDoesNotCount) {
   scenes::add_square(world, {0, 0, 0, 0});
   Fleet fleet(world);
   drive(fleet, {{0.5, 0, 0}}, 10);
-  EXPECT_EQ(fleet.reports()[0].contact_mask, 0u) << "half a millimetre beside, but nothing stopped it";
+  EXPECT_EQ(fleet.reports()[0].contact_mask, 0u) << "half a millimetre away, but it was not stopped";
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
@@ -107,7 +107,7 @@ TEST(Contact, IsReportedByBothRobots) {
   EXPECT_EQ(fleet.contacts()[1], 1);
   EXPECT_NE(fleet.reports()[0].contact_mask & (sector_bit(15) | sector_bit(16)), 0u) << "behind";
   EXPECT_NE(fleet.reports()[1].contact_mask & (sector_bit(0) | sector_bit(-1)), 0u) << "ahead";
-  EXPECT_EQ(fleet.contacts()[2], 0) << "nobody ran into the third";
+  EXPECT_EQ(fleet.contacts()[2], 0) << "no robot ran into the third";
   drive(fleet, {{}, {-0.5, 0, 0}, {}}, 1);
   EXPECT_EQ(fleet.contacts()[1], 0);
   EXPECT_EQ(fleet.reports()[0].contact_mask & (sector_bit(15) | sector_bit(16)), 0u) << "released on that side";
@@ -146,7 +146,7 @@ TEST(Contact, AccelerationsLimitDrivingButNotStopping) {
   drive(fleet, {{0.5, 0, 0}}, 20);
   EXPECT_EQ(fleet.reports()[0].velocity.forward, 0.0) << "stopped at once";
   drive(fleet, {{-0.5, 0, 0}});
-  EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, -0.1) << "and leaves from standing";
+  EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, -0.1) << "and starts from rest";
 }
 
 TEST(Contact, ActuatorModelIsAppliedFirst) {
@@ -165,17 +165,17 @@ TEST(Contact, ReportedRobotTouchesVirtualObjects) {
   scenes::add_create(world, {0, 0, 0, 0});
   scenes::add_create(world, {0, 5, 0, 0});
   Fleet fleet(world);
-  const auto tell = [&](std::int64_t time, double x) {
+  const auto report = [&](std::int64_t time, double x) {
     fleet.apply(std::vector<Report>{{.mover = 0, .time = time, .X_WM = {x, 0, 0, 0}, .velocity = {0.5, 0, 0}}});
   };
-  tell(kTick, 0.2);
+  report(kTick, 0.2);
   EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, 0u);
   EXPECT_EQ(fleet.contacts()[0], 0);
   EXPECT_NE(fleet.predict(4 * kTick)[0].contact_mask & (sector_bit(0) | sector_bit(-1)), 0u)
-      << "carried on into the wall";
+      << "extrapolated into the wall";
   EXPECT_EQ(fleet.contacts()[0], 1);
   EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, 0u) << "where it is at that time";
-  tell(5 * kTick, 0.45);
+  report(5 * kTick, 0.45);
   EXPECT_NE(fleet.predict(5 * kTick)[0].contact_mask, 0u) << "half way through";
   EXPECT_EQ(fleet.predict(5 * kTick)[1].contact_mask, 0u);
 }
@@ -189,11 +189,11 @@ TEST(Contact, ReportedContactOfARealBumperIsKept) {
   EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, sector_bit(3));
   EXPECT_EQ(fleet.contacts()[0], 1);
   scenes::add_wall(world, {0.1655, -1}, {0.1655, 1});
-  Fleet beside(world);
-  beside.apply(
+  Fleet both(world);
+  both.apply(
       std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .contact_mask = sector_bit(3)}});
-  EXPECT_EQ(beside.predict(kTick)[0].contact_mask, sector_bit(3) | sector_bit(0) | sector_bit(-1))
-      << "beside what the virtual world adds";
+  EXPECT_EQ(both.predict(kTick)[0].contact_mask, sector_bit(3) | sector_bit(0) | sector_bit(-1))
+      << "in addition to contacts in the virtual world";
 }
 
 TEST(Contact, ReportedRobotsTouchEachOther) {

@@ -109,12 +109,12 @@ TEST(Crowd, MovesLikeANewlyBuiltFleet) {
   Fleet fleet(world);
   for (int tick = 0; tick < (instrumented() ? 30 : 200); ++tick) {
     const std::vector<Twist> commands = random_commands(world.movers.size(), tick);
-    Fleet anew(world);
-    anew.apply(fleet.reports());
-    anew.move(commands, kTick);
+    Fleet rebuilt(world);
+    rebuilt.apply(fleet.reports());
+    rebuilt.move(commands, kTick);
     fleet.move(commands, kTick);
     for (std::size_t row = 0; row < world.movers.size(); ++row) {
-      const Pose &p = fleet.reports()[row].X_WM, &q = anew.reports()[row].X_WM;
+      const Pose &p = fleet.reports()[row].X_WM, &q = rebuilt.reports()[row].X_WM;
       ASSERT_TRUE(p.x == q.x && p.y == q.y && p.yaw == q.yaw) << "tick " << tick << " row " << row;
     }
   }
@@ -132,12 +132,6 @@ std::uint64_t hash_of_run(const world::World& world, int ticks) {
     hash = base::hash_bytes(fleet.contacts().data(), fleet.contacts().size(), hash);
   }
   return hash;
-}
-
-TEST(Crowd, RunIsReproducible) {
-  const world::World world = crowd();
-  const int ticks = instrumented() ? 100 : 300;
-  EXPECT_EQ(hash_of_run(world, ticks), hash_of_run(world, ticks));
 }
 
 TEST(Crowd, RunHasAFixedHash) { EXPECT_EQ(base::hash_hex(hash_of_run(crowd(), 200)), "54c08826eb08614a"); }
@@ -324,20 +318,6 @@ TEST(Crowd, AllRobotsGetThroughAGap) {
   }
   for (const Report& report : fleet.reports()) through += report.X_WM.x > 0.2;
   EXPECT_EQ(through, 20);
-}
-
-TEST(Crowd, DistantRobotChangesNothing) {
-  world::World alone = scenes::boxed_world(6, 6), together = alone;
-  scenes::add_create(alone, {3, 3, 0, 0});
-  scenes::add_create(together, {3, 3, 0, 0});
-  scenes::add_create(together, {50, 50, 0, 0});
-  Fleet one(alone), two(together);
-  for (int tick = 0; tick < 500; ++tick) {
-    one.move(random_commands(1, tick), kTick);
-    two.move(random_commands(2, tick), kTick);
-    ASSERT_EQ(one.reports()[0].X_WM.x, two.reports()[0].X_WM.x);
-    ASSERT_EQ(one.reports()[0].X_WM.yaw, two.reports()[0].X_WM.yaw);
-  }
 }
 
 }  // namespace

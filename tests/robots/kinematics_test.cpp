@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace sf::robots {
 namespace {
@@ -87,7 +86,7 @@ TEST(Interpolate, UnhinderedMoverStaysOnItsArc) {
       const base::Report report = interpolate(before, after, 5 * kTick + part);
       expect_pose(report.X_WM, advance(start, v, 1e-9 * static_cast<double>(part)));
       EXPECT_EQ(report.time, 5 * kTick + part);
-      EXPECT_EQ(report.velocity.turn, v.turn) << "what its gyro reads: more than half a turn in the tick too";
+      EXPECT_EQ(report.velocity.turn, v.turn) << "its gyro's reading, also beyond half a turn in the tick";
     }
   }
 }
@@ -130,11 +129,13 @@ world::Mover mover(world::Drive drive) {
   return m;
 }
 
-TEST(LimitKinematics, DifferentialClampsAndCannotSlide) {
-  const Twist v = limit_kinematics(mover(world::Drive::differential), {-3, 0.4, 7});
-  EXPECT_EQ(v.forward, -0.5);
-  EXPECT_EQ(v.left, 0.0);
-  EXPECT_EQ(v.turn, 1.0);
+TEST(LimitKinematics, DifferentialAndSkidClampAndCannotSlide) {
+  for (const auto drive : {world::Drive::differential, world::Drive::skid}) {
+    const Twist v = limit_kinematics(mover(drive), {-3, 0.4, 7});
+    EXPECT_EQ(v.forward, -0.5);
+    EXPECT_EQ(v.left, 0.0);
+    EXPECT_EQ(v.turn, 1.0);
+  }
 }
 
 TEST(LimitKinematics, OmniKeepsItsDirection) {
@@ -147,13 +148,6 @@ TEST(LimitKinematics, OmniKeepsItsDirection) {
 TEST(LimitKinematics, CarTurnIsLimitedBySteering) {
   EXPECT_EQ(limit_kinematics(mover(world::Drive::car), {0, 0, 1}).turn, 0.0);
   EXPECT_NEAR(limit_kinematics(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
-}
-
-TEST(LimitKinematics, SkidDriveMovesLikeADifferentialDrive) {
-  const Twist v = limit_kinematics(mover(world::Drive::skid), {-3, 0.4, 7});
-  EXPECT_EQ(v.forward, -0.5);
-  EXPECT_EQ(v.left, 0.0);
-  EXPECT_EQ(v.turn, 1.0);
 }
 
 world::Mover lazy(world::Drive drive) {
@@ -175,7 +169,7 @@ TEST(LimitAcceleration, LimitsSpeedingUpAndSlowingDown) {
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).turn, 0.4);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {0.5, 0, 1.0}, {}, 0.1).forward, 0.3);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {0.5, 0, 1.0}, {}, 0.1).turn, 0.6);
-  EXPECT_DOUBLE_EQ(limit_acceleration(m, {0.1, 0, 0}, {-0.5, 0, 0}, 0.1).forward, -0.1) << "through standing";
+  EXPECT_DOUBLE_EQ(limit_acceleration(m, {0.1, 0, 0}, {-0.5, 0, 0}, 0.1).forward, -0.1) << "through zero";
   EXPECT_EQ(limit_acceleration(m, {0.5, 0, 0}, {0.31, 0, 0}, 0.1).forward, 0.31) << "within reach: exactly";
   EXPECT_EQ(limit_acceleration(m, {0, 0, 0.9}, {0, 0, 0.55}, 0.1).turn, 0.55);
 }
@@ -197,9 +191,8 @@ TEST(LimitAcceleration, ReportsBeyondTheLimitsAreFollowedBackAtOnce) {
 }
 
 TEST(LimitKinematics, NonFiniteCommandsBecomeZero) {
-  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {
-    const Twist v = limit_kinematics(mover(drive), {nan, inf, -inf});
+    const Twist v = limit_kinematics(mover(drive), {kNaN, kInf, -kInf});
     EXPECT_EQ(v.forward, 0.0);
     EXPECT_EQ(v.left, 0.0);
     EXPECT_EQ(v.turn, 0.0);

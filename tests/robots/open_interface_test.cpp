@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
+
+#include "tests/units.h"
 
 namespace sf::robots {
 namespace {
@@ -16,15 +17,14 @@ TEST(OpenInterface, SaturatesWheelsAlongTheArc) {
     int right, left;
     const char* why;
   };
-  const double inf = std::numeric_limits<double>::infinity();
   for (const Case& c : std::vector<Case>{{{0.1, 0, 0}, 100, 100, "straight"},
                                          {{0, 0, 1}, 129, -129, "in place: half a track each"},
                                          {{0.5, 0, 0}, 500, 500, "at the limit"},
                                          {{-0.7, 0, 0}, -500, -500, "beyond it, backwards"},
                                          {{0.5, 0, 1}, 500, 295, "the slower wheel slows down alike"},
                                          {{0.2, 0.3, 0}, 200, 200, "it cannot drive sideways"},
-                                         {{NAN, 0, 1}, 0, 0, "no number"},
-                                         {{0.1, 0, inf}, 0, 0, "infinite"},
+                                         {{kNaN, 0, 1}, 0, 0, "not a number"},
+                                         {{0.1, 0, kInf}, 0, 0, "infinite"},
                                          {{1e308, 0, 1e308}, 0, 0, "the wheels' speed overflows"}}) {
     const CreateWheels wheels = create_wheels(c.twist, 0.258);
     EXPECT_EQ(wheels.right, c.right) << c.why;
@@ -83,8 +83,8 @@ TEST(CreateStream, RecoversAfterDamage) {
                           {{19, 19, 10, 19, 10, 7}, 0, "headers one upon another"},
                           {with(12, 0xA1), 1, "a wrong checksum"},
                           {with(5, 0x7F), 1, "a wrong number"},
-                          {with(7, 21), 0, "a packet that was not asked for"},
-                          {with(1, 200), 0, "a length that is none"}};
+                          {with(7, 21), 0, "an unrequested packet"},
+                          {with(1, 200), 0, "an invalid length"}};
   for (std::size_t at = 0; at < kFrame.size(); ++at) cases.push_back({without(at), 0, "a lost byte"});
   for (const Case& c : cases) {
     CreateStream stream;

@@ -11,35 +11,34 @@
 namespace sf::estimation {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBias = 0.01;  // [rad/s]
 
-/// Rests for `stand` readings, then drives straight ahead at 0.2 m/s for 600 readings, with a biased gyro.
-base::Pose reckoned(Localization& localization, int stand) {
-  for (int k = 0; k <= stand + 600; ++k) {
-    const double rolled = 0.02 * std::max(0, k - stand);
+/// Rests for `rest` readings, then drives straight ahead at 0.2 m/s for 600 readings, with a biased gyro.
+base::Pose reckoned(Localization& localization, int rest) {
+  for (int k = 0; k <= rest + 600; ++k) {
+    const double rolled = 0.02 * std::max(0, k - rest);
     localization.add_encoder(k * kTick, rolled, rolled);
     localization.add_gyro(k * kTick, kBias);
   }
-  return localization.predict((stand + 600) * kTick).estimate.X_WM;
+  return localization.predict((rest + 600) * kTick).estimate.X_WM;
 }
 
 TEST(Localization, GyroBiasIsEstimatedFromTheWheels) {
-  Localization none({}, {}, 0), after_stand({}, {}, 0);
-  EXPECT_NEAR(reckoned(after_stand, 20).x, 12.0, 0.02);
-  EXPECT_NEAR(reckoned(after_stand, 20).y, 0.0, 0.2) << "two seconds at rest";
+  Localization none({}, {}, 0), after_rest({}, {}, 0);
+  EXPECT_NEAR(reckoned(after_rest, 20).x, 12.0, 0.02);
+  EXPECT_NEAR(reckoned(after_rest, 20).y, 0.0, 0.2) << "two seconds at rest";
   EXPECT_LT(std::abs(reckoned(none, 0).y), 0.5 * 12.0 * 60.0 * kBias / 2.0) << "while driving, less than half is left";
 }
 
 TEST(Localization, NonFiniteReadingsChangeNothing) {
   Localization localization({}, {1.0, 2.0, 0.0, 0.5}, 0);
   localization.add_encoder(kTick, 0.0, 0.0);
-  localization.add_encoder(2 * kTick, kNan, 0.0);
+  localization.add_encoder(2 * kTick, kNaN, 0.0);
   localization.add_encoder(3 * kTick, std::numeric_limits<double>::max(), -std::numeric_limits<double>::max());
-  localization.add_gyro(3 * kTick, std::numeric_limits<double>::infinity());
+  localization.add_gyro(3 * kTick, kInf);
   localization.add_gyro(3 * kTick, 1e9);  // a spike must not become the bias
-  localization.add_gps(3 * kTick, kNan, kNan, kNan);
-  localization.add_gps(3 * kTick, 1.0, 2.0, kNan);
+  localization.add_gps(3 * kTick, kNaN, kNaN, kNaN);
+  localization.add_gps(3 * kTick, 1.0, 2.0, kNaN);
   const Prediction now = localization.predict(3 * kTick);
   EXPECT_NEAR(now.estimate.X_WM.x, 1.0, 1e-9);
   EXPECT_NEAR(now.estimate.X_WM.yaw, 0.5, 1e-9);

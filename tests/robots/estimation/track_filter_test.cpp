@@ -201,7 +201,7 @@ TEST(TrackFilter, ReplayedFutureLateAndInvalidAreCountedByReason) {
   EXPECT_EQ(filter.take(along_x(1030), 2040 * kMs),
             Verdict::started);  // at the window's edge, before the first measurement
   Measurement bad = along_x(2040);
-  bad.X_WM.yaw = std::numeric_limits<double>::quiet_NaN();
+  bad.X_WM.yaw = kNaN;
   EXPECT_EQ(filter.take(bad, 2040 * kMs), Verdict::invalid);
   bad = along_x(std::numeric_limits<std::int64_t>::max() / kMs);
   EXPECT_EQ(filter.take(bad, 2040 * kMs), Verdict::invalid);
@@ -270,7 +270,7 @@ TEST(TrackFilter, OnlyAPositionRestartsAfterAStaleTime) {
   Measurement turn{.time = 3000 * kMs, .sequence = 1, .components = 1u << kTurn};
   filter.take(turn, turn.time);
   EXPECT_EQ(count(filter, Verdict::started), 1u);
-  EXPECT_GT(filter.predict(turn.time).estimate.X_WM.x, 0.9) << "where it was last, or farther";
+  EXPECT_GT(filter.predict(turn.time).estimate.X_WM.x, 0.9) << "its last position, or farther";
 }
 
 TEST(TrackFilter, FirstMeasurementAfterAStaleTimeRestarts) {
