@@ -125,7 +125,7 @@ TEST(ReferenceCaster, EdgeCases) {
       {"from the right", {2.0, 1.0}, {2.0, -1.0}, 2.0},
       {"from the left", {2.0, -1.0}, {2.0, 1.0}, 2.0},
       {"an end belongs to its surface", {2.0, 0.0}, {2.0, 1.0}, 2.0},
-      {"the next number beside an end", {2.0, 5e-324}, {2.0, 1.0}, 8.0},
+      {"the next number off an end", {2.0, 5e-324}, {2.0, 1.0}, 8.0},
       {"along the beam", {2.0, 0.0}, {3.0, 0.0}, 8.0},
       {"without length", {2.0, 0.0}, {2.0, 0.0}, 8.0},
       {"behind", {-2.0, 1.0}, {-2.0, -1.0}, 8.0},
