@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 #include "tests/vision/cameras.h"
 #include "tests/vision/images_in_memory.h"
 #include "vision/calibration.h"
@@ -76,6 +76,18 @@ Scene board_with_tags() {
   return scene;
 }
 
+/// Six views of a board from about `height` [m].
+std::vector<Image> rendered(const Scene& board, double height) {
+  std::vector<Image> images(6);
+  const glm::dvec3 positions[] = {{0.0, 0.0, 0.03}, {0.35, 0.1, 0.0}, {-0.35, 0.15, 0.0},
+                                  {0.1, -0.4, 0.0}, {-0.1, 0.4, 0.0}, {0.3, 0.3, 0.07}};
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const glm::dvec3 p = positions[i] + glm::dvec3{0.0, 0.0, height};
+    Renderer(camera_at(p, 0.2 * p.x, 0.1 * p.y), Imaging{}, i).render(board, 0.0, 0, images[i]);
+  }
+  return images;
+}
+
 /// A source that reports a number of images but has none.
 class Claim : public ImageSource {
  public:
@@ -92,29 +104,13 @@ Image grey_image(int width, int height) {
 }
 
 std::string error_of(ImageSource&& images) {
-  try {
-    calibrate(images, "album", kBoard, {});
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return refusal_of([&] { calibrate(images, "album", kBoard, {}); });
 }
 
 }  // namespace
 
 TEST(Calibration, FindsIntrinsicsOfTheImages) {
-  std::vector<Image> images;
-  for (const glm::dvec3& position : {glm::dvec3{0.0, 0.0, 0.62},
-                                     {0.35, 0.1, 0.6},
-                                     {-0.35, 0.15, 0.6},
-                                     {0.1, -0.4, 0.6},
-                                     {-0.1, 0.4, 0.6},
-                                     {0.3, 0.3, 0.7}}) {
-    Image image;
-    const Camera camera = camera_at(position, 0.2 * position.x, 0.1 * position.y);
-    Renderer(camera, Imaging{}, images.size()).render(chessboard(), 0.0, 0, image);
-    images.push_back(image);
-  }
+  std::vector<Image> images = rendered(chessboard(), 0.6);
   images.push_back(grey_image(640, 480));  // without a board
   images.emplace_back();                   // an unreadable file
   std::vector<std::size_t> progress;
@@ -138,18 +134,7 @@ TEST(Calibration, FindsIntrinsicsOfTheImages) {
 }
 
 TEST(Calibration, FindsIntrinsicsFromPartsOfABoardWithTags) {
-  std::vector<Image> images;
-  for (const glm::dvec3& position : {glm::dvec3{0.0, 0.0, 0.5},
-                                     {0.35, 0.1, 0.45},
-                                     {-0.35, 0.15, 0.45},
-                                     {0.1, -0.4, 0.45},
-                                     {-0.1, 0.4, 0.45},
-                                     {0.3, 0.3, 0.5}}) {
-    Image image;
-    const Camera camera = camera_at(position, 0.2 * position.x, 0.1 * position.y);
-    Renderer(camera, Imaging{}, images.size()).render(board_with_tags(), 0.0, 0, image);
-    images.push_back(image);
-  }
+  std::vector<Image> images = rendered(board_with_tags(), 0.45);
   images.push_back(grey_image(640, 480));  // without a board
   const auto seen = opencv().find_board(images[0], kBoardWithTags);
   EXPECT_GT(seen.size(), 6u);
@@ -172,12 +157,8 @@ TEST(Calibration, FindsIntrinsicsFromPartsOfABoardWithTags) {
 TEST(Calibration, RejectsABoardWithMoreTagsThanItsDictionary) {
   Chessboard board = kBoardWithTags;
   board.dictionary = "apriltag_16h5";
-  try {
-    opencv().find_board(grey_image(64, 48), board);
-    ADD_FAILURE();
-  } catch (const base::InputError& error) {
-    EXPECT_STREQ(error.what(), "a board with 7 x 7 inner corners has 32 tags, and 'apriltag_16h5' has 30");
-  }
+  EXPECT_EQ(refusal_of([&] { opencv().find_board(grey_image(64, 48), board); }),
+            "a board with 7 x 7 inner corners has 32 tags, and 'apriltag_16h5' has 30");
 }
 
 TEST(Calibration, ReportsMissingInput) {

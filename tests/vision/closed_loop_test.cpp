@@ -169,7 +169,7 @@ TEST(ClosedLoop, ARobotKeepsItsLaneUsingOnlyCameras) {
   ASSERT_TRUE(stats.cameras);
   EXPECT_GT(stats.cameras->errors.count, 150u);
   EXPECT_LT(stats.cameras->errors.rms(), 0.003) << "1.2 mm";
-  EXPECT_LT(stats.cameras->errors.largest, 0.02) << "12 mm, while it sets out";
+  EXPECT_LT(stats.cameras->errors.largest, 0.02) << "12 mm, at the start";
   EXPECT_LT(stats.error.abs_mean, 0.02) << "offset in the lane, by readings: 12 mm";
   EXPECT_LE(stats.link.stale, 3u) << "readings before its first state";
 }
@@ -189,16 +189,16 @@ TEST(ClosedLoop, ARobotStopsWhileTheCameraIsFrozen) {
   EXPECT_GT(loop.place().x, 0.4);
   loop.cameras.frozen = true;
   loop.run(6);
-  const glm::dvec2 stood = loop.place();
+  const glm::dvec2 stopped = loop.place();
   const std::uint64_t fresh = loop.client->stats().link.stale;
   loop.run(10);
-  EXPECT_EQ(loop.place(), stood) << "0.3 s of prediction are over, and it has braked";
+  EXPECT_EQ(loop.place(), stopped) << "0.3 s of prediction are over, and it has braked";
   EXPECT_EQ(loop.client->stats().stops, 1u);
-  EXPECT_GT(loop.client->stats().link.stale, fresh + 3) << "readings go on, and say that its state is stale";
+  EXPECT_GT(loop.client->stats().link.stale, fresh + 3) << "readings continue, marked as computed from a stale state";
   EXPECT_EQ(loop.cameras.counts().frozen, 16u);
   loop.cameras.frozen = false;
   loop.run(20);
-  EXPECT_GT(loop.place().x, stood.x + 0.3) << "it goes on";
+  EXPECT_GT(loop.place().x, stopped.x + 0.3) << "it continues";
   EXPECT_NEAR(loop.place().y, 0.0, 0.05);
   EXPECT_EQ(loop.client->stats().stops, 1u);
 }
@@ -210,7 +210,7 @@ TEST(ClosedLoop, ARobotWithoutACameraStops) {
   loop.run(10);
   EXPECT_EQ(loop.client->stats().distance_m, 0.0);
   EXPECT_EQ(loop.client->stats().steps, 0u);
-  EXPECT_GT(loop.client->stats().link.whole.at("laneedge"), 0u) << "it asked, and the farm answers";
+  EXPECT_GT(loop.client->stats().link.whole.at("laneedge"), 0u) << "the farm answers its requests";
 }
 
 }  // namespace sf::vision

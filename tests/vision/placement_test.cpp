@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 #include "tests/vision/cameras.h"
 #include "tests/vision/images_in_memory.h"
 #include "vision/renderer.h"
@@ -60,12 +60,7 @@ Camera unplaced() {
 }
 
 std::string refusal(const Testbed& testbed, ImagesInMemory images) {
-  try {
-    place_camera(testbed, unplaced(), images, "album");
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return refusal_of([&] { place_camera(testbed, unplaced(), images, "album"); });
 }
 
 }  // namespace
@@ -114,9 +109,9 @@ TEST(Placement, ReadsTwoHundredImages) {
   for (const std::size_t before : {199u, 200u}) {
     std::vector<Image> images(before);
     images.push_back({64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9)});
-    const std::string told = refusal(testbed, ImagesInMemory(std::move(images)));
-    EXPECT_EQ(told.find("image 200 is 64 x 48") != std::string::npos, before == 199) << told;
-    EXPECT_EQ(told.find("saw 0, with 0 points") != std::string::npos, before == 200) << told;
+    const std::string error = refusal(testbed, ImagesInMemory(std::move(images)));
+    EXPECT_EQ(error.find("image 200 is 64 x 48") != std::string::npos, before == 199) << error;
+    EXPECT_EQ(error.find("saw 0, with 0 points") != std::string::npos, before == 200) << error;
   }
 }
 
@@ -131,7 +126,7 @@ TEST(Placement, ReportsMissingInput) {
   EXPECT_NE(
       refusal(testbed, ImagesInMemory({Image{64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9)}})).find("is 64 x 48"),
       std::string::npos);
-  EXPECT_EQ(refusal(survey(true), pictures(survey(true), 1)), "no error");
+  EXPECT_EQ(refusal(survey(true), pictures(survey(true), 1)), "");
   Testbed line = testbed;
   for (auto& [id, tag] : line.surveyed) tag.position = {0.7 * id - 1.5, 0.1 * id, 0.0};
   EXPECT_NE(refusal(line, pictures(line)).find("nearly on one line"), std::string::npos);

@@ -9,7 +9,6 @@
 #include "tests/vision/cameras.h"
 #include "vision/overlay.h"
 #include "vision/rendered_fleet.h"
-#include "vision/rendered_robots.h"
 #include "vision/renderer.h"
 
 namespace sf::vision {
@@ -130,7 +129,7 @@ TEST(OverlayRecord, IsDrawnInColours) {
 
 TEST(FleetRecord, MovesOnItsCircles) {
   const Testbed testbed = two_cameras();
-  const RenderedFleet fleet(testbed, {6, 0.5, 3, true, 5});
+  const RenderedFleet fleet(testbed, {3, 0.5, 2, true, 5});
   std::string text = scene_text(fleet.scene_at(0.4));
   for (std::size_t tag = 0; tag < fleet.size(); ++tag)
     for (const double time : {0.0, 2.7}) {
@@ -145,16 +144,6 @@ TEST(FleetRecord, MovesOnItsCircles) {
       text += '\n';
     }
   golden::expect(text, "vision", "fleet", 2e-4);
-}
-
-TEST(RobotsRecord, ContinueWithTheirLastVelocity) {
-  const Testbed testbed = two_cameras();
-  RenderedRobots robots(testbed);
-  ASSERT_TRUE(robots.update(4, {1.0, 2.0, 9.0, 0.6}, {0.5, -0.1}, 2.0, 10.0));
-  ASSERT_TRUE(robots.update(2, {-1.0, 0.5, 9.0, -0.6}, {0.2, 0.3}, -1.0, 10.2));
-  std::string text;
-  for (const double time : {10.3, 10.5, 10.6, 10.8}) text += scene_text(robots.scene_at(time));
-  golden::expect(text, "vision", "rendered_robots", 2e-4);
 }
 
 TEST(RendererRecord, ShowsMovingPatchesInTheirLight) {

@@ -29,6 +29,13 @@ Scene bare(double floor) {
   return scene;
 }
 
+Patch patch_of(glm::dvec2 size, double albedo) {
+  Patch patch;
+  patch.size = size;
+  patch.albedo = albedo;
+  return patch;
+}
+
 Image rendered(const Camera& camera, const Imaging& imaging, const Scene& scene, std::uint32_t frame = 0) {
   Image image;
   Renderer(camera, imaging, 1).render(scene, 0.0, frame, image);
@@ -45,10 +52,8 @@ double mean_of_row(const Image& image, int v) {
 
 TEST(Renderer, PutsPatchesWhereTheCameraProjectsThem) {
   Scene scene = bare(0.2);
-  Patch patch;
-  patch.size = {0.16, 0.08};
+  Patch patch = patch_of({0.16, 0.08}, 0.8);
   patch.X_WP = {0.1, 0.04, 0.0, 0.0};
-  patch.albedo = 0.8;
   scene.patches.push_back(patch);
   const Image image = rendered(small_camera(), perfect(), scene);
   // x from 0.02 to 0.18 m: columns 84.5 to 124.5. y from 0 to 0.08 m: rows 39.5 to 59.5.
@@ -64,10 +69,8 @@ TEST(Renderer, PutsPatchesWhereTheCameraProjectsThem) {
 
 TEST(Renderer, AveragesWithinAPixel) {
   Scene scene = bare(0.0);
-  Patch patch;
-  patch.size = {1.0, 1.0};
+  Patch patch = patch_of({1.0, 1.0}, 1.0);
   patch.X_WP = {0.5 + 0.001, 0.0, 0.0, 0.0};  // covers 3/4 of column 80, which begins at 0.000 m
-  patch.albedo = 1.0;
   scene.patches.push_back(patch);
   const Image image = rendered(small_camera(), perfect(), scene);
   double sum = 0.0;
@@ -77,14 +80,9 @@ TEST(Renderer, AveragesWithinAPixel) {
 
 TEST(Renderer, HigherPatchesHideLowerOnes) {
   Scene scene = bare(0.0);
-  Patch high;
-  high.size = {0.1, 0.1};
+  Patch high = patch_of({0.1, 0.1}, 0.8), low = patch_of({0.4, 0.4}, 0.4);
   high.X_WP.z = 0.2;
-  high.albedo = 0.8;
-  Patch low = high;
   low.X_WP.z = 0.1;
-  low.size = {0.4, 0.4};
-  low.albedo = 0.4;
   scene.patches = {high, low};
   const Image image = rendered(small_camera(), perfect(), scene);
   EXPECT_EQ(*image.at(80, 60), 204);
@@ -94,10 +92,7 @@ TEST(Renderer, HigherPatchesHideLowerOnes) {
 
 TEST(Renderer, BlackPatchesHideTheFloor) {
   Scene scene = bare(0.5);
-  Patch patch;
-  patch.size = {0.1, 0.1};
-  patch.albedo = 0.0;
-  scene.patches.push_back(patch);
+  scene.patches.push_back(patch_of({0.1, 0.1}, 0.0));
   EXPECT_EQ(*rendered(small_camera(), perfect(), scene).at(80, 60), 0);
 }
 
@@ -105,9 +100,7 @@ TEST(Renderer, BlursMotionDuringTheExposure) {
   Camera camera = small_camera();
   camera.exposure = 0.01;
   Scene scene = bare(0.0);
-  Patch patch;
-  patch.size = {0.08, 0.4};
-  patch.albedo = 1.0;
+  Patch patch = patch_of({0.08, 0.4}, 1.0);
   patch.velocity = {4.0, 0.0};  // 40 mm during the exposure: 10 px
   scene.patches.push_back(patch);
   const Image image = rendered(camera, perfect(), scene);
@@ -123,9 +116,7 @@ TEST(Renderer, ReadsRowsOneAfterAnother) {
   Camera camera = small_camera();
   camera.readout = 0.119;  // 1 ms a row
   Scene scene = bare(0.0);
-  Patch patch;
-  patch.size = {0.2, 2.0};
-  patch.albedo = 1.0;
+  Patch patch = patch_of({0.2, 2.0}, 1.0);
   patch.velocity = {1.0, 0.0};  // a quarter pixel a row
   scene.patches.push_back(patch);
   const Image image = rendered(camera, perfect(), scene);

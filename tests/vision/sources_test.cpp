@@ -7,10 +7,9 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "base/error.h"
+#include "tests/folder.h"
+#include "tests/refusal.h"
 #include "vision/opencv.h"
 
 namespace sf::vision {
@@ -19,18 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Sources : public testing::Test {
+class Sources : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = testing::TempDir() + "sources";
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+  void write_image(const std::string& name, std::uint8_t grey) const {
+    write(name, "P5 4 3 255\n" + std::string(12, static_cast<char>(grey)));  // for any suffix
   }
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
-  void write(const std::string& name, std::uint8_t grey) const {
-    std::ofstream(path(name)) << "P5 4 3 255\n" << std::string(12, static_cast<char>(grey));  // for any suffix
-  }
-  void write_text(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
   void make_socket(const std::string& name) const {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -40,30 +32,23 @@ class Sources : public testing::Test {
     close(handle);
   }
   std::string error_of(const std::string& source) const {
-    try {
-      opencv().open_source(source, 0, 0, 0.0);
-    } catch (const base::InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { opencv().open_source(source, 0, 0, 0.0); });
   }
-
-  std::string folder_;
 };
 
 }  // namespace
 
 TEST_F(Sources, FoldersAreReadInOrderWithoutSpecialFiles) {
-  write("b.png", 20);
-  write("a.PNG", 10);
-  write_text("notes.txt", "no image");
+  write_image("b.png", 20);
+  write_image("a.PNG", 10);
+  write("notes.txt", "no image");
   fs::create_directories(path("c.png"));
   fs::create_symlink("/dev/zero", path("d.png"));
   fs::create_symlink("none", path("e.png"));
   ASSERT_EQ(mkfifo(path("f.png").c_str(), 0600), 0);  // opening it would block until there is a writer
   make_socket("g.png");
   fs::create_symlink("b.png", path("h.png"));
-  const auto source = opencv().open_source(folder_, 0, 0, 0.0);
+  const auto source = opencv().open_source(path(""), 0, 0, 0.0);
   EXPECT_EQ(source->size(), 3u);
   std::vector<int> seen;
   for (Image image; source->next(image);) seen.push_back(*image.at(1, 1));
@@ -102,27 +87,26 @@ TEST_F(Sources, RejectSpecialFiles) {
   ASSERT_EQ(mkfifo(path("f.avi").c_str(), 0600), 0);
   make_socket("g.png");
   for (const char* name : {"f.png", "f.avi", "g.png"})
-    EXPECT_NE(error_of(path(name)).find("is a pipe, a socket or a block device"), std::string::npos)
-        << error_of(path(name));
-  EXPECT_NE(error_of(folder_).find("has no images"), std::string::npos);
+    expect_in("is a pipe, a socket or a block device", error_of(path(name)));
+  EXPECT_NE(error_of(path("")).find("has no images"), std::string::npos);
   EXPECT_NE(error_of("/dev/null").find("cannot be opened as a camera"), std::string::npos);
 }
 
 TEST_F(Sources, FilesThatCannotBeReadGiveNoPixels) {
-  write("a.png", 10);
-  write_text("b.png", "no image");
-  write_text("c.png", "");
-  write("d.png", 40);
+  write_image("a.png", 10);
+  write("b.png", "no image");
+  write("c.png", "");
+  write_image("d.png", 40);
   fs::resize_file(path("d.png"), 5);  // within the header
-  write("e.png", 50);
-  const auto source = opencv().open_source(folder_, 0, 0, 0.0);
+  write_image("e.png", 50);
+  const auto source = opencv().open_source(path(""), 0, 0, 0.0);
   std::vector<std::size_t> sizes;
   for (Image image; source->next(image);) sizes.push_back(image.pixels.size());
   EXPECT_EQ(sizes, (std::vector<std::size_t>{12, 0, 0, 0, 12}));
 }
 
 TEST_F(Sources, RejectLargerImages) {
-  std::ofstream(path("a.pgm")) << "P5 65536 1025 255\n" << std::string(65536 * 1025, 'a');  // 64 Mpx plus one row
+  write("a.pgm", "P5 65536 1025 255\n" + std::string(65536 * 1025, 'a'));  // 64 Mpx plus one row
   const auto source = opencv().open_source(path("a.pgm"), 0, 0, 0.0);
   Image image;
   EXPECT_THROW(source->next(image), base::InputError);
