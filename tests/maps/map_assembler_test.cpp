@@ -72,12 +72,12 @@ TEST(MapPackets, RejectsMalformedParts) {
   EXPECT_EQ(patched(0, std::nan("")), PartFault::out_of_range) << "left";
   EXPECT_EQ(patched(8, 1.1e7), PartFault::out_of_range) << "top";
   EXPECT_EQ(patched(16, 0.0), PartFault::out_of_range) << "cell";
-  EXPECT_EQ(patched(24, std::uint16_t{3}), PartFault::out_of_range) << "a part that is not there";
+  EXPECT_EQ(patched(24, std::uint16_t{3}), PartFault::out_of_range) << "a part beyond the last";
   EXPECT_EQ(patched(26, std::uint16_t{4}), PartFault::out_of_range) << "parts";
   EXPECT_EQ(patched(28, std::uint16_t{0}), PartFault::out_of_range) << "no columns";
   EXPECT_EQ(patched(30, std::uint16_t{5000}), PartFault::out_of_range) << "rows";
-  EXPECT_EQ(patched(32, std::uint16_t{2}), PartFault::out_of_range) << "flags that nobody has defined";
-  EXPECT_EQ(patched(36, std::uint32_t{3}), PartFault::out_of_range) << "a state that no cell has";
+  EXPECT_EQ(patched(32, std::uint16_t{2}), PartFault::out_of_range) << "undefined flags";
+  EXPECT_EQ(patched(36, std::uint32_t{3}), PartFault::out_of_range) << "an invalid state";
 }
 
 TEST(MapAssembler, AcceptsPartsInAnyOrder) {
