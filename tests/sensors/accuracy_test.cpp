@@ -13,6 +13,7 @@
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 #include "sensors/magnetometer_modes.h"
+#include "tests/refusal.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/edit_laser.h"
@@ -38,12 +39,7 @@ world::World load(const std::string& of_all, const std::string& laser = "", cons
 std::string modes(const world::World& world) { return sensors::modes_of(sensors::SensorSet(world)); }
 
 std::string refusal(const world::World& world) {
-  try {
-    sensors::SensorSet sensor_set(world);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { sensors::SensorSet sensor_set(world); });
 }
 
 TEST(Accuracy, IsExactByDefault) { EXPECT_EQ(modes(load("")), "exact"); }
@@ -67,31 +63,26 @@ TEST(Accuracy, CommandLineOverridesBoth) {
 }
 
 TEST(Accuracy, RejectsUnknownModesWithTheirLine) {
-  EXPECT_NE(refusal(load("\naccuracy \"skip3\""))
-                .find("sf_accuracy.world:2: there is no accuracy \"skip3\"; expected "
-                      "one of \"exact\", \"single\""),
-            std::string::npos)
-      << refusal(load("\naccuracy \"skip3\""));
-  EXPECT_NE(refusal(load("", "accuracy \"near3\""))
-                .find(":3: 'accuracy' is \"near3\"; this sensor supports \"exact\", "
-                      "\"single\""),
-            std::string::npos);
-  EXPECT_NE(refusal(load("", "", "", "nonsense")).find("there is no accuracy \"nonsense\""), std::string::npos);
+  expect_in("sf_accuracy.world:2: there is no accuracy \"skip3\"; expected one of \"exact\", \"single\"",
+            refusal(load("\naccuracy \"skip3\"")));
+  expect_in(":3: 'accuracy' is \"near3\"; this sensor supports \"exact\", \"single\"",
+            refusal(load("", "accuracy \"near3\"")));
+  expect_in("there is no accuracy \"nonsense\"", refusal(load("", "", "", "nonsense")));
   EXPECT_THROW(load("accuracy 3"), base::InputError) << "a word, not a number";
-  EXPECT_NE(refusal(load("", "", "accuracy 3")).find("expects a word"), std::string::npos);
+  expect_in("expects a word", refusal(load("", "", "accuracy 3")));
 }
 
 TEST(Accuracy, TypesWithoutModesAreExact) {
   EXPECT_EQ(modes(load("", "", "", "", "accuracy \"exact\"")), "exact");
-  const std::string text = refusal(load("", "", "", "", "accuracy \"skip2\""));
-  EXPECT_NE(text.find(":5: 'accuracy' is \"skip2\"; this sensor supports \"exact\""), std::string::npos) << text;
+  expect_in(":5: 'accuracy' is \"skip2\"; this sensor supports \"exact\"",
+            refusal(load("", "", "", "", "accuracy \"skip2\"")));
 }
 
 TEST(Accuracy, RejectsWordsOfAbsentTypes) {
   world::World world = scenes::boxes(5, 8.0, 1);
   scenes::add_robots(world, 1, scenes::laser(11), 1);
   sensors::set_accuracy(world, "near3");
-  EXPECT_NE(refusal(world).find("is for magnetometer, and the world has no such sensor"), std::string::npos);
+  expect_in("is for magnetometer, and the world has no such sensor", refusal(world));
   sensors::set_accuracy(world, "magnetometer:near3 single");
   EXPECT_NE(refusal(world), "") << "one of several too";
 }
@@ -185,13 +176,13 @@ TEST(Accuracy, UsesTheNearerBeamBetweenTwoSurfaces) {
   EXPECT_EQ(some.values[1], some.values[0]);
   EXPECT_EQ(some.values[2], some.values[4]) << "half way: the later one";
   EXPECT_EQ(some.values[3], some.values[4]);
-  EXPECT_EQ(some.hits[2], base::kNoHit) << "what lies between is not known";
+  EXPECT_EQ(some.hits[2], base::kNoHit) << "unknown between two surfaces";
 }
 
 TEST(Accuracy, SingleModeKeepsHitsAndRangesWithinTheBound) {
   const Read exact = read_in(crowd(361), "exact"), single = read_in(crowd(361), "single");
   EXPECT_EQ(single.hits, exact.hits);
-  EXPECT_NE(single.values, exact.values) << "or nothing was measured in 32 bits";
+  EXPECT_NE(single.values, exact.values) << "32 bits were used";
   EXPECT_EQ(single.mode, 1);
   EXPECT_GT(single.bound, exact.bound);
   EXPECT_LT(single.bound, 1.1e-3) << "a millimetre at 8 m";
@@ -319,7 +310,7 @@ TEST(Accuracy, FieldsStayWithinTheirBoundAnywhere) {
           EXPECT_LE(error, r.bound) << far << " m away, mover " << r.mover;
           worst = std::max(worst, error / r.bound);
         }
-      EXPECT_GT(worst, 1e-4) << "or the bound says nothing";
+      EXPECT_GT(worst, 1e-4) << "the bound is not far too large";
       EXPECT_LE(glance.readings[0].bound,
                 sensors::accuracy_statements(world, sensors::SensorSet(world)).at(0).bound.error);
     }

@@ -84,7 +84,7 @@ TEST(Bumper, ReadsCurrentContacts) {
   const world::World world = carriers(zones({{0, 90}, {-90, 0}}), {{0, 0, 0, 0}, {1, 0, 0, 2}});
   farm::Farm farm(world, device());
   farm.subscribe_all();
-  std::vector<base::Report> states = to_occupancy(world);
+  std::vector<base::Report> states = robots::states_at_load(world);
   for (std::uint32_t k = 0; k < base::kContactSectors; ++k) {
     states[0].contact_mask = 1u << k;
     states[1].contact_mask = k == 3 ? 0xFFFFFFFFu : 0u;

@@ -79,7 +79,7 @@ TEST_P(EveryCaster, MatchesTheHostForEverySensorType) {
       }
     }
   }
-  EXPECT_EQ(largest == 0.0, same_bytes) << "casters of which this is not true compute on their own";
+  EXPECT_EQ(largest == 0.0, same_bytes) << "other casters have other bytes";
 }
 
 /// A reading carries the bound of its caster.

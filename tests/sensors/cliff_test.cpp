@@ -29,7 +29,8 @@ TEST(Cliff, ReadsOneOverADropInFileOrder) {
   add_drop(world, {{0.05, 0.0}, {5, 0.0}, {5, 5}, {0.05, 5}});
   EXPECT_EQ(read_once(world), (std::vector<double>{1, 0, 0, 0}));
   world.movers[0].X_WM.yaw = -M_PI / 2;
-  EXPECT_EQ(read_once(world), (std::vector<double>{0, 0, 1, 0})) << "what was left behind is left ahead now";
+  EXPECT_EQ(read_once(world), (std::vector<double>{0, 0, 1, 0}))
+      << "turned right, its rear left point is over the drop";
   add_drop(world, square({0, -0.5}, 0.9));
   EXPECT_EQ(read_once(world), (std::vector<double>{1, 1, 1, 0})) << "either drop counts";
 }
@@ -55,7 +56,7 @@ TEST(Cliff, HandlesEitherWindingAndAnyShape) {
     EXPECT_FALSE(holds(outline, {-1, 0})) << "level with an edge";
   }
   EXPECT_FALSE(holds({}, {0, 0}));
-  EXPECT_FALSE(holds(std::vector<glm::dvec2>{{0, 0}, {1, 1}}, {0.5, 0.5})) << "two points hold nothing";
+  EXPECT_FALSE(holds(std::vector<glm::dvec2>{{0, 0}, {1, 1}}, {0.5, 0.5})) << "two points have no inside";
 }
 
 /// A square split into a fan of triangles: every point, including points on shared edges, is in exactly one of them.

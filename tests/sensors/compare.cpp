@@ -50,28 +50,28 @@ long double bearing(const sensors::LaserSettings& laser, std::size_t i) {
 }
 
 /// A beam of a reading, and its flags and bound.
-struct Said {
+struct Answer {
   const base::ReadingBlock& reading;
   std::size_t beam;
   double range;
   std::uint32_t model;
 };
 
-std::string describe(const oracle::Truth& truth, const Said& said) {
+std::string describe(const oracle::Truth& truth, const Answer& answer) {
   std::ostringstream out;
   out.precision(17);
-  out << "mover " << said.reading.mover << " at (" << said.reading.X_WS.x << ", " << said.reading.X_WS.y << "; "
-      << said.reading.X_WS.yaw << "), beam " << said.beam << " of " << said.reading.values.size() << ": " << said.range
-      << " m of model " << static_cast<std::int32_t>(said.model) << ", expected " << truth.first.range << " m of model "
-      << static_cast<std::int32_t>(truth.first.model) << " (sine " << truth.first.sine << ", " << truth.right.size()
-      << " right answers)";
+  out << "mover " << answer.reading.mover << " at (" << answer.reading.X_WS.x << ", " << answer.reading.X_WS.y << "; "
+      << answer.reading.X_WS.yaw << "), beam " << answer.beam << " of " << answer.reading.values.size() << ": "
+      << answer.range << " m of model " << static_cast<std::int32_t>(answer.model) << ", expected " << truth.first.range
+      << " m of model " << static_cast<std::int32_t>(truth.first.model) << " (sine " << truth.first.sine << ", "
+      << truth.right.size() << " right answers)";
   return out.str();
 }
 
 /// @param slack [m] error of the movers' outlines in the truth, which are computed in `double`
-void compare_beam(const oracle::Truth& truth, const Said& said, double slack, Tally& tally) {
-  const double range = said.range;
-  const std::uint32_t model = said.model;
+void compare_beam(const oracle::Truth& truth, const Answer& answer, double slack, Tally& tally) {
+  const double range = answer.range;
+  const std::uint32_t model = answer.model;
   ++tally.beams;
   tally.met += model != base::kNoHit;
   tally.ambiguous += truth.ambiguous;
@@ -84,14 +84,14 @@ void compare_beam(const oracle::Truth& truth, const Said& said, double slack, Ta
     const bool grazes = truth.first.sine < raycast::kMinSine;
     double& worst = grazes ? tally.worst_grazing : tally.worst;
     worst = std::max(worst, error);
-    tally.beyond_bound += !grazes && !truth.ambiguous && error > said.reading.bound + slack / truth.first.sine;
+    tally.beyond_bound += !grazes && !truth.ambiguous && error > answer.reading.bound + slack / truth.first.sine;
     return;
   }
   if (known) {
     ++tally.silhouettes;
     return;
   }
-  if (++tally.wrong == 1) tally.example = describe(truth, said);
+  if (++tally.wrong == 1) tally.example = describe(truth, answer);
 }
 
 /// Readings of one caster, and the results of their comparison.
@@ -136,6 +136,12 @@ bool is_small(const world::World& world) {
 }
 
 }  // namespace
+
+std::vector<Pose> loaded_poses(const world::World& world) {
+  std::vector<Pose> poses;
+  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
+  return poses;
+}
 
 Tally compare(const world::World& world, std::span<const Pose> poses, std::span<const base::ReadingBlock> readings) {
   Compared one[] = {{{}, readings}};

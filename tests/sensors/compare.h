@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/reading.h"
 #include "farm/farm.h"
@@ -34,6 +35,9 @@ std::string text(const Tally& tally);
 /// movers
 Tally compare(const world::World& world, std::span<const base::Pose> poses,
               std::span<const base::ReadingBlock> readings);
+
+/// Returns the poses of all movers at load.
+std::vector<base::Pose> loaded_poses(const world::World& world);
 
 /// Expects equal readings, bit by bit.
 void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const base::ReadingBlock> q);

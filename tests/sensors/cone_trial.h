@@ -111,10 +111,4 @@ inline ConeTally compare_cones(const world::World& world, std::span<const base::
   return tally;
 }
 
-inline std::vector<base::Pose> loaded_poses(const world::World& world) {
-  std::vector<base::Pose> poses;
-  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
-  return poses;
-}
-
 }  // namespace sf::trial

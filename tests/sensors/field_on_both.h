@@ -22,4 +22,9 @@ inline std::vector<sensors::FieldSum> sample_on_both(const world::World& world,
   return sums;
 }
 
+/// The field at one point, with the sum of magnitudes.
+inline sensors::FieldSum field_at(const world::World& world, const sensors::FieldPoint& point) {
+  return sample_on_both(world, {&point, 1}, {.magnitudes = true})[0];
+}
+
 }  // namespace sf::trial

@@ -31,34 +31,20 @@ bool is_visible(const world::World& world, glm::dvec2 p, double z, const Satelli
 
 // --- The constellation.
 
-TEST(Gps, SatellitesSurroundTheSkyAboveTheMask) {
-  for (const std::uint32_t count : {4u, 8u, 32u, 64u}) {
-    const auto all = constellation(count);
-    glm::dvec2 sum;
-    for (const Satellite& s : all) {
-      EXPECT_NEAR(glm::length(s.horizontal), 1.0, 1e-12);
-      EXPECT_GT(std::atan(s.tan_elevation), 15.0 * M_PI / 180);
-      EXPECT_LT(std::atan(s.tan_elevation), M_PI / 2);
-      sum = sum + s.horizontal;
-    }
-    EXPECT_LT(glm::length(sum), 2.0) << "evenly";
-  }
-}
-
 /// Azimuths and elevations listed in docs/sensors.md.
 TEST(Gps, SatellitePositionsMatchTheDocument) {
-  const std::string text = base::read_text(SF_SOURCE_DIR "/docs/sensors.md"), said = "that is i · ";
-  ASSERT_NE(text.find(said), std::string::npos);
-  const double degrees = std::strtod(text.c_str() + text.find(said) + said.size(), nullptr);
-  const auto all = constellation(8);
+  const std::string text = base::read_text(SF_SOURCE_DIR "/docs/sensors.md"), phrase = "that is i · ";
+  ASSERT_NE(text.find(phrase), std::string::npos);
+  const double degrees = std::strtod(text.c_str() + text.find(phrase) + phrase.size(), nullptr);
   const double lowest = std::sin(15.0 * M_PI / 180.0);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double turned =
-        std::atan2(all[i].horizontal.y, all[i].horizontal.x) - static_cast<double>(i) * degrees * M_PI / 180.0;
-    EXPECT_NEAR(std::remainder(turned, 2.0 * M_PI), 0.0, 1e-4) << i << ": 0.0005 degrees a satellite";
-    EXPECT_NEAR(std::sin(std::atan(all[i].tan_elevation)),
-                lowest + (1.0 - lowest) * (static_cast<double>(i) + 0.5) / 8.0, 1e-12);
-  }
+  for (const std::uint32_t count : {4u, 8u, 64u})
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Satellite satellite = constellation(count)[i];
+      const double turned = std::atan2(satellite.horizontal.y, satellite.horizontal.x) - i * degrees * M_PI / 180.0;
+      EXPECT_NEAR(std::remainder(turned, 2.0 * M_PI), 0.0, 1e-3) << i << ": 0.0005 degrees a satellite";
+      EXPECT_NEAR(glm::length(satellite.horizontal), 1.0, 1e-12);
+      EXPECT_NEAR(std::sin(std::atan(satellite.tan_elevation)), lowest + (1.0 - lowest) * (i + 0.5) / count, 1e-12);
+    }
 }
 
 /// Inverse of the normal matrix by Gauss-Jordan elimination, in long double.
@@ -125,11 +111,11 @@ TEST(Gps, WallBlocksLinesWithinItsHeights) {
   const auto wall = [&](double x, double z_min, double z_max) {
     world.walls = {{.a = {x, -1}, .b = {x, 1}, .z_min = z_min, .z_max = z_max, .solid_left = false}};
   };
-  EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "nothing stands";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "no walls";
   wall(1, 0, 2);
   EXPECT_FALSE(is_visible(world, {0, 0}, 0, kEast));
   EXPECT_TRUE(is_visible(world, {2, 0}, 0, kEast)) << "behind";
-  EXPECT_TRUE(is_visible(world, {0, 2}, 0, kEast)) << "beside";
+  EXPECT_TRUE(is_visible(world, {0, 2}, 0, kEast)) << "past its end";
   EXPECT_FALSE(is_visible(world, {0, 1}, 0, kEast)) << "its very end";
   EXPECT_TRUE(is_visible(world, {0, 0}, 1.5, kEast)) << "the antenna is high enough";
   EXPECT_TRUE(is_visible(world, {0, 0}, 1.0, kEast)) << "just over the top";
@@ -223,7 +209,7 @@ TEST(Gps, VisibilityMatchesStepsAlongTheLine) {
   }
   EXPECT_GT(blocked, 1000u);
   EXPECT_GT(clear, 1000u);
-  EXPECT_LE(differ, (blocked + clear) / 500) << "but for corners cut by less than a step";
+  EXPECT_LE(differ, (blocked + clear) / 500) << "except corners cut by less than a step";
 }
 
 // --- Readings.
@@ -318,21 +304,6 @@ TEST(Gps, RejectsInvalidSettings) {
   expect_refused("gps", {setting("satellites", {65})}, 8, "expected 4 to 64");
   expect_refused("gps", {setting("rate", {1}), setting("noise", {-1})}, 9, "'noise' is -1");
   expect_refused("gps", {setting("latency", {-1})}, 8, "'latency' is -1");
-}
-
-/// SimVille has a bridge over Second Street.
-TEST(Gps, NoFixUnderSimVillesBridge) {
-  world::World world =
-      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
-  world.movers.clear();
-  world::Sensor sensor = fitted("gps");
-  sensor.X_MS.z = 0.1;
-  scenes::add_carrier(world, {7.2, 3.25, 0, 0}, sensor);   // in the lane under the deck
-  scenes::add_carrier(world, {10.25, 3.0, 0, 0}, sensor);  // on the ring
-  const Glance run(world);
-  EXPECT_TRUE(std::isnan(run.readings[0].values[0])) << run.readings[0].values[3] << " in sight";
-  EXPECT_FALSE(std::isnan(run.readings[1].values[0])) << run.readings[1].values[3] << " in sight";
-  EXPECT_GE(run.readings[1].values[3], 6.0);
 }
 
 }  // namespace

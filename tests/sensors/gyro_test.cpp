@@ -18,7 +18,7 @@ std::vector<std::vector<double>> turning(const world::World& world, double turn,
                                          farm::FarmOptions options = {}) {
   farm::Farm farm(world, device(), options);
   farm.subscribe_all();
-  std::vector<base::Report> states = to_occupancy(world);
+  std::vector<base::Report> states = robots::states_at_load(world);
   for (base::Report& s : states) s.velocity.turn = turn;
   std::vector<std::vector<double>> rates(world.movers.size());
   for (int tick = 0; tick < ticks; ++tick)

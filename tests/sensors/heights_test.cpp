@@ -40,14 +40,6 @@ TEST(Heights, BeamHitsSurfacesAtItsHeight) {
   EXPECT_NEAR(look(world, std::nextafter(0.3, 0.0)), 2.0, 1e-12) << "just below its top";
 }
 
-TEST(Heights, BeamPassesUnderABridgeAndOverALowBox) {
-  world::World world;
-  add_box(world, 0.5, 1.0);
-  add_box(world, 0.0, 0.05);
-  scenes::add_outline(world, {{5, -1}, {6, -1}, {6, 1}, {5, 1}}, "behind");
-  EXPECT_NEAR(look(world, 0.2), 5.0, 1e-12);
-}
-
 TEST(Heights, BeamIgnoresABoxWithoutEcho) {
   world::World world;
   add_box(world, 0.0, 1.0, false);

@@ -25,14 +25,6 @@ const farm::FarmOptions kOnHost{.scene = {.caster = &raycast::device_caster, .lo
 /// No storage buffer holds the results.
 const farm::FarmOptions kInTexels{.scene = {.caster = &raycast::device_caster, .largest_buffer = 0}};
 
-bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
-  const auto same = [](auto a, auto b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
-  };
-  return p.mover == q.mover && p.type == q.type && p.bound == q.bound && same(p.values, q.values) &&
-         same(p.hits, q.hits) && same(p.quality, q.quality);
-}
-
 /// Runs two ticks of all farms. All robots move in between.
 void expect_same_bytes(const world::World& world) {
   farm::Farm on_device(world, device(), kOnDevice);
@@ -50,9 +42,8 @@ void expect_same_bytes(const world::World& world) {
     const auto expected = on_device.tick(tick * 1'000'000'000ll, reports);
     const auto given = on_host.tick(tick * 1'000'000'000ll, reports);
     by_host.tick(tick * 1'000'000'000ll, reports);
-    ASSERT_EQ(expected.size(), given.size());
-    for (std::size_t i = 0; i < given.size(); ++i)
-      EXPECT_TRUE(same_bits(expected[i], given[i])) << "tick " << tick << " reading " << i;
+    SCOPED_TRACE(tick);
+    expect_same_bits(expected, given);
   }
   EXPECT_EQ(on_device.hash(), on_host.hash());
   EXPECT_EQ(on_device.hash(), by_host.hash()) << "the caster of the host";

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "robots/fleet.h"
 #include "sensors/sensor_set.h"
+#include "tests/refusal.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
+#include "tests/sensors/statistics.h"
 
 namespace sf::trial {
 
@@ -36,13 +38,6 @@ inline world::World carriers(const world::Sensor& sensor, const std::vector<base
   world::World world;
   for (const base::Pose& pose : poses) scenes::add_carrier(world, pose, sensor);
   return world;
-}
-
-/// Returns the states of all robots: at rest at their poses at load.
-inline std::vector<base::Report> to_occupancy(const world::World& world) {
-  std::vector<base::Report> states;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) states.push_back({.mover = m, .X_WM = world.movers[m].X_WM});
-  return states;
 }
 
 inline std::vector<double> values_of(const base::ReadingBlock& reading) {
@@ -72,21 +67,10 @@ inline std::vector<glm::dvec2> square(glm::dvec2 middle, double side) {
 /// Expects that settings are rejected at park.world:`line` with a message that contains `words`.
 inline void expect_refused(const std::string& type, std::vector<world::Setting> settings, int line,
                            const std::string& words) {
-  try {
-    const sensors::SensorSet sensor_set(carriers(fitted(type, std::move(settings))));
-    FAIL() << "not refused: " << words;
-  } catch (const base::InputError& error) {
-    const std::string what = error.what();
-    EXPECT_TRUE(what.starts_with("park.world:" + std::to_string(line) + ": ")) << what;
-    EXPECT_NE(what.find(words), std::string::npos) << what;
-  }
-}
-
-/// Returns the correlation of two samples of mean 0 and variance 1.
-inline double correlation(const std::vector<double>& p, const std::vector<double>& q, std::size_t lag = 0) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i + lag < p.size(); ++i) sum += p[i] * q[i + lag];
-  return sum / static_cast<double>(p.size() - lag);
+  const std::string error =
+      refusal_of([&] { sensors::SensorSet sensor_set(carriers(fitted(type, std::move(settings)))); });
+  EXPECT_TRUE(error.starts_with("park.world:" + std::to_string(line) + ": ")) << error;
+  expect_in(words, error);
 }
 
 }  // namespace sf::trial

@@ -29,19 +29,12 @@ Response see(double gap, std::vector<world::Setting> more = {}) {
 }
 
 TEST(Infrared, ResponseFallsLinearly) {
-  for (int k = 0; k <= 50; ++k) {
+  for (int k = 0; k <= 60; ++k) {
     const double gap = 1e-3 * k + 1e-7;
     const Response r = see(gap);
     EXPECT_NEAR(r.range, std::min(gap, 0.05), 1e-12) << k;
     EXPECT_EQ(r.value, std::floor(1023.0 * (1.0 - std::min(gap, 0.05) / 0.05) + 0.5)) << k;
   }
-}
-
-TEST(Infrared, ReadsTheMaximumOnContactAndZeroInTheOpen) {
-  EXPECT_EQ(see(1e-12).value, 1023.0);
-  EXPECT_NEAR(see(1e-12).range, 0.0, 1e-9);
-  EXPECT_EQ(see(0.06).value, 0.0);
-  EXPECT_EQ(see(0.06).range, 0.05);
 }
 
 TEST(Infrared, SaturatesBelowRangeMin) {

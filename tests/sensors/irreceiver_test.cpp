@@ -35,7 +35,7 @@ world::World one_receiver(std::vector<Emitter> emitters, const Pose& X_WM = {}) 
 TEST(IrReceiver, VirtualWallHasABeamAndAHalo) {
   EXPECT_EQ(light_of(virtual_wall(), at(1.9, 9.9)), 1u);
   EXPECT_EQ(light_of(virtual_wall(), at(1.9, -9.9)), 1u);
-  EXPECT_EQ(light_of(virtual_wall(), at(1.9, 10.1)), 0u) << "beside the beam";
+  EXPECT_EQ(light_of(virtual_wall(), at(1.9, 10.1)), 0u) << "outside the beam";
   EXPECT_EQ(light_of(virtual_wall(), at(2.1, 0)), 0u) << "beyond it";
   EXPECT_EQ(light_of(virtual_wall(), at(0.39, 180)), 1u) << "in the halo, behind";
   EXPECT_EQ(light_of(virtual_wall(), at(0.41, 180)), 0u);
@@ -45,7 +45,7 @@ TEST(IrReceiver, VirtualWallHasABeamAndAHalo) {
 TEST(IrReceiver, DockHasABuoyOnEachSide) {
   EXPECT_EQ(light_of(dock(), at(1.5, 0)), 8u | 4u) << "both in the middle";
   EXPECT_EQ(light_of(dock(), at(1.5, 4.9)), 8u | 4u);
-  EXPECT_EQ(light_of(dock(), at(1.5, 5.1)), 8u) << "red on the dock's left, the right of who faces it";
+  EXPECT_EQ(light_of(dock(), at(1.5, 5.1)), 8u) << "red on the dock's left";
   EXPECT_EQ(light_of(dock(), at(1.5, 34.9)), 8u);
   EXPECT_EQ(light_of(dock(), at(1.5, 35.1)), 0u);
   EXPECT_EQ(light_of(dock(), at(1.5, -5.1)), 4u);
@@ -96,7 +96,7 @@ TEST(IrReceiver, DistinguishesWallsAndDocks) {
   EXPECT_EQ(read_once(one_receiver({virtual_wall({-1, 0, 0, 0}), dock({0, 1, 0, -1.2})})),
             (std::vector<double>{1, 244}));
   EXPECT_EQ(read_once(one_receiver({dock({0, 0.4, 0, 1}), dock({0, 1, 0, -M_PI / 2})})), (std::vector<double>{0, 254}))
-      << "of two docks, what is seen of either";
+      << "the union of two docks";
   EXPECT_EQ(read_once(one_receiver({})), (std::vector<double>{0, 255})) << "no emitters";
 }
 

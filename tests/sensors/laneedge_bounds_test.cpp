@@ -137,7 +137,7 @@ TEST(LaneEdgeBounds, HoldIntoAndOutOfABend) {
   EXPECT_EQ(seen.beyond, 0) << seen.example;
   EXPECT_GT(seen.stated, 500) << "on the straights";
   const Seen ahead = judge(world, faces, anywhere(8000, {0.0, 0.5}, 1.0, 10), {{"perpendicular", {20}}});
-  EXPECT_EQ(ahead.stated, 0) << "the perpendicular lies beside the fan: no ray looks where the edge is meant";
+  EXPECT_EQ(ahead.stated, 0) << "the perpendicular is outside the fan: no ray covers the edge there";
   EXPECT_GT(ahead.read, 500);
 }
 

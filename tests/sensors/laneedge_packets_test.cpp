@@ -37,7 +37,7 @@ TEST(LaneEdgePackets, RoundsToNearestAndSaturates) {
   EXPECT_EQ(millimetres(0.0006), 1);
   EXPECT_EQ(millimetres(1.2344), 1234);
   EXPECT_EQ(millimetres(65.534), 65'534);
-  EXPECT_EQ(millimetres(65.6), 65'534) << "far is not out of sight";
+  EXPECT_EQ(millimetres(65.6), 65'534) << "a far edge is still in sight";
   EXPECT_EQ(millimetres(std::numeric_limits<double>::infinity()), 65'534);
   EXPECT_EQ(millimetres(std::numeric_limits<double>::quiet_NaN()), 65'535);
   EXPECT_EQ(millimetres(-1.0), 0);

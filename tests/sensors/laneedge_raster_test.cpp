@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
 #include "sensors/lane_markings/marking_raster.h"
+#include "tests/refusal.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/laneedge_trial.h"
@@ -139,12 +139,7 @@ TEST(LaneEdgeRaster, RejectsAResolutionTooFineForTheRange) {
   world.road_resolution = 1e-4;
   world.lane_markings.push_back(marking({0.0, 0.0}, {0.5, 0.0}, 0.1));
   add_edge_eye(world, {});
-  try {
-    read_edges(world);
-    ADD_FAILURE();
-  } catch (const base::InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("road_resolution"), std::string::npos) << e.what();
-  }
+  expect_in("road_resolution", refusal_of([&] { read_edges(world); }));
 }
 
 // --- The bound ----------------------------------------------------------------------------------------------------

@@ -21,14 +21,14 @@ struct Block {
   int x, y, w, h, turn;
 };
 /// Pose of a sensor on the same lattice; `turn` in 1/1000 turn.
-struct Stand {
+struct Viewpoint {
   int x, y, turn;
 };
 
 std::ostream& operator<<(std::ostream& out, const Block& b) {
   return out << "box " << b.w << " x " << b.h << " at " << b.x << ", " << b.y << " turned " << b.turn;
 }
-std::ostream& operator<<(std::ostream& out, const Stand& s) {
+std::ostream& operator<<(std::ostream& out, const Viewpoint& s) {
   return out << "eye at " << s.x << ", " << s.y << " turned " << s.turn;
 }
 
@@ -45,10 +45,10 @@ struct Arbitrary<sf::trial::Block> {
 };
 
 template <>
-struct Arbitrary<sf::trial::Stand> {
-  static Gen<sf::trial::Stand> arbitrary() {
+struct Arbitrary<sf::trial::Viewpoint> {
+  static Gen<sf::trial::Viewpoint> arbitrary() {
     const auto place = gen::inRange(-300, 301);
-    return gen::construct<sf::trial::Stand>(place, place, gen::inRange(0, 1000));
+    return gen::construct<sf::trial::Viewpoint>(place, place, gen::inRange(0, 1000));
   }
 };
 
@@ -58,7 +58,7 @@ namespace sf::trial {
 namespace {
 
 using Blocks = std::vector<Block>;
-using Stands = std::vector<Stand>;
+using Viewpoints = std::vector<Viewpoint>;
 using Scans = std::vector<std::vector<double>>;
 
 constexpr double kRange = 6.0;          ///< [m]
@@ -87,7 +87,7 @@ world::World build(const Blocks& blocks, Map map = same, bool reverse = false) {
   return world;
 }
 
-Pose pose_of(const Stand& s) { return {s.x / 64.0, s.y / 64.0, 0.0, 2.0 * M_PI * s.turn / 1000}; }
+Pose pose_of(const Viewpoint& s) { return {s.x / 64.0, s.y / 64.0, 0.0, 2.0 * M_PI * s.turn / 1000}; }
 
 Scans look(world::World world, const std::vector<Pose>& poses, std::uint32_t samples = kSamples) {
   for (const Pose& pose : poses) add_eye(world, pose, eye(samples, kFov, kRange));
@@ -97,9 +97,9 @@ Scans look(world::World world, const std::vector<Pose>& poses, std::uint32_t sam
   return scans;
 }
 
-std::vector<Pose> poses_of(const Stands& stands) {
+std::vector<Pose> poses_of(const Viewpoints& viewpoints) {
   std::vector<Pose> poses;
-  for (const Stand& stand : stands) poses.push_back(pose_of(stand));
+  for (const Viewpoint& viewpoint : viewpoints) poses.push_back(pose_of(viewpoint));
   return poses;
 }
 
@@ -113,47 +113,48 @@ double slack(const world::World& world, const Pose& pose, std::uint32_t sample) 
 }
 
 void expect_alike(const world::World& world, const std::vector<Pose>& poses, const Scans& before, const Scans& after,
-                  bool turned_round = false) {
+                  bool reversed = false) {
   for (std::size_t e = 0; e < poses.size(); ++e)
     for (std::uint32_t i = 0; i < kSamples; ++i) {
-      const double change = std::abs(before[e][i] - after[e][turned_round ? kSamples - 1 - i : i]);
+      const double change = std::abs(before[e][i] - after[e][reversed ? kSamples - 1 - i : i]);
       if (change > 1e-12) RC_ASSERT(change <= slack(world, poses[e], i));
     }
 }
 
 /// At least one eye; additional eyes cost little.
-Stands some_stands() { return *rc::gen::nonEmpty<Stands>(); }
+Viewpoints some_viewpoints() { return *rc::gen::nonEmpty<Viewpoints>(); }
 
 RC_GTEST_PROP(LaserProperties, TranslationChangesNoBit, (const Blocks& blocks)) {
   // Sums of lattice points are exact, so no bit may change.
-  const Stands stands = some_stands();
+  const Viewpoints viewpoints = some_viewpoints();
   static glm::dvec2 by;
   by = {1.0 * *rc::gen::inRange(-1'000'000, 1'000'001), 1.0 * *rc::gen::inRange(-1'000'000, 1'000'001)};
-  std::vector<Pose> there = poses_of(stands);
+  std::vector<Pose> there = poses_of(viewpoints);
   for (Pose& pose : there) pose.x += by.x, pose.y += by.y;
-  RC_ASSERT(look(build(blocks), poses_of(stands)) == look(build(blocks, [](glm::dvec2 p) { return p + by; }), there));
+  RC_ASSERT(look(build(blocks), poses_of(viewpoints)) ==
+            look(build(blocks, [](glm::dvec2 p) { return p + by; }), there));
 }
 
 RC_GTEST_PROP(LaserProperties, RotationChangesNoRange, (const Blocks& blocks)) {
-  const Stands stands = some_stands();
+  const Viewpoints viewpoints = some_viewpoints();
   static double angle;
   angle = 2.0 * M_PI * *rc::gen::inRange(1, 1000) / 1000;
-  std::vector<Pose> there = poses_of(stands);
+  std::vector<Pose> there = poses_of(viewpoints);
   for (Pose& pose : there) pose = base::compose({0, 0, 0, angle}, pose);
   const Scans after = look(build(blocks, [](glm::dvec2 p) { return base::rotate(angle, p); }), there);
-  expect_alike(build(blocks), poses_of(stands), look(build(blocks), poses_of(stands)), after);
+  expect_alike(build(blocks), poses_of(viewpoints), look(build(blocks), poses_of(viewpoints)), after);
 }
 
 RC_GTEST_PROP(LaserProperties, MirroredWorldGivesMirroredScans, (const Blocks& blocks)) {
-  const Stands stands = some_stands();
-  std::vector<Pose> there = poses_of(stands);
+  const Viewpoints viewpoints = some_viewpoints();
+  std::vector<Pose> there = poses_of(viewpoints);
   for (Pose& pose : there) pose.y = -pose.y, pose.yaw = -pose.yaw;
-  expect_alike(build(blocks), poses_of(stands), look(build(blocks), poses_of(stands)),
+  expect_alike(build(blocks), poses_of(viewpoints), look(build(blocks), poses_of(viewpoints)),
                look(build(blocks, mirrored_point, true), there), true);
 }
 
 RC_GTEST_PROP(LaserProperties, AnotherObstacleLengthensNoRange, (const Blocks& blocks, const Block& another)) {
-  const std::vector<Pose> poses = poses_of(some_stands());
+  const std::vector<Pose> poses = poses_of(some_viewpoints());
   Blocks more = blocks;
   more.push_back(another);
   const Scans before = look(build(blocks), poses), after = look(build(more), poses);
@@ -164,7 +165,7 @@ RC_GTEST_PROP(LaserProperties, AnotherObstacleLengthensNoRange, (const Blocks& b
 }
 
 RC_GTEST_PROP(LaserProperties, MoreSamplesContainFewer, (const Blocks& blocks)) {
-  const std::vector<Pose> poses = poses_of(some_stands());
+  const std::vector<Pose> poses = poses_of(some_viewpoints());
   const std::uint32_t every = *rc::gen::element(2u, 3u, 4u, 6u, 8u, 9u, 12u, 24u, 36u, 72u);
   const Scans fine = look(build(blocks), poses), coarse = look(build(blocks), poses, 72 / every + 1);
   for (std::size_t e = 0; e < poses.size(); ++e)

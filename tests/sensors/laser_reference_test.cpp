@@ -30,8 +30,7 @@ Disagreement disagreement(const world::World& world, std::uint64_t seed, bool no
   farm.subscribe_all();
   sensors::LaserReference reference(world, seed, noise);
   Disagreement found;
-  std::vector<base::Pose> poses;
-  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
+  std::vector<base::Pose> poses = loaded_poses(world);
   for (int tick = 0; tick < 3; ++tick) {
     std::vector<base::Report> reports;
     for (std::uint32_t m = 0; m < poses.size(); ++m) {
@@ -107,10 +106,7 @@ TEST(LaserReference, WithWidelySpacedBeams) {
 
 TEST(LaserReference, FarFromTheOrigin) {
   world::World world = crowd(scenes::laser(), 8);
-  const glm::dvec2 away{1e7, -1e5};
-  for (world::Segment& s : world.walls) s.a = s.a + away, s.b = s.b + away;
-  for (world::Mover& m : world.movers) m.X_WM.x += away.x, m.X_WM.y += away.y;
-  world::update_extent_and_hash(world);
+  world::translate(world, 1e7, -1e5);
   expect_same_bits("far away", disagreement(world, 1));
 }
 

@@ -218,14 +218,10 @@ TEST(Lasers, RejectsSettingsOutOfRange) {
            {"ranger(\n scount 2 spose[0] [0 0 0] )", 2, "spose[1]"},
            {"ranger( scount 0 )", 1, "'scount' is 0; expected 1 to 1000"},
        }) {
-    std::string error;
-    try {
-      lasers(bad.text);
-    } catch (const base::InputError& caught) {
-      error = caught.what();
-    }
-    EXPECT_NE(error.find(fmt::format("test.world:{}: ", bad.line)), std::string::npos) << bad.text << ": " << error;
-    EXPECT_NE(error.find(bad.says), std::string::npos) << bad.text << ": " << error;
+    SCOPED_TRACE(bad.text);
+    const std::string error = refusal_of([&] { lasers(bad.text); });
+    expect_in(fmt::format("test.world:{}: ", bad.line), error);
+    expect_in(bad.says, error);
   }
 }
 

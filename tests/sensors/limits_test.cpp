@@ -118,13 +118,10 @@ TEST(Limits, ShortRangesFarAway) {
 /// Settings of world files at their limits, in metres and degrees, and the next values beyond.
 TEST(Limits, SettingsAreLimited) {
   const auto refused = [](const std::string& type, const std::string& key, std::vector<double> values) {
-    try {
-      const sensors::SensorSet sensor_set(carriers(fitted(type, {setting(key, std::move(values))})));
-    } catch (const base::InputError& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with("park.world:8: ")) << error.what();
-      return true;
-    }
-    return false;
+    const std::string error = refusal_of(
+        [&] { const sensors::SensorSet sensor_set(carriers(fitted(type, {setting(key, std::move(values))}))); });
+    EXPECT_TRUE(error.empty() || error.starts_with("park.world:8: ")) << error;
+    return !error.empty();
   };
   struct Range {
     const char *type, *key;

@@ -21,18 +21,16 @@ using sensors::FieldPoint;
 
 // --- Which magnets count.
 
-double field_z(const world::World& world, const FieldPoint& point) { return sample_on_both(world, {&point, 1})[0].z; }
-
 /// The distance is along the ground, at any height. A magnet at exactly the cut-off counts; one ulp farther away it
 /// does not.
 TEST(MagnetCutoff, IsSharpAndAlongTheGround) {
   world::World world;
   world.magnets.push_back(magnet({0, 0}));
   world.magnet_cutoff = 2.0;
-  EXPECT_NE(field_z(world, {2.0, 0, 0.1}), 0.0);
-  EXPECT_NE(field_z(world, {0, -2.0, 100.0}), 0.0);
-  EXPECT_EQ(field_z(world, {std::nextafter(2.0, 3.0), 0, 0.1}), 0.0);
-  EXPECT_EQ(field_z(world, {1.5, 1.5, 0.0}), 0.0);
+  EXPECT_NE(field_at(world, {2.0, 0, 0.1}).z, 0.0);
+  EXPECT_NE(field_at(world, {0, -2.0, 100.0}).z, 0.0);
+  EXPECT_EQ(field_at(world, {std::nextafter(2.0, 3.0), 0, 0.1}).z, 0.0);
+  EXPECT_EQ(field_at(world, {1.5, 1.5, 0.0}).z, 0.0);
 }
 
 /// Compares with a sum over exactly the magnets within the cut-off, at points and cut-offs of all sizes.
@@ -180,19 +178,19 @@ TEST(MagnetBound, CountsMovingMagnetsAtTheCutoff) {
 TEST(MagnetBound, SummaryIsForTheWorstElement) {
   world::World world = scenes::line(100, 0.1);
   world.magnet_cutoff = 1.5;
-  const sensors::MagnetSummary nobody = sensors::summarize_magnets(world);
-  EXPECT_EQ(nobody.magnets, 100u);
-  EXPECT_EQ(nobody.moving_magnets, 0u);
-  EXPECT_EQ(nobody.cutoff_m, 1.5);
-  EXPECT_GE(nobody.bound_T, sensors::truncation_bound(world, 0.0));
+  const sensors::MagnetSummary without_sensors = sensors::summarize_magnets(world);
+  EXPECT_EQ(without_sensors.magnets, 100u);
+  EXPECT_EQ(without_sensors.moving_magnets, 0u);
+  EXPECT_EQ(without_sensors.cutoff_m, 1.5);
+  EXPECT_GE(without_sensors.bound_T, sensors::truncation_bound(world, 0.0));
 
   scenes::add_carrier(world, {0, 0, 0.1, 0}, scenes::array({{0, 0, 0.5, 0}, {0, 0, 0.2, 0}}, 0.1));
   world.movers[0].magnets = {magnet({0, 0}, -0.5, 1e-9)};
-  const sensors::MagnetSummary facts = sensors::summarize_magnets(world);
-  EXPECT_EQ(facts.moving_magnets, 1u);
-  EXPECT_DOUBLE_EQ(facts.height_m, 0.1 + 0.1 + 0.2);
-  EXPECT_EQ(facts.bound_T, sensors::truncation_bound(world, facts.height_m));
-  EXPECT_LE(facts.bound_T, nobody.bound_T * 1.0001);
+  const sensors::MagnetSummary with_sensor = sensors::summarize_magnets(world);
+  EXPECT_EQ(with_sensor.moving_magnets, 1u);
+  EXPECT_DOUBLE_EQ(with_sensor.height_m, 0.1 + 0.1 + 0.2);
+  EXPECT_EQ(with_sensor.bound_T, sensors::truncation_bound(world, with_sensor.height_m));
+  EXPECT_LE(with_sensor.bound_T, without_sensors.bound_T * 1.0001);
 }
 
 }  // namespace

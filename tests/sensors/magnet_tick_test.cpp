@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "farm/farm.h"
+#include "tests/farm/small_farm.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -23,17 +23,6 @@ world::World park(double cutoff) {
     world.movers[m].magnets.push_back(scenes::magnet({-0.1, 0.0}, 0.05));
   }
   return world;
-}
-
-std::vector<base::Report> reports_at(const world::World& world, int tick) {
-  std::vector<base::Report> reports;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    base::Pose X = world.movers[m].X_WM;
-    X.x += 0.2 * (tick % 8);
-    X.yaw += 0.3 * tick;
-    reports.push_back({m, 0, X, {}});
-  }
-  return reports;
 }
 
 /// Magnets of an absent robot are also absent, as in a world without them.
@@ -67,7 +56,7 @@ TEST(MagnetTick, ValidationLayerIsSilent) {
         // More and more robots are subscribed, so that tables are replaced.
         for (std::uint32_t m = 0; m < 30; ++m)
           farm.subscribe(m, static_cast<int>(m) < 10 * k ? farm::kAllSensorTypes : 0u);
-        farm.tick(k * 100'000'000ll, reports_at(world, k));
+        farm.tick(k * 100'000'000ll, farm::reports_at(world, k));
       }
       EXPECT_EQ(farm.stats().readings, 60u);
       EXPECT_EQ(device.validation_messages(), "");

@@ -30,28 +30,17 @@ NoiseDraws draw_noise(bool magnitudes) {
     if (magnitudes) sensor.settings.push_back(scenes::text("sum", "magnitude"));
     scenes::add_carrier(world, {0.01 * i, 0, 0, 0.1 * i}, sensor);
   }
-  farm::Farm noisy(world, device(), {.seed = 5}), quiet(world, device(), {.noise = false});
-  noisy.subscribe_all();
-  quiet.subscribe_all();
   NoiseDraws draws;
-  for (int tick = 0; tick < 20; ++tick) {
-    const auto with = noisy.tick(tick * 100'000'000ll, {}), without = quiet.tick(tick * 100'000'000ll, {});
-    for (std::size_t r = 0; r < with.size(); ++r)
-      for (std::size_t e = 0; e < 5; ++e) {
-        const Element n = element(with[r], e), q = element(without[r], e);
-        const double unit = kSigma * sensors::kGauss;
-        const double all[] = {(n.field - q.field) / unit, (n.x - q.x) / unit, (n.y - q.y) / unit, (n.z - q.z) / unit};
-        for (std::size_t k = 0; k < 4; ++k) draws.of[k].push_back(all[k]);
-        draws.lengths_wrong += std::fabs(n.field - std::hypot(n.x, n.y, n.z)) > 1e-15;
-      }
-  }
+  for_noisy_readings(world, 5, 20, 100'000'000, [&](const auto& noisy, const auto& quiet) {
+    for (std::size_t e = 0; e < 5; ++e) {
+      const Element n = element(noisy, e), q = element(quiet, e);
+      const double unit = kSigma * sensors::kGauss;
+      const double all[] = {(n.field - q.field) / unit, (n.x - q.x) / unit, (n.y - q.y) / unit, (n.z - q.z) / unit};
+      for (std::size_t k = 0; k < 4; ++k) draws.of[k].push_back(all[k]);
+      draws.lengths_wrong += std::fabs(n.field - std::hypot(n.x, n.y, n.z)) > 1e-15;
+    }
+  });
   return draws;
-}
-
-double correlation(const std::vector<double>& p, const std::vector<double>& q, std::size_t lag) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i + lag < p.size(); ++i) sum += p[i] * q[i + lag];
-  return sum / static_cast<double>(p.size() - lag);
 }
 
 /// Each component is normal with the file's sigma; components, elements, robots and ticks are uncorrelated.

@@ -130,12 +130,12 @@ TEST(PaintFaces, RemovesDuplicateStripes) {
   std::reverse(turned.line.begin(), turned.line.end());
   world::LaneMarking nearly = s;
   for (glm::dvec2& p : nearly.line) p.x += 5e-5;
-  world::LaneMarking beside = s;
-  for (glm::dvec2& p : beside.line) p.x += 0.2;
+  world::LaneMarking shifted = s;
+  for (glm::dvec2& p : shifted.line) p.x += 0.2;
   world::LaneMarking wider = s;
   wider.width = 0.15;
   EXPECT_EQ(sensors::distinct_markings(std::vector{s, turned, nearly, s}).size(), 1u);
-  EXPECT_EQ(sensors::distinct_markings(std::vector{s, beside, wider}).size(), 3u);
+  EXPECT_EQ(sensors::distinct_markings(std::vector{s, shifted, wider}).size(), 3u);
 }
 
 }  // namespace

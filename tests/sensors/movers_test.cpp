@@ -13,12 +13,6 @@ namespace {
 
 using base::Pose;
 
-std::vector<Pose> poses_of(const world::World& world) {
-  std::vector<Pose> poses;
-  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
-  return poses;
-}
-
 TEST(Movers, RobotNeverSeesItself) {
   world::World world;
   scenes::add_robot(world, {}, scenes::laser(361, 2.0 * M_PI, 8.0));
@@ -62,7 +56,7 @@ TEST(Movers, AbsentRobotIsInvisibleUntilItReturns) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(range({}), 1.835, 1e-12);
   farm.set_absent(other, true);
   EXPECT_EQ(range({}), 8.0);
-  EXPECT_EQ(range({{other, 0, {1, 0, 0, 0}, {}}}), 8.0) << "whatever its last words were";
+  EXPECT_EQ(range({{other, 0, {1, 0, 0, 0}, {}}}), 8.0) << "whatever its last report was";
   EXPECT_EQ(farm.tick(now += 100'000'000, {}).size(), 1u) << "and it senses nothing";
   farm.set_absent(other, false);
   farm.subscribe(other, farm::kAllSensorTypes);
@@ -161,7 +155,7 @@ TEST(Movers, EveryTickOfAMovingCrowd) {
   farm.subscribe_all();
   Chance chance(9);
   Tally tally;
-  std::vector<Pose> poses = poses_of(world);
+  std::vector<Pose> poses = loaded_poses(world);
   for (int k = 0; k < 12; ++k) {
     std::vector<base::Report> reports;
     for (std::uint32_t m = 0; m < poses.size(); ++m) {

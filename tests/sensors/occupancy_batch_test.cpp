@@ -89,7 +89,7 @@ TEST(OccupancyBatch, MatchesTheRuleForTheThesisLaser) {
   const CellTally tally = contest(spread(map_of(M_PI, 361, 0.75), 50), 40, 5, 1);
   EXPECT_EQ(tally.different, 0u);
   EXPECT_EQ(tally.scans, 2'000u);
-  EXPECT_GT(tally.occupied, 20'000u) << "the scans say something";
+  EXPECT_GT(tally.occupied, 20'000u) << "the scans hit something";
   EXPECT_GT(tally.free, 200'000u);
   RecordProperty("cells", static_cast<int>(tally.cells));
 }
@@ -160,7 +160,7 @@ TEST(OccupancyBatch, UpdatesAFewMapsAtATimeInAnyOrder) {
   const CellTally tally = contest(map_settings, 40, 1, 70, true);
   EXPECT_EQ(tally.different, 0u);
   EXPECT_GT(tally.scans, 60u);
-  EXPECT_LT(tally.scans, 200u) << "most stay as they are";
+  EXPECT_LT(tally.scans, 200u) << "most are unchanged";
   EXPECT_GT(tally.occupied, 1'000u);
 }
 
@@ -168,16 +168,16 @@ TEST(OccupancyBatch, EmptyScansChangeNothing) {
   base::ThreadPool thread_pool(2);
   sensors::MapBatch batch(device(), thread_pool, {map_of(M_PI, 3, 1.0), map_of(M_PI, 3, 1.0)}, false);
   const double nan = std::nan("");
-  const std::vector<double> silent{nan, -1.0, nan};
-  const std::vector<double> loud{1.0, 0.5, 1.0};
+  const std::vector<double> invalid{nan, -1.0, nan};
+  const std::vector<double> valid{1.0, 0.5, 1.0};
   const std::uint32_t all[] = {0, 1};
-  const sensors::MapScan scans[] = {{0, {1.8, -1.8, 0, 0}, silent},  // no valid range
-                                    {1, {1e9, 1e300, 0, 0}, loud}};  // far outside
+  const sensors::MapScan scans[] = {{0, {1.8, -1.8, 0, 0}, invalid},  // no valid range
+                                    {1, {1e9, 1e300, 0, 0}, valid}};  // far outside
   batch.update(scans, all);
   for (const std::uint32_t map : all)
     for (const std::uint32_t word : batch.words(map)) ASSERT_EQ(word, 0u);
-  const sensors::MapScan mute[] = {{1, {nan, 0, 0, 0}, loud}};
-  batch.update(mute, all);
+  const sensors::MapScan unplaced[] = {{1, {nan, 0, 0, 0}, valid}};
+  batch.update(unplaced, all);
   for (const std::uint32_t word : batch.words(1)) ASSERT_EQ(word, 0u);
 }
 
@@ -197,9 +197,9 @@ TEST(OccupancyBatch, DrawsOneScanCellByCell) {
   for (std::int64_t row = 0; row < 40; ++row)
     for (std::int64_t column = 0; column < 40; ++column) {
       const bool ahead = row == 10 && column >= 10 && column < 13;
-      const bool beside = column == 10 && row >= 6 && row <= 14;
+      const bool sideways = column == 10 && row >= 6 && row <= 14;
       const maps::Cell expected = row == 10 && column == 13 ? maps::Cell::occupied
-                                  : ahead || beside         ? maps::Cell::free
+                                  : ahead || sideways       ? maps::Cell::free
                                                             : maps::Cell::unexplored;
       ASSERT_EQ(grid.at({column, row}), expected) << column << " " << row;
     }

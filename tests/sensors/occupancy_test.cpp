@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "farm/farm.h"
 #include "maps/map_packets.h"
-#include "tests/device.h"
+#include "tests/farm/small_farm.h"
+#include "tests/refusal.h"
+#include "tests/sensors/compare.h"
 #include "tests/sensors/edit_laser.h"
 #include "tests/sensors/map_scans.h"
 #include "tests/sensors/scenes.h"
@@ -47,14 +47,10 @@ world::World mapped(std::uint32_t robots, const std::vector<world::Setting>& set
 
 sensors::Occupancy only(const world::World& world) { return sensors::occupancies_of(world).at(0); }
 
-void expect_refused(const std::vector<world::Setting>& settings, const std::string& said) {
-  try {
-    sensors::occupancies_of(mapped(1, settings));
-    ADD_FAILURE() << "not refused: " << said;
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
-    EXPECT_EQ(std::string(error.what()).rfind("a.world:", 0), 0u) << error.what();
-  }
+void expect_refused(const std::vector<world::Setting>& settings, const std::string& part) {
+  const std::string error = refusal_of([&] { sensors::occupancies_of(mapped(1, settings)); });
+  expect_in(part, error);
+  EXPECT_TRUE(error.starts_with("a.world:")) << error;
 }
 
 /// Noise may move the range of a surface that is too near into the limits. Its flag keeps it out of maps.
@@ -122,17 +118,6 @@ TEST(OccupancySettings, RejectsInvalidSettings) {
   EXPECT_THROW(sensors::occupancies_of(dense), base::InputError);
 }
 
-std::vector<base::Report> map_reports_at(const world::World& world, int tick) {
-  std::vector<base::Report> reports;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    base::Pose X = world.movers[m].X_WM;
-    X.x += 0.05 * (tick % 8);
-    X.yaw += 0.25 * tick;
-    reports.push_back({m, 0, X, {}});
-  }
-  return reports;
-}
-
 /// Runs `ticks` tenths of seconds. Every delivered map must equal the map of the delivered scans.
 std::size_t compare_run(const world::World& world, int ticks) {
   farm::Farm farm(world, device());
@@ -143,7 +128,7 @@ std::size_t compare_run(const world::World& world, int ticks) {
   PlainMaps plain(map_settings);
   std::size_t compared = 0;
   for (int k = 0; k < ticks; ++k) {
-    const auto readings = farm.tick(k * 100'000'000ll, map_reports_at(world, k));
+    const auto readings = farm.tick(k * 100'000'000ll, farm::reports_at(world, k));
     for (const base::ReadingBlock& r : readings)
       for (std::uint32_t i = 0; i < all.size(); ++i)
         if (r.type == sensors::kLaser && all[i].row.mover == r.mover && all[i].laser == r.sensor)
@@ -179,22 +164,22 @@ TEST(OccupancyTick, FlagsAreClearForEstimatedPoses) {
 
 TEST(OccupancyTick, MapWithoutSubscribersIsUpdated) {
   const world::World world = mapped(1);
-  farm::Farm quiet(world, device()), loud(world, device());
-  loud.subscribe_all();
-  quiet.subscribe(0, 1u << sensors::kLaser);
-  for (int k = 0; k < 10; ++k) quiet.tick(k * 100'000'000ll, map_reports_at(world, k));
-  quiet.subscribe_all();
-  for (int k = 0; k < 10; ++k) loud.tick(k * 100'000'000ll, map_reports_at(world, k));
+  farm::Farm late(world, device()), early(world, device());
+  early.subscribe_all();
+  late.subscribe(0, 1u << sensors::kLaser);
+  for (int k = 0; k < 10; ++k) late.tick(k * 100'000'000ll, farm::reports_at(world, k));
+  late.subscribe_all();
+  for (int k = 0; k < 10; ++k) early.tick(k * 100'000'000ll, farm::reports_at(world, k));
   const auto map_of = [](std::span<const base::ReadingBlock> readings) {
     std::vector<double> words;
     for (const base::ReadingBlock& r : readings)
       if (r.type == sensors::kOccupancy) words.assign(r.values.begin(), r.values.end());
     return words;
   };
-  const auto heard = map_of(loud.tick(1'000'000'000, map_reports_at(world, 10)));
-  const auto unheard = map_of(quiet.tick(1'000'000'000, map_reports_at(world, 10)));
-  EXPECT_FALSE(heard.empty());
-  EXPECT_EQ(heard, unheard);
+  const auto early_map = map_of(early.tick(1'000'000'000, farm::reports_at(world, 10)));
+  const auto late_map = map_of(late.tick(1'000'000'000, farm::reports_at(world, 10)));
+  EXPECT_FALSE(early_map.empty());
+  EXPECT_EQ(early_map, late_map);
 }
 
 TEST(OccupancyTick, DoesNotDependOnThreads) {
@@ -205,7 +190,7 @@ TEST(OccupancyTick, DoesNotDependOnThreads) {
     options.threads = threads;
     farm::Farm farm(world, device(), options);
     farm.subscribe_all();
-    for (int k = 0; k < 11; ++k) farm.tick(k * 100'000'000ll, map_reports_at(world, k));
+    for (int k = 0; k < 11; ++k) farm.tick(k * 100'000'000ll, farm::reports_at(world, k));
     hashes[threads == 1 ? 0 : 1] = farm.hash();
   }
   EXPECT_EQ(hashes[0], hashes[1]);
@@ -222,7 +207,7 @@ TEST(OccupancyTick, ValidationLayerIsSilent) {
     farm::Farm farm(world, own);
     for (int k = 0; k < 12; ++k) {
       for (std::uint32_t m = 0; m < 6; ++m) farm.subscribe(m, static_cast<int>(m) < k ? farm::kAllSensorTypes : 0u);
-      farm.tick(k * 100'000'000ll, map_reports_at(world, k));
+      farm.tick(k * 100'000'000ll, farm::reports_at(world, k));
     }
     EXPECT_EQ(own.validation_messages(), "");
   }
@@ -289,7 +274,7 @@ TEST(OccupancyPackets, RejectsMapsOfOtherSensors) {
   EXPECT_EQ(type.decode(map_row(30, 29), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
   EXPECT_EQ(type.decode(map_row(30, 30), bytes, 3, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
   EXPECT_EQ(type.decode(map_row(0, 0), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::none)
-      << "nothing is known of it";
+      << "the sensor is unknown";
   base::Bytes plain;
   type.encode(map_row(30, 30), reading, WireFormat::thesis, 0, plain);
   EXPECT_EQ(type.decode(map_row(25, 36), plain, type.id, WireFormat::thesis).fault,

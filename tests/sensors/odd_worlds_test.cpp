@@ -71,7 +71,7 @@ TEST(OddWorlds, JunctionsAndCrossings) {
 TEST(OddWorlds, CoincidentSegments) {
   world::World world;
   scenes::add_outline(world, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "first");
-  scenes::add_outline(world, {{1, 0}, {2, 0}, {2, 1}, {1, 1}}, "beside");
+  scenes::add_outline(world, {{1, 0}, {2, 0}, {2, 1}, {1, 1}}, "adjacent");
   scenes::add_outline(world, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "again");
   scenes::add_outline(world, {{0.25, 1}, {0.75, 1}, {0.75, 2}, {0.25, 2}}, "on top");
   add_wall(world, {-1, 1}, {3, 1});

@@ -54,7 +54,7 @@ TEST(PlainPackets, RoundsToNearestAndSaturates) {
   EXPECT_DOUBLE_EQ(back({2'147'483.647, 0})[0], 2'147'483.647) << "the largest word";
   EXPECT_DOUBLE_EQ(back({1e300, 0})[0], 2'147'483.647);
   EXPECT_DOUBLE_EQ(back({kInf, 0})[0], 2'147'483.647);
-  EXPECT_DOUBLE_EQ(back({-2'147'483.648, 0})[0], -2'147'483.647) << "the word below says that there is no number";
+  EXPECT_DOUBLE_EQ(back({-2'147'483.648, 0})[0], -2'147'483.647) << "the word below means NaN";
   EXPECT_DOUBLE_EQ(back({-kInf, 0})[0], -2'147'483.647);
   EXPECT_TRUE(std::isnan(back({kNaN, 0})[0]));
 }
@@ -80,8 +80,8 @@ TEST(PlainPackets, RejectsImpossibleValues) {
   EXPECT_EQ(fault(longer, 2), PayloadError::too_long);
   EXPECT_EQ(fault(bytes_of({1, 6}), 1), PayloadError::out_of_range) << "more than its column has";
   EXPECT_EQ(fault(bytes_of({1, -1}), 1), PayloadError::out_of_range) << "less than its column has";
-  EXPECT_EQ(fault(bytes_of({1, kNaN}), 1), PayloadError::none) << "no number is no nonsense";
-  EXPECT_EQ(fault(bytes_of({1e9, 0}), 1), PayloadError::none) << "saturated says more";
+  EXPECT_EQ(fault(bytes_of({1, kNaN}), 1), PayloadError::none) << "NaN is valid";
+  EXPECT_EQ(fault(bytes_of({1e9, 0}), 1), PayloadError::none) << "a saturated word stands for any larger value";
 }
 
 TEST(PlainPackets, LimitsNumbersToOneDatagram) {

@@ -116,6 +116,8 @@ TEST(RangeLimits, NoiseMovesRangesOutOfRangeButNotTooNear) {
   const base::ReadingBlock& reading = glance.readings[0];
   std::size_t low = 0, high = 0;
   for (std::size_t i = 0; i < reading.values.size(); ++i) {
+    ASSERT_GE(reading.values[i], kMin);
+    ASSERT_LE(reading.values[i], kMax);
     low += reading.values[i] == kMin, high += reading.values[i] == kMax;
     EXPECT_EQ(reading.hits[i] == base::kNoHit, reading.values[i] == kMax) << reading.values[i];
   }

@@ -88,8 +88,7 @@ TEST(ReadingBack, NoReturn) {
   EXPECT_EQ(back(sensors::kLaser, row_of_elements(1, 8.0), {kInf}, WireFormat::thesis)[0], kInf);
   EXPECT_EQ(back(sensors::kLaser, row_of_elements(1, 65.535), {kInf}, WireFormat::farm)[0], 65.535)
       << "it may be a range";
-  EXPECT_EQ(back(sensors::kLaser, row_of_elements(1), {kInf}, WireFormat::farm)[0], 65.535)
-      << "nothing is known of the laser";
+  EXPECT_EQ(back(sensors::kLaser, row_of_elements(1), {kInf}, WireFormat::farm)[0], 65.535) << "the laser is unknown";
   EXPECT_EQ(back(sensors::kLaser, row_of_elements(1, 8.0), {8.0}, WireFormat::farm)[0], 8.0);
 }
 
@@ -100,7 +99,7 @@ TEST(ReadingBack, LaneEdges) {
   EXPECT_DOUBLE_EQ(seen[2], 12e-6);
   EXPECT_DOUBLE_EQ(seen[3], 1.5e-3);
   EXPECT_DOUBLE_EQ(back(kLaneEdge, row_of_elements(1), {70.0, 2, 0, 0}, WireFormat::farm)[0], 65.534)
-      << "far is not out of sight";
+      << "a far edge is still in sight";
 }
 
 TEST(ReadingBack, NoLaneEdgeInSight) {

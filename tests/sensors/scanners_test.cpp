@@ -8,6 +8,7 @@
 #include "raycast/casters.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser_settings.h"
+#include "tests/farm/small_farm.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/edit_laser.h"
@@ -26,15 +27,6 @@ TEST(Fans, EveryWidthAndCount) {
       add_eye(world, {p.x, p.y, 0.0, chance.between(-10.0, 10.0)}, eye(samples, fov, 8.0));
     }
   expect_exact("fans", sweep(world));
-}
-
-TEST(Fans, AHundredThousandSamples) {
-  world::World world = scenes::boxes(30, 16.0, 2);
-  for (const double fov : {1e-6, 180 * kDegree, 360 * kDegree})
-    add_eye(world, {0.1, 0.2, 0, 1.0}, eye(100'000, fov, 100.0));
-  const Glance run(world);
-  for (const auto& reading : run.readings) EXPECT_EQ(reading.values.size(), 100'000u);
-  expect_exact("100 000 samples", sweep(world));
 }
 
 /// A heading of many turns, and every heading at which a beam falls on the boundary of two direction sectors.
@@ -117,27 +109,10 @@ TEST(Fans, OfOneRobotWithDifferentRates) {
   for (const bool host : {false, true}) {
     farm::Farm farm(world, device(), {.scene = {.caster = host ? &raycast::host_caster : &raycast::device_caster}});
     farm.subscribe_all();
-    for (int tick = 0; tick < 4; ++tick) {
-      std::vector<base::Report> reports;
-      for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-        base::Pose X = world.movers[m].X_WM;
-        X.yaw += 0.3 * tick;
-        reports.push_back({m, 0, X, {}});
-      }
-      farm.tick(tick * 100'000'000ll, reports);
-    }
+    for (int tick = 0; tick < 4; ++tick) farm.tick(tick * 100'000'000ll, farm::reports_at(world, tick));
     hashes[host ? 1 : 0] = farm.hash();
   }
   EXPECT_EQ(hashes[0], hashes[1]);
-}
-
-TEST(Fans, SymmetricWorldGivesASymmetricScan) {
-  world::World world;
-  scenes::add_outline(world, {{2, -1}, {3, -1}, {3, 1}, {2, 1}}, "box");
-  add_eye(world, {}, eye(362, M_PI, 8.0));
-  const Glance run(world);
-  const auto values = run.readings[0].values;
-  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(values[i], values[values.size() - 1 - i], 1e-12);
 }
 
 }  // namespace

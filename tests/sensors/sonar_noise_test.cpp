@@ -5,6 +5,7 @@
 #include "raycast/casters.h"
 #include "sensors/infrared.h"
 #include "sensors/sonar.h"
+#include "tests/farm/small_farm.h"
 #include "tests/sensors/cone_trial.h"
 #include "tests/sensors/scenes.h"
 #include "tests/sensors/statistics.h"
@@ -40,54 +41,26 @@ world::Sensor noisy_sonar(double sigma, double proportional) {
 /// Returns draws by tick, then sensor, then transducer, extracted by `of(noisy, quiet)` from first columns.
 template <class Of>
 std::vector<double> draws(const world::World& world, std::size_t columns, std::int64_t interval, Of of) {
-  farm::Farm noisy(world, device(), {.seed = 5});
-  farm::Farm quiet(world, device(), {.noise = false});
-  noisy.subscribe_all();
-  quiet.subscribe_all();
   std::vector<double> all;
-  for (int k = 0; k < kRingTicks; ++k) {
-    const auto with = noisy.tick(k * interval, {});
-    const auto without = quiet.tick(k * interval, {});
-    for (std::size_t r = 0; r < with.size(); ++r)
-      for (std::size_t i = 0; i < with[r].values.size(); i += columns)
-        all.push_back(of(with[r].values[i], without[r].values[i]));
-  }
+  for_noisy_readings(world, 5, kRingTicks, interval, [&](const auto& noisy, const auto& quiet) {
+    for (std::size_t i = 0; i < noisy.values.size(); i += columns) all.push_back(of(noisy.values[i], quiet.values[i]));
+  });
   EXPECT_EQ(all.size(), kRingTicks * kRings * 2 * kTransducers);
   return all;
 }
 
-/// Expects neighbouring transducers, sensors, robots and ticks to be uncorrelated, within 4 standard deviations.
-void expect_independent_rings(const std::vector<double>& all) {
-  for (const std::size_t lag :
-       {std::size_t{1}, std::size_t{2}, kTransducers, 2 * kTransducers, kRings * 2 * kTransducers}) {
-    double sum = 0.0;
-    for (std::size_t i = lag; i < all.size(); ++i) sum += all[i] * all[i - lag];
-    const double n = static_cast<double>(all.size() - lag);
-    EXPECT_LT(std::fabs(sum / n), 4.0 / std::sqrt(n)) << "lag " << lag;
-  }
-}
-
-TEST(SonarNoise, ConstantNoiseIsNormalAndIndependent) {
-  const auto all = draws(slanted(noisy_sonar(0.02, 0.0)), 1, 40'000'000,
-                         [](double noisy, double quiet) { return (noisy - quiet) / 0.02; });
+/// Expects normal draws, uncorrelated between neighbouring transducers, sensors, robots and ticks.
+void expect_normal_and_independent(const std::vector<double>& all) {
   EXPECT_LT(ks(all), 1.95);
-  expect_independent_rings(all);
-}
-
-TEST(SonarNoise, BothPartsAddAsVariances) {
-  const auto all = draws(slanted(noisy_sonar(0.02, 0.01)), 1, 40'000'000,
-                         [](double noisy, double quiet) { return (noisy - quiet) / std::hypot(0.02, 0.01 * quiet); });
-  EXPECT_LT(ks(all), 1.95);
+  expect_uncorrelated(all, {1, 2, kTransducers, 2 * kTransducers, kRings * 2 * kTransducers});
 }
 
 /// Noise is added after the choice of the nearest ray, so it does not shorten ranges.
-TEST(SonarNoise, IsNotBiased) {
-  const auto all =
-      draws(slanted(noisy_sonar(0.02, 0.0)), 1, 40'000'000, [](double noisy, double quiet) { return noisy - quiet; });
-  double sum = 0.0;
-  for (const double d : all) sum += d;
-  const double n = static_cast<double>(all.size());
-  EXPECT_LT(std::fabs(sum / n), 4.0 * 0.02 / std::sqrt(n));
+TEST(SonarNoise, IsNormalAndIndependentWithBothPartsAsVariances) {
+  for (const double proportional : {0.0, 0.01})
+    expect_normal_and_independent(
+        draws(slanted(noisy_sonar(0.02, proportional)), 1, 40'000'000,
+              [&](double noisy, double quiet) { return (noisy - quiet) / std::hypot(0.02, proportional * quiet); }));
 }
 
 TEST(SonarNoise, StaysWithinRangeAndSkipsMissingEchoes) {
@@ -145,8 +118,7 @@ TEST(InfraredNoise, IsRelativeToTheResponseAndGrowsWithTheRange) {
     const double response = 1.0 - quiet / 0.05;
     return (1.0 - noisy / 0.05 - response) / (response * 0.04 * quiet / 0.05);
   });
-  EXPECT_LT(ks(all), 1.95);
-  expect_independent_rings(all);
+  expect_normal_and_independent(all);
 }
 
 TEST(InfraredNoise, RangeCorrespondsToTheNoisyResponse) {
@@ -205,21 +177,10 @@ world::World busy_world(int robots) {
   return world;
 }
 
-std::vector<base::Report> reports_of(const world::World& world, int tick) {
-  std::vector<base::Report> reports;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    Pose X = world.movers[m].X_WM;
-    X.x += 0.02 * (tick % 16);
-    X.yaw += 0.1 * tick;
-    reports.push_back({m, 0, X, {}});
-  }
-  return reports;
-}
-
 std::uint64_t hash_of_rings(const world::World& world, const farm::FarmOptions& options) {
   farm::Farm farm(world, device(), options);
   farm.subscribe_all();
-  for (int k = 0; k < 12; ++k) farm.tick(k * 40'000'000ll, reports_of(world, k));
+  for (int k = 0; k < 12; ++k) farm.tick(k * 40'000'000ll, farm::reports_at(world, k));
   return farm.hash();
 }
 

@@ -55,12 +55,6 @@ TEST(Touch, SensorBeyondTheContactDistanceIsOnOneSide) {
   EXPECT_NEAR(look(-2e-9, kDown), 1.0 - 2e-9, 1e-12);
 }
 
-TEST(Touch, SensorInsideASolidReadsTheDistanceOut) {
-  EXPECT_NEAR(look(-0.25, kUp), 0.25, 1e-12);
-  EXPECT_NEAR(look(-0.25, kDown), 0.75, 1e-12);
-  EXPECT_NEAR(look(-0.25, 0.0), 0.5, 1e-12);
-}
-
 /// A thin wall has no inside. It stops beams from either side, and contact acts as for a solid on the left of a -> b.
 TEST(Touch, ThinWallIsVisibleFromBothSides) {
   world::World world;
