@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "tests/golden.h"
-#include "tests/viz/png.h"
 
 namespace sf::scenes {
 namespace {

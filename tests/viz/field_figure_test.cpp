@@ -8,7 +8,6 @@
 #include <cmath>
 #include <set>
 
-#include "base/error.h"
 #include "tests/viz/png.h"
 #include "viz/color.h"
 
@@ -111,11 +110,6 @@ TEST(FieldFigure, AZeroFieldCanBeDrawn) {
   for (ProfilePoint& p : none.profile) p.field = {};
   draw_field(six(), view, none, scenes::own_file("none.png"));
   EXPECT_EQ(colours_of_the_map(view, scenes::own_file("none.png")), 1u);
-}
-
-TEST(FieldFigure, ReportsAnUnwritableFile) {
-  const FieldView view = field_view(six(), {.height = 0.075});
-  EXPECT_THROW(draw_field(six(), view, slope(view), scenes::own_file("no/such/folder/x.png")), base::InputError);
 }
 
 /// Figure 37 of the thesis: the field of six magnets, 7.5 cm above their tops, is nearly that of one.

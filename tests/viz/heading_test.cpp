@@ -15,18 +15,19 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-const std::string kTold = "8 robots, 6 lasers, 220 wall segments, 106 stripes, 413 magnets, 7 lights, 12.04 m x 8.04 m";
+const std::string kSubtitle =
+    "8 robots, 6 lasers, 220 wall segments, 106 stripes, 413 magnets, 7 lights, 12.04 m x 8.04 m";
 
 TEST(Heading, LongTextsTakeMoreLinesAndLoseNoWord) {
   for (const double width : {300.0, 500.0, 5000.0}) {
-    const Heading heading = make_heading("Trajectories of all", kTold, width, {});
-    EXPECT_EQ(joined(heading.subtitle), kTold) << width;
+    const Heading heading = make_heading("Trajectories of all", kSubtitle, width, {});
+    EXPECT_EQ(joined(heading.subtitle), kSubtitle) << width;
     EXPECT_EQ(joined(heading.title), "Trajectories of all") << width;
     TextStyle style = small_text();
     style.size = 19;
     for (const std::string& line : heading.subtitle) EXPECT_LE(text_size(line, style).x, width) << line;
   }
-  EXPECT_EQ(make_heading("", kTold, 5000.0, {}).subtitle.size(), 1u);
+  EXPECT_EQ(make_heading("", kSubtitle, 5000.0, {}).subtitle.size(), 1u);
 }
 
 TEST(Heading, AWordWiderThanTheFigureIsShortened) {
@@ -63,11 +64,11 @@ TEST(Heading, TextsAsWideAsTheFigureAreNotShortened) {
 }
 
 TEST(Heading, WithoutTitleOnlyAMarginRemains) {
-  const Heading none = make_heading("Title", kTold, 500.0, {.title = false});
+  const Heading none = make_heading("Title", kSubtitle, 500.0, {.title = false});
   EXPECT_TRUE(none.title.empty());
   EXPECT_TRUE(none.subtitle.empty());
   EXPECT_LT(none.height, 30.0);
-  EXPECT_GT(make_heading("Title", kTold, 500.0, {}).height, none.height + 60.0);
+  EXPECT_GT(make_heading("Title", kSubtitle, 500.0, {}).height, none.height + 60.0);
 }
 
 }  // namespace

@@ -82,8 +82,8 @@ TEST(Dashes, TurnCorners) {
   EXPECT_EQ(corner.substr(20, 7), "#######") << "the next dash, 16 px behind the corner: " << corner;
   const std::string below = second_leg({29, 5});  // the same x, another y
   EXPECT_EQ(below.substr(5, 7), "#######") << "a new line begins with a dash: " << below;
-  const std::string beside = second_leg({40, 4});  // the same y, another x
-  EXPECT_EQ(beside.substr(4, 7), "#######") << beside;
+  const std::string right = second_leg({40, 4});  // the same y, another x
+  EXPECT_EQ(right.substr(4, 7), "#######") << right;
 }
 
 TEST(Dashes, LinesWithoutLengthAreSkipped) {
@@ -97,7 +97,7 @@ TEST(Cross, HasFourArms) {
   for (const int d : {2, 8})
     for (const auto& [x, y] : {std::pair{20 + d, 20 + d}, {20 - d, 20 - d}, {20 + d, 20 - d}, {20 - d, 20 + d}})
       EXPECT_EQ(scenes::picture_of(canvas).at(x, y), kBlack) << x << ", " << y;
-  EXPECT_EQ(scenes::picture_of(canvas).at(26, 20), kWhite) << "beside them";
+  EXPECT_EQ(scenes::picture_of(canvas).at(26, 20), kWhite) << "between them";
   EXPECT_EQ(scenes::picture_of(canvas).at(34, 34), kWhite) << "beyond them";
 }
 

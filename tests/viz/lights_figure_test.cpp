@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
 #include "tests/viz/png.h"
 #include "viz/color.h"
 #include "viz/theme.h"
@@ -59,10 +58,6 @@ TEST(LightsFigure, UnusualRowsAreDrawn) {
   EXPECT_GT(lights_drawn({{"of no time", {{3.0, 3.0, LightState::red}}}}).width, 0);
   EXPECT_GT(lights_drawn({{std::string(300, 'x'), {{0.0, 1.0, LightState::red}}}}, {.width = 85.0}).width, 0)
       << "a name wider than the page";
-}
-
-TEST(LightsFigure, AnUnwritableFileIsAnError) {
-  EXPECT_THROW(draw_light_states({}, "", "/nowhere/x.svg"), base::InputError);
 }
 
 }  // namespace

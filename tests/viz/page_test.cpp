@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "tests/golden.h"
+#include "tests/refusal.h"
 #include "tests/viz/letters.h"
 #include "tests/viz/png.h"
 #include "tests/viz/rich_world.h"
@@ -252,10 +253,10 @@ TEST(Page, SmallSweptValuesHaveOneUnit) {
   for (IntervalLine& line : powers.plots[0].lines)
     for (std::size_t i = 0; i < line.points.size(); ++i) line.points[i].x = 1.0 + 1e-5 * static_cast<double>(i);
   powers.logarithmic = false;
-  EXPECT_TRUE(has(texts_of(powers, 0.0), "1.000010")) << "four digits would not tell them apart";
+  EXPECT_TRUE(has(texts_of(powers, 0.0), "1.000010")) << "four digits would be equal";
   IntervalFigure one = small_steps(false);
   for (IntervalLine& line : one.plots[0].lines) line.points.resize(1);
-  EXPECT_TRUE(has(texts_of(one, 50.0), "1.0") || has(texts_of(one, 50.0), "0.5")) << "ticks beside the only value";
+  EXPECT_TRUE(has(texts_of(one, 50.0), "1.0") || has(texts_of(one, 50.0), "0.5")) << "ticks around the only value";
 }
 
 /// Rows have short labels if long ones would take half of the picture.
@@ -266,6 +267,12 @@ TEST(Page, RowsOfNarrowHeatMapsHaveShortLabels) {
   EXPECT_NE(svg(50.0).find(">90°<"), std::string::npos);
   EXPECT_EQ(svg(50.0).find(">0 (90°)<"), std::string::npos);
   EXPECT_NE(svg(0.0).find(">0 (90°)<"), std::string::npos);
+}
+
+TEST(Page, UnwritableFilesAreReported) {
+  for (const std::string file : {"/nowhere/x.svg", "/nowhere/x.png"})
+    for (const Figure& figure : figures())
+      EXPECT_EQ(refusal_of([&] { figure.draw(file, {}); }).find(file), 0u) << figure.name;
 }
 
 double millimetres(const std::string& svg, const std::string& side) {

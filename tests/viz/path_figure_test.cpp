@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
 #include "tests/viz/png.h"
 #include "viz/color.h"
 #include "viz/road_layer.h"
@@ -82,10 +81,6 @@ TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
 TEST(PathFigure, GrowsWithItsTracks) {
   const scenes::Picture p = drawn({track(3.0)});
   EXPECT_GT(colored(p, row_color(0, 1)), 1000);
-}
-
-TEST(PathFigure, ReportsAMissingFolder) {
-  EXPECT_THROW(draw_along_paths(lane(), {}, "", "", "/nowhere/x.png"), base::InputError);
 }
 
 /// The x axis of a sweep has a separate name: the pictures differ only there, below the plot.

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "tests/units.h"
 
 namespace sf::viz {
 namespace {
@@ -56,8 +57,7 @@ TEST(Paths, ADotIsAPathOfOnePoint) {
 }
 
 TEST(Paths, NumbersThatAreNotFiniteAreSkipped) {
-  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  const Line lines[] = {{{nan, 1}, {2, 2}}, {{1, 1}, {2, -inf}}};
+  const Line lines[] = {{{kNaN, 1}, {2, 2}}, {{1, 1}, {2, -kInf}}};
   EXPECT_TRUE(cut_lines(lines, kBox).empty());
   EXPECT_TRUE(join_edges(lines).empty());
 }

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <regex>
 
 #include "base/error.h"
+#include "tests/golden.h"
 #include "tests/refusal.h"
 #include "tests/viz/png.h"
 #include "viz/canvas.h"
@@ -14,11 +13,6 @@
 
 namespace sf::viz {
 namespace {
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::size_t occurrences(const std::string& text, const std::string& part) {
   std::size_t count = 0;
@@ -88,30 +82,6 @@ TEST(Svg, ImagesArePngFiles) {
 
 TEST(Svg, ADrawingWithoutShapesIsAPage) { EXPECT_TRUE(is_well_formed(to_svg({10, 10, kWhite, {}}))); }
 
-/// Readers reject files with control characters, truncated or overlong sequences, surrogates and numbers beyond
-/// Unicode.
-TEST(Canvas, InvalidBytesBecomeQuestionMarks) {
-  struct Case {
-    std::string text, drawn;
-  };
-  for (const Case& c :
-       std::vector<Case>{{"a\nb\x01", "a?b?"},
-                         {"\xC3\xA4 \xE2\x82\xAC \xF0\x9F\xA4\x96", "\xC3\xA4 \xE2\x82\xAC \xF0\x9F\xA4\x96"},
-                         {"\xC3", "?"},
-                         {"\xE2\x82", "??"},
-                         {"\xC0\xAF", "??"},
-                         {"\xED\xA0\x80", "???"},
-                         {"\xF5\x80\x80\x80", "????"},
-                         {"\xEF\xBF\xBF", "???"},
-                         {std::string("\0", 1), "?"},
-                         {"\x7F", "?"}}) {
-    Canvas canvas(10, 10, kWhite);
-    canvas.text({0, 0}, c.text, {});
-    EXPECT_EQ(std::get<Lettering>(canvas.drawing().shapes.back()).text, c.drawn);
-    EXPECT_EQ(paint_pixels(canvas.drawing()).width, 10) << "and Cairo takes it";
-  }
-}
-
 TEST(PictureFile, TheSuffixDeterminesTheFormat) {
   EXPECT_EQ(format_of("a.png"), PictureFormat::png);
   EXPECT_EQ(format_of("a.b/c"), PictureFormat::png);  // suffixes of folder names are ignored
@@ -123,13 +93,13 @@ TEST(PictureFile, TheSuffixDeterminesTheFormat) {
 TEST(PictureFile, PdfHasItsFontsAndNoDate) {
   const std::string path = scenes::own_file("x.pdf");
   save_picture(one_of_each().drawing(), path);
-  const std::string pdf = bytes_of(path);
+  const std::string pdf = golden::read(path);
   EXPECT_TRUE(pdf.starts_with("%PDF-"));
   EXPECT_EQ(occurrences(pdf, "/FontFile"), 2u) << "regular and bold, embedded";
   EXPECT_GE(occurrences(pdf, "/ToUnicode"), 2u) << "so that texts can be searched";
   EXPECT_NE(pdf.find("/MediaBox [ 0 0 80 40 ]"), std::string::npos) << "200 x 100 px of 1/180 inch";
   save_picture(one_of_each().drawing(), path);
-  EXPECT_TRUE(bytes_of(path) == pdf) << "the same figure, the same bytes";
+  EXPECT_TRUE(golden::read(path) == pdf) << "the same figure, the same bytes";
 }
 
 TEST(PictureFile, DotsPerInchScaleThePixelsAlone) {
@@ -145,7 +115,7 @@ TEST(PictureFile, DotsPerInchScaleThePixelsAlone) {
   EXPECT_EQ(fine.height, 300);
   constexpr std::uint32_t kGreen = 0xFF00FF00u;
   EXPECT_NEAR(fine.count(kGreen), 9 * whole.count(kGreen), 0.15 * fine.count(kGreen));
-  EXPECT_NE(bytes_of(path).find("pHYs"), std::string::npos) << "the size on paper is in the file";
+  EXPECT_NE(golden::read(path).find("pHYs"), std::string::npos) << "the size on paper is in the file";
 }
 
 TEST(PictureFile, LimitsAreEnforced) {

@@ -67,7 +67,7 @@ TEST(RunView, TheCameraStopsWhenItsRobotsLeave) {
   frame.X_WM[0] = {1.0, 1.0, 0.0, 0.0};
   const PixelImage there = view.paint(frame);
   EXPECT_NE(color_at(there, 0.1, 0.0), theme::kWhite) << "the robot in the middle";
-  EXPECT_NE(color_at(there, 1.1, -1.0), theme::kWhite) << "the other one, as far from it as it is";
+  EXPECT_NE(color_at(there, 1.1, -1.0), theme::kWhite) << "the other one, at its distance";
   frame.X_WM[0] = base::kAbsent;
   const PixelImage gone = view.paint(frame);
   EXPECT_EQ(color_at(gone, 0.1, 0.0), theme::kWhite);

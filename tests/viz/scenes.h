@@ -103,39 +103,6 @@ inline world::World make_world(double width, double height, int blocks, std::uin
   return world;
 }
 
-/// Robots that wander from their poses and turn away from obstacles, 10 poses per second.
-inline std::vector<viz::Track> wander(const world::World& world, int poses, double speed = 0.4) {
-  std::mt19937 draw(7);
-  std::normal_distribution<double> normal;
-  world::World inner;
-  inner.extent = world.extent;
-  inner.walls.assign(world.walls.begin(), world.walls.end() - 4);
-  std::vector<viz::Track> tracks;
-  for (const world::Mover& mover : world.movers) {
-    viz::Track track;
-    track.name = mover.name;
-    track.duration = 0.1 * (poses - 1);
-    Pose pose = mover.X_WM;
-    double turn = 0.0;
-    for (int i = 0; i < poses; ++i) {
-      track.poses.push_back(pose);
-      turn = 0.95 * turn + 0.02 * normal(draw);
-      Pose next = pose;
-      next.yaw += turn;
-      const glm::dvec2 step = base::rotate(next.yaw, {0.1 * speed, 0.0});
-      next.x += step.x, next.y += step.y;
-      const bool blocked = inside_block(inner, {next.x, next.y}, 0.165);
-      track.contacts.push_back(blocked ? 1 : 0);
-      if (blocked)
-        pose.yaw += 1.0 + 0.4 * normal(draw);
-      else
-        pose = next;
-    }
-    tracks.push_back(std::move(track));
-  }
-  return tracks;
-}
-
 /// [m] Returns the range along `bearing` to the first wall, at most range_max.
 inline double cast(const world::World& world, glm::dvec2 p, double bearing, double range_max) {
   const glm::dvec2 d = base::rotate(bearing, {1.0, 0.0});

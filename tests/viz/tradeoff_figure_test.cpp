@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "base/error.h"
 #include "base/pose.h"
 #include "tests/viz/png.h"
 
@@ -70,10 +69,6 @@ TEST(TradeoffFigure, NamesLeaveTheMarksFree) {
   const TradeoffPoint other = point("other", 1e6, 1e-2, false);  // the axis is the same for both
   const auto marks = [&](const TradeoffPoint& p) { return drawn({p, other}).count(kCovered); };
   EXPECT_NEAR(marks(exact), marks(far), 4) << "neither is hidden";
-}
-
-TEST(TradeoffFigure, ReportsAnUnwritablePath) {
-  EXPECT_THROW(draw_tradeoff("t", "s", {}, "/nowhere/t.png"), base::InputError);
 }
 
 }  // namespace

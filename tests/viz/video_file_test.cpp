@@ -9,10 +9,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
-#include "base/error.h"
 #include "base/installation.h"
+#include "tests/golden.h"
+#include "tests/refusal.h"
 #include "tests/viz/png.h"
 
 namespace sf::viz {
@@ -51,11 +51,6 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
-std::string read(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 double psnr(const std::uint8_t* a, const std::uint8_t* b, std::size_t size) {
   double sum = 0.0;
   for (std::size_t i = 0; i < size; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -87,7 +82,7 @@ TEST(VideoFile, OtherProgramsReadTheWrittenFrames) {
 
 TEST(VideoFile, EqualFramesGiveEqualBytes) {
   if (!can_encode()) GTEST_SKIP() << "built without FFmpeg";
-  EXPECT_EQ(read(write_video("a.webm", 30)), read(write_video("b.webm", 30)));
+  EXPECT_EQ(golden::read(write_video("a.webm", 30)), golden::read(write_video("b.webm", 30)));
 }
 
 /// Without a frame, and closed by the destructor.
@@ -96,20 +91,17 @@ TEST(VideoFile, AnyNumberOfFramesGivesAFile) {
   EXPECT_GT(std::filesystem::file_size(write_video("none.webm", 0)), 0u);
   const std::string file = scenes::own_file("left.webm");
   { VideoFile(file, kFormat).add(frame(0)); }
-  EXPECT_EQ(read(file), read(write_video("one.webm", 1)));
+  EXPECT_EQ(golden::read(file), golden::read(write_video("one.webm", 1)));
 }
 
 TEST(VideoFile, AnUnwritableFileIsReportedWithItsReason) {
   if (!can_encode()) GTEST_SKIP() << "built without FFmpeg";
   const auto message = [](const std::string& file, int frames) {
-    try {
+    return refusal_of([&] {
       VideoFile video(file, kFormat);
       for (int i = 0; i < frames; ++i) video.add(frame(i));
       video.finish();
-    } catch (const base::InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("none");
+    });
   };
   EXPECT_EQ(message("/nowhere/a.webm", 1), "/nowhere/a.webm: the video cannot be written: No such file or directory");
   EXPECT_EQ(message("/dev/full", 30), "/dev/full: the video cannot be written: No space left on device");

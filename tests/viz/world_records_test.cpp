@@ -6,7 +6,6 @@
 
 #include "tests/golden.h"
 #include "tests/viz/drawing_record.h"
-#include "tests/viz/png.h"
 #include "tests/viz/rich_world.h"
 #include "viz/trajectory_figure.h"
 #include "viz/world_figure.h"
@@ -14,13 +13,7 @@
 namespace sf::viz {
 namespace {
 
-/// Draws to an SVG file and compares it with its record.
-template <class Draw>
-void expect_drawing(const std::string& name, Draw&& draw) {
-  const std::string file = scenes::own_file(name + ".svg");
-  draw(file);
-  scenes::expect_recorded(file, "viz", name);
-}
+using scenes::expect_drawing;
 
 /// `count` parallel tracks, each with four poses and a contact; every third is broken.
 std::vector<Track> tracks_of(std::size_t count) {
@@ -66,7 +59,7 @@ TEST(TrajectoryRecord, NamesAFewTracksInTheLegend) {
   tracks[3].color = 0xFF123456u;
   tracks[2].contacts.clear();
   expect_drawing("trajectories",
-                 [&](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks, file); });
+                 [&](const std::string& file) { draw_trajectories(scenes::make_world(8, 5, 0, 0), tracks, file); });
 }
 
 /// Boundary: the numbers of tracks at which lines, marks and crosses become thinner.
