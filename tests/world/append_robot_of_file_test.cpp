@@ -1,12 +1,8 @@
 // Robots of other world files.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-
+#include "tests/folder.h"
 #include "tests/world/read_world.h"
 #include "world/append_robot.h"
 #include "world/free_space.h"
@@ -19,26 +15,13 @@ const std::string kInclude =
     "define scout wheeled( name \"ann\" laser( samples 7\n fow 90 ) model( size [0.1 0.1 0.1] ) )\n"
     "define box model( size [1 1 1] )";
 
-class RobotOfFile : public ::testing::Test {
+class RobotOfFile : public FolderTest {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
-  }
   static std::string error(const std::string& file, const std::string& name) {
     World world;
-    try {
-      append_robot_of(world, file, name, kWithLasers);
-    } catch (const base::InputError& caught) {
-      const std::string what = caught.what();
-      return what.substr(what.rfind('/') + 1);
-    }
-    return {};
+    const std::string error = sf::refusal_of([&] { append_robot_of(world, file, name, kWithLasers); });
+    return error.substr(error.rfind('/') + 1);
   }
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("robot_of_file_" + std::to_string(::getpid()));
 };
 
 TEST_F(RobotOfFile, MayBeDefinedInTheFile) {
@@ -113,7 +96,7 @@ TEST_F(RobotOfFile, FilesWithoutRobotsAreRejected) {
   EXPECT_NE(error(write("m.yaml", "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n"), "a").find("has no robots"),
             std::string::npos);
   EXPECT_NE(error(write("s.toml", "world = \"x\"\n"), "a").find("is not a world"), std::string::npos);
-  EXPECT_NE(error((folder_ / "none.inc").string(), "a").find("no such file"), std::string::npos);
+  EXPECT_NE(error(path("none.inc"), "a").find("no such file"), std::string::npos);
   std::string many;
   for (int i = 0; i < 30; ++i) many += "define r" + std::to_string(i) + " position( )\n";
   EXPECT_NE(error(write("many.inc", many), "zzz").find(" and 10 more"), std::string::npos);

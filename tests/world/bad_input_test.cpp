@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
+#include "tests/folder.h"
 #include "tests/world/read_world.h"
 
 namespace sf::world {
@@ -36,7 +33,6 @@ const std::vector<Bad>& corpus() {
       {"infinity by name", "model( pose [infinity 0 0 0] )", 1, "found 'infinity'"},
       {"a hexadecimal number", "model( pose [0x10 0 0 0] )", 1, "not a number"},
       {"two dots", "model( size [1.2.3 2 3] )", 1, "not a number"},
-      {"huge length", "model( pose [1e8 0 0 0] )", 1, "too large"},
       {"property without value", "model(\n size\n color \"red\" )", 2, "requires a value"},
       {"property at the end", "name", 1, "requires a value"},
       {"number where a property belongs", "model( 3 )", 1, "expected a property"},
@@ -46,11 +42,9 @@ const std::vector<Bad>& corpus() {
       {"tag_pose that is no tuple", "model( name \"tag1\" tag_pose 1 )", 1, "expects a tuple"},
       {"tag_pose of words", "model( name \"tag1\" tag_pose [\"up\" 0 0 0] )", 1, "expects a tuple of numbers"},
       {"tag_pose out of reach", "model( name \"tag1\"\n tag_pose [80 80 0 0] )", 2, "within 100 m"},
-      {"tag_pose too high", "model( name \"tag1\" tag_pose [0 0 -101 0] )", 1, "within 100 m"},
       {"size too short", "model( size [1] )", 1, "[x y z]"},
       {"size that is no tuple", "model( size 1 )", 1, "expects a tuple"},
       {"size of words", "model( size [\"a\" \"b\" \"c\"] )", 1, "tuple of numbers"},
-      {"negative size", "model( size [1 -1 1] )", 1, "not negative"},
       {"number as a name", "model( name 3 )", 1, "expects a \"string\""},
       {"text as a number", "model( boundary \"yes\" )", 1, "one number"},
       {"missing include", "\ninclude \"nowhere.inc\"", 2, "nowhere.inc"},
@@ -61,9 +55,7 @@ const std::vector<Bad>& corpus() {
       {"define without a base", "define a (", 1, "define NEW-NAME"},
       {"define of itself", "\ndefine a a( )", 2, "defined in terms of itself"},
       {"block without points", "model(\n block( z [0 1] ) )", 2, "'points' is missing"},
-      {"block with one point", "model( block( points 1 point[0] [0 0] ) )", 1, "from 2"},
       {"block with half a point", "model( block( points 2.5 ) )", 1, "whole number"},
-      {"block upside down", "model( block( points 2 point[0] [0 0] point[1] [1 0] z [1 0] ) )", 1, "min not above max"},
       {"robot that cannot move", "position( velocity_bounds [0 0] )", 1,
        "xmax of 'velocity_bounds' is 0; expected more"},
       {"unknown drive", "position( drive \"legs\" )", 1, "\"diff\", \"omni\", \"car\" or \"skid\""},
@@ -82,7 +74,6 @@ const std::vector<Bad>& corpus() {
       {"phase without an end", "light( phases 1\n phase[0] [\"red\" 1e7] )", 2, "more than 0"},
       {"unknown state", "light( phases 1\n phase[0] [\"amber\" 1] )", 2, "\"flashing yellow\""},
       {"two lamps", "light( phases 1 phase[0] [\"red\" 1]\n lamps 2 )", 2, "1 or 3"},
-      {"offset out of reach", "light( phases 1 phase[0] [\"red\" 1]\n offset 1e7 )", 2, "'offset'"},
       {"stop line that is no way-point", "light( phases 1 phase[0] [\"red\" 1]\n stop_lines \"1.2\" )", 2, "'1.2'"},
       {"stop line with more behind it", "light( phases 1 phase[0] [\"red\" 1]\n stop_lines \"1.2.3.4\" )", 2,
        "'1.2.3.4'"},
@@ -94,10 +85,6 @@ const std::vector<Bad>& corpus() {
       {"light on a robot", "position(\n light( phases 1 phase[0] [\"red\" 1] ) )", 2, "cannot move"},
       {"unknown emitter", "model(\n ir_emitter \"torch\" )", 2, "\"virtual_wall\" or \"dock\""},
       {"emitter on a robot", "position(\n ir_emitter \"dock\" )", 2, "cannot move"},
-      {"emitter without reach", "model( ir_emitter \"dock\"\n ir_range 0 )", 2, "more than 0"},
-      {"emitter without a beam", "model( ir_emitter \"dock\"\n ir_fov 0 )", 2, "more than 0, to 360"},
-      {"emitter of more than a turn", "model( ir_emitter \"dock\"\n ir_fov 361 )", 2, "'ir_fov' is 361 degrees"},
-      {"halo below zero", "model( ir_emitter \"dock\"\n ir_halo -1 )", 2, "0 or more"},
       {"hole in a robot", "position(\n cliff_return 1 )", 2, "cannot move"},
       {"hole that is a line", "model(\n cliff_return 1 block( points 2 point[0] [0 0] point[1] [1 0] ) )", 2,
        "at least three corners"},
@@ -110,7 +97,6 @@ const std::vector<Bad>& corpus() {
       {"two tags of one number", "model( name \"tag4\" )\nmodel( model( name \"tag4\" ) )", 2, "tag 4"},
       {"unknown unit of length", "unit_length \"ft\"", 1, "\"m\", \"cm\" or \"mm\""},
       {"unknown unit of angle", "unit_angle \"grad\"", 1, "degrees"},
-      {"no time per tick", "interval_sim 0", 1, "milliseconds"},
   };
   return cases;
 }
@@ -143,31 +129,14 @@ TEST(BadInput, MacrosThatDoubleEachTimeAreRejected) {
   EXPECT_NE(error_of(text).find("expand to more than"), std::string::npos);
 }
 
-class Files : public ::testing::Test {
+class Files : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / fmt::format("bad_input_{}", ::getpid());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
-  }
   static std::string error(const std::string& file) {
-    try {
-      load_world(file);
-    } catch (const base::InputError& caught) {
-      return caught.what();
-    }
-    return {};
+    return sf::refusal_of([&] { load_world(file); });
   }
-  std::filesystem::path folder_;
 };
 
-TEST_F(Files, MissingFileIsReported) {
-  EXPECT_NE(error((folder_ / "none.world").string()).find("no such file"), std::string::npos);
-}
+TEST_F(Files, MissingFileIsReported) { EXPECT_NE(error(path("none.world")).find("no such file"), std::string::npos); }
 
 TEST_F(Files, FolderIsNotAWorld) { EXPECT_NE(error(folder_.string()).find("not a file"), std::string::npos); }
 
@@ -193,11 +162,6 @@ TEST_F(Files, ErrorInAnIncludeNamesTheInclude) {
   const std::string a = write("a.world", "include \"b.inc\"\nthing()");
   write("b.inc", "define thing model(\n size [1 )\n");
   EXPECT_NE(error(a).find("b.inc:2: "), std::string::npos);
-}
-
-TEST_F(Files, InvalidPictureIsNamed) {
-  write("x.png", "hello");
-  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("is not a picture in PNG"), std::string::npos);
 }
 
 TEST_F(Files, BrokenPictureIsNamed) {

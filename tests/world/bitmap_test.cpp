@@ -89,48 +89,20 @@ void check(const Bitmap& grid) {
   }
 }
 
-TEST(Bitmap, OnePixelHasFourSides) {
-  const Bitmap grid = grid_of({"...", ".#.", "..."});
-  EXPECT_EQ(trace_boundary(grid).size(), 4u);
-  check(grid);
-}
-
-TEST(Bitmap, PixelAtTheEdgeOfThePictureIsClosedThere) {
-  const Bitmap grid = grid_of({"#"});
-  EXPECT_EQ(trace_boundary(grid).size(), 4u);
-  check(grid);
-}
-
-TEST(Bitmap, EmptyGridHasNoOutline) { EXPECT_TRUE(trace_boundary(grid_of({"...", "..."})).empty()); }
-
-TEST(Bitmap, LShapeHasSixSides) {
-  const Bitmap grid = grid_of({"#..", "#..", "###"});
-  EXPECT_EQ(trace_boundary(grid).size(), 6u);
-  check(grid);
-}
-
-TEST(Bitmap, RingHasAnInnerOutlineToo) {
-  const Bitmap grid = grid_of({"####", "#..#", "#..#", "####"});
-  EXPECT_EQ(trace_boundary(grid).size(), 8u);
-  check(grid);
-}
-
-TEST(Bitmap, FourRunsEndWhereDiagonalPixelsTouch) {
-  const Bitmap grid = grid_of({"#.", ".#"});
-  const auto runs = trace_boundary(grid);
-  EXPECT_EQ(runs.size(), 8u);
-  int at_middle = 0;
-  for (const auto& run : runs) at_middle += (run.a.i == 1 && run.a.j == 1) + (run.b.i == 1 && run.b.j == 1);
-  EXPECT_EQ(at_middle, 4);
-  check(grid);
-}
-
-TEST(Bitmap, FourRunsEndOnTheOtherDiagonalToo) { check(grid_of({".#", "#."})); }
-
-TEST(Bitmap, CheckerboardHasFourSidesPerPixel) {
-  const Bitmap grid = grid_of({"#.#.", ".#.#", "#.#.", ".#.#"});
-  EXPECT_EQ(trace_boundary(grid).size(), 4u * 8u);
-  check(grid);
+TEST(Bitmap, ShapesHaveTheirSides) {
+  const std::pair<std::vector<std::string>, std::size_t> shapes[] = {
+      {{"...", ".#.", "..."}, 4},               // one pixel
+      {{"#"}, 4},                               // closed at the edge of the picture
+      {{"...", "..."}, 0},                      // nothing solid
+      {{"#..", "#..", "###"}, 6},               // an L
+      {{"####", "#..#", "#..#", "####"}, 8},    // a ring has an inner outline, too
+      {{"#.", ".#"}, 8},                        // four runs end where diagonal pixels touch
+      {{".#", "#."}, 8},                        // and on the other diagonal
+      {{"#.#.", ".#.#", "#.#.", ".#.#"}, 32}};  // four sides per pixel
+  for (const auto& [rows, sides] : shapes) {
+    EXPECT_EQ(trace_boundary(grid_of(rows)).size(), sides) << rows[0];
+    check(grid_of(rows));
+  }
 }
 
 TEST(Bitmap, TraceOfTooManyRunsEndsEarly) {
@@ -151,15 +123,6 @@ TEST(Bitmap, RandomGridsOfAllDensities) {
     }
     check(grid);
   }
-}
-
-TEST(Bitmap, CornersSpanTheSizeAboutTheOrigin) {
-  const PicturePart whole{{0, 0}, {2, 3}};
-  const auto low = corner_position(whole, {0, 0}, 4.0, 3.0), high = corner_position(whole, {2, 3}, 4.0, 3.0);
-  EXPECT_EQ(low.x, -2.0);
-  EXPECT_EQ(low.y, -1.5);
-  EXPECT_EQ(high.x, 2.0);
-  EXPECT_EQ(high.y, 1.5);
 }
 
 TEST(Bitmap, PartSpansTheSizeItself) {

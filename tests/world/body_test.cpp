@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "base/error.h"
+#include "base/files.h"
+#include "tests/folder.h"
 #include "tests/world/read_world.h"
 
 namespace sf::world {
@@ -15,10 +12,9 @@ namespace {
 
 /// Pictures: `full` is solid to its edges, `pad` has a solid part of 4 x 2 pixels in the middle of 8 x 8, `light` has
 /// none.
-class Bodies : public ::testing::Test {
+class Bodies : public FolderTest {
  protected:
-  void SetUp() override {
-    std::filesystem::create_directories(folder_);
+  Bodies() {
     write("full.pgm", "P2 4 2 255\n0 0 0 0 0 255 255 0\n");
     std::string pad = "P2 8 8 255\n";
     for (int y = 0; y < 8; ++y)
@@ -26,13 +22,7 @@ class Bodies : public ::testing::Test {
     write("pad.pgm", pad);
     write("light.pgm", "P2 2 2 255\n255 128 200 130\n");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-  }
-  World read(const std::string& text) const { return build_world((folder_ / "w.world").string(), text, kWithLasers); }
-
-  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / fmt::format("bodies_{}", ::getpid());
+  World read(const std::string& text) const { return build_world(path("w.world"), text, kWithLasers); }
 };
 
 std::string extent_of(const World& world) {
@@ -150,12 +140,7 @@ TEST_F(Bodies, KeysWithoutAnEffectAreNamedOnce) {
 }
 
 TEST_F(Bodies, TransparentDarkPixelsAreFreeWithAWarning) {
-  const std::string png(
-      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x02\0\0\0\x01\x08\x06\0\0\0\xf4\x22\x7f\x8a\0\0\0\x0fIDATx\xda\x63\x60\0\x82"
-      "\x13"
-      "\x5cr\xff\x01\x04\x82\x01\xf0\x04\x0d\x9e\x64\0\0\0\0IEND\xae\x42\x60\x82",
-      72);
-  write("clear.png", png);
+  write("clear.png", base::read_text(SF_SOURCE_DIR "/tests/fuzz/picture/two_colours.png"));
   EXPECT_EQ(warnings_of(read("model( size [2 1 1] bitmap \"clear.png\" )")),
             "1: 1 dark pixels of the picture are transparent and therefore free; Stage ignores transparency and treats "
             "them as walls\n1: the picture has no dark pixel, so it has no walls\n");
@@ -168,7 +153,7 @@ TEST_F(Bodies, FileThatStageFindsElsewhereIsAWarning) {
   write("inc/other.inc", "");
   write("inc/plan.inc", "# a plan\ndefine plan model( size [4 2 1] bitmap \"full.pgm\" )\n");
   const World world = read("include \"inc/plan.inc\"\nplan( )");
-  EXPECT_EQ(world.walls.size(), 4u) << "the one beside the include";
+  EXPECT_EQ(world.walls.size(), 4u) << "the one next to the include";
   const std::string warnings = warnings_of(world);
   EXPECT_EQ(warnings.substr(0, 18), "2: the picture is ") << warnings;
   EXPECT_NE(warnings.find("inc/full.pgm; Stage uses "), std::string::npos) << warnings;

@@ -13,7 +13,7 @@ namespace {
 const std::string kShared = SF_SOURCE_DIR "/../shared/data";
 
 #define NEED_SHARED() \
-  if (!std::filesystem::exists(kShared)) GTEST_SKIP() << "no shared data beside the sources"
+  if (!std::filesystem::exists(kShared)) GTEST_SKIP() << "no shared data next to the sources"
 
 std::size_t count_lasers(const World& world) {
   std::size_t count = 0;

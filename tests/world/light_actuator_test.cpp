@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "tests/golden.h"
 #include "world/fields.h"
 
 namespace sf::world {
@@ -75,7 +74,7 @@ TEST(LightActuator, RestsInGreenWithoutACall) {
   Drive d;
   d.until(60.0, {kAtA, kElsewhere});
   EXPECT_EQ(d.a(), LightState::green);
-  EXPECT_EQ(d.lights.forecasts(d.time)[0].now.left, HUGE_VAL) << "nobody knows";
+  EXPECT_EQ(d.lights.forecasts(d.time)[0].now.left, HUGE_VAL) << "unknown without a call";
   EXPECT_EQ(d.b(), LightState::red);
 }
 
@@ -140,21 +139,34 @@ std::string forecast_text(const SignalForecast& f) {
   return fmt::format("{} for {:.1f} to {:.1f}{}", word(f.now.state), f.now.left, f.latest, next);
 }
 
-/// Robots at both lights for 25 s, then only at b, then at neither: forecasts of both lights every second.
-TEST(LightActuator, ForecastsMatchTheRecord) {
+/// Robots at both lights for 25 s, then only at b until 40 s, then at neither.
+TEST(LightActuator, ForecastsAreTheEarliestAndTheLatestChange) {
+  struct Case {
+    double second;
+    const char* a;
+    const char* b;
+    const char* why;
+  };
   Drive d;
-  std::string text;
-  for (int second = 0; second <= 60; ++second) {
-    if (second <= 25)
-      d.until(second, {kAtA, kAtB});
-    else if (second <= 40)
-      d.until(second, {kAtB});
-    else
-      d.until(second);
+  for (const Case& c :
+       {Case{0, "green for inf to inf", "red for inf to inf", "no call"},
+        {1, "green for 4.0 to 19.0, then yellow for 6.0", "red for 7.0 to 22.0, then green for inf", "both call"},
+        {6, "green for 0.0 to 14.0, then yellow for 2.0", "red for 3.0 to 17.0, then green for inf", "after 'min'"},
+        {20, "green for 0.0 to 0.0, then yellow for 2.0", "red for 3.0 to 3.0, then green for inf", "at 'max'"},
+        {21, "yellow for 1.0 to 1.0, then red for inf", "red for 2.0 to 2.0, then green for inf", "a change"},
+        {22, "red for inf to inf", "red for 1.0 to 1.0, then green for inf", "clear"},
+        {24, "red for 6.0 to 12.0, then green for inf", "green for 3.0 to 9.0, then yellow for 5.0", "the next"},
+        {34, "red for 2.0 to 2.0, then green for inf", "yellow for 1.0 to 1.0, then red for inf", "back"},
+        {37, "green for 4.0 to 19.0, then yellow for 6.0", "red for 7.0 to 22.0, then green for inf", "b calls"},
+        {49, "red for 2.0 to 2.0, then green for inf", "yellow for 1.0 to 1.0, then red for inf", "a gap"},
+        {52, "green for inf to inf", "red for inf to inf", "at rest"}}) {
+    d.until(std::min(c.second, 25.0), {kAtA, kAtB});
+    d.until(std::min(c.second, 40.0), {kAtB});
+    d.until(c.second);
     const std::vector<SignalForecast> all = d.lights.forecasts(d.time);
-    text += fmt::format("{}: a {}; b {}\n", second, forecast_text(all[0]), forecast_text(all[1]));
+    EXPECT_EQ(forecast_text(all[0]), c.a) << c.second << " s: " << c.why;
+    EXPECT_EQ(forecast_text(all[1]), c.b) << c.second << " s: " << c.why;
   }
-  golden::expect(text, "world", "forecasts", 0.051);
 }
 
 /// Random robots for half an hour: never two greens, yellow between green and red, and no change before its forecast.

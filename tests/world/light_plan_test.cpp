@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 #include "world/light_phases.h"
 #include "world/lights.h"
 
@@ -53,12 +53,7 @@ TEST(LightPlan, TimesAreLimited) {
     std::string plan = kTwoStages;
     plan.replace(plan.find(l.from), l.from.size(), l.to + value);
     World world = plan_street();
-    try {
-      parse_light_plan("p.toml", plan, world);
-    } catch (const base::InputError&) {
-      return true;
-    }
-    return false;
+    return !sf::refusal_of([&] { parse_light_plan("p.toml", plan, world); }).empty();
   };
   for (const Limit& l : limits) {
     for (const std::string& fine : {l.least, l.most}) EXPECT_FALSE(is_refused(l, fine)) << l.to << fine;
@@ -196,12 +191,7 @@ TEST(LightPlan, ErrorsNameLineAndRemedy) {
            {wave("speeed = 1\n"), "unknown key 'speeed'"},
            {kTwoStages + "[[wave]]\nspeed = 1\nlights = [\"c\"]\n", "'c' is in no program of fixed stages"}}) {
     World world = plan_street();
-    try {
-      parse_light_plan("p.toml", c.text, world);
-      ADD_FAILURE() << c.text;
-    } catch (const base::InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(c.said), std::string::npos) << error.what() << "\nexpected: " << c.said;
-    }
+    expect_in(c.said, sf::refusal_of([&] { parse_light_plan("p.toml", c.text, world); }));
   }
 }
 

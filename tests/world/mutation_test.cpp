@@ -126,7 +126,7 @@ TEST(Mutation, Cave) { run(SF_SOURCE_DIR "/worlds/cave.world", 200); }
 
 TEST(Mutation, StageFiles) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/stage/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data next to the sources";
   run(folder + "simple.world", 150);
   run(folder + "chatterbox.inc", 300);
 }

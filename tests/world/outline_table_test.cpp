@@ -14,7 +14,7 @@ namespace {
 const std::string kSharedTables = SF_SOURCE_DIR "/../shared/data/reports/wkt/";
 
 TEST(OutlineTable, FilesOfOtherProgramsGiveTheirWalls) {
-  if (!std::filesystem::exists(kSharedTables)) GTEST_SKIP() << "no shared data beside the sources";
+  if (!std::filesystem::exists(kSharedTables)) GTEST_SKIP() << "no shared data next to the sources";
   struct Case {
     const char* file;
     std::size_t walls;

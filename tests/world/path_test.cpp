@@ -119,9 +119,6 @@ TEST(Path, ErrorsNameTheirLine) {
             "test.world:1: expected either straight[1] or arc[1]: 'pieces' is 2");
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1] arc[0] [1 90 1] )"),
             "test.world:1: expected either straight[0] or arc[0]: 'pieces' is 1");
-  EXPECT_EQ(error_of("path( pieces 1\nstraight[0] [0 1] )"), "test.world:2: expected a length and a width above zero");
-  EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1] left \"solid_white\"\npaint_width 0 )"),
-            "test.world:2: 'paint_width' expects a length above zero");
   EXPECT_EQ(error_of("path( pieces 1\narc[0] [0.2 90 0.5] )"),
             "test.world:2: 'arc[0]' is wider than its bend: expected a width below twice the radius");
   EXPECT_EQ(error_of("path( pieces 1\narc[0] [0.26 90 0.5] )"), "") << "nearly twice";
@@ -134,11 +131,6 @@ TEST(Path, ErrorsNameTheirLine) {
             "test.world:1: magnets require both a 'magnetic_moment' other than 0 and a 'magnet_spacing' above zero");
   EXPECT_EQ(error_of("model(\npath( pieces 1 straight[0] [1 1] ) )"),
             "test.world:2: 'path' is part of a model; expected it at the top level");
-}
-
-TEST(Path, RoadSettingsOfTheWorldAreChecked) {
-  EXPECT_EQ(read_world("road_resolution 0.005 magnet_cutoff 2").road_resolution, 0.005);
-  EXPECT_EQ(error_of("\nroad_resolution -1"), "test.world:2: 'road_resolution' is -1 m; expected 0 or more");
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "base/error.h"
-#include "world/stage/build_world.h"
+#include "tests/refusal.h"
+#include "world/stage/stage.h"
 
 namespace sf::world {
 
@@ -20,14 +20,9 @@ inline World read_world(const std::string& text, const LoadOptions& options = kW
 
 /// Returns the error without the path: "test.world:3: ...". Empty if the world loads.
 inline std::string error_of(const std::string& text) {
-  try {
-    read_world(text);
-  } catch (const base::InputError& error) {
-    const std::string what = error.what();
-    const auto at = what.find("test.world");
-    return at == std::string::npos ? what : what.substr(at);
-  }
-  return {};
+  const std::string error = sf::refusal_of([&] { read_world(text); });
+  const auto at = error.find("test.world");
+  return at == std::string::npos ? error : error.substr(at);
 }
 
 /// Returns all warnings, one per line: "3: ...".

@@ -94,7 +94,7 @@ TEST(RndfMutation, SmallNetwork) { run(std::string(kSmallRndf), 4000, read_all);
 
 TEST(RndfMutation, PublicNetworks) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data next to the sources";
   for (const char* file :
        {"darpa_sample/Sample_RNDF_Rev_1.5.rndf", "utexas/swri_site_visit_with_zones.rndf", "utexas/prc_large.rndf"})
     run(base::read_text(folder + file), 200, read_all);

@@ -23,20 +23,16 @@ void expect_refused(const std::vector<Wrong>& corpus) {
 
 TEST(RndfRefusals, Ids) {
   expect_refused({
-      {"segment 2\n", "segment 1\n", "small.rndf:30: segment 1 is already in line 6"},
       {"zone 3\n", "zone 2\n", "small.rndf:39: zone or segment 2 is already in line 30"},
-      {"lane 1.2\n", "lane 1.1\n", "small.rndf:21: lane 1.1 is already in line 9"},
       {"lane 1.2\n", "lane 2.2\n", "small.rndf:21: lane 2.2 is in segment 1; expected 1.1"},
       {"lane 1.2\n", "lane 1.0\n", "small.rndf:21: lane 1.0 is in segment 1"},
       {"spot 3.1\n", "spot 4.1\n", "small.rndf:50: spot 4.1 is in zone 3"},
       {"spot 3.1\n", "spot 3.0\n", "small.rndf:50: spot 3.0 is in zone 3"},
       {"perimeter 3.0\n", "perimeter 3.1\n", "small.rndf:42: perimeter 3.1 is in zone 3; expected 3.0"},
-      {"1.1.2 40", "1.1.1 40", "small.rndf:18: way-point 1.1.1 is already in line 17"},
       {"1.1.2 40", "1.2.2 40", "small.rndf:18: way-point 1.2.2 is in lane 1.1; expected 1.1.1, 1.1.2"},
       {"1.1.2 40", "1.1.0 40", "small.rndf:18: way-point 1.1.0 is in lane 1.1"},
       {"3.0.2 40", "3.1.2 40", "small.rndf:46: way-point 3.1.2 is in perimeter 3.0"},
       {"1.1.1 40", "1.1.4 40", "small.rndf:18: way-point 1.1.2 follows 1.1.4; expected them in driving direction"},
-      {"checkpoint 3.1.2 2", "checkpoint 3.1.2 1", "small.rndf:52: checkpoint 1 is already in line 14"},
       {"stop 1.1.3\n", "stop 1.1.3\nstop 1.1.3\n", "small.rndf:16: stop 1.1.3 is given twice"},
       {"exit 1.1.3 2.1.1\n", "exit 1.1.3 2.1.1\nexit 1.1.3 2.1.1\n",
        "small.rndf:17: exit 1.1.3 to 2.1.1 is already in line 16"},
@@ -47,8 +43,6 @@ TEST(RndfRefusals, References) {
   expect_refused({
       {"exit 1.1.3 2.1.1", "exit 1.1.3 2.1.9",
        "small.rndf:16: the exit leads to way-point 2.1.9, which does not exist"},
-      {"exit 1.1.3 2.1.1", "exit 1.1.3 9.1.1", "small.rndf:16: the exit leads to way-point 9.1.1"},
-      {"exit 1.1.3 2.1.1", "exit 1.1.3 3.1.1", "small.rndf:16: the exit leads to 3.1.1, a point of a parking spot"},
       {"exit 1.1.3 2.1.1", "exit 1.1.4 2.1.1", "small.rndf:16: the exit leaves way-point 1.1.4, which does not exist"},
       {"exit 1.1.3 2.1.1", "exit 1.2.1 2.1.1", "small.rndf:16: exit 1.2.1 is in lane 1.1"},
       {"exit 3.0.3", "exit 3.0.5", "small.rndf:44: the exit leaves way-point 3.0.5, which does not exist"},
@@ -146,7 +140,6 @@ TEST(RndfRefusals, Places) {
        "small.rndf:6: '1.1.1' is in the file; expected way-points only in lanes"},
       {"segment 1\n", "lane 1.1\nsegment 1\n", "small.rndf:6: 'lane' is in the file; expected it in a segment"},
       {"end_zone\n", "end_zone\nend_zone\n", "small.rndf:57: 'end_zone' is in the file; expected it in a zone"},
-      {"lane_width 12\n", "lane_width 12\nlane_width 13\n", "small.rndf:12: 'lane_width' is given twice in lane 1.1"},
       {"RNDF_name small\n", "", "small.rndf: 'RNDF_name' is missing"},
       {"zone_name Lot\nperimeter 3.0\n", "zone_name Lot\n/*", "small.rndf:42: this comment is never closed"},
       {"exit 1.1.3 2.1.1", "/* exit 1.1.3 2.1.1", "small.rndf:16: this comment is never closed; expected */"},

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/world/rndf_text.h"
 #include "tests/world/successors.h"
 #include "world/roads/mdf.h"
@@ -99,10 +101,12 @@ TEST(RndfSlips, AmbiguousMistakesAreRejected) {
         "num_waypoints none\n"},
        "small.rndf:22: 'num_waypoints' is none, but lane 1.2 has 0"},
   };
+  const std::set<std::string> tolerant_only{"stop 3.0.1", "checkpoint 3.0.1 1", "num_waypoints none\n"};
   for (const auto& [change, error] : corpus) {
-    // A point with a wrong number is missing elsewhere, so more errors may follow.
-    const std::string said = "\n" + refusal_of(small_with(change.first, change.second), false);
-    EXPECT_NE(said.find("\n" + error), std::string::npos) << change.second << said;
+    // A point with a wrong number is missing elsewhere, so more errors may follow unless the first one ends it.
+    for (const bool strict : {false, true})
+      if (!strict || !tolerant_only.contains(change.second))
+        expect_in("\n" + error, "\n" + refusal_of(small_with(change.first, change.second), strict));
   }
 }
 
@@ -197,28 +201,18 @@ TEST(MdfSlips, UnambiguousMistakesAreWarnings) {
 
 TEST(MdfSlips, AmbiguousMistakesAreRejectedTogether) {
   const std::string text = with(with(kMission, "\n2\n", "\n2 3\n"), "3 5 25", "3 25 5");
-  try {
-    parse_mdf("go.mdf", text);
-    FAIL() << "two ids in one line, and speeds the wrong way round";
-  } catch (const base::InputError& error) {
-    const std::string said = error.what();
-    EXPECT_EQ(said.find("go.mdf:6: '3' was not expected after '2'"), 0u) << said;
-    EXPECT_NE(said.find("\ngo.mdf:11: speeds from 25 to 5"), std::string::npos) << said;
-  }
+  const std::string said = sf::refusal_of([&] { parse_mdf("go.mdf", text); });
+  EXPECT_TRUE(said.starts_with("go.mdf:6: '3' was not expected after '2'")) << said;
+  expect_in("\ngo.mdf:11: speeds from 25 to 5", said);
   EXPECT_THROW(parse_mdf("go.mdf", with(kMission, "1 0 15\n", "1 0 15\n1 0 20\n")), base::InputError);
   EXPECT_THROW(parse_mdf("go.mdf", kMission.substr(0, kMission.find("3 5 25"))), base::InputError) << "cut short";
 }
 
 TEST(MdfSlips, AllMissingCheckpointsAreListed) {
   const Mdf mdf = parse_mdf("go.mdf", with(kMission, "\n1\n2\n", "\n7\n8\n"));
-  try {
-    check_against(mdf, small_rndf());
-    FAIL() << "checkpoints 7 and 8 are nowhere";
-  } catch (const base::InputError& error) {
-    const std::string said = error.what();
-    EXPECT_NE(said.find("go.mdf:5: checkpoint 7"), std::string::npos) << said;
-    EXPECT_NE(said.find("go.mdf:6: checkpoint 8"), std::string::npos) << said;
-  }
+  const std::string said = sf::refusal_of([&] { check_against(mdf, small_rndf()); });
+  expect_in("go.mdf:5: checkpoint 7 does not exist in small.rn", said);
+  expect_in("go.mdf:6: checkpoint 8", said);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 #include "world/roads/rndf.h"
 
 namespace sf::world {
@@ -84,12 +84,7 @@ inline Rndf small_rndf() { return parse_rndf("small.rndf", kSmallRndf); }
 
 /// Returns the error, in strict mode by default; empty if the file is read.
 inline std::string refusal_of(const std::string& text, bool strict = true) {
-  try {
-    parse_rndf("small.rndf", text, strict);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return {};
+  return sf::refusal_of([&] { parse_rndf("small.rndf", text, strict); });
 }
 
 /// Returns one warning per line: "3: ...".

@@ -59,13 +59,8 @@ TEST(Road, ErrorsNameTheirLine) {
 }
 
 TEST(Road, NetworkAloneIsNotAWorld) {
-  try {
-    load_world(SF_SOURCE_DIR "/worlds/simville/simville.rndf");
-    FAIL();
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("is not a world, but a world file can include it"), std::string::npos)
-        << error.what();
-  }
+  expect_in("is not a world, but a world file can include it",
+            sf::refusal_of([] { load_world(SF_SOURCE_DIR "/worlds/simville/simville.rndf"); }));
 }
 
 TEST(Road, TwoRoadsHaveDifferentNames) {

@@ -12,26 +12,7 @@
 namespace sf::world {
 namespace {
 
-TEST(LocalPlane, OriginIsZero) {
-  const glm::dvec2 p = LocalPlane({34.5, -117.4}).east_north({34.5, -117.4});
-  EXPECT_EQ(p.x, 0.0);
-  EXPECT_EQ(p.y, 0.0);
-}
-
-// Known lengths: radii of curvature times a small angle.
-TEST(LocalPlane, DegreesHaveTheirKnownLength) {
-  const double step = 1e-3;
-  // One degree of longitude on the equator is 111319.491 m, and one of latitude 110574.276 m.
-  EXPECT_NEAR(LocalPlane({0, 0}).east_north({0, step}).x, 111.319491, 1e-6);
-  EXPECT_NEAR(LocalPlane({0, 0}).east_north({step, 0}).y, 110.574276, 1e-6);
-  // At 45 degrees: longitude 78846.835 m, latitude 111131.778 m.
-  EXPECT_NEAR(LocalPlane({45, 10}).east_north({45, 10 + step}).x, 78.846835, 1e-5);
-  EXPECT_NEAR(LocalPlane({45, 10}).east_north({45 + step, 10}).y, 111.131778, 1e-5);
-}
-
-TEST(LocalPlane, SignsAndPoles) {
-  EXPECT_GT(LocalPlane({-38, 145}).east_north({-38, 145.001}).x, 0.0);
-  EXPECT_GT(LocalPlane({-38, 145}).east_north({-37.999, 145}).y, 0.0);
+TEST(LocalPlane, DateLineAndPoles) {
   EXPECT_NEAR(LocalPlane({0, 180}).east_north({0, -179.999}).x, 111.319491, 1e-6);  // over the date line
   EXPECT_NEAR(length(LocalPlane({90, 0}).east_north({89.999, 77})), 111.693980,
               1e-4);  // all longitudes are equal at a pole

@@ -142,18 +142,15 @@ TEST(LaneMarkings, StopLinesAndSpots) {
 }
 
 TEST(LaneMarkings, TooManyDashesAreRejected) {
-  try {
-    paint("broken_white", "broken_white", "dash_length_m = 0.00001\ndash_gap_m = 0.00001\n");
-    FAIL() << "ten million dashes were painted";
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("more than 1000000 painted"), std::string::npos);
-  }
+  expect_in("more than 1000000 painted", sf::refusal_of([] {
+              paint("broken_white", "broken_white", "dash_length_m = 0.00001\ndash_gap_m = 0.00001\n");
+            }));
 }
 
 // Checks the invariants of world::LaneMarking in all public networks.
 TEST(LaneMarkingFiles, StripesAreValid) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data next to the sources";
   for (const char* file : {"darpa_sample/uce_rndf_1_final_event.rndf", "darpa_sample/Sample_RNDF_Rev_1.5.rndf",
                            "utexas/swri_site_visit_with_zones.rndf", "utexas/prc_large.rndf"}) {
     std::vector<Warning> warnings;

@@ -187,7 +187,7 @@ TEST(RoadNetwork, MoreDecimalsAreKept) {
 // Edges of real lanes are half a width from the centre line, within the tolerance.
 TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data next to the sources";
   for (const char* file : {"darpa_sample/uce_rndf_1_final_event.rndf", "darpa_sample/Sample_RNDF_Rev_1.5.rndf"}) {
     std::vector<Warning> warnings;
     const RoadNetwork network = load_roads(folder + file, warnings);
@@ -230,7 +230,7 @@ std::set<int> missed_from(const RoadNetwork& network, PointId start, bool with_c
 // (segment 6), for which the file has no exit.
 TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReachable) {
   const std::string file = SF_SOURCE_DIR "/../shared/data/rndf/darpa_sample/uce_rndf_1_final_event.rndf";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data beside the sources";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data next to the sources";
   std::vector<Warning> warnings;
   const RoadNetwork network = load_roads(file, warnings);
   const PointId chute{38, 1, 1};  // the first start chute

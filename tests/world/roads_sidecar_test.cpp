@@ -19,13 +19,7 @@ RoadSidecar read(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    const RoadSidecar sidecar = read(text);
-    check_against(sidecar, small_rndf());
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return {};
+  return sf::refusal_of([&] { check_against(read(text), small_rndf()); });
 }
 
 TEST(Sidecar, EveryKeyIsRead) {
@@ -114,12 +108,7 @@ TEST(Sidecar, CommentsMayBeInAnyLanguage) {
   EXPECT_EQ(parse_sidecar("a.toml", "\xEF\xBB\xBF# Maßstab\nscale = 0.5  # ein Halb, ½\n", warnings).scale, 0.5);
   EXPECT_TRUE(warnings.empty());
   const auto refused = [&](const std::string& text) {
-    try {
-      parse_sidecar("a.toml", text, warnings);
-    } catch (const base::InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return sf::refusal_of([&] { parse_sidecar("a.toml", text, warnings); });
   };
   const std::string expected = ": a non-ASCII character; allowed only in comments on their own line";
   EXPECT_EQ(refused("scale = 1\nLDƒ = 2\n"), "a.toml:2" + expected) << "where toml++ loses its way";

@@ -1,15 +1,13 @@
 #include "world/ros_map.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 
-#include "base/error.h"
+#include "base/files.h"
+#include "tests/folder.h"
 #include "tests/robots/scenes.h"
 #include "tests/world/read_world.h"
 #include "world/free_space.h"
@@ -19,48 +17,35 @@
 namespace sf::world {
 namespace {
 
-class RosMap : public ::testing::Test {
+class RosMap : public FolderTest {
  protected:
-  void SetUp() override {
-    std::filesystem::create_directories(folder_);
-    write("m.pgm", "P2 3 2 255\n0 128 255\n255 255 255\n");  // wall, unknown, free; a free row below
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
+  RosMap() { write("m.pgm", "P2 3 2 255\n0 128 255\n255 255 255\n"); }  // wall, unknown, free; a free row below
   World load(const std::string& yaml, const LoadOptions& options = {}) const {
-    write("m.yaml", yaml);
-    return load_world((folder_ / "m.yaml").string(), options);
+    return load_world(write("m.yaml", yaml), options);
   }
   std::string error(const std::string& yaml) const {
-    try {
-      load(yaml);
-    } catch (const base::InputError& caught) {
-      const std::string what = caught.what();
-      return what.substr(what.find("m.yaml"));
-    }
-    return {};
+    const std::string error = sf::refusal_of([&] { load(yaml); });
+    return error.substr(std::min(error.size(), error.find("m.yaml")));
   }
   static double area(const World& world) {
     double sum = 0.0;
     for (const Segment& wall : world.walls) sum += base::cross(wall.a, wall.b) / 2;
     return sum;
   }
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("ros_map_" + std::to_string(::getpid()));
 };
 
 // Six pixels in RGBA: transparent black, black, transparent white, grey 89, white, and grey 10 of alpha 127.
-const std::vector<std::uint8_t> kAlpha{
-    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
-    0x00, 0x00, 0x06, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xfd, 0xc9, 0xdf, 0xf0, 0x00,
-    0x00, 0x00, 0x19, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60, 0x80, 0x80, 0xff, 0x40, 0xc0, 0x10,
-    0x19, 0x19, 0x09, 0xa2, 0xff, 0x73, 0x71, 0x71, 0xd5, 0x03, 0x00, 0x6d, 0x0a, 0x0a, 0xa0, 0x2b, 0x5c,
-    0x77, 0x60, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+const std::string kAlpha = base::read_text(SF_SOURCE_DIR "/tests/fuzz/picture/alpha.png");
 
 const std::string kGood =
     "image: m.pgm\nresolution: 0.5\norigin: [10, 20, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+std::string with(const std::string& key, const std::string& instead) {
+  std::string yaml = kGood;
+  const auto at = yaml.find(key);
+  yaml.replace(at, yaml.find('\n', at) - at, instead);
+  return yaml;
+}
 
 TEST_F(RosMap, OriginIsTheLowerLeftCornerAndTheFirstRowIsTheTop) {
   const World world = load(kGood);
@@ -149,18 +134,9 @@ TEST_F(RosMap, ImpossiblePosesAreNamed) {
 }
 
 TEST_F(RosMap, KnownAreaTurnsWithTheMap) {
-  std::string yaml = kGood;
-  yaml.replace(yaml.find("20, 0]"), 6, "20, 1.5707963267948966]");
-  const std::vector<Segment> known = known_free(load(yaml));
-  EXPECT_NE(winding_number(known, {9.25, 21.25}), 0) << "the pixel beside the unknown one";
+  const std::vector<Segment> known = known_free(load(with("origin", "origin: [10, 20, 1.5707963267948966]")));
+  EXPECT_NE(winding_number(known, {9.25, 21.25}), 0) << "the pixel next to the unknown one";
   EXPECT_EQ(winding_number(known, {9.25, 20.75}), 0) << "the unknown one";
-}
-
-std::string with(const std::string& key, const std::string& instead) {
-  std::string yaml = kGood;
-  const auto at = yaml.find(key);
-  yaml.replace(at, yaml.find('\n', at) - at, instead);
-  return yaml;
 }
 
 /// Degrees in a yaw in radians; centimetres, millimetres or pixels per metre in a resolution in metres.
@@ -187,13 +163,8 @@ TEST_F(RosMap, PicturesAreNotIncludes) {
   write("house.pgm", "P2 1 1 255\n0\n");
   write("alone.PNG", "\x89PNG");
   const auto refusal = [&](const std::string& text) {
-    try {
-      build_world((folder_ / "w.world").string(), text);
-    } catch (const base::InputError& caught) {
-      const std::string what = caught.what();
-      return what.substr(what.rfind("w.world"));
-    }
-    return std::string();
+    const std::string error = sf::refusal_of([&] { build_world(path("w.world"), text); });
+    return error.substr(std::min(error.size(), error.rfind("w.world")));
   };
   EXPECT_EQ(refusal("\ninclude \"house.pgm\"\n"),
             "w.world:2: \"house.pgm\" is a picture; expected the file of the ROS map: include \"house.yaml\"; or use "
@@ -253,7 +224,7 @@ TEST_F(RosMap, RawPixelsArePercentages) {
 /// map_server averages alpha with the colours in mode trinary, of every picture that stores one: transparent black is
 /// 0, opaque black 64, transparent white 191 (unknown), opaque grey 89 is 130 (unknown; without alpha it is a wall).
 TEST_F(RosMap, AlphaIsAveragedInTrinaryMode) {
-  write("a.png", std::string(kAlpha.begin(), kAlpha.end()));
+  write("a.png", kAlpha);
   const std::string yaml = with("image", "image: a.png");
   const World world = load(yaml);
   EXPECT_NEAR(area(world), 3 * 0.25, 1e-12) << "transparent black, black, and grey 10";
@@ -270,7 +241,7 @@ TEST_F(RosMap, AlphaIsAveragedInTrinaryMode) {
 
 /// In mode scale all pixels that are not opaque are unknown, as in Nav2.
 TEST_F(RosMap, TransparentPixelsAreUnknownInModeScale) {
-  write("a.png", std::string(kAlpha.begin(), kAlpha.end()));
+  write("a.png", kAlpha);
   EXPECT_NEAR(area(load(with("image", "image: a.png") + "mode: scale\n")), 2 * 0.25, 1e-12) << "black and grey 89";
 }
 
@@ -323,9 +294,7 @@ TEST_F(RosMap, WorldsOfOtherSimulatorsAreNamed) {
 }
 
 TEST_F(RosMap, YawTurnsAboutTheOrigin) {
-  std::string yaml = kGood;
-  yaml.replace(yaml.find("20, 0]"), 6, "20, 1.5707963267948966]");
-  const World world = load(yaml);
+  const World world = load(with("origin", "origin: [10, 20, 1.5707963267948966]"));
   EXPECT_NEAR(world.extent.x_min, 9.0, 1e-12);
   EXPECT_NEAR(world.extent.x_max, 9.5, 1e-12);
   EXPECT_NEAR(world.extent.y_min, 20.0, 1e-12);
@@ -333,9 +302,7 @@ TEST_F(RosMap, YawTurnsAboutTheOrigin) {
 
 TEST_F(RosMap, ThresholdsAreStrict) {
   write("m.pgm", "P2 2 1 255\n51 50\n");  // 0.8 occupied, which is not above 0.8, and slightly more
-  std::string yaml = kGood;
-  yaml.replace(yaml.find("0.65"), 4, "0.8");
-  EXPECT_NEAR(area(load(yaml)), 0.25, 1e-12);
+  EXPECT_NEAR(area(load(with("occupied", "occupied_thresh: 0.8"))), 0.25, 1e-12);
 }
 
 TEST_F(RosMap, ScaleIsReadAsTrinaryWithAWarning) {
@@ -352,10 +319,9 @@ TEST_F(RosMap, DefaultsAreThoseOfMapServer) {
 // A world file with the user's robot in a map: `include "m.yaml"`.
 TEST_F(RosMap, WorldMayIncludeAMap) {
   const World map = load(kGood);
-  write("mine.world",
-        "model( name \"box\" size [0.1 0.1 1] pose [11 20.2 0 0] )\ninclude \"m.yaml\"\n"
-        "position( name \"mine\" size [0.1 0.1 0.1] pose [10.7 20.3 0 0] )\n");
-  const World world = load_world((folder_ / "mine.world").string());
+  const World world = load_world(write("mine.world",
+                                       "model( name \"box\" size [0.1 0.1 1] pose [11 20.2 0 0] )\ninclude \"m.yaml\"\n"
+                                       "position( name \"mine\" size [0.1 0.1 0.1] pose [10.7 20.3 0 0] )\n"));
   EXPECT_EQ(world.walls.size(), map.walls.size() + 4) << "the map's and the box'";
   for (const Segment& wall : map.walls)
     EXPECT_EQ(std::count_if(world.walls.begin(), world.walls.end(),
@@ -371,14 +337,8 @@ TEST_F(RosMap, WorldMayIncludeAMap) {
 
 TEST_F(RosMap, WorldIncludesAtMostOneMap) {
   write("m.yaml", kGood);
-  const auto error_of_text = [&](const std::string& text) -> std::string {
-    write("two.world", text);
-    try {
-      load_world((folder_ / "two.world").string());
-    } catch (const base::InputError& caught) {
-      return std::string(caught.what()).substr(folder_.string().size() + 1);
-    }
-    return {};
+  const auto error_of_text = [&](const std::string& text) {
+    return sf::refusal_of([&] { load_world(write("two.world", text)); }).substr(path("").size());
   };
   EXPECT_EQ(error_of_text("include \"m.yaml\"\ninclude \"m.yaml\"\n"),
             "two.world:2: a second ROS map; expected one per world");
@@ -408,21 +368,21 @@ TEST_F(RosMap, KnownSpaceTurnsWithItsOrigin) {
 TEST_F(RosMap, WithoutAMapEverythingIsKnown) { EXPECT_TRUE(KnownSpace(World{}).contains({1e9, 0.0})); }
 
 TEST_F(RosMap, BadMapsAreRejectedWithTheirLine) {
-  EXPECT_EQ(error(with("image", "image: none.pgm")).substr(0, 9), "m.yaml:1:");
+  const std::pair<const char*, const char*> cases[] = {
+      {"image: none.pgm", "m.yaml:1:"},       {"resolution: 0", "m.yaml:2:"},
+      {"resolution: fine", "m.yaml:2:"},      {"resolution: .nan", "m.yaml:2:"},
+      {"origin: [1, 2]", "m.yaml:3:"},        {"origin: [1, 2, x]", "m.yaml:3:"},
+      {"origin: [1e300, 2, 0]", "m.yaml:3:"}, {"origin: [.nan, 2, 0]", "m.yaml:3:"},
+      {"origin: [1, .nan, 0]", "m.yaml:3:"},  {"origin: [1, 2, .nan]", "m.yaml:3:"},
+      {"origin: [-.inf, 2, 0]", "m.yaml:3:"}, {"origin: [1, 2, .inf]", "m.yaml:3:"},
+      {"negate: maybe", "m.yaml:4:"},         {"occupied_thresh: 2", "m.yaml:5:"},
+      {"occupied_thresh: .nan", "m.yaml:5:"}, {"free_thresh: 0.9", "m.yaml:6:"},
+      {"free_thresh: -0.1", "m.yaml:6:"}};
+  for (const auto& [line, place] : cases) {
+    const std::string text(line);
+    EXPECT_EQ(error(with(text.substr(0, text.find(':')), text)).substr(0, 9), place) << text;
+  }
   EXPECT_NE(error(with("image", "picture: m.pgm")).find("'image' is missing"), std::string::npos);
-  EXPECT_EQ(error(with("resolution", "resolution: 0")).substr(0, 9), "m.yaml:2:");
-  EXPECT_EQ(error(with("resolution", "resolution: fine")).substr(0, 9), "m.yaml:2:");
-  EXPECT_EQ(error(with("resolution", "resolution: .nan")).substr(0, 9), "m.yaml:2:");
-  EXPECT_EQ(error(with("origin", "origin: [1, 2]")).substr(0, 9), "m.yaml:3:");
-  EXPECT_EQ(error(with("origin", "origin: [1, 2, x]")).substr(0, 9), "m.yaml:3:");
-  EXPECT_EQ(error(with("origin", "origin: [1e300, 2, 0]")).substr(0, 9), "m.yaml:3:");
-  for (const char* origin : {"[.nan, 2, 0]", "[1, .nan, 0]", "[1, 2, .nan]", "[-.inf, 2, 0]", "[1, 2, .inf]"})
-    EXPECT_EQ(error(with("origin", std::string("origin: ") + origin)).substr(0, 9), "m.yaml:3:") << origin;
-  EXPECT_EQ(error(with("negate", "negate: maybe")).substr(0, 9), "m.yaml:4:");
-  EXPECT_EQ(error(with("occupied", "occupied_thresh: 2")).substr(0, 9), "m.yaml:5:");
-  EXPECT_EQ(error(with("occupied", "occupied_thresh: .nan")).substr(0, 9), "m.yaml:5:");
-  EXPECT_EQ(error(with("free", "free_thresh: 0.9")).substr(0, 9), "m.yaml:6:");
-  EXPECT_EQ(error(with("free", "free_thresh: -0.1")).substr(0, 9), "m.yaml:6:");
   EXPECT_EQ(error(kGood + "mode: grey\n").substr(0, 9), "m.yaml:7:");
   EXPECT_NE(error("a: [1").find("not YAML"), std::string::npos);
   EXPECT_NE(error("- 1\n- 2\n").find("expected the YAML of a ROS map"), std::string::npos);

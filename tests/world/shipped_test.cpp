@@ -79,19 +79,19 @@ TEST(Shipped, SimVilleLightsNeverReleaseCrossingArms) {
     for (const Light& light : world.lights)
       if (std::find(light.points.begin(), light.points.end(), point) != light.points.end())
         return signal_at(light, time).state != LightState::red;
-    ADD_FAILURE() << point << " is governed by nobody";
+    ADD_FAILURE() << point << " has no light";
     return false;
   };
-  int nobody = 0, somebody = 0;
+  int all_red = 0, released = 0;
   for (double time = 0.0; time < 48.0; time += 0.1) {
     for (const char* along : {"6.1.3", "7.2.4"})
       for (const char* across : {"10.2.3", "11.1.3"}) EXPECT_FALSE(may_go(along, time) && may_go(across, time)) << time;
     for (const char* along : {"3.1.11", "4.2.5"}) EXPECT_FALSE(may_go(along, time) && may_go("12.1.7", time)) << time;
     const bool any = may_go("6.1.3", time) || may_go("10.2.3", time);
-    ++(any ? somebody : nobody);
+    ++(any ? released : all_red);
   }
-  EXPECT_NEAR(nobody, 80, 4) << "2 s of red for all, twice in 24 s";
-  EXPECT_NEAR(somebody, 400, 4);
+  EXPECT_NEAR(all_red, 80, 4) << "2 s of red for all, twice in 24 s";
+  EXPECT_NEAR(released, 400, 4);
 }
 
 TEST(Shipped, SimVilleLightsAreAtTheirStopLinesAndFaceTraffic) {

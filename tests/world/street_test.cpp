@@ -42,7 +42,7 @@ TEST(Light, IsAPoleWithAHead) {
   const World world = read_world(R"(light( phases 1 phase[0] ["red" 1] ))");
   ASSERT_EQ(world.walls.size(), 8u);
   EXPECT_EQ(world.walls[0].z_min, 0.0);
-  EXPECT_EQ(world.walls[0].z_max, world.walls[4].z_min) << "the head stands on the pole";
+  EXPECT_EQ(world.walls[0].z_max, world.walls[4].z_min) << "the head is on the pole";
   EXPECT_DOUBLE_EQ(world.walls[4].z_min, 0.36);
   EXPECT_DOUBLE_EQ(read_world(kLight).walls[4].z_min, 0.48) << "one lamp is a smaller head";
   EXPECT_EQ(world.walls[4].z_max, 0.6);

@@ -4,18 +4,13 @@
 
 #include <cmath>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 
 namespace sf::world {
 namespace {
 
 std::string toml_refusal(const std::string& text) {
-  try {
-    parse_toml("f.toml", text);
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return {};
+  return sf::refusal_of([&] { parse_toml("f.toml", text); });
 }
 
 TEST(Toml, EveryKindOfValueWithItsLine) {
