@@ -51,7 +51,7 @@ TEST(RoadUsers, UpdatePositionsAfterEveryMotion) {
   EXPECT_NEAR(place({4, -2.0, 0, M_PI / 2}).s, 1.0, 1e-9);
   EXPECT_NEAR(place({4, -1.5, 0, M_PI / 2}).s, 1.5, 1e-9);
   EXPECT_EQ(place({4, 0, 0, M_PI / 2}).way, kCross);
-  EXPECT_EQ(place({4, 0, 0, 0}).way, kMain) << "turned where it stands";
+  EXPECT_EQ(place({4, 0, 0, 0}).way, kMain) << "turned in place";
 }
 
 // Boundary: 0.8 radii.
@@ -121,7 +121,7 @@ TEST(RoadUsers, ContendIfNoRobotIsBetweenThemAndTheLine) {
   EXPECT_FALSE(contends(site.before(kCross, -0.024)));
   EXPECT_TRUE(contends(site.before(kCross, -0.026)));
   EXPECT_TRUE(contends(site.before(kCross, 0.5))) << "behind it";
-  EXPECT_TRUE(contends(site.before(kCross, 0.3))) << "in its very place";
+  EXPECT_TRUE(contends(site.before(kCross, 0.3))) << "at the same position";
   const Site close(straight_lanes({{{{3, -2}, {3, 3}}}, {{{3.5, -2}, {3.5, 3}}}, {{{0, 0}, {9, 0}}}}));
   Observer me(close, 5);
   me.see(0.0, {5, close.before(0, 0.3)}, {{6, close.before(1, 0.1)}});
@@ -152,7 +152,7 @@ TEST(RoadUsers, ContendAtAStopLineAfterStopping) {
   const auto contends = [&](double ahead, double speed) {
     Observer me(site, 5);
     me.see(0.0, {5, site.before(kCross, ahead), speed});
-    EXPECT_EQ(me.goes(kCross, kMain), me.approach().contends);
+    EXPECT_EQ(me.may_enter(kCross, kMain), me.approach().contends);
     me.see(0.1, {5, site.before(kCross, ahead - 0.01), 0.1});
     return me.approach().contends;
   };
@@ -168,11 +168,11 @@ TEST(RoadUsers, RankByTheStartOfContentionNotByArrival) {
   for (const bool other_first : {false, true}) {
     Observer me(site, other_first ? 5 : 7);
     me.see(0.0, {5, site.before(kCross, 0.05), other_first ? 0.1 : 0.0}, {{6, site.before(kMain, 0.3), 0.1}});
-    EXPECT_EQ(me.goes(kCross, kMain), !other_first);
+    EXPECT_EQ(me.may_enter(kCross, kMain), !other_first);
     me.see(1.0, {5, site.before(kCross, 0.05), other_first ? 0.1 : 0.0}, {{6, site.before(kMain, 0.05)}});
-    EXPECT_EQ(me.goes(kCross, kMain), !other_first);
+    EXPECT_EQ(me.may_enter(kCross, kMain), !other_first);
     me.see(2.0, {5, site.before(kCross, 0.05)}, {{6, site.before(kMain, 0.05)}});
-    EXPECT_EQ(me.goes(kCross, kMain), !other_first);
+    EXPECT_EQ(me.may_enter(kCross, kMain), !other_first);
   }
 }
 

@@ -24,9 +24,9 @@ TEST(Thirds, DivideTheFieldOfView) {
   EXPECT_EQ(thirds.right, 0.3);
   EXPECT_EQ(thirds.front, 0.5);
   EXPECT_EQ(thirds.left, 0.4);
-  EXPECT_EQ(thirds_of(std::vector{kNaN, 0.2, kNaN}).right, HUGE_VAL) << "what is not a number says nothing";
+  EXPECT_EQ(thirds_of(std::vector{kNaN, 0.2, kNaN}).right, HUGE_VAL) << "NaN is ignored";
   EXPECT_EQ(thirds_of(std::vector{kNaN, 0.2, kNaN}).front, 0.2);
-  EXPECT_EQ(thirds_of(std::vector{0.5}).left, 0.5) << "too few to tell sides";
+  EXPECT_EQ(thirds_of(std::vector{0.5}).left, 0.5) << "too few for three sectors";
 }
 
 struct Moment {
@@ -43,11 +43,12 @@ TEST(Avoid, FollowsTheStatesOfTheThesis) {
        {Moment{0.75, 0.75, 0.75, drive, 0.1, 0, "free"},
         Moment{0.1, 0.41, 0.1, drive, 0.1, 0, "things at the sides do not matter"},
         Moment{0.75, 0.39, 0.75, slow, 0.05, 0, "less than 0.4 m"},
-        Moment{0.75, 0.5, 0.75, drive, 0.1, 0, "gone again"}, Moment{0.3, 0.2, 0.4, slow, 0.05, 0, "0.2 m is not less"},
+        Moment{0.75, 0.5, 0.75, drive, 0.1, 0, "clear again"},
+        Moment{0.3, 0.2, 0.4, slow, 0.05, 0, "0.2 m is the limit"},
         Moment{0.3, 0.19, 0.4, turn_left, 0, 0.5, "more room on the left"},
-        Moment{0.6, 0.15, 0.1, turn_left, 0, 0.5, "it has chosen"},
+        Moment{0.6, 0.15, 0.1, turn_left, 0, 0.5, "the direction is kept"},
         Moment{0.6, 0.25, 0.1, slow, 0.05, 0, "out of the front third: straight on, still near"},
-        Moment{0.6, 0.15, 0.1, turn_right, 0, -0.5, "chooses anew"}, Moment{0.1, 0.75, 0.6, drive, 0.1, 0, "clear"}}) {
+        Moment{0.6, 0.15, 0.1, turn_right, 0, -0.5, "a new choice"}, Moment{0.1, 0.75, 0.6, drive, 0.1, 0, "clear"}}) {
     std::vector<double> ranges(9, m.right);
     std::fill(ranges.begin() + 2, ranges.end(), m.front);
     std::fill(ranges.begin() + 7, ranges.end(), m.left);

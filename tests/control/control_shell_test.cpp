@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
 #include "sensors/laser_settings.h"
+#include "tests/refusal.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::control {
@@ -51,9 +51,9 @@ constexpr auto kStart = ControlShellState::start, kControl = ControlShellState::
 TEST(ControlShell, StartsAtOnceOrOnTheSignal) {
   live({.on_signal = false}, {{false, false, kControl, true, "no signal is needed"}});
   live({.on_signal = true}, {{false, false, kStart, false, "no signal yet"},
-                             {true, false, kStart, false, "a bumper is no signal"},
+                             {true, false, kStart, false, "the bumper is not the signal"},
                              {false, true, kControl, true, "the signal"},
-                             {false, false, kControl, true, "given once is enough"}});
+                             {false, false, kControl, true, "once is enough"}});
 }
 
 TEST(ControlShell, WaitsWhileTheBumperIsPressed) {
@@ -63,7 +63,7 @@ TEST(ControlShell, WaitsWhileTheBumperIsPressed) {
             {false, true, kControl, true, "released: back to the state before"},
             {true, true, kWait, false, "and again"}});
   live({}, {{true, true, kWait, false, "pressed when it starts"}, {false, true, kControl, true, "released"}});
-  live({.wait_on_bumper = false}, {{true, true, kControl, true, "it looks after itself"}});
+  live({.wait_on_bumper = false}, {{true, true, kControl, true, "it handles contacts itself"}});
 }
 
 TEST(ControlShell, StopsPermanentlyWhenTheControllerIsDone) {
@@ -91,7 +91,7 @@ TEST(ControlShell, StatesItsStopReason) {
   shell.step({.contact = true});
   EXPECT_EQ(stop_reason_of(shell), "its bumper is pressed, or its last motion was blocked");
   int count = 0;
-  EXPECT_EQ(stop_reason_of(Counting(1, count)), "") << "not every controller can";
+  EXPECT_EQ(stop_reason_of(Counting(1, count)), "") << "no stated reason";
 }
 
 TEST(ControlShell, ForwardsTheControllersOutputs) {
@@ -129,7 +129,7 @@ TEST(MakeController, WrapsEveryTypeInAShellWithItsDefaults) {
   const ControllerInput pressed{.state = {.X_WM = {2, 2, 0, 0}}, .contact = true};
   wander.controller->step(pressed);
   avoid.controller->step(pressed);
-  EXPECT_EQ(made_shell(wander).state(), kControl) << "wander looks after itself";
+  EXPECT_EQ(made_shell(wander).state(), kControl) << "wander handles contacts itself";
   EXPECT_EQ(made_shell(avoid).state(), kWait);
 }
 
@@ -143,13 +143,8 @@ TEST(MakeController, AcceptsTheSettingsOfTheShell) {
   EXPECT_EQ(made_shell(made).state(), kWait);
 }
 
-std::string refusal(const world::World& world, ControllerConfig config) {
-  try {
-    make_controller({world}, std::move(config));
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
+std::string refusal(const world::World& world, const ControllerConfig& config) {
+  return refusal_of([&] { make_controller({world}, config); });
 }
 
 struct Refused {
@@ -183,21 +178,21 @@ TEST(MakeController, NamesTheControllerInErrors) {
       {"explore", {{"margin", 0.01, at}, {"least_margin", 0.02, at}}, "'least_margin'"},
   };
   for (const Refused& refused : cases) {
-    const std::string says = refusal(world, config_of(refused.controller, refused.settings));
-    EXPECT_NE(says.find(refused.says), std::string::npos) << refused.controller << ": " << says;
+    SCOPED_TRACE(refused.controller);
+    expect_in(refused.says, refusal(world, config_of(refused.controller, refused.settings)));
   }
   world::World bare = scenes::boxed_world(4, 4);
   scenes::add_create(bare, {2, 2, 0, 0});
   const auto says = [&](const char* name, std::vector<Setting> settings = {}) {
     return refusal(bare, config_of(name, std::move(settings)));
   };
-  EXPECT_NE(says("explore").find("has no laser"), std::string::npos);
-  EXPECT_NE(says("avoid").find("has no laser"), std::string::npos);
-  EXPECT_NE(says("lane-keeping", {{"half_width", 0.2, at}}).find("has no lane edge sensor"), std::string::npos);
-  EXPECT_NE(says("magnet-keeping").find("has no magnetometers"), std::string::npos);
-  EXPECT_NE(says("docking").find("has no infrared receiver"), std::string::npos);
+  expect_in("has no laser", says("explore"));
+  expect_in("has no laser", says("avoid"));
+  expect_in("has no lane edge sensor", says("lane-keeping", {{"half_width", 0.2, at}}));
+  expect_in("has no magnetometers", says("magnet-keeping"));
+  expect_in("has no infrared receiver", says("docking"));
   bare.movers[0].sensors.push_back(scenes::magnetometers(1));
-  EXPECT_NE(says("magnet-keeping").find("an array of one magnetometer"), std::string::npos);
+  expect_in("an array of one magnetometer", says("magnet-keeping"));
   bare.movers[0].sensors[0] = scenes::magnetometers(2);  // the fewest that differ
   EXPECT_EQ(says("magnet-keeping"), "");
 }

@@ -27,6 +27,14 @@ double byte_at(const Pose& X_WD, glm::dvec2 p) {
   return byte == 0 ? 255.0 : 240.0 + byte;
 }
 
+/// One step of a robot at `X_WM` that receives `byte`.
+base::Twist step_at(Controller& controller, const Pose& X_WM, double byte, std::int64_t time = 0,
+                    bool contact = false) {
+  const std::vector<double> values{0.0, byte};
+  const base::ReadingBlock block{.type = 11, .values = values};
+  return controller.step({.time = time, .state = {.X_WM = X_WM}, .readings = {&block, 1}, .contact = contact});
+}
+
 struct Docked {
   bool done = false;
   double aside = 0.0;  // [m] from the dock's axis
@@ -48,11 +56,9 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
   robots::Fleet fleet(world);
   Docked result;
   for (int i = 0; i < 2400 && !controller->done(); ++i) {
-    const base::Report& state = fleet.reports()[0];
-    const std::vector<double> values{0.0, byte_at(X_WD, {state.X_WM.x, state.X_WM.y})};
-    const base::ReadingBlock block{.type = 11, .values = values};
-    const base::Twist command[] = {controller->step(
-        {.time = i * kTick, .state = state, .readings = {&block, 1}, .contact = fleet.contacts()[0] != 0})};
+    const Pose& X = fleet.reports()[0].X_WM;
+    const base::Twist command[] = {
+        step_at(*controller, X, byte_at(X_WD, {X.x, X.y}), i * kTick, fleet.contacts()[0] != 0)};
     EXPECT_TRUE(controller->intent().docking);
     fleet.move(command, kTick);
     result.seconds += 0.1;
@@ -95,12 +101,8 @@ TEST(Docking, FollowsTheLineBetweenTheBuoys) {
                         Seen{250, 1, 0.03 * std::cos(0.7), "red, in the field"},
                         Seen{246, -1, 0.03 * std::cos(0.7), "green, in the field"}}) {
     Docking docking({.X_WD = X_WD});
-    const std::vector<double> both{0.0, 252.0};
-    const base::ReadingBlock before{.type = 11, .values = both};
-    docking.step({.state = {.X_WM = {1.2, 0, 0, M_PI}}, .readings = {&before, 1}});
-    const std::vector<double> values{0.0, s.byte};
-    const base::ReadingBlock block{.type = 11, .values = values};
-    const base::Twist twist = docking.step({.state = {.X_WM = {1.0, 0, 0, M_PI}}, .readings = {&block, 1}});
+    step_at(docking, {1.2, 0, 0, M_PI}, 252.0);
+    const base::Twist twist = step_at(docking, {1.0, 0, 0, M_PI}, s.byte);
     EXPECT_NEAR(twist.forward, s.forward, 1e-12) << s.why;
     EXPECT_EQ(std::abs(twist.turn) < 1e-9 ? 0.0 : std::copysign(1.0, twist.turn), s.turn) << s.why;
   }
@@ -109,9 +111,7 @@ TEST(Docking, FollowsTheLineBetweenTheBuoys) {
 TEST(Docking, WithoutLightItDrivesToTheStagingPoint) {
   for (const double byte : {255.0, 242.0, 240.0, 130.0, std::nan("")}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
-    const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.type = 11, .values = values};
-    const base::Twist twist = docking.step({.state = {.X_WM = {1.0, 2.0, 0, -M_PI / 2}}, .readings = {&block, 1}});
+    const base::Twist twist = step_at(docking, {1.0, 2.0, 0, -M_PI / 2}, byte);
     EXPECT_EQ(twist.forward, 0.1) << byte;
     EXPECT_NEAR(twist.turn, 0.0, 1e-9) << byte;
   }
@@ -144,9 +144,7 @@ TEST(Docking, SelectsTheNearestOrTheNamedDock) {
 TEST(Docking, WithOneBuoyItDrivesToTheStagingPointUntilItReceivesBoth) {
   for (const double byte : {248.0, 250.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
-    const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.type = 11, .values = values};
-    const base::Twist twist = docking.step({.state = {.X_WM = {0.4, 0.2, 0, 0}}, .readings = {&block, 1}});
+    const base::Twist twist = step_at(docking, {0.4, 0.2, 0, 0}, byte);
     EXPECT_LT(twist.turn, 0.0) << "to (1, 0), away from the dock";
     EXPECT_NEAR(twist.turn, 3.0 * std::atan2(-0.2, 0.6), 1e-9);
   }
@@ -156,11 +154,7 @@ TEST(Docking, WithOneBuoyItDrivesToTheStagingPointUntilItReceivesBoth) {
 // differs between beams. The robot keeps the direction in which it began.
 TEST(Docking, TurnInPlaceKeepsItsDirection) {
   Docking docking({.X_WD = {}});
-  const auto step = [&](double yaw, double byte) {
-    const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.type = 11, .values = values};
-    return docking.step({.state = {.X_WM = {1.0, 0.0, 0, yaw}}, .readings = {&block, 1}});
-  };
+  const auto step = [&](double yaw, double byte) { return step_at(docking, {1.0, 0.0, 0, yaw}, byte); };
   EXPECT_GT(step(0.1, 252.0).turn, 0.5) << "to the dock's heading, pi, by the left";
   const base::Twist red = step(0.2, 248.0);
   EXPECT_GT(red.turn, 0.5) << "to pi + 0.7, which is nearer by the right";
@@ -171,15 +165,11 @@ TEST(Docking, TurnInPlaceKeepsItsDirection) {
 TEST(Docking, ContinuesWithoutLightForAMomentThenReturns) {
   Docking docking({.X_WD = {}, .stage = 1.0});
   const auto step = [&](double seconds, double byte) {
-    const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.type = 11, .values = values};
-    return docking.step({.time = static_cast<std::int64_t>(1e9 * seconds),
-                         .state = {.X_WM = {0.8, 0.0, 0, M_PI}},
-                         .readings = {&block, 1}});
+    return step_at(docking, {0.8, 0.0, 0, M_PI}, byte, static_cast<std::int64_t>(1e9 * seconds));
   };
   step(0.0, 252.0);
   EXPECT_NEAR(step(2.0, 255.0).forward, 0.1, 1e-12) << "two seconds";
-  EXPECT_EQ(step(2.1, 255.0).forward, 0.0) << "longer: it turns to the place behind it";
+  EXPECT_EQ(step(2.1, 255.0).forward, 0.0) << "longer: it turns to the staging point behind it";
 }
 
 TEST(Docking, ContactElsewhereIsNotDocking) {
@@ -190,8 +180,8 @@ TEST(Docking, ContactElsewhereIsNotDocking) {
   };
   for (const Touch& t :
        {Touch{{1.5, 0, 0, M_PI}, false, "far from it"}, Touch{{0.25, 0, 0, M_PI}, true, "its face"},
-        Touch{{0.25, 0.07, 0, M_PI - 0.5}, true, "a little aside, askew"},
-        Touch{{0.25, 0.1, 0, M_PI}, false, "beside it"}, Touch{{0.25, 0, 0, M_PI - 0.7}, false, "not facing it"},
+        Touch{{0.25, 0.07, 0, M_PI - 0.5}, true, "slightly off the axis and rotated"},
+        Touch{{0.25, 0.1, 0, M_PI}, false, "next to it"}, Touch{{0.25, 0, 0, M_PI - 0.7}, false, "not facing it"},
         Touch{{-0.25, 0, 0, M_PI}, false, "its back"}}) {
     Docking docking({.X_WD = {}});
     docking.step({.state = {.X_WM = t.X}, .contact = true});
@@ -202,24 +192,17 @@ TEST(Docking, ContactElsewhereIsNotDocking) {
 
 TEST(Docking, LeavesTheForceFieldAfterAContact) {
   Docking docking({.X_WD = {}, .stage = 1.0});
-  const auto step = [&](const Pose& X, double byte, bool contact) {
-    const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.type = 11, .values = values};
-    return docking.step({.state = {.X_WM = X}, .readings = {&block, 1}, .contact = contact});
-  };
-  step({0.3, 0.0, 0, M_PI - 1.0}, 254, true);
-  EXPECT_EQ(step({0.5, 0.0, 0, 0.0}, 254, false).forward, 0.1) << "away, though it sees both buoys";
-  EXPECT_EQ(step({0.8, 0.0, 0, 0.0}, 252, false).forward, 0.0) << "beyond the field: it turns to the dock";
+  step_at(docking, {0.3, 0.0, 0, M_PI - 1.0}, 254, 0, true);
+  EXPECT_EQ(step_at(docking, {0.5, 0.0, 0, 0.0}, 254).forward, 0.1) << "away, though it sees both buoys";
+  EXPECT_EQ(step_at(docking, {0.8, 0.0, 0, 0.0}, 252).forward, 0.0) << "beyond the field: it turns to the dock";
 }
 
 TEST(Docking, ReachesTheStagingPointWithinTwoCentimetresAfterAContact) {
   for (const double off : {0.02, 0.019}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
-    const std::vector<double> values{0.0, 254.0};
-    const base::ReadingBlock block{.type = 11, .values = values};
     docking.step({.state = {.X_WM = {1.0, off, 0, M_PI}}, .contact = true});
-    const double forward = docking.step({.state = {.X_WM = {1.0, off, 0, M_PI}}, .readings = {&block, 1}}).forward;
-    EXPECT_EQ(forward, off < 0.02 ? 0.03 : 0.0) << "it follows the beams, or turns to its place";
+    const double forward = step_at(docking, {1.0, off, 0, M_PI}, 254.0).forward;
+    EXPECT_EQ(forward, off < 0.02 ? 0.03 : 0.0) << "it follows the beams, or turns to the staging point";
   }
 }
 

@@ -29,6 +29,13 @@ std::unique_ptr<Controller> make(const world::World& world, const ControllerType
   return type.make({world}, settings);
 }
 
+/// One step at `X_WM` with a reading of `values`.
+Twist step_with(Controller& controller, std::uint8_t type, const std::vector<double>& values, std::int64_t time = 0,
+                std::uint32_t sequence = 0, const Pose& X_WM = {}) {
+  const base::ReadingBlock block{.type = type, .sequence = sequence, .time = time, .values = values};
+  return controller.step({.time = time, .state = {.X_WM = X_WM}, .readings = {&block, 1}});
+}
+
 Setting set(const char* key, double value) { return {key, value, ""}; }
 
 using Plant = Twist (*)(const Twist&);
@@ -52,10 +59,7 @@ Drive drive(const world::World& world, Controller& controller, std::uint8_t type
   Drive result;
   int steps = 0;
   for (std::int64_t time = 0; time < 1000 * kTick; time += kTick) {
-    const std::vector<double> values = sense(X_WM);
-    const base::ReadingBlock block{
-        .type = type, .sequence = static_cast<std::uint32_t>(time / kTick), .time = time, .values = values};
-    const Twist twist = controller.step({.time = time, .state = {.X_WM = X_WM}, .readings = {&block, 1}});
+    const Twist twist = step_with(controller, type, sense(X_WM), time, static_cast<std::uint32_t>(time / kTick), X_WM);
     if (controller.done()) break;
     ++steps;
     result.mean += controller.error();
@@ -100,7 +104,7 @@ TEST(LaneKeeping, IntegralReducesTheMeanError) {
   const Drive p = drive_lane({set("kp", 0.5)}, ideal), pi = drive_lane({set("kp", 0.5), set("ki", 0.015)}, ideal);
   EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
   const Drive limited = drive_lane({set("kp", 0.5), set("ki", 0.015), set("integral_limit", 1e-6)}, ideal);
-  EXPECT_NEAR(limited.mean, p.mean, 1e-4) << "an integral of nothing is P";
+  EXPECT_NEAR(limited.mean, p.mean, 1e-4) << "a limit of zero is P control";
 }
 
 TEST(LaneKeeping, StopsBeforeTheEndOfThePath) {
@@ -128,9 +132,7 @@ void step_through(Controller& controller, const std::vector<Step>& steps) {
   std::int64_t time = 0;
   std::uint32_t sequence = 0;
   for (const Step& step : steps) {
-    const std::vector<double> values{step.z, 61, 0, 0};
-    const base::ReadingBlock block{.type = sensors::kLaneEdge, .sequence = sequence++, .values = values};
-    const Twist twist = controller.step({.time = time, .state = {.X_WM = {0.5, 0, 0, 0}}, .readings = {&block, 1}});
+    const Twist twist = step_with(controller, sensors::kLaneEdge, {step.z, 61, 0, 0}, time, sequence++, {0.5, 0, 0, 0});
     if (std::isnan(step.error)) {
       EXPECT_TRUE(std::isnan(controller.error())) << step.why;
       EXPECT_EQ(twist.forward, 0.0) << step.why;
@@ -194,9 +196,7 @@ TEST(LaneKeeping, DefaultGainDependsOnSpeedAndSensor) {
     world.movers[0].sensors[0].X_MS.x = ahead;
     world.movers[0].actuator_model = law;
     const auto controller = make(world, lane_keeping_controller, {set("speed", speed), set("half_width", 0.25)});
-    const std::vector<double> values{0.35};
-    const base::ReadingBlock block{.type = sensors::kLaneEdge, .values = values};
-    return controller->step({.readings = {&block, 1}}).turn / 0.1;
+    return step_with(*controller, sensors::kLaneEdge, {0.35}).turn / 0.1;
   };
   EXPECT_NEAR(gain(0.1, 0.2), 5.0, 1e-9) << "2 v / l^2";
   EXPECT_NEAR(gain(0.05, 0.2), 2.5, 1e-9);
@@ -210,15 +210,11 @@ TEST(LaneKeeping, StatesItsStopReason) {
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5)});
   controller->step({});
   EXPECT_EQ(stop_reason_of(*controller), "no new readings arrive from its lane edge sensor");
-  const std::vector<double> none{kNaN};
-  const base::ReadingBlock blind{.type = sensors::kLaneEdge, .values = none};
-  controller->step({.readings = {&blind, 1}});
+  step_with(*controller, sensors::kLaneEdge, {kNaN});
   EXPECT_EQ(stop_reason_of(*controller), "its lane edge sensor detects nothing to follow");
-  const std::vector<double> edge{0.3};
-  const base::ReadingBlock seen{.type = sensors::kLaneEdge, .sequence = 1, .values = edge};
-  controller->step({.time = kTick, .readings = {&seen, 1}});
+  step_with(*controller, sensors::kLaneEdge, {0.3}, kTick, 1);
   EXPECT_EQ(stop_reason_of(*controller), "") << "it drives";
-  controller->step({.time = 10 * kTick, .readings = {&seen, 1}});
+  step_with(*controller, sensors::kLaneEdge, {0.3}, 10 * kTick, 1);
   EXPECT_EQ(stop_reason_of(*controller), "no new readings arrive from its lane edge sensor") << "the same for too long";
 }
 
@@ -234,8 +230,8 @@ TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStopsThenContinues) {
   step_through(*controller, {{0.35, 0.1, 0.1, "an edge"},
                              {0.35, 0.1, 0.11, "still"},
                              {kNaN, 0.1, 0.11, "0.1 s without"},
-                             {kNaN, 0.1, 0.11, "0.2 s: the integral rests"},
-                             {kNaN, kNaN, 0.0, "0.3 s: stands"},
+                             {kNaN, 0.1, 0.11, "0.2 s: the integral is kept"},
+                             {kNaN, kNaN, 0.0, "0.3 s: stops"},
                              {0.35, 0.1, 0.11, "seen again: the gap is not integrated"},
                              {0.35, 0.1, 0.12, "and on"}});
 }
@@ -243,27 +239,23 @@ TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStopsThenContinues) {
 TEST(LaneKeeping, RepeatedReadingIsUsedUntilTheSensorIsSilentTooLong) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("kp", 0.5), set("ki", 1.0)});
-  const std::vector<double> values{0.35, 61, 0, 0};
-  const base::ReadingBlock block{.type = sensors::kLaneEdge, .sequence = 9, .values = values};
   int moving = 0;
   double last = 0.0;
   for (int i = 0; i < 20; ++i) {
-    const Twist twist = controller->step({.time = i * kTick, .readings = {&block, 1}});
+    const Twist twist = step_with(*controller, sensors::kLaneEdge, {0.35, 61, 0, 0}, i * kTick, 9);
     moving += twist.forward > 0.0;
     if (i == 5) last = twist.turn;
   }
   EXPECT_NEAR(last, 0.05 + 0.5 * 0.1, 1e-12) << "the thesis' loop met readings twice, and integrated them";
   EXPECT_GE(moving, 6);
-  EXPECT_LE(moving, 12) << "silence is no edge";
+  EXPECT_LE(moving, 12) << "no new readings count as no edge";
 }
 
 TEST(LaneKeeping, StopsWithoutAnyReading) {
   const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller);
   EXPECT_EQ(controller->step({}).forward, 0.0);
-  const std::vector<double> nothing;
-  const base::ReadingBlock empty{.type = sensors::kLaneEdge, .values = nothing};
-  EXPECT_EQ(controller->step({.readings = {&empty, 1}}).forward, 0.0);
+  EXPECT_EQ(step_with(*controller, sensors::kLaneEdge, {}).forward, 0.0);
 }
 
 // ---- Magnets.
@@ -291,17 +283,14 @@ TEST(MagnetKeeping, UsesTheOutermostElementsInGauss) {
   const world::World world = loop::path_world();
   const auto controller = make(world, magnet_keeping_controller, {set("kp", 0.5)});
   const std::vector<double> values{0.2e-4, 9, 9, 9, 7, 9, 9, 9, 0.8e-4, 9, 9, 9};  // [T], three elements
-  const base::ReadingBlock block{.type = sensors::kMagnetometer, .values = values};
-  EXPECT_NEAR(controller->step({.readings = {&block, 1}}).turn, 0.3, 1e-12);
+  EXPECT_NEAR(step_with(*controller, sensors::kMagnetometer, values).turn, 0.3, 1e-12);
   EXPECT_NEAR(controller->error(), 0.6, 1e-12);
 }
 
 TEST(MagnetKeeping, RequiresAnArrayOfTwoElements) {
   const world::World world = loop::path_world();
-  const std::vector<double> one{1e-4, 0, 0, 0};
-  const base::ReadingBlock block{.type = sensors::kMagnetometer, .values = one};
   const auto controller = make(world, magnet_keeping_controller);
-  EXPECT_EQ(controller->step({.readings = {&block, 1}}).forward, 0.0);
+  EXPECT_EQ(step_with(*controller, sensors::kMagnetometer, {1e-4, 0, 0, 0}).forward, 0.0);
   EXPECT_TRUE(std::isnan(controller->error()));
   EXPECT_EQ(controller->step({}).forward, 0.0);
 }

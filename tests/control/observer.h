@@ -123,7 +123,7 @@ struct Observer {
   const control::RoadUser& user(std::size_t row = 0) const { return rights.road_users().at(row); }
   const control::Approach& approach() const { return user().approach; }
   /// Returns whether it may drive on along a way, considering only the conflict with another way.
-  bool goes(std::uint32_t row, std::uint32_t other) const {
+  bool may_enter(std::uint32_t row, std::uint32_t other) const {
     const control::Conflict& conflict = site.conflict(row, other);
     return rights.may_enter(row, {.hold = 0.0, .end = 0.0, .conflicts = {conflict}});
   }

@@ -57,7 +57,7 @@ TEST(OwnLocalization, ReplacesTheStateByTheEstimate) {
   EXPECT_NEAR(seen.state.velocity.forward, 0.2, 0.02);
   EXPECT_EQ(seen.state.X_WM.z, 0.1) << "heights are not estimated";
   EXPECT_EQ(robot.localization.error().steps, 51u);
-  EXPECT_GT(robot.localization.error().max, 50.0) << "beside the poses of the inputs";
+  EXPECT_GT(robot.localization.error().max, 50.0) << "from the poses of the inputs";
 }
 
 TEST(OwnLocalization, PlacesReadingsAtTheEstimateForTheirTime) {

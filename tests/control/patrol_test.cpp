@@ -16,7 +16,7 @@ using base::Pose;
 struct Walk {
   std::vector<std::size_t> targets;  // one after another
   Pose X_WM;
-  double standing = 0.0;  // [s]
+  double at_rest = 0.0;  // [s]
 };
 
 Walk walk(Patrol& patrol, const Pose& from, int ticks, const std::vector<Neighbour>& others = {},
@@ -27,7 +27,7 @@ Walk walk(Patrol& patrol, const Pose& from, int ticks, const std::vector<Neighbo
   Walk walk{.targets = {patrol.target()}, .X_WM = from};
   for (int i = 0; i < ticks; ++i) {
     const base::Twist twist = patrol.step({.time = i * kTick, .state = {.X_WM = walk.X_WM}, .others = others});
-    if (twist.forward == 0.0 && twist.turn == 0.0) walk.standing += 0.1;
+    if (twist.forward == 0.0 && twist.turn == 0.0) walk.at_rest += 0.1;
     walk.X_WM = robots::advance(walk.X_WM, robots::limit_kinematics(mover, twist), 0.1);
     if (patrol.target() != walk.targets.back()) walk.targets.push_back(patrol.target());
   }
@@ -43,14 +43,14 @@ TEST(Patrol, DrivesToASinglePointAndStays) {
   Patrol patrol({.points = {{1, 0}}});
   const Walk w = walk(patrol, {}, 300);
   EXPECT_NEAR(w.X_WM.x, 1.0, 0.03 + 1e-9);
-  EXPECT_GT(w.standing, 15.0);
+  EXPECT_GT(w.at_rest, 15.0);
 }
 
 TEST(Patrol, PausesOnlyAtTheEnds) {
   Patrol patrol({.points = {{0, 0}, {0.5, 0}, {1, 0}}, .pause = 3.0});
   const Walk w = walk(patrol, {}, 600);
-  EXPECT_GE(w.standing, 6.0) << "at both ends, at least once";
-  EXPECT_LE(w.standing, 13.0);
+  EXPECT_GE(w.at_rest, 6.0) << "at both ends, at least once";
+  EXPECT_LE(w.at_rest, 13.0);
 }
 
 TEST(Patrol, CarTurnsAround) {
@@ -58,26 +58,26 @@ TEST(Patrol, CarTurnsAround) {
   EXPECT_GE(walk(patrol, {0, 0, 0, 1.0}, 900, {}, world::Drive::car).targets.size(), 4u);
 }
 
-struct Standing {
+struct Obstacle {
   glm::dvec2 other;
-  bool stands;
+  bool stops;
   const char* why;
 };
 
 TEST(Patrol, StopsForRobotsInItsWay) {
-  for (const Standing& s : {Standing{{0.4, 0.0}, true, "ahead"}, Standing{{0.47, 0.0}, false, "beyond 0.165 + 0.3 m"},
-                            Standing{{-0.3, 0.0}, false, "behind"}, Standing{{0.3, 0.34}, false, "beside its lane"},
-                            Standing{{0.3, -0.32}, true, "half in its lane"}}) {
+  for (const Obstacle& s : {Obstacle{{0.4, 0.0}, true, "ahead"}, Obstacle{{0.47, 0.0}, false, "beyond 0.165 + 0.3 m"},
+                            Obstacle{{-0.3, 0.0}, false, "behind"}, Obstacle{{0.3, 0.34}, false, "next to its lane"},
+                            Obstacle{{0.3, -0.32}, true, "half in its lane"}}) {
     Patrol patrol({.points = {{0, 0}, {5, 0}}});
     const std::vector<Neighbour> others{{.id = 2, .state = {.X_WM = {s.other.x, s.other.y, 0, 0}}}};
-    EXPECT_EQ(walk(patrol, {}, 1, others).standing > 0.0, s.stands) << s.why;
-    EXPECT_EQ(patrol.stop_reason(), s.stands ? "another robot blocks its way" : "") << s.why;
+    EXPECT_EQ(walk(patrol, {}, 1, others).at_rest > 0.0, s.stops) << s.why;
+    EXPECT_EQ(patrol.stop_reason(), s.stops ? "another robot blocks its way" : "") << s.why;
     EXPECT_GE(patrol.v2v_range(), length(s.other));
   }
   Patrol patrol({.points = {{0, 0}, {5, 0}}});
   const Pose turned{1, 1, 0, M_PI / 2};
   const std::vector<Neighbour> above{{.id = 2, .state = {.X_WM = {1, 1.4, 0, 0}}}};
-  EXPECT_GT(walk(patrol, turned, 1, above).standing, 0.0) << "ahead is where it looks";
+  EXPECT_GT(walk(patrol, turned, 1, above).at_rest, 0.0) << "ahead of a turned robot";
 }
 
 }  // namespace

@@ -14,16 +14,16 @@ constexpr double kMargin = 0.15 * kRadius;  // [m]
 
 TEST(Precedence, EarlierArrivalThenSmallerId) {
   const Site site(two_crossings());
-  const auto goes = [&](double own, double others, std::uint32_t id) {
+  const auto may_enter = [&](double own, double others, std::uint32_t id) {
     Observer me(site, id);
     for (const double t : {0.0, 0.1, 0.2})
       me.see(t, {id, site.before(kCross, t < own ? 1.0 : 0.1)}, {{6, site.before(kMain, t < others ? 1.0 : 0.1)}});
-    return me.goes(kCross, kMain);
+    return me.may_enter(kCross, kMain);
   };
-  EXPECT_TRUE(goes(0.0, 0.1, 7));
-  EXPECT_FALSE(goes(0.1, 0.0, 5));
-  EXPECT_TRUE(goes(0.0, 0.0, 5));
-  EXPECT_FALSE(goes(0.0, 0.0, 7));
+  EXPECT_TRUE(may_enter(0.0, 0.1, 7));
+  EXPECT_FALSE(may_enter(0.1, 0.0, 5));
+  EXPECT_TRUE(may_enter(0.0, 0.0, 5));
+  EXPECT_FALSE(may_enter(0.0, 0.0, 7));
 }
 
 TEST(Precedence, ReturningRobotRanksFromItsReturn) {
@@ -31,7 +31,7 @@ TEST(Precedence, ReturningRobotRanksFromItsReturn) {
   Observer me(site, 5);
   for (const double t : {0.0, 0.1, 0.2})
     me.see(t, {5, site.before(kCross, t == 0.1 ? 1.0 : 0.1)}, {{6, site.before(kMain, 0.1)}});
-  EXPECT_FALSE(me.goes(kCross, kMain));
+  EXPECT_FALSE(me.may_enter(kCross, kMain));
 }
 
 // A robot that has passed the line still approaches it, because there is no other. The next robot does not inherit its
@@ -43,7 +43,7 @@ TEST(Precedence, EveryRobotHasItsOwnTurn) {
     me.see(t, {5, site.before(kCross, 0.4)},
            {{6, site.before(kMain, t == 0.0 ? 1.0 : 0.1)}, {7, site.before(kCross, t == 0.2 ? -0.5 : 0.1)}});
   EXPECT_TRUE(me.approach().contends);
-  EXPECT_FALSE(me.goes(kCross, kMain));
+  EXPECT_FALSE(me.may_enter(kCross, kMain));
 }
 
 TEST(Precedence, EveryLineHasItsOwnTurn) {
@@ -51,13 +51,13 @@ TEST(Precedence, EveryLineHasItsOwnTurn) {
   Observer me(site, 7);
   for (const double t : {0.0, 0.1, 0.2})
     me.see(t, {7, site.before(kFarCross, t == 0.0 ? 1.0 : 0.1)}, {{6, site.before(kMain, 0.1, t == 0.2 ? 1 : 0)}});
-  EXPECT_TRUE(me.goes(kFarCross, kMain)) << "the other has come from the line before";
+  EXPECT_TRUE(me.may_enter(kFarCross, kMain)) << "the other waited at the previous line";
   // The two crossing lanes have their lines at the same place.
   Observer other(site, 5);
   for (const double t : {0.0, 0.1, 0.2})
     other.see(t, {5, site.before(t == 0.2 ? kFarCross : kCross, 0.1)},
               {{6, site.before(kMain, t == 0.0 ? 1.0 : 0.4, 1)}});
-  EXPECT_FALSE(other.goes(kFarCross, kMain)) << "it has come from another lane";
+  EXPECT_FALSE(other.may_enter(kFarCross, kMain)) << "it waited on another lane";
 }
 
 // 6.1 and 10.2 cross, and each has a light.
@@ -66,20 +66,20 @@ TEST(Precedence, RobotThatNeedNotStopPrecedesAndRobotAtRedIsIgnored) {
   Site site(simville(), {light("a", {"6.1.3"}, {{dark, 1.0}}), light("b", {"10.2.3"}, {{dark, 1.0}})});
   const std::uint32_t a = site.lane("6.1"), b = site.lane("10.2");
   const std::uint32_t own = site.exit("6.1", "7.1"), other = site.exit("10.2", "11.2");
-  const auto goes = [&](world::LightState mine, world::LightState others, double came, double other_came) {
+  const auto may_enter = [&](world::LightState mine, world::LightState others, double arrival, double other_arrival) {
     site.signals = {{mine, 0.0}, {others, 0.0}};
     Observer me(site, 7);
     for (const double t : {0.0, 0.1, 0.2})
-      me.see(t, {7, site.before(a, t < came ? 0.7 : 0.0)}, {{6, site.before(b, t < other_came ? 0.7 : 0.0)}});
-    return me.goes(own, other);
+      me.see(t, {7, site.before(a, t < arrival ? 0.7 : 0.0)}, {{6, site.before(b, t < other_arrival ? 0.7 : 0.0)}});
+    return me.may_enter(own, other);
   };
-  EXPECT_TRUE(goes(green, dark, 0.1, 0.0));
-  EXPECT_FALSE(goes(dark, flashing_yellow, 0.0, 0.1));
-  EXPECT_TRUE(goes(dark, flashing_red, 0.0, 0.1));
-  EXPECT_FALSE(goes(dark, flashing_red, 0.1, 0.0));
-  EXPECT_TRUE(goes(dark, red, 0.1, 0.0));
-  EXPECT_TRUE(goes(green, yellow, 0.1, 0.0));
-  EXPECT_FALSE(goes(red, dark, 0.0, 9.0)) << "nor does it go itself, though nobody comes";
+  EXPECT_TRUE(may_enter(green, dark, 0.1, 0.0));
+  EXPECT_FALSE(may_enter(dark, flashing_yellow, 0.0, 0.1));
+  EXPECT_TRUE(may_enter(dark, flashing_red, 0.0, 0.1));
+  EXPECT_FALSE(may_enter(dark, flashing_red, 0.1, 0.0));
+  EXPECT_TRUE(may_enter(dark, red, 0.1, 0.0));
+  EXPECT_TRUE(may_enter(green, yellow, 0.1, 0.0));
+  EXPECT_FALSE(may_enter(red, dark, 0.0, 9.0)) << "it waits too, even without other robots";
 }
 
 /// A light without a signal counts as if it did not exist.
@@ -105,8 +105,8 @@ TEST(Precedence, SharedLotteryDecidesAfterThreeSeconds) {
           a.see(t, one, {two});
           b.see(t, two, {one});
           if (ms < second) continue;
-          const bool first = a.goes(kCross, kMain);
-          ASSERT_NE(first, b.goes(kMain, kCross)) << id << " at " << t;
+          const bool first = a.may_enter(kCross, kMain);
+          ASSERT_NE(first, b.may_enter(kMain, kCross)) << id << " at " << t;
           won += !first && ms < 4000;
           if (t < 3.0 + 0.5e-9) {
             EXPECT_TRUE(first) << id << " at " << t;
@@ -126,19 +126,20 @@ TEST(Precedence, SharedLotteryDecidesAfterThreeSeconds) {
 
 TEST(Precedence, FollowersYield) {
   const Site site(two_crossings());
-  const auto goes = [&](std::uint32_t leader, std::uint32_t others_leader, bool merges = false, bool first = true) {
+  const auto may_enter = [&](std::uint32_t leader, std::uint32_t others_leader, bool merges = false,
+                             bool first = true) {
     Observer me(site, 5);
     for (const double t : {0.0, 0.1})
       me.see(t, {5, site.before(kCross, first || t > 0.0 ? 0.1 : 1.0), 0.0, leader},
              {{6, site.before(kMain, first && t == 0.0 ? 1.0 : 0.1), 0.0, others_leader}}, merges);
-    return me.goes(kCross, kMain);
+    return me.may_enter(kCross, kMain);
   };
-  EXPECT_TRUE(goes(7, base::kNoId)) << "not a robot that it follows";
-  EXPECT_FALSE(goes(6, base::kNoId)) << "to their leader";
-  EXPECT_FALSE(goes(7, 7)) << "to another that follows the same";
-  EXPECT_TRUE(goes(7, 7, true, false)) << "unless they merge before it";
-  EXPECT_TRUE(goes(base::kNoId, 5, false, false)) << "this one follows";
-  EXPECT_FALSE(goes(base::kNoId, 7, false, false));
+  EXPECT_TRUE(may_enter(7, base::kNoId)) << "not a robot that it follows";
+  EXPECT_FALSE(may_enter(6, base::kNoId)) << "to their leader";
+  EXPECT_FALSE(may_enter(7, 7)) << "to another that follows the same";
+  EXPECT_TRUE(may_enter(7, 7, true, false)) << "unless they merge before it";
+  EXPECT_TRUE(may_enter(base::kNoId, 5, false, false)) << "this one follows";
+  EXPECT_FALSE(may_enter(base::kNoId, 7, false, false));
 }
 
 // ---- Robots in the way.
@@ -155,25 +156,25 @@ TEST(Precedence, RobotThatCannotStopIsCommitted) {
 
 /// Returns whether robot 5, the first to arrive at the last line of `lane`, drives on along `row` with robot 6 at
 /// `X_WM`.
-bool goes_first(const Site& site, std::uint32_t lane, std::uint32_t row, std::uint32_t other, const Pose& X_WM,
-                double speed = 0.0) {
+bool first_may_enter(const Site& site, std::uint32_t lane, std::uint32_t row, std::uint32_t other, const Pose& X_WM,
+                     double speed = 0.0) {
   const Seen self{5, site.before(lane, 0.0, site.corridors.way(lane).lines.size() - 1)};
   Observer me(site, 5);
   me.see(0.0, self);
   me.see(0.1, self, {{6, X_WM, speed}});
-  return me.goes(row, other);
+  return me.may_enter(row, other);
 }
 
 // Boundary: a millimetre before the line at which it cannot stop, and at the end of the conflict.
 TEST(Precedence, RobotOnTheCrossingHasPriority) {
   const Site site(two_crossings());
   const double least = 0.5 * 0.5 / (2.0 * 0.6) - kMargin;
-  EXPECT_TRUE(goes_first(site, kCross, kCross, kMain, site.before(kMain, least + 1e-3), 0.5));
-  EXPECT_FALSE(goes_first(site, kCross, kCross, kMain, site.before(kMain, least - 1e-3), 0.5));
+  EXPECT_TRUE(first_may_enter(site, kCross, kCross, kMain, site.before(kMain, least + 1e-3), 0.5));
+  EXPECT_FALSE(first_may_enter(site, kCross, kCross, kMain, site.before(kMain, least - 1e-3), 0.5));
   const control::Conflict& conflict = site.conflict(kCross, kMain);
-  EXPECT_FALSE(goes_first(site, kCross, kCross, kMain, site.on(kMain, conflict.other_to - 1e-3)));
-  EXPECT_TRUE(goes_first(site, kCross, kCross, kMain, site.on(kMain, conflict.other_to + 1e-3)));
-  EXPECT_TRUE(goes_first(site, kFarCross, kFarCross, kMain, site.on(kMain, 4.0))) << "it is on another crossing";
+  EXPECT_FALSE(first_may_enter(site, kCross, kCross, kMain, site.on(kMain, conflict.other_to - 1e-3)));
+  EXPECT_TRUE(first_may_enter(site, kCross, kCross, kMain, site.on(kMain, conflict.other_to + 1e-3)));
+  EXPECT_TRUE(first_may_enter(site, kFarCross, kFarCross, kMain, site.on(kMain, 4.0))) << "it is on another crossing";
 }
 
 // 12.2 has a stop sign, 2.2 and 1.1 have none.
@@ -183,34 +184,35 @@ TEST(Precedence, ExitsFromTheEndsOfLanes) {
   const std::uint32_t own = site.exit("2.2", "1.3"), other = site.exit("12.2", "2.1");
   const double least = 0.5 * 0.5 / (2.0 * 0.6) - kMargin;
   const std::size_t last = site.corridors.way(other_lane).lines.size() - 1;
-  EXPECT_TRUE(goes_first(site, lane, own, other, site.before(other_lane, 0.0, last)));
-  EXPECT_TRUE(goes_first(site, lane, own, other, site.before(other_lane, least + 1e-3, last), 0.5));
-  EXPECT_FALSE(goes_first(site, lane, own, other, site.before(other_lane, least - 1e-3, last), 0.5));
+  EXPECT_TRUE(first_may_enter(site, lane, own, other, site.before(other_lane, 0.0, last)));
+  EXPECT_TRUE(first_may_enter(site, lane, own, other, site.before(other_lane, least + 1e-3, last), 0.5));
+  EXPECT_FALSE(first_may_enter(site, lane, own, other, site.before(other_lane, least - 1e-3, last), 0.5));
   // In the opposite case it waits, although it stopped there first.
-  EXPECT_TRUE(goes_first(site, other_lane, other, own, site.before(lane, 1.0)));
-  EXPECT_FALSE(goes_first(site, other_lane, other, own, site.before(lane, 0.3)));
-  EXPECT_FALSE(goes_first(site, other_lane, other, own, site.on(own, 0.1))) << "before they meet";
+  EXPECT_TRUE(first_may_enter(site, other_lane, other, own, site.before(lane, 1.0)));
+  EXPECT_FALSE(first_may_enter(site, other_lane, other, own, site.before(lane, 0.3)));
+  EXPECT_FALSE(first_may_enter(site, other_lane, other, own, site.on(own, 0.1))) << "before they meet";
   const std::uint32_t bend = site.exit("1.1", "12.1");
   const double end = site.conflict(other, bend).other_to;
-  EXPECT_FALSE(goes_first(site, other_lane, other, bend, site.on(bend, end - 0.01)));
-  EXPECT_TRUE(goes_first(site, other_lane, other, bend, site.on(bend, end + 0.01))) << "past where they meet";
+  EXPECT_FALSE(first_may_enter(site, other_lane, other, bend, site.on(bend, end - 0.01)));
+  EXPECT_TRUE(first_may_enter(site, other_lane, other, bend, site.on(bend, end + 0.01))) << "past where they meet";
 }
 
 /// Returns whether robot 7, which arrives later, drives on along `row` although 6 waits at the first line of a lane.
-bool goes_past(const Site& site, std::uint32_t lane, std::uint32_t row, std::uint32_t other, std::uint32_t waits) {
+bool late_may_enter(const Site& site, std::uint32_t lane, std::uint32_t row, std::uint32_t other, std::uint32_t waits) {
   Observer me(site, 7);
   for (const double t : {0.0, 0.1})
     me.see(t, {7, site.before(lane, t == 0.0 ? 1.0 : 0.0)}, {{6, site.before(waits, 0.0)}});
   EXPECT_TRUE(me.approach().contends && me.user(1).approach.contends);
-  return me.goes(row, other);
+  return me.may_enter(row, other);
 }
 
 TEST(Precedence, IgnoresRobotsWaitingAtOtherLines) {
   const Site crossings(two_crossings());
-  EXPECT_TRUE(goes_past(crossings, kFarCross, kFarCross, kMain, kMain)) << "at the line before";
+  EXPECT_TRUE(late_may_enter(crossings, kFarCross, kFarCross, kMain, kMain)) << "at the line before";
   // 12.1 has a line halfway and one at its end.
   const Site town(simville());
-  EXPECT_TRUE(goes_past(town, town.lane("4.2"), town.exit("4.2", "3.2"), town.exit("12.1", "4.1"), town.lane("12.1")));
+  EXPECT_TRUE(
+      late_may_enter(town, town.lane("4.2"), town.exit("4.2", "3.2"), town.exit("12.1", "4.1"), town.lane("12.1")));
   // 3.1 crosses the end of 1.1, and 4.1 crosses 2.1, with their lines equally far along them.
   const Site site(straight_lanes({{{{0, 0}, {2, 0}}},
                                   {{{3, 0}, {8, 0}}},
@@ -221,8 +223,8 @@ TEST(Precedence, IgnoresRobotsWaitingAtOtherLines) {
                                  {"exit 1.1.2 2.1.1", "exit 3.1.2 5.1.1", "exit 4.1.2 6.1.1"}));
   const std::uint32_t own = site.exit("1.1", "2.1"), other = site.exit("3.1", "5.1");
   EXPECT_EQ(site.corridors.way(2).lines, site.corridors.way(3).lines);
-  EXPECT_FALSE(goes_past(site, 0, own, other, 2));
-  EXPECT_TRUE(goes_past(site, 0, own, other, 3));
+  EXPECT_FALSE(late_may_enter(site, 0, own, other, 2));
+  EXPECT_TRUE(late_may_enter(site, 0, own, other, 3));
 }
 
 // ---- Lane changes.
@@ -231,43 +233,43 @@ TEST(Precedence, IgnoresRobotsWaitingAtOtherLines) {
 // and a half radii beyond.
 TEST(LaneChange, WaitsForRobotsAlongsideOrArrivingSoon) {
   const Site site(simville());
-  const std::uint32_t beside = site.lane("1.2");
+  const std::uint32_t target_lane = site.lane("1.2");
   const std::uint32_t change = site.way(control::Way::Kind::change, "1.1", "1.2", site.roads.lanes[0].points[9].s);
-  const control::Conflict& conflict = site.conflict(change, beside);
+  const control::Conflict& conflict = site.conflict(change, target_lane);
   ASSERT_TRUE(conflict.yields);
-  const auto goes = [&](std::uint32_t own, double s, double speed) {
+  const auto may_enter = [&](std::uint32_t own, double s, double speed) {
     Observer me(site, own);
-    me.see(0.0, {own, site.on(site.lane("1.1"), 2.5)}, {{6, site.on(beside, conflict.other_from + s), speed}});
-    return me.goes(change, beside);
+    me.see(0.0, {own, site.on(site.lane("1.1"), 2.5)}, {{6, site.on(target_lane, conflict.other_from + s), speed}});
+    return me.may_enter(change, target_lane);
   };
-  EXPECT_TRUE(goes(7, -2.0 * kRadius - 1e-2, 0.0));
-  EXPECT_FALSE(goes(7, -2.0 * kRadius + 1e-2, 0.0));
-  EXPECT_TRUE(goes(7, -2.0 * kRadius - 2.5 * 0.2 - 1e-2, 0.2));
-  EXPECT_FALSE(goes(7, -2.0 * kRadius - 2.5 * 0.2 + 1e-2, 0.2));
-  EXPECT_FALSE(goes(7, 2.5 * kRadius - 1e-2, 0.2));
-  EXPECT_TRUE(goes(7, 2.5 * kRadius + 1e-2, 0.2)) << "it is followed";
-  EXPECT_FALSE(goes(7, 2.5 * kRadius + 1e-2, 0.0)) << "it stands there";
-  EXPECT_TRUE(goes(7, conflict.other_to - conflict.other_from + 1e-2, 0.0)) << "it stands beyond";
-  EXPECT_TRUE(goes(5, 0.1, 0.0)) << "both stand, and the smaller id begins";
-  EXPECT_FALSE(goes(5, 0.1, 0.05));
+  EXPECT_TRUE(may_enter(7, -2.0 * kRadius - 1e-2, 0.0));
+  EXPECT_FALSE(may_enter(7, -2.0 * kRadius + 1e-2, 0.0));
+  EXPECT_TRUE(may_enter(7, -2.0 * kRadius - 2.5 * 0.2 - 1e-2, 0.2));
+  EXPECT_FALSE(may_enter(7, -2.0 * kRadius - 2.5 * 0.2 + 1e-2, 0.2));
+  EXPECT_FALSE(may_enter(7, 2.5 * kRadius - 1e-2, 0.2));
+  EXPECT_TRUE(may_enter(7, 2.5 * kRadius + 1e-2, 0.2)) << "the robot follows it";
+  EXPECT_FALSE(may_enter(7, 2.5 * kRadius + 1e-2, 0.0)) << "at rest in the way";
+  EXPECT_TRUE(may_enter(7, conflict.other_to - conflict.other_from + 1e-2, 0.0)) << "at rest beyond";
+  EXPECT_TRUE(may_enter(5, 0.1, 0.0)) << "both at rest: the smaller id goes first";
+  EXPECT_FALSE(may_enter(5, 0.1, 0.05));
 }
 
 // The other follower of the same leader blocks only next to the gap that it opens: two and a half radii behind.
 TEST(LaneChange, EntersTheGapOpenedForIt) {
   const Site site(simville());
-  const std::uint32_t beside = site.lane("1.2");
+  const std::uint32_t target_lane = site.lane("1.2");
   const std::uint32_t change = site.way(control::Way::Kind::change, "1.1", "1.2", site.roads.lanes[0].points[9].s);
-  const double meet = site.conflict(change, beside).other_from;
-  const auto goes = [&](double s, std::uint32_t others_leader, bool merges) {
+  const double meet = site.conflict(change, target_lane).other_from;
+  const auto may_enter = [&](double s, std::uint32_t others_leader, bool merges) {
     Observer me(site, 7);
-    me.see(0.0, {7, site.on(site.lane("1.1"), 2.5), 0.0, 3}, {{6, site.on(beside, meet + s), 0.2, others_leader}},
+    me.see(0.0, {7, site.on(site.lane("1.1"), 2.5), 0.0, 3}, {{6, site.on(target_lane, meet + s), 0.2, others_leader}},
            merges);
-    return me.goes(change, beside);
+    return me.may_enter(change, target_lane);
   };
-  EXPECT_TRUE(goes(-2.5 * kRadius - 1e-2, 3, true));
-  EXPECT_FALSE(goes(-2.5 * kRadius + 1e-2, 3, true));
-  EXPECT_FALSE(goes(-2.5 * kRadius - 1e-2, 4, true)) << "that one follows another";
-  EXPECT_FALSE(goes(-2.5 * kRadius - 1e-2, 3, false)) << "it has merged";
+  EXPECT_TRUE(may_enter(-2.5 * kRadius - 1e-2, 3, true));
+  EXPECT_FALSE(may_enter(-2.5 * kRadius + 1e-2, 3, true));
+  EXPECT_FALSE(may_enter(-2.5 * kRadius - 1e-2, 4, true)) << "that one follows another";
+  EXPECT_FALSE(may_enter(-2.5 * kRadius - 1e-2, 3, false)) << "it has merged";
 }
 
 // Two lanes side by side, and one that crosses them where the way of a lane change runs.
@@ -277,12 +279,12 @@ TEST(LaneChange, CrossesALaneWhenNoRobotApproaches) {
   Observer me(site, 5);
   me.see(0.0, {5, site.on(0, 1.0)}, {{6, site.before(across, 1.0)}});
   EXPECT_FALSE(me.approach().contends);
-  EXPECT_TRUE(me.goes(change, across));
+  EXPECT_TRUE(me.may_enter(change, across));
   // It arrived first, but at the line of its lane; a lane change has no line.
   me.see(0.1, {5, site.before(0, 0.1)}, {{6, site.before(across, 1.0)}});
   me.see(0.2, {5, site.before(0, 0.1)}, {{6, site.before(across, 0.1)}});
-  EXPECT_TRUE(me.goes(0, across));
-  EXPECT_FALSE(me.goes(change, across));
+  EXPECT_TRUE(me.may_enter(0, across));
+  EXPECT_FALSE(me.may_enter(change, across));
 }
 
 // Boundary: 0.15 radii before the stretch that two robots cannot share.
@@ -290,11 +292,11 @@ TEST(LaneChange, BlocksFromTheStartOfTheSharedStretch) {
   const Site site(straight_lanes({{{{0, 0}, {2, 0}, {8, 0}}, {{0, 0.5}, {4, 0.5}, {8, 0.5}}}, {{{3, -3}, {3, 3}}}}));
   const std::uint32_t change = site.way(control::Way::Kind::change, "1.1", "1.2", 2.0), across = site.lane("2.1");
   const control::Conflict& conflict = site.conflict(across, change);
-  const auto goes = [&](double s) { return goes_first(site, across, across, change, site.on(change, s)); };
-  EXPECT_TRUE(goes(conflict.other_from - kMargin - 3e-3));
-  EXPECT_FALSE(goes(conflict.other_from - kMargin + 3e-3));
-  EXPECT_FALSE(goes(conflict.other_to - 3e-3));
-  EXPECT_TRUE(goes(conflict.other_to + 3e-3));
+  const auto may_enter = [&](double s) { return first_may_enter(site, across, across, change, site.on(change, s)); };
+  EXPECT_TRUE(may_enter(conflict.other_from - kMargin - 3e-3));
+  EXPECT_FALSE(may_enter(conflict.other_from - kMargin + 3e-3));
+  EXPECT_FALSE(may_enter(conflict.other_to - 3e-3));
+  EXPECT_TRUE(may_enter(conflict.other_to + 3e-3));
 }
 
 // ---- Merging behind a leader.
@@ -302,17 +304,17 @@ TEST(LaneChange, BlocksFromTheStartOfTheSharedStretch) {
 TEST(Merging, YieldsToTheLeaderAtAnyDistance) {
   const Site site(two_crossings());
   const double meet = site.conflict(kCross, kMain).other_from, clear = site.conflict(kCross, kMain).other_to;
-  const auto goes = [&](double s, std::uint32_t leader, bool merges, std::uint32_t lane = kMain) {
+  const auto may_enter = [&](double s, std::uint32_t leader, bool merges, std::uint32_t lane = kMain) {
     Observer me(site, 5);
     me.see(0.0, {5, site.before(kCross, 0.0), 0.0, leader}, {{6, site.on(lane, s)}}, merges);
-    return me.goes(kCross, kMain);
+    return me.may_enter(kCross, kMain);
   };
-  EXPECT_FALSE(goes(0.5, 6, true));
-  EXPECT_TRUE(goes(0.5, 6, false)) << "it has merged";
-  EXPECT_TRUE(goes(0.5, 7, true)) << "another robot";
-  EXPECT_FALSE(goes(meet + 0.1, 6, true));
-  EXPECT_TRUE(goes(clear + 0.1, 6, true)) << "it has passed";
-  EXPECT_TRUE(goes(0.5, 6, true, kFarCross)) << "it comes another way";
+  EXPECT_FALSE(may_enter(0.5, 6, true));
+  EXPECT_TRUE(may_enter(0.5, 6, false)) << "it has merged";
+  EXPECT_TRUE(may_enter(0.5, 7, true)) << "another robot";
+  EXPECT_FALSE(may_enter(meet + 0.1, 6, true));
+  EXPECT_TRUE(may_enter(clear + 0.1, 6, true)) << "it has passed";
+  EXPECT_TRUE(may_enter(0.5, 6, true, kFarCross)) << "on another lane";
 }
 
 TEST(Merging, YieldsToTheLeaderLeavingTheSameLane) {
@@ -322,7 +324,7 @@ TEST(Merging, YieldsToTheLeaderLeavingTheSameLane) {
   Observer me(site, 5);
   for (const bool merges : {true, false}) {
     me.see(0.0, self, {{6, site.on(from, 1.5)}}, merges);
-    EXPECT_EQ(me.goes(site.exit("12.2", "2.1"), site.exit("2.2", "1.3")), !merges);
+    EXPECT_EQ(me.may_enter(site.exit("12.2", "2.1"), site.exit("2.2", "1.3")), !merges);
   }
 }
 

@@ -90,7 +90,7 @@ TEST(RightOfWay, DoesNotBlockTheBox) {
   t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
   t.add(on_lane(t.roads, "4.1", 1.0), "route", go({8}));
   t.begin();
-  t.controllers[0] = std::make_unique<Stands>();
+  t.controllers[0] = std::make_unique<Idle>();
   for (int i = 0; i < 200; ++i) t.tick();
   const double line = 4.0;  // [m] end of 4.1
   EXPECT_GT(t.pose(1).x - 0.165, line);
@@ -107,7 +107,7 @@ TEST(RightOfWay, AvoidsAFullLaneAfterWaiting) {
     t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
     if (row == 1) wait();
     t.begin();
-    t.controllers[1 - row] = std::make_unique<Stands>();
+    t.controllers[1 - row] = std::make_unique<Idle>();
     const auto ways = [&] {
       std::vector<std::uint32_t> all;
       for (const control::RouteLeg& leg : t.route(row).plan().legs) all.push_back(leg.way);
@@ -117,10 +117,10 @@ TEST(RightOfWay, AvoidsAFullLaneAfterWaiting) {
     std::int64_t since = -1, waited = -1;  // [ns]
     while (waited < 0 && t.time < 60 * kSecond) {
       const std::int64_t now = t.time;
-      const bool stands = t.fleet->reports()[row].velocity.forward < 0.01;
+      const bool at_rest = t.fleet->reports()[row].velocity.forward < 0.01;
       t.tick();
       if (since >= 0 && ways() != planned) waited = now - since;
-      if (since < 0 && stands && t.route(row).stop_reason() == "the lane ahead is full") since = now;
+      if (since < 0 && at_rest && t.route(row).stop_reason() == "the lane ahead is full") since = now;
       planned = ways();
     }
     EXPECT_EQ(waited, (row == 0 ? 20 : 22) * kSecond) << row;
@@ -132,8 +132,8 @@ TEST(RightOfWay, AvoidsAFullLaneAfterWaiting) {
 struct Crowd {
   int contacts = 0;
   std::uint64_t goals = 0, least = 0;
-  double longest_stand = 0.0;  // [s]
-  double x = 0.0;              // of one robot, at the end
+  double longest_rest = 0.0;  // [s]
+  double x = 0.0;             // of one robot, at the end
 };
 
 Crowd crowd(std::size_t count, double seconds, std::uint64_t seed, bool lights) {
@@ -141,14 +141,14 @@ Crowd crowd(std::size_t count, double seconds, std::uint64_t seed, bool lights) 
   if (lights) t.add_lights();
   for (const Pose& pose : control::start_poses(t.roads, count, seed, 0.5)) t.add(pose, "route", {{"tour", true, ""}});
   t.begin(seed);
-  std::vector<double> stands(count);
+  std::vector<double> rests(count);
   Crowd c;
   for (int i = 0; i < seconds * 10; ++i) {
     t.tick();
     for (std::size_t k = 0; k < count; ++k) {
       const Twist& v = t.fleet->reports()[k].velocity;
-      stands[k] = v.forward == 0.0 && v.turn == 0.0 ? stands[k] + 0.1 : 0.0;
-      c.longest_stand = std::max(c.longest_stand, stands[k]);
+      rests[k] = v.forward == 0.0 && v.turn == 0.0 ? rests[k] + 0.1 : 0.0;
+      c.longest_rest = std::max(c.longest_rest, rests[k]);
     }
   }
   c.contacts = t.contacts;
@@ -167,7 +167,7 @@ TEST(Crowd, FiftyRobotsDriveWithoutContact) {
     const Crowd c = crowd(50, 600, seed, seed == 2);
     EXPECT_EQ(c.contacts, 0) << seed;
     EXPECT_GT(c.goals, 100u) << seed;
-    EXPECT_LT(c.longest_stand, 240.0) << seed;
+    EXPECT_LT(c.longest_rest, 240.0) << seed;
   }
 }
 
@@ -176,7 +176,7 @@ TEST(Crowd, TwentyRobotsReachCheckpoints) {
     const Crowd c = crowd(20, 400, seed, seed % 2 == 0);
     EXPECT_EQ(c.contacts, 0) << seed;
     EXPECT_GT(c.least, 0u) << seed;
-    EXPECT_LT(c.longest_stand, 90.0) << seed;
+    EXPECT_LT(c.longest_rest, 90.0) << seed;
   }
 }
 

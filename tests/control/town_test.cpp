@@ -34,7 +34,7 @@ void add_cast(Streets& t, std::uint64_t seed) {
 
 struct Town {
   int contacts = 0;
-  double longest_stand = 0.0;              // [s] for the robots that do not park
+  double longest_rest = 0.0;               // [s] for the robots that do not park
   std::uint64_t goals = 0, least = ~0ull;  // for the robots with goals
   std::array<double, 5> driven{};          // [m] driven by the members of the convoy
   std::vector<double> gaps;                // [m] from each member to the one ahead of it, every second
@@ -49,14 +49,14 @@ Town town(std::uint64_t seed, double seconds) {
   Streets t;
   add_cast(t, seed);
   const auto count = static_cast<std::uint32_t>(t.controllers.size());
-  std::vector<double> stands(count);
+  std::vector<double> rests(count);
   Town town;
   for (int i = 0; i < 10.0 * seconds; ++i) {
     t.tick();
     for (std::uint32_t k = 0; k < count; ++k) {
       const Twist& v = t.fleet->reports()[k].velocity;
-      stands[k] = v.forward == 0.0 && v.turn == 0.0 ? stands[k] + 0.1 : 0.0;
-      if (k != kParks) town.longest_stand = std::max(town.longest_stand, stands[k]);
+      rests[k] = v.forward == 0.0 && v.turn == 0.0 ? rests[k] + 0.1 : 0.0;
+      if (k != kParks) town.longest_rest = std::max(town.longest_rest, rests[k]);
       if (k < 5) town.driven[k] += 0.1 * std::abs(v.forward);
       if (k > 0 && k < 5 && i % 10 == 0) town.gaps.push_back(t.distance(k, k - 1));
     }
@@ -98,7 +98,7 @@ TEST(Town, NoRobotStopsPermanentlyAndTheConvoyContinues) {
   for (std::uint64_t seed = 1; seed <= (instrumented() ? 1u : 3u); ++seed) {
     const Town t = town(seed, 500.0);
     EXPECT_EQ(t.contacts, 0) << seed;
-    EXPECT_LT(t.longest_stand, 250.0) << seed;
+    EXPECT_LT(t.longest_rest, 250.0) << seed;
     EXPECT_GT(t.goals, 80u) << seed;
     for (const double driven : t.driven) EXPECT_GT(driven, 25.0) << seed;
   }
@@ -109,13 +109,13 @@ TEST(Town, DISABLED_HalfAnHour) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Town t = town(seed, 1800.0);
     EXPECT_EQ(t.contacts, 0) << seed;
-    EXPECT_LT(t.longest_stand, 300.0) << seed;
+    EXPECT_LT(t.longest_rest, 300.0) << seed;
     EXPECT_GT(t.least, 0u) << seed;
     for (const double driven : t.driven) EXPECT_GT(driven, 90.0) << seed;
     fmt::print(
-        "seed {}: {} contacts, longest stand {:.0f} s, {} checkpoints, fewest {}, gaps 50 % {:.2f} 75 % {:.2f} "
+        "seed {}: {} contacts, longest rest {:.0f} s, {} checkpoints, fewest {}, gaps 50 % {:.2f} 75 % {:.2f} "
         "90 % {:.2f} m, driven {:.0f} to {:.0f} m\n",
-        seed, t.contacts, t.longest_stand, t.goals, t.least, t.gap(0.5), t.gap(0.75), t.gap(0.9),
+        seed, t.contacts, t.longest_rest, t.goals, t.least, t.gap(0.5), t.gap(0.75), t.gap(0.9),
         *std::min_element(t.driven.begin(), t.driven.end()), *std::max_element(t.driven.begin(), t.driven.end()));
   }
 }

@@ -103,6 +103,8 @@ class Streets {
   }
 
   const Pose& pose(std::uint32_t row) const { return fleet->reports()[row].X_WM; }
+  /// The foremost point of a robot's body.
+  glm::dvec2 front(std::uint32_t row) const { return base::transform(pose(row), {0.165, 0.0}); }
   control::Route& route(std::uint32_t row) { return static_cast<control::Route&>(*controllers[row]); }
   double distance(std::uint32_t a, std::uint32_t b) const {
     return std::hypot(pose(a).x - pose(b).x, pose(a).y - pose(b).y);
@@ -118,11 +120,11 @@ class Streets {
   int contacts = 0;
 
  private:
-  struct Asked {
+  struct Plan {
     std::string controller;
     std::vector<Setting> settings;
   };
-  std::vector<Asked> plans_;
+  std::vector<Plan> plans_;
   std::vector<Twist> commands_;
 };
 
@@ -134,8 +136,8 @@ inline std::vector<Setting> go(Numbers checkpoints, std::vector<Setting> more = 
   return more;
 }
 
-/// Does nothing.
-struct Stands final : control::Controller {
+/// Never moves.
+struct Idle final : control::Controller {
   Twist step(const control::ControllerInput&) override { return {}; }
 };
 

@@ -158,7 +158,7 @@ TEST(Wander, DrivesForwardWhenTouchedFromBehind) {
   EXPECT_LT(first_twist(8.0, 1u << 7).forward, 0.0) << "last sector of the front, left";
   EXPECT_LT(first_twist(8.0, 1u << 24).forward, 0.0) << "first sector of the front, right";
   EXPECT_LT(first_twist(8.0, (1u << 16) | 1u).forward, 0.0) << "both";
-  EXPECT_LT(first_twist(8.0, 0u).forward, 0.0) << "nobody says where";
+  EXPECT_LT(first_twist(8.0, 0u).forward, 0.0) << "in an unknown direction";
 }
 
 TEST(Wander, WithTwelveSingleBeamsKeepsMoving) {
@@ -350,7 +350,7 @@ TEST(Wander, SteersTowardsTheFreerSide) {
   EXPECT_GT(Eyes().look(0.0, 0.365, 2.0, 8.0).turn, most - 2.0 * drift) << "near, and much freer: as far as it may";
   EXPECT_LE(Eyes().look(0.0, 0.365, 2.0, 8.0).turn, most);
   const double left = Eyes().look(0.0, 8.0, 2.0, 8.0).turn, right = Eyes().look(0.0, 8.0, 8.0, 2.0).turn;
-  EXPECT_NEAR(left - right, 2.0 * 0.3 * most, 0.05) << "the drift of one seed is one";
+  EXPECT_NEAR(left - right, 2.0 * 0.3 * most, 0.05) << "one seed, one drift";
 }
 
 TEST(Wander, TurnsToTheFreerSideUntilItMayResume) {
@@ -358,7 +358,7 @@ TEST(Wander, TurnsToTheFreerSideUntilItMayResume) {
     Eyes eyes;
     const double right = side > 0.0 ? 1.0 : 3.0, left = 4.0 - right;
     EXPECT_GT(side * eyes.look(0.0, 0.3, right, left).turn, 0.0);
-    EXPECT_GT(side * eyes.look(0.1, 0.3, left, right, 0.1).turn, 0.0) << "it has chosen";
+    EXPECT_GT(side * eyes.look(0.1, 0.3, left, right, 0.1).turn, 0.0) << "the direction is kept";
     EXPECT_EQ(eyes.look(0.2, 0.39 + 0.165, 3.0, 3.0, 0.2).forward, 0.0) << "more than 0.2 m, less than 0.4 m";
     EXPECT_GT(eyes.look(0.3, 0.41 + 0.165, 3.0, 3.0, 0.3).forward, 0.0);
   }
@@ -402,6 +402,11 @@ TEST(Wander, BacksOffBrieflyAndTurnsByARandomAngle) {
 
 // ---- Clearance ahead.
 
+Clearance clearance_of(const world::Mover& mover, const std::vector<double>& ranges) {
+  const ReadingBlock block{.type = 1, .values = ranges};
+  return ClearanceEstimator(mover).estimate({&block, 1});
+}
+
 struct Look {
   double range;
   double ahead;
@@ -412,14 +417,10 @@ TEST(ClearanceEstimator, AheadIsMeasuredInTheLaneFromTheFront) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, 0, 0, 0})));
-  const ClearanceEstimator estimator(mover, lasers_in(world));
-  EXPECT_NEAR(estimator.range(), 1.9, 1e-12);
+  EXPECT_NEAR(ClearanceEstimator(mover).range(), 1.9, 1e-12);
   for (const Look& look : {Look{1.1, 1.0, "0.1 on the body, 0.2 to its front"}, Look{2.0, 1.9, "nothing in range"},
-                           Look{5.0, 1.9, "beyond range"}, Look{0.0, 0.0, "within the body"}}) {
-    const std::vector<double> ranges{look.range};
-    const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
-    EXPECT_NEAR(estimator.estimate(blocks).ahead, look.ahead, 1e-6) << look.why;
-  }
+                           Look{5.0, 1.9, "beyond range"}, Look{0.0, 0.0, "within the body"}})
+    EXPECT_NEAR(clearance_of(mover, {look.range}).ahead, look.ahead, 1e-6) << look.why;
 }
 
 // The lane is 15 % and a centimetre wider than the half width of 0.2 m, on both sides.
@@ -428,9 +429,7 @@ TEST(ClearanceEstimator, LaneIsSlightlyWiderThanTheBody) {
     world::World world = scenes::empty_world();
     world::Mover& mover = scenes::add_square(world, {});
     mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, aside, 0, 0})));
-    const std::vector<double> ranges{1.1};
-    const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
-    EXPECT_NEAR(ClearanceEstimator(mover, lasers_in(world)).estimate(blocks).ahead, ahead, 1e-6) << aside;
+    EXPECT_NEAR(clearance_of(mover, {1.1}).ahead, ahead, 1e-6) << aside;
   }
 }
 
@@ -438,9 +437,7 @@ TEST(ClearanceEstimator, IgnoresObstaclesOutsideTheLane) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 3, 4.0)));
-  const std::vector<double> ranges{0.5, 3.0, 1.5};  // right, ahead, left
-  const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
-  const Clearance c = ClearanceEstimator(mover, lasers_in(world)).estimate(blocks);
+  const Clearance c = clearance_of(mover, {0.5, 3.0, 1.5});  // right, ahead, left
   EXPECT_NEAR(c.ahead, 2.8, 1e-6);
   EXPECT_NEAR(c.left, 1.5, 1e-6);
   EXPECT_NEAR(c.right, 0.5, 1e-6);
