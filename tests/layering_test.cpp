@@ -300,7 +300,7 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
            {"apps/a.cpp", "#include <poll.h>"},                             // sockets are netio's
            {"robots/a.cpp", "#include <netinet/in.h>"},                     // sockets are netio's
            {"control/a.cpp", "#include <pybind11/embed.h>"},                // Python's headers
-           {"python/a.cpp", "#include \"farm/farm.h\""},                    // Python uses the public interface only
+           {"python/a.cpp", "#include \"farm/farm.h\""},                    // Python uses only the public interface
            {"base/a.cpp", "#include HEADER"}})                              // cannot be judged
     EXPECT_EQ(complaints(broken).size(), 1u) << broken.path << ": " << broken.text;
 }
