@@ -190,7 +190,7 @@ world::World shrunk(world::World world, double by) {
 struct BoundCase {
   const char* name;
   BoundScene (*make)();
-  bool near = true;  ///< far away, outlines used for the truth are less exact than the reference
+  bool exact_truth = true;  ///< otherwise the truth's outlines are less exact than the reference
 };
 
 const BoundCase kBoundCases[] = {
@@ -239,7 +239,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, LaserBounds,
 /// The bound of the reference is almost only the contact distance.
 TEST(LaserBoundsOfCasters, TheReference) {
   for (const BoundCase& c : kBoundCases)
-    if (c.near) expect_within_bounds(c, "exact", &raycast::reference_caster, 1);
+    if (c.exact_truth) expect_within_bounds(c, "exact", &raycast::reference_caster, 1);
 }
 
 }  // namespace
