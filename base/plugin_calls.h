@@ -71,8 +71,8 @@ std::string blame(const PluginCalls& calls, const std::string& how);
 /// Names the calls under way: "controller 'a' of robot 'b' at 3.200 s simulated". Empty if there are none.
 std::string under_way(const PluginCalls& calls);
 
-/// Returns "a thread of controller 'a' of robot 'b' is still running", naming the plug-ins called last, one of which keeps the
-/// process from ending.
+/// Returns "a thread of controller 'a' of robot 'b' is still running", naming the plug-ins called last, one of which
+/// keeps the process from ending.
 std::string goes_on(const PluginCalls& calls);
 
 /// Returns e.g. "signal 11, Segmentation fault".
