@@ -402,9 +402,9 @@ TEST(Wander, BacksOffBrieflyAndTurnsByARandomAngle) {
 
 // ---- Clearance ahead.
 
-Clearance clearance_of(const world::Mover& mover, const std::vector<double>& ranges) {
+Clearance clearance_of(const world::World& world, const std::vector<double>& ranges) {
   const ReadingBlock block{.type = 1, .values = ranges};
-  return ClearanceEstimator(mover).estimate({&block, 1});
+  return ClearanceEstimator(world.movers[0], lasers_in(world)).estimate({&block, 1});
 }
 
 struct Look {
@@ -417,10 +417,10 @@ TEST(ClearanceEstimator, AheadIsMeasuredInTheLaneFromTheFront) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, 0, 0, 0})));
-  EXPECT_NEAR(ClearanceEstimator(mover).range(), 1.9, 1e-12);
+  EXPECT_NEAR(ClearanceEstimator(mover, lasers_in(world)).range(), 1.9, 1e-12);
   for (const Look& look : {Look{1.1, 1.0, "0.1 on the body, 0.2 to its front"}, Look{2.0, 1.9, "nothing in range"},
                            Look{5.0, 1.9, "beyond range"}, Look{0.0, 0.0, "within the body"}})
-    EXPECT_NEAR(clearance_of(mover, {look.range}).ahead, look.ahead, 1e-6) << look.why;
+    EXPECT_NEAR(clearance_of(world, {look.range}).ahead, look.ahead, 1e-6) << look.why;
 }
 
 // The lane is 15 % and a centimetre wider than the half width of 0.2 m, on both sides.
@@ -429,7 +429,7 @@ TEST(ClearanceEstimator, LaneIsSlightlyWiderThanTheBody) {
     world::World world = scenes::empty_world();
     world::Mover& mover = scenes::add_square(world, {});
     mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, aside, 0, 0})));
-    EXPECT_NEAR(clearance_of(mover, {1.1}).ahead, ahead, 1e-6) << aside;
+    EXPECT_NEAR(clearance_of(world, {1.1}).ahead, ahead, 1e-6) << aside;
   }
 }
 
@@ -437,7 +437,7 @@ TEST(ClearanceEstimator, IgnoresObstaclesOutsideTheLane) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_square(world, {});
   mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 3, 4.0)));
-  const Clearance c = clearance_of(mover, {0.5, 3.0, 1.5});  // right, ahead, left
+  const Clearance c = clearance_of(world, {0.5, 3.0, 1.5});  // right, ahead, left
   EXPECT_NEAR(c.ahead, 2.8, 1e-6);
   EXPECT_NEAR(c.left, 1.5, 1e-6);
   EXPECT_NEAR(c.right, 0.5, 1e-6);

@@ -15,7 +15,7 @@
 #include "tests/device.h"
 #include "tests/refusal.h"
 #include "tests/sensors/host_trial.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::sensors {
 namespace {

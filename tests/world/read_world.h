@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tests/refusal.h"
-#include "world/stage/stage.h"
+#include "world/stage/build_world.h"
 
 namespace sf::world {
 
