@@ -311,5 +311,31 @@ TEST(Fleet, PathInPiecesEqualsWholePath) {
   }
 }
 
+TEST(Fleet, AnyCommandKeepsTheRobotWithinItsLimits) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {1, 2, 0, 0.5});
+  constexpr double kInf = std::numeric_limits<double>::infinity(), kMost = std::numeric_limits<double>::max();
+  for (const double command : {std::nan(""), kInf, -kInf, kMost, std::numeric_limits<double>::denorm_min()}) {
+    const Pose X = run(world, {command, command, command}, 1).report.X_WM;
+    EXPECT_TRUE(std::isfinite(X.x) && std::isfinite(X.y) && std::isfinite(X.yaw)) << command;
+    EXPECT_LE(std::hypot(X.x - 1.0, X.y - 2.0), 0.1 * world.movers[0].max_forward * (1.0 + 1e-12)) << command;
+    EXPECT_TRUE(std::isfinite(command) || (X.x == 1.0 && X.y == 2.0 && X.yaw == 0.5)) << command << " is ignored";
+  }
+}
+
+/// The arc of 1 m radius: ticks of 1 us for 0.1 s, and one tick of 10 s.
+TEST(Fleet, ShortAndLongTicksDriveTheSameArc) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {});
+  const Twist arc{0.3, 0.0, 0.3};
+  for (const auto& [dt, ticks] : {std::pair<std::int64_t, int>{1000, 100'000}, {10 * kSecond, 1}}) {
+    Fleet fleet(world);
+    for (int i = 0; i < ticks; ++i) fleet.move({&arc, 1}, dt);
+    const double angle = 0.3e-9 * static_cast<double>(dt * ticks);
+    EXPECT_NEAR(fleet.reports()[0].X_WM.x, std::sin(angle), 1e5 * 3 * 2.2e-16) << dt;
+    EXPECT_NEAR(fleet.reports()[0].X_WM.y, 1.0 - std::cos(angle), 1e5 * 3 * 2.2e-16) << dt;
+  }
+}
+
 }  // namespace
 }  // namespace sf::robots

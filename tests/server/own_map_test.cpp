@@ -166,7 +166,7 @@ TEST_F(MapTest, LargeWorldsAndRangesGetLargerCells) {
 }
 
 std::string map_refusal(const world::World& world, const OwnMapOptions& options) {
-  return refusal_of([&] { OwnMap(world, 0, options); });
+  return refusal_of([&] { OwnMap(world, sensors::SensorSet(world), 0, options); });
 }
 
 TEST_F(MapTest, RejectsUnsupportedMaps) {
