@@ -18,6 +18,7 @@
 #include <cmath>
 #include <set>
 
+#include "sensors/laser.h"
 #include "tests/refusal.h"
 #include "tests/viz/png.h"
 #include "tests/viz/scenes.h"
