@@ -625,7 +625,8 @@ TEST_F(PlayerTest, DescribesWhichRobotIsOnWhichPort) {
       four("name \"e\"\nposition( ) position( ) position( ) position( )\n");
   EXPECT_EQ(described(one), "");
   EXPECT_EQ(described(two), " for all robots, port " + port(two, 1) + " for robot 2 alone");
-  EXPECT_EQ(described(four), " for all robots, ports " + port(four, 1) + " to " + port(four, 3));
+  EXPECT_EQ(described(four),
+            " for all robots, ports " + port(four, 1) + " to " + port(four, 3) + " for robots 2 to 4 alone");
 }
 
 TEST(PlayerOdometry, IsThatOfTheEncoders) {

@@ -154,7 +154,7 @@ TEST(CreateDrive, ReopensALineThatHungUp) {
   EXPECT_TRUE(create->streaming());
   create->hang_up();
   drive.update(kTenth);
-  EXPECT_NE(drive.problem(kTenth).find("is lost"), std::string::npos);
+  EXPECT_NE(drive.problem(kTenth).find("was disconnected"), std::string::npos);
   drive.drive({0.1, 0, 0}, kTenth);
   std::filesystem::remove(name);
   for (int k = 2; k < 30; ++k) drive.update(k * kTenth);
