@@ -99,7 +99,7 @@ TEST(Check, ManySamplingTimesAreReported) {
   const std::string world = folder.write("w.world", laser + "1001 ) )\n");
   for (const Words& words : {Words{"check", world}, Words{"run", world, "--duration", "0.1"}}) {
     const Outcome outcome = run_program(words);
-    EXPECT_NE(outcome.err.find("1001 different times a second"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("1001 different times per second"), std::string::npos) << outcome.err;
   }
 }
 
@@ -175,7 +175,7 @@ TEST(Check, FilesFromReportsAreReadOrRejected) {
                            {"world/boundary_noblocks.world", 0, "removes only the default box"},
                            {"world/pad.world", 0, "its margins of 20 (left), 20 (right), 10 (below) and 10 (above)"},
                            {"world/overlap.world", 0, "4 robots overlap others at the start"},
-                           {"maps/alpha.yaml", 0, "alpha decides 130 cells"},
+                           {"maps/alpha.yaml", 0, "alpha affects 130 cells"},
                            {"maps/neg_float.yaml", 0, "'negate: 1.0' is read as true"},
                            {"maps/neg_true.yaml", 0, "warnings           0"},
                            {"maps/negv.yaml", 0, "warnings           0"}}) {
