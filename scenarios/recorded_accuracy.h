@@ -10,7 +10,7 @@
 #include "gpu/device.h"
 #include "record/recording.h"
 #include "scenarios/error_distribution.h"
-#include "scenarios/verification.h"
+#include "scenarios/recording_verification.h"
 
 namespace sf::scenarios {
 

@@ -14,7 +14,7 @@
 #include "apps/reports/text.h"
 #include "scenarios/merging.h"
 #include "scenarios/recorded_accuracy.h"
-#include "scenarios/verification.h"
+#include "scenarios/recording_verification.h"
 
 namespace sf::apps {
 

@@ -6,8 +6,8 @@
 
 #include "record/recorder.h"
 #include "record/recording.h"
+#include "scenarios/recording_verification.h"
 #include "scenarios/run_info.h"
-#include "scenarios/verification.h"
 #include "tests/server/fixture.h"
 
 namespace sf::scenarios {

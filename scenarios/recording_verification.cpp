@@ -1,4 +1,4 @@
-#include "scenarios/verification.h"
+#include "scenarios/recording_verification.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Verification of recordings: sound ones pass, changes are detected.
 
-#include "scenarios/verification.h"
+#include "scenarios/recording_verification.h"
 
 #include <gtest/gtest.h>
 
