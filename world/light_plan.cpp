@@ -9,7 +9,7 @@
 
 #include "base/suggest.h"
 #include "world/fields.h"
-#include "world/light_phases.h"
+#include "world/fixed_programs.h"
 #include "world/toml_reader.h"
 
 namespace sf::world {

@@ -3,7 +3,7 @@
 // detectors. docs/v2x.md describes the file.
 //
 //   LightPlan plan = parse_light_plan("town.toml", text, world);  // sets the plans of lights with fixed programs
-//   LightActuator lights(world, plan);                            // world/light_actuator.h runs the other programs
+//   ActuatedLights lights(world, plan);                            // world/actuated_lights.h runs the other programs
 
 #include <cstdint>
 #include <optional>

@@ -20,8 +20,8 @@
 #include "netio/own_end.h"
 #include "server/signal_messages.h"
 #include "v2x/frame.h"
+#include "world/actuated_lights.h"
 #include "world/fields.h"
-#include "world/light_actuator.h"
 #include "world/roads/roads.h"
 
 namespace sf::apps {
@@ -128,18 +128,18 @@ class Sender {
 };
 
 /// Sends at the configured rate until stopped. Processes received states before each transmission.
-void run(const LightOptions& options, Sender& sender, LightRadio* radio, world::LightActuator& actuator) {
+void run(const LightOptions& options, Sender& sender, LightRadio* radio, world::ActuatedLights& actuated) {
   const auto start = std::chrono::steady_clock::now();
   std::int64_t next_map = 0;  // [s]
   for (double at = 0.0; !stop_requested() && (options.duration <= 0.0 || at < options.duration);) {
     const double elapsed = base::seconds_since(start), time = options.time + elapsed;
     const std::int64_t now = static_cast<std::int64_t>(1e9 * elapsed);
     if (radio != nullptr) {
-      radio->receive(now, [&](glm::dvec2 p) { actuator.detect(p, time); });
+      radio->receive(now, [&](glm::dvec2 p) { actuated.detect(p, time); });
       radio->report_trouble(now);
     }
-    actuator.step(time);
-    const std::vector<world::SignalForecast> forecasts = actuator.forecasts(time);
+    actuated.step(time);
+    const std::vector<world::SignalForecast> forecasts = actuated.forecasts(time);
     if (at >= static_cast<double>(next_map)) {
       sender.send_maps();
       next_map = static_cast<std::int64_t>(at) + 1;
@@ -161,13 +161,13 @@ int light(const LightOptions& options) {
   Sender sender(options, world, roads ? &*roads : nullptr);
   std::optional<LightRadio> radio;
   if (!options.farm.empty()) radio.emplace(world, roads ? &*roads : nullptr, options.farm, peers_of(options, nullptr));
-  world::LightActuator actuator(world, plan, options.time);
+  world::ActuatedLights actuated(world, plan, options.time);
   install_stop_handlers();
   std::string to = sender.to();
   if (radio) to += fmt::format("{}{} (V2I)", to.empty() ? "" : " and ", radio->to());
   print_message("{} of {} to {} at {:g} Hz; press Ctrl-C to stop", counted(world.lights.size(), "light"),
                 counted(sender.intersections().size(), "intersection"), to, options.rate);
-  run(options, sender, radio ? &*radio : nullptr, actuator);
+  run(options, sender, radio ? &*radio : nullptr, actuated);
   const netio::OutboxCounts counts = sender.counts();
   if (counts.sent == 0 && !options.send.empty()) throw base::InputError("nothing was sent: " + counts.first_failure);
   if (!options.send.empty()) print_message("sent {} to {}", counted(counts.sent, "message"), sender.to());

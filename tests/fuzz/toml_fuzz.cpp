@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "tests/fuzz/require.h"
-#include "world/light_actuator.h"
+#include "world/actuated_lights.h"
 #include "world/light_plan.h"
 #include "world/toml.h"
 
@@ -30,7 +30,7 @@ void run_plan(const std::string& text) {
     world.lights.back().phases = {{world::LightState::red, 1.0}};
   }
   const world::LightPlan plan = world::parse_light_plan("fuzz.toml", text, world);
-  world::LightActuator lights(world, plan);
+  world::ActuatedLights lights(world, plan);
   for (double time = 0.0; time < 20.0; time += 0.5) {
     lights.detect({0.0, 0.0}, time);
     lights.step(time);

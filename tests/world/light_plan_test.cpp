@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/refusal.h"
-#include "world/light_phases.h"
+#include "world/fixed_programs.h"
 #include "world/lights.h"
 
 namespace sf::world {

@@ -1,4 +1,4 @@
-#include "world/light_actuator.h"
+#include "world/actuated_lights.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,41 +12,41 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-LightActuator::LightActuator(const World& world, const LightPlan& plan, double time)
+ActuatedLights::ActuatedLights(const World& world, const LightPlan& plan, double time)
     : world_(world), plan_(plan), last_(plan.detectors.size(), kNever) {
   for (const LightProgram& program : plan.programs)
     if (is_actuated(program))
       runs_.push_back({&program, 0, time, false, 0, std::vector<double>(program.stages.size(), kNever)});
 }
 
-void LightActuator::detect(glm::dvec2 p, double time) {
+void ActuatedLights::detect(glm::dvec2 p, double time) {
   for (std::size_t k = 0; k < last_.size(); ++k) {
     const LightDetector& detector = plan_.detectors[k];
     if (detector.p && glm::length(p - *detector.p) <= detector.radius) last_[k] = time;
   }
 }
 
-bool LightActuator::has_call(const LightDetector& detector, double last, double time) const {
+bool ActuatedLights::has_call(const LightDetector& detector, double last, double time) const {
   if (time - last <= kHeard) return true;
   return std::any_of(detector.calls.begin(), detector.calls.end(),
                      [&](const auto& call) { return time >= call.first && time <= call.second; });
 }
 
-void LightActuator::step(double time) {
+void ActuatedLights::step(double time) {
   for (Run& run : runs_) {
     note_calls(run, time);
     step(run, time);
   }
 }
 
-void LightActuator::note_calls(Run& run, double time) const {
+void ActuatedLights::note_calls(Run& run, double time) const {
   for (std::size_t k = 0; k < run.called.size(); ++k)
     for (const std::uint32_t row : run.program->stages[k].detectors)
       if (has_call(plan_.detectors[row], last_[row], time)) run.called[k] = time;
 }
 
 /// Returns the next stage that is not skipped, or the current stage if no other is needed.
-std::size_t LightActuator::next_stage(const Run& run) const {
+std::size_t ActuatedLights::next_stage(const Run& run) const {
   const std::size_t count = run.program->stages.size();
   for (std::size_t k = 1; k < count; ++k) {
     const std::size_t stage = (run.stage + k) % count;
@@ -56,14 +56,14 @@ std::size_t LightActuator::next_stage(const Run& run) const {
 }
 
 /// Returns the yellow and clear time [s] before the next stage.
-double LightActuator::change_time(const Run& run) const {
+double ActuatedLights::change_time(const Run& run) const {
   const LightStage& stage = run.program->stages[run.stage];
   for (std::size_t i = 0; i < run.program->lights.size(); ++i)
     if (needs_yellow(*run.program, run.stage, run.next, i)) return stage.yellow + stage.clear;
   return 0.0;
 }
 
-void LightActuator::step(Run& run, double time) const {
+void ActuatedLights::step(Run& run, double time) const {
   const LightStage& stage = run.program->stages[run.stage];
   if (!run.changing) {
     const double length = time - run.since;
@@ -80,7 +80,7 @@ void LightActuator::step(Run& run, double time) const {
   run.since = time;
 }
 
-SignalForecast LightActuator::forecast(const Run& run, std::size_t i, double time) const {
+SignalForecast ActuatedLights::forecast(const Run& run, std::size_t i, double time) const {
   const LightStage& stage = run.program->stages[run.stage];
   const LightState now = stage.states[i], after = run.program->stages[run.next].states[i];
   const bool yellow = needs_yellow(*run.program, run.stage, run.next, i);
@@ -102,7 +102,7 @@ SignalForecast LightActuator::forecast(const Run& run, std::size_t i, double tim
   return {{now, soonest + change}, latest + change, Signal{after, kUnknown}};
 }
 
-std::vector<SignalForecast> LightActuator::forecasts(double time) const {
+std::vector<SignalForecast> ActuatedLights::forecasts(double time) const {
   std::vector<SignalForecast> all = forecasts_at(world_, time);
   for (const Run& run : runs_)
     for (std::size_t i = 0; i < run.program->lights.size(); ++i)

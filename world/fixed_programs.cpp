@@ -1,4 +1,4 @@
-#include "world/light_phases.h"
+#include "world/fixed_programs.h"
 
 #include <algorithm>
 

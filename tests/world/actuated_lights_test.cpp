@@ -1,6 +1,6 @@
 // Actuated programs: calls, gaps, yellow, and the accuracy of forecasts.
 
-#include "world/light_actuator.h"
+#include "world/actuated_lights.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ constexpr glm::dvec2 kAtA{0.5, 0.0}, kAtB{10.0, -1.0}, kElsewhere{5.0, 0.0};
 
 /// Runs the lights in steps of 0.1 s, with robots at places for some time.
 struct Drive : Crossing {
-  LightActuator lights{world, plan};
+  ActuatedLights lights{world, plan};
   double time = 0.0;
 
   void until(double end, std::initializer_list<glm::dvec2> robots = {}) {
@@ -70,7 +70,7 @@ struct Drive : Crossing {
   LightState b() const { return lights.forecasts(time)[1].now.state; }
 };
 
-TEST(LightActuator, RestsInGreenWithoutACall) {
+TEST(ActuatedLights, RestsInGreenWithoutACall) {
   Drive d;
   d.until(60.0, {kAtA, kElsewhere});
   EXPECT_EQ(d.a(), LightState::green);
@@ -78,7 +78,7 @@ TEST(LightActuator, RestsInGreenWithoutACall) {
   EXPECT_EQ(d.b(), LightState::red);
 }
 
-TEST(LightActuator, CallEndsAnUnusedGreen) {
+TEST(ActuatedLights, CallEndsAnUnusedGreen) {
   Drive d;
   d.until(30.0);
   d.until(30.3, {kAtB});
@@ -98,7 +98,7 @@ TEST(LightActuator, CallEndsAnUnusedGreen) {
   EXPECT_EQ(d.a(), LightState::green);
 }
 
-TEST(LightActuator, RobotsExtendGreenUpToItsMaximum) {
+TEST(ActuatedLights, RobotsExtendGreenUpToItsMaximum) {
   Drive d;
   d.until(19.8, {kAtA, kAtB});
   EXPECT_EQ(d.a(), LightState::green);
@@ -112,7 +112,7 @@ TEST(LightActuator, RobotsExtendGreenUpToItsMaximum) {
   EXPECT_EQ(gap.a(), LightState::yellow);
 }
 
-TEST(LightActuator, CallsOfTheFileCountAsRobots) {
+TEST(ActuatedLights, CallsOfTheFileCountAsRobots) {
   Drive d;
   d.until(99.9);
   EXPECT_EQ(d.a(), LightState::green);
@@ -121,7 +121,7 @@ TEST(LightActuator, CallsOfTheFileCountAsRobots) {
 }
 
 /// After the process was suspended, yellow is still shown in full, whatever was due.
-TEST(LightActuator, LateStepDoesNotShortenYellow) {
+TEST(ActuatedLights, LateStepDoesNotShortenYellow) {
   Drive d;
   d.until(10.0);
   d.time = 50.0;
@@ -140,7 +140,7 @@ std::string forecast_text(const SignalForecast& f) {
 }
 
 /// Robots at both lights for 25 s, then only at b until 40 s, then at neither.
-TEST(LightActuator, ForecastsAreTheEarliestAndTheLatestChange) {
+TEST(ActuatedLights, ForecastsAreTheEarliestAndTheLatestChange) {
   struct Case {
     double second;
     const char* a;
@@ -170,7 +170,7 @@ TEST(LightActuator, ForecastsAreTheEarliestAndTheLatestChange) {
 }
 
 /// Random robots for half an hour: never two greens, yellow between green and red, and no change before its forecast.
-TEST(LightActuator, ForecastsAndYellowHold) {
+TEST(ActuatedLights, ForecastsAndYellowHold) {
   Drive d;
   std::vector<SignalForecast> before = d.lights.forecasts(0.0);
   double sooner[2] = {0.0, 0.0};  // [s] no change was forecast before this time

@@ -1,7 +1,7 @@
 #pragma once
 // Runs the actuated programs of a plan, whose stages are extended, called and skipped by detectors.
 //
-//   LightActuator lights(world, plan);
+//   ActuatedLights lights(world, plan);
 //   lights.detect({x, y}, time);                // a robot's received state
 //   lights.step(time);                          // before each query; more frequent calls react faster
 //   lights.forecasts(time)                      // of all lights of the world
@@ -15,12 +15,12 @@
 namespace sf::world {
 
 /// Times [s] are non-decreasing. World and plan must outlive it. Not thread-safe.
-class LightActuator {
+class ActuatedLights {
  public:
   static constexpr double kHeard = 0.5;  ///< [s] for which a received state counts as a call
 
   /// Starts the first stage of all actuated programs at `time` [s].
-  LightActuator(const World& world, const LightPlan& plan, double time = 0.0);
+  ActuatedLights(const World& world, const LightPlan& plan, double time = 0.0);
 
   /// Reports a robot at `p` [m].
   void detect(glm::dvec2 p, double time);
