@@ -7,7 +7,7 @@
 namespace sf::netio {
 
 /// The estimate is the largest difference between a reading's timestamp and its arrival. It lags the farm's clock by
-/// the delay of the fastest reading and is never ahead. After two seconds without readings (kClientTimeout) the farm
+/// the delay of the fastest reading and is never ahead. After two seconds without readings (kSenderTimeout) the farm
 /// may have restarted, so the next reading sets the clock again. Reads no clock.
 class FarmClock {
  public:

@@ -193,12 +193,12 @@ PacketStatus Inbox::admit_light(const Packet& packet, const Endpoint& source, st
 }
 
 /// Marks a state that newer states of its bound sender overtook, if such states are accepted.
-PacketStatus Inbox::admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source,
+PacketStatus Inbox::admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source,
                                 std::int64_t now) const {
   const std::uint32_t id = packet.header.robot;
-  const PacketStatus status = clients.admit(id, kStateChannel, packet.header.sequence, source, now);
-  packet.late = take_late_ && status == PacketStatus::stale && clients.is_active(id, now);  // otherwise the sender has
-                                                                                            // left
+  const PacketStatus status = bindings.admit(id, kStateChannel, packet.header.sequence, source, now);
+  // An inactive sender has left.
+  packet.late = take_late_ && status == PacketStatus::stale && bindings.is_active(id, now);
   return packet.late ? PacketStatus::accepted : status;
 }
 

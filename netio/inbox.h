@@ -19,12 +19,12 @@
 #include <vector>
 
 #include "netio/address_token.h"
-#include "netio/client_registry.h"
 #include "netio/endpoint.h"
 #include "netio/packet_status.h"
 #include "netio/packets.h"
 #include "netio/peers.h"
 #include "netio/ports.h"
+#include "netio/sender_bindings.h"
 #include "netio/socket.h"
 
 namespace sf::netio {
@@ -148,15 +148,15 @@ class Inbox {
                           bool proven, std::int64_t now);
   void begin_period(std::int64_t now);
   PacketStatus admit(Packet& packet, const Endpoint& source, std::int64_t now);
-  PacketStatus admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source, std::int64_t now) const;
+  PacketStatus admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source, std::int64_t now) const;
   PacketStatus admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_light(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
-  ClientRegistry robots_;
-  ClientRegistry tags_;
-  ClientRegistry objects_;  ///< objects, bound by the id of their tag
-  ClientRegistry lights_;
+  SenderBindings robots_;
+  SenderBindings tags_;
+  SenderBindings objects_;  ///< objects, bound by the id of their tag
+  SenderBindings lights_;
   PeerTable peers_;
   std::vector<std::uint32_t> types_;           ///< per robot row: mask of its last SUBSCRIBE, 0 for all
   std::vector<std::uint32_t> sessions_;        ///< per robot row: of its last packet

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "base/error.h"
-#include "netio/client_registry.h"
+#include "netio/sender_bindings.h"
 
 namespace sf::netio {
 
 PartStatus ReadingAssembler::find_partial(const ReadingPart& piece, std::int64_t now, PartialReading*& partial) {
   SF_CHECK(piece.part < piece.parts, std::to_string(piece.part) + " of " + std::to_string(piece.parts) + " parts");
-  const bool silent = !last_ || now - *last_ >= kClientTimeout;
+  const bool silent = !last_ || now - *last_ >= kSenderTimeout;
   if (silent && base_ && !newer(piece.sequence, highest_)) restart();
   if (!silent && jumps(piece, now)) return PartStatus::jump;
   count(piece);

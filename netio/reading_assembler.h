@@ -43,7 +43,7 @@ enum class PartStatus : std::uint8_t {
 };
 
 /// The sender numbers readings 0, 1, 2, ...; the number may wrap. Drops a part more than kMaxDropout readings ahead of
-/// the newest, or kMaxTimeJump ahead of its expected time. After two seconds (kClientTimeout) without an accepted part,
+/// the newest, or kMaxTimeJump ahead of its expected time. After two seconds (kSenderTimeout) without an accepted part,
 /// accepts any part, because the sender may have restarted its count. Single-threaded; allocates nothing once
 /// kMaxPartial + 1 readings have been received.
 class ReadingAssembler {

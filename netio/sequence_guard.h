@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "netio/client_registry.h"
+#include "netio/sender_bindings.h"
 
 namespace sf::netio {
 

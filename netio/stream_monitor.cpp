@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "netio/farm_lock.h"
 #include "netio/sequence_guard.h"
 #include "netio/sequence_tracker.h"
-#include "netio/source_lock.h"
 
 namespace sf::netio {
 
@@ -71,7 +71,7 @@ struct StreamMonitor::Streams {
   /// Checks that a valid packet is from the selected farm and has a plausible sequence.
   PacketStatus check_source(Stream& stream, const Header& header, const Endpoint& source, std::int64_t now);
 
-  SourceLock farm;
+  FarmLock farm;
   PayloadInspector inspect;
   std::vector<Stream> rows;
   SequenceCounts before;  ///< of previously selected farms

@@ -6,7 +6,7 @@
 //   monitor.run(stop, 500);                                  // or drain(), between other work
 //   StreamSummary summary = monitor.summary();
 //
-// Accepts one farm at a time (netio/source_lock.h). Single-threaded, except that another thread may set `stop`.
+// Accepts one farm at a time (netio/farm_lock.h). Single-threaded, except that another thread may set `stop`.
 
 #include <atomic>
 #include <cstdint>

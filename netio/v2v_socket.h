@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "netio/address_token.h"
-#include "netio/client_registry.h"
 #include "netio/endpoint.h"
 #include "netio/outbox.h"
 #include "netio/packet_status.h"
 #include "netio/packets.h"
+#include "netio/sender_bindings.h"
 #include "netio/signature.h"
 #include "netio/socket.h"
 
@@ -104,8 +104,8 @@ class V2vSocket {
   V2vSocketOptions options_;
   Socket socket_;
   Outbox outbox_;
-  ClientRegistry others_;
-  ClientRegistry lights_;
+  SenderBindings others_;
+  SenderBindings lights_;
   std::uint32_t farm_session_ = 0;
   std::uint32_t token_ = 0;
   PacketCounts counts_;

@@ -6,7 +6,7 @@
 #include "base/random.h"
 #include "base/time.h"
 #include "farm/schedule.h"
-#include "netio/client_registry.h"
+#include "netio/sender_bindings.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
 

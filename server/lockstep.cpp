@@ -11,7 +11,7 @@ namespace sf::server {
 
 namespace {
 
-constexpr std::int64_t kRenewal = netio::kClientTimeout / 4;  ///< [ns] between renewals of a process's bindings
+constexpr std::int64_t kRenewal = netio::kSenderTimeout / 4;  ///< [ns] between renewals of a process's bindings
 constexpr std::size_t kMostNamed = 8;                         ///< robots listed in one message
 
 bool same_key(std::span<const netio::Peer> peers, std::uint32_t one, std::uint32_t other) {

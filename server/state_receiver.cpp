@@ -34,7 +34,7 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
       fleet_(world),
       filter_(world, options.filter),
       forget_(options.forget > 0.0
-                  ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kClientTimeout)
+                  ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kSenderTimeout)
                   : kNever),
       removed_(world.movers.size(), false),
       last_active_(world.movers.size(), kNever),

@@ -16,11 +16,11 @@
 #include "maps/map_text.h"
 #include "maps/merge.h"
 #include "netio/endpoint.h"
+#include "netio/farm_lock.h"
 #include "netio/packets.h"
 #include "netio/port_listener.h"
 #include "netio/reading_assembler.h"
 #include "netio/sequence_guard.h"
-#include "netio/source_lock.h"
 #include "sensors/occupancy.h"
 #include "viz/map_figure.h"
 
@@ -36,7 +36,7 @@ constexpr std::size_t kMapReceiveBuffer = 1u << 22;  ///< [byte] requested from 
 /// The map of one robot, received on one port.
 struct Source {
   std::uint16_t port = 0;
-  netio::SourceLock farm;
+  netio::FarmLock farm;
   std::uint64_t farms = 0;  ///< number of changes of the farm so far
   netio::SequenceGuard sequences{netio::ReadingAssembler::kMaxDropout};
   maps::MapAssembler assembler;

@@ -329,8 +329,8 @@ TEST_F(InboxTest, LightsMustProveTheirAddressObjectsNeedNot) {
   EXPECT_EQ(send_as(v2i_example(), 0), PacketStatus::unproven);
   EXPECT_FALSE(crossing.light_address(2, 0));
   EXPECT_EQ(send_as(v2i_example(), crossing.token(kSender)), PacketStatus::accepted);
-  EXPECT_EQ(crossing.light_address(2, kClientTimeout - 1), kSender);
-  EXPECT_FALSE(crossing.light_address(2, kClientTimeout)) << "silent";
+  EXPECT_EQ(crossing.light_address(2, kSenderTimeout - 1), kSender);
+  EXPECT_FALSE(crossing.light_address(2, kSenderTimeout)) << "silent";
   EXPECT_EQ(crossing.light_session_token(2).token, kSession);
   EXPECT_EQ(send_as(object_example(), 0), PacketStatus::accepted);
   EXPECT_EQ(send_as(object_example(), 0), PacketStatus::stale);

@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "netio/client_registry.h"
+#include "netio/sender_bindings.h"
 #include "tests/units.h"
 
 namespace sf::netio {

@@ -212,7 +212,7 @@ TEST(LightService, ALightReceivesTheRobotsNearIt) {
       light.receive(room.now);
     }
     EXPECT_GE(light.received, 3u);
-    room.now += netio::kClientTimeout;  // silent: it receives nothing any more
+    room.now += netio::kSenderTimeout;  // silent: it receives nothing any more
     robot.listen(room);
     const std::size_t before = light.received;
     light.receive(room.now);

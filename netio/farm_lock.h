@@ -4,17 +4,17 @@
 #include <cstdint>
 #include <optional>
 
-#include "netio/client_registry.h"
 #include "netio/endpoint.h"
+#include "netio/sender_bindings.h"
 
 namespace sf::netio {
 
-/// Selects the first sender of a valid packet until it is silent for two seconds (kClientTimeout), so that packets of
+/// Selects the first sender of a valid packet until it is silent for two seconds (kSenderTimeout), so that packets of
 /// two farms, or of a farm and a forger, are not mixed. Reads no clock.
-class SourceLock {
+class FarmLock {
  public:
   /// @param host the only accepted address; 0: any
-  explicit SourceLock(std::uint32_t host = 0) : host_(host) {}
+  explicit FarmLock(std::uint32_t host = 0) : host_(host) {}
 
   /// Returns false if packets from this address are never accepted.
   bool allows(const Endpoint& source) const { return host_ == 0 || source.address == host_; }
@@ -22,7 +22,7 @@ class SourceLock {
   /// @param session 0 for packets without a session
   bool admit(const Endpoint& source, std::uint32_t session, std::int64_t now) {
     const bool same = source_ == source && session_ == session;
-    if (!allows(source) || (last_ && now - *last_ < kClientTimeout && !same)) return false;
+    if (!allows(source) || (last_ && now - *last_ < kSenderTimeout && !same)) return false;
     changes_ += last_ && !same;
     source_ = source;
     session_ = session;

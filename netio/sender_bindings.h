@@ -11,8 +11,7 @@
 
 namespace sf::netio {
 
-inline constexpr std::int64_t kClientTimeout = 2'000'000'000;  ///< [ns] a sender is considered silent after this
-                                                               ///< duration
+inline constexpr std::int64_t kSenderTimeout = 2'000'000'000;  ///< [ns] of silence after which a binding ends
 
 /// Returns whether `sequence` is less than 2^31 ahead of `than`. The counter may wrap (serial number arithmetic, RFC
 /// 1982, section 3.2).
@@ -22,12 +21,12 @@ inline bool newer(std::uint32_t sequence, std::uint32_t than) { return static_ca
 /// packet whose sequence is not newer than the last one of its channel is stale: it is dropped and does not extend the
 /// binding. A sender that restarts its count is therefore accepted after two seconds. Each channel (one per packet
 /// type) has its own count.
-class ClientRegistry {
+class SenderBindings {
  public:
   static constexpr std::size_t kChannels = 2;
 
   /// @param ids known ids, in any order
-  explicit ClientRegistry(std::span<const std::uint32_t> ids);
+  explicit SenderBindings(std::span<const std::uint32_t> ids);
 
   /// Returns the row of `id` in ascending order of ids; nullopt for an unknown id.
   std::optional<std::size_t> row(std::uint32_t id) const;
@@ -56,7 +55,7 @@ class ClientRegistry {
     std::uint32_t sequence = 0;
     std::optional<std::int64_t> last;  ///< [ns] when its last packet was accepted
   };
-  struct Client {
+  struct Binding {
     std::uint32_t id = 0;
     Endpoint source;
     std::optional<std::int64_t> last;
@@ -64,7 +63,7 @@ class ClientRegistry {
     Endpoint departed;                        ///< the last sender that left
     std::optional<std::int64_t> departed_at;  ///< [ns] when it left
   };
-  std::vector<Client> clients_;  ///< sorted by id
+  std::vector<Binding> bindings_;  ///< sorted by id
 };
 
 }  // namespace sf::netio
