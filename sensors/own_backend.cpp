@@ -12,8 +12,8 @@
 #include "base/printable.h"
 #include "base/random.h"
 #include "sensors/own_kernel.h"
+#include "sensors/own_surroundings.h"
 #include "sensors/settings.h"
-#include "sensors/surroundings.h"
 
 namespace sf::sensors {
 
@@ -43,21 +43,21 @@ class PublicSensorSettings final : public sensorfarm::SensorSettings {
   const world::Sensor& sensor_;
 };
 
-/// View of the scene during one measurement.
+/// View of the surroundings during one measurement.
 class SensorSurroundings final : public sensorfarm::Surroundings {
  public:
-  SensorSurroundings(const Scene& scene, const base::RandomKey& key, bool noise)
-      : scene_(scene), key_(key), noise_(noise) {}
+  SensorSurroundings(const OwnSurroundings& surroundings, const base::RandomKey& key, bool noise)
+      : surroundings_(surroundings), key_(key), noise_(noise) {}
   sensorfarm::Hit cast(double x, double y, double z, double bearing, double range) const override {
-    return scene_.cast(key_.a, {x, y, z, bearing}, range);
+    return surroundings_.cast(key_.a, {x, y, z, bearing}, range);
   }
-  std::size_t robots() const override { return scene_.states().size(); }
+  std::size_t robots() const override { return surroundings_.states().size(); }
   sensorfarm::Pose pose(std::size_t row) const override {
-    const base::Pose& X = scene_.states()[row].X_WM;
+    const base::Pose& X = surroundings_.states()[row].X_WM;
     return {X.x, X.y, X.z, X.yaw};
   }
   sensorfarm::Twist velocity(std::size_t row) const override {
-    const base::Twist& twist = scene_.states()[row].velocity;
+    const base::Twist& twist = surroundings_.states()[row].velocity;
     return {twist.forward, twist.left, twist.turn};
   }
   std::array<double, 2> normal(std::uint32_t draw) const override {
@@ -65,7 +65,7 @@ class SensorSurroundings final : public sensorfarm::Surroundings {
   }
 
  private:
-  const Scene& scene_;
+  const OwnSurroundings& surroundings_;
   base::RandomKey key_;
   bool noise_;
 };
@@ -78,7 +78,7 @@ std::string own_sensor_name(const SensorSpec& spec, const OwnType& type) {
 class OwnSensors final : public SensorBackend {
  public:
   OwnSensors(const SensorContext& context, const OwnType& type)
-      : context_(context), type_(type), sensors_(own_sensors(context.world, type)), scene_(context) {
+      : context_(context), type_(type), sensors_(own_sensors(context.world, type)), surroundings_(context) {
     std::size_t most = 1;
     for (const OwnSensor& each : sensors_) {
       most = std::max<std::size_t>(most, each.spec.elements);
@@ -96,7 +96,7 @@ class OwnSensors final : public SensorBackend {
 
   void accumulate(std::int64_t now, bool) override { now_ = now; }
   void place_movers() override {
-    scene_.place_movers();
+    surroundings_.place_movers();
     if (kernel_) kernel_->place_movers();
   }
   bool prepare(std::span<const DueSample> due) override;
@@ -122,7 +122,7 @@ class OwnSensors final : public SensorBackend {
   const OwnType& type_;
   std::vector<OwnSensor> sensors_;
   std::vector<std::string> names_;  ///< of `sensors_`
-  Scene scene_;
+  OwnSurroundings surroundings_;
   std::unique_ptr<OwnKernel> kernel_;  ///< null: sensors are measured on the host only
   std::size_t stride_;                 ///< values of the longest reading
   std::vector<double> values_;         ///< per due sensor
@@ -157,7 +157,7 @@ void OwnSensors::measure(std::size_t i) {
     std::fill(values.begin(), values.end(), 0.0);
   const base::RandomKey key{context_.seed, base::RandomStream::own_sensors, own.spec.mover,
                             own.spec.sensor | std::uint32_t{type_.entry.id} << 24, due.sequence};
-  const SensorSurroundings around(scene_, key, context_.noise);
+  const SensorSurroundings around(surroundings_, key, context_.noise);
   const Pose& X = X_WS_[i];
   const double now = 1e-9 * static_cast<double>(now_);
   const base::PluginCall under_way(names_[due.row], now);

@@ -1,4 +1,4 @@
-#include "sensors/surroundings.h"
+#include "sensors/own_surroundings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ std::vector<world::Segment> seen_by_lasers(const world::World& world) {
 }  // namespace
 
 /// A ray and its first hit.
-struct Scene::Nearest {
+struct OwnSurroundings::Nearest {
   std::uint32_t self;
   base::Pose from;
   glm::dvec2 origin, direction;
@@ -35,14 +35,14 @@ struct Scene::Nearest {
   glm::dvec2 at(double t) const { return origin + t * direction; }
 };
 
-Scene::Scene(const raycast::SensorContext& context)
+OwnSurroundings::OwnSurroundings(const raycast::SensorContext& context)
     : world_(context.world), states_(context.states), walls_(seen_by_lasers(context.world)) {
   for (const world::Mover& mover : world_.movers) largest_ = std::max(largest_, mover.radius);
 }
 
-void Scene::place_movers() { grid_.build(states_, std::max(1.0, 2.0 * largest_)); }
+void OwnSurroundings::place_movers() { grid_.build(states_, std::max(1.0, 2.0 * largest_)); }
 
-void Scene::meet_walls(Nearest& nearest, double from, double to) const {
+void OwnSurroundings::meet_walls(Nearest& nearest, double from, double to) const {
   base::Box box = base::box_of(nearest.at(from), nearest.at(to));
   // Larger than the rounding errors of both ends.
   const double margin = 1e-6 + 1e-12 * (std::abs(nearest.origin.x) + std::abs(nearest.origin.y) + to);
@@ -53,7 +53,7 @@ void Scene::meet_walls(Nearest& nearest, double from, double to) const {
   });
 }
 
-void Scene::meet_movers(Nearest& nearest) const {
+void OwnSurroundings::meet_movers(Nearest& nearest) const {
   const double reach = nearest.best.range + largest_;
   grid_.any(nearest.origin, reach, [&](std::uint32_t row) {
     const world::Mover& mover = world_.movers[row];
@@ -67,7 +67,7 @@ void Scene::meet_movers(Nearest& nearest) const {
   });
 }
 
-sensorfarm::Hit Scene::cast(std::uint32_t self, const base::Pose& from, double range) const {
+sensorfarm::Hit OwnSurroundings::cast(std::uint32_t self, const base::Pose& from, double range) const {
   Nearest nearest{self, from, {from.x, from.y}, {std::cos(from.yaw), std::sin(from.yaw)}, {range}};
   const double piece = std::max(kPiece, range / kMostPieces);
   for (double t = 0.0; t < nearest.best.range; t += piece)

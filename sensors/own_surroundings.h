@@ -15,9 +15,9 @@
 namespace sf::sensors {
 
 /// Walls and robots of one tick. Queries may run on any thread, but not during `place_movers`.
-class Scene {
+class OwnSurroundings {
  public:
-  explicit Scene(const raycast::SensorContext& context);
+  explicit OwnSurroundings(const raycast::SensorContext& context);
 
   /// Indexes the robots at their poses.
   void place_movers();
