@@ -19,17 +19,17 @@ class MpiRanks final : public Ranks {
  public:
   /// @param owner true: finalizes MPI when it is destroyed; false: the program itself uses MPI and finalizes it
   explicit MpiRanks(bool owner) : owner_(owner) {
-    int rank = 0, size = 1, beside = 1;
+    int rank = 0, size = 1, local_size = 1;
     MPI_Comm_dup(MPI_COMM_WORLD, &all_ranks_);  // separate from messages of such a program
     MPI_Comm_rank(all_ranks_, &rank);
     MPI_Comm_size(all_ranks_, &size);
     MPI_Comm machine = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-    MPI_Comm_size(machine, &beside);
+    MPI_Comm_size(machine, &local_size);
     MPI_Comm_free(&machine);
     rank_ = static_cast<unsigned>(rank);
     size_ = static_cast<unsigned>(size);
-    beside_ = static_cast<unsigned>(beside);
+    local_size_ = static_cast<unsigned>(local_size);
     for (auto* sizes : {&sizes_, &starts_, &sent_sizes_, &sent_starts_, &got_sizes_, &got_starts_})
       sizes->resize(size_);
     blocks_.resize(size_);
@@ -43,7 +43,7 @@ class MpiRanks final : public Ranks {
 
   unsigned rank() const override { return rank_; }
   unsigned size() const override { return size_; }
-  unsigned beside() const override { return beside_; }
+  unsigned local_size() const override { return local_size_; }
 
   void begin(Block block) override {
     const auto start = Clock::now();
@@ -100,7 +100,7 @@ class MpiRanks final : public Ranks {
 
   bool owner_;
   MPI_Comm all_ranks_ = MPI_COMM_NULL;
-  unsigned rank_ = 0, size_ = 1, beside_ = 1;
+  unsigned rank_ = 0, size_ = 1, local_size_ = 1;
   Block block_;
   int own_size_ = 0;                 ///< [byte] of `block_`
   std::vector<int> sizes_, starts_;  ///< [byte] per rank

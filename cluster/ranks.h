@@ -30,9 +30,9 @@ struct ExchangeCounts {
 class Ranks {
  public:
   virtual ~Ranks() = default;
-  virtual unsigned rank() const = 0;    ///< in [0, size())
-  virtual unsigned size() const = 0;    ///< at least 1
-  virtual unsigned beside() const = 0;  ///< number of ranks on this machine, including this one
+  virtual unsigned rank() const = 0;        ///< in [0, size())
+  virtual unsigned size() const = 0;        ///< at least 1
+  virtual unsigned local_size() const = 0;  ///< number of ranks on this machine, including this one
   /// Starts an exchange. @param block at most 2 GiB together with those of all ranks; unchanged until after `finish`
   virtual void begin(Block block) = 0;
   /// Ends the exchange. @return one block per rank, valid until the next `begin`

@@ -23,7 +23,7 @@ std::vector<std::uint32_t> equal_shares(std::span<const double> costs, unsigned 
 
 unsigned threads_of(unsigned wanted, const Ranks* ranks) {
   if (ranks == nullptr || wanted > 0) return wanted;
-  return std::max(1u, std::thread::hardware_concurrency() / ranks->beside());
+  return std::max(1u, std::thread::hardware_concurrency() / ranks->local_size());
 }
 
 }  // namespace sf::cluster

@@ -240,7 +240,7 @@ class Verifier {
     const auto at = readings_.find({reading.type, reading.mover, reading.sensor, reading.sequence});
     if (at == readings_.end()) {
       if (is_scan && !recorded_)
-        ask(reading, told_scan(reading.mover, reading.sensor, reading.values, reading.quality));
+        ask(reading, message_ranges(reading.mover, reading.sensor, reading.values, reading.quality));
       return;
     }
     const std::vector<double>& theirs = recording_.readings[at->second].values;
@@ -255,9 +255,10 @@ class Verifier {
       return;
     }
     if (!is_scan)
-      return compare(told_values(reading.values, reading.quality), theirs, place_of(reading), compared(reading.type));
-    const std::vector<double> told = told_scan(reading.mover, reading.sensor, reading.values, reading.quality);
-    compare(told, settled(laser_of(reading.mover, reading.sensor), theirs), place_of(reading), compared(reading.type));
+      return compare(message_values(reading.values, reading.quality), theirs, place_of(reading),
+                     compared(reading.type));
+    const std::vector<double> ours = message_ranges(reading.mover, reading.sensor, reading.values, reading.quality);
+    compare(ours, settled(laser_of(reading.mover, reading.sensor), theirs), place_of(reading), compared(reading.type));
     ask(reading, theirs);
   }
 
@@ -282,7 +283,7 @@ class Verifier {
 
   /// Returns values as they appear in messages.
   /// @param flags of the reading's elements; empty: none
-  std::vector<double> told_values(std::span<const double> values, std::span<const base::QualityFlag> flags) const {
+  std::vector<double> message_values(std::span<const double> values, std::span<const base::QualityFlag> flags) const {
     std::vector<double> all(values.begin(), values.end());
     if (marks_too_near_) base::mark_too_near(flags, all);
     return all;
@@ -306,10 +307,10 @@ class Verifier {
   }
 
   /// Returns ranges as they appear in recorded scans.
-  std::vector<double> told_scan(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
-                                std::span<const base::QualityFlag> flags) const {
+  std::vector<double> message_ranges(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
+                                     std::span<const base::QualityFlag> flags) const {
     const sensors::SensorSpec& laser = laser_of(mover, sensor);
-    std::vector<double> all = told_values(ranges, flags);
+    std::vector<double> all = message_values(ranges, flags);
     for (double& range : all) range = base::rep117_range(range, limits_of(laser));
     return settled(laser, std::move(all));
   }
@@ -345,7 +346,7 @@ class Verifier {
   std::vector<double> cast_in_plain_cpp(const Asked& asked) const {
     const auto cast = [&](double slack) {
       const auto scan = reference_.scan(asked.mover, asked.sensor, asked.sequence, slack);
-      return told_scan(asked.mover, asked.sensor, scan.ranges, scan.quality);
+      return message_ranges(asked.mover, asked.sensor, scan.ranges, scan.quality);
     };
     std::vector<double> ours = cast(0.0);
     const auto agree = [](double a, double b) { return (a == -HUGE_VAL) == (b == -HUGE_VAL); };

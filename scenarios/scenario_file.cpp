@@ -166,9 +166,9 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
     RobotSetup setup{.name = reader.text(node, "name", ""), .line = node.line};
     if (setup.name.empty())
       reader.fail(node, "a robot without a name; expected name = \"...\" of a robot of the world");
-    const bool told = std::any_of(node.items.begin(), node.items.end(),
-                                  [](const TomlNode& item) { return item.key != "name" && item.key != "pose"; });
-    if (told)
+    const bool sets_actor = std::any_of(node.items.begin(), node.items.end(),
+                                        [](const TomlNode& item) { return item.key != "name" && item.key != "pose"; });
+    if (sets_actor)
       setup.actor = Actor{controller_config_of(reader, node, scenario.actor.controller),
                           link_of(reader, reader.table(node, "link"), scenario.actor.link)};
     if (const TomlNode* pose = world::find(node, "pose")) setup.pose = pose_of(reader, *pose);

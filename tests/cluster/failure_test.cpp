@@ -19,7 +19,7 @@ class SecondOfThree final : public Ranks {
   SecondOfThree(base::Bytes first, base::Bytes third) : first_(std::move(first)), third_(std::move(third)) {}
   unsigned rank() const override { return 1; }
   unsigned size() const override { return 3; }
-  unsigned beside() const override { return 3; }
+  unsigned local_size() const override { return 3; }
   void begin(Block block) override { own_.assign(block.begin(), block.end()); }
   std::span<const Block> finish() override {
     blocks_ = {first_, own_, third_};

@@ -31,7 +31,7 @@ class ThreadRanks {
     One(ThreadRanks& all, unsigned rank) : all_(all), rank_(rank), copies_(all.blocks_.size()), got_(copies_.size()) {}
     unsigned rank() const override { return rank_; }
     unsigned size() const override { return static_cast<unsigned>(copies_.size()); }
-    unsigned beside() const override { return size(); }
+    unsigned local_size() const override { return size(); }
     void begin(Block block) override { block_ = block; }
     std::span<const Block> finish() override {
       all_.blocks_[rank_] = block_;
