@@ -42,6 +42,12 @@ inline Pose compose(const Pose& X_AB, const Pose& X_BC) {
   return {X_AB.x + p.x, X_AB.y + p.y, X_AB.z + X_BC.z, X_AB.yaw + X_BC.yaw};
 }
 
+/// Returns X_BA from X_AB.
+inline Pose inverse(const Pose& X_AB) {
+  const glm::dvec2 p = rotate(-X_AB.yaw, {-X_AB.x, -X_AB.y});
+  return {p.x, p.y, -X_AB.z, -X_AB.yaw};
+}
+
 /// Returns point `p_B` expressed in A.
 inline glm::dvec2 transform(const Pose& X_AB, glm::dvec2 p_B) {
   return glm::dvec2{X_AB.x, X_AB.y} + rotate(X_AB.yaw, p_B);

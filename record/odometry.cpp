@@ -9,11 +9,6 @@ namespace sf::record {
 
 namespace {
 
-base::Pose inverse(const base::Pose& X_AB) {
-  const glm::dvec2 p = base::rotate(-X_AB.yaw, {-X_AB.x, -X_AB.y});
-  return {p.x, p.y, -X_AB.z, -X_AB.yaw};
-}
-
 /// Returns the covariance of the state's error along the axes of a frame whose yaw in the world is `yaw`.
 std::array<double, 6> turned(const std::array<float, 6>& P, double yaw) {
   const double c = std::cos(yaw), s = std::sin(yaw);
@@ -57,9 +52,9 @@ void Odometer::move(std::int64_t time, const base::Pose& X_WM, const base::Twist
     const base::Pose before = base::compose(state_.X_WO, state_.X_OM);
     const double seconds = 1e-9 * static_cast<double>(time - state_.time);
     if (state_.time < 0 || std::exchange(away_, false) || !base::is_drivable(before, X_WM, max_forward_, seconds))
-      state_.X_WO = base::compose(X_WM, inverse(state_.X_OM));
+      state_.X_WO = base::compose(X_WM, base::inverse(state_.X_OM));
   }
-  state_.X_OM = base::compose(inverse(state_.X_WO), X_WM);
+  state_.X_OM = base::compose(base::inverse(state_.X_WO), X_WM);
   state_.time = time;
   state_.velocity = velocity;
   state_.covariance = truth_ ? OdometryCovariance{} : kExact;
@@ -80,7 +75,7 @@ bool Odometer::roll(const base::ReadingBlock& encoder) {
   const glm::dvec2 step = base::rotate(middle, {chord, 0.0});
   base::Pose& X_OM = state_.X_OM;
   X_OM = {X_OM.x + step.x, X_OM.y + step.y, 0.0, base::wrap_angle(X_OM.yaw + turn)};
-  state_.X_WO = base::compose(encoder.X_WM, inverse(X_OM));
+  state_.X_WO = base::compose(encoder.X_WM, base::inverse(X_OM));
   state_.time = encoder.time;
   state_.velocity = seconds > 0.0 ? base::Twist{way / seconds, 0.0, turn / seconds} : base::Twist{};
   state_covariance(left, right, seconds);

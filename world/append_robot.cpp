@@ -19,11 +19,6 @@ namespace sf::world {
 
 namespace {
 
-Pose inverse(const Pose& X) {
-  const glm::dvec2 p = base::rotate(-X.yaw, {-X.x, -X.y});
-  return {p.x, p.y, -X.z, -X.yaw};
-}
-
 /// Appends the models of `original`, renamed and moved with it.
 /// @param from may be `world`
 /// @return new rows by old row

@@ -14,16 +14,11 @@ constexpr double kGain = 1.5;          // [1/s] speed per distance, and turn rat
 constexpr double kReached = 0.01;      // [m]
 constexpr double kAhead = M_PI / 4.0;  // [rad] drives forward if the goal is within this bearing
 
-base::Pose inverse(const base::Pose& X_AB) {
-  const glm::dvec2 p = base::rotate(-X_AB.yaw, {-X_AB.x, -X_AB.y});
-  return {p.x, p.y, -X_AB.z, -X_AB.yaw};
-}
-
 }  // namespace
 
 void Odometry::move(const base::Pose& X_WM) {
   X_WM_ = X_WM;
-  if (!X_OW_) X_OW_ = inverse(X_WM);
+  if (!X_OW_) X_OW_ = base::inverse(X_WM);
 }
 
 void Odometry::roll(const base::ReadingBlock& encoder) {
@@ -34,7 +29,7 @@ void Odometry::roll(const base::ReadingBlock& encoder) {
 
 void Odometry::set(const base::Pose& X_OM) {
   X_OM_ = X_OM;
-  if (X_OW_) X_OW_ = base::compose(X_OM, inverse(X_WM_));
+  if (X_OW_) X_OW_ = base::compose(X_OM, base::inverse(X_WM_));
 }
 
 base::Pose Odometry::pose() const {

@@ -31,6 +31,16 @@ TEST(Pose, ComposeTransformsTheOrigin) {
   EXPECT_NEAR(once.y, twice.y, 1e-14);
 }
 
+TEST(Pose, InverseUndoesTheTransformation) {
+  const Pose X_AB{-3, 0.5, 2, 0.7};
+  const glm::dvec2 p_B{2, -5};
+  const glm::dvec2 back = transform(inverse(X_AB), transform(X_AB, p_B));
+  EXPECT_NEAR(back.x, p_B.x, 1e-14);
+  EXPECT_NEAR(back.y, p_B.y, 1e-14);
+  EXPECT_EQ(compose(inverse(X_AB), X_AB).z, 0.0);
+  EXPECT_EQ(compose(inverse(X_AB), X_AB).yaw, 0.0);
+}
+
 TEST(Pose, HeadingsWrapToPlusMinusPi) {
   EXPECT_EQ(wrap_angle(0.0), 0.0);
   EXPECT_NEAR(wrap_angle(2.0 * M_PI + 0.25), 0.25, 1e-15);
