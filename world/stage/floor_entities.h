@@ -1,6 +1,5 @@
 #pragma once
-// Model properties for a robot's infrared receivers and cliff sensors: infrared emitters (`ir_emitter`) and holes in
-// the floor (`cliff_return 1`).
+// Model property of holes in the floor for robots' cliff sensors: `cliff_return 1`.
 
 #include <vector>
 
@@ -17,9 +16,5 @@ bool is_floor_hole(const StageContext& context, const Entity& entity);
 /// @throws base::InputError for a hole on a mover, a bitmap, or a self-crossing outline
 void add_floor_holes(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
                      const Pose& X_B);
-
-/// Adds an emitter if `entity` has one. `model` becomes the next row of the models.
-/// @throws base::InputError for an unknown kind, lengths or angles out of range, or an emitter on a mover
-void add_emitter(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B);
 
 }  // namespace sf::world

@@ -7,6 +7,7 @@
 #include "base/suggest.h"
 #include "world/keys.h"
 #include "world/stage/attached_devices.h"
+#include "world/stage/emitter_entities.h"
 #include "world/stage/entity_color.h"
 #include "world/stage/floor_entities.h"
 #include "world/stage/light_entities.h"

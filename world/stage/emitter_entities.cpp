@@ -1,0 +1,34 @@
+#include "world/stage/emitter_entities.h"
+
+#include "world/stage/read_keys.h"
+#include "world/stage/unit_hints.h"
+
+namespace sf::world {
+
+namespace {
+
+// The beam of a virtual wall reaches 2.4 m (8 feet, from the accessory's specification) and its halo 0.45 m (18
+// inches). The width of the beam and all three values of the dock are assumptions.
+constexpr Emitter kVirtualWall{.range = 2.4, .fov = 0.4, .halo = 0.45};  // [m], [rad], [m]
+constexpr Emitter kDock{.range = 1.8, .fov = 0.7, .halo = 0.6};
+
+}  // namespace
+
+void add_emitter(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {
+  const StageContext& context = b.context;
+  const Property* property = find(entity, "ir_emitter");
+  if (property == nullptr) return;
+  if (model.mover != kNone)
+    fail(context, property->at, "an infrared emitter cannot move; expected it outside moving models");
+  for (const char* key : {"ir_fov", "ir_range"})
+    if (const Property* said = find(entity, key); said != nullptr) warn_of_units(b, *said, property->key);
+  Emitter emitter = kVirtualWall;
+  read_keys(context, entity, emitter);
+  if (emitter.kind == Emitter::Kind::dock) read_keys(context, entity, emitter = kDock);
+  emitter.model = static_cast<std::uint32_t>(b.world.models.size());
+  emitter.X_WE = X_B;
+  emitter.X_WE.z += 0.5 * size.z;
+  b.world.emitters.push_back(emitter);
+}
+
+}  // namespace sf::world
