@@ -1,5 +1,5 @@
 #pragma once
-// Runs scenarios and evaluates their expectations.
+// Runs scenarios and judges their expectations.
 
 #include <cstdint>
 #include <functional>
@@ -8,24 +8,10 @@
 
 #include "cluster/ranks.h"
 #include "gpu/device.h"
+#include "scenarios/expectations.h"
 #include "scenarios/scenario.h"
 
 namespace sf::scenarios {
-
-/// An expectation and its measured value.
-struct ExpectationResult {
-  std::string what;      ///< "mean_abs_error of roomba0"
-  std::string expected;  ///< "<= 0.05"
-  std::string measured;  ///< "0.0412"
-  bool met = false;
-  int line = 0;  ///< in the scenario's file
-};
-
-/// A measure of a run over all robots: the sum, or the value of the worst robot, as in [expect] (docs/scenarios.md).
-struct Metric {
-  std::string name;    ///< key of the expectation, or "KEY of ROBOT"
-  double value = 0.0;  ///< in the expectation's unit; NaN if there was nothing to measure
-};
 
 /// A scenario without expectations neither passes nor fails.
 enum class ScenarioStatus : std::uint8_t { passed, failed, no_expectations };
