@@ -1,5 +1,6 @@
 #pragma once
-// Groups of options shared by several subcommands.
+// Groups of options shared by several subcommands. Options of a single subcommand are in subcommands_*.cpp: those of
+// `serve` for received states, for example, in `add_filter` of subcommands_run.cpp.
 
 #include <functional>
 #include <memory>

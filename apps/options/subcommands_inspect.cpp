@@ -1,9 +1,6 @@
-// Subcommands that inspect worlds, devices and recordings.
+// Subcommands that inspect worlds, devices and V2X messages.
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
-
-#include <filesystem>
 
 #include "apps/commands/commands.h"
 #include "apps/options/option_groups.h"
@@ -102,62 +99,6 @@ void add_sense(CLI::App& app, Call& call) {
       ->capture_default_str();
 }
 
-void add_plot(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "plot",
-      "Plot trajectories, an occupancy map, readings and traffic lights of a recorded run, or the metrics of a sweep");
-  auto& o = add_command(*sub, call, plot, [sub] {
-    if (sub->count("--video") == 0) return;
-    for (const std::string option :
-         {"--format", "--csv", "--size", "--dpi", "--no-title", "--extent", "--font-size", "--line-styles",
-          "--map-colors", "--label", "--elements", "--curves", "--over", "--x-axis"})
-      if (sub->count(option) > 0)
-        throw CLI::ValidationError(option, "changes figures, but --video writes none; leave out one of the two");
-    if (sub->count("--out") == 0) return;
-    const std::filesystem::path folder = sub->get_option("--out")->as<std::string>();
-    const std::filesystem::path file = sub->get_option("--video")->as<std::string>();
-    throw CLI::ValidationError("--out",
-                               fmt::format("is the folder of figures, but --video writes none; write --video {}",
-                                           (folder / file.filename()).string()));
-  });
-  add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 88 --no-title --robots robot1,robot2",
-                      "out/sweep --format pdf --size 88"});
-  add_recording(*sub, o);
-  sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
-      ->check(not_empty("a folder"))
-      ->type_name("DIR");
-  add_format(*sub, o.format);
-  sub->add_flag("--csv", o.csv, "Also write every plotted curve as a CSV file next to its figure")->group("Picture");
-  add_page(*sub, o);
-  add_line_styles(*sub, o);
-  add_map_colors(*sub, o);
-  add_extent(*sub, o);
-  add_robot_names(*sub, "--label", o.labels,
-                  "Robots to label and colour in the plot of trajectories, or all (default: up to ten)");
-  auto* elements = sub->add_option("--elements", o.elements,
-                                   "Sensor elements to plot as curves (default: all; more than seven as a heat map)")
-                       ->delimiter(',')
-                       ->allow_extra_args(false)
-                       ->check(whole(0, UINT32_MAX))
-                       ->type_name("N,...");
-  sub->add_flag("--curves", o.curves, "Plot the readings of many elements as curves instead of heat maps")
-      ->excludes(elements);
-  constexpr const char* kSweeps = "Sweeps (docs/sweeps.md)";
-  sub->add_option("--over", o.over, "Parameter on the x axis (default: the first with different numeric values)")
-      ->check(not_empty("the name of a parameter"))
-      ->type_name("PARAMETER")
-      ->group(kSweeps);
-  using viz::AxisScale;
-  add_choice<AxisScale, AxisScale>(
-      *sub, "--x-axis", o.x_axis,
-      {{"auto", AxisScale::automatic}, {"linear", AxisScale::linear}, {"log", AxisScale::logarithmic}},
-      "Scale of the x axis: auto selects log if successive values have about equal ratios (default: auto)")
-      ->group(kSweeps);
-  add_video(*sub, o, "Video to write instead of pictures (VP9 in WebM, encoded by FFmpeg)");
-  add_part(*sub, o);
-  add_device(*sub, o);
-}
-
 void add_v2x(CLI::App& app, Call& call) {
   using Action = V2xOptions::Action;
   CLI::App* sub = app.add_subcommand("v2x",
@@ -219,7 +160,6 @@ void add_inspect_commands(CLI::App& app, Call& call) {
   add_draw(app, call);
   add_field(app, call);
   add_sense(app, call);
-  add_plot(app, call);
   add_explain(app, call);
   add_v2x(app, call);
 }
