@@ -11,7 +11,8 @@ const load = (name) => import(pathToFileURL(path.join(folder, name)));
 const { contrast, distinct, headingOn, luminance, moverColors, onPaper, palettes, theme, useTheme } = await load('theme.js');
 const { Fleet } = await load('fleet.js');
 const { HeldReadings } = await load('held.js');
-const { keyName } = await load('keys.js');
+const { keyDown, pressed } = await load('input.js');
+const { keyName } = await load('key_name.js');
 const near = (found, expected, within, what) => assert.ok(Math.abs(found - expected) <= within, `${what}: ${found}, not ${expected}`);
 
 // The contrast formula, with the examples of WCAG: black on white, and the lightest grey that is valid for text on
@@ -63,6 +64,17 @@ assert.deepEqual(moverColors(robots(['#111111', '#111111', '#111111']), false), 
 // Keys: caps lock alone, Shift alone, both.
 for (const [key, shiftKey, name] of [['n', false, 'n'], ['N', false, 'n'], ['N', true, 'n'], ['n', true, 'n'], ['R', true, 'Shift r'], ['r', true, 'Shift r'], ['R', false, 'r'], ['r', false, 'r'], ['?', true, '?'], ['+', true, '+'], ['1', false, '1'], [' ', false, ' '], ['Escape', true, 'Escape'], ['ArrowUp', false, 'ArrowUp'], ['[', false, '[']])
   assert.equal(keyName({ key, shiftKey }), name, `${key} ${shiftKey}`);
+
+// Keys call actions of the page, unless they belong to the browser or to a text field. Arrows pan, or drive.
+function actionOf(key, { typing = false, driving = false, ...more } = {}) {
+  let called = '';
+  const page = new Proxy({ driving }, { get: (known, name) => name in known ? known[name] : (...values) => { called = `${name} ${values}`; } });
+  keyDown({ key, shiftKey: false, target: { matches: () => typing, blur: () => { called = 'blur'; } }, getModifierState: () => false, preventDefault: () => {}, ...more }, page);
+  return called;
+}
+for (const [key, more, action] of [['n', {}, 'step '], ['F', {}, 'toggleFollowing '], ['4', {}, 'setFastest '], ['r', {}, ''], ['n', { ctrlKey: true }, ''], ['n', { typing: true }, ''], ['Escape', { typing: true }, 'blur'], ['ArrowLeft', {}, 'pan 60,0'], ['ArrowUp', { driving: true }, '']])
+  assert.equal(actionOf(key, more), action, `${key} ${JSON.stringify(more)}`);
+assert.deepEqual([...pressed], ['ArrowUp']);
 
 // A robot on an arc, with its forward beam to a wall at x = 5: the echo is drawn there regardless of the order of
 // updates.

@@ -5,7 +5,7 @@ import { twistBytes } from './cdr.js';
 import { Drawing, drawSignal } from './draw.js';
 import { Fleet } from './fleet.js';
 import { HeldReadings } from './held.js';
-import { keyName } from './keys.js';
+import { keyHelp, listenToKeys, listenToPointer, pressed } from './input.js';
 import { Panel } from './panel.js';
 import { Connection } from './protocol.js';
 import { StaticLayer, loadScene } from './scene.js';
@@ -19,7 +19,6 @@ const seconds = () => performance.now() / 1000;
 let scene, camera, fleet, drawing, panel, connection;
 let paused = false, speed = 1, following = false, driving = false, sliding = false, dirty = true, time = 0;
 let runs = null, range = [0, 0];
-const pressed = new Set();
 const readings = new HeldReadings();
 
 function notice(text, lasts = 6) {
@@ -272,9 +271,8 @@ function fillPopups() {
     label.append(box, text);
     return label;
   }));
-  const keys = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow the robot'], ['D', 'drive the robot'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'recording: one second back, forward'], ['Esc', 'close, stop driving, clear the selection']];
   const table = document.createElement('table');
-  for (const [key, text] of keys) {
+  for (const [key, text] of keyHelp) {
     const row = table.insertRow();
     row.insertCell().append(Object.assign(document.createElement('kbd'), { textContent: key }));
     row.insertCell().textContent = text;
@@ -290,96 +288,41 @@ function escape() {
   else select(-1);
 }
 
-// Letters as without caps lock.
-const keys = {
-  ' ': () => setPaused(!paused), n: step, 'Shift r': reset, t: toggleTheme, f: () => setFollowing(!following), d: toggleDriving,
-  '+': () => zoom(1.25), '=': () => zoom(1.25), '-': () => zoom(0.8), '0': fitAll, Home: fitAll,
-  '[': () => nextRobot(-1), ']': () => nextRobot(1), l: () => openPopup('layers'), '?': () => openPopup('help'),
-  '/': () => $('search').focus(), Escape: escape, ',': () => isRecording() && seek(time - 1), '.': () => isRecording() && seek(time + 1),
-  '1': () => setSpeed(0.25), '2': () => setSpeed(1), '3': () => setSpeed(4), '4': () => !isRecording() && setSpeed(0),
-};
-const pans = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+function search() { $('search').focus(); }
+function seekBy(by) { if (isRecording()) seek(time + by); }
+function setFastest() { if (!isRecording()) setSpeed(0); }
+function togglePaused() { setPaused(!paused); }
+function toggleFollowing() { setFollowing(!following); }
 
 function zoom(factor, x, y) {
   camera.zoom(factor, following ? undefined : x, following ? undefined : y);
   dirty = true;
 }
 
-function keyDown(event) {
-  const typing = event.target.matches('input[type=search], select, #slider');
-  const forSigns = event.getModifierState('AltGraph');  // some layouts need AltGr for brackets, which counts as Ctrl+Alt
-  if (!forSigns && (event.ctrlKey || event.metaKey || event.altKey)) return;
-  if (typing && event.key === 'Escape') return event.target.blur();
-  if (typing || (event.key === ' ' && event.target.matches('button, input'))) return;
-  if (driving && event.key in pans) { pressed.add(event.key); event.preventDefault(); return; }
-  if (event.key in pans) {
-    setFollowing(false);
-    camera.pan(60 * pans[event.key][0], 60 * pans[event.key][1]);
-    dirty = true;
-  } else if (keys[keyName(event)]) {
-    keys[keyName(event)]();
-  } else {
-    return;
-  }
-  event.preventDefault();
+function pan(dx, dy) {
+  setFollowing(false);
+  camera.pan(dx, dy);
+  dirty = true;
 }
 
-function listenToPointer(canvas) {
-  let from = null, moved = false, pinch = 0;
-  const fingers = new Map();
-  canvas.onpointerdown = (event) => {
-    canvas.focus({ preventScroll: true });
-    canvas.setPointerCapture(event.pointerId);
-    fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
-    from = [event.offsetX, event.offsetY];
-    moved = fingers.size > 1;
-    openPopup('', false);
-  };
-  canvas.onpointermove = (event) => {
-    if (!fingers.has(event.pointerId)) return;
-    fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
-    if (fingers.size === 2) {
-      const [a, b] = [...fingers.values()], apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
-      const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-      if (pinch > 0) {
-        zoom(apart / pinch, ...middle);
-        if (!following) camera.pan(middle[0] - from[0], middle[1] - from[1]);
-      }
-      pinch = apart;
-      from = middle;
-      moved = true;
-      return;
-    }
-    const dx = event.offsetX - from[0], dy = event.offsetY - from[1];
-    if (!moved && Math.hypot(dx, dy) < 4) return;
-    moved = true;
-    setFollowing(false);
-    camera.pan(dx, dy);
-    from = [event.offsetX, event.offsetY];
-    dirty = true;
-  };
-  canvas.onpointerup = canvas.onpointercancel = (event) => {
-    fingers.delete(event.pointerId);
-    pinch = 0;
-    if (fingers.size > 0) { [from] = fingers.values(); return; }  // the other finger continues from its position
-    if (moved || event.type === 'pointercancel') return;
-    const [x, y] = camera.toWorld(event.offsetX, event.offsetY);
-    select(fleet.pick(x, y, 10 / camera.scale));
-  };
-  canvas.addEventListener('wheel', (event) => {
-    event.preventDefault();
-    zoom(Math.exp(-Math.max(-300, Math.min(300, event.deltaY)) * 0.0016), event.offsetX, event.offsetY);
-  }, { passive: false });
-  canvas.ondblclick = (event) => zoom(1.8, event.offsetX, event.offsetY);
+function selectAt(px, py) {
+  const [x, y] = camera.toWorld(px, py);
+  select(fleet.pick(x, y, 10 / camera.scale));
 }
+
+/** The effects of keys and pointer (input.js). */
+const actions = {
+  get driving() { return driving; }, get following() { return following; },
+  escape, fitAll, nextRobot, openPopup, pan, reset, search, seekBy, selectAt, setFastest, setSpeed, step, toggleDriving, toggleFollowing, togglePaused, toggleTheme, zoom,
+};
 
 function listen() {
-  $('pause').onclick = () => setPaused(!paused);
+  $('pause').onclick = togglePaused;
   $('step').onclick = step;
   $('reset').onclick = reset;
   $('speed').onchange = () => setSpeed(Number($('speed').value));
   $('fit').onclick = fitAll;
-  $('follow').onclick = () => setFollowing(!following);
+  $('follow').onclick = toggleFollowing;
   $('layers').onclick = () => openPopup('layers');
   $('help').onclick = () => openPopup('help');
   $('theme').onclick = toggleTheme;
@@ -389,10 +332,8 @@ function listen() {
   $('zoom-out').onclick = () => zoom(1 / 1.4);
   $('slider').oninput = () => { sliding = true; $('at').textContent = clockText(Number($('slider').value)); seek(Number($('slider').value)); };
   $('slider').onchange = () => { sliding = false; };
-  document.addEventListener('keydown', keyDown);
-  document.addEventListener('keyup', (event) => pressed.delete(event.key));
-  window.addEventListener('blur', () => pressed.clear());
-  listenToPointer($('view'));
+  listenToKeys(actions);
+  listenToPointer($('view'), actions);
   new ResizeObserver(() => { drawing.resize(); dirty = true; }).observe($('view'));
 }
 
