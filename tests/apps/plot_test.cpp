@@ -97,7 +97,7 @@ TEST_F(PaperFigures, ElevenRobotsHaveTheRequestedLabels) {
   EXPECT_FALSE(contains(some, ">other4<"));
   const std::string all = figure("trajectories", {"--label", "all"});
   EXPECT_TRUE(contains(all, ">other3<") && contains(all, ">other4<"));
-  EXPECT_TRUE(contains(refusal({"--label", "missing"}), "--label: no robot 'missing' is drawn; there is one, other2"));
+  EXPECT_TRUE(contains(refusal({"--label", "missing"}), "--label: no robot 'missing' is drawn; drawn are one, other2"));
   EXPECT_TRUE(contains(figure("trajectories", {"--robots", "one,other3"}), ">other3<")) << "up to ten are named";
 }
 

@@ -99,7 +99,9 @@ TEST(Warnings, ControllersOfTheWorldFileTakePrecedence) {
       "position( name \"roomba2\" pose [2 0 0 0] size [0.3 0.3 0.1] ctrl \"fasr\" laser( ) )\n";
   const std::string world = folder.write("two.world", robots);
   const Outcome outcome = run_successfully({"run", world, "--duration", "0.5", "--controller", "explore", "--json"});
-  expect_in("1 robot is driven as the world file says (ctrl); --drive NAME drives a robot by 'explore'", outcome.err);
+  expect_in(
+      "1 robot is driven by the controller in the world file (ctrl); use --drive NAME to drive a robot by 'explore'",
+      outcome.err);
   const Json facts(outcome.out);
   ASSERT_EQ(facts.size("/warnings"), 1u);
   EXPECT_EQ(facts.number("/warnings/0/line"), 2);

@@ -349,7 +349,7 @@ class Faults(unittest.TestCase):
                 (sensorfarm.Error, "given.world:2: ", lambda: sensorfarm.Simulation.from_text('name "x"\nlaser(\n')),
                 (sensorfarm.Error, "mine.world:1: ", lambda: sensorfarm.Simulation.from_text("laser(", name="mine.world")),
                 (sensorfarm.Error, "nowhere.world: no such file", lambda: sensorfarm.Simulation("nowhere.world")),
-                (sensorfarm.Error, "did you mean 'laser'? Expected one of: ", lambda: sim.readings("lazer")),
+                (sensorfarm.Error, "did you mean 'laser'\\? Expected one of: ", lambda: sim.readings("lazer")),
                 (sensorfarm.Error, "no hits", lambda: sim.hits("gps")),
                 (sensorfarm.Error, "there is no caster 'gpu'", lambda: room(caster="gpu")),
                 (sensorfarm.Error, "there is no controller", lambda: room(controller="unknown")),
