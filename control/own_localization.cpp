@@ -13,6 +13,9 @@ namespace sf::control {
 
 namespace {
 
+/// Covariance of a known start: 0.05 m and 0.02 rad.
+constexpr std::array<double, 6> kKnownStart{2.5e-3, 0.0, 0.0, 2.5e-3, 0.0, 4e-4};
+
 const world::Sensor* first_sensor(const world::Mover& mover, std::string_view type) {
   const auto found =
       std::find_if(mover.sensors.begin(), mover.sensors.end(), [&](const auto& sensor) { return sensor.type == type; });
@@ -26,8 +29,10 @@ estimation::LocalizationOptions options_of(const world::Mover& mover) {
     throw base::InputError("'localize' estimates a robot's pose from its own sensors, but '" + mover.name +
                            "' has no encoders; expected encoder( ... ) in its definition, and gyro( ... ) and "
                            "gps( ... ) for a pose that does not drift");
+  // The factor `scale` of the encoders is the error that a robot does not know.
   const sensors::Encoder wheels = sensors::read_encoder(*encoder, mover);
-  options.encoder = {wheels.per_count, wheels.slip, wheels.track};
+  options.encoder = {.per_count = wheels.per_count, .slip = wheels.slip, .track = wheels.track};
+  options.sideways = mover.drive == world::Drive::omni;
   if (const world::Sensor* sensor = first_sensor(mover, "gyro")) {
     const sensors::Gyro gyro = sensors::read_gyro(*sensor);
     options.gyro = {gyro.noise, gyro.bias};
@@ -72,7 +77,10 @@ OwnLocalization::OwnLocalization(const world::Mover& mover) : options_(options_o
 }
 
 ControllerInput OwnLocalization::localize(const ControllerInput& input) {
-  if (!localization_) localization_.emplace(options_, input.state.X_WM, std::max<std::int64_t>(input.time, 0));
+  if (!localization_) {
+    localization_.emplace(options_);
+    localization_->add_pose(std::max<std::int64_t>(input.time, 0), input.state.X_WM, kKnownStart);
+  }
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.sensor == 0) take(reading);
 

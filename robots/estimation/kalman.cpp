@@ -4,13 +4,12 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "robots/kinematics.h"
+#include "robots/estimation/planar_motion.h"
 
 namespace sf::estimation {
 
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Columns3 = Eigen::Matrix<double, 6, 3>;
 // One row or column per measured component, on the stack.
 using MeasuredVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
@@ -23,68 +22,13 @@ void store(const Matrix6& P, Covariance& covariance) {
   Eigen::Map<Matrix6>(covariance.data()) = 0.5 * (P + P.transpose());
 }
 
-/// d/dx of sin(x)/x. Below the threshold, the next term of the series is below 1e-11.
-double sinc_slope(double x) {
-  if (std::abs(x) < 1e-2) return x * (-1.0 / 3.0 + x * x / 30.0);
-  return (std::cos(x) - std::sin(x) / x) / x;
-}
-
-struct Motion {
-  base::Pose X_WM;
-  base::Twist velocity;
-};
-
-Motion move(MotionModel::Path path, const Motion& from, double dt) {
-  const base::Twist& v = from.velocity;
-  if (path == MotionModel::Path::arc) return {robots::advance(from.X_WM, v, dt), v};
-  const base::Pose& X = from.X_WM;
-  const glm::dvec2 d = dt * base::rotate(X.yaw, {v.forward, v.left});
-  const glm::dvec2 later = base::rotate(-v.turn * dt, {v.forward, v.left});
-  return {{X.x + d.x, X.y + d.y, X.z, base::wrap_angle(X.yaw + v.turn * dt)}, {later.x, later.y, v.turn}};
-}
-
-/// Derivative of `move` with respect to pose and twist.
-Matrix6 jacobian(MotionModel::Path path, const Motion& from, double dt) {
-  const double yaw = from.X_WM.yaw;
-  const auto& [forward, left, turn] = from.velocity;
-  Matrix6 F = Matrix6::Identity();
-  F(kYaw, kTurn) = dt;
-  const auto set_column = [&](Component row, Component column, glm::dvec2 d) {
-    F(row, column) = d.x;
-    F(row + 1, column) = d.y;
-  };
-  const auto perpendicular = [](glm::dvec2 d) { return glm::dvec2{-d.y, d.x}; };
-
-  if (path == MotionModel::Path::arc) {
-    // The chord R(yaw + h) v sinc(h) dt with h = turn dt / 2.
-    const double h = 0.5 * turn * dt;
-    const double length = dt * (std::abs(h) < 1e-4 ? 1.0 - h * h / 6.0 : std::sin(h) / h);
-    const glm::dvec2 d = base::rotate(yaw + h, {length * forward, length * left});
-    const double stretch = 0.5 * dt * dt * sinc_slope(h);
-    set_column(kX, kYaw, perpendicular(d));
-    set_column(kX, kForward, base::rotate(yaw + h, {length, 0.0}));
-    set_column(kX, kLeft, base::rotate(yaw + h, {0.0, length}));
-    set_column(kX, kTurn, 0.5 * dt * perpendicular(d) + base::rotate(yaw + h, {stretch * forward, stretch * left}));
-    return F;
-  }
-  set_column(kX, kYaw, dt * perpendicular(base::rotate(yaw, {forward, left})));
-  set_column(kX, kForward, base::rotate(yaw, {dt, 0.0}));
-  set_column(kX, kLeft, base::rotate(yaw, {0.0, dt}));
-  set_column(kForward, kForward, base::rotate(-turn * dt, {1.0, 0.0}));
-  set_column(kForward, kLeft, base::rotate(-turn * dt, {0.0, 1.0}));
-  set_column(kForward, kTurn, -dt * perpendicular(base::rotate(-turn * dt, {forward, left})));
-  return F;
-}
-
 /// Covariance added by white accelerations over dt: the integral of F G q G^T F^T, where F propagates from the time of
 /// the noise to the end.
 Matrix6 process_noise(const MotionModel& model, const Motion& from, double dt) {
   const Eigen::Vector3d density(model.forward, model.left, model.turn);
   Matrix6 Q = Matrix6::Zero();
   Q(kX, kX) = Q(kY, kY) = model.slip * std::abs(dt);
-  const double offset = 0.5 * std::sqrt(0.6);
-  for (const auto& [place, weight] :
-       {std::pair(0.5 - offset, 5.0 / 18.0), {0.5, 8.0 / 18.0}, {0.5 + offset, 5.0 / 18.0}}) {
+  for (const auto& [place, weight] : kGaussLegendre) {
     const Motion then = move(model.path, from, place * dt);
     const Columns3 G = jacobian(model.path, then, (1.0 - place) * dt).rightCols<3>();
     Q += weight * std::abs(dt) * G * density.asDiagonal() * G.transpose();

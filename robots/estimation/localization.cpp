@@ -2,97 +2,210 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sf::estimation {
 
 namespace {
 
-constexpr double kLeastVariance = 1e-12;
-constexpr std::int64_t kStand = 1'000'000'000;    // [ns] without a count; shorter pauses occur in slow turns
-constexpr std::int64_t kBiasApart = 200'000'000;  // [ns] largest time between gyro and wheel readings
-constexpr double kBiasGate = 16.0;                // squared, for 4 standard deviations
+using Kind = WheeledMeasurement::Kind;
 
-FilterOptions filter_options() {
-  FilterOptions options{.model = differential_drive()};
-  // After a long time under a bridge, a position that the gate rejects must not restart the track without a heading.
-  options.stale_after = 60'000'000'000;
-  // A window of one second with encoder and gyro at 250 Hz each, and GPS.
-  options.capacity = 512;
-  return options;
+constexpr double kLeastVariance = 1e-12;
+constexpr double kGate = 1e-4;    // probability that a correct measurement is rejected
+constexpr int kMostRejected = 5;  // in succession, of a robot that was not relocated
+constexpr int kHeadings = 36;     // of a start without a heading
+constexpr double kLeastWeight = 1e-6;
+// A window of one second with encoders and gyro at 250 Hz each, and poses.
+constexpr std::size_t kCapacity = 576;
+constexpr double kFastest = 10.0;  // [m/s] encoders that differ from the prediction by more were reset, or are wrong
+
+double square(double v) { return v * v; }
+
+bool is_fix(Kind kind) { return kind == Kind::pose || kind == Kind::position; }
+
+/// With encoders, the readings show how commands change the speeds. Without them, inertia has to bridge the gaps
+/// between poses.
+WheeledModel model_of(const LocalizationOptions& options) {
+  WheeledModel model{.motion = options.encoder ? differential_drive(4.0, 40.0) : differential_drive(),
+                     .steps = options.encoder.has_value()};
+  if (options.sideways) model.motion.left = model.motion.forward;
+  if (!options.encoder) return model;
+  model.track = options.encoder->track;
+  model.slip = options.encoder->slip;
+  return model;
+}
+
+/// A state at rest at the origin, with the prior of all constants.
+WheeledState prior_of(const LocalizationOptions& options, const WheeledModel& model) {
+  WheeledState state{.mean = {}};
+  const auto& unknown = model.motion.unknown;
+  set_variance(state, kForward, square(unknown[1]));
+  if (options.sideways) set_variance(state, kLeft, square(unknown[1]));
+  set_variance(state, kTurn, square(unknown[2]));
+  for (const int k : {kLeftScale, kRightScale, kTrackScale}) state.mean[k] = 1.0;
+  if (options.encoder) {
+    for (const int k : {kLeftScale, kRightScale}) set_variance(state, k, square(options.encoder->scale_sigma));
+    set_variance(state, kTrackScale, square(options.encoder->track_sigma));
+  }
+  set_variance(state, kGyroBias, square(options.gyro.bias));
+  return state;
+}
+
+template <class Hypothesis>
+const Hypothesis& heaviest(const std::vector<Hypothesis>& all) {
+  return *std::max_element(all.begin(), all.end(), [](auto& a, auto& b) { return a.weight < b.weight; });
+}
+
+/// Removes improbable hypotheses, and merges neighbours whose headings have become alike.
+template <class Hypothesis>
+void reduce(std::vector<Hypothesis>& all) {
+  if (all.size() == 1) return;
+  std::erase_if(all, [](const Hypothesis& each) { return each.weight < kLeastWeight; });
+  for (std::size_t k = 0; all.size() > 1 && k < all.size();) {
+    Hypothesis& next = all[(k + 1) % all.size()];
+    const double apart = std::abs(base::wrap_angle(all[k].state.mean[kYaw] - next.state.mean[kYaw]));
+    if (square(apart) > 0.25 * all[k].state.covariance[kYaw * (kWheeledComponents + 1)]) {
+      ++k;
+      continue;
+    }
+    next.state = merged(next.weight, next.state, all[k].weight, all[k].state);
+    next.weight += all[k].weight;
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(k));
+  }
 }
 
 }  // namespace
 
-Localization::Localization(const LocalizationOptions& options, const base::Pose& X_WM, std::int64_t time)
-    : options_(options), filter_(filter_options()), bias_variance_(options.gyro.bias * options.gyro.bias) {
-  const double position = options.start_position * options.start_position;
-  Measurement start{.time = time, .X_WM = X_WM};
-  start.pose_covariance = {position, 0.0, 0.0, position, 0.0, options.start_yaw * options.start_yaw};
-  take(0, start);
+Localization::Localization(const LocalizationOptions& options)
+    : options_(options), model_(model_of(options)), limits_(gate_limits(kGate)), window_(kWindow, kCapacity) {}
+
+Verdict Localization::add_encoder(std::int64_t time, double left, double right) {
+  if (!options_.encoder) return Verdict::invalid;
+  // Rounding to counts.
+  const double variance = std::max(square(options_.encoder->per_count) / 12.0, kLeastVariance);
+  return take({time, Kind::encoder, 0, {left, right, 0.0}, {variance, 0.0, 0.0, variance, 0.0, 1.0}});
 }
 
-Verdict Localization::take(std::uint32_t source, Measurement measurement) {
-  measurement.source = source;
-  measurement.sequence = sequence_++;
-  return filter_.take(measurement, measurement.time);
+Verdict Localization::add_gyro(std::int64_t time, double rate) {
+  const double variance = std::max(square(options_.gyro.noise), kLeastVariance);
+  return take({time, Kind::gyro, 0, {rate, 0.0, 0.0}, {variance, 0.0, 0.0, 1.0, 0.0, 1.0}});
 }
 
-void Localization::add_encoder(std::int64_t time, double left, double right) {
-  if (!std::isfinite(left) || !std::isfinite(right) || (last_ && time <= last_->time)) return;
-  const std::optional<Rolled> before = last_;
-  last_ = {time, left, right};
-  if (!before) {
-    last_count_ = time;
-    return;
-  }
-  const double dt = 1e-9 * static_cast<double>(time - before->time);
-  const double dl = left - before->left, dr = right - before->right;
-  if (dl != 0.0 || dr != 0.0) last_count_ = time;
-
-  // Rounding of two counts, and slip over each wheel's path.
-  const auto variance = [&](double way) {
-    const LocalizationOptions& o = options_;
-    return std::max(o.encoder.per_count * o.encoder.per_count / 6.0 + o.encoder.slip * o.encoder.slip * std::abs(way),
-                    kLeastVariance);
-  };
-  const double both = variance(dl) + variance(dr), track = options_.encoder.track;
-  Measurement speeds{.time = before->time + (time - before->time) / 2, .components = 1u << kForward | 1u << kTurn};
-  speeds.velocity = {0.5 * (dl + dr) / dt, 0.0, (dr - dl) / (track * dt)};
-  speeds.twist_variance = {0.25 * both / (dt * dt), 1.0, both / (track * track * dt * dt)};
-  if (take(1, speeds) != Verdict::used) return;
-  wheels_turn_ = {speeds.time, speeds.velocity.turn, speeds.twist_variance[2]};
-  if (time - last_count_ < kStand) return;
-  const double still = track * 1e-9 * static_cast<double>(time - last_count_);
-  wheels_turn_ = {time, 0.0, 2.0 * variance(0.0) / (still * still)};
-}
-
-void Localization::add_gyro(std::int64_t time, double rate) {
-  if (!std::isfinite(rate)) return;
-  const double noise = std::max(options_.gyro.noise * options_.gyro.noise, kLeastVariance);
-  Measurement turn{.time = time, .components = 1u << kTurn};
-  turn.velocity.turn = rate - bias_;
-  turn.twist_variance[2] = noise + bias_variance_;
-  if (take(2, turn) == Verdict::used) learn_bias(time, rate, noise);
-}
-
-void Localization::learn_bias(std::int64_t time, double rate, double noise) {
-  if (!wheels_turn_) return;
-  const Turn wheels = *wheels_turn_;
-  wheels_turn_.reset();
-  const double surprise = rate - wheels.rate - bias_, variance = bias_variance_ + noise + wheels.variance;
-  if (std::abs(time - wheels.time) > kBiasApart || surprise * surprise > kBiasGate * variance) return;
-  const double gain = bias_variance_ / variance;
-  bias_ += gain * surprise;
-  bias_variance_ *= 1.0 - gain;
-}
-
-void Localization::add_gps(std::int64_t time, double x, double y, double hdop) {
-  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(hdop)) return;
+Verdict Localization::add_gps(std::int64_t time, double x, double y, double hdop) {
   // Readings contain the sum of both axes' dilution.
-  const double variance = std::max(0.5 * options_.gps_noise * options_.gps_noise * hdop * hdop, kLeastVariance);
-  Measurement position{.time = time, .components = kPositionBits, .X_WM = {x, y}};
-  position.pose_covariance = {variance, 0.0, 0.0, variance, 0.0, 1.0};
-  take(3, position);
+  const double variance = std::max(0.5 * square(options_.gps_noise * hdop), kLeastVariance);
+  return take({time, Kind::position, 0, {x, y, 0.0}, {variance, 0.0, 0.0, variance, 0.0, 1.0}});
+}
+
+Verdict Localization::add_pose(std::int64_t time, const base::Pose& X_WM, const std::array<double, 6>& covariance) {
+  return take({time, Kind::pose, 0, {X_WM.x, X_WM.y, X_WM.yaw}, covariance, X_WM.z});
+}
+
+Verdict Localization::take(WheeledMeasurement measurement) {
+  if (!is_valid(measurement)) return window_.count(Verdict::invalid);
+  measurement.sequence = sequence_++;
+  return window_.take(measurement, [&](const WheeledMeasurement& m, State& state) { return apply(m, state); });
+}
+
+/// A rejected measurement leaves the hypotheses unchanged.
+Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
+  if (!state.known()) return is_fix(m.kind) ? start(m, state) : Verdict::no_track;
+  predicted_ = state.hypotheses;
+  for (Weighted& each : predicted_) each.state = estimation::predict(model_, each.state, m.time);
+  if (m.kind == Kind::encoder && restarts_encoders(m, state)) {
+    const bool first = !std::exchange(state.rolled, true);
+    for (Weighted& each : predicted_) replace(each.state, m);
+    state.hypotheses = predicted_;
+    return first ? Verdict::used : Verdict::outlier;
+  }
+  const Innovation surprise = weigh(m);
+  // Encoders are not gated, since commands change the speeds at once. `!(a <= b)` rejects NaN as well.
+  if (m.kind != Kind::encoder && !(surprise.squared <= limits_[surprise.degrees])) return reject(m, state);
+  for (Weighted& each : predicted_) each.state = correct(each.state, m);
+  reduce(predicted_);
+  state.hypotheses = predicted_;
+  if (!is_fix(m.kind)) return Verdict::used;
+  state.last_fix = m.time;
+  state.rejected = 0;
+  return Verdict::used;
+}
+
+/// Starts or restarts the pose. The constants and the distances rolled remain.
+Verdict Localization::start(const WheeledMeasurement& m, State& state) const {
+  WheeledState first = prior_of(options_, model_);
+  if (state.known()) first = heaviest(state.hypotheses).state;
+  first.time = m.time;
+  replace(first, m);
+  state.last_fix = m.time;
+  state.rejected = 0;
+  state.hypotheses.assign(1, {1.0, first});
+  if (m.kind == Kind::pose) return Verdict::started;
+
+  constexpr double kApart = 2.0 * M_PI / kHeadings;
+  set_variance(first, kYaw, square(0.5 * kApart));
+  state.hypotheses.assign(kHeadings, {1.0 / kHeadings, first});
+  for (int k = 0; k < kHeadings; ++k) state.hypotheses[k].state.mean[kYaw] = base::wrap_angle(k * kApart);
+  return Verdict::started;
+}
+
+Verdict Localization::reject(const WheeledMeasurement& m, State& state) const {
+  if (!is_fix(m.kind)) return Verdict::outlier;
+  const std::int64_t patience = m.kind == Kind::pose ? kRelocated : kRelocatedPositions;
+  if (++state.rejected > kMostRejected && m.time - state.last_fix > patience) return start(m, state);
+  return Verdict::outlier;
+}
+
+bool Localization::restarts_encoders(const WheeledMeasurement& m, const State& state) const {
+  const double seconds = 1e-9 * static_cast<double>(std::abs(m.time - state.time()));
+  const auto& mean = state.hypotheses[0].state.mean;
+  const double jump = std::max(std::abs(m.values[0] - mean[kLeftRolled]), std::abs(m.values[1] - mean[kRightRolled]));
+  return !state.rolled || jump > kFastest * (seconds + 1.0);
+}
+
+/// Weighs the predicted hypotheses by the likelihood of a measurement. Returns the least innovation: a measurement is
+/// an outlier only if no hypothesis explains it.
+Innovation Localization::weigh(const WheeledMeasurement& m) {
+  Innovation least{.squared = HUGE_VAL};
+  double most = -HUGE_VAL;
+  for (Weighted& each : predicted_) {
+    const Innovation surprise = innovation(each.state, m);
+    if (!(surprise.squared >= least.squared)) least = surprise;
+    each.weight = std::log(each.weight) - 0.5 * (surprise.squared + surprise.log_determinant);
+    most = std::max(most, each.weight);
+  }
+  double sum = 0.0;
+  for (Weighted& each : predicted_) sum += each.weight = std::exp(each.weight - most);
+  for (Weighted& each : predicted_) each.weight /= sum;
+  return least;
+}
+
+Prediction Localization::predict(std::int64_t time) const {
+  const State* state = window_.state_at(time);
+  if (state == nullptr) return {};
+  Hypotheses all;
+  for (const auto& [weight, each] : state->hypotheses)
+    all.push_back({weight, estimate_of(estimation::predict(model_, each, time))});
+  const Estimate& best = estimation::most_probable(all);
+  Prediction prediction{Prediction::Status::fresh, time - state->last_fix, best};
+  Covariance& P = prediction.estimate.covariance;
+  if (all.size() > 1) P = covariance_about(best, all);
+  if (!options_.encoder) return prediction;
+  // The error of rounding is constant while the robot is at rest: more readings do not reduce it.
+  const double rounding = square(options_.encoder->per_count) / 12.0;
+  for (const int k : {kX, kY}) P[k * kComponents + k] = std::max(P[k * kComponents + k], rounding);
+  double& yaw = P[kYaw * kComponents + kYaw];
+  yaw = std::max(yaw, 2.0 * rounding / square(options_.encoder->track));
+  return prediction;
+}
+
+Calibration Localization::calibration() const {
+  const State* state = window_.state_at(INT64_MAX);
+  const WheeledState s = state != nullptr ? heaviest(state->hypotheses).state : prior_of(options_, model_);
+  const auto constant = [&](int k, double unit) {
+    return Constant{unit * s.mean[k], unit * std::sqrt(s.covariance[k * kWheeledComponents + k])};
+  };
+  return {constant(kLeftScale, 1.0), constant(kRightScale, 1.0), constant(kTrackScale, model_.track),
+          constant(kGyroBias, 1.0)};
 }
 
 }  // namespace sf::estimation

@@ -1,80 +1,116 @@
 #pragma once
-// Localizes a robot with two driven wheels from its own sensors: satellite positions, wheel encoders and a gyro.
+// Localizes a robot with its own sensors: wheel encoders, a gyro, satellite positions, and poses from cameras.
 //
-//   Localization localization({.encoder = {.track = 0.258, .slip = 0.005}}, X_WM, 0);
+//   Localization localization({.encoder = Localization::Encoder{.track = 0.258, .slip = 0.005}});
+//   localization.add_pose(time, X_WM, covariance);    // a known start, or a camera's pose
 //   localization.add_encoder(time, left, right);      // for each reading
 //   localization.add_gps(time, x, y, hdop);           // without a fix: ignored
 //   localization.predict(time).estimate.X_WM
 //
-// Encoders and gyro carry the estimate where satellites are out of sight. The gyro's bias is estimated as its mean
-// difference from the encoders' turn rate, most accurately after the robot has been at rest for more than a second.
+// Encoders and gyro carry the estimate where neither cameras nor satellites see the robot, with growing covariance.
+// Their constants (scales, track, bias) are estimated along with the pose. Poses and positions may be late and out of
+// order. A start without a heading, as from satellites alone, is estimated by several hypotheses until the robot's path
+// shows the heading.
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "robots/estimation/replay_window.h"
 #include "robots/estimation/track_filter.h"
+#include "robots/estimation/wheeled_state.h"
 
 namespace sf::estimation {
 
 /// Sensor errors, as in the sensors' settings. All values are finite.
 struct LocalizationOptions {
-  struct {
-    double per_count = 1e-3;  ///< [m] > 0
-    double slip = 0.005;      ///< [m^(1/2)] >= 0 standard deviation of a wheel's slip after one metre
-    double track = 0.258;     ///< [m] > 0, effective
-  } encoder;
-  struct {
+  struct Encoder {
+    double per_count = 1e-3;    ///< [m] > 0
+    double slip = 0.005;        ///< [m^(1/2)] >= 0 standard deviation of a wheel's slip after one metre
+    double track = 0.258;       ///< [m] > 0, nominal
+    double scale_sigma = 0.05;  ///< [-] >= 0 standard deviation of each wheel's unknown scale
+    double track_sigma = 0.05;  ///< [-] >= 0 standard deviation of the unknown track, relative to `track`
+  };
+  struct Gyro {
     double noise = 1.7e-3;  ///< [rad/s] >= 0 standard deviation of a reading
     double bias = 8.7e-3;   ///< [rad/s] >= 0 standard deviation of the constant offset
-  } gyro;
-  double gps_noise = 1.5;        ///< [m] > 0 standard deviation of a range
-  double start_position = 0.05;  ///< [m] > 0 standard deviation of the start pose
-  double start_yaw = 0.02;       ///< [rad] > 0
+  };
+  std::optional<Encoder> encoder;  ///< nullopt: no encoders
+  Gyro gyro;
+  double gps_noise = 1.5;  ///< [m] > 0 standard deviation of a range
+  bool sideways = false;   ///< the robot can drive sideways (omni)
 };
 
-/// Allocates only in the constructor. Not thread-safe.
+/// A constant of a sensor, as estimated.
+struct Constant {
+  double value = 0.0;
+  double sigma = 0.0;  ///< standard deviation
+};
+
+/// The constants of a robot's sensors.
+struct Calibration {
+  Constant left_scale;   ///< [-] metres counted per metre rolled by the left wheel
+  Constant right_scale;  ///< [-]
+  Constant track;        ///< [m] effective
+  Constant gyro_bias;    ///< [rad/s]
+};
+
+/// Not thread-safe.
 class Localization {
  public:
-  Localization(const LocalizationOptions& options, const base::Pose& X_WM, std::int64_t time);
+  explicit Localization(const LocalizationOptions& options);
 
-  // Each call adds one reading taken at `time` [ns]. Readings of one sensor arrive in order. GPS readings may be up to
-  // one second late if all sensors together have at most 500 readings a second. Non-finite readings are ignored;
-  // outliers are counted and rejected.
-  /// @param left, right [m] rolled since the start. The mean speeds since the last reading apply to the middle of the
-  /// interval.
-  void add_encoder(std::int64_t time, double left, double right);
+  // Each call adds one reading taken at `time` [ns], at most `kWindow` before the newest. Non-finite readings are
+  // ignored; outliers are counted and rejected. After kRelocated (poses) or kRelocatedPositions (positions) of nothing
+  // but rejected ones, the robot counts as relocated, and the next one restarts the pose.
+
+  /// @param left, right [m] rolled since the start
+  Verdict add_encoder(std::int64_t time, double left, double right);
   /// @param rate [rad/s]
-  void add_gyro(std::int64_t time, double rate);
+  Verdict add_gyro(std::int64_t time, double rate);
   /// @param x, y [m] world frame, of an antenna above the robot's origin
   /// @param hdop NaN without a fix
-  void add_gps(std::int64_t time, double x, double y, double hdop);
+  Verdict add_gps(std::int64_t time, double x, double y, double hdop);
+  /// @param covariance xx, xy, x yaw, yy, y yaw, yaw yaw [m^2, m rad, rad^2], positive definite
+  Verdict add_pose(std::int64_t time, const base::Pose& X_WM, const std::array<double, 6>& covariance);
 
-  /// Returns the estimate at `time`. It becomes stale after a minute without a used reading. Positions that the gate
-  /// has rejected for a minute restart the track.
-  Prediction predict(std::int64_t time) const { return filter_.predict(time); }
-  const VerdictCounts& counts() const { return filter_.counts(); }
+  static constexpr std::int64_t kWindow = 1'000'000'000;               ///< [ns]
+  static constexpr std::int64_t kRelocated = 1'000'000'000;            ///< [ns]
+  static constexpr std::int64_t kRelocatedPositions = 60'000'000'000;  ///< [ns]
+
+  /// Returns the estimate at `time`. Its age is the time since the last used pose or position. Never stale.
+  Prediction predict(std::int64_t time) const;
+  /// Returns the newest estimates of the constants; the initial ones before the first pose.
+  Calibration calibration() const;
+  const VerdictCounts& counts() const { return window_.counts(); }
 
  private:
-  struct Rolled {
-    std::int64_t time = 0;  ///< [ns]
-    double left = 0.0;      ///< [m]
-    double right = 0.0;     ///< [m]
+  struct Weighted {
+    double weight = 1.0;
+    WheeledState state;
   };
-  struct Turn {
-    std::int64_t time = 0;  ///< [ns]
-    double rate = 0.0;      ///< [rad/s]
-    double variance = 0.0;  ///< [rad^2/s^2]
+  struct State {
+    std::int64_t last_fix = 0;         ///< [ns] time of the last used pose or position
+    int rejected = 0;                  ///< poses and positions rejected since then
+    bool rolled = false;               ///< the encoders' distances are known
+    std::vector<Weighted> hypotheses;  ///< weights sum to 1; empty: no pose yet
+
+    bool known() const { return !hypotheses.empty(); }
+    std::int64_t time() const { return hypotheses[0].state.time; }
   };
-  Verdict take(std::uint32_t source, Measurement measurement);
-  void learn_bias(std::int64_t time, double rate, double noise);
+
+  Verdict take(WheeledMeasurement measurement);
+  Verdict apply(const WheeledMeasurement& measurement, State& state);
+  Verdict start(const WheeledMeasurement& measurement, State& state) const;
+  Verdict reject(const WheeledMeasurement& measurement, State& state) const;
+  bool restarts_encoders(const WheeledMeasurement& measurement, const State& state) const;
+  Innovation weigh(const WheeledMeasurement& measurement);
 
   LocalizationOptions options_;
-  TrackFilter filter_;
-  std::optional<Rolled> last_;
-  std::int64_t last_count_ = 0;  ///< [ns] time of the last reading that differed from its predecessor, or of the first
-  std::optional<Turn> wheels_turn_;  ///< since the last reading of the gyro
-  double bias_ = 0.0;                ///< [rad/s] of the gyro
-  double bias_variance_;             ///< [rad^2/s^2]
+  WheeledModel model_;
+  GateLimits limits_;
+  ReplayWindow<WheeledMeasurement, State> window_;
+  std::vector<Weighted> predicted_;  ///< reused
   std::uint32_t sequence_ = 0;
 };
 

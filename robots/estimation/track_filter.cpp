@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "robots/estimation/chi_square.h"
 
@@ -52,62 +51,15 @@ GateLimits gate_limits(double gate) {
 }
 
 TrackFilter::TrackFilter(const FilterOptions& options, const GateLimits& limits)
-    : options_(options), limits_(limits), entries_(options.capacity) {
-  for (Hypotheses* each : {&before_.hypotheses, &predicted_, &ahead_}) each->reserve(1);
-  for (Entry& each : entries_) each.after.hypotheses.reserve(1);
+    : options_(options), limits_(limits), window_(options.window, options.capacity) {
+  for (Hypotheses* each : {&predicted_, &ahead_}) each->reserve(1);
 }
 
 Verdict TrackFilter::take(const Measurement& measurement, std::int64_t now) {
   ahead_.clear();
-  if (!is_valid(measurement)) return count(Verdict::invalid);
-  if (measurement.time > now + options_.max_future) return count(Verdict::future);
-
-  const std::int64_t newest = size_ > 0 ? entry(size_ - 1).measurement.time : measurement.time;
-  if (any_left_ && measurement == last_left_) return count(Verdict::replayed);
-  if (measurement.time < newest - options_.window || (any_left_ && measurement < last_left_))
-    return count(Verdict::too_late);
-  for (std::size_t k = size_; k > 0 && measurement.time <= entry(k - 1).measurement.time; --k)
-    if (measurement == entry(k - 1).measurement) return count(Verdict::replayed);
-
-  drop_before(std::max(newest, measurement.time) - options_.window);
-  if (size_ == entries_.size()) {
-    // The oldest entry leaves the ring, unless the new one is even older.
-    if (measurement < entry(0).measurement) return count(Verdict::too_late);
-    drop_oldest();
-  }
-  const std::size_t place = insert(measurement);
-  replay(place);
-  return entry(place).verdict;
-}
-
-void TrackFilter::drop_oldest() {
-  std::swap(before_, entry(0).after);
-  last_left_ = entry(0).measurement;
-  any_left_ = true;
-  first_ = (first_ + 1) % entries_.size();
-  --size_;
-}
-
-void TrackFilter::drop_before(std::int64_t time) {
-  while (size_ > 0 && entry(0).measurement.time < time) drop_oldest();
-}
-
-std::size_t TrackFilter::insert(const Measurement& measurement) {
-  std::size_t place = size_++;
-  for (; place > 0 && measurement < entry(place - 1).measurement; --place) std::swap(entry(place), entry(place - 1));
-  entry(place).measurement = measurement;
-  entry(place).verdict = Verdict::used;
-  count(Verdict::used);
-  return place;
-}
-
-void TrackFilter::replay(std::size_t from) {
-  for (std::size_t k = from; k < size_; ++k) {
-    Entry& next = entry(k);
-    next.after = k > 0 ? entry(k - 1).after : before_;
-    --counts_[static_cast<std::size_t>(next.verdict)];
-    next.verdict = count(apply(next.measurement, next.after));
-  }
+  if (!is_valid(measurement)) return window_.count(Verdict::invalid);
+  if (measurement.time > now + options_.max_future) return window_.count(Verdict::future);
+  return window_.take(measurement, [&](const Measurement& m, State& state) { return apply(m, state); });
 }
 
 /// A rejected measurement leaves every bit of the state unchanged.
@@ -140,12 +92,7 @@ Verdict TrackFilter::apply(const Measurement& m, State& state) {
 }
 
 Prediction TrackFilter::predict(std::int64_t time) const {
-  const State* state = before_.known() ? &before_ : nullptr;
-  std::size_t place = entries_.size();
-  for (std::size_t k = 0; k < size_; ++k) {
-    const State& after = entry(k).after;
-    if (after.known() && (state == nullptr || after.time() <= time)) state = &after, place = k;
-  }
+  const State* state = window_.state_at(time);
   if (state == nullptr) return {};
 
   const Estimate& last = most_probable(state->hypotheses);
@@ -155,7 +102,7 @@ Prediction TrackFilter::predict(std::int64_t time) const {
   const bool one = state->hypotheses.size() == 1 && has_certain_heading(estimate);
   const bool many = !one && options_.hypotheses > 1;
   if (many)
-    advance_to(time, *state, place);
+    advance_to(time, *state);
   else if (stale)
     predicted_.assign(1, {1.0, estimate});
   if (stale) {
@@ -168,29 +115,21 @@ Prediction TrackFilter::predict(std::int64_t time) const {
 }
 
 /// Sets `predicted_` to the hypotheses at `time`. Later predictions continue from the last whole step of earlier ones.
-void TrackFilter::advance_to(std::int64_t time, const State& newest, std::size_t place) const {
+void TrackFilter::advance_to(std::int64_t time, const State& newest) const {
   const HypothesesLimits limits{options_.hypotheses, newest.time()};
   const std::int64_t steps = (time - limits.corrected) / kHypothesesStep;
   const std::int64_t whole =
       limits.corrected + std::clamp(steps, std::int64_t{0}, kMostHypothesesSteps) * kHypothesesStep;
-  if (ahead_.empty() || ahead_of_ != place || ahead_[0].estimate.time > whole) ahead_ = newest.hypotheses;
-  ahead_of_ = place;
+  if (ahead_.empty() || ahead_of_ != &newest || ahead_[0].estimate.time > whole) ahead_ = newest.hypotheses;
+  ahead_of_ = &newest;
   advance(options_.model, whole, limits, ahead_);
   predicted_ = ahead_;
   advance(options_.model, time, limits, predicted_);
 }
 
 void TrackFilter::reset() {
-  first_ = 0;
-  size_ = 0;
-  before_.hypotheses.clear();
+  window_.clear();
   ahead_.clear();
-  any_left_ = false;
-}
-
-Verdict TrackFilter::count(Verdict verdict) {
-  ++counts_[static_cast<std::size_t>(verdict)];
-  return verdict;
 }
 
 }  // namespace sf::estimation

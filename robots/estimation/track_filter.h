@@ -5,8 +5,7 @@
 //   filter.take(measurement, now);                 // may be late
 //   const Prediction seen = filter.predict(now);   // seen.status, seen.age, seen.estimate
 //
-// The filter keeps the measurements of the last `window` in sorted order, each with the estimate after it. A late
-// measurement is inserted at its place, and the later ones are applied again. All verdicts except `future`, `too_late`,
+// Late measurements are inserted at their place in a ReplayWindow. All verdicts except `future`, `too_late`,
 // `replayed` and `invalid` are made in this order, so measurements that arrive within the window give bitwise identical
 // results in any order of arrival.
 //
@@ -15,10 +14,10 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "robots/estimation/hypotheses.h"
+#include "robots/estimation/replay_window.h"
 #include "robots/estimation/state.h"
 
 namespace sf::estimation {
@@ -44,26 +43,6 @@ struct FilterOptions {
   std::size_t hypotheses = 64;
 };
 
-/// Result of a measurement.
-enum class Verdict : std::uint8_t {
-  started,   ///< used: the first measurement with a position, the first after a stale time, or one beyond the gate when
-             ///< no position was used during that time
-  used,      ///< updated the estimate
-  outlier,   ///< rejected by the gate
-  jump,      ///< rejected: farther than `max_jump` from the prediction
-  no_track,  ///< rejected: it has no position and the object has no state
-  replayed,  ///< rejected: identical to one in the window or to the newest that left it
-  too_late,  ///< rejected: before the window
-  future,    ///< rejected: ahead of the clock
-  invalid    ///< rejected: `is_valid` is false
-};
-inline constexpr std::size_t kVerdicts = 9;
-std::string_view name(Verdict verdict);
-
-/// Number of measurements by verdict. A late measurement may change the verdicts of later ones. Each measurement counts
-/// once.
-using VerdictCounts = std::array<std::uint64_t, kVerdicts>;
-
 struct Prediction {
   enum class Status : std::uint8_t {
     none,   ///< no measurement was used since construction or `reset`; the other members are 0
@@ -83,8 +62,8 @@ using GateLimits = std::array<double, kComponents + 1>;
 /// @param gate as in FilterOptions
 GateLimits gate_limits(double gate);
 
-/// Allocates in the constructor, and once per place in the window when an uncertain heading takes a second hypothesis
-/// or more. Not thread-safe.
+/// Allocates in the constructor, and once per place in the window for its first hypothesis and for a second one or
+/// more, which uncertain headings take. Not thread-safe.
 class TrackFilter {
  public:
   explicit TrackFilter(const FilterOptions& options) : TrackFilter(options, gate_limits(options.gate)) {}
@@ -102,7 +81,7 @@ class TrackFilter {
   /// Drops everything except the counts, for a sender that restarts.
   void reset();
 
-  const VerdictCounts& counts() const { return counts_; }
+  const VerdictCounts& counts() const { return window_.counts(); }
 
  private:
   struct State {
@@ -112,37 +91,19 @@ class TrackFilter {
     bool known() const { return !hypotheses.empty(); }
     std::int64_t time() const { return hypotheses[0].estimate.time; }
   };
-  struct Entry {
-    Measurement measurement;
-    Verdict verdict = Verdict::used;
-    State after;
-  };
 
-  Entry& entry(std::size_t k) { return entries_[(first_ + k) % entries_.size()]; }
-  const Entry& entry(std::size_t k) const { return entries_[(first_ + k) % entries_.size()]; }
-  void drop_oldest();
-  void drop_before(std::int64_t time);
-  std::size_t insert(const Measurement& measurement);
-  void replay(std::size_t from);
   Verdict apply(const Measurement& measurement, State& state);
-  void advance_to(std::int64_t time, const State& newest, std::size_t place) const;
-  Verdict count(Verdict verdict);
+  void advance_to(std::int64_t time, const State& newest) const;
 
   FilterOptions options_;
   GateLimits limits_;
-  std::vector<Entry> entries_;  ///< ring of `capacity`, sorted from first_ on
-  std::size_t first_ = 0;
-  std::size_t size_ = 0;
-  State before_;           ///< state after the measurements that left the ring
-  Measurement last_left_;  ///< newest measurement that left the ring
-  bool any_left_ = false;
-  VerdictCounts counts_{};
+  ReplayWindow<Measurement, State> window_;
 
   // Members, to avoid reallocation. `ahead_`: a whole step after the state at `ahead_of_`; empty after each
   // measurement.
   mutable Hypotheses predicted_;
   mutable Hypotheses ahead_;
-  mutable std::size_t ahead_of_ = 0;
+  mutable const State* ahead_of_ = nullptr;
 };
 
 }  // namespace sf::estimation

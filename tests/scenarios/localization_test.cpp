@@ -96,12 +96,16 @@ void drive(std::uint64_t seed, gpu::Device& device, Errors& errors) {
   const Scenario scenario = town(seed, "false");
   const world::World world = world_of(scenario);
   Simulation simulation(world, device, simulation_of(scenario, world));
-  const estimation::LocalizationOptions options{.gyro = {0.1 * kDegree, 0.5 * kDegree}, .gps_noise = kRange};
+  const estimation::LocalizationOptions options{.encoder = estimation::LocalizationOptions::Encoder{},
+                                                .gyro = {0.1 * kDegree, 0.5 * kDegree},
+                                                .gps_noise = kRange};
   std::map<std::uint32_t, Car> cars;
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
     if (world.movers[row].name.rfind("roomba", 0) == 0) {
       const base::Pose& X_WM = world.movers[row].X_WM;
-      cars.try_emplace(row, Car{{options, X_WM, 0}, {options, X_WM, 0}});
+      estimation::Localization start(options);
+      start.add_pose(0, X_WM, {2.5e-3, 0.0, 0.0, 2.5e-3, 0.0, 4e-4});
+      cars.try_emplace(row, Car{start, start});
     }
   for (std::int64_t time = 0; time < kEnd;) {
     const base::TickRecord tick = simulation.step();

@@ -1,0 +1,205 @@
+#include "robots/estimation/wheeled_state.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "robots/estimation/planar_motion.h"
+
+namespace sf::estimation {
+
+namespace {
+
+constexpr int kSize = kWheeledComponents;
+using Vector = Eigen::Matrix<double, kSize, 1>;
+using Matrix = Eigen::Matrix<double, kSize, kSize, Eigen::RowMajor>;
+// One row or column per measured value, on the stack.
+using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+using ValuesMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, kSize, Eigen::RowMajor, 3, kSize>;
+
+Eigen::Map<const Matrix> covariance_of(const WheeledState& state) {
+  return Eigen::Map<const Matrix>(state.covariance.data());
+}
+Eigen::Map<const Vector> mean_of(const WheeledState& state) { return Eigen::Map<const Vector>(state.mean.data()); }
+
+void store_symmetric(const Matrix& P, WheeledState& state) {
+  Eigen::Map<Matrix>(state.covariance.data()) = 0.5 * (P + P.transpose());
+}
+
+Motion motion_of(const WheeledState& state) {
+  const auto& m = state.mean;
+  return {{m[kX], m[kY], state.z, m[kYaw]}, {m[kForward], m[kLeft], m[kTurn]}};
+}
+
+/// [m/s] Speeds of the left and the right wheel over ground.
+std::array<double, 2> wheel_speeds(const WheeledModel& model, const WheeledState& state) {
+  const double half = 0.5 * model.track * state.mean[kTrackScale] * state.mean[kTurn];
+  return {state.mean[kForward] - half, state.mean[kForward] + half};
+}
+
+/// Returns the derivative of the state after `dt` with respect to `state`.
+Matrix derivative(const WheeledModel& model, const WheeledState& state, double dt) {
+  Matrix F = Matrix::Identity();
+  F.topLeftCorner<6, 6>() = jacobian(model.motion.path, motion_of(state), dt);
+  const std::array<double, 2> speeds = wheel_speeds(model, state);
+  for (const int right : {0, 1}) {
+    const double scale = state.mean[kLeftScale + right], half = (right == 0 ? -0.5 : 0.5) * model.track;
+    const int row = kLeftRolled + right;
+    F(row, kForward) = scale * dt;
+    F(row, kTurn) = scale * half * state.mean[kTrackScale] * dt;
+    F(row, kTrackScale) = scale * half * state.mean[kTurn] * dt;
+    F(row, kLeftScale + right) = speeds[right] * dt;
+  }
+  return F;
+}
+
+WheeledState move(const WheeledModel& model, const WheeledState& from, double dt) {
+  WheeledState to = from;
+  const Motion moved = estimation::move(model.motion.path, motion_of(from), dt);
+  const auto& [X, v] = moved;
+  const std::array<double, 6> motion{X.x, X.y, X.yaw, v.forward, v.left, v.turn};
+  std::copy(motion.begin(), motion.end(), to.mean.begin());
+  const std::array<double, 2> speeds = wheel_speeds(model, from);
+  for (const int right : {0, 1}) to.mean[kLeftRolled + right] += from.mean[kLeftScale + right] * speeds[right] * dt;
+  return to;
+}
+
+/// Covariance added by accelerations, slips, skids and drifts over dt.
+Matrix process_noise(const WheeledModel& model, const WheeledState& from, double dt) {
+  const double seconds = std::abs(dt);
+  const Eigen::Vector3d density(model.motion.forward, model.motion.left, model.motion.turn);
+  Matrix Q = Matrix::Zero();
+  const auto accelerate = [&](double place, double weight) {
+    const Matrix F = derivative(model, move(model, from, place * dt), (1.0 - place) * dt);
+    const auto G = F.middleCols<3>(kForward);
+    Q += weight * seconds * G * density.asDiagonal() * G.transpose();
+  };
+  if (model.steps) accelerate(0.0, 1.0);
+  for (std::size_t k = 0; !model.steps && k < kGaussLegendre.size(); ++k)
+    accelerate(kGaussLegendre[k][0], kGaussLegendre[k][1]);
+  const std::array<double, 2> speeds = wheel_speeds(model, from);
+  const double skid = model.skid * model.skid * std::hypot(from.mean[kForward], from.mean[kLeft]);
+  const double drift = model.drift * model.drift;
+  const double slip = model.slip * model.slip;
+  Vector rates = Vector::Zero();
+  rates(kX) = rates(kY) = skid;
+  rates(kLeftRolled) = slip * std::abs(speeds[0]);
+  rates(kRightRolled) = slip * std::abs(speeds[1]);
+  rates(kLeftScale) = rates(kRightScale) = rates(kTrackScale) = drift;
+  rates(kGyroBias) = model.bias_drift * model.bias_drift;
+  Q.diagonal() += seconds * rates;
+  return Q;
+}
+
+/// First component and number of components, by kind of measurement.
+constexpr std::array<std::array<int, 2>, 4> kMeasured{{{kX, 3}, {kX, 2}, {kTurn, 1}, {kLeftRolled, 2}}};
+
+/// H, the measured values minus the predicted ones, and their noise.
+struct Measured {
+  Rows H;
+  Values difference;
+  ValuesMatrix noise;
+};
+
+Measured measured(const WheeledState& state, const WheeledMeasurement& m) {
+  const auto [first, count] = kMeasured[static_cast<std::size_t>(m.kind)];
+  Measured all{Rows::Zero(count, kSize), Values(count), ValuesMatrix(count, count)};
+  const auto& c = m.covariance;
+  const std::array<double, 9> full{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]};
+  for (int i = 0; i < count; ++i) {
+    all.H(i, first + i) = 1.0;
+    if (m.kind == WheeledMeasurement::Kind::gyro) all.H(i, kGyroBias) = 1.0;
+    all.difference(i) = m.values[i] - all.H.row(i).dot(mean_of(state));
+    for (int j = 0; j < count; ++j) all.noise(i, j) = full[3 * i + j];
+  }
+  if (m.kind == WheeledMeasurement::Kind::pose) all.difference(kYaw) = base::wrap_angle(all.difference(kYaw));
+  return all;
+}
+
+}  // namespace
+
+bool is_valid(const WheeledMeasurement& m) {
+  const WheeledState origin{.mean = {}};
+  if (m.time < 0 || m.time > std::int64_t{1} << 62) return false;
+  const auto [H, difference, noise] = measured(origin, m);
+  const auto in_range = [](double v) { return v >= 1e-18 && v <= 1e18; };
+  return std::all_of(m.values.begin(), m.values.end(), [](double v) { return std::abs(v) <= 1e9; }) &&
+         std::all_of(noise.diagonal().begin(), noise.diagonal().end(), in_range) &&
+         std::all_of(m.covariance.begin(), m.covariance.end(), [](double v) { return std::abs(v) <= 1e18; }) &&
+         std::isfinite(m.z) && noise.llt().info() == Eigen::Success;
+}
+
+WheeledState predict(const WheeledModel& model, const WheeledState& state, std::int64_t time) {
+  if (time == state.time) return state;
+  const double dt = 1e-9 * static_cast<double>(time - state.time);
+  WheeledState later = move(model, state, dt);
+  later.time = time;
+  const Matrix F = derivative(model, state, dt);
+  store_symmetric(F * covariance_of(state) * F.transpose() + process_noise(model, state, dt), later);
+  return later;
+}
+
+Innovation innovation(const WheeledState& predicted, const WheeledMeasurement& measurement) {
+  const auto [H, difference, noise] = measured(predicted, measurement);
+  const ValuesMatrix S = H * covariance_of(predicted) * H.transpose() + noise;
+  const Eigen::LLT<ValuesMatrix> llt(S);
+  return {difference.dot(llt.solve(difference)), static_cast<int>(difference.size()),
+          2.0 * llt.matrixLLT().diagonal().array().log().sum()};
+}
+
+WheeledState correct(const WheeledState& predicted, const WheeledMeasurement& measurement) {
+  const auto [H, difference, noise] = measured(predicted, measurement);
+  const auto P = covariance_of(predicted);
+  const ValuesMatrix S = H * P * H.transpose() + noise;
+  const Rows Kt = S.llt().solve(H * P);
+  WheeledState state = predicted;
+  Eigen::Map<Vector>(state.mean.data()) += Kt.transpose() * difference;
+  state.mean[kYaw] = base::wrap_angle(state.mean[kYaw]);
+  if (measurement.kind == WheeledMeasurement::Kind::pose) state.z = measurement.z;
+  const Matrix rest = Matrix::Identity() - Kt.transpose() * H;
+  store_symmetric(rest * P * rest.transpose() + Kt.transpose() * noise * Kt, state);
+  return state;
+}
+
+void replace(WheeledState& state, const WheeledMeasurement& measurement) {
+  const auto [H, difference, noise] = measured(state, measurement);
+  Eigen::Map<Matrix> P(state.covariance.data());
+  for (int i = 0; i < difference.size(); ++i) {
+    int k = 0;
+    H.row(i).maxCoeff(&k);
+    state.mean[k] = measurement.values[i];
+    set_variance(state, k, 0.0);
+  }
+  P += H.transpose() * noise * H;
+  if (measurement.kind == WheeledMeasurement::Kind::pose) state.z = measurement.z;
+}
+
+void set_variance(WheeledState& state, std::size_t component, double variance) {
+  Eigen::Map<Matrix> P(state.covariance.data());
+  const auto k = static_cast<Eigen::Index>(component);
+  P.row(k).setZero();
+  P.col(k).setZero();
+  P(k, k) = variance;
+}
+
+WheeledState merged(double weight_a, const WheeledState& a, double weight_b, const WheeledState& b) {
+  const double share = weight_b / (weight_a + weight_b);
+  Vector d = mean_of(b) - mean_of(a);
+  d(kYaw) = base::wrap_angle(d(kYaw));
+  WheeledState state = a;
+  Eigen::Map<Vector>(state.mean.data()) += share * d;
+  state.mean[kYaw] = base::wrap_angle(state.mean[kYaw]);
+  store_symmetric(
+      (1.0 - share) * covariance_of(a) + share * covariance_of(b) + share * (1.0 - share) * d * d.transpose(), state);
+  return state;
+}
+
+Estimate estimate_of(const WheeledState& state) {
+  const auto [X_WM, velocity] = motion_of(state);
+  Estimate estimate{state.time, X_WM, velocity};
+  Eigen::Map<Matrix6>(estimate.covariance.data()) = covariance_of(state).topLeftCorner<6, 6>();
+  return estimate;
+}
+
+}  // namespace sf::estimation
