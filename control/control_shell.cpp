@@ -10,7 +10,7 @@ ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_
   ControlShellSettings read;
   read.on_signal = settings.choice("start", "at-once", {"at-once", "signal"}) == "signal";
   read.wait_on_bumper = settings.flag("wait_on_bumper", stops_on_bumper);
-  read.localize = settings.flag("localize", false);
+  if (settings.has("localize")) read.localize = settings.flag("localize", false);
   return read;
 }
 

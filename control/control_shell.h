@@ -4,8 +4,8 @@
 //   Start --(at once, or the start signal)--> Control <--(bumper released / pressed)--> Wait
 //                                             Control --(the controller is done)--> Stop
 //
-// Settings: `start`, "at-once" or "signal"; `wait_on_bumper`, default `ControllerType::stops_on_bumper`; `localize`,
-// default false: the controller receives the state estimated from the robot's own sensors.
+// Settings: `start`, "at-once" or "signal"; `wait_on_bumper`, default `ControllerType::stops_on_bumper`; `localize`:
+// the controller receives the state estimated from the robot's own sensors.
 
 #include <memory>
 #include <optional>
@@ -22,7 +22,8 @@ enum class ControlShellState { start, control, wait, stop };
 struct ControlShellSettings {
   bool on_signal = false;      ///< Start lasts until `ControllerInput::started`
   bool wait_on_bumper = true;  ///< Control becomes Wait while `ControllerInput::contact`
-  bool localize = false;       ///< replaces `ControllerInput::state` with estimates, in every state of the shell
+  /// Replaces `ControllerInput::state` with estimates, in every state of the shell; nullopt: not set.
+  std::optional<bool> localize;
 };
 
 /// @throws base::InputError for an unknown value of `start`

@@ -2,6 +2,7 @@
 // List of all controllers, by name.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -64,14 +65,16 @@ void add_controller(const ControllerType* type);
 /// A controller as configured by the user, run within the control shell.
 struct ControllerConfig {
   std::string name;
-  double rate = 0.0;  ///< [Hz]; 0: the controller's default
-  Settings settings;  ///< including the shell's: `start`, `wait_on_bumper`, `localize`
+  double rate = 0.0;               ///< [Hz]; 0: the controller's default
+  Settings settings;               ///< including the shell's: `start`, `wait_on_bumper`, `localize`
+  bool localized_outside = false;  ///< inputs already contain estimates: the shell never replaces them
 };
 
 struct ConfiguredController {
   std::unique_ptr<Controller> controller;
-  double rate = 10.0;     ///< [Hz]
-  bool on_scans = false;  ///< steps on each new scan and on contact instead of at its rate
+  double rate = 10.0;            ///< [Hz]
+  bool on_scans = false;         ///< steps on each new scan and on contact instead of at its rate
+  std::optional<bool> localize;  ///< the setting of this name; nullopt: not set
 };
 
 /// @throws base::InputError for an unknown name (the message lists all names) and for settings that no code has read

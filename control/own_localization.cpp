@@ -13,9 +13,6 @@ namespace sf::control {
 
 namespace {
 
-/// Covariance of a known start: 0.05 m and 0.02 rad.
-constexpr std::array<double, 6> kKnownStart{2.5e-3, 0.0, 0.0, 2.5e-3, 0.0, 4e-4};
-
 const world::Sensor* first_sensor(const world::Mover& mover, std::string_view type) {
   const auto found =
       std::find_if(mover.sensors.begin(), mover.sensors.end(), [&](const auto& sensor) { return sensor.type == type; });
@@ -79,7 +76,7 @@ OwnLocalization::OwnLocalization(const world::Mover& mover) : options_(options_o
 ControllerInput OwnLocalization::localize(const ControllerInput& input) {
   if (!localization_) {
     localization_.emplace(options_);
-    localization_->add_pose(std::max<std::int64_t>(input.time, 0), input.state.X_WM, kKnownStart);
+    localization_->add_pose(std::max<std::int64_t>(input.time, 0), input.state.X_WM, estimation::kKnownStart);
   }
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.sensor == 0) take(reading);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/displacement.h"
 #include "sensors/host_backend.h"
@@ -22,14 +24,6 @@ struct Track {
   std::int64_t since = 0;  ///< [ns] time of that pose
   bool moved = false;      ///< true once the mover has moved since the start
   bool away = false;       ///< the mover is absent from the world
-};
-
-/// State of one robot's encoders.
-struct Wheels {
-  Encoder settings;
-  Rolled rolled;  ///< [m] since the start
-  Slippage left;
-  Slippage right;
 };
 
 class Encoders : public HostBackend {
@@ -68,8 +62,7 @@ Encoders::Encoders(const SensorContext& context, const ParsedSensors& sensors)
   for (std::size_t i = 0; i < rows().size(); ++i) {
     const Encoder& settings = sensors.settings_as<Encoder>()[i];
     const base::RandomKey walk{context.seed, base::RandomStream::slip, rows()[i].mover, rows()[i].sensor};
-    const double slip = context.noise ? settings.slip : 0.0;
-    wheels_.push_back({settings, {}, {walk, 0, slip}, {walk, 1, slip}});
+    wheels_.emplace_back(settings, walk, context.noise);
     tracks_.push_back({context.world.movers[rows()[i].mover].X_WM});
   }
 }
@@ -104,12 +97,7 @@ void Encoders::accumulate(std::int64_t now, bool between) {
       continue;
     }
     if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
-      Wheels& wheels = (between ? ahead_ : wheels_)[i];
-      const Rolled rolled = roll(track.X_WM, X_WM, wheels.settings.track);
-      wheels.rolled.left += rolled.left;
-      wheels.rolled.right += rolled.right;
-      wheels.left.advance(std::abs(rolled.left));
-      wheels.right.advance(std::abs(rolled.right));
+      (between ? ahead_ : wheels_)[i].roll(track.X_WM, X_WM);
     }
     if (!between) track = {X_WM, now, true};
   }
@@ -136,18 +124,12 @@ void Encoders::read_state(std::uint32_t row, base::ByteReader& in) {
   in.get_into(&tracks_[row], sizeof tracks_[row]);
 }
 
-double counts_of(double rolled, double scale, const Slippage& slippage, double per_count) {
-  return std::floor((rolled * scale + slippage.error()) / per_count + 0.5);
-}
-
 void Encoders::measure(std::span<const HostSample> samples) const {
   for (const HostSample& sample : samples) {
-    const Wheels& w = (between_ ? ahead_ : wheels_)[sample.row];
-    const Encoder& e = w.settings;
-    sample.values[2] = counts_of(w.rolled.left, e.scale_left, w.left, e.per_count);
-    sample.values[3] = counts_of(w.rolled.right, e.scale_right, w.right, e.per_count);
-    sample.values[0] = sample.values[2] * e.per_count;
-    sample.values[1] = sample.values[3] * e.per_count;
+    const Wheels& wheels = (between_ ? ahead_ : wheels_)[sample.row];
+    const Rolled counts = wheels.counts(), counted = wheels.counted();
+    const double row[] = {counted.left, counted.right, counts.left, counts.right};
+    std::copy(std::begin(row), std::end(row), sample.values.begin());
   }
 }
 
@@ -158,6 +140,21 @@ constexpr PlainNumber kNumbers[] = {{1e-5}, {1e-5}, {1.0}, {1.0}};
 constexpr PlainForm kForm{kEncoder, "encoder", kNumbers};
 
 }  // namespace
+
+void Wheels::roll(const base::Pose& before, const base::Pose& after) {
+  const Rolled step = sensors::roll(before, after, settings.track);
+  rolled.left += step.left;
+  rolled.right += step.right;
+  left.advance(std::abs(step.left));
+  right.advance(std::abs(step.right));
+}
+
+Rolled Wheels::counts() const {
+  const auto count = [&](double distance, double scale, const Slippage& slippage) {
+    return std::floor((distance * scale + slippage.error()) / settings.per_count + 0.5);
+  };
+  return {count(rolled.left, settings.scale_left, left), count(rolled.right, settings.scale_right, right)};
+}
 
 Encoder read_encoder(const world::Sensor& sensor, const world::Mover& mover) {
   Encoder e;

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 
+#include "sensors/odometer.h"
 #include "sensors/sensor_type.h"
 
 namespace sf::sensors {
@@ -27,6 +28,24 @@ struct Encoder {
   double scale_left = 1.0;   ///< [-] > 0
   double scale_right = 1.0;  ///< [-] > 0
   double track = 0.3;        ///< [m] > 0, effective: including scrub
+};
+
+/// The wheels of one robot, as its encoders count them.
+struct Wheels {
+  Wheels(const Encoder& encoder, const base::RandomKey& walk, bool noise)
+      : settings(encoder), left(walk, 0, noise ? encoder.slip : 0.0), right(walk, 1, noise ? encoder.slip : 0.0) {}
+
+  /// Adds the motion between two poses.
+  void roll(const base::Pose& before, const base::Pose& after);
+  /// Returns the distances in counts, with scale, slip and rounding.
+  Rolled counts() const;
+  /// Returns the distances [m] that the counts state.
+  Rolled counted() const { return {counts().left * settings.per_count, counts().right * settings.per_count}; }
+
+  Encoder settings;
+  Rolled rolled;  ///< [m] since the start, true
+  Slippage left;
+  Slippage right;
 };
 
 /// @throws base::InputError with file and line.

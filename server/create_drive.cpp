@@ -69,6 +69,8 @@ void CreateDrive::take(const robots::CreateFrame& frame) {
   state_.X_WM.x += way * std::cos(middle);
   state_.X_WM.y += way * std::sin(middle);
   state_.X_WM.yaw = base::wrap_angle(state_.X_WM.yaw + turn);
+  rolled_.left += way - 0.5 * track_ * turn;
+  rolled_.right += way + 0.5 * track_ * turn;
   // People put a lifted robot down where it may drive, so it resumes. At a cliff, it waits for them.
   lifted_ = (lifted_ || frame.wheel_drop) && frame.mode != robots::CreateFrame::safe;
   if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive && line_)

@@ -9,6 +9,7 @@
 #include "base/report.h"
 #include "netio/serial_line.h"
 #include "robots/open_interface.h"
+#include "sensors/odometer.h"
 
 namespace sf::server {
 
@@ -51,6 +52,8 @@ class CreateDrive {
   std::string problem(std::int64_t now) const;
   /// Pose by odometry, and twist of the last update.
   const base::Report& state() const { return state_; }
+  /// [m] Distances of its wheels since the start, by odometry.
+  const sensors::Rolled& rolled() const { return rolled_; }
   /// Returns whether any frame of the last update that had frames reported a bump or a wheel drop.
   bool contact() const { return contact_; }
   CreateCounts counts() const;
@@ -72,6 +75,7 @@ class CreateDrive {
   std::optional<std::int64_t> revived_;  ///< [ns]
   bool lifted_ = false;                  ///< lifted since it was last in safe mode
   base::Report state_;
+  sensors::Rolled rolled_;
   CreateCounts counts_;
 };
 

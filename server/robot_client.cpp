@@ -31,6 +31,28 @@ std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& move
                   mover.name, mover.id, netio::kMinTag, netio::kMaxId));
 }
 
+// A Create's wheels slip [m^(1/2)] on a smooth floor, and it truncates angles to degrees [rad].
+constexpr double kCreateSlip = 0.003;
+constexpr double kCreateDegree = M_PI / 180.0;
+
+/// Returns the wheels as the robot knows them: without the error `scale` of its encoders. nullopt: no encoders
+std::optional<sensors::Encoder> wheels_of(const world::Mover& mover, bool is_create) {
+  std::optional<sensors::Encoder> wheels;
+  for (const world::Sensor& sensor : mover.sensors)
+    if (!wheels && sensor.type == sensors::encoder_type.word.type) wheels = sensors::read_encoder(sensor, mover);
+  if (!is_create) return wheels;
+  if (!wheels) wheels = sensors::Encoder{.slip = kCreateSlip, .track = mover.track};
+  wheels->per_count = std::max(1e-3, wheels->track * kCreateDegree);
+  return wheels;
+}
+
+[[noreturn]] void refuse_localize(const world::Mover& mover) {
+  throw base::InputError(fmt::format(
+      "'localize' estimates a robot's state from its own sensors, and '{}' has none; expected encoder( ... ) in its "
+      "definition, --cameras or --serial",
+      mover.name));
+}
+
 LinkOptions with_lights(LinkOptions link, std::span<const Intersection> intersections) {
   for (const Intersection& one : intersections) link.lights.push_back(one.id);
   return link;
@@ -57,41 +79,76 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
            patience_of(sensor_set, mover, options.stop_after)),
       controller_(options.controller.name),
       utc_(options.utc ? options.utc : utc_now) {
-  if (options.cameras) cameras_.emplace(world, mover, tag_of(options, world.movers[mover]), *options.cameras);
   if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
   if (options.map) map_.emplace(world, sensor_set, mover, *options.map);
   if (options.create) create_.emplace(*options.create, world.movers[mover].X_WM, world.movers[mover].track);
+  control::ControllerConfig controller = options.controller;
+  controller.localized_outside = true;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr, nullptr, &sensor_set},
-                                   options.controller);
+                                   controller);
+  add_own_state(options);
+}
+
+/// A robot with cameras or encoders of its own does not know its true state, unless the setting `localize` is false.
+void RobotClient::add_own_state(const RobotClientOptions& options) {
+  const world::Mover& mover = world_.movers[mover_];
+  OwnStateOptions own{.stop_after = base::nanoseconds(options.stop_after), .most_sigma = options.most_sigma};
+  if (options.cameras) {
+    own.cameras = options.cameras;
+    own.cameras->tag = tag_of(options, mover);
+  } else {
+    own.start = mover.X_WM;
+  }
+  if (made_.localize.value_or(true)) own.wheels = wheels_of(mover, create_.has_value());
+  if (made_.localize.value_or(false) && !own.wheels && !own.cameras) refuse_localize(mover);
+  if (!own.wheels && !own.cameras) return;
+  if (own.wheels && !create_)
+    wheels_.emplace(*own.wheels, base::RandomKey{options.seed, base::RandomStream::slip, mover_}, true);
+  own_.emplace(mover, mover_, own);
 }
 
 void RobotClient::receive(std::int64_t now) {
   link_.run(now);
-  if (cameras_) cameras_->receive(now);
+  if (own_) own_->receive(now);
 }
 
 void RobotClient::move(std::int64_t now) {
   if (create_) {
-    create_->update(now);
-    body_.follow(create_->state().X_WM, create_->state().velocity, create_->contact(), now);
+    follow_create(now);
   } else {
+    const base::Pose before = body_.state().X_WM;
     body_.move(command_, now);
+    if (wheels_) wheels_->roll(before, body_.state().X_WM);
+    if (wheels_) own_->add_wheels(now, wheels_->counted());
   }
   contacts_ += contact_.begins(body_.contact());
   if (truth_) truth_->send(body_.state(), now, epoch_);
+}
+
+/// The body is where the robot estimates itself.
+void RobotClient::follow_create(std::int64_t now) {
+  const std::uint64_t frames = create_->counts().frames;
+  create_->update(now);
+  const base::Report* state = &create_->state();
+  if (own_ && own_->has_wheels() && create_->counts().frames > frames) own_->add_wheels(now, create_->rolled());
+  if (own_) {
+    own_->predict(now);
+    state = &own_->state();
+  }
+  body_.follow(state->X_WM, state->velocity, create_->contact(), now);
 }
 
 void RobotClient::step(std::int64_t now) {
   move(now);
   scans_ = link_.scans();
   next_ = next_step(now);
-  if (cameras_) cameras_->predict(now);
-  if (cameras_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
+  if (own_) own_->predict(now);
+  if (own_ && !create_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
   if (started_ && !is_lost() && !log_.readings_timed_out(link_, now) && (!create_ || create_->ready(now))) decide(now);
   if (create_) create_->drive(command_, now);
   send_state(now);
-  log_.note_link(link_, cameras_ ? std::optional(is_lost()) : std::nullopt, now);
+  log_.note_link(link_, own_ ? std::optional(is_lost()) : std::nullopt, now);
   if (create_) log_.note_create(create_->problem(now), create_->counts().frames > 0, now);
 }
 
@@ -127,7 +184,7 @@ void RobotClient::run(const std::atomic<bool>& stop, double duration) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count();
   };
   epoch_ = base::unix_time();
-  if (cameras_) cameras_->set_epoch(epoch_);
+  if (own_) own_->set_epoch(epoch_);
   const std::int64_t end = duration > 0.0 ? base::nanoseconds(duration) : INT64_MAX;
   while (!stop && !done()) {
     wait_until(std::min(next_, end), stop, clock);
@@ -155,11 +212,11 @@ RobotClientStats RobotClient::stats() const {
   stats.distance_m = body_.distance();
   stats.pose = body_.state().X_WM;
   stats.error = error_;
-  if (const control::OwnLocalization* own = control::localization_of(*made_.controller))
-    stats.localization = own->error();
   if (map_) stats.map = map_->counts();
   if (create_) stats.create = create_->counts();
-  if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
+  if (own_)
+    stats.own = {own_->port() > 0, own_->has_wheels(), own_->counts(),
+                 position_errors_, own_->sigma(),      own_->calibration()};
   stats.listens_for_spat = lights_.listens();
   stats.lights = lights_.counts();
   stats.stops = log_.stops();
@@ -194,12 +251,9 @@ void RobotClient::decide(std::int64_t now) {
   if (map_) draw_map(now);
 }
 
-/// Uses the poses of the controller's own localization, if it has one.
 void RobotClient::draw_map(std::int64_t now) {
-  const control::OwnLocalization* own = control::localization_of(*made_.controller);
-  for (const base::ReadingBlock& reading : readings_)
-    map_->add(reading, own != nullptr ? own->pose_at(reading.time) : reading.X_WM);
-  map_->send(now, own == nullptr && !create_);
+  for (const base::ReadingBlock& reading : readings_) map_->add(reading, reading.X_WM);
+  map_->send(now, !own_ && !create_);
 }
 
 /// Packets do not carry the pose that the farm cast from, so the robot uses its own pose at that time.
@@ -207,7 +261,7 @@ void RobotClient::gather_readings() {
   readings_.clear();
   for (RobotLink::Newest& newest : link_.readings()) {
     base::ReadingBlock& block = readings_.emplace_back(newest.block);
-    block.X_WM = cameras_ ? cameras_->pose_at(block.time) : body_.pose_at(block.time);
+    block.X_WM = own_ ? own_->pose_at(block.time) : body_.pose_at(block.time);
     block.X_WS = base::compose(block.X_WM, newest.row->X_MS);
   }
 }

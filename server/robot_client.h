@@ -12,13 +12,12 @@
 #include "base/pose.h"
 #include "control/controllers.h"
 #include "control/error_summary.h"
-#include "control/own_localization.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
-#include "server/camera_positions.h"
 #include "server/create_drive.h"
 #include "server/light_listener.h"
 #include "server/own_map.h"
+#include "server/own_state.h"
 #include "server/robot_client_log.h"
 #include "server/robot_link.h"
 #include "server/truth_report.h"
@@ -40,8 +39,9 @@ struct RobotClientOptions {
   std::optional<netio::Endpoint> spat;  ///< where to receive SPaT of traffic lights, in place of the farm's V2I
   std::function<std::int64_t()> utc;    ///< [ms] since 1970; empty: the system clock
   std::uint32_t tag = 0;                ///< id of the tag carried below cameras; 0: same as the robot
-  /// If set, its own pose and that in its packets to the farm are estimated from cameras only; nullopt: true pose.
-  std::optional<CameraPositionsOptions> cameras;
+  /// Cameras that see its tag, whose poses its state is estimated from. The tag is that of `tag`.
+  std::optional<CameraOptions> cameras;
+  double most_sigma = 0.5;  ///< [m] > 0 standard deviation of its position at which it stops
   /// Where to report its true state as V2V packets with its tag's id, 50 per second, stamped with Unix time; nullopt:
   /// nowhere. Replaces the light that cameras see.
   std::optional<netio::Endpoint> truth;
@@ -49,11 +49,14 @@ struct RobotClientOptions {
   std::optional<OwnMapOptions> map;     ///< where to send its own map; nullopt: no map
 };
 
-/// Statistics of positions from cameras.
-struct CameraPositionsStats {
-  netio::PacketCounts packets;
-  StateFilterCounts states;
-  PositionErrors errors;  ///< of its own fresh states, at its steps
+/// Statistics of the estimates of its own state.
+struct OwnStateStats {
+  bool cameras = false;
+  bool wheels = false;
+  OwnStateCounts counts;
+  PositionErrors errors;                ///< of a simulated robot, at its steps that were not lost
+  double sigma = 0.0;                   ///< [m] standard deviation of the position, at the end
+  estimation::Calibration calibration;  ///< at the end
 };
 
 /// Statistics of a robot's process.
@@ -75,10 +78,9 @@ struct RobotClientStats {
   double distance_m = 0.0;           ///< distance driven
   base::Pose pose;                   ///< at the end
   control::ErrorSummary error;
-  std::optional<CameraPositionsStats> cameras;  ///< nullopt: true pose
-  control::LocalizationError localization;      ///< compared with the poses of its motion model
-  std::optional<CreateCounts> create;           ///< nullopt: simulated robot
-  std::optional<OwnMapCounts> map;              ///< nullopt: no map
+  std::optional<OwnStateStats> own;    ///< nullopt: drives by its true state
+  std::optional<CreateCounts> create;  ///< nullopt: simulated robot
+  std::optional<OwnMapCounts> map;     ///< nullopt: no map
   bool listens_for_spat = false;
   LightCounts lights;
 };
@@ -114,7 +116,7 @@ class RobotClient {
   bool on_scans() const { return made_.on_scans; }  ///< steps on each new scan, or at half its rate without scans
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
-  const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: no cameras
+  const OwnState* own() const { return own_ ? &*own_ : nullptr; }  ///< null: drives by its true state
   const LightListener& lights() const { return lights_; }
   RobotClientStats stats() const;
 
@@ -126,12 +128,14 @@ class RobotClient {
   void decide(std::int64_t now);
   void send_state(std::int64_t now);
   /// Own state as estimated by the robot.
-  const base::Report& own_state() const { return cameras_ ? cameras_->state() : body_.state(); }
+  const base::Report& own_state() const { return own_ ? own_->state() : body_.state(); }
   void gather_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
-  /// Returns whether no camera has seen the robot recently: its state is too old to act on.
-  bool is_lost() const { return cameras_ && !cameras_->is_fresh(); }
+  /// Returns whether its state is unknown, or too uncertain to act on.
+  bool is_lost() const { return own_ && own_->is_lost(); }
+  void add_own_state(const RobotClientOptions& options);
+  void follow_create(std::int64_t now);
   void draw_map(std::int64_t now);
 
   const world::World& world_;
@@ -158,7 +162,8 @@ class RobotClient {
   std::vector<control::Neighbour> others_;
   std::vector<world::Signal> signals_;
   std::function<std::int64_t()> utc_;
-  std::optional<CameraPositions> cameras_;
+  std::optional<OwnState> own_;            ///< empty: drives by its true state
+  std::optional<sensors::Wheels> wheels_;  ///< of a simulated robot with encoders
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
   std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, set in `run`

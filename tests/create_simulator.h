@@ -88,6 +88,7 @@ class CreateSimulator {
     right = left = 0;
   }
 
+  double scale = 1.0;  ///< reported distance and angle over the true ones
   Mode mode = off;
   base::Pose X;              ///< pose in the world
   int right = 0, left = 0;   ///< [mm/s]
@@ -147,8 +148,8 @@ class CreateSimulator {
     X.x += way * std::cos(X.yaw + 0.5 * turn);
     X.y += way * std::sin(X.yaw + 0.5 * turn);
     X.yaw += turn;
-    distance_ += 1e3 * way;
-    angle_ += turn * 180.0 / M_PI;
+    distance_ += scale * 1e3 * way;
+    angle_ += scale * turn * 180.0 / M_PI;
   }
   static int take_whole(double& sum) {
     const double whole = std::trunc(sum);

@@ -49,13 +49,11 @@ std::optional<netio::SigningKey> key_of(const RobotOptions& options, const std::
   return key;
 }
 
-server::CameraPositionsOptions cameras_of(const RobotOptions& options, const netio::Endpoint& farm,
-                                          const std::vector<netio::Peer>& peers, const world::Mover& mover) {
-  constexpr double kForEver = 1e9;  // [s]
-  server::CameraPositionsOptions cameras;
+server::CameraOptions cameras_of(const RobotOptions& options, const netio::Endpoint& farm,
+                                 const std::vector<netio::Peer>& peers, const world::Mover& mover) {
+  server::CameraOptions cameras;
   cameras.bind = netio::own_end_for(farm.address, options.cameras);
-  cameras.filter.clock.source = options.camera_clock;
-  cameras.filter.stale_after = base::nanoseconds(options.stop_after > 0.0 ? options.stop_after : kForEver);
+  cameras.clock.source = options.camera_clock;
   const std::uint32_t id = options.tag > 0 ? options.tag : mover.id;
   if (const netio::Peer* tag = netio::find(peers, netio::PeerKind::tag, id)) cameras.peers = {*tag};
   return cameras;

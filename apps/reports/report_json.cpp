@@ -357,21 +357,37 @@ std::string reading_json(const world::World& world, const sensors::SensorSet& se
   return text + "\n]}\n";
 }
 
+namespace {
+
+Json constant_json(const estimation::Constant& constant) {
+  return {{"value", constant.value}, {"sigma", constant.sigma}};
+}
+
+/// Errors are known for simulated robots only.
+Json own_state_json(const server::OwnStateStats& own) {
+  Json json{{"sigma_m", own.sigma}};
+  if (own.cameras) json.update({{"packets", own.counts.packets.total()}, {"by_reason", reasons(own.counts.packets)}});
+  const server::PositionErrors& e = own.errors;
+  if (e.count > 0)
+    json.update(
+        {{"compared", e.count}, {"rms_m", e.rms()}, {"largest_m", e.largest}, {"largest_rad", e.largest_heading}});
+  const estimation::Calibration& c = own.calibration;
+  if (own.wheels)
+    json["wheels"] = {{"left_scale", constant_json(c.left_scale)},
+                      {"right_scale", constant_json(c.right_scale)},
+                      {"track_m", constant_json(c.track)}};
+  return json;
+}
+
+}  // namespace
+
 std::string robot_client_json(const server::RobotClientStats& f) {
   Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
             {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
             {"started", f.started},   {"done", f.done},     {"answered", f.answered},
             {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
-  if (f.cameras) {
-    const server::PositionErrors& e = f.cameras->errors;
-    json["positions"] = {{"packets", f.cameras->packets.total()},
-                         {"by_reason", reasons(f.cameras->packets)},
-                         {"compared", e.count},
-                         {"rms_m", e.rms()},
-                         {"largest_m", e.largest},
-                         {"largest_rad", e.largest_heading}};
-  }
+  if (f.own) json["positions"] = own_state_json(*f.own);
   if (f.map)
     json["own_map"] = {{"scans", f.map->scans},
                        {"maps", f.map->maps},
@@ -390,7 +406,6 @@ std::string robot_client_json(const server::RobotClientStats& f) {
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
   if (f.error.steps > 0) json["error"] = error_json(f.error);
-  if (f.localization.steps > 0) json["localization"] = localization_json(f.localization);
   return indented(json);
 }
 

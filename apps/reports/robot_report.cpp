@@ -44,6 +44,22 @@ std::string link_text(const server::LinkCounts& link) {
   return text;
 }
 
+std::string own_state_text(const server::OwnStateStats& own) {
+  std::string text;
+  if (own.cameras) text += row("positions", "{} by TAG packets", netio::packet_counts_text(own.counts.packets));
+  const server::PositionErrors& e = own.errors;
+  if (e.count > 0)
+    text += row("position error", "RMS {:.1f} mm, largest {:.1f} mm and {:.2f} degrees", 1e3 * e.rms(), 1e3 * e.largest,
+                e.largest_heading * 180.0 / M_PI);
+  text += row("  estimated", "{:.1f} mm (standard deviation, at the end)", 1e3 * own.sigma);
+  const estimation::Calibration& c = own.calibration;
+  if (own.wheels)
+    text += row("wheels", "left scale {:.4f} ± {:.4f}, right scale {:.4f} ± {:.4f}, track {:.1f} ± {:.1f} mm",
+                c.left_scale.value, c.left_scale.sigma, c.right_scale.value, c.right_scale.sigma, 1e3 * c.track.value,
+                1e3 * c.track.sigma);
+  return text;
+}
+
 }  // namespace
 
 std::string robot_client_text(const server::RobotClientStats& f) {
@@ -70,19 +86,11 @@ std::string robot_client_text(const server::RobotClientStats& f) {
     text += row("  silent", counted(f.lights.silences, "time") + " that a received light fell silent");
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
-  if (f.cameras) {
-    text += row("positions", "{} by TAG packets, of which {} used", netio::packet_counts_text(f.cameras->packets),
-                f.cameras->states.states[static_cast<std::size_t>(estimation::Verdict::used)]);
-    const server::PositionErrors& e = f.cameras->errors;
-    if (e.count > 0)
-      text += row("position error", "RMS {:.1f} mm, largest {:.1f} mm and {:.2f} degrees", 1e3 * e.rms(),
-                  1e3 * e.largest, e.largest_heading * 180.0 / M_PI);
-  }
+  if (f.own) text += own_state_text(*f.own);
   text += row("contacts", "{} that began", f.contacts);
   if (f.stops > 0) text += row("stopped", counted(f.stops, "time") + " for lack of readings or positions");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (f.error.steps > 0) text += row("control error", error_summary_text(f.error));
-  if (f.localization.steps > 0) text += row("localization error", localization_error_text(f.localization));
   return text;
 }
 

@@ -11,10 +11,10 @@ namespace {
 using Kind = WheeledMeasurement::Kind;
 
 constexpr double kLeastVariance = 1e-12;
-constexpr double kGate = 1e-4;    // probability that a correct measurement is rejected
-constexpr int kMostRejected = 5;  // in succession, of a robot that was not relocated
-constexpr int kHeadings = 36;     // of a start without a heading
-constexpr double kLeastWeight = 1e-6;
+constexpr double kGate = 1e-4;      // probability that a correct measurement is rejected
+constexpr int kMostRejected = 5;    // in succession, of a robot that was not relocated
+constexpr int kStartHeadings = 36;  // of a start without a heading
+constexpr double kLeastShare = 1e-6;
 // A window of one second with encoders and gyro at 250 Hz each, and poses.
 constexpr std::size_t kCapacity = 576;
 constexpr double kFastest = 10.0;  // [m/s] encoders that differ from the prediction by more were reset, or are wrong
@@ -60,7 +60,7 @@ const Hypothesis& heaviest(const std::vector<Hypothesis>& all) {
 template <class Hypothesis>
 void reduce(std::vector<Hypothesis>& all) {
   if (all.size() == 1) return;
-  std::erase_if(all, [](const Hypothesis& each) { return each.weight < kLeastWeight; });
+  std::erase_if(all, [](const Hypothesis& each) { return each.weight < kLeastShare; });
   for (std::size_t k = 0; all.size() > 1 && k < all.size();) {
     Hypothesis& next = all[(k + 1) % all.size()];
     const double apart = std::abs(base::wrap_angle(all[k].state.mean[kYaw] - next.state.mean[kYaw]));
@@ -141,10 +141,10 @@ Verdict Localization::start(const WheeledMeasurement& m, State& state) const {
   state.hypotheses.assign(1, {1.0, first});
   if (m.kind == Kind::pose) return Verdict::started;
 
-  constexpr double kApart = 2.0 * M_PI / kHeadings;
+  constexpr double kApart = 2.0 * M_PI / kStartHeadings;
   set_variance(first, kYaw, square(0.5 * kApart));
-  state.hypotheses.assign(kHeadings, {1.0 / kHeadings, first});
-  for (int k = 0; k < kHeadings; ++k) state.hypotheses[k].state.mean[kYaw] = base::wrap_angle(k * kApart);
+  state.hypotheses.assign(kStartHeadings, {1.0 / kStartHeadings, first});
+  for (int k = 0; k < kStartHeadings; ++k) state.hypotheses[k].state.mean[kYaw] = base::wrap_angle(k * kApart);
   return Verdict::started;
 }
 

@@ -41,6 +41,9 @@ struct LocalizationOptions {
   bool sideways = false;   ///< the robot can drive sideways (omni)
 };
 
+/// Covariance of a start pose known to 0.05 m and 0.02 rad.
+inline constexpr std::array<double, 6> kKnownStart{2.5e-3, 0.0, 0.0, 2.5e-3, 0.0, 4e-4};
+
 /// A constant of a sensor, as estimated.
 struct Constant {
   double value = 0.0;

@@ -62,8 +62,8 @@ using GateLimits = std::array<double, kComponents + 1>;
 /// @param gate as in FilterOptions
 GateLimits gate_limits(double gate);
 
-/// Allocates in the constructor, and once per place in the window for its first hypothesis and for a second one or
-/// more, which uncertain headings take. Not thread-safe.
+/// Allocates in the constructor, and once per place in the window when an uncertain heading takes a second hypothesis
+/// or more. Not thread-safe.
 class TrackFilter {
  public:
   explicit TrackFilter(const FilterOptions& options) : TrackFilter(options, gate_limits(options.gate)) {}
@@ -85,6 +85,8 @@ class TrackFilter {
 
  private:
   struct State {
+    State() { hypotheses.reserve(1); }
+
     std::int64_t last_position = 0;  ///< [ns] time of the last used measurement with a position
     Hypotheses hypotheses;           ///< at the last used measurement
 

@@ -104,7 +104,7 @@ void drive(std::uint64_t seed, gpu::Device& device, Errors& errors) {
     if (world.movers[row].name.rfind("roomba", 0) == 0) {
       const base::Pose& X_WM = world.movers[row].X_WM;
       estimation::Localization start(options);
-      start.add_pose(0, X_WM, {2.5e-3, 0.0, 0.0, 2.5e-3, 0.0, 4e-4});
+      start.add_pose(0, X_WM, estimation::kKnownStart);
       cars.try_emplace(row, Car{start, start});
     }
   for (std::int64_t time = 0; time < kEnd;) {

@@ -15,11 +15,9 @@ namespace {
 
 using reference::DrivenRobot;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-const LocalizationOptions kWheels{.encoder = LocalizationOptions::Encoder{}};
+const LocalizationOptions kOwnWheels{.encoder = LocalizationOptions::Encoder{}};
 /// For wheels whose constants are known.
 const LocalizationOptions kKnownWheels{.encoder = LocalizationOptions::Encoder{.scale_sigma = 0.0, .track_sigma = 0.0}};
-constexpr std::array<double, 6> kKnownStart{2.5e-3, 0.0, 0.0, 2.5e-3, 0.0, 4e-4};
 
 Localization started(const LocalizationOptions& options, const base::Pose& X_WM = {}) {
   Localization localization(options);
@@ -87,7 +85,7 @@ TEST(Localization, LearnsTheScaleAndCoastsThroughLossesOfTheCameras) {
 
 TEST(Localization, SeparatesTheTrackFromTheScales) {
   DrivenRobot robot{.left_scale = 1.03, .right_scale = 0.98, .track = 0.258 * 1.04};
-  Localization localization(kWheels);
+  Localization localization(kOwnWheels);
   drive(robot, localization, 2000, true);
   const auto [left, right, track, bias] = localization.calibration();
   EXPECT_NEAR(left.value, 1.03, 3.0 * left.sigma + 1e-3);
@@ -145,7 +143,7 @@ TEST(Localization, TurnsBetweenTwoCountsAreNotBias) {
 }
 
 TEST(Localization, TheGyroAloneCarriesTheHeadingWithoutEncoders) {
-  Localization localization = started(kWheels);
+  Localization localization = started(kOwnWheels);
   for (int k = 0; k <= 10; ++k) localization.add_encoder(k * kTick, 0.0, 0.0), localization.add_gyro(k * kTick, 0.0);
   for (int k = 31; k <= 60; ++k) localization.add_gyro(k * kTick, 1.0);
   EXPECT_NEAR(localization.predict(60 * kTick).estimate.velocity.turn, 1.0, 0.01);
@@ -155,15 +153,15 @@ TEST(Localization, TheGyroAloneCarriesTheHeadingWithoutEncoders) {
 // Late, wrong and missing measurements
 
 TEST(Localization, NonFiniteReadingsChangeNothing) {
-  Localization localization = started(kWheels, {1.0, 2.0, 0.0, 0.5});
+  Localization localization = started(kOwnWheels, {1.0, 2.0, 0.0, 0.5});
   localization.add_encoder(kTick, 0.0, 0.0);
   const Prediction before = localization.predict(kTick);
-  localization.add_encoder(kTick, kNan, 0.0);
+  localization.add_encoder(kTick, kNaN, 0.0);
   localization.add_encoder(kTick, std::numeric_limits<double>::max(), -std::numeric_limits<double>::max());
   localization.add_gyro(kTick, std::numeric_limits<double>::infinity());
-  localization.add_gps(kTick, kNan, kNan, kNan);
-  localization.add_gps(kTick, 1.0, 2.0, kNan);
-  localization.add_pose(kTick, {0.0, 0.0, kNan, 0.0}, kKnownStart);
+  localization.add_gps(kTick, kNaN, kNaN, kNaN);
+  localization.add_gps(kTick, 1.0, 2.0, kNaN);
+  localization.add_pose(kTick, {0.0, 0.0, kNaN, 0.0}, kKnownStart);
   localization.add_pose(kTick, {}, {1.0, 2.0, 0.0, 1.0, 0.0, 1.0});  // not positive definite
   localization.add_pose(-1, {}, kKnownStart);
   EXPECT_EQ(localization.predict(kTick).estimate.covariance, before.estimate.covariance);
@@ -171,14 +169,14 @@ TEST(Localization, NonFiniteReadingsChangeNothing) {
 }
 
 TEST(Localization, SpikesOfTheGyroAreOutliers) {
-  Localization localization = started(kWheels);
+  Localization localization = started(kOwnWheels);
   for (int k = 0; k < 10; ++k) localization.add_encoder(k * kTick, 0.0, 0.0), localization.add_gyro(k * kTick, 0.0);
   EXPECT_EQ(localization.add_gyro(10 * kTick, 1e6), Verdict::outlier);
 }
 
 TEST(Localization, OrderOfArrivalDoesNotMatter) {
   DrivenRobot robot{.left_scale = 1.02};
-  Localization in_order(kWheels), late(kWheels);
+  Localization in_order(kOwnWheels), late(kOwnWheels);
   std::vector<std::pair<std::int64_t, base::Pose>> seen;
   for (int k = 0; k < 200; ++k) {
     robot.drive({0.2, 0.0, 0.2}, kTick);
@@ -214,7 +212,7 @@ TEST(Localization, LatePositionsApplyAtTheirOwnTime) {
 }
 
 TEST(Localization, PositionsMayBeASecondLateAtHighRates) {
-  Localization localization = started(kWheels);
+  Localization localization = started(kOwnWheels);
   for (int k = 0; k <= 500; ++k) {
     localization.add_encoder(k * 4 * kMs, 0.0, 0.0);
     localization.add_gyro(k * 4 * kMs, 0.0);
@@ -240,7 +238,7 @@ TEST(Localization, LostAndResetEncodersLoseNoPose) {
 
 TEST(Localization, OutlyingPosesAreRejected) {
   DrivenRobot robot;
-  Localization localization(kWheels);
+  Localization localization(kOwnWheels);
   drive(robot, localization, 100, true);
   for (int k = 0; k < 5; ++k) {
     drive(robot, localization, 1, true);
@@ -251,7 +249,7 @@ TEST(Localization, OutlyingPosesAreRejected) {
 
 TEST(Localization, ARelocatedRobotKeepsItsConstants) {
   DrivenRobot robot{.left_scale = 1.05, .right_scale = 1.05};
-  Localization localization(kWheels);
+  Localization localization(kOwnWheels);
   drive(robot, localization, 600, true);
   robot.X_WM.x += 4.0;
   robot.X_WM.yaw += 2.0;
@@ -265,7 +263,7 @@ TEST(Localization, ARelocatedRobotKeepsItsConstants) {
 // Unknown starts, and robots without encoders
 
 TEST(Localization, HasNoEstimateBeforeTheFirstPose) {
-  Localization localization(kWheels);
+  Localization localization(kOwnWheels);
   EXPECT_EQ(localization.add_encoder(kTick, 0.1, 0.1), Verdict::no_track);
   EXPECT_EQ(localization.predict(kTick).status, Prediction::Status::none);
   EXPECT_EQ(localization.calibration().left_scale.value, 1.0);
@@ -275,7 +273,7 @@ TEST(Localization, HasNoEstimateBeforeTheFirstPose) {
 TEST(Localization, SatellitesAndWheelsShowTheHeading) {
   for (const double yaw : {0.0, 0.087, 1.0, -2.5, 3.14}) {
     DrivenRobot robot{.X_WM = {10.0, -5.0, 0.0, yaw}};
-    LocalizationOptions options = kWheels;
+    LocalizationOptions options = kOwnWheels;
     options.gps_noise = 0.5;
     Localization localization(options);
     for (int k = 0; k < 300; ++k) {

@@ -1,0 +1,97 @@
+#include "server/own_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace sf::server {
+
+namespace {
+
+double square(double v) { return v * v; }
+
+estimation::LocalizationOptions localization_of(const world::Mover& mover, const OwnStateOptions& options) {
+  estimation::LocalizationOptions own{.sideways = mover.drive == world::Drive::omni};
+  if (!options.wheels) return own;
+  const sensors::Encoder& wheels = *options.wheels;
+  own.encoder = {.per_count = wheels.per_count, .slip = wheels.slip, .track = wheels.track};
+  return own;
+}
+
+}  // namespace
+
+double PositionErrors::rms() const { return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0; }
+
+void add(PositionErrors& errors, const base::Pose& estimate, const base::Pose& truth) {
+  const double error = std::hypot(estimate.x - truth.x, estimate.y - truth.y);
+  ++errors.count;
+  errors.squares += error * error;
+  errors.largest = std::max(errors.largest, error);
+  errors.largest_heading = std::max(errors.largest_heading, std::abs(base::wrap_angle(estimate.yaw - truth.yaw)));
+}
+
+OwnState::OwnState(const world::Mover& mover, std::uint32_t row, const OwnStateOptions& options)
+    : options_(options),
+      localization_(localization_of(mover, options)),
+      clock_(options.cameras ? options.cameras->clock : estimation::ClockOptions{}),
+      state_{.mover = row, .X_WM = mover.X_WM} {
+  if (options.start) localization_.add_pose(0, *options.start, estimation::kKnownStart);
+  if (!options.cameras) return;
+  inbox_.emplace(netio::InboxOptions{.bind = options.cameras->bind,
+                                     .receive_buffer = std::size_t{1} << 18,
+                                     .tags = {options.cameras->tag},
+                                     .peers = options.cameras->peers,
+                                     .take_late = options.cameras->clock.source != estimation::ClockSource::arrival});
+}
+
+void OwnState::receive(std::int64_t now) {
+  if (!inbox_) return;
+  inbox_->receive(now, [&](const netio::Packet& packet) {
+    if (const auto* tag = std::get_if<netio::Tag>(&packet.body))
+      take(packet.header, netio::report(packet.header, *tag, 0).X_WM, now);
+  });
+}
+
+void OwnState::take(const netio::Header& header, const base::Pose& X_WM, std::int64_t now) {
+  using estimation::ClockSource, estimation::ClockVerdict;
+  if (++taken_ > kMostBetweenPredictions) {
+    ++flooded_;
+    return;
+  }
+  if (header.session != session_) clock_.reset();  // the sender restarted
+  session_ = header.session;
+  const CameraOptions& cameras = *options_.cameras;
+  const std::int64_t epoch = cameras.clock.source == ClockSource::trusted ? epoch_ : 0;
+  const ClockVerdict verdict = clock_.take(header.time, now + epoch);
+  ++clock_counts_[static_cast<std::size_t>(verdict)];
+  if (verdict != ClockVerdict::used && verdict != ClockVerdict::stepped) return;
+
+  const std::int64_t age =
+      cameras.clock.source == ClockSource::arrival ? 0 : clock_.to_sender(now + epoch) - header.time;
+  const double position = square(cameras.position_sigma);
+  localization_.add_pose(std::max(now - std::max(age, std::int64_t{0}), std::int64_t{0}), X_WM,
+                         {position, 0.0, 0.0, position, 0.0, square(cameras.yaw_sigma)});
+}
+
+void OwnState::add_wheels(std::int64_t now, const sensors::Rolled& rolled) {
+  localization_.add_encoder(now, rolled.left, rolled.right);
+}
+
+void OwnState::predict(std::int64_t now) {
+  taken_ = 0;
+  const estimation::Prediction prediction = localization_.predict(now);
+  if (prediction.status == estimation::Prediction::Status::none) return;
+  const auto& P = prediction.estimate.covariance;
+  sigma_ = std::sqrt(P[0] + P[7]);
+  const bool unseen = options_.stop_after > 0 && prediction.age > options_.stop_after;
+  lost_ = has_wheels() ? !(sigma_ <= options_.most_sigma) : unseen;
+  if (lost_) return;
+  state_ = {state_.mover, now, prediction.estimate.X_WM, prediction.estimate.velocity};
+  trail_.add(now, state_.X_WM);
+}
+
+OwnStateCounts OwnState::counts() const {
+  return {inbox_ ? inbox_->counts() : netio::PacketCounts{}, localization_.counts(), clock_counts_, flooded_};
+}
+
+}  // namespace sf::server

@@ -1,0 +1,172 @@
+// A robot's estimate of its own state from wheels and cameras, closed over a simulated Create and UDP.
+
+#include "server/own_state.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "netio/outbox.h"
+#include "robots/estimation/chi_square.h"
+#include "server/create_drive.h"
+#include "tests/create_simulator.h"
+#include "tests/robots/scenes.h"
+#include "tests/units.h"
+
+namespace sf::server {
+namespace {
+
+constexpr std::uint32_t kTag = 7;
+
+TEST(PositionErrors, RootMeanSquareAndMaximum) {
+  PositionErrors errors;
+  EXPECT_EQ(errors.rms(), 0.0) << "of none";
+  add(errors, {3.0, 4.0, 9.0, 3.1}, {0.0, 0.0, 0.0, -3.1});
+  add(errors, {1.0, 1.0, 0.0, 0.25}, {1.0, 2.0, 0.0, 0.0});
+  EXPECT_EQ(errors.count, 2u);
+  EXPECT_DOUBLE_EQ(errors.rms(), std::sqrt(0.5 * (25.0 + 1.0)));
+  EXPECT_EQ(errors.largest, 5.0) << "heights do not count";
+  EXPECT_DOUBLE_EQ(errors.largest_heading, 0.25) << "3.1 and -3.1 are 0.083 apart";
+}
+
+/// A robot that starts at (1, 2) with a heading of 0.5, and cameras that see its tag with errors of 5 mm and 0.01 rad.
+struct OwnStateTest : testing::Test {
+  explicit OwnStateTest(bool wheels = true) {
+    world::World world = scenes::boxed_world(8.0, 8.0);
+    mover = scenes::add_create(world, {1.0, 2.0, 0.0, 0.5});
+    mover.track = 0.258;
+    if (wheels) encoder = sensors::Encoder{.per_count = 0.258 * kDegree, .slip = 0.001, .track = 0.258};
+    restart();
+  }
+  void restart() {
+    own.emplace(mover, 3,
+                OwnStateOptions{.cameras = CameraOptions{.bind = {netio::kLoopback, 0},
+                                                         .tag = kTag,
+                                                         .clock = {.source = estimation::ClockSource::arrival},
+                                                         .position_sigma = 0.005,
+                                                         .yaw_sigma = 0.01},
+                                .wheels = encoder,
+                                .stop_after = kSecond});
+    outbox.emplace();
+  }
+  void see(const base::Pose& X) {
+    const auto normal = [&](double sigma) { return sigma * std::normal_distribution<double>{}(random); };
+    const double yaw = X.yaw + normal(0.01);
+    const netio::Tag tag{.position = {X.x + normal(0.005), X.y + normal(0.005), 0.0},
+                         .orientation = {0.0, 0.0, std::sin(0.5 * yaw), std::cos(0.5 * yaw)}};
+    const netio::Header header{.type = netio::Type::tag, .robot = kTag, .sequence = sequence++, .time = now};
+    base::Bytes bytes;
+    netio::encode(header, tag, bytes);
+    outbox->queue({netio::kLoopback, own->port()}, bytes);
+    outbox->flush();
+    own->receive(now);
+  }
+
+  world::Mover mover;
+  std::optional<sensors::Encoder> encoder;
+  std::optional<OwnState> own;
+  std::optional<netio::Outbox> outbox;
+  std::mt19937_64 random{1};
+  std::uint32_t sequence = 0;
+  std::int64_t now = 0;
+};
+
+struct CamerasOnly : OwnStateTest {
+  CamerasOnly() : OwnStateTest(false) {}
+};
+
+/// Its odometry is 5 % wrong. Drives curves and straight lines at 0.1 m/s.
+struct CreateRun {
+  explicit CreateRun(OwnStateTest& fixture) : test(fixture), drive({create.device()}, test.mover.X_WM, 0.258) {
+    create.scale = 1.05;
+    create.X = test.mover.X_WM;
+    EXPECT_TRUE(create.streaming());
+  }
+  void run(int ticks, bool cameras) {
+    for (int k = 0; k < ticks; ++k) {
+      const double turn = cameras ? std::array{0.0, 0.3, 0.0, -0.3}[test.now / (5 * kSecond) % 4] : 0.0;
+      test.now += 7 * 15 * kMs;
+      create.run(7);
+      drive.update(test.now);
+      test.own->add_wheels(test.now, drive.rolled());
+      if (cameras) test.see(create.X);
+      test.own->predict(test.now);
+      drive.drive({0.1, 0.0, turn}, test.now);
+      EXPECT_TRUE(create.driven(create.drives + 1));
+    }
+  }
+  double error() const {
+    const base::Pose& X = test.own->state().X_WM;
+    return std::hypot(X.x - create.X.x, X.y - create.X.y);
+  }
+
+  OwnStateTest& test;
+  CreateSimulator create;
+  CreateDrive drive;
+};
+
+TEST_F(OwnStateTest, LearnsTheScaleOfACreateAndCoastsWhenItsTagIsCovered) {
+  double squares = 0.0;
+  constexpr int kSeeds = 10;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    random.seed(seed);
+    now = 0;
+    restart();
+    CreateRun create(*this);
+    create.run(571, true);  // one minute
+    EXPECT_NEAR(own->calibration().left_scale.value, 1.05, 0.01) << seed;
+    EXPECT_NEAR(own->calibration().right_scale.value, 1.05, 0.01) << seed;
+    create.run(190, false);  // 20 s
+    EXPECT_FALSE(own->is_lost());
+    EXPECT_LT(create.error(), 0.04) << seed;
+    squares += create.error() * create.error() / (own->sigma() * own->sigma());
+  }
+  EXPECT_LT(squares, estimation::chi_square_limit(2 * kSeeds, 0.001)) << "the covariance is too small";
+}
+
+TEST_F(OwnStateTest, IsLostUntilACameraSeesIt) {
+  own->add_wheels(now, {0.0, 0.0});
+  own->predict(now);
+  EXPECT_TRUE(own->is_lost());
+  see({-1.0, 0.5, 0.0, 2.0});
+  own->predict(now);
+  EXPECT_FALSE(own->is_lost());
+  EXPECT_NEAR(own->state().X_WM.x, -1.0, 0.03);
+  EXPECT_EQ(own->state().mover, 3u);
+}
+
+TEST_F(OwnStateTest, IsLostWhenItsPositionIsTooUncertain) {
+  see(mover.X_WM);
+  own->predict(now);
+  for (int k = 0; k < 4000 && !own->is_lost(); ++k) {
+    now += kTick;
+    own->add_wheels(now, {0.02 * k, 0.02 * k});
+    own->predict(now);
+  }
+  EXPECT_TRUE(own->is_lost());
+  EXPECT_GT(now, 30 * kSecond) << "it coasts for long";
+  EXPECT_NEAR(own->sigma(), 0.5, 0.1);
+  see(mover.X_WM);
+  own->predict(now);
+  EXPECT_FALSE(own->is_lost()) << "seen again";
+}
+
+TEST_F(CamerasOnly, AreLostWhenNoCameraSeesThemForTooLong) {
+  see(mover.X_WM);
+  own->predict(now += kSecond);
+  EXPECT_FALSE(own->is_lost());
+  own->predict(now += kMs);
+  EXPECT_TRUE(own->is_lost());
+  EXPECT_FALSE(own->has_wheels());
+}
+
+TEST_F(OwnStateTest, CountsAFlood) {
+  for (std::size_t k = 0; k < OwnState::kMostBetweenPredictions + 5; ++k) see(mover.X_WM);
+  EXPECT_EQ(own->counts().flooded, 5u);
+  own->predict(now);
+  see(mover.X_WM);
+  EXPECT_EQ(own->counts().flooded, 5u);
+}
+
+}  // namespace
+}  // namespace sf::server
