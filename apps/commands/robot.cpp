@@ -80,6 +80,7 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   client.wait_for_start = waits_for_start(options);
   if (options.spat > 0) client.spat = netio::own_end_for(client.link.farm.address, options.spat);
   client.tag = options.tag;
+  client.most_sigma = options.most_sigma;
   if (options.cameras > 0) client.cameras = cameras_of(options, client.link.farm, peers, mover);
   netio::AddressBook book;
   if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");

@@ -537,7 +537,7 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
       ->type_name("KEY=VALUE");
   app.add_flag("--localize", o.localize,
                "Use the pose estimated from the robot's own encoders, gyro and GPS receiver for control (same as --set "
-               "localize=true)");
+               "localize=true; default of `robot`, which uses encoders and cameras)");
   add_in_process(app, o);
 }
 

@@ -303,10 +303,11 @@ void add_link(CLI::App& app, LinkOptions& o) {
 }
 
 void add_cameras(CLI::App& app, RobotOptions& o) {
-  constexpr const char* kGroup = "Positions from cameras (docs/vps.md)";
+  constexpr const char* kGroup = "The robot's own position (docs/robots.md)";
   auto* cameras = app.add_option("--cameras", o.cameras,
-                                 "UDP port for TAG packets (`sensorfarm vps --send`), the robot's only source of its "
-                                 "pose: it stops while they are missing, and reports the filtered pose to the farm")
+                                 "UDP port for TAG packets (`sensorfarm vps --send`): the robot drives by and reports "
+                                 "the pose estimated from them and from its wheels (--set localize=false: from them "
+                                 "alone)")
                       ->check(whole(1, 65535))
                       ->type_name("PORT")
                       ->group(kGroup);
@@ -314,6 +315,12 @@ void add_cameras(CLI::App& app, RobotOptions& o) {
   app.add_option("--tag", o.tag, "Id of the robot's tag (default: the robot's id)")
       ->check(whole(1, 65535))
       ->type_name("ID")
+      ->group(kGroup);
+  app.add_option("--lost-beyond", o.most_sigma,
+                 "Standard deviation of the estimated position beyond which a robot with wheel encoders stops [m]")
+      ->check(number(0.001, 1000.0))
+      ->type_name("M")
+      ->capture_default_str()
       ->group(kGroup);
   app.add_option("--truth", o.truth,
                  "Send the true state to a renderer of camera images (`sensorfarm vps --robots PORT`); the clocks of "

@@ -101,11 +101,9 @@ server::RobotClientStats robot_stats() {
   fill(f.link.packets, 3);
   f.link.socket_drops = 41, f.link.stale = 42, f.link.whole = {{"gps", 43}, {"laser", 44}};
   f.error = {5, 0.5, 0.75};
-  f.localization = {.steps = 4, .squares = 1.0, .yaw_squares = 0.04, .max = 0.75};
-  f.cameras.emplace();
-  fill(f.cameras->packets, 2);
-  f.cameras->states.states = {61, 62, 63, 64, 65, 66, 67, 68, 69};
-  f.cameras->errors = {4, 0.0004, 0.015, 0.1};
+  f.own = {.cameras = true, .wheels = true, .errors = {4, 0.0004, 0.015, 0.1}, .sigma = 0.0125};
+  fill(f.own->counts.packets, 2);
+  f.own->calibration = {{1.05, 0.0025}, {1.04, 0.003}, {0.26, 0.004}, {0.0, 0.0}};
   f.create = server::CreateCounts{71, 72, 73, 1, 75, 76};
   f.map = server::OwnMapCounts{81, 82, outbox(83)};
   f.listens_for_spat = true;
