@@ -53,7 +53,7 @@ void sign(base::Bytes& packet, const SigningKey& key, std::uint64_t counter) {
   write_signature(packet, key, counter);
 }
 
-bool ReplayWindow::admit(std::uint64_t counter) {
+bool CounterWindow::admit(std::uint64_t counter) {
   if (counter > newest_) {
     const std::uint64_t ahead = counter - newest_;
     seen_ = (ahead < kSize ? seen_ << ahead : 0) | 1;

@@ -43,7 +43,7 @@ void sign(base::Bytes& packet, const SigningKey& key, std::uint64_t counter);
 
 /// Window of received counters (RFC 4303, section 3.4.3). Accepts each counter once, in any order within the newest
 /// kSize.
-class ReplayWindow {
+class CounterWindow {
  public:
   static constexpr std::uint64_t kSize = 64;
   /// Records the counter of a valid signature. @return false if it was received before, or is kSize or more behind the
@@ -87,7 +87,7 @@ class SignatureChecker {
 
  private:
   SigningKey key_;
-  ReplayWindow window_;
+  CounterWindow window_;
   std::uint64_t lag_ = 0;
 };
 

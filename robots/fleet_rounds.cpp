@@ -4,9 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "robots/actuator_model.h"
+#include "robots/command_law.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
+#include "robots/motion_limits.h"
 
 namespace sf::robots {
 

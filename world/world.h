@@ -109,7 +109,7 @@ struct Accuracy {
 /// Drive types. `skid`: wheels on both sides that cannot be steered (Pioneer 3-AT); they scrub in turns.
 enum class Drive { differential, omni, car, skid };
 
-/// How a commanded twist becomes wheel motion (robots/actuator_model.h).
+/// How a commanded twist becomes wheel motion (robots/command_law.h).
 enum class ActuatorModel : std::uint8_t {
   direct,        ///< unchanged
   player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m

@@ -4,7 +4,7 @@
 #include "apps/processes/stop_signals.h"
 #include "apps/reports/text.h"
 #include "base/thread_pool.h"
-#include "scenarios/merging.h"
+#include "scenarios/recording_merge.h"
 
 namespace sf::apps {
 

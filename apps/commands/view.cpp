@@ -18,7 +18,7 @@
 #include "bridges/viewer.h"
 #include "gpu/device.h"
 #include "record/recording.h"
-#include "scenarios/merging.h"
+#include "scenarios/recording_merge.h"
 #include "scenarios/recorded_states.h"
 #include "scenarios/replay.h"
 #include "scenarios/run_info.h"

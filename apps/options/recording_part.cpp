@@ -9,7 +9,7 @@
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
-#include "scenarios/merging.h"
+#include "scenarios/recording_merge.h"
 
 namespace sf::apps {
 

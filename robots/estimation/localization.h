@@ -16,7 +16,7 @@
 #include <optional>
 #include <vector>
 
-#include "robots/estimation/replay_window.h"
+#include "robots/estimation/measurement_window.h"
 #include "robots/estimation/track_filter.h"
 #include "robots/estimation/wheeled_state.h"
 
@@ -112,7 +112,7 @@ class Localization {
   LocalizationOptions options_;
   WheeledModel model_;
   GateLimits limits_;
-  ReplayWindow<WheeledMeasurement, State> window_;
+  MeasurementWindow<WheeledMeasurement, State> window_;
   std::vector<Weighted> predicted_;  ///< reused
   std::uint32_t sequence_ = 0;
 };

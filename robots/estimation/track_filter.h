@@ -5,7 +5,7 @@
 //   filter.take(measurement, now);                 // may be late
 //   const Prediction seen = filter.predict(now);   // seen.status, seen.age, seen.estimate
 //
-// Late measurements are inserted at their place in a ReplayWindow. All verdicts except `future`, `too_late`,
+// Late measurements are inserted at their place in a MeasurementWindow. All verdicts except `future`, `too_late`,
 // `replayed` and `invalid` are made in this order, so measurements that arrive within the window give bitwise identical
 // results in any order of arrival.
 //
@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "robots/estimation/hypotheses.h"
-#include "robots/estimation/replay_window.h"
+#include "robots/estimation/measurement_window.h"
 #include "robots/estimation/state.h"
 
 namespace sf::estimation {
@@ -99,7 +99,7 @@ class TrackFilter {
 
   FilterOptions options_;
   GateLimits limits_;
-  ReplayWindow<Measurement, State> window_;
+  MeasurementWindow<Measurement, State> window_;
 
   // Members, to avoid reallocation. `ahead_`: a whole step after the state at `ahead_of_`; empty after each
   // measurement.

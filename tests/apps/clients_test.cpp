@@ -184,7 +184,7 @@ TEST(Clients, CSignsAsSpecified) {
   EXPECT_EQ(outcome.out, "sound\n");
 }
 
-/// Counters at the edges of the window, as in `ReplayWindow`, a flipped bit and a different key.
+/// Counters at the edges of the window, as in `CounterWindow`, a flipped bit and a different key.
 TEST(Clients, PythonRejectsTheSamePacketsAsTheFarm) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
   const Outcome outcome =

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "robots/kinematics.h"
+#include "robots/motion_limits.h"
 #include "tests/robots/scenes.h"
 #include "tests/units.h"
 

@@ -105,8 +105,8 @@ TEST(Signature, OnlyValidSignaturesAdvanceTheWindow) {
 }
 
 /// Checks one boundary after another, named in the comments.
-TEST(ReplayWindow, AdmitsEachCounterOnce) {
-  ReplayWindow window;
+TEST(CounterWindow, AdmitsEachCounterOnce) {
+  CounterWindow window;
   EXPECT_TRUE(window.admit(100));
   EXPECT_FALSE(window.admit(100)) << "the newest again";
   EXPECT_TRUE(window.admit(99)) << "overtaken by one";
@@ -128,28 +128,28 @@ TEST(ReplayWindow, AdmitsEachCounterOnce) {
   EXPECT_FALSE(window.admit(228));
 }
 
-TEST(ReplayWindow, BeginsAtAnyCounter) {
+TEST(CounterWindow, BeginsAtAnyCounter) {
   for (const std::uint64_t first :
        {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{63}, std::uint64_t{64}, ~std::uint64_t{0}}) {
-    ReplayWindow window;
+    CounterWindow window;
     EXPECT_TRUE(window.admit(first)) << first;
     EXPECT_FALSE(window.admit(first)) << first;
   }
-  ReplayWindow window;
+  CounterWindow window;
   EXPECT_TRUE(window.admit(1));
   EXPECT_TRUE(window.admit(0)) << "0 is a counter like others";
   EXPECT_FALSE(window.admit(0));
 }
 
 /// Compares with the rule: new, and less than 64 behind the newest.
-TEST(ReplayWindow, MatchesItsRule) {
-  ReplayWindow window;
+TEST(CounterWindow, MatchesItsRule) {
+  CounterWindow window;
   std::vector<bool> seen(3000, false);
   std::uint64_t newest = 0, random = 1;
   for (int i = 0; i < 20'000; ++i) {
     random = random * 6364136223846793005u + 1442695040888963407u;
     const std::uint64_t counter = static_cast<std::uint64_t>(i) / 8 + (random >> 33) % 150;
-    const bool expected = counter + ReplayWindow::kSize > newest && !seen[counter];
+    const bool expected = counter + CounterWindow::kSize > newest && !seen[counter];
     ASSERT_EQ(window.admit(counter), expected) << i;
     if (!expected) continue;
     seen[counter] = true;

@@ -35,11 +35,11 @@ using VerdictCounts = std::array<std::uint64_t, kVerdicts>;
 /// @tparam Measurement totally ordered, first by its `time` [ns]; only identical measurements are equal
 /// @tparam State with known() and, if known, time() [ns]; by default the state before any measurement
 template <class Measurement, class State>
-class ReplayWindow {
+class MeasurementWindow {
  public:
   /// @param span [ns] > 0 measurements older than the newest by more are rejected
   /// @param capacity > 0 measurements; when full, the window becomes shorter
-  ReplayWindow(std::int64_t span, std::size_t capacity) : span_(span), entries_(capacity) {}
+  MeasurementWindow(std::int64_t span, std::size_t capacity) : span_(span), entries_(capacity) {}
 
   /// Inserts a measurement, and applies it and all later ones again.
   /// @param apply Verdict(const Measurement&, State&); a rejected measurement leaves the state unchanged

@@ -1,6 +1,6 @@
 // Merging the recordings of two ranks.
 
-#include "scenarios/merging.h"
+#include "scenarios/recording_merge.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "robots/actuator_model.h"
+#include "robots/command_law.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenarios/merging.h"
+#include "scenarios/recording_merge.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Actuator models: how a robot's driver and firmware turn a commanded twist into wheel motion.
+// Command laws: how a robot's driver and firmware turn a commanded twist into wheel motion.
 
 #include "base/pose.h"
 #include "world/world.h"
