@@ -10,7 +10,8 @@ ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_
   ControlShellSettings read;
   read.on_signal = settings.choice("start", "at-once", {"at-once", "signal"}) == "signal";
   read.wait_on_bumper = settings.flag("wait_on_bumper", stops_on_bumper);
-  if (settings.has("localize")) read.localize = settings.flag("localize", false);
+  const bool set = settings.has("localize"), localize = settings.flag("localize", false);
+  if (set) read.localize = localize;
   return read;
 }
 

@@ -10,6 +10,7 @@ namespace sf::estimation {
 
 namespace {
 
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Columns3 = Eigen::Matrix<double, 6, 3>;
 // One row or column per measured component, on the stack.
 using MeasuredVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
@@ -30,7 +31,7 @@ Matrix6 process_noise(const MotionModel& model, const Motion& from, double dt) {
   Q(kX, kX) = Q(kY, kY) = model.slip * std::abs(dt);
   for (const auto& [place, weight] : kGaussLegendre) {
     const Motion then = move(model.path, from, place * dt);
-    const Columns3 G = jacobian(model.path, then, (1.0 - place) * dt).rightCols<3>();
+    const Columns3 G = matrix(jacobian(model.path, then, (1.0 - place) * dt)).rightCols<3>();
     Q += weight * std::abs(dt) * G * density.asDiagonal() * G.transpose();
   }
   return Q;
@@ -85,7 +86,7 @@ Estimate predict(const MotionModel& model, const Estimate& estimate, std::int64_
   const double dt = 1e-9 * static_cast<double>(time - estimate.time);
   const Motion from{estimate.X_WM, estimate.velocity};
   const Motion to = move(model.path, from, dt);
-  const Matrix6 F = jacobian(model.path, from, dt);
+  const Matrix6 F = matrix(jacobian(model.path, from, dt));
   Estimate later{time, to.X_WM, to.velocity};
   store(F * matrix(estimate.covariance) * F.transpose() + process_noise(model, from, dt), later.covariance);
   return later;

@@ -74,6 +74,13 @@ void reduce(std::vector<Hypothesis>& all) {
   }
 }
 
+/// Returns whether encoders counted more since `before` [ns] than wheels can roll.
+bool was_reset(const WheeledState& predicted, const WheeledMeasurement& m, std::int64_t before) {
+  const double seconds = 1e-9 * static_cast<double>(std::abs(m.time - before));
+  const double left = m.values[0] - predicted.mean[kLeftRolled], right = m.values[1] - predicted.mean[kRightRolled];
+  return std::max(std::abs(left), std::abs(right)) > kFastest * (seconds + 1.0);
+}
+
 }  // namespace
 
 Localization::Localization(const LocalizationOptions& options)
@@ -109,18 +116,22 @@ Verdict Localization::take(WheeledMeasurement measurement) {
 
 /// A rejected measurement leaves the hypotheses unchanged.
 Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
-  if (!state.known()) return is_fix(m.kind) ? start(m, state) : Verdict::no_track;
+  const bool encoder = m.kind == Kind::encoder;
+  if (!state.known()) {
+    if (encoder) state.counted_at = m.time, state.counted = {m.values[0], m.values[1]};
+    return is_fix(m.kind) ? start(m, state) : Verdict::no_track;
+  }
+  if (encoder && !state.rolled) start_encoders(m, state);
   predicted_ = state.hypotheses;
   for (Weighted& each : predicted_) each.state = estimation::predict(model_, each.state, m.time);
-  if (m.kind == Kind::encoder && restarts_encoders(m, state)) {
-    const bool first = !std::exchange(state.rolled, true);
+  if (encoder && was_reset(predicted_[0].state, m, state.time())) {
     for (Weighted& each : predicted_) replace(each.state, m);
     state.hypotheses = predicted_;
-    return first ? Verdict::used : Verdict::outlier;
+    return Verdict::outlier;
   }
   const Innovation surprise = weigh(m);
   // Encoders are not gated, since commands change the speeds at once. `!(a <= b)` rejects NaN as well.
-  if (m.kind != Kind::encoder && !(surprise.squared <= limits_[surprise.degrees])) return reject(m, state);
+  if (!encoder && !(surprise.squared <= limits_[surprise.degrees])) return reject(m, state);
   for (Weighted& each : predicted_) each.state = correct(each.state, m);
   reduce(predicted_);
   state.hypotheses = predicted_;
@@ -128,6 +139,21 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   state.last_fix = m.time;
   state.rejected = 0;
   return Verdict::used;
+}
+
+/// Sets the distances at the time of the state, between the last encoder reading before the start and the first after
+/// it; the wheels turn evenly in between.
+void Localization::start_encoders(const WheeledMeasurement& m, State& state) const {
+  const double gap = static_cast<double>(m.time - state.counted_at);
+  const bool between = state.counted_at >= 0 && state.counted_at <= state.time() && state.time() < m.time;
+  const double left = between ? static_cast<double>(m.time - state.time()) / gap : 0.0;  // share of the gap
+  WheeledMeasurement then = m;
+  for (const std::size_t k : {0, 1}) then.values[k] -= left * (m.values[k] - state.counted[k]);
+  for (Weighted& each : state.hypotheses) {
+    if (!between) each.state = estimation::predict(model_, each.state, m.time);
+    replace(each.state, then);
+  }
+  state.rolled = true;
 }
 
 /// Starts or restarts the pose. The constants and the distances rolled remain.
@@ -153,13 +179,6 @@ Verdict Localization::reject(const WheeledMeasurement& m, State& state) const {
   const std::int64_t patience = m.kind == Kind::pose ? kRelocated : kRelocatedPositions;
   if (++state.rejected > kMostRejected && m.time - state.last_fix > patience) return start(m, state);
   return Verdict::outlier;
-}
-
-bool Localization::restarts_encoders(const WheeledMeasurement& m, const State& state) const {
-  const double seconds = 1e-9 * static_cast<double>(std::abs(m.time - state.time()));
-  const auto& mean = state.hypotheses[0].state.mean;
-  const double jump = std::max(std::abs(m.values[0] - mean[kLeftRolled]), std::abs(m.values[1] - mean[kRightRolled]));
-  return !state.rolled || jump > kFastest * (seconds + 1.0);
 }
 
 /// Weighs the predicted hypotheses by the likelihood of a measurement. Returns the least innovation: a measurement is

@@ -95,7 +95,9 @@ class Localization {
   struct State {
     std::int64_t last_fix = 0;         ///< [ns] time of the last used pose or position
     int rejected = 0;                  ///< poses and positions rejected since then
-    bool rolled = false;               ///< the encoders' distances are known
+    bool rolled = false;               ///< the encoders' distances are part of the hypotheses
+    std::int64_t counted_at = -1;      ///< [ns] of the last encoder reading before that; -1: none
+    std::array<double, 2> counted{};   ///< [m] its values
     std::vector<Weighted> hypotheses;  ///< weights sum to 1; empty: no pose yet
 
     bool known() const { return !hypotheses.empty(); }
@@ -106,7 +108,7 @@ class Localization {
   Verdict apply(const WheeledMeasurement& measurement, State& state);
   Verdict start(const WheeledMeasurement& measurement, State& state) const;
   Verdict reject(const WheeledMeasurement& measurement, State& state) const;
-  bool restarts_encoders(const WheeledMeasurement& measurement, const State& state) const;
+  void start_encoders(const WheeledMeasurement& measurement, State& state) const;
   Innovation weigh(const WheeledMeasurement& measurement);
 
   LocalizationOptions options_;

@@ -25,14 +25,16 @@ Motion move(MotionModel::Path path, const Motion& from, double dt) {
   return {{X.x + d.x, X.y + d.y, X.z, base::wrap_angle(X.yaw + v.turn * dt)}, {later.x, later.y, v.turn}};
 }
 
-Matrix6 jacobian(MotionModel::Path path, const Motion& from, double dt) {
+std::array<double, kComponents * kComponents> jacobian(MotionModel::Path path, const Motion& from, double dt) {
   const double yaw = from.X_WM.yaw;
   const auto& [forward, left, turn] = from.velocity;
-  Matrix6 F = Matrix6::Identity();
-  F(kYaw, kTurn) = dt;
+  std::array<double, kComponents * kComponents> F{};
+  const auto at = [&](std::size_t row, std::size_t column) -> double& { return F[row * kComponents + column]; };
+  for (std::size_t k = 0; k < kComponents; ++k) at(k, k) = 1.0;
+  at(kYaw, kTurn) = dt;
   const auto set_column = [&](Component row, Component column, glm::dvec2 d) {
-    F(row, column) = d.x;
-    F(row + 1, column) = d.y;
+    at(row, column) = d.x;
+    at(row + 1u, column) = d.y;
   };
   const auto perpendicular = [](glm::dvec2 d) { return glm::dvec2{-d.y, d.x}; };
 

@@ -1,13 +1,11 @@
 #pragma once
-// Noise-free motion of a planar object and its derivatives. Included only by sources of this folder.
+// Noise-free motion of a planar object and its derivatives.
 
-#include <Eigen/Core>
+#include <array>
 
 #include "robots/estimation/kalman.h"
 
 namespace sf::estimation {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 struct Motion {
   base::Pose X_WM;
@@ -17,8 +15,8 @@ struct Motion {
 /// Returns the motion after `dt` [s], which may be negative.
 Motion move(MotionModel::Path path, const Motion& from, double dt);
 
-/// Returns the derivative of `move` with respect to pose and twist, in the order of Component.
-Matrix6 jacobian(MotionModel::Path path, const Motion& from, double dt);
+/// Returns the derivative of `move` with respect to pose and twist, row-major, in the order of Component.
+std::array<double, kComponents * kComponents> jacobian(MotionModel::Path path, const Motion& from, double dt);
 
 /// Nodes in [0, 1] and weights of three-point Gauss-Legendre quadrature.
 inline constexpr std::array<std::array<double, 2>, 3> kGaussLegendre{

@@ -11,6 +11,7 @@ namespace sf::estimation {
 namespace {
 
 constexpr int kSize = kWheeledComponents;
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Vector = Eigen::Matrix<double, kSize, 1>;
 using Matrix = Eigen::Matrix<double, kSize, kSize, Eigen::RowMajor>;
 // One row or column per measured value, on the stack.
@@ -41,7 +42,8 @@ std::array<double, 2> wheel_speeds(const WheeledModel& model, const WheeledState
 /// Returns the derivative of the state after `dt` with respect to `state`.
 Matrix derivative(const WheeledModel& model, const WheeledState& state, double dt) {
   Matrix F = Matrix::Identity();
-  F.topLeftCorner<6, 6>() = jacobian(model.motion.path, motion_of(state), dt);
+  const std::array<double, 36> planar = jacobian(model.motion.path, motion_of(state), dt);
+  F.topLeftCorner<6, 6>() = Eigen::Map<const Matrix6>(planar.data());
   const std::array<double, 2> speeds = wheel_speeds(model, state);
   for (const int right : {0, 1}) {
     const double scale = state.mean[kLeftScale + right], half = (right == 0 ? -0.5 : 0.5) * model.track;

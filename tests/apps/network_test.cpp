@@ -415,7 +415,7 @@ TEST(SendAndListen, PortsPerRobotFitTheSensors) {
   }
   const std::string world = folder.write("w.world", robots);
   const Outcome received = exchange(world, "34 ports", "0.3", {}).received;
-  EXPECT_NE(received.err.find("17 ports per robot"), std::string::npos) << received.err;
+  EXPECT_NE(received.err.find("ports per robot: 17, the minimum"), std::string::npos) << received.err;
   const Json in(received.out);
   EXPECT_EQ(in.number("/good"), 34 * 3);
   EXPECT_EQ(in.number("/silent_ports"), 0);

@@ -92,7 +92,7 @@ TEST(RunScenario, RejectsOptionsThatTheScenarioDefines) {
 
 TEST(RunScenario, ReportsThatExpectationsAreNotChecked) {
   const Outcome outcome = run_successfully({"run", kTown, "--duration", "1"});
-  EXPECT_NE(outcome.err.find("9 expectations are not judged"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("9 expectations are not checked"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ TEST(Ros2Program, WithoutThePlugInReportsTheMissingFile) {
   unsetenv("SENSORFARM_PROGRAM");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-  EXPECT_NE(outcome.err.find("it needs Cyclone DDS 0.10"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("it requires Cyclone DDS 0.10"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

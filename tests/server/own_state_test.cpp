@@ -136,6 +136,7 @@ TEST_F(OwnStateTest, IsLostUntilACameraSeesIt) {
 }
 
 TEST_F(OwnStateTest, IsLostWhenItsPositionIsTooUncertain) {
+  own->add_wheels(now, {0.0, 0.0});
   see(mover.X_WM);
   own->predict(now);
   for (int k = 0; k < 4000 && !own->is_lost(); ++k) {

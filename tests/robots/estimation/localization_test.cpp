@@ -270,6 +270,16 @@ TEST(Localization, HasNoEstimateBeforeTheFirstPose) {
   EXPECT_EQ(localization.calibration().left_scale.sigma, 0.05);
 }
 
+TEST(Localization, AStartBetweenTwoEncoderReadingsLosesNoMotion) {
+  Localization localization(kKnownWheels);
+  localization.add_encoder(0, 5.0, 5.0);
+  localization.add_pose(kTick / 2, {1.0, 2.0, 0.0, 0.0}, {1e-8, 0.0, 0.0, 1e-8, 0.0, 1e-8});
+  localization.add_encoder(kTick, 5.02, 5.02);
+  const Estimate now = localization.predict(kTick).estimate;
+  EXPECT_NEAR(now.X_WM.x, 1.01, 1e-4);
+  EXPECT_LT(std::sqrt(now.covariance[14]), 0.01) << "the heading is as known as before";
+}
+
 TEST(Localization, SatellitesAndWheelsShowTheHeading) {
   for (const double yaw : {0.0, 0.087, 1.0, -2.5, 3.14}) {
     DrivenRobot robot{.X_WM = {10.0, -5.0, 0.0, yaw}};
