@@ -44,7 +44,9 @@ WheeledState prior_of(const LocalizationOptions& options, const WheeledModel& mo
   set_variance(state, kTurn, square(unknown[2]));
   for (const int k : {kLeftScale, kRightScale, kTrackScale}) state.mean[k] = 1.0;
   if (options.encoder) {
-    for (const int k : {kLeftScale, kRightScale}) set_variance(state, k, square(options.encoder->scale_sigma));
+    const double common = square(options.encoder->scale_sigma), half = square(0.5 * options.encoder->difference_sigma);
+    for (const int k : {kLeftScale, kRightScale}) set_variance(state, k, common + half);
+    set_covariance(state, kLeftScale, kRightScale, common - half);
     set_variance(state, kTrackScale, square(options.encoder->track_sigma));
   }
   set_variance(state, kGyroBias, square(options.gyro.bias));

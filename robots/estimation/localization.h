@@ -25,11 +25,12 @@ namespace sf::estimation {
 /// Sensor errors, as in the sensors' settings. All values are finite.
 struct LocalizationOptions {
   struct Encoder {
-    double per_count = 1e-3;    ///< [m] > 0
-    double slip = 0.005;        ///< [m^(1/2)] >= 0 standard deviation of a wheel's slip after one metre
-    double track = 0.258;       ///< [m] > 0, nominal
-    double scale_sigma = 0.05;  ///< [-] >= 0 standard deviation of each wheel's unknown scale
-    double track_sigma = 0.05;  ///< [-] >= 0 standard deviation of the unknown track, relative to `track`
+    double per_count = 1e-3;         ///< [m] > 0
+    double slip = 0.005;             ///< [m^(1/2)] >= 0 standard deviation of a wheel's slip after one metre
+    double track = 0.258;            ///< [m] > 0, nominal
+    double scale_sigma = 0.05;       ///< [-] >= 0 standard deviation of the wheels' common unknown scale
+    double difference_sigma = 0.01;  ///< [-] >= 0 standard deviation of the difference between both scales
+    double track_sigma = 0.05;       ///< [-] >= 0 standard deviation of the unknown track, relative to `track`
   };
   struct Gyro {
     double noise = 1.7e-3;  ///< [rad/s] >= 0 standard deviation of a reading

@@ -185,6 +185,10 @@ void set_variance(WheeledState& state, std::size_t component, double variance) {
   P(k, k) = variance;
 }
 
+void set_covariance(WheeledState& state, std::size_t a, std::size_t b, double covariance) {
+  state.covariance[a * kWheeledComponents + b] = state.covariance[b * kWheeledComponents + a] = covariance;
+}
+
 WheeledState merged(double weight_a, const WheeledState& a, double weight_b, const WheeledState& b) {
   const double share = weight_b / (weight_a + weight_b);
   Vector d = mean_of(b) - mean_of(a);

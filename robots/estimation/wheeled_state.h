@@ -84,6 +84,9 @@ void replace(WheeledState& state, const WheeledMeasurement& measurement);
 /// Sets the component's variance, and removes its correlation with all others.
 void set_variance(WheeledState& state, std::size_t component, double variance);
 
+/// Sets the covariance of two components.
+void set_covariance(WheeledState& state, std::size_t a, std::size_t b, double covariance);
+
 /// Returns the Gaussian with the mean and the covariance of two, whose headings are close.
 WheeledState merged(double weight_a, const WheeledState& a, double weight_b, const WheeledState& b);
 

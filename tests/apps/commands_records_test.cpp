@@ -96,7 +96,7 @@ const Case kCases[] = {
       "v2x export W/simville/simville.world --latitude 40.7 --longitude -112"},
      {}},
     {"tests", {"test W/../experiments/mapping.toml --junit FOLDER/j.xml", "experiment --list"}, {"j.xml"}},
-    {"selftest", {"selftest numbers wires --json", "selftest times files"}, {}},
+    {"selftest", {"selftest numbers --json", "selftest times numbers"}, {}},
     {"sweep",
      {"sweep W/../experiments/sweeps/lane-edge.toml --list",
       "sweep W/../experiments/sweeps/lane-edge.toml -o FOLDER/s --slurm --tasks 4 --sbatch=--time=1:00:00"},

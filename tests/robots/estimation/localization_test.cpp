@@ -17,7 +17,8 @@ using reference::DrivenRobot;
 
 const LocalizationOptions kOwnWheels{.encoder = LocalizationOptions::Encoder{}};
 /// For wheels whose constants are known.
-const LocalizationOptions kKnownWheels{.encoder = LocalizationOptions::Encoder{.scale_sigma = 0.0, .track_sigma = 0.0}};
+const LocalizationOptions kKnownWheels{
+    .encoder = LocalizationOptions::Encoder{.scale_sigma = 0.0, .difference_sigma = 0.0, .track_sigma = 0.0}};
 
 Localization started(const LocalizationOptions& options, const base::Pose& X_WM = {}) {
   Localization localization(options);
@@ -84,12 +85,12 @@ TEST(Localization, LearnsTheScaleAndCoastsThroughLossesOfTheCameras) {
 }
 
 TEST(Localization, SeparatesTheTrackFromTheScales) {
-  DrivenRobot robot{.left_scale = 1.03, .right_scale = 0.98, .track = 0.258 * 1.04};
+  DrivenRobot robot{.left_scale = 1.03, .right_scale = 1.01, .track = 0.258 * 1.04};
   Localization localization(kOwnWheels);
   drive(robot, localization, 2000, true);
   const auto [left, right, track, bias] = localization.calibration();
   EXPECT_NEAR(left.value, 1.03, 3.0 * left.sigma + 1e-3);
-  EXPECT_NEAR(right.value, 0.98, 3.0 * right.sigma + 1e-3);
+  EXPECT_NEAR(right.value, 1.01, 3.0 * right.sigma + 1e-3);
   EXPECT_NEAR(track.value, 0.258 * 1.04, 3.0 * track.sigma + 1e-3);
   EXPECT_LT(track.sigma, 0.003);
 }
@@ -267,7 +268,7 @@ TEST(Localization, HasNoEstimateBeforeTheFirstPose) {
   EXPECT_EQ(localization.add_encoder(kTick, 0.1, 0.1), Verdict::no_track);
   EXPECT_EQ(localization.predict(kTick).status, Prediction::Status::none);
   EXPECT_EQ(localization.calibration().left_scale.value, 1.0);
-  EXPECT_EQ(localization.calibration().left_scale.sigma, 0.05);
+  EXPECT_NEAR(localization.calibration().left_scale.sigma, std::hypot(0.05, 0.005), 1e-12);
 }
 
 TEST(Localization, AStartBetweenTwoEncoderReadingsLosesNoMotion) {
