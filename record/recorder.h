@@ -24,8 +24,8 @@
 
 namespace sf::record {
 
-/// The part of a recording that one process writes if several processes share a fleet (scenarios/recording_merge.h), and its
-/// format.
+/// The part of a recording that one process writes if several processes share a fleet (scenarios/recording_merge.h),
+/// and its format.
 struct RecordingPart {
   unsigned part = 0;   ///< below `parts`; part 0 has everything except the readings of other parts, which have their
                        ///< own and /clock

@@ -59,8 +59,7 @@ std::size_t SelfTestReport::passed() const {
 }
 
 std::string self_test_text(const SelfTestReport& test) {
-  std::string text =
-      fmt::format("{:<9} {:<27} {:>8}  {}\n", "group", "case", "checks", "closest call: error of limit");
+  std::string text = fmt::format("{:<9} {:<27} {:>8}  {}\n", "group", "case", "checks", "closest call: error of limit");
   std::uint64_t checks = 0;
   for (const auto& [c, o] : test.cases) {
     text += line_of(*c, o);

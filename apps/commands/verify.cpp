@@ -12,8 +12,8 @@
 #include "apps/reports/progress_line.h"
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
-#include "scenarios/recording_merge.h"
 #include "scenarios/recorded_accuracy.h"
+#include "scenarios/recording_merge.h"
 #include "scenarios/recording_verification.h"
 
 namespace sf::apps {

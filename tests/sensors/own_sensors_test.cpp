@@ -235,7 +235,8 @@ TEST(OwnSensors, TypesMustBeNewAndUsable) {
   expect_in("expected 13 to 31", add({.name = "mine", .id = 12, .columns = {{"x"}}}));
   expect_in("expected 13 to 31", add({.name = "mine", .id = 32, .columns = {{"x"}}}));
   expect_in("'laser' with id 1 already exists", add({.name = "laser", .id = 30, .columns = {{"x"}}}));
-  expect_in("'laser' with id 1 already exists", add({.name = "ranger", .id = 30, .columns = {{"x"}}}));  // a keyword of world files
+  expect_in("'laser' with id 1 already exists",
+            add({.name = "ranger", .id = 30, .columns = {{"x"}}}));  // a keyword of world files
   expect_in("has no column", add({.name = "mine", .id = 30}));
   expect_in("a unit above 0", add({.name = "mine", .id = 30, .columns = {{"x", 0.0}}}));
   expect_in("a rate of", add({.name = "mine", .id = 30, .columns = {{"x"}}, .rate = 0.0}));

@@ -111,8 +111,8 @@ struct Loop {
     server::RobotClientOptions options{.log_descriptor = -1};
     options.link.farm = {netio::kLoopback, service.port()};
     options.controller = {controller, 10.0, control::Settings(controller, settings)};
-    options.cameras = server::CameraOptions{.bind = {netio::kLoopback, 0},
-                                            .clock = {.source = estimation::ClockSource::trusted}};
+    options.cameras =
+        server::CameraOptions{.bind = {netio::kLoopback, 0}, .clock = {.source = estimation::ClockSource::trusted}};
     options.stop_after = 0.3;
     options.tag = 7;
     options.truth = cameras.truth();
