@@ -124,7 +124,7 @@ export class Panel {
 
   /** Counts of the fleet; a click selects the next counted robot. Commands of robots in other processes are unknown. */
   #makeSummary() {
-    const rows = [['contact', 'in contact', (fleet, i) => fleet.inContact(i), 'Robots now stopped by a wall or a robot'], ['outside', 'outside', (fleet, i) => fleet.isOutside(i), 'Robots outside the world's bounding box']];
+    const rows = [['contact', 'in contact', (fleet, i) => fleet.inContact(i), 'Robots now stopped by a wall or a robot'], ['outside', 'outside', (fleet, i) => fleet.isOutside(i), 'Robots outside the bounding box of the world']];
     if (this.scene.mode !== 'service') rows.splice(1, 0, ['stuck', 'stuck', (fleet, i) => fleet.isStuck(i), 'Robots commanded to move that have hardly moved for 3 s of simulated time']);
     this.counts = rows.map(([id, text, counts, title]) => {
       const button = element('button', { title, disabled: true, onclick: () => {
