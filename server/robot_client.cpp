@@ -148,7 +148,8 @@ void RobotClient::step(std::int64_t now) {
   if (started_ && !is_lost() && !log_.readings_timed_out(link_, now) && (!create_ || create_->ready(now))) decide(now);
   if (create_) create_->drive(command_, now);
   send_state(now);
-  log_.note_link(link_, own_ ? std::optional(is_lost()) : std::nullopt, now);
+  log_.note_link(link_, now);
+  if (own_) log_.note_position(is_lost(), own_->port() > 0, now);
   if (create_) log_.note_create(create_->problem(now), create_->counts().frames > 0, now);
 }
 

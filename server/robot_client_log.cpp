@@ -37,7 +37,16 @@ void RobotClientLog::note_signatures(const RobotLink& link, std::int64_t now) {
              now);
 }
 
-void RobotClientLog::note_link(const RobotLink& link, std::optional<bool> lost, std::int64_t now) {
+void RobotClientLog::note_position(bool lost, bool cameras, std::int64_t now) {
+  if (lost_.value_or(cameras) == lost) return void(lost_ = lost);
+  lost_ = lost;
+  stops_ += lost ? 1 : 0;
+  const std::string unseen = fmt::format("no camera detects {} any more: it stops until one does", robot_);
+  const std::string uncertain = fmt::format("the position of {} is too uncertain: it stops (--lost-beyond)", robot_);
+  log_.write(!lost ? fmt::format("cameras detect {}", robot_) : cameras ? unseen : uncertain, now);
+}
+
+void RobotClientLog::note_link(const RobotLink& link, std::int64_t now) {
   const std::string farm = netio::endpoint_text(link.farm());
   note_signatures(link, now);
   if (!problem_logged_ && link.listens() && now - link.last_answer().value_or(0) >= kAnswerIn) {
@@ -48,13 +57,6 @@ void RobotClientLog::note_link(const RobotLink& link, std::optional<bool> lost, 
                     "these ports? {}",
                     farm, reading_timeout_ > 0 ? "The robot stops until readings arrive" : "The robot continues"),
         now);
-  }
-  if (lost && was_lost_ != *lost) {
-    was_lost_ = *lost;
-    stops_ += was_lost_ ? 1 : 0;
-    log_.write(was_lost_ ? fmt::format("no camera detects {} any more: it stops until one does", robot_)
-                         : fmt::format("cameras detect {}", robot_),
-               now);
   }
   if (stands_ == readings_timed_out(link, now) || !link.last_reading()) return;
   stands_ = !stands_;

@@ -17,9 +17,12 @@ class RobotClientLog {
   /// reading after which the robot stops; 0: never
   RobotClientLog(std::string robot, std::uint32_t id, int descriptor, std::int64_t reading_timeout);
 
-  /// Logs changes since the last step: no answer, refused signatures, lost positions or missing readings.
-  /// @param lost no camera sees the robot; nullopt: it has no cameras
-  void note_link(const RobotLink& link, std::optional<bool> lost, std::int64_t now);
+  /// Logs changes since the last step: no answer, refused signatures, missing readings.
+  void note_link(const RobotLink& link, std::int64_t now);
+  /// Logs that the robot's own position was lost or found.
+  /// @param cameras it has cameras, and is lost until one sees it; else it is lost once its wheels' errors are too
+  /// large
+  void note_position(bool lost, bool cameras, std::int64_t now);
   /// Logs why the real robot does not drive, whenever the reason changes. Does not log silence before its first answer
   /// is due.
   /// @param problem "": none @param answered a frame has arrived
@@ -41,7 +44,7 @@ class RobotClientLog {
   std::uint64_t troubles_ = 0;     ///< number of refused packets seen before
   std::int64_t next_trouble_ = 0;  ///< [ns] time before which nothing is logged
   bool stands_ = false;            ///< stopped for lack of readings
-  bool was_lost_ = true;           ///< as of the last step; initially no camera has seen the robot
+  std::optional<bool> lost_;       ///< as of the last step
   std::uint64_t stops_ = 0;
   std::string create_problem_;  ///< last logged
 };
