@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robots/estimation/chi_square.h"
+#include "tests/instrumented.h"
 #include "tests/robots/estimation/driven_robot.h"
 #include "tests/robots/estimation/reference.h"
 
@@ -14,6 +15,8 @@ namespace sf::estimation {
 namespace {
 
 using reference::DrivenRobot;
+
+const int kSeeds = instrumented() ? 10 : 100;
 
 const LocalizationOptions kOwnWheels{.encoder = LocalizationOptions::Encoder{}};
 /// For wheels whose constants are known.
@@ -60,7 +63,6 @@ double pose_nees(const Prediction& prediction, const base::Pose& truth) {
 }
 
 TEST(Localization, LearnsTheScaleAndCoastsThroughLossesOfTheCameras) {
-  constexpr int kSeeds = 100;
   constexpr double kSlip = 0.001;  // 0.005 alone would allow an error of 45 mm
   std::vector<double> nees(3, 0.0);
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -104,7 +106,6 @@ TEST(Localization, LearnsTheBiasOfAGyro) {
 
 TEST(Localization, KnownWheelsMatchTheirCovariance) {
   // Without cameras, one minute: only slips, skids and rounding.
-  constexpr int kSeeds = 100;
   double sum = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     DrivenRobot robot{.random = std::mt19937_64(seed)};
@@ -123,7 +124,7 @@ TEST(Localization, RestKeepsThePose) {
   DrivenRobot robot;
   Localization localization = started(kKnownWheels);
   robot.add_encoder(localization);
-  for (int k = 0; k < 36'000; ++k) {
+  for (int k = 0; k < (instrumented() ? 3'600 : 36'000); ++k) {
     robot.drive({}, kTick);
     robot.add_encoder(localization);
   }
