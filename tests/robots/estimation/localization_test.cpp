@@ -17,6 +17,8 @@ namespace {
 using reference::DrivenRobot;
 
 const int kSeeds = instrumented() ? 10 : 100;
+/// In each tail: one in forty of all runs, and of the few instrumented seeds only a gross fault.
+const double kTail = instrumented() ? 1e-4 : 0.025;
 
 const LocalizationOptions kOwnWheels{.encoder = LocalizationOptions::Encoder{}};
 /// For wheels whose constants are known.
@@ -81,8 +83,8 @@ TEST(Localization, LearnsTheScaleAndCoastsThroughLossesOfTheCameras) {
     EXPECT_LT(robot.error(localization), 0.04) << seed;
   }
   for (const double sum : nees) {
-    EXPECT_GT(sum, chi_square_limit(3 * kSeeds, 0.975)) << "the covariance is too large";
-    EXPECT_LT(sum, chi_square_limit(3 * kSeeds, 0.025)) << "the covariance is too small";
+    EXPECT_GT(sum, chi_square_limit(3 * kSeeds, 1.0 - kTail)) << "the covariance is too large";
+    EXPECT_LT(sum, chi_square_limit(3 * kSeeds, kTail)) << "the covariance is too small";
   }
 }
 
@@ -115,8 +117,8 @@ TEST(Localization, KnownWheelsMatchTheirCovariance) {
     drive(robot, localization, 600, false);
     sum += pose_nees(localization.predict(robot.time), robot.X_WM);
   }
-  EXPECT_GT(sum, chi_square_limit(3 * kSeeds, 0.975));
-  EXPECT_LT(sum, chi_square_limit(3 * kSeeds, 0.025));
+  EXPECT_GT(sum, chi_square_limit(3 * kSeeds, 1.0 - kTail));
+  EXPECT_LT(sum, chi_square_limit(3 * kSeeds, kTail));
 }
 
 TEST(Localization, RestKeepsThePose) {
