@@ -98,15 +98,15 @@ Matrix process_noise(const WheeledModel& model, const WheeledState& from, double
 constexpr std::array<std::array<int, 2>, 4> kMeasured{{{kX, 3}, {kX, 2}, {kTurn, 1}, {kLeftRolled, 2}}};
 
 /// H, the measured values minus the predicted ones, and their noise.
-struct Measured {
+struct Residual {
   Rows H;
   Values difference;
   ValuesMatrix noise;
 };
 
-Measured measured(const WheeledState& state, const WheeledMeasurement& m) {
+Residual residual_of(const WheeledState& state, const WheeledMeasurement& m) {
   const auto [first, count] = kMeasured[static_cast<std::size_t>(m.kind)];
-  Measured all{Rows::Zero(count, kSize), Values(count), ValuesMatrix(count, count)};
+  Residual all{Rows::Zero(count, kSize), Values(count), ValuesMatrix(count, count)};
   const auto& c = m.covariance;
   const std::array<double, 9> full{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]};
   for (int i = 0; i < count; ++i) {
@@ -124,7 +124,7 @@ Measured measured(const WheeledState& state, const WheeledMeasurement& m) {
 bool is_valid(const WheeledMeasurement& m) {
   const WheeledState origin{.mean = {}};
   if (m.time < 0 || m.time > std::int64_t{1} << 62) return false;
-  const auto [H, difference, noise] = measured(origin, m);
+  const auto [H, difference, noise] = residual_of(origin, m);
   const auto in_range = [](double v) { return v >= 1e-18 && v <= 1e18; };
   return std::all_of(m.values.begin(), m.values.end(), [](double v) { return std::abs(v) <= 1e9; }) &&
          std::all_of(noise.diagonal().begin(), noise.diagonal().end(), in_range) &&
@@ -143,7 +143,7 @@ WheeledState predict(const WheeledModel& model, const WheeledState& state, std::
 }
 
 Innovation innovation(const WheeledState& predicted, const WheeledMeasurement& measurement) {
-  const auto [H, difference, noise] = measured(predicted, measurement);
+  const auto [H, difference, noise] = residual_of(predicted, measurement);
   const ValuesMatrix S = H * covariance_of(predicted) * H.transpose() + noise;
   const Eigen::LLT<ValuesMatrix> llt(S);
   return {difference.dot(llt.solve(difference)), static_cast<int>(difference.size()),
@@ -151,7 +151,7 @@ Innovation innovation(const WheeledState& predicted, const WheeledMeasurement& m
 }
 
 WheeledState correct(const WheeledState& predicted, const WheeledMeasurement& measurement) {
-  const auto [H, difference, noise] = measured(predicted, measurement);
+  const auto [H, difference, noise] = residual_of(predicted, measurement);
   const auto P = covariance_of(predicted);
   const ValuesMatrix S = H * P * H.transpose() + noise;
   const Rows Kt = S.llt().solve(H * P);
@@ -165,7 +165,7 @@ WheeledState correct(const WheeledState& predicted, const WheeledMeasurement& me
 }
 
 void replace(WheeledState& state, const WheeledMeasurement& measurement) {
-  const auto [H, difference, noise] = measured(state, measurement);
+  const auto [H, difference, noise] = residual_of(state, measurement);
   Eigen::Map<Matrix> P(state.covariance.data());
   for (int i = 0; i < difference.size(); ++i) {
     int k = 0;
