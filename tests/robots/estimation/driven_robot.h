@@ -10,7 +10,7 @@
 
 namespace sf::estimation::reference {
 
-/// What the robot's own model of its sensors does not contain.
+/// The true constants and errors of the robot's sensors.
 struct DrivenRobot {
   double left_scale = 1.0, right_scale = 1.0;  ///< metres counted per metre rolled
   double track = 0.258;                        ///< [m] effective
