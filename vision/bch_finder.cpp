@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <optional>
 
 #include "base/pose.h"
@@ -62,7 +63,10 @@ std::optional<BchMatch> read_code(const Image& image, const QuadMap& map, int bo
   const double white = sorted[3], black = median(around);
   const double level = 0.5 * (black + white);
   const auto wrong = std::count_if(around.begin(), around.end(), [level](double grey) { return grey > level; });
-  if (white - black < kMinCellContrast || 4 * wrong > static_cast<std::ptrdiff_t>(around.size())) return std::nullopt;
+  // A quarter of a thin border may be hidden, and an eighth of a wide one, which otherwise could include white.
+  const std::ptrdiff_t share = border == 1 ? 4 : 8;
+  if (white - black < kMinCellContrast || share * wrong > static_cast<std::ptrdiff_t>(around.size()))
+    return std::nullopt;
   BchWord word = 0;
   for (const double grey : inside) word = word << 1 | (grey > level ? 1u : 0u);
   return decode_bch(word);
@@ -72,6 +76,7 @@ class BchFinder : public TagFinder {
  public:
   bool find(const Image& image, std::vector<TagOutline>& found) override {
     found.clear();
+    read_.clear();
     if (!squares_->find(image, outlines_)) return false;
     for (const TagOutline& square : outlines_) {
       const auto& c = square.corners;
@@ -81,14 +86,37 @@ class BchFinder : public TagFinder {
       const auto standard = read_code(image, map, 3);
       if (standard && (!match || standard->errors < match->errors)) match = standard;
       if (!match) continue;
-      TagOutline& outline = found.emplace_back(square);
-      outline.id = match->id;
+      TagOutline outline{match->id, square.corners};
       std::rotate(outline.corners.begin(), outline.corners.begin() + match->turns, outline.corners.end());
+      read_.push_back({outline, match->errors, glm::distance(outline.corners[0], outline.corners[2])});
     }
+    keep_best(found);
     return true;
   }
 
  private:
+  struct Read {
+    TagOutline outline;
+    int errors = 0;
+    double diagonal = 0.0;  ///< [px]
+  };
+  static glm::dvec2 middle(const TagOutline& o) { return 0.5 * (o.corners[0] + o.corners[2]); }
+
+  /// A marker is also found by the inner edge of a wide border, and by the outer edge of the white around it: of
+  /// squares around one centre, keeps the one with the fewest errors, or else the largest.
+  void keep_best(std::vector<TagOutline>& found) {
+    std::sort(read_.begin(), read_.end(), [](const Read& a, const Read& b) {
+      return a.errors != b.errors ? a.errors < b.errors : a.diagonal > b.diagonal;
+    });
+    for (const Read& each : read_) {
+      const auto is_same = [&](const TagOutline& o) {
+        return o.id == each.outline.id && glm::distance(middle(o), middle(each.outline)) < 0.25 * each.diagonal;
+      };
+      if (std::none_of(found.begin(), found.end(), is_same)) found.push_back(each.outline);
+    }
+  }
+
+  std::vector<Read> read_;
   std::unique_ptr<TagFinder> squares_ = opencv().make_tag_finder("");
   std::vector<TagOutline> outlines_;
 };

@@ -18,7 +18,8 @@ constexpr int kSteps = 30;
 /// [rad] A start on the wrong side may end in a local minimum.
 constexpr std::array<glm::dvec3, 5> kStarts{
     {{0.0, 0.0, 0.0}, {0.35, 0.0, 0.0}, {-0.35, 0.0, 0.0}, {0.0, 0.35, 0.0}, {0.0, -0.35, 0.0}}};
-constexpr double kDecided = 0.7;  // ratio of the sums of squares of two orientations that decides between them
+constexpr double kMinTiltSigma = 1e-6;  // [rad] of synthetic images without noise; 0 is reserved
+constexpr double kDecided = 0.7;        // ratio of the sums of squares of two orientations that decides between them
 
 /// A ray from the camera to an edge point.
 struct EdgeRay {
@@ -205,7 +206,7 @@ std::optional<TagFit> fit_tag_in_space(const Camera& camera, std::span<const Edg
   fit.points = static_cast<int>(problem.size());
   const double depth = glm::length(camera.position - best.center);
   fit.height_sigma = std::hypot(0.5 * side * sigma[2], 2.0 * kEdgeBias * fit.pixel * depth / side);
-  fit.tilt_sigma = std::max({sigma[3], sigma[4], between});
+  fit.tilt_sigma = std::max({sigma[3], sigma[4], between, kMinTiltSigma});
   return fit;
 }
 

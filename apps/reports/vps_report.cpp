@@ -117,6 +117,7 @@ std::string vps_report_json(const VpsReport& r) {
   if (r.sent)
     json["packets"] = {
         {"sent", r.sent->sent}, {"failed", r.sent->failed + r.sent->dropped}, {"unaddressed", r.unaddressed}};
+  if (!r.orientation.empty()) json["orientation"] = r.orientation;
   json["tags"] = Json::array();
   for (const auto& [id, tag] : r.tags) {
     json["tags"].push_back({{"id", id},

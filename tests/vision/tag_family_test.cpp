@@ -119,6 +119,7 @@ TEST(BchMarkers, AreReadWithEitherBorderInAnyOrientation) {
       const Seen seen = see("artoolkitplus_bch", bordered(encode_bch(1234), border), yaw);
       ASSERT_EQ(seen.tags.size(), 1u) << border << " " << yaw;
       EXPECT_EQ(seen.tags[0].id, 1234u);
+      EXPECT_EQ(seen.counts.unfitted, 0u) << "the inner edge of the border";
       EXPECT_NEAR(base::wrap_angle(seen.tags[0].fit.X_WT.yaw - yaw), 0.0, 0.3 * kDegree);
       EXPECT_NEAR(seen.tags[0].fit.X_WT.x, 0.05, 1e-3);
     }
