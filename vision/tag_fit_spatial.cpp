@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <utility>
+#include <vector>
 
 #include "vision/median.h"
 #include "vision/normal_equations.h"

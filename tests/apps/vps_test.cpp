@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <thread>
@@ -22,6 +23,7 @@
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
+#include "vision/tag_family.h"
 
 namespace sf {
 
@@ -147,6 +149,29 @@ TEST(Vps, ReportsMeasuredHeightsAndTilts) {
   EXPECT_GT(report.number("/tags/2/tilt_rad/sigma"), 0.0);
   EXPECT_NE(read_file(folder.path("track.csv")).find("z_m,z_sigma_m,roll_rad,pitch_rad,tilt_sigma_rad"),
             std::string::npos);
+}
+
+TEST(Vps, WarnsOfAnIdSeenTwice) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  vision::Scene scene;
+  for (const double x : {-0.3, 0.3}) {
+    vision::Patch tag;
+    tag.shape = vision::Patch::Shape::tag;
+    tag.X_WP = {x, 0.0, 0.2, 0.0};
+    tag.size = {0.15, 0.15};
+    tag.pattern = vision::family_pattern("aruco_4x4_50", 1);
+    scene.patches.push_back(tag);
+  }
+  vision::Image image;
+  vision::Renderer(vision::read_testbed(testbed).cameras[0].camera, vision::Imaging{}, 1).render(scene, 0.0, 0, image);
+  const std::string pixels(image.pixels.begin(), image.pixels.end());
+  std::filesystem::create_directory(folder.path("p"));
+  for (const char* name : {"p/0.pgm", "p/1.pgm"}) folder.write(name, "P5\n320 240\n255\n" + pixels);
+  const Outcome outcome = run_successfully({"vps", testbed, "--input", "a=" + folder.path("p")});
+  EXPECT_NE(outcome.err.find("tag 1 is seen twice in one image of camera 'a', at ("), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("seen twice"), outcome.err.rfind("seen twice")) << "once in ten seconds";
+  EXPECT_NE(outcome.out.find("2 dropped: their id was seen at another place"), std::string::npos) << outcome.out;
 }
 
 TEST(Vps, NamesTheOrientationOfAprilTags) {
