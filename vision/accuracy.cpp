@@ -25,8 +25,9 @@ void AccuracyMeter::compare(const TrackedTag& tracked, std::size_t tag) {
     return;
   }
   accuracy_.position.add(off);
+  if (tracked.height_sigma > 0.0) accuracy_.height.add(tracked.X_WT.z - truth.X_WT.z);
   accuracy_.heading.add(base::wrap_angle(tracked.X_WT.yaw - truth.X_WT.yaw));
-  if (++sightings_[tag] < 5) return;
+  if (++sightings_[tag] < 6) return;
   accuracy_.velocity.add(glm::distance(tracked.velocity, truth.velocity));
   accuracy_.turn.add(tracked.turn - truth.turn);
 }
@@ -42,12 +43,13 @@ void AccuracyMeter::add(double time, std::span<const TrackedTag> tracked) {
       ++known;
       continue;
     }
-    // No tag is reported in the first update.
+    // No tag is reported in the first updates if `report_from` is above 1.
     const auto sees = [&](const TestbedCamera& each) { return fleet_.is_visible(each.camera, tag, time); };
-    if (!first_ && std::any_of(testbed_.cameras.begin(), testbed_.cameras.end(), sees)) ++accuracy_.missed;
+    if (updates_ + 1 >= testbed_.report_from && std::any_of(testbed_.cameras.begin(), testbed_.cameras.end(), sees))
+      ++accuracy_.missed;
   }
   accuracy_.wrong += tracked.size() - known;
-  first_ = false;
+  ++updates_;
 }
 
 }  // namespace sf::vision

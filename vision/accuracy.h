@@ -20,10 +20,11 @@ struct RmsError {
 struct Accuracy {
   RmsError position;         ///< [m]
   RmsError heading;          ///< [rad]
-  RmsError velocity;         ///< [m/s], from the fifth sighting on
-  RmsError turn;             ///< [rad/s], from the fifth sighting on
+  RmsError velocity;         ///< [m/s], from the sixth report on
+  RmsError turn;             ///< [rad/s], from the sixth report on
   std::uint64_t missed = 0;  ///< a camera saw the whole tag, but it was not reported
   std::uint64_t wrong = 0;   ///< reported more than `kWrong` from its position, or with an unused id
+  RmsError height;           ///< [m] of tags with a measured height
 };
 
 class AccuracyMeter {
@@ -41,8 +42,8 @@ class AccuracyMeter {
 
   const Testbed& testbed_;
   const RenderedFleet& fleet_;
-  std::vector<std::uint32_t> sightings_;  ///< per tag, so far
-  bool first_ = true;
+  std::vector<std::uint32_t> sightings_;  ///< reported per tag, so far
+  std::uint64_t updates_ = 0;
   Accuracy accuracy_;
 };
 

@@ -90,9 +90,11 @@ struct Calibration {
 
 /// A function table, since plug-in symbols are looked up as data only.
 struct OpenCv {
+  /// Tags are upright as OpenCV prints them; vision/tag_family.h has their authors' orientations.
   /// @param dictionary such as "apriltag_36h11" or "aruco_4x4_50"
   TagPattern (*tag_pattern)(const std::string& dictionary, std::uint32_t id);
   std::uint32_t (*tag_count)(const std::string& dictionary);
+  /// @param dictionary empty: finds all dark quadrilaterals that may be tags, with the id 0 and any corner as the first
   std::unique_ptr<TagFinder> (*make_tag_finder)(const std::string& dictionary);
   /// @param image 3 channels
   void (*draw)(Image& image, const std::vector<Mark>& marks);

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/pose.h"
+#include "vision/tag_family.h"
 #include "vision/tag_fit.h"
 
 namespace sf::vision {
@@ -77,8 +78,8 @@ struct Seen {
 
 std::map<std::uint32_t, Seen> look(const Testbed& testbed, const Camera& camera, ImageSource& images,
                                    const std::string& from) {
-  const auto finder = opencv().make_tag_finder(testbed.dictionary);
-  const int cells = opencv().tag_pattern(testbed.dictionary, 0).cells;
+  const auto finder = make_family_finder(testbed.dictionary);
+  const int cells = family_pattern(testbed.dictionary, 0).cells;
   const std::size_t most = images.is_live() ? kLivePlacementImages : kMaxPlacementImages;
   std::map<std::uint32_t, Seen> seen;
   std::vector<TagOutline> found;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "vision/tag_detector.h"
@@ -33,8 +34,12 @@ class Positioning {
 
   /// Returns the sightings of the last update; valid until the next.
   std::span<const Sighting> sightings(std::size_t camera) const;
-  DetectionCounts counts() const;  ///< over all cameras
-  std::uint64_t refused() const;   ///< by the tracker
+  /// Returns messages for ids seen at two places in the last update, each naming the id, the cameras and the places. An
+  /// id is named at most once in `kRepeatPeriod`.
+  std::vector<std::string> warnings();
+  static constexpr double kRepeatPeriod = 10.0;  ///< [s] of the images' time
+  DetectionCounts counts() const;                ///< over all cameras
+  std::uint64_t refused() const;                 ///< by the tracker
 
  private:
   struct State;

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "vision/opencv.h"
+#include "vision/tag_family.h"
 
 namespace sf::vision {
 
@@ -103,7 +103,7 @@ RenderedFleet::RenderedFleet(const Testbed& testbed, const FleetOptions& options
     tags_.push_back({ids[i],
                      {grid[i * grid.size() / ids.size()], radius, i % 2 == 0 ? speed : -speed, 2.0 * M_PI * c},
                      2.0 * M_PI * d,
-                     opencv().tag_pattern(testbed.dictionary, ids[i])});
+                     family_pattern(testbed.dictionary, ids[i])});
   }
   for (std::uint32_t i = 0; i < options.occluders; ++i) {
     const auto [a, b] = uniform(1000000 + i, 0);

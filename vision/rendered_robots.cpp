@@ -1,17 +1,16 @@
 #include "vision/rendered_robots.h"
 
-#include "vision/opencv.h"
+#include "vision/tag_family.h"
 
 namespace sf::vision {
 
-RenderedRobots::RenderedRobots(const Testbed& testbed)
-    : testbed_(testbed), ids_(opencv().tag_count(testbed.dictionary)) {}
+RenderedRobots::RenderedRobots(const Testbed& testbed) : testbed_(testbed), ids_(family_size(testbed.dictionary)) {}
 
 bool RenderedRobots::update(std::uint32_t id, const base::Pose& X_WO, glm::dvec2 velocity, double turn, double time) {
   auto at = robots_.find(id);
   if (at == robots_.end()) {
     if (id >= ids_ || robots_.size() == kMaxRobots) return false;
-    at = robots_.emplace(id, Robot{opencv().tag_pattern(testbed_.dictionary, id), {}, 0.0}).first;
+    at = robots_.emplace(id, Robot{family_pattern(testbed_.dictionary, id), {}, 0.0}).first;
   }
   const TagMount& mount = testbed_.mount(id);
   const glm::dvec2 arm = base::rotate(X_WO.yaw, {mount.X_OT.x, mount.X_OT.y});

@@ -1,9 +1,11 @@
 #pragma once
 // Computes the poses of tags in the world from one camera's image.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "vision/tag_fit.h"
@@ -18,6 +20,13 @@ struct Sighting {
   TagFit fit;
 };
 
+/// An id seen at two places at one time: two tags have the same id, or one of them is false.
+struct RepeatedTag {
+  std::uint32_t id = 0;
+  double time = 0.0;             ///< [s]
+  std::array<glm::dvec2, 2> at;  ///< [m] in the world; the tag at the first place is kept
+};
+
 /// Counts of images, sightings and, by reason, rejected outlines.
 struct DetectionCounts {
   std::uint64_t images = 0;
@@ -26,6 +35,7 @@ struct DetectionCounts {
   std::uint64_t unlisted = 0;   ///< `only_listed` is set, and the file has no [[tag]] with this id
   std::uint64_t unfitted = 0;   ///< fewer than three sides with an edge, or points that do not form a square
   std::uint64_t misfitted = 0;  ///< side or residual beyond the limits below: clutter, or a wrong height
+  std::uint64_t repeated = 0;   ///< ids seen at a second place in an image; that sighting is dropped
   std::uint64_t frozen = 0;     ///< skipped images that are identical to the one before
 };
 
@@ -36,6 +46,8 @@ class TagDetector {
   static constexpr double kMaxSideError = 0.15;
   /// [px] Rejects sightings with a larger RMS distance of their edges from the square.
   static constexpr double kMaxResidual = 0.5;
+  /// [m] Rejects sightings with a measured height farther than this from the specified one.
+  static constexpr double kMaxHeightError = 1.0;
 
   /// @param testbed must outlive the detector
   TagDetector(const Testbed& testbed, const Camera& camera);
@@ -48,10 +60,14 @@ class TagDetector {
   /// @param time [s] start of the exposure of the first row
   void detect(const Image& image, double time, std::vector<Sighting>& out);
 
+  /// Returns the ids seen at two places in the last image; valid until the next.
+  std::span<const RepeatedTag> repeated() const { return repeated_; }
   const DetectionCounts& counts() const { return counts_; }
 
  private:
   bool measure(const Image& image, const TagOutline& outline, Sighting& out);
+  bool is_plausible(const TagFit& fit, const TagMount& mount) const;
+  void keep_best_of_each(std::vector<Sighting>& sightings);
 
   const Testbed& testbed_;
   Camera camera_;
@@ -59,6 +75,7 @@ class TagDetector {
   std::unique_ptr<TagFinder> finder_;
   std::vector<TagOutline> outlines_;
   std::vector<EdgePoint> edges_;
+  std::vector<RepeatedTag> repeated_;
   DetectionCounts counts_;
 };
 

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "vision/median.h"
+#include "vision/normal_equations.h"
 
 namespace sf::vision {
 
@@ -35,31 +36,9 @@ double distance(const Square& square, const PlanePoint& point) {
   return glm::dot(glm::dvec2{std::cos(angle), std::sin(angle)}, point.p - square.center) - square.half;
 }
 
-/// Solves the symmetric 4 x 4 system by Cholesky decomposition; false if it is singular.
-bool solve(std::array<std::array<double, 4>, 4>& a, std::array<double, 4>& b) {
-  for (std::size_t j = 0; j < 4; ++j) {
-    for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
-    if (!(a[j][j] > 1e-12)) return false;
-    a[j][j] = std::sqrt(a[j][j]);
-    for (std::size_t i = j + 1; i < 4; ++i) {
-      for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
-      a[i][j] /= a[j][j];
-    }
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
-    b[i] /= a[i][i];
-  }
-  for (std::size_t i = 4; i-- > 0;) {
-    for (std::size_t k = i + 1; k < 4; ++k) b[i] -= a[k][i] * b[k];
-    b[i] /= a[i][i];
-  }
-  return true;
-}
-
 /// Performs one Gauss-Newton step, in units of half the square's side so that all unknowns have similar magnitudes.
 bool improve(Square& square, std::span<const PlanePoint> points) {
-  std::array<std::array<double, 4>, 4> normal{};
+  SquareMatrix<4> normal{};
   std::array<double, 4> right{};
   for (const PlanePoint& point : points) {
     if (!point.used) continue;
@@ -143,7 +122,23 @@ std::optional<TagFit> fit_tag(const Camera& camera, std::span<const EdgePoint> p
                 2.0 * square->half,
                 std::sqrt(squares / std::max(1.0, used)),
                 pixel,
-                middle->y};
+                middle->y,
+                static_cast<int>(used)};
+}
+
+TagFit at_measured_height(const Camera& camera, const TagFit& flat, double side) {
+  // The rays to the square are those of a similar one, scaled from the camera.
+  const double scale = side / flat.side, depth = scale * (camera.position.z - flat.X_WT.z);
+  const glm::dvec2 eye{camera.position.x, camera.position.y};
+  const glm::dvec2 p = eye + scale * (glm::dvec2{flat.X_WT.x, flat.X_WT.y} - eye);
+  TagFit fit = flat;
+  fit.X_WT = {p.x, p.y, camera.position.z - depth, flat.X_WT.yaw};
+  fit.side = side;
+  fit.residual *= scale;
+  fit.pixel *= scale;
+  const double noise = 2.0 * fit.residual / std::sqrt(std::max(1, fit.points));
+  fit.height_sigma = std::abs(depth) / side * std::hypot(noise, 2.0 * kEdgeBias * fit.pixel);
+  return fit;
 }
 
 }  // namespace sf::vision

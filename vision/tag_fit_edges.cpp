@@ -15,16 +15,6 @@ constexpr double kStep = 0.5;        // [px] between samples across an edge
 constexpr double kMinContrast = 12;  // [grey]
 constexpr double kEnds = 0.12;       // fraction of a side skipped at each end, where the adjacent side's edge is near
 
-/// Interpolates bilinearly; border pixels continue outside of the image.
-double grey_at(const Image& image, glm::dvec2 p) {
-  const double u = std::clamp(p.x, 0.0, image.width - 1.001), v = std::clamp(p.y, 0.0, image.height - 1.001);
-  const int u0 = static_cast<int>(u), v0 = static_cast<int>(v);
-  const double a = u - u0, b = v - v0;
-  const std::uint8_t* top = image.at(u0, v0);
-  const std::uint8_t* low = image.at(u0, v0 + 1);
-  return (1.0 - b) * ((1.0 - a) * top[0] + a * top[1]) + b * ((1.0 - a) * low[0] + a * low[1]);
-}
-
 /// One side of a tag, and grey values across it.
 struct Side {
   glm::dvec2 from, along, outward;      ///< [px]; `along` has the length of the side, `outward` is a unit vector
@@ -103,6 +93,15 @@ void move_ends(const Side& side, const std::vector<std::optional<double>>& found
 }
 
 }  // namespace
+
+double grey_at(const Image& image, glm::dvec2 p) {
+  const double u = std::clamp(p.x, 0.0, image.width - 1.001), v = std::clamp(p.y, 0.0, image.height - 1.001);
+  const int u0 = static_cast<int>(u), v0 = static_cast<int>(v);
+  const double a = u - u0, b = v - v0;
+  const std::uint8_t* top = image.at(u0, v0);
+  const std::uint8_t* low = image.at(u0, v0 + 1);
+  return (1.0 - b) * ((1.0 - a) * top[0] + a * top[1]) + b * ((1.0 - a) * low[0] + a * low[1]);
+}
 
 void find_edges(const Image& image, const TagOutline& outline, int cells, std::vector<EdgePoint>& out) {
   out.clear();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -19,13 +20,14 @@ using world::TomlReader;
 constexpr double kMaxPosition = 1e4;  // [m]
 constexpr double kMaxPixels = 16384;
 constexpr double kDegree = M_PI / 180.0;
-constexpr std::array<std::string_view, 8> kKeys{"dictionary",  "tag_side", "tag_height", "address",
-                                                "only_listed", "camera",   "tag",        "survey"};
+constexpr std::array<std::string_view, 10> kKeys{"dictionary",  "tag_side",    "tag_height", "tag_fit", "address",
+                                                 "only_listed", "report_from", "camera",     "tag",     "survey"};
 constexpr std::array<std::string_view, 11> kCameraKeys{"name",       "size",     "focal",       "center",
                                                        "distortion", "position", "orientation", "rate",
                                                        "exposure",   "readout",  "source"};
 constexpr std::array<std::string_view, 3> kSurveyKeys{"id", "position", "heading"};
-constexpr std::array<std::string_view, 6> kTagKeys{"id", "side", "height", "offset", "address", "robot"};
+constexpr std::array<std::string_view, 7> kTagKeys{"id", "side", "height", "fit", "offset", "address", "robot"};
+constexpr std::array<std::string_view, 3> kFits{"plane", "height", "tilt"};  // in the order of TagFreedom
 
 const TomlNode& required(const TomlReader& reader, const TomlNode& table, std::string_view key,
                          std::string_view expected) {
@@ -119,10 +121,22 @@ std::vector<TestbedCamera> read_cameras(const TomlReader& reader, const TomlNode
   return cameras;
 }
 
+TagFreedom read_fit(const TomlReader& reader, const TomlNode& table, std::string_view key, TagFreedom fallback) {
+  const std::string word = reader.text(table, key, std::string(kFits[static_cast<std::size_t>(fallback)]));
+  const auto found = std::find(kFits.begin(), kFits.end(), word);
+  if (found == kFits.end())
+    reader.fail(*world::find(table, key),
+                fmt::format("'{}' is '{}'; expected \"plane\" (a horizontal tag at its height), \"height\" (the height "
+                            "is measured) or \"tilt\" (height and tilt are measured)",
+                            key, word));
+  return static_cast<TagFreedom>(found - kFits.begin());
+}
+
 TagMount read_tag(const TomlReader& reader, const TomlNode& table, const TagMount& fallback) {
   TagMount tag = fallback;
   tag.side = reader.number(table, "side", tag.side, 1e-3, 10.0, "metres");
   tag.height = reader.number(table, "height", tag.height, -100.0, 100.0, "metres");
+  tag.fit = read_fit(reader, table, "fit", tag.fit);
   tag.address = reader.text(table, "address", tag.address);
   std::array<double, 3> offset{};
   reader.numbers(table, "offset", offset, 1e3, "[x, y, yaw] of the tag on its object in metres and degrees");
@@ -169,8 +183,13 @@ Testbed parse_testbed(const std::string& file, std::string_view text) {
   testbed.dictionary = reader.text(root, "dictionary", testbed.dictionary);
   testbed.tag.side = reader.number(root, "tag_side", testbed.tag.side, 1e-3, 10.0, "metres");
   testbed.tag.height = reader.number(root, "tag_height", testbed.tag.height, -100.0, 100.0, "metres");
+  testbed.tag.fit = read_fit(reader, root, "tag_fit", testbed.tag.fit);
   testbed.tag.address = reader.text(root, "address", "");
   testbed.only_listed = reader.flag(root, "only_listed");
+  testbed.report_from = static_cast<std::uint32_t>(reader.whole(root, "report_from", 1, 100));
+  if (testbed.report_from == 0)
+    reader.fail(*world::find(root, "report_from"),
+                "'report_from' is 0; expected the number of a sighting from 1 to 100");
   testbed.cameras = read_cameras(reader, root);
   for (const TomlNode* table : reader.tables(root, "tag")) {
     reader.require_known(*table, kTagKeys);

@@ -40,21 +40,29 @@ void Tracker::correct(Axis& axis, double measured, double sigma) {
 /// position than the first, or, for a known tag, the first near its track.
 std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const Sighting> views, int& used) {
   const auto view_of = [](const Sighting& s) {
-    return View{s.time, s.fit.pixel, {s.fit.X_WT.x, s.fit.X_WT.y, s.fit.X_WT.yaw}};
+    return View{s.time, s.fit.pixel, {s.fit.X_WT.x, s.fit.X_WT.y, s.fit.X_WT.yaw}, &s.fit};
   };
   const auto fits = [track](const View& view) { return track == nullptr || is_near(*track, view); };
   const auto found = std::find_if(views.begin(), views.end(), [&](const Sighting& s) { return fits(view_of(s)); });
   used = 0;
   if (found == views.end()) return std::nullopt;
   const View first = view_of(*found);
-  View sum{first.time, 0.0, {}};
+  View sum{first.time, 0.0, {}, first.fit};
+  bool is_repeated = false;
   double weights = 0.0;
   for (const Sighting& sighting : views) {
     const View view = view_of(sighting);
-    if (!fits(view)) continue;
     const double dt = first.time - view.time;
     const double apart = std::hypot(view.at[0] - first.at[0], view.at[1] - first.at[1]);
-    if (apart > 0.5 * kGate + kMaxSpeed * std::abs(dt)) continue;
+    if (apart > 0.5 * kGate + kMaxSpeed * std::abs(dt)) {
+      if (!is_repeated)
+        repeated_.push_back(
+            {sighting.id, first.time, {glm::dvec2{first.at[0], first.at[1]}, glm::dvec2{view.at[0], view.at[1]}}});
+      is_repeated = true;
+      continue;
+    }
+    if (!fits(view)) continue;
+    if (view.fit->height_sigma < sum.fit->height_sigma) sum.fit = view.fit;
     const double weight = 1.0 / (view.pixel * view.pixel);
     for (std::size_t i = 0; i < 3; ++i) {
       // Averages headings relative to the first, which avoids the jump at pi.
@@ -100,6 +108,7 @@ void Tracker::advance(Track& track, const View& view) {
 
 void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag>& out) {
   out.clear();
+  repeated_.clear();
   sorted_.assign(sightings.begin(), sightings.end());
   std::stable_sort(sorted_.begin(), sorted_.end(), [](const Sighting& a, const Sighting& b) { return a.id < b.id; });
   for (std::size_t begin = 0, end = 0; begin < sorted_.size(); begin = end) {
@@ -116,23 +125,29 @@ void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag
     if (!view) continue;
 
     if (found == tracks_.end()) {
-      Track track{view->time, view->at[2], {}};
+      Track track{view->time, view->at[2], {}, 1};
       for (std::size_t i = 0; i < 3; ++i) {
         const double sigma = i == 2 ? kHeadingSigma : kPositionSigma * view->pixel;
         const double speed = i == 2 ? 2.0 * M_PI : kMaxSpeed;
         track.axes[i] = {view->at[i], 0.0, sigma * sigma, 0.0, speed * speed};
       }
-      tracks_.emplace(id, track);
-      continue;
+      found = tracks_.emplace(id, track).first;
+    } else {
+      advance(found->second, *view);
+      found->second.seen = std::min(found->second.seen + 1, report_from_);
     }
-    Track& track = found->second;
-    advance(track, *view);
+    const Track& track = found->second;
+    if (track.seen < report_from_) continue;
     out.push_back({id,
                    view->time,
-                   {view->at[0], view->at[1], views[0].fit.X_WT.z, base::wrap_angle(view->at[2])},
+                   {view->at[0], view->at[1], view->fit->X_WT.z, base::wrap_angle(view->at[2])},
                    {track.axes[0].v, track.axes[1].v},
                    track.axes[2].v,
-                   used});
+                   used,
+                   view->fit->height_sigma,
+                   view->fit->roll,
+                   view->fit->pitch,
+                   view->fit->tilt_sigma});
   }
 }
 

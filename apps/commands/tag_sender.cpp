@@ -1,6 +1,7 @@
 #include "apps/commands/tag_sender.h"
 
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 
 #include "apps/options/address.h"
 #include "netio/address_token.h"
@@ -8,11 +9,13 @@
 namespace sf::apps {
 
 netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& mount) {
-  const double yaw = tag.X_WT.yaw - mount.X_OT.yaw;
-  const glm::dvec2 arm = base::rotate(yaw, {mount.X_OT.x, mount.X_OT.y});  // from the object's origin to the tag
+  const auto about = [](double angle, glm::dvec3 axis) { return glm::angleAxis(angle, axis); };
+  const glm::dvec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
+  const glm::dquat R_WO = about(tag.X_WT.yaw, z) * about(tag.pitch, y) * about(tag.roll, x) * about(-mount.X_OT.yaw, z);
+  const glm::dvec3 arm = R_WO * glm::dvec3{mount.X_OT.x, mount.X_OT.y, 0.0};  // from the object's origin to the tag
   netio::Tag state;
-  state.position = {tag.X_WT.x - arm.x, tag.X_WT.y - arm.y, tag.X_WT.z};
-  state.orientation = {0.0, 0.0, std::sin(0.5 * yaw), std::cos(0.5 * yaw)};
+  state.position = {tag.X_WT.x - arm.x, tag.X_WT.y - arm.y, tag.X_WT.z - arm.z};
+  state.orientation = {R_WO.x, R_WO.y, R_WO.z, R_WO.w};
   state.linear = {tag.velocity.x + tag.turn * arm.y, tag.velocity.y - tag.turn * arm.x, 0.0};
   state.angular = {0.0, 0.0, tag.turn};
   return state;

@@ -20,6 +20,7 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "vision/overlay.h"
+#include "vision/tag_family.h"
 #include "viz/png.h"
 
 namespace sf::apps {
@@ -42,13 +43,16 @@ class TrackFile {
   explicit TrackFile(const std::string& path) : path_(path) {
     if (path.empty()) return;
     file_.open(path);
-    file_ << "time_s,tag,x_m,y_m,yaw_rad,vx_m_s,vy_m_s,turn_rad_s,cameras\n";
+    file_ << "time_s,tag,x_m,y_m,yaw_rad,vx_m_s,vy_m_s,turn_rad_s,cameras,z_m,z_sigma_m,roll_rad,pitch_rad,"
+             "tilt_sigma_rad\n";
   }
   void write(std::span<const vision::TrackedTag> tags) {
     if (path_.empty()) return;
     for (const vision::TrackedTag& t : tags)
-      file_ << fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{}\n", t.time, t.id, t.X_WT.x, t.X_WT.y,
-                           t.X_WT.yaw, t.velocity.x, t.velocity.y, t.turn, t.cameras);
+      file_ << fmt::format(
+          "{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", t.time, t.id,
+          t.X_WT.x, t.X_WT.y, t.X_WT.yaw, t.velocity.x, t.velocity.y, t.turn, t.cameras, t.X_WT.z, t.height_sigma,
+          t.roll, t.pitch, t.tilt_sigma);
     if (!file_.flush()) throw base::InputError(path_, 0, "cannot be written");
   }
 
@@ -182,6 +186,7 @@ int vps(const VpsOptions& options) {
 
   VpsReport report;
   report.cameras = testbed.cameras.size();
+  report.orientation = vision::family_orientation(testbed.dictionary);
   std::vector<vision::Frame> frames;
   const std::int64_t epoch = base::unix_time();
   const Clock::time_point start = Clock::now();
@@ -193,6 +198,7 @@ int vps(const VpsOptions& options) {
     if (options.real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
     if (stop_requested()) break;
     const auto tags = process(frames, positioning, report);
+    for (const std::string& warning : positioning.warnings()) print_message(warning);
     sender.send(tags, epoch);
     track.write(tags);
     overlay.write(positioning, tags, frames, n);

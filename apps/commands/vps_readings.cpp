@@ -27,10 +27,9 @@ vision::PlaneLine drawn(const server::SightLine& line) {
 
 /// Returns the mover's pose from that of its tag's object, since the world may define the mount, too (`tag_pose`).
 base::Pose mover_pose(const netio::Tag& object, const world::Mover& mover) {
-  const double object_yaw = 2.0 * std::atan2(object.orientation[2], object.orientation[3]);
-  const double yaw = object_yaw - mover.X_MT.yaw;
-  const glm::dvec2 arm = base::rotate(yaw, {mover.X_MT.x, mover.X_MT.y});
-  return {object.position[0] - arm.x, object.position[1] - arm.y, mover.X_WM.z, yaw};
+  base::Pose X_WM = netio::report({}, object, 0, mover.X_MT).X_WM;
+  X_WM.z = mover.X_WM.z;
+  return X_WM;
 }
 
 }  // namespace

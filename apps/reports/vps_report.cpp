@@ -20,10 +20,26 @@ std::string error_row(std::string_view name, const vision::RmsError& error, doub
 
 std::string accuracy_text(const vision::Accuracy& a) {
   return error_row("position error", a.position, 1e3, "mm") +
-         error_row("heading error", a.heading, kDegrees, "degrees") +
+         error_row("heading error", a.heading, kDegrees, "degrees") + error_row("height error", a.height, 1e3, "mm") +
          error_row("velocity error", a.velocity, 1e3, "mm/s") +
          error_row("turn rate error", a.turn, kDegrees, "degrees/s") +
          row("missed, false", "{}, {} of {} reported", a.missed, a.wrong, a.position.count + a.wrong);
+}
+
+/// Returns a table of measured heights and tilts; empty without any.
+std::string heights_text(const VpsReport& r) {
+  std::string text;
+  for (const auto& [id, tag] : r.tags) {
+    if (!(tag.height_sigma > 0.0)) continue;
+    text += fmt::format("{:>6} {:>9.4f} {:>9.4f}", id, tag.X_WT.z, tag.height_sigma);
+    if (tag.tilt_sigma > 0.0)
+      text += fmt::format(" {:>9.2f} {:>9.2f} {:>9.2f}", kDegrees * tag.roll, kDegrees * tag.pitch,
+                          kDegrees * tag.tilt_sigma);
+    text += "\n";
+  }
+  if (text.empty()) return text;
+  return fmt::format("\n{:>6} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "tag", "z m", "+-", "roll deg", "pitch deg", "+-") +
+         text;
 }
 
 }  // namespace
@@ -49,12 +65,15 @@ std::string vps_report_text(const VpsReport& r) {
     text += row("", "{} rejected: unexpected side or shape (check tag_side, tag_height and the calibration)",
                 r.counts.misfitted);
   if (r.refused > 0) text += row("", "{} rejected: too far from the tag's last position, or out of order", r.refused);
+  if (r.counts.repeated > 0)
+    text += row("", "{} dropped: their id was seen at another place in the same image or moment", r.counts.repeated);
   if (r.accuracy) text += accuracy_text(*r.accuracy);
   if (r.sent) {
     text += row("packets", "{} sent, {} failed", r.sent->sent, r.sent->failed + r.sent->dropped);
     if (r.unaddressed > 0) text += row("", "{} not sent: no address, or id 0", r.unaddressed);
     if (!r.sent->first_failure.empty()) text += row("", r.sent->first_failure);
   }
+  if (!r.orientation.empty()) text += row("tags", r.orientation);
   if (r.tags.empty()) return text;
   text += fmt::format("\n{:>6} {:>9} {:>9} {:>9} {:>8} {:>10} {:>8}\n", "tag", "x m", "y m", "yaw deg", "m/s", "deg/s",
                       "states");
@@ -62,7 +81,7 @@ std::string vps_report_text(const VpsReport& r) {
     text += fmt::format("{:>6} {:>9.4f} {:>9.4f} {:>9.2f} {:>8.3f} {:>10.2f} {:>8}\n", id, tag.X_WT.x, tag.X_WT.y,
                         kDegrees * tag.X_WT.yaw, std::hypot(tag.velocity.x, tag.velocity.y), kDegrees * tag.turn,
                         r.reported.at(id));
-  return text;
+  return text + heights_text(r);
 }
 
 using Json = nlohmann::ordered_json;
@@ -79,12 +98,14 @@ std::string vps_report_json(const VpsReport& r) {
                 {{"unlisted", r.counts.unlisted},
                  {"unfitted", r.counts.unfitted},
                  {"misfitted", r.counts.misfitted},
-                 {"out_of_reach", r.refused}}}};
+                 {"out_of_reach", r.refused},
+                 {"repeated", r.counts.repeated}}}};
   if (r.accuracy) {
     const vision::Accuracy& a = *r.accuracy;
     const auto error = [](const vision::RmsError& e) { return Json{{"rms", e.rms()}, {"largest", e.largest}}; };
     json["accuracy"] = {{"position_m", error(a.position)},
                         {"heading_rad", error(a.heading)},
+                        {"height_m", error(a.height)},
                         {"velocity_m_s", error(a.velocity)},
                         {"turn_rad_s", error(a.turn)},
                         {"reported", a.position.count + a.wrong},
@@ -96,14 +117,19 @@ std::string vps_report_json(const VpsReport& r) {
   if (r.sent)
     json["packets"] = {
         {"sent", r.sent->sent}, {"failed", r.sent->failed + r.sent->dropped}, {"unaddressed", r.unaddressed}};
+  if (!r.orientation.empty()) json["orientation"] = r.orientation;
   json["tags"] = Json::array();
-  for (const auto& [id, tag] : r.tags)
+  for (const auto& [id, tag] : r.tags) {
     json["tags"].push_back({{"id", id},
                             {"time_s", tag.time},
                             {"pose", {tag.X_WT.x, tag.X_WT.y, tag.X_WT.yaw}},
                             {"velocity", {tag.velocity.x, tag.velocity.y}},
                             {"turn", tag.turn},
                             {"states", r.reported.at(id)}});
+    if (tag.height_sigma > 0.0) json["tags"].back()["height_m"] = {{"mean", tag.X_WT.z}, {"sigma", tag.height_sigma}};
+    if (tag.tilt_sigma > 0.0)
+      json["tags"].back()["tilt_rad"] = {{"roll", tag.roll}, {"pitch", tag.pitch}, {"sigma", tag.tilt_sigma}};
+  }
   return json.dump(2) + "\n";
 }
 

@@ -13,6 +13,7 @@ namespace sf::apps {
 
 struct VpsReport {
   std::size_t cameras = 0;
+  std::string orientation;  ///< of the tags, where libraries differ (vision/tag_family.h)
   vision::DetectionCounts counts;
   std::uint64_t refused = 0;                         ///< by the tracker
   double processing_s = 0.0;                         ///< [s] of detection and tracking, on all cores

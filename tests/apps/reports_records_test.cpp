@@ -113,11 +113,19 @@ server::RobotClientStats robot_stats() {
 
 VpsReport vps_report() {
   VpsReport r{.cameras = 2, .refused = 6, .processing_s = 0.5, .processing_cpu_s = 1.5};
-  r.counts = {
-      .images = 10, .unreadable = 1, .sightings = 20, .unlisted = 3, .unfitted = 4, .misfitted = 5, .frozen = 7};
-  r.tags[3] = {3, 1.5, {1.0, -2.0, 0.1, 0.5}, {0.3, 0.4}, -0.25, 2};
+  r.orientation = "upright";
+  r.counts = {.images = 10,
+              .unreadable = 1,
+              .sightings = 20,
+              .unlisted = 3,
+              .unfitted = 4,
+              .misfitted = 5,
+              .repeated = 8,
+              .frozen = 7};
+  r.tags[3] = {3, 1.5, {1.0, -2.0, 0.1, 0.5}, {0.3, 0.4}, -0.25, 2, 0.012, 0.05, -0.1, 0.02};
   r.reported[3] = 18;
-  r.accuracy = vision::Accuracy{{0.0004, 0.015, 4}, {0.01, 0.06, 4}, {0.04, 0.15, 4}, {0.09, 0.2, 1}, 8, 9};
+  r.accuracy =
+      vision::Accuracy{{0.0004, 0.015, 4}, {0.01, 0.06, 4}, {0.04, 0.15, 4}, {0.09, 0.2, 1}, 8, 9, {0.0004, 0.012, 4}};
   r.sent = outbox(17);
   r.unaddressed = 2;
   r.truth = TruthCounts{3, 44, 5};

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <thread>
@@ -22,6 +23,7 @@
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
+#include "vision/tag_family.h"
 
 namespace sf {
 
@@ -71,11 +73,11 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   const Outcome outcome =
       run_successfully({"vps", testbed, "--rendered", "2", "--images", "4", "--send", address, "--track",
                         folder.path("track.csv"), "--overlay", folder.path("pictures"), "--peers", peers});
-  EXPECT_NE(outcome.out.find("0, 0 of 6 reported"), std::string::npos) << outcome.out;  // missed, false
-  EXPECT_NE(outcome.out.find("6 sent, 0 failed"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("0, 0 of 8 reported"), std::string::npos) << outcome.out;  // missed, false
+  EXPECT_NE(outcome.out.find("8 sent, 0 failed"), std::string::npos) << outcome.out;
   scenes::expect_painted(folder.path("pictures/a-000003.png"), {{0xFF56E078u, 20}, {0xFFFFA028u, 5}});  // tags, x axes
 
-  // Two tags in each image except the first.
+  // Two tags in each of four images.
   std::map<std::uint16_t, std::uint32_t> count;
   std::map<std::uint16_t, netio::Packet> last;
   netio::SigningKey key;
@@ -83,7 +85,7 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   netio::SignatureChecker checker(key);
   netio::ReceiveBatch batch(16);
   const std::size_t received = batch.fill(socket);
-  ASSERT_EQ(received, 6u);
+  ASSERT_EQ(received, 8u);
   for (std::size_t i = 0; i < received; ++i) {
     netio::Packet packet;
     ASSERT_EQ(netio::decode(batch.bytes(i), packet), netio::PacketStatus::accepted);
@@ -94,8 +96,8 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
               packet.header.robot == 2 ? netio::PacketStatus::accepted : netio::PacketStatus::not_signed);
     last[packet.header.robot] = packet;
   }
-  EXPECT_EQ(count[1], 3u);
-  EXPECT_EQ(count[2], 3u);
+  EXPECT_EQ(count[1], 4u);
+  EXPECT_EQ(count[2], 4u);
   EXPECT_NEAR(static_cast<double>(last[1].header.time - last[2].header.time), 0.0, 1e9);
 
   // The packet of tag 1 matches the last line of the track about it; that of tag 2 has its object's pose.
@@ -116,6 +118,79 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   EXPECT_NEAR(two.position[0], poses[2][0] - 0.1 * std::cos(yaw), 1e-5);
   EXPECT_NEAR(two.position[1], poses[2][1] - 0.1 * std::sin(yaw), 1e-5);
   EXPECT_NEAR(std::abs(two.orientation[3]), std::abs(std::cos(0.5 * yaw)), 1e-5);
+}
+
+/// The second line of the testbed file, so that its other lines keep their numbers.
+static std::string testbed_with(const std::string& line) {
+  return std::string(kTestbed).replace(std::string(kTestbed).find("tag_side"), 0, line + "\n");
+}
+
+TEST(Vps, WaitsForTheSightingFromWhichTagsAreReported) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", testbed_with("report_from = 2"));
+  const Outcome outcome = run_successfully({"vps", testbed, "--rendered", "2", "--images", "3"});
+  EXPECT_NE(outcome.out.find("0, 0 of 4 reported"), std::string::npos) << outcome.out;
+}
+
+TEST(Vps, ReportsMeasuredHeightsAndTilts) {
+  const Folder folder;
+  const std::string testbed =
+      folder.write("t.toml", testbed_with("tag_fit = \"height\"") + "[[tag]]\nid = 3\nfit = \"tilt\"\n");
+  const Words words{"vps", testbed, "--rendered", "3", "--images", "2", "--track", folder.path("track.csv")};
+  const Outcome text = run_successfully(words);
+  EXPECT_NE(text.out.find("height error"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("roll deg"), std::string::npos) << text.out;
+  Words json = words;
+  json.push_back("--json");
+  const Json report(run_successfully(json).out);
+  EXPECT_NEAR(report.number("/tags/0/height_m/mean"), 0.2, 0.02);
+  EXPECT_GT(report.number("/tags/0/height_m/sigma"), 0.0);
+  EXPECT_FALSE(report.has("/tags/0/tilt_rad"));
+  EXPECT_GT(report.number("/tags/2/tilt_rad/sigma"), 0.0);
+  EXPECT_NE(read_file(folder.path("track.csv")).find("z_m,z_sigma_m,roll_rad,pitch_rad,tilt_sigma_rad"),
+            std::string::npos);
+}
+
+TEST(Vps, WarnsOfAnIdSeenTwice) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  vision::Scene scene;
+  for (const double x : {-0.3, 0.3}) {
+    vision::Patch tag;
+    tag.shape = vision::Patch::Shape::tag;
+    tag.X_WP = {x, 0.0, 0.2, 0.0};
+    tag.size = {0.15, 0.15};
+    tag.pattern = vision::family_pattern("aruco_4x4_50", 1);
+    scene.patches.push_back(tag);
+  }
+  vision::Image image;
+  vision::Renderer(vision::read_testbed(testbed).cameras[0].camera, vision::Imaging{}, 1).render(scene, 0.0, 0, image);
+  const std::string pixels(image.pixels.begin(), image.pixels.end());
+  std::filesystem::create_directory(folder.path("p"));
+  for (const char* name : {"p/0.pgm", "p/1.pgm"}) folder.write(name, "P5\n320 240\n255\n" + pixels);
+  const Outcome outcome = run_successfully({"vps", testbed, "--input", "a=" + folder.path("p")});
+  EXPECT_NE(outcome.err.find("tag 1 is seen twice in one image of camera 'a', at ("), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("seen twice"), outcome.err.rfind("seen twice")) << "once in ten seconds";
+  EXPECT_NE(outcome.out.find("2 dropped: their id was seen at another place"), std::string::npos) << outcome.out;
+}
+
+TEST(Vps, NamesTheOrientationOfAprilTags) {
+  const Folder folder;
+  std::string text = kTestbed;
+  text.replace(text.find("aruco_4x4_50"), 12, "apriltag_36h11");
+  const std::string testbed = folder.write("t.toml", text);
+  const Outcome outcome = run_successfully({"vps", testbed, "--rendered", "1", "--images", "1"});
+  EXPECT_NE(outcome.out.find("upright as AprilRobotics prints them"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("apriltag_36h11_opencv"), std::string::npos) << outcome.out;
+}
+
+TEST(Vps, ReadsMarkersOfArToolKitPlus) {
+  const Folder folder;
+  std::string text = kTestbed;
+  text.replace(text.find("aruco_4x4_50"), 12, "artoolkitplus_bch");
+  const std::string testbed = folder.write("t.toml", text);
+  const Outcome outcome = run_successfully({"vps", testbed, "--rendered", "2", "--images", "2"});
+  EXPECT_NE(outcome.out.find("0, 0 of 4 reported"), std::string::npos) << outcome.out;
 }
 
 /// Writes three rendered pictures with marks next to the tags, as a folder of photographs. @return the testbed file

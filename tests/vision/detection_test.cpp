@@ -12,6 +12,7 @@
 #include "vision/accuracy.h"
 #include "vision/positioning.h"
 #include "vision/renderer.h"
+#include "vision/tag_family.h"
 
 namespace sf::vision {
 
@@ -58,7 +59,7 @@ Patch tag_patch(std::uint32_t id, glm::dvec2 p, double yaw, double side) {
   tag.shape = Patch::Shape::tag;
   tag.X_WP = {p.x, p.y, 0.2, yaw};
   tag.size = {side, side};
-  tag.pattern = opencv().tag_pattern("apriltag_36h11", id);
+  tag.pattern = family_pattern("apriltag_36h11", id);
   return tag;
 }
 
@@ -188,6 +189,64 @@ TEST(Detection, PrefersTheTagWithTheSpecifiedSize) {
     EXPECT_NEAR(seen[0].fit.X_WT.x, x, 1e-3);
     EXPECT_EQ(detector.counts().sightings, 1u);
   }
+}
+
+/// Boundary: half a side apart is one tag that was found twice, more are two tags.
+TEST(Detection, WarnsOfAnIdSeenTwiceInOneImage) {
+  const Testbed testbed = testbed_with({plain_camera()});
+  Scene scene;
+  scene.patches = {tag_patch(17, {0.5, -0.4}, 0.0, 0.15), tag_patch(17, {-0.5, -0.4}, 0.0, 0.151),
+                   tag_patch(18, {0.5, 0.4}, 0.0, 0.15)};
+  std::vector<Frame> frames(1);
+  Renderer(plain_camera(), Imaging{}, 1).render(scene, 0.0, 0, frames[0].image);
+  Positioning positioning(testbed);
+  std::size_t warnings = 0;
+  for (const double time : {0.0, 0.1, 9.9, 10.0, 10.1}) {
+    frames[0].time = time;
+    EXPECT_EQ(positioning.update(frames).size(), 2u) << time;
+    const auto texts = positioning.warnings();
+    warnings += texts.size();
+    if (texts.empty()) continue;
+    EXPECT_NE(texts[0].find("tag 17 is seen twice in one image of camera 'plain', at (0.500, -0.400) and (-0.50"),
+              std::string::npos)
+        << texts[0];
+  }
+  EXPECT_EQ(warnings, 2u) << "at 0 and 10 s";
+  EXPECT_EQ(positioning.counts().repeated, 5u);
+}
+
+TEST(Detection, WarnsOfAnIdSeenByTwoCamerasAtTwoPlaces) {
+  Camera left = plain_camera(), right = plain_camera();
+  right.name = "right";
+  right.position.x = 6.0;
+  std::vector<Frame> frames(2);
+  Scene scene;
+  scene.patches = {tag_patch(17, {0.5, -0.4}, 0.0, 0.15), tag_patch(17, {5.0, -0.4}, 0.0, 0.15)};
+  Renderer(left, Imaging{}, 1).render(scene, 0.0, 0, frames[0].image);
+  Renderer(right, Imaging{}, 1).render(scene, 0.0, 0, frames[1].image);
+  const Testbed testbed = testbed_with({left, right});
+  Positioning positioning(testbed);
+  EXPECT_EQ(positioning.update(frames).size(), 1u);
+  const auto texts = positioning.warnings();
+  ASSERT_EQ(texts.size(), 1u);
+  EXPECT_NE(texts[0].find("by two cameras at one time, at (0.500, -0.400) and (5.000, -0.400)"), std::string::npos)
+      << texts[0];
+  EXPECT_EQ(positioning.counts().repeated, 1u);
+}
+
+TEST(Detection, ReportsTagsOfTheFirstImage) {
+  Testbed testbed = testbed_with({plain_camera()});
+  Scene scene;
+  scene.patches = {tag_patch(17, {0.5, -0.4}, 0.7, 0.15)};
+  std::vector<Frame> frames(1);
+  Renderer(plain_camera(), Imaging{}, 1).render(scene, 0.0, 0, frames[0].image);
+  Positioning first(testbed);
+  const auto tags = first.update(frames);
+  ASSERT_EQ(tags.size(), 1u);
+  EXPECT_NEAR(tags[0].X_WT.x, 0.5, 1e-3);
+  EXPECT_EQ(tags[0].velocity, glm::dvec2());
+  testbed.report_from = 2;
+  EXPECT_TRUE(Positioning(testbed).update(frames).empty());
 }
 
 TEST(Detection, AnyThreeSidesDetermineASquare) {

@@ -63,7 +63,7 @@ struct View {
     tag.shape = Patch::Shape::tag;
     tag.X_WP = {0.25, -0.1, 0.2, 0.7};
     tag.size = {0.15, 0.15};
-    tag.pattern = opencv().tag_pattern(testbed.dictionary, 17);
+    tag.pattern = family_pattern(testbed.dictionary, 17);
     scene.patches.push_back(tag);
     Renderer(camera, Imaging{}, 1).render(scene, 0.0, 0, image);
   }
@@ -93,7 +93,7 @@ TEST(TrackerRecord, MergesPredictsAndRejects) {
 TEST(DetectionRecord, FindsEdgesAndFitsASquare) {
   const View view;
   std::vector<TagOutline> outlines;
-  ASSERT_TRUE(opencv().make_tag_finder(view.testbed.dictionary)->find(view.image, outlines));
+  ASSERT_TRUE(make_family_finder(view.testbed.dictionary)->find(view.image, outlines));
   ASSERT_EQ(outlines.size(), 1u);
   for (glm::dvec2& corner : outlines[0].corners) corner = glm::dvec2{std::round(corner.x), std::round(corner.y)};
   std::vector<EdgePoint> edges;

@@ -54,6 +54,24 @@ TEST(Testbed, ReadsCamerasAndTags) {
   EXPECT_EQ(testbed.mount(9).address, "h:1");
 }
 
+TEST(Testbed, ReadsMeasuredCoordinates) {
+  const Testbed testbed = parse_testbed(
+      "t.toml", "tag_fit = \"height\"\nreport_from = 2\n" + kCamera +
+                    "[[tag]]\nid = 1\n[[tag]]\nid = 2\nfit = \"tilt\"\n[[tag]]\nid = 3\nfit = \"plane\"\n");
+  EXPECT_EQ(testbed.report_from, 2u);
+  EXPECT_EQ(testbed.mount(0).fit, TagFreedom::height);
+  EXPECT_EQ(testbed.mount(1).fit, TagFreedom::height);
+  EXPECT_EQ(testbed.mount(2).fit, TagFreedom::tilt);
+  EXPECT_EQ(testbed.mount(3).fit, TagFreedom::plane);
+  const Testbed plain = parse_testbed("t.toml", kCamera);
+  EXPECT_EQ(plain.mount(0).fit, TagFreedom::plane);
+  EXPECT_EQ(plain.report_from, 1u);
+  EXPECT_NE(error_of("tag_fit = \"3d\"\n" + kCamera).find("t.toml:1: 'tag_fit' is '3d'; expected \"plane\""),
+            std::string::npos);
+  EXPECT_NE(error_of(kCamera + "[[tag]]\nid = 1\nfit = \"Tilt\"\n").find("t.toml:8: 'fit' is 'Tilt'"),
+            std::string::npos);
+}
+
 TEST(Testbed, DefaultsToACameraThatLooksDown) {
   const Testbed testbed = parse_testbed("t.toml", kCamera);
   EXPECT_EQ(testbed.cameras[0].camera.forward, glm::dvec3(0.0, 0.0, -1.0));
@@ -120,11 +138,11 @@ TEST(Testbed, RejectsValuesOfEveryWrongForm) {
     ++count;
   };
   for (const std::string& form : forms) {
-    for (const char* key : {"dictionary", "tag_side", "address"})
+    for (const char* key : {"dictionary", "tag_side", "tag_fit", "address"})
       refuses(fmt::format("{} = {}\n", key, form) + kCamera);
     for (const char* key : {"center", "distortion", "orientation", "rate", "exposure", "source"})
       refuses(kCamera + fmt::format("{} = {}\n", key, form));
-    for (const char* key : {"side", "offset", "address"})
+    for (const char* key : {"side", "offset", "fit", "address"})
       refuses(kCamera + fmt::format("[[tag]]\nid = 1\n{} = {}\n", key, form));
     refuses(kCamera + fmt::format("[[tag]]\nid = {}\n", form));
     for (const char* key : {"name", "size", "focal", "position"}) {
@@ -133,7 +151,7 @@ TEST(Testbed, RejectsValuesOfEveryWrongForm) {
       refuses(text.replace(at, end - at, fmt::format("{} = {}", key, form)));
     }
   }
-  EXPECT_EQ(count, forms.size() * 17);
+  EXPECT_EQ(count, forms.size() * 19);
 }
 
 TEST(Testbed, RejectsOtherFiles) {
@@ -184,8 +202,9 @@ TEST(Testbed, NumbersHaveLimits) {
     for (const auto& [value, taken] : {std::pair{r.below, false}, {r.first, true}, {r.last, true}, {r.above, false}})
       EXPECT_EQ(is_taken(before + r.key + " = " + value + "\n" + behind), taken) << r.key << " = " << value;
   };
-  for (const Range& r : {Range{"tag_side", "0.0009", "0.001", "10", "10.001"},
-                         Range{"tag_height", "-100.001", "-100", "100", "100.001"}})
+  for (const Range& r :
+       {Range{"tag_side", "0.0009", "0.001", "10", "10.001"}, Range{"tag_height", "-100.001", "-100", "100", "100.001"},
+        Range{"report_from", "0", "1", "100", "101"}})
     expect_range(r, "", kCamera);
   for (const Range& r :
        {Range{"rate", "0.09", "0.1", "1000", "1000.1"}, Range{"exposure", "-0.1", "0", "1", "1.001"},

@@ -28,8 +28,42 @@ std::vector<TrackedTag> update(Tracker& tracker, const std::vector<Sighting>& si
 
 }  // namespace
 
-TEST(Tracker, ReportsFromTheSecondSightingOn) {
+TEST(Tracker, ReportsTheFirstSightingAtRest) {
   Tracker tracker;
+  const auto tracked = update(tracker, {sighting(0.0, 1.0, 2.0, 0.5)});
+  ASSERT_EQ(tracked.size(), 1u);
+  EXPECT_EQ(tracked[0].X_WT.y, 2.0);
+  EXPECT_EQ(tracked[0].velocity, glm::dvec2());
+  EXPECT_EQ(tracked[0].turn, 0.0);
+  EXPECT_TRUE(update(tracker, {}).empty());
+}
+
+/// A tag that was not seen for more than a second is new again.
+TEST(Tracker, ReportsFromTheChosenSightingOn) {
+  Tracker tracker(3);
+  std::string reported;
+  for (const double t : {0.0, 0.1, 0.2, 0.3, 1.4, 1.5, 1.6})
+    reported += update(tracker, {sighting(t, 1.0, 2.0, 0.5)}).empty() ? '-' : 'x';
+  EXPECT_EQ(reported, "--xx--x");
+}
+
+TEST(Tracker, TakesTheHeightOfTheMostCertainCamera) {
+  Sighting near = sighting(0.0, 1.0, 2.0, 0.5), far = near;
+  near.fit.X_WT.z = 0.31, near.fit.height_sigma = 0.002, near.fit.roll = 0.1, near.fit.tilt_sigma = 0.01;
+  far.fit.X_WT.z = 0.33, far.fit.height_sigma = 0.02;
+  for (const auto& views : {std::vector{near, far}, std::vector{far, near}}) {
+    Tracker each;
+    const auto tracked = update(each, views);
+    ASSERT_EQ(tracked.size(), 1u);
+    EXPECT_EQ(tracked[0].X_WT.z, 0.31);
+    EXPECT_EQ(tracked[0].height_sigma, 0.002);
+    EXPECT_EQ(tracked[0].roll, 0.1);
+    EXPECT_EQ(tracked[0].tilt_sigma, 0.01);
+  }
+}
+
+TEST(Tracker, ReportsFromTheSecondSightingOn) {
+  Tracker tracker(2);
   EXPECT_TRUE(update(tracker, {sighting(0.0, 1.0, 2.0, 0.5)}).empty());
   const auto tracked = update(tracker, {sighting(0.1, 1.0, 2.0, 0.5)});
   ASSERT_EQ(tracked.size(), 1u);
@@ -136,7 +170,7 @@ TEST(Tracker, AcceptsATagMovedElsewhere) {
 }
 
 TEST(Tracker, ForgetsTagsThatDisappeared) {
-  Tracker tracker;
+  Tracker tracker(2);
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
   update(tracker, {sighting(0.1, 0.0, 0.0, 0.0)});
   EXPECT_TRUE(update(tracker, {sighting(1.2, 0.0, 0.0, 0.0)}).empty());  // as at first sight
@@ -144,7 +178,7 @@ TEST(Tracker, ForgetsTagsThatDisappeared) {
 }
 
 TEST(Tracker, KeepsATagForASecond) {
-  Tracker tracker;
+  Tracker tracker(2);
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
   EXPECT_EQ(update(tracker, {sighting(1.0, 0.0, 0.0, 0.0)}).size(), 1u);
   EXPECT_TRUE(update(tracker, {sighting(std::nextafter(2.0, 3.0), 0.0, 0.0, 0.0)}).empty());

@@ -45,7 +45,9 @@ namespace {
 class ArucoFinder : public TagFinder {
  public:
   explicit ArucoFinder(const std::string& dictionary)
-      : dictionary_(dictionary_of(dictionary)), settings_(cv::aruco::DetectorParameters::create()) {
+      : dictionary_(dictionary.empty() ? cv::makePtr<cv::aruco::Dictionary>(cv::Mat(), 6, 0)
+                                       : dictionary_of(dictionary)),
+        settings_(cv::aruco::DetectorParameters::create()) {
     settings_->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
     // Windows of 13 and 23 pixels. The default's third window, of 3 pixels, finds no further tags but takes a third of
     // the time.
@@ -57,13 +59,15 @@ class ArucoFinder : public TagFinder {
   bool find(const Image& image, std::vector<TagOutline>& found) override {
     found.clear();
     try {
-      cv::aruco::detectMarkers(wrap(image), dictionary_, corners_, ids_, settings_);
+      cv::aruco::detectMarkers(wrap(image), dictionary_, corners_, ids_, settings_, squares_);
     } catch (const cv::Exception&) {
       return false;
     }
-    for (std::size_t i = 0; i < ids_.size(); ++i) {
-      TagOutline outline{static_cast<std::uint32_t>(ids_[i]), {}};
-      for (std::size_t k = 0; k < 4; ++k) outline.corners[k] = {corners_[i][k].x, corners_[i][k].y};
+    const bool all = dictionary_->bytesList.empty();
+    const auto& corners = all ? squares_ : corners_;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      TagOutline outline{all ? 0 : static_cast<std::uint32_t>(ids_[i]), {}};
+      for (std::size_t k = 0; k < 4; ++k) outline.corners[k] = {corners[i][k].x, corners[i][k].y};
       found.push_back(outline);
     }
     return true;
@@ -72,7 +76,7 @@ class ArucoFinder : public TagFinder {
  private:
   cv::Ptr<cv::aruco::Dictionary> dictionary_;
   cv::Ptr<cv::aruco::DetectorParameters> settings_;
-  std::vector<std::vector<cv::Point2f>> corners_;
+  std::vector<std::vector<cv::Point2f>> corners_, squares_;  // of tags, of dark quadrilaterals without a code
   std::vector<int> ids_;
 };
 
