@@ -10,7 +10,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 5;
+constexpr std::uint16_t kVersion = 6;
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
 
@@ -29,6 +29,7 @@ void check_links(const World& world) {
   }
   good &= std::all_of(world.lights.begin(), world.lights.end(), known);
   good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
+  good &= std::all_of(world.lamps.begin(), world.lamps.end(), known);
   good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
   if (!good) refuse("a row refers to a row that does not exist");
 }

@@ -35,11 +35,14 @@ world::World everything(int robots) {
     sensors.push_back(fitted("gyro", {setting("noise", {0.1}), setting("bias", {0.1})}));
     sensors.push_back(fitted("gps", {setting("noise", {1}), setting("rate", {10})}));
     sensors.push_back(fitted("irreceiver"));
+    sensors.push_back(fitted("lightsensor"));
+    sensors.push_back(fitted("battery"));
   }
   add_solid(world, square({2, 1}, 1.5), 0.5, 0.6);
   add_solid(world, square({4, 1}, 0.2), 0.0, 2.0);
   world.floor_holes.push_back({square({1, 0.5}, 0.7), 0});
   world.emitters.push_back({world::Emitter::Kind::dock, world::kNone, {3, 1, 0, 0}, 2.0, 0.7, 0.5});
+  world.lamps.push_back({world::kNone, {4, 3, 1, 0}, 100.0});
   return world;
 }
 
@@ -288,6 +291,7 @@ TEST(HostDevice, LaneEdgesOnRastersHaveTheBytesOfTheKernels) {
 TEST(HostDevice, MagnetometersHaveTheBytesOfTheKernelsInAllModes) {
   for (const bool sum : {false, true}) {
     world::World world = scenes::sheet(20'000, 8.0, 5, true);
+    if (sum) world.earth_field = {2e-5, 1e-6, -4.5e-5};
     Chance chance(6);
     for (const std::string_view mode : {"exact", "near1", "near3", "near10"})
       for (int elements = 1; elements <= 7; ++elements) {
