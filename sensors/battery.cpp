@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <unordered_map>
 
 #include "base/box_tree.h"
 #include "base/displacement.h"
@@ -13,6 +14,7 @@
 #include "sensors/odometer.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
+#include "world/wall_tree.h"
 
 namespace sf::sensors {
 
@@ -21,6 +23,14 @@ namespace {
 constexpr double kHour = 3600.0;           // [s]
 constexpr double kLongestDockReach = 1e3;  // [m]
 constexpr double kFaces = 0.6;             // [rad] largest heading error towards the dock for a contact with its face
+
+constexpr double kTouches = 0.01;  // [m] contacts of a robot and a dock reach across this gap
+
+/// A dock of the world, with its body.
+struct Dock {
+  Pose X_WD;
+  std::vector<world::Segment> walls;
+};
 
 /// A battery at one time.
 struct Charge {
@@ -46,11 +56,12 @@ class Batteries : public HostBackend {
 
  private:
   void measure(std::span<const HostSample> samples) const override;
-  bool in_dock(const base::Report& state, double reach) const;
+  bool in_dock(std::size_t row, const Pose& X_WM) const;
   void advance(std::size_t row, std::int64_t now, Charge& charge) const;
 
   const std::vector<Battery>& settings_;  ///< per row
-  std::vector<Pose> docks_;               ///< X_WD
+  std::vector<double> radii_;             ///< [m] per row, of the robot's footprint
+  std::vector<Dock> docks_;
   base::BoxTree dock_places_;
   std::vector<Charge> charges_;  ///< per row, at the last tick
   std::vector<Charge> ahead_;    ///< per row, in a sample between two ticks
@@ -62,19 +73,31 @@ static_assert(std::is_trivially_copyable_v<Charge>);
 Batteries::Batteries(const SensorContext& context, const ParsedSensors& sensors)
     : HostBackend(context, battery_type, sensors), settings_(sensors.settings_as<Battery>()) {
   std::vector<base::Box> places;
+  std::unordered_map<std::uint32_t, std::size_t> dock_of_model;
   for (const world::Emitter& emitter : context.world.emitters) {
     if (emitter.kind != world::Emitter::Kind::dock) continue;
-    docks_.push_back(emitter.X_WE);
+    dock_of_model.emplace(emitter.model, docks_.size());
+    docks_.push_back({emitter.X_WE, {}});
     places.push_back(base::box_around({emitter.X_WE.x, emitter.X_WE.y}, 0.0));
   }
   dock_places_ = base::BoxTree(places);
+  for (const world::Segment& wall : context.world.walls)
+    if (const auto dock = dock_of_model.find(wall.model); wall.stops_robots && dock != dock_of_model.end())
+      docks_[dock->second].walls.push_back(wall);
   for (const Battery& battery : settings_) charges_.push_back({.charge = battery.charge * battery.capacity});
+  for (const SensorSpec& row : rows()) radii_.push_back(robots::footprint_of(world().movers[row.mover]).radius);
 }
 
-bool Batteries::in_dock(const base::Report& state, double reach) const {
-  const base::Box near = base::box_around({state.X_WM.x, state.X_WM.y}, 2.5 * reach);
-  return dock_places_.any(
-      near, [&](std::uint32_t i) { return is_docked(docks_[i], state.X_WM, reach, state.contact_mask != 0); });
+/// Decides contact by the pose alone, since recordings have no contacts.
+bool Batteries::in_dock(std::size_t row, const Pose& X_WM) const {
+  const double reach = settings_[row].dock_reach;
+  const glm::dvec2 p{X_WM.x, X_WM.y};
+  return dock_places_.any(base::box_around(p, 2.5 * reach), [&](std::uint32_t i) {
+    const bool touches = std::any_of(docks_[i].walls.begin(), docks_[i].walls.end(), [&](const world::Segment& wall) {
+      return world::distance(p, wall.a, wall.b) <= radii_[row] + kTouches;
+    });
+    return is_docked(docks_[i].X_WD, X_WM, reach, touches);
+  });
 }
 
 /// Continues a battery up to `now`. A robot that was relocated has not driven. A dock charges while the robot is in it
@@ -89,7 +112,7 @@ void Batteries::advance(std::size_t row, std::int64_t now, Charge& charge) const
   }
   const Charge before = charge;
   charge.X_WM = state.X_WM;
-  charge.docked = in_dock(state, battery.dock_reach);
+  charge.docked = in_dock(row, state.X_WM);
   charge.since = now;
   charge.known = true;
   const double seconds = 1e-9 * static_cast<double>(now - before.since);

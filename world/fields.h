@@ -117,9 +117,11 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     field(&World::interval, Key{"interval_sim", Unit::milliseconds}, Bounds{1e-6, 1e3}),
     field(&World::models), field(&World::walls), field(&World::lane_markings), field(&World::magnets),
     field(&World::movers), label(&World::paths), field(&World::lights), field(&World::emitters),
-    field(&World::floor_holes), field(&World::earth_field), field(&World::lamps),
-    field(&World::ambient_light, Key{"ambient_light"}, Bounds{0.0, 1e9}), path(&World::road_files), label(&World::unmodelled), label(&World::warnings),
-    label(&World::hash));
+    field(&World::floor_holes), path(&World::road_files), label(&World::unmodelled), label(&World::warnings),
+    label(&World::hash),
+    // since version 6
+    field(&World::earth_field), field(&World::lamps),
+    field(&World::ambient_light, Key{"ambient_light"}, Bounds{0.0, 1e9}));
 
 // clang-format on
 

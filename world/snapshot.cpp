@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 6;
+constexpr std::uint16_t kOldestVersion = 5;  // without the last fields of World, whose defaults are zero bytes
+constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
 
@@ -57,12 +59,16 @@ std::vector<std::uint8_t> snapshot(const World& world) {
 }
 
 World from_snapshot(const std::vector<std::uint8_t>& bytes) {
-  base::ByteReader in(bytes);
+  constexpr std::size_t kVersionAt = sizeof kMagic;
+  const bool is_old = bytes.size() > kVersionAt && bytes[kVersionAt] == kOldestVersion;
+  std::vector<std::uint8_t> longer;
+  if (is_old) longer.assign(bytes.begin(), bytes.end()), longer.resize(bytes.size() + kSinceVersion6);
+  base::ByteReader in(is_old ? longer : bytes);
   if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are not a world");
   const auto version = in.get<std::uint16_t>();
-  if (version != kVersion)
-    throw base::InputError(
-        fmt::format("this world snapshot has version {}; this sensorfarm reads version {}", version, kVersion));
+  if (version < kOldestVersion || version > kVersion)
+    throw base::InputError(fmt::format("this world snapshot has version {}; this sensorfarm reads versions {} to {}",
+                                       version, kOldestVersion, kVersion));
 
   World world;
   RowReader{in}.get(world);

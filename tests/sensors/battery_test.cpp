@@ -146,14 +146,19 @@ TEST(Battery, DocksCharge) {
   EXPECT_LT(trip.tick({0.5, 0, 0, M_PI}, 101'000).current, 0.0);
 }
 
-TEST(Battery, VirtualWallsDoNotChargeAndContactsCount) {
+TEST(Battery, ContactWithTheDocksBodyCounts) {
   world::World world = powered_robot();
   world.emitters.push_back({world::Emitter::Kind::virtual_wall, world::kNone, {}, 2.0, 0.7, 0.5});
   add_dock(world, {10, 0, 0, 0});
+  world.emitters.back().model = 5;
+  world.walls = {{.a = {10.29, -0.1}, .b = {10.29, 0.1}, .z_max = 0.1, .model = 5},
+                 {.a = {10.35, -0.1}, .b = {10.35, 0.1}, .z_max = 0.1, .model = 6}};
   PoweredTrip trip(world);
   EXPECT_EQ(trip.tick({}, 0).docked, 0.0);
-  EXPECT_EQ(trip.tick({10.3, 0, 0, M_PI}, 100).docked, 0.0);
-  EXPECT_EQ(trip.tick({10.3, 0, 0, M_PI}, 200, 1u).docked, 1.0);
+  EXPECT_EQ(trip.tick({10.299, 0, 0, M_PI}, 100).docked, 1.0) << "9 mm from the dock's body";
+  EXPECT_EQ(trip.tick({10.301, 0, 0, M_PI}, 200).docked, 0.0) << "11 mm";
+  EXPECT_EQ(trip.tick({10.299, 0, 0, 0}, 300).docked, 0.0) << "facing away";
+  EXPECT_EQ(trip.tick({10.345, 0, 0, M_PI}, 400, 1u).docked, 0.0) << "in contact with another body";
 }
 
 TEST(Battery, NeverFallsBelowZero) {

@@ -152,6 +152,23 @@ TEST(Snapshot, ChangedBytesAreRejectedOrHarmless) {
   }
 }
 
+/// Version 5 ends before the Earth's field, the lamps and the ambient light.
+TEST(Snapshot, VersionBeforeTheEarthsFieldIsRead) {
+  World world = street();
+  world.earth_field = {};
+  world.lamps.clear();
+  world.ambient_light = 0.0;
+  update_extent_and_hash(world);
+  auto bytes = snapshot(world);
+  bytes[4] = 5;
+  bytes.resize(bytes.size() - 36);
+  const World before = from_snapshot(bytes);
+  EXPECT_EQ(before.hash, world.hash);
+  EXPECT_TRUE(before.lamps.empty());
+  bytes.pop_back();
+  EXPECT_THROW(from_snapshot(bytes), base::InputError);
+}
+
 TEST(Snapshot, OtherVersionIsNamed) {
   auto bytes = snapshot(rooms());
   bytes[4] = 99;
