@@ -91,6 +91,8 @@ static const sf_type sf_types[] = {
      56000,
      {0},
      {{"voltage_V", 1, 1e-3}, {"current_A", 1, 1e-3}, {"charge_Ah", 1, 1e-6}, {"docked", 1, 1}}},
+    {15, "analog", 58000, {0}, {{"voltage_V", 1, 1e-4}, {"value", 1, 1}}},
+    {16, "ptz", 60000, {0}, {{"pan_rad", 1, 1e-6}, {"tilt_rad", 1, 1e-6}, {"fov_rad", 1, 1e-6}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},

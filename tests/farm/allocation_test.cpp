@@ -80,6 +80,10 @@ TEST(Allocation, NoneWithHostSensors) {
     const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, trial::fitted("bumper"));
     auto& sensors = world.movers[m].sensors;
     for (const char* type : {"cliff", "irreceiver", "lightsensor", "battery"}) sensors.push_back(trial::fitted(type));
+    world::Setting input = scenes::setting("input[0]", {0.01});
+    input.text = "light";
+    sensors.push_back(trial::fitted("analog", {input}));
+    sensors.push_back(trial::fitted("ptz"));
     sensors.push_back(trial::fitted("encoder", {scenes::setting("slip", {0.01})}));
     sensors.push_back(trial::fitted("gyro", {scenes::setting("noise", {0.1}), scenes::setting("bias", {0.1})}));
     sensors.push_back(trial::fitted("gps", {scenes::setting("noise", {1.0}), scenes::setting("rate", {10.0})}));

@@ -37,6 +37,11 @@ world::World everything(int robots) {
     sensors.push_back(fitted("irreceiver"));
     sensors.push_back(fitted("lightsensor"));
     sensors.push_back(fitted("battery"));
+    world::Setting input = setting("input[0]", {0.01});
+    input.text = "light";
+    sensors.push_back(fitted("analog", {input}));
+    sensors.push_back(fitted(
+        "ptz", {setting("views", {2}), setting("view[0]", {-20, 0, 40, 0.1}), setting("view[1]", {20, 0, 20, 0.1})}));
   }
   add_solid(world, square({2, 1}, 1.5), 0.5, 0.6);
   add_solid(world, square({4, 1}, 0.2), 0.0, 2.0);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "sensors/illumination.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/units.h"
 
