@@ -11,8 +11,12 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 6;
-constexpr std::uint16_t kOldestVersion = 5;  // without the last fields of World, whose defaults are zero bytes
+constexpr std::uint16_t kOldestVersion = 5;  // without the last fields of World; written where all of these are zero
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
+
+bool is_version5(const World& world) {
+  return world.earth_field == glm::dvec3{} && world.lamps.empty() && world.ambient_light == 0.0;
+}
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
 
@@ -52,9 +56,10 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   std::vector<std::uint8_t> bytes;
   base::ByteWriter out(bytes);
   out.put(kMagic);
-  out.put(kVersion);
+  out.put(is_version5(world) ? kOldestVersion : kVersion);
   // The spelling of the world file's path is not part of the world.
   RowWriter{out, RowFields::all, std::filesystem::path(world.file).parent_path().lexically_normal()}.put(world);
+  if (is_version5(world)) bytes.resize(bytes.size() - kSinceVersion6);
   return bytes;
 }
 

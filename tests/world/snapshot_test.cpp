@@ -152,21 +152,28 @@ TEST(Snapshot, ChangedBytesAreRejectedOrHarmless) {
   }
 }
 
-/// Version 5 ends before the Earth's field, the lamps and the ambient light.
-TEST(Snapshot, VersionBeforeTheEarthsFieldIsRead) {
+/// Worlds without the Earth's field, lamps and ambient light have the bytes of version 5, which ends before them.
+TEST(Snapshot, WorldsWithoutNewFieldsHaveTheVersionBefore) {
+  EXPECT_EQ(snapshot(street())[4], 6);
   World world = street();
   world.earth_field = {};
   world.lamps.clear();
   world.ambient_light = 0.0;
   update_extent_and_hash(world);
   auto bytes = snapshot(world);
-  bytes[4] = 5;
-  bytes.resize(bytes.size() - 36);
-  const World before = from_snapshot(bytes);
-  EXPECT_EQ(before.hash, world.hash);
-  EXPECT_TRUE(before.lamps.empty());
+  EXPECT_EQ(bytes[4], 5);
+  EXPECT_EQ(from_snapshot(bytes).hash, world.hash);
   bytes.pop_back();
   EXPECT_THROW(from_snapshot(bytes), base::InputError);
+  for (int i = 0; i < 3; ++i) {
+    World one = world;
+    if (i == 0) one.earth_field.y = 1e-5;
+    if (i == 1) one.lamps.push_back({1, {}, 5.0});
+    if (i == 2) one.ambient_light = 1.0;
+    update_extent_and_hash(one);
+    EXPECT_EQ(snapshot(one)[4], 6) << i;
+    EXPECT_EQ(from_snapshot(snapshot(one)).hash, one.hash) << i;
+  }
 }
 
 TEST(Snapshot, OtherVersionIsNamed) {
