@@ -9,12 +9,14 @@
 
 #include "base/error.h"
 #include "raycast/casters.h"
+#include "sensors/analog.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
 #include "sensors/irreceiver.h"
+#include "sensors/lightsensor.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/laneedge_trial.h"
@@ -215,10 +217,14 @@ world::World ready_made(const std::string& sensors) {
 TEST(HostKinds, PredefinedSensorsAreRead) {
   const world::World world = ready_made(
       "create_bumper() create_cliff() create_irreceiver() create_encoder() pioneer_bumpers() pioneer_encoder() "
-      "khepera_encoder() mems_gyro() outdoor_gps()");
+      "khepera_encoder() mems_gyro() outdoor_gps() create_battery() pioneer_battery() khepera_battery() "
+      "khepera_light() "
+      "khepera_analog() pioneer_analog() pioneer_ptz()");
   EXPECT_TRUE(world.warnings.empty());
   const sensors::SensorSet sensor_set(world);
-  EXPECT_EQ(sensor_set.count(), 9u);
+  EXPECT_EQ(sensor_set.count(), 16u);
+  EXPECT_EQ(sensor_set.of(sensors::kLightSensor, 0)[0].elements, 8u);
+  EXPECT_EQ(sensor_set.of(sensors::kAnalog, 0)[1].elements, 8u);
   EXPECT_EQ(sensor_set.of(sensors::kBumper, 0)[0].elements, 2u);
   EXPECT_EQ(sensor_set.of(sensors::kBumper, 0)[1].elements, 10u);
   EXPECT_EQ(sensor_set.of(sensors::kCliff, 0)[0].elements, 4u);
