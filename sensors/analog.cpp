@@ -46,20 +46,21 @@ void AnalogInputs::measure(std::span<const HostSample> samples) const {
   }
 }
 
-AnalogInput read_input(const world::Sensor& sensor, std::uint32_t i, std::uint32_t count) {
-  const std::string key = fmt::format("input[{}]", i);
-  const world::Setting* setting = find(sensor, key);
-  if (setting == nullptr) refuse(sensor, "inputs", fmt::format("'{}' is missing: 'inputs' is {}", key, count));
-  const bool light = setting->text == "light";
-  if (setting->numbers.size() != 1 || !(light || setting->text == "constant"))
-    refuse(sensor, key, fmt::format("'{}' expects [\"constant\" volts] or [\"light\" volts-per-lux]", key));
-  AnalogInput input{light ? AnalogInput::Source::light : AnalogInput::Source::constant, setting->numbers[0], {}};
-  if (!(std::abs(input.gain) <= kMostVolts))
-    refuse(sensor, key, fmt::format("'{}' is {:g}; expected -{:g} to {:g}", key, input.gain, kMostVolts, kMostVolts));
+AnalogInput read_input(const world::Sensor& sensor, std::uint32_t i) {
+  AnalogInput input;
   if (const auto p = tuple(sensor, fmt::format("spose[{}]", i), 3, "[x y yaw]"))
     input.X_SE = {sensor.metres_per_unit * (*p)[0], sensor.metres_per_unit * (*p)[1], 0.0,
                   sensor.radians_per_unit * (*p)[2]};
-  return input;
+  const std::string key = fmt::format("input[{}]", i);
+  const world::Setting* setting = find(sensor, key);
+  if (setting == nullptr) return input;
+  const bool light = setting->text == "light";
+  if (setting->numbers.size() != 1 || !(light || setting->text == "constant"))
+    refuse(sensor, key, fmt::format("'{}' expects [\"constant\" volts] or [\"light\" volts-per-lux]", key));
+  input.source = light ? AnalogInput::Source::light : AnalogInput::Source::constant;
+  input.gain = setting->numbers[0];
+  if (std::abs(input.gain) <= kMostVolts) return input;
+  refuse(sensor, key, fmt::format("'{}' is {:g}; expected -{:g} to {:g}", key, input.gain, kMostVolts, kMostVolts));
 }
 
 ParsedSensors parse_analogs(const world::World& world) {
@@ -87,7 +88,7 @@ Analog read_analog(const world::Sensor& sensor) {
   const std::uint32_t count = whole(sensor, "inputs", 1, 1, kMostAnalogInputs);
   refuse_beyond(sensor, "input[", "inputs", count, kMostAnalogInputs);
   refuse_beyond(sensor, "spose[", "inputs", count, kMostAnalogInputs);
-  for (std::uint32_t i = 0; i < count; ++i) a.inputs.push_back(read_input(sensor, i, count));
+  for (std::uint32_t i = 0; i < count; ++i) a.inputs.push_back(read_input(sensor, i));
   a.bits = whole(sensor, "bits", a.bits, 1, kMostAnalogBits);
   if (const auto range = tuple(sensor, "range", 2, "[min max] in volts")) {
     a.least = (*range)[0];
