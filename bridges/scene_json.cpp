@@ -122,6 +122,12 @@ Json emitters_json(const World& world) {
   return emitters;
 }
 
+Json lamps_json(const World& world) {
+  Json lamps = Json::array();
+  for (const world::Lamp& lamp : world.lamps) lamps.push_back({round(lamp.X_WL.x), round(lamp.X_WL.y)});
+  return lamps;
+}
+
 Json magnets_json(const World& world) {
   Json magnets = Json::array();
   for (const world::Magnet& magnet : world.magnets)
@@ -242,6 +248,7 @@ std::string scene_json(const Scene& scene, ViewerMode mode) {
             {"markings", markings_json(world)},
             {"lights", lights_json(world)},
             {"emitters", emitters_json(world)},
+            {"lamps", lamps_json(world)},
             {"magnets", magnets_json(world)},
             {"holes", holes_json(world)}};
   add_movers(scene, json);

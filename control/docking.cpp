@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "control/drive_to_point.h"
-#include "robots/footprint.h"
+#include "sensors/battery.h"
 #include "sensors/irreceiver.h"
 
 namespace sf::control {
@@ -16,7 +16,6 @@ namespace {
 
 using sensors::kDockByte, sensors::kNoIrByte, sensors::kRedBuoy, sensors::kGreenBuoy, sensors::kForceField;
 
-constexpr double kFaces = 0.6;  // [rad] largest heading error towards the dock for a contact with its face
 constexpr std::int64_t kBlind = 2'000'000'000;  // [ns] duration for which the last received beams are used
 
 std::uint32_t light_in(const base::ReadingBlock* reading) {
@@ -52,11 +51,7 @@ glm::dvec2 Docking::from_dock(const base::Pose& X_WM) const {
 }
 
 bool Docking::docked(const base::Pose& X_WM) const {
-  const glm::dvec2 p = from_dock(X_WM);
-  if (glm::length(p) <= settings_.reach) return true;
-  const double off = base::wrap_angle(settings_.X_WD.yaw + M_PI - X_WM.yaw);
-  return contact_ && p.x > 0.0 && p.x < 2.0 * settings_.reach && std::abs(p.y) < 0.4 * settings_.reach &&
-         std::abs(off) < kFaces;
+  return sensors::is_docked(settings_.X_WD, X_WM, settings_.reach, contact_);
 }
 
 // Drives to the staging point on the axis. The route leads around the dock if the dock is in between.
@@ -123,7 +118,7 @@ std::unique_ptr<Controller> make_docking(const ControllerContext& context, Setti
   DockingSettings docking;
   docking.X_WD = dock.X_WE;
   docking.stage = settings.number("stage", 0.7 * dock.range, 0.0, 1e3);
-  docking.reach = settings.number("reach", robots::footprint_of(mover).radius + 0.03, 0.0, 1e3);
+  docking.reach = settings.number("reach", sensors::dock_reach_of(mover), 0.0, 1e3);
   docking.speed = settings.number("speed", std::min(docking.speed, mover.max_forward), 1e-4, mover.max_forward);
   docking.slow_speed =
       settings.number("slow_speed", std::min(docking.slow_speed, docking.speed), 1e-4, mover.max_forward);

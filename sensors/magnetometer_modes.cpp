@@ -49,7 +49,8 @@ double cutoff_of(const world::World& world, std::uint8_t mode) {
 }
 
 FieldBound field_bound(const world::World& world, std::uint8_t mode, double height) {
-  FieldBound bound{truncation_bound(world, height, cutoff_of(world, mode)), 0.0};
+  FieldBound bound{
+      truncation_bound(world, height, cutoff_of(world, mode)) + kArithmetic * glm::length(world.earth_field), 0.0};
   for (const world::Magnet& magnet : world.magnets) add(magnet, std::abs(height - magnet.z), bound);
   for (const world::Mover& mover : world.movers)
     for (const world::Magnet& magnet : mover.magnets) add(magnet, std::abs(height - mover.X_WM.z - magnet.z), bound);

@@ -71,6 +71,7 @@ world::World in_view(const world::World& world, const FigureOptions& options) {
   std::erase_if(seen.movers, [&](const auto& m) { return hidden({m.X_WM.x, m.X_WM.y}, m.radius); });
   std::erase_if(seen.lights, [&](const auto& l) { return hidden({l.X_WL.x, l.X_WL.y}, 0.0); });
   std::erase_if(seen.emitters, [&](const auto& e) { return hidden({e.X_WE.x, e.X_WE.y}, std::max(e.range, e.halo)); });
+  std::erase_if(seen.lamps, [&](const auto& l) { return hidden({l.X_WL.x, l.X_WL.y}, 0.0); });
   return seen;
 }
 

@@ -202,6 +202,8 @@ std::string subtitle_of(const world::World& world, const FieldView& view, const 
   for (const world::Mover& mover : world.movers) magnets += mover.magnets.size();
   std::string text = fmt::format("{} magnet{}, {:g} m above the ground, at most {:.3g} Gauss", magnets,
                                  magnets == 1 ? "" : "s", view.height, top_of(samples));
+  if (world.earth_field != glm::dvec3{})
+    text += fmt::format(", with the Earth's field of {:.3g} Gauss", glm::length(world.earth_field) / kGauss);
   if (world.magnet_cutoff > 0.0) text += fmt::format(", cut off at {:g} m", world.magnet_cutoff);
   return text;
 }

@@ -37,7 +37,7 @@ struct FieldView {
 
 /// Completes a request. The default map contains all magnets of the loaded world and the surrounding area in which the
 /// field decays at this height. The default line runs through the middle of their bounding box, along its longer side,
-/// across the whole map. Precondition: the world has a magnet.
+/// across the whole map. Without magnets, the box is the world's.
 FieldView field_view(const world::World& world, const FieldRequest& wish);
 
 /// The field at a point of the profile.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "sensors/magnetic_field/sampling.h"
 #include "viz/field_figure.h"
 
@@ -30,7 +29,8 @@ constexpr int kCoarsestCell = 10;     // [px]
 constexpr double kMaxPairs = 1.5e10;  // pairs of a magnet and a cell: about ten seconds on two cores
 constexpr int kProfilePoints = 1201;
 
-/// Bounding box of all magnets in the loaded world, with their maximum and minimum height.
+/// Bounding box of all magnets in the loaded world, with their maximum and minimum height; without magnets, the
+/// world's.
 struct MagnetBox {
   Extent flat{1e300, 1e300, -1e300, -1e300};
   double low = 1e300, high = -1e300;
@@ -47,7 +47,8 @@ MagnetBox box_of(const world::World& world) {
   for (const world::Magnet& m : world.magnets) box.add(m.p, m.z);
   for (const world::Mover& mover : world.movers)
     for (const world::Magnet& m : mover.magnets) box.add(transform(mover.X_WM, m.p), mover.X_WM.z + m.z);
-  SF_CHECK(box.high >= box.low, "a view of a world without magnets");
+  const Extent& e = world.extent;
+  if (box.high < box.low) box.add({e.x_min, e.y_min}, 0.0), box.add({e.x_max, e.y_max}, 0.0);
   return box;
 }
 

@@ -23,6 +23,7 @@ constexpr SectorStyle kRedBuoy{theme::kRedBuoy, 0.14, 0.55};
 constexpr SectorStyle kGreenBuoy{theme::kGreenBuoy, 0.14, 0.55};
 constexpr SectorStyle kField{theme::kForceField, 0.14, 0.55};
 constexpr double kLightRadius = 6.0;  // [px]
+constexpr double kLampRadius = 4.0;   // [px]
 
 /// Shows a state by colour and shape, so that it is recognizable without colours, too.
 struct LightMark {
@@ -54,6 +55,20 @@ void draw_emitter(Axes& axes, const Emitter& emitter) {
   draw_view_sector(axes, emitter.X_WE, -0.875 * fov, 0.125 * fov, emitter.range, kGreenBuoy);
 }
 
+/// Draws a sun: a disc, and rays over the lamp's beam.
+void draw_lamp(Axes& axes, const world::Lamp& lamp) {
+  const glm::dvec2 at = axes.pixel({lamp.X_WL.x, lamp.X_WL.y});
+  constexpr int kRays = 8;
+  const bool all_round = lamp.fov >= 2.0 * M_PI;
+  for (int i = 0; i < kRays; ++i) {
+    const double part = all_round ? (i + 0.5) / kRays : i / (kRays - 1.0);
+    const glm::dvec2 ray = base::rotate(-lamp.X_WL.yaw - (part - 0.5) * lamp.fov, {1.0, 0.0});
+    axes.canvas().line(at + 1.3 * kLampRadius * ray, at + 2.1 * kLampRadius * ray, theme::kHairline, theme::kInk);
+  }
+  axes.canvas().disc(at, kLampRadius, theme::kLightYellow);
+  axes.canvas().ring(at, kLampRadius, theme::kHairline, theme::kInk);
+}
+
 bool has(const world::World& world, Emitter::Kind kind) {
   return std::any_of(world.emitters.begin(), world.emitters.end(), [&](const Emitter& e) { return e.kind == kind; });
 }
@@ -70,6 +85,7 @@ void draw_floor_holes(Axes& axes, const world::World& world) {
 
 void draw_emitters(Axes& axes, const world::World& world) {
   for (const Emitter& emitter : world.emitters) draw_emitter(axes, emitter);
+  for (const world::Lamp& lamp : world.lamps) draw_lamp(axes, lamp);
 }
 
 void draw_lights(Axes& axes, const world::World& world, double time) {
@@ -111,6 +127,7 @@ std::vector<LegendItem> signal_layer_legend(const world::World& world) {
   if (has(world, Emitter::Kind::dock))
     items.push_back({LegendMark::block, with_opacity(kRedBuoy.color, kRedBuoy.inside),
                      "dock: red and green buoy, force field", with_opacity(kRedBuoy.color, kRedBuoy.border)});
+  if (!world.lamps.empty()) items.push_back({LegendMark::outlined_dot, theme::kLightYellow, "lamp"});
   if (!world.floor_holes.empty())
     items.push_back({LegendMark::block, with_opacity(theme::kFloorHole, 0.85), "hole in the floor"});
   return items;

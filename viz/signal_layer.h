@@ -1,5 +1,5 @@
 #pragma once
-// Traffic lights, infrared emitters and holes in the floor.
+// Traffic lights, infrared emitters, lamps and holes in the floor.
 
 #include <span>
 #include <vector>
@@ -13,7 +13,8 @@ namespace sf::viz {
 /// Draws dark areas beneath walls and movers.
 void draw_floor_holes(Axes& axes, const world::World& world);
 
-/// Draws the beams and halos of virtual walls and docks, faintly and without occlusion by walls.
+/// Draws the beams and halos of virtual walls and docks, faintly and without occlusion by walls, and lamps as suns with
+/// rays over their beams.
 void draw_emitters(Axes& axes, const world::World& world);
 
 /// Draws one mark per light in its state at `time` [s]: a dot for green, a diamond for yellow, a square for red, hollow

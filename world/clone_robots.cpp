@@ -151,6 +151,7 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   retarget(world.magnets, kept.model_rows);
   retarget(world.lights, kept.model_rows);
   retarget(world.emitters, kept.model_rows);
+  retarget(world.lamps, kept.model_rows);
   retarget(world.floor_holes, kept.model_rows);
   world.models = std::move(models);
   world.movers = std::move(movers);

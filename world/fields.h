@@ -26,6 +26,9 @@ inline constexpr auto words_of(LightState) {
 
 template <> inline constexpr auto kFields<glm::dvec2> = std::make_tuple(field(&glm::dvec2::x), field(&glm::dvec2::y));
 
+template <> inline constexpr auto kFields<glm::dvec3> = std::make_tuple(
+    field(&glm::dvec3::x), field(&glm::dvec3::y), field(&glm::dvec3::z));
+
 template <> inline constexpr auto kFields<Pose> = std::make_tuple(
     field(&Pose::x), field(&Pose::y), field(&Pose::z), field(&Pose::yaw));
 
@@ -95,6 +98,11 @@ template <> inline constexpr auto kFields<Emitter> = std::make_tuple(
     field(&Emitter::fov, Key{"ir_fov", Unit::angle}, Bounds{0.0, 2.0 * M_PI, true}),
     field(&Emitter::halo, Key{"ir_halo", Unit::length}, kNotNegative));
 
+template <> inline constexpr auto kFields<Lamp> = std::make_tuple(
+    field(&Lamp::model), field(&Lamp::X_WL),
+    field(&Lamp::intensity, Key{"lamp_intensity"}, Bounds{0.0, 1e9, true}),
+    field(&Lamp::fov, Key{"lamp_fov", Unit::angle}, Bounds{0.0, 2.0 * M_PI, true}));
+
 template <> inline constexpr auto kFields<FloorHole> = std::make_tuple(
     field(&FloorHole::model), field(&FloorHole::outline));
 
@@ -110,7 +118,10 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     field(&World::models), field(&World::walls), field(&World::lane_markings), field(&World::magnets),
     field(&World::movers), label(&World::paths), field(&World::lights), field(&World::emitters),
     field(&World::floor_holes), path(&World::road_files), label(&World::unmodelled), label(&World::warnings),
-    label(&World::hash));
+    label(&World::hash),
+    // since version 6
+    field(&World::earth_field), field(&World::lamps),
+    field(&World::ambient_light, Key{"ambient_light"}, Bounds{0.0, 1e9}));
 
 // clang-format on
 

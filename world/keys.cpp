@@ -14,7 +14,7 @@ using Words = std::span<const std::string_view>;
 
 // clang-format off
 // Keys with their own readers. world/fields.h has all others.
-constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "old_shapes", "stage_noise", "stage_obstacles",
+constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "earth_field", "earth_location", "old_shapes", "stage_noise", "stage_obstacles",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
@@ -81,7 +81,7 @@ Words fields_of() {
 
 /// Returns the keys of every model, and `others`.
 std::vector<Words> model_and(std::initializer_list<Words> others) {
-  std::vector<Words> words{kModel, fields_of<Segment>(), fields_of<Emitter>()};
+  std::vector<Words> words{kModel, fields_of<Segment>(), fields_of<Emitter>(), fields_of<Lamp>()};
   words.insert(words.end(), others);
   return words;
 }

@@ -10,7 +10,13 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 5;
+constexpr std::uint16_t kVersion = 6;
+constexpr std::uint16_t kOldestVersion = 5;  // without the last fields of World; written where all of these are zero
+constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
+
+bool is_version5(const World& world) {
+  return world.earth_field == glm::dvec3{} && world.lamps.empty() && world.ambient_light == 0.0;
+}
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
 
@@ -29,6 +35,7 @@ void check_links(const World& world) {
   }
   good &= std::all_of(world.lights.begin(), world.lights.end(), known);
   good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
+  good &= std::all_of(world.lamps.begin(), world.lamps.end(), known);
   good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
   if (!good) refuse("a row refers to a row that does not exist");
 }
@@ -49,19 +56,24 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   std::vector<std::uint8_t> bytes;
   base::ByteWriter out(bytes);
   out.put(kMagic);
-  out.put(kVersion);
+  out.put(is_version5(world) ? kOldestVersion : kVersion);
   // The spelling of the world file's path is not part of the world.
   RowWriter{out, RowFields::all, std::filesystem::path(world.file).parent_path().lexically_normal()}.put(world);
+  if (is_version5(world)) bytes.resize(bytes.size() - kSinceVersion6);
   return bytes;
 }
 
 World from_snapshot(const std::vector<std::uint8_t>& bytes) {
-  base::ByteReader in(bytes);
+  constexpr std::size_t kVersionAt = sizeof kMagic;
+  const bool is_old = bytes.size() > kVersionAt && bytes[kVersionAt] == kOldestVersion;
+  std::vector<std::uint8_t> longer;
+  if (is_old) longer.assign(bytes.begin(), bytes.end()), longer.resize(bytes.size() + kSinceVersion6);
+  base::ByteReader in(is_old ? longer : bytes);
   if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are not a world");
   const auto version = in.get<std::uint16_t>();
-  if (version != kVersion)
-    throw base::InputError(
-        fmt::format("this world snapshot has version {}; this sensorfarm reads version {}", version, kVersion));
+  if (version < kOldestVersion || version > kVersion)
+    throw base::InputError(fmt::format("this world snapshot has version {}; this sensorfarm reads versions {} to {}",
+                                       version, kOldestVersion, kVersion));
 
   World world;
   RowReader{in}.get(world);

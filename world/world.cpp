@@ -1,6 +1,7 @@
 #include "world/world.h"
 
 #include <algorithm>
+#include <concepts>
 #include <filesystem>
 #include <limits>
 
@@ -66,6 +67,7 @@ Extent extent_of(const World& world, Extent extent) {
     }
   for (const Light& light : world.lights) include({light.X_WL.x, light.X_WL.y});
   for (const Emitter& emitter : world.emitters) include({emitter.X_WE.x, emitter.X_WE.y});
+  for (const Lamp& lamp : world.lamps) include({lamp.X_WL.x, lamp.X_WL.y});
   for (const FloorHole& hole : world.floor_holes)
     for (const glm::dvec2& p : hole.outline) include(p);
   for (const Mover& mover : world.movers) {
@@ -88,13 +90,27 @@ double radius_of(const Mover& mover) {
 constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, &World::walls, &World::road_resolution,
                                               &World::lane_markings, &World::magnet_cutoff, &World::accuracy);
 
-template <class Member>
-bool is_first_hashed(Member member) {
+/// Worlds without these keep the hash that they had before the fields existed.
+constexpr auto kHashedIfSet = std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light);
+
+template <class Members, class Member>
+bool is_among(const Members& members, Member member) {
   const auto same = [&](auto other) {
     if constexpr (std::is_same_v<Member, decltype(other)>) return other == member;
     return false;
   };
-  return std::apply([&](auto... others) { return (same(others) || ...); }, kFirstHashed);
+  return std::apply([&](auto... others) { return (same(others) || ...); }, members);
+}
+
+template <class T>
+bool is_set(const T& value) {
+  if constexpr (requires { value.empty(); }) {
+    return !value.empty();
+  } else if constexpr (std::equality_comparable<T>) {
+    return !(value == T{});
+  } else {
+    return true;
+  }
 }
 
 /// Hashes values as bytes without storing the bytes.
@@ -144,7 +160,9 @@ std::uint64_t hash_of(const World& world, std::uint64_t unread) {
   };
   std::apply([&](auto... member) { (put(member), ...); }, kFirstHashed);
   for_each_field<World>([&](const auto& field) {
-    if (field.role == Role::physics && !is_first_hashed(field.member)) put(field.member);
+    if (field.role != Role::physics || is_among(kFirstHashed, field.member)) return;
+    if (is_among(kHashedIfSet, field.member) && !is_set(world.*field.member)) return;
+    put(field.member);
   });
   return hash.value();
 }
@@ -175,6 +193,7 @@ void translate(World& world, double dx, double dy) {
     for (PathPiece& piece : path.pieces) move(piece.X_WP);
   for (Light& light : world.lights) move(light.X_WL);
   for (Emitter& emitter : world.emitters) move(emitter.X_WE);
+  for (Lamp& lamp : world.lamps) move(lamp.X_WL);
   for (FloorHole& hole : world.floor_holes)
     for (glm::dvec2& p : hole.outline) move(p);
   for (Model& model : world.models) move(model.X_WM);

@@ -182,6 +182,14 @@ struct Emitter {
   double halo = 0.0;        ///< [m] >= 0, radius of the halo around it (dock: of the force field)
 };
 
+/// A lamp for light sensors: a point source of constant intensity within its beam, dark outside.
+struct Lamp {
+  std::uint32_t model = 0;  ///< row in `World::models`; its own walls do not block the light
+  Pose X_WL;                ///< the beam points along x
+  double intensity = 0.0;   ///< [cd] > 0
+  double fov = 2.0 * M_PI;  ///< [rad] in (0, 2 pi], full angle of the beam in the plane, at all elevations
+};
+
 /// A hole in the floor, for cliff sensors.
 struct FloorHole {
   std::vector<glm::dvec2> outline;  ///< [m] world frame, closed, simple
@@ -221,12 +229,15 @@ struct World {
   std::vector<LaneMarking> lane_markings;  ///< road paint, visible to lane edge sensors only
   double road_resolution = 0.0;            ///< [m] raster step for lane edge sensors; 0: exact markings
   std::vector<Magnet> magnets;             ///< static magnets
+  glm::dvec3 earth_field{};                ///< [T] homogeneous field added to that of all magnets; 0: none
   double magnet_cutoff = 0.0;              ///< [m] magnets beyond this horizontal distance are ignored; 0: none
   Accuracy accuracy;                       ///< for sensors without their own word, if their type has the word
   std::vector<Mover> movers;
   std::vector<Path> paths;
   std::vector<Light> lights;
   std::vector<Emitter> emitters;
+  std::vector<Lamp> lamps;
+  double ambient_light = 0.0;  ///< [lx] on every surface, without shadows
   std::vector<FloorHole> floor_holes;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts

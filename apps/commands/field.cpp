@@ -22,12 +22,14 @@ namespace {
 constexpr double kGauss = 1e-4;  // [T]
 constexpr const char* kNothing = "interrupted: nothing was written";
 
-void refuse_without_magnets(const world::World& world) {
+void refuse_without_field(const world::World& world) {
   const bool carried = std::any_of(world.movers.begin(), world.movers.end(),
                                    [](const world::Mover& mover) { return !mover.magnets.empty(); });
-  if (world.magnets.empty() && !carried)
+  if (world.magnets.empty() && !carried && world.earth_field == glm::dvec3{})
     throw base::InputError(
-        world.file, 0, "has no magnets and therefore no field; give a model a 'magnetic_moment' (10000 is 1 A m^2)");
+        world.file, 0,
+        "has no magnets and therefore no field; give a model a 'magnetic_moment' (10000 is 1 A m^2), "
+        "or the world an 'earth_field'");
 }
 
 void write_csv(const std::string& path, const viz::FieldView& view, const viz::FieldSamples& samples) {
@@ -48,7 +50,7 @@ int field(const FieldOptions& options) {
   install_stop_handlers();
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
-  refuse_without_magnets(world);
+  refuse_without_field(world);
   const viz::FieldView view = viz::field_view(world, {options.height, options.line, options.extent, options.page});
 
   gpu::Device device = open_device(options);

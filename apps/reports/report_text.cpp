@@ -57,6 +57,13 @@ std::string paint_text(const world::World& world) {
              cell > 0.0 ? fmt::format("as a raster of {:g} m", cell) : "exactly");
 }
 
+std::string earth_text(const world::World& world) {
+  const glm::dvec3 gauss = 1e4 * world.earth_field;
+  if (gauss == glm::dvec3{}) return "";
+  return row("Earth's field", "[{:.4g} {:.4g} {:.4g}] Gauss, of {:.4g} Gauss", gauss.x, gauss.y, gauss.z,
+             glm::length(gauss));
+}
+
 std::string magnets_text(const world::World& world) {
   const std::size_t magnets = count_magnets(world);
   if (magnets == 0) return "";
@@ -73,6 +80,7 @@ std::string street_text(const world::World& world) {
   if (!world.lights.empty()) text += row("traffic lights", world.lights.size());
   if (docks > 0) text += row("docks", docks);
   if (walls > 0) text += row("virtual walls", walls);
+  if (!world.lamps.empty()) text += row("lamps", world.lamps.size());
   if (!world.floor_holes.empty()) text += row("holes", "{}, visible to cliff sensors only", world.floor_holes.size());
   if (!world.paths.empty()) text += row("paths", world.paths.size());
   return text;
@@ -119,7 +127,7 @@ std::string world_report_text(const world::World& world, const sensors::SensorSe
               ? row("sensors", "none")
               : sensors_text(sensor_set) + rates_text(world, sensor_set) + accuracy_text(world, sensor_set);
   text += row("wall segments", world.walls.size());
-  text += paint_text(world) + magnets_text(world) + street_text(world);
+  text += paint_text(world) + magnets_text(world) + earth_text(world) + street_text(world);
   text += row("extent", "x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max);
   text += row("tick", "{:g} s", world.interval);
   for (const auto& [type, count] : world.unmodelled) text += row("kept as bodies", "{} x {}", count, type);

@@ -35,7 +35,18 @@ enum {
   SF_MAX_SENSORS = 32,
   SF_SIGNATURE = 24
 };
-enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I = 137, SF_OBJECT, SF_REFUSAL, SF_NEIGHBOURS };
+enum {
+  SF_V2V = 128,
+  SF_TAG,
+  SF_SUBSCRIBE,
+  SF_START,
+  SF_LEAVE,
+  SF_CHALLENGE,
+  SF_V2I = 137,
+  SF_OBJECT,
+  SF_REFUSAL,
+  SF_NEIGHBOURS
+};
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
 enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
 enum { SF_MAX_COMMANDS = 38, SF_MAX_PART = 148, SF_MAX_DATAGRAM = 1400 };
@@ -74,6 +85,14 @@ static const sf_type sf_types[] = {
     {10, "gps", 48000, {0}, {{"x_m", 1, 5e-3}, {"y_m", 1, 5e-3}, {"hdop", 1, 1e-3}, {"satellites", 1, 1}}},
     {11, "irreceiver", 50000, {0}, {{"virtual_wall", 1, 1}, {"ir_byte", 1, 1}}},
     {12, "occupancy", 52000, {"part", "parts", "word_columns", "word_rows", "flags"}, {{"word", 1, 1}}},
+    {13, "lightsensor", 54000, {0}, {{"illuminance_lx", 1, 1e-3}, {"value", 1, 1}}},
+    {14,
+     "battery",
+     56000,
+     {0},
+     {{"voltage_V", 1, 1e-3}, {"current_A", 1, 1e-3}, {"charge_Ah", 1, 1e-6}, {"docked", 1, 1}}},
+    {15, "analog", 58000, {0}, {{"voltage_V", 1, 1e-4}, {"value", 1, 1}}},
+    {16, "ptz", 60000, {0}, {{"pan_rad", 1, 1e-6}, {"tilt_rad", 1, 1e-6}, {"fov_rad", 1, 1e-6}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},
@@ -408,8 +427,8 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
 }
 
-// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE or OBJECT from type, robot, sequence, time_ns, session, token, words and values.
-// Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
+// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE or OBJECT from type, robot, sequence, time_ns, session, token, words and
+// values. Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
 size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   const sf_type* const type = sf_find_type(packet->type);
   if (!type || packet->type < SF_V2V || (packet->type > SF_LEAVE && packet->type != SF_OBJECT)) return 0;
@@ -495,8 +514,7 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
 static void print_bound(FILE* out, double bound) {
   char text[32];
   snprintf(text, sizeof text, "%.3g", bound);
-  if (strtod(text, NULL) < bound)
-    snprintf(text, sizeof text, "%.3g", bound + 0.5 * pow(10, floor(log10(bound)) - 2));
+  if (strtod(text, NULL) < bound) snprintf(text, sizeof text, "%.3g", bound + 0.5 * pow(10, floor(log10(bound)) - 2));
   fprintf(out, "; error up to %s", text);
 }
 

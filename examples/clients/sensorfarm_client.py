@@ -55,6 +55,10 @@ SENSORS = {
     10: ("gps", 48000, [("x_m", 5e-3), ("y_m", 5e-3), ("hdop", 1e-3), ("satellites", 1)]),
     11: ("irreceiver", 50000, [("virtual_wall", 1), ("ir_byte", 1)]),
     12: ("occupancy", 52000, []),
+    13: ("lightsensor", 54000, [("illuminance_lx", 1e-3), ("value", 1)]),
+    14: ("battery", 56000, [("voltage_V", 1e-3), ("current_A", 1e-3), ("charge_Ah", 1e-6), ("docked", 1)]),
+    15: ("analog", 58000, [("voltage_V", 1e-4), ("value", 1)]),
+    16: ("ptz", 60000, [("pan_rad", 1e-6), ("tilt_rad", 1e-6), ("fov_rad", 1e-6)]),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",

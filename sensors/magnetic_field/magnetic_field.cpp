@@ -155,7 +155,11 @@ FieldSum MagneticField::at(std::size_t group, std::size_t i) const {
     sum.z += part.z;
     sum.magnitudes += part.magnitudes;
   }
-  return {kPermeability * sum.x, kPermeability * sum.y, kPermeability * sum.z, kPermeability * sum.magnitudes};
+  sum = {kPermeability * sum.x, kPermeability * sum.y, kPermeability * sum.z, kPermeability * sum.magnitudes};
+  const glm::dvec3& earth = t_->world.earth_field;
+  if (earth == glm::dvec3{}) return sum;  // adding 0 would change -0
+  const double magnitude = t_->magnitudes ? glm::length(earth) : 0.0;
+  return {sum.x + earth.x, sum.y + earth.y, sum.z + earth.z, sum.magnitudes + magnitude};
 }
 
 std::uint64_t MagneticField::dipoles() const { return t_->dipoles_summed; }

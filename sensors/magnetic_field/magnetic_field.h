@@ -1,5 +1,6 @@
 #pragma once
-// The field of all magnets of a world at many points, on the device or, with the same bytes, on the host.
+// The field of all magnets of a world at many points, on the device or, with the same bytes, on the host. The world's
+// homogeneous field (World::earth_field) is added on the host to the sum of either.
 //
 // Sums are accurate to 1e-12 of the sum of magnitudes, for points and moments in device precision (`field_bound`
 // includes all errors). Points have 64 bits, with an error of 4e-18 m over the distance when nearer than 4 um to a
@@ -58,7 +59,8 @@ class MagneticField {
   void record(gpu::Batch& batch);
   void add_copies(gpu::Batch& batch);
   void sum_on_host();
-  /// Returns the field at point `i` of group `group`, after the batch or `sum_on_host`.
+  /// Returns the field at point `i` of group `group`, after the batch or `sum_on_host`, including the world's
+  /// homogeneous field. Its magnitude is one more of the summed magnitudes.
   FieldSum at(std::size_t group, std::size_t i) const;
 
   std::uint64_t dipoles() const;  ///< number of pairs of a magnet and a point summed since construction

@@ -123,6 +123,16 @@ TEST_F(SensorTypes, CheckReportsTheEffectOfACutoff) {
   EXPECT_NE(run("check", cut, {}).out.find("the omitted field is at most 1.26e-08 T"), std::string::npos);
 }
 
+TEST_F(SensorTypes, CheckReportsTheEarthsFieldAndLamps) {
+  const std::string lit =
+      folder.write("lit.world", "earth_field [0.3 0 -0.4]\nmodel( size [1 1 1] pose [9 9 0 0] lamp_intensity 5 )\n" +
+                                    std::string(kTypesWorld));
+  const Json facts(run("check", lit, {"--json"}).out);
+  EXPECT_EQ(facts.number("/earth_field_T/2"), -4e-5);
+  EXPECT_EQ(facts.number("/lamps"), 1);
+  expect_in("[0.3 0 -0.4] Gauss, of 0.5 Gauss", run("check", lit, {}).out);
+}
+
 TEST_F(SensorTypes, EveryCommandReportsTheLineOfInvalidSettings) {
   const std::string bad = folder.write("bad.world", "position\n(\n  magnetometer( scount 99 )\n)\n");
   for (const std::string command : {"check", "sense", "run", "serve", "listen"}) {

@@ -79,7 +79,11 @@ TEST(Allocation, NoneWithHostSensors) {
   for (int i = 0; i < 12; ++i) {
     const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, trial::fitted("bumper"));
     auto& sensors = world.movers[m].sensors;
-    for (const char* type : {"cliff", "irreceiver"}) sensors.push_back(trial::fitted(type));
+    for (const char* type : {"cliff", "irreceiver", "lightsensor", "battery"}) sensors.push_back(trial::fitted(type));
+    world::Setting input = scenes::setting("input[0]", {0.01});
+    input.text = "light";
+    sensors.push_back(trial::fitted("analog", {input}));
+    sensors.push_back(trial::fitted("ptz"));
     sensors.push_back(trial::fitted("encoder", {scenes::setting("slip", {0.01})}));
     sensors.push_back(trial::fitted("gyro", {scenes::setting("noise", {0.1}), scenes::setting("bias", {0.1})}));
     sensors.push_back(trial::fitted("gps", {scenes::setting("noise", {1.0}), scenes::setting("rate", {10.0})}));
@@ -89,6 +93,7 @@ TEST(Allocation, NoneWithHostSensors) {
   using Kind = world::Emitter::Kind;
   for (const Kind kind : {Kind::dock, Kind::virtual_wall})
     world.emitters.push_back({kind, world::kNone, {2, 0, 0, 0}, 2.0, 0.7, 0.5});
+  world.lamps.push_back({world::kNone, {2, 2, 1, 0}, 100.0});
   for (const unsigned threads : {1u, 2u}) EXPECT_EQ(allocations_per_lap(world, {.threads = threads}), 0u) << threads;
 }
 

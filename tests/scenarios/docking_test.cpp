@@ -7,6 +7,7 @@
 
 #include "control/stop_reason.h"
 #include "scenarios/simulation.h"
+#include "sensors/battery.h"
 #include "sensors/sensor_type.h"
 #include "tests/device.h"
 #include "tests/sensors/edit_laser.h"
@@ -15,7 +16,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// SimVille with only roomba5, which carries only its receiver.
+/// SimVille with only roomba5, which carries only its receiver and a battery.
 world::World car_park() {
   world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
@@ -26,6 +27,7 @@ world::World car_park() {
   world::Mover& mover = world.movers.front();
   scenes::remove_lasers(mover);
   std::erase_if(mover.sensors, [](const world::Sensor& sensor) { return sensor.type != "irreceiver"; });
+  mover.sensors.push_back({.type = "battery", .name = "battery"});
   world.road_files.clear();
   world.magnets.clear();
   world::update_extent_and_hash(world);
@@ -42,6 +44,7 @@ struct Docked {
   double seconds = HUGE_VAL;
   glm::dvec2 p;      ///< [m] in the dock's frame
   double off = 0.0;  ///< [rad] from facing it
+  bool charges = false;
   std::string reason;
 };
 
@@ -59,6 +62,8 @@ Docked dock(world::World world, const base::Pose& from) {
     docked.seconds = 0.1 * tick;
     docked.p = base::rotate(-X_WD.yaw, {X_WM.x - X_WD.x, X_WM.y - X_WD.y});
     docked.off = base::wrap_angle(X_WM.yaw - X_WD.yaw - M_PI);
+    for (const base::ReadingBlock& r : record.readings)
+      if (r.type == sensors::kBattery) docked.charges = r.values[3] == 1.0;
     return docked;
   }
   docked.reason = control::stop_reason_of(*simulation.controller(0));
@@ -79,6 +84,7 @@ TEST(DockingInSimVille, SucceedsFromAllOverTheCarPark) {
         longest = std::max(longest, std::isfinite(docked.seconds) ? docked.seconds : 0.0);
         EXPECT_LT(docked.seconds, 150.0) << x << ", " << y << ", " << yaw << " " << docked.reason;
         if (!std::isfinite(docked.seconds)) continue;
+        EXPECT_TRUE(docked.charges) << x << ", " << y << ", " << yaw;
         EXPECT_LT(std::abs(docked.p.y), 0.07) << x << ", " << y << ", " << yaw;
         EXPECT_LT(std::abs(docked.off), 0.5) << x << ", " << y << ", " << yaw;
         EXPECT_NEAR(docked.p.x, 0.215, 0.005) << "its front at the dock's face: " << x << ", " << y << ", " << yaw;

@@ -29,8 +29,10 @@ world::World read(const std::string& text) {
 world::World town(unsigned robots) {
   std::string text =
       "define house model( size [2 2 1] )\n"
-      "define walker create( create_laser( range_max 2 ) create_map( laser \"\" ) create_encoder( ) create_gyro( ) )\n"
-      "define driver pioneer3at( pioneer_sonar( ) pioneer_encoder( ) outdoor_gps( ) mems_gyro( ) )\n";
+      "define walker create( create_laser( range_max 2 ) create_map( laser \"\" ) create_encoder( ) create_battery( ) "
+      "create_gyro( ) )\n"
+      "define driver pioneer3at( pioneer_sonar( ) pioneer_encoder( ) pioneer_battery( ) outdoor_gps( ) mems_gyro( ) "
+      ")\n";
   text.replace(text.find(" create_gyro( )"), 15, " mems_gyro( latency 0.25 )");
   text.replace(text.find("( laser \"\" )"), 12, "( )");
   for (int x = 0; x < 6; ++x)

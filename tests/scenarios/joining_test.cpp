@@ -44,6 +44,8 @@ define probe position
           range [0 3] fov 20 arrays 1 )
   magnetometer ( )
   encoder ( slip 0.1 )
+  battery ( )
+  ptz ( views 2 view[0] [0 0 40 1] view[1] [30 0 20 0.5] )
   gyro ( )
   occupancy ( laser "front" cell 0.25 words [8 8] log_odds [85 40 350] )
 )

@@ -9,12 +9,14 @@
 
 #include "base/error.h"
 #include "raycast/casters.h"
+#include "sensors/analog.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
 #include "sensors/irreceiver.h"
+#include "sensors/lightsensor.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/laneedge_trial.h"
@@ -35,11 +37,19 @@ world::World everything(int robots) {
     sensors.push_back(fitted("gyro", {setting("noise", {0.1}), setting("bias", {0.1})}));
     sensors.push_back(fitted("gps", {setting("noise", {1}), setting("rate", {10})}));
     sensors.push_back(fitted("irreceiver"));
+    sensors.push_back(fitted("lightsensor"));
+    sensors.push_back(fitted("battery"));
+    world::Setting input = setting("input[0]", {0.01});
+    input.text = "light";
+    sensors.push_back(fitted("analog", {input}));
+    sensors.push_back(fitted(
+        "ptz", {setting("views", {2}), setting("view[0]", {-20, 0, 40, 0.1}), setting("view[1]", {20, 0, 20, 0.1})}));
   }
   add_solid(world, square({2, 1}, 1.5), 0.5, 0.6);
   add_solid(world, square({4, 1}, 0.2), 0.0, 2.0);
   world.floor_holes.push_back({square({1, 0.5}, 0.7), 0});
   world.emitters.push_back({world::Emitter::Kind::dock, world::kNone, {3, 1, 0, 0}, 2.0, 0.7, 0.5});
+  world.lamps.push_back({world::kNone, {4, 3, 1, 0}, 100.0});
   return world;
 }
 
@@ -207,10 +217,14 @@ world::World ready_made(const std::string& sensors) {
 TEST(HostKinds, PredefinedSensorsAreRead) {
   const world::World world = ready_made(
       "create_bumper() create_cliff() create_irreceiver() create_encoder() pioneer_bumpers() pioneer_encoder() "
-      "khepera_encoder() mems_gyro() outdoor_gps()");
+      "khepera_encoder() mems_gyro() outdoor_gps() create_battery() pioneer_battery() khepera_battery() "
+      "khepera_light() "
+      "khepera_analog() pioneer_analog() pioneer_ptz()");
   EXPECT_TRUE(world.warnings.empty());
   const sensors::SensorSet sensor_set(world);
-  EXPECT_EQ(sensor_set.count(), 9u);
+  EXPECT_EQ(sensor_set.count(), 16u);
+  EXPECT_EQ(sensor_set.of(sensors::kLightSensor, 0)[0].elements, 8u);
+  EXPECT_EQ(sensor_set.of(sensors::kAnalog, 0)[1].elements, 8u);
   EXPECT_EQ(sensor_set.of(sensors::kBumper, 0)[0].elements, 2u);
   EXPECT_EQ(sensor_set.of(sensors::kBumper, 0)[1].elements, 10u);
   EXPECT_EQ(sensor_set.of(sensors::kCliff, 0)[0].elements, 4u);
@@ -288,6 +302,7 @@ TEST(HostDevice, LaneEdgesOnRastersHaveTheBytesOfTheKernels) {
 TEST(HostDevice, MagnetometersHaveTheBytesOfTheKernelsInAllModes) {
   for (const bool sum : {false, true}) {
     world::World world = scenes::sheet(20'000, 8.0, 5, true);
+    if (sum) world.earth_field = {2e-5, 1e-6, -4.5e-5};
     Chance chance(6);
     for (const std::string_view mode : {"exact", "near1", "near3", "near10"})
       for (int elements = 1; elements <= 7; ++elements) {

@@ -20,7 +20,7 @@ const std::uint32_t kLaserRobots = instrumented() ? 6 : 24;  ///< each beam is c
 constexpr double kRanges[] = {0.75, 8.0, 30.0, 100.0};
 
 /// Robots with bodies at random free poses, with two of four ranges each time, to mix list configurations.
-world::World with_robots(world::World world, double range, std::uint64_t seed) {
+world::World with_random_robots(world::World world, double range, std::uint64_t seed) {
   scenes::add_robots(world, kLaserRobots, scenes::laser(181, M_PI, range), seed);
   return world;
 }
@@ -29,7 +29,7 @@ world::World with_robots(world::World world, double range, std::uint64_t seed) {
 TEST(Exact, ClosedCaveAtAnyDistanceFromTheOrigin) {
   for (const double far : {0.0, 1e5, 1e7})
     for (const double range : kRanges) {
-      world::World world = with_robots(scenes::cave(500, 16.0, 3), range, 1);
+      world::World world = with_random_robots(scenes::cave(500, 16.0, 3), range, 1);
       world::translate(world, far, -far);
       const Tally tally = sweep(world);
       expect_exact(fmt::format("cave at {} m, range {} m", far, range), tally);
@@ -39,8 +39,9 @@ TEST(Exact, ClosedCaveAtAnyDistanceFromTheOrigin) {
 
 TEST(Exact, OverlappingBoxesAtAnyAngle) {
   for (const double range : kRanges)
-    expect_exact("boxes, " + std::to_string(range) + " m", sweep(with_robots(scenes::boxes(60, 20.0, 5), range, 3)));
-  world::World world = with_robots(scenes::boxes(300, 150.0, 6), 100.0, 4);
+    expect_exact("boxes, " + std::to_string(range) + " m",
+                 sweep(with_random_robots(scenes::boxes(60, 20.0, 5), range, 3)));
+  world::World world = with_random_robots(scenes::boxes(300, 150.0, 6), 100.0, 4);
   expect_exact("wide boxes, 100 m", sweep(world));
   world::translate(world, -1e5, 1e5);
   expect_exact("wide boxes at 100 km, 100 m", sweep(world));

@@ -6,6 +6,7 @@
 #include "sensors/sensor_set.h"
 #include "tests/refusal.h"
 #include "tests/sensors/magnet_scenes.h"
+#include "world/stage/build_world.h"
 
 namespace sf::sensors {
 namespace {
@@ -37,6 +38,32 @@ TEST(MagnetometerSettings, AcceptsTheNumberedListingOfTheThesis) {
   EXPECT_DOUBLE_EQ(m.X_SE[4].x, 0.15);
   EXPECT_FALSE(m.magnitudes);
   EXPECT_EQ(m.sigma, 0.0);
+}
+
+/// The thesis' figure 23 numbers all five elements 0.
+TEST(MagnetometerSettings, ReadsTheListingOfTheThesis) {
+  for (const char* key : {"spose[0] [", "spose3[0] [0 "}) {
+    SCOPED_TRACE(key);
+    const auto line = [&](const char* x) { return std::string(key) + x + " 0 0 ]\n"; };
+    const world::World world = world::build_world(
+        "figure23.world",
+        "define roombamagnetometer magnetometer\n(\nscount 5\n" + line("-0.15") + line("-0.075") + line("0.00") +
+            line("0.075") + line("0.15") + "ssensitivity [ -10000 10000 ]\nssize [ 0.01 0.05 ]\n)\n" +
+            "define roomba position( size [0.33 0.33 0.1] )\n" +
+            "roomba( name \"roomba0\" color \"red\" roombamagnetometer( pose [0 -0.2 -0.04 0] size [0.1 0.1 0.1] ) )",
+        {.sensors = world_file_words()});
+    const bool lifted = key[5] == '3';
+    const Magnetometer m = read_magnetometer(world.movers.at(0).sensors.at(0));
+    ASSERT_EQ(m.X_SE.size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i)
+      EXPECT_DOUBLE_EQ(lifted ? m.X_SE[i].y : m.X_SE[i].x, -0.15 + 0.075 * static_cast<double>(i));
+    ASSERT_EQ(world.warnings.size(), 4u);
+    for (int i = 1; i < 5; ++i) {
+      const world::Warning& warning = world.warnings[static_cast<std::size_t>(i - 1)];
+      EXPECT_EQ(warning.line, 4 + i);
+      expect_in("read as '" + std::string(lifted ? "spose3[" : "spose[") + std::to_string(i) + "]'", warning.message);
+    }
+  }
 }
 
 TEST(MagnetometerSettings, DefaultIsOneElementAtTheCentre) {

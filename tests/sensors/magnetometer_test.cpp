@@ -106,6 +106,51 @@ TEST(Magnetometer, EveryNumberOfElements) {
   }
 }
 
+// --- The Earth's field.
+
+/// It is added to the magnets' field, in the element's frame; without it, no byte changes.
+TEST(Magnetometer, AddsTheEarthsFieldInTheElementsFrame) {
+  Chance chance(9);
+  const glm::dvec3 earth{2.1e-5, -3e-6, -4.4e-5};
+  for (int i = 0; i < 10; ++i) {
+    const Pose X_WM{chance.between(0, 2), chance.between(-1, 1), 0.03, chance.between(-4, 4)};
+    const double yaw = chance.between(-4, 4);
+    world::World world, with;
+    const Glance alone = over_one(X_WM, scenes::array({{0.1, 0.2, 0.0, yaw}}), world);
+    with.earth_field = earth;
+    const Glance both = over_one(X_WM, scenes::array({{0.1, 0.2, 0.0, yaw}}), with);
+    const Element a = element(alone.readings[0], 0), b = element(both.readings[0], 0);
+    const glm::dvec2 flat = base::rotate(-X_WM.yaw - yaw, {earth.x, earth.y});
+    EXPECT_NEAR(b.x - a.x, flat.x, 1e-18);
+    EXPECT_NEAR(b.y - a.y, flat.y, 1e-18);
+    EXPECT_NEAR(b.z - a.z, earth.z, 1e-18);
+    EXPECT_NEAR(b.field, std::hypot(b.x, b.y, b.z), 1e-18);
+    EXPECT_GE(both.readings[0].bound, alone.readings[0].bound);
+  }
+}
+
+TEST(Magnetometer, ReadsTheEarthsFieldWithoutMagnets) {
+  world::World world;
+  world.earth_field = {3e-5, 0, -4e-5};
+  scenes::add_carrier(world, {1, 2, 0, M_PI / 2}, scenes::array({{0, 0, 0, 0}}));
+  const Glance run(world);
+  const Element e = element(run.readings[0], 0);
+  EXPECT_NEAR(e.x, 0.0, 1e-20) << "facing +y";
+  EXPECT_DOUBLE_EQ(e.y, -3e-5) << "along +x, on its right";
+  EXPECT_EQ(e.z, -4e-5);
+  EXPECT_DOUBLE_EQ(e.field, 5e-5);
+}
+
+/// With `sum "magnitude"`, the Earth is one more source.
+TEST(Magnetometer, MagnitudesIncludeTheEarths) {
+  world::Sensor sensor = scenes::array({{0, 0, 0, 0}}, kHigh);
+  sensor.settings.push_back(scenes::text("sum", "magnitude"));
+  world::World world, with;
+  const double alone = element(over_one({0.7, 0, 0, 0}, sensor, world).readings[0], 0).field;
+  with.earth_field = {3e-5, 0, -4e-5};
+  EXPECT_NEAR(element(over_one({0.7, 0, 0, 0}, sensor, with).readings[0], 0).field, alone + 5e-5, 1e-18);
+}
+
 // --- Saturation.
 
 TEST(Magnetometer, SaturatesAtBothEnds) {

@@ -141,7 +141,11 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"encoder", 8, 1, {1.234, -0.5, 1234, -500}},
              {"gyro", 9, 1, {-0.25}},
              {"gps", 10, 1, {kNaN, kNaN, kNaN, 3}},
-             {"irreceiver", 11, 1, {1, 252}}};
+             {"irreceiver", 11, 1, {1, 252}},
+             {"lightsensor", 13, 2, {250.5, 337, 0, 450}},
+             {"battery", 14, 1, {14.4, -0.6, 1.35, 0}},
+             {"analog", 15, 2, {2.5, 512, 5, 1023}},
+             {"ptz", 16, 1, {0.5, -0.1, 0.4}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;
@@ -189,7 +193,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 8u) << "plain readings";
+  EXPECT_EQ(rows, 12u) << "plain readings";
 }
 
 }  // namespace

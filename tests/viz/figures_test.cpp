@@ -11,6 +11,7 @@
 #include "viz/axes.h"
 #include "viz/color.h"
 #include "viz/occupancy_figure.h"
+#include "viz/signal_layer.h"
 #include "viz/trajectory_figure.h"
 #include "viz/visibility_layer.h"
 #include "viz/world_figure.h"
@@ -118,6 +119,14 @@ TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
   const std::uint32_t south = seen.at(4.82, 2.63), north = seen.at(4.82, 3.37);
   EXPECT_GT(south >> 16 & 0xFF, south >> 8 & 0xFF) << "red";
   EXPECT_GT(north >> 8 & 0xFF, north >> 16 & 0xFF) << "green";
+}
+
+TEST(WorldFigure, LampsAreYellow) {
+  world::World world = room();
+  world.lamps.push_back({0, {3.0, 1.0, 2.0, 0.0}, 100.0});
+  const Seen seen = see_world(world, "lamps.png");
+  EXPECT_EQ(seen.at(3.0, 1.0), 0xFFFDD835u);
+  EXPECT_EQ(signal_layer_legend(world).size(), 1u);
 }
 
 TEST(WorldFigure, WallsAreAtTheirPositions) {

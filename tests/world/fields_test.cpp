@@ -31,6 +31,8 @@ const Example<World> kWorlds{KeyScope::world, "", " model( )", [](World& w) -> W
 const Example<Segment> kSegments{KeyScope::model, "model( ", " )", [](World& w) -> Segment& { return w.walls.at(0); }};
 const Example<Emitter> kEmitters{KeyScope::model, "define wall model( ir_emitter \"virtual_wall\" ) wall( ", " )",
                                  [](World& w) -> Emitter& { return w.emitters.at(0); }};
+const Example<Lamp> kLamps{KeyScope::model, "define lamp model( lamp_intensity 1 ) lamp( ", " )",
+                           [](World& w) -> Lamp& { return w.lamps.at(0); }};
 const Example<Light> kLights{KeyScope::light, "light( phases 1 phase[0] [\"red\" 1] ", " )",
                              [](World& w) -> Light& { return w.lights.at(0); }};
 const Example<Mover> kMovers{KeyScope::position, "position( ", " )", [](World& w) -> Mover& { return w.movers.at(0); }};
@@ -84,9 +86,10 @@ void for_each_key_of_all(Check check) {
   walk(kWorlds);
   walk(kSegments);
   walk(kEmitters);
+  walk(kLamps);
   walk(kLights);
   walk(kMovers);
-  EXPECT_GE(keys, 19) << "the walk found all tables";
+  EXPECT_GE(keys, 22) << "the walk found all tables";
 }
 
 TEST(Fields, EveryKeyIsKnownSuggestedAndRead) {

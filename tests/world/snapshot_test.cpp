@@ -23,6 +23,9 @@ void add_street(World& world) {
                           -3.0,
                           {"3.1.11", "4.2.5"}});
   world.emitters.push_back({Emitter::Kind::dock, 1, {0.5, 0.25, 0.05, 2.0}, 1.8, 0.7, 0.6});
+  world.earth_field = {1e-5, -2e-6, -4e-5};
+  world.lamps.push_back({1, {1.0, 2.0, 2.5, 0.3}, 80.0, 3.0});
+  world.ambient_light = 20.0;
   world.floor_holes.push_back({{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, 1});
   world.road_files.push_back("some.rndf");
   Mover& mover = world.movers.at(0);
@@ -112,12 +115,12 @@ TEST(Snapshot, LinksPastTheEndAreRejected) {
     bool optional;
   };
   Mover& mover = world.movers[0];
-  for (const Link& link :
-       {Link{&world.walls[0].model, models, false}, Link{&world.magnets[0].model, models, false},
-        Link{&world.models[0].parent, models, true}, Link{&world.models[0].mover, movers, true},
-        Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
-        Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
-        Link{&world.emitters[0].model, models, false}, Link{&world.floor_holes[0].model, models, false}}) {
+  for (const Link& link : {Link{&world.walls[0].model, models, false}, Link{&world.magnets[0].model, models, false},
+                           Link{&world.models[0].parent, models, true}, Link{&world.models[0].mover, movers, true},
+                           Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
+                           Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
+                           Link{&world.emitters[0].model, models, false}, Link{&world.lamps[0].model, models, false},
+                           Link{&world.floor_holes[0].model, models, false}}) {
     EXPECT_FALSE(refused(*link.row, link.count - 1)) << "the last row";
     EXPECT_TRUE(refused(*link.row, link.count)) << "one past the end";
     EXPECT_TRUE(refused(*link.row, link.count + 1));
@@ -149,6 +152,30 @@ TEST(Snapshot, ChangedBytesAreRejectedOrHarmless) {
   }
 }
 
+/// Worlds without the Earth's field, lamps and ambient light have the bytes of version 5, which ends before them.
+TEST(Snapshot, WorldsWithoutNewFieldsHaveTheVersionBefore) {
+  EXPECT_EQ(snapshot(street())[4], 6);
+  World world = street();
+  world.earth_field = {};
+  world.lamps.clear();
+  world.ambient_light = 0.0;
+  update_extent_and_hash(world);
+  auto bytes = snapshot(world);
+  EXPECT_EQ(bytes[4], 5);
+  EXPECT_EQ(from_snapshot(bytes).hash, world.hash);
+  bytes.pop_back();
+  EXPECT_THROW(from_snapshot(bytes), base::InputError);
+  for (int i = 0; i < 3; ++i) {
+    World one = world;
+    if (i == 0) one.earth_field.y = 1e-5;
+    if (i == 1) one.lamps.push_back({1, {}, 5.0});
+    if (i == 2) one.ambient_light = 1.0;
+    update_extent_and_hash(one);
+    EXPECT_EQ(snapshot(one)[4], 6) << i;
+    EXPECT_EQ(from_snapshot(snapshot(one)).hash, one.hash) << i;
+  }
+}
+
 TEST(Snapshot, OtherVersionIsNamed) {
   auto bytes = snapshot(rooms());
   bytes[4] = 99;
@@ -165,6 +192,18 @@ TEST(Hash, DependsOnWhateverReadingsDependOn) {
   EXPECT_NE(read_world("model( name \"m\" size [1 1 1] ) position( laser( samples 181 ) )").hash, hash);
   EXPECT_NE(read_world("model( name \"m\" size [1 1 1] laser_return 0 ) position( laser() )").hash, hash);
   EXPECT_NE(read_world("model( name \"m\" size [1 1 1] ) position( pose [0 0 0 1] laser() )").hash, hash);
+}
+
+/// Each changes the hash, and its absence leaves the hash of older versions.
+TEST(Hash, DependsOnTheEarthsFieldAndLight) {
+  const std::string text = "model( name \"m\" size [1 1 1] ) position( laser() )";
+  const auto hash = read_world(text).hash;
+  for (const char* key : {"earth_field [0 0 1e-9] ", "earth_location [0 0] ", "ambient_light 1 "})
+    EXPECT_NE(read_world(key + text).hash, hash) << key;
+  for (const char* key : {"earth_field [0 0 0] ", "earth_field [-0 0 0] ", "ambient_light 0 "})
+    EXPECT_EQ(read_world(key + text).hash, hash) << key;
+  EXPECT_NE(read_world("model( lamp_intensity 1 )").hash, read_world("model( lamp_intensity 2 )").hash);
+  EXPECT_NE(read_world("model( lamp_intensity 1 )").hash, read_world("model( )").hash);
 }
 
 TEST(Hash, DependsOnLightsEmittersHolesAndKinematics) {

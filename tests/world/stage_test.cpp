@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/units.h"
@@ -56,6 +57,79 @@ TEST(Stage, LastOfTwoEqualIndicesCounts) {
                             .hash);
   EXPECT_EQ(warnings_of(world),
             "5: 'point[2]' is given twice in the same 'block': the last one is used, not that of line 4\n");
+}
+
+/// Repeated numbers stand for the numbers that are missing, for all keys that have a count.
+TEST(Stage, RepeatedIndicesTakeTheMissingNumbers) {
+  const struct {
+    const char* name;
+    std::string start;
+    std::vector<std::string> lines;  ///< one per line, from line 2
+    std::vector<std::string> meant;  ///< the same, numbered
+  } rows[] = {
+      {"all alike",
+       "model( block( points 3",
+       {"point[0] [0 0]", "point[0] [1 0]", "point[0] [0 1]"},
+       {"point[0] [0 0]", "point[1] [1 0]", "point[2] [0 1]"}},
+      {"one of three",
+       "model( block( points 3",
+       {"point[0] [0 0]", "point[1] [1 0]", "point[1] [0 1]"},
+       {"point[0] [0 0]", "point[1] [1 0]", "point[2] [0 1]"}},
+      {"before other numbers",
+       "model( block( points 3",
+       {"point[1] [1 0]", "point[1] [0 0]", "point[2] [0 1]"},
+       {"point[1] [1 0]", "point[0] [0 0]", "point[2] [0 1]"}},
+      {"an older form",
+       "model( blocks 1 block[0].points 3 block[0].z [0 1]",
+       {"block[0].point[0] [0 0]", "block[0].point[0] [1 0]", "block[0].point[0] [0 1]"},
+       {"block[0].point[0] [0 0]", "block[0].point[1] [1 0]", "block[0].point[2] [0 1]"}},
+      {"phases",
+       "light( phases 2",
+       {"phase[0] [\"green\" 8]", "phase[0] [\"red\" 4]"},
+       {"phase[0] [\"green\" 8]", "phase[1] [\"red\" 4]"}},
+      {"two keys of one count",
+       "path( pieces 3 left \"solid_white\" magnetic_moment 1 magnet_spacing 0.5",
+       {"straight[0] [2 0.5]", "arc[1] [1 90 0.5]", "straight[0] [1 0.5]"},
+       {"straight[0] [2 0.5]", "arc[1] [1 90 0.5]", "straight[2] [1 0.5]"}},
+      {"fewer than missing",
+       "model( block( points 4",
+       {"point[0] [0 0]", "point[0] [1 0]", "point[3] [0 1]"},
+       {"point[0] [0 0]", "point[1] [1 0]", "point[3] [0 1]"}},
+  };
+  for (const auto& [name, start, lines, meant] : rows) {
+    SCOPED_TRACE(name);
+    const std::string end(static_cast<std::size_t>(std::count(start.begin(), start.end(), '(')), ')');
+    std::string written = start, numbered = start;
+    for (const std::string& line : lines) written += "\n" + line;
+    for (const std::string& line : meant) numbered += "\n" + line;
+    const World world = read_world(written + end);
+    EXPECT_EQ(world.hash, read_world(numbered + end).hash);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::string key = lines[i].substr(0, lines[i].find(' ')), other = meant[i].substr(0, meant[i].find(' '));
+      const std::string expected = std::to_string(i + 2) + ": '" + key + "' is given again";
+      EXPECT_EQ(warnings_of(world).find(expected) != std::string::npos, key != other) << warnings_of(world);
+      if (key == other) continue;
+      EXPECT_NE(warnings_of(world).find("read as '" + other + "'"), std::string::npos) << warnings_of(world);
+    }
+  }
+}
+
+/// Without a count, or with too few free numbers, the last one counts.
+TEST(Stage, RepeatedIndicesWithoutRoomOverride) {
+  for (const char* count : {"", "points 2", "points [3 3]", "points \"three\""}) {
+    const std::string error = sf::refusal_of([&] {
+      const World world =
+          read_world(std::string("model( block( ") + count + "\npoint[0] [0 0]\npoint[0] [2 0]\npoint[0] [3 0] ) )");
+      EXPECT_NE(warnings_of(world).find("4: 'point[0]' is given twice"), std::string::npos) << count;
+    });
+    EXPECT_EQ(error.find("read as"), std::string::npos) << count;
+  }
+  const World macro = read_world(
+      "define b block( points 3 z [0 1] point[0] [0 0] point[1] [1 0] point[2] [0 1] )\n"
+      "model( size [1 1 1] b( point[2] [5 5]\npoint[2] [0 2] ) )");
+  EXPECT_EQ(warnings_of(macro),
+            "3: 'point[2]' is given twice in the same 'b': the last one is used, not that of line 2\n")
+      << "a macro's numbers are not free";
 }
 
 // Radians in an angle in degrees, millimetres in a range in metres.

@@ -106,6 +106,38 @@ TEST(Emitter, HasTheCreatesDefaults) {
   EXPECT_EQ(world.walls.size(), 8u) << "an emitter has a body as any model";
 }
 
+TEST(Lamp, IsInTheMiddleOfItsModel) {
+  const World world = read_world(R"(ambient_light 15
+    model( name "l" pose [1 2 2 90] size [0.2 0.2 0.4] lamp_intensity 80 lamp_fov 60 ) model( lamp_intensity 5 ))");
+  EXPECT_EQ(warnings_of(world), "");
+  EXPECT_EQ(world.ambient_light, 15.0);
+  ASSERT_EQ(world.lamps.size(), 2u);
+  const Lamp& lamp = world.lamps[0];
+  EXPECT_EQ(world.models[lamp.model].name, "l");
+  EXPECT_EQ(lamp.X_WL.x, 1.0);
+  EXPECT_DOUBLE_EQ(lamp.X_WL.z, 2.2);
+  EXPECT_DOUBLE_EQ(lamp.X_WL.yaw, M_PI / 2);
+  EXPECT_EQ(lamp.intensity, 80.0);
+  EXPECT_DOUBLE_EQ(lamp.fov, M_PI / 3);
+  EXPECT_EQ(world.lamps[1].fov, 2.0 * M_PI) << "all round";
+  EXPECT_EQ(world.walls.size(), 8u) << "a lamp has a body as any model";
+}
+
+TEST(Lamp, InvalidOnesAreRejected) {
+  EXPECT_NE(error_of("position(\n lamp_intensity 5 )").find("test.world:2: a lamp cannot move"), std::string::npos);
+  EXPECT_NE(error_of("model(\n lamp_intensity 0 )").find("test.world:2: 'lamp_intensity' is 0"), std::string::npos);
+  EXPECT_NE(error_of("model(\n lamp_intensity \"on\" )").find("test.world:2: "), std::string::npos);
+  EXPECT_NE(warnings_of(read_world("model( lamp_fov 60 )")).find("no effect without 'lamp_intensity'"),
+            std::string::npos);
+  EXPECT_NE(warnings_of(read_world("model( lamp_intensity 1 lamp_fov 1.5708 )")).find("write 90 if"),
+            std::string::npos);
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += "model( lamp_intensity 1 )\n";
+  EXPECT_EQ(read_world(many).lamps.size(), 1000u);
+  EXPECT_NE(error_of(many + "model( lamp_intensity 1 )").find("test.world:1001: more than 1000 lamps"),
+            std::string::npos);
+}
+
 TEST(Emitter, OverridesDefaults) {
   const World world = read_world(R"(model( ir_emitter "dock" ir_range 1 ir_fov 360 ir_halo 0 ))");
   EXPECT_EQ(world.emitters.at(0).range, 1.0);

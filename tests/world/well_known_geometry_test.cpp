@@ -155,7 +155,7 @@ TEST(WellKnownBinary, FaultsAreRejectedWithTheirByte) {
   good.type(3).put(std::uint32_t{1}).ring();
   WellKnownGeometry geometry;
   const auto refusal = [&](const std::string& bytes) {
-    return refusal_of([&] { read_binary_geometry(bytes, 1.0, geometry); });
+    return sf::refusal_of([&] { read_binary_geometry(bytes, 1.0, geometry); });
   };
   EXPECT_EQ(refusal(good.bytes), "");
   EXPECT_EQ(refusal(good.bytes + std::string(2, '\0')), "") << "padded";
@@ -258,10 +258,10 @@ TEST(Arcs, AreReadInGeometries) {
   geometry.chords_left = 100.0;  // per file
   read_as("CIRCULARSTRING (1 0, 0 1, -1 0)");
   EXPECT_EQ(geometry.chords_left, 100.0 - static_cast<double>(geometry.points.size() - 1));
-  expect_in("or too many in the file", refusal_of([&] { read_as("CIRCULARSTRING (100 0, 0 100, -100 0)"); }));
+  expect_in("or too many in the file", sf::refusal_of([&] { read_as("CIRCULARSTRING (100 0, 0 100, -100 0)"); }));
   geometry.chords_left = 1e9;
   expect_in("arcs of more than 1e+06 chords",
-            refusal_of([&] { read_geometry("CIRCULARSTRING (0 0, 1e6 1e6, 2e6 0)", 1e-9, geometry); }));
+            sf::refusal_of([&] { read_geometry("CIRCULARSTRING (0 0, 1e6 1e6, 2e6 0)", 1e-9, geometry); }));
 }
 
 }  // namespace

@@ -86,6 +86,7 @@ export class StaticLayer {
     this.#emitters(c, px);
     this.#walls(c, px);
     this.#magnets(c, px);
+    this.#lamps(c, px);
   }
 
   #grid(c, camera, ratio, width, height) {
@@ -161,6 +162,18 @@ export class StaticLayer {
       c.stroke(path);
     }
     c.setLineDash([]);
+  }
+
+  #lamps(c, px) {
+    c.fillStyle = theme.lightYellow;
+    c.strokeStyle = theme.wall;
+    c.lineWidth = px;
+    for (const [x, y] of this.scene.lamps) {
+      c.beginPath();
+      c.arc(x - this.scene.origin[0], y - this.scene.origin[1], 4 * px, 0, 2 * Math.PI);
+      c.fill();
+      c.stroke();
+    }
   }
 
   #magnets(c, px) {

@@ -13,6 +13,7 @@
 #include "world/overlaps.h"
 #include "world/ros_map.h"
 #include "world/stage/build_state.h"
+#include "world/stage/earth_field.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
 #include "world/stage/read_keys.h"
@@ -137,6 +138,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   Parent nowhere;
   add_children(b, document.root, nowhere);
   if (!document.ros_map.empty()) add_ros_map(b.world, document.ros_map, options);
+  read_earth_field(b, document.root);
   number_movers(b);
   check_stop_lines(b);
 

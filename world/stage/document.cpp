@@ -65,6 +65,7 @@ void read_body(ParseState& r, Entity& entity, std::uint32_t level) {
   KeyRows rows;
   for (const Property& property : entity.properties) rows.emplace(property.key, rows.size());
   std::unordered_set<std::string> written;
+  std::vector<Property> repeats;
   for (++r.at; now(r).kind != TokenKind::close;) {
     if (now(r).kind == TokenKind::end) {
       fail(r, line, fmt::format("the '(' of '{}' is never closed; expected ')'", entity.word));
@@ -77,9 +78,12 @@ void read_body(ParseState& r, Entity& entity, std::uint32_t level) {
       const int child_line = now(r).line;
       add_child(r, entity, read_entity(r, level + 1), child_line);
     } else {
-      add_property(r, entity, rows, written, read_property(r));
+      Property property = read_property(r);
+      const bool is_repeat = property.key.ends_with(']') && written.contains(property.key);
+      is_repeat ? repeats.push_back(std::move(property)) : add_property(r, entity, rows, written, std::move(property));
     }
   }
+  add_repeats(r, entity, rows, written, std::move(repeats));
   ++r.at;
   sort_keys(entity);
 }

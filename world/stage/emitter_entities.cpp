@@ -1,5 +1,7 @@
 #include "world/stage/emitter_entities.h"
 
+#include <fmt/format.h>
+
 #include "world/stage/read_keys.h"
 #include "world/stage/unit_hints.h"
 
@@ -11,6 +13,8 @@ namespace {
 // inches). The width of the beam and all three values of the dock are assumptions.
 constexpr Emitter kVirtualWall{.range = 2.4, .fov = 0.4, .halo = 0.45};  // [m], [rad], [m]
 constexpr Emitter kDock{.range = 1.8, .fov = 0.7, .halo = 0.6};
+
+constexpr std::size_t kMaxLamps = 1000;  // every light sensor reads every lamp
 
 }  // namespace
 
@@ -29,6 +33,26 @@ void add_emitter(BuildState& b, const Entity& entity, const Model& model, const 
   emitter.X_WE = X_B;
   emitter.X_WE.z += 0.5 * size.z;
   b.world.emitters.push_back(emitter);
+}
+
+void add_lamp(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {
+  const StageContext& context = b.context;
+  const Property* fov = find(entity, "lamp_fov");
+  const Property* property = find(entity, "lamp_intensity");
+  if (property == nullptr) {
+    if (fov != nullptr) warn(b.context, fov->at, "'lamp_fov' has no effect without 'lamp_intensity'");
+    return;
+  }
+  if (model.mover != kNone) fail(context, property->at, "a lamp cannot move; expected it outside moving models");
+  if (b.world.lamps.size() >= kMaxLamps)
+    fail(context, property->at, fmt::format("more than {} lamps; expected fewer, brighter ones", kMaxLamps));
+  if (fov != nullptr) warn_of_units(b, *fov, property->key);
+  Lamp lamp;
+  read_keys(context, entity, lamp);
+  lamp.model = static_cast<std::uint32_t>(b.world.models.size());
+  lamp.X_WL = X_B;
+  lamp.X_WL.z += 0.5 * size.z;
+  b.world.lamps.push_back(lamp);
 }
 
 }  // namespace sf::world

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <numeric>
 
 #include "base/error.h"
@@ -93,6 +94,65 @@ void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_s
   } else {
     entity.properties[old->second] = std::move(property);
   }
+}
+
+namespace {
+
+/// A family of numbered keys with one count: `spose[i]` and `spose3[i]`, counted by `scount`.
+struct NumberedKeys {
+  std::string stem;   ///< of the key itself
+  std::string other;  ///< stem of another key that may have the same number instead; empty: none
+  std::string count;  ///< key of the count
+};
+
+/// @param key ends in `[number]`
+NumberedKeys family_of(const std::string& key) {
+  const std::string stem = key.substr(0, key.rfind('['));
+  for (const auto& [a, b, count] : {std::array{"spose", "spose3", "scount"}, {"straight", "arc", "pieces"}}) {
+    if (stem == a) return {stem, b, count};
+    if (stem == b) return {stem, a, count};
+  }
+  return {stem, "", stem == "bpose" || stem == "blength" ? "bcount" : stem + "s"};
+}
+
+/// Returns the smallest numbers below the family's count that no property has: `wanted` of them, or none if fewer are
+/// free.
+std::vector<std::size_t> free_numbers(const Entity& entity, const KeyRows& rows, const NumberedKeys& keys,
+                                      std::size_t wanted) {
+  std::vector<std::size_t> numbers;
+  const auto count = rows.find(keys.count);
+  if (count == rows.end() || entity.properties[count->second].values.size() != 1) return numbers;
+  const double most = entity.properties[count->second].values[0].number;
+  for (std::size_t i = 0; static_cast<double>(i) < most && numbers.size() < wanted; ++i)
+    if (!rows.contains(fmt::format("{}[{}]", keys.stem, i)) && !rows.contains(fmt::format("{}[{}]", keys.other, i)))
+      numbers.push_back(i);
+  if (numbers.size() < wanted) numbers.clear();
+  return numbers;
+}
+
+}  // namespace
+
+void add_repeats(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
+                 std::vector<Property> repeats) {
+  std::map<std::string, std::vector<Property*>> by_family;
+  for (Property& repeat : repeats) {
+    const NumberedKeys keys = family_of(repeat.key);
+    by_family[std::min(keys.stem, keys.other.empty() ? keys.stem : keys.other)].push_back(&repeat);
+  }
+  for (auto& [stem, same] : by_family) {
+    const std::vector<std::size_t> numbers = free_numbers(entity, rows, family_of(same.front()->key), same.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      std::string& key = same[i]->key;
+      std::string meant = fmt::format("{}[{}]", family_of(key).stem, numbers[i]);
+      warn(r, same[i]->at.line,
+           fmt::format(
+               "'{}' is given again in the same '{}' (first in line {}): read as '{}', a number that is missing; "
+               "number the lines",
+               key, entity.word, entity.properties[rows.at(key)].at.line, meant));
+      key = std::move(meant);
+    }
+  }
+  for (Property& repeat : repeats) add_property(r, entity, rows, written, std::move(repeat));
 }
 
 void sort_keys(Entity& entity) {

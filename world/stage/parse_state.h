@@ -48,6 +48,12 @@ Property read_property(ParseState& r);
 void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
                   Property property);
 
+/// Adds properties whose numbered key (`spose[0]`) was already written in the same parentheses. Where their count
+/// (`scount`) leaves numbers free for all repeats of a key, they take the smallest free ones in order of appearance;
+/// otherwise each overrides the one before. Both are warnings. Call it after all other properties of the entity.
+void add_repeats(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
+                 std::vector<Property> repeats);
+
 /// Sorts the keys of an entity with many properties, for a fast `find`.
 void sort_keys(Entity& entity);
 

@@ -38,7 +38,7 @@ Places places_of(std::string_view key) {
   if (key == "view" || key == "sview") return {1, 2};  // [min max fov]
   if (key == "range") return {1, -1};                  // [min max]
   if (key == "range_max" || key == "ir_range") return {0, -1};
-  return key == "fov" || key == "ir_fov" ? Places{-1, 0} : Places{};
+  return key == "fov" || key == "ir_fov" || key == "lamp_fov" ? Places{-1, 0} : Places{};
 }
 
 }  // namespace
