@@ -111,9 +111,9 @@ struct Loop {
     server::RobotClientOptions options{.log_descriptor = -1};
     options.link.farm = {netio::kLoopback, service.port()};
     options.controller = {controller, 10.0, control::Settings(controller, settings)};
-    options.cameras = {.bind = {netio::kLoopback, 0}};
-    options.cameras->filter.clock.source = estimation::ClockSource::trusted;
-    options.cameras->filter.stale_after = 3 * kTick;
+    options.cameras = server::CameraOptions{.bind = {netio::kLoopback, 0},
+                                            .clock = {.source = estimation::ClockSource::trusted}};
+    options.stop_after = 0.3;
     options.tag = 7;
     options.truth = cameras.truth();
     client.emplace(world, sensor_set, 0, layout, options);
@@ -142,7 +142,7 @@ struct Loop {
       client->step(now);
       service.tick(now);
       client->move(now + kExposure);
-      cameras.look(now + kExposure, {netio::kLoopback, client->cameras()->port()});
+      cameras.look(now + kExposure, {netio::kLoopback, client->own()->port()});
     }
   }
   glm::dvec2 place() const { return {client->stats().pose.x, client->stats().pose.y}; }
@@ -166,10 +166,10 @@ TEST(ClosedLoop, ARobotKeepsItsLaneUsingOnlyCameras) {
   EXPECT_TRUE(stats.done);
   EXPECT_EQ(stats.stops, 0u);
   EXPECT_LT(glm::distance(loop.place(), glm::dvec2(3.65, 2.03)), 0.1) << loop.place().x << " " << loop.place().y;
-  ASSERT_TRUE(stats.cameras);
-  EXPECT_GT(stats.cameras->errors.count, 150u);
-  EXPECT_LT(stats.cameras->errors.rms(), 0.003) << "1.2 mm";
-  EXPECT_LT(stats.cameras->errors.largest, 0.02) << "12 mm, at the start";
+  ASSERT_TRUE(stats.own);
+  EXPECT_GT(stats.own->errors.count, 150u);
+  EXPECT_LT(stats.own->errors.rms(), 0.003) << "1.2 mm";
+  EXPECT_LT(stats.own->errors.largest, 0.02) << "12 mm, at the start";
   EXPECT_LT(stats.error.abs_mean, 0.02) << "offset in the lane, by readings: 12 mm";
   EXPECT_LE(stats.link.stale, 3u) << "readings before its first state";
 }
