@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace sf::robots {
@@ -10,14 +11,28 @@ namespace {
 
 // Commands.
 constexpr std::uint8_t kStart = 128, kSafe = 131, kDriveDirect = 145, kStream = 148, kPauseStream = 150;
-// Packets of a frame: id, then number of data bytes.
-constexpr std::uint8_t kBumps = 7, kDistance = 19, kAngle = 20, kMode = 35;
 constexpr std::uint8_t kHeader = 19;
-constexpr std::array<std::uint8_t, 4> kPackets{kBumps, kDistance, kAngle, kMode};
 
-// Fixed bytes of a frame: positions and values of ids and lengths.
-constexpr std::array<std::pair<std::size_t, std::uint8_t>, 6> kFixed{
-    {{0, kHeader}, {1, CreateStream::kFrameBytes - 3}, {2, kBumps}, {4, kDistance}, {7, kAngle}, {10, kMode}}};
+/// Fixed bytes of a frame: positions and values of ids and lengths.
+constexpr auto kFixed = [] {
+  std::array<std::pair<std::size_t, std::uint8_t>, std::size(kCreatePackets) + 2> fixed{};
+  fixed[0] = {0, kHeader};
+  fixed[1] = {1, CreateStream::kFrameBytes - 3};
+  std::size_t at = 2;
+  for (std::size_t i = 0; i < std::size(kCreatePackets); at += 1 + kCreatePackets[i++].bytes)
+    fixed[i + 2] = {at, kCreatePackets[i].id};
+  return fixed;
+}();
+
+/// Returns the position of the data of a packet in a frame.
+constexpr std::size_t data_of(std::uint8_t id) {
+  std::size_t at = 2;
+  for (const CreatePacket& packet : kCreatePackets) {
+    if (packet.id == id) return at + 1;
+    at += 1 + packet.bytes;
+  }
+  throw "no such packet";  // only in a constant expression
+}
 
 std::int16_t whole_speed(double speed) { return static_cast<std::int16_t>(std::lround(speed)); }
 
@@ -42,8 +57,8 @@ base::Bytes create_start() {
   base::Bytes bytes{kStart, kSafe};
   const base::Bytes rest = create_drive({});
   bytes.insert(bytes.end(), rest.begin(), rest.end());
-  bytes.insert(bytes.end(), {kStream, kPackets.size()});
-  bytes.insert(bytes.end(), kPackets.begin(), kPackets.end());
+  bytes.insert(bytes.end(), {kStream, std::size(kCreatePackets)});
+  for (const CreatePacket& packet : kCreatePackets) bytes.push_back(packet.id);
   return bytes;
 }
 
@@ -61,6 +76,37 @@ base::Bytes create_stop() {
   bytes.insert(bytes.end(), {kPauseStream, 0, kStart});
   return bytes;
 }
+
+namespace {
+
+CreateFrame decoded(std::span<const std::uint8_t> bytes) {
+  const auto byte = [&](std::size_t at) { return bytes[at]; };
+  const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]); };
+  const auto number = [&](std::size_t at) { return static_cast<std::int16_t>(word(at)); };
+  CreateFrame f;
+  const std::uint8_t bumps = byte(data_of(7));
+  f.bumped_right = (bumps & 0x01) != 0;
+  f.bumped_left = (bumps & 0x02) != 0;
+  f.wheel_drop = (bumps & 0x1C) != 0;
+  f.wall = byte(data_of(8)) != 0;
+  for (std::size_t i = 0; i < f.cliffs.size(); ++i) f.cliffs[i] = byte(data_of(9) + 2 * i) != 0 ? 1 : 0;
+  f.virtual_wall = byte(data_of(13)) != 0;
+  f.overcurrents = byte(data_of(14));
+  f.infrared = byte(data_of(17));
+  f.buttons = byte(data_of(18));
+  f.distance = number(data_of(19));
+  f.angle = number(data_of(20));
+  f.charging = byte(data_of(21));
+  f.voltage = word(data_of(22));
+  f.current = number(data_of(23));
+  f.temperature = static_cast<std::int8_t>(byte(data_of(24)));
+  f.charge = word(data_of(25));
+  f.capacity = word(data_of(26));
+  f.mode = byte(data_of(35));
+  return f;
+}
+
+}  // namespace
 
 std::optional<CreateFrame> CreateStream::take(std::uint8_t byte) {
   bytes_[size_++] = byte;
@@ -85,8 +131,7 @@ std::optional<CreateFrame> CreateStream::whole() {
   }
   size_ = 0;
   ++frames_;
-  const auto number = [&](std::size_t at) { return static_cast<std::int16_t>(bytes_[at] << 8 | bytes_[at + 1]); };
-  return CreateFrame{(bytes_[3] & 0x03) != 0, (bytes_[3] & 0x1C) != 0, number(5), number(8), bytes_[11]};
+  return decoded(bytes_);
 }
 
 void CreateStream::drop_first() {
