@@ -5,10 +5,10 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +32,11 @@ class PseudoTerminal {
   void hang_up() {
     for (int* end : {&computer_, &line_})
       if (*end >= 0) close(std::exchange(*end, -1));
+  }
+  /// Returns the number of stop bits that the driver set; 0: unknown.
+  int stop_bits() const {
+    termios settings{};
+    return tcgetattr(line_, &settings) != 0 ? 0 : (settings.c_cflag & CSTOPB) != 0 ? 2 : 1;
   }
   void send(const Bytes& bytes) {
     const int before = waiting();

@@ -103,11 +103,11 @@ TEST_F(CreateTest, ReportsItsOwnSensors) {
   EXPECT_EQ(values(sensors::kIrReceiver), (std::vector<double>{1, 255}));
   std::map<std::string_view, double> facts;
   for (const RobotFact& fact : drive->facts()) facts[fact.name] = fact.value;
-  EXPECT_EQ(facts["battery_V"], 15.7);
-  EXPECT_EQ(facts["battery_A"], -0.24);
+  EXPECT_DOUBLE_EQ(facts["battery_V"], 15.7);
+  EXPECT_DOUBLE_EQ(facts["battery_A"], -0.24);
   EXPECT_EQ(facts["battery_C"], 24);
-  EXPECT_EQ(facts["charge_Ah"], 2.3);
-  EXPECT_EQ(facts["capacity_Ah"], 2.7);
+  EXPECT_DOUBLE_EQ(facts["charge_Ah"], 2.3);
+  EXPECT_DOUBLE_EQ(facts["capacity_Ah"], 2.7);
   EXPECT_EQ(facts["charging"], 2);
   EXPECT_EQ(facts["left_wheel_overcurrent"], 1);
   EXPECT_EQ(facts["right_wheel_overcurrent"], 0);
