@@ -66,7 +66,6 @@ std::optional<ArcosSip> parse_arcos_sip(std::span<const std::uint8_t> payload) {
   const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(payload[at] | payload[at + 1] << 8); };
   const auto number = [&](std::size_t at) { return static_cast<std::int16_t>(word(at)); };
   ArcosSip sip;
-  sip.moving = payload[0] == 0x33;
   sip.x = word(1);
   sip.y = word(3);
   sip.heading = number(5);

@@ -53,7 +53,6 @@ std::optional<ArcosName> parse_arcos_name(std::span<const std::uint8_t> payload)
 
 /// Standard server information packet (SIP), sent every 100 ms.
 struct ArcosSip {
-  bool moving = false;
   int x = 0, y = 0;         ///< [units] since the start of the session, modulo kArcosWrap
   int heading = 0;          ///< [units of kArcosAngle]
   int left = 0, right = 0;  ///< [mm/s] wheels

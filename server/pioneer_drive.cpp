@@ -132,6 +132,8 @@ std::string PioneerDrive::fault() const {
 std::vector<RobotFact> PioneerDrive::facts() const {
   if (!sip_) return {};
   return {{"battery_V", sip_->volts},
+          {"left_wheel_m_s", 1e-3 * sip_->left},
+          {"right_wheel_m_s", 1e-3 * sip_->right},
           {"left_stall", sip_->left_stall ? 1.0 : 0.0},
           {"right_stall", sip_->right_stall ? 1.0 : 0.0},
           {"motors", sip_->motors ? 1.0 : 0.0}};

@@ -250,7 +250,7 @@ TEST(Robot, DrivesACreateOnASerialLine) {
   EXPECT_EQ(facts.text("/real_robot/type"), "create");
   EXPECT_GT(facts.number("/real_robot/frames"), 7);
   EXPECT_GT(facts.number("/real_robot/readings/cliff"), 7);
-  EXPECT_EQ(facts.number("/real_robot/reported/battery_V"), 15.7);
+  EXPECT_DOUBLE_EQ(facts.number("/real_robot/reported/battery_V"), 15.7);
   EXPECT_NEAR(facts.number("/pose/1"), create.X.y, 0.05);
   EXPECT_NEAR(facts.number("/pose/0"), 0.0, 0.05);
 }
@@ -286,7 +286,7 @@ TEST(Robot, DrivesAPioneerOnASerialLine) {
   pioneer.X.yaw = M_PI / 2;
   pioneer.alone = false;
   Program robot({"robot", world, "--name", "pioneer", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
-                 "--set", "points=0,0,0,0.5", "--set", "speed=0.4", "--serial", pioneer.device(), "--robot-type",
+                 "--set", "points=0,0,0,0.5", "--set", "speed=0.2", "--serial", pioneer.device(), "--robot-type",
                  "pioneer", "--json"});
   while (!pioneer.motors) {
     ASSERT_TRUE(pioneer.obey()) << robot.err();
