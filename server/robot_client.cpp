@@ -123,13 +123,17 @@ void RobotClient::move(std::int64_t now) {
   if (truth_) truth_->send(body_.state(), now, epoch_);
 }
 
-/// The body is where the robot estimates itself.
-void RobotClient::follow_real(std::int64_t now) {
+void RobotClient::update_real(std::int64_t now) {
   const std::uint64_t odometry = real_->odometry();
   real_->update(now);
   touched_ = touched_ || real_->contact();
-  const base::Report* state = &real_->state();
   if (own_ && own_->has_wheels() && real_->odometry() > odometry) own_->add_wheels(now, real_->rolled(track_));
+}
+
+/// The body is where the robot estimates itself.
+void RobotClient::follow_real(std::int64_t now) {
+  update_real(now);
+  const base::Report* state = &real_->state();
   if (own_) {
     own_->predict(now);
     state = &own_->state();
@@ -166,15 +170,12 @@ void RobotClient::send_state(std::int64_t now) {
 void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {
   receive(clock());
   for (std::int64_t time = clock(); time < until && !stop && !is_due(time); time = clock()) {
-    if (next_move() <= time) move(time);
-    link_.wait(time, std::min(until, next_move()));
+    if (truth_ && truth_->is_due(time)) move(time);
+    if (real_ && real_->due() <= time) update_real(time);
+    const std::int64_t next = std::min(truth_ ? truth_->due() : INT64_MAX, real_ ? real_->due() : INT64_MAX);
+    link_.wait(time, std::min(until, next));
     receive(clock());
   }
-}
-
-/// [ns] of the next motion between two steps
-std::int64_t RobotClient::next_move() const {
-  return std::min(truth_ ? truth_->due() : INT64_MAX, real_ ? real_->due() : INT64_MAX);
 }
 
 /// [ns] The farm drops a robot that sends no states, so without scans it steps at half the rate.

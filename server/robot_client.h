@@ -146,8 +146,8 @@ class RobotClient {
   /// Returns whether its state is unknown, or too uncertain to act on.
   bool is_lost() const { return own_ && own_->is_lost(); }
   void add_own_state(const RobotClientOptions& options);
+  void update_real(std::int64_t now);
   void follow_real(std::int64_t now);
-  std::int64_t next_move() const;
   void draw_map(std::int64_t now);
 
   const world::World& world_;

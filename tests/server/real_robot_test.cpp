@@ -23,6 +23,7 @@ namespace {
 struct Seen {
   std::map<std::uint8_t, std::vector<double>> values;
   std::map<std::uint8_t, base::Pose> poses;
+  std::map<std::uint8_t, std::uint32_t> numbers;
   base::Pose X_WM;
   bool contact = false;
 };
@@ -36,9 +37,9 @@ class Recorder final : public control::Controller {
   base::Twist step(const control::ControllerInput& input) override {
     seen() = {.X_WM = input.state.X_WM, .contact = input.contact};
     for (const base::ReadingBlock& reading : input.readings) {
-      EXPECT_EQ(reading.sensor, 0u) << "it has no virtual sensors of this type";
       seen().values[reading.type] = {reading.values.begin(), reading.values.end()};
       seen().poses[reading.type] = reading.X_WS;
+      seen().numbers[reading.type] = reading.sensor;
     }
     return {0.2, 0.0, 0.0};
   }
@@ -82,6 +83,7 @@ TEST_F(RealRobotTest, OwnReadingsOfACreateReachItsController) {
   EXPECT_EQ(seen().values[sensors::kBumper], (std::vector<double>{0, 0}));
   EXPECT_GT(seen().X_WM.x, 2.1) << "it moved";
   EXPECT_EQ(seen().poses[sensors::kCliff].x, seen().X_WM.x);
+  EXPECT_EQ(seen().numbers[sensors::kCliff], 0u) << "it has no virtual sensor of this type";
   EXPECT_FALSE(seen().contact);
   const RobotClientStats stats = robot->stats();
   ASSERT_TRUE(stats.real);
@@ -89,6 +91,25 @@ TEST_F(RealRobotTest, OwnReadingsOfACreateReachItsController) {
   EXPECT_EQ(stats.real->counts.frames, 70u);
   EXPECT_EQ(stats.real->readings.at("cliff"), 70u);
   EXPECT_EQ(stats.real->facts[0].name, "battery_V");
+}
+
+TEST_F(RealRobotTest, OwnSensorsAreNumberedAfterVirtualOnes) {
+  world::World world = f.world;
+  world.movers[1].sensors.push_back({.type = "bumper"});
+  const sensors::SensorSet sensor_set(world);
+  StreamLayout layout = f.layout;
+  layout.bases[sensors::kBumper] = layout.bases.at(sensors::kLaser) + 2 * layout.stride;
+  CreateSimulator create;
+  RobotClientOptions options{.stop_after = 0.0, .log_descriptor = f.log.descriptor()};
+  options.link.farm = {netio::kLoopback, f.service->port()};
+  options.controller.name = recorder.name;
+  options.serial = SerialOptions{.device = create.device()};
+  RobotClient robot(world, sensor_set, 1, layout, options);
+  EXPECT_TRUE(create.streaming());
+  create.run(7);
+  robot.step(kTick);
+  EXPECT_EQ(seen().numbers[sensors::kBumper], 1u);
+  EXPECT_EQ(seen().numbers[sensors::kCliff], 0u);
 }
 
 TEST_F(RealRobotTest, AContactBetweenTwoStepsReachesTheController) {
