@@ -34,6 +34,13 @@ constexpr std::size_t data_of(std::uint8_t id) {
   throw "no such packet";  // only in a constant expression
 }
 
+/// Returns the id of the packet in the place of packet `id` of `kCreatePackets`.
+constexpr std::uint8_t id_in(std::uint8_t id, CreateOdometry odometry) {
+  constexpr std::uint8_t kDistance = 19, kAngle = 20, kLeft = 43, kRight = 44;
+  if (odometry == CreateOdometry::motion) return id;
+  return id == kDistance ? kLeft : id == kAngle ? kRight : id;
+}
+
 std::int16_t whole_speed(double speed) { return static_cast<std::int16_t>(std::lround(speed)); }
 
 void put_speed(std::int16_t speed, base::Bytes& bytes) {
@@ -53,12 +60,12 @@ CreateWheels create_wheels(const base::Twist& twist, double track) {
   return {whole_speed(scale * (forward + turn)), whole_speed(scale * (forward - turn))};
 }
 
-base::Bytes create_start() {
+base::Bytes create_start(CreateOdometry odometry) {
   base::Bytes bytes{kStart, kSafe};
   const base::Bytes rest = create_drive({});
   bytes.insert(bytes.end(), rest.begin(), rest.end());
   bytes.insert(bytes.end(), {kStream, std::size(kCreatePackets)});
-  for (const CreatePacket& packet : kCreatePackets) bytes.push_back(packet.id);
+  for (const CreatePacket& packet : kCreatePackets) bytes.push_back(id_in(packet.id, odometry));
   return bytes;
 }
 
@@ -96,6 +103,8 @@ CreateFrame decoded(std::span<const std::uint8_t> bytes) {
   f.buttons = byte(data_of(18));
   f.distance = number(data_of(19));
   f.angle = number(data_of(20));
+  f.left = word(data_of(19));
+  f.right = word(data_of(20));
   f.charging = byte(data_of(21));
   f.voltage = word(data_of(22));
   f.current = number(data_of(23));
@@ -112,8 +121,10 @@ std::optional<CreateFrame> CreateStream::take(std::uint8_t byte) {
   bytes_[size_++] = byte;
   // Drops bytes that cannot begin a frame one at a time, since a frame may begin within a broken one.
   const auto may_be_one = [&] {
-    return std::all_of(kFixed.begin(), kFixed.end(),
-                       [&](const auto& fixed) { return fixed.first >= size_ || bytes_[fixed.first] == fixed.second; });
+    return std::all_of(kFixed.begin(), kFixed.end(), [&](const auto& fixed) {
+      const auto& [at, value] = fixed;
+      return at >= size_ || bytes_[at] == (at < 2 ? value : id_in(value, odometry_));
+    });
   };
   while (size_ > 0 && !may_be_one()) drop_first();
   return size_ == kFrameBytes ? whole() : std::nullopt;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
 
@@ -27,8 +28,15 @@ inline constexpr double kCreateSpeed = 500.0;  ///< [mm/s] largest speed of a wh
 /// @param track [m] > 0
 CreateWheels create_wheels(const base::Twist& twist, double track);
 
+/// Packets of odometry. Firmware of the Create 2 reports wrong distances and angles, so its wheels are used.
+enum class CreateOdometry : std::uint8_t {
+  motion,  ///< 19 and 20
+  wheels   ///< 43 and 44
+};
+inline constexpr double kCreate2Count = 0.072 * std::numbers::pi / 508.8;  ///< [m] that a wheel rolls per count
+
 /// Start, safe mode, wheels stopped, stream of `CreateFrame`. Works in any mode except off.
-base::Bytes create_start();
+base::Bytes create_start(CreateOdometry odometry = CreateOdometry::motion);
 /// Safe mode: the robot stops by itself at cliffs, when a wheel drops and when the charger is plugged in.
 base::Bytes create_safe();
 base::Bytes create_drive(const CreateWheels& wheels);
@@ -49,6 +57,7 @@ struct CreateFrame {
   std::uint8_t buttons = 0;              ///< [18] bit 0: play, bit 2: advance
   std::int16_t distance = 0;             ///< [19] [mm] since the last frame, forward positive
   std::int16_t angle = 0;                ///< [20] [degree] since the last frame, counter-clockwise
+  std::uint16_t left = 0, right = 0;     ///< [43, 44] counts of the wheels, in place of 19 and 20
   std::uint8_t charging = 0;             ///< [21] 0 none, 1 reconditioning, 2 full, 3 trickle, 4 waiting, 5 fault
   std::uint16_t voltage = 0;             ///< [22] [mV]
   std::int16_t current = 0;              ///< [23] [mA] into the battery
@@ -58,7 +67,7 @@ struct CreateFrame {
   std::uint8_t mode = safe;              ///< [35]
 };
 
-/// Packets of the stream, in this order: id and number of data bytes.
+/// Packets of the stream, in this order: id and number of data bytes. The packets of wheels replace those of motion.
 struct CreatePacket {
   std::uint8_t id, bytes;
 };
@@ -76,6 +85,8 @@ class CreateStream {
     return bytes;
   }();
 
+  explicit CreateStream(CreateOdometry odometry = CreateOdometry::motion) : odometry_(odometry) {}
+
   /// @return the frame completed by this byte
   std::optional<CreateFrame> take(std::uint8_t byte);
   /// Drops an incomplete frame.
@@ -89,6 +100,7 @@ class CreateStream {
   std::optional<CreateFrame> whole();
   void drop_first();
 
+  CreateOdometry odometry_;
   std::array<std::uint8_t, kFrameBytes> bytes_{};
   std::size_t size_ = 0;
   std::uint64_t frames_ = 0, wrong_checksums_ = 0, skipped_ = 0;

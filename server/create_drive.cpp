@@ -8,15 +8,23 @@
 
 namespace sf::server {
 
+namespace {
+
+robots::CreateOdometry odometry_of(const RealRobotType& type) {
+  return type.angle == 0.0 ? robots::CreateOdometry::wheels : robots::CreateOdometry::motion;
+}
+
+}  // namespace
+
 CreateDrive::CreateDrive(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM, double track)
-    : RealRobot(type, options, X_WM), track_(track) {
+    : RealRobot(type, options, X_WM), track_(track), stream_(odometry_of(type)) {
   start(0);
 }
 
 void CreateDrive::start(std::int64_t) {
   stream_.reset();
-  lifted_ = false;
-  counts_.starts += write(robots::create_start());
+  lifted_ = counting_ = false;
+  counts_.starts += write(robots::create_start(odometry_of(type())));
 }
 
 void CreateDrive::take(std::span<const std::uint8_t> bytes, std::int64_t now) {
@@ -26,8 +34,8 @@ void CreateDrive::take(std::span<const std::uint8_t> bytes, std::int64_t now) {
 
 void CreateDrive::take_frame(const robots::CreateFrame& frame, std::int64_t now) {
   heard(now);
+  add_motion(frame);
   frame_ = frame;
-  advance(1e-3 * frame.distance, frame.angle * M_PI / 180.0);
   touch(frame.bumped_left || frame.bumped_right || frame.wheel_drop);
   measured(sensors::kBumper, {frame.bumped_left ? 1.0 : 0.0, frame.bumped_right ? 1.0 : 0.0}, now);
   measured(sensors::kCliff, {frame.cliffs.begin(), frame.cliffs.end()}, now);
@@ -37,6 +45,17 @@ void CreateDrive::take_frame(const robots::CreateFrame& frame, std::int64_t now)
   // People put a lifted robot down where it may drive, so it resumes. At a cliff, it waits for them.
   lifted_ = (lifted_ || frame.wheel_drop) && frame.mode != robots::CreateFrame::safe;
   if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive) write(robots::create_safe());
+}
+
+void CreateDrive::add_motion(const robots::CreateFrame& frame) {
+  if (odometry_of(type()) == robots::CreateOdometry::motion)
+    return advance(1e-3 * frame.distance, frame.angle * M_PI / 180.0);
+  const auto rolled = [](std::uint16_t after, std::uint16_t before) {
+    return robots::kCreate2Count * static_cast<std::int16_t>(after - before);
+  };
+  const double left = rolled(frame.left, frame_.left), right = rolled(frame.right, frame_.right);
+  if (counting_) advance(0.5 * (left + right), (right - left) / track_);
+  counting_ = true;
 }
 
 void CreateDrive::drive(const base::Twist& twist, std::int64_t now) {

@@ -27,10 +27,12 @@ class CreateDrive final : public RealRobot {
   void take(std::span<const std::uint8_t> bytes, std::int64_t now) override;
   std::string fault() const override;
   void take_frame(const robots::CreateFrame& frame, std::int64_t now);
+  void add_motion(const robots::CreateFrame& frame);
 
   double track_;
   robots::CreateStream stream_;
   robots::CreateFrame frame_;  ///< most recent
+  bool counting_ = false;      ///< `frame_` is of this start, so the wheels are counted from it
   bool lifted_ = false;        ///< lifted since it was last in safe mode
 };
 

@@ -29,7 +29,11 @@ std::unique_ptr<RealRobot> make(const RealRobotType& type, const SerialOptions& 
 // A Create truncates angles to degrees. A Pioneer's are 4096 to a turn; its wheels scrub.
 constexpr RealRobotType kTypes[] = {
     {.word = "create", .title = "Create", .angle = M_PI / 180.0, .make = make<CreateDrive>},
-    {.word = "create2", .title = "Create 2", .baud = 115200, .angle = M_PI / 180.0, .make = make<CreateDrive>},
+    {.word = "create2",
+     .title = "Create 2",
+     .baud = 115200,
+     .distance = robots::kCreate2Count,
+     .make = make<CreateDrive>},
     {.word = "pioneer",
      .title = "Pioneer",
      .baud = 9600,

@@ -51,6 +51,8 @@ class CreateSimulator : public PseudoTerminal {
       if (id == 18) bytes.push_back(buttons);
       if (id == 19) put(take_whole(distance_), bytes);
       if (id == 20) put(take_whole(angle_), bytes);
+      if (id == 43) put(static_cast<int>(std::floor(left_counts)) & 0xFFFF, bytes);
+      if (id == 44) put(static_cast<int>(std::floor(right_counts)) & 0xFFFF, bytes);
       if (id == 21) bytes.push_back(charging);
       if (id == 22) put(voltage, bytes);
       if (id == 23) put(current, bytes);
@@ -70,9 +72,11 @@ class CreateSimulator : public PseudoTerminal {
     mode = off;
     streams.clear();
     right = left = 0;
+    left_counts = right_counts = 0.0;
   }
 
-  double scale = 1.0;  ///< reported distance and angle over the true ones
+  double left_counts = 0.0, right_counts = 0.0;  ///< of the wheels of a Create 2, 508.8 to a turn of 72 mm
+  double scale = 1.0;                            ///< reported distance and angle over the true ones
   Mode mode = off;
   base::Pose X;              ///< pose in the world
   int right = 0, left = 0;   ///< [mm/s]
@@ -124,6 +128,8 @@ class CreateSimulator : public PseudoTerminal {
     X.x += way * std::cos(X.yaw + 0.5 * turn);
     X.y += way * std::sin(X.yaw + 0.5 * turn);
     X.yaw += turn;
+    left_counts += left * kStep * 508.8 / (M_PI * 72.0);
+    right_counts += right * kStep * 508.8 / (M_PI * 72.0);
     distance_ += scale * 1e3 * way;
     angle_ += scale * turn * 180.0 / M_PI;
   }

@@ -58,6 +58,20 @@ std::vector<CreateFrame> taken(CreateStream& stream, std::initializer_list<base:
   return frames;
 }
 
+TEST(CreateStream, ReadsTheWheelsOfACreate2) {
+  base::Bytes bytes = kFrame;
+  bytes[22] = 43;
+  bytes[25] = 44;
+  bytes.back() = static_cast<std::uint8_t>(bytes.back() - (43 - 19) - (44 - 20));
+  CreateStream stream(CreateOdometry::wheels);
+  const std::vector<CreateFrame> frames = taken(stream, {kFrame, bytes});
+  ASSERT_EQ(frames.size(), 1u) << "frames of motion are not those that were requested";
+  EXPECT_EQ(frames[0].left, 0xFFF4);
+  EXPECT_EQ(frames[0].right, 0xFFFD);
+  EXPECT_EQ(create_start(CreateOdometry::wheels)[19], 43);
+  EXPECT_EQ(create_start(CreateOdometry::wheels)[20], 44);
+}
+
 TEST(CreateStream, ReadsAFrame) {
   CreateStream stream;
   const std::vector<CreateFrame> frames = taken(stream, {kFrame});

@@ -60,6 +60,48 @@ TEST_F(CreateTest, DrivesAndTracksItsPose) {
   EXPECT_EQ(create.unknown, 0u);
 }
 
+TEST(CreateDrive, CountsTheWheelsOfACreate2) {
+  CreateSimulator create;
+  create.left_counts = 65'000.0;  // both wrap
+  create.right_counts = 65'500.0;
+  const auto drive = make_real_robot({.type = "create2", .device = create.device()}, {}, 0.258);
+  EXPECT_TRUE(create.streaming());
+  std::int64_t now = 0;
+  const auto steps = [&](int count, const base::Twist& twist) {
+    for (int k = 0; k < count; ++k) {
+      create.run(7);
+      if (k % 10 == 5) create.frame(), create.run(1);  // the first of both is lost
+      drive->update(now += kTenth);
+      drive->drive(twist, now);
+      EXPECT_TRUE(create.driven(create.drives + 1));
+    }
+  };
+  const auto expect_true_pose = [&] {
+    const base::Pose& X = drive->state().X_WM;
+    EXPECT_NEAR(X.x, create.X.x, 0.003);
+    EXPECT_NEAR(X.y, create.X.y, 0.003);
+    EXPECT_NEAR(base::wrap_angle(X.yaw - create.X.yaw), 0.0, 0.005);
+  };
+  steps(40, {0.3, 0, 0.5});
+  CreateSimulator::Bytes wrong = create.frame();
+  wrong.back() ^= 1;
+  create.send(wrong);  // its motion is in the next frame
+  steps(40, {-0.2, 0, 0.5});
+  create.run(1);
+  drive->update(now += kTenth);
+  expect_true_pose();
+  EXPECT_EQ(drive->counts().wrong, 1u);
+  EXPECT_EQ(create.unknown, 0u);
+  const base::Pose before = drive->state().X_WM;
+  create.restart();
+  for (int k = 0; k < 6; ++k) drive->update(now += kTenth);
+  EXPECT_TRUE(create.streaming());
+  create.run(7);
+  drive->update(now += kTenth);
+  EXPECT_EQ(drive->counts().starts, 2u);
+  EXPECT_NEAR(drive->state().X_WM.x, before.x, 0.001) << "the restart of its counters is no motion";
+}
+
 TEST_F(CreateTest, KeepsItsVelocityWithinOneInstant) {
   for (int k = 0; k < 10; ++k) step({0.3, 0, 0});
   const base::Twist before = drive->state().velocity;
