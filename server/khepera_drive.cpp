@@ -99,16 +99,16 @@ bool KheperaDrive::accept(const robots::KheperaAnswer& answer, std::int64_t now)
 /// Counters are totals, so a damaged one is corrected by the next. A second one after an impossible motion is that of
 /// a robot whose counters restarted: the motion in between is unknown.
 void KheperaDrive::take_pulses(const Pulses& pulses, std::int64_t now) {
-  const bool believed = possible(pulses_, pulses, now);
-  if (!believed && !(suspect_ && possible(*suspect_, pulses, now))) {
+  const bool plausible = possible(pulses_, pulses, now);
+  if (!plausible && !(suspect_ && possible(*suspect_, pulses, now))) {
     suspect_ = pulses;
     return;
   }
-  if (!believed) {
+  if (!plausible) {
     drive_due_ = true;
     ++counts_.starts;
   }
-  const Pulses before = believed ? pulses_ : *suspect_;
+  const Pulses before = plausible ? pulses_ : *suspect_;
   suspect_.reset();
   pulses_ = pulses;
   counted_ = now;
