@@ -146,6 +146,7 @@ void KheperaDrive::ask(char letter, std::initializer_list<int> numbers, std::int
   const base::Bytes bytes = letter == '\n' ? base::Bytes{'\n'} : robots::khepera_command(letter, numbers);
   if (!write(bytes)) return;
   pending_ = letter;
+  stopped_ = false;
   asked_ = now;
 }
 
@@ -158,16 +159,16 @@ void KheperaDrive::drive(const base::Twist& twist, std::int64_t now) {
 void KheperaDrive::stop() {
   using std::chrono::milliseconds;
   wheels_ = {};
-  for (int tries = 0; tries < 3 && line() != nullptr && !line()->lost(); ++tries) {
+  for (int tries = 0; tries < 3 && !stopped_ && line() != nullptr && !line()->lost(); ++tries) {
     // The line feed ends a command that was cut.
     if (tries > 0 || pending_ != 0) line()->write(base::Bytes{'\n'});
     line()->write(robots::khepera_command('D', {0, 0}));
     line()->drain();
     std::array<std::uint8_t, 256> bytes;
-    for (int waits = 0; waits < 15; ++waits, std::this_thread::sleep_for(milliseconds(10))) {
+    for (int waits = 0; waits < 15 && !stopped_; ++waits, std::this_thread::sleep_for(milliseconds(10))) {
       const std::size_t count = line()->read(bytes);
       for (std::size_t i = 0; i < count; ++i)
-        if (const auto answer = lines_.take(bytes[i]); answer && *answer == "d") return;
+        if (const auto answer = lines_.take(bytes[i])) stopped_ = stopped_ || *answer == "d";
     }
   }
 }

@@ -43,6 +43,7 @@ class KheperaDrive final : public RealRobot {
 
   double track_;
   robots::KheperaLines lines_;
+  bool stopped_ = false;    ///< the robot confirmed that it stopped, and received no request since
   char pending_ = 0;        ///< letter of the request under way; 0: none; '\n': the line is being cleared
   std::int64_t asked_ = 0;  ///< [ns] of the request under way
   bool counting_ = false;   ///< the counters were set to 0, so the robot answers

@@ -86,7 +86,7 @@ class RealRobot {
   void update(std::int64_t now);
   /// Applies until the next call; call it at every step. The robot stops while it is not ready.
   virtual void drive(const base::Twist& twist, std::int64_t now) = 0;
-  /// Stops the wheels and ends the session. Blocks for at most half a second.
+  /// Stops the wheels and ends the session. Blocks for less than a second.
   virtual void stop() = 0;
   /// Returns the time of the next `update` that the robot needs between steps, INT64_MAX: none.
   std::int64_t due() const { return due_; }

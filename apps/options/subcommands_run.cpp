@@ -333,8 +333,8 @@ void add_cameras(CLI::App& app, RobotOptions& o) {
 
 void add_robot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("robot",
-                                     "Run one simulated robot in its own process, with sensors served by a farm (exit "
-                                     "code 1 if the farm sends nothing)");
+                                     "Run one robot in its own process, simulated or on a serial line, with sensors "
+                                     "served by a farm (exit code 1 if the farm sends nothing)");
   auto& o = add_command(*sub, call, robot, [sub] { require_any(*sub, {"--tag"}, {"--cameras", "--truth"}); });
   add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
                       "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});

@@ -52,5 +52,21 @@ TEST(KheperaLines, SplitAtAnyLineEnd) {
   EXPECT_EQ(lines.skipped(), 200u) << "too long";
 }
 
+TEST(KheperaLines, AcceptAnyBytes) {
+  KheperaLines lines;
+  std::mt19937 random(7);
+  constexpr std::string_view kAlphabet = "hn,-0123456789\r\n";
+  for (int k = 0; k < 100'000; ++k) {
+    const auto byte = static_cast<std::uint8_t>(random() % 8 == 0 ? random() : kAlphabet[random() % kAlphabet.size()]);
+    if (const auto line = lines.take(byte)) {
+      EXPECT_LE(line->size(), KheperaLines::kMostBytes);
+      parse_khepera(*line);
+    }
+  }
+  lines.take('\n');
+  for (const char c : std::string("h,1")) EXPECT_FALSE(lines.take(static_cast<std::uint8_t>(c)));
+  EXPECT_EQ(lines.take('\n'), "h,1");
+}
+
 }  // namespace
 }  // namespace sf::robots
