@@ -18,17 +18,22 @@ using sensors::kDockByte, sensors::kNoIrByte, sensors::kRedBuoy, sensors::kGreen
 
 constexpr std::int64_t kBlind = 2'000'000'000;  // [ns] duration for which the last received beams are used
 
-std::uint32_t light_in(const base::ReadingBlock* reading) {
-  if (reading == nullptr || reading->values.size() < 2) return 0;
-  const double byte = reading->values[1];
-  return byte > kDockByte && byte < kNoIrByte ? static_cast<std::uint32_t>(byte) - kDockByte : 0;
+/// Returns the signals of all receivers: of the virtual one, and of a real robot's own.
+std::uint32_t light_in(std::span<const base::ReadingBlock> readings) {
+  std::uint32_t light = 0;
+  for (const base::ReadingBlock& reading : readings) {
+    if (reading.type != sensors::kIrReceiver || reading.values.size() < 2) continue;
+    const double byte = reading.values[1];
+    if (byte > kDockByte && byte < kNoIrByte) light |= static_cast<std::uint32_t>(byte) - kDockByte;
+  }
+  return light;
 }
 
 }  // namespace
 
 base::Twist Docking::step(const ControllerInput& input) {
   const base::Pose& X_WM = input.state.X_WM;
-  const std::uint32_t light = light_in(newest(input, sensors::kIrReceiver));
+  const std::uint32_t light = light_in(input.readings);
   contact_ = input.contact;
   done_ = done_ || docked(X_WM);
   if (done_) return {};

@@ -38,7 +38,7 @@ speed_t speed_of(unsigned baud) {
 
 }  // namespace
 
-SerialLine::SerialLine(const std::string& device, unsigned baud) {
+SerialLine::SerialLine(const std::string& device, unsigned baud, int stop_bits) {
   const speed_t speed = speed_of(baud);
   descriptor_ = Socket(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   const int line = descriptor_.descriptor();
@@ -48,6 +48,7 @@ SerialLine::SerialLine(const std::string& device, unsigned baud) {
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~(CSTOPB | CRTSCTS);
+  if (stop_bits == 2) settings.c_cflag |= CSTOPB;
   settings.c_cc[VMIN] = 1;  // without bytes read() fails with EAGAIN; 0 means that the line hung up
   settings.c_cc[VTIME] = 0;
   if (cfsetspeed(&settings, speed) != 0 || tcsetattr(line, TCSANOW, &settings) != 0) fail(device, errno);

@@ -1,5 +1,5 @@
 #pragma once
-// A non-blocking serial line on POSIX: eight bits, no parity, one stop bit, no flow control.
+// A non-blocking serial line on POSIX: eight bits, no parity, no flow control.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,9 +17,9 @@ class SerialLine {
   /// Maximum number of bytes waiting to be sent. Further bytes are refused.
   static constexpr std::size_t kMostWaiting = 256;
 
-  /// @param baud 9600, 19200, 38400, 57600 or 115200
+  /// @param baud 9600, 19200, 38400, 57600 or 115200 @param stop_bits 1 or 2
   /// @throws base::InputError with a remedy if the device cannot be opened or is not a serial line
-  SerialLine(const std::string& device, unsigned baud);
+  SerialLine(const std::string& device, unsigned baud, int stop_bits = 1);
 
   /// @return number of bytes read into `bytes`, 0 if none wait
   std::size_t read(std::span<std::uint8_t> bytes);

@@ -1,114 +1,74 @@
 #include "server/create_drive.h"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <cmath>
 
-#include "base/error.h"
+#include "sensors/bumper.h"
+#include "sensors/cliff.h"
+#include "sensors/irreceiver.h"
 
 namespace sf::server {
 
 namespace {
 
-constexpr std::int64_t kSilence = 500'000'000;    // [ns] 33 frames
-constexpr std::int64_t kRevival = 1'000'000'000;  // [ns] between attempts
-constexpr std::size_t kMostBytes = 8192;          // read per update: more than one second at 57600 baud
+robots::CreateOdometry odometry_of(const RealRobotType& type) {
+  return type.angle == 0.0 ? robots::CreateOdometry::wheels : robots::CreateOdometry::motion;
+}
 
 }  // namespace
 
-CreateDrive::CreateDrive(const CreateOptions& options, const base::Pose& X_WM, double track)
-    : options_(options), track_(track), line_(std::in_place, options.device, options.baud) {
-  state_.X_WM = X_WM;
-  counts_.lines = 1;
-  start();
+CreateDrive::CreateDrive(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM, double track)
+    : RealRobot(type, options, X_WM), track_(track), stream_(odometry_of(type)) {
+  start(0);
 }
 
-void CreateDrive::start() {
+void CreateDrive::start(std::int64_t) {
   stream_.reset();
-  lifted_ = false;
-  counts_.starts += line_->write(robots::create_start());
+  lifted_ = counting_ = false;
+  counts_.starts += write(robots::create_start(odometry_of(type())));
 }
 
-void CreateDrive::update(std::int64_t now) {
-  const base::Pose before = state_.X_WM;
-  if (receive()) last_ = now;
-  const double dt = 1e-9 * static_cast<double>(now - state_.time);
-  if (dt > 0.0) {
-    const glm::dvec2 way = base::rotate(-before.yaw, {state_.X_WM.x - before.x, state_.X_WM.y - before.y});
-    const double turn = base::wrap_angle(state_.X_WM.yaw - before.yaw);
-    state_.velocity = {std::copysign(glm::length(way), way.x) / dt, 0.0, turn / dt};
-  }
-  state_.time = now;
-  if (line_ && line_->lost()) line_.reset();
-  if (silent(now)) revive(now);
+void CreateDrive::take(std::span<const std::uint8_t> bytes, std::int64_t now) {
+  for (const std::uint8_t byte : bytes)
+    if (const auto frame = stream_.take(byte)) take_frame(*frame, now);
 }
 
-/// Returns whether a frame arrived.
-bool CreateDrive::receive() {
-  bool came = false, bumped = false, dropped = false;
-  std::array<std::uint8_t, 512> bytes;
-  for (std::size_t all = 0, n = 1; line_ && n > 0 && all < kMostBytes; all += n) {
-    n = line_->read(bytes);
-    for (std::size_t i = 0; i < n; ++i)
-      if (const auto frame = stream_.take(bytes[i])) {
-        take(*frame);
-        came = true;
-        bumped = bumped || frame->bumped;
-        dropped = dropped || frame->wheel_drop;
-      }
-  }
-  if (came) contact_ = bumped || dropped;
-  return came;
-}
-
-/// Integrates the motion along an arc.
-void CreateDrive::take(const robots::CreateFrame& frame) {
+void CreateDrive::take_frame(const robots::CreateFrame& frame, std::int64_t now) {
+  heard(now);
+  add_motion(frame);
   frame_ = frame;
-  const double way = 1e-3 * frame.distance, turn = frame.angle * M_PI / 180.0, middle = state_.X_WM.yaw + 0.5 * turn;
-  state_.X_WM.x += way * std::cos(middle);
-  state_.X_WM.y += way * std::sin(middle);
-  state_.X_WM.yaw = base::wrap_angle(state_.X_WM.yaw + turn);
-  rolled_.left += way - 0.5 * track_ * turn;
-  rolled_.right += way + 0.5 * track_ * turn;
+  touch(frame.bumped_left || frame.bumped_right || frame.wheel_drop);
+  measured(sensors::kBumper, {frame.bumped_left ? 1.0 : 0.0, frame.bumped_right ? 1.0 : 0.0}, now);
+  measured(sensors::kCliff, {frame.cliffs.begin(), frame.cliffs.end()}, now);
+  const bool dock = frame.infrared > sensors::kDockByte && frame.infrared < sensors::kNoIrByte;
+  measured(sensors::kIrReceiver,
+           {frame.virtual_wall ? 1.0 : 0.0, static_cast<double>(dock ? frame.infrared : sensors::kNoIrByte)}, now);
   // People put a lifted robot down where it may drive, so it resumes. At a cliff, it waits for them.
   lifted_ = (lifted_ || frame.wheel_drop) && frame.mode != robots::CreateFrame::safe;
-  if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive && line_)
-    line_->write(robots::create_safe());
+  if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive) write(robots::create_safe());
 }
 
-bool CreateDrive::silent(std::int64_t now) const { return now - last_.value_or(0) > kSilence; }
-
-void CreateDrive::revive(std::int64_t now) {
-  if (revived_ && now - *revived_ < kRevival) return;
-  revived_ = now;
-  try {
-    if (!line_) {
-      line_.emplace(options_.device, options_.baud);
-      ++counts_.lines;
-    }
-    start();
-  } catch (const base::InputError&) {
-    // Still unplugged: retry later.
-  }
+void CreateDrive::add_motion(const robots::CreateFrame& frame) {
+  if (odometry_of(type()) == robots::CreateOdometry::motion)
+    return advance(1e-3 * frame.distance, frame.angle * M_PI / 180.0);
+  const auto rolled = [](std::uint16_t after, std::uint16_t before) {
+    return robots::kCreate2Count * static_cast<std::int16_t>(after - before);
+  };
+  const double left = rolled(frame.left, frame_.left), right = rolled(frame.right, frame_.right);
+  if (counting_) advance(0.5 * (left + right), (right - left) / track_);
+  counting_ = true;
 }
 
 void CreateDrive::drive(const base::Twist& twist, std::int64_t now) {
-  if (!line_) return;
-  const robots::CreateWheels wheels = ready(now) ? robots::create_wheels(twist, track_) : robots::CreateWheels{};
-  counts_.refused += !line_->write(robots::create_drive(wheels));
+  write(robots::create_drive(ready(now) ? robots::create_wheels(twist, track_) : robots::CreateWheels{}));
 }
 
 void CreateDrive::stop() {
-  if (!line_) return;
-  line_->write(robots::create_stop());
-  line_->drain();
+  if (line() == nullptr) return;
+  line()->write(robots::create_stop());
+  line()->drain();
 }
 
-std::string CreateDrive::problem(std::int64_t now) const {
-  if (!line_) return fmt::format("the serial line {} was disconnected", options_.device);
-  if (silent(now) || !last_)
-    return fmt::format("the Create on {} is silent: switched off, or not at {} baud", options_.device, options_.baud);
+std::string CreateDrive::fault() const {
   if (frame_.wheel_drop) return "the Create is lifted";
   if (frame_.mode == robots::CreateFrame::passive || frame_.mode == robots::CreateFrame::off)
     return lifted_ ? "the Create was lifted"
@@ -116,10 +76,26 @@ std::string CreateDrive::problem(std::int64_t now) const {
   return {};
 }
 
-CreateCounts CreateDrive::counts() const {
-  CreateCounts counts = counts_;
+std::vector<RobotFact> CreateDrive::facts() const {
+  if (stream_.frames() == 0) return {};
+  const robots::CreateFrame& f = frame_;
+  return {{"battery_V", 1e-3 * f.voltage},
+          {"battery_A", 1e-3 * f.current},
+          {"battery_C", static_cast<double>(f.temperature)},
+          {"charge_Ah", 1e-3 * f.charge},
+          {"capacity_Ah", 1e-3 * f.capacity},
+          {"charging", static_cast<double>(f.charging)},
+          {"left_wheel_overcurrent", f.overcurrents & 0x10 ? 1.0 : 0.0},
+          {"right_wheel_overcurrent", f.overcurrents & 0x08 ? 1.0 : 0.0},
+          {"wall", f.wall ? 1.0 : 0.0},
+          {"buttons", static_cast<double>(f.buttons)},
+          {"infrared_byte", static_cast<double>(f.infrared)}};
+}
+
+RealRobotCounts CreateDrive::counts() const {
+  RealRobotCounts counts = counts_;
   counts.frames = stream_.frames();
-  counts.wrong_checksums = stream_.wrong_checksums();
+  counts.wrong = stream_.wrong_checksums();
   counts.skipped_bytes = stream_.skipped();
   return counts;
 }

@@ -31,18 +31,14 @@ std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& move
                   mover.name, mover.id, netio::kMinTag, netio::kMaxId));
 }
 
-// A Create's wheels slip [m^(1/2)] on a smooth floor, and it truncates angles to degrees [rad].
-constexpr double kCreateSlip = 0.003;
-constexpr double kCreateDegree = M_PI / 180.0;
-
 /// Returns the wheels as the robot knows them: without the error `scale` of its encoders. nullopt: no encoders
-std::optional<sensors::Encoder> wheels_of(const world::Mover& mover, bool is_create) {
+std::optional<sensors::Encoder> wheels_of(const world::Mover& mover, const RealRobot* real) {
   std::optional<sensors::Encoder> wheels;
   for (const world::Sensor& sensor : mover.sensors)
     if (!wheels && sensor.type == sensors::encoder_type.word.type) wheels = sensors::read_encoder(sensor, mover);
-  if (!is_create) return wheels;
-  if (!wheels) wheels = sensors::Encoder{.slip = kCreateSlip, .track = mover.track};
-  wheels->per_count = std::max(1e-3, wheels->track * kCreateDegree);
+  if (real == nullptr) return wheels;
+  if (!wheels) wheels = sensors::Encoder{.slip = real->type().slip, .track = mover.track};
+  wheels->per_count = std::max(real->type().distance, wheels->track * real->type().angle);
   return wheels;
 }
 
@@ -66,6 +62,7 @@ std::int64_t utc_now() { return base::unix_time() / 1'000'000; }
 RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
                          const StreamLayout& sent, const RobotClientOptions& options)
     : world_(world),
+      sensor_set_(sensor_set),
       names_(wire_names(world)),
       mover_(mover),
       body_(world, mover, base::nanoseconds(options.forget)),
@@ -81,7 +78,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       utc_(options.utc ? options.utc : utc_now) {
   if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
   if (options.map) map_.emplace(world, sensor_set, mover, *options.map);
-  if (options.create) create_.emplace(*options.create, world.movers[mover].X_WM, world.movers[mover].track);
+  if (options.serial) real_ = make_real_robot(*options.serial, world.movers[mover].X_WM, world.movers[mover].track);
   control::ControllerConfig controller = options.controller;
   controller.localized_outside = true;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr, nullptr, &sensor_set},
@@ -99,10 +96,11 @@ void RobotClient::add_own_state(const RobotClientOptions& options) {
   } else {
     own.start = mover.X_WM;
   }
-  if (made_.localize.value_or(true)) own.wheels = wheels_of(mover, create_.has_value());
+  if (made_.localize.value_or(true)) own.wheels = wheels_of(mover, real_.get());
   if (made_.localize.value_or(false) && !own.wheels && !own.cameras) refuse_localize(mover);
   if (!own.wheels && !own.cameras) return;
-  if (own.wheels && !create_)
+  if (own.wheels) track_ = own.wheels->track;
+  if (own.wheels && !real_)
     wheels_.emplace(*own.wheels, base::RandomKey{options.seed, base::RandomStream::slip, mover_}, true);
   own_.emplace(mover, mover_, own);
 }
@@ -113,8 +111,8 @@ void RobotClient::receive(std::int64_t now) {
 }
 
 void RobotClient::move(std::int64_t now) {
-  if (create_) {
-    follow_create(now);
+  if (real_) {
+    follow_real(now);
   } else {
     const base::Pose before = body_.state().X_WM;
     body_.move(command_, now);
@@ -125,17 +123,22 @@ void RobotClient::move(std::int64_t now) {
   if (truth_) truth_->send(body_.state(), now, epoch_);
 }
 
+void RobotClient::update_real(std::int64_t now) {
+  const std::uint64_t odometry = real_->odometry();
+  real_->update(now);
+  touched_ = touched_ || real_->contact();
+  if (own_ && own_->has_wheels() && real_->odometry() > odometry) own_->add_wheels(now, real_->rolled(track_));
+}
+
 /// The body is where the robot estimates itself.
-void RobotClient::follow_create(std::int64_t now) {
-  const std::uint64_t frames = create_->counts().frames;
-  create_->update(now);
-  const base::Report* state = &create_->state();
-  if (own_ && own_->has_wheels() && create_->counts().frames > frames) own_->add_wheels(now, create_->rolled());
+void RobotClient::follow_real(std::int64_t now) {
+  update_real(now);
+  const base::Report* state = &real_->state();
   if (own_) {
     own_->predict(now);
     state = &own_->state();
   }
-  body_.follow(state->X_WM, state->velocity, create_->contact(), now);
+  body_.follow(state->X_WM, state->velocity, touched_, now);
 }
 
 void RobotClient::step(std::int64_t now) {
@@ -143,18 +146,19 @@ void RobotClient::step(std::int64_t now) {
   scans_ = link_.scans();
   next_ = next_step(now);
   if (own_) own_->predict(now);
-  if (own_ && !create_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
+  if (own_ && !real_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
-  if (started_ && !is_lost() && !log_.readings_timed_out(link_, now) && (!create_ || create_->ready(now))) decide(now);
-  if (create_) create_->drive(command_, now);
+  if (started_ && !is_lost() && !log_.readings_timed_out(link_, now) && (!real_ || real_->ready(now))) decide(now);
+  if (real_) real_->drive(command_, now);
+  touched_ = false;
   send_state(now);
   log_.note_link(link_, now);
   if (own_) log_.note_position(is_lost(), own_->port() > 0, now);
-  if (create_) log_.note_create(create_->problem(now), create_->counts().frames > 0, now);
+  if (real_) log_.note_real(real_->type().title, real_->problem(now), real_->counts().frames > 0, now);
 }
 
 void RobotClient::leave(std::int64_t now) {
-  if (create_) create_->stop();
+  if (real_) real_->stop();
   link_.leave(now);
 }
 
@@ -168,7 +172,9 @@ void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, 
   receive(clock());
   for (std::int64_t time = clock(); time < until && !stop && !is_due(time); time = clock()) {
     if (truth_ && truth_->is_due(time)) move(time);
-    link_.wait(time, truth_ ? std::min(until, truth_->due()) : until);
+    if (real_ && real_->due() <= time) update_real(time);
+    const std::int64_t next = std::min(truth_ ? truth_->due() : INT64_MAX, real_ ? real_->due() : INT64_MAX);
+    link_.wait(time, std::min(until, next));
     receive(clock());
   }
 }
@@ -214,7 +220,11 @@ RobotClientStats RobotClient::stats() const {
   stats.pose = body_.state().X_WM;
   stats.error = error_;
   if (map_) stats.map = map_->counts();
-  if (create_) stats.create = create_->counts();
+  if (real_) {
+    stats.real = {std::string(real_->type().word), real_->counts(), real_->facts(), {}};
+    for (const OwnReading& own : real_->readings())
+      stats.real->readings[std::string(sensors::find_sensor_type(own.type)->name)] = own.sequence + 1;
+  }
   if (own_)
     stats.own = {own_->port() > 0, own_->has_wheels(), own_->counts(),
                  position_errors_, own_->sigma(),      own_->calibration()};
@@ -254,7 +264,7 @@ void RobotClient::decide(std::int64_t now) {
 
 void RobotClient::draw_map(std::int64_t now) {
   for (const base::ReadingBlock& reading : readings_) map_->add(reading, reading.X_WM);
-  map_->send(now, !own_ && !create_);
+  map_->send(now, !own_ && !real_);
 }
 
 /// Packets do not carry the pose that the farm cast from, so the robot uses its own pose at that time.
@@ -264,6 +274,22 @@ void RobotClient::gather_readings() {
     base::ReadingBlock& block = readings_.emplace_back(newest.block);
     block.X_WM = own_ ? own_->pose_at(block.time) : body_.pose_at(block.time);
     block.X_WS = base::compose(block.X_WM, newest.row->X_MS);
+  }
+  if (real_) gather_own_readings();
+}
+
+/// Numbered after the virtual sensors of their types. Where they are mounted is unknown, so their pose is the robot's.
+void RobotClient::gather_own_readings() {
+  for (const OwnReading& own : real_->readings()) {
+    base::ReadingBlock& block = readings_.emplace_back();
+    block.mover = mover_;
+    block.sensor = static_cast<std::uint32_t>(sensor_set_.of(own.type, mover_).size());
+    block.type = own.type;
+    block.sequence = own.sequence;
+    block.time = own.time;
+    block.values = own.values;
+    block.sigma = HUGE_VAL;
+    block.X_WM = block.X_WS = own_ ? own_->pose_at(own.time) : body_.pose_at(own.time);
   }
 }
 

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,10 +16,10 @@
 #include "control/error_summary.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
-#include "server/create_drive.h"
 #include "server/light_listener.h"
 #include "server/own_map.h"
 #include "server/own_state.h"
+#include "server/real_robot.h"
 #include "server/robot_client_log.h"
 #include "server/robot_link.h"
 #include "server/truth_report.h"
@@ -45,7 +47,7 @@ struct RobotClientOptions {
   /// Where to report its true state as V2V packets with its tag's id, 50 per second, stamped with Unix time; nullopt:
   /// nowhere. Replaces the light that cameras see.
   std::optional<netio::Endpoint> truth;
-  std::optional<CreateOptions> create;  ///< real robot that moves in place of the model; nullopt: none
+  std::optional<SerialOptions> serial;  ///< real robot that moves in place of the model; nullopt: none
   std::optional<OwnMapOptions> map;     ///< where to send its own map; nullopt: no map
 };
 
@@ -57,6 +59,14 @@ struct OwnStateStats {
   PositionErrors errors;                ///< of a simulated robot, at its steps that were not lost
   double sigma = 0.0;                   ///< [m] standard deviation of the position, at the end
   estimation::Calibration calibration;  ///< at the end
+};
+
+/// Statistics of a real robot.
+struct RealRobotStats {
+  std::string type;  ///< word of its RealRobotType
+  RealRobotCounts counts;
+  std::vector<RobotFact> facts;                                ///< as last reported
+  std::map<std::string, std::uint64_t, std::less<>> readings;  ///< of its own sensors, by sensor type
 };
 
 /// Statistics of a robot's process.
@@ -79,7 +89,7 @@ struct RobotClientStats {
   base::Pose pose;                   ///< at the end
   control::ErrorSummary error;
   std::optional<OwnStateStats> own;    ///< nullopt: drives by its true state
-  std::optional<CreateCounts> create;  ///< nullopt: simulated robot
+  std::optional<RealRobotStats> real;  ///< nullopt: simulated robot
   std::optional<OwnMapCounts> map;     ///< nullopt: no map
   bool listens_for_spat = false;
   LightCounts lights;
@@ -130,15 +140,18 @@ class RobotClient {
   /// Own state as estimated by the robot.
   const base::Report& own_state() const { return own_ ? own_->state() : body_.state(); }
   void gather_readings();
+  void gather_own_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
   /// Returns whether its state is unknown, or too uncertain to act on.
   bool is_lost() const { return own_ && own_->is_lost(); }
   void add_own_state(const RobotClientOptions& options);
-  void follow_create(std::int64_t now);
+  void update_real(std::int64_t now);
+  void follow_real(std::int64_t now);
   void draw_map(std::int64_t now);
 
   const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
   WireNames names_;
   std::uint32_t mover_;
   robots::RobotBody body_;
@@ -166,9 +179,11 @@ class RobotClient {
   std::optional<sensors::Wheels> wheels_;  ///< of a simulated robot with encoders
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
-  std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, set in `run`
-  std::optional<CreateDrive> create_;  ///< empty: the body is a model
-  std::optional<OwnMap> map_;          ///< empty: no map
+  std::int64_t epoch_ = 0;           ///< [ns] Unix time at time 0 of its clock, set in `run`
+  std::unique_ptr<RealRobot> real_;  ///< null: the body is a model
+  double track_ = 0.0;               ///< [m] of the real robot's wheels, as estimated from
+  bool touched_ = false;             ///< the real robot had a contact since the last step
+  std::optional<OwnMap> map_;        ///< empty: no map
 };
 
 }  // namespace sf::server

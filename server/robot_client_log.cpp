@@ -67,10 +67,10 @@ void RobotClientLog::note_link(const RobotLink& link, std::int64_t now) {
              now);
 }
 
-void RobotClientLog::note_create(const std::string& problem, bool answered, std::int64_t now) {
-  if (problem == create_problem_ || (!answered && now < kAnswerIn)) return;
-  create_problem_ = problem;
-  log_.write(problem.empty() ? fmt::format("the Create is ready: {} continues", robot_)
+void RobotClientLog::note_real(std::string_view title, const std::string& problem, bool answered, std::int64_t now) {
+  if (problem == real_problem_ || (!answered && now < kAnswerIn)) return;
+  real_problem_ = problem;
+  log_.write(problem.empty() ? fmt::format("the {} is ready: {} continues", title, robot_)
                              : fmt::format("{}: {} stops", problem, robot_),
              now);
 }

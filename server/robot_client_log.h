@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "netio/rate_limited_log.h"
 #include "server/robot_link.h"
@@ -25,8 +26,8 @@ class RobotClientLog {
   void note_position(bool lost, bool cameras, std::int64_t now);
   /// Logs why the real robot does not drive, whenever the reason changes. Does not log silence before its first answer
   /// is due.
-  /// @param problem "": none @param answered a frame has arrived
-  void note_create(const std::string& problem, bool answered, std::int64_t now);
+  /// @param title "Create" @param problem "": none @param answered a frame has arrived
+  void note_real(std::string_view title, const std::string& problem, bool answered, std::int64_t now);
 
   /// Returns whether no complete reading has arrived within the timeout.
   bool readings_timed_out(const RobotLink& link, std::int64_t now) const;
@@ -46,7 +47,7 @@ class RobotClientLog {
   bool stands_ = false;            ///< stopped for lack of readings
   std::optional<bool> lost_;       ///< as of the last step
   std::uint64_t stops_ = 0;
-  std::string create_problem_;  ///< last logged
+  std::string real_problem_;  ///< last logged
 };
 
 }  // namespace sf::server

@@ -2,41 +2,19 @@
 // An iRobot Create at the other end of a pseudo-terminal: parses the Open Interface byte by byte, moves, and answers.
 // Written from the specification, without the code that it tests. It has no clock: `run` is 15 ms of its time.
 
-#include <fcntl.h>
-#include <poll.h>
-#include <stdlib.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "base/pose.h"
+#include "tests/pseudo_terminal.h"
 
 namespace sf {
 
-class CreateSimulator {
+class CreateSimulator : public PseudoTerminal {
  public:
-  using Bytes = std::vector<std::uint8_t>;
   enum Mode { off, passive, safe, full };
   static constexpr double kStep = 0.015;  ///< [s]
-
-  CreateSimulator() : computer_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
-    if (computer_ < 0 || grantpt(computer_) != 0 || unlockpt(computer_) != 0) return;
-    device_ = ptsname(computer_);
-    line_ = open(device_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  }
-  ~CreateSimulator() { hang_up(); }
-  CreateSimulator(const CreateSimulator&) = delete;
-  CreateSimulator& operator=(const CreateSimulator&) = delete;
-
-  const std::string& device() const { return device_; }
-  void hang_up() {
-    for (int* end : {&computer_, &line_})
-      if (*end >= 0) close(std::exchange(*end, -1));
-  }
 
   /// Processes commands until `count` drive commands have been received; false after ten seconds.
   bool driven(std::uint64_t count) {
@@ -59,20 +37,28 @@ class CreateSimulator {
       if (!streams.empty()) send(frame());
     }
   }
-  void send(const Bytes& bytes) {
-    const int before = waiting();
-    if (write(computer_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) return;
-    for (int k = 0; alone && k < 10'000 && waiting() < before + static_cast<int>(bytes.size()); ++k)
-      poll(nullptr, 0, 1);
-  }
   /// Returns a frame of its state and the motion since the previous frame.
   Bytes frame() {
     Bytes bytes{19, 0};
     for (const std::uint8_t id : streams) {
       bytes.push_back(id);
       if (id == 7) bytes.push_back(static_cast<std::uint8_t>(bumps | drops << 2));
+      if (id == 8) bytes.push_back(wall);
+      if (id >= 9 && id <= 12) bytes.push_back(static_cast<std::uint8_t>(cliffs >> (id - 9) & 1));
+      if (id == 13) bytes.push_back(virtual_wall);
+      if (id == 14) bytes.push_back(overcurrents);
+      if (id == 17) bytes.push_back(infrared);
+      if (id == 18) bytes.push_back(buttons);
       if (id == 19) put(take_whole(distance_), bytes);
       if (id == 20) put(take_whole(angle_), bytes);
+      if (id == 43) put(static_cast<int>(std::floor(left_counts)) & 0xFFFF, bytes);
+      if (id == 44) put(static_cast<int>(std::floor(right_counts)) & 0xFFFF, bytes);
+      if (id == 21) bytes.push_back(charging);
+      if (id == 22) put(voltage, bytes);
+      if (id == 23) put(current, bytes);
+      if (id == 24) bytes.push_back(static_cast<std::uint8_t>(temperature));
+      if (id == 25) put(charge, bytes);
+      if (id == 26) put(capacity, bytes);
       if (id == 35) bytes.push_back(static_cast<std::uint8_t>(mode));
     }
     bytes[1] = static_cast<std::uint8_t>(bytes.size() - 2);
@@ -86,33 +72,27 @@ class CreateSimulator {
     mode = off;
     streams.clear();
     right = left = 0;
+    left_counts = right_counts = 0.0;
   }
 
-  double scale = 1.0;  ///< reported distance and angle over the true ones
+  double left_counts = 0.0, right_counts = 0.0;  ///< of the wheels of a Create 2, 508.8 to a turn of 72 mm
+  double scale = 1.0;                            ///< reported distance and angle over the true ones
   Mode mode = off;
   base::Pose X;              ///< pose in the world
   int right = 0, left = 0;   ///< [mm/s]
   int bumps = 0, drops = 0;  ///< bits as in packet 7
   std::uint64_t drives = 0;  ///< commands, refused ones too
   std::uint64_t unknown = 0;
-  Bytes streams;      ///< ids
-  bool alone = true;  ///< no other thread reads while it sends, so it waits until the data is at the computer's end
+  Bytes streams;  ///< ids
+  // As in the packets of these names.
+  std::uint8_t wall = 0, virtual_wall = 0, overcurrents = 0, infrared = 255, buttons = 0, charging = 0;
+  unsigned cliffs = 0;  ///< bits 0 to 3: left, front left, front right, right
+  int voltage = 15'700, current = -240, temperature = 24, charge = 2300, capacity = 2700;
 
  private:
   template <class Done>
   bool awaited(Done done) {
-    for (int k = 0; k < 10'000 && !done(); ++k) {
-      pollfd end{computer_, POLLIN, 0};
-      poll(&end, 1, 1);
-      std::uint8_t byte;
-      while (!done() && read(computer_, &byte, 1) == 1) take(byte);
-    }
-    return done();
-  }
-  int waiting() const {
-    int bytes = 0;
-    ioctl(line_, FIONREAD, &bytes);
-    return bytes;
+    return PseudoTerminal::awaited(done, [this](std::uint8_t byte) { take(byte); });
   }
 
   void take(std::uint8_t byte) {
@@ -148,6 +128,8 @@ class CreateSimulator {
     X.x += way * std::cos(X.yaw + 0.5 * turn);
     X.y += way * std::sin(X.yaw + 0.5 * turn);
     X.yaw += turn;
+    left_counts += left * kStep * 508.8 / (M_PI * 72.0);
+    right_counts += right * kStep * 508.8 / (M_PI * 72.0);
     distance_ += scale * 1e3 * way;
     angle_ += scale * turn * 180.0 / M_PI;
   }
@@ -161,8 +143,6 @@ class CreateSimulator {
     bytes.push_back(static_cast<std::uint8_t>(number & 0xFF));
   }
 
-  int computer_, line_ = -1;
-  std::string device_;
   Bytes command_;
   double distance_ = 0.0, angle_ = 0.0;  ///< [mm], [degree] not sent yet
 };

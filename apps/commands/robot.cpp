@@ -85,7 +85,7 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   netio::AddressBook book;
   if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");
   if (!options.map.empty()) client.map = server::OwnMapOptions{read_address(book, options.map, "--map"), options.wire};
-  if (!options.serial.empty()) client.create = server::CreateOptions{options.serial, options.baud};
+  if (!options.serial.empty()) client.serial = server::SerialOptions{options.robot_type, options.serial, options.baud};
   return client;
 }
 

@@ -316,12 +316,13 @@ struct RobotOptions : WorldOptions,
   std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights come from the farm
   std::uint16_t cameras = 0;  ///< port for TAG packets; 0: none
   estimation::ClockSource camera_clock = estimation::ClockSource::estimated;
-  std::uint32_t tag = 0;    ///< id of the tag that the robot carries; 0: the robot's id
-  double most_sigma = 0.5;  ///< [m] standard deviation of the estimated position at which the robot stops
-  std::string truth;        ///< "host:port" that its true state goes to; empty: none
-  std::string map;          ///< "host:port" that its own map is sent to; empty: none
-  std::string serial;       ///< device of a real Create robot; empty: none
-  unsigned baud = 57600;
+  std::uint32_t tag = 0;              ///< id of the tag that the robot carries; 0: the robot's id
+  double most_sigma = 0.5;            ///< [m] standard deviation of the estimated position at which the robot stops
+  std::string truth;                  ///< "host:port" that its true state goes to; empty: none
+  std::string map;                    ///< "host:port" that its own map is sent to; empty: none
+  std::string serial;                 ///< device of a real robot; empty: none
+  std::string robot_type = "create";  ///< word of a server::RealRobotType
+  unsigned baud = 0;                  ///< 0: the default of the type
 };
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP

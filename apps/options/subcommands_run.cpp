@@ -11,6 +11,7 @@
 #include "apps/options/option_parsers.h"
 #include "apps/options/subcommands.h"
 #include "base/installation.h"
+#include "server/real_robot.h"
 
 namespace sf::apps {
 
@@ -332,8 +333,8 @@ void add_cameras(CLI::App& app, RobotOptions& o) {
 
 void add_robot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("robot",
-                                     "Run one simulated robot in its own process, with sensors served by a farm (exit "
-                                     "code 1 if the farm sends nothing)");
+                                     "Run one robot in its own process, simulated or on a serial line, with sensors "
+                                     "served by a farm (exit code 1 if the farm sends nothing)");
   auto& o = add_command(*sub, call, robot, [sub] { require_any(*sub, {"--tag"}, {"--cameras", "--truth"}); });
   add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
                       "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
@@ -364,15 +365,21 @@ void add_robot(CLI::App& app, Call& call) {
                   "Build a map from the robot's own scans and send it to this address (`sensorfarm map --listen PORT`)")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
-  auto* serial =
-      sub->add_option("--serial", o.serial, "Serial line of a real iRobot Create, which replaces the simulated robot")
-          ->check(not_empty("a device such as /dev/ttyUSB0"))
-          ->type_name("DEVICE");
-  sub->add_option("--baud", o.baud, "Speed of the serial line: 57600 (Create) or 115200 (Create 2)")
+  auto* serial = sub->add_option("--serial", o.serial, "Serial line of a real robot, which replaces the simulated one")
+                     ->check(not_empty("a device such as /dev/ttyUSB0"))
+                     ->type_name("DEVICE");
+  std::vector<std::string> types;
+  for (const server::RealRobotType& type : server::real_robot_types()) types.emplace_back(type.word);
+  add_choice(
+      *sub, "--robot-type", types, [&o](const std::string& word) { o.robot_type = word; },
+      "Type of the real robot: iRobot Create or Create 2, Pioneer 3 (ARCOS), Khepera II")
+      ->needs(serial)
+      ->default_str("create");
+  sub->add_option("--baud", o.baud,
+                  "Speed of the serial line (default: create 57600, create2 115200, pioneer and khepera 9600)")
       ->check(one_of({"9600", "19200", "38400", "57600", "115200"}))
       ->needs(serial)
-      ->type_name("BAUD")
-      ->capture_default_str();
+      ->type_name("BAUD");
   sub->add_flag("--wait-for-start", o.wait_for_start, "Wait for the start signal before driving (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");
   add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");

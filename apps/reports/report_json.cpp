@@ -383,6 +383,21 @@ Json own_state_json(const server::OwnStateStats& own) {
 
 }  // namespace
 
+namespace {
+
+Json real_robot_json(const server::RealRobotStats& real) {
+  const server::RealRobotCounts& c = real.counts;
+  Json json{{"type", real.type},      {"frames", c.frames}, {"wrong", c.wrong}, {"skipped_bytes", c.skipped_bytes},
+            {"timeouts", c.timeouts}, {"starts", c.starts}, {"lines", c.lines}, {"refused", c.refused}};
+  json["readings"] = Json::object();
+  for (const auto& [type, count] : real.readings) json["readings"][type] = count;
+  json["reported"] = Json::object();
+  for (const server::RobotFact& fact : real.facts) json["reported"][std::string(fact.name)] = fact.value;
+  return json;
+}
+
+}  // namespace
+
 std::string robot_client_json(const server::RobotClientStats& f) {
   Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
             {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
@@ -396,13 +411,7 @@ std::string robot_client_json(const server::RobotClientStats& f) {
                        {"packets", f.map->sent.sent},
                        {"failed", f.map->sent.failed},
                        {"dropped", f.map->sent.dropped}};
-  if (f.create)
-    json["create"] = {{"frames", f.create->frames},
-                      {"wrong_checksums", f.create->wrong_checksums},
-                      {"skipped_bytes", f.create->skipped_bytes},
-                      {"starts", f.create->starts},
-                      {"lines", f.create->lines},
-                      {"refused", f.create->refused}};
+  if (f.real) json["real_robot"] = real_robot_json(*f.real);
   if (f.listens_for_spat) json["spat"] = spat_json(f.lights);
   json["lights"] = {{"packets", f.lights.packets}, {"states", f.lights.states}, {"silences", f.lights.silences}};
   json["distance_m"] = f.distance_m;

@@ -60,6 +60,21 @@ std::string own_state_text(const server::OwnStateStats& own) {
   return text;
 }
 
+std::string real_robot_text(const server::RealRobotStats& real) {
+  const server::RealRobotCounts& c = real.counts;
+  std::string text = row("real robot", "{}: {}, {} wrong, {} outside frames, {}; started {}, line opened {}", real.type,
+                         counted(c.frames, "frame"), c.wrong, counted(c.skipped_bytes, "byte"),
+                         counted(c.timeouts, "timeout"), counted(c.starts, "time"), counted(c.lines, "time"));
+  std::string sensors, facts;
+  for (const auto& [type, count] : real.readings)
+    sensors += fmt::format("{}{} {}", sensors.empty() ? "" : ", ", type, count);
+  for (const server::RobotFact& fact : real.facts)
+    facts += fmt::format("{}{} {:g}", facts.empty() ? "" : ", ", fact.name, fact.value);
+  if (!sensors.empty()) text += row("  own sensors", sensors);
+  if (!facts.empty()) text += row("  reported", facts);
+  return text;
+}
+
 }  // namespace
 
 std::string robot_client_text(const server::RobotClientStats& f) {
@@ -74,10 +89,7 @@ std::string robot_client_text(const server::RobotClientStats& f) {
     if (f.map->sent.failed + f.map->sent.dropped > 0)
       text += row("", "{} failed ({}), {} dropped", f.map->sent.failed, f.map->sent.first_failure, f.map->sent.dropped);
   }
-  if (f.create)
-    text += row("Create", "{}, {} with a wrong checksum, {} outside frames; started {}, line opened {}",
-                counted(f.create->frames, "frame"), f.create->wrong_checksums, counted(f.create->skipped_bytes, "byte"),
-                counted(f.create->starts, "time"), counted(f.create->lines, "time"));
+  if (f.real) text += real_robot_text(*f.real);
   if (f.listens_for_spat)
     text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.lights.messages, "message"),
                 f.lights.others, f.lights.invalid);

@@ -104,7 +104,10 @@ server::RobotClientStats robot_stats() {
   f.own = {.cameras = true, .wheels = true, .errors = {4, 0.0004, 0.015, 0.1}, .sigma = 0.0125};
   fill(f.own->counts.packets, 2);
   f.own->calibration = {{1.05, 0.0025}, {1.04, 0.003}, {0.26, 0.004}, {0.0, 0.0}};
-  f.create = server::CreateCounts{71, 72, 73, 1, 75, 76};
+  f.real = {.type = "create",
+            .counts = {71, 72, 73, 1, 75, 76, 77},
+            .facts = {{"battery_V", 14.2}, {"wall", 0.0}},
+            .readings = {{"bumper", 78}, {"cliff", 79}}};
   f.map = server::OwnMapCounts{81, 82, outbox(83)};
   f.listens_for_spat = true;
   f.lights = {.states = 91, .messages = 92, .others = 93, .invalid = 94, .packets = 95, .refused = 96, .silences = 97};
@@ -172,7 +175,7 @@ TEST(ReportRecords, EmptyReportsHaveNoMembersOfServices) {
       {run_report_json({}),
        {"shared", "dipoles", "control", "packets", "received", "socket_drops", "lights", "relayed", "states",
         "log_lines_left_out", "lockstep", "recording"}},
-      {robot_client_json({}), {"positions", "own_map", "create", "spat", "error", "localization"}},
+      {robot_client_json({}), {"positions", "own_map", "real_robot", "spat", "error", "localization"}},
       {vps_report_json({}), {"accuracy", "truth", "packets"}}};
   for (const auto& [json, absent] : reports)
     for (const std::string& name : absent) EXPECT_FALSE(Json(json).has("/" + name)) << name;

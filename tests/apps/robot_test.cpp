@@ -10,6 +10,8 @@
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/create_simulator.h"
+#include "tests/khepera_emulator.h"
+#include "tests/pioneer_emulator.h"
 
 namespace sf {
 
@@ -206,6 +208,8 @@ TEST(Robot, WrongArgumentsAreRejectedWithTheExpectedOnes) {
       {{"--name", "roomba2", "--serial", "/dev/ttyNONE0"}, "`ls /dev/ttyUSB* /dev/ttyACM*`"},
       {{"--name", "roomba2", "--serial", "/dev/null"}, "is not a serial line"},
       {{"--name", "roomba2", "--serial", "/dev/null", "--baud", "1200"}, "57600"},
+      {{"--name", "roomba2", "--serial", "/dev/null", "--robot-type", "kepera"}, "khepera"},
+      {{"--name", "roomba2", "--robot-type", "khepera"}, "--serial"},
       {{"--name", "roomba2", "--server", "no.such.host.invalid"}, "no.such.host.invalid"},
   };
   for (const Case& each : cases) {
@@ -243,8 +247,63 @@ TEST(Robot, DrivesACreateOnASerialLine) {
   const Outcome outcome = robot.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json facts(outcome.out);
-  EXPECT_GT(facts.number("/create/frames"), 7);
+  EXPECT_EQ(facts.text("/real_robot/type"), "create");
+  EXPECT_GT(facts.number("/real_robot/frames"), 7);
+  EXPECT_GT(facts.number("/real_robot/readings/cliff"), 7);
+  EXPECT_DOUBLE_EQ(facts.number("/real_robot/reported/battery_V"), 15.7);
   EXPECT_NEAR(facts.number("/pose/1"), create.X.y, 0.05);
+  EXPECT_NEAR(facts.number("/pose/0"), 0.0, 0.05);
+}
+
+TEST(Robot, DrivesAKheperaOnASerialLine) {
+  const Folder folder;
+  const std::string world =
+      folder.write("desk.world", "position( name \"khepera\" size [0.07 0.07 0.03] track 0.052 pose [0 0 0 90] )\n");
+  KheperaEmulator khepera;
+  khepera.X.yaw = M_PI / 2;
+  khepera.alone = false;
+  Program robot({"robot", world, "--name", "khepera", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
+                 "--set", "points=0,0,0,0.1", "--set", "speed=0.1", "--serial", khepera.device(), "--robot-type",
+                 "khepera", "--json"});
+  while (khepera.X.y < 0.05 && khepera.lines < 3000) {
+    ASSERT_TRUE(khepera.obey()) << robot.err();
+  }
+  robot.signal(SIGINT);
+  EXPECT_TRUE(khepera.rests());
+  const Outcome outcome = robot.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_GT(facts.number("/real_robot/readings/infrared"), 3);
+  EXPECT_NEAR(facts.number("/pose/1"), khepera.X.y, 0.03);
+  EXPECT_NEAR(facts.number("/pose/0"), 0.0, 0.02);
+}
+
+TEST(Robot, DrivesAPioneerOnASerialLine) {
+  const Folder folder;
+  const std::string world = folder.write(
+      "yard.world", "position( name \"pioneer\" size [0.6 0.5 0.3] drive \"skid\" track 0.394 pose [0 0 0 90] )\n");
+  PioneerEmulator pioneer;
+  pioneer.X.yaw = M_PI / 2;
+  pioneer.alone = false;
+  Program robot({"robot", world, "--name", "pioneer", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
+                 "--set", "points=0,0,0,0.5", "--set", "speed=0.2", "--serial", pioneer.device(), "--robot-type",
+                 "pioneer", "--json"});
+  while (!pioneer.motors) {
+    ASSERT_TRUE(pioneer.obey()) << robot.err();
+  }
+  for (int cycles = 0; pioneer.X.y < 0.3 && cycles < 300; ++cycles) {
+    pioneer.run(1);
+    ASSERT_TRUE(pioneer.driven(pioneer.turns + 1)) << robot.err();
+  }
+  robot.signal(SIGINT);
+  EXPECT_TRUE(pioneer.closes());
+  EXPECT_EQ(pioneer.vel, 0);
+  const Outcome outcome = robot.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_DOUBLE_EQ(facts.number("/real_robot/reported/battery_V"), 12.4);
+  EXPECT_GT(facts.number("/real_robot/readings/sonar"), 3);
+  EXPECT_NEAR(facts.number("/pose/1"), pioneer.X.y, 0.1);
   EXPECT_NEAR(facts.number("/pose/0"), 0.0, 0.05);
 }
 

@@ -69,6 +69,22 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
           result.seconds};
 }
 
+TEST(Docking, FollowsTheBeamsOfARealRobotsOwnReceiver) {
+  world::World world = scenes::empty_world();
+  scenes::add_create(world, {1.2, 0.3, 0.0, M_PI}).sensors.push_back({.type = "irreceiver"});
+  world.emitters.push_back(
+      {.kind = world::Emitter::Kind::dock, .X_WE = {}, .range = kRange, .fov = kFov, .halo = kHalo});
+  Settings settings("controller 'docking'", {});
+  const auto alone = docking_controller.make({world}, settings), both = docking_controller.make({world}, settings);
+  const std::vector<double> dark{0.0, 255.0}, light{0.0, 252.0};
+  const base::ReadingBlock blocks[] = {{.sensor = 0, .type = 11, .values = dark},
+                                       {.sensor = 1, .type = 11, .values = light}};
+  const ControllerInput input{.state = {.X_WM = {1.2, 0.3, 0.0, M_PI}}, .readings = blocks};
+  const base::Twist expected = step_at(*alone, input.state.X_WM, 252.0), twist = both->step(input);
+  EXPECT_EQ(twist.forward, expected.forward);
+  EXPECT_EQ(twist.turn, expected.turn);
+}
+
 TEST(Docking, DocksFromAnywhereInFrontOfTheDock) {
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto u = base::random_uniform({.seed = 5, .a = i}, 0),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -34,12 +35,20 @@ TEST(OpenInterface, SaturatesWheelsAlongTheArc) {
 
 TEST(OpenInterface, EncodesCommandsAsSpecified) {
   EXPECT_EQ(create_drive({-200, 500}), (base::Bytes{145, 0xFF, 0x38, 0x01, 0xF4}));
-  EXPECT_EQ(create_start(), (base::Bytes{128, 131, 145, 0, 0, 0, 0, 148, 4, 7, 19, 20, 35}));
+  EXPECT_EQ(create_start(), (base::Bytes{128, 131, 145, 0,  0,  0,  0,  148, 19, 7,  8,  9,  10, 11,
+                                         12,  13,  14,  17, 18, 19, 20, 21,  22, 23, 24, 25, 26, 35}));
   EXPECT_EQ(create_stop(), (base::Bytes{145, 0, 0, 0, 0, 150, 0, 128}));
 }
 
-/// Bumped right, 12 mm backwards, 3 degrees to the right, safe.
-const base::Bytes kFrame{19, 10, 7, 1, 19, 0xFF, 0xF4, 20, 0xFF, 0xFD, 35, 2, 0xA0};
+/// Bumped right, no floor at the front right, 12 mm backwards, 3 degrees to the right, 16.1 V, -0.3 A, -1 degree
+/// Celsius, 40000 mAh, safe.
+const base::Bytes kFrame = [] {
+  base::Bytes bytes{19,   44, 7,    1,    8,  0,    9,  0,    10,   0,  11,   1,    12, 0, 13, 0,
+                    14,   8,  17,   248,  18, 1,    19, 0xFF, 0xF4, 20, 0xFF, 0xFD, 21, 3, 22, 0x3E,
+                    0xE4, 23, 0xFE, 0xD4, 24, 0xFF, 25, 0x9C, 0x40, 26, 0x0A, 0x8C, 35, 2};
+  bytes.push_back(static_cast<std::uint8_t>(-std::accumulate(bytes.begin(), bytes.end(), 0)));
+  return bytes;
+}();
 
 std::vector<CreateFrame> taken(CreateStream& stream, std::initializer_list<base::Bytes> all) {
   std::vector<CreateFrame> frames;
@@ -49,11 +58,36 @@ std::vector<CreateFrame> taken(CreateStream& stream, std::initializer_list<base:
   return frames;
 }
 
+TEST(CreateStream, ReadsTheWheelsOfACreate2) {
+  base::Bytes bytes = kFrame;
+  bytes[22] = 43;
+  bytes[25] = 44;
+  bytes.back() = static_cast<std::uint8_t>(bytes.back() - (43 - 19) - (44 - 20));
+  CreateStream stream(CreateOdometry::wheels);
+  const std::vector<CreateFrame> frames = taken(stream, {kFrame, bytes});
+  ASSERT_EQ(frames.size(), 1u) << "frames of motion are not those that were requested";
+  EXPECT_EQ(frames[0].left, 0xFFF4);
+  EXPECT_EQ(frames[0].right, 0xFFFD);
+  EXPECT_EQ(create_start(CreateOdometry::wheels)[19], 43);
+  EXPECT_EQ(create_start(CreateOdometry::wheels)[20], 44);
+}
+
 TEST(CreateStream, ReadsAFrame) {
   CreateStream stream;
   const std::vector<CreateFrame> frames = taken(stream, {kFrame});
   ASSERT_EQ(frames.size(), 1u);
-  EXPECT_TRUE(frames[0].bumped);
+  EXPECT_TRUE(frames[0].bumped_right);
+  EXPECT_FALSE(frames[0].bumped_left);
+  EXPECT_EQ(frames[0].cliffs, (std::array<std::uint8_t, 4>{0, 0, 1, 0}));
+  EXPECT_EQ(frames[0].overcurrents, 8);
+  EXPECT_EQ(frames[0].infrared, 248);
+  EXPECT_EQ(frames[0].buttons, 1);
+  EXPECT_EQ(frames[0].charging, 3);
+  EXPECT_EQ(frames[0].voltage, 16'100);
+  EXPECT_EQ(frames[0].current, -300);
+  EXPECT_EQ(frames[0].temperature, -1);
+  EXPECT_EQ(frames[0].charge, 40'000) << "unsigned";
+  EXPECT_EQ(frames[0].capacity, 2700);
   EXPECT_FALSE(frames[0].wheel_drop);
   EXPECT_EQ(frames[0].distance, -12);
   EXPECT_EQ(frames[0].angle, -3);
@@ -78,13 +112,14 @@ TEST(CreateStream, RecoversAfterDamage) {
     std::uint64_t wrong_checksums;
     const char* why;
   };
-  std::vector<Case> cases{{{'b', 'l', ' ', 'v', '1', '\n'}, 0, "text of its start"},
-                          {{19}, 0, "a header alone"},
-                          {{19, 19, 10, 19, 10, 7}, 0, "headers one upon another"},
-                          {with(12, 0xA1), 1, "a wrong checksum"},
-                          {with(5, 0x7F), 1, "a wrong number"},
-                          {with(7, 21), 0, "an unrequested packet"},
-                          {with(1, 200), 0, "an invalid length"}};
+  std::vector<Case> cases{
+      {{'b', 'l', ' ', 'v', '1', '\n'}, 0, "text of its start"},
+      {{19}, 0, "a header alone"},
+      {{19, 19, 44, 19, 44, 7}, 0, "headers one upon another"},
+      {with(kFrame.size() - 1, static_cast<std::uint8_t>(kFrame.back() + 1)), 1, "a wrong checksum"},
+      {with(5, 0x7F), 1, "a wrong number"},
+      {with(8, 29), 0, "an unrequested packet"},
+      {with(1, 200), 0, "an invalid length"}};
   for (std::size_t at = 0; at < kFrame.size(); ++at) cases.push_back({without(at), 0, "a lost byte"});
   for (const Case& c : cases) {
     CreateStream stream;
@@ -100,7 +135,7 @@ TEST(CreateStream, RecoversAfterDamage) {
 /// The last byte is lost: the next frame's header takes the place of the checksum, but that frame must not be lost.
 TEST(CreateStream, FindsTheFrameThatBeginsInABrokenOne) {
   CreateStream stream;
-  EXPECT_EQ(taken(stream, {without(12), kFrame}).size(), 1u);
+  EXPECT_EQ(taken(stream, {without(kFrame.size() - 1), kFrame}).size(), 1u);
   EXPECT_EQ(stream.wrong_checksums(), 1u);
 }
 

@@ -9,7 +9,7 @@
 
 #include "netio/outbox.h"
 #include "robots/estimation/chi_square.h"
-#include "server/create_drive.h"
+#include "server/real_robot.h"
 #include "tests/create_simulator.h"
 #include "tests/robots/scenes.h"
 #include "tests/units.h"
@@ -78,7 +78,8 @@ struct CamerasOnly : OwnStateTest {
 
 /// Its odometry is 5 % wrong. Drives curves and straight lines at 0.1 m/s.
 struct CreateRun {
-  explicit CreateRun(OwnStateTest& fixture) : test(fixture), drive({create.device()}, test.mover.X_WM, 0.258) {
+  explicit CreateRun(OwnStateTest& fixture)
+      : test(fixture), drive(make_real_robot({.device = create.device()}, test.mover.X_WM, 0.258)) {
     create.scale = 1.05;
     create.X = test.mover.X_WM;
     EXPECT_TRUE(create.streaming());
@@ -88,11 +89,11 @@ struct CreateRun {
       const double turn = cameras ? std::array{0.0, 0.3, 0.0, -0.3}[test.now / (5 * kSecond) % 4] : 0.0;
       test.now += 7 * 15 * kMs;
       create.run(7);
-      drive.update(test.now);
-      test.own->add_wheels(test.now, drive.rolled());
+      drive->update(test.now);
+      test.own->add_wheels(test.now, drive->rolled(0.258));
       if (cameras) test.see(create.X);
       test.own->predict(test.now);
-      drive.drive({0.1, 0.0, turn}, test.now);
+      drive->drive({0.1, 0.0, turn}, test.now);
       EXPECT_TRUE(create.driven(create.drives + 1));
     }
   }
@@ -103,7 +104,7 @@ struct CreateRun {
 
   OwnStateTest& test;
   CreateSimulator create;
-  CreateDrive drive;
+  std::unique_ptr<RealRobot> drive;
 };
 
 TEST_F(OwnStateTest, LearnsTheScaleOfACreateAndCoastsWhenItsTagIsCovered) {

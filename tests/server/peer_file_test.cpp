@@ -13,7 +13,7 @@ namespace {
 
 using netio::PeerKind;
 
-constexpr const char* kKey = "000102030405060708090a0b0c0d0e0f101112131415161718191A1B1C1D1E1F";
+constexpr const char* kKeyText = "000102030405060708090a0b0c0d0e0f101112131415161718191A1B1C1D1E1F";
 
 /// Robots 1 and 2, tag 3.
 world::World lab() {
@@ -38,7 +38,7 @@ std::string error_of(const std::string& text) {
 
 TEST(PeerFile, ReadsAddressesAndKeys) {
   const auto peers =
-      parse(std::string("[[peer]]\nrobot = 2\nkey = \"") + kKey +
+      parse(std::string("[[peer]]\nrobot = 2\nkey = \"") + kKeyText +
             "\"\n[[peer]]\ntag = 3\naddress = \"192.168.1.7\"\n[[peer]]\nstart = true\naddress = \"10.0.0.1\"\n");
   ASSERT_EQ(peers.size(), 3u);
   EXPECT_EQ(peers[0].kind, PeerKind::robot);
@@ -89,7 +89,7 @@ TEST(PeerFile, ErrorsNameTheirLine) {
 
 /// Boundaries: one digit fewer and more, and a character that is not a digit, at either place of a byte.
 TEST(PeerFile, KeysAre64HexadecimalDigitsAndNeverPrinted) {
-  const std::string key = kKey;
+  const std::string key = kKeyText;
   for (const std::string& bad :
        {key.substr(1), key + "0", key.substr(0, 63) + "g", "g" + key.substr(1), key.substr(0, 62) + "0x",
         "-1" + key.substr(2), "+1" + key.substr(2), " 1" + key.substr(2), "0 " + key.substr(2)}) {
@@ -101,7 +101,7 @@ TEST(PeerFile, KeysAre64HexadecimalDigitsAndNeverPrinted) {
 }
 
 TEST(PeerFile, OnlyTagsShareAKey) {
-  const std::string key = std::string("\nkey = \"") + kKey + "\"\n";
+  const std::string key = std::string("\nkey = \"") + kKeyText + "\"\n";
   const auto pair = [&](const std::string& one, const std::string& other) {
     return "[[peer]]\n" + one + key + "[[peer]]\n" + other + key;
   };

@@ -1,0 +1,163 @@
+#include "server/real_robot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "server/create_drive.h"
+#include "server/khepera_drive.h"
+#include "server/pioneer_drive.h"
+
+namespace sf::server {
+
+namespace {
+
+constexpr std::int64_t kSilence = 500'000'000;    // [ns] 33 frames of a Create, 5 of a Pioneer
+constexpr std::int64_t kRevival = 1'000'000'000;  // [ns] between attempts
+constexpr std::size_t kMostBytes = 8192;          // read per update: more than one second at 57600 baud
+
+template <class Robot>
+std::unique_ptr<RealRobot> make(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM,
+                                double track) {
+  return std::make_unique<Robot>(type, options, X_WM, track);
+}
+
+// A Create truncates angles to degrees. A Pioneer's are 4096 to a turn; its wheels scrub.
+constexpr RealRobotType kTypes[] = {
+    {.word = "create", .title = "Create", .angle = M_PI / 180.0, .make = make<CreateDrive>},
+    {.word = "create2",
+     .title = "Create 2",
+     .baud = 115200,
+     .distance = robots::kCreate2Count,
+     .make = make<CreateDrive>},
+    {.word = "pioneer",
+     .title = "Pioneer",
+     .baud = 9600,
+     .angle = robots::kArcosAngle,
+     .slip = 0.02,
+     .poll = 100'000'000,
+     .make = make<PioneerDrive>},
+    {.word = "khepera",
+     .title = "Khepera",
+     .baud = 9600,
+     .stop_bits = 2,
+     .distance = robots::kKheperaPulse,
+     .slip = 0.002,
+     .poll = 10'000'000,
+     .make = make<KheperaDrive>}};
+
+}  // namespace
+
+std::span<const RealRobotType> real_robot_types() { return kTypes; }
+
+const RealRobotType& real_robot_type(std::string_view word) {
+  std::vector<std::string_view> words;
+  for (const RealRobotType& type : kTypes) {
+    if (type.word == word) return type;
+    words.push_back(type.word);
+  }
+  throw base::InputError(fmt::format("unknown type of robot '{}'{}", word, base::expected_one_of(word, words)));
+}
+
+std::unique_ptr<RealRobot> make_real_robot(const SerialOptions& options, const base::Pose& X_WM, double track) {
+  const RealRobotType& type = real_robot_type(options.type);
+  return type.make(type, options, X_WM, track);
+}
+
+RealRobot::RealRobot(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM)
+    : type_(type),
+      device_(options.device),
+      baud_(options.baud > 0 ? options.baud : type.baud),
+      line_(std::in_place, device_, baud_, type.stop_bits) {
+  state_.X_WM = X_WM;
+  counts_.lines = 1;
+  if (type.poll > 0) due_ = 0;
+}
+
+void RealRobot::update(std::int64_t now) {
+  const double way = way_, turn = turn_;
+  const std::uint64_t odometry = odometry_;
+  receive(now);
+  const double dt = 1e-9 * static_cast<double>(now - odometry_time_);
+  if (odometry_ > odometry && dt > 0.0) {
+    state_.velocity = {(way_ - way) / dt, 0.0, (turn_ - turn) / dt};
+    odometry_time_ = now;
+  }
+  state_.time = now;
+  if (line_ && line_->lost()) line_.reset();
+  if (silent(now)) {
+    state_.velocity = {};
+    revive(now);
+  }
+  if (line_) run(now);
+  if (type_.poll > 0) due_ = now + type_.poll;
+}
+
+void RealRobot::receive(std::int64_t now) {
+  touched_.reset();
+  std::array<std::uint8_t, 512> bytes;
+  for (std::size_t all = 0, n = 1; line_ && n > 0 && all < kMostBytes; all += n) {
+    n = line_->read(bytes);
+    if (n > 0) take(std::span(bytes).first(n), now);
+  }
+  if (touched_) contact_ = *touched_;
+}
+
+bool RealRobot::silent(std::int64_t now) const { return now - last_.value_or(0) > kSilence; }
+
+void RealRobot::revive(std::int64_t now) {
+  if (revived_ && now - *revived_ < kRevival) return;
+  revived_ = now;
+  try {
+    if (!line_) {
+      line_.emplace(device_, baud_, type_.stop_bits);
+      ++counts_.lines;
+    }
+    start(now);
+  } catch (const base::InputError&) {
+    // Still unplugged: retry later.
+  }
+}
+
+bool RealRobot::write(std::span<const std::uint8_t> bytes) {
+  const bool written = line_ && line_->write(bytes);
+  counts_.refused += line_ && !written;
+  return written;
+}
+
+void RealRobot::advance(double way, double turn) {
+  const double middle = state_.X_WM.yaw + 0.5 * turn;
+  state_.X_WM.x += way * std::cos(middle);
+  state_.X_WM.y += way * std::sin(middle);
+  state_.X_WM.yaw = base::wrap_angle(state_.X_WM.yaw + turn);
+  way_ += way;
+  turn_ += turn;
+  ++odometry_;
+}
+
+sensors::Rolled RealRobot::rolled(double track) const {
+  return {way_ - 0.5 * track * turn_, way_ + 0.5 * track * turn_};
+}
+
+void RealRobot::measured(std::uint8_t type, std::vector<double> values, std::int64_t now) {
+  const auto found =
+      std::find_if(readings_.begin(), readings_.end(), [&](const OwnReading& own) { return own.type == type; });
+  if (found == readings_.end()) {
+    readings_.push_back({type, 0, now, std::move(values)});
+  } else {
+    *found = {type, found->sequence + 1, now, std::move(values)};
+  }
+}
+
+std::string RealRobot::problem(std::int64_t now) const {
+  if (!line_) return fmt::format("the serial line {} was disconnected", device_);
+  if (silent(now) || !last_)
+    return fmt::format("the {} on {} is silent: switched off, or not at {} baud", type_.title, device_, baud_);
+  return fault();
+}
+
+}  // namespace sf::server

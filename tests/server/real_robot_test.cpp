@@ -1,0 +1,157 @@
+// Real robots within a robot's process: their own sensors, contacts and odometry.
+
+#include "server/real_robot.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "control/controllers.h"
+#include "sensors/bumper.h"
+#include "sensors/cliff.h"
+#include "sensors/irreceiver.h"
+#include "tests/create_simulator.h"
+#include "tests/pioneer_emulator.h"
+#include "tests/refusal.h"
+#include "tests/server/fixture.h"
+
+namespace sf::server {
+namespace {
+
+/// Inputs of the last step of the controller below.
+struct Seen {
+  std::map<std::uint8_t, std::vector<double>> values;
+  std::map<std::uint8_t, base::Pose> poses;
+  std::map<std::uint8_t, std::uint32_t> numbers;
+  base::Pose X_WM;
+  bool contact = false;
+};
+Seen& seen() {
+  static Seen last;
+  return last;
+}
+
+class Recorder final : public control::Controller {
+ public:
+  base::Twist step(const control::ControllerInput& input) override {
+    seen() = {.X_WM = input.state.X_WM, .contact = input.contact};
+    for (const base::ReadingBlock& reading : input.readings) {
+      seen().values[reading.type] = {reading.values.begin(), reading.values.end()};
+      seen().poses[reading.type] = reading.X_WS;
+      seen().numbers[reading.type] = reading.sensor;
+    }
+    return {0.2, 0.0, 0.0};
+  }
+};
+
+constinit const control::ControllerType recorder{
+    .name = "test-recorder",
+    .summary = "records its input",
+    .stops_on_bumper = false,
+    .make = [](const control::ControllerContext&, control::Settings&) -> std::unique_ptr<control::Controller> {
+      return std::make_unique<Recorder>();
+    }};
+
+struct RealRobotTest : testing::Test {
+  static void SetUpTestSuite() { control::add_controller(&recorder); }
+  std::unique_ptr<RobotClient> client(const SerialOptions& serial) {
+    RobotClientOptions options{.stop_after = 0.0, .log_descriptor = f.log.descriptor()};
+    options.link.farm = {netio::kLoopback, f.service->port()};
+    options.controller.name = recorder.name;
+    options.serial = serial;
+    return std::make_unique<RobotClient>(f.world, f.sensor_set, 1, f.layout, options);
+  }
+  Fixture f;
+};
+
+TEST_F(RealRobotTest, OwnReadingsOfACreateReachItsController) {
+  CreateSimulator create;
+  const auto robot = client({.device = create.device()});
+  EXPECT_TRUE(create.streaming());
+  create.cliffs = 0b1000;
+  create.infrared = 244;
+  std::int64_t now = 0;
+  for (std::uint64_t k = 1; k <= 10; ++k) {
+    create.run(7);
+    robot->step(now += kTick);
+    EXPECT_TRUE(create.driven(k));
+  }
+  EXPECT_EQ(create.right, 200);
+  EXPECT_EQ(seen().values[sensors::kCliff], (std::vector<double>{0, 0, 0, 1}));
+  EXPECT_EQ(seen().values[sensors::kIrReceiver], (std::vector<double>{0, 244}));
+  EXPECT_EQ(seen().values[sensors::kBumper], (std::vector<double>{0, 0}));
+  EXPECT_GT(seen().X_WM.x, 2.1) << "it moved";
+  EXPECT_EQ(seen().poses[sensors::kCliff].x, seen().X_WM.x);
+  EXPECT_EQ(seen().numbers[sensors::kCliff], 0u) << "it has no virtual sensor of this type";
+  EXPECT_FALSE(seen().contact);
+  const RobotClientStats stats = robot->stats();
+  ASSERT_TRUE(stats.real);
+  EXPECT_EQ(stats.real->type, "create");
+  EXPECT_EQ(stats.real->counts.frames, 70u);
+  EXPECT_EQ(stats.real->readings.at("cliff"), 70u);
+  EXPECT_EQ(stats.real->facts[0].name, "battery_V");
+}
+
+TEST_F(RealRobotTest, OwnSensorsAreNumberedAfterVirtualOnes) {
+  world::World world = f.world;
+  world.movers[1].sensors.push_back({.type = "bumper"});
+  const sensors::SensorSet sensor_set(world);
+  StreamLayout layout = f.layout;
+  layout.bases[sensors::kBumper] = layout.bases.at(sensors::kLaser) + 2 * layout.stride;
+  CreateSimulator create;
+  RobotClientOptions options{.stop_after = 0.0, .log_descriptor = f.log.descriptor()};
+  options.link.farm = {netio::kLoopback, f.service->port()};
+  options.controller.name = recorder.name;
+  options.serial = SerialOptions{.device = create.device()};
+  RobotClient robot(world, sensor_set, 1, layout, options);
+  EXPECT_TRUE(create.streaming());
+  create.run(7);
+  robot.step(kTick);
+  EXPECT_EQ(seen().numbers[sensors::kBumper], 1u);
+  EXPECT_EQ(seen().numbers[sensors::kCliff], 0u);
+}
+
+TEST_F(RealRobotTest, AContactBetweenTwoStepsReachesTheController) {
+  PioneerEmulator pioneer;
+  const auto robot = client({.type = "pioneer", .device = pioneer.device()});
+  std::int64_t now = 0;
+  for (int k = 0; k < 20 && !pioneer.motors; ++k) {
+    EXPECT_TRUE(pioneer.obey());
+    robot->move(now += 10 * kMs);
+  }
+  const auto cycle = [&](std::uint8_t front) {
+    pioneer.front = front;
+    pioneer.run(1);
+    robot->move(now += kTick);
+  };
+  cycle(0);
+  cycle(2);
+  cycle(0);
+  robot->step(now);
+  EXPECT_TRUE(seen().contact);
+  cycle(0);
+  robot->step(now);
+  EXPECT_FALSE(seen().contact);
+  EXPECT_EQ(robot->stats().contacts, 1u);
+  EXPECT_TRUE(pioneer.driven(2));
+  EXPECT_EQ(pioneer.vel, 200);
+}
+
+TEST(RealRobot, TypesAreFoundByTheirWords) {
+  for (const RealRobotType& type : real_robot_types()) EXPECT_EQ(&real_robot_type(type.word), &type);
+  expect_in("did you mean 'khepera'?", refusal_of([] { real_robot_type("kepera"); }));
+}
+
+TEST(RealRobot, EachTypeHasItsLine) {
+  for (const RealRobotType& type : real_robot_types()) {
+    PseudoTerminal terminal;
+    const auto robot = make_real_robot({.type = std::string(type.word), .device = terminal.device()}, {}, 0.1);
+    expect_in(fmt::format("at {} baud", type.baud), robot->problem(kSecond));
+    EXPECT_EQ(terminal.stop_bits(), type.stop_bits) << type.word;
+    EXPECT_EQ(robot->due() == INT64_MAX, type.poll == 0) << type.word;
+  }
+}
+
+}  // namespace
+}  // namespace sf::server
