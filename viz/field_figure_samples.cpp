@@ -84,7 +84,8 @@ void place_map(FieldView& view, const Page& page) {
   const double width = std::round(std::max(wide * scale, std::min(kNarrowest, widest)));
   const double height = std::round(std::max(high * scale, lowest));
   const double profile = std::min(view.profile + 0.0, 0.75 * width);
-  view.profile = static_cast<int>(page.height > 0.0 ? std::clamp(both - height, kLowestProfile, profile) : profile);
+  view.profile =
+      static_cast<int>(page.height > 0.0 ? std::max(std::min(both - height, profile), kLowestProfile) : profile);
   const double more_x = 0.5 * (width / scale - wide);
   const double more_y = 0.5 * (height / scale - high);
   shown = {shown.x_min - more_x, shown.y_min - more_y, shown.x_max + more_x, shown.y_max + more_y};
