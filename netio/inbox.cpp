@@ -30,8 +30,8 @@ void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, con
 }  // namespace
 
 Inbox::Inbox(const InboxOptions& options)
-    : robots_(options.robots),
-      tags_(options.tags),
+    : robots_(options.robots, options.take_late),
+      tags_(options.tags, options.take_late),
       objects_(options.tags),
       lights_(options.lights),
       peers_(options.peers),
@@ -39,7 +39,6 @@ Inbox::Inbox(const InboxOptions& options)
       sessions_(options.robots.size(), 0),
       light_sessions_(options.lights.size(), 0),
       session_(options.session),
-      take_late_(options.take_late),
       lockstep_(options.lockstep),
       socket_(open_udp(options.bind, {.receive = options.receive_buffer, .send = kSendBuffer})),
       batch_(kBatch) {
@@ -193,13 +192,16 @@ PacketStatus Inbox::admit_light(const Packet& packet, const Endpoint& source, st
 }
 
 /// Marks a state that newer states of its bound sender overtook, if such states are accepted.
-PacketStatus Inbox::admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source,
-                                std::int64_t now) const {
+PacketStatus Inbox::admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source, std::int64_t now) {
   const std::uint32_t id = packet.header.robot;
   const PacketStatus status = bindings.admit(id, kStateChannel, packet.header.sequence, source, now);
   // An inactive sender has left.
-  packet.late = take_late_ && status == PacketStatus::stale && bindings.is_active(id, now);
+  packet.late = bindings.takes_late(id) && status == PacketStatus::stale && bindings.is_active(id, now);
   return packet.late ? PacketStatus::accepted : status;
+}
+
+void Inbox::set_take_late(PeerKind kind, std::uint32_t id, bool take) {
+  (kind == PeerKind::tag ? tags_ : robots_).set_takes_late(id, take);
 }
 
 bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out) {

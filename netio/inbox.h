@@ -85,6 +85,10 @@ class Inbox {
   /// called for it (undefined otherwise). `receive` calls this for each datagram of the socket.
   PacketStatus accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
+  /// Sets whether overtaken states of one robot or tag are accepted, in place of `InboxOptions::take_late`.
+  /// @pre the id is known
+  void set_take_late(PeerKind kind, std::uint32_t id, bool take);
+
   /// Renews the binding of `robot` if `source` is its last sender.
   void renew(std::uint32_t robot, const Endpoint& source, std::int64_t now) { robots_.renew(robot, source, now); }
 
@@ -148,7 +152,7 @@ class Inbox {
                           bool proven, std::int64_t now);
   void begin_period(std::int64_t now);
   PacketStatus admit(Packet& packet, const Endpoint& source, std::int64_t now);
-  PacketStatus admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source, std::int64_t now) const;
+  static PacketStatus admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_light(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
@@ -162,7 +166,6 @@ class Inbox {
   std::vector<std::uint32_t> sessions_;        ///< per robot row: of its last packet
   std::vector<std::uint32_t> light_sessions_;  ///< the same per row of lights
   std::uint32_t session_;
-  bool take_late_;
   bool lockstep_;
   AddressTokens tokens_;
   std::int64_t period_start_ = 0;            ///< [ns]

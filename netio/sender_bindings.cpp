@@ -15,9 +15,9 @@ bool is_recent(const std::optional<std::int64_t>& last, std::int64_t now) {
 
 }  // namespace
 
-SenderBindings::SenderBindings(std::span<const std::uint32_t> ids) {
+SenderBindings::SenderBindings(std::span<const std::uint32_t> ids, bool take_late) {
   bindings_.resize(ids.size());
-  for (std::size_t i = 0; i < ids.size(); ++i) bindings_[i].id = ids[i];
+  for (std::size_t i = 0; i < ids.size(); ++i) bindings_[i].id = ids[i], bindings_[i].takes_late = take_late;
   std::sort(bindings_.begin(), bindings_.end(), [](const Binding& a, const Binding& b) { return a.id < b.id; });
 }
 

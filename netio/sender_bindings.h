@@ -26,7 +26,8 @@ class SenderBindings {
   static constexpr std::size_t kChannels = 2;
 
   /// @param ids known ids, in any order
-  explicit SenderBindings(std::span<const std::uint32_t> ids);
+  /// @param take_late of all ids (`set_takes_late`)
+  explicit SenderBindings(std::span<const std::uint32_t> ids, bool take_late = false);
 
   /// Returns the row of `id` in ascending order of ids; nullopt for an unknown id.
   std::optional<std::size_t> row(std::uint32_t id) const;
@@ -47,6 +48,10 @@ class SenderBindings {
   /// Returns whether a packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
   bool is_active(std::uint32_t id, std::int64_t now) const;
 
+  /// Sets whether overtaken states of `id` are accepted (`InboxOptions::take_late`). @pre `id` is known
+  void set_takes_late(std::uint32_t id, bool takes) { bindings_[*row(id)].takes_late = takes; }
+  bool takes_late(std::uint32_t id) const { return bindings_[*row(id)].takes_late; }  ///< @pre `id` is known
+
   /// Returns the last sender for `id`, even if it is silent now; nullopt if there was none or it has left.
   std::optional<Endpoint> source(std::uint32_t id) const;
 
@@ -60,6 +65,7 @@ class SenderBindings {
     Endpoint source;
     std::optional<std::int64_t> last;
     Channel channels[kChannels];
+    bool takes_late = false;
     Endpoint departed;                        ///< the last sender that left
     std::optional<std::int64_t> departed_at;  ///< [ns] when it left
   };

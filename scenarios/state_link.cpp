@@ -18,7 +18,8 @@ constexpr auto kStream = static_cast<std::uint32_t>(netio::Type::v2v) << 16;
 
 server::StateFilterOptions filter_options(const StateLinkOptions& options) {
   server::StateFilterOptions filter;
-  filter.enabled = options.filter;
+  filter.mode = options.filter ? server::FilterMode::on : server::FilterMode::off;
+  filter.policy = estimation::StalePolicy::freeze;
   filter.clock.least_delay = base::nanoseconds(options.link.delay);
   filter.stale_after += base::nanoseconds(options.link.delay + options.link.jitter);
   return filter;

@@ -19,7 +19,7 @@ struct StateLinkOptions {
   double position_sigma = 0.0;  ///< [m] noise of reported positions, along x and y
   double yaw_sigma = 0.0;       ///< [rad] noise of reported yaw
   bool filter = false;  ///< as `serve --filter`, with the link's delay as minimum delay, and stale one second after its
-                        ///< maximum; false: as `serve` without it
+                        ///< maximum; false: as `serve --raw`
 };
 
 /// The states of a fleet as received by a farm. Messages of one tick are processed at their own times of arrival. Not

@@ -133,7 +133,7 @@ std::span<const base::Report> Service::update_movers(std::int64_t now) {
     farm_.set_state_quality(row, receiver_.quality(row, now));
   }
   for (const auto& [id, row] : receiver_.tags()) {
-    absent_[row] = receiver_.update_absent_tag(row);
+    absent_[row] = receiver_.update_absent_tag(row, now);
     farm_.set_absent(row, absent_[row]);
   }
   return receiver_.states(now);
@@ -215,9 +215,9 @@ ServiceStats Service::stats() const {
   stats.lights = lights_.counts();
   stats.answers = receiver_.answered();
   stats.lines_left_out = receiver_.log().left_out();
-  stats.filtered = receiver_.filter().options().enabled;
   stats.states = receiver_.filter().counts();
   stats.clocks = receiver_.filter().clocks();
+  stats.filtered = receiver_.filter().used();
   stats.recording_error = recording_error_;
   return stats;
 }

@@ -51,7 +51,7 @@ struct ServiceStats {
   LightServiceCounts lights;
   netio::OutboxCounts answers;       ///< challenges and relayed datagrams
   std::uint64_t lines_left_out = 0;  ///< dropped from the log
-  bool filtered = false;             ///< whether `states` and `clocks` are valid
+  bool filtered = false;             ///< states were filtered: `states` and `clocks` are valid
   StateFilterCounts states;
   std::vector<SenderClockState> clocks;
   std::string recording_error;  ///< why the recording ended early; empty: it did not

@@ -26,21 +26,28 @@ netio::StateQuality quality_of(const estimation::Prediction& p) {
 }  // namespace
 
 StateFilter::StateFilter(const world::World& world, const StateFilterOptions& options)
-    : world_(world), options_(options), movers_(options.enabled ? world.movers.size() : 0) {
-  for (MoverState& mover : movers_) mover.clock = estimation::SenderClock(options.clock);
+    : world_(world), options_(options), movers_(options.mode == FilterMode::off ? 0 : world.movers.size()) {
+  for (MoverState& mover : movers_) {
+    mover.clock = estimation::SenderClock(options.clock);
+    mover.filtered = options.mode == FilterMode::on;
+  }
   reports_.reserve(movers_.size());
 }
 
 void StateFilter::add_mover() {
-  if (options_.enabled) movers_.emplace_back().clock = estimation::SenderClock(options_.clock);
+  if (options_.mode == FilterMode::off) return;
+  MoverState& mover = movers_.emplace_back();
+  mover.clock = estimation::SenderClock(options_.clock);
+  mover.filtered = options_.mode == FilterMode::on;
 }
 
-void StateFilter::take(const base::Report& report, const netio::Header& header, std::int64_t now) {
+bool StateFilter::take(const base::Report& report, const netio::Header& header, std::int64_t now) {
   using estimation::ClockSource, estimation::ClockVerdict;
+  if (options_.mode == FilterMode::off) return false;
   MoverState& mover = movers_[report.mover];
   if (++mover.taken > kMostBetweenPredictions) {
-    ++flooded_;
-    return;
+    if (mover.filtered) ++flooded_;
+    return mover.filtered;
   }
   if (!mover.track)
     mover.track.emplace(estimation::FilterOptions{.model = motion_model(world_.movers[report.mover]),
@@ -52,15 +59,43 @@ void StateFilter::take(const base::Report& report, const netio::Header& header, 
   mover.session = header.session;
 
   const ClockVerdict verdict = mover.clock.take(header.time, now + epoch());
+  if (verdict == ClockVerdict::stepped) forget_times(mover);
+  if (options_.mode == FilterMode::automatic) mover.filtered = is_late(mover, header, now);
+  if (!mover.filtered) return false;
+  used_ = true;
   ++clock_counts_[static_cast<std::size_t>(verdict)];
-  if (verdict == ClockVerdict::stepped) mover.track->reset();
-  if (verdict != ClockVerdict::used && verdict != ClockVerdict::stepped) return;
+  if (verdict != ClockVerdict::used && verdict != ClockVerdict::stepped) return true;
 
   // The track's times are on the sender's clock, so a changed clock estimate moves no measurement.
-  const std::int64_t sender_now = mover.clock.to_sender(now + epoch());
+  const std::int64_t sender_now = sender_time(mover, now);
   estimation::Measurement m = measurement(report, header);
   m.time = options_.clock.source == ClockSource::arrival ? now : header.time;
   mover.track->take(m, sender_now);
+  return true;
+}
+
+/// Returns whether the sender is to be filtered from this state on.
+bool StateFilter::is_late(MoverState& mover, const netio::Header& header, std::int64_t now) {
+  mover.arrivals.take(header.time, now);
+  const bool late = mover.arrivals.is_late(now);
+  if (late == mover.filtered) return late;
+  mover.track->reset();
+  mover.gone = false;
+  mover.quality = {};
+  mover.synchronised = late && is_synchronised(mover);
+  return late;
+}
+
+/// Clocks that nothing synchronises rarely differ by less than the delays of a link vary. A smaller difference from
+/// Unix time is therefore taken as the least delay of the link.
+bool StateFilter::is_synchronised(const MoverState& mover) const {
+  if (!options_.unix_time || options_.clock.source != estimation::ClockSource::estimated) return false;
+  const std::int64_t least = mover.arrivals.least_gap() + options_.epoch;
+  return 0 <= least && least <= mover.arrivals.spread();
+}
+
+std::int64_t StateFilter::sender_time(const MoverState& mover, std::int64_t now) const {
+  return mover.synchronised ? now + options_.epoch : mover.clock.to_sender(now + epoch());
 }
 
 estimation::Measurement StateFilter::measurement(const base::Report& report, const netio::Header& header) const {
@@ -83,8 +118,8 @@ const std::vector<base::Report>& StateFilter::predict(std::int64_t now) {
   for (std::uint32_t row = 0; row < movers_.size(); ++row) {
     MoverState& mover = movers_[row];
     mover.taken = 0;
-    if (!mover.track) continue;
-    const estimation::Prediction prediction = mover.track->predict(mover.clock.to_sender(now + epoch()));
+    if (!mover.track || !mover.filtered) continue;
+    const estimation::Prediction prediction = mover.track->predict(sender_time(mover, now));
     if (prediction.status == Status::none) continue;
     const bool stale = prediction.status == Status::stale;
     mover.quality = quality_of(prediction);
@@ -100,8 +135,15 @@ std::int64_t StateFilter::epoch() const {
 }
 
 void StateFilter::forget(MoverState& mover) {
-  mover.track->reset();
+  forget_times(mover);
   mover.clock.reset();
+}
+
+/// Drops everything that depends on the sender's timestamps, except the estimate of its clock.
+void StateFilter::forget_times(MoverState& mover) {
+  mover.track->reset();
+  mover.arrivals.reset();
+  mover.synchronised = false;
 }
 
 StateFilterCounts StateFilter::counts() const {
@@ -114,7 +156,8 @@ StateFilterCounts StateFilter::counts() const {
 std::vector<SenderClockState> StateFilter::clocks() const {
   std::vector<SenderClockState> clocks;
   for (std::uint32_t row = 0; row < movers_.size(); ++row)
-    if (movers_[row].clock.state().synchronised) clocks.push_back({row, movers_[row].clock.state()});
+    if (movers_[row].filtered && movers_[row].clock.state().synchronised)
+      clocks.push_back({row, movers_[row].clock.state()});
   return clocks;
 }
 

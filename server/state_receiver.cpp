@@ -10,11 +10,13 @@
 
 namespace sf::server {
 
+using estimation::ClockSource;
+
 namespace {
 
 /// By time of arrival, no state is late: an overtaken state would count as the newest.
 bool takes_late(const StateFilterOptions& filter) {
-  return filter.enabled && filter.clock.source != estimation::ClockSource::arrival;
+  return filter.mode == FilterMode::on && filter.clock.source != estimation::ClockSource::arrival;
 }
 
 }  // namespace
@@ -39,6 +41,9 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
       removed_(world.movers.size(), false),
       last_active_(world.movers.size(), kNever),
       last_state_(world.movers.size(), kNever),
+      periods_(world.movers.size(), 0),
+      hidden_(world.movers.size(), false),
+      filter_logged_(world.movers.size(), options.filter.mode == FilterMode::on),
       log_(options.log_descriptor),
       rejections_(ids_of(names_.robots)) {
   reports_.reserve(netio::Inbox::kMaxPerReceive);
@@ -83,20 +88,36 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   } else {
     return;
   }
-  last_state_[report.mover] = now;
-  if (filter_.options().enabled) return filter_.take(report, packet.header, now);
+  std::int64_t& last = last_state_[report.mover];
+  if (last != kNever) periods_[report.mover] = std::min(now - last, kLongestPeriod);
+  last = now;
+  if (filter(report, packet.header, now)) return;
   // Senders' clocks are not comparable: a state is valid at its arrival.
   report.time = now;
   reports_.push_back(report);
 }
 
+/// @return whether the state's sender is filtered
+bool StateReceiver::filter(const base::Report& report, const netio::Header& header, std::int64_t now) {
+  const bool before = filter_.is_filtered(report.mover);
+  const bool filtered = filter_.take(report, header, now);
+  if (filtered == before) return filtered;
+  const netio::PeerKind kind = netio::claim_of(header).kind;
+  inbox_.set_take_late(kind, header.robot, filtered && filter_.options().clock.source != ClockSource::arrival);
+  if (!filtered || filter_logged_[report.mover]) return filtered;
+  filter_logged_[report.mover] = true;
+  log_.write(sender_text(header) + ": its states arrive late by changing amounts, so they are filtered while they do",
+             now);
+  return filtered;
+}
+
 void StateReceiver::predict(std::int64_t now) {
-  if (filter_.options().enabled) fleet_.apply(filter_.predict(now));
+  if (filter_.options().mode != FilterMode::off) fleet_.apply(filter_.predict(now));
 }
 
 netio::StateQuality StateReceiver::quality(std::uint32_t row, std::int64_t now) const {
   constexpr netio::StateQuality kNone{.stated = true, .stale = true, .age = base::kNoStateYet};
-  if (filter_.options().enabled) {
+  if (filter_.is_filtered(row)) {
     const netio::StateQuality predicted = filter_.quality(row);
     return predicted.stated ? predicted : kNone;
   }
@@ -119,14 +140,31 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
   std::int64_t& last = last_active_[row];
   const bool active = inbox_.is_active(id, now);
   const bool forgotten = !active && forget_ != kNever && last != kNever && now - last >= forget_;
-  const bool absent = forgotten || (filter_.options().enabled && filter_.is_gone(row));
+  const bool never = !active && last_state_[row] == kNever && hides_stale();
+  const bool absent = forgotten || never || is_gone(row, now);
+  if (active && absent && !hidden_[row])
+    log_.write(fmt::format("{} (id {}) requests readings, but none of its states was accepted for {:g} s: it has left "
+                           "the world until its next state (--stale freeze keeps it)",
+                           world_.movers[row].name, id, 1e-9 * static_cast<double>(filter_.options().stale_after)),
+               now);
+  hidden_[row] = active && absent;
   if (active) last = now;
   fleet_.set_absent(row, absent);
   return absent;
 }
 
-bool StateReceiver::update_absent_tag(std::uint32_t row) {
-  const bool absent = removed_[row] || (filter_.options().enabled && filter_.is_gone(row));
+bool StateReceiver::hides_stale() const { return filter_.options().policy != estimation::StalePolicy::freeze; }
+
+/// Returns whether the mover's state is stale and the policy removes it from the world. A slow sender does not leave
+/// between two of its states.
+bool StateReceiver::is_gone(std::uint32_t row, std::int64_t now) const {
+  if (filter_.is_filtered(row) && filter_.quality(row).stated) return filter_.is_gone(row);
+  const std::int64_t limit = std::max(filter_.options().stale_after, 2 * periods_[row]);
+  return hides_stale() && last_state_[row] != kNever && now - last_state_[row] > limit;
+}
+
+bool StateReceiver::update_absent_tag(std::uint32_t row, std::int64_t now) {
+  const bool absent = removed_[row] || is_gone(row, now);
   fleet_.set_absent(row, absent);
   return absent;
 }

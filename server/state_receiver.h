@@ -51,11 +51,13 @@ class StateReceiver {
   void relay(std::int64_t now);
   /// Predicts the states to `now` for the calls below.
   void predict(std::int64_t now);
-  /// Returns whether a robot is absent: it was active and has been silent for `forget`, or its state is stale and the
-  /// policy removes it from the world. Lasts until its next packet. Call it at each tick.
+  /// Returns whether a robot is absent: it was active and has been silent for `forget`, or the policy removes stale
+  /// states from the world and either its state is stale, or it has sent no state yet and is not active. Call it at
+  /// each tick.
   bool update_absent(std::uint32_t id, std::int64_t now);
-  /// Returns whether a tag is absent. Silence alone does not matter; an OBJECT can remove it from the world.
-  bool update_absent_tag(std::uint32_t row);
+  /// Returns whether a tag is absent: an OBJECT removed it, or its state is stale and the policy removes stale states.
+  /// A tag without any state is in the world.
+  bool update_absent_tag(std::uint32_t row, std::int64_t now);
   /// Returns the newest states at `now`, valid until the next call.
   std::span<const base::Report> states(std::int64_t now) { return fleet_.predict(now); }
   /// Returns the quality of a mover's state at `now`. The age of unfiltered states counts from their arrival, and their
@@ -75,12 +77,16 @@ class StateReceiver {
 
  private:
   void take(const netio::Packet& packet, std::int64_t now);
+  bool filter(const base::Report& report, const netio::Header& header, std::int64_t now);
+  bool hides_stale() const;
+  bool is_gone(std::uint32_t row, std::int64_t now) const;
   std::string sender_name(const netio::Header& header) const;
   std::string sender_text(const netio::Header& header) const;
   std::optional<netio::Endpoint> bound_address(const netio::Header& header, std::int64_t now) const;
   void log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now);
 
   static constexpr std::int64_t kNever = -1;
+  static constexpr std::int64_t kLongestPeriod = 2'000'000'000;  ///< [ns] of a sender that counts as slow
 
   const world::World& world_;
   WireNames names_;
@@ -97,6 +103,9 @@ class StateReceiver {
   std::vector<bool> removed_;              ///< per mover, by OBJECT
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever
   std::vector<std::int64_t> last_state_;   ///< [ns] arrival per mover, or kNever
+  std::vector<std::int64_t> periods_;      ///< [ns] per mover, between its last two states; at most kLongestPeriod
+  std::vector<bool> hidden_;               ///< per mover: absent though active, which was logged
+  std::vector<bool> filter_logged_;        ///< per mover: the log has a line of its filter
   netio::RateLimitedLog log_;
   netio::SignatureTroubleLog trouble_;
   netio::RejectionLog rejections_;

@@ -52,11 +52,15 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   service.stale_lights = options.stale_lights;
   service.mirror = mirror_of(options);
   server::StateFilterOptions& filter = service.receiver.filter;
-  filter.enabled = options.filter;
+  filter.mode = options.raw      ? server::FilterMode::off
+                : options.filter ? server::FilterMode::on
+                                 : server::FilterMode::automatic;
+  filter.unix_time = options.unix_time;
   filter.clock.source = options.clock;
   filter.clock.least_delay = base::nanoseconds(options.link_delay);
   filter.stale_after = base::nanoseconds(options.stale_after);
-  filter.policy = options.stale;
+  using estimation::StalePolicy;
+  filter.policy = options.stale.value_or(options.raw ? StalePolicy::freeze : StalePolicy::hide);
   filter.hypotheses = options.hypotheses;
   return service;
 }

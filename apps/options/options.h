@@ -146,11 +146,13 @@ struct ForgetOption {
 /// For the states that robots and cameras send.
 struct FilterOptions {
   bool filter = false;
+  bool raw = false;
   estimation::ClockSource clock = estimation::ClockSource::estimated;
-  double link_delay = 0.0;   ///< [s] minimum link delay, for clock estimates
-  double stale_after = 1.0;  ///< [s] without an accepted state
-  estimation::StalePolicy stale = estimation::StalePolicy::freeze;
-  std::size_t hypotheses = 16;  ///< > 0; for a state with an uncertain heading
+  double link_delay = 0.0;                       ///< [s] minimum link delay, for clock estimates
+  bool unix_time = true;                         ///< neither `clock` nor `link_delay` was given
+  double stale_after = 1.0;                      ///< [s] without an accepted state
+  std::optional<estimation::StalePolicy> stale;  ///< nullopt: hide; freeze with `raw`
+  std::size_t hypotheses = 16;                   ///< > 0; for a state with an uncertain heading
 };
 
 struct PeersOption {

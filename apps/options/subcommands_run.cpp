@@ -120,6 +120,8 @@ void add_forget(CLI::App& app, ForgetOption& o) {
       ->capture_default_str();
 }
 
+constexpr const char* kStatesGroup = "States of robots and tags (docs/estimation.md)";
+
 CLI::Option* add_clock(CLI::App& app, const std::string& name, estimation::ClockSource& clock) {
   using estimation::ClockSource;
   return add_choice<ClockSource, ClockSource>(
@@ -134,7 +136,7 @@ CLI::Option* add_clock(CLI::App& app, const std::string& name, estimation::Clock
 
 void add_filter(CLI::App& app, FilterOptions& o) {
   using estimation::StalePolicy;
-  constexpr const char* kGroup = "States of robots and tags (docs/estimation.md)";
+  constexpr const char* kGroup = kStatesGroup;
   app.add_option("--stale-after", o.stale_after,
                  "Age at which a robot's state is stale, which its readings then state [s]")
       ->check(in_seconds(0.01, 1e6))
@@ -143,22 +145,29 @@ void add_filter(CLI::App& app, FilterOptions& o) {
       ->group(kGroup);
   auto* filter =
       app.add_flag("--filter", o.filter,
-                   "Filter states with an extended Kalman filter: late states are applied at their timestamps, "
-                   "outliers are rejected, and each reading uses the state predicted to its time")
+                   "Filter all states with an extended Kalman filter: late states are applied at their timestamps, "
+                   "outliers are rejected, and each reading uses the state predicted to its time (default: only "
+                   "states of senders whose states arrive late by changing amounts)")
           ->group(kGroup);
-  add_choice<StalePolicy, StalePolicy>(
+  auto* raw = app.add_flag("--raw", o.raw,
+                           "Use the newest state as of its arrival, without a filter, and leave stale robots and tags "
+                           "in place (--stale freeze)")
+                  ->excludes(filter)
+                  ->group(kGroup);
+  add_choice<std::optional<StalePolicy>, StalePolicy>(
       app, "--stale", o.stale,
       {{"freeze", StalePolicy::freeze}, {"hide", StalePolicy::hide}, {"drop", StalePolicy::drop}},
       "Stale robots and tags stay in place (freeze), leave the world (hide), or leave it and lose their sender's clock "
       "estimate (drop)")
-      ->default_str("freeze")
-      ->needs(filter)
+      ->default_str("hide")
       ->group(kGroup);
-  add_clock(app, "--clock", o.clock)->needs(filter)->group(kGroup);
+  const auto given = [&o](const std::string&) { o.unix_time = false; };
+  add_clock(app, "--clock", o.clock)->each(given)->excludes(raw)->group(kGroup);
   app.add_option("--link-delay", o.link_delay,
                  "Minimum delay of packets to the farm [s], which packets do not reveal (--clock estimated)")
       ->check(in_seconds(0.0, 10.0))
-      ->needs(filter)
+      ->each(given)
+      ->excludes(raw)
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);
@@ -166,7 +175,7 @@ void add_filter(CLI::App& app, FilterOptions& o) {
                  "Number of Gaussians for a state whose heading is uncertain after losses; with 1, the covariance is "
                  "too small then")
       ->check(whole(1, 64))
-      ->needs(filter)
+      ->excludes(raw)
       ->type_name("N")
       ->capture_default_str()
       ->group(kGroup);
@@ -180,13 +189,16 @@ void refuse_with_lockstep(const CLI::App& sub) {
     const std::string name = option->get_name();
     const bool of_ports = std::find(ports.begin(), ports.end(), name) != ports.end();
     if (option->count() > 0 && (of_ports || name == "--spat" || name == "--stale-lights" || name == "--rate" ||
-                                name == "--radio" || name == "--forget" || name == "--mirror" || name == "--filter" ||
-                                name == "--stale-after" || option->get_group() == kBridgeGroup))
+                                name == "--radio" || name == "--forget" || name == "--mirror" ||
+                                option->get_group() == kStatesGroup || option->get_group() == kBridgeGroup))
       throw CLI::ValidationError(name, "cannot be used with --lockstep");
   }
 }
 
 void check_serve(const CLI::App& sub) {
+  if (sub.count("--clock") > 0 && sub.count("--filter") == 0 &&
+      sub.get_option("--clock")->as<std::string>() == "arrival")
+    throw CLI::ValidationError("--clock", "arrival needs --filter: lateness is detected by timestamps");
   refuse_with_lockstep(sub);
   check_naming(sub);
   if (sub.count("--link-delay") > 0 && sub.count("--clock") > 0 &&

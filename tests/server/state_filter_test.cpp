@@ -20,7 +20,7 @@ using estimation::Verdict;
 struct Fixture {
   explicit Fixture(StateFilterOptions chosen = {}) : world(scenes::boxed_world(100.0, 100.0, {-50.0, -50.0})) {
     scenes::add_mover(world, {}, scenes::rectangle({0.0, 0.0}, 0.3, 0.3));
-    chosen.enabled = true;
+    chosen.mode = FilterMode::on;
     filter.emplace(world, chosen);
   }
   /// Adds the state of `sent` [ns] on our clock, with sequence number sent / 100 ms.

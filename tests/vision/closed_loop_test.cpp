@@ -107,7 +107,9 @@ struct Loop {
         service(world, sensor_set, device(), layout,
                 {.receiver = {.bind = {netio::kLoopback, 0},
                               .log_descriptor = -1,
-                              .filter = {.enabled = true, .stale_after = 3 * kTick}}}) {
+                              .filter = {.mode = server::FilterMode::on,
+                                         .stale_after = 3 * kTick,
+                                         .policy = estimation::StalePolicy::freeze}}}) {
     server::RobotClientOptions options{.log_descriptor = -1};
     options.link.farm = {netio::kLoopback, service.port()};
     options.controller = {controller, 10.0, control::Settings(controller, settings)};
