@@ -173,7 +173,7 @@ TEST(SendAndListen, ATakenPortIsReported) {
 }
 
 TEST(Serve, ReadingsAtReportedPosesMatchSense) {
-  Service service;
+  Service service(kRoom, {"--rate", "50", "--stale", "freeze"});  // the other robot is at its place, as in `sense`
   ASSERT_NE(service.port, 0u) << service.program.err();
   Robot one(1, service.port, service.laser_port(1)), two(2, service.port, service.laser_port(2));
   const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,30");

@@ -70,7 +70,7 @@ TEST(PlayerProgram, ARobotIsDrivenAcrossTheRoomAndReset) {
 }
 
 TEST(PlayerProgram, AServiceIsRead) {
-  PlayerProgram serve({"serve", "--player", "0", "--port", "0"});
+  PlayerProgram serve({"serve", "--player", "0", "--port", "0", "--stale", "freeze"});
   TestClient client(serve.server);
   client.banner();
   client.open(kPosition);
