@@ -12,7 +12,7 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint8_t kAnalog = 15;             ///< wire id
+inline constexpr std::uint8_t kAnalog = 30;             ///< wire id
 inline constexpr std::uint32_t kMostAnalogInputs = 16;  ///< per sensor
 inline constexpr std::uint32_t kMostAnalogBits = 16;
 

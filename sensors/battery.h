@@ -13,7 +13,7 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint8_t kBattery = 14;  ///< wire id
+inline constexpr std::uint8_t kBattery = 29;  ///< wire id
 
 /// Settings of one battery.
 struct Battery {

@@ -13,7 +13,7 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint8_t kLightSensor = 13;         ///< wire id
+inline constexpr std::uint8_t kLightSensor = 28;         ///< wire id
 inline constexpr std::uint32_t kMostLightElements = 64;  ///< per sensor
 inline constexpr double kMostLightValue = 1023.0;        ///< of `value`: ten bits
 

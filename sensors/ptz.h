@@ -15,7 +15,7 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint8_t kPtz = 16;            ///< wire id
+inline constexpr std::uint8_t kPtz = 31;            ///< wire id
 inline constexpr std::uint32_t kMostPtzViews = 32;  ///< per mount
 
 /// Pan, tilt and field of view [rad].

@@ -16,7 +16,7 @@ namespace {
 /// Two robots drive, with samples between ticks; one becomes silent and is removed from the world before the end.
 record::Recording recorded(const std::string& accuracy = "exact") {
   server::Fixture f({.sensor_rate = 13.0,
-                     .filter = {.enabled = true, .policy = estimation::StalePolicy::hide},
+                     .filter = {.mode = server::FilterMode::on, .policy = estimation::StalePolicy::hide},
                      .accuracy = accuracy});
   world::update_extent_and_hash(f.world);
   const std::string folder = (std::filesystem::temp_directory_path() / "service_recording").string();

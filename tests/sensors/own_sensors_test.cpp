@@ -196,7 +196,7 @@ TEST(OwnSensors, RejectedKernelsStateTheReason) {
   const auto add = [](const std::string& kernel) {
     return refusal_of([&] {
       add_own_sensor(
-          {.name = "bad", .id = 30, .columns = {{"x"}}, .kernel = kernel, .make = [](auto&, auto&) { return nullptr; }},
+          {.name = "bad", .id = 26, .columns = {{"x"}}, .kernel = kernel, .make = [](auto&, auto&) { return nullptr; }},
           "test");
     });
   };
@@ -230,16 +230,16 @@ TEST(OwnSensors, TypesMustBeNewAndUsable) {
     entry.make = [](auto&, auto&) { return nullptr; };
     return refusal_of([&] { add_own_sensor(entry, "mine.so"); });
   };
-  expect_in("mine.so: ", add({.name = "Big", .id = 30, .columns = {{"x"}}}));
-  expect_in("cannot be called", add({.name = "", .id = 30, .columns = {{"x"}}}));
-  expect_in("expected 13 to 31", add({.name = "mine", .id = 12, .columns = {{"x"}}}));
-  expect_in("expected 13 to 31", add({.name = "mine", .id = 32, .columns = {{"x"}}}));
-  expect_in("'laser' with id 1 already exists", add({.name = "laser", .id = 30, .columns = {{"x"}}}));
+  expect_in("mine.so: ", add({.name = "Big", .id = 26, .columns = {{"x"}}}));
+  expect_in("cannot be called", add({.name = "", .id = 26, .columns = {{"x"}}}));
+  expect_in("expected 13 to 27", add({.name = "mine", .id = 12, .columns = {{"x"}}}));
+  expect_in("expected 13 to 27", add({.name = "mine", .id = 28, .columns = {{"x"}}}));
+  expect_in("'laser' with id 1 already exists", add({.name = "laser", .id = 26, .columns = {{"x"}}}));
   expect_in("'laser' with id 1 already exists",
-            add({.name = "ranger", .id = 30, .columns = {{"x"}}}));  // a keyword of world files
-  expect_in("has no column", add({.name = "mine", .id = 30}));
-  expect_in("a unit above 0", add({.name = "mine", .id = 30, .columns = {{"x", 0.0}}}));
-  expect_in("a rate of", add({.name = "mine", .id = 30, .columns = {{"x"}}, .rate = 0.0}));
+            add({.name = "ranger", .id = 26, .columns = {{"x"}}}));  // a keyword of world files
+  expect_in("has no column", add({.name = "mine", .id = 26}));
+  expect_in("a unit above 0", add({.name = "mine", .id = 26, .columns = {{"x", 0.0}}}));
+  expect_in("a rate of", add({.name = "mine", .id = 26, .columns = {{"x"}}, .rate = 0.0}));
   EXPECT_EQ(find_sensor_type(30), nullptr);
 }
 
