@@ -240,7 +240,7 @@ TEST(OwnSensors, TypesMustBeNewAndUsable) {
   expect_in("has no column", add({.name = "mine", .id = 26}));
   expect_in("a unit above 0", add({.name = "mine", .id = 26, .columns = {{"x", 0.0}}}));
   expect_in("a rate of", add({.name = "mine", .id = 26, .columns = {{"x"}}, .rate = 0.0}));
-  EXPECT_EQ(find_sensor_type(30), nullptr);
+  EXPECT_EQ(find_sensor_type(26), nullptr);
 }
 
 TEST(OwnSensors, PacketsRoundTripWithinTheirUnits) {

@@ -142,10 +142,10 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"gyro", 9, 1, {-0.25}},
              {"gps", 10, 1, {kNaN, kNaN, kNaN, 3}},
              {"irreceiver", 11, 1, {1, 252}},
-             {"lightsensor", 13, 2, {250.5, 337, 0, 450}},
-             {"battery", 14, 1, {14.4, -0.6, 1.35, 0}},
-             {"analog", 15, 2, {2.5, 512, 5, 1023}},
-             {"ptz", 16, 1, {0.5, -0.1, 0.4}}};
+             {"lightsensor", 28, 2, {250.5, 337, 0, 450}},
+             {"battery", 29, 1, {14.4, -0.6, 1.35, 0}},
+             {"analog", 30, 2, {2.5, 512, 5, 1023}},
+             {"ptz", 31, 1, {0.5, -0.1, 0.4}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;
