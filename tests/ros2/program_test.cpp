@@ -1,8 +1,6 @@
 // The program with --ros2 in its own process, and Fast DDS in this one.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -12,12 +10,16 @@
 #include "tests/apps/program.h"
 #include "tests/bridges/raw_client.h"
 #include "tests/ros2/cyclone_peer.h"
+#include "tests/ros2/domain.h"
 #include "tests/ros2/fast_peer.h"
 
 namespace sf::ros2 {
 namespace {
 
-std::string domain_of_program() { return std::to_string(1 + (static_cast<unsigned>(getpid()) + 115) % 230); }
+std::string domain_of_program() {
+  static const std::string domain = std::to_string(reserve_domain());
+  return domain;
+}
 
 const Environment kHere{{"ROS_LOCALHOST_ONLY", "1"}};
 

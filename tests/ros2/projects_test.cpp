@@ -3,14 +3,13 @@
 // frames. The nodes are readers and writers of Fast DDS; the projects themselves do not run.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <set>
 
 #include "tests/apps/program.h"
+#include "tests/ros2/domain.h"
 #include "tests/ros2/fast_peer.h"
 
 namespace sf::ros2 {
@@ -89,10 +88,14 @@ struct Tree {
   }
 };
 
+std::uint32_t domain_of_projects() {
+  static const std::uint32_t domain = reserve_domain();
+  return domain;
+}
+
 /// The program in its own domain, and its peer.
 struct Ros2Projects : testing::Test {
   void start(const std::vector<std::string>& robots, const Words& options) {
-    domain = 1 + (static_cast<unsigned>(getpid()) + 57) % 230;
     const Words words = with({"run", world_of(folder, robots), "--ros2", std::to_string(domain)}, options);
     program.emplace(words, Environment{{"ROS_LOCALHOST_ONLY", "1"}});
     ASSERT_TRUE(program->prints("node /sensorfarm")) << program->err();
@@ -136,7 +139,7 @@ struct Ros2Projects : testing::Test {
   }
 
   const Folder folder;
-  unsigned domain = 0;
+  const std::uint32_t domain = domain_of_projects();
   std::optional<Program> program;
   std::optional<FastPeer> peer;
 };

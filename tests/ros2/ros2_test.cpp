@@ -2,8 +2,6 @@
 // the loopback interface. Tests wait only for conditions.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
@@ -21,6 +19,7 @@
 #include "scenarios/simulation.h"
 #include "tests/device.h"
 #include "tests/ros2/cyclone_peer.h"
+#include "tests/ros2/domain.h"
 #include "tests/ros2/fast_peer.h"
 #include "tests/sensors/scenes.h"
 
@@ -42,7 +41,10 @@ world::World room() {
 }
 
 /// Returns a domain for this process only, so that concurrent tests do not interfere.
-std::uint32_t own_domain() { return 1 + static_cast<std::uint32_t>(getpid()) % 230; }
+std::uint32_t own_domain() {
+  static const std::uint32_t domain = reserve_domain();
+  return domain;
+}
 
 record::RunInfo named(record::RunInfo info) {
   record::name_frames(info);

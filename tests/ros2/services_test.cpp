@@ -14,12 +14,16 @@
 
 #include "tests/apps/program.h"
 #include "tests/ros2/cyclone_peer.h"
+#include "tests/ros2/domain.h"
 #include "tests/ros2/fast_peer.h"
 
 namespace sf::ros2 {
 namespace {
 
-std::uint32_t domain_of_services() { return 1 + (static_cast<std::uint32_t>(getpid()) + 57) % 230; }
+std::uint32_t domain_of_services() {
+  static const std::uint32_t domain = reserve_domain();
+  return domain;
+}
 
 const Environment kLocal{{"ROS_LOCALHOST_ONLY", "1"}};
 using Fields = std::vector<std::uint8_t>;
