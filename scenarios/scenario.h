@@ -86,6 +86,7 @@ struct Scenario {
   FleetSpawn fleet;                        ///< replaces the world's robots
   std::optional<Plant> plant;              ///< of every robot; nullopt: as in the world file
   double start_at = 0.0;                   ///< [s] time of the start signal
+  std::optional<V2vLinkOptions> v2v;       ///< between robots; nullopt: V2V is current
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: it has the true states
   Actor actor;                             ///< default of all robots
   int default_line = 0;                    ///< line of its controller; 0: not in the file

@@ -29,9 +29,9 @@ constexpr double kMostWhole = 9.0e15;     // limit up to which a double represen
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
-constexpr std::array<std::string_view, 16> kKeys{"name", "world", "duration", "seed",     "tick",    "robots",
+constexpr std::array<std::string_view, 17> kKeys{"name", "world", "duration", "seed",     "tick",    "robots",
                                                  "of",   "place", "plant",    "start_at", "default", "states",
-                                                 "link", "robot", "expect",   "event"};
+                                                 "v2v",  "link",  "robot",    "expect",   "event"};
 constexpr std::array<std::string_view, 3> kEventKeys{"at", "object", "present"};
 constexpr std::array<std::string_view, 8> kAddKeys{"at",         "add",  "like",     "pose",
                                                    "controller", "rate", "settings", "link"};
@@ -40,6 +40,7 @@ constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "se
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
 constexpr std::array<std::string_view, 7> kStatesKeys{"rate",   "delay",          "jitter",   "loss",
                                                       "filter", "position_sigma", "yaw_sigma"};
+constexpr std::array<std::string_view, 5> kV2vKeys{"rate", "delay", "jitter", "loss", "forget"};
 constexpr std::array<std::string_view, 3> kLinkKeys{"delay", "jitter", "loss"};
 
 using Reader = world::TomlReader;
@@ -119,6 +120,16 @@ netio::LinkModel link_of(const Reader& reader, const TomlNode* table, const neti
   if (table == nullptr) return fallback;
   reader.require_known(*table, kLinkKeys);
   return read_link(reader, *table);
+}
+
+std::optional<V2vLinkOptions> v2v_of(const Reader& reader, const TomlNode* table) {
+  if (table == nullptr) return std::nullopt;
+  reader.require_known(*table, kV2vKeys);
+  V2vLinkOptions v2v;
+  v2v.rate = reader.number(*table, "rate", v2v.rate, 0.01, 1e4, "Hz");
+  v2v.link = read_link(reader, *table);
+  v2v.forget = reader.number(*table, "forget", v2v.forget, 0.0, kLongestDelay, "seconds");
+  return v2v;
 }
 
 std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* table) {
@@ -315,6 +326,7 @@ Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest, "seconds");
   read_plant(reader, root, scenario);
   scenario.states = states_of(reader, reader.table(root, "states"));
+  scenario.v2v = v2v_of(reader, reader.table(root, "v2v"));
   scenario.actor.link = link_of(reader, reader.table(root, "link"), {});
   if (const TomlNode* table = reader.table(root, "default")) {
     reader.require_known(*table, kDefaultKeys);

@@ -71,6 +71,9 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
            "actors: expected none or one per mover");
   if (options.states) states_.emplace(world, *options.states);
+  if (options.v2v && share_->passed_on())
+    throw base::InputError("[v2v] cannot be simulated with --tiles; expected ranks that share the whole world");
+  if (options.v2v) v2v_.emplace(*options.v2v, world.movers.size());
   farm_.subscribe_all();
   share_->attach(world_, farm_);
   const Actor none{.controller = {.name = ""}, .link = {}};
@@ -320,6 +323,7 @@ void Simulation::decide(std::int64_t time) {
     light_states_[i] = world::status_of(signals_[i]);
   }
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
+  if (v2v_) v2v_->send(time, fleet_.reports(), intents_, absent_);
   farm_.thread_pool().parallel_for_each(controls_.size(), 16, [&](std::size_t m, unsigned thread) {
     try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
@@ -370,8 +374,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
 
   std::vector<control::Neighbour>& others = others_[thread];
   others.clear();
-  const double v2v_range = robot.controller->v2v_range();
-  if (v2v_range > 0.0) find_others(mover, v2v_range, others);
+  find_others(mover, time, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
   commands_[mover] =
       robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
@@ -401,11 +404,17 @@ bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fr
   return true;
 }
 
-void Simulation::find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const {
+void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const {
+  const double v2v_range = controls_[mover].controller->v2v_range();
+  if (v2v_range <= 0.0) return;
   const std::span<const base::Report> reports = fleet_.reports();
   const auto add = [&](const base::Report& other) {
-    if (other.mover != mover && !world_.movers[other.mover].is_tag && !absent_[other.mover])
-      others.push_back({world_.movers[other.mover].id, other, intents_[other.mover]});
+    const std::uint32_t id = world_.movers[other.mover].id;
+    if (other.mover == mover || world_.movers[other.mover].is_tag || absent_[other.mover]) return;
+    if (!v2v_)
+      others.push_back({id, other, intents_[other.mover]});
+    else if (const auto received = v2v_->receive(time, other.mover, {world_.movers[mover].id, id}))
+      others.push_back({id, received->state, received->intent});
   };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
   if (const auto remote = share_->remote_neighbours(mover))

@@ -29,6 +29,7 @@
 #include "scenarios/fleet_share.h"
 #include "scenarios/mailbox.h"
 #include "scenarios/state_link.h"
+#include "scenarios/v2v_link.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
 #include "world/world.h"
@@ -38,7 +39,7 @@ namespace sf::scenarios {
 /// The controller of one robot, and the link by which its readings arrive.
 struct Actor {
   control::ControllerConfig controller{.name = "wander"};  ///< empty name: the robot remains at rest
-  netio::LinkModel link;  ///< of the readings; V2V states and the robot's own state are not delayed
+  netio::LinkModel link;                                   ///< of the readings; the robot's own state is not delayed
 };
 
 /// A robot that joins a run.
@@ -56,6 +57,7 @@ struct SimulationOptions {
   std::vector<Actor> actors;  ///< per mover by row, tags included; empty: `actor` for all robots, and tags at rest
   double start_at = 0.0;      ///< [s] time of the start signal
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: the farm has the true states
+  std::optional<V2vLinkOptions> v2v;       ///< between robots; nullopt: V2V is current. Not with tiles
   bool no_return_inf = false;              ///< see farm::FarmOptions
   bool noise = true;                       ///< see farm::FarmOptions
   const raycast::CasterType* caster = nullptr;  ///< null: chosen by `raycast::choose_caster`
@@ -168,7 +170,7 @@ class Simulation {
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void begin();
   ControlStatus own_status(std::uint32_t mover) const;
-  void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
+  void find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const;
 
   std::unique_ptr<FleetShare> share_;
   const world::World& whole_;  ///< as loaded
@@ -177,6 +179,7 @@ class Simulation {
   farm::Farm farm_;
   robots::Fleet fleet_;
   std::optional<StateLink> states_;  ///< nullopt: the farm has the true states
+  std::optional<V2vLink> v2v_;       ///< nullopt: V2V is current
   robots::NeighbourGrid neighbours_;
   std::vector<RobotControl> controls_;  ///< per mover
   std::vector<base::Twist> commands_;

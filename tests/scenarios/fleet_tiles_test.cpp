@@ -134,6 +134,15 @@ TEST(FleetTiles, RobotsCommunicateAcrossEdges) {
   expect_same(world, options, 300);
 }
 
+TEST(FleetTiles, RefusesSimulatedV2v) {
+  const world::World world = town(4);
+  cluster::ThreadRanks(2).run([&](cluster::Ranks& one) {
+    gpu::Device own;
+    const SimulationOptions options{.v2v = V2vLinkOptions{}, .ranks = &one, .tiles = true};
+    expect_in("[v2v] cannot be simulated with --tiles", refusal_of([&] { Simulation(world, own, options); }));
+  });
+}
+
 /// The fields of magnets are summed in the order of a single process.
 TEST(FleetTiles, CarriedMagnetsAreAvailableEverywhere) {
   std::string text;

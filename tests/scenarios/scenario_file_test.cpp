@@ -146,6 +146,18 @@ TEST(ScenarioFile, StatesHaveALinkIfConfigured) {
   EXPECT_FALSE(parse_text("[states]\n").states->filter);
 }
 
+TEST(ScenarioFile, V2vHasALinkIfConfigured) {
+  EXPECT_FALSE(parse_text("").v2v);
+  const Scenario s = parse_text("seed = 9\n[v2v]\nrate = 5\ndelay = 0.5\njitter = 0.1\nloss = 0.2\nforget = 2\n");
+  const V2vLinkOptions v2v = *simulation_of(s, world_of(s)).v2v;
+  EXPECT_EQ(v2v.rate, 5.0);
+  EXPECT_EQ(v2v.forget, 2.0);
+  EXPECT_EQ(v2v.link.delay, 0.5);
+  EXPECT_EQ(v2v.link.jitter, 0.1);
+  EXPECT_EQ(v2v.link.loss, 0.2);
+  EXPECT_EQ(v2v.link.seed, 9u);
+}
+
 /// One mistake each, with its message.
 TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
   const std::string w = kWorld;
@@ -168,6 +180,7 @@ TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
       {w + "[link]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
       {w + "[states]\nfilter = 1\n", "test.toml:3: 'filter' expects true or false"},
       {w + "[states]\nrate = 0\n", "test.toml:3: 'rate' expects a number from 0.01"},
+      {w + "[v2v]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
       {w + "[states]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
       {w + "[default]\ncontroller = \"wandr\"\n",
        "test.toml:3: there is no controller 'wandr'; did you mean 'wander'?"},
@@ -273,6 +286,7 @@ TEST(ScenarioFile, NumbersEndAtTheirLimits) {
                                                      {"[link]\n", "delay", "-0.1", "0", "3600", "3600.1"},
                                                      {"[link]\n", "jitter", "-0.1", "0", "3600", "3600.1"},
                                                      {"[link]\n", "loss", "-0.1", "0", "1", "1.001"},
+                                                     {"[v2v]\n", "forget", "-0.1", "0", "3600", "3601"},
                                                      {"[states]\n", "rate", "0.009", "0.01", "10000", "10000.1"},
                                                      {"[states]\n", "position_sigma", "-0.1", "0", "1", "1.001"},
                                                      {"[states]\n", "yaw_sigma", "-0.1", "0", "1", "1.001"},
