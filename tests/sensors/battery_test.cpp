@@ -43,7 +43,8 @@ struct BatteryReading {
 /// Reads robot 0 at the ticks of `poses`, one every 100 ms.
 class PoweredTrip {
  public:
-  explicit PoweredTrip(const world::World& world) : farm_(world, device()), states_(robots::states_at_load(world)) {
+  explicit PoweredTrip(world::World world)
+      : world_(std::move(world)), farm_(world_, device()), states_(robots::states_at_load(world_)) {
     farm_.subscribe_all();
   }
   BatteryReading tick(const Pose& X_WM, std::int64_t ms, std::uint32_t contact = 0) {
@@ -67,6 +68,7 @@ class PoweredTrip {
     return {r[0].values[0], r[0].values[1], r[0].values[2], r[0].values[3]};
   }
 
+  world::World world_;
   farm::Farm farm_;
   std::vector<base::Report> states_;
 };
