@@ -36,10 +36,9 @@ void AnalogInputs::measure(std::span<const HostSample> samples) const {
     const double steps = std::exp2(a.bits) - 1.0;
     for (std::size_t i = 0; i < a.inputs.size(); ++i) {
       const AnalogInput& input = a.inputs[i];
-      Pose X_WE = base::compose(sample.X_WS, input.X_SE);
-      X_WE.z = sample.X_WS.z;
-      const double volts =
-          input.source == AnalogInput::Source::light ? input.gain * illumination_.at(X_WE) : input.gain;
+      const double volts = input.source == AnalogInput::Source::light
+                               ? input.gain * illumination_.at(sample.X_WS, input.X_SE)
+                               : input.gain;
       sample.values[2 * i] = std::clamp(volts, a.least, a.most);
       sample.values[2 * i + 1] = std::floor((sample.values[2 * i] - a.least) / (a.most - a.least) * steps + 0.5);
     }
@@ -64,16 +63,13 @@ AnalogInput read_input(const world::Sensor& sensor, std::uint32_t i) {
 }
 
 ParsedSensors parse_analogs(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<Analog> settings;
-  for_each_sensor(world, analog_type, [&](const MountedSensor& mounted) {
-    settings.push_back(read_analog(mounted.settings));
-    SensorSpec& row = rows.emplace_back(mounted.row);
-    row.X_MS.z += 0.5 * mounted.settings.height;
-    row.elements = static_cast<std::uint32_t>(settings.back().inputs.size());
-    row.reach = reach_of_lamps(world);
+  return parse_each(world, analog_type, [reach = reach_of_lamps(world)](const world::Sensor& sensor, SensorSpec& row) {
+    Analog settings = read_analog(sensor);
+    row.X_MS.z += 0.5 * sensor.height;
+    row.elements = static_cast<std::uint32_t>(settings.inputs.size());
+    row.reach = reach;
+    return settings;
   });
-  return {std::move(rows), std::move(settings)};
 }
 
 constexpr std::string_view kKeys[] = {"inputs", "input[]", "spose[]", "range", "bits"};

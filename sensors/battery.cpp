@@ -144,14 +144,10 @@ void Batteries::measure(std::span<const HostSample> samples) const {
 }
 
 ParsedSensors parse_batteries(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<Battery> batteries;
-  for_each_sensor(world, battery_type, [&](const MountedSensor& mounted) {
-    rows.push_back(mounted.row);
-    rows.back().reach = 0.0;
-    batteries.push_back(read_battery(mounted.settings, world.movers[mounted.row.mover]));
+  return parse_each(world, battery_type, [&](const world::Sensor& sensor, SensorSpec& row) {
+    row.reach = 0.0;
+    return read_battery(sensor, world.movers[row.mover]);
   });
-  return {std::move(rows), std::move(batteries)};
 }
 
 constexpr std::string_view kKeys[] = {"capacity", "charge",  "idle",       "driving",

@@ -83,15 +83,13 @@ class Bumpers : public HostBackend {
 };
 
 ParsedSensors parse_bumpers(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<BumperSwitches> switches;
-  for_each_sensor(world, bumper_type, [&](const MountedSensor& mounted) {
-    rows.push_back(mounted.row);
-    rows.back().elements = static_cast<std::uint32_t>(switches.emplace_back(read_bumper(mounted.settings)).size());
-    rows.back().limit = 1.0;
-    rows.back().reach = 0.0;
+  return parse_each(world, bumper_type, [](const world::Sensor& sensor, SensorSpec& row) {
+    BumperSwitches switches = read_bumper(sensor);
+    row.elements = static_cast<std::uint32_t>(switches.size());
+    row.limit = 1.0;
+    row.reach = 0.0;
+    return switches;
   });
-  return {std::move(rows), std::move(switches)};
 }
 
 void Bumpers::measure(std::span<const HostSample> samples) const {

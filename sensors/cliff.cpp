@@ -44,16 +44,13 @@ class Cliffs : public HostBackend {
 };
 
 ParsedSensors parse_cliffs(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<Points> points;
-  for_each_sensor(world, cliff_type, [&](const MountedSensor& mounted) {
-    rows.push_back(mounted.row);
-    points.push_back(read_elements(mounted.settings, kMostCliffPoints));
-    rows.back().elements = static_cast<std::uint32_t>(points.back().size());
-    rows.back().limit = 1.0;
-    rows.back().reach = 0.0;
+  return parse_each(world, cliff_type, [](const world::Sensor& sensor, SensorSpec& row) {
+    Points points = read_elements(sensor, kMostCliffPoints);
+    row.elements = static_cast<std::uint32_t>(points.size());
+    row.limit = 1.0;
+    row.reach = 0.0;
+    return points;
   });
-  return {std::move(rows), std::move(points)};
 }
 
 void Cliffs::measure(std::span<const HostSample> samples) const {

@@ -46,15 +46,12 @@ class Encoders : public HostBackend {
 };
 
 ParsedSensors parse_encoders(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<Encoder> encoders;
-  for_each_sensor(world, encoder_type, [&](const MountedSensor& mounted) {
-    rows.push_back(mounted.row);
-    encoders.push_back(read_encoder(mounted.settings, world.movers[mounted.row.mover]));
-    rows.back().sigma = encoders.back().slip > 0.0 ? HUGE_VAL : 0.0;
-    rows.back().reach = 0.0;
+  return parse_each(world, encoder_type, [&](const world::Sensor& sensor, SensorSpec& row) {
+    const Encoder encoder = read_encoder(sensor, world.movers[row.mover]);
+    row.sigma = encoder.slip > 0.0 ? HUGE_VAL : 0.0;
+    row.reach = 0.0;
+    return encoder;
   });
-  return {std::move(rows), std::move(encoders)};
 }
 
 Encoders::Encoders(const SensorContext& context, const ParsedSensors& sensors)

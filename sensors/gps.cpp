@@ -33,21 +33,15 @@ class GpsReceivers : public HostBackend {
 };
 
 ParsedSensors parse_receivers(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<Gps> receivers;
-  const double top = top_of_blocking(world);
-  for_each_sensor(world, gps_type, [&](const MountedSensor& mounted) {
-    SensorSpec row = mounted.row;
-    row.sigma = receivers.emplace_back(read_gps(mounted.settings)).noise > 0.0
-                    ? HUGE_VAL
-                    : 0.0;  // depends on the satellites in sight
-    row.rate = rate_of(mounted.settings, kRate);
-    row.X_MS.z += mounted.settings.height;
+  return parse_each(world, gps_type, [&, top = top_of_blocking(world)](const world::Sensor& sensor, SensorSpec& row) {
+    const Gps gps = read_gps(sensor);
+    row.sigma = gps.noise > 0.0 ? HUGE_VAL : 0.0;  // depends on the satellites in sight
+    row.rate = rate_of(sensor, kRate);
+    row.X_MS.z += sensor.height;
     const double above = top - world.movers[row.mover].X_WM.z - row.X_MS.z;
     row.reach = std::max(0.0, above / std::tan(kLeastElevation));
-    rows.push_back(row);
+    return gps;
   });
-  return {std::move(rows), std::move(receivers)};
 }
 
 GpsReceivers::GpsReceivers(const SensorContext& context, const ParsedSensors& sensors)

@@ -38,16 +38,13 @@ class Gyros : public HostBackend {
 };
 
 ParsedSensors parse_gyros(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<Gyro> gyros;
-  for_each_sensor(world, gyro_type, [&](const MountedSensor& mounted) {
-    rows.push_back(mounted.row);
-    const Gyro& gyro = gyros.emplace_back(read_gyro(mounted.settings));
-    rows.back().limit = gyro.range;
-    rows.back().sigma = gyro.bias > 0.0 || gyro.scale_error > 0.0 ? HUGE_VAL : gyro.noise;
-    rows.back().reach = 0.0;
+  return parse_each(world, gyro_type, [](const world::Sensor& sensor, SensorSpec& row) {
+    const Gyro gyro = read_gyro(sensor);
+    row.limit = gyro.range;
+    row.sigma = gyro.bias > 0.0 || gyro.scale_error > 0.0 ? HUGE_VAL : gyro.noise;
+    row.reach = 0.0;
+    return gyro;
   });
-  return {std::move(rows), std::move(gyros)};
 }
 
 Gyros::Gyros(const SensorContext& context, const ParsedSensors& sensors) : HostBackend(context, gyro_type, sensors) {

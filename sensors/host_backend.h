@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "sensors/sensor_type.h"
@@ -61,5 +63,20 @@ struct MountedSensor {
 /// Calls `body` for every sensor of `type`, by mover and in file order.
 /// @throws base::InputError for invalid common settings, and exceptions of `body`
 void for_each_sensor(const world::World& world, const SensorType& type, const std::function<void(MountedSensor)>& body);
+
+/// Parses the sensors of a type.
+/// @param read (const world::Sensor&, SensorSpec& row): returns the sensor's further settings, and sets the fields of
+/// its
+///             row that are special to the type
+template <class Read>
+ParsedSensors parse_each(const world::World& world, const SensorType& type, const Read& read) {
+  std::vector<SensorSpec> rows;
+  std::vector<std::invoke_result_t<Read, const world::Sensor&, SensorSpec&>> settings;
+  for_each_sensor(world, type, [&](MountedSensor mounted) {
+    settings.push_back(read(mounted.settings, mounted.row));
+    rows.push_back(mounted.row);
+  });
+  return {std::move(rows), std::move(settings)};
+}
 
 }  // namespace sf::sensors

@@ -61,7 +61,9 @@ double reach_of_lamps(const world::World& world) {
 Illumination::Illumination(const world::World& world)
     : world_(world), walls_(walls_with_shadows(world)), reaches_(reaches_of_lamps(world)) {}
 
-double Illumination::at(const base::Pose& X_WE) const {
+double Illumination::at(const base::Pose& X_WS, const base::Pose& X_SE) const {
+  base::Pose X_WE = base::compose(X_WS, X_SE);
+  X_WE.z = X_WS.z + X_SE.z;
   const glm::dvec3 p{X_WE.x, X_WE.y, X_WE.z};
   const glm::dvec2 normal = base::rotate(X_WE.yaw, {1.0, 0.0});
   double sum = world_.ambient_light;

@@ -22,9 +22,9 @@ double reach_of_lamps(const world::World& world);
 class Illumination {
  public:
   explicit Illumination(const world::World& world);
-  /// Returns the illuminance [lx] on a vertical surface at X_WE that faces along its x: ambient light and all lamps
-  /// that no wall hides.
-  double at(const base::Pose& X_WE) const;
+  /// Returns the illuminance [lx] on an element at X_SE of a sensor at X_WS, a vertical surface that faces along its x:
+  /// ambient light and all lamps that no wall hides.
+  double at(const base::Pose& X_WS, const base::Pose& X_SE) const;
 
  private:
   const world::World& world_;

@@ -30,9 +30,7 @@ void LightSensors::measure(std::span<const HostSample> samples) const {
   for (const HostSample& sample : samples) {
     const LightSensor& s = settings_[sample.row];
     for (std::size_t i = 0; i < s.X_SE.size(); ++i) {
-      Pose X_WE = base::compose(sample.X_WS, s.X_SE[i]);
-      X_WE.z = sample.X_WS.z + s.X_SE[i].z;
-      const double light = illumination_.at(X_WE);
+      const double light = illumination_.at(sample.X_WS, s.X_SE[i]);
       sample.values[2 * i] = light;
       sample.values[2 * i + 1] = std::floor(s.dark * std::max(0.0, 1.0 - light / s.bright) + 0.5);
     }
@@ -48,16 +46,14 @@ LightSensor read_light_sensor(const world::Sensor& sensor) {
 }
 
 ParsedSensors parse_light_sensors(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<LightSensor> settings;
-  for_each_sensor(world, lightsensor_type, [&](const MountedSensor& mounted) {
-    settings.push_back(read_light_sensor(mounted.settings));
-    SensorSpec& row = rows.emplace_back(mounted.row);
-    row.X_MS.z += 0.5 * mounted.settings.height;
-    row.elements = static_cast<std::uint32_t>(settings.back().X_SE.size());
-    row.reach = reach_of_lamps(world);
-  });
-  return {std::move(rows), std::move(settings)};
+  return parse_each(world, lightsensor_type,
+                    [reach = reach_of_lamps(world)](const world::Sensor& sensor, SensorSpec& row) {
+                      LightSensor settings = read_light_sensor(sensor);
+                      row.X_MS.z += 0.5 * sensor.height;
+                      row.elements = static_cast<std::uint32_t>(settings.X_SE.size());
+                      row.reach = reach;
+                      return settings;
+                    });
 }
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "dark", "bright"};

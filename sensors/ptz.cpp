@@ -54,14 +54,10 @@ std::array<double, 2> read_limits(const world::Sensor& sensor, std::size_t axis,
 }
 
 ParsedSensors parse_mounts(const world::World& world) {
-  std::vector<SensorSpec> rows;
-  std::vector<Ptz> mounts;
-  for_each_sensor(world, ptz_type, [&](const MountedSensor& mounted) {
-    rows.push_back(mounted.row);
-    rows.back().reach = 0.0;
-    mounts.push_back(read_ptz(mounted.settings));
+  return parse_each(world, ptz_type, [](const world::Sensor& sensor, SensorSpec& row) {
+    row.reach = 0.0;
+    return read_ptz(sensor);
   });
-  return {std::move(rows), std::move(mounts)};
 }
 
 constexpr std::string_view kKeys[] = {"pan", "tilt", "fov", "pan_speed", "tilt_speed", "zoom_speed", "views", "view[]"};
