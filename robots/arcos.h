@@ -78,7 +78,7 @@ class ArcosStream {
   /// Drops an incomplete packet.
   void reset() { bytes_.clear(); }
 
-  std::uint64_t packets() const { return packets_; }
+  std::uint64_t frames() const { return packets_; }  ///< packets with the right checksum
   std::uint64_t wrong_checksums() const { return wrong_checksums_; }
   std::uint64_t skipped() const { return skipped_; }  ///< bytes that are not part of a packet
 

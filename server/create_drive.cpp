@@ -92,12 +92,4 @@ std::vector<RobotFact> CreateDrive::facts() const {
           {"infrared_byte", static_cast<double>(f.infrared)}};
 }
 
-RealRobotCounts CreateDrive::counts() const {
-  RealRobotCounts counts = counts_;
-  counts.frames = stream_.frames();
-  counts.wrong = stream_.wrong_checksums();
-  counts.skipped_bytes = stream_.skipped();
-  return counts;
-}
-
 }  // namespace sf::server

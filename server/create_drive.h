@@ -20,7 +20,7 @@ class CreateDrive final : public RealRobot {
   /// Stops the wheels and the stream, and enters passive mode.
   void stop() override;
   std::vector<RobotFact> facts() const override;
-  RealRobotCounts counts() const override;
+  RealRobotCounts counts() const override { return counts_with(stream_); }
 
  private:
   void start(std::int64_t now) override;

@@ -139,12 +139,4 @@ std::vector<RobotFact> PioneerDrive::facts() const {
           {"motors", sip_->motors ? 1.0 : 0.0}};
 }
 
-RealRobotCounts PioneerDrive::counts() const {
-  RealRobotCounts counts = counts_;
-  counts.frames = stream_.packets();
-  counts.wrong = stream_.wrong_checksums();
-  counts.skipped_bytes = stream_.skipped();
-  return counts;
-}
-
 }  // namespace sf::server

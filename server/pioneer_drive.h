@@ -22,7 +22,7 @@ class PioneerDrive final : public RealRobot {
   /// Stops the wheels and ends the session.
   void stop() override;
   std::vector<RobotFact> facts() const override;
-  RealRobotCounts counts() const override;
+  RealRobotCounts counts() const override { return counts_with(stream_); }
 
  private:
   static constexpr std::uint8_t kOpen = 3;  ///< value of `stage_` during a session

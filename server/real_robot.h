@@ -114,7 +114,7 @@ class RealRobot {
   /// Starts or restarts the robot.
   virtual void start(std::int64_t now) = 0;
   virtual void take(std::span<const std::uint8_t> bytes, std::int64_t now) = 0;
-  /// Sends what is due, after `take`.
+  /// Sends due requests. Called after `take`.
   virtual void run(std::int64_t) {}
   /// Returns why an answering robot is not ready; empty if it is.
   virtual std::string fault() const { return {}; }
@@ -125,6 +125,15 @@ class RealRobot {
   void heard(std::int64_t now) { last_ = now; }
   /// Adds motion along an arc. @param way [m] forward positive @param turn [rad] counter-clockwise
   void advance(double way, double turn);
+  /// Returns `counts_` with those of the stream of frames.
+  template <class Stream>
+  RealRobotCounts counts_with(const Stream& stream) const {
+    RealRobotCounts counts = counts_;
+    counts.frames = stream.frames();
+    counts.wrong = stream.wrong_checksums();
+    counts.skipped_bytes = stream.skipped();
+    return counts;
+  }
   void touch(bool contact) { touched_ = touched_.value_or(false) || contact; }
   void measured(std::uint8_t type, std::vector<double> values, std::int64_t now);
 

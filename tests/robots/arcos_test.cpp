@@ -28,7 +28,7 @@ TEST(ArcosStream, FindsAPacketAtAnyCut) {
     EXPECT_EQ(stream.next().has_value(), cut == packet.size());
     stream.add(std::span(packet).subspan(cut));
     EXPECT_EQ(stream.next().value_or(kPayload), kPayload) << cut;
-    EXPECT_EQ(stream.packets(), 1u);
+    EXPECT_EQ(stream.frames(), 1u);
   }
 }
 
