@@ -122,25 +122,30 @@ netio::LinkModel link_of(const Reader& reader, const TomlNode* table, const neti
   return read_link(reader, *table);
 }
 
-std::optional<V2vLinkOptions> v2v_of(const Reader& reader, const TomlNode* table) {
+/// Reads the rate and the link of states that robots send. Returns nullopt without the table.
+template <class Options>
+std::optional<Options> sent_states_of(const Reader& reader, const TomlNode* table,
+                                      std::span<const std::string_view> keys) {
   if (table == nullptr) return std::nullopt;
-  reader.require_known(*table, kV2vKeys);
-  V2vLinkOptions v2v;
-  v2v.rate = reader.number(*table, "rate", v2v.rate, 0.01, 1e4, "Hz");
-  v2v.link = read_link(reader, *table);
-  v2v.forget = reader.number(*table, "forget", v2v.forget, 0.0, kLongestDelay, "seconds");
+  reader.require_known(*table, keys);
+  Options options;
+  options.rate = reader.number(*table, "rate", options.rate, 0.01, 1e4, "Hz");
+  options.link = read_link(reader, *table);
+  return options;
+}
+
+std::optional<V2vLinkOptions> v2v_of(const Reader& reader, const TomlNode* table) {
+  auto v2v = sent_states_of<V2vLinkOptions>(reader, table, kV2vKeys);
+  if (v2v) v2v->forget = reader.number(*table, "forget", v2v->forget, 0.0, kLongestDelay, "seconds");
   return v2v;
 }
 
 std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* table) {
-  if (table == nullptr) return std::nullopt;
-  reader.require_known(*table, kStatesKeys);
-  StateLinkOptions states;
-  states.rate = reader.number(*table, "rate", states.rate, 0.01, 1e4, "Hz");
-  states.link = read_link(reader, *table);
-  states.filter = reader.flag(*table, "filter");
-  states.position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0, "metres");
-  states.yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0, "radians");
+  auto states = sent_states_of<StateLinkOptions>(reader, table, kStatesKeys);
+  if (!states) return states;
+  states->filter = reader.flag(*table, "filter");
+  states->position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0, "metres");
+  states->yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0, "radians");
   return states;
 }
 

@@ -38,14 +38,14 @@ class V2vLink {
   void send(std::int64_t time, std::span<const base::Report> states, std::span<const base::Intent> intents,
             const std::vector<bool>& absent);
 
-  /// Returns the newest broadcast of `sender` that has reached `receiver` by `time` [ns], no earlier than the last
-  /// `send`; nullopt: none, or all are forgotten. Thread-safe with respect to itself.
-  /// @param sender row of the mover
-  /// @param ids of receiver and sender in packets
+  /// Ids of two robots in packets.
   struct Ids {
     std::uint32_t receiver = 0;
     std::uint32_t sender = 0;
   };
+  /// Returns the newest broadcast of `sender` that has reached `receiver` by `time` [ns], no earlier than the last
+  /// `send`; nullopt: none, or all are forgotten. Thread-safe with respect to itself.
+  /// @param sender row of the mover
   std::optional<Broadcast> receive(std::int64_t time, std::uint32_t sender, const Ids& ids) const;
 
  private:
