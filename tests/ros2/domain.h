@@ -11,7 +11,7 @@
 
 namespace sf::ros2 {
 
-/// Returns a domain that no other test has, until this process ends.
+/// Takes a free domain, by a lock that the process keeps.
 inline std::uint32_t reserve_domain() {
   constexpr std::uint32_t kDomains = 230;
   const auto first = static_cast<std::uint32_t>(getpid());
@@ -24,6 +24,12 @@ inline std::uint32_t reserve_domain() {
     if (lock >= 0) close(lock);
   }
   return 1 + first % kDomains;
+}
+
+/// Returns this process's domain, which no other test has until the process ends.
+inline std::uint32_t own_domain() {
+  static const std::uint32_t domain = reserve_domain();
+  return domain;
 }
 
 }  // namespace sf::ros2

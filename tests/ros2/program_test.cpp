@@ -16,15 +16,10 @@
 namespace sf::ros2 {
 namespace {
 
-std::string domain_of_program() {
-  static const std::string domain = std::to_string(reserve_domain());
-  return domain;
-}
-
 const Environment kHere{{"ROS_LOCALHOST_ONLY", "1"}};
 
 TEST(Ros2Program, ARunIsVisibleDrivableAndPausable) {
-  const std::string domain = domain_of_program();
+  const std::string domain = std::to_string(own_domain());
   Program run({"run", our_world("rooms.world"), "--ros2", domain}, kHere);
   ASSERT_TRUE(run.prints("node /sensorfarm in domain " + domain + ", on this machine")) << run.err();
   FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
@@ -54,7 +49,7 @@ TEST(Ros2Program, ARunIsVisibleDrivableAndPausable) {
 
 /// A robot joins the run, then another world replaces it. Files outside the run's folders cannot be named.
 TEST(Ros2Program, ARunAcceptsRobotsAndWorlds) {
-  const std::string domain = domain_of_program();
+  const std::string domain = std::to_string(own_domain());
   Program run({"run", our_world("rooms.world"), "--ros2", domain, "--view", "127.0.0.1:0", "--player", "127.0.0.1:0"},
               kHere);
   const std::string before_port = "view on http://127.0.0.1:";
@@ -127,10 +122,11 @@ TEST(Ros2Program, ARunAcceptsRobotsAndWorlds) {
 /// Cyclone DDS crashes if it cannot open more descriptors. Below 8, other parts report the error.
 TEST(Ros2Program, TooFewDescriptorsAreReported) {
   for (const char* most : {"8", "9", "10", "11", "12", "13", "16", "20"}) {
-    const Outcome outcome = Program({"-c", std::string("ulimit -n ") + most + "; exec \"$0\" \"$@\"", SF_PROGRAM, "run",
-                                     our_world("rooms.world"), "--duration", "0.1", "--ros2", domain_of_program()},
-                                    kHere, "", "", "sh")
-                                .wait();
+    const Outcome outcome =
+        Program({"-c", std::string("ulimit -n ") + most + "; exec \"$0\" \"$@\"", SF_PROGRAM, "run",
+                 our_world("rooms.world"), "--duration", "0.1", "--ros2", std::to_string(own_domain())},
+                kHere, "", "", "sh")
+            .wait();
     EXPECT_EQ(outcome.signal, 0) << most << outcome.err;
     if (outcome.code != 0) {
       EXPECT_NE(outcome.err.find("ulimit -n"), std::string::npos) << most << outcome.err;
@@ -139,7 +135,7 @@ TEST(Ros2Program, TooFewDescriptorsAreReported) {
 }
 
 TEST(Ros2Program, AServiceAnswersQueries) {
-  const std::string domain = domain_of_program();
+  const std::string domain = std::to_string(own_domain());
   Program serve({"serve", our_world("rooms.world"), "--port", "0", "--ros2", domain}, kHere);
   ASSERT_TRUE(serve.prints("node /sensorfarm")) << serve.err();
   FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));

@@ -88,11 +88,6 @@ struct Tree {
   }
 };
 
-std::uint32_t domain_of_projects() {
-  static const std::uint32_t domain = reserve_domain();
-  return domain;
-}
-
 /// The program in its own domain, and its peer.
 struct Ros2Projects : testing::Test {
   void start(const std::vector<std::string>& robots, const Words& options) {
@@ -139,7 +134,7 @@ struct Ros2Projects : testing::Test {
   }
 
   const Folder folder;
-  const std::uint32_t domain = domain_of_projects();
+  const std::uint32_t domain = own_domain();
   std::optional<Program> program;
   std::optional<FastPeer> peer;
 };

@@ -41,10 +41,6 @@ world::World room() {
 }
 
 /// Returns a domain for this process only, so that concurrent tests do not interfere.
-std::uint32_t own_domain() {
-  static const std::uint32_t domain = reserve_domain();
-  return domain;
-}
 
 record::RunInfo named(record::RunInfo info) {
   record::name_frames(info);

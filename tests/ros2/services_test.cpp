@@ -20,11 +20,6 @@
 namespace sf::ros2 {
 namespace {
 
-std::uint32_t domain_of_services() {
-  static const std::uint32_t domain = reserve_domain();
-  return domain;
-}
-
 const Environment kLocal{{"ROS_LOCALHOST_ONLY", "1"}};
 using Fields = std::vector<std::uint8_t>;
 
@@ -131,7 +126,7 @@ struct Ros2Services : testing::Test {
     return messages.empty() ? -1 : decode_clock(messages.back()).value_or(-1);
   }
 
-  const std::uint32_t domain = domain_of_services();
+  const std::uint32_t domain = own_domain();
   Program run{{"run", our_world("rooms.world"), "--ros2", std::to_string(domain)}, kLocal};
   FastPeer fast{domain};
   CyclonePeer cyclone{domain};
@@ -269,7 +264,7 @@ TEST(Ros2Program, WithoutFastDdsReportsWhichClientsGetNoAnswer) {
   std::filesystem::copy_file(std::filesystem::path(SF_PROGRAM).parent_path() / "sensorfarm_dds.so",
                              folder.path("sensorfarm_dds.so"));
   setenv("SENSORFARM_PROGRAM", folder.path("alone").c_str(), 1);
-  const std::string domain = std::to_string(domain_of_services());
+  const std::string domain = std::to_string(own_domain());
   const Outcome outcome = run_program({"run", our_world("rooms.world"), "--ros2", domain, "--duration", "0.1"}, kLocal);
   unsetenv("SENSORFARM_PROGRAM");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
