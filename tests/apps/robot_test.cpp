@@ -226,6 +226,13 @@ TEST(Robot, WithoutSensorsItNeedsNoFarm) {
   EXPECT_GT(Json(outcome.out).number("/distance_m"), 0.0);
 }
 
+Words patrol_on_a_line(const std::string& world, const std::string& name, const std::string& device,
+                       const std::string& points, const std::string& speed, const Words& more = {}) {
+  return with({"robot", world, "--name", name, "--port", std::to_string(free_ports(1)), "--controller", "patrol",
+               "--set", points, "--set", speed, "--serial", device, "--json"},
+              more);
+}
+
 /// A controller that uses only its pose, with the odometry of a simulated Create.
 TEST(Robot, DrivesACreateOnASerialLine) {
   const Folder folder;
@@ -234,8 +241,7 @@ TEST(Robot, DrivesACreateOnASerialLine) {
   CreateSimulator create;
   create.X.yaw = M_PI / 2;
   create.alone = false;
-  Program robot({"robot", world, "--name", "create", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
-                 "--set", "points=0,0,0,0.2", "--set", "speed=0.4", "--serial", create.device(), "--json"});
+  Program robot(patrol_on_a_line(world, "create", create.device(), "points=0,0,0,0.2", "speed=0.4"));
   ASSERT_TRUE(create.streaming()) << robot.err();
   for (std::uint64_t steps = 1; create.X.y < 0.15 && steps < 300; ++steps) {
     create.run(7);
@@ -262,9 +268,8 @@ TEST(Robot, DrivesAKheperaOnASerialLine) {
   KheperaEmulator khepera;
   khepera.X.yaw = M_PI / 2;
   khepera.alone = false;
-  Program robot({"robot", world, "--name", "khepera", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
-                 "--set", "points=0,0,0,0.1", "--set", "speed=0.1", "--serial", khepera.device(), "--robot-type",
-                 "khepera", "--json"});
+  Program robot(patrol_on_a_line(world, "khepera", khepera.device(), "points=0,0,0,0.1", "speed=0.1",
+                                 {"--robot-type", "khepera"}));
   while (khepera.X.y < 0.05 && khepera.lines < 3000) {
     ASSERT_TRUE(khepera.obey()) << robot.err();
   }
@@ -285,9 +290,8 @@ TEST(Robot, DrivesAPioneerOnASerialLine) {
   PioneerEmulator pioneer;
   pioneer.X.yaw = M_PI / 2;
   pioneer.alone = false;
-  Program robot({"robot", world, "--name", "pioneer", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
-                 "--set", "points=0,0,0,0.5", "--set", "speed=0.2", "--serial", pioneer.device(), "--robot-type",
-                 "pioneer", "--json"});
+  Program robot(patrol_on_a_line(world, "pioneer", pioneer.device(), "points=0,0,0,0.5", "speed=0.2",
+                                 {"--robot-type", "pioneer"}));
   while (!pioneer.motors) {
     ASSERT_TRUE(pioneer.obey()) << robot.err();
   }

@@ -174,11 +174,14 @@ TEST(Vps, WarnsOfAnIdSeenTwice) {
   EXPECT_NE(outcome.out.find("2 dropped: their id was seen at another place"), std::string::npos) << outcome.out;
 }
 
+std::string with_dictionary(const std::string& word) {
+  const std::string before = "aruco_4x4_50", text = kTestbed;
+  return std::string(text).replace(text.find(before), before.size(), word);
+}
+
 TEST(Vps, NamesTheOrientationOfAprilTags) {
   const Folder folder;
-  std::string text = kTestbed;
-  text.replace(text.find("aruco_4x4_50"), 12, "apriltag_36h11");
-  const std::string testbed = folder.write("t.toml", text);
+  const std::string testbed = folder.write("t.toml", with_dictionary("apriltag_36h11"));
   const Outcome outcome = run_successfully({"vps", testbed, "--rendered", "1", "--images", "1"});
   EXPECT_NE(outcome.out.find("upright as AprilRobotics prints them"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("apriltag_36h11_opencv"), std::string::npos) << outcome.out;
@@ -186,9 +189,7 @@ TEST(Vps, NamesTheOrientationOfAprilTags) {
 
 TEST(Vps, ReadsMarkersOfArToolKitPlus) {
   const Folder folder;
-  std::string text = kTestbed;
-  text.replace(text.find("aruco_4x4_50"), 12, "artoolkitplus_bch");
-  const std::string testbed = folder.write("t.toml", text);
+  const std::string testbed = folder.write("t.toml", with_dictionary("artoolkitplus_bch"));
   const Outcome outcome = run_successfully({"vps", testbed, "--rendered", "2", "--images", "2"});
   EXPECT_NE(outcome.out.find("0, 0 of 4 reported"), std::string::npos) << outcome.out;
 }
