@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/plugin.h"
 #include "base/suggest.h"
 #include "control/control_shell.h"
 #include "control/own_controllers.h"
@@ -41,10 +42,28 @@ std::span<const ControllerType* const> controllers() { return all(); }
 void add_controller(const ControllerType* type) { all().push_back(type); }
 
 const ControllerType* find_controller(std::string_view name) {
-  if (names_a_file(name)) return load_controller(std::string(name));
+  if (base::names_a_plugin(name)) return load_controller(std::string(name));
   for (const ControllerType* type : controllers())
     if (type->name == name) return type;
   return nullptr;
+}
+
+std::vector<std::string_view> controller_names() {
+  std::vector<std::string_view> names;
+  for (const ControllerType* type : controllers()) names.push_back(type->name);
+  return names;
+}
+
+ControllerConfig controller_of(const world::Mover& mover, const ControllerConfig& fallback) {
+  if (mover.is_tag || mover.controller == "none") return {};
+  if (mover.controller.empty()) return fallback;
+  if (mover.controller == fallback.name && mover.controller_settings.empty()) return fallback;
+  std::vector<Setting> settings;
+  for (const auto& [key, value] : mover.controller_settings)
+    settings.push_back({key, RawText{value}, mover.controller_at});
+  return {.name = mover.controller,
+          .settings = Settings(fmt::format("controller '{}'", mover.controller), std::move(settings)),
+          .at = mover.controller_at};
 }
 
 std::vector<sensors::SensorSpec> ControllerContext::sensors_of(std::uint8_t sensor_type) const {
@@ -54,13 +73,13 @@ std::vector<sensors::SensorSpec> ControllerContext::sensors_of(std::uint8_t sens
   return {specs.begin(), specs.end()};
 }
 
-ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config) {
+namespace {
+
+ConfiguredController make(const ControllerContext& context, ControllerConfig config) {
   const ControllerType* type = find_controller(config.name);
   if (type == nullptr) {
-    std::vector<std::string_view> names;
-    for (const ControllerType* known : controllers()) names.push_back(known->name);
-    throw base::InputError(
-        fmt::format("there is no controller '{}'{}", config.name, base::expected_one_of(config.name, names)));
+    throw base::InputError(fmt::format("there is no controller '{}'{}", config.name,
+                                       base::expected_one_of(config.name, controller_names())));
   }
   const ControlShellSettings shell = read_control_shell_settings(config.settings, type->stops_on_bumper);
   ControllerContext own = context;
@@ -73,6 +92,19 @@ ConfiguredController make_controller(const ControllerContext& context, Controlle
   if (shell.localize.value_or(false) && !config.localized_outside) localization.emplace(mover);
   return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),
           config.rate > 0.0 ? config.rate : type->rate, on_scans, shell.localize};
+}
+
+}  // namespace
+
+ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config) {
+  if (config.at.empty()) return make(context, std::move(config));
+  const std::string at = config.at;
+  try {
+    return make(context, std::move(config));
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    throw base::InputError(what.starts_with(at) ? what : at + what);
+  }
 }
 
 }  // namespace sf::control

@@ -58,6 +58,8 @@ std::span<const ControllerType* const> controllers();
 /// @return null for an unknown name
 /// @throws base::InputError for a file that cannot be loaded
 const ControllerType* find_controller(std::string_view name);
+/// Returns the names of `controllers()`, for world::LoadOptions.
+std::vector<std::string_view> controller_names();
 /// Adds a controller for the rest of the program. Do not call it while another thread creates or finds controllers.
 /// @param type valid until the program ends
 void add_controller(const ControllerType* type);
@@ -68,7 +70,12 @@ struct ControllerConfig {
   double rate = 0.0;               ///< [Hz]; 0: the controller's default
   Settings settings;               ///< including the shell's: `start`, `wait_on_bumper`, `localize`
   bool localized_outside = false;  ///< inputs already contain estimates: the shell never replaces them
+  std::string at = {};             ///< "FILE:LINE: " of the name in a world file, prefix of errors; empty: elsewhere
 };
+
+/// Returns the controller that the world file gives the robot (`ctrl`), or else `fallback`. The latter also applies,
+/// with its settings, if `ctrl` has the same name and no settings. Tags have none.
+ControllerConfig controller_of(const world::Mover& mover, const ControllerConfig& fallback);
 
 struct ConfiguredController {
   std::unique_ptr<Controller> controller;

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "base/error.h"
+#include "base/plugin.h"
 #include "control/own_controller.h"
 
 namespace sf::control {
@@ -19,7 +20,7 @@ struct Added {
 
 void check_entry(const sensorfarm::ControllerEntry& entry, const std::string& from) {
   const bool plain = !entry.name.empty() && entry.name.find_first_of(" \t\n/:,=") == std::string::npos;
-  if (!plain || entry.name == "none" || names_a_file(entry.name))
+  if (!plain || entry.name == "none" || base::names_a_plugin(entry.name))
     throw base::InputError(
         from, 0, fmt::format("a controller cannot be called '{}': expected a word without / : , =", entry.name));
   for (const ControllerType* type : controllers())

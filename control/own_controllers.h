@@ -3,7 +3,6 @@
 // adds.
 
 #include <string>
-#include <string_view>
 
 #include "control/controllers.h"
 #include "sensorfarm/plugin.h"
@@ -14,10 +13,6 @@ namespace sf::control {
 /// @param from file that defines it, for messages
 /// @throws base::InputError for a name that is taken or unusable, and for an invalid rate
 const ControllerType* add_own_controller(sensorfarm::ControllerEntry entry, const std::string& from);
-
-/// Returns whether the name has the form "./libmine.so", "folder/libmine.so:name" or "mine.py:Class", instead of a
-/// plain name.
-bool names_a_file(std::string_view name);
 
 /// Loads the file if it is not yet loaded. @throws base::InputError
 const ControllerType* load_controller(const std::string& name);

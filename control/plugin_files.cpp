@@ -96,11 +96,6 @@ const std::vector<const ControllerType*>& controllers_in(const std::string& file
 
 }  // namespace
 
-bool names_a_file(std::string_view name) {
-  const std::string file = parts_of(std::string(name)).first;
-  return name.find('/') != std::string_view::npos || file.ends_with(".so") || is_python(file);
-}
-
 const ControllerType* load_controller(const std::string& name) {
   const auto [file, wanted] = parts_of(name);
   const auto& types = controllers_in(file);

@@ -25,6 +25,7 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
   world::LoadOptions load;
   load.accuracy = options.accuracy;
   load.sensors = sensors::world_file_words();
+  load.controllers = control::controller_names;
   world::World world =
       source.text.empty() ? world::load_world(source.file, load) : world::build_world(source.file, source.text, load);
   if (!options.robot_from.empty() && !options.of.empty())

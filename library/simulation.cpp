@@ -33,12 +33,17 @@ using namespace sf;
 
 namespace {
 
-scenarios::SimulationOptions simulation_options(const Options& options, cluster::Ranks* ranks) {
+scenarios::SimulationOptions simulation_options(const world::World& world, const Options& options,
+                                                cluster::Ranks* ranks) {
   scenarios::SimulationOptions simulation{.seed = options.seed, .threads = cluster::threads_of(options.threads, ranks)};
   simulation.ranks = ranks;
   simulation.noise = options.noise;
   simulation.caster = raycast::caster_named(options.caster);
-  simulation.actor.controller = library::controller_of(options.controller, options.settings);
+  const bool none = options.controller == "none";
+  simulation.actor.controller = library::controller_of(none ? "" : options.controller, options.settings);
+  if (options.controller.empty())
+    for (const world::Mover& mover : world.movers)
+      simulation.actors.push_back({control::controller_of(mover, simulation.actor.controller), {}});
   return simulation;
 }
 
@@ -111,7 +116,7 @@ Simulation::State::State(library::WorldSource from, const Options& given)
 void Simulation::State::prepare() {
   device = library::shared_device(options);
   world = library::load(source, options);
-  simulation.emplace(world, *device, simulation_options(options, ranks));
+  simulation.emplace(world, *device, simulation_options(world, options, ranks));
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)

@@ -47,7 +47,7 @@ control::ConfiguredController try_controller(const Scenario& scenario, const con
     return control::make_controller(site, config);
   } catch (const base::InputError& error) {
     const std::string what = error.what();
-    if (what.starts_with(scenario.file + ":")) throw;
+    if (!config.at.empty() || what.starts_with(scenario.file + ":")) throw;
     throw base::InputError(scenario.file, line_of_driver(scenario, site.world.movers[site.mover]), what);
   }
 }

@@ -22,7 +22,9 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
                                      base::suggest(robot, names, "expected one of its movers")));
 }
 
-world::World world_of(const Scenario& scenario) { return world_of(scenario, {.sensors = sensors::world_file_words()}); }
+world::World world_of(const Scenario& scenario) {
+  return world_of(scenario, {.controllers = control::controller_names, .sensors = sensors::world_file_words()});
+}
 
 world::World world_of(const Scenario& scenario, const world::LoadOptions& load) {
   if (!std::filesystem::is_regular_file(scenario.world) && !scenario.file.empty())
@@ -51,11 +53,9 @@ SimulationOptions simulation_of(const Scenario& scenario, const world::World& wo
   if (options.v2v) options.v2v->link.seed = scenario.seed;
   // Tags remain at rest unless a [[robot]] names them. A robot's controller in the world file overrides the scenario's
   // default.
-  for (const world::Mover& mover : world.movers) {
-    Actor& actor = options.actors.emplace_back(mover.is_tag ? Actor{.controller = {.name = ""}} : scenario.actor);
-    const bool own = !mover.is_tag && !mover.controller.empty() && mover.controller != actor.controller.name;
-    if (own) actor.controller = {.name = mover.controller};
-  }
+  for (const world::Mover& mover : world.movers)
+    options.actors.push_back({control::controller_of(mover, scenario.actor.controller),
+                              mover.is_tag ? netio::LinkModel{} : scenario.actor.link});
   for (const RobotSetup& setup : scenario.robot_setups)
     if (setup.actor) options.actors[row_of(scenario, world, setup.name, setup.line)] = *setup.actor;
   for (Actor& actor : options.actors) actor.link.seed = scenario.seed;

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/installation.h"
+#include "base/plugin.h"
 #include "base/suggest.h"
 #include "control/own_controllers.h"
 #include "scenarios/scenario.h"
@@ -92,7 +93,7 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
   if (node == nullptr) return fallback;
   const std::string name = reader.text(table, "controller", "");
   if (name == "none" || name.empty()) return "";
-  if (control::names_a_file(name)) return plugin_of(reader, *node, name);
+  if (base::names_a_plugin(name)) return plugin_of(reader, *node, name);
   if (control::find_controller(name) != nullptr) return name;
   std::vector<std::string_view> names{"none"};
   for (const control::ControllerType* type : control::controllers()) names.push_back(type->name);

@@ -55,7 +55,9 @@ struct Options {
                        ///< the best device, or the host if none is usable (as `warnings` states)
   std::string caster = "auto";  ///< "auto" or a name of `sensorfarm run --caster` (docs/accuracy.md#casters), such as
                                 ///< "host" or "reference"
-  std::string controller;       ///< controller of all robots, by name or file; empty: commands drive them
+  /// Controller of all robots, by name or file. Empty: each robot runs the `ctrl` of its world file, and commands drive
+  /// robots without one. "none": commands drive all robots.
+  std::string controller;
   std::vector<std::pair<std::string, std::string>> settings;  ///< settings of that controller
   std::string record;                                         ///< folder of a recording (run.mcap); empty: none
   bool record_readings = false;  ///< record readings too, not only the states from which they can be computed

@@ -133,7 +133,10 @@ struct Mover {
   double wheelbase = 1.0;                   ///< [m] distance between the axles of a car
   double track = 0.3;  ///< [m] > 0, distance between left and right wheels, as measured by encoders
   ActuatorModel actuator_model = ActuatorModel::direct;
-  std::string controller;       ///< default controller; empty: the file names no known controller
+  std::string
+      controller;  ///< of `ctrl`: a name, "none" (the robot stays at rest), or a file; empty: no known controller
+  std::vector<std::pair<std::string, std::string>> controller_settings;  ///< of `ctrl`, untyped values by key
+  std::string controller_at;    ///< "FILE:LINE: " of `ctrl`, prefix of errors. Snapshots contain none of these three
   std::vector<Sensor> sensors;  ///< in file order
   std::vector<Magnet> magnets;  ///< carried magnets, in the mover's frame
 };
@@ -255,6 +258,8 @@ struct LoadOptions {
   bool strict = false;           ///< reject road networks and files of outlines that deviate from their format
   bool leave_outlines = false;   ///< keep the walls of outline files in their files (`World::unread`)
   std::string accuracy;          ///< word for all sensors, overrides those of the file; empty: no override
+  /// Returns the names of all controllers that `ctrl` may choose; null: only "wander".
+  std::vector<std::string_view> (*controllers)() = nullptr;
   std::span<const SensorKeyword> sensors;  ///< modelled sensor types; models of other types become plain bodies
 };
 

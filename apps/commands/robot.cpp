@@ -73,6 +73,8 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
                        .duplicate = options.duplicate,
                        .corrupt = options.corrupt};
   client.controller = controller_config_of(options);
+  if (!options.controller_given && mover.controller != "none")
+    client.controller = control::controller_of(mover, client.controller);
   client.controller.rate = options.rate;
   client.seed = options.seed;
   client.forget = options.forget;
@@ -105,8 +107,8 @@ int robot(const RobotOptions& options) {
   const world::World world = load_with_robots(options);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
-  server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
-                              client_options(options, world, world.movers[mover]));
+  const server::RobotClientOptions client = client_options(options, world, world.movers[mover]);
+  server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options), client);
   if (options.spat > 0 && !netio::is_loopback(process.link().farm().address))
     print_message(
         "warning: --spat {} accepts light states from anyone who can reach this machine, since these messages are not "
@@ -114,7 +116,7 @@ int robot(const RobotOptions& options) {
         options.spat);
   install_stop_handlers();
   print_message("{} (id {}) runs controller '{}' {} with the farm at {}{}; press Ctrl-C to stop",
-                world.movers[mover].name, world.movers[mover].id, options.controller,
+                world.movers[mover].name, world.movers[mover].id, client.controller.name,
                 process.on_scans() ? "on each new scan" : fmt::format("at {:g} Hz", process.rate()),
                 netio::endpoint_text(process.link().farm()),
                 waits_for_start(options) ? ", after the start signal" : "");

@@ -183,6 +183,11 @@ std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
                                  options.seed, options.controller, options.localize, options.no_return_inf);
   for (const auto* words : {&options.set, &options.drive})
     for (const std::string& word : *words) text += "\n" + word;
+  for (const world::Mover& mover : world.movers) {
+    if (mover.controller.empty()) continue;
+    text += fmt::format("\n{} {} {} {}", mover.name, mover.controller, options.controller_given, options.keep_ctrl);
+    for (const auto& [key, value] : mover.controller_settings) text += fmt::format(" {}={}", key, value);
+  }
   if (is_scenario(options.world)) text += base::read_text(options.world);
   return base::hash_bytes(text.data(), text.size());
 }
@@ -230,11 +235,15 @@ struct Course {
   std::uint64_t contacts_begun = 0;
 
   Course(Ground& ground, const RunOptions& options, cluster::Ranks* of, std::uint32_t resets)
+      : Course(ground, options, of, resets, simulation_options(ground.world, options, of, scenario_in(ground))) {}
+
+  Course(Ground& ground, const RunOptions& options, cluster::Ranks* of, std::uint32_t resets,
+         const scenarios::SimulationOptions& simulated)
       : world(ground.world),
         ranks(of),
-        simulation(world, ground.device, simulation_options(world, options, ranks, scenario_in(ground))),
+        simulation(world, ground.device, simulated),
         tally(simulation, world.movers.size(),
-              ground.scenario ? controllers_of(*ground.scenario, world) : options.controller),
+              simulated.actors.empty() ? options.controller : controllers_of(simulated.actors)),
         contacts(world.movers.size()),
         strayed(world),
         checkpoints(checkpoints_of(world, options, ranks, recording_folder(options, ranks, resets))),

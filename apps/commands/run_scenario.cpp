@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <vector>
-
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
@@ -32,15 +29,6 @@ world::World load_scenario_world(const scenarios::Scenario& scenario, const worl
   world::World world = scenarios::world_of(scenario, load);
   print_warnings(scenario.world, world.warnings);
   return world;
-}
-
-std::string controllers_of(const scenarios::Scenario& scenario, const world::World& world) {
-  std::vector<std::string> names;
-  for (const scenarios::Actor& actor : scenarios::simulation_of(scenario, world).actors) {
-    const std::string& name = actor.controller.name;
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace sf::apps

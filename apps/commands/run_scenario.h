@@ -20,7 +20,4 @@ std::optional<scenarios::Scenario> scenario_of(RunOptions& options);
 /// Loads the scenario's world and prints its warnings.
 world::World load_scenario_world(const scenarios::Scenario& scenario, const world::LoadOptions& load);
 
-/// Names of the controllers that drive robots, as in "route, convoy".
-std::string controllers_of(const scenarios::Scenario& scenario, const world::World& world);
-
 }  // namespace sf::apps

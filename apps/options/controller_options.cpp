@@ -26,21 +26,27 @@ control::ControllerConfig controller_config_of(const ControllerOptions& options)
 
 namespace {
 
-/// Robots with a controller in the world file use that one; all others use the command line's. Empty if all robots use
-/// the command line's.
+/// Returns whether the world file gives the robot a controller other than the command line's.
+bool has_own(const world::Mover& mover, const RunOptions& options) {
+  return !mover.is_tag && !mover.controller.empty() &&
+         (mover.controller != options.controller || !mover.controller_settings.empty());
+}
+
+/// Empty if all robots use the command line's controller.
 std::vector<scenarios::Actor> actors_of_world(const world::World& world, const RunOptions& options) {
-  const auto own = [&](const world::Mover& mover) {
-    return !mover.is_tag && !mover.controller.empty() && mover.controller != options.controller;
-  };
-  const auto count = std::count_if(world.movers.begin(), world.movers.end(), own);
+  const auto count = std::count_if(world.movers.begin(), world.movers.end(),
+                                   [&](const world::Mover& mover) { return has_own(mover, options); });
   if (count == 0) return {};
+  if (options.controller_given && !options.keep_ctrl) {
+    print_message("--controller {} overrides the controller in the world file (ctrl) of {}; --keep-ctrl keeps it",
+                  options.controller, count == 1 ? "1 robot" : fmt::format("{} robots", count));
+    return {};
+  }
   print_message("{} driven by the controller in the world file (ctrl); use --drive NAME to drive a robot by '{}'",
                 count == 1 ? "1 robot is" : fmt::format("{} robots are", count), options.controller);
   std::vector<scenarios::Actor> actors;
   for (const world::Mover& mover : world.movers)
-    actors.push_back({.controller = mover.is_tag ? control::ControllerConfig{}
-                                    : own(mover) ? control::ControllerConfig{.name = mover.controller}
-                                                 : controller_config_of(options)});
+    actors.push_back({.controller = control::controller_of(mover, controller_config_of(options))});
   return actors;
 }
 
@@ -57,6 +63,15 @@ std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOp
     actors[static_cast<std::size_t>(found - names.begin())].controller = controller_config_of(options);
   }
   return actors;
+}
+
+std::string controllers_of(const std::vector<scenarios::Actor>& actors) {
+  std::vector<std::string> names;
+  for (const scenarios::Actor& actor : actors) {
+    const std::string& name = actor.controller.name;
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace sf::apps

@@ -19,8 +19,11 @@ control::ControllerConfig controller_config_of(const ControllerOptions& options)
 
 /// Returns the controllers of all movers. With `--drive`, the named robots have the command line's controller and all
 /// others stay at rest. Otherwise each robot has the controller of the world file (`ctrl`), or the command line's if
-/// there is none; empty if all robots have the same.
+/// there is none, or if `--controller` was given without `--keep-ctrl`; empty if all robots have the command line's.
 /// @throws base::InputError for a name that the world lacks.
 std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOptions& options);
+
+/// Names of the controllers, each once, as in "route, convoy".
+std::string controllers_of(const std::vector<scenarios::Actor>& actors);
 
 }  // namespace sf::apps

@@ -10,6 +10,7 @@
 #include "apps/options/option_parsers.h"
 #include "apps/reports/text.h"
 #include "base/installation.h"
+#include "base/plugin.h"
 #include "bridges/dds.h"
 #include "control/own_controllers.h"
 #include "raycast/casters.h"
@@ -86,6 +87,7 @@ void add_device(CLI::App& app, DeviceOption& o) {
 
 void add_world(CLI::App& app, WorldOptions& o) {
   o.load.sensors = sensors::world_file_words();
+  o.load.controllers = control::controller_names;
   app.add_option(
          "world", o.world,
          "World file: Stage .world (3.x or 4.x) or ROS map .yaml; check and draw also accept .rndf, and check .mdf")
@@ -522,13 +524,16 @@ void add_timeout(CLI::App& app, double& seconds, const std::string& job) {
 }
 
 void add_controller(CLI::App& app, ControllerOptions& o) {
-  std::vector<std::string> names;
-  for (const control::ControllerType* type : control::controllers()) names.emplace_back(type->name);
+  const std::vector<std::string_view> all = control::controller_names();
+  const std::vector<std::string> names(all.begin(), all.end());
   const Validator known = one_of(names);
-  app.add_option("--controller", o.controller,
-                 "Controller of the robots: " + join_or(names) +
-                     ", or a file: a plug-in (./libmine.so) or a Python class (mine.py:MyClass)")
-      ->check([=](const std::string& name) { return control::names_a_file(name) ? std::string() : known(name); })
+  app.add_option(
+         "--controller", o.controller,
+         "Controller of the robots: " + join_or(names) +
+             ", or a file: a plug-in (./libmine.so) or a Python class (mine.py:MyClass); overrides `ctrl` of the "
+             "world file")
+      ->check([=](const std::string& name) { return base::names_a_plugin(name) ? std::string() : known(name); })
+      ->each([&o](const std::string&) { o.controller_given = true; })
       ->type_name("NAME")
       ->capture_default_str();
   app.add_option("--set", o.set,

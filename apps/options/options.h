@@ -104,8 +104,9 @@ struct AccuracyTargetOptions {
 
 struct ControllerOptions : InProcessOption {
   std::string controller = "wander";
-  std::vector<std::string> set;  ///< its settings, "key=value" each
-  bool localize = false;         ///< see the setting of this name
+  bool controller_given = false;  ///< on the command line: overrides `ctrl` of the world file
+  std::vector<std::string> set;   ///< its settings, "key=value" each
+  bool localize = false;          ///< see the setting of this name
 };
 
 struct WireOption {
@@ -262,6 +263,7 @@ struct RunOptions : WorldOptions,
                     VideoOptions,
                     NamingOption,
                     BridgeOptions {
+  bool keep_ctrl = false;          ///< `ctrl` of the world file overrides --controller
   std::vector<std::string> drive;  ///< names of the robots that the controller drives; empty: all robots
   std::optional<double> duration;  ///< [s]; nullopt: 60, or unlimited with bridges
   std::optional<double> speed;     ///< [1] simulated over real time, 0: no limit; nullopt: none, or 1 with bridges

@@ -69,6 +69,8 @@ void add_run(CLI::App& app, Call& call) {
       ->check(not_empty("the name of a robot"))
       ->allow_extra_args(false)
       ->type_name("NAME");
+  sub->add_flag("--keep-ctrl", o.keep_ctrl,
+                "Robots with `ctrl` in the world file keep that controller; --controller drives the others");
   add_no_return(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; unlimited with bridges)")

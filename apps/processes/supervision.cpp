@@ -11,7 +11,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
+#include <filesystem>
 #include <new>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -21,6 +24,9 @@
 #include "apps/reports/progress_line.h"
 #include "apps/reports/text.h"
 #include "base/elapsed.h"
+#include "base/files.h"
+#include "base/installation.h"
+#include "base/plugin.h"
 #include "base/plugin_calls.h"
 #include "base/thread_pool.h"
 #include "cluster/ranks.h"
@@ -49,6 +55,37 @@ bool is_code(std::string_view argument) {
   const std::size_t colon = argument.find(':', slash == std::string_view::npos ? 0 : slash);
   argument = argument.substr(0, colon);
   return argument.ends_with(".so") || argument.ends_with(".py");
+}
+
+/// Returns whether a world file, or a file that it includes, names a file of code in a `ctrl`.
+/// @param seen paths that were read
+bool world_has_code(const std::string& file, std::set<std::string>& seen) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || !seen.insert(file).second) return false;
+  const std::string text = base::read_text(file);
+  for (const std::string_view key : {"ctrl", "include"})
+    for (std::size_t at = 0; (at = text.find(key, at)) != std::string::npos;) {
+      const std::size_t begin = text.find('"', at),
+                        end = text.find('"', begin == std::string::npos ? begin : begin + 1);
+      if (end == std::string::npos) break;
+      const std::string value = text.substr(begin + 1, end - begin - 1);
+      if (key == "ctrl" && base::names_a_plugin(value.substr(0, value.find(' ')))) return true;
+      if (key == "include" && world_has_code((std::filesystem::path(file).parent_path() / value).string(), seen))
+        return true;
+      at = end;
+    }
+  return false;
+}
+
+/// The same for an argument such as "a.world" or "--robot-from=a.world:car".
+bool is_world_with_code(const std::string_view argument) {
+  const std::string_view value = argument.substr(argument.find('=') + 1);
+  std::set<std::string> seen;
+  try {
+    return world_has_code(base::installed_file(std::string(value.substr(0, value.rfind(':')))), seen);
+  } catch (const std::exception&) {
+    return false;  // reported when the world is loaded
+  }
 }
 
 bool is_ignored(int signal) {
@@ -160,6 +197,7 @@ bool needs_supervision(int argc, const char* const* argv) {
   const char* const plugins = std::getenv("SENSORFARM_PLUGINS");
   // Scenarios may name controllers, too. `test` and sweeps start their own processes.
   if (command == "run" && any([](std::string_view word) { return word.ends_with(".toml"); })) return true;
+  if ((command == "run" || command == "robot") && any(is_world_with_code)) return true;
   return !memory_limit_note().empty() || (plugins != nullptr && *plugins != '\0') || command == "experiment" ||
          any(is_code);
 }

@@ -202,11 +202,12 @@ class Simulation:
         noise and controllers. threads: 0 for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row
         or part of a device's name, or "host". require_vulkan: raise DeviceError instead of using the host if no device
         is usable. caster: auto, or a name of `sensorfarm run --caster`, such as host or reference (docs/accuracy.md).
-        controller: of all robots, by name, file (mine.py:Class, ./libmine.so)
-        or class; empty: twists drive them. record: folder of a recording. too_near_min: record ranges of surfaces that
-        are too near as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd or none
-        (docs/recordings.md). ranks: processes of mpirun share the fleet; all make the same calls, and each has the
-        readings of its own robots only and commands these (docs/cluster.md). Raises Error, DeviceError, TypeError."""
+        controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty: `ctrl` of the world
+        file, or else twists; "none": twists drive all. record: folder of a recording. too_near_min: record ranges of
+        surfaces that are too near as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd
+        or none (docs/recordings.md). ranks: processes of mpirun share the fleet; all make the same calls, and each has
+        the readings of its own robots only and commands these (docs/cluster.md). Raises Error, DeviceError,
+        TypeError."""
     @staticmethod
     def from_text(text: str, name: str = "given.world", **options: Any) -> Simulation:
         """Creates a simulation of a world given as text, with the options of the constructor. name: for messages; files

@@ -91,24 +91,30 @@ TEST(Warnings, ScenariosReportWarningsOfTheirWorlds) {
   EXPECT_NE(outcome.err.find("sensorfarm: 5 warnings; the first 3 follow"), std::string::npos) << outcome.err;
 }
 
-// A robot with a controller in the world file keeps it; the command line's drives the others.
-TEST(Warnings, ControllersOfTheWorldFileTakePrecedence) {
+// A robot with a controller in the world file keeps it, unless the command line names one.
+TEST(Warnings, TheCommandLineOverridesControllersOfTheWorldFile) {
   const Folder folder;
   const std::string robots =
-      "position( name \"roomba1\" size [0.3 0.3 0.1] ctrl \"wander\" laser( ) )\n"
+      "position( name \"roomba1\" size [0.3 0.3 0.1] ctrl \"avoid\" laser( ) )\n"
       "position( name \"roomba2\" pose [2 0 0 0] size [0.3 0.3 0.1] ctrl \"fasr\" laser( ) )\n";
   const std::string world = folder.write("two.world", robots);
-  const Outcome outcome = run_successfully({"run", world, "--duration", "0.5", "--controller", "explore", "--json"});
+  const auto run = [&](const Words& more) { return run_successfully(with({"run", world, "--duration", "0.5"}, more)); };
+  const Outcome own = run({"--json"});
   expect_in(
-      "1 robot is driven by the controller in the world file (ctrl); use --drive NAME to drive a robot by 'explore'",
-      outcome.err);
-  const Json facts(outcome.out);
+      "1 robot is driven by the controller in the world file (ctrl); use --drive NAME to drive a robot by "
+      "'wander'",
+      own.err);
+  const Json facts(own.out);
+  EXPECT_EQ(facts.text("/control/controller"), "avoid, wander");
   ASSERT_EQ(facts.size("/warnings"), 1u);
   EXPECT_EQ(facts.number("/warnings/0/line"), 2);
   EXPECT_NE(facts.text("/warnings/0/message").find("ctrl \"fasr\" names a plug-in of Stage"), std::string::npos);
-  const Outcome ordered =
-      run_program({"run", world, "--duration", "0.5", "--controller", "explore", "--drive", "roomba1"});
-  EXPECT_EQ(ordered.err.find("by the controller in the world file"), std::string::npos) << ordered.err;
+  expect_in("--controller explore overrides the controller in the world file (ctrl) of 1 robot; --keep-ctrl keeps it",
+            run({"--controller", "explore"}).err);
+  expect_in("1 robot is driven by the controller in the world file",
+            run({"--controller", "explore", "--keep-ctrl"}).err);
+  const Outcome ordered = run({"--controller", "explore", "--drive", "roomba1"});
+  EXPECT_EQ(ordered.err.find("the controller in the world file"), std::string::npos) << ordered.err;
 }
 
 TEST(Warnings, MissionsOfARunReportTheirMistakes) {

@@ -51,6 +51,32 @@ TEST(Library, CommandsAndControllersGiveOneHash) {
   EXPECT_NE(other.hash(), commanded.hash());
 }
 
+/// Without `Options::controller`, `ctrl` chooses the controller; "none" restores commands.
+TEST(Library, RobotsRunTheControllersOfTheirWorldFile) {
+  add_controller({"test-keep-on", "drives on", 10.0, false, [](const Robot&, Settings& settings) {
+                    struct KeepOn : Controller {
+                      double speed = 0.0;
+                      Twist step(const Input&) override { return {speed, 0.0, 0.0}; }
+                    };
+                    auto made = std::make_unique<KeepOn>();
+                    made->speed = settings.number("speed", 0.1, 0.0, 1.0);
+                    return made;
+                  }});
+  const std::string text =
+      "position( name \"a\" ctrl \"test-keep-on speed=0.5\" ) position( name \"b\" pose [0 5 0 0] )";
+  const auto driven = [&](const Options& options) {
+    Simulation simulation = Simulation::from_text(text, options);
+    for (int i = 0; i < 11; ++i) simulation.step(std::vector<Twist>{{0.2, 0.0, 0.0}, {0.3, 0.0, 0.0}});
+    return std::pair(simulation.poses()[0].x, simulation.poses()[1].x);
+  };
+  EXPECT_NEAR(driven({}).first, 0.55, 0.06);
+  EXPECT_NEAR(driven({}).second, 0.33, 0.04);
+  EXPECT_NEAR(driven({.controller = "none"}).first, 0.22, 0.03);
+  EXPECT_NEAR(driven({.controller = "test-keep-on"}).first, 0.11, 0.02);
+  expect_in("given.world:1: 'speed'",
+            refusal_of<Error>([] { Simulation::from_text("position( ctrl \"test-keep-on speed=fast\" )"); }));
+}
+
 /// Rows, earlier readings and earlier views are unchanged; the new row is read from the next step on.
 TEST(Library, RobotsJoinAndLeave) {
   Simulation simulation(kCave, {.robots = 5, .seed = 4}), alone(kCave, {.robots = 5, .seed = 4});

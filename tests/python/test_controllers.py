@@ -69,6 +69,18 @@ class OneHash(unittest.TestCase):
     def test_file(self):
         self.assertEqual(f"{simulated(controller=FILE + ':Careful'):016x}", self.expected)
 
+    def test_world_file(self):
+        bare = 'position( name "a" {} laser( samples 90 ) )\nmodel( size [1 1 1] pose [3 0 0 0] )\n'
+        named = sensorfarm.Simulation.from_text(bare.format(f'ctrl "{FILE}:Careful near=0.8"'))
+        given = sensorfarm.Simulation.from_text(bare.format(""), controller=Careful, settings={"near": 0.8})
+        twists = sensorfarm.Simulation.from_text(bare.format(f'ctrl "{FILE}:Careful"'), controller="none")
+        for sim in (named, given, twists):
+            for _ in range(30):
+                sim.step()
+        self.assertEqual(named.hash, given.hash)
+        self.assertNotEqual(named.poses[0][0], 0)
+        self.assertEqual(twists.poses[0][0], 0)
+
     def test_plugin(self):
         self.assertEqual(f"{simulated(controller=os.environ['SENSORFARM_CAREFUL']):016x}", self.expected)
 

@@ -509,7 +509,7 @@ TEST(Stage, PosesOfThreeNumbersGetAdvice) {
       "where the third is an angle\n");
 }
 
-TEST(Stage, WanderIsTheOnlyKnownStagePlugin) {
+TEST(Stage, PluginsOfStageAreNotRun) {
   const World world = read_world(
       "position( name \"a\" ctrl \"wander\" )\nposition( name \"b\"\n ctrl \"fasr\" )\nposition( name \"c\" ctrl "
       "\"fasr\" )\n"
@@ -517,13 +517,50 @@ TEST(Stage, WanderIsTheOnlyKnownStagePlugin) {
   EXPECT_EQ(world.movers.at(0).controller, "wander");
   EXPECT_EQ(world.movers.at(1).controller, "");
   EXPECT_EQ(world.movers.at(3).controller, "");
-  EXPECT_EQ(world.movers.at(4).controller, "wander") << "what else it says is the plug-in's";
+  EXPECT_EQ(world.movers.at(4).controller, "wander");
   EXPECT_EQ(warnings_of(world),
             "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, "
             "or write ctrl \"wander\"\n"
             "6: 'ctrl' is for robots, but 'e' is not a robot: write it inside the robot's parentheses\n"
+            "7: 'fast' in ctrl \"wander\" is ignored: expected a setting KEY=VALUE\n"
             "4: 5 robots overlap others at the start: 'a', 'b', 'c' and 2 more; 'c' starts at (0, 0), in 'a': expected "
             "separate poses\n");
+}
+
+/// Returns one robot with this `ctrl`. Known controllers: route, wander.
+World with_ctrl(const std::string& ctrl) {
+  return read_world("position(\n ctrl " + ctrl + " )", {.controllers = [] {
+                      return std::vector<std::string_view>{"route", "wander"};
+                    }});
+}
+
+TEST(Stage, CtrlNamesAControllerWithItsSettings) {
+  using Settings = std::vector<std::pair<std::string, std::string>>;
+  const World world = with_ctrl("\"route  park='a b' checkpoints=[1 2]\tspeed=0.3 empty=\"");
+  const Mover& mover = world.movers.at(0);
+  EXPECT_EQ(mover.controller, "route");
+  EXPECT_EQ(mover.controller_settings,
+            (Settings{{"park", "'a b'"}, {"checkpoints", "[1 2]"}, {"speed", "0.3"}, {"empty", ""}}));
+  EXPECT_TRUE(mover.controller_at.ends_with(":2: ")) << mover.controller_at;
+  EXPECT_EQ(warnings_of(world), "");
+  EXPECT_EQ(with_ctrl("\"none\"").movers.at(0).controller, "none");
+  EXPECT_EQ(with_ctrl("\"\"").movers.at(0).controller, "");
+  // Files are relative to the world file, and are not loaded with the world.
+  EXPECT_EQ(with_ctrl("\"/no/libmine.so:go\"").movers.at(0).controller, "/no/libmine.so:go");
+  EXPECT_TRUE(with_ctrl("\"mine.py:Go near=1\"").movers.at(0).controller.ends_with("mine.py:Go"));
+}
+
+TEST(Stage, MistakesInCtrlAreReported) {
+  const std::pair<const char*, const char*> kCorpus[] = {
+      {"\"roote speed=1\"",
+       "2: ctrl \"roote\" is ignored: there is no controller of this name; did you mean 'route'? Expected one of: "
+       "route, wander, none, or a file (./libmine.so, mine.py:MyClass)\n"},
+      {"\"route speed=1 =2 speed=3\"",
+       "2: '=2' in ctrl \"route\" is ignored: expected a setting KEY=VALUE\n"
+       "2: 'speed=3' in ctrl \"route\" is ignored: the setting is given twice\n"},
+      {"[\"route\" \"wander\"]", "2: 'ctrl' expects one controller per robot; only the first is used\n"},
+  };
+  for (const auto& [ctrl, warnings] : kCorpus) EXPECT_EQ(warnings_of(with_ctrl(ctrl)), warnings) << ctrl;
 }
 
 TEST(Stage, MisplacedBlocksAndSensorsAreReported) {

@@ -7,6 +7,7 @@
 #include "base/suggest.h"
 #include "world/keys.h"
 #include "world/stage/attached_devices.h"
+#include "world/stage/ctrl.h"
 #include "world/stage/emitter_entities.h"
 #include "world/stage/entity_color.h"
 #include "world/stage/floor_entities.h"
@@ -196,16 +197,15 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   Parent own;  // for the children of this model
   own.X_MP = compose(parent.X_MP, said.X_PB);
   own.name_in_mover = parent.mover == kNone ? "" : joined(parent.name_in_mover, said.name);
-  const std::string controller = controller_of(b, entity);
   const bool moves = becomes_mover(b, entity, parent, said);
   const std::optional<PacketId> packet_id = packet_id_of(said.name);
   const Pose X_MT = tag_pose_of(b.context, entity, moves && packet_id && packet_id->is_tag);
   if (moves) {
     model.mover = add_mover(b, entity, model, packet_id);
-    b.world.movers[model.mover].controller = controller;
+    read_ctrl(b, entity, b.world.movers[model.mover]);
     b.world.movers[model.mover].X_MT = X_MT;
     own.X_MP = {};
-  } else if (!controller.empty()) {
+  } else if (find(entity, "ctrl") != nullptr) {
     warn(b.context, location_of(entity, "ctrl"),
          fmt::format("'ctrl' is for robots, but '{}' is not a robot: write it inside the robot's parentheses",
                      said.name));

@@ -24,20 +24,6 @@ std::optional<std::uint32_t> number_of(std::string_view digits) {
 
 }  // namespace
 
-std::string controller_of(BuildState& b, const Entity& entity) {
-  const Property* property = find(entity, "ctrl");
-  if (property == nullptr || property->values.size() != 1) return {};
-  const std::string& said = property->values.front().text;
-  const std::string word = said.substr(0, said.find(' '));
-  if (word == "wander") return word;
-  if (!word.empty() && b.warned_types.insert("ctrl " + word).second)
-    warn(b.context, property->at,
-         fmt::format("ctrl \"{}\" names a plug-in of Stage, which is not run; choose a controller with --controller "
-                     "NAME, or write ctrl \"wander\"",
-                     word));
-  return {};
-}
-
 std::optional<PacketId> packet_id_of(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
   for (const std::string_view robot : {"roomba", "pioneer", "khepera"}) {

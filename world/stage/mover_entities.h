@@ -18,9 +18,6 @@ struct PacketId {
 /// Returns the packet id in a model's own name. Tags count from 1, robots from 0. More than nine digits give no id.
 std::optional<PacketId> packet_id_of(std::string_view name);
 
-/// Returns the known controller named by `ctrl` (including Stage's `wander`); empty, with a warning, for other names.
-std::string controller_of(BuildState& b, const Entity& entity);
-
 /// Reads `tag_pose`: the pose of the tag on a model that follows TAG packets. Other models ignore it, with a warning.
 /// @throws base::InputError as for any pose, and for a pose 100 m from the origin
 Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag);

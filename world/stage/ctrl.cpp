@@ -1,0 +1,87 @@
+#include "world/stage/ctrl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "base/plugin.h"
+#include "base/suggest.h"
+
+namespace sf::world {
+
+namespace {
+
+/// Plug-ins that Stage installs; its `wander` has the farm's as its counterpart.
+constexpr std::array<std::string_view, 9> kStagePlugins{
+    "fasr", "fasr2", "dynamic", "lasernoise", "pioneer_flocking", "rasterize", "sink", "source", "lsp_test"};
+
+/// Returns the words between blanks outside of quotes and brackets.
+std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words(1);
+  char open = 0;
+  for (const char c : text) {
+    const bool blank = open == 0 && (c == ' ' || c == '\t' || c == '\n' || c == '\r');
+    if (blank && !words.back().empty()) words.emplace_back();
+    if (blank) continue;
+    words.back() += c;
+    if (open != 0)
+      open = c == open ? '\0' : open;
+    else
+      open = c == '\'' || c == '"' ? c : c == '[' ? ']' : '\0';
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+/// Returns why `ctrl` cannot choose this controller; empty: it can.
+std::string fault_of(const BuildState& b, const std::string& name) {
+  std::vector<std::string_view> known{"wander"};
+  if (b.options.controllers != nullptr) known = b.options.controllers();
+  known.emplace_back("none");
+  if (base::names_a_plugin(name) || std::find(known.begin(), known.end(), name) != known.end()) return {};
+  if (std::find(kStagePlugins.begin(), kStagePlugins.end(), name) != kStagePlugins.end())
+    return fmt::format(
+        "ctrl \"{}\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, or write "
+        "ctrl \"wander\"",
+        name);
+  return fmt::format(
+      "ctrl \"{}\" is ignored: there is no controller of this name{}, or a file (./libmine.so, mine.py:MyClass)", name,
+      base::expected_one_of(name, known));
+}
+
+}  // namespace
+
+void read_ctrl(BuildState& b, const Entity& entity, Mover& mover) {
+  const Property* property = find(entity, "ctrl");
+  if (property == nullptr || property->values.empty()) return;
+  if (property->values.size() > 1)
+    warn(b.context, property->at, "'ctrl' expects one controller per robot; only the first is used");
+  const std::vector<std::string> words = words_of(property->values.front().text);
+  if (words.empty()) return;
+  const std::string& name = words.front();
+  if (const std::string fault = fault_of(b, name); !fault.empty()) {
+    if (b.warned_types.insert("ctrl " + name).second) warn(b.context, property->at, fault);
+    return;
+  }
+  const std::string& file = b.context.document.files[property->at.file];
+  mover.controller = base::names_a_plugin(name) ? (std::filesystem::path(file).parent_path() / name).string() : name;
+  mover.controller_at = fmt::format("{}:{}: ", file, property->at.line);
+  for (auto word = words.begin() + 1; word != words.end(); ++word) {
+    const std::size_t equals = word->find('=');
+    const std::string key = word->substr(0, equals);
+    const bool repeated = std::any_of(mover.controller_settings.begin(), mover.controller_settings.end(),
+                                      [&](const auto& setting) { return setting.first == key; });
+    if (equals == std::string::npos || key.empty() || repeated)
+      warn(b.context, property->at,
+           fmt::format("'{}' in ctrl \"{}\" is ignored: {}", *word, name,
+                       repeated ? "the setting is given twice" : "expected a setting KEY=VALUE"));
+    else
+      mover.controller_settings.emplace_back(key, word->substr(equals + 1));
+  }
+}
+
+}  // namespace sf::world
