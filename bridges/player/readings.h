@@ -6,7 +6,7 @@
 
 #include "base/report.h"
 #include "bridges/player/devices.h"
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 
 namespace sf::bridges::player {
 

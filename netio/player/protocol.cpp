@@ -1,13 +1,15 @@
-#include "bridges/player/protocol.h"
+#include "netio/player/protocol.h"
 
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 
-namespace sf::bridges::player {
+namespace sf::netio::player {
 
 std::string_view interface_name(Interface interf) {
   switch (interf) {
     case Interface::player:
       return "player";
+    case Interface::power:
+      return "power";
     case Interface::position2d:
       return "position2d";
     case Interface::sonar:
@@ -53,4 +55,4 @@ Header read_header(std::span<const std::uint8_t> bytes) {
   return header;
 }
 
-}  // namespace sf::bridges::player
+}  // namespace sf::netio::player
