@@ -26,6 +26,8 @@ std::string_view interface_name(Interface interf) {
       return "simulation";
     case Interface::map:
       return "map";
+    case Interface::opaque:
+      return "opaque";
     case Interface::ranger:
       return "ranger";
   }

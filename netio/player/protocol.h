@@ -29,6 +29,7 @@ enum class Interface : std::uint32_t {
   ir = 22,
   simulation = 31,
   map = 42,
+  opaque = 51,
   ranger = 62
 };
 
