@@ -1,7 +1,6 @@
 #include "netio/serial_line.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -36,13 +35,20 @@ speed_t speed_of(unsigned baud) {
   throw base::InputError("cannot open the serial line '" + device + "': " + error_text(error) + "; " + remedy);
 }
 
+Socket open_device(const std::string& device) {
+  Socket line(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (line.descriptor() < 0) fail(device, errno);
+  return line;
+}
+
+bool is_later() { return errno == EAGAIN || errno == EINTR; }
+
 }  // namespace
 
-SerialLine::SerialLine(const std::string& device, unsigned baud, int stop_bits) {
+SerialLine::SerialLine(const std::string& device, unsigned baud, int stop_bits)
+    : ByteLine(open_device(device), kMostWaiting) {
   const speed_t speed = speed_of(baud);
-  descriptor_ = Socket(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  const int line = descriptor_.descriptor();
-  if (line < 0) fail(device, errno);
+  const int line = descriptor().descriptor();
   termios settings{};
   if (tcgetattr(line, &settings) != 0) fail(device, ENOTTY);
   cfmakeraw(&settings);
@@ -56,36 +62,16 @@ SerialLine::SerialLine(const std::string& device, unsigned baud, int stop_bits) 
   tcflush(line, TCIOFLUSH);
 }
 
-std::size_t SerialLine::read(std::span<std::uint8_t> bytes) {
-  if (lost_) return 0;
-  flush();
-  const ssize_t n = ::read(descriptor_.descriptor(), bytes.data(), bytes.size());
+std::optional<std::size_t> SerialLine::receive(std::span<std::uint8_t> bytes) {
+  const ssize_t n = ::read(descriptor().descriptor(), bytes.data(), bytes.size());
   if (n > 0) return static_cast<std::size_t>(n);
-  lost_ = lost_ || n == 0 || (errno != EAGAIN && errno != EINTR);
-  return 0;
+  return n < 0 && is_later() ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-bool SerialLine::write(std::span<const std::uint8_t> bytes) {
-  flush();
-  if (lost_ || waiting_.size() + bytes.size() > kMostWaiting) return false;
-  waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
-  flush();
-  return true;
-}
-
-void SerialLine::flush() {
-  if (lost_ || waiting_.empty()) return;
-  const ssize_t n = ::write(descriptor_.descriptor(), waiting_.data(), waiting_.size());
-  if (n > 0) waiting_.erase(waiting_.begin(), waiting_.begin() + n);
-  lost_ = n < 0 && errno != EAGAIN && errno != EINTR;
-}
-
-void SerialLine::drain() {
-  for (int tries = 0; tries < 10 && !lost_ && !waiting_.empty(); ++tries) {
-    pollfd line{descriptor_.descriptor(), POLLOUT, 0};
-    poll(&line, 1, 10);
-    flush();
-  }
+std::optional<std::size_t> SerialLine::send(std::span<const std::uint8_t> bytes) {
+  const ssize_t n = ::write(descriptor().descriptor(), bytes.data(), bytes.size());
+  if (n >= 0) return static_cast<std::size_t>(n);
+  return is_later() ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
 }  // namespace sf::netio

@@ -1,6 +1,7 @@
 #include "netio/tcp.h"
 
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -31,6 +32,11 @@ void watch(const Socket& epoll, int operation, const Socket& socket, std::uint64
   SF_CHECK(failed == 0, "epoll_ctl: " + error_text(errno));
 }
 
+void send_at_once(const Socket& connection) {
+  const int on = 1;
+  setsockopt(connection.descriptor(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
 std::optional<std::size_t> moved(ssize_t bytes) {
   if (bytes > 0) return static_cast<std::size_t>(bytes);
   const bool later = bytes < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
@@ -55,8 +61,25 @@ Socket accept_tcp(const Socket& listener, Endpoint& peer) {
   Socket connection(
       accept4(listener.descriptor(), reinterpret_cast<sockaddr*>(&address), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
   peer = from_posix(address);
-  const int on = 1;
-  if (connection.descriptor() >= 0) setsockopt(connection.descriptor(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  if (connection.descriptor() >= 0) send_at_once(connection);
+  return connection;
+}
+
+Socket connect_tcp(const Endpoint& server, int wait_ms) {
+  Socket connection = open_tcp(server);
+  const sockaddr_in address = to_posix(server);
+  const int descriptor = connection.descriptor();
+  int error = connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
+  if (error == EINPROGRESS) {
+    pollfd room{descriptor, POLLOUT, 0};
+    socklen_t size = sizeof error;
+    error = wait_ms > 0 ? ETIMEDOUT : 0;
+    if (poll(&room, 1, wait_ms) > 0) getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &error, &size);
+  }
+  if (error != 0)
+    throw base::InputError("cannot connect to TCP " + endpoint_text(server) + ": " + error_text(error) +
+                           "; start the server there, or correct the address");
+  send_at_once(connection);
   return connection;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "netio/byte_line.h"
 #include "netio/socket.h"
 
 namespace sf::netio {
@@ -19,11 +20,34 @@ Socket listen_tcp(const Endpoint& bind);
 /// @param peer out: the remote endpoint
 Socket accept_tcp(const Socket& listener, Endpoint& peer);
 
+/// Connects, without delays for small messages.
+/// @param wait_ms [ms] to wait for the connection; 0: it continues to connect, and ends if that fails
+/// @throws base::InputError if the connection fails at once, or within `wait_ms`, or no descriptors are left
+Socket connect_tcp(const Endpoint& server, int wait_ms);
+
 /// Returns the number of bytes received into `bytes`, which is not empty; 0: no bytes wait; nullopt: the connection has
 /// ended.
 std::optional<std::size_t> receive_some(const Socket& connection, std::span<std::uint8_t> bytes);
 /// Returns the number of bytes sent from the front of `bytes`; 0: the connection is full; nullopt: it has ended.
 std::optional<std::size_t> send_some(const Socket& connection, std::span<const std::uint8_t> bytes);
+
+/// A connection to a robot's server.
+class TcpLine final : public ByteLine {
+ public:
+  /// Maximum number of bytes waiting to be sent.
+  static constexpr std::size_t kMostWaiting = 4096;
+
+  /// Connects as `connect_tcp`.
+  TcpLine(const Endpoint& server, int wait_ms) : ByteLine(connect_tcp(server, wait_ms), kMostWaiting) {}
+
+ private:
+  std::optional<std::size_t> receive(std::span<std::uint8_t> bytes) override {
+    return receive_some(descriptor(), bytes);
+  }
+  std::optional<std::size_t> send(std::span<const std::uint8_t> bytes) override {
+    return send_some(descriptor(), bytes);
+  }
+};
 
 /// Waits for sockets. Single-threaded, except `wake`. Closed sockets are removed automatically.
 class SocketWait {

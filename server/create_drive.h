@@ -13,7 +13,7 @@ class CreateDrive final : public RealRobot {
  public:
   /// @param X_WM start pose @param track [m] > 0
   /// @throws base::InputError if the line cannot be opened
-  CreateDrive(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM, double track);
+  CreateDrive(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM, double track);
   ~CreateDrive() override { stop(); }
 
   void drive(const base::Twist& twist, std::int64_t now) override;

@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, kSensors> kLight{"light_0", "light_1", "l
 
 }  // namespace
 
-KheperaDrive::KheperaDrive(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM,
+KheperaDrive::KheperaDrive(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM,
                            double track)
     : RealRobot(type, options, X_WM), track_(track) {
   start(0);

@@ -14,7 +14,7 @@ class KheperaDrive final : public RealRobot {
  public:
   /// @param X_WM start pose @param track [m] > 0
   /// @throws base::InputError if the line cannot be opened
-  KheperaDrive(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM, double track);
+  KheperaDrive(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM, double track);
   ~KheperaDrive() override { stop(); }
 
   void drive(const base::Twist& twist, std::int64_t now) override;

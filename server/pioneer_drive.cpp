@@ -30,7 +30,7 @@ int whole(double value, double most) {
 
 }  // namespace
 
-PioneerDrive::PioneerDrive(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM, double)
+PioneerDrive::PioneerDrive(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM, double)
     : RealRobot(type, options, X_WM) {
   ranges_.fill(kNoEcho);
   start(0);

@@ -15,7 +15,7 @@ class PioneerDrive final : public RealRobot {
  public:
   /// @param X_WM start pose
   /// @throws base::InputError if the line cannot be opened
-  PioneerDrive(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM, double track);
+  PioneerDrive(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM, double track);
   ~PioneerDrive() override { stop(); }
 
   void drive(const base::Twist& twist, std::int64_t now) override;

@@ -8,20 +8,23 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "netio/serial_line.h"
+#include "netio/tcp.h"
 #include "server/create_drive.h"
 #include "server/khepera_drive.h"
 #include "server/pioneer_drive.h"
+#include "server/player_drive.h"
 
 namespace sf::server {
 
 namespace {
 
 constexpr std::int64_t kSilence = 500'000'000;    // [ns] 33 frames of a Create, 5 of a Pioneer
-constexpr std::int64_t kRevival = 1'000'000'000;  // [ns] between attempts
-constexpr std::size_t kMostBytes = 8192;          // read per update: more than one second at 57600 baud
+constexpr std::int64_t kRevival = 1'000'000'000;  // [ns] between attempts to open a lost line
+constexpr int kConnectIn = 3000;                  // [ms] at the start
 
 template <class Robot>
-std::unique_ptr<RealRobot> make(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM,
+std::unique_ptr<RealRobot> make(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM,
                                 double track) {
   return std::make_unique<Robot>(type, options, X_WM, track);
 }
@@ -48,7 +51,16 @@ constexpr RealRobotType kTypes[] = {
      .distance = robots::kKheperaPulse,
      .slip = 0.002,
      .poll = 10'000'000,
-     .make = make<KheperaDrive>}};
+     .make = make<KheperaDrive>},
+    // An unknown robot, so the largest slip of the others. Drivers may take seconds to start their robot.
+    {.word = "player",
+     .title = "robot behind Player",
+     .behind_server = true,
+     .slip = 0.02,
+     .most_bytes = 256u << 10,
+     .restart = 10'000'000'000,
+     .poll = 10'000'000,
+     .make = make<PlayerDrive>}};
 
 }  // namespace
 
@@ -63,19 +75,24 @@ const RealRobotType& real_robot_type(std::string_view word) {
   throw base::InputError(fmt::format("unknown type of robot '{}'{}", word, base::expected_one_of(word, words)));
 }
 
-std::unique_ptr<RealRobot> make_real_robot(const SerialOptions& options, const base::Pose& X_WM, double track) {
+std::unique_ptr<RealRobot> make_real_robot(const RealRobotOptions& options, const base::Pose& X_WM, double track) {
   const RealRobotType& type = real_robot_type(options.type);
   return type.make(type, options, X_WM, track);
 }
 
-RealRobot::RealRobot(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM)
-    : type_(type),
-      device_(options.device),
-      baud_(options.baud > 0 ? options.baud : type.baud),
-      line_(std::in_place, device_, baud_, type.stop_bits) {
+RealRobot::RealRobot(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM)
+    : type_(type), options_(options) {
+  if (options_.baud == 0) options_.baud = type.baud;
+  line_ = open(kConnectIn);
   state_.X_WM = X_WM;
   counts_.lines = 1;
+  if (type.behind_server) revived_ = 0;
   if (type.poll > 0) due_ = 0;
+}
+
+std::unique_ptr<netio::ByteLine> RealRobot::open(int wait_ms) const {
+  if (type_.behind_server) return std::make_unique<netio::TcpLine>(options_.server, wait_ms);
+  return std::make_unique<netio::SerialLine>(options_.device, options_.baud, type_.stop_bits);
 }
 
 void RealRobot::update(std::int64_t now) {
@@ -100,7 +117,7 @@ void RealRobot::update(std::int64_t now) {
 void RealRobot::receive(std::int64_t now) {
   touched_.reset();
   std::array<std::uint8_t, 512> bytes;
-  for (std::size_t all = 0, n = 1; line_ && n > 0 && all < kMostBytes; all += n) {
+  for (std::size_t all = 0, n = 1; line_ && n > 0 && all < type_.most_bytes; all += n) {
     n = line_->read(bytes);
     if (n > 0) take(std::span(bytes).first(n), now);
   }
@@ -110,16 +127,19 @@ void RealRobot::receive(std::int64_t now) {
 bool RealRobot::silent(std::int64_t now) const { return now - last_.value_or(0) > kSilence; }
 
 void RealRobot::revive(std::int64_t now) {
-  if (revived_ && now - *revived_ < kRevival) return;
+  const bool waits = line_ && type_.behind_server;  // for its driver
+  if (waits && now - last_.value_or(0) < type_.restart) return;
+  if (revived_ && now - *revived_ < (waits ? type_.restart : kRevival)) return;
   revived_ = now;
+  if (type_.behind_server) line_.reset();
   try {
     if (!line_) {
-      line_.emplace(device_, baud_, type_.stop_bits);
+      line_ = open(0);
       ++counts_.lines;
     }
     start(now);
   } catch (const base::InputError&) {
-    // Still unplugged: retry later.
+    // Still unplugged, or no server: retry later.
   }
 }
 
@@ -154,10 +174,13 @@ void RealRobot::measured(std::uint8_t type, std::vector<double> values, std::int
 }
 
 std::string RealRobot::problem(std::int64_t now) const {
-  if (!line_) return fmt::format("the serial line {} was disconnected", device_);
-  if (silent(now) || !last_)
-    return fmt::format("the {} on {} is silent: switched off, or not at {} baud", type_.title, device_, baud_);
-  return fault();
+  return !line_ || silent(now) || !last_ ? silence(line_ != nullptr) : fault();
+}
+
+std::string RealRobot::silence(bool connected) const {
+  if (!connected) return fmt::format("the serial line {} was disconnected", options_.device);
+  return fmt::format("the {} on {} is silent: switched off, or not at {} baud", type_.title, options_.device,
+                     options_.baud);
 }
 
 }  // namespace sf::server

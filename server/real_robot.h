@@ -1,6 +1,6 @@
 #pragma once
-// A real robot on a serial line in place of a robot's motion model. Commands are sent to its wheels. Its pose is
-// dead-reckoned from the start pose, by its own odometry.
+// A real robot, on a serial line or behind a Player server, in place of a robot's motion model. Commands are sent to
+// its wheels. Its pose is dead-reckoned from the start pose, by its own odometry.
 //
 //   const auto robot = make_real_robot({.type = "khepera", .device = "/dev/ttyUSB0"}, X_WM, track);
 //   robot->update(now);
@@ -16,30 +16,35 @@
 
 #include "base/bytes.h"
 #include "base/report.h"
-#include "netio/serial_line.h"
+#include "netio/byte_line.h"
+#include "netio/endpoint.h"
 #include "sensors/odometer.h"
 
 namespace sf::server {
 
 class RealRobot;
 
-struct SerialOptions {
+struct RealRobotOptions {
   std::string type = "create";  ///< word of a RealRobotType
-  std::string device;           ///< "/dev/ttyUSB0"
+  std::string device;           ///< "/dev/ttyUSB0"; empty for a server
   unsigned baud = 0;            ///< 0: the default of the type
+  netio::Endpoint server;       ///< of a type that is behind a server
 };
 
 /// Description of one type of real robots.
 struct RealRobotType {
-  std::string_view word;   ///< "create"
-  std::string_view title;  ///< "Create"
-  unsigned baud = 57600;   ///< default
-  int stop_bits = 1;       ///< 1 or 2
-  double distance = 1e-3;  ///< [m] resolution of its odometry
-  double angle = 0.0;      ///< [rad] resolution of its heading; 0: it counts the wheels
-  double slip = 0.003;     ///< [m^(1/2)] assumed slip of its wheels on a smooth floor
-  std::int64_t poll = 0;   ///< [ns] longest time between two updates, for answers and its watchdog; 0: unlimited
-  std::unique_ptr<RealRobot> (*make)(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM,
+  std::string_view word;          ///< "create"
+  std::string_view title;         ///< "Create"
+  bool behind_server = false;     ///< on TCP, instead of a serial line
+  unsigned baud = 57600;          ///< default
+  int stop_bits = 1;              ///< 1 or 2
+  double distance = 1e-3;         ///< [m] resolution of its odometry
+  double angle = 0.0;             ///< [rad] resolution of its heading; 0: it counts the wheels
+  double slip = 0.003;            ///< [m^(1/2)] assumed slip of its wheels on a smooth floor
+  std::size_t most_bytes = 8192;  ///< read per update: on a serial line, more than one second at 57600 baud
+  std::int64_t restart = 0;       ///< [ns] of silence of a robot behind a server after which its connection is replaced
+  std::int64_t poll = 0;          ///< [ns] longest time between two updates, for answers and its watchdog; 0: unlimited
+  std::unique_ptr<RealRobot> (*make)(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM,
                                      double track) = nullptr;
 };
 std::span<const RealRobotType> real_robot_types();
@@ -47,8 +52,9 @@ std::span<const RealRobotType> real_robot_types();
 const RealRobotType& real_robot_type(std::string_view word);
 
 /// @param X_WM start pose @param track [m] > 0
-/// @throws base::InputError for an unknown type, or if the line cannot be opened
-std::unique_ptr<RealRobot> make_real_robot(const SerialOptions& options, const base::Pose& X_WM, double track);
+/// @throws base::InputError for an unknown type, or if the line cannot be opened or the server does not accept the
+/// connection within three seconds
+std::unique_ptr<RealRobot> make_real_robot(const RealRobotOptions& options, const base::Pose& X_WM, double track);
 
 struct RealRobotCounts {
   std::uint64_t frames = 0;         ///< valid frames or answers received
@@ -81,8 +87,8 @@ class RealRobot {
   RealRobot(const RealRobot&) = delete;
   RealRobot& operator=(const RealRobot&) = delete;
 
-  /// Processes received bytes. After half a second of silence, restarts the robot once a second and reopens a lost
-  /// line.
+  /// Processes received bytes. After half a second of silence, restarts the robot once a second, except behind a
+  /// server, and reopens a lost line.
   void update(std::int64_t now);
   /// Applies until the next call; call it at every step. The robot stops while it is not ready.
   virtual void drive(const base::Twist& twist, std::int64_t now) = 0;
@@ -109,7 +115,7 @@ class RealRobot {
 
  protected:
   /// @throws base::InputError if the line cannot be opened
-  RealRobot(const RealRobotType& type, const SerialOptions& options, const base::Pose& X_WM);
+  RealRobot(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM);
 
   /// Starts or restarts the robot.
   virtual void start(std::int64_t now) = 0;
@@ -118,9 +124,14 @@ class RealRobot {
   virtual void run(std::int64_t) {}
   /// Returns why an answering robot is not ready; empty if it is.
   virtual std::string fault() const { return {}; }
+  /// Returns why a robot does not answer. @param connected the line is open
+  virtual std::string silence(bool connected) const;
 
   bool write(std::span<const std::uint8_t> bytes);
-  netio::SerialLine* line() { return line_ ? &*line_ : nullptr; }  ///< null: lost
+  netio::ByteLine* line() { return line_.get(); }  ///< null: lost
+  const netio::Endpoint& server() const { return options_.server; }
+  /// Closes the line, which is opened again as a lost one.
+  void hang_up() { line_.reset(); }
   /// Notes that the robot answered in this update.
   void heard(std::int64_t now) { last_ = now; }
   /// Adds motion along an arc. @param way [m] forward positive @param turn [rad] counter-clockwise
@@ -140,14 +151,14 @@ class RealRobot {
   RealRobotCounts counts_;
 
  private:
+  std::unique_ptr<netio::ByteLine> open(int wait_ms) const;
   bool silent(std::int64_t now) const;
   void receive(std::int64_t now);
   void revive(std::int64_t now);
 
   const RealRobotType& type_;
-  std::string device_;
-  unsigned baud_;
-  std::optional<netio::SerialLine> line_;  ///< empty: the line is lost
+  RealRobotOptions options_;
+  std::unique_ptr<netio::ByteLine> line_;  ///< null: the line is lost
   std::optional<std::int64_t> last_;       ///< [ns] of the last update with an answer
   std::optional<std::int64_t> revived_;    ///< [ns]
   std::int64_t due_ = INT64_MAX;           ///< [ns]

@@ -45,7 +45,7 @@ std::optional<sensors::Encoder> wheels_of(const world::Mover& mover, const RealR
 [[noreturn]] void refuse_localize(const world::Mover& mover) {
   throw base::InputError(fmt::format(
       "'localize' estimates a robot's state from its own sensors, and '{}' has none; expected encoder( ... ) in its "
-      "definition, --cameras or --serial",
+      "definition, --cameras, --serial or --player",
       mover.name));
 }
 
@@ -78,7 +78,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       utc_(options.utc ? options.utc : utc_now) {
   if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
   if (options.map) map_.emplace(world, sensor_set, mover, *options.map);
-  if (options.serial) real_ = make_real_robot(*options.serial, world.movers[mover].X_WM, world.movers[mover].track);
+  if (options.real) real_ = make_real_robot(*options.real, world.movers[mover].X_WM, world.movers[mover].track);
   control::ControllerConfig controller = options.controller;
   controller.localized_outside = true;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr, nullptr, &sensor_set},

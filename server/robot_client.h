@@ -47,7 +47,7 @@ struct RobotClientOptions {
   /// Where to report its true state as V2V packets with its tag's id, 50 per second, stamped with Unix time; nullopt:
   /// nowhere. Replaces the light that cameras see.
   std::optional<netio::Endpoint> truth;
-  std::optional<SerialOptions> serial;  ///< real robot that moves in place of the model; nullopt: none
+  std::optional<RealRobotOptions> real;  ///< robot that moves in place of the model; nullopt: none
   std::optional<OwnMapOptions> map;     ///< where to send its own map; nullopt: no map
 };
 

@@ -87,7 +87,10 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   netio::AddressBook book;
   if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");
   if (!options.map.empty()) client.map = server::OwnMapOptions{read_address(book, options.map, "--map"), options.wire};
-  if (!options.serial.empty()) client.serial = server::SerialOptions{options.robot_type, options.serial, options.baud};
+  if (!options.serial.empty())
+    client.real = server::RealRobotOptions{options.robot_type, options.serial, options.baud, {}};
+  if (!options.player.empty())
+    client.real = server::RealRobotOptions{"player", {}, 0, read_address(book, options.player, "--player")};
   return client;
 }
 

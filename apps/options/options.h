@@ -325,6 +325,7 @@ struct RobotOptions : WorldOptions,
   std::string truth;                  ///< "host:port" that its true state goes to; empty: none
   std::string map;                    ///< "host:port" that its own map is sent to; empty: none
   std::string serial;                 ///< device of a real robot; empty: none
+  std::string player;                 ///< "host:port" of a Player server with a robot; empty: none
   std::string robot_type = "create";  ///< word of a server::RealRobotType
   unsigned baud = 0;                  ///< 0: the default of the type
 };

@@ -346,9 +346,10 @@ void add_cameras(CLI::App& app, RobotOptions& o) {
 }
 
 void add_robot(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("robot",
-                                     "Run one robot in its own process, simulated or on a serial line, with sensors "
-                                     "served by a farm (exit code 1 if the farm sends nothing)");
+  CLI::App* sub =
+      app.add_subcommand("robot",
+                         "Run one robot in its own process, simulated or real (on a serial line or behind a Player "
+                         "server), with sensors served by a farm (exit code 1 if the farm sends nothing)");
   auto& o = add_command(*sub, call, robot, [sub] { require_any(*sub, {"--tag"}, {"--cameras", "--truth"}); });
   add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
                       "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
@@ -383,7 +384,8 @@ void add_robot(CLI::App& app, Call& call) {
                      ->check(not_empty("a device such as /dev/ttyUSB0"))
                      ->type_name("DEVICE");
   std::vector<std::string> types;
-  for (const server::RealRobotType& type : server::real_robot_types()) types.emplace_back(type.word);
+  for (const server::RealRobotType& type : server::real_robot_types())
+    if (!type.behind_server) types.emplace_back(type.word);
   add_choice(
       *sub, "--robot-type", types, [&o](const std::string& word) { o.robot_type = word; },
       "Type of the real robot: iRobot Create or Create 2, Pioneer 3 (ARCOS), Khepera II")
@@ -394,6 +396,11 @@ void add_robot(CLI::App& app, Call& call) {
       ->check(one_of({"9600", "19200", "38400", "57600", "115200"}))
       ->needs(serial)
       ->type_name("BAUD");
+  sub->add_option("--player", o.player,
+                  "Player server of a real robot (position2d:0), which replaces the simulated one")
+      ->check(not_empty("HOST:PORT"))
+      ->excludes(serial)
+      ->type_name("HOST:PORT");
   sub->add_flag("--wait-for-start", o.wait_for_start, "Wait for the start signal before driving (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");
   add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");

@@ -10,10 +10,12 @@
 #include <span>
 
 #include "base/bytes.h"
-#include "bridges/player/protocol.h"
+#include "netio/player/protocol.h"
 #include "netio/tcp.h"
 
 namespace sf::bridges::player {
+
+using namespace netio::player;
 
 inline constexpr std::size_t kMostRequest = 64u << 10;  ///< [byte] maximum payload of a client's message
 inline constexpr std::size_t kMostWaiting = 16u << 20;  ///< [byte] maximum unsent data for one client

@@ -1,9 +1,12 @@
 #include "bridges/player/devices.h"
 
+#include <algorithm>
+
 #include "sensors/bumper.h"
 #include "sensors/gps.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
+#include "sensors/occupancy.h"
 #include "sensors/sonar.h"
 
 namespace sf::bridges::player {
@@ -15,13 +18,24 @@ struct Offer {
   std::uint8_t type;
   std::vector<Interface> interfaces;
 };
-const std::vector<Offer>& offers() {
-  static const std::vector<Offer> kOffers{{sensors::kLaser, {Interface::laser, Interface::ranger}},
-                                          {sensors::kSonar, {Interface::sonar, Interface::ranger}},
-                                          {sensors::kInfrared, {Interface::ir, Interface::ranger}},
-                                          {sensors::kBumper, {Interface::bumper}},
-                                          {sensors::kGps, {Interface::gps}}};
-  return kOffers;
+const std::vector<Offer>& own_interfaces() {
+  static const std::vector<Offer> kOwn{{sensors::kLaser, {Interface::laser, Interface::ranger}},
+                                       {sensors::kSonar, {Interface::sonar, Interface::ranger}},
+                                       {sensors::kInfrared, {Interface::ir, Interface::ranger}},
+                                       {sensors::kBumper, {Interface::bumper}},
+                                       {sensors::kGps, {Interface::gps}}};
+  return kOwn;
+}
+
+/// Types without an interface of their own are opaque, except maps, which do not fit a message.
+std::vector<Offer> offers(const sensors::SensorSet& sensor_set) {
+  std::vector<Offer> all = own_interfaces();
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
+    const auto same = [&](const Offer& offer) { return offer.type == group.type->id; };
+    if (group.type->id != sensors::kOccupancy && std::none_of(all.begin(), all.end(), same))
+      all.push_back({group.type->id, {Interface::opaque}});
+  }
+  return all;
 }
 
 constexpr std::uint32_t kMostIndex = 65'535;  // 16 bits in clients
@@ -52,7 +66,7 @@ void Devices::add_robot(std::uint32_t mover, const SensorGeometry& geometry) {
   robots_.push_back(mover);
   rows_.push_back(
       {.interf = Interface::position2d, .name = robot.name, .mover = mover, .geometry = body_geometry(robot)});
-  for (const auto& [type, interfaces] : offers())
+  for (const auto& [type, interfaces] : offers(sensor_set_))
     for (const sensors::SensorSpec& spec : sensor_set_.of(type, mover)) {
       if (spec.elements > kMostElements) continue;
       const std::uint32_t slot = slot_of(type, mover, spec.sensor);

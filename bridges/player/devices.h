@@ -12,7 +12,7 @@
 #include "base/bytes.h"
 #include "base/reading.h"
 #include "bridges/player/geometry.h"
-#include "bridges/player/protocol.h"
+#include "netio/player/protocol.h"
 #include "sensors/sensor_set.h"
 #include "world/world.h"
 

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "bridges/player/protocol.h"
-#include "bridges/player/xdr.h"
+#include "netio/player/protocol.h"
+#include "netio/player/xdr.h"
 #include "sensors/cones/cone_array.h"
 #include "sensors/sensor_set.h"
 
 namespace sf::bridges::player {
+
+using namespace netio::player;
 
 /// player_pose3d: x, y, z [m], roll, pitch, yaw [rad].
 void put_pose(const base::Pose& pose, XdrWriter& xdr);

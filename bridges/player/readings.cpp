@@ -1,9 +1,12 @@
 #include "bridges/player/readings.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "sensors/infrared.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::bridges::player {
 
@@ -79,6 +82,24 @@ void put_gps(const LastReading& reading, const base::Report& report, XdrWriter& 
   xdr.put_all({0.0, 0.0});  // errors in metres are unknown
 }
 
+/// Little-endian, unlike XDR, so that programs for common processors copy it into their variables.
+template <class Number>
+void put_little(Number number, base::Bytes& out) {
+  const auto bits = std::bit_cast<std::array<std::uint8_t, sizeof(Number)>>(number);
+  static_assert(std::endian::native == std::endian::little);
+  out.insert(out.end(), bits.begin(), bits.end());
+}
+
+void put_opaque_reading(const Device& device, const LastReading& reading, XdrWriter& xdr) {
+  const auto width = static_cast<std::uint32_t>(sensors::element_width(*sensors::find_sensor_type(device.type)));
+  base::Bytes bytes;
+  const auto rows = static_cast<std::uint32_t>(reading.values.size() / width);
+  for (const std::uint32_t number : {std::uint32_t{device.type}, reading.sequence, rows, width})
+    put_little(number, bytes);
+  for (const double value : reading.values) put_little(value, bytes);
+  xdr.put_opaque(bytes);
+}
+
 }  // namespace
 
 std::uint32_t data_subtype(const Device& device, bool stamped) {
@@ -92,6 +113,7 @@ void put_reading(const Device& device, const LastReading& reading, const base::R
   if (device.interf == Interface::ir) put_infrared(device, reading, xdr);
   if (device.interf == Interface::bumper) put_bumpers(reading, xdr);
   if (device.interf == Interface::gps) put_gps(reading, report, xdr);
+  if (device.interf == Interface::opaque) put_opaque_reading(device, reading, xdr);
   if (device.interf != Interface::ranger) return;
   put_ranges<double>(device, reading, xdr);
   if (!stamped) return;

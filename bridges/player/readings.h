@@ -1,12 +1,13 @@
 #pragma once
-// Data of devices as payloads. Values on the wire are never NaN or negative ranges, which clients reject.
+// Data of devices as payloads. Values on the wire are never NaN or negative ranges, which clients reject, except in
+// opaque data.
 
 #include <cstdint>
 #include <vector>
 
 #include "base/report.h"
 #include "bridges/player/devices.h"
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 
 namespace sf::bridges::player {
 
@@ -22,6 +23,7 @@ struct LastReading {
 /// Returns the subtype of a reading's data.
 /// @param stamped with geometry and configuration, if the interface supports it
 std::uint32_t data_subtype(const Device& device, bool stamped);
+/// Opaque data is u32 wire id of the sensor type, sequence, rows, columns, and f64 values row by row, little-endian.
 /// @param report state of the device's mover, for the speed and course of a receiver
 void put_reading(const Device& device, const LastReading& reading, const base::Report& report, bool stamped,
                  XdrWriter& xdr);

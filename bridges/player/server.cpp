@@ -7,7 +7,7 @@
 
 #include "base/elapsed.h"
 #include "bridges/player/readings.h"
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 
 namespace sf::bridges::player {
 

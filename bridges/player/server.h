@@ -12,7 +12,7 @@
 #include "bridges/player/devices.h"
 #include "bridges/player/exchange.h"
 #include "bridges/player/requests.h"
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 #include "netio/rate_limited_log.h"
 #include "netio/tcp.h"
 

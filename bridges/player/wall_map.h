@@ -3,11 +3,13 @@
 
 #include <cstdint>
 
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 #include "record/run_info.h"
 #include "world/world.h"
 
 namespace sf::bridges::player {
+
+using namespace netio::player;
 
 /// A rectangle of the grid.
 struct Tile {

@@ -1,7 +1,8 @@
-// `run --player` and `serve --player` as seen by users of Player.
+// `run --player` and `serve --player` as seen by users of Player, and `robot --player`, which is one of them.
 
 #include <gtest/gtest.h>
 
+#include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/bridges/player_client.h"
 #include "tests/refusal.h"
@@ -83,6 +84,51 @@ TEST(PlayerProgram, AServiceIsRead) {
     EXPECT_EQ(xdr.get(), 0u) << "a service has no contacts";
   }
   EXPECT_EQ(serve.end().code, 0);
+}
+
+/// A robot's process drives the robot of another program, until that program ends.
+TEST(PlayerProgram, ARobotProcessDrivesItsRobotAsAClient) {
+  PlayerProgram run({"run", "--player", "0"});
+  const Folder folder;
+  const std::string world =
+      folder.write("floor.world", "position( name \"ann\" size [0.4 0.3 0.2] track 0.3 pose [-1 0 0 90] )\n");
+  Program robot({"robot", world, "--name", "ann", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
+                 "--set", "points=-1,0,-1,0.3", "--set", "speed=0.4", "--player", netio::endpoint_text(run.server),
+                 "--json"});
+  TestClient client(run.server);
+  client.banner();
+  double y = 0.0;
+  EXPECT_TRUE(until([&] {
+    base::Bytes ann;
+    bridges::player::XdrWriter writer(ann);
+    writer.put_text("ann");
+    writer.put_all({0.0, 0.0, 0.0});
+    const Message answer = client.request(kSimulation, 1, ann);
+    XdrReader xdr(answer.payload);
+    xdr.get_text(10), xdr.get_double();
+    y = xdr.get_double();
+    return y > 0.15;
+  })) << robot.err();
+  EXPECT_EQ(run.end().code, 0);
+  EXPECT_TRUE(robot.prints("the connection to the Player server at 127.0.0.1:")) << robot.err();
+  const Outcome outcome = robot.stop();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_EQ(facts.text("/real_robot/type"), "player");
+  EXPECT_EQ(facts.number("/real_robot/wrong"), 0);
+  EXPECT_GT(facts.number("/real_robot/readings/sonar"), 0);
+  EXPECT_NEAR(facts.number("/real_robot/reported/length_m"), 0.4, 1e-9);
+  EXPECT_NEAR(facts.number("/pose/1"), y, 0.2);
+  EXPECT_NEAR(facts.number("/pose/0"), -1.0, 0.02);
+}
+
+TEST(PlayerProgram, ARobotProcessNeedsAServer) {
+  const Words words{"robot", our_world("rooms.world"), "--name", "roomba2", "--duration", "0.1", "--player"};
+  expect_refused(with(words, {"127.0.0.1:" + std::to_string(free_ports(1))}), "cannot connect to TCP 127.0.0.1:");
+  expect_refused(with(words, {"6665"}), "expected HOST:PORT");
+  expect_refused(with(words, {"127.0.0.1:0"}), "expected HOST:PORT");
+  expect_refused(with(words, {"127.0.0.1:6665", "--serial", "/dev/ttyUSB0"}), "--serial");
+  expect_refused(with(words, {"127.0.0.1:6665", "--robot-type", "create"}), "--serial");
 }
 
 TEST(PlayerProgram, WrongAddressesAreRejected) {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 #include "bridges/player_bridge.h"
 #include "sensors/sensor_set.h"
 

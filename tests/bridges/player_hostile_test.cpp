@@ -41,7 +41,7 @@ std::vector<base::Bytes> one_of_each() {
     all.push_back(message_of(type, to, subtype, payload));
   };
   using enum MessageType;
-  for (const std::uint32_t interf : {4u, 5u, 6u, 13u, 14u, 22u, 31u, 42u, 62u})
+  for (const std::uint32_t interf : {4u, 5u, 6u, 13u, 14u, 22u, 31u, 42u, 51u, 62u})
     add(request, {}, server_request::device, xdr_of(0u, 0u, interf, 0u, 1u, 0u, 0u));
   add(request, {}, server_request::device_list, {});
   add(request, {}, server_request::driver_info, xdr_of(0u, 0u, 6u, 0u, 0u, 0u));

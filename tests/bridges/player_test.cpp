@@ -11,7 +11,9 @@
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/infrared.h"
+#include "sensors/laneedge.h"
 #include "sensors/laser.h"
+#include "sensors/magnetometer.h"
 #include "sensors/sonar.h"
 #include "tests/bridges/player_client.h"
 #include "tests/refusal.h"
@@ -320,6 +322,86 @@ TEST_F(PlayerTest, ReceiversUseMetresAndAMissingFixHasNoNaN) {
   EXPECT_EQ(none.get(), 0u) << "no fix";
   EXPECT_EQ(none.get(), 6u) << "satellites";
   EXPECT_EQ(none.get(), 0u) << "no number";
+}
+
+/// A robot with two lane edges, a magnetometer of two elements and a cliff sensor: types without an interface in
+/// Player.
+const char* const kOpaque = R"(
+name "opaque"
+position( name "ann" size [0.4 0.3 0.2]
+  cliff( )
+  magnetometer( name "coils" scount 2 spose[0] [0.1 0.1 0] spose[1] [0.1 -0.1 0] )
+  laneedge( name "left" )
+  laneedge( name "right" )
+  occupancy( )
+  laser( samples 3 fov 180 range_max 8 )
+)
+)";
+
+struct PlayerOpaque : testing::Test {
+  PlayerOpaque() { client.banner(); }
+  /// Returns the numbers of the opaque data, and checks its layout with a decoder of its own.
+  std::vector<double> values(const Message& data, std::array<std::uint32_t, 4> head) {
+    const base::Bytes& b = data.payload;
+    const auto word = [&](std::size_t at) {
+      return std::uint32_t{b[at]} | std::uint32_t{b[at + 1]} << 8 | std::uint32_t{b[at + 2]} << 16 |
+             std::uint32_t{b[at + 3]} << 24;
+    };
+    const std::size_t size = 16 + std::size_t{8} * head[2] * head[3];
+    EXPECT_EQ(b.size(), 8 + size);
+    EXPECT_EQ(b[7], size & 0xFF) << "the count twice, in XDR";
+    EXPECT_EQ(b[3], size & 0xFF);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(word(8 + 4 * i), head[i]) << i;
+    std::vector<double> numbers;
+    for (std::size_t at = 24; at + 8 <= b.size(); at += 8)
+      numbers.push_back(std::bit_cast<double>(std::uint64_t{word(at + 4)} << 32 | word(at)));
+    return numbers;
+  }
+  Message next(std::uint8_t type, std::uint32_t sensor, const std::vector<double>& read) {
+    base::ReadingBlock reading = run.reading(type, read);
+    reading.sensor = sensor;
+    return data_after(client, [&] { run.tick({reading}); });
+  }
+  PlayerRun run{kOpaque};
+  TestClient client{run.port()};
+};
+
+TEST_F(PlayerOpaque, DevicesAreOrderedByType) {
+  const std::vector<Address> all = listed(client);
+  EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const Address& a) { return a.interf == Interface::opaque; }), 4)
+      << "no map";
+  const char* const names[] = {"ann.left", "ann.right", "ann.coils", "ann.cliff"};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const Message info = client.request({}, server_request::driver_info, xdr_of(0u, 0u, 51u, i, 0u, 0u));
+    XdrReader xdr(info.payload);
+    for (int k = 0; k < 4; ++k) xdr.get();
+    EXPECT_EQ(xdr.get_text(100).substr(0, 9), std::string(names[i]).substr(0, 9));
+  }
+}
+
+TEST_F(PlayerOpaque, LaneEdgesHaveFourColumns) {
+  client.open({Interface::opaque, 1});
+  const Message data = next(sensors::kLaneEdge, 1, {0.25, 12.0, 0.001, 0.002});
+  EXPECT_EQ(data.header.address, (Address{Interface::opaque, 1}));
+  EXPECT_EQ(data.header.subtype, 1u);
+  EXPECT_NEAR(data.header.time, 1.5, 1e-12) << "of the measurement";
+  EXPECT_EQ(values(data, {2, 7, 1, 4}), (std::vector<double>{0.25, 12.0, 0.001, 0.002}));
+  EXPECT_TRUE(std::isnan(values(next(sensors::kLaneEdge, 1, {kNaN, 0.0, kNaN, kNaN}), {2, 7, 1, 4})[0]))
+      << "no edge in sight";
+}
+
+TEST_F(PlayerOpaque, MagnetometersHaveARowForEachElement) {
+  client.open({Interface::opaque, 2});
+  const std::vector<double> fields{5e-5, 3e-5, -4e-5, 0.0, 1e-4, 0.0, 0.0, -1e-4};
+  EXPECT_EQ(values(next(sensors::kMagnetometer, 0, fields), {3, 7, 2, 4}), fields);
+}
+
+TEST_F(PlayerOpaque, HasNoRequests) {
+  for (const std::uint32_t subtype : {0u, 1u, 2u, 255u})
+    EXPECT_EQ(client.request({Interface::opaque, 0}, subtype).header.type, MessageType::nack) << subtype;
+  client.open({Interface::opaque, 0});
+  client.send(MessageType::command, {Interface::opaque, 0}, 1, xdr_of(0u, 0u));
+  EXPECT_EQ(client.request({Interface::opaque, 0}, 1).header.type, MessageType::nack) << "commands are ignored";
 }
 
 TEST_F(PlayerTest, VelocitiesBecomeCommands) {

@@ -55,11 +55,11 @@ constinit const control::ControllerType recorder{
 
 struct RealRobotTest : testing::Test {
   static void SetUpTestSuite() { control::add_controller(&recorder); }
-  std::unique_ptr<RobotClient> client(const SerialOptions& serial) {
+  std::unique_ptr<RobotClient> client(const RealRobotOptions& serial) {
     RobotClientOptions options{.stop_after = 0.0, .log_descriptor = f.log.descriptor()};
     options.link.farm = {netio::kLoopback, f.service->port()};
     options.controller.name = recorder.name;
-    options.serial = serial;
+    options.real = serial;
     return std::make_unique<RobotClient>(f.world, f.sensor_set, 1, f.layout, options);
   }
   Fixture f;
@@ -103,7 +103,7 @@ TEST_F(RealRobotTest, OwnSensorsAreNumberedAfterVirtualOnes) {
   RobotClientOptions options{.stop_after = 0.0, .log_descriptor = f.log.descriptor()};
   options.link.farm = {netio::kLoopback, f.service->port()};
   options.controller.name = recorder.name;
-  options.serial = SerialOptions{.device = create.device()};
+  options.real = RealRobotOptions{.device = create.device()};
   RobotClient robot(world, sensor_set, 1, layout, options);
   EXPECT_TRUE(create.streaming());
   create.run(7);
@@ -143,8 +143,9 @@ TEST(RealRobot, TypesAreFoundByTheirWords) {
   expect_in("did you mean 'khepera'?", refusal_of([] { real_robot_type("kepera"); }));
 }
 
-TEST(RealRobot, EachTypeHasItsLine) {
+TEST(RealRobot, EachSerialTypeHasItsLine) {
   for (const RealRobotType& type : real_robot_types()) {
+    if (type.behind_server) continue;
     PseudoTerminal terminal;
     const auto robot = make_real_robot({.type = std::string(type.word), .device = terminal.device()}, {}, 0.1);
     expect_in(fmt::format("at {} baud", type.baud), robot->problem(kSecond));

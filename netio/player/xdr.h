@@ -11,10 +11,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/bytes.h"
 
-namespace sf::bridges::player {
+namespace sf::netio::player {
 
 /// Appends to a caller's buffer.
 class XdrWriter {
@@ -67,14 +68,27 @@ class XdrReader {
 
   std::uint32_t get() { return static_cast<std::uint32_t>(get_big(4)); }
   double get_double() { return std::bit_cast<double>(get_big(8)); }
+  float get_float() { return std::bit_cast<float>(get()); }
+  /// Returns the count of a variable array, of which each element takes at least `bytes` of the rest.
+  std::size_t get_count(std::size_t bytes) {
+    const std::size_t count = get();
+    good_ = good_ && get() == count && count <= (in_.size() - at_) / bytes;
+    return good_ ? count : 0;
+  }
+  /// Returns a variable array of bytes.
+  std::span<const std::uint8_t> get_opaque() {
+    const std::size_t count = get_count(1), padded = (count + 3) / 4 * 4;
+    good_ = good_ && padded <= in_.size() - at_;
+    if (!good_) return {};
+    return in_.subspan(std::exchange(at_, at_ + padded), count);
+  }
   /// Returns the text without its terminator.
   /// @param most [byte] longer texts, and counts that differ, make the reader invalid
   std::string get_text(std::size_t most) {
-    const std::size_t count = get();
-    good_ = good_ && get() == count && count <= most && (count + 3) / 4 * 4 <= in_.size() - at_;
+    const std::span<const std::uint8_t> bytes = get_opaque();
+    good_ = good_ && bytes.size() <= most;
     if (!good_) return {};
-    const std::string_view text(reinterpret_cast<const char*>(in_.data() + at_), count);
-    at_ += (count + 3) / 4 * 4;
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     return std::string(text.substr(0, text.find('\0')));
   }
   /// Returns false after the first read beyond the end, and after an invalid count.
@@ -97,4 +111,4 @@ class XdrReader {
   bool good_ = true;
 };
 
-}  // namespace sf::bridges::player
+}  // namespace sf::netio::player

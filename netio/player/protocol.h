@@ -1,6 +1,6 @@
 #pragma once
 // The network protocol of the Player robot server, version 3: banner, headers, and the numbers of the interfaces, types
-// and subtypes supported by this server. Payloads are in XDR (xdr.h).
+// and subtypes used by the farm. Payloads are in XDR (xdr.h).
 
 #include <cstdint>
 #include <span>
@@ -8,7 +8,7 @@
 
 #include "base/bytes.h"
 
-namespace sf::bridges::player {
+namespace sf::netio::player {
 
 inline constexpr std::uint16_t kPort = 6665;     ///< default port of clients
 inline constexpr std::size_t kBannerBytes = 32;  ///< sent on connection, padded with zeros
@@ -20,6 +20,7 @@ inline constexpr std::size_t kMostDriverName = 63;     ///< characters
 /// Interface codes in headers.
 enum class Interface : std::uint32_t {
   player = 1,
+  power = 2,
   position2d = 4,
   sonar = 5,
   laser = 6,
@@ -28,6 +29,7 @@ enum class Interface : std::uint32_t {
   ir = 22,
   simulation = 31,
   map = 42,
+  opaque = 51,
   ranger = 62
 };
 
@@ -90,4 +92,4 @@ void put_header(const Header& header, base::Bytes& out);
 /// @param bytes at least kHeaderBytes
 Header read_header(std::span<const std::uint8_t> bytes);
 
-}  // namespace sf::bridges::player
+}  // namespace sf::netio::player

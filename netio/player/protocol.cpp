@@ -1,13 +1,15 @@
-#include "bridges/player/protocol.h"
+#include "netio/player/protocol.h"
 
-#include "bridges/player/xdr.h"
+#include "netio/player/xdr.h"
 
-namespace sf::bridges::player {
+namespace sf::netio::player {
 
 std::string_view interface_name(Interface interf) {
   switch (interf) {
     case Interface::player:
       return "player";
+    case Interface::power:
+      return "power";
     case Interface::position2d:
       return "position2d";
     case Interface::sonar:
@@ -24,6 +26,8 @@ std::string_view interface_name(Interface interf) {
       return "simulation";
     case Interface::map:
       return "map";
+    case Interface::opaque:
+      return "opaque";
     case Interface::ranger:
       return "ranger";
   }
@@ -53,4 +57,4 @@ Header read_header(std::span<const std::uint8_t> bytes) {
   return header;
 }
 
-}  // namespace sf::bridges::player
+}  // namespace sf::netio::player
