@@ -429,6 +429,7 @@ struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOpt
   std::uint32_t every = 1;                                  ///< draw over every n-th image of each camera
   std::string world;                                        ///< world to draw over the pictures; empty: none
   std::uint16_t readings = 0;                               ///< port for mirrored readings; 0: none are drawn
+  std::optional<bridges::WebAddress> view;                  ///< of the live view; nullopt: none
 };
 
 struct CalibrateOptions {
