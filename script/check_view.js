@@ -203,6 +203,13 @@ async function countFleet(browser, requests) {
   const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--speed", "8", "--duration", "6000"]);
   const page = await open(browser, await server.url, requests);
   const robot = await page.evaluate(() => { const row = view.scene.movers.findIndex(({ tag }) => !tag); view.select(row); return row; });
+  // The field of view has the laser's colour of the world file, blue at 12 % on white, unless that layer is off.
+  await until(page, "no scan", () => view.drawing.drawn.beams > 0);
+  check((await page.evaluate((row) => view.scene.movers[row].sensors.find(({ fov }) => fov).color, robot)) === "#0000ff", "the laser is not blue");
+  const blue = await countPixels(page, [224, 224, 255]);
+  await page.evaluate(() => { view.drawing.layers.lasers = false; view.drawing.frame(); });
+  check(blue > 500 && (await countPixels(page, [224, 224, 255])) < blue / 10, `${blue} blue pixels of the field of view`);
+  await page.evaluate(() => { view.drawing.layers.lasers = true; });
   await page.keyboard.press("d");
   await page.keyboard.down("ArrowUp");
   await until(page, "not stuck", (row) => view.fleet.isStuck(row) && document.querySelector("#fleet [data-count=stuck]").textContent === "1 stuck", robot);
