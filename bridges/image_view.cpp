@@ -12,12 +12,13 @@ namespace {
 
 constexpr int kMostQueued = 2;  // updates that the server's thread has not yet distributed
 
-std::vector<record::Topic> image_topics(std::span<const std::string> cameras) {
+std::vector<record::Topic> image_topics(std::span<const std::string> cameras, bool has_tags) {
   static const std::string tags = record::schema_text(record::kTags);
   static const std::string image = record::schema_text(record::kCompressedImage);
-  std::vector<record::Topic> topics{{"/tags", record::kTags, tags}};
+  std::vector<record::Topic> topics;
   for (const std::string& camera : cameras)
     topics.push_back({"/" + camera + "/image/compressed", record::kCompressedImage, image});
+  if (has_tags) topics.push_back({"/tags", record::kTags, tags});
   return topics;
 }
 
@@ -37,13 +38,13 @@ std::shared_ptr<const base::Bytes> tags_message(std::int64_t time, std::span<con
 }
 
 std::shared_ptr<const base::Bytes> image_message(std::int64_t time, const std::string& camera,
-                                                 const base::Bytes& jpeg) {
+                                                 const std::string& format, const base::Bytes& image) {
   base::Bytes bytes;
   record::CdrWriter cdr(bytes);
   record::put_header(cdr, time, camera);
-  cdr.put("jpeg");
-  cdr.put_count(jpeg.size());
-  bytes.insert(bytes.end(), jpeg.begin(), jpeg.end());
+  cdr.put(format);
+  cdr.put_count(image.size());
+  bytes.insert(bytes.end(), image.begin(), image.end());
   return std::make_shared<const base::Bytes>(std::move(bytes));
 }
 
@@ -51,7 +52,8 @@ std::shared_ptr<const base::Bytes> image_message(std::int64_t time, const std::s
 
 ImageView::ImageView(const std::string& name, std::span<const std::string> cameras, const ImageViewOptions& options)
     : cameras_(cameras.begin(), cameras.end()),
-      topics_(image_topics(cameras)),
+      format_(options.format),
+      topics_(image_topics(cameras, options.tags)),
       wishes_(topics_.size()),
       sessions_({name, ViewerMode::service, 0, 0, {}}, topics_, wishes_),
       interval_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.interval))) {
@@ -72,15 +74,17 @@ std::optional<std::vector<std::size_t>> ImageView::wanted() {
   wishes_.topics(subscribed_, fresh_);
   std::vector<std::size_t> cameras;
   for (const std::uint32_t topic : subscribed_)
-    if (topic > 0) cameras.push_back(topic - 1);
+    if (topic < cameras_.size()) cameras.push_back(topic);
   return cameras;
 }
 
 void ImageView::publish(std::int64_t time, std::vector<CameraPicture> pictures, std::span<const SeenTag> tags) {
-  std::vector<SharedMessage> update{{0, time, tags_message(time, tags)}};
+  const auto tags_topic = static_cast<std::uint32_t>(cameras_.size());
+  std::vector<SharedMessage> update;
+  if (topics_.size() > tags_topic) update.push_back({tags_topic, time, tags_message(time, tags)});
   for (const CameraPicture& picture : pictures)
-    update.push_back({static_cast<std::uint32_t>(picture.camera + 1), time,
-                      image_message(time, cameras_.at(picture.camera), picture.jpeg)});
+    update.push_back({static_cast<std::uint32_t>(picture.camera), time,
+                      image_message(time, cameras_.at(picture.camera), format_, picture.bytes)});
   const Clock::time_point now = Clock::now();
   next_ = std::max(asked_ + interval_, now + 2 * (now - asked_));
   ++waiting_;

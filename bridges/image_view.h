@@ -1,6 +1,6 @@
 #pragma once
-// The live view of cameras: a page in the browser with the newest image of each and a table of tags, and Foxglove's own
-// viewers, over one socket.
+// The live view of cameras, or of other sources of pictures: a page in the browser with the newest image of each and a
+// table of tags, and Foxglove's own viewers, over one socket.
 //
 //   ImageView view("lab.toml", {"north", "south"}, {.address = {"127.0.0.1", 8765}});
 //   if (const auto cameras = view.wanted()) view.publish(time, pictures_of(*cameras), tags);
@@ -28,11 +28,13 @@ struct ImageViewOptions {
   /// Of images, only the newest update waits for a client.
   WebLimits limits = {.waiting_updates = 1};
   double interval = 1.0 / 16.0;  ///< [s] least real time between two updates; 15 images/s pass
+  bool tags = true;              ///< whether there is a topic of tags
+  const char* format = "jpeg";   ///< or "png"
 };
 
 struct CameraPicture {
   std::size_t camera = 0;  ///< row of the cameras
-  base::Bytes jpeg;
+  base::Bytes bytes;       ///< in the view's format
 };
 
 /// A tag that cameras see.
@@ -66,7 +68,8 @@ class ImageView {
   using Clock = std::chrono::steady_clock;
 
   std::vector<std::string> cameras_;
-  std::vector<record::Topic> topics_;  ///< tags, then one per camera
+  const std::string format_;
+  std::vector<record::Topic> topics_;  ///< one per camera, then tags
   ViewerWishes wishes_;
   ViewerSessions sessions_;
   std::vector<std::uint32_t> subscribed_, fresh_;

@@ -1,4 +1,5 @@
-// The page of `vps --view`: the newest image of each camera, and the tags that the cameras see.
+// The page of `vps --view`, with the newest image of each camera and the tags that the cameras see, and of `robot --view`
+// and `map --view`, with maps as pictures.
 
 import { Connection } from './protocol.js';
 
@@ -30,23 +31,23 @@ class CameraImage {
   constructor(name) {
     this.canvas = element('canvas', { width: 4, height: 3 });
     this.canvas.setAttribute('role', 'img');
-    this.canvas.setAttribute('aria-label', `Image of camera ${name}`);
+    this.canvas.setAttribute('aria-label', `Image of ${name}`);
     this.rate = element('small', { textContent: 'waiting for an image' });
     const enlarge = element('button', { textContent: 'Enlarge', onclick: () => enlarge.setAttribute('aria-pressed', String(this.root.classList.toggle('large'))) });
     enlarge.setAttribute('aria-pressed', 'false');
     this.root = element('figure', {}, this.canvas, element('figcaption', {}, element('b', { textContent: name }), this.rate, enlarge));
   }
   show(message) {
-    this.#waiting = message.data;
+    this.#waiting = message;
     if (!this.#busy) this.#draw();
   }
   async #draw() {
     this.#busy = true;
     while (this.#waiting) {
-      const bytes = this.#waiting;
+      const { data, format } = this.#waiting;
       this.#waiting = null;
       try {
-        const image = await createImageBitmap(new Blob([bytes], { type: 'image/jpeg' }));
+        const image = await createImageBitmap(new Blob([data], { type: `image/${format}` }));
         if (this.canvas.width !== image.width || this.canvas.height !== image.height) Object.assign(this.canvas, { width: image.width, height: image.height });
         this.canvas.getContext('2d').drawImage(image, 0, 0);
         image.close();
@@ -71,6 +72,7 @@ function addCameras(connection, channels) {
     if (!cameras.has(name)) cameras.set(name, new CameraImage(name));
     connection.subscribe(topic, (message) => cameras.get(name).show(message));
   }
+  $('panel').hidden = !channels.some(({ topic }) => topic === '/tags');
   $('cameras').replaceChildren(...[...cameras.values()].map(({ root }) => root));
 }
 
@@ -101,7 +103,7 @@ function connect() {
   connection.addEventListener('channels', ({ detail }) => addCameras(connection, detail));
   connection.addEventListener('close', () => {
     showStatus('lost', 'not connected');
-    $('notice').textContent = 'vps has ended, or the connection was lost. Reconnecting.';
+    $('notice').textContent = 'The program has ended, or the connection was lost. Reconnecting.';
     $('notice').hidden = false;
     setTimeout(connect, 1500);
   });
