@@ -12,6 +12,8 @@
 #include <utility>
 
 #include "sensors/laneedge_settings.h"
+#include "sensors/laser.h"
+#include "sensors/laser_modes.h"
 
 namespace sf::bridges {
 
@@ -176,9 +178,12 @@ Json types_json(const record::RunInfo& info) {
   return types;
 }
 
-Json sensors_json(const record::RunInfo& info, std::uint32_t mover, std::span<const sensors::LaneEdge> edges) {
+Json sensors_json(const Scene& scene, std::uint32_t mover) {
+  const record::RunInfo& info = scene.info;
+  const auto edges = scene.sensor_set.settings_of<sensors::LaneEdge>(sensors::kLaneEdge, mover);
+  const auto lasers = scene.sensor_set.settings_of<sensors::CastLaser>(sensors::kLaser, mover);
   Json list = Json::array();
-  std::uint32_t lane_edges = 0;
+  std::uint32_t lane_edges = 0, scans = 0;
   for (const record::SensorInfo& sensor : info.movers[mover].sensors) {
     const record::SensorTypeInfo* const type = record::find_sensor_type(info, sensor.type);
     Json row{{"name", sensor.name},
@@ -188,6 +193,7 @@ Json sensors_json(const record::RunInfo& info, std::uint32_t mover, std::span<co
              {"rate", sensor.rate}};
     if (type != nullptr && type->is_scan) row.update(Json{{"fov", sensor.fov}, {"range_max", sensor.range_max}});
     add_elements(sensor, row);
+    if (sensor.type == sensors::kLaser && scans < lasers.size()) row["color"] = color_of(lasers[scans++].laser.color);
     if (sensor.type == sensors::kLaneEdge && lane_edges < edges.size()) add_lane_edge(edges[lane_edges++], row);
     list.push_back(std::move(row));
   }
@@ -210,19 +216,17 @@ void add_movers(const Scene& scene, Json& json) {
   std::map<std::string, std::size_t> numbers;
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
     const world::Mover& mover = world.movers[row];
-    movers.push_back(
-        {{"name", mover.name},
-         {"frame", scene.info.movers[row].base_frame},
-         {"space", scene.info.movers[row].space},
-         {"id", mover.id},
-         {"tag", mover.is_tag},
-         {"pose", pose_json(mover.X_WM)},
-         {"radius", round(mover.radius)},
-         {"color", mover.model < world.models.size() ? color_of(world.models[mover.model].color) : ""},
-         {"shape", shape_number(mover, numbers, shapes)},
-         {"max", {mover.max_forward, mover.max_turn}},
-         {"sensors",
-          sensors_json(scene.info, row, scene.sensor_set.settings_of<sensors::LaneEdge>(sensors::kLaneEdge, row))}});
+    movers.push_back({{"name", mover.name},
+                      {"frame", scene.info.movers[row].base_frame},
+                      {"space", scene.info.movers[row].space},
+                      {"id", mover.id},
+                      {"tag", mover.is_tag},
+                      {"pose", pose_json(mover.X_WM)},
+                      {"radius", round(mover.radius)},
+                      {"color", mover.model < world.models.size() ? color_of(world.models[mover.model].color) : ""},
+                      {"shape", shape_number(mover, numbers, shapes)},
+                      {"max", {mover.max_forward, mover.max_turn}},
+                      {"sensors", sensors_json(scene, row)}});
   }
   json["shapes"] = std::move(shapes);
   json["movers"] = std::move(movers);

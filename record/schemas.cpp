@@ -89,6 +89,9 @@ constexpr std::array kDefinitions = {
     Definition{"sensorfarm_msgs/Lights", "std_msgs/Header header\nsensorfarm_msgs/Light[] lights\n"},
     Definition{"sensorfarm_msgs/StateQuality",
                "std_msgs/Header header\nbool stale\nfloat64 age\nfloat32[6] covariance\n"},
+    Definition{"sensorfarm_msgs/Tag",
+               "uint32 id\nsensorfarm_msgs/Pose pose\nsensorfarm_msgs/Twist velocity\nuint32 cameras\n"},
+    Definition{"sensorfarm_msgs/Tags", "std_msgs/Header header\nsensorfarm_msgs/Tag[] tags\n"},
     Definition{"sensorfarm_msgs/Laser",
                "string name\nstring topic\nsensorfarm_msgs/Pose pose\nfloat64 fov\nuint32 samples\n"
                "float64 range_min\nfloat64 range_max\nfloat64 rate\n"},

@@ -203,6 +203,13 @@ async function countFleet(browser, requests) {
   const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--speed", "8", "--duration", "6000"]);
   const page = await open(browser, await server.url, requests);
   const robot = await page.evaluate(() => { const row = view.scene.movers.findIndex(({ tag }) => !tag); view.select(row); return row; });
+  // The field of view has the laser's colour of the world file, blue at 12 % on white, unless that layer is off.
+  await until(page, "no scan", () => view.drawing.drawn.beams > 0);
+  check((await page.evaluate((row) => view.scene.movers[row].sensors.find(({ fov }) => fov).color, robot)) === "#0000ff", "the laser is not blue");
+  const blue = await countPixels(page, [224, 224, 255]);
+  await page.evaluate(() => { view.drawing.layers.lasers = false; view.drawing.frame(); });
+  check(blue > 500 && (await countPixels(page, [224, 224, 255])) < blue / 10, `${blue} blue pixels of the field of view`);
+  await page.evaluate(() => { view.drawing.layers.lasers = true; });
   await page.keyboard.press("d");
   await page.keyboard.down("ArrowUp");
   await until(page, "not stuck", (row) => view.fleet.isStuck(row) && document.querySelector("#fleet [data-count=stuck]").textContent === "1 stuck", robot);
@@ -264,11 +271,31 @@ async function watchRecording(browser, requests) {
   fs.rmSync(folder, { recursive: true });
 }
 
+/** The page of `vps`: the images of both cameras follow each other, and the table lists their tags. */
+async function watchCameras(browser, requests) {
+  const server = start(program, ["vps", "worlds/testbed.toml", "--rendered", "12", "--world", "worlds/testpath/testpath.world", "--view", "0"]);
+  const page = await browser.newPage();
+  page.on("pageerror", (error) => { console.error(error); process.exit(1); });
+  page.on("request", (request) => requests.push(request.url()));
+  await page.goto(await server.url);
+  const seen = () => [...(window.view?.cameras?.values() ?? [])].map(({ drawn }) => drawn);
+  for (let tries = 0; tries < 400 && (await page.evaluate(seen)).filter((drawn) => drawn > 3).length < 2; ++tries) await new Promise((done) => setTimeout(done, 50));
+  const drawn = await page.evaluate(seen);
+  check(drawn.length === 2 && Math.min(...drawn) > 3, `images of cameras ${drawn}`);
+  const rows = await page.evaluate(() => [...document.querySelectorAll("#tags tbody tr")].map((row) => [...row.cells].map(({ textContent }) => textContent)));
+  check(rows.length > 5 && rows.every(([id, place, heading, speed]) => /^\d+$/.test(id) && /^−?\d+\.\d\d, −?\d+\.\d\d$/.test(place) && /^−?\d+°$/.test(heading) && /^\d\.\d\d$/.test(speed)), `tags ${JSON.stringify(rows)}`);
+  const green = await page.evaluate(() => { const { canvas } = [...view.cameras.values()][0], { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height); let count = 0; for (let i = 0; i < data.length; i += 4) count += data[i + 1] > data[i] + 60 && data[i + 1] > data[i + 2] + 40; return count; });
+  check(green > 200, `outlines of tags: ${green} pixels`);
+  if (picture) await page.screenshot({ path: picture.replace(/(\.\w+)?$/, "-cameras$1") });
+  await server.end();
+  await page.close();
+}
+
 async function main() {
   const profile = fs.mkdtempSync(path.join(os.tmpdir(), "chromium-"));
   const browser = await chromium.launchPersistentContext(profile, { executablePath: process.env.CHROMIUM, headless: true, args: flags, viewport: { width: 1366, height: 768 } });
   const requests = [];
-  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchRecording]) {
+  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchRecording, watchCameras]) {
     const since = Date.now();
     await part(browser, requests);
     console.log(`${part.name}: ${((Date.now() - since) / 1000).toFixed(1)} s`);

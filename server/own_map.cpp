@@ -63,8 +63,9 @@ OwnMap::OwnMap(const world::World& world, const sensors::SensorSet& sensor_set, 
       robot_(static_cast<std::uint16_t>(world.movers[mover].id)),
       session_(netio::random_session()),
       map_({&settings_.settings, 1}, thread_pool_),
-      words_(settings_.row.elements),
-      outbox_({.bind = netio::own_end_for(options.receiver.address)}) {
+      words_(settings_.row.elements) {
+  if (!options.receiver) return;
+  outbox_.emplace(netio::OutboxOptions{.bind = netio::own_end_for(options.receiver->address)});
   const std::string problem = sensors::occupancy_wire_problem(settings_.row, options.wire);
   if (!problem.empty()) throw base::InputError("--map: " + problem);
 }
@@ -73,6 +74,7 @@ void OwnMap::add(const base::ReadingBlock& reading, const base::Pose& X_WM) {
   if (reading.type != sensors::kLaser || reading.sensor != settings_.laser) return;
   if ((last_scan_ && reading.time <= *last_scan_) || reading.values.size() != settings_.settings.samples) return;
   last_scan_ = reading.time;
+  X_WM_ = X_WM;
   const sensors::MapScan scan{0, base::compose(X_WM, X_ML_), reading.values};
   map_.update({&scan, 1});
   ++scans_;
@@ -81,6 +83,17 @@ void OwnMap::add(const base::ReadingBlock& reading, const base::Pose& X_WM) {
 void OwnMap::send(std::int64_t now, bool true_poses) {
   if (now < next_ || scans_ == 0) return;
   next_ = now + std::llround(1e9 / settings_.row.rate);
+  if (outbox_) send_parts(now, true_poses);
+  if (options_.show) {
+    const std::span<const std::uint32_t> words = map_.words(0);
+    maps::OccupancyGrid grid(settings_.settings.grid);
+    std::copy(words.begin(), words.end(), grid.words.begin());
+    options_.show(grid, X_WM_);
+  }
+  ++sequence_;
+}
+
+void OwnMap::send_parts(std::int64_t now, bool true_poses) {
   const std::span<const std::uint32_t> words = map_.words(0);
   std::copy(words.begin(), words.end(), words_.begin());
 
@@ -90,16 +103,16 @@ void OwnMap::send(std::int64_t now, bool true_poses) {
                                    .X_WS = {grid.left, grid.top, 0.0, 0.0},
                                    .values = words_,
                                    .flags = true_poses ? maps::kTruePoses : 0u};
-  const netio::Header header{.robot = robot_, .sequence = sequence_++, .time = now, .session = session_};
+  const netio::Header header{.robot = robot_, .sequence = sequence_, .time = now, .session = session_};
   for (std::uint32_t part = 0; part < sensors::occupancy_parts(settings_.row, options_.wire); ++part) {
     payload_.clear();
     const std::uint8_t type = sensors::encode_occupancy(settings_.row, reading, options_.wire, part, payload_);
     if (options_.wire == sensors::WireFormat::farm) netio::encode_reading(header, type, payload_, packet_);
-    outbox_.queue(options_.receiver, options_.wire == sensors::WireFormat::farm ? packet_ : payload_);
+    outbox_->queue(*options_.receiver, options_.wire == sensors::WireFormat::farm ? packet_ : payload_);
   }
-  outbox_.flush();
+  outbox_->flush();
 }
 
-OwnMapCounts OwnMap::counts() const { return {scans_, sequence_, outbox_.counts()}; }
+OwnMapCounts OwnMap::counts() const { return {scans_, sequence_, outbox_ ? outbox_->counts() : netio::OutboxCounts{}}; }
 
 }  // namespace sf::server

@@ -1,11 +1,12 @@
 #pragma once
 // The occupancy map that a robot builds from its own scans (thesis, 4.4), and its packets.
 //
-//   OwnMap map(world, sensor_set, mover, {.receiver = {address, 52008}});
+//   OwnMap map(world, sensor_set, mover, {.receiver = netio::Endpoint{address, 52008}});
 //   map.add(scan, X_WS);      // each reading of its laser
 //   map.send(now);            // once a step
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -20,13 +21,15 @@
 namespace sf::server {
 
 struct OwnMapOptions {
-  netio::Endpoint receiver;
+  std::optional<netio::Endpoint> receiver;  ///< of its packets; nullopt: none are sent
   sensors::WireFormat wire = sensors::WireFormat::farm;
+  /// Called when the map is due, with the robot's pose at the newest scan. Returns soon: the robot drives meanwhile.
+  std::function<void(const maps::OccupancyGrid& grid, const base::Pose& X_WM)> show = {};
 };
 
 struct OwnMapCounts {
   std::uint64_t scans = 0;  ///< added to the map
-  std::uint64_t maps = 0;   ///< sent with all their parts
+  std::uint64_t maps = 0;   ///< sent with all their parts, or shown
   netio::OutboxCounts sent;
 };
 
@@ -43,7 +46,7 @@ class OwnMap {
   /// Adds a reading of the map's laser that is newer than the last; ignores all others.
   /// @param X_WM of the robot at the reading's time
   void add(const base::ReadingBlock& reading, const base::Pose& X_WM);
-  /// Sends the map if it is due.
+  /// Sends and shows the map if it is due.
   /// @param now [ns] timestamp of the packets @param true_poses whether the map was built from true poses
   void send(std::int64_t now, bool true_poses);
 
@@ -51,6 +54,8 @@ class OwnMap {
   OwnMapCounts counts() const;
 
  private:
+  void send_parts(std::int64_t now, bool true_poses);
+
   sensors::Occupancy settings_;
   base::Pose X_ML_;  ///< laser in the robot frame
   OwnMapOptions options_;
@@ -59,12 +64,13 @@ class OwnMap {
   base::ThreadPool thread_pool_{1};
   sensors::HostMaps map_;
   std::optional<std::int64_t> last_scan_;  ///< [ns]
+  base::Pose X_WM_;                        ///< at the last scan
   std::int64_t next_ = 0;                  ///< [ns]
   std::uint32_t sequence_ = 0;
   std::uint64_t scans_ = 0;
   std::vector<double> words_;
   base::Bytes payload_, packet_;
-  netio::Outbox outbox_;
+  std::optional<netio::Outbox> outbox_;  ///< empty: nothing is sent
 };
 
 }  // namespace sf::server

@@ -98,9 +98,12 @@ struct OpenCv {
   std::unique_ptr<TagFinder> (*make_tag_finder)(const std::string& dictionary);
   /// @param image 3 channels
   void (*draw)(Image& image, const std::vector<Mark>& marks);
-  /// @param source "/dev/video0", a video file, an image file, or a folder of images, which are read in order of their
-  /// names; pipes, sockets and other special files are skipped in a folder and rejected as a source
-  /// @param width, height, rate requested from a device
+  /// Returns the image as JPEG, reduced if a side is longer than `most_side` [px]. @param image with 1 or 3 channels
+  std::vector<std::uint8_t> (*encode_jpeg)(const Image& image, int most_side);
+  /// @param source "/dev/video0", "firewire:N" (an IIDC camera), "gstreamer:PIPELINE", a video file, an image file, or
+  /// a folder of images, which are read in order of their names; pipes, sockets and other special files are skipped in
+  /// a folder and rejected as a source
+  /// @param width, height, rate requested from a V4L2 or FireWire device; a pipeline names its own
   std::unique_ptr<ImageSource> (*open_source)(const std::string& source, int width, int height, double rate);
   /// Opens a Motion JPEG video. @param file "*.avi" @param rate [Hz]
   std::unique_ptr<VideoFile> (*open_video)(const std::string& file, int width, int height, double rate);

@@ -105,17 +105,19 @@ class LineMarks {
   std::optional<glm::dvec2> last_;  ///< [px] end of the last piece, inside or outside the picture
 };
 
-/// Adds id, heading and position in two lines below the tag, inside the picture.
-void add_label(const Camera& camera, const Sighting& sighting, std::vector<Mark>& marks) {
+/// Adds id, heading, position and, if known, speed in lines below the tag, inside the picture.
+void add_label(const Camera& camera, const Sighting& sighting, const TrackedTag* tracked, std::vector<Mark>& marks) {
   constexpr double kLetter = 8.5, kLine = 16.0;  // [px] of OpenCV's font, as used by Mark
   const base::Pose& X = sighting.fit.X_WT;
   const auto middle = project(camera, {X.x, X.y, X.z});
   if (!middle) return;
-  const std::array<std::string, 2> lines{fmt::format("{}: {:.0f} deg", sighting.id, X.yaw * 180.0 / M_PI),
-                                         fmt::format("{:.2f} {:.2f} m", X.x, X.y)};
+  std::vector<std::string> lines{fmt::format("{}: {:.0f} deg", sighting.id, X.yaw * 180.0 / M_PI),
+                                 fmt::format("{:.2f} {:.2f} m", X.x, X.y)};
+  if (tracked != nullptr) lines.push_back(fmt::format("{:.2f} m/s", glm::length(tracked->velocity)));
   const double width = kLetter * static_cast<double>(std::max(lines[0].size(), lines[1].size()));
   glm::dvec2 at = *middle + glm::dvec2{-0.5 * width, 1.1 * sighting.fit.side / sighting.fit.pixel + 0.5 * kLine};
-  const glm::dvec2 last{camera.intrinsics.width - width, camera.intrinsics.height - kLine - 6.0};
+  const glm::dvec2 last{camera.intrinsics.width - width,
+                        camera.intrinsics.height - kLine * (static_cast<double>(lines.size()) - 1.0) - 6.0};
   at = glm::max(glm::min(at, last), glm::dvec2{2.0, kLine});
   for (const std::string& line : lines) {
     marks.push_back({{at}, line, kTag, 1});
@@ -125,7 +127,8 @@ void add_label(const Camera& camera, const Sighting& sighting, std::vector<Mark>
 
 }  // namespace
 
-std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings) {
+std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings,
+                            std::span<const TrackedTag> tracked) {
   std::vector<Mark> marks;
   for (const Sighting& sighting : sightings) {
     const base::Pose& X = sighting.fit.X_WT;
@@ -137,7 +140,9 @@ std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sigh
     const std::vector<glm::dvec2> arrow{at(0.0, 0.0), at(2.0 * h, 0.0), at(1.6 * h, 0.25 * h), at(2.0 * h, 0.0),
                                         at(1.6 * h, -0.25 * h)};
     LineMarks(camera, X.z, near, {{}, "", kAxis, 2}, marks).add(arrow);
-    add_label(camera, sighting, marks);
+    const auto state =
+        std::find_if(tracked.begin(), tracked.end(), [&](const TrackedTag& tag) { return tag.id == sighting.id; });
+    add_label(camera, sighting, state == tracked.end() ? nullptr : &*state, marks);
   }
   return marks;
 }

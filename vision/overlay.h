@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "vision/tag_detector.h"
+#include "vision/tracker.h"
 #include "world/world.h"
 
 namespace sf::vision {
 
 /// Returns marks for each tag: its fitted square projected back into the image, an arrow along its x axis, its id and
-/// pose.
-std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings);
+/// pose, and its speed if `tracked` has its id.
+std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings,
+                            std::span<const TrackedTag> tracked = {});
 
 /// A line on a horizontal plane in the world.
 struct PlaneLine {

@@ -155,7 +155,7 @@ void draw_places(Canvas& canvas, const maps::GridGeometry& geometry, const Layou
 
 }  // namespace
 
-void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& path, const Page& page) {
+Drawing map_drawing(const maps::OccupancyGrid& grid, const MapFigure& figure, const Page& page) {
   const maps::CellCounts census = maps::count(grid);
   const std::vector<LegendItem> legend = legend_of(census, figure, page.map_colors);
   const double all = static_cast<double>(census.all());
@@ -170,7 +170,11 @@ void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const st
   draw_places(canvas, grid.geometry, l, figure);
   draw_axes(canvas, grid.geometry, l);
   draw_legend(canvas, {l.right, l.axes_high.y + kMapLabels}, legend, l.legend);
-  save_picture(canvas.drawing(), path, page);
+  return canvas.drawing();
+}
+
+void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& path, const Page& page) {
+  save_picture(map_drawing(grid, figure, page), path, page);
 }
 
 }  // namespace sf::viz

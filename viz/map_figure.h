@@ -24,6 +24,7 @@ struct MapFigure {
 };
 
 /// Maps of more than 1600 cells along a side are drawn without a grid and scaled down as needed.
+Drawing map_drawing(const maps::OccupancyGrid& grid, const MapFigure& figure, const Page& page = {});
 /// @throws base::InputError naming the path if it cannot be written.
 void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& path, const Page& page = {});
 

@@ -48,13 +48,13 @@ PixelImage paint_pixels(const Drawing& drawing, double scale) {
   return image;
 }
 
-void save_picture(const Drawing& drawing, const std::string& path, const Page& page) {
+std::string picture_bytes(const Drawing& drawing, const std::string& path, const Page& page) {
   const PictureFormat format = format_of(path).value_or(PictureFormat::png);
-  if (format == PictureFormat::svg) return write_picture(path, to_svg(drawing, page_scale(page)));
+  if (format == PictureFormat::svg) return to_svg(drawing, page_scale(page));
   if (format == PictureFormat::pdf) {
     std::string bytes;
     SF_CHECK(drawing_backend().pdf(drawing, page_scale(page), bytes), "Cairo did not create a PDF");
-    return write_picture(path, bytes);
+    return bytes;
   }
   const double scale = page_scale(page) * page.dpi / kPixelsPerInch;
   if (scale * std::max(drawing.width, drawing.height) > kLargestPicture)
@@ -63,7 +63,11 @@ void save_picture(const Drawing& drawing, const std::string& path, const Page& p
                                        "fewer dots per inch or a smaller size",
                                        drawing.width * scale, drawing.height * scale, kLargestPicture));
   const PixelImage image = paint_pixels(drawing, scale);
-  write_picture(path, encode_png(image.rgb, image.width, image.height, PngContent::figure, page.dpi));
+  return encode_png(image.rgb, image.width, image.height, PngContent::figure, page.dpi);
+}
+
+void save_picture(const Drawing& drawing, const std::string& path, const Page& page) {
+  write_picture(path, picture_bytes(drawing, path, page));
 }
 
 }  // namespace sf::viz

@@ -52,8 +52,11 @@ struct PixelImage {
 };
 PixelImage paint_pixels(const Drawing& drawing, double scale = 1.0);
 
-/// @throws base::InputError naming the path if it cannot be written or the picture would have more than 32768 pixels
-/// along a side.
+/// Returns the bytes of a picture file. @param path its suffix is the format; named in errors
+/// @throws base::InputError if the picture would have more than 32768 pixels along a side
+std::string picture_bytes(const Drawing& drawing, const std::string& path, const Page& page = {});
+
+/// @throws base::InputError naming the path if it cannot be written, and as picture_bytes
 void save_picture(const Drawing& drawing, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 
@@ -47,6 +48,17 @@ void write_picture(const std::string& path, std::string_view bytes) {
                            std::string("cannot write the picture (") +
                                (errno != 0 ? std::strerror(errno) : "unknown reason") +
                                "): name a file in a folder that exists, can be written and has room");
+}
+
+void replace_picture(const std::string& path, std::string_view bytes) {
+  const std::string part = path + ".part";
+  write_picture(part, bytes);
+  std::error_code error;
+  std::filesystem::rename(part, path, error);
+  if (!error) return;
+  std::error_code ignored;
+  std::filesystem::remove(part, ignored);
+  throw base::InputError(path, 0, "cannot be replaced by a new picture (" + error.message() + ")");
 }
 
 void write_png(const std::string& path, std::span<const std::uint8_t> rgb, int width, int height, PngContent content) {

@@ -20,6 +20,10 @@ std::string encode_png(std::span<const std::uint8_t> rgb, int width, int height,
 /// Writes the bytes of a picture. @throws base::InputError if the file cannot be written
 void write_picture(const std::string& path, std::string_view bytes);
 
+/// Replaces a picture as a whole: readers see the old or the new one. Writes `path`.part first.
+/// @throws base::InputError if the file cannot be written
+void replace_picture(const std::string& path, std::string_view bytes);
+
 /// @throws base::InputError if the file cannot be written
 void write_png(const std::string& path, std::span<const std::uint8_t> rgb, int width, int height,
                PngContent content = PngContent::figure);

@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "apps/commands/commands.h"
+#include "apps/commands/live_map.h"
 #include "apps/processes/stop_signals.h"
 #include "apps/reports/exposure_warning.h"
 #include "apps/reports/text.h"
@@ -105,6 +106,12 @@ class Display {
         on_terminal_(isatty(STDOUT_FILENO) != 0) {
     const std::uint32_t host = options.from.empty() ? 0 : netio::resolve(options.from);
     for (const std::uint16_t port : options.map_ports) sources_.emplace_back(port, host);
+    if (!options.view && (options.out.empty() || options.interval <= 0.0)) return;
+    std::vector<std::string> names;
+    for (const std::uint16_t port : options.map_ports) names.push_back("port-" + std::to_string(port));
+    if (options.merge) names = {"merged"};
+    live_.emplace(LiveMapOptions{"maps", std::move(names), options.view,
+                                 options.interval > 0.0 ? options.interval : 1.0, options.page});
   }
 
   /// Processes pending packets, waiting a moment for the first. @return true if there were any
@@ -114,16 +121,24 @@ class Display {
   void redraw();
   void print_maps() const;
   void save(const std::string& file) const;
+  /// Passes changed maps on to be drawn.
+  void draw_live();
+  void finish_live() {
+    if (live_) live_->finish();
+  }
   void print_status() const;
 
  private:
   std::vector<maps::OccupancyGrid> pictures() const;
+  viz::MapFigure figure_of(const Source* source) const;
+  std::string own_file(const std::string& file, const Source& source) const;
 
   const MapOptions& options_;
   netio::PortListener port_listener_;
   std::vector<Source> sources_;
   bool on_terminal_;
-  bool changed_ = false;
+  bool changed_ = false, drawn_ = true;  ///< since the last text, and picture
+  std::optional<LiveMap> live_;
 };
 
 bool Display::drain() {
@@ -133,7 +148,7 @@ bool Display::drain() {
     const maps::MapPartStatus taken = take(source, options_.wire, bytes, from, now);
     const bool used = taken == maps::MapPartStatus::incomplete || taken == maps::MapPartStatus::complete;
     ++(used ? source.used : source.left_out);
-    changed_ = changed_ || taken == maps::MapPartStatus::complete;
+    if (taken == maps::MapPartStatus::complete) changed_ = true, drawn_ = false;
   };
   return port_listener_.drain(kMapPatience, on_datagram) > 0;
 }
@@ -183,23 +198,43 @@ void Display::print_maps() const {
   for (const maps::OccupancyGrid& grid : pictures()) print(maps::grid_text(grid));
 }
 
+/// @param source nullptr: all
+viz::MapFigure Display::figure_of(const Source* source) const {
+  viz::MapFigure figure{options_.merge && sources_.size() > 1 ? "Merged occupancy map" : "Occupancy map", "", {}};
+  for (const Source& each : sources_)
+    if (each.assembler.map() != nullptr && (source == nullptr || source == &each))
+      figure.subtitle += (figure.subtitle.empty() ? "" : ", ") + source_name(each, options_.wire);
+  return figure;
+}
+
+/// Returns the picture of one port: map.png becomes map_52000.png and so on.
+std::string Display::own_file(const std::string& file, const Source& source) const {
+  const std::size_t dot = file.rfind('.') > file.rfind('/') + 1 ? file.rfind('.') : std::string::npos;
+  const std::string own = file.substr(0, dot) + "_" + std::to_string(source.port);
+  return dot == std::string::npos ? own : own + file.substr(dot);
+}
+
 void Display::save(const std::string& file) const {
   const std::vector<maps::OccupancyGrid> all = pictures();
-  viz::MapFigure figure{options_.merge && sources_.size() > 1 ? "Merged occupancy map" : "Occupancy map", "", {}};
-  if (all.size() == 1) {
-    for (const Source& source : sources_)
-      if (source.assembler.map() != nullptr)
-        figure.subtitle += (figure.subtitle.empty() ? "" : ", ") + source_name(source, options_.wire);
-    return viz::draw_map(all[0], figure, file, options_.page);
-  }
-  // One picture per port: map.png becomes map_52000.png and so on.
-  const std::size_t dot = file.rfind('.') > file.rfind('/') + 1 ? file.rfind('.') : std::string::npos;
+  if (all.size() == 1) return viz::draw_map(all[0], figure_of(nullptr), file, options_.page);
   std::size_t i = 0;
-  for (const Source& source : sources_) {
+  for (const Source& source : sources_)
+    if (source.assembler.map() != nullptr)
+      viz::draw_map(all[i++], figure_of(&source), own_file(file, source), options_.page);
+}
+
+/// Maps that cannot be merged have pictures of their own, the first of them on the page.
+void Display::draw_live() {
+  if (!live_ || drawn_) return;
+  drawn_ = true;
+  const bool has_files = !options_.out.empty() && options_.interval > 0.0;
+  const std::vector<maps::OccupancyGrid> all = pictures();
+  const bool is_one = all.size() == 1 && (options_.merge || sources_.size() == 1);
+  if (is_one) return live_->show(0, all[0], figure_of(nullptr), has_files ? options_.out : "");
+  for (std::size_t i = 0, row = 0; row < sources_.size(); ++row) {
+    const Source& source = sources_[row];
     if (source.assembler.map() == nullptr) continue;
-    figure.subtitle = source_name(source, options_.wire);
-    const std::string own = file.substr(0, dot) + "_" + std::to_string(source.port);
-    viz::draw_map(all[i++], figure, dot == std::string::npos ? own : own + file.substr(dot), options_.page);
+    live_->show(row, all[i++], figure_of(&source), has_files ? own_file(options_.out, source) : "");
   }
 }
 
@@ -229,12 +264,14 @@ int map(const MapOptions& options) {
       begun = true;
     }
     display.redraw();
+    display.draw_live();
     if (options.once && display.all_whole()) break;
     if (options.duration > 0.0 && base::seconds_since(start) >= options.duration) break;
     if (begun && base::seconds_since(last) >= options.silence) break;
   }
   display.print_maps();
   display.print_status();
+  display.finish_live();
   const bool cut = stop_requested() && options.once && !display.all_whole();
   if (!display.any()) return cut ? interrupted_code() : 1;
   if (!options.out.empty()) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/commands/commands.h"
+#include "apps/commands/live_map.h"
 #include "apps/options/address.h"
 #include "apps/options/controller_options.h"
 #include "apps/options/default_robot.h"
@@ -49,6 +50,10 @@ std::optional<netio::SigningKey> key_of(const RobotOptions& options, const std::
   return key;
 }
 
+bool builds_map(const RobotOptions& options) {
+  return !options.map.empty() || !options.map_file.empty() || options.view;
+}
+
 server::CameraOptions cameras_of(const RobotOptions& options, const netio::Endpoint& farm,
                                  const std::vector<netio::Peer>& peers, const world::Mover& mover) {
   server::CameraOptions cameras;
@@ -86,7 +91,9 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   if (options.cameras > 0) client.cameras = cameras_of(options, client.link.farm, peers, mover);
   netio::AddressBook book;
   if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");
-  if (!options.map.empty()) client.map = server::OwnMapOptions{read_address(book, options.map, "--map"), options.wire};
+  if (builds_map(options)) client.map.emplace();
+  if (!options.map.empty()) client.map->receiver = read_address(book, options.map, "--map");
+  if (client.map) client.map->wire = options.wire;
   if (!options.serial.empty())
     client.real = server::RealRobotOptions{options.robot_type, options.serial, options.baud, {}};
   if (!options.player.empty())
@@ -110,7 +117,15 @@ int robot(const RobotOptions& options) {
   const world::World world = load_with_robots(options);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
-  const server::RobotClientOptions client = client_options(options, world, world.movers[mover]);
+  server::RobotClientOptions client = client_options(options, world, world.movers[mover]);
+  std::optional<LiveMap> live;
+  if (!options.map_file.empty() || options.view) {
+    const std::string& name = world.movers[mover].name;
+    live.emplace(LiveMapOptions{"map of " + name, {name}, options.view});
+    client.map->show = [&](const maps::OccupancyGrid& grid, const base::Pose& X_WR) {
+      live->show(0, grid, {"Map of " + name, "", {{name, X_WR}}}, options.map_file);
+    };
+  }
   server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options), client);
   if (options.spat > 0 && !netio::is_loopback(process.link().farm().address))
     print_message(
@@ -124,6 +139,7 @@ int robot(const RobotOptions& options) {
                 netio::endpoint_text(process.link().farm()),
                 waits_for_start(options) ? ", after the start signal" : "");
   process.run(stop_requested(), options.duration);
+  if (live) live->finish();
   const server::RobotClientStats facts = process.stats();
   print(options.json ? with_warnings(robot_client_json(facts), world.warnings) : robot_client_text(facts));
   return facts.answered || !facts.listens ? 0 : 1;

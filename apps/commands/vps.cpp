@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <filesystem>
 #include <fstream>
 
 #include "apps/commands/commands.h"
-#include "apps/commands/numbered_files.h"
 #include "apps/commands/tag_sender.h"
-#include "apps/commands/vps_readings.h"
+#include "apps/commands/vps_pictures.h"
 #include "apps/options/camera_inputs.h"
 #include "apps/options/peers_option.h"
 #include "apps/processes/stop_signals.h"
@@ -19,9 +16,7 @@
 #include "apps/reports/vps_report.h"
 #include "base/elapsed.h"
 #include "base/error.h"
-#include "vision/overlay.h"
 #include "vision/tag_family.h"
-#include "viz/png.h"
 
 namespace sf::apps {
 
@@ -59,78 +54,6 @@ class TrackFile {
  private:
   std::string path_;
   std::ofstream file_;
-};
-
-/// Writes the pictures of `--overlay`.
-class Overlay {
- public:
-  static constexpr std::uint64_t kMostPictures = 20'000;  ///< per camera, which limits disk usage
-
-  Overlay(const VpsOptions& options, const vision::Testbed& testbed)
-      : testbed_(testbed), path_(options.overlay), every_(options.every) {
-    if (path_.empty()) return;
-    refuse_inputs(options);
-    if (std::filesystem::path(path_).extension() == ".avi")
-      open_videos();
-    else
-      for (const vision::TestbedCamera& each : testbed.cameras)
-        begin_numbered_files(path_, each.camera.name + "-", ".png");
-    if (options.readings > 0)
-      readings_.emplace(options.world, netio::Endpoint{netio::resolve(options.bind), options.readings}, testbed);
-    if (options.world.empty()) return;
-    const world::World world = readings_ ? readings_->world() : world::load_world(options.world);
-    for (const vision::TestbedCamera& each : testbed.cameras)
-      world_marks_.push_back(vision::world_marks(each.camera, world));
-  }
-
-  void write(const vision::Positioning& positioning, std::span<const vision::TrackedTag> tags,
-             std::span<const vision::Frame> frames, std::uint64_t number) {
-    if (path_.empty() || number % every_ != 0 || pictures_ > kMostPictures) return;
-    if (pictures_++ == kMostPictures)
-      return print_message("--overlay ends after {} pictures per camera; draw fewer with --every N", kMostPictures);
-    const auto lines = readings_ ? readings_->lines(tags) : std::span<const vision::PlaneLine>{};
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (frames[i].image.pixels.empty()) continue;
-      const vision::Camera& camera = testbed_.cameras[i].camera;
-      std::vector<vision::Mark> marks = world_marks_.empty() ? std::vector<vision::Mark>() : world_marks_[i];
-      for (const auto& more : {vision::line_marks(camera, lines), vision::tag_marks(camera, positioning.sightings(i))})
-        marks.insert(marks.end(), more.begin(), more.end());
-      const vision::Image picture = vision::draw_over(frames[i].image, marks);
-      if (!videos_.empty())
-        videos_[i]->write(picture);
-      else
-        viz::write_png(fmt::format("{}/{}-{:06}.png", path_, camera.name, number), picture.pixels, picture.width,
-                       picture.height, viz::PngContent::photograph);
-    }
-  }
-
- private:
-  /// Refuses to write pictures into the folders of the input images.
-  void refuse_inputs(const VpsOptions& options) const {
-    auto sources = options.inputs;
-    if (sources.empty())
-      for (const vision::TestbedCamera& each : testbed_.cameras) sources.emplace_back(each.camera.name, each.source);
-    for (const auto& [camera, source] : sources)
-      if (std::error_code ignored; std::filesystem::equivalent(source, path_, ignored))
-        throw base::InputError(path_, 0, "contains the images of camera '" + camera + "'; name another --overlay");
-  }
-  /// Opens one video per camera: tags.avi, or with several cameras tags-north.avi and so on.
-  void open_videos() {
-    const std::string stem = path_.substr(0, path_.size() - 4);
-    for (const vision::TestbedCamera& each : testbed_.cameras) {
-      const std::string file = testbed_.cameras.size() == 1 ? path_ : fmt::format("{}-{}.avi", stem, each.camera.name);
-      const vision::Intrinsics& i = each.camera.intrinsics;
-      videos_.push_back(vision::opencv().open_video(file, i.width, i.height, std::max(1.0, each.camera.rate / every_)));
-    }
-  }
-
-  const vision::Testbed& testbed_;
-  std::string path_;
-  std::uint32_t every_;
-  std::uint64_t pictures_ = 0;
-  std::vector<std::unique_ptr<vision::VideoFile>> videos_;
-  std::optional<SeenReadings> readings_;
-  std::vector<std::vector<vision::Mark>> world_marks_;  ///< per camera
 };
 
 /// Detects and tracks, and adds times and tags to the report.
@@ -177,10 +100,11 @@ int vps(const VpsOptions& options) {
   const auto inputs = open(options, testbed, fleet ? &*fleet : nullptr, robots);
   vision::Positioning positioning(testbed, 0, inputs->is_live());
   TrackFile track(options.track);
-  Overlay overlay(options, testbed);
+  VpsPictures pictures(options, testbed);
   install_stop_handlers();
-  // Rendering has no end of its own.
-  const bool limited = options.images > 0 || options.duration > 0.0 || options.real_time;
+  // People watch at the cameras' rate. Rendering has no end of its own.
+  const bool real_time = options.real_time || options.view;
+  const bool limited = options.images > 0 || options.duration > 0.0 || real_time;
   const std::uint64_t most = fleet && !limited ? kRenderedImages : options.images;
   const bool has_end = most > 0 || (!inputs->is_live() && (!fleet || options.duration > 0.0));
 
@@ -195,13 +119,13 @@ int vps(const VpsOptions& options) {
   for (; !stop_requested() && (most == 0 || n < most) && inputs->next(frames); ++n) {
     complete = options.duration > 0.0 && frames[0].time >= options.duration;
     if (complete) break;
-    if (options.real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
+    if (real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
     if (stop_requested()) break;
     const auto tags = process(frames, positioning, report);
     for (const std::string& warning : positioning.warnings()) print_message(warning);
     sender.send(tags, epoch);
     track.write(tags);
-    overlay.write(positioning, tags, frames, n);
+    pictures.show(positioning, tags, frames, n, epoch + static_cast<std::int64_t>(1e9 * frames[0].time));
     if (meter) meter->add(frames[0].time, tags);
   }
   report.counts = positioning.counts();

@@ -260,15 +260,20 @@ void add_bridges(CLI::App& app, BridgeOptions& o) {
       ->default_str("6665")
       ->type_name("[HOST:]PORT")
       ->group(kBridgeGroup);
-  const auto read = [&o](const std::string& text) { o.view = bridges::read_web_address(text); };
-  app.add_option_function<std::string>(
-         "--view", read,
-         "Serve a live view at this address, for a browser and for Foxglove's viewers (default: 127.0.0.1:8765)")
+  add_live_view(app, o.view, "a live view")->group(kBridgeGroup);
+}
+
+CLI::Option* add_live_view(CLI::App& app, std::optional<bridges::WebAddress>& view, const char* what) {
+  const auto read = [&view](const std::string& text) { view = bridges::read_web_address(text); };
+  return app
+      .add_option_function<std::string>(
+          "--view", read,
+          fmt::format("Serve {} at this address, for a browser and for Foxglove's viewers (default: 127.0.0.1:8765)",
+                      what))
       ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))
       ->expected(0, 1)
       ->default_str("8765")
-      ->type_name("[HOST:]PORT")
-      ->group(kBridgeGroup);
+      ->type_name("[HOST:]PORT");
 }
 
 void add_naming(CLI::App& app, NamingOption& o) {

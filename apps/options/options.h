@@ -320,14 +320,16 @@ struct RobotOptions : WorldOptions,
   std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights come from the farm
   std::uint16_t cameras = 0;  ///< port for TAG packets; 0: none
   estimation::ClockSource camera_clock = estimation::ClockSource::estimated;
-  std::uint32_t tag = 0;              ///< id of the tag that the robot carries; 0: the robot's id
-  double most_sigma = 0.5;            ///< [m] standard deviation of the estimated position at which the robot stops
-  std::string truth;                  ///< "host:port" that its true state goes to; empty: none
-  std::string map;                    ///< "host:port" that its own map is sent to; empty: none
-  std::string serial;                 ///< device of a real robot; empty: none
-  std::string player;                 ///< "host:port" of a Player server with a robot; empty: none
-  std::string robot_type = "create";  ///< word of a server::RealRobotType
-  unsigned baud = 0;                  ///< 0: the default of the type
+  std::uint32_t tag = 0;    ///< id of the tag that the robot carries; 0: the robot's id
+  double most_sigma = 0.5;  ///< [m] standard deviation of the estimated position at which the robot stops
+  std::string truth;        ///< "host:port" that its true state goes to; empty: none
+  std::string map;          ///< "host:port" that its own map is sent to; empty: none
+  std::string map_file;     ///< picture of its own map; empty: none
+  std::optional<bridges::WebAddress> view;  ///< of the page with its own map; nullopt: none
+  std::string serial;                       ///< device of a real robot; empty: none
+  std::string player;                       ///< "host:port" of a Player server with a robot; empty: none
+  std::string robot_type = "create";        ///< word of a server::RealRobotType
+  unsigned baud = 0;                        ///< 0: the default of the type
 };
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP
@@ -361,10 +363,12 @@ struct DumpOptions : JsonOption, BindOption, DurationOption {
 };
 
 struct MapOptions : ReceiveOptions, WireOption, DurationOption, PageOption {
-  std::vector<std::uint16_t> map_ports;  ///< to listen on
-  bool merge = false;                    ///< merge all maps into one
-  std::string out;                       ///< picture; empty: none
-  bool once = false;                     ///< stop once every port has received a complete map
+  std::vector<std::uint16_t> map_ports;     ///< to listen on
+  bool merge = false;                       ///< merge all maps into one
+  std::string out;                          ///< picture; empty: none
+  double interval = 1.0;                    ///< [s] between pictures of maps that change; 0: one at the end
+  std::optional<bridges::WebAddress> view;  ///< of the page with the maps; nullopt: none
+  bool once = false;                        ///< stop once every port has received a complete map
 };
 
 struct ExperimentOptions : SeedOption, DeviceOption, InProcessOption, CompressionOption {
@@ -434,6 +438,7 @@ struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOpt
   std::uint32_t every = 1;                                  ///< draw over every n-th image of each camera
   std::string world;                                        ///< world to draw over the pictures; empty: none
   std::uint16_t readings = 0;                               ///< port for mirrored readings; 0: none are drawn
+  std::optional<bridges::WebAddress> view;                  ///< of the live view; nullopt: none
 };
 
 struct CalibrateOptions {

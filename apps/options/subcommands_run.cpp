@@ -380,6 +380,12 @@ void add_robot(CLI::App& app, Call& call) {
                   "Build a map from the robot's own scans and send it to this address (`sensorfarm map --listen PORT`)")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
+  sub->add_option(
+         "--map-file", o.map_file,
+         "Build this map and draw it into this picture (.png, .svg or .pdf), which is replaced as the map grows")
+      ->check(picture())
+      ->type_name("FILE");
+  add_live_view(*sub, o.view, "a page with this map as a picture");
   auto* serial = sub->add_option("--serial", o.serial, "Serial line of a real robot, which replaces the simulated one")
                      ->check(not_empty("a device such as /dev/ttyUSB0"))
                      ->type_name("DEVICE");
@@ -534,15 +540,22 @@ void add_map(CLI::App& app, Call& call) {
       "map", "Show the occupancy maps that robots send, live in a terminal, and save them as pictures");
   auto& o = add_command(*sub, call, map, [sub] {
     require_any(*sub, kPageOptions, {"--out"});
-    require_any(*sub, {"--map-colors"}, {"--out"});
+    require_any(*sub, {"--interval"}, {"--out"});
+    require_any(*sub, {"--map-colors"}, {"--out", "--view"});
   });
-  add_examples(*sub, {"--listen 52008 -o map.png"});
+  add_examples(*sub, {"--listen 52008 -o map.png", "--listen 52008 --view"});
   add_ports_to_bind(*sub, "--listen", o.map_ports, "Port of a robot's map, or a range of ports A-B (may be repeated)")
       ->required();
   add_bind(*sub, o);
   add_from(*sub, o);
   sub->add_flag("--merge", o.merge, "Merge all maps: a cell that any robot saw occupied is occupied");
-  add_picture(*sub, o.out, "Picture to write at the end: .png, .svg or .pdf; without --merge one per map");
+  add_picture(*sub, o.out, "Picture, replaced while maps arrive: .png, .svg or .pdf; without --merge one per map");
+  sub->add_option("--interval", o.interval,
+                  "Time between two pictures [s] (0: one at the end; the page: once a second)")
+      ->check(number(0.0, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  add_live_view(*sub, o.view, "a page with the maps as pictures");
   add_page(*sub, o);
   add_map_colors(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at --silence or Ctrl-C)");

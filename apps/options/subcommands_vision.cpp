@@ -52,10 +52,12 @@ void add_vps(CLI::App& app, Call& call) {
   auto& o = add_command(*sub, call, vps, [sub] {
     refuse_bind_alone(*sub);
     require_any(*sub, {"--seed"}, {"--rendered", "--robots"});
+    require_any(*sub, {"--world"}, {"--overlay", "--view"});
   });
   add_examples(*sub, {"worlds/testbed.toml --rendered 30 --images 20",
                       "lab.toml --input north=/dev/video0 --input south=/dev/video1 --send 192.168.1.5:9000",
                       "lab.toml --input north=photographs --overlay out/pictures",
+                      "lab.toml --input north=\"gstreamer:v4l2src device=/dev/video0\" --view",
                       "worlds/testbed.toml --robots 9200 --send 127.0.0.1:9100",
                       "lab.toml --overlay out/pictures --world lab.world --readings 9300"});
   sub->add_option("testbed", o.testbed, "Testbed file: cameras and tags (docs/vps.md)")
@@ -68,19 +70,21 @@ void add_vps(CLI::App& app, Call& call) {
          [&o](const std::vector<std::string>& texts) {
            for (const std::string& text : texts) o.inputs.push_back(*read_setting(text));
          },
-         "Source of a camera's images: /dev/videoN, a video, an image or a folder of images (may be repeated; default: "
-         "the file's `source`)")
+         "Source of a camera's images: /dev/videoN, firewire:N, gstreamer:PIPELINE, a video, an image or a folder of "
+         "images (may be repeated; default: the file's `source`)")
       ->check(readable(read_setting, "CAMERA=SOURCE"))
       ->allow_extra_args(false)
       ->type_name("CAMERA=SOURCE");
   add_rendered(*sub, o);
   add_seed(*sub, o, "Seed of rendered images");
-  sub->add_option("--images", o.images,
-                  "Stop after this number of images per camera (0: all, but 30 if rendered without --real-time)")
+  sub->add_option(
+         "--images", o.images,
+         "Stop after this number of images per camera (0: all, but 30 if rendered without --real-time or --view)")
       ->check(whole(0, 1'000'000'000))
       ->type_name("N");
   add_until(*sub, o, "Stop after this long by the images' times [s] (0: at the end of the images, or at Ctrl-C)");
-  sub->add_flag("--real-time", o.real_time, "Process videos, folders and rendered images at the cameras' rate");
+  sub->add_flag("--real-time", o.real_time,
+                "Process videos, folders and rendered images at the cameras' rate (--view does so, too)");
   sub->add_option("--send", o.send, "Address for TAG packets of tags that have no address in the file")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
@@ -98,9 +102,9 @@ void add_vps(CLI::App& app, Call& call) {
       ->needs(overlay)
       ->type_name("N")
       ->capture_default_str();
-  sub->add_option("--world", o.world, "World whose walls and lane markings are drawn over the pictures")
+  sub->add_option("--world", o.world,
+                  "World whose walls and lane markings are drawn over the pictures of --overlay and --view")
       ->check(not_empty("a world"))
-      ->needs(overlay)
       ->type_name("WORLD");
   sub->add_option("--readings", o.readings,
                   "UDP port for readings of the world's robots (`serve --mirror`): draws their beams and lane edges at "
@@ -108,6 +112,7 @@ void add_vps(CLI::App& app, Call& call) {
       ->check(whole(1, 65535))
       ->needs("--world")
       ->type_name("PORT");
+  add_live_view(*sub, o.view, "the images with ids, poses and speeds of their tags");
   add_bind(*sub, o);
 }
 

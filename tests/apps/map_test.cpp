@@ -4,12 +4,14 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <filesystem>
 
 #include "maps/map_packets.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"
 #include "sensors/occupancy.h"
 #include "tests/apps/program.h"
+#include "tests/bridges/raw_client.h"
 #include "tests/netio/documented.h"
 #include "tests/refusal.h"
 #include "tests/viz/png.h"
@@ -122,6 +124,50 @@ void send_map(netio::Outbox& farm, unsigned port, std::uint32_t sequence, std::u
   netio::encode_reading({.robot = 7, .sequence = sequence}, sensors::kOccupancy, payload, packet);
   farm.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, packet);
   farm.flush();
+}
+
+/// The picture shows the newest map while the program runs; no reader sees half of it.
+TEST(Map, PicturesAreReplacedWhileMapsArrive) {
+  const Folder folder;
+  const unsigned port = free_ports(1);
+  const std::string picture = folder.path("map.png");
+  Program map({"map", "--listen", std::to_string(port), "--interval", "0.01", "-o", picture, "--view", "0"});
+  ASSERT_TRUE(map.prints("listening for maps on 1 port"));
+  const std::string before = "view on http://127.0.0.1:", said = map.err();
+  bridges::RawClient client(static_cast<std::uint16_t>(std::stoi(said.substr(said.find(before) + before.size()))));
+  client.upgrade("foxglove.websocket.v1");
+  client.text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})");
+  netio::Outbox farm;
+  std::uint32_t sequence = 0;
+  // Free, then occupied. The legend has as much of both colours.
+  for (const std::uint32_t state : {2u, 1u}) {
+    send_map(farm, port, sequence++, state);
+    EXPECT_TRUE(until([&] {
+      if (!std::filesystem::exists(picture)) return false;
+      const scenes::Picture drawn = scenes::read_png(picture);
+      const int free = drawn.count(0xFFFEFEFEu), occupied = drawn.count(0xFF000000u);
+      return std::abs(free - occupied) > 300 && (free > occupied) == (state == 2u);
+    })) << state;
+  }
+  std::string image;
+  while (image.find("\x89PNG") == std::string::npos && !(image = client.receive_binary(1)).empty()) {
+  }
+  EXPECT_NE(image.find("port-" + std::to_string(port)), std::string::npos);
+  EXPECT_EQ(map.stop().code, 0);
+  EXPECT_FALSE(std::filesystem::exists(picture + ".part"));
+}
+
+/// Boundary: 0 writes one picture, at the end.
+TEST(Map, WithoutAnIntervalThePictureIsWrittenAtTheEnd) {
+  const Folder folder;
+  const unsigned port = free_ports(1);
+  const std::string picture = folder.path("map.png");
+  Program map(listen(port, {"--interval", "0", "-o", picture}));
+  ASSERT_TRUE(map.prints("listening for maps on 1 port"));
+  netio::Outbox farm;
+  send_map(farm, port, 0, 2);
+  EXPECT_EQ(map.wait().code, 0);
+  EXPECT_TRUE(std::filesystem::exists(picture));
 }
 
 /// A sequence number far ahead of the farm's neither shows its map nor makes the genuine ones after it late; it is

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 #include "tests/apps/json.h"
@@ -12,6 +13,7 @@
 #include "tests/create_simulator.h"
 #include "tests/khepera_emulator.h"
 #include "tests/pioneer_emulator.h"
+#include "tests/viz/png.h"
 
 namespace sf {
 
@@ -160,14 +162,21 @@ TEST_F(RobotsTest, SendTheirOwnMaps) {
   const unsigned ports = free_ports(2);
   Program map({"map", "--listen", std::to_string(ports), "--listen", std::to_string(ports + 1), "--merge", "--once",
                "--silence", "60"});
-  const auto robot = [&](const std::string& name, unsigned port) {
-    return service.robot(name, {"--duration", "2", "--map", "127.0.0.1:" + std::to_string(port)});
+  const auto robot = [&](const std::string& name, unsigned port, const Words& more) {
+    return service.robot(name, with({"--duration", "2", "--map", "127.0.0.1:" + std::to_string(port)}, more));
   };
-  const auto two = robot("roomba2", ports), four = robot("roomba4", ports + 1);
+  const std::string picture = service.folder.path("map.png");
+  const auto two = robot("roomba2", ports, {});
+  const auto four = robot("roomba4", ports + 1, {"--map-file", picture, "--view", "0"});
+  EXPECT_TRUE(four->prints("view on http://127.0.0.1:")) << four->err();
+  EXPECT_TRUE(until([&] { return std::filesystem::exists(picture) || !four->running(); }));
+  EXPECT_TRUE(four->running()) << "the picture appears while it drives";
   for (const Json& facts : {facts_of(two), facts_of(four)}) {
     EXPECT_GT(facts.number("/own_map/scans"), 0);
     EXPECT_GT(facts.number("/own_map/maps"), 0);
   }
+  EXPECT_GT(scenes::read_png(picture).count(0xFFFEFEFEu), 1000) << "free cells";
+  EXPECT_FALSE(std::filesystem::exists(picture + ".part"));
   const Outcome outcome = map.stop();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), '1'), 0) << outcome.out;
@@ -205,6 +214,7 @@ TEST(Robot, WrongArgumentsAreRejectedWithTheExpectedOnes) {
       {{"--name", "roomba2", "--set", "sped=1"}, "has no setting 'sped'"},
       {{"--name", "roomba2", "--map", "52000"}, "expected HOST:PORT"},
       {{"--name", "roomba2", "--map", "127.0.0.1:0"}, "expected HOST:PORT"},
+      {{"--name", "roomba2", "--map-file", "map.gif"}, "pictures are PNG, SVG or PDF files"},
       {{"--name", "roomba2", "--serial", "/dev/ttyNONE0"}, "`ls /dev/ttyUSB* /dev/ttyACM*`"},
       {{"--name", "roomba2", "--serial", "/dev/null"}, "is not a serial line"},
       {{"--name", "roomba2", "--serial", "/dev/null", "--baud", "1200"}, "57600"},

@@ -22,6 +22,7 @@
 #include "sensors/sensor_set.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/bridges/raw_client.h"
 #include "tests/viz/png.h"
 #include "vision/tag_family.h"
 
@@ -255,6 +256,25 @@ TEST(Vps, CountsPicturesThatCannotBeRead) {
   EXPECT_TRUE(std::filesystem::exists(folder.path("q/a-000002.png")));
 }
 
+/// A client gets images of the camera and the tags in them while the program runs.
+TEST(Vps, ServesALiveView) {
+  const Folder folder;
+  Program vps({"vps", folder.write("t.toml", kTestbed), "--rendered", "2", "--view", "0"});
+  ASSERT_TRUE(vps.prints("view on http://127.0.0.1:")) << vps.err();
+  const std::string before = "view on http://127.0.0.1:";
+  const std::string said = vps.err();
+  bridges::RawClient client(static_cast<std::uint16_t>(std::stoi(said.substr(said.find(before) + before.size()))));
+  client.upgrade("foxglove.websocket.v1");
+  client.text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0},{"id":2,"channelId":1}]})");
+  EXPECT_NE(client.receive_with("/a/image/compressed"), "");
+  std::string image;
+  while (image.find("\xFF\xD8\xFF") == std::string::npos && !(image = client.receive_binary(1)).empty()) {
+  }
+  EXPECT_NE(image.find("jpeg"), std::string::npos);
+  EXPECT_EQ(image.substr(image.size() - 2), "\xFF\xD9") << "a whole JPEG";
+  EXPECT_EQ(vps.stop().code, 0) << "rendering for a view has no end of its own";
+}
+
 /// Long before the next image, which is due in ten seconds.
 TEST(Vps, CtrlCEndsItAtOnce) {
   const Folder folder;
@@ -407,6 +427,10 @@ TEST(Vps, ReportsErrors) {
            {{testbed, "--input", "a=" + folder.path("")}, "has no images"},
            {{testbed, "--input", "a=" + text}, "cannot be read as a video"},
            {{testbed, "--input", "a=/dev/null"}, "cannot be opened as a camera"},
+           {{testbed, "--input", "a=firewire:first"}, "firewire:first: has no number of a camera"},
+           {{testbed, "--input", "a=gstreamer:"}, "names no pipeline"},
+           {{testbed, "--rendered", "2", "--world", "x.world"}, "--world requires --overlay or --view"},
+           {{testbed, "--rendered", "2", "--view", "192.0.2.1:0"}, "cannot listen on 192.0.2.1:0"},
            {{testbed, "--rendered", "2", "--send", "127.0.0.1"}, "'127.0.0.1' is not an address; expected HOST:PORT"},
            {{testbed, "--rendered", "2", "--overlay", folder.path("none/tags.avi")}, "cannot be written as a video"},
            {{testbed, "--rendered", "500"}, "500 tags do not fit"},

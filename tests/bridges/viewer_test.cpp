@@ -8,7 +8,10 @@
 #include <cstring>
 #include <thread>
 
+#include "bridges/scene_json.h"
 #include "record/cdr.h"
+#include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "tests/bridges/viewer_fixture.h"
 
 namespace sf::bridges {
@@ -360,6 +363,28 @@ TEST(Viewer, PlaysRecordings) {
     EXPECT_EQ(requests.speed, 2.0);
     EXPECT_EQ(requests.paused, false);
   }
+}
+
+/// In file order, by sensor; other sensor types have no colour.
+TEST(SceneJson, LasersHaveTheirColours) {
+  world::World world = ViewerFixture::world_of(2);
+  for (const std::uint32_t color : {0xFF00FF00u, 0x80A0B0C0u}) {
+    sensors::LaserSettings laser;
+    laser.name = "eye" + std::to_string(world.movers[0].sensors.size());
+    laser.color = color;
+    world.movers[0].sensors.push_back(sensors::laser_sensor(laser));
+  }
+  const sensors::SensorSet sensor_set(world);
+  record::RunInfo info = ViewerFixture::run_info_of(world);
+  const record::SensorTypeInfo lasers{sensors::kLaser, "laser", "", {}, true}, other{200, "other", "", {}, false};
+  info.sensor_types = {lasers, other};
+  for (const std::uint8_t type : {std::uint8_t{200}, sensors::kLaser, sensors::kLaser})
+    info.movers[0].sensors.push_back({type, "s", "/s"});
+  const std::string json = scene_json({world, sensor_set, info}, ViewerMode::run);
+  const std::size_t first = json.find("\"color\":\"#00ff00\""), second = json.find("\"color\":\"#a0b0c0\"");
+  EXPECT_LT(first, second) << json;
+  EXPECT_LT(second, json.size()) << json;
+  EXPECT_GT(first, json.find("\"type\":\"other\"")) << "not that of another type";
 }
 
 }  // namespace sf::bridges

@@ -26,7 +26,8 @@ TEST(Schemas, ContainsEachRequiredTypeOnce) {
 }
 
 TEST(Schemas, EveryLineIsAFieldOrAHeading) {
-  for (const auto type : {kOdometry, kLaserScan, kTwistStamped, kTransforms, kFleet, kRunInfo}) {
+  for (const auto type :
+       {kOdometry, kLaserScan, kTwistStamped, kTransforms, kFleet, kRunInfo, kTags, kCompressedImage}) {
     std::istringstream lines(schema_text(type));
     for (std::string line; std::getline(lines, line);) {
       const bool rule = line == std::string(80, '=');

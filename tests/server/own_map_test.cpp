@@ -114,6 +114,31 @@ TEST_F(MapTest, IsSentAtItsRate) {
   EXPECT_FALSE(assembler.true_poses());
 }
 
+/// At the map's rate, with the pose at the newest scan, and without packets.
+TEST_F(MapTest, IsShownWithoutAReceiver) {
+  std::vector<std::uint32_t> words;
+  std::vector<double> places;
+  OwnMapOptions shown;
+  shown.show = [&](const maps::OccupancyGrid& grid, const base::Pose& X_WM) {
+    words = grid.words;
+    places.push_back(X_WM.x);
+  };
+  const world::World world = map_world();
+  OwnMap map(world, sensors::SensorSet(world), 0, shown), sent(world, sensors::SensorSet(world), 0, options());
+  map.send(0, true);
+  EXPECT_TRUE(places.empty()) << "no scan yet";
+  for (std::int64_t time = 0; time < 2 * kSecond; time += kSecond / 4)
+    for (OwnMap* each : {&map, &sent}) {
+      each->add(scan(time), {1e-9 * static_cast<double>(time), 0.5, 0.0, 0.0});
+      each->send(time, true);
+    }
+  EXPECT_EQ(places, (std::vector<double>{0.0, 1.0}));
+  EXPECT_EQ(receive(), 2u) << "of the other map";
+  EXPECT_EQ(words, assembler.map()->words);
+  EXPECT_EQ(map.counts().maps, 2u);
+  EXPECT_EQ(map.counts().sent.sent, 0u);
+}
+
 TEST_F(MapTest, AcceptsOnlyNewScansOfItsLaser) {
   OwnMap map = map_of(map_world());
   map.add(scan(kSecond), {});

@@ -48,6 +48,34 @@ TEST(Overlay, MarksLinesAtTheirHeightAndInTheirColour) {
   EXPECT_EQ(marks[0].width, 4);
 }
 
+/// A label ends with the speed of a tag that is tracked, and stays inside the picture.
+TEST(Overlay, LabelsHaveSpeeds) {
+  const Camera camera = distorted_camera();
+  Sighting seen;
+  seen.id = 7;
+  const auto low = to_plane(camera, {600.0, camera.intrinsics.height - 2.0}, 0.0);
+  ASSERT_TRUE(low);
+  seen.fit.X_WT = {low->x, low->y, 0.0, 0.0};
+  seen.fit.side = 0.15;
+  seen.fit.pixel = 0.004;
+  TrackedTag other, same;
+  other.id = 8;
+  same.id = 7;
+  same.velocity = {0.3, -0.4};
+  const auto texts = [&](std::vector<TrackedTag> tracked) {
+    std::vector<std::string> found;
+    for (const Mark& mark : tag_marks(camera, {{seen}}, tracked)) {
+      if (mark.text.empty()) continue;
+      found.push_back(mark.text);
+      EXPECT_LT(mark.points[0].y, camera.intrinsics.height) << mark.text;
+    }
+    return found;
+  };
+  EXPECT_EQ(texts({other}).size(), 2u);
+  ASSERT_EQ(texts({other, same}).size(), 3u);
+  EXPECT_EQ(texts({other, same})[2], "0.50 m/s");
+}
+
 TEST(Overlay, ClipsToThePicture) {
   const Camera camera = distorted_camera();
   // 5 m x 4 m are visible: walls outside of this area, through it, around it, and of extreme length, with a bounded

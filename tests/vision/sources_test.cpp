@@ -92,6 +92,56 @@ TEST_F(Sources, RejectSpecialFiles) {
   EXPECT_NE(error_of("/dev/null").find("cannot be opened as a camera"), std::string::npos);
 }
 
+/// Without hardware: the error names the source, what was expected and what to do.
+TEST_F(Sources, MissingDevicesAreNamed) {
+  for (const char* source : {"/dev/video999", "fire"})
+    expect_in("does not exist; expected a device such as /dev/video0, firewire:0", error_of(source));
+  expect_in("/dev/video999: does not exist", error_of("/dev/video999"));
+  for (const char* source : {"firewire:", "firewire:x", "firewire:0x", "firewire:-1", "firewire:63"})
+    expect_in(std::string(source) + ": has no number of a camera; expected firewire:0", error_of(source));
+  const std::string fire = error_of("firewire:62");
+  EXPECT_TRUE(fire.find("expected an IIDC camera") < fire.size() || fire.find("needs an OpenCV with") < fire.size())
+      << fire;
+  expect_in("gstreamer: : names no pipeline; expected elements as for gst-launch-1.0", error_of("gstreamer: "));
+  const std::string pipeline = error_of("gstreamer:nosuchsource device=1");
+  EXPECT_TRUE(pipeline.find("no element \"nosuchsource\"") < pipeline.size() ||
+              pipeline.find("needs an OpenCV with GStreamer") < pipeline.size())
+      << pipeline;
+}
+
+/// Four images of a pipeline with a moving ball, in grey; then its end.
+TEST_F(Sources, PipelinesAreReadToTheirEnd) {
+  std::unique_ptr<ImageSource> source;
+  try {
+    source = opencv().open_source(
+        "gstreamer:videotestsrc num-buffers=4 pattern=ball ! video/x-raw,width=64,height=48 ! videoconvert ! "
+        "video/x-raw,format=GRAY8 ! appsink sync=false",
+        0, 0, 0.0);
+  } catch (const base::InputError& error) {
+    GTEST_SKIP() << "no GStreamer elements (Debian: gstreamer1.0-plugins-base): " << error.what();
+  }
+  EXPECT_TRUE(source->is_live());
+  int count = 0;
+  for (Image image; source->next(image); ++count) {
+    ASSERT_EQ(image.width, 64);
+    ASSERT_EQ(image.height, 48);
+    EXPECT_EQ(image.channels, 1);
+  }
+  EXPECT_EQ(count, 4);
+}
+
+/// The sink is added.
+TEST_F(Sources, PipelinesNeedNoSink) {
+  try {
+    const auto source = opencv().open_source("gstreamer:videotestsrc ! video/x-raw,width=32,height=24", 0, 0, 0.0);
+    Image image;
+    ASSERT_TRUE(source->next(image));
+    EXPECT_EQ(image.pixels.size(), 32u * 24u);
+  } catch (const base::InputError& error) {
+    GTEST_SKIP() << "no GStreamer elements (Debian: gstreamer1.0-plugins-base): " << error.what();
+  }
+}
+
 TEST_F(Sources, FilesThatCannotBeReadGiveNoPixels) {
   write_image("a.png", 10);
   write("b.png", "no image");
@@ -110,6 +160,25 @@ TEST_F(Sources, RejectLargerImages) {
   const auto source = opencv().open_source(path("a.pgm"), 0, 0, 0.0);
   Image image;
   EXPECT_THROW(source->next(image), base::InputError);
+}
+
+/// A side of 1280 px is kept, one more is reduced; a very long image keeps one pixel across.
+TEST_F(Sources, JpegsAreBounded) {
+  struct Case {
+    int width, height, channels, left_width, left_height;
+  };
+  for (const Case& each : {Case{1280, 3, 3, 1280, 3}, Case{1281, 1281, 1, 1280, 1280}, Case{6400, 1, 1, 1280, 1},
+                           Case{100, 2560, 3, 50, 1280}}) {
+    const auto size = static_cast<std::size_t>(each.width) * each.height * each.channels;
+    const Image image{each.width, each.height, each.channels, std::vector<std::uint8_t>(size, 90)};
+    const std::vector<std::uint8_t> bytes = opencv().encode_jpeg(image, 1280);
+    const auto source = opencv().open_source(write("a.jpg", std::string(bytes.begin(), bytes.end())), 0, 0, 0.0);
+    Image read;
+    ASSERT_TRUE(source->next(read));
+    EXPECT_EQ(read.width, each.left_width) << each.width;
+    EXPECT_EQ(read.height, each.left_height) << each.width;
+    EXPECT_NEAR(*read.at(0, 0), 90, 2);
+  }
 }
 
 TEST(Drawing, ReportsTheReasonForFailure) {

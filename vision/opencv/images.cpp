@@ -77,4 +77,24 @@ void draw(Image& image, const std::vector<Mark>& marks) {
   });
 }
 
+std::vector<std::uint8_t> encode_jpeg(const Image& image, int most_side) {
+  std::vector<std::uint8_t> bytes;
+  attempt("encoding of an image", [&] {
+    cv::Mat picture = wrap(image), reduced, bgr;
+    if (const double scale = static_cast<double>(most_side) / std::max(image.width, image.height); scale < 1.0) {
+      // A very long image keeps at least one pixel across.
+      const cv::Size size(std::max(1, static_cast<int>(scale * image.width)),
+                          std::max(1, static_cast<int>(scale * image.height)));
+      cv::resize(picture, reduced, size, 0.0, 0.0, cv::INTER_AREA);
+      picture = reduced;
+    }
+    if (image.channels == 3) {
+      cv::cvtColor(picture, bgr, cv::COLOR_RGB2BGR);
+      picture = bgr;
+    }
+    cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 85});
+  });
+  return bytes;
+}
+
 }  // namespace sf::vision

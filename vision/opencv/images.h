@@ -21,6 +21,7 @@ void attempt(const std::string& what, const std::function<void()>& work);
 /// Reads an image in grey; without pixels if the file is unreadable. @throws base::InputError as ImageSource::next
 Image read_image(const std::string& file);
 void draw(Image& image, const std::vector<Mark>& marks);
+std::vector<std::uint8_t> encode_jpeg(const Image& image, int most_side);
 /// Copies an OpenCV matrix with 8 bits per channel and the image's number of channels.
 /// @param source of the image. @throws base::InputError for more than `kMaxImagePixels`
 void copy(const cv::Mat& from, const std::string& source, Image& to);

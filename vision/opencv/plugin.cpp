@@ -11,6 +11,7 @@ const sf::vision::OpenCv sensorfarm_opencv{
     .tag_count = sf::vision::tag_count,
     .make_tag_finder = sf::vision::make_tag_finder,
     .draw = sf::vision::draw,
+    .encode_jpeg = sf::vision::encode_jpeg,
     .open_source = sf::vision::open_source,
     .open_video = sf::vision::open_video,
     .find_board = sf::vision::find_board,

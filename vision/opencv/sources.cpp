@@ -1,15 +1,24 @@
-// Devices and videos with OpenCV's videoio, and folders of images.
+// Devices, pipelines and videos with OpenCV's videoio, and folders of images.
 
 #include "vision/opencv/plugin.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
+#include <chrono>
 #include <filesystem>
+#include <future>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <opencv2/videoio/registry.hpp>
+#include <optional>
 #include <set>
+#include <thread>
 
 #include "base/error.h"
+#include "vision/opencv/gstreamer.h"
 #include "vision/opencv/images.h"
 
 namespace sf::vision {
@@ -78,35 +87,114 @@ std::unique_ptr<ImageSource> open_folder(const std::string& folder) {
   return std::make_unique<Files>(std::move(files));
 }
 
+constexpr const char* kExpected =
+    "a device such as /dev/video0, firewire:0, \"gstreamer:v4l2src device=/dev/video0\", a video, an image or a "
+    "folder of images";
+
+/// Opens a video with one of OpenCV's readers. Returns a closed one if that fails.
+template <class Source>
+cv::VideoCapture open_capture(const Source& source, cv::VideoCaptureAPIs reader) {
+  // The error of the caller is sufficient; OpenCV would print the attempts of each of its readers.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  try {
+    return cv::VideoCapture(source, reader);
+  } catch (const cv::Exception&) {
+    return {};
+  }
+}
+
+void require_reader(const std::string& source, cv::VideoCaptureAPIs reader, const char* name) {
+  if (!cv::videoio_registry::hasBackend(reader))
+    throw base::InputError(source, 0,
+                           fmt::format("needs an OpenCV with {}, which this one lacks; Debian's libopencv-videoio has "
+                                       "it. Expected another source: {}",
+                                       name, kExpected));
+}
+
+void request(cv::VideoCapture& capture, int width, int height, double rate) {
+  capture.set(cv::CAP_PROP_FRAME_WIDTH, width);
+  capture.set(cv::CAP_PROP_FRAME_HEIGHT, height);
+  capture.set(cv::CAP_PROP_FPS, rate);
+}
+
+std::optional<std::string> after(const std::string& text, std::string_view prefix) {
+  return text.starts_with(prefix) ? std::optional(text.substr(prefix.size())) : std::nullopt;
+}
+
+std::unique_ptr<ImageSource> open_firewire(const std::string& source, const std::string& number, int width, int height,
+                                           double rate) {
+  int camera = -1;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), camera);
+  if (error != std::errc() || end != number.data() + number.size() || camera < 0 || camera > 62)
+    throw base::InputError(source, 0,
+                           "has no number of a camera; expected firewire:0 to firewire:62, as 0 for the first");
+  require_reader(source, cv::CAP_FIREWIRE, "libdc1394");
+  cv::VideoCapture capture = open_capture(camera, cv::CAP_FIREWIRE);
+  if (!capture.isOpened())
+    throw base::InputError(source, 0,
+                           "cannot be opened; expected an IIDC camera (IEEE 1394) that no other program uses. Connect "
+                           "it, and check that you may read and write /dev/fw*");
+  request(capture, width, height, rate);
+  return std::make_unique<Video>(std::move(capture), source, true);
+}
+
+/// Opens a pipeline that ends in `appsink`. @return empty, or the reason why it did not start
+std::string start_pipeline(const std::string& pipeline, cv::VideoCapture& capture) {
+  constexpr auto kTimeToOpen = std::chrono::seconds(10);  // for a network camera; OpenCV 4.6 would wait without limit
+  if (std::string problem = pipeline_problem(pipeline); !problem.empty()) return problem;
+  const auto opened = std::make_shared<std::promise<cv::VideoCapture>>();
+  std::future<cv::VideoCapture> result = opened->get_future();
+  // A thread inside OpenCV cannot be stopped.
+  std::thread([opened, pipeline] { opened->set_value(open_capture(pipeline, cv::CAP_GSTREAMER)); }).detach();
+  if (result.wait_for(kTimeToOpen) != std::future_status::ready) return "it sends no images for 10 s";
+  capture = result.get();
+  return capture.isOpened() ? "" : "it does not start";
+}
+
+/// A pipeline without a sink ends in one for grey or BGR images that holds only the newest.
+std::unique_ptr<ImageSource> open_pipeline(const std::string& source, std::string pipeline) {
+  if (pipeline.find_first_not_of(" \t") == std::string::npos)
+    throw base::InputError(source, 0,
+                           "names no pipeline; expected elements as for gst-launch-1.0, such as "
+                           "\"gstreamer:v4l2src device=/dev/video0\"");
+  require_reader(source, cv::CAP_GSTREAMER, "GStreamer");
+  if (pipeline.find("appsink") == std::string::npos)
+    pipeline += " ! videoconvert ! video/x-raw,format=(string){GRAY8,BGR} ! appsink max-buffers=1 drop=true";
+  cv::VideoCapture capture;
+  if (const std::string problem = start_pipeline(pipeline, capture); !problem.empty())
+    throw base::InputError(
+        source, 0,
+        fmt::format("cannot be started as a GStreamer pipeline ({}); expected elements that end in raw video. Try it "
+                    "with gst-launch-1.0 and \"! autovideosink\", and install the packages of its elements "
+                    "(videoconvert and appsink: gstreamer1.0-plugins-base, v4l2src: gstreamer1.0-plugins-good)",
+                    problem));
+  return std::make_unique<Video>(std::move(capture), source, true);
+}
+
 }  // namespace
 
 std::unique_ptr<ImageSource> open_source(const std::string& source, int width, int height, double rate) {
+  if (const auto number = after(source, "firewire:")) return open_firewire(source, *number, width, height, rate);
+  if (const auto pipeline = after(source, "gstreamer:")) return open_pipeline(source, *pipeline);
   std::error_code error;
   if (fs::is_directory(source, error)) return open_folder(source);
   if (!fs::exists(source, error))
-    throw base::InputError(source, 0,
-                           "does not exist; expected a device such as /dev/video0, a video, an image or a folder");
+    throw base::InputError(
+        source, 0,
+        fmt::format("does not exist; expected {}. Check its name and that the camera is connected", kExpected));
   const bool live = fs::is_character_file(source, error);
   if (!live && !fs::is_regular_file(source, error))
-    throw base::InputError(source, 0,
-                           "is a pipe, a socket or a block device; expected a camera, a video, an image or a folder");
+    throw base::InputError(source, 0, fmt::format("is a pipe, a socket or a block device; expected {}", kExpected));
   if (!live && is_image(source)) return std::make_unique<Files>(std::vector{source});
-  // The error below is sufficient; OpenCV would print the attempts of each of its readers.
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  try {
-    cv::VideoCapture capture(source, live ? cv::CAP_V4L2 : cv::CAP_FFMPEG);
-    if (live) {
-      capture.set(cv::CAP_PROP_FRAME_WIDTH, width);
-      capture.set(cv::CAP_PROP_FRAME_HEIGHT, height);
-      capture.set(cv::CAP_PROP_FPS, rate);
-    }
-    if (capture.isOpened()) return std::make_unique<Video>(std::move(capture), source, live);
-  } catch (const cv::Exception&) {
-  }
-  throw base::InputError(source, 0,
-                         live
-                             ? "cannot be opened as a camera; expected a V4L2 device that no other program uses"
-                             : "cannot be read as a video; expected a device, a video, an image or a folder of images");
+  cv::VideoCapture capture = open_capture(source, live ? cv::CAP_V4L2 : cv::CAP_FFMPEG);
+  if (!capture.isOpened())
+    throw base::InputError(source, 0,
+                           live ? "cannot be opened as a camera; expected a V4L2 device that no other program uses. "
+                                  "Check that you may read "
+                                  "it (group video)"
+                                : fmt::format("cannot be read as a video; expected {}", kExpected));
+  if (live) request(capture, width, height, rate);
+  return std::make_unique<Video>(std::move(capture), source, live);
 }
 
 namespace {

@@ -13,7 +13,7 @@ export class Drawing {
   constructor(canvas, camera, scene, layer, fleet, held) {
     Object.assign(this, { canvas, camera, scene, layer, fleet, held });
     this.context = canvas.getContext('2d', { alpha: false });
-    this.layers = { trails: true, beams: true, maps: true, names: true, lights: true, contacts: true, colors: true };
+    this.layers = { trails: true, beams: true, maps: true, names: true, lights: true, contacts: true, colors: true, lasers: true };
     this.lights = [];
     this.selected = -1;
     this.maps = new Map();  // by topic: MapPicture
@@ -54,7 +54,7 @@ export class Drawing {
     toMetres();
     if (this.layers.maps) for (const map of this.maps.values()) { map.draw(c, scene.origin, px); ++this.drawn.maps; }
     if (this.layers.trails) this.#trails(c, px);
-    if (this.layers.beams) this.#readings((sensor, held) => drawReadingBelow(c, px, sensor, held, this.drawn));
+    if (this.layers.beams) this.#readings((sensor, held) => drawReadingBelow(c, px, sensor, held, this.drawn, this.layers.lasers));
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.#robots(c);
     toMetres();

@@ -264,7 +264,7 @@ function openPopup(id, open = $(`${id}-list`).hidden) {
 }
 
 function fillPopups() {
-  const words = { trails: 'Trails', beams: 'Beams and fields of the selected robot', maps: 'Its occupancy map', names: 'Names', lights: 'Traffic lights', contacts: 'Contacts', colors: 'Own colours of robots that look alike' };
+  const words = { trails: 'Trails', beams: 'Beams and fields of the selected robot', maps: 'Its occupancy map', names: 'Names', lights: 'Traffic lights', contacts: 'Contacts', colors: 'Own colours of robots that look alike', lasers: 'Own colours of lasers (laser_color)' };
   $('layers-list').replaceChildren(...Object.entries(words).map(([key, text]) => {
     const box = Object.assign(document.createElement('input'), { type: 'checkbox', checked: true, onchange: () => { drawing.layers[key] = box.checked; if (key === 'colors') restyle(); dirty = true; } });
     const label = document.createElement('label');

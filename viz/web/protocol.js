@@ -4,7 +4,7 @@ import { readerOf } from './cdr.js';
 
 const utf8 = new TextEncoder();
 
-/** Events: open, close, info, time, parameters, playback, status, each with its message. */
+/** Events: open, close, info, channels, time, parameters, playback, status, each with its message. */
 export class Connection extends EventTarget {
   #socket; #channels = new Map(); #wanted = new Map(); #subscriptions = new Map(); #services = new Map();
   #next = 1; #own = new Map(); #calls = new Map();
@@ -100,6 +100,7 @@ export class Connection extends EventTarget {
           this.#channels.set(channel.topic, channel);
           this.#trySubscribe(channel.topic);
         }
+        this.#tell('channels', message.channels);
         break;
       case 'advertiseServices': for (const { name, id } of message.services) this.#services.set(name, id); break;
       case 'parameterValues': this.#tell('parameters', Object.fromEntries(message.parameters.map(({ name, value }) => [name, value]))); break;

@@ -1,7 +1,7 @@
 // Draws the selected robot's readings over the map. Each reading is drawn from the robot's pose at the measurement, so
 // that beams end on walls.
 
-import { theme, fade } from './theme.js';
+import { theme, fade, onPaper } from './theme.js';
 import { sectorPath } from './scene.js';
 
 /** Composes the pose of B in A with that of C in B: [x, y, yaw]. */
@@ -16,7 +16,8 @@ function echoOf(range, least, most) {
   return { near, echo: !near && range < most, drawn: near ? least : Math.min(range, most) };
 }
 
-function drawScan(c, px, pose, sensor, scan, drawn) {
+/** The field of view and the beams have the colour of the world file (`laser_color`); echoes have that of the theme. */
+function drawScan(c, px, pose, color, scan, drawn) {
   const { ranges, angle_min, angle_increment, range_min, range_max } = scan, [x, y, yaw] = pose;
   const outline = new Path2D(), rays = new Path2D(), ends = new Path2D();
   const full = angle_increment * (ranges.length - 1) > 2 * Math.PI - 0.05;
@@ -32,9 +33,9 @@ function drawScan(c, px, pose, sensor, scan, drawn) {
     if (echo) { ++hits; ends.rect(ex - dot, ey - dot, 2 * dot, 2 * dot); }
   }
   outline.closePath();
-  c.fillStyle = fade(theme.view, 0.12);
+  c.fillStyle = fade(color, 0.12);
   c.fill(outline);
-  c.strokeStyle = fade(theme.view, 0.28);
+  c.strokeStyle = fade(color, 0.28);
   c.lineWidth = px;
   c.stroke(rays);
   c.fillStyle = theme.view;
@@ -160,9 +161,12 @@ export class MapPicture {
   }
 }
 
-/** Draws the newest reading's parts below the robots. @param held {message, pose}, relative to the scene's origin */
-export function drawReadingBelow(c, px, sensor, { message, pose }, drawn) {
-  if (message.ranges) drawScan(c, px, pose, sensor, message, drawn);
+/**
+ * Draws the newest reading's parts below the robots.
+ * @param held {message, pose}, relative to the scene's origin  @param own whether lasers have their own colours
+ */
+export function drawReadingBelow(c, px, sensor, { message, pose }, drawn, own) {
+  if (message.ranges) drawScan(c, px, pose, own && sensor.color ? onPaper(sensor.color) : theme.view, message, drawn);
   else if (sensor.cones && message.range_m) drawCones(c, px, pose, sensor, message, drawn);
 }
 
