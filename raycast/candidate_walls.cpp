@@ -66,12 +66,12 @@ bool clip(glm::dvec2& a, glm::dvec2& b, double reach) {
   return true;
 }
 
-void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, glm::dvec2 centre, bool both_sides,
-                          CandidateWalls& walls) {
+void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, glm::dvec2 centre, double z,
+                          bool both_sides, CandidateWalls& walls) {
   const double radius = shape.radius();
   walls.front_facing.clear();
   walls.back_facing.clear();
-  wall_index.near(centre, shape.reach(), walls.near);
+  wall_index.near(centre, z, shape.reach(), walls.near);
   for (const std::uint32_t i : walls.near) {
     const IndexedWall& s = wall_index.segments()[i];
     glm::dvec2 a = s.a - centre, b = s.b - centre;

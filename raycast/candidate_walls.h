@@ -51,7 +51,7 @@ double fast_bearing(glm::dvec2 p);
 bool clip(glm::dvec2& a, glm::dvec2& b, double reach);
 
 /// Finds the walls around the cell at `centre`. @param both_sides viewers may be inside solids
-void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, glm::dvec2 centre, bool both_sides,
-                          CandidateWalls& walls);
+void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, glm::dvec2 centre, double z,
+                          bool both_sides, CandidateWalls& walls);
 
 }  // namespace sf::raycast

@@ -30,9 +30,9 @@ void CastPlan::add_rows(const world::World& world, bool noise) {
     row.range_min = scanner.scan.range_min;
     row.single = scanner.single;
     row.mount = scanner.scan.X_MS;
-    row.mount.z += world.movers[scanner.mover].X_WM.z;
     const double turn = noise ? kMaxSigmas * scanner.scan.noise.angle_sigma : 0.0;
-    const ListConfig config{row.mount.z, scanner.scan.range_max, row.plan.spread, scanner.scan.fov + 2.0 * turn,
+    const ListConfig config{world.movers[scanner.mover].X_WM.z + row.mount.z, scanner.scan.range_max, row.plan.spread,
+                            scanner.scan.fov + 2.0 * turn,
                             static_cast<std::uint32_t>(std::min<std::size_t>(beams[scanner.mover], 1'000'000))};
     row.config = configs.add(config);
     row.angle_noise = noise && scanner.scan.noise.angle_sigma > 0.0;

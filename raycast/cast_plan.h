@@ -20,7 +20,7 @@ struct Scanner {
 
 /// Layout of one scanner, fixed at load.
 struct ScannerRow {
-  base::Pose mount;        ///< in the mover's frame; z: world height of the beams, fixed at load (2.5-D world)
+  base::Pose mount;        ///< in the mover's frame
   double range_min = 0.0;  ///< [m]
   std::uint32_t mover = 0;
   std::uint32_t config = 0;

@@ -6,11 +6,12 @@
 
 namespace sf::raycast {
 
-/// Key of one cell of one list config.
+/// Key of one cell of one list config at one interval of heights.
 struct CellKey {
   std::int64_t config = 0;  ///< 2 * list config, plus 1 if viewpoints are inside solids
   std::int64_t x = 0;
   std::int64_t y = 0;
+  std::int64_t level = 0;  ///< ListConfigs::level_of
   bool operator==(const CellKey&) const = default;
 };
 

@@ -117,43 +117,37 @@ struct Crowds::Scratch {
 Crowds::Crowds(const MoverGeometry& movers) : movers_(movers) {}
 Crowds::~Crowds() = default;
 
-void Crowds::find(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t)>& height_of,
-                  base::ThreadPool& thread_pool) {
+void Crowds::find(std::span<const Viewpoint> views, base::ThreadPool& thread_pool) {
   scratch_.resize(thread_pool.threads());
-  find_places(views, height_of, thread_pool);
+  find_places(views, thread_pool);
   if (cells_.size() < places_.size()) cells_.resize(places_.size());
   thread_pool.parallel_for(places_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
-    for (std::size_t k = first; k < last; ++k)
-      build(movers_.outlines(places_[k].height), viewers_of(k), scratch_[thread], cells_[k]);
+    for (std::size_t k = first; k < last; ++k) build(viewers_of(k), scratch_[thread], cells_[k]);
   });
 }
 
 /// Assigns crowded views to large cells if nearly all movers at the cell contain it, and otherwise to small cells.
-void Crowds::find_places(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t)>& height_of,
-                         base::ThreadPool& thread_pool) {
+void Crowds::find_places(std::span<const Viewpoint> views, base::ThreadPool& thread_pool) {
   if (size_ == 0.0) size_ = std::max(0.25 * movers_.smallest_inner(), movers_.largest_radius() / 64.0);
   place_of_view_.assign(views.size(), kNowhere);
   for (std::size_t i = 0; i < views.size(); ++i)
-    if (is_crowded({views[i].X_WS.x, views[i].X_WS.y}))
-      place_of_view_[i] = place_of(views[i], height_of(views[i].config), kLarge);
+    if (is_crowded({views[i].X_WS.x, views[i].X_WS.y})) place_of_view_[i] = place_of(views[i], kLarge);
   collect_places(views);
   serves_.assign(places_.size(), 0);
   thread_pool.parallel_for(places_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
-    for (std::size_t k = first; k < last; ++k)
-      serves_[k] = serves(movers_.outlines(places_[k].height), viewers_of(k), scratch_[thread]) ? 1 : 0;
+    for (std::size_t k = first; k < last; ++k) serves_[k] = serves(viewers_of(k), scratch_[thread]) ? 1 : 0;
   });
   if (std::all_of(serves_.begin(), serves_.end(), [](std::uint8_t serves) { return serves != 0; })) return;
   for (std::size_t i = 0; i < views.size(); ++i)
-    if (place_of_[i] != kNoPlace && serves_[place_of_[i]] == 0)
-      place_of_view_[i] = place_of(views[i], place_of_view_[i].height, 1);
+    if (place_of_[i] != kNoPlace && serves_[place_of_[i]] == 0) place_of_view_[i] = place_of(views[i], 1);
   collect_places(views);
 }
 
-Crowds::Place Crowds::place_of(const Viewpoint& view, std::uint32_t height, std::int32_t scale) const {
+Crowds::Place Crowds::place_of(const Viewpoint& view, std::int32_t scale) const {
   const auto cell_of = [&](double at) {
     return std::llround(std::floor(std::clamp(at / (scale * size_), -4e15, 4e15)));
   };
-  return {height, scale, cell_of(view.X_WS.x), cell_of(view.X_WS.y)};
+  return {view.X_WS.z, scale, cell_of(view.X_WS.x), cell_of(view.X_WS.y)};
 }
 
 /// Lists the places of the views and computes the bounding box of the viewers in each.
@@ -177,15 +171,16 @@ void Crowds::collect_places(std::span<const Viewpoint> views) {
 Crowds::Disc Crowds::viewers_of(std::size_t place) const {
   const base::Box& box = boxes_[place];
   return {0.5 * (box.min + box.max),
-          0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 + 1e-15 * (std::abs(box.max.x) + std::abs(box.max.y))};
+          0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 + 1e-15 * (std::abs(box.max.x) + std::abs(box.max.y)),
+          places_[place].z};
 }
 
 /// Returns whether nearly all movers that contain the centre of a large cell's viewers also contain all of these
 /// viewers.
-bool Crowds::serves(const OutlineTable& outlines, const Disc& viewers, Scratch& s) const {
-  find_members(outlines, {viewers.centre, 0.0}, s.members);
+bool Crowds::serves(const Disc& viewers, Scratch& s) const {
+  find_members({viewers.centre, 0.0, viewers.z}, s.members);
   const std::size_t most = s.members.size();
-  find_members(outlines, viewers, s.members);
+  find_members(viewers, s.members);
   return s.members.size() >= kCrowd && s.members.size() + most / 16 >= most;
 }
 
@@ -200,14 +195,14 @@ bool Crowds::is_crowded(glm::dvec2 p) const {
   return movers > kCrowd;
 }
 
-void Crowds::build(const OutlineTable& outlines, const Disc& viewers, Scratch& s, CrowdCell& cell) const {
+void Crowds::build(const Disc& viewers, Scratch& s, CrowdCell& cell) const {
   cell.centre = viewers.centre;
   cell.blocks.clear(), cell.bounds.clear(), cell.members.clear();
-  find_members(outlines, viewers, s.members);
+  find_members(viewers, s.members);
   if (s.members.size() < kCrowd) return;
 
   std::size_t edges = 0;
-  for (const std::uint32_t m : s.members) edges += outlines.of_mover[m].edges;
+  for (const std::uint32_t m : s.members) edges += outline_of(m, viewers).edges;
   const double most = movers_.largest_radius();
   Lines& lines = s.lines;
   lines.clear(edges);
@@ -215,13 +210,14 @@ void Crowds::build(const OutlineTable& outlines, const Disc& viewers, Scratch& s
   cell.members.resize((movers_.states().size() + 63) / 64);
   for (const std::uint32_t m : s.members) {
     cell.members[m / 64] |= std::uint64_t{1} << m % 64;
-    const OutlineTable::Outline& outline = outlines.of_mover[m];
-    for (const OutlineTable::Loop& loop : std::span(outlines.loops).subspan(outline.first_loop, outline.loops))
+    const OutlineTable::Outline& outline = outline_of(m, viewers);
+    for (const OutlineTable::Loop& loop :
+         std::span(movers_.outlines().loops).subspan(outline.first_loop, outline.loops))
       if (holds(m, loop, viewers)) add_loop(m, loop, viewers, lines);
   }
   cell.horizon = lines.reach.second;
   s.found.clear();
-  for (const std::uint32_t m : s.members) add_edges(m, outlines, lines, viewers, s.found);
+  for (const std::uint32_t m : s.members) add_edges(m, lines, viewers, s.found);
   cell.by_bearing.build(
       s.found, viewers.radius, [&](std::uint32_t row) { return movers_.exact()[row - movers_.first_rows().front()]; },
       s.index);
@@ -230,8 +226,7 @@ void Crowds::build(const OutlineTable& outlines, const Disc& viewers, Scratch& s
 }
 
 /// Lists the movers with an outline that contains the viewers, without twins.
-void Crowds::find_members(const OutlineTable& outlines, const Disc& viewers,
-                          std::vector<std::uint32_t>& members) const {
+void Crowds::find_members(const Disc& viewers, std::vector<std::uint32_t>& members) const {
   const MoverGrid& grid = movers_.grid();
   const glm::dvec2 at = viewers.centre - grid.low;
   const double reach = grid.largest_radius;
@@ -242,12 +237,17 @@ void Crowds::find_members(const OutlineTable& outlines, const Disc& viewers,
     for (std::uint32_t k = grid.begin_of(left, row); k < grid.begin_of(right + 1, row); ++k) {
       const float dx = grid.x[k] - x, dy = grid.y[k] - y, most = 1.0001f * grid.radius[k] + grid.error;
       if (dx * dx + dy * dy > most * most || grid.twin[k] != kNoMover) continue;
-      const OutlineTable::Outline& outline = outlines.of_mover[grid.mover[k]];
-      const auto loops = std::span(outlines.loops).subspan(outline.first_loop, outline.loops);
+      const OutlineTable::Outline& outline = outline_of(grid.mover[k], viewers);
+      const auto loops = std::span(movers_.outlines().loops).subspan(outline.first_loop, outline.loops);
       if (std::any_of(loops.begin(), loops.end(),
                       [&](const OutlineTable::Loop& loop) { return holds(grid.mover[k], loop, viewers); }))
         members.push_back(grid.mover[k]);
     }
+}
+
+/// Returns the outline of a mover at the height of the viewers.
+const OutlineTable::Outline& Crowds::outline_of(std::uint32_t mover, const Disc& viewers) const {
+  return movers_.outlines().at(mover, viewers.z - movers_.states()[mover].X_WM.z);
 }
 
 /// Returns edge `number` of a mover, relative to `centre`.
@@ -278,10 +278,10 @@ void Crowds::add_loop(std::uint32_t mover, const OutlineTable::Loop& loop, const
 }
 
 /// Adds the parts of a mover's edges that the viewers may see.
-void Crowds::add_edges(std::uint32_t mover, const OutlineTable& outlines, const Lines& lines, const Disc& viewers,
+void Crowds::add_edges(std::uint32_t mover, const Lines& lines, const Disc& viewers,
                        std::vector<CandidateWall>& found) const {
-  const OutlineTable::Outline& outline = outlines.of_mover[mover];
-  for (const std::uint32_t number : std::span(outlines.edges).subspan(outline.first_edge, outline.edges)) {
+  const OutlineTable::Outline& outline = outline_of(mover, viewers);
+  for (const std::uint32_t number : std::span(movers_.outlines().edges).subspan(outline.first_edge, outline.edges)) {
     const auto [a, b] = edge_of(mover, number, viewers.centre);
     const glm::dvec2 e = b - a;
     if (length(e) == 0.0) continue;

@@ -11,7 +11,7 @@
 //
 // A line hides only points that are beyond it by more than the rounding of 64-bit ranges, so readings do not change.
 
-#include <functional>
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -40,9 +40,8 @@ class Crowds {
   explicit Crowds(const MoverGeometry& movers);
   ~Crowds();
 
-  /// Finds the crowds around `views`. @param height_of returns the height index of a list config
-  void find(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t config)>& height_of,
-            base::ThreadPool& thread_pool);
+  /// Finds the crowds around `views`.
+  void find(std::span<const Viewpoint> views, base::ThreadPool& thread_pool);
   /// Returns the crowd of a view of the last `find`, or null.
   const CrowdCell* of(std::size_t view) const {
     if (places_.empty() || place_of_[view] == kNoPlace || cells_[place_of_[view]].members.empty()) return nullptr;
@@ -54,37 +53,37 @@ class Crowds {
   static constexpr std::int32_t kLarge = 8;  ///< [size_] side of a large cell: about the size of a robot
   /// A cell's key.
   struct Place {
-    std::uint32_t height;
-    std::int32_t scale;  ///< [size_] side: kLarge or 1
+    double z;            ///< [m] height of the viewers
+    std::int32_t scale;  ///< [size_] side: kLarge or 1; 0: no place
     std::int64_t x, y;
     auto operator<=>(const Place&) const = default;
   };
-  static constexpr Place kNowhere{kNoPlace, 0, 0, 0};
+  static constexpr Place kNowhere{0.0, 0, 0, 0};
   /// A disc that contains the viewers of a cell.
   struct Disc {
     glm::dvec2 centre;
     double radius = 0.0;  ///< [m]
+    double z = 0.0;       ///< [m] height of the viewers
   };
   struct Lines;
   struct Scratch;
 
   bool is_crowded(glm::dvec2 p) const;
-  Place place_of(const Viewpoint& view, std::uint32_t height, std::int32_t scale) const;
+  Place place_of(const Viewpoint& view, std::int32_t scale) const;
   Disc viewers_of(std::size_t place) const;
   void collect_places(std::span<const Viewpoint> views);
-  bool serves(const OutlineTable& outlines, const Disc& viewers, Scratch& scratch) const;
-  void find_places(std::span<const Viewpoint> views,
-                   const std::function<std::uint32_t(std::uint32_t config)>& height_of, base::ThreadPool& thread_pool);
-  void build(const OutlineTable& outlines, const Disc& viewers, Scratch& scratch, CrowdCell& cell) const;
-  void find_members(const OutlineTable& outlines, const Disc& viewers, std::vector<std::uint32_t>& members) const;
+  bool serves(const Disc& viewers, Scratch& scratch) const;
+  void find_places(std::span<const Viewpoint> views, base::ThreadPool& thread_pool);
+  void build(const Disc& viewers, Scratch& scratch, CrowdCell& cell) const;
+  void find_members(const Disc& viewers, std::vector<std::uint32_t>& members) const;
+  const OutlineTable::Outline& outline_of(std::uint32_t mover, const Disc& viewers) const;
   struct Edge {
     glm::dvec2 a, b;
   };
   Edge edge_of(std::uint32_t mover, std::uint32_t number, glm::dvec2 centre) const;
   bool holds(std::uint32_t mover, const OutlineTable::Loop& loop, const Disc& viewers) const;
   void add_loop(std::uint32_t mover, const OutlineTable::Loop& loop, const Disc& viewers, Lines& lines) const;
-  void add_edges(std::uint32_t mover, const OutlineTable& outlines, const Lines& lines, const Disc& viewers,
-                 std::vector<CandidateWall>& found) const;
+  void add_edges(std::uint32_t mover, const Lines& lines, const Disc& viewers, std::vector<CandidateWall>& found) const;
 
   const MoverGeometry& movers_;
   double size_ = 0.0;  ///< [m] side of a small cell; viewers are at least an eighth of it away from members' edges

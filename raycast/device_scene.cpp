@@ -37,11 +37,12 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
       cells_(configs, device.is_gpu() ? coarse_cell_size : fine_cell_size, CellCache(0, 0, kPageChunks)) {
   for (unsigned i = 0; i < thread_pool.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
   for (std::size_t i = 0; i < configs.size(); ++i)
-    config_tables_.push_back(
-        {{cells_.size_of(i), configs[i].range}, configs[i].spread + 5e-4, movers_.add_height(configs[i].z)});
-  for (std::uint32_t h = 0; h < movers_.heights(); ++h) {
-    outlines_.push_back(pool_begin_);
-    pool_begin_ += kBlockTexels * static_cast<std::uint32_t>(movers_.outlines(h).blocks.size());
+    config_tables_.push_back({{cells_.size_of(i), configs[i].range}, configs[i].spread + 5e-4});
+  pool_begin_ += kBlockTexels * static_cast<std::uint32_t>(movers_.outlines().blocks.size());
+  std::uint32_t rows = 0;
+  for (const OutlineTable::Shape& shape : movers_.outlines().of_mover) {
+    first_mover_rows_.push_back(rows);
+    rows += shape.slices;
   }
 
   const std::vector<world::Segment>& walls = configs.walls();
@@ -50,7 +51,7 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
                                             gpu::texels_of<ExactSegment>(count + 1));
   models_ = std::make_unique<gpu::Buffer>(device, "whose walls", gpu::Role::upload, gpu::Texel::u32, count + 1);
   mover_rows_ = std::make_unique<gpu::Buffer>(device, "places of movers", gpu::Role::upload, gpu::Texel::u32x4,
-                                              gpu::texels_of<MoverRow>(movers_.heights() * world.movers.size() + 1));
+                                              gpu::texels_of<MoverRow>(rows + 1));
   const auto exact = segments_->host<ExactSegment>();
   const auto models = models_->host<std::uint32_t>();
   for (std::size_t i = 0; i < walls.size(); ++i) {
@@ -69,17 +70,15 @@ void DeviceScene::write_outlines() {
   const auto entries = lists_->host<ListEntry>();
   const auto segment_ids = segment_ids_->host<std::uint32_t>();
   std::memset(entries.data(), 0, SF_SECTORS * sizeof(ListHead));  // empty lists
-  for (std::uint32_t h = 0; h < movers_.heights(); ++h) {
-    std::uint32_t at = outlines_[h];
-    for (const SegmentBlock& block : movers_.outlines(h).blocks) {
-      for (std::uint32_t k = 0; k < kBlock; ++k, ++at) {
-        const float ex = 0.5f * block.ex[k], ey = 0.5f * block.ey[k];
-        entries[at] = {block.ax[k] + ex, block.ay[k] + ey, ex, ey};
-        segment_ids[at] = block.row[k];
-      }
-      entries[at] = kPaddingEntry;
-      segment_ids[at++] = SF_NO_HIT;
+  std::uint32_t at = SF_SECTORS;
+  for (const SegmentBlock& block : movers_.outlines().blocks) {
+    for (std::uint32_t k = 0; k < kBlock; ++k, ++at) {
+      const float ex = 0.5f * block.ex[k], ey = 0.5f * block.ey[k];
+      entries[at] = {block.ax[k] + ex, block.ay[k] + ey, ex, ey};
+      segment_ids[at] = block.row[k];
     }
+    entries[at] = kPaddingEntry;
+    segment_ids[at++] = SF_NO_HIT;
   }
 }
 
@@ -87,14 +86,16 @@ void DeviceScene::place_movers(std::span<const base::Report> states) {
   movers_.place(states, thread_pool_,
                 segments_->host<ExactSegment>().subspan(configs_.walls().size(), movers_.segments()));
   const auto mover_rows = mover_rows_->host<MoverRow>();
-  for (std::uint32_t h = 0; h < movers_.heights(); ++h)
-    for (std::size_t m = 0; m < states.size(); ++m)
-      mover_rows[h * states.size() + m] = {states[m].X_WM.x,
-                                           states[m].X_WM.y,
-                                           static_cast<float>(movers_.headings()[m].x),
-                                           static_cast<float>(movers_.headings()[m].y),
-                                           outlines_[h] + kBlockTexels * movers_.outlines(h).of_mover[m].first,
-                                           movers_.first_rows()[m]};
+  const OutlineTable& outlines = movers_.outlines();
+  for (std::size_t m = 0; m < states.size(); ++m)
+    for (std::uint32_t i = 0; i < outlines.of_mover[m].slices; ++i)
+      mover_rows[first_mover_rows_[m] + i] = {
+          states[m].X_WM.x,
+          states[m].X_WM.y,
+          static_cast<float>(movers_.headings()[m].x),
+          static_cast<float>(movers_.headings()[m].y),
+          SF_SECTORS + kBlockTexels * outlines.slices[outlines.of_mover[m].first + i].outline.first,
+          movers_.first_rows()[m]};
 }
 
 bool DeviceScene::prepare(std::span<const Viewpoint> views, std::span<RayRow> rows) {

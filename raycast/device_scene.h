@@ -62,7 +62,6 @@ class DeviceScene {
   struct ConfigTables {
     CellShape shape;
     double spread = 0.0;  ///< [rad] from the middle of a lane's beams to the outermost, plus the error of the search
-    std::uint32_t height = 0;
   };
   /// Texels of one cell.
   struct Cell {
@@ -79,7 +78,7 @@ class DeviceScene {
   void find_nearby_movers(const Viewpoint& view, Scratch& scratch) const;
   void find_front_edges(const Viewpoint& view, NearbyMover& near, Scratch& scratch) const;
   std::uint32_t mover_lists_size(const Scratch& scratch, std::size_t most) const;
-  void write_mover_lists(const Viewpoint& view, std::uint32_t at, const Scratch& scratch);
+  void write_mover_lists(std::uint32_t at, const Scratch& scratch);
   bool build_mover_lists(std::span<const Viewpoint> views, std::span<RayRow> rows, bool more_room);
   void make_room(std::uint32_t sensing_movers);
   void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_texels);
@@ -95,7 +94,7 @@ class DeviceScene {
   MoverGeometry movers_;
   ViewCells cells_;
   std::vector<Cell> cell_tables_;                  ///< per slot
-  std::vector<std::uint32_t> outlines_;            ///< per height: texel of the first block
+  std::vector<std::uint32_t> first_mover_rows_;    ///< of each mover: one row per slice between its lowest and highest
   std::uint32_t pool_begin_ = SF_SECTORS;          ///< texel
   std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: 1 if the host scans it
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread

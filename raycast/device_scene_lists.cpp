@@ -44,8 +44,8 @@ std::uint32_t DeviceScene::Scratch::append(std::span<const std::uint32_t> items)
 DeviceScene::Cell DeviceScene::make_cell(const CellKey& key, Scratch& s) {
   const std::size_t number = ViewCells::config_of(key);
   const ConfigTables& config = config_tables_[number];
-  find_candidate_walls(configs_.wall_index(number), config.shape, cells_.centre_of(key), ViewCells::in_solid(key),
-                       s.walls);
+  find_candidate_walls(configs_.wall_index(), config.shape, cells_.centre_of(key), configs_.z_of(key.level),
+                       ViewCells::in_solid(key), s.walls);
   s.entries.clear(), s.segment_ids.clear(), s.nearest.clear(), s.chunks.clear();
   s.add(s.walls.front_facing, config.spread, s.front_facing);
   s.add(s.walls.back_facing, config.spread, s.back_facing);
@@ -156,10 +156,11 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
 
 /// Lists the edges of a mover's outline that face the view; all edges if the view may be inside.
 void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scratch& s) const {
-  const std::uint32_t height = config_tables_[view.config].height;
-  const OutlineTable& outlines = movers_.outlines(height);
-  const OutlineTable::Outline& outline = outlines.of_mover[near.mover];
+  const OutlineTable& outlines = movers_.outlines();
   const Pose& X = movers_.states()[near.mover].X_WM;
+  const std::uint32_t slice = outlines.slice_of(near.mover, view.X_WS.z - X.z);
+  const OutlineTable::Outline& outline = outlines.slices[outlines.of_mover[near.mover].first + slice].outline;
+  near.row = first_mover_rows_[near.mover] + slice;
   const glm::dvec2 heading = movers_.headings()[near.mover], p{view.X_WS.x - X.x, view.X_WS.y - X.y};
   const auto x = static_cast<float>(heading.x * p.x + heading.y * p.y);
   const auto y = static_cast<float>(heading.x * p.y - heading.y * p.x);
@@ -184,10 +185,8 @@ void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scr
   near.count = static_cast<std::uint32_t>(s.mover_entries.size()) - near.first;
 }
 
-/// Writes the lists of the scratch's movers for one view, starting at texel `at`.
-void DeviceScene::write_mover_lists(const Viewpoint& view, std::uint32_t at, const Scratch& s) {
-  const auto first_mover_row =
-      static_cast<std::uint32_t>(config_tables_[view.config].height * movers_.states().size()) + 1;
+/// Writes the lists of the scratch's movers, starting at texel `at`.
+void DeviceScene::write_mover_lists(std::uint32_t at, const Scratch& s) {
   std::uint8_t* const lists = lists_->host<std::uint8_t>().data();
   ListHead heads[SF_SECTORS];
   std::uint32_t next = at + SF_SECTORS;
@@ -196,7 +195,7 @@ void DeviceScene::write_mover_lists(const Viewpoint& view, std::uint32_t at, con
     for (const std::uint32_t k : s.front_facing.of(sector)) {
       const NearbyMover& near = s.near[k];
       for (std::uint32_t i = 0; i < near.count; i += SF_CHUNK) {
-        ListChunk chunk{near.nearest, first_mover_row + near.mover, {}};
+        ListChunk chunk{near.nearest, near.row + 1, {}};
         for (std::uint32_t e = 0; e < SF_CHUNK; ++e)
           chunk.entries[e] = i + e < near.count ? s.mover_entries[near.first + i + e] : std::uint16_t{kBlock};
         std::memcpy(lists + 16 * std::size_t{next++}, &chunk, sizeof chunk);
@@ -237,7 +236,7 @@ bool DeviceScene::build_mover_lists(std::span<const Viewpoint> views, std::span<
       needs_host_[i] = !fits && (size == CellCache::kNone || !more_room) ? 1 : 0;
       if (size == 0 || !fits) continue;
       rows[i].movers = pool_end() + at;
-      write_mover_lists(views[i], rows[i].movers, s);
+      write_mover_lists(rows[i].movers, s);
     }
   });
   mover_texels_used_ = more_room ? next.load() : std::min(next.load(), mover_texels_);

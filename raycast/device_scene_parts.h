@@ -36,6 +36,7 @@ struct DeviceScene::NearbyMover {
   std::uint32_t mover;
   float bearing, half;                 ///< [rad] of its disc, in the world frame
   std::uint32_t first = 0, count = 0;  ///< entries that face the view, in `Scratch::mover_entries`
+  std::uint32_t row = 0;               ///< of `DeviceScene::mover_rows`
 };
 
 /// Detects crowds by the sum of the discs' squared radii. For discs that overlap little, the sum is at most a few times

@@ -36,11 +36,6 @@ bool reads_by_bearing(const CrowdCell& crowd, std::size_t beams) {
 
 }  // namespace
 
-struct HostScene::ConfigTables {
-  CellShape shape;
-  std::uint32_t height;
-};
-
 struct HostScene::Thread {
   Rasterizer rasterizer;
   CandidateWalls walls;
@@ -58,10 +53,7 @@ HostScene::HostScene(const world::World& world, const ListConfigs& configs, base
       lists_(kFirstCells),
       blocks_(kFirstBlocks),
       bounds_(kFirstBlocks + kBlock) {
-  for (std::size_t i = 0; i < configs.size(); ++i) {
-    const ListConfig& config = configs[i];
-    config_tables_.push_back({{cells_.size_of(i), config.range}, movers_.add_height(config.z)});
-  }
+  for (std::size_t i = 0; i < configs.size(); ++i) shapes_.push_back({cells_.size_of(i), configs[i].range});
   for (const world::Segment& s : configs.walls()) {
     exact_.push_back({s.a.x, s.a.y, s.b.x, s.b.y});
     models_.push_back(s.model);
@@ -80,7 +72,7 @@ void HostScene::place_movers(std::span<const base::Report> states) {
 /// Collects the blocks of a cell into the thread's scratch.
 HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
   const std::size_t config = ViewCells::config_of(key);
-  find_candidate_walls(configs_.wall_index(config), config_tables_[config].shape, cells_.centre_of(key),
+  find_candidate_walls(configs_.wall_index(), shapes_[config], cells_.centre_of(key), configs_.z_of(key.level),
                        ViewCells::in_solid(key), t.walls);
   Cell cell;
   t.blocks.clear(), t.bounds.clear();
@@ -122,9 +114,7 @@ void HostScene::build_missing_cells() {
 void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
   cells_.find(views, thread_pool_);
-  if (movers_.segments() > 0)
-    crowds_.find(
-        views, [this](std::uint32_t config) { return config_tables_[config].height; }, thread_pool_);
+  if (movers_.segments() > 0) crowds_.find(views, thread_pool_);
   static const std::uint32_t most = most_blocks();
   const std::uint64_t evicted = cells_.cache().evicted();
   for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) grow();
@@ -171,7 +161,6 @@ void HostScene::add_crowd(const CrowdCell& crowd, std::size_t beams, Thread& t, 
 bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out) {
   Thread& t = *threads_[thread];
   const Viewpoint& view = views_[i];
-  const ConfigTables& config = config_tables_[view.config];
   const std::uint32_t slot = cells_.slot(i);
   const bool listed = slot != CellCache::kNone;
   const Cell cell = listed ? lists_[slot] : collect(cells_.key(i), t);
@@ -182,13 +171,14 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   const glm::dvec2 origin{view.X_WS.x, view.X_WS.y};
   from.origin = origin;
   from.range_max = configs_[view.config].range;
-  from.band = static_cast<float>(SF_COORDINATE_ERROR * (config.shape.reach() + 2.0 * movers_.largest_radius()));
+  from.band = static_cast<float>(SF_COORDINATE_ERROR * (shapes_[view.config].reach() + 2.0 * movers_.largest_radius()));
   ScanScene scene;
   scene.walls = {blocks, cell.front_facing, listed ? &bounds_[cell.first] : t.bounds.data(), origin - centre};
   scene.exact = exact_;
   scene.models = models_;
   scene.movers = movers_.segments() > 0 ? &movers_.grid() : nullptr;
-  scene.outlines = &movers_.outlines(config.height);
+  scene.outlines = &movers_.outlines();
+  scene.z = view.X_WS.z;
   scene.states = movers_.states();
   scene.headings = movers_.headings();
   scene.first_rows = movers_.first_rows();

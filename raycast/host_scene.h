@@ -37,7 +37,6 @@ class HostScene {
   ScanCounts counts() const;
 
  private:
-  struct ConfigTables;
   struct Thread;
   /// Blocks of one cell: front-facing ones, then back-facing ones, which are needed only for ties at corners.
   struct Cell {
@@ -51,7 +50,7 @@ class HostScene {
 
   base::ThreadPool& thread_pool_;
   const ListConfigs& configs_;
-  std::vector<ConfigTables> config_tables_;  ///< per list config
+  std::vector<CellShape> shapes_;  ///< per list config
   MoverGeometry movers_;
   Crowds crowds_;
   std::vector<ExactSegment> exact_;  ///< walls, then movers

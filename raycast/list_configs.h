@@ -1,10 +1,8 @@
 #pragma once
-// List configs: groups of sensors that can share lists, with an index of the walls visible to them. Used by the casters
-// on the host and on the device.
+// List configs: groups of sensors that can share lists, and the index of all walls. Used by the casters on the host and
+// on the device.
 
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <vector>
 
 #include "raycast/wall_index.h"
@@ -12,9 +10,10 @@
 
 namespace sf::raycast {
 
-/// Sensors of equal height and range, which can share lists. The other fields are maxima over these sensors.
+/// Sensors of equal height at load and equal range. They share the lists of walls at each height. The other fields are
+/// maxima over these sensors.
 struct ListConfig {
-  double z = 0.0;             ///< [m] world height of the sensors
+  double z = 0.0;             ///< [m] world height of the sensors at load
   double range = 0.0;         ///< [m]
   double spread = 0.0;        ///< [rad] from the middle of a lane's beams to the outermost
   double fov = 0.0;           ///< [rad] including the largest angular noise
@@ -30,21 +29,21 @@ class ListConfigs {
   std::uint32_t add(const ListConfig& config);
 
   std::size_t size() const { return rows_.size(); }
-  const ListConfig& operator[](std::size_t i) const { return rows_[i].config; }
-  /// Returns the walls visible to config `i`. Configs between the same two height breaks share one index.
-  const WallIndex& wall_index(std::size_t i) const { return *rows_[i].wall_index; }
+  const ListConfig& operator[](std::size_t i) const { return rows_[i]; }
+  const WallIndex& wall_index() const { return wall_index_; }
+  /// Returns the number of the interval of heights that contains `z` [m]. In an interval, the visible walls are the
+  /// same.
+  std::uint32_t level_of(double z) const;
+  /// Returns the lower end [m] of an interval of heights, which belongs to it; -infinity for the lowest.
+  double z_of(std::int64_t level) const;
   /// Returns the walls of the world, with the rows of `World::walls`.
   const std::vector<world::Segment>& walls() const { return walls_; }
 
  private:
-  struct Row {
-    ListConfig config;
-    const WallIndex* wall_index;
-  };
   std::vector<world::Segment> walls_;
   std::vector<double> breaks_;  ///< [m] ascending heights at which the set of visible walls changes
-  std::map<std::size_t, std::unique_ptr<WallIndex>> wall_indices_;  ///< keyed by the interval between breaks
-  std::vector<Row> rows_;
+  WallIndex wall_index_;
+  std::vector<ListConfig> rows_;
 };
 
 }  // namespace sf::raycast

@@ -27,9 +27,10 @@ bool is_convex(std::span<const world::Segment> loop, double radius) {
 
 MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std::uint32_t>(world.walls.size())) {
   std::map<std::vector<double>, std::uint32_t> shapes;
+  std::vector<OutlineTable::Shape> of_shape;
   for (const world::Mover& mover : world.movers) {
     first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
-    std::vector<double> shape{mover.radius, mover.X_WM.z};
+    std::vector<double> shape{mover.radius};
     double inner = mover.radius;
     for (const world::Segment& s : mover.body) {
       if (!s.seen_by_laser) continue;
@@ -39,10 +40,16 @@ MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std
       shape.insert(shape.end(), {s.a.x, s.a.y, s.b.x, s.b.y, s.z_min, s.z_max, s.solid_left ? 1.0 : 0.0});
     }
     inner_.push_back(inner);
-    shapes_.push_back(shapes.try_emplace(std::move(shape), static_cast<std::uint32_t>(shapes.size())).first->second);
     const bool met = first_rows_.back() - walls_ < local_.size();
     radii_.push_back(met ? mover.radius : 0.0);
-    load_z_.push_back(mover.X_WM.z);
+    const auto [known, fresh] = shapes.try_emplace(std::move(shape), static_cast<std::uint32_t>(of_shape.size()));
+    shapes_.push_back(known->second);
+    const auto slices = static_cast<std::uint32_t>(outlines_.slices.size());
+    if (fresh) {
+      add_slices(shapes_.size() - 1);
+      of_shape.push_back({slices, static_cast<std::uint32_t>(outlines_.slices.size()) - slices});
+    }
+    outlines_.of_mover.push_back(of_shape[known->second]);
     grid_.largest_radius = std::max(grid_.largest_radius, mover.radius);
   }
   first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
@@ -60,61 +67,52 @@ double MoverGeometry::smallest_inner() const {
   return inner_.empty() ? 0.0 : *std::min_element(inner_.begin(), inner_.end());
 }
 
-std::uint32_t MoverGeometry::add_height(double z) {
-  for (std::uint32_t i = 0; i < heights_.size(); ++i)
-    if (heights_[i].z == z) return i;
-  heights_.push_back({z, outlines_at(z)});
-  return static_cast<std::uint32_t>(heights_.size() - 1);
-}
-
-/// Movers of equal shape share blocks.
-OutlineTable MoverGeometry::outlines_at(double z) const {
-  OutlineTable table;
-  std::map<std::vector<double>, OutlineTable::Outline> known;
-  for (std::size_t m = 0; m + 1 < first_rows_.size(); ++m) {
-    std::vector<double> shape;
-    std::vector<std::uint32_t> edges;
-    std::vector<SegmentBlock> outward, inward;
-    std::uint32_t used_outward = 0, used_inward = 0;
-    for (std::uint32_t row = first_rows_[m]; row < first_rows_[m + 1]; ++row) {
-      const world::Segment& s = local_[row - walls_];
-      if (z - load_z_[m] < s.z_min || z - load_z_[m] >= s.z_max) continue;
-      const std::uint32_t number = row - first_rows_[m];
-      edges.push_back(number);
-      append(outward, used_outward, s.a, s.b, number);
-      s.solid_left ? append(inward, used_inward, s.b, s.a, number) : append(outward, used_outward, s.b, s.a, number);
-      shape.insert(shape.end(), {s.a.x, s.a.y, s.b.x, s.b.y, static_cast<double>(number), s.solid_left ? 1.0 : 0.0});
-    }
-    const auto [found, fresh] = known.try_emplace(std::move(shape));
-    if (fresh) {
-      const auto first = static_cast<std::uint32_t>(table.blocks.size());
-      table.blocks.insert(table.blocks.end(), outward.begin(), outward.end());
-      table.blocks.insert(table.blocks.end(), inward.begin(), inward.end());
-      const auto first_edge = static_cast<std::uint32_t>(table.edges.size());
-      const auto first_loop = static_cast<std::uint32_t>(table.loops.size());
-      table.edges.insert(table.edges.end(), edges.begin(), edges.end());
-      add_loops(m, edges, table);
-      found->second = {first,
-                       static_cast<std::uint32_t>(outward.size()),
-                       static_cast<std::uint32_t>(outward.size() + inward.size()),
-                       first_edge,
-                       static_cast<std::uint32_t>(edges.size()),
-                       first_loop,
-                       static_cast<std::uint32_t>(table.loops.size()) - first_loop};
-    }
-    table.of_mover.push_back(found->second);
+/// Adds the slices of a new shape.
+void MoverGeometry::add_slices(std::size_t mover) {
+  std::vector<double> breaks;
+  for (std::uint32_t row = first_rows_[mover] - walls_; row < local_.size(); ++row)
+    breaks.insert(breaks.end(), {local_[row].z_min, local_[row].z_max});
+  std::sort(breaks.begin(), breaks.end());
+  breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
+  double z = -HUGE_VAL;
+  breaks.push_back(HUGE_VAL);
+  for (const double z_max : breaks) {
+    outlines_.slices.push_back({z_max, outline_at(mover, z)});
+    z = z_max;
   }
-  return table;
 }
 
-/// Appends the closed convex outlines among a mover's edges at one height.
-void MoverGeometry::add_loops(std::size_t mover, std::span<const std::uint32_t> edges, OutlineTable& table) const {
+/// Adds the edges of a new shape at height `z` [m] above its origin.
+OutlineTable::Outline MoverGeometry::outline_at(std::size_t mover, double z) {
+  std::vector<std::uint32_t> edges;
+  std::vector<SegmentBlock> outward, inward;
+  std::uint32_t used_outward = 0, used_inward = 0;
+  for (std::uint32_t number = 0; first_rows_[mover] - walls_ + number < local_.size(); ++number) {
+    const world::Segment& s = local_[first_rows_[mover] - walls_ + number];
+    if (z < s.z_min || z >= s.z_max) continue;
+    edges.push_back(number);
+    append(outward, used_outward, s.a, s.b, number);
+    s.solid_left ? append(inward, used_inward, s.b, s.a, number) : append(outward, used_outward, s.b, s.a, number);
+  }
+  const auto size = [](const auto& items) { return static_cast<std::uint32_t>(items.size()); };
+  OutlineTable::Outline outline{size(outlines_.blocks), size(outward), size(outward) + size(inward),
+                                size(outlines_.edges),  size(edges),   size(outlines_.loops)};
+  outlines_.blocks.insert(outlines_.blocks.end(), outward.begin(), outward.end());
+  outlines_.blocks.insert(outlines_.blocks.end(), inward.begin(), inward.end());
+  outlines_.edges.insert(outlines_.edges.end(), edges.begin(), edges.end());
+  add_loops(mover, edges);
+  outline.loops = size(outlines_.loops) - outline.first_loop;
+  return outline;
+}
+
+/// Appends the closed convex outlines among a new shape's edges at one height.
+void MoverGeometry::add_loops(std::size_t mover, std::span<const std::uint32_t> edges) {
   const std::span<const world::Segment> body = std::span(local_).subspan(first_rows_[mover] - walls_);
   for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
     for (end = first + 1; end < edges.size() && edges[end] == edges[end - 1] + 1; ++end)
       if (body[edges[end]].a != body[edges[end - 1]].b) break;
     if (is_convex(body.subspan(edges[first], end - first), radii_[mover]))
-      table.loops.push_back({edges[first], static_cast<std::uint32_t>(end - first)});
+      outlines_.loops.push_back({edges[first], static_cast<std::uint32_t>(end - first)});
   }
 }
 

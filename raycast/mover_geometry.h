@@ -21,10 +21,6 @@ class MoverGeometry {
  public:
   explicit MoverGeometry(const world::World& world);
 
-  /// Registers scans in the horizontal plane at world height `z` [m]. Call before the first `place`. @return index of
-  /// the height
-  std::uint32_t add_height(double z);
-
   /// Moves every outline to its mover's pose. @param states one per mover; must stay valid until the next call
   /// @param exact out: `segments()` edges, ordered by mover
   void place(std::span<const base::Report> states, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
@@ -36,8 +32,7 @@ class MoverGeometry {
   double smallest_inner() const;                                  ///< [m] smallest `MoverGrid::inner`
 
   const MoverGrid& grid() const { return grid_; }
-  std::uint32_t heights() const { return static_cast<std::uint32_t>(heights_.size()); }
-  const OutlineTable& outlines(std::uint32_t height) const { return heights_[height].outlines; }
+  const OutlineTable& outlines() const { return outlines_; }
   std::span<const base::Report> states() const { return states_; }
   std::span<const glm::dvec2> headings() const { return headings_; }
   std::span<const ExactSegment> exact() const { return exact_; }  ///< the edges at this tick's poses
@@ -46,12 +41,9 @@ class MoverGeometry {
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
  private:
-  struct Height {
-    double z;
-    OutlineTable outlines;
-  };
-  OutlineTable outlines_at(double z) const;
-  void add_loops(std::size_t mover, std::span<const std::uint32_t> edges, OutlineTable& table) const;
+  void add_slices(std::size_t mover);
+  OutlineTable::Outline outline_at(std::size_t mover, double z);
+  void add_loops(std::size_t mover, std::span<const std::uint32_t> edges);
   bool is_present(std::size_t mover) const { return radii_[mover] > 0.0 && !base::is_absent(states_[mover].X_WM); }
   void build_grid();
   void find_cells();
@@ -64,11 +56,10 @@ class MoverGeometry {
   std::vector<std::uint32_t> first_rows_;
   std::vector<double> radii_;          ///< [m] 0 if there is no outline
   std::vector<double> inner_;          ///< [m] distance of the nearest edge from the origin
-  std::vector<std::uint32_t> shapes_;  ///< equal for movers with equal outlines at all heights
+  std::vector<std::uint32_t> shapes_;  ///< equal for movers with equal outlines
   std::vector<std::uint32_t> twins_;   ///< per mover, same as MoverGrid::twin
-  std::vector<double> load_z_;         ///< [m] heights at load, which are constant (2.5-D world)
   std::uint32_t walls_;
-  std::vector<Height> heights_;
+  OutlineTable outlines_;
   std::span<const base::Report> states_;
   std::span<const ExactSegment> exact_;
   std::vector<glm::dvec2> headings_;

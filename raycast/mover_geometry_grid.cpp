@@ -15,8 +15,9 @@ namespace {
 constexpr std::uint32_t kNoCell = 0xFFFFFFFFu;
 
 /// A pose as words, which are equal only if all bits are equal.
-std::array<std::uint64_t, 3> words_of(const Pose& X) {
-  return {std::bit_cast<std::uint64_t>(X.x), std::bit_cast<std::uint64_t>(X.y), std::bit_cast<std::uint64_t>(X.yaw)};
+std::array<std::uint64_t, 4> words_of(const Pose& X) {
+  return {std::bit_cast<std::uint64_t>(X.x), std::bit_cast<std::uint64_t>(X.y), std::bit_cast<std::uint64_t>(X.z),
+          std::bit_cast<std::uint64_t>(X.yaw)};
 }
 
 }  // namespace

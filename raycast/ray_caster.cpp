@@ -50,7 +50,7 @@ void RayCaster::find_views(std::size_t first, std::size_t last) {
     due_.views[i] = {
         row.config,
         mover,
-        {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), X_MS.z, yaw},
+        {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), X.z + X_MS.z, yaw},
         yaw == X.yaw ? turn : glm::dvec2{std::cos(yaw), std::sin(yaw)}};
   }
   rays_ += beams;

@@ -56,10 +56,8 @@ void check_size(const CasterInputs& in) {
 ReferenceCaster::ReferenceCaster(const CasterInputs& in) : Caster(in), scratch_(in.context.thread_pool.threads()) {
   check_size(in);
   for (const world::Segment& wall : in.world.walls) add(wall, kNoMover);
-  for (std::uint32_t m = 0; m < in.world.movers.size(); ++m) {
+  for (std::uint32_t m = 0; m < in.world.movers.size(); ++m)
     for (const world::Segment& edge : in.world.movers[m].body) add(edge, m);
-    load_z_.push_back(in.world.movers[m].X_WM.z);
-  }
 }
 
 void ReferenceCaster::add(const world::Segment& s, std::uint32_t mover) {
@@ -102,7 +100,7 @@ void ReferenceCaster::find_visible(const Viewpoint& view, std::vector<Surface>& 
   for (std::size_t i = 0; i < local_.size(); ++i) {
     const std::uint32_t mover = movers_[i];
     if (mover != kNoMover && (mover == view.self || base::is_absent(states_[mover].X_WM))) continue;
-    const double z = mover == kNoMover ? view.X_WS.z : view.X_WS.z - load_z_[mover];
+    const double z = mover == kNoMover ? view.X_WS.z : view.X_WS.z - states_[mover].X_WM.z;
     if (local_[i].z_min <= z && z < local_[i].z_max) visible.push_back(surfaces_[i]);
   }
 }

@@ -95,7 +95,6 @@ class ReferenceCaster : public Caster {
   std::vector<world::Segment> local_;  ///< walls in the world frame, then edges in the frames of their movers
   std::vector<std::uint32_t> movers_;  ///< mover of each; kNoMover: a wall
   std::vector<Surface> surfaces_;      ///< the same in the world frame, in this tick
-  std::vector<double> load_z_;         ///< [m] heights of movers at load, which are constant (2.5-D world)
   std::vector<Scratch> scratch_;       ///< per thread
   bool placed_ = false;                ///< the movers are at this tick's poses
 };

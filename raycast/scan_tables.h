@@ -61,7 +61,7 @@ struct ScanPattern {
               std::size_t step = 1);
 };
 
-/// Outlines of movers at one height, in blocks. Rows are relative to the mover's first segment.
+/// Outlines of movers, in blocks: one per shape and slice of heights. Rows are relative to the mover's first segment.
 struct OutlineTable {
   struct Outline {
     std::uint32_t first = 0;       ///< index of the first block
@@ -76,10 +76,30 @@ struct OutlineTable {
   struct Loop {
     std::uint32_t first, count;  ///< its edges: consecutive rows
   };
+  /// Heights between which the outline of a shape is constant.
+  struct Slice {
+    double z_max;  ///< [m] above the mover's origin, exclusive; the last slice of a shape has no upper end
+    Outline outline;
+  };
+  struct Shape {
+    std::uint32_t first, slices;  ///< ascending; the first and the last slice are empty
+  };
   std::vector<SegmentBlock> blocks;
   std::vector<std::uint32_t> edges;  ///< rows
   std::vector<Loop> loops;
-  std::vector<Outline> of_mover;
+  std::vector<Slice> slices;
+  std::vector<Shape> of_mover;
+
+  /// Returns the slice of `mover` at height `z` [m] above its origin, relative to its first one.
+  std::uint32_t slice_of(std::uint32_t mover, double z) const {
+    const Shape& shape = of_mover[mover];
+    std::uint32_t i = 0;
+    while (i + 1 < shape.slices && z >= slices[shape.first + i].z_max) ++i;
+    return i;
+  }
+  const Outline& at(std::uint32_t mover, double z) const {
+    return slices[of_mover[mover].first + slice_of(mover, z)].outline;
+  }
 };
 
 inline constexpr std::uint32_t kNoMover = 0xFFFFFFFFu;
@@ -157,12 +177,17 @@ struct ScanScene {
   std::span<const std::uint32_t> models;         ///< `Segment::model` of each
   const MoverGrid* movers = nullptr;
   const OutlineTable* outlines = nullptr;
+  double z = 0.0;                             ///< [m] world height of the beams
   std::span<const base::Report> states;       ///< of movers
   std::span<const glm::dvec2> headings;       ///< of movers: unit vectors
   std::span<const std::uint32_t> first_rows;  ///< first exact segment of each mover, and the end
   std::uint32_t self = kNoMover;              ///< the mover that carries the sensor, which is invisible
   std::uint32_t own_first = 0, own_end = 0;   ///< rows of its exact segments
 
+  /// Returns the outline of a mover at the height of the beams.
+  const OutlineTable::Outline& outline_of(std::uint32_t mover) const {
+    return outlines->at(mover, z - states[mover].X_WM.z);
+  }
   bool in_crowd(std::uint32_t mover) const {
     return !crowd_members.empty() && (crowd_members[mover / 64] >> mover % 64 & 1) != 0;
   }

@@ -43,7 +43,7 @@ void ViewCells::grow(std::uint32_t slots, std::uint32_t chunks) {
 CellKey ViewCells::key_of(const Viewpoint& view, std::uint32_t last_slot) const {
   const double size = sizes_[view.config];
   CellKey key{2 * std::int64_t{view.config}, static_cast<std::int64_t>(std::floor(view.X_WS.x / size)),
-              static_cast<std::int64_t>(std::floor(view.X_WS.y / size))};
+              static_cast<std::int64_t>(std::floor(view.X_WS.y / size)), configs_.level_of(view.X_WS.z)};
   // A region that no surface divides is on one side as a whole, so the result for one viewpoint applies to all of them.
   const std::uint32_t part = part_of(view);
   const auto known = [&] {
@@ -52,7 +52,7 @@ CellKey ViewCells::key_of(const Viewpoint& view, std::uint32_t last_slot) const 
   };
   if (known()) return key;
   key.config |= 1;
-  if (known() || configs_.wall_index(view.config).inside_solid({view.X_WS.x, view.X_WS.y})) return key;
+  if (known() || configs_.wall_index().inside_solid({view.X_WS.x, view.X_WS.y}, view.X_WS.z)) return key;
   key.config &= ~std::int64_t{1};
   return key;
 }
@@ -67,7 +67,7 @@ std::uint32_t ViewCells::part_of(const Viewpoint& view) const {
 }
 
 void ViewCells::find_clear_parts(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near) {
-  const WallIndex& wall_index = configs_.wall_index(config_of(key));
+  const WallIndex& wall_index = configs_.wall_index();
   const double size = sizes_[config_of(key)], part = size / kSide;
   const glm::dvec2 centre = centre_of(key), first = centre - 0.5 * (size - part) * glm::dvec2{1.0, 1.0};
   const double rounding = 1e-9 * (1.0 + length(centre));
@@ -101,8 +101,8 @@ void ViewCells::find(std::span<const Viewpoint> views, base::ThreadPool& thread_
   slots_.resize(views.size(), CellCache::kNone);
   thread_pool.parallel_for(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      const bool same = i > first && views[i].config == views[i - 1].config && views[i].X_WS.x == views[i - 1].X_WS.x &&
-                        views[i].X_WS.y == views[i - 1].X_WS.y;
+      const bool same = i > first && views[i].config == views[i - 1].config && views[i].X_WS.z == views[i - 1].X_WS.z &&
+                        views[i].X_WS.x == views[i - 1].X_WS.x && views[i].X_WS.y == views[i - 1].X_WS.y;
       keys_[i] = same ? keys_[i - 1] : key_of(views[i], slots_[i]);
       slots_[i] = same ? slots_[i - 1] : cache_.slot_of(keys_[i], slots_[i]);
     }
@@ -118,7 +118,7 @@ void ViewCells::find(std::span<const Viewpoint> views, base::ThreadPool& thread_
     learn_side(views[i], parts_[slots_[i]]);
   }
   const auto order = [](const CellKey& p, const CellKey& q) {
-    return std::tie(p.config, p.x, p.y) < std::tie(q.config, q.x, q.y);
+    return std::tie(p.config, p.level, p.x, p.y) < std::tie(q.config, q.level, q.x, q.y);
   };
   std::sort(missing_.begin(), missing_.end(), order);
   missing_.erase(std::unique(missing_.begin(), missing_.end()), missing_.end());

@@ -17,13 +17,13 @@ double largest_x(const IndexedWall& s) { return std::max(s.a.x, s.b.x); }
 
 }  // namespace
 
-WallIndex::WallIndex(std::span<const world::Segment> walls, double z) {
+WallIndex::WallIndex(std::span<const world::Segment> walls) {
   std::vector<IndexedWall> visible;
   std::vector<base::Box> boxes;
   for (std::uint32_t row = 0; row < walls.size(); ++row) {
     const world::Segment& s = walls[row];
-    if (!s.seen_by_laser || z < s.z_min || z >= s.z_max) continue;
-    visible.push_back({s.a, s.b, row, s.solid_left});
+    if (!s.seen_by_laser) continue;
+    visible.push_back({s.a, s.b, row, s.solid_left, s.z_min, s.z_max});
     boxes.push_back(base::box_of(s.a, s.b));
   }
   tree_ = base::BoxTree(boxes, kLeafWalls);
@@ -53,16 +53,16 @@ std::size_t WallIndex::band_of(double y) const {
   return static_cast<std::size_t>(std::clamp(std::floor((y - tree_.extent().min.y) / band_height_), 0.0, last));
 }
 
-void WallIndex::near(glm::dvec2 p, double radius, std::vector<std::uint32_t>& found) const {
+void WallIndex::near(glm::dvec2 p, double z, double radius, std::vector<std::uint32_t>& found) const {
   found.clear();
   found.reserve(segments_.size());
   tree_.any_place(base::box_around(p, radius), [&](std::uint32_t i) {
-    found.push_back(i);
+    if (segments_[i].is_at(z)) found.push_back(i);
     return false;
   });
 }
 
-bool WallIndex::inside_solid(glm::dvec2 p) const {
+bool WallIndex::inside_solid(glm::dvec2 p, double z) const {
   const base::Box all = tree_.extent();
   if (!meet(all, {p, p})) return false;
   // A horizontal line crosses closed outlines upward as often as downward, so the crossings on one side of p suffice.
@@ -75,6 +75,7 @@ bool WallIndex::inside_solid(glm::dvec2 p) const {
     if (k + kAhead < walls.size()) __builtin_prefetch(&segments_[walls[k + kAhead]]);
     const IndexedWall& s = segments_[walls[k]];
     if (left ? least_x(s) > p.x : largest_x(s) < p.x) break;
+    if (!s.is_at(z)) continue;
     const bool below_a = s.a.y <= p.y;
     if (below_a == (s.b.y <= p.y)) continue;
     const double side = (left ? -1.0 : 1.0) * base::cross(s.b - s.a, p - s.a);

@@ -1,5 +1,5 @@
 #pragma once
-// Spatial index of the walls at the height of a sensor's beams.
+// Spatial index of the walls that lasers see, for sensors at any height.
 
 #include <cstdint>
 #include <span>
@@ -10,29 +10,32 @@
 
 namespace sf::raycast {
 
-/// A visible segment. `row` is its row in the table of all walls.
+/// `row` is the segment's row in the table of all walls.
 struct IndexedWall {
   glm::dvec2 a;
   glm::dvec2 b;
   std::uint32_t row;
   bool solid_left;
+  double z_min, z_max;  ///< [m]
+
+  bool is_at(double z) const { return z_min <= z && z < z_max; }
 };
 
 /// Immutable after construction and thread-safe.
 class WallIndex {
  public:
-  /// Indexes the walls visible at height `z` [m]. `walls` may be destroyed after construction.
-  WallIndex(std::span<const world::Segment> walls, double z);
+  /// `walls` may be destroyed after construction.
+  explicit WallIndex(std::span<const world::Segment> walls);
 
   const std::vector<IndexedWall>& segments() const { return segments_; }
 
-  /// Finds every segment within `radius` [m] of `p`, and possibly others. @param found out: indices into `segments()`,
-  /// without duplicates, in unspecified order
-  void near(glm::dvec2 p, double radius, std::vector<std::uint32_t>& found) const;
+  /// Finds every segment at height `z` [m] within `radius` [m] of `p`, and possibly others at that height.
+  /// @param found out: indices into `segments()`, without duplicates, in unspecified order
+  void near(glm::dvec2 p, double z, double radius, std::vector<std::uint32_t>& found) const;
 
-  /// Returns whether `p` is in a solid, i.e. the winding number of all outlines with a known solid side is not 0.
-  /// Within rounding of a surface, either result is possible.
-  bool inside_solid(glm::dvec2 p) const;
+  /// Returns whether `p` at height `z` [m] is in a solid, i.e. the winding number of all outlines with a known solid
+  /// side is not 0. Within rounding of a surface, either result is possible.
+  bool inside_solid(glm::dvec2 p, double z) const;
 
  private:
   /// Segments of solids in an interval of y, for winding numbers.

@@ -162,7 +162,6 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
     SF_CHECK(report.mover < reports_.size(), "mover " + std::to_string(report.mover));
     if (report.time < reports_[report.mover].time) continue;
     reports_[report.mover] = report;
-    reports_[report.mover].X_WM.z = world_.movers[report.mover].X_WM.z;
     reported_[report.mover] = 1;
     refused_[report.mover] = 0;
     ++taken;

@@ -66,8 +66,7 @@ class Fleet {
   void move(std::span<const base::Twist> commands, std::int64_t dt);
 
   /// Applies states of movers from outside; `predict` computes their contacts. A report older than the mover's state is
-  /// ignored; a report of the same time replaces it. Heights stay at their load values regardless of the report: the
-  /// world is 2.5-D, for contacts as for sensors.
+  /// ignored; a report of the same time replaces it.
   /// @param reports finite, with rows of existing movers
   /// @return number of accepted reports
   std::size_t apply(std::span<const base::Report> reports);

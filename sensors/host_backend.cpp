@@ -29,10 +29,8 @@ bool HostBackend::prepare(std::span<const DueSample> due) {
   samples_.clear();
   for (const DueSample& d : due) {
     const SensorSpec& row = rows_[d.row];
-    Pose X_WS = base::compose(states_[row.mover].X_WM, row.X_MS);
-    X_WS.z = world_.movers[row.mover].X_WM.z + row.X_MS.z;
     const auto values = std::span(values_).subspan(first_[d.row], first_[d.row + 1] - first_[d.row]);
-    samples_.push_back({d.row, d.sequence, X_WS, values});
+    samples_.push_back({d.row, d.sequence, base::compose(states_[row.mover].X_WM, row.X_MS), values});
   }
   // In a world without device work, the empty batch must be recorded once.
   return !std::exchange(recorded_, true);

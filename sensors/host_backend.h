@@ -16,7 +16,7 @@ namespace sf::sensors {
 struct HostSample {
   std::uint32_t row = 0;       ///< row among the sensor type's sensors in this world
   std::uint64_t sequence = 0;  ///< key of the reading's noise
-  Pose X_WS;                   ///< pose of the sensor; z: height in the world at load (2.5-D world)
+  Pose X_WS;                   ///< pose of the sensor
   std::span<double> values;    ///< all rows and columns, to be filled in
 };
 

@@ -33,7 +33,7 @@ std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, c
     ++id;
   }
   for (std::uint32_t m = 0; m < world_.movers.size(); ++m) {
-    const double height = X_WS.z - world_.movers[m].X_WM.z;  // height at load (2.5-D world)
+    const double height = X_WS.z - poses_[m].z;
     for (const world::Segment& s : world_.movers[m].body) {
       if (!s.seen_by_laser) continue;
       if (m != self && !base::is_absent(poses_[m]) && s.z_min <= height && height < s.z_max)
@@ -51,7 +51,6 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t num
   const raycast::BeamPlan plan = raycast::plan_beams(l, noise_);
   Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples), std::vector<std::uint32_t>(l.samples),
             std::vector<base::QualityFlag>(l.samples)};
-  scan.X_WS.z = world_.movers[mover].X_WM.z + l.X_MS.z;
   std::vector<double> turns(noise_ && l.noise.angle_sigma > 0.0 ? plan.samples.size() : 0);
   draw_angle_noise(l, plan, {seed_, base::RandomStream::angle_noise, mover, number, sequence}, turns);
 

@@ -11,6 +11,7 @@
 #include "sensors/accuracy.h"
 #include "sensors/laser_modes.h"
 #include "sensors/magnetic_field/magnetic_field.h"
+#include "sensors/magnetic_field/truncation.h"
 #include "sensors/magnetometer_modes.h"
 #include "sensors/magnetometer_packets.h"
 #include "sensors/settings.h"
@@ -19,13 +20,15 @@ namespace sf::sensors {
 
 namespace {
 
+constexpr std::size_t kMostLifted = 4096;  // bounds that are kept
+
 /// One array of a world.
 struct Array {
   const Magnetometer& settings;
   const SensorSpec& row;
-  double height = 0.0;             ///< [m] height of its origin in the world; fixed at load (2.5-D world)
+  double height = 0.0;             ///< [m] of its origin in the world at load
   std::size_t values = 0;          ///< index of its first value
-  FieldBound bound;                ///< largest bound of its elements
+  FieldBound bound;                ///< largest bound of its elements, with all movers at their heights at load
   std::vector<glm::dvec2> facing;  ///< per element: its x axis in the sensor frame
 };
 
@@ -63,9 +66,7 @@ class Magnetometers : public SensorBackend {
  public:
   Magnetometers(const SensorContext& context, const ParsedSensors& sensors);
 
-  void place_movers() override {
-    for (auto& [mode, wave] : waves_) wave.field.place_movers(states_);
-  }
+  void place_movers() override;
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override {
     if (!on_device_) return;
@@ -79,10 +80,13 @@ class Magnetometers : public SensorBackend {
   bool on_device() const override { return on_device_; }
 
  private:
-  void bound_errors(const world::World& world);
+  void bound_errors();
+  const FieldBound& lifted_bound(std::uint8_t mode, double height);
+  FieldBound bound_of(const Array& array, double z);
   void add_places(const Array& array, const Pose& X_WS);
   void read(std::size_t i);
 
+  const world::World& world_;
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
   std::uint64_t seed_;
@@ -91,13 +95,20 @@ class Magnetometers : public SensorBackend {
   std::vector<Array> arrays_;
   std::map<std::uint8_t, Wave> waves_;  ///< by mode
   std::vector<DueSample> due_;
-  std::vector<Pose> X_WS_;             ///< per due array
+  std::vector<Pose> X_WS_;              ///< per due array
+  std::vector<FieldBound> bounds_;      ///< per due array
+  std::vector<double> magnets_z_;       ///< [m] heights of the movers that carry magnets, in this tick
+  std::vector<double> load_z_;          ///< [m] the same at load
+  std::map<std::uint8_t, double> cut_;  ///< [T] by mode: bound of the cut-off at any height
+  /// By mode and height of an element, for this tick's heights of magnets.
+  std::map<std::pair<std::uint8_t, double>, FieldBound> lifted_;
   std::vector<std::uint32_t> groups_;  ///< per due array: its first group in its wave
   std::vector<double> values_;         ///< [T] of all arrays
 };
 
 Magnetometers::Magnetometers(const SensorContext& context, const ParsedSensors& sensors)
-    : thread_pool_(context.thread_pool),
+    : world_(context.world),
+      thread_pool_(context.thread_pool),
       states_(context.states),
       seed_(context.seed),
       noise_(context.noise),
@@ -110,20 +121,50 @@ Magnetometers::Magnetometers(const SensorContext& context, const ParsedSensors& 
                                            cutoff_of(context.world, array.row.mode)},
                                           {},
                                           {}});
-  bound_errors(context.world);
+  bound_errors();
+  for (const world::Mover& mover : world_.movers)
+    if (!mover.magnets.empty()) load_z_.push_back(mover.X_WM.z);
+  magnets_z_ = load_z_;
   if (!arrays_.empty()) values_.resize(arrays_.back().values + kMagnetometerColumns * arrays_.back().row.elements);
 }
 
-void Magnetometers::bound_errors(const world::World& world) {
+void Magnetometers::bound_errors() {
   std::map<std::pair<std::uint8_t, double>, FieldBound> known;
   for (Array& array : arrays_)
     for (const Pose& X_SE : array.settings.X_SE) {
       const double height = array.height + X_SE.z;
       const auto [at, is_new] = known.try_emplace({array.row.mode, height});
-      if (is_new) at->second = field_bound(world, array.row.mode, height);
-      array.bound.fixed = std::max(array.bound.fixed, at->second.fixed);
-      array.bound.per_metre = std::max(array.bound.per_metre, at->second.per_metre);
+      if (is_new) at->second = field_bound(world_, array.row.mode, height);
+      array.bound.include(at->second);
     }
+}
+
+void Magnetometers::place_movers() {
+  for (auto& [mode, wave] : waves_) wave.field.place_movers(states_);
+  std::size_t k = 0;
+  bool moved = false;
+  for (std::size_t m = 0; m < states_.size(); ++m) {
+    if (world_.movers[m].magnets.empty()) continue;
+    moved = moved || magnets_z_[k] != states_[m].X_WM.z;
+    magnets_z_[k++] = states_[m].X_WM.z;
+  }
+  if (moved || lifted_.size() > kMostLifted) lifted_.clear();
+}
+
+const FieldBound& Magnetometers::lifted_bound(std::uint8_t mode, double height) {
+  const auto [at, is_new] = lifted_.try_emplace({mode, height});
+  if (!is_new) return at->second;
+  const auto [cut, is_new_cut] = cut_.try_emplace(mode);
+  if (is_new_cut) cut->second = truncation_bound_at_any_height(world_, cutoff_of(world_, mode));
+  return at->second = field_bound(world_, states_, cut->second, height);
+}
+
+/// Returns the bound of an array whose origin is at height `z` [m].
+FieldBound Magnetometers::bound_of(const Array& array, double z) {
+  if (z == array.height && magnets_z_ == load_z_) return array.bound;
+  FieldBound bound;
+  for (const Pose& X_SE : array.settings.X_SE) bound.include(lifted_bound(array.row.mode, z + X_SE.z));
+  return bound;
 }
 
 SensorStats Magnetometers::stats() const {
@@ -147,13 +188,13 @@ void Magnetometers::add_places(const Array& array, const Pose& X_WS) {
 
 bool Magnetometers::prepare(std::span<const DueSample> due) {
   due_.assign(due.begin(), due.end());
-  X_WS_.clear();
+  X_WS_.clear(), bounds_.clear();
   groups_.clear();
   for (auto& [mode, wave] : waves_) wave.places.clear(), wave.ends.clear();
   for (const DueSample& d : due_) {
     const Array& array = arrays_[d.row];
     X_WS_.push_back(base::compose(states_[array.row.mover].X_WM, array.row.X_MS));
-    X_WS_.back().z = array.height;
+    bounds_.push_back(bound_of(array, X_WS_.back().z));
     add_places(array, X_WS_.back());
   }
   bool again = false;
@@ -202,7 +243,7 @@ void Magnetometers::collect(std::span<base::ReadingBlock> out) {
         std::span<const double>(values_).subspan(array.values, kMagnetometerColumns * array.settings.X_SE.size());
     block.mode = array.row.mode;
     block.bound = block.bound_without_noise =
-        array.bound.at(std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + 1.0);
+        bounds_[i].at(std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + 1.0);
     out[i] = block;
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "robots/fleet.h"
 #include "sensors/magnetic_field/magnet_tree.h"
 #include "sensors/magnetic_field/truncation.h"
 #include "sensors/magnetometer.h"
@@ -49,11 +50,16 @@ double cutoff_of(const world::World& world, std::uint8_t mode) {
 }
 
 FieldBound field_bound(const world::World& world, std::uint8_t mode, double height) {
-  FieldBound bound{
-      truncation_bound(world, height, cutoff_of(world, mode)) + kArithmetic * glm::length(world.earth_field), 0.0};
+  return field_bound(world, robots::states_at_load(world), truncation_bound(world, height, cutoff_of(world, mode)),
+                     height);
+}
+
+FieldBound field_bound(const world::World& world, std::span<const base::Report> states, double cut, double height) {
+  FieldBound bound{cut + kArithmetic * glm::length(world.earth_field), 0.0};
   for (const world::Magnet& magnet : world.magnets) add(magnet, std::abs(height - magnet.z), bound);
-  for (const world::Mover& mover : world.movers)
-    for (const world::Magnet& magnet : mover.magnets) add(magnet, std::abs(height - mover.X_WM.z - magnet.z), bound);
+  for (std::size_t m = 0; m < states.size(); ++m)
+    for (const world::Magnet& magnet : world.movers[m].magnets)
+      add(magnet, std::abs(height - states[m].X_WM.z - magnet.z), bound);
   return bound;
 }
 

@@ -139,8 +139,7 @@ bool OwnSensors::prepare(std::span<const DueSample> due) {
   X_WS_.clear();
   for (const DueSample& d : due_) {
     const SensorSpec& spec = sensors_[d.row].spec;
-    Pose& X_WS = X_WS_.emplace_back(base::compose(context_.states[spec.mover].X_WM, spec.X_MS));
-    X_WS.z = context_.world.movers[spec.mover].X_WM.z + spec.X_MS.z;
+    const Pose& X_WS = X_WS_.emplace_back(base::compose(context_.states[spec.mover].X_WM, spec.X_MS));
     if (kernel_) kernel_->add(X_WS_.size() - 1, spec, X_WS, sensors_[d.row].sensor->parameters(), d.sequence);
   }
   if (kernel_) kernel_->close(due_.size());

@@ -80,8 +80,7 @@ void OwnKernel::place_movers() {
     if (base::is_absent(X_WM)) continue;
     for (const world::Segment& side : mover.body)
       if (side.seen_by_laser)
-        rows[surfaces_++] =
-            surface_of(base::transform(X_WM, side.a), base::transform(X_WM, side.b), mover.X_WM.z, side, m);
+        rows[surfaces_++] = surface_of(base::transform(X_WM, side.a), base::transform(X_WM, side.b), X_WM.z, side, m);
   }
 }
 

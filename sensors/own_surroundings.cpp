@@ -59,7 +59,7 @@ void OwnSurroundings::meet_movers(Nearest& nearest) const {
     const world::Mover& mover = world_.movers[row];
     const base::Pose& X_WM = states_[row].X_WM;
     if (row == nearest.self || base::is_absent(X_WM)) return false;
-    const double height = nearest.from.z - mover.X_WM.z;  // height at load (2.5-D world)
+    const double height = nearest.from.z - X_WM.z;
     for (const world::Segment& side : mover.body)
       if (side.seen_by_laser && side.z_min <= height && height < side.z_max)
         nearest.meet(base::transform(X_WM, side.a), base::transform(X_WM, side.b), side.model);

@@ -117,7 +117,7 @@ void find_movers_on_beam(Scratch& s, const ScanView& view, const ScanScene& scen
 
 void intersect_mover(Scratch& s, const ScanView& view, const ScanScene& scene, std::uint32_t mover, glm::dvec2 d,
                      ClosestHit& best) {
-  const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
+  const OutlineTable::Outline& outline = scene.outline_of(mover);
   const base::Pose& X = scene.states[mover].X_WM;
   const glm::dvec2 place = glm::dvec2{X.x, X.y} - view.origin;
   for (std::uint32_t i = outline.first; i < outline.first + outline.outward; ++i)

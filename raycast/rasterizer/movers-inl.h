@@ -79,7 +79,7 @@ void find_movers_in_view(Scratch& s, const Projection& p, const ScanView& view, 
 template <class Sink>
 HWY_INLINE void project_mover(Scratch& s, const Projection& p, const ScanView& view, const ScanScene& scene,
                               const NearMover& near, Sink sink) {
-  const OutlineTable::Outline& outline = scene.outlines->of_mover[near.mover];
+  const OutlineTable::Outline& outline = scene.outline_of(near.mover);
   const base::Pose& X = scene.states[near.mover].X_WM;
   const VF c = constant(static_cast<float>(scene.headings[near.mover].x)),
            sn = constant(static_cast<float>(scene.headings[near.mover].y));

@@ -58,7 +58,6 @@ class Rangers : public SensorBackend {
   raycast::ConeCaster cones_;
   std::vector<std::uint32_t> first_cones_;  ///< per array
   std::vector<std::uint64_t> last_;         ///< per array: sequence number of its last reading, or kNever
-  std::vector<double> heights_;             ///< [m] per array: height of its origin in the world
   std::vector<double> values_;              ///< of all arrays; transducers that do not fire keep their values
   std::vector<base::QualityFlag> quality_;  ///< per cone; same rule
   std::vector<DueSample> due_;
@@ -80,7 +79,6 @@ Rangers::Rangers(const SensorContext& context, const std::vector<ConeArray>& arr
   for (const ConeArray& array : arrays_) {
     first_cones_.push_back(cones);
     cones += static_cast<std::uint32_t>(array.X_SC.size());
-    heights_.push_back(context.world.movers[array.row.mover].X_WM.z + array.row.X_MS.z);
   }
   values_.resize(type_.columns * std::size_t{cones});
   quality_.resize(cones);
@@ -94,7 +92,6 @@ bool Rangers::prepare(std::span<const DueSample> due) {
   for (const DueSample& d : due_) {
     const SensorSpec& row = arrays_[d.row].row;
     X_WS_.push_back(base::compose(states_[row.mover].X_WM, row.X_MS));
-    X_WS_.back().z = heights_[d.row];
     fire(d);
     cones_ends_.push_back(due_cones_.size());
   }

@@ -87,7 +87,7 @@ void MagneticField::place_movers(std::span<const base::Report> states) {
     for (const world::Magnet& magnet : mover.magnets) {
       const glm::dvec2 p = base::transform(states[m].X_WM, magnet.p);
       t.moving_points.push_back(p);
-      t.moving_rows.push_back(dipole_row(magnet, p, mover.X_WM.z + magnet.z));
+      t.moving_rows.push_back(dipole_row(magnet, p, states[m].X_WM.z + magnet.z));
     }
   }
   t.write_moving();

@@ -48,7 +48,7 @@ class MagneticField {
   MagneticField(MagneticField&&) noexcept;
   ~MagneticField();
 
-  /// Moves the movers' magnets. @param states one per mover; z is ignored (2.5-D world)
+  /// Moves the movers' magnets. @param states one per mover
   void place_movers(std::span<const base::Report> states);
 
   /// Sets the points of the next batch, in groups of up to SF_FIELD_POINTS neighbours.

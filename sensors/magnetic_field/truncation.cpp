@@ -101,6 +101,10 @@ double truncation_bound(const world::World& world, double height, double nominal
   return kRounding * bound;
 }
 
+double truncation_bound_at_any_height(const world::World& world, double nominal) {
+  return nominal == 0.0 ? 0.0 : truncation_bound(flattened(world), 0.0, nominal);
+}
+
 MagnetSummary summarize_magnets(const world::World& world) {
   MagnetSummary facts;
   facts.magnets = static_cast<std::uint32_t>(world.magnets.size());

@@ -16,6 +16,8 @@ namespace sf::sensors {
 double truncation_bound(const world::World& world, double height);
 /// Same with another cut-off [m]; 0: none.
 double truncation_bound(const world::World& world, double height, double cutoff);
+/// Same for points and movers at any heights.
+double truncation_bound_at_any_height(const world::World& world, double cutoff);
 
 /// Summary of a world's magnets for the command `check`.
 struct MagnetSummary {

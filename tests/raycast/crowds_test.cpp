@@ -168,7 +168,6 @@ TEST(Crowds, CoincidentMoversReportTheFirst) {
   EXPECT_EQ(swarm.scan(1).models[90], world.movers[0].model);
   EXPECT_EQ(swarm.scan(99).models[90], world.movers[0].model);
   MoverGeometry movers(world);
-  movers.add_height(kHeight);
   std::vector<ExactSegment> exact(movers.segments());
   movers.place(swarm.states, swarm.thread_pool, exact);
   EXPECT_EQ(movers.grid().first.back(), 2u);

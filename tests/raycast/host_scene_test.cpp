@@ -145,11 +145,12 @@ TEST(MoverGeometry, MoversOfEqualShapeShareBlocks) {
   world::World world;
   for (int i = 0; i < 5; ++i) scenes::add_robot(world, {2.0 * i, 0.0, 0.0, 0.3 * i}, scenes::laser());
   MoverGeometry movers(world);
-  const OutlineTable& outlines = movers.outlines(movers.add_height(0.1));
+  const OutlineTable& outlines = movers.outlines();
   EXPECT_EQ(outlines.blocks.size(), 2u) << "16 edges outward, 16 inward";
   EXPECT_EQ(outlines.of_mover[4].first, outlines.of_mover[0].first);
-  const OutlineTable& above = movers.outlines(movers.add_height(100.0));
-  EXPECT_EQ(above.of_mover[0].all, 0u) << "nothing so high";
+  EXPECT_EQ(outlines.at(0, 0.1).all, 2u);
+  EXPECT_EQ(outlines.at(0, 100.0).all, 0u) << "nothing so high";
+  EXPECT_EQ(outlines.at(0, -0.1).all, 0u) << "nothing so low";
 }
 
 /// An absent mover is not in any cell. The others are in their cells.
@@ -157,7 +158,6 @@ TEST(MoverGeometry, AbsentMoversAreNotInTheGrid) {
   world::World world;
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {5.0 * i, 0.0, 0.0, 0.0}, scenes::laser());
   MoverGeometry movers(world);
-  movers.add_height(0.1);
   base::ThreadPool thread_pool(1);
   std::vector<ExactSegment> exact(movers.segments());
   std::vector<base::Report> states = robots::states_at_load(world);

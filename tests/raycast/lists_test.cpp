@@ -27,7 +27,7 @@ std::uint32_t first_wall(const std::vector<world::Segment>& walls, glm::dvec2 p,
 
 void every_hit_is_listed(world::World world, double range, double size, std::uint64_t seed) {
   for (std::uint32_t row = 0; row < world.walls.size(); ++row) world.walls[row].model = row;
-  const WallIndex wall_index(world.walls, 0.1);
+  const WallIndex wall_index(world.walls);
   const CellShape shape{size, range};
   CandidateWalls walls;
   trial::Chance chance(seed);
@@ -35,7 +35,7 @@ void every_hit_is_listed(world::World world, double range, double size, std::uin
   for (int c = 0; c < 40; ++c) {
     const glm::dvec2 centre = chance.in_square(0.45 * (world.extent.x_max - world.extent.x_min));
     for (const bool both : {false, true}) {
-      find_candidate_walls(wall_index, shape, centre, both, walls);
+      find_candidate_walls(wall_index, shape, centre, 0.1, both, walls);
       SectorLists lists;
       for (const CandidateWall& w : walls.front_facing) lists.add(w.bearing, w.half, w.row);
       lists.sort();
@@ -44,7 +44,7 @@ void every_hit_is_listed(world::World world, double range, double size, std::uin
         const glm::dvec2 p =
             centre + (corner ? glm::dvec2{(i % 8 ? 0.5 : -0.5) * size, (i % 16 < 8 ? 0.5 : -0.5) * size}
                              : chance.in_square(0.5 * size));
-        if (!both && wall_index.inside_solid(p)) continue;
+        if (!both && wall_index.inside_solid(p, 0.1)) continue;
         const double direction = chance.between(0.0, 2.0 * M_PI);
         const std::uint32_t row = first_wall(world.walls, p, direction, range);
         if (row == 0xFFFFFFFFu) continue;
@@ -69,13 +69,13 @@ TEST(Sectors, ListsEveryWallThatABeamMeets) {
 /// point of it is nearer than its `nearest`.
 TEST(CandidateWalls, IntervalsAndDistancesCoverTheCorners) {
   const world::World world = scenes::cave(300, 16.0, 3);
-  const WallIndex wall_index(world.walls, 0.1);
+  const WallIndex wall_index(world.walls);
   trial::Chance chance(7);
   std::size_t checked = 0;
   for (const double size : {0.05, 0.25, 1.0}) {
     CandidateWalls walls;
     for (int c = 0; c < 20; ++c) {
-      find_candidate_walls(wall_index, {size, 8.0}, chance.in_square(6.0), true, walls);
+      find_candidate_walls(wall_index, {size, 8.0}, chance.in_square(6.0), 0.1, true, walls);
       for (const CandidateWall& w : walls.front_facing)
         for (const glm::dvec2& corner : {glm::dvec2{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}) {
           const glm::dvec2 p = 0.5 * size * corner;
@@ -96,9 +96,9 @@ TEST(CandidateWalls, IntervalsAndDistancesCoverTheCorners) {
 /// of their walls.
 TEST(CandidateWalls, BlocksDoNotDependOnSearchOrder) {
   const world::World world = scenes::cave(300, 16.0, 3);
-  const WallIndex wall_index(world.walls, 0.1);
+  const WallIndex wall_index(world.walls);
   CandidateWalls walls;
-  find_candidate_walls(wall_index, {0.25, 8.0}, {0.5, 0.25}, false, walls);
+  find_candidate_walls(wall_index, {0.25, 8.0}, {0.5, 0.25}, 0.1, false, walls);
   ASSERT_GT(walls.front_facing.size(), 3u * kBlock);
   std::vector<CandidateWall> found = walls.front_facing, backwards(found.rbegin(), found.rend());
   std::vector<SegmentBlock> blocks, others;
@@ -127,9 +127,9 @@ TEST(CandidateWalls, BlocksDoNotDependOnSearchOrder) {
 /// Lists must be far shorter than the set of all walls.
 TEST(Sectors, ListsAreShort) {
   const world::World world = scenes::cave(300, 16.0, 3);
-  const WallIndex wall_index(world.walls, 0.1);
+  const WallIndex wall_index(world.walls);
   CandidateWalls walls;
-  find_candidate_walls(wall_index, {0.25, 8.0}, {}, false, walls);
+  find_candidate_walls(wall_index, {0.25, 8.0}, {}, 0.1, false, walls);
   SectorLists lists;
   for (const CandidateWall& w : walls.front_facing) lists.add(w.bearing, w.half, w.row);
   lists.sort();

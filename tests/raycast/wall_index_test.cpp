@@ -15,13 +15,13 @@ namespace {
 
 TEST(WallIndex, FindsAllWallsNearAPoint) {
   const world::World world = scenes::boxes(60, 16.0, 5);
-  const WallIndex wall_index(world.walls, 0.1);
+  const WallIndex wall_index(world.walls);
   std::vector<std::uint32_t> found;
   trial::Chance chance(3);
   for (int i = 0; i < 200; ++i) {
     const glm::dvec2 p = chance.in_square(10.0);
     const double radius = chance.between(0.01, 5.0);
-    wall_index.near(p, radius, found);
+    wall_index.near(p, 0.1, radius, found);
     for (std::uint32_t k = 0; k < wall_index.segments().size(); ++k) {
       const bool near = world::distance(p, wall_index.segments()[k].a, wall_index.segments()[k].b) <= radius;
       const auto times = std::count(found.begin(), found.end(), k);
@@ -35,15 +35,15 @@ TEST(WallIndex, DetectsPointsInsideSolids) {
   scenes::add_room(world, {}, 10.0);
   scenes::add_outline(world, {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, "box");
   scenes::add_outline(world, {{1, 1}, {3, 1}, {3, 3}, {1, 3}}, "overlapping");
-  const WallIndex wall_index(world.walls, 0.1);
-  EXPECT_TRUE(wall_index.inside_solid({0.5, 0.5}));
-  EXPECT_TRUE(wall_index.inside_solid({1.5, 1.5})) << "in both";
-  EXPECT_TRUE(wall_index.inside_solid({5.05, 0.0})) << "in the ring of the room";
-  EXPECT_FALSE(wall_index.inside_solid({-1.0, 0.0})) << "in the room";
-  EXPECT_FALSE(wall_index.inside_solid({2.5, 0.5}));
-  EXPECT_FALSE(wall_index.inside_solid({6.0, 0.0})) << "out of the room";
-  EXPECT_FALSE(wall_index.inside_solid({1e9, -1e9}));
-  EXPECT_FALSE(WallIndex({}, 0.1).inside_solid({0, 0})) << "no walls";
+  const WallIndex wall_index(world.walls);
+  EXPECT_TRUE(wall_index.inside_solid({0.5, 0.5}, 0.1));
+  EXPECT_TRUE(wall_index.inside_solid({1.5, 1.5}, 0.1)) << "in both";
+  EXPECT_TRUE(wall_index.inside_solid({5.05, 0.0}, 0.1)) << "in the ring of the room";
+  EXPECT_FALSE(wall_index.inside_solid({-1.0, 0.0}, 0.1)) << "in the room";
+  EXPECT_FALSE(wall_index.inside_solid({2.5, 0.5}, 0.1));
+  EXPECT_FALSE(wall_index.inside_solid({6.0, 0.0}, 0.1)) << "out of the room";
+  EXPECT_FALSE(wall_index.inside_solid({1e9, -1e9}, 0.1));
+  EXPECT_FALSE(WallIndex(std::span<const world::Segment>()).inside_solid({0, 0}, 0.1)) << "no walls";
 }
 
 }  // namespace

@@ -183,21 +183,21 @@ TEST(Fleet, NewestReportWins) {
   EXPECT_EQ(fleet.reports()[0].X_WM.x, 3.0);
 }
 
-/// Reports place the robot above a kerb, or below the floor. Its height stays that at load, for contacts as for
-/// sensors.
-TEST(Fleet, HeightsStayAtLoadValuesForAnyReport) {
+/// Reports place the robot above a kerb, which it then does not touch, and above or below another robot.
+TEST(Fleet, ReportedHeightsCountForContacts) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.9, -1}, {0.9, 1}, 0.0, 0.08);  // a kerb
   scenes::add_square(world, {});
   scenes::add_square(world, {5, 0, 0, 0});
-  for (const double z : {0.0, 0.12, -2.0}) {
+  const double top = robots::footprint_of(world.movers[1]).z_max;
+  for (const double z : {0.0, 0.07, 0.12, -2.0, top + 0.01}) {
     Fleet fleet(world);
     fleet.apply(std::vector<Report>{{.mover = 0, .time = 1, .X_WM = {0.9, 0, z, 0}}});
-    EXPECT_EQ(fleet.predict(1)[0].X_WM.z, 0.0) << z;
-    EXPECT_EQ(fleet.contacts()[0], 1) << z;
+    EXPECT_EQ(fleet.predict(1)[0].X_WM.z, z);
+    EXPECT_EQ(fleet.contacts()[0], z >= 0.0 && z < 0.08) << z;
     fleet.apply(std::vector<Report>{{.mover = 0, .time = 2, .X_WM = {4.95, 0, z, 0}}});
     fleet.predict(2);
-    EXPECT_EQ(fleet.contacts()[0], 1) << "the other robot, " << z;
+    EXPECT_EQ(fleet.contacts()[0], z >= 0.0 && z < top) << "the other robot, " << z;
   }
 }
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "raycast/casters.h"
 #include "sensors/laser_settings.h"
+#include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
 
@@ -68,6 +70,43 @@ TEST(Heights, SensorsOfManyHeightsAndRangesShareAWorld) {
     world.movers.back().sensors.push_back(sensors::laser_sensor(laser));
   }
   expect_exact("heights and ranges", sweep(world));
+}
+
+/// Robots of several storeys among walls of many heights rise and sink while the farm runs. Each tick equals that of a
+/// farm that is loaded with these heights, for all casters, and is right.
+TEST(Heights, RobotsAtAHeightReadAsIfLoadedThere) {
+  world::World world = scenes::boxes(40, 16.0, 4);
+  for (world::Segment& wall : world.walls) {
+    if (wall.model < 2) continue;  // the outlines of the room
+    wall.z_min = 0.05 * (wall.model % 3);
+    wall.z_max = wall.z_min + 0.1 * (wall.model % 5);
+  }
+  Chance chance(17);
+  for (int i = 0; i < 24; ++i) {
+    const auto m = scenes::add_robot(world, {}, eye(91, 6.0, i % 3 ? 8.0 : 3.0));
+    for (std::size_t k = 0; k < world.movers[m].body.size(); ++k)
+      world.movers[m].body[k].z_min = 0.05 * (i % 4), world.movers[m].body[k].z_max = 0.1 + 0.02 * (i % 7);
+    world.movers[m].sensors.push_back(sensors::laser_sensor(eye(31, 1.0, 8.0)));
+    world.movers[m].sensors.back().X_MS.z = 0.17;
+  }
+  for (const raycast::CasterType* caster : raycast::casters()) {
+    farm::Farm farm(world, device(), {.scene = {.caster = caster}});
+    farm.subscribe_all();
+    for (int tick = 0; tick < 6; ++tick) {
+      world::World now = world;
+      std::vector<base::Report> reports;
+      for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+        const glm::dvec2 p = chance.in_square(m % 2 == 0 ? 7.0 : 0.4);  // half of them in a crowd
+        now.movers[m].X_WM = {p.x, p.y, tick == 0 ? 0.0 : chance.between(-0.3, 0.5), chance.between(-4, 4)};
+        reports.push_back({m, 0, now.movers[m].X_WM, {}});
+      }
+      const auto readings = farm.tick(tick * 100'000'000ll, reports);
+      const Glance loaded(now, {.scene = {.caster = caster}});
+      expect_same_bits(readings, loaded.readings);
+      if (caster == &raycast::host_caster)
+        expect_exact(std::to_string(tick), compare(now, loaded_poses(now), readings));
+    }
+  }
 }
 
 /// The pose of a sensor that is rotated, off the robot's centre and above it.

@@ -96,6 +96,31 @@ TEST(HostKinds, DoNotDependOnOtherRobots) {
   }
 }
 
+/// All types, with those of the device: robots that rise and sink read as if loaded at their heights.
+TEST(HostKinds, FollowTheHeightsOfTheirRobots) {
+  world::World world = everything(6);
+  for (std::uint32_t m = 0; m < 6; ++m) {
+    for (const char* const type : {"laser", "sonar", "infrared"}) world.movers[m].sensors.push_back(fitted(type));
+    world.movers[m].sensors.push_back(scenes::five());
+    world.movers[m].magnets.push_back({{0.1, 0.0}, 0.05, 1.0, 0.01, 0});
+  }
+  world.magnets.push_back({{1.0, 0.5}, 0.0, 1.0, 0.01, 0});
+  farm::Farm farm(world, device(), {.seed = 1});
+  farm.subscribe_all();
+  for (int tick = 0; tick < 4; ++tick) {
+    std::vector<base::Report> states = moved(world, tick);
+    world::World now = world;
+    for (std::uint32_t m = 0; m < 6; ++m) {
+      states[m].X_WM.z = 0.07 * ((tick + m) % 4) - 0.05;
+      now.movers[m].X_WM.z = states[m].X_WM.z;
+    }
+    farm::Farm loaded(now, device(), {.seed = 1});
+    loaded.subscribe_all();
+    for (int before = 0; before < tick; ++before) loaded.tick(before * 100'000'000ll, moved(world, before));
+    expect_same_bits(farm.tick(tick * 100'000'000ll, states), loaded.tick(tick * 100'000'000ll, states));
+  }
+}
+
 TEST(HostKinds, CanBeSensedAtAnyPose) {
   const world::World world = everything(2);
   farm::Farm farm(world, device());

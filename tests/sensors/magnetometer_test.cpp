@@ -216,11 +216,11 @@ void expect_moving_magnets(double cutoff) {
     std::vector<base::Report> reports;
     world::World now = world;
     for (std::uint32_t m = 0; m < 9; ++m) {
-      const Pose X{chance.between(-2, 2), chance.between(-2, 2), 0.0, chance.between(-4, 4)};
+      const Pose X{chance.between(-2, 2), chance.between(-2, 2), 0.01 * m, chance.between(-4, 4)};
       reports.push_back({m, 0, X, {}});
       for (world::Magnet carried : world.movers[m].magnets) {
         carried.p = base::transform(X, carried.p);
-        carried.z += world.movers[m].X_WM.z;
+        carried.z += X.z;
         now.magnets.push_back(carried);
       }
     }

@@ -76,17 +76,28 @@ TEST(Movers, AllOtherRobotsMayBeAbsent) {
   EXPECT_TRUE(farm.tick(100'000'000, {}).empty());
 }
 
-/// The world is 2.5-D: reported heights have no effect.
-TEST(Movers, ReportsDoNotChangeTheirHeight) {
+/// Boundaries: the body is 0.1 m high, and the beam is at 0.1 m.
+TEST(Movers, ReportedHeightsMoveThemInAndOutOfTheBeam) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
-  for (const double z : {0.0, 0.12, -2.0}) {
-    farm::Farm farm(world, device());
-    farm.subscribe(0, farm::kAllSensorTypes);
-    const base::Report report{other, 0, {3, 0, z, 0}, {}};
-    EXPECT_NEAR(farm.tick(0, {&report, 1})[0].values[0], 2.835, 1e-12) << z;
-  }
+  for (world::Segment& s : world.movers[other].body) s.z_min = 0.0, s.z_max = 0.25;
+  const double beam = Glance(world).readings[0].X_WS.z;
+  farm::Farm farm(world, device());
+  farm.subscribe(0, farm::kAllSensorTypes);
+  std::int64_t now = 0;
+  const auto range = [&](const base::Report& report) {
+    return farm.tick(now += 100'000'000, {&report, 1})[0].values[0];
+  };
+  EXPECT_NEAR(range({other, 0, {3, 0, 0, 0}, {}}), 2.835, 1e-12);
+  EXPECT_NEAR(range({other, 0, {3, 0, beam, 0}, {}}), 2.835, 1e-12) << "its lower side is at the beam";
+  EXPECT_EQ(range({other, 0, {3, 0, beam + 0.01, 0}, {}}), 8.0) << "above the beam";
+  EXPECT_EQ(range({other, 0, {3, 0, beam - 0.25, 0}, {}}), 8.0) << "its upper side is at the beam";
+  EXPECT_NEAR(range({other, 0, {3, 0, beam - 0.24, 0}, {}}), 2.835, 1e-12);
+  EXPECT_EQ(range({other, 0, {3, 0, 1e7, 0}, {}}), 8.0) << "farther up than any packet states";
+  EXPECT_NEAR(range({other, 0, {3, 0, 0, 0}, {}}), 2.835, 1e-12) << "back down";
+  EXPECT_EQ(range({0, 0, {0, 0, 0.3, 0}, {}}), 8.0) << "the sensor itself rises";
+  EXPECT_NEAR(range({other, 0, {3, 0, 0.3, 0}, {}}), 2.835, 1e-12) << "both are up";
 }
 
 TEST(Movers, OnlyEchoingPartsAtTheBeamHeightAreVisible) {
