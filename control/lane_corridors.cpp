@@ -53,10 +53,11 @@ RoadFootprint footprint_of(const world::Mover& mover) {
   const robots::Footprint outline = robots::footprint_of(mover);
   double front = 0.0;
   for (const robots::FootprintEdge& edge : outline.edges) front = std::max({front, edge.a.x, edge.b.x});
-  return outline.edges.empty() ? RoadFootprint{} : RoadFootprint{outline.radius, front};
+  return outline.edges.empty() ? RoadFootprint{} : RoadFootprint{outline.radius, front, outline.z_max - outline.z_min};
 }
 
 glm::dvec2 point_on(const Way& way, double s) { return between(way.points, way, s); }
+double height_on(const Way& way, double s) { return way.z.empty() ? 0.0 : between(way.z, way, s); }
 double yaw_on(const Way& way, double s) { return between(way.yaw, way, s); }
 double curvature_on(const Way& way, double s) { return between(way.curvature, way, s); }
 
@@ -83,7 +84,8 @@ std::uint32_t LaneCorridors::node_of(PointRef at) const {
   return static_cast<std::uint32_t>(found - roads_.index.begin());
 }
 
-std::uint32_t LaneCorridors::add_way(Way way, const world::Curve& line) {
+/// @param from_z, to_z [m] heights of its ends; the height is linear between them
+std::uint32_t LaneCorridors::add_way(Way way, const world::Curve& line, double from_z, double to_z) {
   points_ += line.s.back() / step_ + 2.0;
   if (!(points_ <= kMaxWayPoints))
     throw base::InputError(
@@ -91,6 +93,8 @@ std::uint32_t LaneCorridors::add_way(Way way, const world::Curve& line) {
                     "the radius, and at most {:g} points in all; expected a larger body",
                     body_.radius, kMaxWayPoints));
   sample(way, line, step_);
+  for (std::size_t i = 0; (from_z != 0.0 || to_z != 0.0) && i < way.points.size(); ++i)
+    way.z.push_back(from_z + static_cast<double>(i) * way.step / way.length * (to_z - from_z));
   ways_.push_back(std::move(way));
   return static_cast<std::uint32_t>(ways_.size() - 1);
 }
@@ -99,10 +103,18 @@ void LaneCorridors::add_edge(PointRef from, PointRef to, std::uint32_t way, doub
   edges_[node_of(from)].push_back({node_of(to), {way, world::kNone}, from_s, to_s, to_s - from_s + extra});
 }
 
+/// Sets the heights of a lane's way.
+void LaneCorridors::raise(Way& way, const world::RoadLane& lane) {
+  if (std::ranges::all_of(lane.points, [](const world::LanePoint& point) { return point.z == 0.0; })) return;
+  raised_ = true;
+  for (std::size_t i = 0; i < way.points.size(); ++i)
+    way.z.push_back(world::height_at(lane, static_cast<double>(i) * way.step));
+}
+
 void LaneCorridors::add_lanes(const world::World& world) {
   for (std::uint32_t row = 0; row < roads_.lanes.size(); ++row) {
     const world::RoadLane& lane = roads_.lanes[row];
-    add_way({.kind = Way::Kind::lane}, lane.centre);
+    raise(ways_[add_way({.kind = Way::Kind::lane}, lane.centre)], lane);
     for (std::uint32_t i = 0; i + 1 < lane.points.size(); ++i)
       add_edge({PointRef::Kind::lane, row, i}, {PointRef::Kind::lane, row, i + 1}, row, lane.points[i].s,
                lane.points[i + 1].s, 0.0);
@@ -139,7 +151,8 @@ void LaneCorridors::add_exits() {
       way.in_zone = true;
       way.zone = exit.to.row;
     }
-    const std::uint32_t row = add_way(way, exit_curve(roads_, exit));
+    const std::uint32_t row =
+        add_way(way, exit_curve(roads_, exit), height_of(roads_, exit.from), height_of(roads_, exit.to));
     add_edge(exit.from, exit.to, row, 0.0, ways_[row].length, 0.0);
   }
 }
@@ -152,7 +165,8 @@ void LaneCorridors::add_changes() {
         Way way{.kind = Way::Kind::change, .from = row, .into = step.to.row};
         way.leave = roads_.lanes[row].points[i].s;
         way.enter = roads_.lanes[step.to.row].points[step.to.index].s;
-        const std::uint32_t added = add_way(way, lane_change_curve(roads_, from, step.to));
+        const std::uint32_t added =
+            add_way(way, lane_change_curve(roads_, from, step.to), height_of(roads_, from), height_of(roads_, step.to));
         add_edge(from, step.to, added, 0.0, ways_[added].length, kChangeCost);
       }
     }

@@ -7,8 +7,8 @@
 //
 // A way is a lane, the connection of an exit, a lane change, or a straight line within a zone. Two ways conflict where
 // their lines are nearer than the width of two robots and a margin: at crossings of exits, where exits enter the same
-// lane, and where lanes cross (bridges count as crossings, since the road network is flat). Two ways that leave the
-// same point do not conflict, nor do two consecutive ways, because one robot follows the other there.
+// lane, and where lanes cross, unless one is above the other by the height of a robot. Two ways that leave the same
+// point do not conflict, nor do two consecutive ways, because one robot follows the other there.
 
 #include <algorithm>
 #include <array>
@@ -29,6 +29,7 @@ using base::Pose;
 struct RoadFootprint {
   double radius = 0.165;  ///< > 0
   double front = 0.165;   ///< from the origin to the front
+  double height = 0.1;    ///< from the lowest to the highest part, > 0
 
   friend bool operator==(const RoadFootprint&, const RoadFootprint&) = default;
 };
@@ -72,6 +73,7 @@ struct Way {
   double length = 0.0;                       ///< [m] > 0
   double step = 0.0;                         ///< [m] between neighbouring points
   std::vector<glm::dvec2> points;            ///< at least two
+  std::vector<double> z;                     ///< [m] height at each point; empty: on the floor
   std::vector<double> yaw;                   ///< [rad] yaw of the line at each point, not wrapped
   std::vector<glm::dvec2> tangents;          ///< unit vectors
   std::vector<double> curvature;             ///< [1/m] positive to the left
@@ -83,6 +85,7 @@ struct Way {
 };
 
 glm::dvec2 point_on(const Way& way, double s);
+double height_on(const Way& way, double s);
 double yaw_on(const Way& way, double s);
 double curvature_on(const Way& way, double s);
 
@@ -127,13 +130,16 @@ class LaneCorridors {
   const std::vector<Edge>& edges(std::uint32_t node) const { return edges_[node]; }
   std::uint32_t node_of(world::PointRef at) const;
 
-  /// Returns the ways within `reach` [m] of the robot that run in its direction (within 45 degrees), nearest first.
+  /// Returns the ways within `reach` [m] of the robot that run in its direction (within 45 degrees), nearest first. On
+  /// roads with heights, only those at its own.
   RoadPositions positions(const Pose& X_WM, double reach) const;
   /// Returns whether `p` is within the perimeter of the zone or at most half a radius outside it, since spots may be
   /// entered from the perimeter.
   bool inside(std::uint32_t zone, glm::dvec2 p) const;
   /// Returns the pose of a robot's origin when parked in a spot.
   Pose parked(std::uint32_t spot) const;
+  /// Returns whether robots at the heights `z` and `w` [m] pass over each other. Always false on flat roads.
+  bool apart(double z, double w) const { return raised_ && std::abs(z - w) >= body_.height; }
   /// Returns the distance [m] below which two lines conflict.
   double clearance() const { return clearance_; }
 
@@ -142,7 +148,8 @@ class LaneCorridors {
   void add_exits();
   void add_changes();
   void add_zones();
-  std::uint32_t add_way(Way way, const world::Curve& line);
+  std::uint32_t add_way(Way way, const world::Curve& line, double from_z = 0.0, double to_z = 0.0);
+  void raise(Way& way, const world::RoadLane& lane);
   void add_edge(world::PointRef from, world::PointRef to, std::uint32_t way, double from_s, double to_s, double extra);
   void fill_grid();
   void find_conflicts();
@@ -158,6 +165,7 @@ class LaneCorridors {
   double clearance_;
   double step_;
   double points_ = 0.0;  ///< number of points of all ways
+  bool raised_ = false;  ///< a road has a height
   std::vector<Way> ways_;
   std::vector<std::vector<Edge>> edges_;
 
@@ -165,6 +173,7 @@ class LaneCorridors {
   struct Sample {
     glm::dvec2 p, along;  ///< position, and unit vector of the driving direction
     std::uint32_t way, index;
+    double z;  ///< [m]
   };
   glm::dvec2 corner_;
   double cell_ = 1.0;

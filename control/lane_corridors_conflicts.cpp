@@ -54,7 +54,7 @@ void LaneCorridors::find_conflicts(std::uint32_t row) {
     near(way.points[i], clearance_, [&](const Sample& sample) {
       if (sample.way == row) return;
       const glm::dvec2 d = sample.p - way.points[i];
-      if (dot(d, d) >= clearance_ * clearance_) return;
+      if (dot(d, d) >= clearance_ * clearance_ || apart(sample.z, way.z.empty() ? 0.0 : way.z[i])) return;
       const auto at = std::find_if(found.begin(), found.end(), [&](const Found& f) { return f.way == sample.way; });
       if (at == found.end()) {
         found.push_back({sample.way, i, i, sample.index, sample.index});

@@ -41,7 +41,8 @@ void LaneCorridors::fill_grid() {
   for (std::uint32_t w = 0; w < ways_.size(); ++w) {
     const Way& way = ways_[w];
     for (std::uint32_t i = 0; i < way.points.size(); ++i)
-      samples_[next[cell_of(way.points[i])]++] = {way.points[i], (way.backwards ? -1.0 : 1.0) * way.tangents[i], w, i};
+      samples_[next[cell_of(way.points[i])]++] = {way.points[i], (way.backwards ? -1.0 : 1.0) * way.tangents[i], w, i,
+                                                  way.z.empty() ? 0.0 : way.z[i]};
   }
 }
 
@@ -60,7 +61,7 @@ RoadPositions LaneCorridors::positions(const Pose& X_WM, double reach) const {
     const glm::dvec2 d = sample.p - p;
     const double dd = dot(d, d);
     if (dd > within * within) return;
-    if (dot(sample.along, facing) < kAlike) return;
+    if (dot(sample.along, facing) < kAlike || apart(sample.z, X_WM.z)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (found[i].way != sample.way) continue;
       if (dd < found[i].distance) found[i] = {sample.way, sample.index, dd};

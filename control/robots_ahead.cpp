@@ -12,7 +12,7 @@ OnRoute on_route(const LaneCorridors& corridors, const RoutePlan& plan, double s
   const RouteLeg& leg = plan.legs[i];
   const Way& way = corridors.way(leg.way);
   const double at = std::clamp(leg.from + s - leg.start, leg.from, leg.to);
-  return {i, point_on(way, at), yaw_on(way, at), curvature_on(way, at)};
+  return {i, point_on(way, at), yaw_on(way, at), curvature_on(way, at), height_on(way, at)};
 }
 
 bool cusp_after(const LaneCorridors& corridors, const RoutePlan& plan, std::size_t leg) {
@@ -32,7 +32,7 @@ void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, do
   const double step = 0.25 * radius;
   struct Point {
     glm::dvec2 p;
-    double yaw, s, within;
+    double yaw, s, within, z;
   };
   std::array<Point, 128> points;
   std::size_t count = 0;
@@ -42,7 +42,7 @@ void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, do
     const OnRoute here = on_route(corridors, plan, std::min(at, end), leg);
     leg = here.leg;
     const bool zone = corridors.way(plan.legs[leg].way).kind == Way::Kind::zone;
-    points[count++] = {here.p, here.yaw, std::min(at, end), radius * (zone ? 2.04 : 2.18)};
+    points[count++] = {here.p, here.yaw, std::min(at, end), radius * (zone ? 2.04 : 2.18), here.z};
     if (at >= end) break;
   }
   const glm::dvec2 self{road_users[0].X_WM.x, road_users[0].X_WM.y};
@@ -53,6 +53,10 @@ void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, do
     for (std::size_t i = 0; i < count;) {
       // Neighbouring points are at most one step apart, which bounds the decrease of the distance per point.
       const double distance = away(i);
+      if (corridors.apart(points[i].z, road_users[row].X_WM.z)) {
+        ++i;
+        continue;
+      }
       if (distance >= points[i].within) {
         i += std::max<std::size_t>(1, static_cast<std::size_t>((distance - points[i].within) / step));
         continue;

@@ -29,6 +29,7 @@ struct OnRoute {
   glm::dvec2 p;
   double yaw = 0.0;        ///< [rad] yaw of the route
   double curvature = 0.0;  ///< [1/m]
+  double z = 0.0;          ///< [m]
 };
 OnRoute on_route(const LaneCorridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg = 0);
 

@@ -191,7 +191,7 @@ std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count
     for (double s = end; s <= length - end; s += 0.25 * apart) {
       const glm::dvec2 p = point_at(lane.centre, s);
       const glm::dvec2 d = point_at(lane.centre, s + 0.05 * apart) - point_at(lane.centre, s - 0.05 * apart);
-      open.push_back({p.x, p.y, 0.0, std::atan2(d.y, d.x)});
+      open.push_back({p.x, p.y, height_at(lane, s), std::atan2(d.y, d.x)});
     }
   }
   std::vector<Pose> poses;

@@ -25,9 +25,10 @@ void Route::start(const ControllerInput& input) {
     const auto place = locate_on_road(*corridors_, X_WM);
     if (!place)
       throw base::InputError(
-          fmt::format("robot '{}' is at ({:.2f}, {:.2f}), where no lane of '{}' runs in its direction; place it on a "
+          fmt::format("robot '{}' is at ({:.2f}, {:.2f}){}, where no lane of '{}' runs in its direction; place it on a "
                       "lane or in a parking spot",
-                      site_.world.movers[site_.mover].name, X_WM.x, X_WM.y, site_.roads->file));
+                      site_.world.movers[site_.mover].name, X_WM.x, X_WM.y,
+                      site_.world.ramps.empty() ? "" : fmt::format(" and z = {:.2f}", X_WM.z), site_.roads->file));
     plan_ = plan_from(*corridors_, *place);
   }
   started_ = true;

@@ -57,6 +57,7 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
       thread_pool_(thread_pool),
       footprints_(footprints_of(world)),
       walls_(stopping(world)),
+      ground_(world.ramps),
       reports_(states_at_load(world)),
       predicted_(reports_),
       rank_(ranks_of(world)),
@@ -87,6 +88,7 @@ void Fleet::make_room() {
     edges = std::max(edges, footprints_[row].edges.size());
   }
   travels_.resize(count);
+  starts_.resize(ground_.is_flat() ? 0 : count);
   progress_.resize(count);
   proposed_.resize(count);
   free_discs_.resize(count);
@@ -129,6 +131,8 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
     refused_[row] = progress.refused || progress.left > 0.0;
     reports_[row].velocity = progress.left > 0.0 ? Twist{} : progress.velocity;
     reports_[row].time += dt;
+    if (!ground_.is_flat() && absent_[row] == 0)
+      reports_[row].X_WM.z = ground_.follow(starts_[row], {reports_[row].X_WM.x, reports_[row].X_WM.y});
   });
   update_contacts();
 }

@@ -30,6 +30,7 @@
 #include "robots/contact_sectors.h"
 #include "robots/footprint.h"
 #include "robots/neighbour_grid.h"
+#include "world/ground.h"
 #include "world/wall_tree.h"
 #include "world/world.h"
 
@@ -70,6 +71,9 @@ class Fleet {
   /// @param reports finite, with rows of existing movers
   /// @return number of accepted reports
   std::size_t apply(std::span<const base::Report> reports);
+
+  /// Returns the height [m] of a mover after a move to `p` (world::Ground::follow).
+  double height_at(std::uint32_t row, glm::dvec2 p) const { return ground_.follow(reports_[row].X_WM, p); }
 
   /// Marks a mover as absent or present. Other movers do not collide with an absent mover, `move` does not move it, and
   /// it has no contacts.
@@ -187,12 +191,14 @@ class Fleet {
   base::ThreadPool* thread_pool_;
   std::vector<Footprint> footprints_;
   world::WallTree walls_;
+  world::Ground ground_;
   NeighbourGrid neighbours_;
   double widest_ = 0.0;    ///< [m] largest outline radius
   double farthest_ = 0.0;  ///< [m] largest distance of an origin from its position in `neighbours_`
   std::vector<base::Report> reports_;
   std::vector<base::Report> predicted_;
   std::vector<std::uint32_t> rank_;  ///< place in the order of ids, robots before tags
+  std::vector<base::Pose> starts_;   ///< at the start of the tick; empty on flat ground
   std::vector<double> travels_;      ///< [m] largest travel of each origin in this tick
   std::vector<Progress>
       progress_;  ///< at the start of the round; `reports_` has the poses that other movers test against

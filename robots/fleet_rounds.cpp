@@ -19,6 +19,7 @@ void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scrat
     progress_[row] = proposed_[row] = {reports_[row].X_WM, {}, 0.0, false};
     return;
   }
+  if (!ground_.is_flat()) starts_[row] = reports_[row].X_WM;
   const world::Mover& mover = world_.movers[row];
   const Footprint& outline = footprints_[row];
   const Twist wanted = limit_kinematics(mover, apply_actuator_model(mover, command));

@@ -60,6 +60,7 @@ void RobotBody::advance(const base::Twist& command, const base::Report* followed
   fleet_.move(commands_, dt);
   if (followed != nullptr) {
     base::Report report = *followed;
+    report.X_WM.z = fleet_.height_at(mover_, {report.X_WM.x, report.X_WM.y});
     report.time = fleet_.reports()[mover_].time;
     fleet_.apply({&report, 1});
   }

@@ -27,7 +27,7 @@ class RobotBody {
   /// Simulates until `now`, but at most half a second (a suspended process did not move). Other robots continue at
   /// their last velocity for half a second, then stop.
   void move(const base::Twist& command, std::int64_t now);
-  /// Replaces `move` for a real robot: sets the body to the reported pose.
+  /// Replaces `move` for a real robot: sets the body to the reported pose, at the height of the ground there.
   /// @param contact the real robot's bumper is pressed
   void follow(const base::Pose& X_WM, const base::Twist& velocity, bool contact, std::int64_t now);
 

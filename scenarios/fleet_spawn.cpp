@@ -9,6 +9,7 @@
 #include "control/route_plan.h"
 #include "robots/footprint.h"
 #include "world/free_space.h"
+#include "world/ground.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -78,7 +79,7 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
     std::erase_if(poses, [&](const base::Pose& X) { return !clear(X, radius, world, stays); });
   }
   poses.resize(wanted);
-  for (base::Pose& pose : poses) pose.z = original.X_WM.z;
+  for (base::Pose& pose : poses) pose.z += world::clearance_of(world, original);
   return poses;
 }
 

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "base/error.h"
 #include "base/suggest.h"
 #include "scenarios/fleet_spawn.h"
 #include "sensors/sensor_type.h"
+#include "world/ground.h"
 
 namespace sf::scenarios {
 
@@ -40,7 +42,10 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
           *scenario.plant == Plant::thesis ? world::ActuatorModel::player_create : world::ActuatorModel::direct;
   for (const RobotSetup& setup : scenario.robot_setups) {
     world::Mover& mover = world.movers[row_of(scenario, world, setup.name, setup.line)];
-    if (setup.pose) mover.X_WM = {setup.pose->x, setup.pose->y, mover.X_WM.z, setup.pose->yaw};
+    if (!setup.pose) continue;
+    const double clearance = world::clearance_of(world, mover);
+    mover.X_WM = *setup.pose;
+    if (std::isnan(mover.X_WM.z)) mover.X_WM.z = world::height_on_road(world, {mover.X_WM.x, mover.X_WM.y}, clearance);
   }
   world::update_extent_and_hash(world);
   return world;

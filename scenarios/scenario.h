@@ -22,7 +22,8 @@ namespace sf::scenarios {
 struct RobotSetup {
   std::string name;                ///< of the mover
   std::optional<Actor> actor;      ///< controller and link; nullopt: the scenario's
-  std::optional<base::Pose> pose;  ///< [m], [rad] start pose; nullopt: the world's
+  std::optional<base::Pose> pose;  ///< [m], [rad] start pose; nullopt: the world's. z NaN: on the highest
+                                   ///< road there, as high above it as in the world file
   int line = 0;                    ///< in the file
   int controller_line = 0;         ///< line of its controller, or of the robot
 };

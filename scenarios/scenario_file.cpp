@@ -150,11 +150,14 @@ std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* 
   return states;
 }
 
+/// @return z is NaN if it is not stated
 base::Pose pose_of(const Reader& reader, const TomlNode& node) {
-  if (node.kind != NodeKind::list || node.items.size() != 3)
-    reader.fail(node, "'pose' expects [x, y, yaw] in metres and degrees");
+  const std::size_t count = node.items.size();
+  if (node.kind != NodeKind::list || (count != 3 && count != 4))
+    reader.fail(node, "'pose' expects [x, y, yaw] or [x, y, z, yaw] in metres and degrees");
   const auto at = [&](std::size_t i, double most) { return reader.number(node.items[i], "pose", -most, most); };
-  return {at(0, kMostPosition), at(1, kMostPosition), 0.0, at(2, 1e6) * M_PI / 180.0};
+  return {at(0, kMostPosition), at(1, kMostPosition), count == 4 ? at(2, kMostPosition) : NAN,
+          at(count - 1, 1e6) * M_PI / 180.0};
 }
 
 FleetSpawn crowd_of(const Reader& reader, const TomlNode& root) {

@@ -16,6 +16,7 @@
 #include "netio/packets.h"
 #include "sensors/laser.h"
 #include "world/append_robot.h"
+#include "world/ground.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -233,7 +234,9 @@ std::uint32_t Simulation::bring_back(std::uint32_t mover, const JoiningRobot& ro
   if (const auto& controller = controls_[mover].controller) v2v_range_ = std::max(v2v_range_, controller->v2v_range());
   make_room();
   set_absent(mover, false);
-  put(mover, {robot.X_WM.x, robot.X_WM.y, world_.movers[mover].X_WM.z, robot.X_WM.yaw});
+  const double clearance = world::clearance_of(world_, world_.movers[mover]);
+  const base::Pose& X = robot.X_WM;
+  put(mover, {X.x, X.y, world::height_on_road(world_, {X.x, X.y}, clearance), X.yaw});
   return mover;
 }
 

@@ -16,7 +16,8 @@ robots::CreateOdometry odometry_of(const RealRobotType& type) {
 
 }  // namespace
 
-CreateDrive::CreateDrive(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM, double track)
+CreateDrive::CreateDrive(const RealRobotType& type, const RealRobotOptions& options, const base::Pose& X_WM,
+                         double track)
     : RealRobot(type, options, X_WM), track_(track), stream_(odometry_of(type)) {
   start(0);
 }

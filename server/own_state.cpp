@@ -77,7 +77,7 @@ void OwnState::add_wheels(std::int64_t now, const sensors::Rolled& rolled) {
   localization_.add_encoder(now, rolled.left, rolled.right);
 }
 
-void OwnState::predict(std::int64_t now) {
+void OwnState::predict(std::int64_t now, double z) {
   taken_ = 0;
   const estimation::Prediction prediction = localization_.predict(now);
   if (prediction.status == estimation::Prediction::Status::none) return;
@@ -87,6 +87,7 @@ void OwnState::predict(std::int64_t now) {
   lost_ = has_wheels() ? !(sigma_ <= options_.most_sigma) : unseen;
   if (lost_) return;
   state_ = {state_.mover, now, prediction.estimate.X_WM, prediction.estimate.velocity};
+  state_.X_WM.z = z;
   trail_.add(now, state_.X_WM);
 }
 

@@ -75,8 +75,8 @@ class OwnState {
   void receive(std::int64_t now);
   /// Adds the distances rolled since the start, as counted by the wheels' encoders.
   void add_wheels(std::int64_t now, const sensors::Rolled& rolled);
-  /// Predicts the state to `now`.
-  void predict(std::int64_t now);
+  /// Predicts the state to `now`. @param z [m] its height
+  void predict(std::int64_t now, double z = 0.0);
 
   // As of the last `predict`.
   /// Returns whether the position is unknown, or too uncertain to act on.

@@ -135,7 +135,7 @@ void RobotClient::follow_real(std::int64_t now) {
   update_real(now);
   const base::Report* state = &real_->state();
   if (own_) {
-    own_->predict(now);
+    own_->predict(now, body_.state().X_WM.z);
     state = &own_->state();
   }
   body_.follow(state->X_WM, state->velocity, touched_, now);
@@ -145,7 +145,7 @@ void RobotClient::step(std::int64_t now) {
   move(now);
   scans_ = link_.scans();
   next_ = next_step(now);
-  if (own_) own_->predict(now);
+  if (own_) own_->predict(now, body_.state().X_WM.z);
   if (own_ && !real_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
   if (started_ && !is_lost() && !log_.readings_timed_out(link_, now) && (!real_ || real_->ready(now))) decide(now);

@@ -48,7 +48,7 @@ struct RobotClientOptions {
   /// nowhere. Replaces the light that cameras see.
   std::optional<netio::Endpoint> truth;
   std::optional<RealRobotOptions> real;  ///< robot that moves in place of the model; nullopt: none
-  std::optional<OwnMapOptions> map;     ///< where to send its own map; nullopt: no map
+  std::optional<OwnMapOptions> map;      ///< where to send its own map; nullopt: no map
 };
 
 /// Statistics of the estimates of its own state.

@@ -35,6 +35,7 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
       relay_(ids_of(names_.robots), {.range = options.radio}, options.lights),
       fleet_(world),
       filter_(world, options.filter),
+      keep_heights_(options.keep_heights),
       forget_(options.forget > 0.0
                   ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kSenderTimeout)
                   : kNever),
@@ -88,6 +89,7 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   } else {
     return;
   }
+  if (keep_heights_) report.X_WM.z = world_.movers[report.mover].X_WM.z;
   std::int64_t& last = last_state_[report.mover];
   if (last != kNever) periods_[report.mover] = std::min(now - last, kLongestPeriod);
   last = now;

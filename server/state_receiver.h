@@ -28,6 +28,7 @@ struct StateReceiverOptions {
   double radio = netio::kV2vRange;  ///< [m] range within which states are relayed; 0: no relay
   double forget = 10.0;             ///< [s] of silence after which a robot is no longer an obstacle; 0: never
   int log_descriptor = 2;           ///< -1: no log
+  bool keep_heights = false;        ///< movers keep their heights at load, regardless of their states
   StateFilterOptions filter;
   std::vector<netio::Peer> peers;     ///< of the world's robots, tags and intersections, and of START
   std::vector<std::uint32_t> lights;  ///< ids of intersections whose V2I are accepted
@@ -98,6 +99,7 @@ class StateReceiver {
   StateFilter filter_;
   std::vector<base::Report> reports_;
   base::Bytes challenge_;
+  bool keep_heights_;
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
   std::vector<bool> removed_;              ///< per mover, by OBJECT

@@ -14,8 +14,7 @@ bool RenderedRobots::update(std::uint32_t id, const base::Pose& X_WO, glm::dvec2
   }
   const TagMount& mount = testbed_.mount(id);
   const glm::dvec2 arm = base::rotate(X_WO.yaw, {mount.X_OT.x, mount.X_OT.y});
-  base::Pose X_WT = base::compose(X_WO, mount.X_OT);
-  X_WT.z = mount.height;
+  const base::Pose X_WT = base::compose(X_WO, mount.X_OT);
   at->second.state = {id, X_WT, velocity + turn * glm::dvec2{-arm.y, arm.x}, turn};
   at->second.time = time;
   return true;

@@ -8,7 +8,7 @@
 
 namespace sf::vision {
 
-/// Robots are identified by their tags. The height and the `offset` of a tag are those of the testbed file.
+/// Robots are identified by their tags. The `offset` of a tag is that of the testbed file.
 class RenderedRobots {
  public:
   static constexpr std::size_t kMaxRobots = 1000;   ///< further robots are ignored

@@ -132,15 +132,22 @@ TagFreedom read_fit(const TomlReader& reader, const TomlNode& table, std::string
   return static_cast<TagFreedom>(found - kFits.begin());
 }
 
+/// @param height [m] of the tag above the floor
+base::Pose read_offset(const TomlReader& reader, const TomlNode& table, double height) {
+  const TomlNode* node = world::find(table, "offset");
+  std::vector<double> offset(node != nullptr && node->items.size() == 4 ? 4 : 3);
+  reader.numbers(table, "offset", offset, 1e3,
+                 "[x, y, yaw] or [x, y, z, yaw] of the tag on its object in metres and degrees");
+  return {offset[0], offset[1], offset.size() == 4 ? offset[2] : height, offset.back() * kDegree};
+}
+
 TagMount read_tag(const TomlReader& reader, const TomlNode& table, const TagMount& fallback) {
   TagMount tag = fallback;
   tag.side = reader.number(table, "side", tag.side, 1e-3, 10.0, "metres");
   tag.height = reader.number(table, "height", tag.height, -100.0, 100.0, "metres");
   tag.fit = read_fit(reader, table, "fit", tag.fit);
   tag.address = reader.text(table, "address", tag.address);
-  std::array<double, 3> offset{};
-  reader.numbers(table, "offset", offset, 1e3, "[x, y, yaw] of the tag on its object in metres and degrees");
-  tag.X_OT = {offset[0], offset[1], 0.0, offset[2] * kDegree};
+  tag.X_OT = read_offset(reader, table, tag.height);
   if (world::find(table, "robot") != nullptr)
     tag.robot = static_cast<std::uint32_t>(reader.whole(table, "robot", 0, 65534));
   return tag;
@@ -183,6 +190,7 @@ Testbed parse_testbed(const std::string& file, std::string_view text) {
   testbed.dictionary = reader.text(root, "dictionary", testbed.dictionary);
   testbed.tag.side = reader.number(root, "tag_side", testbed.tag.side, 1e-3, 10.0, "metres");
   testbed.tag.height = reader.number(root, "tag_height", testbed.tag.height, -100.0, 100.0, "metres");
+  testbed.tag.X_OT.z = testbed.tag.height;
   testbed.tag.fit = read_fit(reader, root, "tag_fit", testbed.tag.fit);
   testbed.tag.address = reader.text(root, "address", "");
   testbed.only_listed = reader.flag(root, "only_listed");

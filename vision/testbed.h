@@ -29,7 +29,8 @@ enum class TagFreedom {
 struct TagMount {
   double side = 0.15;   ///< [m] > 0
   double height = 0.0;  ///< [m] of the tag above the world's z = 0
-  base::Pose X_OT;      ///< tag in the frame of its object, whose pose is sent; default: the tag is the object
+  base::Pose X_OT;      ///< tag in the frame of its object, whose pose is sent; default: the tag is above the object's
+                        ///< origin, which is on the floor where the tag is at `height`
   std::string address;  ///< "host:port" to which its packets are sent; empty: the default
   TagFreedom fit = TagFreedom::plane;
   std::optional<std::uint32_t> robot;  ///< id of the robot that carries the tag; nullopt: the tag's id

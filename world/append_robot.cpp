@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/suggest.h"
+#include "world/ground.h"
 #include "world/ros_map.h"
 #include "world/serialization.h"
 #include "world/stage/build_world.h"
@@ -160,7 +161,8 @@ std::uint32_t append_robot(World& world, const World& from, std::uint32_t origin
     throw base::InputError(
         fmt::format("'{}' cannot join: a run has at most {} robots, including those that left", name, kMostMovers));
   const auto row = static_cast<std::uint32_t>(world.movers.size());
-  const Pose X_join{X_WM.x, X_WM.y, from.movers[original].X_WM.z, X_WM.yaw};
+  const double clearance = clearance_of(from, from.movers[original]);
+  const Pose X_join{X_WM.x, X_WM.y, height_on_road(world, {X_WM.x, X_WM.y}, clearance), X_WM.yaw};
   const std::vector<std::uint32_t> rows = append_models(world, from, original, name, X_join);
   Mover copy = from.movers[original];
   copy.name = name;

@@ -23,9 +23,9 @@ std::uint32_t robot_like(const World& world, const std::string& like);
 /// no other model has.
 void check_name(const World& world, const std::string& name);
 
-/// Appends a copy of the robot in row `original`, at rest at `X_WM` (its height above ground stays that of the
-/// original), with all models that it carries. Existing rows keep their places. The copy's id is the smallest unused
-/// one from 1. Updates extent and hash, in time proportional to the size of the world.
+/// Appends a copy of the robot in row `original`, at rest at `X_WM` (on the highest road there, as high above it
+/// as the original above the ground), with all models that it carries. Existing rows keep their places. The copy's id
+/// is the smallest unused one from 1. Updates extent and hash, in time proportional to the size of the world.
 /// Precondition: `check_name` accepts the name.
 /// @return its row
 /// @throws base::InputError beyond kMostMovers

@@ -65,6 +65,12 @@ template <> inline constexpr auto kFields<Model> = std::make_tuple(
 template <> inline constexpr auto kFields<LaneMarking> = std::make_tuple(
     field(&LaneMarking::line), field(&LaneMarking::width), label(&LaneMarking::color));
 
+template <> inline constexpr auto kFields<MarkingHeights> = std::make_tuple(
+    field(&MarkingHeights::z_min), field(&MarkingHeights::z_max));
+
+template <> inline constexpr auto kFields<Ramp> = std::make_tuple(
+    field(&Ramp::a), field(&Ramp::b), field(&Ramp::z_a), field(&Ramp::z_b), field(&Ramp::half_width, kAboveZero));
+
 template <> inline constexpr auto kFields<Magnet> = std::make_tuple(
     field(&Magnet::p), field(&Magnet::z), field(&Magnet::moment), field(&Magnet::radius), field(&Magnet::model));
 
@@ -121,7 +127,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     label(&World::hash),
     // since version 6
     field(&World::earth_field), field(&World::lamps),
-    field(&World::ambient_light, Key{"ambient_light"}, Bounds{0.0, 1e9}));
+    field(&World::ambient_light, Key{"ambient_light"}, Bounds{0.0, 1e9}),
+    // since version 7
+    field(&World::ramps), field(&World::marking_heights));
 
 // clang-format on
 

@@ -10,12 +10,20 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 6;
-constexpr std::uint16_t kOldestVersion = 5;  // without the last fields of World; written where all of these are zero
+constexpr std::uint16_t kVersion = 7;
+// Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
+constexpr std::uint16_t kOldestVersion = 5;
+constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_bytes<std::vector<MarkingHeights>>();
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
-bool is_version5(const World& world) {
-  return world.earth_field == glm::dvec3{} && world.lamps.empty() && world.ambient_light == 0.0;
+std::uint16_t version_of(const World& world) {
+  if (!world.ramps.empty() || !world.marking_heights.empty()) return 7;
+  return world.earth_field == glm::dvec3{} && world.lamps.empty() && world.ambient_light == 0.0 ? 5 : 6;
+}
+
+/// Returns the size of the fields that a version lacks, where they are zero.
+std::size_t missing_bytes(std::uint16_t version) {
+  return (version < 6 ? kSinceVersion6 : 0) + (version < 7 ? kSinceVersion7 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
@@ -47,6 +55,7 @@ void check_rows(const World& world) {
   for (const Path& path : world.paths) good &= !path.pieces.empty();
   for (const Light& light : world.lights) good &= !light.phases.empty();
   for (const FloorHole& hole : world.floor_holes) good &= hole.outline.size() >= 3;
+  good &= world.marking_heights.size() <= world.lane_markings.size();
   if (!good) refuse("a row breaks the rules of its table");
 }
 
@@ -56,19 +65,18 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   std::vector<std::uint8_t> bytes;
   base::ByteWriter out(bytes);
   out.put(kMagic);
-  out.put(is_version5(world) ? kOldestVersion : kVersion);
+  out.put(version_of(world));
   // The spelling of the world file's path is not part of the world.
   RowWriter{out, RowFields::all, std::filesystem::path(world.file).parent_path().lexically_normal()}.put(world);
-  if (is_version5(world)) bytes.resize(bytes.size() - kSinceVersion6);
+  bytes.resize(bytes.size() - missing_bytes(version_of(world)));
   return bytes;
 }
 
 World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kVersionAt = sizeof kMagic;
-  const bool is_old = bytes.size() > kVersionAt && bytes[kVersionAt] == kOldestVersion;
-  std::vector<std::uint8_t> longer;
-  if (is_old) longer.assign(bytes.begin(), bytes.end()), longer.resize(bytes.size() + kSinceVersion6);
-  base::ByteReader in(is_old ? longer : bytes);
+  std::vector<std::uint8_t> whole = bytes;
+  if (bytes.size() > kVersionAt) whole.resize(bytes.size() + missing_bytes(bytes[kVersionAt]));
+  base::ByteReader in(whole);
   if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are not a world");
   const auto version = in.get<std::uint16_t>();
   if (version < kOldestVersion || version > kVersion)

@@ -91,7 +91,8 @@ constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, 
                                               &World::lane_markings, &World::magnet_cutoff, &World::accuracy);
 
 /// Worlds without these keep the hash that they had before the fields existed.
-constexpr auto kHashedIfSet = std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light);
+constexpr auto kHashedIfSet =
+    std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -188,6 +189,7 @@ void translate(World& world, double dx, double dy) {
   for (OutlineFile& file : world.unread) move(file.X_WF);
   for (LaneMarking& marking : world.lane_markings)
     for (glm::dvec2& p : marking.line) move(p);
+  for (Ramp& ramp : world.ramps) move(ramp.a), move(ramp.b);
   for (Magnet& magnet : world.magnets) move(magnet.p);
   for (Path& path : world.paths)
     for (PathPiece& piece : path.pieces) move(piece.X_WP);

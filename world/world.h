@@ -57,6 +57,18 @@ struct LaneMarking {
   std::uint32_t color = 0xFFFFFFFFu;  ///< 0xAARRGGBB
 };
 
+/// Heights of the road under a lane marking.
+struct MarkingHeights {
+  double z_min = 0.0, z_max = 0.0;  ///< [m]
+};
+
+/// A straight piece of road above the floor, with round ends (world/ground.h).
+struct Ramp {
+  glm::dvec2 a, b;              ///< [m] centre line, world frame
+  double z_a = 0.0, z_b = 0.0;  ///< [m] heights of its ends; linear between them
+  double half_width = 0.0;      ///< [m] > 0
+};
+
 /// A permanent magnet: a point dipole at the centre of its model, with its moment along the world's +z.
 struct Magnet {
   glm::dvec2 p;             ///< [m] world frame, or the mover's frame if a mover carries it
@@ -230,11 +242,14 @@ struct World {
   std::vector<Segment> walls;              ///< static segments in the world frame
   std::vector<OutlineFile> unread;         ///< walls after `walls`, part of `extent` and `hash` (leave_outlines)
   std::vector<LaneMarking> lane_markings;  ///< road paint, visible to lane edge sensors only
-  double road_resolution = 0.0;            ///< [m] raster step for lane edge sensors; 0: exact markings
-  std::vector<Magnet> magnets;             ///< static magnets
-  glm::dvec3 earth_field{};                ///< [T] homogeneous field added to that of all magnets; 0: none
-  double magnet_cutoff = 0.0;              ///< [m] magnets beyond this horizontal distance are ignored; 0: none
-  Accuracy accuracy;                       ///< for sensors without their own word, if their type has the word
+  std::vector<Ramp> ramps;                 ///< roads with heights
+  /// Of the first lane markings; those without are on the floor. Empty in worlds without ramps.
+  std::vector<MarkingHeights> marking_heights;
+  double road_resolution = 0.0;  ///< [m] raster step for lane edge sensors; 0: exact markings
+  std::vector<Magnet> magnets;   ///< static magnets
+  glm::dvec3 earth_field{};      ///< [T] homogeneous field added to that of all magnets; 0: none
+  double magnet_cutoff = 0.0;    ///< [m] magnets beyond this horizontal distance are ignored; 0: none
+  Accuracy accuracy;             ///< for sensors without their own word, if their type has the word
   std::vector<Mover> movers;
   std::vector<Path> paths;
   std::vector<Light> lights;

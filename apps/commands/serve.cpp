@@ -45,7 +45,8 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   server::ServiceOptions service{.rate = options.rate, .seed = options.seed, .no_return_inf = options.no_return_inf};
   service.receiver = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
                       .radio = options.radio,
-                      .forget = options.forget};
+                      .forget = options.forget,
+                      .keep_heights = options.keep_heights};
   service.receiver.peers = peers_of(options, &world);
   require_signable(service.receiver.peers, options.wire);
   if (options.spat > 0) service.spat = netio::Endpoint{service.receiver.bind.address, options.spat};

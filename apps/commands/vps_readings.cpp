@@ -27,9 +27,7 @@ vision::PlaneLine drawn(const server::SightLine& line) {
 
 /// Returns the mover's pose from that of its tag's object, since the world may define the mount, too (`tag_pose`).
 base::Pose mover_pose(const netio::Tag& object, const world::Mover& mover) {
-  base::Pose X_WM = netio::report({}, object, 0, mover.X_MT).X_WM;
-  X_WM.z = mover.X_WM.z;
-  return X_WM;
+  return netio::report({}, object, 0, mover.X_MT).X_WM;
 }
 
 }  // namespace

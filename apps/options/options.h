@@ -154,6 +154,7 @@ struct FilterOptions {
   double stale_after = 1.0;                      ///< [s] without an accepted state
   std::optional<estimation::StalePolicy> stale;  ///< nullopt: hide; freeze with `raw`
   std::size_t hypotheses = 16;                   ///< > 0; for a state with an uncertain heading
+  bool keep_heights = false;
 };
 
 struct PeersOption {

@@ -145,6 +145,11 @@ void add_filter(CLI::App& app, FilterOptions& o) {
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);
+  app.add_flag(
+         "--keep-heights", o.keep_heights,
+         "Robots and tags keep the heights of the world file, whatever z their states have (default: z moves them "
+         "up and down)")
+      ->group(kGroup);
   auto* filter =
       app.add_flag("--filter", o.filter,
                    "Filter all states with an extended Kalman filter: late states are applied at their timestamps, "

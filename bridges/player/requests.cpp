@@ -37,8 +37,8 @@ base::Pose get_pose2d(XdrReader& xdr) {
 /// [m] Beyond this, distances lose millimetre resolution.
 bool is_usable(const base::Pose& pose) {
   constexpr double kFarthest = 1e6;
-  const bool finite = std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
-  return finite && std::abs(pose.x) <= kFarthest && std::abs(pose.y) <= kFarthest;
+  return std::abs(pose.x) <= kFarthest && std::abs(pose.y) <= kFarthest && std::abs(pose.z) <= kFarthest &&
+         std::isfinite(pose.yaw);
 }
 
 }  // namespace
@@ -127,15 +127,15 @@ Answer Requester::to_simulation(std::uint32_t subtype, std::span<const std::uint
     return answer;
   }
   base::Pose X_WM = get_pose2d(xdr);
+  const auto mover = find_mover(name);
+  if (mover) X_WM.z = exchange_.pose_of(*mover).z;
   if (!flat) {
     xdr.get_double(), xdr.get_double();  // roll and pitch; the value parsed as yaw is the height
     X_WM.z = X_WM.yaw, X_WM.yaw = xdr.get_double();
     xdr.get_double();
   }
   if (!xdr.done()) return {Kind::malformed, {}};
-  const auto mover = find_mover(name);
   if (!scene_.simulated || !mover || !is_usable(X_WM)) return {};
-  X_WM.z = scene_.world.movers[*mover].X_WM.z;
   exchange_.place(*mover, X_WM);
   return answer;
 }

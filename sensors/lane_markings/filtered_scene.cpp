@@ -1,6 +1,8 @@
 #include "sensors/lane_markings/filtered_scene.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "sensors/lane_markings/outline.h"
@@ -9,8 +11,33 @@ namespace sf::sensors {
 
 namespace {
 
-/// Markings have no height of their own, so every lane edge sensor detects them.
 constexpr double kAllHeights = 1e6;  // [m]
+constexpr double kClearance = 0.05;  // [m] errors of heights
+
+/// Heights [m] of the sensors that detect a marking.
+using Heights = std::pair<double, double>;
+
+/// Returns the height [m] of the highest lane edge sensor above its robot.
+double highest_mount(const world::World& world) {
+  double highest = 0.0;
+  for (const world::Mover& mover : world.movers)
+    for (const world::Sensor& sensor : mover.sensors)
+      if (sensor.type == "laneedge") highest = std::max(highest, sensor.X_MS.z + 0.5 * sensor.height);
+  return highest;
+}
+
+/// Sorts the markings by their heights. Without ramps, all sensors detect all markings. Otherwise a sensor detects
+/// those on the road below it: it is at most as high above them as the highest sensor is above its robot.
+std::map<Heights, std::vector<world::LaneMarking>> by_height(const world::World& world) {
+  if (world.ramps.empty()) return {{{-kAllHeights, kAllHeights}, world.lane_markings}};
+  const double above = highest_mount(world) + kClearance;
+  std::map<Heights, std::vector<world::LaneMarking>> sorted;
+  for (std::size_t i = 0; i < world.lane_markings.size(); ++i) {
+    const auto [low, high] = i < world.marking_heights.size() ? world.marking_heights[i] : world::MarkingHeights{};
+    sorted[{low - kClearance, high + above}].push_back(world.lane_markings[i]);
+  }
+  return sorted;
+}
 
 /// Returns the pixel size of a wall's outline [m]; 0 if it has none.
 double pixel_of(const world::World& world, const world::Segment& wall) {
@@ -27,6 +54,10 @@ bool in_sight(const world::Segment& wall) { return wall.seen_by_laser && wall.se
 }  // namespace
 
 FilteredScene filter_scene(const world::World& world, bool exact) {
+  if (!exact && !world.ramps.empty())
+    throw base::InputError(world.file, 0,
+                           "a raster of lane markings has no heights, but its roads have; expected exact markings: "
+                           "remove 'road_resolution' or the roads' heights (height_m in the sidecar)");
   FilteredScene e;
   e.grains = {0.0};
   for (const world::Segment& wall : world.walls)
@@ -39,7 +70,12 @@ FilteredScene filter_scene(const world::World& world, bool exact) {
                            "the world's bitmaps have " + std::to_string(e.grains.size()) +
                                " different sizes of pixels; lane edge sensors distinguish at most 254");
   e.paint_tag = exact ? 0 : grain_tag(e.grains, world.road_resolution);
-  e.paint = distinct_markings(world.lane_markings);
+  std::vector<Heights> heights;
+  for (const auto& [visible, markings] : by_height(world)) {
+    const std::vector<world::LaneMarking> distinct = distinct_markings(markings);
+    e.paint.insert(e.paint.end(), distinct.begin(), distinct.end());
+    heights.resize(e.paint.size(), visible);
+  }
 
   for (const world::Segment& wall : world.walls) {
     if (!in_sight(wall)) continue;
@@ -47,15 +83,17 @@ FilteredScene filter_scene(const world::World& world, bool exact) {
     e.world.walls.back().model = grain_tag(e.grains, pixel_of(world, wall));
   }
   std::vector<OutlineEdge> outline;
-  for (const world::LaneMarking& marking : e.paint)
-    if (exact) add_outline(marking, outline);
-  for (const OutlineEdge& f : outline)
-    e.world.walls.push_back({.a = f.a,
-                             .b = f.b,
-                             .z_min = -kAllHeights,
-                             .z_max = kAllHeights,
-                             .model = f.is_end ? SF_TAG_END : 0u,
-                             .solid_left = f.is_solid});
+  for (std::size_t i = 0; exact && i < e.paint.size(); ++i) {
+    outline.clear();
+    add_outline(e.paint[i], outline);
+    for (const OutlineEdge& f : outline)
+      e.world.walls.push_back({.a = f.a,
+                               .b = f.b,
+                               .z_min = heights[i].first,
+                               .z_max = heights[i].second,
+                               .model = f.is_end ? SF_TAG_END : 0u,
+                               .solid_left = f.is_solid});
+  }
   e.world.movers = world.movers;
   for (world::Mover& mover : e.world.movers)
     for (world::Segment& s : mover.body) s.model = SF_TAG_MOVER;

@@ -241,25 +241,34 @@ TEST(Serve, FilteredStatesBeyondTheLimitPerTickAreCounted) {
   EXPECT_GE(Json(service.program.stop().out).number("/states/beyond_limit"), 200 - 2 * 64);
 }
 
-/// The tag is mounted half a metre ahead of a box of 0.2 x 0.4 m and rotated by 90 degrees; its height above the lasers
-/// does not lift the box. The robot's own packets, with the same id, state its origin.
+/// The tag is mounted half a metre ahead of a box of 0.2 x 0.4 m, 0.1 m above its origin, and rotated by 90 degrees.
+/// Its height lifts the box, above the laser or onto the floor, unless heights are kept. The robot's own packets, with
+/// the same id, state its origin.
 TEST(Serve, ATagIsAtItsMount) {
-  Service service(std::string(kRoom) +
-                  "model( name \"tag1\" pose [-2 1.5 0 0] size [0.2 0.4 0.2] tag_pose [0.5 0 0.1 90] )\n");
-  ASSERT_NE(service.port, 0u) << service.program.err();
-  Robot one(1, service.port, service.laser_port(1));
-  std::uint32_t sequence = 0;
-  std::vector<double> ranges;
-  const bool seen = until([&] {
-    base::Bytes tag;
-    netio::encode({.robot = 1, .sequence = sequence++},
-                  netio::Tag{.position = {1.5, 0.5, 3.0}, .orientation = {0, 0, 1, 0}}, tag);
-    one.send_state({0.0, 0.0, 0.0, 0.0});
-    one.send(tag);
-    ranges = one.receive();
-    return ranges.size() == 91 && std::fabs(ranges[45] - 1.2) <= 0.000501;
-  });
-  EXPECT_TRUE(seen) << testing::PrintToString(ranges);
+  struct Case {
+    double z;  // [m] of the tag
+    bool seen;
+    std::vector<std::string> options;
+  };
+  for (const Case& each : {Case{0.1, true, {}}, Case{3.0, false, {}}, Case{3.0, true, {"--keep-heights"}}}) {
+    Service service(
+        std::string(kRoom) + "model( name \"tag1\" pose [-2 1.5 0 0] size [0.2 0.4 0.2] tag_pose [0.5 0 0.1 90] )\n",
+        each.options);
+    ASSERT_NE(service.port, 0u) << service.program.err();
+    Robot one(1, service.port, service.laser_port(1));
+    std::uint32_t sequence = 0;
+    std::vector<double> ranges;
+    const bool seen = until([&] {
+      base::Bytes tag;
+      netio::encode({.robot = 1, .sequence = sequence++},
+                    netio::Tag{.position = {1.5, 0.5, each.z}, .orientation = {0, 0, 1, 0}}, tag);
+      one.send_state({0.0, 0.0, 0.0, 0.0});
+      one.send(tag);
+      ranges = one.receive();
+      return ranges.size() == 91 && sequence > 20 && (std::fabs(ranges[45] - 1.2) <= 0.000501) == each.seen;
+    });
+    EXPECT_TRUE(seen) << each.z << ' ' << testing::PrintToString(ranges);
+  }
 }
 
 TEST(Serve, StatesAreRelayedWithinRadioRange) {

@@ -118,6 +118,7 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   const double yaw = poses[2][2] - M_PI / 2.0;
   EXPECT_NEAR(two.position[0], poses[2][0] - 0.1 * std::cos(yaw), 1e-5);
   EXPECT_NEAR(two.position[1], poses[2][1] - 0.1 * std::sin(yaw), 1e-5);
+  for (const netio::Tag& each : {one, two}) EXPECT_NEAR(each.position[2], 0.0, 1e-6) << "the object is on the floor";
   EXPECT_NEAR(std::abs(two.orientation[3]), std::abs(std::cos(0.5 * yaw)), 1e-5);
 }
 

@@ -209,8 +209,8 @@ bool late_may_enter(const Site& site, std::uint32_t lane, std::uint32_t row, std
 TEST(Precedence, IgnoresRobotsWaitingAtOtherLines) {
   const Site crossings(two_crossings());
   EXPECT_TRUE(late_may_enter(crossings, kFarCross, kFarCross, kMain, kMain)) << "at the line before";
-  // 12.1 has a line halfway and one at its end.
-  const Site town(simville());
+  // 12.1 has a line halfway, where it crosses 7.1 without a bridge, and one at its end.
+  const Site town(traffic::flat(simville()));
   EXPECT_TRUE(
       late_may_enter(town, town.lane("4.2"), town.exit("4.2", "3.2"), town.exit("12.1", "4.1"), town.lane("12.1")));
   // 3.1 crosses the end of 1.1, and 4.1 crosses 2.1, with their lines equally far along them.

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "tests/instrumented.h"
+#include "world/ground.h"
 
 namespace sf::traffic {
 namespace {
@@ -53,10 +54,10 @@ TEST(RightOfWay, FirstComeFirstServed) {
   }
 }
 
-// The network is flat, so the bridge is a crossing: one of two robots waits, and none waits forever.
+// Without heights the bridge is a crossing: one of two robots waits, and none waits forever.
 TEST(RightOfWay, LanesThatCrossWithoutASign) {
   for (int k = 0; k < 10; ++k) {
-    Streets t;
+    Streets t(flat(simville()));
     t.add(on_lane(t.roads, "7.1", 1.0 + 0.1 * k), "route", go({11, 5}));
     t.add(on_lane(t.roads, "12.1", 0.1), "route", go({13, 7}));
     t.begin();
@@ -64,6 +65,27 @@ TEST(RightOfWay, LanesThatCrossWithoutASign) {
     EXPECT_EQ(t.contacts, 0) << k;
     EXPECT_GE(t.route(0).reached(), 1u) << k;
     EXPECT_GE(t.route(1).reached(), 1u) << k;
+  }
+}
+
+// Robots over and under the bridge are at one place in plan, and neither slows the other down or touches it.
+TEST(RightOfWay, RobotsPassOverEachOther) {
+  for (int k = 0; k < 10; ++k) {
+    Streets alone, both;
+    for (Streets* t : {&alone, &both}) t->add(on_lane(t->roads, "7.1", 1.0 + 0.1 * k), "route", go({11, 5}));
+    both.add(on_lane(both.roads, "12.1", 0.1), "route", go({13, 7}));
+    alone.begin(), both.begin();
+    const world::Ground ground(both.world.ramps);
+    for (int i = 0; i < 300; ++i) {
+      alone.tick(), both.tick();
+      const Pose &over = both.pose(0), &under = both.pose(1);
+      ASSERT_NEAR(over.z, ground.height({over.x, over.y}, 0.5), 1e-9) << k;
+      ASSERT_EQ(under.z, 0.0) << k;
+    }
+    EXPECT_EQ(both.contacts, 0) << k;
+    EXPECT_GE(both.route(0).reached(), 1u) << k;
+    EXPECT_GE(both.route(1).reached(), 1u) << k;
+    EXPECT_EQ(both.pose(0).x, alone.pose(0).x) << k;
   }
 }
 

@@ -31,9 +31,16 @@ inline Pose on_lane(const world::RoadNetwork& roads, const std::string& name, do
     if (lane_name(roads, lane) != name) continue;
     const glm::dvec2 p = point_at(lane.centre, s);
     const glm::dvec2 d = point_at(lane.centre, s + 0.01) - point_at(lane.centre, s - 0.01);
-    return {p.x, p.y, 0.0, std::atan2(d.y, d.x)};
+    return {p.x, p.y, height_at(lane, s), std::atan2(d.y, d.x)};
   }
   return {};
+}
+
+/// Returns the network without heights.
+inline world::RoadNetwork flat(world::RoadNetwork roads) {
+  for (world::RoadLane& lane : roads.lanes)
+    for (world::LanePoint& point : lane.points) point.z = 0.0;
+  return roads;
 }
 
 /// Returns a light of SimVille with one phase plan for some stop lines.
@@ -49,8 +56,9 @@ inline world::Light light(const std::string& name, std::vector<std::string> poin
 
 class Streets {
  public:
-  Streets() : roads(simville()), world(scenes::empty_world()) {}
-  explicit Streets(const world::RoadNetwork& network) : roads(network), world(scenes::empty_world()) {}
+  explicit Streets(const world::RoadNetwork& network = simville()) : roads(network), world(scenes::empty_world()) {
+    world.ramps = ramps_of(roads);
+  }
 
   /// The two crossings with lights, each 20 s: red ways alternate.
   void add_lights() {

@@ -236,6 +236,22 @@ TEST(Gps, NoFixUnderABridge) {
   EXPECT_EQ(fixed[0], 50.0);
 }
 
+/// A robot on the deck sees the sky, and loses it under the deck.
+TEST(Gps, OnlyRobotsBelowABridgeLoseTheirFix) {
+  world::World world = carriers(fitted("gps"), {{0, 0, 0, 0}});
+  add_solid(world, square({0, 0}, 10), 1.0, 1.2);
+  farm::Farm farm(world, device());
+  farm.subscribe_all();
+  std::int64_t now = 0;
+  const auto satellites = [&](double z) {
+    const base::Report report{0, now += 1'000'000'000, {0, 0, z, 0}, {}};
+    return farm.tick(now, {&report, 1})[0].values[3];
+  };
+  EXPECT_LT(satellites(0.0), 4.0);
+  EXPECT_EQ(satellites(1.2), 8.0);
+  EXPECT_LT(satellites(0.5), 4.0);
+}
+
 /// In a street between tall walls, only satellites along it are visible, and errors across it grow.
 TEST(Gps, ErrorsGrowInAStreet) {
   world::World world = carriers(fitted("gps", {setting("satellites", {32})}), {{0, 0, 0, 0}, {0, 500, 0, 0}});

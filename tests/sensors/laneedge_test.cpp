@@ -54,6 +54,29 @@ TEST(LaneEdge, ReadsTheDistanceToTheFaceAtAnyAngle) {
 }
 
 /// Within 1 nm of the edge, a sensor touches it. Farther inside, it is on paint and reads the distance to the border.
+/// Markings of the deck and of the floor below it. A sensor reads those of the road that its robot is on, and occluders
+/// at its own height. Boundary: 5 cm of errors of heights.
+TEST(LaneEdge, ReadsTheMarkingsOfItsRoad) {
+  world::World world;
+  for (const double x : {0.3, 0.4}) world.lane_markings.push_back(marking({x, -5}, {x, 5}, 0.02));
+  add_edge_eye(world, {});
+  world.ramps = {{{-1, 0}, {1, 0}, 1.0, 1.0, 0.5}};
+  world.marking_heights = {{0.0, 0.0}, {1.0, 1.0}};
+  farm::Farm farm(world, device());
+  farm.subscribe_all();
+  std::int64_t now = 0;
+  const auto distance = [&](double z) {
+    const base::Report report{0, now += 100'000'000, {0, 0, z, 0}, {}};
+    return farm.tick(now, {&report, 1})[0].values[0];
+  };
+  const double floor = distance(0.0);
+  EXPECT_NEAR(distance(1.0) - floor, 0.1, 1e-9) << "the deck's";
+  EXPECT_EQ(distance(0.04), floor);
+  EXPECT_TRUE(std::isnan(distance(0.5))) << "between the two";
+  world.road_resolution = 0.01;
+  expect_in("a raster of lane markings has no heights", sf::refusal_of([&] { farm::Farm(world, device()); }));
+}
+
 TEST(LaneEdge, OnTheEdgeItselfAndOnPaint) {
   EXPECT_NEAR(askew(0.0, 10.0).distance, 0.0, 1e-9);
   EXPECT_NEAR(askew(1e-6, 10.0).distance, 1e-6 / std::cos(10.0 * kDegree), 1e-12);

@@ -26,7 +26,7 @@ TEST(RenderedRobots, TagsAreOnTheirRobots) {
   const Patch& tag = scene.patches[1];
   EXPECT_NEAR(tag.X_WP.x, 1.0, 1e-12);
   EXPECT_NEAR(tag.X_WP.y, 2.1, 1e-12);
-  EXPECT_NEAR(tag.X_WP.z, 0.31, 1e-12) << "of the testbed file";
+  EXPECT_NEAR(tag.X_WP.z, 9.31, 1e-12) << "on top of the robot";
   EXPECT_NEAR(std::abs(tag.X_WP.yaw), M_PI, 1e-12);
   EXPECT_NEAR(tag.velocity.x, 0.5 - 2.0 * 0.1, 1e-12) << "turning carries the tag sideways";
   EXPECT_NEAR(pose_at(tag, 10.1).x, 1.0 + 0.1 * 0.3, 1e-12);

@@ -50,8 +50,21 @@ TEST(Testbed, ReadsCamerasAndTags) {
   EXPECT_EQ(testbed.mount(9).side, 0.2);
   EXPECT_EQ(testbed.mount(9).height, 0.4);
   EXPECT_EQ(testbed.mount(9).X_OT.y, -0.2);
+  EXPECT_EQ(testbed.mount(9).X_OT.z, 0.4) << "its object is on the floor";
   EXPECT_NEAR(testbed.mount(9).X_OT.yaw, M_PI / 2.0, 1e-15);
   EXPECT_EQ(testbed.mount(9).address, "h:1");
+}
+
+/// Boundary: three numbers state no height, so the object is on the floor below the tag.
+TEST(Testbed, OffsetsMayStateTheHeightOnTheObject) {
+  const Testbed testbed = parse_testbed(
+      "t.toml", "tag_height = 0.3\n" + kCamera + "[[tag]]\nid = 1\noffset = [0.1, 0.2, 0.05, 90]\n[[tag]]\nid = 2\n");
+  EXPECT_EQ(testbed.mount(1).X_OT.z, 0.05);
+  EXPECT_NEAR(testbed.mount(1).X_OT.yaw, M_PI / 2.0, 1e-15);
+  EXPECT_EQ(testbed.mount(2).X_OT.z, 0.3);
+  EXPECT_EQ(testbed.mount(3).X_OT.z, 0.3) << "without a section";
+  EXPECT_NE(error_of(kCamera + "[[tag]]\nid = 1\noffset = [0, 0, 0, 0, 0]\n").find("[x, y, yaw] or [x, y, z, yaw]"),
+            std::string::npos);
 }
 
 TEST(Testbed, ReadsMeasuredCoordinates) {

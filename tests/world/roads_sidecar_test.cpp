@@ -56,7 +56,8 @@ position = [3, -4]
   EXPECT_EQ(lane.width, 0.6);
   EXPECT_EQ(lane.left, Boundary::solid_white);
   EXPECT_EQ(lane.right, Boundary::none);
-  EXPECT_EQ(s.points.at({1, 2, 1}).p.y, -4.0);
+  EXPECT_EQ(s.points.at({1, 2, 1}).p->y, -4.0);
+  EXPECT_EQ(s.points.at({1, 2, 1}).height, 0.0);
 }
 
 TEST(Sidecar, EmptyFileIsAccepted) {
@@ -97,7 +98,7 @@ TEST(Sidecar, WrongFilesAreRejected) {
       {"[lanes.\"1.9\"]", "small.toml:1: small.rndf has no lane 1.9"},
       {"[lanes.\"1.1\"]\nleft = \"dotted\"", "small.toml:2: 'left' expects one of double_yellow"},
       {"[points.\"1.1\"]", "small.toml:1: '1.1' is not a way-point"},
-      {"[points.\"1.1.1\"]", "small.toml:1: 'position' is missing"},
+      {"[points.\"1.1.1\"]", "small.toml:1: expected position = [x, y]"},
       {"[points.\"1.1.9\"]\nposition = [0, 0]", "small.toml:1: small.rndf has no point 1.1.9"}};
   for (const auto& [text, error] : corpus) EXPECT_EQ(refusal(text).substr(0, error.size()), error) << text;
 }
@@ -138,6 +139,36 @@ TEST(Sidecar, IsInTheFolderOfItsNetwork) {
   EXPECT_EQ(load_roads(rndf, warnings).scale, 0.5);
   EXPECT_NE(lines_of(warnings).find("2: unknown key 'speed'"), std::string::npos);
   std::filesystem::remove_all(folder);
+}
+
+/// A point may have a place, a height, or both. Boundaries: 0 and 1000 m.
+TEST(Sidecar, PointsMayHaveHeights) {
+  const RoadSidecar s =
+      read("[points]\n\"1.1.1\" = { height_m = 1000 }\n\"1.1.2\" = { height_m = 0, position = [1, 2] }\n");
+  EXPECT_EQ(s.points.at({1, 1, 1}).height, 1000.0);
+  EXPECT_FALSE(s.points.at({1, 1, 1}).p);
+  EXPECT_EQ(s.points.at({1, 1, 2}).p->x, 1.0);
+  expect_in("'height_m' expects a number from 0 to 1000", refusal("[points.\"1.1.1\"]\nheight_m = -0.1\n"));
+  expect_in("'height_m' expects a number from 0 to 1000", refusal("[points.\"1.1.1\"]\nheight_m = 1001\n"));
+  expect_in("small.toml:1: expected position = [x, y] in metres, or height_m", refusal("[points.\"1.1.1\"]\n"));
+}
+
+/// Heights are linear along the centre line, and along exits between their ends.
+TEST(Sidecar, LanesRiseLinearlyBetweenWayPoints) {
+  std::vector<Warning> warnings;
+  const Rndf rndf = small_rndf();
+  const RoadNetwork flat = build_network(rndf, {}, warnings);
+  EXPECT_TRUE(ramps_of(flat).empty());
+  RoadSidecar sidecar;
+  sidecar.points[flat.lanes[0].points[1].id].height = 2.0;
+  const RoadNetwork roads = build_network(rndf, sidecar, warnings);
+  const RoadLane& lane = roads.lanes[0];
+  EXPECT_EQ(height_at(lane, 0.0), 0.0);
+  EXPECT_EQ(height_at(lane, lane.points[1].s), 2.0);
+  EXPECT_NEAR(height_at(lane, 0.25 * lane.points[1].s), 0.5, 1e-12);
+  EXPECT_EQ(height_at(lane, -1.0), 0.0) << "before its start";
+  EXPECT_EQ(height_at(lane, 1e9), lane.points.back().z) << "beyond its end";
+  EXPECT_FALSE(ramps_of(roads).empty());
 }
 
 }  // namespace

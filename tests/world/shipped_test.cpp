@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tests/world/read_world.h"
+#include "world/ground.h"
 #include "world/lights.h"
 #include "world/roads/roads.h"
 
@@ -66,6 +67,13 @@ TEST(Shipped, SimVilleHasABridgeAndMagnets) {
   for (const Segment& wall : world.walls)
     bridge = bridge || (world.models[wall.model].name == "bridge" && wall.z_min > 0.3);
   EXPECT_TRUE(bridge);
+  const Ground ground(world.ramps);
+  for (const double x : {6.4, 7.2, 8.0})
+    for (const double y : {3.25, 3.75}) EXPECT_NEAR(ground.height({x, y}, 1.0), 0.4, 1e-6) << "the deck's top";
+  EXPECT_EQ(ground.height({4.0, 3.25}, 1.0), 0.0) << "the ramp's foot";
+  EXPECT_LT(ground.height({9.5, 3.25}, 1.0), 0.03);
+  const auto top = std::ranges::max(world.magnets, {}, &Magnet::z).z;
+  EXPECT_NEAR(top, 0.4 - 0.05, 1e-6) << "magnets are in the road";
   EXPECT_EQ(world.movers.size(), 8u);
   ASSERT_EQ(world.emitters.size(), 2u);
   EXPECT_EQ(world.emitters[0].kind, Emitter::Kind::dock);

@@ -165,6 +165,14 @@ TEST(Snapshot, WorldsWithoutNewFieldsHaveTheVersionBefore) {
   EXPECT_EQ(from_snapshot(bytes).hash, world.hash);
   bytes.pop_back();
   EXPECT_THROW(from_snapshot(bytes), base::InputError);
+  World raised = world;
+  raised.ramps.push_back({{0, 0}, {1, 0}, 0.0, 0.5, 0.25});
+  raised.marking_heights.resize(raised.lane_markings.size(), {0.0, 0.5});
+  update_extent_and_hash(raised);
+  EXPECT_NE(raised.hash, world.hash);
+  EXPECT_EQ(snapshot(raised)[4], 7);
+  EXPECT_EQ(from_snapshot(snapshot(raised)).ramps.at(0).z_b, 0.5);
+  EXPECT_EQ(from_snapshot(snapshot(raised)).hash, raised.hash);
   for (int i = 0; i < 3; ++i) {
     World one = world;
     if (i == 0) one.earth_field.y = 1e-5;

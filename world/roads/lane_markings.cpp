@@ -16,6 +16,10 @@ constexpr double kShortest = 1e-9;  // [m]
 struct Painter {
   const RoadNetwork& network;
   std::vector<LaneMarking> lane_markings;
+  std::vector<MarkingHeights> heights = {};
+
+  /// Gives heights to the markings that were added since the last call.
+  void end_part(const MarkingHeights& of) { heights.resize(lane_markings.size(), of); }
 
   // A marking turns by less than 90 degrees at each point, so a sharper line is split into two markings.
   void add(std::vector<glm::dvec2> line, double width, std::uint32_t color) {
@@ -105,15 +109,23 @@ void add_spot(Painter& painter, const RoadSpot& spot) {
 
 }  // namespace
 
-std::vector<LaneMarking> lane_markings_of(const RoadNetwork& network) {
+std::vector<LaneMarking> lane_markings_of(const RoadNetwork& network, std::vector<MarkingHeights>* heights) {
   Painter painter{network, {}};
   for (const RoadLane& lane : network.lanes) {
     add_edge(painter, lane, lane.left, 1.0);
     add_edge(painter, lane, lane.right, -1.0);
+    if (lane.points.empty()) continue;  // a lane of edges alone
+    const auto [low, high] = std::ranges::minmax(lane.points, {}, &LanePoint::z);
+    painter.end_part({low.z, high.z});
   }
-  for (const StopLine& stop : network.stops)
+  for (const StopLine& stop : network.stops) {
     painter.add({stop.left, stop.right}, network.paint.stop_width, kWhitePaint);
+    const double z = network.lanes[stop.at.row].points[stop.at.index].z;
+    painter.end_part({z, z});
+  }
   for (const RoadSpot& spot : network.spots) add_spot(painter, spot);
+  painter.end_part({});
+  if (heights != nullptr) *heights = std::move(painter.heights);
   return std::move(painter.lane_markings);
 }
 

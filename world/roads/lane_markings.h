@@ -22,7 +22,8 @@ inline constexpr double kInch = 0.0254;  ///< [m]
 inline constexpr std::uint32_t kYellowPaint = 0xFFF2B800u;  ///< 0xAARRGGBB
 inline constexpr std::uint32_t kWhitePaint = 0xFFFFFFFFu;
 
+/// @param heights out, if not null: of each marking those of its lane, from the lowest to the highest way-point
 /// @throws base::InputError if there are more than a million markings
-std::vector<LaneMarking> lane_markings_of(const RoadNetwork& network);
+std::vector<LaneMarking> lane_markings_of(const RoadNetwork& network, std::vector<MarkingHeights>* heights = nullptr);
 
 }  // namespace sf::world

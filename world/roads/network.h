@@ -32,6 +32,7 @@ struct LanePoint {
   glm::dvec2 p;      ///< [m] world frame
   double s = 0.0;    ///< [m] along the lane's centre line, from 0 to the lane's length, non-decreasing
   double yaw = 0.0;  ///< [rad] driving direction; 0 for a lane of one point
+  double z = 0.0;    ///< [m] height of the road; linear along the centre line between way-points
 };
 
 /// Invariant: a lane with one way-point (or only coincident ones) has a centre line of one point and no edges.
@@ -136,6 +137,13 @@ glm::dvec2 position_of(const RoadNetwork& network, PointRef at);
 std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
 /// Returns the name as written in the file, such as "1.2".
 std::string lane_name(const RoadNetwork& network, const RoadLane& lane);
+
+/// Returns the height [m] of the road at a point; 0 for points of zones and spots.
+double height_of(const RoadNetwork& network, PointRef at);
+/// Returns the height [m] of a lane's road at `s` [m] along its centre line.
+double height_at(const RoadLane& lane, double s);
+/// Returns the lanes and exits above the floor. An exit rises linearly between its ends.
+std::vector<Ramp> ramps_of(const RoadNetwork& network);
 
 /// A transition from one point to another.
 struct Transition {

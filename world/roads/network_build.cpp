@@ -31,7 +31,8 @@ struct Builder {
   void warn(int line, std::string message) { warnings.push_back({rndf.file, line, std::move(message)}); }
 
   glm::dvec2 place(const RndfPoint& point) {
-    if (const auto own = sidecar.points.find(point.id); own != sidecar.points.end()) return own->second.p;
+    if (const auto own = sidecar.points.find(point.id); own != sidecar.points.end() && own->second.p)
+      return *own->second.p;
     const glm::dvec2 flat = plane.east_north({point.latitude, point.longitude});
     if (!warned_far && length(flat) > kFar) {
       warned_far = true;
@@ -77,7 +78,9 @@ void trace_lane(Builder& b, RoadLane& lane, const RndfLane& from) {
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const std::size_t knot = lane.centre.knots[i];
     const glm::dvec2 tangent = lane.centre.tangents[knot];
-    lane.points.push_back({from.points[i].id, waypoints[i], lane.centre.s[knot], std::atan2(tangent.y, tangent.x)});
+    const auto own = b.sidecar.points.find(from.points[i].id);
+    lane.points.push_back({from.points[i].id, waypoints[i], lane.centre.s[knot], std::atan2(tangent.y, tangent.x),
+                           own == b.sidecar.points.end() ? 0.0 : own->second.height});
   }
 }
 

@@ -20,12 +20,13 @@ namespace {
 
 constexpr double kMaxPosition = 1e7;  // [m]
 constexpr double kMaxWidth = 1e4;     // [m]
+constexpr double kMaxHeight = 1e3;    // [m]
 
 constexpr std::array<std::string_view, 12> kSidecarKeys{"origin",       "scale",         "position",      "heading_deg",
                                                         "lane_width_m", "paint_width_m", "dash_length_m", "dash_gap_m",
                                                         "stop_width_m", "spot_width_m",  "lanes",         "points"};
 constexpr std::array<std::string_view, 3> kLaneKeys{"width_m", "left", "right"};
-constexpr std::array<std::string_view, 1> kPointKeys{"position"};
+constexpr std::array<std::string_view, 2> kPointKeys{"position", "height_m"};
 
 struct Reader {
   const std::string& file;
@@ -97,9 +98,14 @@ void read_points(const Reader& reader, const TomlNode& points, RoadSidecar& into
     const TomlNode& table = reader.table(node, node.key);
     reader.warn_unknown(table, kPointKeys);
     const TomlNode* position = find(table, "position");
-    if (position == nullptr) reader.fail(node, "'position' is missing; expected position = [x, y] in metres");
-    into.points[*id] = {reader.pair(*position, "position", {kMaxPosition, kMaxPosition}, "[x, y] in metres"),
-                        node.line};
+    const TomlNode* height = find(table, "height_m");
+    if (position == nullptr && height == nullptr)
+      reader.fail(node, "expected position = [x, y] in metres, or height_m = metres above the floor");
+    RoadSidecar::Point& point = into.points[*id];
+    point.line = node.line;
+    if (position != nullptr)
+      point.p = reader.pair(*position, "position", {kMaxPosition, kMaxPosition}, "[x, y] in metres");
+    if (height != nullptr) point.height = reader.number(*height, "height_m", 0.0, kMaxHeight);
   }
 }
 

@@ -21,7 +21,8 @@ struct RoadSidecar {
     int line = 0;
   };
   struct Point {
-    glm::dvec2 p;  ///< [m] world frame, overrides latitude and longitude
+    std::optional<glm::dvec2> p;  ///< [m] world frame, overrides latitude and longitude
+    double height = 0.0;          ///< [m] above the floor, in [0, 1000]; 0 for points of zones and spots
     int line = 0;
   };
 

@@ -9,13 +9,13 @@ namespace sf::world {
 
 namespace {
 
-struct Scale {
+struct UnitScale {
   double si = 1.0;     ///< SI units per unit of the file
   double shown = 1.0;  ///< SI units per unit of messages
   std::string_view name = {};
 };
 
-Scale scale_of(const StageContext& context, Unit unit) {
+UnitScale scale_of(const StageContext& context, Unit unit) {
   switch (unit) {
     case Unit::length:
       return {context.metres_per_unit, 1.0, " m"};
@@ -53,7 +53,7 @@ std::string key_name(const Key& key) {
 double read_number(const StageContext& context, const Entity& entity, const Key& key, const Bounds& bounds,
                    double value) {
   const SourceLocation at = find(entity, key.name)->at;
-  const Scale unit = scale_of(context, key.unit);
+  const UnitScale unit = scale_of(context, key.unit);
   double written = 0.0;
   if (key.tuple.empty()) {
     written = number(context, entity, key.name, 0.0);

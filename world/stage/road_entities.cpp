@@ -47,6 +47,18 @@ void register_way_points(BuildState& b, const RoadNetwork& roads) {
   for (const StopLine& stop : roads.stops) b.way_points[point_id_text(id_of(roads, stop.at))] = true;
 }
 
+void add_paint(World& world, const RoadNetwork& roads) {
+  std::vector<MarkingHeights> heights;
+  const std::vector<LaneMarking> paint = lane_markings_of(roads, &heights);
+  const std::vector<Ramp> ramps = ramps_of(roads);
+  if (!ramps.empty()) {
+    world.ramps.insert(world.ramps.end(), ramps.begin(), ramps.end());
+    world.marking_heights.resize(world.lane_markings.size());
+    world.marking_heights.insert(world.marking_heights.end(), heights.begin(), heights.end());
+  }
+  world.lane_markings.insert(world.lane_markings.end(), paint.begin(), paint.end());
+}
+
 }  // namespace
 
 void add_road(BuildState& b, const Entity& entity) {
@@ -60,15 +72,14 @@ void add_road(BuildState& b, const Entity& entity) {
   b.world.models.push_back(model);
   b.world.road_files.push_back(roads.file);
   register_way_points(b, roads);
-  const std::vector<LaneMarking> paint = lane_markings_of(roads);
-  b.world.lane_markings.insert(b.world.lane_markings.end(), paint.begin(), paint.end());
+  add_paint(b.world, roads);
 
   const auto row = read_magnet_row(b.context, entity);
   if (!row) return;
   for (const RoadLane* lane : named_lanes(b, entity, roads))
     place_magnets(b, entity, *row, length_of(*lane), [&](double s) {
       const glm::dvec2 p = point_at(lane->centre, s);
-      return Pose{p.x, p.y, 0.0, 0.0};
+      return Pose{p.x, p.y, height_at(*lane, s), 0.0};
     });
 }
 

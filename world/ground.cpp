@@ -1,0 +1,58 @@
+#include "world/ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace sf::world {
+
+namespace {
+
+constexpr double kContact = 0.01;  // [m] a body this close to a surface is on it
+
+base::BoxTree tree_of(std::span<const Ramp> ramps) {
+  std::vector<base::Box> boxes;
+  for (const Ramp& ramp : ramps) {
+    base::Box box = base::box_of(ramp.a, ramp.b);
+    box.min -= ramp.half_width, box.max += ramp.half_width;
+    boxes.push_back(box);
+  }
+  return base::BoxTree(boxes, 4);
+}
+
+}  // namespace
+
+Ground::Ground(std::span<const Ramp> ramps) : ramps_(ramps), tree_(tree_of(ramps)) {}
+
+double Ground::height(glm::dvec2 p, double most) const {
+  double highest = 0.0;
+  tree_.any({p, p}, [&](std::uint32_t i) {
+    const Ramp& ramp = ramps_[i];
+    const glm::dvec2 e = ramp.b - ramp.a;
+    const double square = glm::dot(e, e);
+    const double u = square > 0.0 ? std::clamp(glm::dot(p - ramp.a, e) / square, 0.0, 1.0) : 0.0;
+    const double z = ramp.z_a + u * (ramp.z_b - ramp.z_a);
+    if (z <= most && z > highest && glm::length(p - (ramp.a + u * e)) <= ramp.half_width) highest = z;
+    return false;
+  });
+  return highest;
+}
+
+double Ground::follow(const base::Pose& from, glm::dvec2 to) const {
+  const glm::dvec2 p{from.x, from.y};
+  if (p == to) return from.z;
+  const double below = height(p, from.z + kContact);
+  const double next = height(to, below + kMostStep + kMostSlope * glm::length(to - p));
+  return std::abs(from.z - below) <= kContact ? next : from.z + (next - below);
+}
+
+double clearance_of(const World& world, const Mover& mover) {
+  const base::Pose& X = mover.X_WM;
+  return X.z - Ground(world.ramps).height({X.x, X.y}, X.z + kContact);
+}
+
+double height_on_road(const World& world, glm::dvec2 p, double clearance) {
+  return clearance + Ground(world.ramps).height(p, HUGE_VAL);
+}
+
+}  // namespace sf::world
