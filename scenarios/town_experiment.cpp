@@ -63,10 +63,12 @@ constexpr std::string_view kTownReasons =
     "would explain. The mean error of a robot on a route is its distance from the middle of its lane; convoys and "
     "pedestrians have none.";
 constexpr std::string_view kMagicReasons =
-    "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. Contacts are those "
-    "of three Pioneers that wander without a map or V2V and do not see behind them, and of obstacles that patrol among "
-    "them without yielding; where two meet, each stopped robot counts one. The plant is `ideal` by default, since "
-    "Player's driver of the Create is not a Pioneer's. Trials differ by the robots' start poses and random turns.";
+    "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. Contacts must be "
+    "zero: "
+    "Pioneers wander without a map, but check the area that their outline sweeps, and obstacles stop while a Pioneer "
+    "is "
+    "ahead of them. The plant is `ideal` by default, since Player's driver of the Create is not a Pioneer's. Trials "
+    "differ by the robots' start poses and random turns.";
 
 }  // namespace
 
