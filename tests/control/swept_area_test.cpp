@@ -92,11 +92,12 @@ TEST(SweptArea, OtherRobotsAreDiscsThatBrake) {
 TEST(SweptArea, LimitTakesTheFirstFreeCommand) {
   Box box;
   EXPECT_EQ(box.swept_area.limit({}, kAhead, 1.0, 0.1).forward, kAhead.forward);
-  box.scan({8, 0.36, 8}, {});  // 6 cm ahead of the front
+  box.scan({8, 0.34, 8}, {});  // 4 cm ahead of the front
   EXPECT_EQ(box.swept_area.limit({}, kAhead, 1.0, 0.1).forward, -0.1) << "the front edge would come nearer in a turn";
-  box.scan({8, 0.36, 8}, {0.0, 0.0, 0.0, M_PI}, 1);  // and behind it
+  box.scan({8, 0.34, 8}, {0.0, 0.0, 0.0, M_PI}, 1);  // and behind it
   const base::Twist stop = box.swept_area.limit({}, kAhead, 1.0, 0.1);
-  EXPECT_TRUE(stop.forward == 0.0 && stop.turn == 0.0) << "no way out";
+  EXPECT_EQ(stop.forward, 0.0) << "no way out";
+  EXPECT_EQ(stop.turn, 0.0);
 }
 
 TEST(SweptArea, IgnoresReadingsOfOtherSizesAndNaN) {
