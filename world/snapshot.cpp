@@ -10,12 +10,20 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 6;
+constexpr std::uint16_t kVersion = 7;
 constexpr std::uint16_t kOldestVersion = 5;  // without the last fields of World; written where all of these are zero
+constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Fiducial>>();
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
-bool is_version5(const World& world) {
-  return world.earth_field == glm::dvec3{} && world.lamps.empty() && world.ambient_light == 0.0;
+/// Returns the oldest version that has all fields that are set.
+std::uint16_t version_of(const World& world) {
+  if (!world.fiducials.empty()) return 7;
+  return world.earth_field == glm::dvec3{} && world.lamps.empty() && world.ambient_light == 0.0 ? 5 : 6;
+}
+
+/// [bytes] Returns the size of the fields that a version does not have, all of which are zero.
+std::size_t missing_in(std::uint16_t version) {
+  return (version < 6 ? kSinceVersion6 : 0) + (version < 7 ? kSinceVersion7 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
@@ -36,6 +44,7 @@ void check_links(const World& world) {
   good &= std::all_of(world.lights.begin(), world.lights.end(), known);
   good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
   good &= std::all_of(world.lamps.begin(), world.lamps.end(), known);
+  good &= std::all_of(world.fiducials.begin(), world.fiducials.end(), known);
   good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
   if (!good) refuse("a row refers to a row that does not exist");
 }
@@ -56,19 +65,19 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   std::vector<std::uint8_t> bytes;
   base::ByteWriter out(bytes);
   out.put(kMagic);
-  out.put(is_version5(world) ? kOldestVersion : kVersion);
+  out.put(version_of(world));
   // The spelling of the world file's path is not part of the world.
   RowWriter{out, RowFields::all, std::filesystem::path(world.file).parent_path().lexically_normal()}.put(world);
-  if (is_version5(world)) bytes.resize(bytes.size() - kSinceVersion6);
+  bytes.resize(bytes.size() - missing_in(version_of(world)));
   return bytes;
 }
 
 World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kVersionAt = sizeof kMagic;
-  const bool is_old = bytes.size() > kVersionAt && bytes[kVersionAt] == kOldestVersion;
-  std::vector<std::uint8_t> longer;
-  if (is_old) longer.assign(bytes.begin(), bytes.end()), longer.resize(bytes.size() + kSinceVersion6);
-  base::ByteReader in(is_old ? longer : bytes);
+  std::vector<std::uint8_t> whole = bytes;
+  if (bytes.size() > kVersionAt && bytes[kVersionAt] >= kOldestVersion)
+    whole.resize(bytes.size() + missing_in(bytes[kVersionAt]));
+  base::ByteReader in(whole);
   if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are not a world");
   const auto version = in.get<std::uint16_t>();
   if (version < kOldestVersion || version > kVersion)
