@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "base/random.h"
@@ -89,7 +90,8 @@ bool FiducialFinders::hidden_by(std::uint32_t mover, const glm::dvec3& from, con
 void FiducialFinders::measure(const HostSample& sample) const {
   const FiducialFinder& s = settings_[sample.row];
   const SensorSpec& row = rows()[sample.row];
-  std::vector<Detection> seen;
+  thread_local std::vector<Detection> seen;  // keeps its memory between ticks
+  seen.clear();
   for (std::uint32_t i = 0; i < world().fiducials.size(); ++i) {
     const Fiducial& fiducial = world().fiducials[i];
     if (fiducial.key != s.key || world().models[fiducial.model].mover == row.mover) continue;
@@ -100,7 +102,9 @@ void FiducialFinders::measure(const HostSample& sample) const {
     if (hidden(fiducial, X_WF, sample)) continue;
     seen.push_back({i, range, bearing, base::wrap_angle(X_WF.yaw - sample.X_WS.yaw)});
   }
-  std::stable_sort(seen.begin(), seen.end(), [](const auto& p, const auto& q) { return p.range < q.range; });
+  std::sort(seen.begin(), seen.end(), [](const auto& p, const auto& q) {
+    return std::pair(p.range, p.fiducial) < std::pair(q.range, q.fiducial);
+  });
   std::fill(sample.values.begin(), sample.values.end(), std::nan(""));
   for (std::size_t k = 0; k < std::min<std::size_t>(seen.size(), row.elements); ++k) {
     const Detection& d = seen[k];
