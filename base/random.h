@@ -19,9 +19,10 @@ enum class RandomStream : std::uint32_t {
   range_cone = 7,  ///< sonar and infrared rangers
   gyro = 8,
   satellites = 9,
-  link = 10,        ///< delay and loss between a robot and the farm
-  decision = 11,    ///< random decisions of controllers
-  own_sensors = 12  ///< users' own sensor types
+  link = 10,         ///< delay and loss between a robot and the farm
+  decision = 11,     ///< random decisions of controllers
+  own_sensors = 12,  ///< users' own sensor types
+  fiducials = 13
 };
 
 /// Identifies one draw by all five fields.

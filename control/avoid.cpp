@@ -30,6 +30,14 @@ Thirds thirds_of(std::span<const double> ranges) {
 }
 
 base::Twist Avoid::step(const ControllerInput& input) {
+  const base::Twist wanted = drive(input);
+  if (!swept_area_) return wanted;
+  swept_area_->update(input);
+  const double turn = state_ == State::turn_right ? -settings_.turn_speed : settings_.turn_speed;
+  return swept_area_->limit(input.state, wanted, turn, settings_.slow_speed);
+}
+
+base::Twist Avoid::drive(const ControllerInput& input) {
   const base::ReadingBlock* reading = newest(input, sensors::kLaser);
   if (reading == nullptr || reading->values.empty()) return {};
   const Thirds nearest = thirds_of(reading->values);
@@ -59,7 +67,7 @@ std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Setting
   avoid.turn = settings.number("turn", avoid.turn, 0.0, 1e3);
   avoid.clear = settings.number("clear", avoid.turn, avoid.turn, 1e3);
   avoid.turn_speed = settings.number("turn_speed", std::min(avoid.turn_speed, mover.max_turn), 1e-3, mover.max_turn);
-  return std::make_unique<Avoid>(avoid);
+  return std::make_unique<Avoid>(avoid, read_swept_area(context, settings));
 }
 
 }  // namespace

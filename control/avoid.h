@@ -7,10 +7,13 @@
 // is implemented as: no range in the front third is below `clear` (default: `turn`). With the default the robot may
 // scrape an obstacle: a point 0.10 to 0.165 m off the axis leaves the front third before the disc of the Create has
 // passed it.
+//
+// With `check_sweep` it executes only commands whose swept area is free (control/swept_area.h).
 
 #include <span>
 
 #include "control/controllers.h"
+#include "control/swept_area.h"
 
 namespace sf::control {
 
@@ -25,16 +28,21 @@ struct AvoidSettings {
 
 class Avoid final : public Controller {
  public:
-  explicit Avoid(const AvoidSettings& settings) : settings_(settings) {}
+  explicit Avoid(const AvoidSettings& settings, std::optional<SweptArea> swept_area = {})
+      : settings_(settings), swept_area_(std::move(swept_area)) {}
 
   /// Returns a zero twist until laser 0 has delivered a reading.
   base::Twist step(const ControllerInput& input) override;
+  double v2v_range() const override { return swept_area_ ? swept_area_->v2v_range() : 0.0; }
 
   enum class State { drive, slow, turn_left, turn_right };
   State state() const { return state_; }
 
  private:
+  base::Twist drive(const ControllerInput& input);
+
   AvoidSettings settings_;
+  std::optional<SweptArea> swept_area_;
   State state_ = State::drive;
 };
 

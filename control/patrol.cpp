@@ -13,7 +13,7 @@ Patrol::Patrol(PatrolSettings settings) : settings_(std::move(settings)) {
 }
 
 // V2V states contain no footprint, so robots are considered up to a metre beyond the stopping distance.
-double Patrol::v2v_range() const { return settings_.radius + settings_.keep + 1.0; }
+double Patrol::v2v_range() const { return std::hypot(settings_.radius + settings_.keep, settings_.aside) + 1.0; }
 
 base::Twist Patrol::step(const ControllerInput& input) {
   const base::Pose& X_WM = input.state.X_WM;
@@ -40,12 +40,12 @@ void Patrol::next(std::int64_t time) {
   target_ = backwards_ ? target_ - 1 : target_ + 1;
 }
 
-// Checks the lane that the robot's own body sweeps, doubled in width because V2V states contain no footprint.
+// V2V states contain no footprint, so the lane is wider than the robot's own body.
 bool Patrol::obstructed(const ControllerInput& input) const {
   return std::any_of(input.others.begin(), input.others.end(), [&](const Neighbour& other) {
     const base::Pose& X_WM = input.state.X_WM;
     const glm::dvec2 p = base::rotate(-X_WM.yaw, {other.state.X_WM.x - X_WM.x, other.state.X_WM.y - X_WM.y});
-    return p.x > 0.0 && p.x < settings_.radius + settings_.keep && std::abs(p.y) < 2.0 * settings_.radius;
+    return p.x > 0.0 && p.x < settings_.radius + settings_.keep && std::abs(p.y) < settings_.aside;
   });
 }
 
@@ -71,6 +71,7 @@ std::unique_ptr<Controller> make_patrol(const ControllerContext& context, Settin
   patrol.pause = settings.number("pause", patrol.pause, 0.0, 1e6);
   patrol.keep = settings.number("keep", patrol.keep, 0.0, 1e3);
   patrol.radius = mover.radius;
+  patrol.aside = settings.number("aside", 2.0 * mover.radius, 0.0, 1e3);
   patrol.turns_in_place = mover.drive != world::Drive::car;
   return std::make_unique<Patrol>(patrol);
 }

@@ -16,6 +16,7 @@ struct PatrolSettings {
   double pause = 0.0;              ///< [s] pause at each end
   double reach = 0.03;             ///< [m] distance at which a point is reached
   double keep = 0.3;               ///< [m] between its own body and the origins of other robots
+  double aside = 0.33;             ///< [m] half the width of the lane in which the origins of other robots stop it
   double radius = 0.165;           ///< [m] radius of its own body
   bool turns_in_place = true;      ///< false: a car, which drives while it turns
 };

@@ -15,6 +15,7 @@ namespace {
 /// Bits of `Report::contact_mask` from 90 degrees to the left over the rear to 90 degrees to the right.
 constexpr std::uint32_t kRear = 0x00FFFF00u;
 static_assert(base::kContactSectors == 32);
+constexpr double kLeastTurn = 0.2;  // [rad] after a command whose swept area is not free
 
 }  // namespace
 
@@ -31,8 +32,9 @@ WanderSettings wander_settings(const world::Mover& mover, double range) {
 }
 
 Wander::Wander(const world::Mover& mover, std::span<const sensors::SensorSpec> lasers, std::uint32_t robot,
-               std::uint64_t seed, std::optional<double> speed)
+               std::uint64_t seed, std::optional<double> speed, std::optional<SweptArea> swept_area)
     : clearance_estimator_(mover, lasers),
+      swept_area_(std::move(swept_area)),
       settings_(wander_settings(mover, clearance_estimator_.range())),
       robot_(robot),
       seed_(seed) {
@@ -48,15 +50,25 @@ base::Twist Wander::step(const ControllerInput& input) {
   turned_ += std::abs(base::wrap_angle(input.state.X_WM.yaw - last_yaw_));
   last_yaw_ = input.state.X_WM.yaw;
   choose(input, clearance);
-  switch (mode_) {
-    case Mode::turn:
-      return turn();
-    case Mode::back:
-      return {-0.5 * settings_.speed, 0.0, settings_.turns_in_place ? 0.0 : -side_ * settings_.turn};
-    case Mode::cruise:
-      break;
-  }
-  return cruise(clearance, input.time);
+  if (!swept_area_) return drive(clearance, input.time);
+  swept_area_->update(input);
+  return checked(drive(clearance, input.time), input.state, clearance);
+}
+
+base::Twist Wander::drive(const Clearance& clearance, std::int64_t time) {
+  if (mode_ == Mode::turn) return turn();
+  if (mode_ == Mode::back)
+    return {-0.5 * settings_.speed, 0.0, settings_.turns_in_place ? 0.0 : -side_ * settings_.turn};
+  return cruise(clearance, time);
+}
+
+/// Turns away, as before any other obstacle, if the swept area of driving on is not free.
+base::Twist Wander::checked(const base::Twist& wanted, const base::Report& state, const Clearance& clearance) {
+  const double turn = settings_.turns_in_place ? 0.5 * side_ * settings_.turn : 0.0;
+  const base::Twist twist = swept_area_->limit(state, wanted, turn, 0.25 * settings_.speed);
+  if (mode_ == Mode::cruise && twist.forward <= 0.0) start_turn(clearance, kLeastTurn);
+  if (mode_ == Mode::turn && twist.turn != 0.0) side_ = std::copysign(1.0, twist.turn);
+  return twist;
 }
 
 void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
@@ -139,7 +151,8 @@ namespace {
 std::unique_ptr<Controller> make_wander(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
   const double speed = settings.number("speed", 0.8 * mover.max_forward, 0.0, mover.max_forward);
-  return std::make_unique<Wander>(mover, context.sensors_of(sensors::kLaser), context.mover, context.seed, speed);
+  return std::make_unique<Wander>(mover, context.sensors_of(sensors::kLaser), context.mover, context.seed, speed,
+                                  read_swept_area(context, settings));
 }
 
 }  // namespace

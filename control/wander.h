@@ -2,12 +2,16 @@
 // Wanders without a map: drives where there is room, slows down near obstacles, turns to the freer side before contact,
 // and after a contact backs off and turns by a random angle. Drives forward if touched only from behind. Works with any
 // laser, several, or none.
+//
+// With `check_sweep` it executes only commands whose swept area is free (control/swept_area.h): it slows down, turns to
+// the other side, backs off or stops instead.
 
 #include <cstdint>
 #include <optional>
 
 #include "control/clearance_estimator.h"
 #include "control/controllers.h"
+#include "control/swept_area.h"
 #include "world/world.h"
 
 namespace sf::control {
@@ -28,11 +32,13 @@ class Wander final : public Controller {
  public:
   /// @param robot row of the mover; selects the robot's random numbers
   /// @param speed [m/s] on free ground; nullopt: the speed of `wander_settings`
+  /// @param swept_area checks commands; nullopt: executes them unchecked
   Wander(const world::Mover& mover, std::span<const sensors::SensorSpec> lasers, std::uint32_t robot,
-         std::uint64_t seed, std::optional<double> speed = {});
+         std::uint64_t seed, std::optional<double> speed = {}, std::optional<SweptArea> swept_area = {});
 
   /// Depends only on the inputs so far and on (seed, robot).
   base::Twist step(const ControllerInput& input) override;
+  double v2v_range() const override { return swept_area_ ? swept_area_->v2v_range() : 0.0; }
 
  private:
   enum class Mode { cruise, turn, back };
@@ -41,10 +47,13 @@ class Wander final : public Controller {
   void drive_away(const Clearance& clearance);
   void start_turn(const Clearance& clearance, double least);
   void start_back(std::int64_t time);
+  base::Twist drive(const Clearance& clearance, std::int64_t time);
   base::Twist cruise(const Clearance& clearance, std::int64_t time);
   base::Twist turn() const;
+  base::Twist checked(const base::Twist& wanted, const base::Report& state, const Clearance& clearance);
 
   ClearanceEstimator clearance_estimator_;
+  std::optional<SweptArea> swept_area_;
   WanderSettings settings_;
   std::uint32_t robot_;
   std::uint64_t seed_;

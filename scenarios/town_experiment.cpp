@@ -5,10 +5,13 @@
 #include "scenarios/experiment.h"
 #include "viz/town_figure.h"
 #include "viz/trajectory_figure.h"
+#include "world/fields.h"
 
 namespace sf::scenarios {
 
 namespace {
+
+std::string_view type_of(const Sighting& sighting) { return words_of(world::Fiducial::Type::marker)[sighting.type]; }
 
 std::string csv_of(const std::vector<Trial>& trials) {
   std::string text = "trial,robot,driven_m,contacts,checkpoints,full_stops,reds_passed,mean_abs_error_m\n";
@@ -20,6 +23,30 @@ std::string csv_of(const std::vector<Trial>& trials) {
                           counts.contacts, counts.goals.passed, counts.stops, counts.red_lights_passed,
                           has ? fmt::format("{:.6g}", trials[k].errors[i].abs_mean) : "");
     }
+  return text;
+}
+
+std::string sightings_csv(const ExperimentContext& context, const std::vector<Trial>& trials) {
+  const world::World world = world_of(context.scenario);
+  std::string text = "trial,id,type,robot,time_s,x_m,y_m\n";
+  for (std::size_t k = 0; k < trials.size(); ++k)
+    for (const Sighting& s : trials[k].sightings)
+      text += fmt::format("{},{},{},{},{:.6g},{:.6g},{:.6g}\n", k + 1, s.id, type_of(s), world.movers[s.mover].name,
+                          s.time, s.p.x, s.p.y);
+  return text;
+}
+
+std::string sightings_table(const ExperimentContext& context, const std::vector<Trial>& trials) {
+  const world::World world = world_of(context.scenario);
+  if (world.fiducials.empty()) return "";
+  std::string text =
+      "\n## Fiducials found\n\n| trial | found | id | type | robot | time [s] | place [m] |\n"
+      "|---|---|---|---|---|---|---|\n";
+  for (std::size_t k = 0; k < trials.size(); ++k)
+    for (const Sighting& s : trials[k].sightings)
+      text +=
+          fmt::format("| {} | {} of {} | {} | {} | {} | {:.1f} | {:.2f}, {:.2f} |\n", k + 1, trials[k].sightings.size(),
+                      world.fiducials.size(), s.id, type_of(s), world.movers[s.mover].name, s.time, s.p.x, s.p.y);
   return text;
 }
 
@@ -36,6 +63,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Trial>
                           trial.counts[i].contacts, trial.counts[i].goals.passed, trial.counts[i].stops,
                           trial.counts[i].red_lights_passed);
   }
+  text += sightings_table(context, trials);
   return text + fmt::format("\n## Comparison with the thesis\n\n{}\n", context.type.reasons);
 }
 
@@ -46,6 +74,8 @@ std::vector<std::string> run_town(const ExperimentContext& context) {
   write_text(files[0], csv_of(trials));
   write_text(files[1], report_of(context, trials));
   const world::World world = world_of(context.scenario);
+  if (!world.fiducials.empty())
+    write_text(files.emplace_back(in_folder(context, "fiducials.csv")), sightings_csv(context, trials));
   for (std::size_t k = 0; k < trials.size(); ++k) {
     files.push_back(in_folder(context, fmt::format("trajectories-{}.png", k + 1)));
     if (world.road_files.empty())
@@ -63,10 +93,12 @@ constexpr std::string_view kTownReasons =
     "would explain. The mean error of a robot on a route is its distance from the middle of its lane; convoys and "
     "pedestrians have none.";
 constexpr std::string_view kMagicReasons =
-    "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. Contacts are those "
-    "of three Pioneers that wander without a map or V2V and do not see behind them, and of obstacles that patrol among "
-    "them without yielding; where two meet, each stopped robot counts one. The plant is `ideal` by default, since "
-    "Player's driver of the Create is not a Pioneer's. Trials differ by the robots' start poses and random turns.";
+    "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. Contacts must be "
+    "zero: "
+    "Pioneers wander without a map, but check the area that their outline sweeps, and obstacles stop while a Pioneer "
+    "is "
+    "ahead of them. The plant is `ideal` by default, since Player's driver of the Create is not a Pioneer's. Trials "
+    "differ by the robots' start poses and random turns.";
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include "raycast/casters.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
+#include "sensors/fiducial.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "sensors/settings.h"
@@ -61,6 +62,7 @@ class Keeper {
       dead_end_detectors_[i].update(tick.reports[rows_[i]], tick.contacts[rows_[i]] != 0);
     }
     add_scans(tick.readings, maps_);
+    add_sightings(tick.readings);
     const ControlStatus first = rows_.empty() ? ControlStatus{} : simulation.status(rows_[0]);
     if (first.stepped && std::isfinite(first.error)) times_.push_back(1e-9 * static_cast<double>(tick.time));
   }
@@ -86,6 +88,8 @@ class Keeper {
       trial.counts.push_back(metrics.of(row));
       trial.errors.push_back(statistics_of(metrics.of(row).errors));
     }
+    for (const auto& [id, sighting] : ranks == nullptr ? sightings_ : sightings_of_all(*ranks))
+      trial.sightings.push_back(sighting);
     for (auto& [row, grid] : ranks == nullptr ? own_maps() : maps_of_all(*ranks)) {
       trial.mapped.push_back(row);
       trial.maps.push_back(std::move(grid));
@@ -123,6 +127,47 @@ class Keeper {
     return grids;
   }
 
+  void add_sightings(std::span<const base::ReadingBlock> readings) {
+    for (const base::ReadingBlock& reading : readings) {
+      if (reading.type != sensors::kFiducial) continue;
+      for (std::size_t i = 0; i + sensors::kFiducialNumbers <= reading.values.size(); i += sensors::kFiducialNumbers) {
+        const auto row = reading.values.subspan(i, sensors::kFiducialNumbers);
+        if (!(row[0] > 0.0)) continue;
+        const auto id = static_cast<std::uint32_t>(row[0]);
+        const glm::dvec2 p = base::transform(reading.X_WS, row[2] * base::rotate(row[3], {1.0, 0.0}));
+        add(sightings_,
+            {id, static_cast<std::uint32_t>(row[1]), reading.mover, 1e-9 * static_cast<double>(reading.time), p});
+      }
+    }
+  }
+
+  using Sightings = std::map<std::uint32_t, Sighting>;  ///< by id
+
+  /// Keeps the first sighting of each id; of several at one time that of the first robot.
+  static void add(Sightings& sightings, const Sighting& sighting) {
+    const auto [at, is_new] = sightings.try_emplace(sighting.id, sighting);
+    const auto order = [](const Sighting& s) { return std::pair(s.time, s.mover); };
+    if (!is_new && order(sighting) < order(at->second)) at->second = sighting;
+  }
+
+  Sightings sightings_of_all(cluster::Ranks& ranks) const {
+    base::Bytes block;
+    base::ByteWriter out(block);
+    for (const auto& [id, s] : sightings_) {
+      for (const std::uint32_t number : {id, s.type, s.mover}) out.put(number);
+      for (const double number : {s.time, s.p.x, s.p.y}) out.put(number);
+    }
+    Sightings all;
+    for (const cluster::Block other : ranks.exchange(block))
+      for (base::ByteReader in(other); in.left() > 0;) {
+        Sighting s;
+        for (std::uint32_t* number : {&s.id, &s.type, &s.mover}) *number = in.get<std::uint32_t>();
+        for (double* number : {&s.time, &s.p.x, &s.p.y}) *number = in.get<double>();
+        add(all, s);
+      }
+    return all;
+  }
+
   /// Returns the track of the robot's leader.
   std::uint32_t followed_by(std::uint32_t row, const world::World& world, const Simulation& simulation) const {
     const std::uint32_t id = simulation.intent(row).follows;
@@ -137,6 +182,7 @@ class Keeper {
   std::vector<std::uint32_t> helped_;
   std::vector<double> times_;
   std::map<std::uint32_t, RobotMap> maps_;
+  Sightings sightings_;
 };
 
 }  // namespace

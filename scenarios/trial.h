@@ -32,6 +32,15 @@ struct Disturbance {
   double scan_noise = 0.003;   ///< [m] per beam of a laser
 };
 
+/// The first sighting of a fiducial by any robot of a trial (sensors/fiducial.h).
+struct Sighting {
+  std::uint32_t id = 0;     ///< > 0
+  std::uint32_t type = 0;   ///< world::Fiducial::Type
+  std::uint32_t mover = 0;  ///< row of the robot
+  double time = 0.0;        ///< [s] simulated
+  glm::dvec2 p{};           ///< [m] world frame, as measured
+};
+
 /// Results of one run.
 struct Trial {
   std::vector<viz::Track> tracks;            ///< per robot, and per tag with a controller
@@ -44,6 +53,7 @@ struct Trial {
   std::vector<double> times;                 ///< [s] of the first robot's errors
   std::vector<maps::OccupancyGrid> maps;     ///< of each robot with a laser, if requested
   std::vector<std::uint32_t> mapped;         ///< rows of the movers of `maps`
+  std::vector<Sighting> sightings;           ///< one per fiducial that was seen, in order of ids
   double simulated = 0.0;                    ///< [s]
   double wall = 0.0;                         ///< [s]
   double decided = 0.0;                      ///< [s] of `wall`, spent on controllers and motion

@@ -88,7 +88,7 @@ struct SensorColumn {
 /// A sensor type.
 struct SensorEntry {
   std::string name;                   ///< keyword in world files, name in commands, JSON and recordings
-  std::uint8_t id = 0;                ///< in packets: 13 to 27, not that of another type
+  std::uint8_t id = 0;                ///< in packets: 13 to 26, not that of another type
   std::vector<SensorColumn> columns;  ///< at least one
   std::vector<std::string> keys;      ///< its own properties in world files, in addition to `rate`, `phase`, `latency`,
                                       ///< `pose`

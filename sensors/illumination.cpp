@@ -28,8 +28,8 @@ std::vector<Segment> walls_with_shadows(const world::World& world) {
   return walls;
 }
 
-/// Returns true when the straight line from `from` to `to` crosses the wall within its heights. A line along the wall
-/// passes.
+}  // namespace
+
 bool crosses_sight(const glm::dvec3& from, const glm::dvec3& to, const Segment& wall) {
   const glm::dvec2 along = wall.b - wall.a, start{from.x, from.y}, end{to.x, to.y};
   const double turn = base::cross(end - start, along);
@@ -38,8 +38,6 @@ bool crosses_sight(const glm::dvec3& from, const glm::dvec3& to, const Segment& 
   const double height = from.z + part * (to.z - from.z);
   return wall.z_min <= height && height < wall.z_max;
 }
-
-}  // namespace
 
 double illuminance_of(const Lamp& lamp, const glm::dvec3& p, glm::dvec2 normal) {
   const glm::dvec3 to{lamp.X_WL.x - p.x, lamp.X_WL.y - p.y, lamp.X_WL.z - p.z};

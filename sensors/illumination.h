@@ -15,6 +15,10 @@ inline constexpr double kNearestLamp = 0.01;  ///< [m] smaller distances count a
 /// walls.
 double illuminance_of(const world::Lamp& lamp, const glm::dvec3& p, glm::dvec2 normal);
 
+/// Returns true when the straight line from `from` to `to` crosses the wall within its heights. A line along the wall
+/// passes.
+bool crosses_sight(const glm::dvec3& from, const glm::dvec3& to, const world::Segment& wall);
+
 /// Returns the distance [m] beyond which no lamp of the world counts.
 double reach_of_lamps(const world::World& world);
 

@@ -9,7 +9,7 @@
 namespace sf::sensors {
 
 inline constexpr std::uint8_t kFirstOwnId = 13;
-inline constexpr std::uint8_t kLastOwnId = 27;
+inline constexpr std::uint8_t kLastOwnId = 26;
 
 /// Adds a type for the rest of the program. Worlds loaded from now on may have such sensors. Do not call it while a
 /// farm ticks.

@@ -116,6 +116,16 @@ std::string free_model_name(const World& world, std::string name) {
 
 }  // namespace
 
+std::vector<Fiducial> fiducials_on(const World& world, std::uint32_t mover, std::span<const std::uint32_t> rows) {
+  std::vector<Fiducial> fiducials;
+  for (Fiducial fiducial : world.fiducials) {
+    if (world.models[fiducial.model].mover != mover) continue;
+    fiducial.model = rows[fiducial.model];
+    if (fiducial.model != kNone) fiducials.push_back(fiducial);
+  }
+  return fiducials;
+}
+
 Pose moved_with(const Pose& X_before, const Pose& X_after, const Pose& X_WM) {
   return compose(X_after, compose(inverse(X_before), X_WM));
 }
@@ -172,6 +182,8 @@ std::uint32_t append_robot(World& world, const World& from, std::uint32_t origin
   for (Segment& side : copy.body) side.model = rows[side.model];
   for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];
   world.movers.push_back(std::move(copy));
+  const std::vector<Fiducial> fiducials = fiducials_on(from, original, rows);
+  world.fiducials.insert(world.fiducials.end(), fiducials.begin(), fiducials.end());
   update_extent_and_hash(world);
   return row;
 }

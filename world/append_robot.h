@@ -2,7 +2,9 @@
 // Adds robots to a world after it was loaded.
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "world/world.h"
 
@@ -48,5 +50,9 @@ Pose moved_with(const Pose& X_before, const Pose& X_after, const Pose& X_WM);
 
 /// Returns whether both rows have the same type, body, drive and sensors.
 bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b);
+
+/// Returns the fiducials that the mover carries (kNone: the static ones), on their new models.
+/// @param rows new rows of models by old row; kNone: removed
+std::vector<Fiducial> fiducials_on(const World& world, std::uint32_t mover, std::span<const std::uint32_t> rows);
 
 }  // namespace sf::world

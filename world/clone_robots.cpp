@@ -63,9 +63,9 @@ void retarget(std::vector<Row>& table, const std::vector<std::uint32_t>& rows) {
 }
 
 // Returns a copy of the robot in row `original` of the world's movers, with id `id`, for row `mover`. Appends its
-// models to `models`.
+// models to `models` and its fiducials to `fiducials`.
 Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std::uint32_t mover, const Pose& X_WM,
-              const Kept& kept, std::vector<Model>& models) {
+              const Kept& kept, std::vector<Model>& models, std::vector<Fiducial>& fiducials) {
   Mover copy = world.movers[original];
   const std::string before = world.models[copy.model].name;
   std::string after = stem(before) + std::to_string(id);
@@ -82,6 +82,7 @@ Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std:
     model.mover = mover;
     models.push_back(std::move(model));
   }
+  for (const Fiducial& fiducial : fiducials_on(world, original, rows)) fiducials.push_back(fiducial);
   copy.name = after;
   copy.id = id;
   copy.X_WM = X_WM;
@@ -134,6 +135,9 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   const Kept kept = keep(world, robots, poses.size());
   std::vector<Model> models = kept.models;
   std::vector<Mover> movers;
+  std::vector<Fiducial> fiducials = fiducials_on(world, kNone, kept.model_rows);
+  for (std::uint32_t row = 0; row < (world.fiducials.empty() ? 0 : world.movers.size()); ++row)
+    for (const Fiducial& fiducial : fiducials_on(world, row, kept.model_rows)) fiducials.push_back(fiducial);
   std::set<std::uint32_t> taken;
   for (const std::uint32_t row : robots) {
     movers.push_back(kept_one(world.movers[row], kept));
@@ -143,7 +147,8 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   for (const Pose& pose : poses) {
     do ++id;
     while (taken.contains(id));
-    movers.push_back(copy_of(world, original, id, static_cast<std::uint32_t>(movers.size()), pose, kept, models));
+    movers.push_back(
+        copy_of(world, original, id, static_cast<std::uint32_t>(movers.size()), pose, kept, models, fiducials));
   }
   for (const Mover& tag : world.movers)
     if (tag.is_tag) movers.push_back(kept_one(tag, kept));
@@ -152,6 +157,7 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   retarget(world.lights, kept.model_rows);
   retarget(world.emitters, kept.model_rows);
   retarget(world.lamps, kept.model_rows);
+  world.fiducials = std::move(fiducials);
   retarget(world.floor_holes, kept.model_rows);
   world.models = std::move(models);
   world.movers = std::move(movers);

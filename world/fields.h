@@ -16,6 +16,7 @@ namespace sf::world {
 inline constexpr auto words_of(Drive) { return std::to_array<std::string_view>({"diff", "omni", "car", "skid"}); }
 inline constexpr auto words_of(ActuatorModel) { return std::to_array<std::string_view>({"direct", "player_create"}); }
 inline constexpr auto words_of(Emitter::Kind) { return std::to_array<std::string_view>({"virtual_wall", "dock"}); }
+inline constexpr auto words_of(Fiducial::Type) { return std::to_array<std::string_view>({"marker", "target", "threat"}); }
 inline constexpr auto words_of(LightState) {
   return std::to_array<std::string_view>({"dark", "red", "yellow", "green", "flashing red", "flashing yellow"});
 }
@@ -109,6 +110,10 @@ template <> inline constexpr auto kFields<Lamp> = std::make_tuple(
     field(&Lamp::intensity, Key{"lamp_intensity"}, Bounds{0.0, 1e9, true}),
     field(&Lamp::fov, Key{"lamp_fov", Unit::angle}, Bounds{0.0, 2.0 * M_PI, true}));
 
+template <> inline constexpr auto kFields<Fiducial> = std::make_tuple(
+    field(&Fiducial::model), field(&Fiducial::X_BF), field(&Fiducial::id), field(&Fiducial::key),
+    field(&Fiducial::type, Key{"fiducial_type"}));
+
 template <> inline constexpr auto kFields<FloorHole> = std::make_tuple(
     field(&FloorHole::model), field(&FloorHole::outline));
 
@@ -129,7 +134,7 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     field(&World::earth_field), field(&World::lamps),
     field(&World::ambient_light, Key{"ambient_light"}, Bounds{0.0, 1e9}),
     // since version 7
-    field(&World::ramps), field(&World::marking_heights));
+    field(&World::ramps), field(&World::marking_heights), field(&World::fiducials));
 
 // clang-format on
 

@@ -21,10 +21,10 @@ constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_an
 
 constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "outlines", "boundary", "stack_children",
   "noblocks", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment", "magnetometer_return", "blocks",
-  "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose",
+  "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose", "fiducial_return", "fiducial_key",
   // known, not modelled
   "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
-  "fiducial_return", "fiducial_key", "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",
+  "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",
   "map_resolution", "say", "alwayson", "thread_safe", "joules", "kjoules", "joules_capacity", "watts", "give_watts",
   "take_watts", "trail_length", "trail_interval", "event_queue", "debug", "rebuild_displaylist", "block[].color"});
 
@@ -81,7 +81,7 @@ Words fields_of() {
 
 /// Returns the keys of every model, and `others`.
 std::vector<Words> model_and(std::initializer_list<Words> others) {
-  std::vector<Words> words{kModel, fields_of<Segment>(), fields_of<Emitter>(), fields_of<Lamp>()};
+  std::vector<Words> words{kModel, fields_of<Segment>(), fields_of<Emitter>(), fields_of<Lamp>(), fields_of<Fiducial>()};
   words.insert(words.end(), others);
   return words;
 }

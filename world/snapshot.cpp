@@ -13,11 +13,12 @@ constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 7;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
-constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_bytes<std::vector<MarkingHeights>>();
+constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_bytes<std::vector<MarkingHeights>>() +
+                                       least_bytes<std::vector<Fiducial>>();
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
-  if (!world.ramps.empty() || !world.marking_heights.empty()) return 7;
+  if (!world.ramps.empty() || !world.marking_heights.empty() || !world.fiducials.empty()) return 7;
   return world.earth_field == glm::dvec3{} && world.lamps.empty() && world.ambient_light == 0.0 ? 5 : 6;
 }
 
@@ -44,6 +45,7 @@ void check_links(const World& world) {
   good &= std::all_of(world.lights.begin(), world.lights.end(), known);
   good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
   good &= std::all_of(world.lamps.begin(), world.lamps.end(), known);
+  good &= std::all_of(world.fiducials.begin(), world.fiducials.end(), known);
   good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
   if (!good) refuse("a row refers to a row that does not exist");
 }
@@ -75,7 +77,8 @@ std::vector<std::uint8_t> snapshot(const World& world) {
 World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kVersionAt = sizeof kMagic;
   std::vector<std::uint8_t> whole = bytes;
-  if (bytes.size() > kVersionAt) whole.resize(bytes.size() + missing_bytes(bytes[kVersionAt]));
+  if (bytes.size() > kVersionAt && bytes[kVersionAt] >= kOldestVersion)
+    whole.resize(bytes.size() + missing_bytes(bytes[kVersionAt]));
   base::ByteReader in(whole);
   if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are not a world");
   const auto version = in.get<std::uint16_t>();

@@ -91,8 +91,8 @@ constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, 
                                               &World::lane_markings, &World::magnet_cutoff, &World::accuracy);
 
 /// Worlds without these keep the hash that they had before the fields existed.
-constexpr auto kHashedIfSet =
-    std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights);
+constexpr auto kHashedIfSet = std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps,
+                                              &World::marking_heights, &World::fiducials);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -196,6 +196,8 @@ void translate(World& world, double dx, double dy) {
   for (Light& light : world.lights) move(light.X_WL);
   for (Emitter& emitter : world.emitters) move(emitter.X_WE);
   for (Lamp& lamp : world.lamps) move(lamp.X_WL);
+  for (Fiducial& fiducial : world.fiducials)
+    if (world.models[fiducial.model].mover == kNone) move(fiducial.X_BF);
   for (FloorHole& hole : world.floor_holes)
     for (glm::dvec2& p : hole.outline) move(p);
   for (Model& model : world.models) move(model.X_WM);

@@ -197,6 +197,17 @@ struct Emitter {
   double halo = 0.0;        ///< [m] >= 0, radius of the halo around it (dock: of the force field)
 };
 
+/// A mark that fiducial finders detect: a model with a `fiducial_return`.
+struct Fiducial {
+  enum class Type : std::uint8_t { marker, target, threat };
+  std::uint32_t model = 0;  ///< row in `World::models`; its own surfaces do not hide it
+  Pose X_BF;                ///< middle of the model in its mover's frame, or in the world if no mover carries it;
+                            ///< z: [m] above the mover's origin, or in the world
+  std::uint32_t id = 0;     ///< `fiducial_return` > 0
+  std::uint32_t key = 0;    ///< `fiducial_key`: finders with this key detect it
+  Type type = Type::marker;
+};
+
 /// A lamp for light sensors: a point source of constant intensity within its beam, dark outside.
 struct Lamp {
   std::uint32_t model = 0;  ///< row in `World::models`; its own walls do not block the light
@@ -255,6 +266,7 @@ struct World {
   std::vector<Light> lights;
   std::vector<Emitter> emitters;
   std::vector<Lamp> lamps;
+  std::vector<Fiducial> fiducials;
   double ambient_light = 0.0;  ///< [lx] on every surface, without shadows
   std::vector<FloorHole> floor_holes;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sensors/bumper.h"
+#include "sensors/fiducial.h"
 #include "sensors/gps.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
@@ -23,7 +24,8 @@ const std::vector<Offer>& own_interfaces() {
                                        {sensors::kSonar, {Interface::sonar, Interface::ranger}},
                                        {sensors::kInfrared, {Interface::ir, Interface::ranger}},
                                        {sensors::kBumper, {Interface::bumper}},
-                                       {sensors::kGps, {Interface::gps}}};
+                                       {sensors::kGps, {Interface::gps}},
+                                       {sensors::kFiducial, {Interface::fiducial}}};
   return kOwn;
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "sensors/fiducial.h"
 #include "sensors/infrared.h"
 #include "sensors/sensor_type.h"
 
@@ -57,6 +58,21 @@ void put_bumpers(const LastReading& reading, XdrWriter& xdr) {
   base::Bytes pressed;
   for (const double value : reading.values) pressed.push_back(value > 0.5 ? 1 : 0);
   xdr.put_opaque(pressed);
+}
+
+/// Poses in the finder's frame, their uncertainties 0; as in Player, a fiducial that cannot be identified has id -1.
+void put_fiducials(const LastReading& reading, XdrWriter& xdr) {
+  constexpr std::size_t kWidth = sensors::kFiducialNumbers;
+  std::size_t count = 0;
+  while (count * kWidth < reading.values.size() && !std::isnan(reading.values[count * kWidth])) ++count;
+  xdr.put_count(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* const row = &reading.values[i * kWidth];
+    const glm::dvec2 p = row[2] * base::rotate(row[3], {1.0, 0.0});
+    xdr.put(row[0] > 0.0 ? static_cast<std::int32_t>(row[0]) : -1);
+    put_pose({p.x, p.y, 0.0, row[4]}, xdr);
+    put_pose({}, xdr);
+  }
 }
 
 /// @param per [1/unit] integers per unit of `value`
@@ -112,6 +128,7 @@ void put_reading(const Device& device, const LastReading& reading, const base::R
   if (device.interf == Interface::sonar) put_ranges<float>(device, reading, xdr);
   if (device.interf == Interface::ir) put_infrared(device, reading, xdr);
   if (device.interf == Interface::bumper) put_bumpers(reading, xdr);
+  if (device.interf == Interface::fiducial) put_fiducials(reading, xdr);
   if (device.interf == Interface::gps) put_gps(reading, report, xdr);
   if (device.interf == Interface::opaque) put_opaque_reading(device, reading, xdr);
   if (device.interf != Interface::ranger) return;

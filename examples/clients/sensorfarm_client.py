@@ -55,6 +55,8 @@ SENSORS = {
     10: ("gps", 48000, [("x_m", 5e-3), ("y_m", 5e-3), ("hdop", 1e-3), ("satellites", 1)]),
     11: ("irreceiver", 50000, [("virtual_wall", 1), ("ir_byte", 1)]),
     12: ("occupancy", 52000, []),
+    27: ("fiducial", 62000, [("id", 1), ("fiducial_type", 1), ("range_m", 1e-3), ("bearing_rad", 1e-6),
+                             ("orientation_rad", 1e-6)]),
     28: ("lightsensor", 54000, [("illuminance_lx", 1e-3), ("value", 1)]),
     29: ("battery", 56000, [("voltage_V", 1e-3), ("current_A", 1e-3), ("charge_Ah", 1e-6), ("docked", 1)]),
     30: ("analog", 58000, [("voltage_V", 1e-4), ("value", 1)]),

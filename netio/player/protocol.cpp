@@ -16,6 +16,8 @@ std::string_view interface_name(Interface interf) {
       return "sonar";
     case Interface::laser:
       return "laser";
+    case Interface::fiducial:
+      return "fiducial";
     case Interface::gps:
       return "gps";
     case Interface::bumper:

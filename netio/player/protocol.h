@@ -24,6 +24,7 @@ enum class Interface : std::uint32_t {
   position2d = 4,
   sonar = 5,
   laser = 6,
+  fiducial = 10,
   gps = 13,
   bumper = 14,
   ir = 22,

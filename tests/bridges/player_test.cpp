@@ -9,6 +9,7 @@
 
 #include "sensors/bumper.h"
 #include "sensors/encoder.h"
+#include "sensors/fiducial.h"
 #include "sensors/gps.h"
 #include "sensors/infrared.h"
 #include "sensors/laneedge.h"
@@ -394,6 +395,28 @@ TEST_F(PlayerOpaque, MagnetometersHaveARowForEachElement) {
   client.open({Interface::opaque, 2});
   const std::vector<double> fields{5e-5, 3e-5, -4e-5, 0.0, 1e-4, 0.0, 0.0, -1e-4};
   EXPECT_EQ(values(next(sensors::kMagnetometer, 0, fields), {3, 7, 2, 4}), fields);
+}
+
+TEST(PlayerFiducial, ScansHavePosesInTheFindersFrame) {
+  PlayerRun run(R"(name "finder"
+position( name "ann" size [0.4 0.3 0.2] fiducial( detections 3 ) ))");
+  TestClient client(run.port());
+  client.banner();
+  client.open({Interface::fiducial, 0});
+  const std::vector<double> seen{7.0, 2.0, 2.0, M_PI / 2, 0.25, 0.0, 1.0, 5.0, 0.0, 0.0, kNaN, kNaN, kNaN, kNaN, kNaN};
+  const Message data = data_after(client, [&] { run.tick({run.reading(sensors::kFiducial, seen)}); });
+  EXPECT_EQ(data.header.subtype, 1);
+  XdrReader xdr(data.payload);
+  EXPECT_EQ(xdr.get(), 2u);
+  EXPECT_EQ(xdr.get(), 2u) << "the count twice";
+  EXPECT_EQ(xdr.get(), 7u);
+  EXPECT_NEAR(xdr.get_double(), 0.0, 1e-12);
+  EXPECT_NEAR(xdr.get_double(), 2.0, 1e-12) << "to the left";
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(xdr.get_double(), 0.0);
+  EXPECT_EQ(xdr.get_double(), 0.25);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(xdr.get_double(), 0.0) << "no uncertainty";
+  EXPECT_EQ(xdr.get(), 0xFFFFFFFFu) << "too far for its id";
+  EXPECT_EQ(xdr.get_double(), 5.0);
 }
 
 TEST_F(PlayerOpaque, HasNoRequests) {

@@ -160,7 +160,7 @@ TEST(MakeController, NamesTheControllerInErrors) {
       {"wanter", {}, "docking, explore, lane-keeping, magnet-keeping, patrol"},
       {"wander", {{"start", std::string("later"), at}}, "s.toml:3: 'start' of controller 'wander' is 'later'"},
       {"wander", {{"wait_on_bumper", 1.0, at}}, "expects true or false"},
-      {"wander", {{"kp", 1.0, at}}, "has no setting 'kp'; expected one of: localize, speed, start, wait_on_bumper"},
+      {"wander", {{"kp", 1.0, at}}, "has no setting 'kp'; expected one of: check_sweep, localize, speed, start, wait_on_bumper"},
       {"wander", {{"localize", true, at}}, "has no encoders; expected encoder( ... )"},
       {"lane-keeping", {}, "requires the lane's width"},
       {"lane-keeping", {{"half_width", 0.0, at}}, "'half_width'"},

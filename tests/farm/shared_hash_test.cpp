@@ -98,7 +98,7 @@ void add_still_type() {
     void read(const sensorfarm::Measurement&, std::span<double> values) const override { values[0] = 0.0; }
   };
   const auto make = [](const auto&, const auto&) { return std::make_unique<Still>(); };
-  sensors::add_own_sensor({.name = "still", .id = 27, .columns = {{"zero", 1.0}}, .rate = 10.0, .make = make}, "test");
+  sensors::add_own_sensor({.name = "still", .id = 26, .columns = {{"zero", 1.0}}, .rate = 10.0, .make = make}, "test");
 }
 
 /// Keys order readings like `Delivery`, call by call. Maps, which are derived, follow all other types.

@@ -39,6 +39,7 @@ world::World everything(int robots) {
     sensors.push_back(fitted("irreceiver"));
     sensors.push_back(fitted("lightsensor"));
     sensors.push_back(fitted("battery"));
+    sensors.push_back(fitted("fiducial", {setting("noise", {0.1, 1, 1})}));
     world::Setting input = setting("input[0]", {0.01});
     input.text = "light";
     sensors.push_back(fitted("analog", {input}));

@@ -232,8 +232,8 @@ TEST(OwnSensors, TypesMustBeNewAndUsable) {
   };
   expect_in("mine.so: ", add({.name = "Big", .id = 26, .columns = {{"x"}}}));
   expect_in("cannot be called", add({.name = "", .id = 26, .columns = {{"x"}}}));
-  expect_in("expected 13 to 27", add({.name = "mine", .id = 12, .columns = {{"x"}}}));
-  expect_in("expected 13 to 27", add({.name = "mine", .id = 28, .columns = {{"x"}}}));
+  expect_in("expected 13 to 26", add({.name = "mine", .id = 12, .columns = {{"x"}}}));
+  expect_in("expected 13 to 26", add({.name = "mine", .id = 27, .columns = {{"x"}}}));
   expect_in("'laser' with id 1 already exists", add({.name = "laser", .id = 26, .columns = {{"x"}}}));
   expect_in("'laser' with id 1 already exists",
             add({.name = "ranger", .id = 26, .columns = {{"x"}}}));  // a keyword of world files

@@ -142,6 +142,7 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"gyro", 9, 1, {-0.25}},
              {"gps", 10, 1, {kNaN, kNaN, kNaN, 3}},
              {"irreceiver", 11, 1, {1, 252}},
+             {"fiducial", 27, 2, {7, 2, 3, 0.5, -0.25, kNaN, kNaN, kNaN, kNaN, kNaN}},
              {"lightsensor", 28, 2, {250.5, 337, 0, 450}},
              {"battery", 29, 1, {14.4, -0.6, 1.35, 0}},
              {"analog", 30, 2, {2.5, 512, 5, 1023}},
@@ -193,7 +194,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 12u) << "plain readings";
+  EXPECT_EQ(rows, 13u) << "plain readings";
 }
 
 }  // namespace

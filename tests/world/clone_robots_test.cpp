@@ -5,6 +5,8 @@
 
 #include "tests/refusal.h"
 #include "tests/robots/scenes.h"
+#include "tests/world/read_world.h"
+#include "world/append_robot.h"
 #include "world/free_space.h"
 #include "world/wall_tree.h"
 #include "world/world.h"
@@ -129,6 +131,25 @@ World with_a_dummy() {
   scenes::add_create(world, {4, 4, 0, 0}).sensors.push_back(scenes::magnetometers(5));
   scenes::add_create(world, {6, 6, 0, 0}).sensors.push_back({.type = "laser"});
   return world;
+}
+
+TEST(CloneRobots, CopiesCarryTheFiducialsOfTheOriginal) {
+  World world = read_world(R"(model( size [8 8 1] boundary 1 noblocks 1 )
+    model( name "mark" pose [3 3 0 0] size [0.1 0.1 1] fiducial_return 9 )
+    position( name "a" size [0.4 0.4 0.2] fiducial_return 5 laser( ) )
+    position( name "b" pose [1 1 0 0] size [0.4 0.4 0.2] fiducial_return 6 ))");
+  ASSERT_EQ(world.fiducials.size(), 3u);
+  clone_robots(world, 2, 1);
+  ASSERT_EQ(world.fiducials.size(), 3u) << "those of the removed robots are removed";
+  EXPECT_EQ(world.models[world.fiducials[0].model].name, "mark");
+  for (std::uint32_t i = 1; i < 3; ++i) {
+    EXPECT_EQ(world.fiducials[i].id, 5u);
+    EXPECT_EQ(world.models[world.fiducials[i].model].mover, i - 1);
+  }
+  append_robot(world, 0, "late", {});
+  ASSERT_EQ(world.fiducials.size(), 4u);
+  EXPECT_EQ(world.models[world.fiducials[3].model].name, "late");
+  EXPECT_EQ(world.fiducials[3].id, 5u);
 }
 
 TEST(CloneRobots, CopiesTheFirstWithSensorsOrTheNamedRobot) {

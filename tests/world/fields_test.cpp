@@ -31,6 +31,8 @@ const Example<World> kWorlds{KeyScope::world, "", " model( )", [](World& w) -> W
 const Example<Segment> kSegments{KeyScope::model, "model( ", " )", [](World& w) -> Segment& { return w.walls.at(0); }};
 const Example<Emitter> kEmitters{KeyScope::model, "define wall model( ir_emitter \"virtual_wall\" ) wall( ", " )",
                                  [](World& w) -> Emitter& { return w.emitters.at(0); }};
+const Example<Fiducial> kFiducials{KeyScope::model, "define mark model( fiducial_return 1 ) mark( ", " )",
+                                   [](World& w) -> Fiducial& { return w.fiducials.at(0); }};
 const Example<Lamp> kLamps{KeyScope::model, "define lamp model( lamp_intensity 1 ) lamp( ", " )",
                            [](World& w) -> Lamp& { return w.lamps.at(0); }};
 const Example<Light> kLights{KeyScope::light, "light( phases 1 phase[0] [\"red\" 1] ", " )",
@@ -87,6 +89,7 @@ void for_each_key_of_all(Check check) {
   walk(kSegments);
   walk(kEmitters);
   walk(kLamps);
+  walk(kFiducials);
   walk(kLights);
   walk(kMovers);
   EXPECT_GE(keys, 22) << "the walk found all tables";

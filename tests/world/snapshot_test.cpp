@@ -24,6 +24,7 @@ void add_street(World& world) {
                           {"3.1.11", "4.2.5"}});
   world.emitters.push_back({Emitter::Kind::dock, 1, {0.5, 0.25, 0.05, 2.0}, 1.8, 0.7, 0.6});
   world.earth_field = {1e-5, -2e-6, -4e-5};
+  world.fiducials.push_back({1, {1.0, 2.0, 0.5, 0.3}, 7, 1, Fiducial::Type::threat});
   world.lamps.push_back({1, {1.0, 2.0, 2.5, 0.3}, 80.0, 3.0});
   world.ambient_light = 20.0;
   world.floor_holes.push_back({{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, 1});
@@ -115,12 +116,13 @@ TEST(Snapshot, LinksPastTheEndAreRejected) {
     bool optional;
   };
   Mover& mover = world.movers[0];
-  for (const Link& link : {Link{&world.walls[0].model, models, false}, Link{&world.magnets[0].model, models, false},
-                           Link{&world.models[0].parent, models, true}, Link{&world.models[0].mover, movers, true},
-                           Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
-                           Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
-                           Link{&world.emitters[0].model, models, false}, Link{&world.lamps[0].model, models, false},
-                           Link{&world.floor_holes[0].model, models, false}}) {
+  for (const Link& link :
+       {Link{&world.walls[0].model, models, false}, Link{&world.magnets[0].model, models, false},
+        Link{&world.models[0].parent, models, true}, Link{&world.models[0].mover, movers, true},
+        Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
+        Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
+        Link{&world.emitters[0].model, models, false}, Link{&world.lamps[0].model, models, false},
+        Link{&world.fiducials[0].model, models, false}, Link{&world.floor_holes[0].model, models, false}}) {
     EXPECT_FALSE(refused(*link.row, link.count - 1)) << "the last row";
     EXPECT_TRUE(refused(*link.row, link.count)) << "one past the end";
     EXPECT_TRUE(refused(*link.row, link.count + 1));
@@ -152,10 +154,15 @@ TEST(Snapshot, ChangedBytesAreRejectedOrHarmless) {
   }
 }
 
-/// Worlds without the Earth's field, lamps and ambient light have the bytes of version 5, which ends before them.
+/// Worlds without fiducials have the bytes of version 6, which ends before them. Those without the Earth's field, lamps
+/// and ambient light have the bytes of version 5.
 TEST(Snapshot, WorldsWithoutNewFieldsHaveTheVersionBefore) {
-  EXPECT_EQ(snapshot(street())[4], 6);
+  EXPECT_EQ(snapshot(street())[4], 7);
   World world = street();
+  world.fiducials.clear();
+  update_extent_and_hash(world);
+  EXPECT_EQ(snapshot(world)[4], 6);
+  EXPECT_EQ(from_snapshot(snapshot(world)).hash, world.hash);
   world.earth_field = {};
   world.lamps.clear();
   world.ambient_light = 0.0;
@@ -212,6 +219,10 @@ TEST(Hash, DependsOnTheEarthsFieldAndLight) {
     EXPECT_EQ(read_world(key + text).hash, hash) << key;
   EXPECT_NE(read_world("model( lamp_intensity 1 )").hash, read_world("model( lamp_intensity 2 )").hash);
   EXPECT_NE(read_world("model( lamp_intensity 1 )").hash, read_world("model( )").hash);
+  EXPECT_NE(read_world("model( fiducial_return 1 )").hash, read_world("model( fiducial_return 2 )").hash);
+  EXPECT_NE(read_world("model( fiducial_return 1 )").hash,
+            read_world("model( fiducial_return 1 fiducial_type \"threat\" )").hash);
+  EXPECT_EQ(read_world("model( fiducial_return 0 )").hash, read_world("model( )").hash);
 }
 
 TEST(Hash, DependsOnLightsEmittersHolesAndKinematics) {

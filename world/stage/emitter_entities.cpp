@@ -14,7 +14,9 @@ namespace {
 constexpr Emitter kVirtualWall{.range = 2.4, .fov = 0.4, .halo = 0.45};  // [m], [rad], [m]
 constexpr Emitter kDock{.range = 1.8, .fov = 0.7, .halo = 0.6};
 
-constexpr std::size_t kMaxLamps = 1000;  // every light sensor reads every lamp
+constexpr std::size_t kMaxLamps = 1000;      // every light sensor reads every lamp
+constexpr std::size_t kMaxFiducials = 1000;  // every finder tests every fiducial
+constexpr double kMaxFiducialId = 65535.0;
 
 }  // namespace
 
@@ -53,6 +55,23 @@ void add_lamp(BuildState& b, const Entity& entity, const Model& model, const Siz
   lamp.X_WL = X_B;
   lamp.X_WL.z += 0.5 * size.z;
   b.world.lamps.push_back(lamp);
+}
+
+void add_fiducial(BuildState& b, const Entity& entity, const Size& size, const Pose& X_B) {
+  const StageContext& context = b.context;
+  const std::uint32_t id = whole(context, entity, "fiducial_return", 0, 0, kMaxFiducialId);
+  if (id == 0) return;
+  if (b.world.fiducials.size() >= kMaxFiducials)
+    fail(context, find(entity, "fiducial_return")->at,
+         fmt::format("more than {} fiducials; expected fewer", kMaxFiducials));
+  Fiducial fiducial;
+  read_keys(context, entity, fiducial);
+  fiducial.model = static_cast<std::uint32_t>(b.world.models.size());
+  fiducial.id = id;
+  fiducial.key = whole(context, entity, "fiducial_key", 0, 0, kMaxFiducialId);
+  fiducial.X_BF = X_B;
+  fiducial.X_BF.z += 0.5 * size.z;
+  b.world.fiducials.push_back(fiducial);
 }
 
 }  // namespace sf::world
