@@ -545,10 +545,11 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
                  "Setting of the controller, such as kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\" (may be repeated)")
       ->check(readable(read_setting, "KEY=VALUE such as kp=0.5"))
       ->type_name("KEY=VALUE");
-  app.add_flag("--localize,!--no-localize", o.localize,
-               "Robots with encoders drive by the pose estimated from these, their gyro and their GPS receiver (default; "
-               "same as --set localize=true). --no-localize: by their true pose, in `robot` with --cameras by these "
-               "alone");
+  app.add_flag(
+      "--localize,!--no-localize", o.localize,
+      "Robots with encoders drive by the pose estimated from these, their gyro and their GPS receiver (default; "
+      "same as --set localize=true). --no-localize: by their true pose, in `robot` with --cameras by these "
+      "alone");
   add_in_process(app, o);
 }
 
