@@ -16,7 +16,8 @@ namespace {
 
 using sensors::kDockByte, sensors::kNoIrByte, sensors::kRedBuoy, sensors::kGreenBuoy, sensors::kForceField;
 
-constexpr std::int64_t kBlind = 2'000'000'000;  // [ns] duration for which the last received beams are used
+constexpr std::int64_t kBlind = 2'000'000'000;    // [ns] duration for which the last received beams are used
+constexpr std::int64_t kBackOff = 1'000'000'000;  // [ns] from an obstacle
 
 /// Returns the signals of all receivers: of the virtual one, and of a real robot's own.
 std::uint32_t light_in(std::span<const base::ReadingBlock> readings) {
@@ -34,9 +35,14 @@ std::uint32_t light_in(std::span<const base::ReadingBlock> readings) {
 base::Twist Docking::step(const ControllerInput& input) {
   const base::Pose& X_WM = input.state.X_WM;
   const std::uint32_t light = light_in(input.readings);
+  const bool hits = input.contact && (!contact_ || input.time >= back_until_);
   contact_ = input.contact;
   done_ = done_ || docked(X_WM);
   if (done_) return {};
+  // Contact with an obstacle or with the dock's corner: retreat and approach again.
+  if (contact_) retreats_ = true;
+  if (hits) take_contact(X_WM, input.time);
+  if (input.time < back_until_) return {-back_ * settings_.speed, 0.0, 0.0};
 
   const std::uint32_t buoys = light & (kRedBuoy | kGreenBuoy);
   if (buoys != 0) {
@@ -44,11 +50,62 @@ base::Twist Docking::step(const ControllerInput& input) {
     seen_ = input.time;
   }
   const bool both = buoys == (kRedBuoy | kGreenBuoy);
-  // Contact with an obstacle or with the dock's corner: retreat and approach again.
-  if (contact_) retreats_ = true;
-  if (both && (light & kForceField) == 0) retreats_ = false;
+  if (both && (light & kForceField) == 0 && !obstacles_) retreats_ = false;
   follows_ = !retreats_ && (both || (follows_ && input.time - seen_ <= kBlind));
-  return follows_ ? follow_beams(X_WM) : approach(X_WM);
+  back_ = 1.0;
+  return follows_ ? follow_beams(X_WM) : obstacles_ ? drive_around(X_WM) : approach(X_WM);
+}
+
+/// An obstacle is taken to be where the robot drove to. A robot that is not at its dock backs off.
+void Docking::take_contact(const base::Pose& X_WM, std::int64_t time) {
+  const glm::dvec2 p = from_dock(X_WM);
+  const bool backing = time < back_until_;
+  onto_dock_ = false;
+  if (glm::length(p) < 1.6 * settings_.reach) {
+    ++retries_;
+  } else {
+    if (!obstacles_) {
+      obstacles_.emplace(settings_.radius);
+      for (const double y : {-1.0, 0.0, 1.0}) obstacles_->add({0.0, 0.5 * y * settings_.reach});  // the dock
+    }
+    const double yaw = X_WM.yaw - settings_.X_WD.yaw + (backing && back_ > 0.0 ? M_PI : 0.0);
+    const auto at = [&](double bearing) { return p + base::rotate(yaw + bearing, {settings_.radius, 0.0}); };
+    // A second contact at the same place is with something to its left or right.
+    constexpr double kSame = 0.03;
+    const bool repeated = obstacles_->is_near(at(0.0), kSame);
+    for (const double bearing : {0.0, -0.25 * M_PI, 0.25 * M_PI})
+      if (bearing == 0.0 || repeated) obstacles_->add(at(bearing));
+    back_ = backing ? -back_ : 1.0;
+    back_until_ = time + kBackOff;
+  }
+  if (obstacles_) plan(p);
+}
+
+/// Goals are the points on the dock's axis from which nothing is in the way to the dock. After misses, the nearest ones
+/// are left out.
+void Docking::plan(const glm::dvec2& p) {
+  constexpr double kStep = 0.05;
+  std::vector<glm::dvec2> goals;
+  for (double x = 1.6 * settings_.reach; x <= std::max(settings_.stage, 1.6 * settings_.reach); x += kStep) {
+    if (!goals.empty() && !obstacles_->is_free({x, 0.0})) break;
+    goals.push_back({x, 0.0});
+  }
+  const auto left_out = std::min<std::size_t>(std::size_t{4} * retries_, goals.size() - 1);
+  goals.erase(goals.begin(), goals.begin() + static_cast<std::ptrdiff_t>(left_out));
+  obstacles_->plan(p, goals);
+  goals_ = {goals.front().x, goals.back().x};
+}
+
+/// Drives to the dock's axis around obstacles, and then along it until the beams are received.
+base::Twist Docking::drive_around(const base::Pose& X_WM) {
+  const glm::dvec2 p = from_dock(X_WM);
+  constexpr double kNear = 0.04;
+  if (std::abs(p.y) < kNear && p.x > goals_[0] - kNear && p.x < goals_[1] + kNear) {
+    retreats_ = false;
+    onto_dock_ = true;
+  }
+  const glm::dvec2 goal = onto_dock_ ? glm::dvec2{} : obstacles_->next(p);
+  return drive_to_point(X_WM, base::transform(settings_.X_WD, goal), {settings_.speed, settings_.turn});
 }
 
 glm::dvec2 Docking::from_dock(const base::Pose& X_WM) const {
@@ -66,7 +123,12 @@ base::Twist Docking::approach(const base::Pose& X_WM) {
   glm::dvec2 goal{settings_.stage, 0.0};
   if (p.x < settings_.reach)
     goal = {std::abs(p.y) < 0.95 * wide ? p.x : 2.0 * settings_.reach, std::copysign(wide, p.y)};
-  if (std::abs(p.x - goal.x) + std::abs(p.y - goal.y) < 0.02) retreats_ = false;
+  if (std::abs(p.x - goal.x) + std::abs(p.y - goal.y) < 0.02) {
+    retreats_ = false;
+    onto_dock_ = onto_dock_ || goal.y == 0.0;
+  }
+  // At the staging point without beams, something hides them.
+  if (onto_dock_) goal = {};
   return drive_to_point(X_WM, base::transform(settings_.X_WD, goal), {settings_.speed, settings_.turn});
 }
 
@@ -123,6 +185,7 @@ std::unique_ptr<Controller> make_docking(const ControllerContext& context, Setti
   DockingSettings docking;
   docking.X_WD = dock.X_WE;
   docking.stage = settings.number("stage", 0.7 * dock.range, 0.0, 1e3);
+  docking.radius = mover.radius;
   docking.reach = settings.number("reach", sensors::dock_reach_of(mover), 0.0, 1e3);
   docking.speed = settings.number("speed", std::min(docking.speed, mover.max_forward), 1e-4, mover.max_forward);
   docking.slow_speed =

@@ -5,9 +5,6 @@
 #include <limits>
 
 #include "base/error.h"
-#include "sensors/encoder.h"
-#include "sensors/gps.h"
-#include "sensors/gyro.h"
 
 namespace sf::control {
 
@@ -19,25 +16,13 @@ const world::Sensor* first_sensor(const world::Mover& mover, std::string_view ty
   return found == mover.sensors.end() ? nullptr : &*found;
 }
 
-estimation::LocalizationOptions options_of(const world::Mover& mover) {
-  estimation::LocalizationOptions options;
-  const world::Sensor* encoder = first_sensor(mover, "encoder");
-  if (encoder == nullptr)
-    throw base::InputError("'localize' estimates a robot's pose from its own sensors, but '" + mover.name +
-                           "' has no encoders; expected encoder( ... ) in its definition, and gyro( ... ) and "
-                           "gps( ... ) for a pose that does not drift");
-  // The factor `scale` of the encoders is the error that a robot does not know.
-  const sensors::Encoder wheels = sensors::read_encoder(*encoder, mover);
-  options.encoder = {.per_count = wheels.per_count, .slip = wheels.slip, .track = wheels.track};
-  options.sideways = mover.drive == world::Drive::omni;
-  if (const world::Sensor* sensor = first_sensor(mover, "gyro")) {
-    const sensors::Gyro gyro = sensors::read_gyro(*sensor);
-    options.gyro = {gyro.noise, gyro.bias};
-  }
-  // Receivers without noise still have the error of their latency and of rounding.
-  if (const world::Sensor* sensor = first_sensor(mover, "gps"))
-    options.gps_noise = std::max(sensors::read_gps(*sensor).noise, 1e-3);
-  return options;
+/// @throws base::InputError for a robot without encoders
+PositionSensors required_sensors_of(const world::Mover& mover) {
+  PositionSensors sensors = position_sensors_of(mover);
+  if (sensors.wheels) return sensors;
+  throw base::InputError("'localize' estimates a robot's pose from its own sensors, but '" + mover.name +
+                         "' has no encoders; expected encoder( ... ) in its definition, and gyro( ... ) and "
+                         "gps( ... ) for a pose that does not drift");
 }
 
 /// Returns X_BC, given X_AB and X_AC.
@@ -47,6 +32,30 @@ base::Pose relative(const base::Pose& X_AB, const base::Pose& X_AC) {
 }
 
 }  // namespace
+
+PositionSensors position_sensors_of(const world::Mover& mover) {
+  PositionSensors own;
+  if (const world::Sensor* sensor = first_sensor(mover, "encoder")) own.wheels = sensors::read_encoder(*sensor, mover);
+  if (const world::Sensor* sensor = first_sensor(mover, "gyro")) own.gyro = sensors::read_gyro(*sensor);
+  if (const world::Sensor* sensor = first_sensor(mover, "gps")) own.gps = sensors::read_gps(*sensor);
+  return own;
+}
+
+bool can_localize(const world::Mover& mover) { return first_sensor(mover, "encoder") != nullptr; }
+
+estimation::LocalizationOptions localization_options(const world::Mover& mover, const PositionSensors& sensors) {
+  estimation::LocalizationOptions options{.sideways = mover.drive == world::Drive::omni};
+  if (const auto& wheels = sensors.wheels)
+    options.encoder = {.per_count = wheels->per_count, .slip = wheels->slip, .track = wheels->track};
+  if (sensors.gyro) options.gyro = {sensors.gyro->noise, sensors.gyro->bias};
+  // Receivers without noise still have the error of their latency and of rounding.
+  if (sensors.gps) options.gps_noise = std::max(sensors.gps->noise, 1e-3);
+  return options;
+}
+
+glm::dvec2 origin_of(const glm::dvec2& antenna, double yaw, const glm::dvec2& p_MS) {
+  return antenna - base::rotate(yaw, p_MS);
+}
 
 void LocalizationError::add(const base::Pose& estimated, const base::Pose& truth) {
   const double distance = std::hypot(estimated.x - truth.x, estimated.y - truth.y);
@@ -69,7 +78,8 @@ double LocalizationError::yaw_rms() const {
   return std::sqrt(yaw_squares / static_cast<double>(std::max<std::uint64_t>(steps, 1)));
 }
 
-OwnLocalization::OwnLocalization(const world::Mover& mover) : options_(options_of(mover)) {
+OwnLocalization::OwnLocalization(const world::Mover& mover)
+    : options_(localization_options(mover, required_sensors_of(mover))) {
   last_.fill(std::numeric_limits<std::int64_t>::min());
 }
 
@@ -109,8 +119,8 @@ void OwnLocalization::take(const base::ReadingBlock& reading) {
     // The antenna moves with the robot: its position uses the estimated heading.
     const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
     const double yaw = localization_->predict(reading.time).estimate.X_WM.yaw;
-    const glm::dvec2 arm = base::rotate(yaw, {X_MS.x, X_MS.y});
-    localization_->add_gps(reading.time, v[0] - arm.x, v[1] - arm.y, v[2]);
+    const glm::dvec2 p = origin_of({v[0], v[1]}, yaw, {X_MS.x, X_MS.y});
+    localization_->add_gps(reading.time, p.x, p.y, v[2]);
   }
   last_[reading.type] = reading.time;
 }

@@ -206,7 +206,8 @@ PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& 
   const auto flags = reader.get<std::uint16_t>();
   state.stale = (flags & kStaleBit) != 0;
   if ((flags & kNoStateBit) != 0) state.age = base::kNoStateYet;
-  if (state.stated && sensor_type_of(header.type) != 0) header.state = state;
+  const bool has_state = sensor_type_of(header.type) != 0 || header.type == Type::v2v || header.type == Type::tag;
+  if (state.stated && has_state) header.state = state;
   return PacketStatus::accepted;
 }
 

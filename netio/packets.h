@@ -79,7 +79,7 @@ struct Header {
   std::uint16_t accuracy = 0;  ///< readings: accuracy word, see below; 0: not stated
   std::uint32_t session = 0;   ///< of the sender: a random number drawn when it starts; 0: not stated
   std::uint32_t token = 0;     ///< to the farm: the token of its CHALLENGE; from the farm: the receiver's session
-  StateQuality state;          ///< readings only
+  StateQuality state;          ///< readings, V2V and TAG only
 };
 
 /// Accuracy of a reading in 16 bits: mode in bits 0 to 3, `unsure` in bit 4, and in the upper bits k in [1, 2047] for a

@@ -1,10 +1,9 @@
 #include "sensors/gps.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 
-#include "base/random.h"
-#include "sensors/gnss_visibility.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -15,21 +14,15 @@ namespace {
 
 constexpr double kRate = 1.0;  // [Hz]
 
-struct Receiver {
-  double noise = 0.0;  ///< [m]
-  std::vector<Satellite> satellites;
-};
-
 class GpsReceivers : public HostBackend {
  public:
   GpsReceivers(const SensorContext& context, const ParsedSensors& sensors);
 
  private:
   void measure(std::span<const HostSample> samples) const override;
-  void measure(const HostSample& sample) const;
 
   GnssVisibility visibility_;
-  std::vector<Receiver> receivers_;  ///< per row
+  std::vector<GpsModel> receivers_;  ///< per row
 };
 
 ParsedSensors parse_receivers(const world::World& world) {
@@ -51,32 +44,12 @@ GpsReceivers::GpsReceivers(const SensorContext& context, const ParsedSensors& se
 }
 
 void GpsReceivers::measure(std::span<const HostSample> samples) const {
-  for (const HostSample& sample : samples) measure(sample);
-}
-
-void GpsReceivers::measure(const HostSample& sample) const {
-  const Receiver& receiver = receivers_[sample.row];
-  const SensorSpec& row = rows()[sample.row];
-  const glm::dvec2 p{sample.X_WS.x, sample.X_WS.y};
-  std::uint64_t seen = 0;
-  for (std::size_t i = 0; i < receiver.satellites.size(); ++i)
-    if (visibility_.is_visible(p, sample.X_WS.z, receiver.satellites[i])) seen |= std::uint64_t{1} << i;
-
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const std::span<double> out = sample.values;
-  out[0] = out[1] = out[2] = kNan;
-  out[3] = std::popcount(seen);
-  const auto fix = dilution(receiver.satellites, seen);
-  if (!fix) return;
-  glm::dvec2 error;
-  if (receiver.noise > 0.0) {
-    const auto [n, m] =
-        base::random_normal({seed(), base::RandomStream::satellites, row.mover, row.sensor, sample.sequence}, 0);
-    error = receiver.noise * glm::dvec2{fix->xx * n, fix->yx * n + fix->yy * m};
+  for (const HostSample& sample : samples) {
+    const SensorSpec& row = rows()[sample.row];
+    const auto reading = receivers_[sample.row].measure(
+        visibility_, {seed(), base::RandomStream::satellites, row.mover, row.sensor, sample.sequence}, sample.X_WS);
+    std::copy(reading.begin(), reading.end(), sample.values.begin());
   }
-  out[0] = p.x + error.x;
-  out[1] = p.y + error.y;
-  out[2] = fix->hdop;
 }
 
 constexpr std::string_view kKeys[] = {"satellites"};
@@ -85,6 +58,25 @@ constexpr PlainNumber kNumbers[] = {{5e-3}, {5e-3}, {1e-3, 0.0}, {1.0, 0.0, kMos
 constexpr PlainForm kForm{kGps, "gps", kNumbers};
 
 }  // namespace
+
+std::array<double, 4> GpsModel::measure(const GnssVisibility& visibility, const base::RandomKey& draw,
+                                        const Pose& X_WS) const {
+  const glm::dvec2 p{X_WS.x, X_WS.y};
+  std::uint64_t seen = 0;
+  for (std::size_t i = 0; i < satellites.size(); ++i)
+    if (visibility.is_visible(p, X_WS.z, satellites[i])) seen |= std::uint64_t{1} << i;
+
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const double count = std::popcount(seen);
+  const auto fix = dilution(satellites, seen);
+  if (!fix) return {kNan, kNan, kNan, count};
+  glm::dvec2 error{};
+  if (noise > 0.0) {
+    const auto [n, m] = base::random_normal(draw, 0);
+    error = noise * glm::dvec2{fix->xx * n, fix->yx * n + fix->yy * m};
+  }
+  return {p.x + error.x, p.y + error.y, fix->hdop, count};
+}
 
 Gps read_gps(const world::Sensor& sensor) {
   Gps gps;

@@ -11,8 +11,12 @@
 // errors are `noise` times the dilution of precision, independent between readings. Without a fix (fewer than four
 // satellites) x, y and HDOP are NaN.
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
+#include "base/random.h"
+#include "sensors/gnss_visibility.h"
 #include "sensors/sensor_type.h"
 
 namespace sf::sensors {
@@ -24,6 +28,16 @@ inline constexpr std::uint32_t kMostSatellites = 64;  ///< in the constellation
 struct Gps {
   std::uint32_t satellites = 8;  ///< in [4, kMostSatellites]
   double noise = 0.0;            ///< [m] standard deviation of a range
+};
+
+/// Measures readings of one receiver.
+struct GpsModel {
+  /// Returns x, y [m], HDOP and the number of visible satellites of reading `draw.c`.
+  /// @param X_WS pose of the antenna
+  std::array<double, 4> measure(const GnssVisibility& visibility, const base::RandomKey& draw, const Pose& X_WS) const;
+
+  double noise = 0.0;  ///< [m] standard deviation of a range
+  std::vector<Satellite> satellites;
 };
 
 /// @throws base::InputError with file and line.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/random.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -15,18 +14,6 @@ namespace {
 constexpr std::uint32_t kReading = 0;
 constexpr std::uint32_t kRun = 1;
 
-/// Constants of a gyro in a run.
-struct Fixed {
-  double range = 0.0;
-  double scale = 1.0;
-  double bias = 0.0;
-  double noise = 0.0;
-};
-
-base::RandomKey draw_of(std::uint64_t seed, const SensorSpec& row, std::uint64_t sequence) {
-  return {seed, base::RandomStream::gyro, row.mover, row.sensor, sequence};
-}
-
 class Gyros : public HostBackend {
  public:
   Gyros(const SensorContext& context, const ParsedSensors& sensors);
@@ -34,7 +21,7 @@ class Gyros : public HostBackend {
  private:
   void measure(std::span<const HostSample> samples) const override;
 
-  std::vector<Fixed> gyros_;  ///< per row
+  std::vector<GyroModel> gyros_;  ///< per row
 };
 
 ParsedSensors parse_gyros(const world::World& world) {
@@ -48,25 +35,15 @@ ParsedSensors parse_gyros(const world::World& world) {
 }
 
 Gyros::Gyros(const SensorContext& context, const ParsedSensors& sensors) : HostBackend(context, gyro_type, sensors) {
-  for (std::size_t i = 0; i < rows().size(); ++i) {
-    const Gyro& gyro = sensors.settings_as<Gyro>()[i];
-    Fixed fixed{.range = gyro.range};
-    if (context.noise) {
-      const auto [bias, scale] = base::random_normal(draw_of(context.seed, rows()[i], 0), kRun);
-      fixed = {gyro.range, 1.0 + gyro.scale_error * scale, gyro.bias * bias, gyro.noise};
-    }
-    gyros_.push_back(fixed);
-  }
+  for (std::size_t i = 0; i < rows().size(); ++i)
+    gyros_.emplace_back(sensors.settings_as<Gyro>()[i],
+                        base::RandomKey{context.seed, base::RandomStream::gyro, rows()[i].mover, rows()[i].sensor},
+                        context.noise);
 }
 
 void Gyros::measure(std::span<const HostSample> samples) const {
-  for (const HostSample& sample : samples) {
-    const SensorSpec& row = rows()[sample.row];
-    const Fixed& gyro = gyros_[sample.row];
-    double rate = gyro.scale * states()[row.mover].velocity.turn + gyro.bias;
-    if (gyro.noise > 0.0) rate += gyro.noise * base::random_normal(draw_of(seed(), row, sample.sequence), kReading)[0];
-    sample.values[0] = std::clamp(rate, -gyro.range, gyro.range);
-  }
+  for (const HostSample& sample : samples)
+    sample.values[0] = gyros_[sample.row].measure(states()[rows()[sample.row].mover].velocity.turn, sample.sequence);
 }
 
 constexpr std::string_view kKeys[] = {"bias", "scale_error", "range"};
@@ -75,6 +52,23 @@ constexpr PlainNumber kNumbers[] = {{1e-6}};
 constexpr PlainForm kForm{kGyro, "gyro", kNumbers};
 
 }  // namespace
+
+GyroModel::GyroModel(const Gyro& gyro, const base::RandomKey& draw, bool noise) : draw_(draw), range_(gyro.range) {
+  draw_.c = 0;
+  if (!noise) return;
+  const auto [bias, scale] = base::random_normal(draw_, kRun);
+  scale_ = 1.0 + gyro.scale_error * scale;
+  bias_ = gyro.bias * bias;
+  noise_ = gyro.noise;
+}
+
+double GyroModel::measure(double turn, std::uint64_t sequence) const {
+  base::RandomKey draw = draw_;
+  draw.c = sequence;
+  double rate = scale_ * turn + bias_;
+  if (noise_ > 0.0) rate += noise_ * base::random_normal(draw, kReading)[0];
+  return std::clamp(rate, -range_, range_);
+}
 
 Gyro read_gyro(const world::Sensor& sensor) {
   Gyro g;

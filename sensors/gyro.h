@@ -11,6 +11,7 @@
 
 #include <cstdint>
 
+#include "base/random.h"
 #include "sensors/sensor_type.h"
 
 namespace sf::sensors {
@@ -23,6 +24,22 @@ struct Gyro {
   double noise = 0.0;        ///< [rad/s] standard deviation
   double scale_error = 0.0;  ///< [-] standard deviation
   double range = 1e3;        ///< [rad/s] > 0
+};
+
+/// A gyro with the errors drawn for one run.
+class GyroModel {
+ public:
+  /// @param draw key of its random numbers; its `c` is ignored
+  GyroModel(const Gyro& gyro, const base::RandomKey& draw, bool noise);
+  /// Returns reading number `sequence` [rad/s]. @param turn [rad/s] true yaw rate
+  double measure(double turn, std::uint64_t sequence) const;
+
+ private:
+  base::RandomKey draw_;
+  double range_;
+  double scale_ = 1.0;
+  double bias_ = 0.0;
+  double noise_ = 0.0;
 };
 
 /// @throws base::InputError with file and line.

@@ -4,19 +4,13 @@
 #include <cmath>
 #include <variant>
 
+#include "server/state_filter.h"
+
 namespace sf::server {
 
 namespace {
 
 double square(double v) { return v * v; }
-
-estimation::LocalizationOptions localization_of(const world::Mover& mover, const OwnStateOptions& options) {
-  estimation::LocalizationOptions own{.sideways = mover.drive == world::Drive::omni};
-  if (!options.wheels) return own;
-  const sensors::Encoder& wheels = *options.wheels;
-  own.encoder = {.per_count = wheels.per_count, .slip = wheels.slip, .track = wheels.track};
-  return own;
-}
 
 }  // namespace
 
@@ -32,7 +26,7 @@ void add(PositionErrors& errors, const base::Pose& estimate, const base::Pose& t
 
 OwnState::OwnState(const world::Mover& mover, std::uint32_t row, const OwnStateOptions& options)
     : options_(options),
-      localization_(localization_of(mover, options)),
+      localization_(control::localization_options(mover, options.sensors)),
       clock_(options.cameras ? options.cameras->clock : estimation::ClockOptions{}),
       state_{.mover = row, .X_WM = mover.X_WM} {
   if (options.start) localization_.add_pose(0, *options.start, estimation::kKnownStart);
@@ -68,13 +62,33 @@ void OwnState::take(const netio::Header& header, const base::Pose& X_WM, std::in
 
   const std::int64_t age =
       cameras.clock.source == ClockSource::arrival ? 0 : clock_.to_sender(now + epoch) - header.time;
-  const double position = square(cameras.position_sigma);
-  localization_.add_pose(std::max(now - std::max(age, std::int64_t{0}), std::int64_t{0}), X_WM,
-                         {position, 0.0, 0.0, position, 0.0, square(cameras.yaw_sigma)});
+  localization_.add_pose(std::max(now - std::max(age, std::int64_t{0}), std::int64_t{0}), X_WM, covariance_of(header));
+}
+
+estimation::PoseCovariance OwnState::covariance_of(const netio::Header& header) const {
+  const CameraOptions& cameras = *options_.cameras;
+  auto stated = estimation::stated_covariance(header.state.covariance);
+  if (!stated) {
+    const double position = square(cameras.position_sigma);
+    return {position, 0.0, 0.0, position, 0.0, square(cameras.yaw_sigma)};
+  }
+  const base::Twist& v = state_.velocity;
+  const double moved = square(cameras.time_sigma) * (square(v.forward) + square(v.left));
+  (*stated)[0] += moved;
+  (*stated)[3] += moved;
+  (*stated)[5] += square(cameras.time_sigma * v.turn);
+  return *stated;
 }
 
 void OwnState::add_wheels(std::int64_t now, const sensors::Rolled& rolled) {
   localization_.add_encoder(now, rolled.left, rolled.right);
+}
+
+void OwnState::add_gyro(std::int64_t now, double rate) { localization_.add_gyro(now, rate); }
+
+void OwnState::add_gps(std::int64_t time, const glm::dvec2& antenna, double hdop, const glm::dvec2& p_MS) {
+  const glm::dvec2 p = control::origin_of(antenna, localization_.predict(time).estimate.X_WM.yaw, p_MS);
+  localization_.add_gps(time, p.x, p.y, hdop);
 }
 
 void OwnState::predict(std::int64_t now, double z) {
@@ -86,6 +100,7 @@ void OwnState::predict(std::int64_t now, double z) {
   const bool unseen = options_.stop_after > 0 && prediction.age > options_.stop_after;
   lost_ = has_wheels() ? !(sigma_ <= options_.most_sigma) : unseen;
   if (lost_) return;
+  quality_ = quality_of(prediction);
   state_ = {state_.mover, now, prediction.estimate.X_WM, prediction.estimate.velocity};
   state_.X_WM.z = z;
   trail_.add(now, state_.X_WM);

@@ -1,12 +1,9 @@
 #pragma once
-// Estimates a robot's own state in its process: from its wheels, and from TAG packets (`sensorfarm vps`) of the tag
-// that it carries below overhead cameras.
+// Estimates a robot's own state in its process: from its wheels, gyro and satellite receiver, and from TAG packets
+// (`sensorfarm vps`) of the tag that it carries below overhead cameras.
 //
-//   OwnState own(mover, row, {.cameras = CameraOptions{.bind = {kLoopback, 9100}, .tag = 7}, .wheels = encoder});
-//   own.receive(now);
-//   own.add_wheels(now, rolled);
-//   own.predict(now);
-//   if (!own.is_lost()) use(own.state());
+//   OwnState own(mover, row, {.cameras = CameraOptions{.bind = {kLoopback, 9100}, .tag = 7}, .sensors = {.wheels =
+//   encoder}}); own.receive(now); own.add_wheels(now, rolled); own.predict(now); if (!own.is_lost()) use(own.state());
 
 #include <array>
 #include <cstdint>
@@ -14,11 +11,11 @@
 #include <vector>
 
 #include "base/report.h"
+#include "control/own_localization.h"
 #include "netio/inbox.h"
 #include "robots/estimation/localization.h"
 #include "robots/estimation/sender_clock.h"
 #include "robots/pose_trail.h"
-#include "sensors/encoder.h"
 #include "world/world.h"
 
 namespace sf::server {
@@ -28,17 +25,18 @@ struct CameraOptions {
   std::uint32_t tag = 0;  ///< in [netio::kMinTag, netio::kMaxId]
   estimation::ClockOptions clock;
   std::vector<netio::Peer> peers;  ///< the peer of the tag, or empty
-  // Standard deviations of positions, which packets do not contain.
+  // Standard deviations of poses without a stated covariance.
   double position_sigma = 0.01;  ///< [m] > 0
   double yaw_sigma = 0.02;       ///< [rad] > 0
+  double time_sigma = 0.01;      ///< [s] >= 0 standard deviation of the times of poses, added to stated covariances
 };
 
 struct OwnStateOptions {
   std::optional<CameraOptions> cameras;
-  std::optional<sensors::Encoder> wheels;  ///< as the robot knows them; nullopt: cameras only
-  std::optional<base::Pose> start;         ///< known start pose; nullopt: where cameras first see the robot
-  std::int64_t stop_after = 0;  ///< [ns] after which a robot without wheels that no camera sees is lost; 0: never
-  double most_sigma = 0.5;      ///< [m] > 0 standard deviation of the position at which a robot is lost
+  control::PositionSensors sensors;  ///< without wheels and receiver: cameras only
+  std::optional<base::Pose> start;   ///< known start pose; nullopt: where cameras first see the robot
+  std::int64_t stop_after = 0;       ///< [ns] after which a robot without wheels that no camera sees is lost; 0: never
+  double most_sigma = 0.5;           ///< [m] > 0 standard deviation of the position at which a robot is lost
 };
 
 /// Errors of estimates compared with the truth.
@@ -75,6 +73,10 @@ class OwnState {
   void receive(std::int64_t now);
   /// Adds the distances rolled since the start, as counted by the wheels' encoders.
   void add_wheels(std::int64_t now, const sensors::Rolled& rolled);
+  /// Adds the yaw rate [rad/s] of a gyro.
+  void add_gyro(std::int64_t now, double rate);
+  /// Adds a satellite fix, up to a second after its time. @param p_MS [m] antenna in the robot's frame
+  void add_gps(std::int64_t time, const glm::dvec2& antenna, double hdop, const glm::dvec2& p_MS);
   /// Predicts the state to `now`. @param z [m] its height
   void predict(std::int64_t now, double z = 0.0);
 
@@ -84,7 +86,10 @@ class OwnState {
   const base::Report& state() const { return state_; }  ///< valid once the robot was not lost
   base::Pose pose_at(std::int64_t time) const { return trail_.at(time); }
   double sigma() const { return sigma_; }  ///< [m] standard deviation of the position
-  bool has_wheels() const { return options_.wheels.has_value(); }
+  /// Quality of `state`: the age of the last pose or position, and the covariance.
+  const netio::StateQuality& quality() const { return quality_; }
+  bool has_wheels() const { return sensors().wheels.has_value(); }
+  const control::PositionSensors& sensors() const { return options_.sensors; }
 
   std::uint16_t port() const { return inbox_ ? inbox_->port() : std::uint16_t{0}; }  ///< 0: no cameras
   estimation::Calibration calibration() const { return localization_.calibration(); }
@@ -92,6 +97,7 @@ class OwnState {
 
  private:
   void take(const netio::Header& header, const base::Pose& X_WM, std::int64_t now);
+  estimation::PoseCovariance covariance_of(const netio::Header& header) const;
 
   OwnStateOptions options_;
   std::optional<netio::Inbox> inbox_;
@@ -104,6 +110,7 @@ class OwnState {
   std::uint64_t flooded_ = 0;
   bool lost_ = true;
   double sigma_ = 0.0;
+  netio::StateQuality quality_;
   base::Report state_;
   robots::PoseTrail trail_;  ///< of estimates, each made at its own time
 };

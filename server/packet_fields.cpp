@@ -48,12 +48,13 @@ void add_header(const netio::Header& header, Fields& out) {
   add(out, "session", header.session);
   add(out, "token", header.token);
   const bool is_reading = netio::sensor_type_of(header.type) != 0;
-  if (!is_reading && header.type != netio::Type::values) return;
-  const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
-  add(out, "mode", accuracy.mode);
-  add(out, "unsure", accuracy.unsure);
-  add(out, "bound", std::isinf(accuracy.bound) ? kNan : accuracy.bound);
-  if (!is_reading) return;
+  if (is_reading || header.type == netio::Type::values) {
+    const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
+    add(out, "mode", accuracy.mode);
+    add(out, "unsure", accuracy.unsure);
+    add(out, "bound", std::isinf(accuracy.bound) ? kNan : accuracy.bound);
+  }
+  if (!is_reading && !header.state.stated) return;
   constexpr std::int64_t kMost = 0xFFFFFFFF;  // saturates: larger ages are stated as this
   add(out, "age_us", std::min(header.state.age / 1000, kMost));
   add(out, "stale", header.state.stale);

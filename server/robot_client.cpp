@@ -31,15 +31,14 @@ std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& move
                   mover.name, mover.id, netio::kMinTag, netio::kMaxId));
 }
 
-/// Returns the wheels as the robot knows them: without the error `scale` of its encoders. nullopt: no encoders
-std::optional<sensors::Encoder> wheels_of(const world::Mover& mover, const RealRobot* real) {
-  std::optional<sensors::Encoder> wheels;
-  for (const world::Sensor& sensor : mover.sensors)
-    if (!wheels && sensor.type == sensors::encoder_type.word.type) wheels = sensors::read_encoder(sensor, mover);
-  if (real == nullptr) return wheels;
-  if (!wheels) wheels = sensors::Encoder{.slip = real->type().slip, .track = mover.track};
-  wheels->per_count = std::max(real->type().distance, wheels->track * real->type().angle);
-  return wheels;
+/// Returns the sensors by which the robot localizes itself. A real robot has its wheels, with the constants of the
+/// world file, if it states them.
+control::PositionSensors position_sensors_of(const world::Mover& mover, const RealRobot* real) {
+  control::PositionSensors own = control::position_sensors_of(mover);
+  if (real == nullptr) return own;
+  if (!own.wheels) own.wheels = sensors::Encoder{.slip = real->type().slip, .track = mover.track};
+  own.wheels->per_count = std::max(real->type().distance, own.wheels->track * real->type().angle);
+  return {.wheels = own.wheels, .gyro = {}, .gps = {}};
 }
 
 [[noreturn]] void refuse_localize(const world::Mover& mover) {
@@ -96,12 +95,12 @@ void RobotClient::add_own_state(const RobotClientOptions& options) {
   } else {
     own.start = mover.X_WM;
   }
-  if (made_.localize.value_or(true)) own.wheels = wheels_of(mover, real_.get());
-  if (made_.localize.value_or(false) && !own.wheels && !own.cameras) refuse_localize(mover);
-  if (!own.wheels && !own.cameras) return;
-  if (own.wheels) track_ = own.wheels->track;
-  if (own.wheels && !real_)
-    wheels_.emplace(*own.wheels, base::RandomKey{options.seed, base::RandomStream::slip, mover_}, true);
+  if (made_.localize.value_or(true)) own.sensors = position_sensors_of(mover, real_.get());
+  const bool wheels = own.sensors.wheels.has_value();
+  if (made_.localize.value_or(false) && !wheels && !own.cameras) refuse_localize(mover);
+  if (!wheels && !own.cameras) return;
+  if (wheels) track_ = own.sensors.wheels->track;
+  if (!real_) simulated_sensors_.emplace(world_, sensor_set_, mover_, own.sensors, options.seed);
   own_.emplace(mover, mover_, own);
 }
 
@@ -116,8 +115,7 @@ void RobotClient::move(std::int64_t now) {
   } else {
     const base::Pose before = body_.state().X_WM;
     body_.move(command_, now);
-    if (wheels_) wheels_->roll(before, body_.state().X_WM);
-    if (wheels_) own_->add_wheels(now, wheels_->counted());
+    if (simulated_sensors_) simulated_sensors_->measure(before, body_.state(), now, *own_);
   }
   contacts_ += contact_.begins(body_.contact());
   if (truth_) truth_->send(body_.state(), now, epoch_);
@@ -165,7 +163,8 @@ void RobotClient::leave(std::int64_t now) {
 /// A robot with an unknown pose sends no state. The farm's state of it then becomes stale, and so do its readings.
 void RobotClient::send_state(std::int64_t now) {
   if (is_lost()) return link_.send_request(now);
-  link_.send_state(v2v_of(own_state(), made_.controller->intent()), now);
+  link_.send_state(v2v_of(own_state(), made_.controller->intent()), now,
+                   own_ ? own_->quality() : netio::StateQuality{});
 }
 
 void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {
@@ -226,8 +225,14 @@ RobotClientStats RobotClient::stats() const {
       stats.real->readings[std::string(sensors::find_sensor_type(own.type)->name)] = own.sequence + 1;
   }
   if (own_)
-    stats.own = {own_->port() > 0, own_->has_wheels(), own_->counts(),
-                 position_errors_, own_->sigma(),      own_->calibration()};
+    stats.own = {own_->port() > 0,
+                 own_->has_wheels(),
+                 own_->sensors().gyro.has_value(),
+                 own_->sensors().gps.has_value(),
+                 own_->counts(),
+                 position_errors_,
+                 own_->sigma(),
+                 own_->calibration()};
   stats.listens_for_spat = lights_.listens();
   stats.lights = lights_.counts();
   stats.stops = log_.stops();

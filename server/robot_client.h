@@ -22,6 +22,7 @@
 #include "server/real_robot.h"
 #include "server/robot_client_log.h"
 #include "server/robot_link.h"
+#include "server/simulated_sensors.h"
 #include "server/truth_report.h"
 #include "server/wire_ids.h"
 #include "world/lights.h"
@@ -55,6 +56,8 @@ struct RobotClientOptions {
 struct OwnStateStats {
   bool cameras = false;
   bool wheels = false;
+  bool gyro = false;
+  bool gps = false;
   OwnStateCounts counts;
   PositionErrors errors;                ///< of a simulated robot, at its steps that were not lost
   double sigma = 0.0;                   ///< [m] standard deviation of the position, at the end
@@ -175,8 +178,8 @@ class RobotClient {
   std::vector<control::Neighbour> others_;
   std::vector<world::Signal> signals_;
   std::function<std::int64_t()> utc_;
-  std::optional<OwnState> own_;            ///< empty: drives by its true state
-  std::optional<sensors::Wheels> wheels_;  ///< of a simulated robot with encoders
+  std::optional<OwnState> own_;                        ///< empty: drives by its true state
+  std::optional<SimulatedSensors> simulated_sensors_;  ///< by which a simulated robot localizes itself
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
   std::int64_t epoch_ = 0;           ///< [ns] Unix time at time 0 of its clock, set in `run`

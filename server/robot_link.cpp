@@ -92,12 +92,13 @@ void RobotLink::send_request(std::int64_t now) {
   next_request_ = now + kRequest;
 }
 
-void RobotLink::send_state(const netio::V2v& state, std::int64_t now) {
+void RobotLink::send_state(const netio::V2v& state, std::int64_t now, const netio::StateQuality& quality) {
   send_request(now);
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(id_);
   header.time = now;
   header.sequence = states_;
+  header.state = quality;
   netio::encode(header, state, packet_);
   send(netio::Type::v2v, states_++, now);
 }

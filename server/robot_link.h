@@ -52,8 +52,8 @@ class RobotLink {
 
   /// Sends its subscription every half second.
   void send_request(std::int64_t now);
-  /// Sends its subscription when due, and a state.
-  void send_state(const netio::V2v& state, std::int64_t now);
+  /// Sends its subscription when due, and a state. @param quality of an estimate
+  void send_state(const netio::V2v& state, std::int64_t now, const netio::StateQuality& quality = {});
   /// Announces that it leaves, unless it has sent nothing. Sends this at once, with all packets still delayed in the
   /// injected link.
   void leave(std::int64_t now);

@@ -14,6 +14,8 @@ estimation::MotionModel motion_model(const world::Mover& mover) {
   return model;
 }
 
+}  // namespace
+
 netio::StateQuality quality_of(const estimation::Prediction& p) {
   using enum estimation::Component;
   const auto c = [&](int i, int j) { return static_cast<float>(p.estimate.covariance[6 * i + j]); };
@@ -22,8 +24,6 @@ netio::StateQuality quality_of(const estimation::Prediction& p) {
           .age = p.age,
           .covariance = {c(kX, kX), c(kX, kY), c(kX, kYaw), c(kY, kY), c(kY, kYaw), c(kYaw, kYaw)}};
 }
-
-}  // namespace
 
 StateFilter::StateFilter(const world::World& world, const StateFilterOptions& options)
     : world_(world), options_(options), movers_(options.mode == FilterMode::off ? 0 : world.movers.size()) {
@@ -104,6 +104,12 @@ estimation::Measurement StateFilter::measurement(const base::Report& report, con
   const double speed = square(options_.speed_sigma);
   estimation::Measurement m{.sequence = header.sequence, .X_WM = report.X_WM, .velocity = report.velocity};
   m.pose_covariance = {position, 0.0, 0.0, position, 0.0, square(options_.yaw_sigma)};
+  if (const auto stated = estimation::stated_covariance(header.state.covariance)) {
+    m.pose_covariance = *stated;
+    const world::Mover& mover = world_.movers[report.mover];
+    if (mover.is_tag)
+      m.pose_covariance = estimation::moved(*stated, base::rotate(report.X_WM.yaw, {-mover.X_MT.x, -mover.X_MT.y}));
+  }
   m.twist_variance = {speed, speed, square(options_.turn_sigma)};
   // Cameras that do not measure velocities send zeros.
   const base::Twist& v = report.velocity;

@@ -34,7 +34,7 @@ struct StateFilterOptions {
   std::size_t hypotheses = 16;
   /// [ns] Unix time at time 0 of the receiver's clock, for estimation::ClockSource::trusted and `unix_time`.
   std::int64_t epoch = 0;
-  // Standard deviations of reported states, which packets do not contain.
+  // Standard deviations of reported states. A covariance stated in the packet replaces those of the pose.
   double position_sigma = 0.01;  ///< [m] > 0
   double yaw_sigma = 0.02;       ///< [rad] > 0
   double speed_sigma = 0.05;     ///< [m/s] > 0
@@ -46,6 +46,9 @@ struct StateFilterCounts {
   std::array<std::uint64_t, 4> clocks{};  ///< all states except flooded ones, by estimation::ClockVerdict
   std::uint64_t flooded = 0;              ///< dropped beyond StateFilter::kMostBetweenPredictions
 };
+
+/// Returns the age and the covariance of a prediction, as readings, V2V and TAG state them.
+netio::StateQuality quality_of(const estimation::Prediction& prediction);
 
 /// The clock of one mover's sender.
 struct SenderClockState {

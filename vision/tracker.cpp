@@ -147,7 +147,9 @@ void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag
                    view->fit->height_sigma,
                    view->fit->roll,
                    view->fit->pitch,
-                   view->fit->tilt_sigma});
+                   view->fit->tilt_sigma,
+                   kPositionSigma * view->pixel,
+                   kHeadingSigma});
   }
 }
 

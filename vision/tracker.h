@@ -22,6 +22,8 @@ struct TrackedTag {
   int cameras = 0;      ///< number of cameras that saw it this time
   /// [m], [rad] As in TagFit, of the camera with the smallest `height_sigma`; 0: not measured.
   double height_sigma = 0.0, roll = 0.0, pitch = 0.0, tilt_sigma = 0.0;
+  double position_sigma = 0.0;  ///< [m] standard deviation of x, and of y, by the noise of the images alone
+  double yaw_sigma = 0.0;       ///< [rad] as `position_sigma`
 };
 
 /// One filter for each tag and axis (x, y, heading), with constant velocity and white acceleration (Bar-Shalom, Li,

@@ -80,11 +80,13 @@ std::string words_of(const server::PacketField& field, bool exact) {
 
 /// Accuracy of the reading and quality of the state that it was computed from.
 std::string quality_words(const netio::Header& header) {
-  if (netio::sensor_type_of(header.type) == 0 && header.type != netio::Type::values) return "";
-  const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
-  std::string text = fmt::format("; mode {}", accuracy.mode);
-  if (!std::isinf(accuracy.bound)) text += ", error up to " + rounded_up(accuracy.bound);
-  if (accuracy.unsure) text += ", not for every element";
+  std::string text;
+  if (netio::sensor_type_of(header.type) != 0 || header.type == netio::Type::values) {
+    const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
+    text = fmt::format("; mode {}", accuracy.mode);
+    if (!std::isinf(accuracy.bound)) text += ", error up to " + rounded_up(accuracy.bound);
+    if (accuracy.unsure) text += ", not for every element";
+  }
   const netio::StateQuality& state = header.state;
   if (!state.stated) return text;
   if (state.age == base::kNoStateYet) return text + "; no state of the robot has arrived yet";

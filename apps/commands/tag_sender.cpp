@@ -1,10 +1,12 @@
 #include "apps/commands/tag_sender.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
 #include "apps/options/address.h"
 #include "netio/address_token.h"
+#include "robots/estimation/state.h"
 
 namespace sf::apps {
 
@@ -19,6 +21,17 @@ netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& m
   state.linear = {tag.velocity.x + tag.turn * arm.y, tag.velocity.y - tag.turn * arm.x, 0.0};
   state.angular = {0.0, 0.0, tag.turn};
   return state;
+}
+
+std::array<float, 6> object_covariance(const vision::TrackedTag& tag, const vision::TagMount& mount) {
+  constexpr double kPosition = 2e-3, kYaw = 2e-3;  // [m], [rad] errors of calibration and height
+  const double xx = tag.position_sigma * tag.position_sigma + kPosition * kPosition;
+  const double yaw = tag.yaw_sigma * tag.yaw_sigma + kYaw * kYaw;
+  const glm::dvec2 arm = base::rotate(tag.X_WT.yaw - mount.X_OT.yaw, {-mount.X_OT.x, -mount.X_OT.y});
+  const estimation::PoseCovariance object = estimation::moved({xx, 0.0, 0.0, xx, 0.0, yaw}, arm);
+  std::array<float, 6> stated;
+  std::transform(object.begin(), object.end(), stated.begin(), [](double v) { return static_cast<float>(v); });
+  return stated;
 }
 
 TagSender::TagSender(const vision::Testbed& testbed, const std::string& fallback, std::span<const netio::Peer> peers)
@@ -44,7 +57,9 @@ void TagSender::send(std::span<const vision::TrackedTag> tags, std::int64_t epoc
     header_.robot = static_cast<std::uint16_t>(tag.id);
     header_.sequence = sequences_[tag.id]++;
     header_.time = epoch + std::llround(1e9 * tag.time);
-    netio::encode(header_, object_state(tag, testbed_.mount(tag.id)), packet_);
+    const vision::TagMount& mount = testbed_.mount(tag.id);
+    header_.state = {.stated = true, .covariance = object_covariance(tag, mount)};
+    netio::encode(header_, object_state(tag, mount), packet_);
     const auto signer = signers_.find(tag.id);
     if (signer != signers_.end()) signer->second.sign(packet_);
     outbox_.queue(*to, packet_);

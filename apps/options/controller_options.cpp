@@ -19,7 +19,7 @@ control::Setting setting_of(const std::string& text) {
 control::ControllerConfig controller_config_of(const ControllerOptions& options) {
   std::vector<control::Setting> settings;
   for (const std::string& text : options.set) settings.push_back(setting_of(text));
-  if (options.localize) settings.push_back({"localize", true, "--localize: "});
+  if (options.localize) settings.push_back({"localize", *options.localize, "--localize: "});
   return {options.controller, 0.0,
           control::Settings(fmt::format("controller '{}'", options.controller), std::move(settings))};
 }
@@ -45,8 +45,11 @@ std::vector<scenarios::Actor> actors_of_world(const world::World& world, const R
   print_message("{} driven by the controller in the world file (ctrl); use --drive NAME to drive a robot by '{}'",
                 count == 1 ? "1 robot is" : fmt::format("{} robots are", count), options.controller);
   std::vector<scenarios::Actor> actors;
-  for (const world::Mover& mover : world.movers)
+  for (const world::Mover& mover : world.movers) {
     actors.push_back({.controller = control::controller_of(mover, controller_config_of(options))});
+    // The shell then leaves the true states in place.
+    if (!options.localize.value_or(true)) actors.back().controller.localized_outside = true;
+  }
   return actors;
 }
 

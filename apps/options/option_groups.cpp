@@ -545,9 +545,11 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
                  "Setting of the controller, such as kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\" (may be repeated)")
       ->check(readable(read_setting, "KEY=VALUE such as kp=0.5"))
       ->type_name("KEY=VALUE");
-  app.add_flag("--localize", o.localize,
-               "Use the pose estimated from the robot's own encoders, gyro and GPS receiver for control (same as --set "
-               "localize=true; default of `robot`, which uses encoders and cameras)");
+  app.add_flag_function(
+      "--localize,!--no-localize", [&o](std::int64_t count) { o.localize = count > 0; },
+      "Robots with encoders drive by the pose estimated from these, their gyro and their GPS receiver (default; "
+      "same as --set localize=true). --no-localize: by their true pose, in `robot` with --cameras by these "
+      "alone");
   add_in_process(app, o);
 }
 

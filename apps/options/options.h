@@ -106,7 +106,7 @@ struct ControllerOptions : InProcessOption {
   std::string controller = "wander";
   bool controller_given = false;  ///< on the command line: overrides `ctrl` of the world file
   std::vector<std::string> set;   ///< its settings, "key=value" each
-  bool localize = false;          ///< see the setting of this name
+  std::optional<bool> localize;   ///< see the setting of this name
 };
 
 struct WireOption {

@@ -374,6 +374,8 @@ Json own_state_json(const server::OwnStateStats& own) {
     json.update(
         {{"compared", e.count}, {"rms_m", e.rms()}, {"largest_m", e.largest}, {"largest_rad", e.largest_heading}});
   const estimation::Calibration& c = own.calibration;
+  if (own.gyro) json["gyro"] = {{"bias_rad_s", constant_json(c.gyro_bias)}};
+  json["gps"] = own.gps;
   if (own.wheels)
     json["wheels"] = {{"left_scale", constant_json(c.left_scale)},
                       {"right_scale", constant_json(c.right_scale)},

@@ -53,6 +53,10 @@ std::string own_state_text(const server::OwnStateStats& own) {
                 e.largest_heading * 180.0 / M_PI);
   text += row("  estimated", "{:.1f} mm (standard deviation, at the end)", 1e3 * own.sigma);
   const estimation::Calibration& c = own.calibration;
+  if (own.gyro)
+    text += row("gyro", "bias {:.2f} ± {:.2f} degrees/s", c.gyro_bias.value * 180.0 / M_PI,
+                c.gyro_bias.sigma * 180.0 / M_PI);
+  if (own.gps) text += row("gps", "used");
   if (own.wheels)
     text += row("wheels", "left scale {:.4f} ± {:.4f}, right scale {:.4f} ± {:.4f}, track {:.1f} ± {:.1f} mm",
                 c.left_scale.value, c.left_scale.sigma, c.right_scale.value, c.right_scale.sigma, 1e3 * c.track.value,

@@ -129,7 +129,7 @@ typedef struct {
   uint32_t session, token;
   unsigned mode, unsure;         // readings, VALUES: accuracy mode; 1: no bound holds for every element
   double bound;                  // of the error, in the unit of the first column; NAN: not stated
-  uint32_t age_us;               // of the robot's state used for the reading; 0: not stated
+  uint32_t age_us;               // of the robot's state used for the reading, of an estimate sent; 0: not stated
   unsigned stale;                // 1: that state is too old to act on
   unsigned no_state;             // 1: no state has arrived yet; the robot is at its place in the world file
   float covariance[6];           // of that state, x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: unknown
@@ -422,7 +422,7 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   size -= SF_HEADER + trailer;
   if (size > 1256) return "too long";
   if (has_accuracy(packet)) decode_accuracy(packet, bytes);
-  if (packet->type < 128) decode_state_quality(packet, bytes);
+  if (packet->type < 128 || packet->type == SF_V2V || packet->type == SF_TAG) decode_state_quality(packet, bytes);
   const char* const status = packet->type == SF_LASER || packet->type == SF_LASER_EXTENDED
                                  ? decode_laser(packet, b, size)
                              : packet->type == SF_LANE_EDGE  ? decode_lane_edge(packet, b, size)
@@ -436,8 +436,8 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
 }
 
-// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE or OBJECT from type, robot, sequence, time_ns, session, token, words and
-// values. Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
+// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE or OBJECT from type, robot, sequence, time_ns, session, token, words,
+// values and, of an estimate in V2V or TAG, age_us, stale and covariance. Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
 size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   const sf_type* const type = sf_find_type(packet->type);
   if (!type || packet->type < SF_V2V || (packet->type > SF_LEAVE && packet->type != SF_OBJECT)) return 0;
@@ -449,6 +449,13 @@ size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   put(bytes + 16, 8, (uint64_t)packet->time_ns);
   put(bytes + 24, 4, packet->session);
   put(bytes + 28, 4, packet->token);
+  put(bytes + 32, 4, packet->age_us);
+  for (unsigned i = 0; i < 6 && packet->age_us > 0; ++i) {
+    uint32_t word;
+    memcpy(&word, &packet->covariance[i], 4);
+    put(bytes + 36 + 4 * i, 4, word);
+  }
+  if (packet->age_us > 0) put(bytes + 62, 2, packet->stale);
   size_t size = SF_HEADER;
   for (unsigned i = 0; i < sf_row_width(type); ++i, size += 8) put_f64(bytes + size, packet->values[i]);
   for (unsigned i = 0; type->words[i]; ++i, size += 4) put(bytes + size, 4, packet->words[i]);

@@ -258,7 +258,7 @@ def decode(data):
     if type < 128 or type == VALUES:
         bound = None if accuracy < 32 else 2.0**(((accuracy >> 5) - 1024) / 16)
         packet.update(mode=accuracy & 15, unsure=accuracy >> 4 & 1, bound=bound)
-    if type < 128:
+    if type < 128 or type in (V2V, TAG) and age:
         known = all(map(math.isfinite, covariance)) and min(covariance[0], covariance[3], covariance[5]) >= 0
         packet.update(age_us=age, stale=flags & 1 if age else 0,
                       covariance=list(covariance) if age and known else [0.0] * 6)
@@ -278,10 +278,11 @@ def decode(data):
     return packet
 
 
-def encode(type, payload=b"", robot=0, sequence=0, time_ns=0, session=0, token=0):
-    """Encodes a packet to the farm; START and LEAVE have no payload. Raises Malformed for numbers that the farm would
-    drop."""
-    head = HEADER.pack(b"SFPK", 2, type, robot, 0, 0, sequence, time_ns, session, token, 0, *[0.0] * 6, 0, 0)
+def encode(type, payload=b"", robot=0, sequence=0, time_ns=0, session=0, token=0, age_us=0, stale=0,
+           covariance=(0.0,) * 6):
+    """Encodes a packet to the farm; START and LEAVE have no payload. V2V and TAG: `age_us` (at least 1) of an estimate
+    and the covariance of its pose. Raises Malformed for numbers that the farm would drop."""
+    head = HEADER.pack(b"SFPK", 2, type, robot, 0, 0, sequence, time_ns, session, token, age_us, *covariance, 0, stale)
     decode(head + payload)
     return head + payload
 
@@ -471,7 +472,7 @@ def words(packet):
         return "\n".join(map(words, packet["states"]))
     whose = {V2I: "intersection", OBJECT: "tag"}.get(packet["type"], "robot")
     line = "%s %d of %s %d" % (TYPE_NAMES[packet["type"]], packet["sensor"], whose, packet["robot"])
-    body = list(fields(packet).items())[13 if packet["type"] < 128 else 10 if packet["type"] == VALUES else 7:]
+    body = list(fields(packet).items())[13 if packet["type"] < 128 else 10 if packet["type"] == VALUES or "age_us" in packet else 7:]
     line += " at %.3f s" % (packet["time_ns"] * 1e-9) + "".join("; %s = %s" % pair for pair in body)
     if "mode" in packet:
         line += "; mode %d" % packet["mode"] + (", not for every element" if packet["unsure"] else "")

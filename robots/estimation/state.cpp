@@ -44,6 +44,26 @@ std::strong_ordering operator<=>(const Measurement& a, const Measurement& b) {
   return std::bit_cast<Bits>(numbers_of(a)) <=> std::bit_cast<Bits>(numbers_of(b));
 }
 
+PoseCovariance moved(const PoseCovariance& c, const glm::dvec2& arm) {
+  // The other point is at p + arm, and the arm turns by (-arm.y, arm.x) per radian.
+  const glm::dvec2 d{-arm.y, arm.x};
+  return {c[0] + 2.0 * d.x * c[2] + d.x * d.x * c[5],
+          c[1] + d.y * c[2] + d.x * c[4] + d.x * d.y * c[5],
+          c[2] + d.x * c[5],
+          c[3] + 2.0 * d.y * c[4] + d.y * d.y * c[5],
+          c[4] + d.y * c[5],
+          c[5]};
+}
+
+std::optional<PoseCovariance> stated_covariance(const std::array<float, 6>& stated) {
+  constexpr double kLeast = 1e-8;
+  PoseCovariance c;
+  std::copy(stated.begin(), stated.end(), c.begin());
+  if (!is_positive_definite(c)) return std::nullopt;
+  for (const std::size_t k : {0u, 3u, 5u}) c[k] = std::max(c[k], kLeast);
+  return c;
+}
+
 bool is_valid(const Measurement& m) {
   constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;
   if (m.time < 0 || m.time > kMaxTime || m.components == 0 || m.components >= 1u << kComponents) return false;

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "base/pose.h"
 
@@ -45,6 +46,17 @@ struct Measurement {
 /// Total order by time, source, sequence and finally the bits of all numbers. Only identical measurements are equal.
 std::strong_ordering operator<=>(const Measurement& a, const Measurement& b);
 inline bool operator==(const Measurement& a, const Measurement& b) { return std::is_eq(a <=> b); }
+
+/// Covariance of a pose: xx, xy, x yaw, yy, y yaw, yaw yaw [m^2, m rad, rad^2].
+using PoseCovariance = std::array<double, 6>;
+
+/// Returns the covariance of a point fixed to a body, given that of another. @param arm [m] from the known point to the
+/// other, in the world frame
+PoseCovariance moved(const PoseCovariance& covariance, const glm::dvec2& arm);
+
+/// Returns the covariance in a packet if it is positive definite with variances of at least (0.1 mm)^2 and (0.1
+/// mrad)^2, which smaller ones are raised to; nullopt if it is not, or all zeros (unknown).
+std::optional<PoseCovariance> stated_covariance(const std::array<float, 6>& stated);
 
 /// Returns whether the measurement is finite, within 1e9 m (m/s, rad/s), at a time in [0, 2^62], and has at least one
 /// component, variances in [1e-18, 1e18] and a positive definite pose covariance.

@@ -216,10 +216,27 @@ TEST(Docking, LeavesTheForceFieldAfterAContact) {
 TEST(Docking, ReachesTheStagingPointWithinTwoCentimetresAfterAContact) {
   for (const double off : {0.02, 0.019}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
-    docking.step({.state = {.X_WM = {1.0, off, 0, M_PI}}, .contact = true});
+    docking.step({.state = {.X_WM = {0.3, 0.1, 0, M_PI}}, .contact = true});  // at the dock's corner
+    step_at(docking, {1.0, off, 0, M_PI}, 254.0);
     const double forward = step_at(docking, {1.0, off, 0, M_PI}, 254.0).forward;
     EXPECT_EQ(forward, off < 0.02 ? 0.03 : 0.0) << "it follows the beams, or turns to the staging point";
   }
+}
+
+TEST(Docking, BacksOffFromAnObstacleAndDrivesAroundIt) {
+  Docking docking({.X_WD = {}, .stage = 1.0});
+  step_at(docking, {1.5, 0.0, 0, M_PI}, 255);
+  EXPECT_EQ(step_at(docking, {1.5, 0.0, 0, M_PI}, 255, 0, true).forward, -0.1);
+  EXPECT_EQ(step_at(docking, {1.51, 0.0, 0, M_PI}, 255, 9 * kTick).forward, -0.1) << "less than a second";
+  EXPECT_GT(std::abs(step_at(docking, {1.6, 0.0, 0, M_PI}, 252, 10 * kTick).turn), 0.3) << "not into it again";
+}
+
+// Between an obstacle behind and one ahead it backs off from each in turn.
+TEST(Docking, DrivesForwardWhenItTouchesSomethingWhileBackingOff) {
+  Docking docking({.X_WD = {}, .stage = 1.0});
+  step_at(docking, {1.5, 0.0, 0, M_PI}, 255, 0, true);
+  step_at(docking, {1.52, 0.0, 0, M_PI}, 255, kTick);
+  EXPECT_EQ(step_at(docking, {1.54, 0.0, 0, M_PI}, 255, 2 * kTick, true).forward, 0.1);
 }
 
 TEST(Docking, DrivesAroundTheDockFromBehind) {

@@ -115,9 +115,17 @@ TEST(OwnLocalization, SurvivesInvalidReadings) {
   }
 }
 
-TEST(OwnLocalization, IsEnabledOnlyByASettingOfTheShell) {
+TEST(OwnLocalization, IsEnabledByEncodersAndDisabledByASettingOfTheShell) {
   world::World world = scenes::boxed_world(8, 8);
-  scenes::add_create(world, {2, 2, 0, 0}).sensors.push_back({.type = "encoder"});
+  world::Mover& robot = scenes::add_create(world, {2, 2, 0, 0});
+  const auto localizes = [&] {
+    return localization_of(*make_controller({world}, {"wander", 0.0, {}}).controller) != nullptr;
+  };
+  EXPECT_FALSE(localizes()) << "a robot without sensors of its own has its true state";
+  robot.sensors.push_back({.type = "gps"});
+  EXPECT_FALSE(localizes()) << "a receiver alone";
+  robot.sensors.push_back({.type = "encoder"});
+  EXPECT_TRUE(localizes());
   for (const bool localize : {false, true}) {
     const ConfiguredController made =
         make_controller({world}, {"wander", 0.0, Settings("controller 'wander'", {{"localize", localize, ""}})});

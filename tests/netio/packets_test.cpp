@@ -114,14 +114,21 @@ TEST(Packets, ImpossibleCovarianceIsDropped) {
   }
 }
 
-/// These fields are reserved in a state: a relay would forward them.
-TEST(Packets, AgeAndCovarianceOfAStateAreIgnored) {
-  base::Bytes bytes;
-  encode({.robot = 7, .state = {.stated = true, .age = 5000, .covariance = {1, 0, 0, 1, 0, 1}}}, V2v{}, bytes);
+TEST(Packets, AgeAndCovarianceOfV2vAndTagRoundTrip) {
+  base::Bytes v2v, tag, other;
+  const Header header{.robot = 7, .state = {.stated = true, .age = 5000, .covariance = {1, 0, 0, 2, 0, 3}}};
+  encode(header, V2v{}, v2v);
+  encode(header, Tag{}, tag);
+  encode(header, Subscribe{}, other);
+  for (const base::Bytes* bytes : {&v2v, &tag}) {
+    Packet packet;
+    EXPECT_EQ(decode(*bytes, packet), PacketStatus::accepted);
+    EXPECT_EQ(packet.header.state.age, 5000);
+    EXPECT_EQ(packet.header.state.covariance, header.state.covariance);
+  }
   Packet packet;
-  EXPECT_EQ(decode(bytes, packet), PacketStatus::accepted);
-  EXPECT_FALSE(packet.header.state.stated);
-  EXPECT_EQ(packet.header.state.covariance[0], 0.0f);
+  EXPECT_EQ(decode(other, packet), PacketStatus::accepted);
+  EXPECT_FALSE(packet.header.state.stated) << "reserved in requests";
 }
 
 TEST(Packets, V2vRoundTrips) {

@@ -11,6 +11,7 @@
 #include "sensors/sensor_type.h"
 #include "tests/device.h"
 #include "tests/sensors/edit_laser.h"
+#include "tests/world/read_world.h"
 #include "world/wall_tree.h"
 
 namespace sf::scenarios {
@@ -91,6 +92,33 @@ TEST(DockingInSimVille, SucceedsFromAllOverTheCarPark) {
       }
   EXPECT_GE(starts, 80);
   RecordProperty("longest_s", static_cast<int>(longest));
+}
+
+/// A Create with bumper and receiver in a room of 4 m x 3 m, its dock at the western wall, and a box.
+world::World room(const std::string& box) {
+  std::string text = "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\n";
+  text += "model( name \"room\" size [4 3 1] boundary 1 noblocks 0 )\n";
+  text += "model( name \"dock\" pose [-1.85 0 0 0] size [0.1 0.2 0.09] ir_emitter \"dock\" )\n";
+  if (!box.empty()) text += "model( name \"box\" " + box + " )\n";
+  text += "create( name \"roomba\" pose [1 1 0 0] create_irreceiver( ) )\n";
+  return world::read_world(text, {.sensors = sensors::world_file_words()});
+}
+
+// Boxes on the axis and beside it, turned, long, and between the dock and the staging point: found by contact alone.
+TEST(DockingInARoom, SucceedsAroundABox) {
+  for (const char* box : {"", "pose [-0.4 0 0 0] size [0.4 0.4 0.4]", "pose [-0.4 0.4 0 0] size [0.4 0.4 0.4]",
+                          "pose [-0.9 0 0 30] size [0.25 0.6 0.4]", "pose [0.3 -0.3 0 45] size [0.7 0.5 0.4]"}) {
+    const world::World world = room(box);
+    int starts = 0;
+    for (const double x : {-1.2, -0.2, 0.8, 1.6})
+      for (const double y : {-1.1, 0.0, 1.1})
+        for (const double yaw : {0.0, 0.5 * M_PI, M_PI, -0.5 * M_PI}) {
+          if (!is_free(world, {x, y})) continue;
+          ++starts;
+          EXPECT_LT(dock(world, {x, y, 0.0, yaw}).seconds, 200.0) << box << ": " << x << ", " << y << ", " << yaw;
+        }
+    EXPECT_GE(starts, 40) << box;
+  }
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ robots = 10
 place = "lanes"
 [default]
 controller = "route"
-settings = { tour = true }
+settings = { tour = true, localize = false }
 [[robot]]
 name = "roomba3"
 pose = [10.25, 2.0, 90]

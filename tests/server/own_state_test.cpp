@@ -46,7 +46,7 @@ struct OwnStateTest : testing::Test {
                                                          .clock = {.source = estimation::ClockSource::arrival},
                                                          .position_sigma = 0.005,
                                                          .yaw_sigma = 0.01},
-                                .wheels = encoder,
+                                .sensors = {.wheels = encoder, .gyro = {}, .gps = {}},
                                 .stop_after = kSecond});
     outbox.emplace();
   }
@@ -55,7 +55,8 @@ struct OwnStateTest : testing::Test {
     const double yaw = X.yaw + normal(0.01);
     const netio::Tag tag{.position = {X.x + normal(0.005), X.y + normal(0.005), 0.0},
                          .orientation = {0.0, 0.0, std::sin(0.5 * yaw), std::cos(0.5 * yaw)}};
-    const netio::Header header{.type = netio::Type::tag, .robot = kTag, .sequence = sequence++, .time = now};
+    netio::Header header{.type = netio::Type::tag, .robot = kTag, .sequence = sequence++, .time = now};
+    header.state = {.stated = stated[0] > 0.0f, .covariance = stated};
     base::Bytes bytes;
     netio::encode(header, tag, bytes);
     outbox->queue({netio::kLoopback, own->port()}, bytes);
@@ -68,6 +69,7 @@ struct OwnStateTest : testing::Test {
   std::optional<OwnState> own;
   std::optional<netio::Outbox> outbox;
   std::mt19937_64 random{1};
+  std::array<float, 6> stated{};  ///< covariance of the next poses; 0: not stated
   std::uint32_t sequence = 0;
   std::int64_t now = 0;
 };
@@ -124,6 +126,25 @@ TEST_F(OwnStateTest, LearnsTheScaleOfACreateAndCoastsWhenItsTagIsCovered) {
     squares += create.error() * create.error() / (own->sigma() * own->sigma());
   }
   EXPECT_LT(squares, estimation::chi_square_limit(2 * kSeeds, 0.001)) << "the covariance is too small";
+}
+
+// A pose with a stated covariance of 1 m counts less than the wheels, and one of 1 mm more.
+TEST_F(OwnStateTest, WeighsPosesByTheirStatedCovariance) {
+  for (const float sigma : {1.0f, 1e-3f}) {
+    random.seed(1);
+    now = 0;
+    restart();
+    own->add_wheels(now, {0.0, 0.0});
+    see(mover.X_WM);
+    stated = {sigma * sigma, 0, 0, sigma * sigma, 0, 1e-4f};
+    now += kTick;
+    own->add_wheels(now, {0.0, 0.0});
+    see({mover.X_WM.x + 0.02, mover.X_WM.y, 0.0, mover.X_WM.yaw});
+    own->predict(now);
+    const double moved = own->state().X_WM.x - mover.X_WM.x;
+    EXPECT_EQ(moved > 0.01, sigma < 0.1f) << moved;
+    stated = {};
+  }
 }
 
 TEST_F(OwnStateTest, IsLostUntilACameraSeesIt) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "base/time.h"
@@ -29,6 +30,7 @@ struct Fixture {
     header.time = sent + 3600 * kSecond;
     header.sequence = static_cast<std::uint32_t>(sent / (100 * kMs));
     header.session = session;
+    header.state = {.stated = stated[0] != 0.0f, .covariance = stated};
     base::Report report{0, header.time, {0.5e-9 * static_cast<double>(sent), 0, 0, 0}, {0.5, 0, 0}};
     report.X_WM = base::compose(report.X_WM, error);
     filter->take(report, header, arrival);
@@ -39,6 +41,7 @@ struct Fixture {
   world::World world;
   std::optional<StateFilter> filter;
   std::uint32_t session = 1;
+  std::array<float, 6> stated{};  ///< covariance in the next states; 0: not stated
 };
 
 StateFilterOptions with_delay(std::int64_t least) {
@@ -65,6 +68,24 @@ TEST(StateFilter, LateStatesArePredictedToNow) {
   const auto clocks = f.filter->clocks();
   ASSERT_EQ(clocks.size(), 1u);
   EXPECT_NEAR(static_cast<double>(clocks[0].clock.offset), -3600e9, 2e6);
+}
+
+// Whatever a packet states, the filter uses it only if it is a covariance, and never as more exact than 0.1 mm.
+TEST(StateFilter, UsesStatedCovariancesThatArePossible) {
+  const auto variance = [](const std::array<float, 6>& stated) {
+    Fixture f;
+    f.stated = stated;
+    f.take(0, 0);
+    f.filter->predict(0);
+    return f.filter->quality(0).covariance[0];
+  };
+  const float standard = variance({});
+  EXPECT_NEAR(standard, 1e-4f, 1e-6f) << "10 mm";
+  EXPECT_NEAR(variance({0.04f, 0, 0, 0.04f, 0, 0.01f}), 0.04f, 1e-4f);
+  EXPECT_NEAR(variance({1e-14f, 0, 0, 1e-14f, 0, 1e-14f}), 1e-8f, 1e-9f) << "raised";
+  EXPECT_EQ(variance({1, 2, 0, 1, 0, 1}), standard) << "not positive definite";
+  EXPECT_EQ(variance({1, 0, 0, 1, 0, 0}), standard) << "no yaw";
+  EXPECT_EQ(variance({1e30f, 0, 0, 1e30f, 0, 1}), standard) << "too large";
 }
 
 TEST(StateFilter, ReplaysAreDetectedAfterAClockCorrection) {
