@@ -4,10 +4,11 @@
 
 namespace sf::bridges {
 
-PlayerBridge::PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent, int log_descriptor)
+PlayerBridge::PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent, int log_descriptor,
+                           const player::Follows& follows)
     : devices_(scene.world, scene.sensor_set),
       exchange_(scene, devices_),
-      server_(scene, devices_, exchange_, bind, silent, log_descriptor) {}
+      server_(scene, devices_, exchange_, bind, silent, log_descriptor, follows) {}
 
 void PlayerBridge::publish(const base::TickRecord& tick, const RunState& state) {
   exchange_.publish(tick, state);

@@ -11,10 +11,10 @@ namespace sf::bridges {
 /// `publish` copies the readings of opened devices.
 class PlayerBridge : public Bridge {
  public:
-  /// @param bind, silent, log_descriptor see player::Server
+  /// @param bind, silent, log_descriptor, follows see player::Server
   /// @throws base::InputError if a port is in use
-  PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent = player::kSilent,
-               int log_descriptor = 2);
+  PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent = player::kSilent, int log_descriptor = 2,
+               const player::Follows& follows = {});
 
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;

@@ -48,6 +48,7 @@ class ControlShell final : public Controller, public StatesStopReason {
 
   ControlShellState state() const { return state_; }
   const Controller& inner() const { return *inner_; }
+  Controller& inner() { return *inner_; }
   const OwnLocalization* localization() const { return localization_ ? &*localization_ : nullptr; }
 
  private:

@@ -21,6 +21,7 @@ extern const ControllerType explore_controller;
 extern const ControllerType lane_keeping_controller;
 extern const ControllerType magnet_keeping_controller;
 extern const ControllerType patrol_controller;
+extern const ControllerType remote_controller;
 extern const ControllerType route_controller;
 extern const ControllerType wander_controller;
 
@@ -28,9 +29,9 @@ namespace {
 
 std::vector<const ControllerType*>& all() {
   static std::vector<const ControllerType*> types{
-      &avoid_controller,   &convoy_controller,       &docking_controller,
-      &explore_controller, &lane_keeping_controller, &magnet_keeping_controller,
-      &patrol_controller,  &route_controller,        &wander_controller,
+      &avoid_controller,        &convoy_controller,         &docking_controller, &explore_controller,
+      &lane_keeping_controller, &magnet_keeping_controller, &patrol_controller,  &remote_controller,
+      &route_controller,        &wander_controller,
   };
   return types;
 }
@@ -91,7 +92,7 @@ ConfiguredController make(const ControllerContext& context, ControllerConfig con
   std::optional<OwnLocalization> localization;
   if (shell.localize.value_or(can_localize(mover)) && !config.localized_outside) localization.emplace(mover);
   return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),
-          config.rate > 0.0 ? config.rate : type->rate, on_scans, shell.localize};
+          config.rate > 0.0 ? config.rate : type->rate, on_scans, shell.localize, type->needs};
 }
 
 }  // namespace

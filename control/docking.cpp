@@ -202,6 +202,7 @@ constinit const ControllerType docking_controller{
     .rate = 10.0,
     .stops_on_bumper = false,
     .make = make_docking,
+    .needs = 1u << sensors::kIrReceiver,
 };
 
 }  // namespace sf::control

@@ -36,6 +36,7 @@ Inbox::Inbox(const InboxOptions& options)
       lights_(options.lights),
       peers_(options.peers),
       types_(options.robots.size(), 0),
+      follows_drive_(options.robots.size(), 0),
       sessions_(options.robots.size(), 0),
       light_sessions_(options.lights.size(), 0),
       session_(options.session),
@@ -102,6 +103,7 @@ PacketStatus Inbox::check_id(const Header& header) const {
     case Type::neighbours:
     case Type::state:
     case Type::values:
+    case Type::drive:
       break;
   }
   return PacketStatus::wrong_direction;
@@ -178,8 +180,8 @@ PacketStatus Inbox::admit_robot(Packet& packet, const Endpoint& source, std::int
                                   ? robots_.admit(id, kSubscribeChannel, packet.header.sequence, source, now)
                                   : admit_state(robots_, packet, source, now);
   if (status != PacketStatus::accepted || packet.late) return status;
-  if (!was_active) types_[row] = 0;
-  if (request != nullptr) types_[row] = request->types;
+  if (!was_active) types_[row] = 0, follows_drive_[row] = 0;
+  if (request != nullptr) types_[row] = request->types, follows_drive_[row] = packet.header.sensor == kFollowsDrive;
   sessions_[row] = packet.header.session;
   return PacketStatus::accepted;
 }
@@ -259,6 +261,10 @@ SessionToken Inbox::light_session_token(std::uint32_t light) const {
 
 bool Inbox::wants_neighbours(std::uint32_t robot, std::int64_t now) const {
   return is_active(robot, now) && (types_[*robots_.row(robot)] & kNeighboursBit) != 0;
+}
+
+bool Inbox::follows_drive(std::uint32_t robot, std::int64_t now) const {
+  return is_active(robot, now) && follows_drive_[*robots_.row(robot)] != 0;
 }
 
 bool Inbox::is_subscribed(std::uint32_t robot, std::uint32_t type, std::int64_t now) const {

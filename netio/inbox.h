@@ -107,6 +107,9 @@ class Inbox {
   /// Returns whether `robot` is active and its last SUBSCRIBE since then requests the states of other robots.
   bool wants_neighbours(std::uint32_t robot, std::int64_t now) const;
 
+  /// Returns whether `robot` is active and its last SUBSCRIBE since then states that it follows DRIVE.
+  bool follows_drive(std::uint32_t robot, std::int64_t now) const;
+
   /// Encodes the REFUSAL for a packet of a robot or light whose signature or source is refused, except LEAVE. It is
   /// unsigned and no larger than the packet. @return false if no refusal is due or the limit of refusals is reached
   bool refuse(const Packet& packet, PacketStatus reason, std::int64_t now, base::Bytes& out);
@@ -163,6 +166,7 @@ class Inbox {
   SenderBindings lights_;
   PeerTable peers_;
   std::vector<std::uint32_t> types_;           ///< per robot row: mask of its last SUBSCRIBE, 0 for all
+  std::vector<std::uint8_t> follows_drive_;    ///< per robot row: by its last SUBSCRIBE
   std::vector<std::uint32_t> sessions_;        ///< per robot row: of its last packet
   std::vector<std::uint32_t> light_sessions_;  ///< the same per row of lights
   std::uint32_t session_;

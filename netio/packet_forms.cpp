@@ -21,7 +21,8 @@ constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
                                  {Type::refusal, "REFUSAL", kHeaderBytes + kRefusalBytes},
                                  {Type::neighbours, "NEIGHBOURS", 0},
                                  {Type::state, "STATE", kHeaderBytes + kStateBytes},
-                                 {Type::values, "VALUES", 0}};
+                                 {Type::values, "VALUES", 0},
+                                 {Type::drive, "DRIVE", kHeaderBytes + kDriveBytes}};
 
 }  // namespace
 

@@ -71,6 +71,11 @@ void put_doubles(const std::array<double, n>& values, base::ByteWriter& writer) 
   for (const double value : values) writer.put(value);
 }
 
+PacketStatus check(const Drive& drive) {
+  const base::Twist& twist = drive.twist;
+  return check(std::array{twist.forward, twist.left, twist.turn}, kMaxSpeed);
+}
+
 PacketStatus check_size(std::size_t size, std::size_t expected) {
   if (size == expected) return PacketStatus::accepted;
   return size < expected ? PacketStatus::too_short : PacketStatus::too_long;
@@ -124,6 +129,13 @@ PacketStatus read_refusal(base::ByteReader& reader, Packet& packet) {
   return PacketStatus::accepted;
 }
 
+PacketStatus read_drive(base::ByteReader& reader, Packet& packet) {
+  const auto v = get_doubles<3>(reader);
+  const Drive drive{{v[0], v[1], v[2]}};
+  packet.body = drive;
+  return check(drive);
+}
+
 PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   base::ByteReader reader(payload);
   PacketStatus status = PacketStatus::accepted;
@@ -158,6 +170,9 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::refusal:
       status = check_size(payload.size(), kRefusalBytes);
       return status == PacketStatus::accepted ? read_refusal(reader, packet) : status;
+    case Type::drive:
+      status = check_size(payload.size(), kDriveBytes);
+      return status == PacketStatus::accepted ? read_drive(reader, packet) : status;
     case Type::neighbours:
       packet.body = Neighbours{payload};
       if (payload.size() > kMaxNeighbours * kV2vBytes) return PacketStatus::too_long;
@@ -346,6 +361,14 @@ void encode(const Header& header, const Refusal& refusal, base::Bytes& out) {
   SF_CHECK(at != kRefusals.end(), "REFUSAL for " + std::string(name(refusal.reason)));
   start(header, Type::refusal, out);
   base::ByteWriter(out).put(static_cast<std::uint32_t>(at - kRefusals.begin() + 1));
+}
+
+void encode(const Header& header, const Drive& command, base::Bytes& out) {
+  SF_CHECK(check(command) == PacketStatus::accepted,
+           "DRIVE of robot " + std::to_string(header.robot) + ": " + std::string(name(check(command))));
+  start(header, Type::drive, out);
+  base::ByteWriter writer(out);
+  put_doubles(std::array{command.twist.forward, command.twist.left, command.twist.turn}, writer);
 }
 
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out) {

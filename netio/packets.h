@@ -57,7 +57,8 @@ enum class Type : std::uint8_t {
   refusal = 139,
   neighbours = 140,
   state = 141,
-  values = 142
+  values = 142,
+  drive = 143
 };
 
 /// Returns the wire id (below 64; sensor types end at 31) of the sensor type whose readings, in either form, have type
@@ -73,7 +74,8 @@ struct Header {
   Type type = Type::v2v;
   std::uint16_t robot = 0;     ///< id of the robot that the reading or state belongs to; TAG, OBJECT: the tag's id;
                                ///< V2I: the intersection's
-  std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this type; 0 in states
+  std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this type; SUBSCRIBE: kFollowsDrive or 0; 0 in
+                               ///< other requests and states
   std::uint32_t sequence = 0;  ///< counter of messages of this type (and sensor), wraps to 0
   std::int64_t time = 0;       ///< [ns] in [0, kMaxTime]: time of measurement, not of sending
   std::uint16_t accuracy = 0;  ///< readings: accuracy word, see below; 0: not stated
@@ -117,6 +119,7 @@ struct Subscribe {
                             ///< without these states
 };
 inline constexpr std::uint32_t kNeighboursBit = 1;  ///< requests the states of other robots
+inline constexpr std::uint16_t kFollowsDrive = 1;   ///< `Header::sensor` of SUBSCRIBE: the robot follows DRIVE
 
 /// Start signal to the robot in the header, or to all with kBroadcastId.
 struct Start {};
@@ -140,9 +143,15 @@ struct Refusal {
   PacketStatus reason = PacketStatus::not_signed;  ///< not_signed, wrong_signature, replayed or wrong_source
 };
 
+/// From the farm: the velocity that a user of one of its bridges commands. Applies to the robot in the header until the
+/// next DRIVE or until the robot's own timeout.
+struct Drive {
+  base::Twist twist;  ///< in the robot's frame; each number within kMaxSpeed
+};
+
 inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                           ///< size of a complete V2V packet
 inline constexpr std::size_t kTagBytes = 104, kSubscribeBytes = 4, kObjectBytes = 4;  ///< payload sizes
-inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4;
+inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes = 24;
 inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V
 
@@ -160,7 +169,7 @@ struct Reading {
 struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading, Command, Step, Fetch,
-               State, Values, Refusal>
+               State, Values, Refusal, Drive>
       body;
   bool late = false;       ///< a state whose sequence is not newer than the last one of its sender
                            ///< (`InboxOptions::take_late`)
@@ -181,6 +190,7 @@ void encode(const Header& header, const V2i& signals, base::Bytes& out);
 void encode(const Header& header, const Object& object, base::Bytes& out);
 void encode(const Header& header, const Refusal& refusal, base::Bytes& out);
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out);
+void encode(const Header& header, const Drive& command, base::Bytes& out);
 void encode(const Header& header, const Command& command, base::Bytes& out);
 void encode(const Header& header, const Step& step, base::Bytes& out);
 void encode(const Header& header, const Fetch& fetch, base::Bytes& out);

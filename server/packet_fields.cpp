@@ -76,6 +76,9 @@ void add_body(const netio::Tag& state, Fields& out) {
 }
 void add_body(const netio::Subscribe& request, Fields& out) { add(out, "types", request.types); }
 void add_body(const netio::Start&, Fields&) {}
+void add_body(const netio::Drive& drive, Fields& out) {
+  add(out, "velocity", std::array{drive.twist.forward, drive.twist.left, drive.twist.turn});
+}
 void add_body(const netio::Leave&, Fields&) {}
 void add_body(const netio::Refusal& refusal, Fields& out) {
   const bool by_source = refusal.reason == netio::PacketStatus::wrong_source;

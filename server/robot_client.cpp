@@ -23,6 +23,8 @@ std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mov
   return seconds > 0.0 && fastest > 0.0 ? base::nanoseconds(std::max(seconds, 2.5 / fastest)) : 0;
 }
 
+constexpr std::int64_t kOwnReadingValid = 500'000'000;  ///< [ns] age of the real robot's readings to drive by
+
 std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& mover) {
   const std::uint32_t tag = options.tag > 0 ? options.tag : mover.id;
   if (tag >= netio::kMinTag && tag <= netio::kMaxId) return tag;
@@ -82,6 +84,9 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
   controller.localized_outside = true;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr, nullptr, &sensor_set},
                                    controller);
+  if (options.stop_without_farm) made_.needs = control::kNeedsFarm;
+  remote_ = control::remote_of(*made_.controller);
+  link_.set_follows_drive(remote_ != nullptr);
   add_own_state(options);
 }
 
@@ -146,13 +151,26 @@ void RobotClient::step(std::int64_t now) {
   if (own_) own_->predict(now, body_.state().X_WM.z);
   if (own_ && !real_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
-  if (started_ && !is_lost() && !log_.readings_timed_out(link_, now) && (!real_ || real_->ready(now))) decide(now);
+  if (started_ && !is_lost() && !is_blind(now) && (!real_ || real_->ready(now))) decide(now);
   if (real_) real_->drive(command_, now);
   touched_ = false;
   send_state(now);
-  log_.note_link(link_, now);
+  log_.note_link(link_, needs_farm(now), now);
   if (own_) log_.note_position(is_lost(), own_->port() > 0, now);
   if (real_) log_.note_real(real_->type().title, real_->problem(now), real_->counts().frames > 0, now);
+}
+
+/// Returns whether the readings that its controller drives by are missing.
+bool RobotClient::is_blind(std::int64_t now) const { return log_.readings_timed_out(link_, now) && needs_farm(now); }
+
+/// Returns whether its controller does not drive by the readings of the real robot's own sensors alone.
+bool RobotClient::needs_farm(std::int64_t now) const {
+  if (made_.needs == 0 || made_.needs == control::kNeedsFarm) return made_.needs != 0;
+  if (!real_) return true;
+  const auto own = real_->readings();
+  return std::none_of(own.begin(), own.end(), [&](const OwnReading& reading) {
+    return (made_.needs >> reading.type & 1u) != 0 && now - reading.time < kOwnReadingValid;
+  });
 }
 
 void RobotClient::leave(std::int64_t now) {
@@ -235,6 +253,8 @@ RobotClientStats RobotClient::stats() const {
                  own_->calibration()};
   stats.listens_for_spat = lights_.listens();
   stats.lights = lights_.counts();
+  stats.drives = drives_;
+  stats.drives_ignored = drives_ignored_;
   stats.stops = log_.stops();
   stats.lines_left_out = log_.left_out();
   return stats;
@@ -245,6 +265,7 @@ void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
     if (!lights_.listens()) lights_.accept(packet.header, *signals, now);
     return;
   }
+  if (const auto* drive = std::get_if<netio::Drive>(&packet.body)) return take_drive(*drive, now);
   const auto* state = std::get_if<netio::V2v>(&packet.body);
   if (state == nullptr) {
     started_ = true;
@@ -255,8 +276,14 @@ void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
   body_.update_other(row, state->X_WR, state->velocity, now);
 }
 
+void RobotClient::take_drive(const netio::Drive& drive, std::int64_t now) {
+  ++(remote_ != nullptr ? drives_ : drives_ignored_);
+  if (remote_ != nullptr) return remote_->command(drive.twist, now);
+  log_.note_ignored_drive(controller_, now);
+}
+
 void RobotClient::decide(std::int64_t now) {
-  gather_readings();
+  gather_readings(now);
   gather_others(now);
   gather_signals(now);
   control::ControllerInput input{now, own_state(), readings_, body_.contact(), started_, others_, signals_};
@@ -273,9 +300,11 @@ void RobotClient::draw_map(std::int64_t now) {
 }
 
 /// Packets do not carry the pose that the farm cast from, so the robot uses its own pose at that time.
-void RobotClient::gather_readings() {
+void RobotClient::gather_readings(std::int64_t now) {
   readings_.clear();
+  const bool farm_is_silent = log_.readings_timed_out(link_, now);
   for (RobotLink::Newest& newest : link_.readings()) {
+    if (farm_is_silent) break;  // too old to act on
     base::ReadingBlock& block = readings_.emplace_back(newest.block);
     block.X_WM = own_ ? own_->pose_at(block.time) : body_.pose_at(block.time);
     block.X_WS = base::compose(block.X_WM, newest.row->X_MS);

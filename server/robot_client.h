@@ -14,6 +14,7 @@
 #include "base/pose.h"
 #include "control/controllers.h"
 #include "control/error_summary.h"
+#include "control/remote.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
 #include "server/light_listener.h"
@@ -37,6 +38,7 @@ struct RobotClientOptions {
   std::uint64_t seed = 1;
   double forget = 10.0;                 ///< [s] of silence after which another robot is no longer an obstacle; 0: never
   double stop_after = 0.5;              ///< [s] without a reading after which the robot stops; 0: never
+  bool stop_without_farm = false;       ///< `stop_after` also with a controller that does not need these readings
   bool wait_for_start = false;          ///< stays at rest until the start signal arrives
   int log_descriptor = 2;               ///< of its log; -1: no log
   std::optional<netio::Endpoint> spat;  ///< where to receive SPaT of traffic lights, in place of the farm's V2I
@@ -96,6 +98,8 @@ struct RobotClientStats {
   std::optional<OwnMapCounts> map;     ///< nullopt: no map
   bool listens_for_spat = false;
   LightCounts lights;
+  std::uint64_t drives = 0;          ///< DRIVE packets of the farm that it followed
+  std::uint64_t drives_ignored = 0;  ///< DRIVE packets received by another controller than `remote`
 };
 
 /// Times [ns] are on the robot's own monotonic clock, which starts at 0. The world and the sensor set must outlive it.
@@ -139,10 +143,13 @@ class RobotClient {
   std::int64_t next_step(std::int64_t now) const;
   void on_packet(const netio::Packet& packet, std::int64_t now);
   void decide(std::int64_t now);
+  bool is_blind(std::int64_t now) const;
+  bool needs_farm(std::int64_t now) const;
+  void take_drive(const netio::Drive& drive, std::int64_t now);
   void send_state(std::int64_t now);
   /// Own state as estimated by the robot.
   const base::Report& own_state() const { return own_ ? own_->state() : body_.state(); }
-  void gather_readings();
+  void gather_readings(std::int64_t now);
   void gather_own_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
@@ -182,11 +189,13 @@ class RobotClient {
   std::optional<SimulatedSensors> simulated_sensors_;  ///< by which a simulated robot localizes itself
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
-  std::int64_t epoch_ = 0;           ///< [ns] Unix time at time 0 of its clock, set in `run`
-  std::unique_ptr<RealRobot> real_;  ///< null: the body is a model
-  double track_ = 0.0;               ///< [m] of the real robot's wheels, as estimated from
-  bool touched_ = false;             ///< the real robot had a contact since the last step
-  std::optional<OwnMap> map_;        ///< empty: no map
+  std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, set in `run`
+  std::unique_ptr<RealRobot> real_;    ///< null: the body is a model
+  double track_ = 0.0;                 ///< [m] of the real robot's wheels, as estimated from
+  bool touched_ = false;               ///< the real robot had a contact since the last step
+  std::optional<OwnMap> map_;          ///< empty: no map
+  control::Remote* remote_ = nullptr;  ///< of `made_`; null: another controller
+  std::uint64_t drives_ = 0, drives_ignored_ = 0;
 };
 
 }  // namespace sf::server

@@ -25,13 +25,13 @@ bool RobotClientLog::readings_timed_out(const RobotLink& link, std::int64_t now)
 }
 
 /// Logs refused signatures while nothing else arrives: immediately, then every ten seconds.
-void RobotClientLog::note_signatures(const RobotLink& link, std::int64_t now) {
+void RobotClientLog::note_signatures(const RobotLink& link, bool needs_farm, std::int64_t now) {
   const netio::SignatureTrouble& trouble = link.trouble();
   const bool is_new = trouble.count > std::exchange(troubles_, trouble.count);
   if (!is_new || now < next_trouble_ || now - link.last_answer().value_or(0) < kTroubleIn) return;
   next_trouble_ = now + kTroubleEvery;
   problem_logged_ = true;
-  stands_ = reading_timeout_ > 0;
+  stands_ = reading_timeout_ > 0 && needs_farm;
   log_.write(fmt::format("the farm at {} {}", netio::endpoint_text(link.farm()),
                          netio::trouble_text(trouble, fmt::format("robot {}", id_), base::unix_time())),
              now);
@@ -46,25 +46,36 @@ void RobotClientLog::note_position(bool lost, bool cameras, std::int64_t now) {
   log_.write(!lost ? fmt::format("cameras detect {}", robot_) : cameras ? unseen : uncertain, now);
 }
 
-void RobotClientLog::note_link(const RobotLink& link, std::int64_t now) {
+void RobotClientLog::note_link(const RobotLink& link, bool needs_farm, std::int64_t now) {
   const std::string farm = netio::endpoint_text(link.farm());
-  note_signatures(link, now);
+  const bool stops = reading_timeout_ > 0 && needs_farm;
+  note_signatures(link, needs_farm, now);
   if (!problem_logged_ && link.listens() && now - link.last_answer().value_or(0) >= kAnswerIn) {
     problem_logged_ = true;
-    stands_ = reading_timeout_ > 0;
+    stands_ = stops;
     log_.write(
         fmt::format("no packets from the farm at {} for 3 s; is `sensorfarm serve` running there with this world and "
                     "these ports? {}",
-                    farm, reading_timeout_ > 0 ? "The robot stops until readings arrive" : "The robot continues"),
+                    farm, stops ? "The robot stops until readings arrive" : "The robot continues"),
         now);
   }
-  if (stands_ == readings_timed_out(link, now) || !link.last_reading()) return;
+  if (stands_ == (needs_farm && readings_timed_out(link, now)) || !link.last_reading()) return;
   stands_ = !stands_;
   stops_ += stands_ ? 1 : 0;
   log_.write(stands_ ? fmt::format("no reading from the farm at {} for {:g} s: {} stops until one arrives", farm,
                                    1e-9 * static_cast<double>(reading_timeout_), robot_)
                      : fmt::format("readings arrive: {} continues", robot_),
              now);
+}
+
+void RobotClientLog::note_ignored_drive(const std::string& controller, std::int64_t now) {
+  if (now < next_drive_) return;
+  next_drive_ = now + kTroubleEvery;
+  log_.write(
+      fmt::format("the farm forwards commands of a Player client, which controller '{}' ignores; start the robot "
+                  "with `--controller remote` to follow them",
+                  controller),
+      now);
 }
 
 void RobotClientLog::note_real(std::string_view title, const std::string& problem, bool answered, std::int64_t now) {

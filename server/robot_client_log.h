@@ -19,7 +19,10 @@ class RobotClientLog {
   RobotClientLog(std::string robot, std::uint32_t id, int descriptor, std::int64_t reading_timeout);
 
   /// Logs changes since the last step: no answer, refused signatures, missing readings.
-  void note_link(const RobotLink& link, std::int64_t now);
+  /// @param needs_farm whether the robot stops while readings are missing
+  void note_link(const RobotLink& link, bool needs_farm, std::int64_t now);
+  /// Logs that the controller does not follow DRIVE, at most every ten seconds.
+  void note_ignored_drive(const std::string& controller, std::int64_t now);
   /// Logs that the robot's own position was lost or found.
   /// @param cameras it has cameras, and is lost until one sees it; else it is lost once its wheels' errors are too
   /// large
@@ -35,7 +38,7 @@ class RobotClientLog {
   std::uint64_t left_out() const { return log_.left_out(); }  ///< number of dropped lines
 
  private:
-  void note_signatures(const RobotLink& link, std::int64_t now);
+  void note_signatures(const RobotLink& link, bool needs_farm, std::int64_t now);
 
   std::string robot_;
   std::uint32_t id_;
@@ -47,7 +50,8 @@ class RobotClientLog {
   bool stands_ = false;            ///< stopped for lack of readings
   std::optional<bool> lost_;       ///< as of the last step
   std::uint64_t stops_ = 0;
-  std::string real_problem_;  ///< last logged
+  std::string real_problem_;     ///< last logged
+  std::int64_t next_drive_ = 0;  ///< [ns] time before which no ignored DRIVE is logged
 };
 
 }  // namespace sf::server

@@ -87,7 +87,9 @@ void RobotLink::send_request(std::int64_t now) {
   if (now < next_request_) return;
   netio::Subscribe request{netio::kNeighboursBit};
   for (const Stream& stream : streams_) request.types |= 1u << stream.source.type->id;
-  netio::encode({.robot = static_cast<std::uint16_t>(id_), .sequence = requests_, .time = now}, request, packet_);
+  const std::uint16_t drive = follows_drive_ ? netio::kFollowsDrive : 0;
+  netio::encode({.robot = static_cast<std::uint16_t>(id_), .sensor = drive, .sequence = requests_, .time = now},
+                request, packet_);
   send(netio::Type::subscribe, requests_++, now);
   next_request_ = now + kRequest;
 }

@@ -43,13 +43,15 @@ struct LinkCounts {
 /// Times [ns] are on the robot's own monotonic clock. The world and the sensor set must outlive it. Not thread-safe.
 class RobotLink {
  public:
-  /// Called with each relayed state, V2I and start signal.
+  /// Called with each relayed state, V2I, start signal and DRIVE.
   using PacketHandler = std::function<void(const netio::Packet&, std::int64_t now)>;
 
   /// @throws base::InputError if a port is in use or the farm's host is unknown
   RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
             const StreamLayout& layout, const LinkOptions& options, PacketHandler handler);
 
+  /// States in the following subscriptions whether the robot follows DRIVE. By default it does not.
+  void set_follows_drive(bool follows) { follows_drive_ = follows; }
   /// Sends its subscription every half second.
   void send_request(std::int64_t now);
   /// Sends its subscription when due, and a state. @param quality of an estimate
@@ -117,8 +119,9 @@ class RobotLink {
   netio::DelayLine in_;  ///< tags are streams, plus one for all other packets
   netio::FarmClock clock_;
   PacketHandler handler_;
-  std::uint32_t states_ = 0;         ///< number sent
-  std::uint32_t requests_ = 0;       ///< number sent
+  std::uint32_t states_ = 0;    ///< number sent
+  std::uint32_t requests_ = 0;  ///< number sent
+  bool follows_drive_ = false;
   std::int64_t next_request_ = 0;    ///< [ns]
   std::uint64_t other_packets_ = 0;  ///< received packets that are not states
   std::optional<std::int64_t> last_answer_, last_reading_;

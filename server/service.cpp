@@ -41,6 +41,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       lights_(world, {.spat = options.spat, .stale = options.stale_lights, .peers = options.receiver.peers},
               options.receiver.radio),
       receiver_(world, with_lights(options.receiver, lights_.ids())),
+      drives_(world),
       publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set)),
                  options.mirror),
       farm_(world, device,
@@ -105,6 +106,7 @@ std::int64_t Service::next_due() const {
 void Service::tick(std::int64_t now) {
   publish_due(now, false);
   lights_.publish(now, receiver_);
+  drives_.send(now, receiver_);
   receiver_.relay(now);
   ++ticks_;
 }
@@ -213,6 +215,7 @@ ServiceStats Service::stats() const {
   stats.socket_drops = receiver_.inbox().socket_drops();
   stats.relayed = receiver_.relayed();
   stats.lights = lights_.counts();
+  stats.drives = drives_.counts();
   stats.answers = receiver_.answered();
   stats.lines_left_out = receiver_.log().left_out();
   stats.states = receiver_.filter().counts();

@@ -17,6 +17,7 @@
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "sensors/sensor_set.h"
+#include "server/drive_relay.h"
 #include "server/light_service.h"
 #include "server/no_return_filter.h"
 #include "server/reading_publisher.h"
@@ -49,6 +50,7 @@ struct ServiceStats {
   std::uint64_t socket_drops = 0;  ///< datagrams dropped because the inbox's buffer was full
   netio::RelayCounts relayed;
   LightServiceCounts lights;
+  DriveCounts drives;
   netio::OutboxCounts answers;       ///< challenges and relayed datagrams
   std::uint64_t lines_left_out = 0;  ///< dropped from the log
   bool filtered = false;             ///< states were filtered: `states` and `clocks` are valid
@@ -87,6 +89,8 @@ class Service {
   std::size_t robots() const { return receiver_.robots().size(); }
   StateReceiver& receiver() { return receiver_; }
   const LightService& lights() const { return lights_; }
+  /// Takes users' commands for robots. Its packets are sent at each tick.
+  DriveRelay& drives() { return drives_; }
   ServiceStats stats() const;
 
  private:
@@ -106,6 +110,7 @@ class Service {
   const StreamLayout& layout_;
   LightService lights_;
   StateReceiver receiver_;
+  DriveRelay drives_;
   ReadingPublisher publisher_;
   farm::Farm farm_;
   std::vector<base::Sink*> sinks_;

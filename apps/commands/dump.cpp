@@ -49,6 +49,7 @@ std::string subject_of(const server::PacketDescription& packet) {
     case netio::Type::challenge:
     case netio::Type::neighbours:
     case netio::Type::state:
+    case netio::Type::drive:
       return fmt::format("{} to robot {}", packet.name, header.robot);
     default:
       break;

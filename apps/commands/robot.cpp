@@ -84,6 +84,7 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   client.seed = options.seed;
   client.forget = options.forget;
   client.stop_after = options.stop_after;
+  client.stop_without_farm = options.stop_without_farm;
   client.wait_for_start = waits_for_start(options);
   if (options.spat > 0) client.spat = netio::own_end_for(client.link.farm.address, options.spat);
   client.tag = options.tag;

@@ -134,6 +134,7 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
   facts.inbox = stats.inbox;
   facts.socket_drops = stats.socket_drops;
   facts.relayed = stats.relayed;
+  facts.drives = stats.drives;
   facts.lights = stats.lights;
   facts.filtered = stats.filtered;
   facts.states = stats.states;
@@ -171,7 +172,8 @@ int serve(const ServeOptions& options) {
     if (strayed.names()) service.record_to(strayed);
     if (recorder && !options.BridgeOptions::any()) print_taken_names(recorder->taken_names());
     install_stop_handlers();  // before addresses are printed, which scripts wait for
-    LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false);
+    LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false,
+                     &service.drives());
     if (!live.empty()) service.record_to(live);
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; press Ctrl-C to stop",
                   counted(service.robots(), "robot"), world.file, options.bind, service.port(),

@@ -44,8 +44,13 @@ void print_taken_names(const std::vector<std::string>& notes) {
 }
 
 LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world, const sensors::SensorSet& sensor_set,
-                         const scenarios::RunSettings& settings, bool simulated)
-    : options_(options), world_(world), sensor_set_(sensor_set), settings_(settings), simulated_(simulated) {
+                         const scenarios::RunSettings& settings, bool simulated, server::DriveRelay* drives)
+    : options_(options),
+      world_(world),
+      sensor_set_(sensor_set),
+      settings_(settings),
+      simulated_(simulated),
+      drives_(drives) {
   if (!options.any()) return;
   info_ = scenarios::run_info(world, sensor_set, settings);
   print_taken_names(record::name_frames(info_));
@@ -53,8 +58,8 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
   if (!options.player.empty()) {
     open_player();
     warn_of_exposure(read_own_address(options.player, "--player").address,
-                     simulated ? "read sensors and drive robots" : "read sensors", "Player has no passwords",
-                     "--player");
+                     simulated || drives != nullptr ? "read sensors and drive robots" : "read sensors",
+                     "Player has no passwords", "--player");
   }
   if (options.view) open_view();
   for (const std::string& line : bridges_.describe()) print_message("{}", line);
@@ -68,7 +73,10 @@ void LiveBridges::open_ros2() {
 
 void LiveBridges::open_player() {
   const netio::Endpoint bind = read_own_address(options_.player, "--player");
-  auto player = std::make_unique<bridges::PlayerBridge>(bridges::Scene{world_, sensor_set_, info_, simulated_}, bind);
+  bridges::player::Follows follows;
+  if (drives_ != nullptr) follows = [drives = drives_](std::uint32_t mover) { return drives->follows(mover); };
+  auto player = std::make_unique<bridges::PlayerBridge>(bridges::Scene{world_, sensor_set_, info_, simulated_}, bind,
+                                                        bridges::player::kSilent, 2, follows);
   options_.player = netio::endpoint_text(player->endpoint());
   bridges_.add(std::move(player));
 }
@@ -102,7 +110,9 @@ void LiveBridges::show_scene(bool is_new) {
 }
 
 void LiveBridges::write(const base::TickRecord& record) {
-  bridges_.take(ignored_);  // requests are answered, but change nothing
+  bridges_.take(requests_);  // other requests are answered, but change nothing
+  for (const bridges::Command& command : requests_.commands)
+    if (drives_ != nullptr) drives_->command(command.mover, command.twist);
   bridges_.publish(record, {});
 }
 

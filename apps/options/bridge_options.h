@@ -5,6 +5,7 @@
 #include "bridges/bridge.h"
 #include "record/run_info.h"
 #include "scenarios/run_info.h"
+#include "server/drive_relay.h"
 
 namespace sf::apps {
 
@@ -15,12 +16,12 @@ void print_taken_names(const std::vector<std::string>& notes);
 class LiveBridges : public base::Sink {
  public:
   /// Opens all bridges in `options` and prints their addresses on standard error.
-  /// @param simulated see bridges::Scene
+  /// @param simulated see bridges::Scene @param drives of a service, which forwards users' commands; may be null
   /// @throws base::InputError if one cannot be opened
   LiveBridges(const BridgeOptions& options, const world::World& world, const sensors::SensorSet& sensor_set,
-              const scenarios::RunSettings& settings, bool simulated);
+              const scenarios::RunSettings& settings, bool simulated, server::DriveRelay* drives = nullptr);
 
-  /// Publishes a tick of a service, which users can neither pause nor drive.
+  /// Publishes a tick of a service, which users cannot pause, and forwards commands for robots.
   void write(const base::TickRecord& record) override;
 
   /// Called before world and sensor set change in place: closes bridges that cannot continue until `show_scene`.
@@ -41,9 +42,10 @@ class LiveBridges : public base::Sink {
   const sensors::SensorSet& sensor_set_;
   const scenarios::RunSettings settings_;
   const bool simulated_;
+  server::DriveRelay* const drives_;
   record::RunInfo info_;
   bridges::Bridges bridges_;
-  bridges::Requests ignored_;
+  bridges::Requests requests_;  ///< of a service's users
 };
 
 }  // namespace sf::apps

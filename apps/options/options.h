@@ -314,9 +314,10 @@ struct RobotOptions : WorldOptions,
                       PeersOption,
                       SeedOption,
                       DurationOption {
-  std::string robot;        ///< name of the robot
-  double rate = 0.0;        ///< [Hz]; 0: the controller's own
-  double stop_after = 0.5;  ///< [s] without a reading after which the robot stops; 0: never
+  std::string robot;               ///< name of the robot
+  double rate = 0.0;               ///< [Hz]; 0: the controller's own
+  double stop_after = 0.5;         ///< [s] without a reading after which the robot stops; 0: never
+  bool stop_without_farm = false;  ///< also with a controller that does not need the farm's readings
   bool wait_for_start = false;
   std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights come from the farm
   std::uint16_t cameras = 0;  ///< port for TAG packets; 0: none

@@ -373,6 +373,8 @@ void add_robot(CLI::App& app, Call& call) {
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
+  sub->add_flag("--stop-without-farm", o.stop_without_farm,
+                "Stop then even if the controller needs no readings of the farm");
   add_forget(*sub, o);
   add_peers(*sub, o);
   sub->add_option(

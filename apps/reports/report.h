@@ -21,6 +21,7 @@
 #include "scenarios/tradeoff.h"
 #include "selftest/case.h"
 #include "sensors/sensor_set.h"
+#include "server/drive_relay.h"
 #include "server/light_service.h"
 #include "server/lockstep.h"
 #include "server/reading_publisher.h"
@@ -53,6 +54,7 @@ struct RunReport {
   netio::PacketCounts inbox;
   std::uint64_t socket_drops = 0;  ///< datagrams dropped because the inbox's buffer was full
   netio::RelayCounts relayed;      ///< states of other robots and start signals, relayed to robots
+  server::DriveCounts drives;      ///< commands of users of bridges, relayed to robots
   server::LightServiceCounts lights;
   bool filtered = false;  ///< `states` and `clocks` are valid
   server::StateFilterCounts states;

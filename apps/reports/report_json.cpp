@@ -287,10 +287,9 @@ std::string run_report_json(const RunReport& f) {
                       {"spat", spat_json(heard)},
                       {"silences", heard.silences},
                       {"sent", f.lights.sent}};
-    json["relayed"] = {{"states", f.relayed.states},
-                       {"datagrams", f.relayed.datagrams},
-                       {"waited", f.relayed.waited},
-                       {"starts", f.relayed.starts}};
+    json["relayed"] = {{"states", f.relayed.states}, {"datagrams", f.relayed.datagrams},
+                       {"waited", f.relayed.waited}, {"starts", f.relayed.starts},
+                       {"drives", f.drives.sent},    {"dropped_drives", f.drives.dropped}};
     if (f.filtered) json["states"] = states_json(f);
     json["log_lines_left_out"] = f.lines_left_out;
   }
@@ -401,10 +400,19 @@ Json real_robot_json(const server::RealRobotStats& real) {
 }  // namespace
 
 std::string robot_client_json(const server::RobotClientStats& f) {
-  Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
-            {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
-            {"started", f.started},   {"done", f.done},     {"answered", f.answered},
-            {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
+  Json json{{"robot", f.robot},
+            {"id", f.id},
+            {"controller", f.controller},
+            {"farm", f.farm},
+            {"wall_s", f.wall_s},
+            {"steps", f.steps},
+            {"started", f.started},
+            {"done", f.done},
+            {"answered", f.answered},
+            {"drives", {{"followed", f.drives}, {"ignored", f.drives_ignored}}},
+            {"contacts", f.contacts},
+            {"stops", f.stops},
+            {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
   if (f.own) json["positions"] = own_state_json(*f.own);
   if (f.map)

@@ -259,6 +259,8 @@ std::string run_report_text(const RunReport& f) {
                 f.relayed.starts);
   if (f.relayed.waited > 0)
     text += row("  waited for", counted(f.relayed.waited, "time") + ": more robots request V2V than one tick serves");
+  if (f.drives.sent + f.drives.dropped > 0)
+    text += row("commands relayed", "{} DRIVE, {} dropped", f.drives.sent, f.drives.dropped);
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (!f.recording.empty())
     text += row("recording", "{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6);

@@ -103,6 +103,8 @@ std::string robot_client_text(const server::RobotClientStats& f) {
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
   if (f.own) text += own_state_text(*f.own);
+  if (f.drives + f.drives_ignored > 0)
+    text += row("remote commands", "{} followed, {} ignored", f.drives, f.drives_ignored);
   text += row("contacts", "{} that began", f.contacts);
   if (f.stops > 0) text += row("stopped", counted(f.stops, "time") + " for lack of readings or positions");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");

@@ -43,8 +43,11 @@ bool is_usable(const base::Pose& pose) {
 
 }  // namespace
 
-Requester::Requester(const Scene& scene, const Devices& devices, Exchange& exchange)
-    : scene_(scene), devices_(devices), exchange_(exchange), on_(devices.rows().size(), 1) {}
+Requester::Requester(const Scene& scene, const Devices& devices, Exchange& exchange, const Follows& follows)
+    : scene_(scene), devices_(devices), exchange_(exchange), follows_(follows), on_(devices.rows().size(), 1) {}
+
+/// Returns whether commands move the robot now.
+bool Requester::moves(std::uint32_t mover) const { return scene_.simulated || (follows_ && follows_(mover)); }
 
 Answer Requester::request(std::uint32_t device, std::uint32_t subtype, std::span<const std::uint8_t> payload) {
   const Device& known = devices_.rows()[device];
@@ -83,7 +86,7 @@ Answer Requester::to_position(const Device& device, std::uint32_t subtype, std::
   }
   const bool known =
       request == Request::motors || request == Request::velocity_mode || request == Request::position_mode;
-  if (!known || !scene_.simulated) return {};
+  if (!known || !moves(device.mover)) return {};
   const bool on = xdr.get() != 0;
   // Accept velocities and positions in any mode.
   if (xdr.done() && request == Request::motors) exchange_.set_motors(device.mover, on);
@@ -175,7 +178,8 @@ bool Requester::drive(const Device& device, std::uint32_t subtype, XdrReader& xd
   if (count > 2) xdr.get();  // the motor state, which has its own request
   if (!xdr.done()) return false;
   const bool usable = std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::abs(v) <= 1e6; });
-  if (scene_.simulated && usable) drive(device.mover, command, numbers);
+  // A service reports commands that it cannot forward.
+  if ((scene_.simulated || follows_ != nullptr) && usable) drive(device.mover, command, numbers);
   return true;
 }
 

@@ -19,11 +19,11 @@ constexpr double kQuiet = 1.0;                        // [s] after which a conne
 }  // namespace
 
 Server::Server(const Scene& scene, const Devices& devices, Exchange& exchange, const netio::Endpoint& bind,
-               double silent, int log_descriptor)
+               double silent, int log_descriptor, const Follows& follows)
     : scene_(scene),
       devices_(devices),
       exchange_(exchange),
-      requester_(scene, devices, exchange),
+      requester_(scene, devices, exchange, follows),
       users_(devices.rows().size()),
       next_key_(kFirstConnection),
       silent_(silent),

@@ -34,9 +34,10 @@ class Server {
   /// All robots are at the first port. Robot k, counted from 1, is also alone at the k-th port after it, up to
   /// kMostRobotPorts.
   /// @param bind port 0: any free consecutive ports @param silent [s] in place of kSilent
+  /// @param follows see Requester
   /// @throws base::InputError if a port is in use
   Server(const Scene& scene, const Devices& devices, Exchange& exchange, const netio::Endpoint& bind,
-         double silent = kSilent, int log_descriptor = 2);
+         double silent = kSilent, int log_descriptor = 2, const Follows& follows = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

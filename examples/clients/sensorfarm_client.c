@@ -45,7 +45,8 @@ enum {
   SF_V2I = 137,
   SF_OBJECT,
   SF_REFUSAL,
-  SF_NEIGHBOURS
+  SF_NEIGHBOURS,
+  SF_DRIVE = 143
 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
 enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
@@ -119,6 +120,7 @@ static const sf_type sf_types[] = {
     {140, "NEIGHBOURS", 0, {0}, {{0}}},
     {141, "STATE", 0, {"index", "datagrams", "contact", "flags"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {142, "VALUES", 0, {"index", "datagrams", "values_type", "total", "first"}, {{"value", 1, 1}}},
+    {143, "DRIVE", 0, {0}, {{"velocity", 3, 1}}},
     {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
 
 typedef struct {
@@ -320,6 +322,7 @@ static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t
   if (p->type == SF_TAG)
     return in_range(!check_numbers(v, 3, 1e7) && !check_numbers(v + 7, 6, 1e3) && p->robot > 0 &&
                     fabs(hypot(hypot(v[3], v[4]), hypot(v[5], v[6])) - 1.0) <= 1e-3);
+  if (p->type == SF_DRIVE) return in_range(!check_numbers(v, 3, 1e3));
   if (p->type == SF_OBJECT) return in_range(p->words[0] <= 1 && p->robot > 0);
   if (p->type == SF_REFUSAL) return in_range(p->words[0] >= 1 && p->words[0] <= 4);
   return NULL;

@@ -86,6 +86,46 @@ TEST(PlayerProgram, AServiceIsRead) {
   EXPECT_EQ(serve.end().code, 0);
 }
 
+/// Motor commands reach the robot's own process; robots without one are refused and reported.
+TEST(PlayerProgram, AServiceForwardsCommandsToTheOwningProcess) {
+  const std::string port = std::to_string(free_ports(1));
+  PlayerProgram serve({"serve", "--player", "0", "--port", port, "--stale", "freeze"});
+  TestClient client(serve.server);
+  client.banner();
+  client.open(kPosition);
+  EXPECT_EQ(client.request(kPosition, 2, {0, 0, 0, 1}).header.type, MessageType::nack) << "no process drives ann";
+  client.send(MessageType::command, kPosition, 1, xdr_of(0.3, 0.0, 0.0, 1u));
+  EXPECT_TRUE(serve.program->prints("are dropped: no process sends its state; start `robot --name ann"))
+      << serve.program->err();
+  // Without sensors, whose ports other tests may use.
+  const std::string world = serve.folder.write(
+      "floor.world",
+      "position( name \"ann\" size [0.4 0.3 0.2] velocity_bounds [-0.5 0.5 0 0 0 0 -90 90] pose [-1 0 0 90] )\n");
+  Program robot({"robot", world, "--name", "ann", "--port", port, "--controller", "remote", "--json"});
+  EXPECT_TRUE(until([&] {
+    return client.request(kPosition, 2, {0, 0, 0, 1}).header.type == MessageType::ack;
+  })) << robot.err();
+  client.send(MessageType::command, kPosition, 1, xdr_of(0.3, 0.0, 0.0, 1u));
+  TestClient second(serve.server);  // the newest command counts, whoever sends it
+  second.banner();
+  EXPECT_TRUE(until([&] {
+    base::Bytes ann;
+    bridges::player::XdrWriter writer(ann);
+    writer.put_text("ann");
+    writer.put_all({0.0, 0.0, 0.0});
+    const Message answer = second.request(kSimulation, 1, ann);
+    XdrReader xdr(answer.payload);
+    xdr.get_text(10), xdr.get_double();
+    return xdr.get_double() > 0.1;
+  })) << robot.err();
+  second.open(kPosition);
+  second.send(MessageType::command, kPosition, 1, xdr_of(0.0, 0.0, 0.0, 1u));
+  const Outcome outcome = robot.stop();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GT(Json(outcome.out).number("/drives/followed"), 0);
+  EXPECT_EQ(serve.end().code, 0);
+}
+
 /// A robot's process drives the robot of another program, until that program ends.
 TEST(PlayerProgram, ARobotProcessDrivesItsRobotAsAClient) {
   PlayerProgram run({"run", "--player", "0"});

@@ -42,6 +42,7 @@ void set_service(RunReport& f) {
   fill(f.inbox, 1);
   f.socket_drops = 31;
   f.relayed = {.states = 32, .datagrams = 33, .waited = 34, .starts = 35};
+  f.drives = {.sent = 36, .dropped = 37};
   f.lights = {{.states = 41, .messages = 42, .others = 43, .invalid = 44, .packets = 45, .refused = 46, .silences = 47},
               48};
   for (std::size_t k = 0; k < f.states.states.size(); ++k) f.states.states[k] = 50 + k;
@@ -89,7 +90,8 @@ scenarios::Verification verification(std::uint64_t different, double largest) {
 
 server::RobotClientStats robot_stats() {
   server::RobotClientStats f{.robot = "anna", .id = 7, .controller = "route", .farm = "127.0.0.1:9000", .wall_s = 2.5};
-  f.steps = 25, f.contacts = 2, f.stops = 3, f.lines_left_out = 4, f.distance_m = 1.25, f.done = true;
+  f.steps = 25, f.drives = 5, f.drives_ignored = 6, f.contacts = 2, f.stops = 3, f.lines_left_out = 4,
+  f.distance_m = 1.25, f.done = true;
   f.started = false;
   f.pose = {1.0, -2.0, 0.0, 0.5};
   f.link.sent = outbox(51);

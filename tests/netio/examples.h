@@ -67,6 +67,13 @@ inline base::Bytes refusal_example() {
   return out;
 }
 
+inline base::Bytes drive_example() {
+  base::Bytes out;
+  encode({.robot = 7, .sequence = 41, .time = 4'100'000'000, .session = 0x11223344, .token = 0x55667788},
+         Drive{{0.25, 0.0, -0.125}}, out);
+  return out;
+}
+
 inline base::Bytes challenge_example() {
   base::Bytes out;
   encode({.robot = 7, .session = 0x11223344, .token = 0x55667788}, Challenge{0x0BADF00D}, out);
@@ -109,9 +116,9 @@ inline std::vector<base::Bytes> states() {
 
 /// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(),   extended_example(), v2v_example(),     tag_example(),
-          subscribe_example(), start_example(),    leave_example(),   challenge_example(),
-          v2i_example(),       object_example(),   refusal_example(), neighbours_example()};
+  return {reading_example(), extended_example(),   v2v_example(),       tag_example(), subscribe_example(),
+          start_example(),   leave_example(),      challenge_example(), v2i_example(), object_example(),
+          refusal_example(), neighbours_example(), drive_example()};
 }
 
 inline base::Bytes command_example() {

@@ -39,6 +39,7 @@ TEST(Packets, BytesMatchTheDocumentation) {
   EXPECT_EQ(leave_example(), documented("leave"));
   EXPECT_EQ(challenge_example(), documented("challenge"));
   EXPECT_EQ(refusal_example(), documented("refusal"));
+  EXPECT_EQ(drive_example(), documented("drive"));
   EXPECT_EQ(v2i_example(), documented("v2i"));
   EXPECT_EQ(object_example(), documented("object"));
   EXPECT_EQ(neighbours_example(), documented("neighbours"));
@@ -281,7 +282,7 @@ TEST(Packets, TypesBelow128AreReadings) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // type 0 does not exist
     EXPECT_EQ(sensor_type_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 142;
+    const bool is_state = type >= 128 && type <= 143;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? PacketStatus::accepted : PacketStatus::unknown_type)
@@ -576,7 +577,8 @@ TEST(PacketsPage, NumbersMatchTheCode) {
       {"START", Type::start},     {"LEAVE", Type::leave},   {"CHALLENGE", Type::challenge},
       {"COMMAND", Type::command}, {"STEP", Type::step},     {"FETCH", Type::fetch},
       {"V2I", Type::v2i},         {"OBJECT", Type::object}, {"REFUSAL", Type::refusal},
-      {"STATE", Type::state},     {"VALUES", Type::values}, {"NEIGHBOURS", Type::neighbours}};
+      {"STATE", Type::state},     {"VALUES", Type::values}, {"NEIGHBOURS", Type::neighbours},
+      {"DRIVE", Type::drive}};
   std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
   const std::string page((std::istreambuf_iterator<char>(file)), {});
   const std::string row = page.substr(page.find("| 5 | u8 | type |"), 500);

@@ -222,6 +222,25 @@ struct SignedSocketTest : testing::Test {
     encode({.robot = 7}, Challenge{3}, challenge);
     ASSERT_EQ(receive(challenge, {kFarm, kOwn}, &signer), 1u);
   }
+  /// Receives an encoded DRIVE, unchanged.
+  PacketStatus receive_drive(const base::Bytes& bytes, Outbox& from, std::int64_t now = 0) {
+    const PacketCounts before = socket.counts();
+    from.queue({kLoopback, bound_endpoint(socket.socket()).port}, bytes);
+    from.flush();
+    wait_readable(socket.socket(), socket.socket(), 1000);
+    socket.receive([&](std::span<const std::uint8_t> one) { socket.accept(one, now, packet); });
+    for (std::size_t i = 0; i < kPacketStatuses; ++i)
+      if (socket.counts()[static_cast<PacketStatus>(i)] != before[static_cast<PacketStatus>(i)])
+        return static_cast<PacketStatus>(i);
+    return PacketStatus::unproven;
+  }
+  base::Bytes drive(std::uint32_t sequence, const SessionToken& token, PacketSigner* by, std::uint16_t robot = 7) {
+    base::Bytes bytes;
+    encode({.robot = robot, .sequence = sequence}, Drive{{0.25, 0.0, 0.0}}, bytes);
+    write_session_token(bytes, token);
+    if (by != nullptr) by->sign(bytes);
+    return bytes;
+  }
   /// @return number of states and other packets that pass
   std::size_t receive(const base::Bytes& bytes, const SessionToken& session_token, PacketSigner* by) {
     farm.queue({kLoopback, bound_endpoint(socket.socket()).port}, bytes, session_token, by);
@@ -247,6 +266,26 @@ TEST_F(SignedSocketTest, RefusalChangesNothing) {
   EXPECT_EQ(socket.trouble().reason, PacketStatus::wrong_signature);
   EXPECT_EQ(socket.trouble().farm_time, 9);
   EXPECT_EQ(socket.farm_session_token().session, kFarm) << "as before";
+}
+
+/// A robot follows DRIVE only from its farm, signed, in order, once.
+TEST_F(SignedSocketTest, AcceptsDriveOnlyFromItsFarm) {
+  constexpr SessionToken kBoth{kFarm, kOwn};
+  const base::Bytes first = drive(5, kBoth, &signer);
+  EXPECT_EQ(receive_drive(first, farm), PacketStatus::accepted);
+  EXPECT_EQ(std::get<Drive>(packet.body).twist.forward, 0.25);
+  EXPECT_EQ(receive_drive(first, farm), PacketStatus::replayed);
+  EXPECT_EQ(receive_drive(first, farm, 60'000'000'000), PacketStatus::replayed) << "also a minute later";
+  EXPECT_EQ(receive_drive(drive(4, kBoth, &signer), farm), PacketStatus::stale) << "overtaken";
+  EXPECT_EQ(receive_drive(drive(6, kBoth, nullptr), farm), PacketStatus::not_signed);
+  PacketSigner forger(SigningKey{99}, 5000);
+  EXPECT_EQ(receive_drive(drive(7, kBoth, &forger), farm), PacketStatus::wrong_signature);
+  Outbox stranger{OutboxOptions{.bind = {kLoopback, 0}}};
+  EXPECT_EQ(receive_drive(drive(8, kBoth, &signer), stranger), PacketStatus::wrong_source);
+  EXPECT_EQ(receive_drive(drive(9, {kFarm, kOwn + 1}, &signer), farm), PacketStatus::wrong_source) << "session";
+  EXPECT_EQ(receive_drive(drive(10, {kFarm + 1, kOwn}, &signer), farm), PacketStatus::wrong_source) << "other farm";
+  EXPECT_EQ(receive_drive(drive(11, kBoth, &signer, 3), farm), PacketStatus::unknown_robot);
+  EXPECT_EQ(receive_drive(drive(12, kBoth, &signer), farm), PacketStatus::accepted) << "nothing is blocked";
 }
 
 /// No other machine can reach a robot whose farm is on its machine. Boundary: any address of 127.0.0.0/8.

@@ -42,6 +42,8 @@ struct Settings {
   std::vector<netio::Peer> peers;
   std::uint32_t samples = 91;      ///< of each laser
   std::string accuracy = "exact";  ///< of the sensors
+  std::string controller = "wander";
+  bool stop_without_farm = false;
 };
 
 inline world::World in_mode(world::World world, const std::string& accuracy) {
@@ -86,9 +88,11 @@ struct Fixture {
     return make_client(mover, peer != nullptr ? peer->key : std::nullopt);
   }
   std::unique_ptr<RobotClient> make_client(std::uint32_t mover, const std::optional<netio::SigningKey>& key) {
-    RobotClientOptions options{.wait_for_start = settings.wait_for_start, .log_descriptor = log.descriptor()};
+    RobotClientOptions options{.stop_without_farm = settings.stop_without_farm,
+                               .wait_for_start = settings.wait_for_start,
+                               .log_descriptor = log.descriptor()};
     options.link = {.farm = {netio::kLoopback, service->port()}, .model = {.loss = settings.loss}, .key = key};
-    options.controller.name = "wander";
+    options.controller.name = settings.controller;
     return std::make_unique<RobotClient>(world, sensor_set, mover, layout, options);
   }
   /// Runs both for some ticks, or only the robot.

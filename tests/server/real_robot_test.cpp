@@ -53,12 +53,23 @@ constinit const control::ControllerType recorder{
       return std::make_unique<Recorder>();
     }};
 
+/// The same, by infrared receivers alone.
+constinit const control::ControllerType own_recorder{.name = "test-own-recorder",
+                                                     .summary = recorder.summary,
+                                                     .stops_on_bumper = false,
+                                                     .make = recorder.make,
+                                                     .needs = 1u << sensors::kIrReceiver};
+
 struct RealRobotTest : testing::Test {
-  static void SetUpTestSuite() { control::add_controller(&recorder); }
-  std::unique_ptr<RobotClient> client(const RealRobotOptions& serial) {
-    RobotClientOptions options{.stop_after = 0.0, .log_descriptor = f.log.descriptor()};
+  static void SetUpTestSuite() {
+    control::add_controller(&recorder);
+    control::add_controller(&own_recorder);
+  }
+  std::unique_ptr<RobotClient> client(const RealRobotOptions& serial, std::string_view controller = recorder.name,
+                                      double stop_after = 0.0) {
+    RobotClientOptions options{.stop_after = stop_after, .log_descriptor = f.log.descriptor()};
     options.link.farm = {netio::kLoopback, f.service->port()};
-    options.controller.name = recorder.name;
+    options.controller.name = controller;
     options.real = serial;
     return std::make_unique<RobotClient>(f.world, f.sensor_set, 1, f.layout, options);
   }
@@ -110,6 +121,24 @@ TEST_F(RealRobotTest, OwnSensorsAreNumberedAfterVirtualOnes) {
   robot.step(kTick);
   EXPECT_EQ(seen().numbers[sensors::kBumper], 1u);
   EXPECT_EQ(seen().numbers[sensors::kCliff], 0u);
+}
+
+/// The farm is away, and with it the robot's virtual laser. The controller whose needs the real robot's own receiver
+/// meets continues, without virtual readings; the other one stops.
+TEST_F(RealRobotTest, OwnSensorsThatSufficeReplaceTheFarm) {
+  for (const auto& [controller, continues] : {std::pair{recorder.name, false}, {own_recorder.name, true}}) {
+    CreateSimulator create;
+    const auto robot = client({.device = create.device()}, controller, 0.5);
+    EXPECT_TRUE(create.streaming());
+    std::int64_t now = 0;
+    for (std::uint64_t k = 1; k <= 20; ++k) {
+      create.run(7);
+      robot->step(now += kTick);
+      EXPECT_TRUE(create.driven(k));
+    }
+    EXPECT_EQ(create.right, continues ? 200 : 0) << controller;
+    EXPECT_EQ(seen().values.count(sensors::kLaser), 0u);
+  }
 }
 
 TEST_F(RealRobotTest, AContactBetweenTwoStepsReachesTheController) {
