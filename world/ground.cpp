@@ -9,6 +9,8 @@ namespace sf::world {
 namespace {
 
 constexpr double kContact = 0.01;  // [m] a body this close to a surface is on it
+// [half widths] pieces are this much longer at both ends, which closes the gaps between them on the outside of bends
+constexpr double kOverlap = 0.05;
 
 base::BoxTree tree_of(std::span<const Ramp> ramps) {
   std::vector<base::Box> boxes;
@@ -25,17 +27,21 @@ base::BoxTree tree_of(std::span<const Ramp> ramps) {
 Ground::Ground(std::span<const Ramp> ramps) : ramps_(ramps), tree_(tree_of(ramps)) {}
 
 double Ground::height(glm::dvec2 p, double most) const {
-  double highest = 0.0;
+  double highest = 0.0, beyond = 0.0;  // of pieces at p, and of those that end near p
   tree_.any({p, p}, [&](std::uint32_t i) {
     const Ramp& ramp = ramps_[i];
     const glm::dvec2 e = ramp.b - ramp.a;
-    const double square = glm::dot(e, e);
-    const double u = square > 0.0 ? std::clamp(glm::dot(p - ramp.a, e) / square, 0.0, 1.0) : 0.0;
-    const double z = ramp.z_a + u * (ramp.z_b - ramp.z_a);
-    if (z <= most && z > highest && glm::length(p - (ramp.a + u * e)) <= ramp.half_width) highest = z;
+    const double length = glm::length(e);
+    if (!(length > 0.0) || std::abs(base::cross(e, p - ramp.a)) > ramp.half_width * length) return false;
+    const double s = glm::dot(p - ramp.a, e) / length;
+    const double past = std::max({0.0, -s, s - length});
+    const double z = ramp.z_a + std::clamp(s / length, 0.0, 1.0) * (ramp.z_b - ramp.z_a);
+    if (z > most || past > kOverlap * ramp.half_width) return false;
+    double& surface = past > 0.0 ? beyond : highest;
+    surface = std::max(surface, z);
     return false;
   });
-  return highest;
+  return beyond > highest + kContact ? beyond : highest;
 }
 
 double Ground::follow(const base::Pose& from, glm::dvec2 to) const {

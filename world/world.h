@@ -62,7 +62,7 @@ struct MarkingHeights {
   double z_min = 0.0, z_max = 0.0;  ///< [m]
 };
 
-/// A straight piece of road above the floor, with round ends (world/ground.h).
+/// A straight piece of road above the floor (world/ground.h).
 struct Ramp {
   glm::dvec2 a, b;              ///< [m] centre line, world frame
   double z_a = 0.0, z_b = 0.0;  ///< [m] heights of its ends; linear between them

@@ -54,10 +54,6 @@ bool in_sight(const world::Segment& wall) { return wall.seen_by_laser && wall.se
 }  // namespace
 
 FilteredScene filter_scene(const world::World& world, bool exact) {
-  if (!exact && !world.ramps.empty())
-    throw base::InputError(world.file, 0,
-                           "a raster of lane markings has no heights, but its roads have; expected exact markings: "
-                           "remove 'road_resolution' or the roads' heights (height_m in the sidecar)");
   FilteredScene e;
   e.grains = {0.0};
   for (const world::Segment& wall : world.walls)

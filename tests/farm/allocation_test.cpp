@@ -79,7 +79,8 @@ TEST(Allocation, NoneWithHostSensors) {
   for (int i = 0; i < 12; ++i) {
     const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, trial::fitted("bumper"));
     auto& sensors = world.movers[m].sensors;
-    for (const char* type : {"cliff", "irreceiver", "lightsensor", "battery", "fiducial"}) sensors.push_back(trial::fitted(type));
+    for (const char* type : {"cliff", "irreceiver", "lightsensor", "battery", "fiducial"})
+      sensors.push_back(trial::fitted(type));
     world::Setting input = scenes::setting("input[0]", {0.01});
     input.text = "light";
     sensors.push_back(trial::fitted("analog", {input}));

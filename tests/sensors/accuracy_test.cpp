@@ -331,9 +331,8 @@ TEST(Accuracy, TypesWithoutABoundStateNone) {
   world::World world;
   scenes::add_room(world, {0.0, 0.0}, 4.0);
   const std::uint32_t m = scenes::add_robot(world, {}, scenes::laser(3));
-  for (const char* type :
-       {"sonar", "infrared", "bumper", "cliff", "encoder", "gyro", "gps", "irreceiver", "lightsensor", "battery",
-        "fiducial"})
+  for (const char* type : {"sonar", "infrared", "bumper", "cliff", "encoder", "gyro", "gps", "irreceiver",
+                           "lightsensor", "battery", "fiducial"})
     world.movers[m].sensors.push_back({type, type, {}, 0.1, 1.0, 1.0, {}, 0, ""});
   world::update_extent_and_hash(world);
   const Glance glance(world);

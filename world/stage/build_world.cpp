@@ -145,6 +145,11 @@ World build_world(const std::string& file, const std::string& content, const Loa
   if (!options.leave_outlines) read_unread(b.world);
   update_extent_and_hash(b.world);
   warn_of_nothing(b, document.root);
+  if (b.world.road_resolution > 0.0 && !b.world.ramps.empty())
+    b.context.warnings.push_back(
+        {file, location_of(document.root, "road_resolution").line,
+         "a raster of lane markings has no heights, but the roads have: lane edge sensors read "
+         "the markings of all levels; remove 'road_resolution' for exact markings"});
   if (!b.world.movers.empty()) warn_of_overlaps(b);
   if (!b.world.movers.empty() && b.world.unread.empty()) warn_of_places(b);
   b.world.warnings.insert(b.world.warnings.begin(), b.context.warnings.begin(), b.context.warnings.end());
