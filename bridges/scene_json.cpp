@@ -14,6 +14,7 @@
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
+#include "world/ground.h"
 
 namespace sf::bridges {
 
@@ -65,11 +66,11 @@ Json lines_of(const std::vector<const Segment*>& segments) {
   return lines;
 }
 
-/// [m] height above all movers; infinite if there are none.
+/// [m] height above all movers, as if all were on the floor; infinite if there are none.
 double headroom(const World& world) {
   double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
   for (const world::Mover& mover : world.movers)
-    for (const Segment& s : mover.body) top = std::max(top, mover.X_WM.z + s.z_max);
+    for (const Segment& s : mover.body) top = std::max(top, world::clearance_of(world, mover) + s.z_max);
   return top;
 }
 

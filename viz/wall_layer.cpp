@@ -9,20 +9,22 @@
 #include "sensors/laser.h"
 #include "viz/color.h"
 #include "viz/theme.h"
+#include "world/ground.h"
 
 namespace sf::viz {
 namespace {
 
 enum class Kind { solid, passable, unseen, overhead };
 
-/// Returns the height [m] above all movers and their loads; infinite without movers.
+/// Returns the height [m] above all movers and their loads, as if all were on the floor; infinite without movers.
 double headroom(const world::World& world) {
   double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
   for (const world::Mover& mover : world.movers) {
-    for (const world::Segment& s : mover.body) top = std::max(top, mover.X_WM.z + s.z_max);
+    const double z = world::clearance_of(world, mover);
+    for (const world::Segment& s : mover.body) top = std::max(top, z + s.z_max);
   }
   for (const sensors::SensorSpec& laser : sensors::laser_type.parse(world).rows)
-    top = std::max(top, world.movers[laser.mover].X_WM.z + laser.X_MS.z);
+    top = std::max(top, world::clearance_of(world, world.movers[laser.mover]) + laser.X_MS.z);
   return top;
 }
 
