@@ -100,9 +100,11 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
   seen.state.X_WM = at_height(now.X_WM);
   seen.state.velocity = now.velocity;
   readings_.assign(input.readings.begin(), input.readings.end());
+  std::pair last{input.time, now.X_WM};  // most readings have one time
   for (base::ReadingBlock& reading : readings_) {
     const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
-    reading.X_WM = at_height(localization_->predict(reading.time).estimate.X_WM);
+    if (reading.time != last.first) last = {reading.time, localization_->predict(reading.time).estimate.X_WM};
+    reading.X_WM = at_height(last.second);
     reading.X_WS = base::compose(reading.X_WM, X_MS);
   }
   seen.readings = readings_;

@@ -203,13 +203,17 @@ Innovation Localization::weigh(const WheeledMeasurement& m) {
 Prediction Localization::predict(std::int64_t time) const {
   const State* state = window_.state_at(time);
   if (state == nullptr) return {};
-  Hypotheses all;
-  for (const auto& [weight, each] : state->hypotheses)
-    all.push_back({weight, estimate_of(estimation::predict(model_, each, time))});
-  const Estimate& best = estimation::most_probable(all);
-  Prediction prediction{Prediction::Status::fresh, time - state->last_fix, best};
+  const auto at_time = [&](const WheeledState& each) { return estimate_of(estimation::predict(model_, each, time)); };
+  Prediction prediction{Prediction::Status::fresh, time - state->last_fix, {}};
   Covariance& P = prediction.estimate.covariance;
-  if (all.size() > 1) P = covariance_about(best, all);
+  if (state->hypotheses.size() == 1) {
+    prediction.estimate = at_time(state->hypotheses.front().state);
+  } else {
+    Hypotheses all;
+    for (const auto& [weight, each] : state->hypotheses) all.push_back({weight, at_time(each)});
+    prediction.estimate = estimation::most_probable(all);
+    P = covariance_about(prediction.estimate, all);
+  }
   if (!options_.encoder) return prediction;
   // The error of rounding is constant while the robot is at rest: more readings do not reduce it.
   const double rounding = square(options_.encoder->per_count) / 12.0;

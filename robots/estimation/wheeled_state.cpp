@@ -94,6 +94,23 @@ Matrix process_noise(const WheeledModel& model, const WheeledState& from, double
   return Q;
 }
 
+/// Returns F P F^T. Most rows of F are those of the identity, and the others have few numbers.
+Matrix carried(const Matrix& F, const Matrix& P) {
+  Matrix rows = P;
+  for (int i = 0; i < kSize; ++i) {
+    rows.row(i) *= F(i, i);
+    for (int k = 0; k < kSize; ++k)
+      if (k != i && F(i, k) != 0.0) rows.row(i) += F(i, k) * P.row(k);
+  }
+  Matrix all = rows;
+  for (int i = 0; i < kSize; ++i) {
+    all.col(i) *= F(i, i);
+    for (int k = 0; k < kSize; ++k)
+      if (k != i && F(i, k) != 0.0) all.col(i) += F(i, k) * rows.col(k);
+  }
+  return all;
+}
+
 /// First component and number of components, by kind of measurement.
 constexpr std::array<std::array<int, 2>, 4> kMeasured{{{kX, 3}, {kX, 2}, {kTurn, 1}, {kLeftRolled, 2}}};
 
@@ -137,14 +154,14 @@ WheeledState predict(const WheeledModel& model, const WheeledState& state, std::
   const double dt = 1e-9 * static_cast<double>(time - state.time);
   WheeledState later = move(model, state, dt);
   later.time = time;
-  const Matrix F = derivative(model, state, dt);
-  store_symmetric(F * covariance_of(state) * F.transpose() + process_noise(model, state, dt), later);
+  store_symmetric(carried(derivative(model, state, dt), covariance_of(state)) + process_noise(model, state, dt), later);
   return later;
 }
 
 Innovation innovation(const WheeledState& predicted, const WheeledMeasurement& measurement) {
   const auto [H, difference, noise] = residual_of(predicted, measurement);
-  const ValuesMatrix S = H * covariance_of(predicted) * H.transpose() + noise;
+  const Rows HP = H.lazyProduct(covariance_of(predicted));
+  const ValuesMatrix S = HP.lazyProduct(H.transpose()) + noise;
   const Eigen::LLT<ValuesMatrix> llt(S);
   return {difference.dot(llt.solve(difference)), static_cast<int>(difference.size()),
           2.0 * llt.matrixLLT().diagonal().array().log().sum()};
@@ -153,14 +170,18 @@ Innovation innovation(const WheeledState& predicted, const WheeledMeasurement& m
 WheeledState correct(const WheeledState& predicted, const WheeledMeasurement& measurement) {
   const auto [H, difference, noise] = residual_of(predicted, measurement);
   const auto P = covariance_of(predicted);
-  const ValuesMatrix S = H * P * H.transpose() + noise;
-  const Rows Kt = S.llt().solve(H * P);
+  const Rows HP = H.lazyProduct(P);
+  const ValuesMatrix S = HP.lazyProduct(H.transpose()) + noise;
+  const Rows Kt = S.llt().solve(HP);
   WheeledState state = predicted;
-  Eigen::Map<Vector>(state.mean.data()) += Kt.transpose() * difference;
+  Eigen::Map<Vector>(state.mean.data()) += Kt.transpose().lazyProduct(difference);
   state.mean[kYaw] = base::wrap_angle(state.mean[kYaw]);
   if (measurement.kind == WheeledMeasurement::Kind::pose) state.z = measurement.z;
-  const Matrix rest = Matrix::Identity() - Kt.transpose() * H;
-  store_symmetric(rest * P * rest.transpose() + Kt.transpose() * noise * Kt, state);
+  // Joseph's form (I - K H) P (I - K H)^T + K R K^T, with products of few rows.
+  const Matrix rest = P - Kt.transpose().lazyProduct(HP);
+  const Rows Hrest = H.lazyProduct(rest.transpose());
+  store_symmetric(rest - Hrest.transpose().lazyProduct(Kt) + Kt.transpose().lazyProduct(noise.lazyProduct(Kt).eval()),
+                  state);
   return state;
 }
 
