@@ -56,9 +56,9 @@ struct DirectV2vCounts {
   PacketCounts packets;          ///< received; accepted: new states
   std::uint64_t duplicates = 0;  ///< datagrams received before, and states, also relayed ones, that arrived by the
                                  ///< other way before or were overtaken there
-  std::uint64_t far = 0;        ///< from robots beyond radio range
-  std::uint64_t own = 0;        ///< from this robot, returned by the network
-  std::uint64_t over_rate = 0;  ///< dropped without a check, because too many arrived
+  std::uint64_t far = 0;         ///< from robots beyond radio range
+  std::uint64_t own = 0;         ///< from this robot, returned by the network
+  std::uint64_t over_rate = 0;   ///< dropped without a check, because too many arrived
   std::uint64_t socket_drops = 0;
   std::uint64_t lines_left_out = 0;  ///< dropped from the log
 };

@@ -111,6 +111,16 @@ TEST_F(RobotV2vTest, RelayedStatesCountOnce) {
   EXPECT_GT(counts(0).duplicates, 20u);
 }
 
+TEST_F(RobotV2vTest, RobotsStillSeeEachOtherAfterTheFarmFails) {
+  make();
+  start();
+  run(20, true);
+  f.service = nullptr;
+  run(40, false);
+  ASSERT_EQ(seen_others()[0].size(), 1u);
+  EXPECT_NEAR(seen_others()[0][0].state.X_WM.x, robots[1]->stats().pose.x, 0.03);
+}
+
 /// The robots are 4.1 m apart.
 TEST_F(RobotV2vTest, RobotsBeyondRadioRangeAreNotSeen) {
   make(4.0);
