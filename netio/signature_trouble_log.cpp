@@ -20,6 +20,7 @@ std::string peer_text(const Claim& claim, const std::string& name) {
     case PeerKind::light:
       return fmt::format("intersection {}", claim.id);
     case PeerKind::start:
+    case PeerKind::group:  // claimed by no packet to the farm
       break;
   }
   return "START";

@@ -25,8 +25,8 @@ using world::TomlNode;
 using world::TomlReader;
 
 constexpr std::array<std::string_view, 1> kKeys{"peer"};
-constexpr std::array<std::string_view, 6> kPeerKeys{"robot", "tag", "start", "light", "address", "key"};
-constexpr std::array<std::string_view, 4> kKindKeys{"robot", "tag", "start", "light"};
+constexpr std::array<std::string_view, 7> kPeerKeys{"robot", "tag", "start", "light", "group", "address", "key"};
+constexpr std::array<std::string_view, 5> kKindKeys{"robot", "tag", "start", "light", "group"};
 
 /// Returns the only key of `table` that names the sender of its packets.
 const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
@@ -37,7 +37,8 @@ const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
     if (found != nullptr) reader.fail(*node, fmt::format("a peer can have '{}' or '{}', not both", found->key, key));
     found = node;
   }
-  if (found == nullptr) reader.fail(table, "a peer requires robot = ID, tag = ID, light = ID, or start = true");
+  if (found == nullptr)
+    reader.fail(table, "a peer requires robot = ID, tag = ID, light = ID, start = true, or group = true");
   return *found;
 }
 
@@ -55,9 +56,9 @@ void require_known(const TomlReader& reader, const TomlNode& node, const std::ma
 
 void read_identity(const TomlReader& reader, const TomlNode& table, const WireNames* names, Peer& peer) {
   const TomlNode& node = kind_node(reader, table);
-  if (node.key == "start") {
-    peer.kind = PeerKind::start;
-    if (!reader.flag(table, "start")) reader.fail(node, "'start' expects true");
+  if (node.key == "start" || node.key == "group") {
+    peer.kind = node.key == "start" ? PeerKind::start : PeerKind::group;
+    if (!reader.flag(table, node.key)) reader.fail(node, fmt::format("'{}' expects true", node.key));
     return;
   }
   if (node.key == "light") {
@@ -74,6 +75,7 @@ void read_identity(const TomlReader& reader, const TomlNode& table, const WireNa
 
 void read_address(const TomlReader& reader, const TomlNode& table, Peer& peer) {
   if (world::find(table, "address") == nullptr) return;
+  if (peer.kind == PeerKind::group) reader.fail(*world::find(table, "address"), "a group has a key, but no address");
   const std::string text = reader.text(table, "address", "");
   peer.address = netio::parse_address(text);
   if (!peer.address)

@@ -50,8 +50,10 @@ control::PositionSensors position_sensors_of(const world::Mover& mover, const Re
       mover.name));
 }
 
-LinkOptions with_lights(LinkOptions link, std::span<const Intersection> intersections) {
+LinkOptions link_options_of(const RobotClientOptions& options, std::span<const Intersection> intersections) {
+  LinkOptions link = options.link;
   for (const Intersection& one : intersections) link.lights.push_back(one.id);
+  if (link.direct) link.direct->log_descriptor = options.log_descriptor;
   return link;
 }
 
@@ -69,7 +71,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       body_(world, mover, base::nanoseconds(options.forget)),
       roads_(world::roads_of(world)),
       lights_(world, roads_ ? &*roads_ : nullptr, {.spat = options.spat}),
-      link_(world, sensor_set, mover, sent, with_lights(options.link, lights_.intersections()),
+      link_(world, sensor_set, mover, sent, link_options_of(options, lights_.intersections()),
             [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
       intents_(world.movers.size()),
       started_(!options.wait_for_start),
@@ -256,7 +258,7 @@ RobotClientStats RobotClient::stats() const {
   stats.drives = drives_;
   stats.drives_ignored = drives_ignored_;
   stats.stops = log_.stops();
-  stats.lines_left_out = log_.left_out();
+  stats.lines_left_out = log_.left_out() + (stats.link.direct ? stats.link.direct->lines_left_out : 0);
   return stats;
 }
 

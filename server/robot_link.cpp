@@ -16,6 +16,8 @@ constexpr std::int64_t kMilli = 1'000'000;            ///< [ns]
 constexpr std::int64_t kRequest = 500 * kMilli;       ///< [ns] between SUBSCRIBEs: four within the farm's timeout
 constexpr std::int64_t kLongestSleep = 100 * kMilli;  ///< [ns] bounds the delay of a stop request
 constexpr std::uint32_t kRelayed = 1;                 ///< stream number for packets relayed by the farm
+constexpr std::uint32_t kDirect = 2;                  ///< stream number for V2V without the farm
+constexpr std::size_t kToFarm = 0, kToPeers = 1;      ///< tags of sent packets
 
 std::uint32_t stream_number(netio::Type type, std::uint32_t low) {
   return static_cast<std::uint32_t>(type) << 16 | low;
@@ -25,6 +27,14 @@ std::vector<std::uint32_t> others_of(const world::World& world, std::uint32_t id
   std::vector<std::uint32_t> ids = ids_of(wire_names(world).robots);
   ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
   return ids;
+}
+
+std::optional<netio::DirectV2v> direct_of(const LinkOptions& options, const world::World& world, std::uint32_t id) {
+  if (!options.direct) return std::nullopt;
+  netio::DirectV2vOptions direct = *options.direct;
+  direct.robot = id;
+  direct.others = others_of(world, id);
+  return std::optional<netio::DirectV2v>(std::in_place, direct);
 }
 
 }  // namespace
@@ -37,6 +47,7 @@ RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor
       farm_(options.farm),
       v2v_socket_(
           {.farm = farm_, .robot = id_, .others = others_of(world, id_), .key = options.key, .lights = options.lights}),
+      direct_(direct_of(options, world, id_)),
       port_listener_(netio::own_end_for(farm_.address).address, std::size_t{1} << 20, specs(layout)),
       receiver_(receiver_options(layout, options)),
       out_(options.model),
@@ -102,16 +113,23 @@ void RobotLink::send_state(const netio::V2v& state, std::int64_t now, const neti
   header.sequence = states_;
   header.state = quality;
   netio::encode(header, state, packet_);
+  if (direct_) {
+    direct_->set_position({state.X_WR.x, state.X_WR.y});
+    out_.send({id_, stream_number(netio::Type::v2v, kDirect), states_}, now, kToPeers, packet_);
+  }
   send(netio::Type::v2v, states_++, now);
 }
 
 void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now) {
-  out_.send({id_, stream_number(type, 0), sequence}, now, 0, packet_);
+  out_.send({id_, stream_number(type, 0), sequence}, now, kToFarm, packet_);
   flush_due(now);
 }
 
 void RobotLink::flush_due(std::int64_t until) {
-  out_.release(until, [&](std::size_t, std::span<const std::uint8_t> bytes) { v2v_socket_.send(bytes); });
+  out_.release(until, [&](std::size_t tag, std::span<const std::uint8_t> bytes) {
+    if (tag == kToPeers) return direct_->send(bytes);
+    v2v_socket_.send(bytes);
+  });
 }
 
 void RobotLink::leave(std::int64_t now) {
@@ -120,15 +138,16 @@ void RobotLink::leave(std::int64_t now) {
   header.robot = static_cast<std::uint16_t>(id_);
   header.time = now;
   netio::encode(header, netio::Leave{}, packet_);
-  out_.send({id_, stream_number(netio::Type::leave, 0), 0}, now, 0, packet_);
+  out_.send({id_, stream_number(netio::Type::leave, 0), 0}, now, kToFarm, packet_);
   flush_due(std::numeric_limits<std::int64_t>::max());
 }
 
 void RobotLink::wait(std::int64_t now, std::int64_t until) const {
   const std::int64_t next = std::min({until, out_.next(), in_.next(), now + kLongestSleep});
   if (next <= now) return;
-  netio::wait_readable(v2v_socket_.socket(), port_listener_.epoll(),
-                       static_cast<int>((next - now + kMilli - 1) / kMilli));
+  const int timeout_ms = static_cast<int>((next - now + kMilli - 1) / kMilli);
+  if (direct_) return direct_->wait(v2v_socket_.socket(), port_listener_.epoll(), timeout_ms);
+  netio::wait_readable(v2v_socket_.socket(), port_listener_.epoll(), timeout_ms);
 }
 
 void RobotLink::run(std::int64_t now) {
@@ -138,7 +157,11 @@ void RobotLink::run(std::int64_t now) {
     in_.send(reading_id(streams_[i], bytes), now, i, bytes);
   });
   v2v_socket_.receive(
-      [&](std::span<const std::uint8_t> bytes) { in_.send(packet_id(bytes), now, streams_.size(), bytes); });
+      [&](std::span<const std::uint8_t> bytes) { in_.send(packet_id(bytes, kRelayed), now, streams_.size(), bytes); });
+  if (direct_)
+    direct_->receive(now, [&](std::span<const std::uint8_t> bytes) {
+      in_.send(packet_id(bytes, kDirect), now, streams_.size() + 1, bytes);
+    });
   in_.release(now, [&](std::size_t tag, std::span<const std::uint8_t> bytes) { take(tag, bytes, now); });
 }
 
@@ -153,16 +176,17 @@ netio::MessageId RobotLink::reading_id(Stream& stream, std::span<const std::uint
   return {id_, std::uint32_t{stream.source.type->id} << 16 | low, stream.piece++ << 32 | stream.sequence};
 }
 
-netio::MessageId RobotLink::packet_id(std::span<const std::uint8_t> bytes) {
+netio::MessageId RobotLink::packet_id(std::span<const std::uint8_t> bytes, std::uint32_t low) {
   netio::Packet packet;
   if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.type == netio::Type::v2v)
-    return {id_, stream_number(netio::Type::v2v, kRelayed),
+    return {id_, stream_number(netio::Type::v2v, low),
             std::uint64_t{packet.header.robot} << 32 | packet.header.sequence};
   return {id_, stream_number(netio::Type::start, kRelayed), other_packets_++};
 }
 
 void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now) {
   if (tag == streams_.size()) return take_packet(bytes, now);
+  if (tag > streams_.size()) return take_direct(bytes, now);
   const netio::PartStatus part_status = receiver_.accept(tag, bytes, now);
   if (part_status == netio::PartStatus::rejected) return;
   last_answer_ = now;
@@ -179,7 +203,15 @@ void RobotLink::take_packet(std::span<const std::uint8_t> bytes, std::int64_t no
   if (v2v_socket_.accept(bytes, now, packet) != netio::PacketStatus::accepted) return;
   if (std::holds_alternative<netio::Challenge>(packet.body)) return handle_challenge(before);
   last_answer_ = now;
+  if (direct_ && packet.header.type == netio::Type::v2v && !direct_->admit(packet.header, now)) return;
   handler_(packet, now);
+}
+
+/// Decodes again, because the injected link may have flipped a bit.
+void RobotLink::take_direct(std::span<const std::uint8_t> bytes, std::int64_t now) {
+  netio::Packet packet;
+  if (netio::decode(bytes, packet) != netio::PacketStatus::accepted || packet.header.type != netio::Type::v2v) return;
+  if (direct_->admit(packet.header, now)) handler_(packet, now);
 }
 
 /// Earlier requests were dropped. A new session means a new farm, with its own clock and sequences.
@@ -229,9 +261,10 @@ std::span<RobotLink::Newest> RobotLink::readings() {
 
 LinkCounts RobotLink::counts() const {
   LinkCounts counts{
-      v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}, stale_};
+      v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}, stale_, {}};
   counts.socket_drops = port_listener_.socket_drops() + netio::socket_drops(v2v_socket_.socket());
   for (const Stream& stream : streams_) counts.whole[std::string(stream.source.type->name)] += stream.whole;
+  if (direct_) counts.direct = direct_->counts();
   return counts;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// A robot's two inputs: the ports of its sensors, and the socket that it sends from. Packets in both directions pass
-// the injected link. Only packets of its own farm are accepted.
+// A robot's inputs: the ports of its sensors, the socket that it sends from, and V2V without the farm. Packets in both
+// directions pass the injected link. Readings are accepted from the robot's own farm only.
 
 #include <cstdint>
 #include <functional>
@@ -11,6 +11,7 @@
 
 #include "base/reading.h"
 #include "netio/delay_line.h"
+#include "netio/direct_v2v.h"
 #include "netio/farm_clock.h"
 #include "netio/port_listener.h"
 #include "netio/receiver.h"
@@ -27,6 +28,8 @@ struct LinkOptions {
   netio::LinkModel model;                ///< injected in each direction
   std::optional<netio::SigningKey> key;  ///< of the robot; signs its packets and those of the farm
   std::vector<std::uint32_t> lights;     ///< ids of intersections whose V2I are accepted
+  /// V2V without the farm; nullopt: none. The link sets the ids of robots.
+  std::optional<netio::DirectV2vOptions> direct;
 };
 
 struct LinkCounts {
@@ -38,12 +41,13 @@ struct LinkCounts {
   std::uint64_t socket_drops = 0;              ///< datagrams dropped because a socket's buffer was full
   std::map<std::string, std::uint64_t> whole;  ///< complete readings, by type
   std::uint64_t stale = 0;  ///< readings computed from a state of the robot that the farm marked as stale
+  std::optional<netio::DirectV2vCounts> direct;  ///< nullopt: no V2V without the farm
 };
 
 /// Times [ns] are on the robot's own monotonic clock. The world and the sensor set must outlive it. Not thread-safe.
 class RobotLink {
  public:
-  /// Called with each relayed state, V2I, start signal and DRIVE.
+  /// Called with each state of another robot, relayed or direct, and each V2I, start signal and DRIVE.
   using PacketHandler = std::function<void(const netio::Packet&, std::int64_t now)>;
 
   /// @throws base::InputError if a port is in use or the farm's host is unknown
@@ -73,7 +77,11 @@ class RobotLink {
   std::span<Newest> readings();
 
   /// Returns whether a state of robot `id` arrived in the last two seconds.
-  bool is_active(std::uint32_t id, std::int64_t now) const { return v2v_socket_.is_active(id, now); }
+  bool is_active(std::uint32_t id, std::int64_t now) const {
+    return direct_ ? direct_->is_active(id, now) : v2v_socket_.is_active(id, now);
+  }
+  /// V2V without the farm; null: none.
+  const netio::DirectV2v* direct() const { return direct_ ? &*direct_ : nullptr; }
   const netio::FarmClock& clock() const { return clock_; }
   /// [ns] arrival of the last valid packet; nullopt: none yet.
   std::optional<std::int64_t> last_answer() const { return last_answer_; }
@@ -103,20 +111,23 @@ class RobotLink {
   /// Sends packets due by `until`.
   void flush_due(std::int64_t until);
   netio::MessageId reading_id(Stream& stream, std::span<const std::uint8_t> bytes) const;
-  netio::MessageId packet_id(std::span<const std::uint8_t> bytes);
+  /// @param low kRelayed or kDirect
+  netio::MessageId packet_id(std::span<const std::uint8_t> bytes, std::uint32_t low);
   void take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now);
   void handle_challenge(const netio::SessionToken& before);
   void take_packet(std::span<const std::uint8_t> bytes, std::int64_t now);
+  void take_direct(std::span<const std::uint8_t> bytes, std::int64_t now);
 
   std::uint32_t mover_;
   std::uint32_t id_;
   std::vector<Stream> streams_;
   netio::Endpoint farm_;
   netio::V2vSocket v2v_socket_;
+  std::optional<netio::DirectV2v> direct_;
   netio::PortListener port_listener_;
   netio::Receiver receiver_;
   netio::DelayLine out_;
-  netio::DelayLine in_;  ///< tags are streams, plus one for all other packets
+  netio::DelayLine in_;  ///< tags are streams, plus one for all other packets, plus one for direct V2V
   netio::FarmClock clock_;
   PacketHandler handler_;
   std::uint32_t states_ = 0;    ///< number sent

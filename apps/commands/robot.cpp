@@ -45,8 +45,8 @@ std::optional<netio::SigningKey> key_of(const RobotOptions& options, const std::
   const std::optional<netio::SigningKey> key = own != nullptr ? own->key : std::nullopt;
   if (key) require_signable({*own}, options.wire);
   if (!options.peers.empty() && !key)
-    print_message("warning: {} has no key for {} (id {}): its packets are not signed", options.peers, mover.name,
-                  mover.id);
+    print_message("warning: {} has no key for {} (id {}): its packets to the farm are not signed", options.peers,
+                  mover.name, mover.id);
   return key;
 }
 
@@ -62,6 +62,35 @@ server::CameraOptions cameras_of(const RobotOptions& options, const netio::Endpo
   const std::uint32_t id = options.tag > 0 ? options.tag : mover.id;
   if (const netio::Peer* tag = netio::find(peers, netio::PeerKind::tag, id)) cameras.peers = {*tag};
   return cameras;
+}
+
+/// Receives on loopback only if all others are there.
+netio::DirectV2vOptions direct_v2v_of(const RobotOptions& options, netio::AddressBook& book,
+                                      const std::vector<netio::Peer>& peers) {
+  netio::DirectV2vOptions direct{.radio = options.radio, .table = peers};
+  for (const std::string& text : options.v2v_peers) direct.peers.push_back(read_address(book, text, "--v2v-peers"));
+  if (!options.v2v_group.empty()) direct.group = read_address(book, options.v2v_group, "--v2v-group");
+  if (!options.v2v_interface.empty()) direct.interface_address = netio::resolve(options.v2v_interface);
+  const bool local = !direct.group && options.v2v_interface.empty() &&
+                     std::all_of(direct.peers.begin(), direct.peers.end(),
+                                 [](const auto& peer) { return netio::is_loopback(peer.address); });
+  const bool is_default = options.v2v_port == 0 && !direct.peers.empty();
+  direct.bind = {local ? netio::kLoopback : direct.interface_address, is_default ? kDirectV2vPort : options.v2v_port};
+  return direct;
+}
+
+/// Anyone who can reach the port can send as a robot without a key.
+void warn_of_unsigned_v2v(const RobotOptions& options, const world::World& world, const server::RobotLink& link) {
+  if (link.direct() == nullptr || netio::is_loopback(link.direct()->options().bind.address)) return;
+  const std::vector<netio::Peer>& peers = link.direct()->options().table;
+  if (netio::find(peers, netio::PeerKind::group, 0) != nullptr) return;
+  std::vector<NamedPeer> senders;
+  for (const world::Mover& mover : world.movers)
+    if (!mover.is_tag) senders.push_back({netio::Claim{netio::PeerKind::robot, mover.id}, mover.name});
+  const std::string why = why_unsigned(options, peers, senders);
+  if (!why.empty())
+    print_message("warning: anyone who can reach UDP port {} can send V2V as another robot: {}", link.direct()->port(),
+                  why);
 }
 
 server::RobotClientOptions client_options(const RobotOptions& options, const world::World& world,
@@ -91,6 +120,8 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   client.most_sigma = options.most_sigma;
   if (options.cameras > 0) client.cameras = cameras_of(options, client.link.farm, peers, mover);
   netio::AddressBook book;
+  if (!options.v2v_peers.empty() || !options.v2v_group.empty())
+    client.link.direct = direct_v2v_of(options, book, peers);
   if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");
   if (builds_map(options)) client.map.emplace();
   if (!options.map.empty()) client.map->receiver = read_address(book, options.map, "--map");
@@ -133,6 +164,7 @@ int robot(const RobotOptions& options) {
         "warning: --spat {} accepts light states from anyone who can reach this machine, since these messages are not "
         "signed",
         options.spat);
+  warn_of_unsigned_v2v(options, world, process.link());
   install_stop_handlers();
   print_message("{} (id {}) runs controller '{}' {} with the farm at {}{}; press Ctrl-C to stop",
                 world.movers[mover].name, world.movers[mover].id, client.controller.name,

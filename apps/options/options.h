@@ -332,7 +332,14 @@ struct RobotOptions : WorldOptions,
   std::string player;                       ///< "host:port" of a Player server with a robot; empty: none
   std::string robot_type = "create";        ///< word of a server::RealRobotType
   unsigned baud = 0;                        ///< 0: the default of the type
+  std::vector<std::string> v2v_peers;       ///< "host:port" of each receiver of V2V without the farm
+  std::string v2v_group;                    ///< "address:port" of a multicast group for it; empty: none
+  std::string v2v_interface;                ///< address of the interface for it; empty: by the route
+  std::uint16_t v2v_port = 0;               ///< 0: kDirectV2vPort with `v2v_peers`, else any
+  double radio = netio::kV2vRange;          ///< [m] range of V2V without the farm
 };
+
+inline constexpr std::uint16_t kDirectV2vPort = 9400;  ///< default port of V2V without the farm
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP
 

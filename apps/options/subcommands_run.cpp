@@ -350,12 +350,44 @@ void add_cameras(CLI::App& app, RobotOptions& o) {
       ->group(kGroup);
 }
 
+void add_direct_v2v(CLI::App& app, RobotOptions& o) {
+  constexpr const char* kGroup = "V2V without the farm (docs/robots.md)";
+  app.add_option("--v2v-peers", o.v2v_peers, "Send each V2V to these robots, too, and accept theirs")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT,...")
+      ->group(kGroup);
+  app.add_option("--v2v-group", o.v2v_group, "Send each V2V to this multicast group, too, and accept those sent to it")
+      ->check(not_empty("ADDRESS:PORT"))
+      ->type_name("ADDRESS:PORT")
+      ->group(kGroup);
+  app.add_option("--v2v-port", o.v2v_port,
+                 fmt::format("UDP port to receive them on (default: {} with --v2v-peers, else any)", kDirectV2vPort))
+      ->check(whole(1, 65535))
+      ->type_name("PORT")
+      ->group(kGroup);
+  app.add_option("--v2v-interface", o.v2v_interface,
+                 "IPv4 address of the interface for them (default: any, and by the route for --v2v-group)")
+      ->check(not_empty("an address"))
+      ->type_name("ADDR")
+      ->group(kGroup);
+  app.add_option("--radio", o.radio, "Radio range [m]: states from farther away are ignored")
+      ->check(number(0.001, 1e8))
+      ->type_name("M")
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
 void add_robot(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("robot",
                          "Run one robot in its own process, simulated or real (on a serial line or behind a Player "
                          "server), with sensors served by a farm (exit code 1 if the farm sends nothing)");
-  auto& o = add_command(*sub, call, robot, [sub] { require_any(*sub, {"--tag"}, {"--cameras", "--truth"}); });
+  auto& o = add_command(*sub, call, robot, [sub] {
+    require_any(*sub, {"--tag"}, {"--cameras", "--truth"});
+    require_any(*sub, {"--v2v-port", "--v2v-interface", "--radio"}, {"--v2v-peers", "--v2v-group"});
+  });
   add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
                       "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
   add_world(*sub, o);
@@ -414,6 +446,7 @@ void add_robot(CLI::App& app, Call& call) {
       ->check(not_empty("HOST:PORT"))
       ->excludes(serial)
       ->type_name("HOST:PORT");
+  add_direct_v2v(*sub, o);
   sub->add_flag("--wait-for-start", o.wait_for_start, "Wait for the start signal before driving (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");
   add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");

@@ -152,6 +152,17 @@ Json injected(const netio::DelayCounts& counts) {
           {"corrupted", counts.corrupted}};
 }
 
+Json direct_v2v_json(const netio::DirectV2vCounts& direct) {
+  return {{"sent", {{"packets", direct.sent.sent}, {"failed", direct.sent.failed}, {"dropped", direct.sent.dropped}}},
+          {"packets", direct.packets.total()},
+          {"by_reason", reasons(direct.packets)},
+          {"duplicates", direct.duplicates},
+          {"out_of_radio_range", direct.far},
+          {"own", direct.own},
+          {"unread", direct.over_rate},
+          {"socket_drops", direct.socket_drops}};
+}
+
 Json link_json(const server::LinkCounts& link) {
   const netio::ReceiverCounts& in = link.readings;
   return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
@@ -414,6 +425,7 @@ std::string robot_client_json(const server::RobotClientStats& f) {
             {"stops", f.stops},
             {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
+  if (f.link.direct) json["direct_v2v"] = direct_v2v_json(*f.link.direct);
   if (f.own) json["positions"] = own_state_json(*f.own);
   if (f.map)
     json["own_map"] = {{"scans", f.map->scans},

@@ -23,6 +23,20 @@ std::string injected_text(const netio::DelayCounts& counts) {
                      counts.full > 0 ? fmt::format(", {} too many at once", counts.full) : "");
 }
 
+std::string direct_text(const netio::DirectV2vCounts& direct) {
+  std::string text =
+      row("direct V2V", "{} sent; {}", counted(direct.sent.sent, "packet"), netio::packet_counts_text(direct.packets));
+  text += row("", "{}, {} out of radio range, {} of its own", counted(direct.duplicates, "duplicate"), direct.far,
+              direct.own);
+  if (direct.sent.failed + direct.sent.dropped > 0)
+    text += row("  not sent", "{} failed ({}), {} dropped", direct.sent.failed, direct.sent.first_failure,
+                direct.sent.dropped);
+  if (direct.over_rate > 0) text += row("  unread", counted(direct.over_rate, "packet") + ": too many at once");
+  if (direct.socket_drops > 0)
+    text += row("", counted(direct.socket_drops, "packet") + " dropped by the operating system");
+  return text;
+}
+
 std::string link_text(const server::LinkCounts& link) {
   const netio::ReceiverCounts& in = link.readings;
   std::string text = row("packets sent", link.sent.sent);
@@ -37,6 +51,7 @@ std::string link_text(const server::LinkCounts& link) {
   if (link.socket_drops > 0) text += row("", counted(link.socket_drops, "packet") + " dropped by the operating system");
   if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " restarted");
   text += row("V2V and START", netio::packet_counts_text(link.packets));
+  if (link.direct) text += direct_text(*link.direct);
   if (link.out.lost + link.in.lost > 0) {
     text += row("injected link, out", injected_text(link.out));
     text += row("  in", injected_text(link.in));

@@ -102,6 +102,8 @@ server::RobotClientStats robot_stats() {
   f.link.readings.restarts = 35;
   fill(f.link.packets, 3);
   f.link.socket_drops = 41, f.link.stale = 42, f.link.whole = {{"gps", 43}, {"laser", 44}};
+  f.link.direct = netio::DirectV2vCounts{outbox(61), {}, 62, 63, 64, 65, 66, 0};
+  fill(f.link.direct->packets, 4);
   f.error = {5, 0.5, 0.75};
   f.own = {.cameras = true, .wheels = true, .errors = {4, 0.0004, 0.015, 0.1}, .sigma = 0.0125};
   fill(f.own->counts.packets, 2);
@@ -177,7 +179,7 @@ TEST(ReportRecords, EmptyReportsHaveNoMembersOfServices) {
       {run_report_json({}),
        {"shared", "dipoles", "control", "packets", "received", "socket_drops", "lights", "relayed", "states",
         "log_lines_left_out", "lockstep", "recording"}},
-      {robot_client_json({}), {"positions", "own_map", "real_robot", "spat", "error", "localization"}},
+      {robot_client_json({}), {"positions", "own_map", "real_robot", "spat", "error", "localization", "direct_v2v"}},
       {vps_report_json({}), {"accuracy", "truth", "packets"}}};
   for (const auto& [json, absent] : reports)
     for (const std::string& name : absent) EXPECT_FALSE(Json(json).has("/" + name)) << name;

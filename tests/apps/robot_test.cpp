@@ -236,6 +236,31 @@ TEST(Robot, WithoutSensorsItNeedsNoFarm) {
   EXPECT_GT(Json(outcome.out).number("/distance_m"), 0.0);
 }
 
+/// A patrol that stops before the other robot, which it knows by V2V only.
+TEST(Robot, SeesOthersByV2vWithoutAFarm) {
+  const Folder folder;
+  const std::string world =
+      folder.write("pair.world",
+                   "define bot position( size [0.3 0.3 0.1] )\n"
+                   "bot( name \"robot1\" pose [0 0 0 0] )\nbot( name \"robot2\" pose [1 0 0 0] )\n");
+  const unsigned ports = free_ports(3);
+  const auto robot = [&](const std::string& name, const std::string& point, unsigned own, unsigned other) {
+    return std::make_unique<Program>(Words{"robot", world, "--name", name, "--port", std::to_string(ports + 2),
+                                           "--controller", "patrol", "--set", point, "--set", "speed=0.5",
+                                           "--v2v-peers", "127.0.0.1:" + std::to_string(other), "--v2v-port",
+                                           std::to_string(own), "--duration", "2.5", "--json"});
+  };
+  const auto still = robot("robot2", "points=1 0", ports + 1, ports);
+  ASSERT_TRUE(still->prints("; press Ctrl-C to stop")) << still->err();
+  const auto drives = robot("robot1", "points=5 0", ports, ports + 1);
+  const Json facts = facts_of(drives);
+  EXPECT_GT(facts.number("/direct_v2v/by_reason/accepted"), 0);
+  EXPECT_GT(facts.number("/direct_v2v/sent/packets"), 0);
+  EXPECT_EQ(facts.number("/contacts"), 0);
+  EXPECT_LT(facts.number("/pose/0"), 0.69) << "contact is at 0.7 m";
+  facts_of(still);
+}
+
 Words patrol_on_a_line(const std::string& world, const std::string& name, const std::string& device,
                        const std::string& points, const std::string& speed, const Words& more = {}) {
   return with({"robot", world, "--name", name, "--port", std::to_string(free_ports(1)), "--controller", "patrol",

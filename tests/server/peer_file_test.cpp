@@ -52,6 +52,13 @@ TEST(PeerFile, ReadsAddressesAndKeys) {
   EXPECT_EQ(peers[2].kind, PeerKind::start);
 }
 
+TEST(PeerFile, ReadsTheKeyOfTheGroup) {
+  const auto peers = parse(std::string("[[peer]]\ngroup = true\nkey = \"") + kKeyText + "\"\n");
+  ASSERT_EQ(peers.size(), 1u);
+  EXPECT_EQ(peers[0].kind, PeerKind::group);
+  EXPECT_TRUE(peers[0].key);
+}
+
 TEST(PeerFile, ErrorsNameTheirLine) {
   const auto expect = [](const std::string& text, const std::string& place, const std::string& part) {
     const std::string error = error_of(text);
@@ -61,7 +68,7 @@ TEST(PeerFile, ErrorsNameTheirLine) {
   expect("", "peers.toml", "has no peer");
   expect("peers = 1", "peers.toml:1", "unknown key 'peers'");
   expect("peer = 1", "peers.toml:1", "each under [[peer]]");
-  expect("[[peer]]\naddress = \"10.0.0.1\"", "peers.toml:1", "robot = ID, tag = ID, light = ID, or start = true");
+  expect("[[peer]]\naddress = \"10.0.0.1\"", "peers.toml:1", "robot = ID, tag = ID, light = ID, start = true, or");
   expect("[[peer]]\nrobot = 1\ntag = 3", "peers.toml:3", "'robot' or 'tag', not both");
   expect("[[peer]]\nrobot = 1\nstart = true", "peers.toml:3", "not both");
   expect("[[peer]]\nrobot = 3", "peers.toml:2", "no robot with the id 3; it has 1, 2");
@@ -72,6 +79,9 @@ TEST(PeerFile, ErrorsNameTheirLine) {
   expect("[[peer]]\nrobot = \"1\"", "peers.toml:2", "whole number");
   expect("[[peer]]\nstart = false", "peers.toml:2", "'start' expects true");
   expect("[[peer]]\nstart = 1", "peers.toml:2", "true or false");
+  expect("[[peer]]\ngroup = false", "peers.toml:2", "'group' expects true");
+  expect("[[peer]]\ngroup = true", "peers.toml:1", "requires an address, a key");
+  expect("[[peer]]\ngroup = true\naddress = \"239.255.0.1\"", "peers.toml:3", "no address");
   expect("[[peer]]\nrobot = 1\n[[peer]]\ntag = 3\n[[peer]]\nrobot = 1", "peers.toml:6", "twice");
   expect("[[peer]]\nstart = true\n[[peer]]\nstart = true", "peers.toml:4", "twice");
   expect("[[peer]]\nrobot = 1\nadress = \"10.0.0.1\"", "peers.toml:3", "address");
