@@ -22,6 +22,7 @@ constexpr double kNearRange = 0.85;    // part of the laser's range used in the 
 constexpr double kFarRange = 1.0;
 constexpr int kGraze = 2;  // nodes
 
+constexpr int kMostBlocked = 10;                // plans
 constexpr std::int64_t kPause = 1'000'000'000;  // [ns] until the next plan while teammates explore the rest
 
 glm::dvec2 origin(const Pose& X) { return {X.x, X.y}; }
@@ -164,7 +165,8 @@ void Explore::plan(const ControllerInput& input) {
   path_.clear();
 }
 
-// Returns whether a goal is reachable. Its path remains empty while the bodies of teammates block it.
+// Returns whether a goal is reachable. Its path remains empty while the bodies of others block it. Blocked goals count
+// as unreachable after several plans, because robots that are done stay where they are.
 bool Explore::find_goal(const LatticeState& from, const Stage& stage) {
   const auto find = [&] {
     return search_.find(from, stage.roomy ? settings_.margin : settings_.least_margin, [&](const LatticeState& state) {
@@ -173,9 +175,10 @@ bool Explore::find_goal(const LatticeState& from, const Stage& stage) {
   };
   if (team_) team_->add_bodies(map_);
   path_ = find();
+  if (!path_.empty()) blocked_plans_ = 0;
   if (!path_.empty() || !team_) return !path_.empty();
   map_.set_bodies({}, {});
-  return !find().empty();
+  return blocked_plans_ < kMostBlocked && !find().empty() && ++blocked_plans_ < kMostBlocked;
 }
 
 // Waits at rest while teammates explore the remaining cells or block the path.
@@ -224,7 +227,7 @@ Twist Explore::drive(const ControllerInput& input) {
   const Twist twist = follow(legs_.back(), X_WM, dt);
   if (team_ && twist.forward != 0.0 && team_->blocks(base::transform(X_WM, {0.2 * twist.forward, 0.0}))) {
     if (!in_way_since_) in_way_since_ = input.time;
-    if (input.time - *in_way_since_ >= kPause) path_.clear();
+    if (input.time - *in_way_since_ >= kPause) give_up();
     return {};
   }
   in_way_since_.reset();

@@ -104,6 +104,7 @@ class Explore final : public Controller, public SharesMap {
   std::vector<double> ranges_;             ///< [m] ranges of the last scan with flags
   std::vector<double> seen_ranges_;        ///< [m] ranges of the last scan without other robots
   std::int64_t last_time_ = 0;
+  int blocked_plans_ = 0;                     ///< successive plans without a path around other robots
   std::int64_t paused_until_ = 0;             ///< [ns] waits for teammates
   std::optional<std::int64_t> in_way_since_;  ///< [ns] a teammate blocks the path
   std::vector<LatticeState> path_;            ///< path to the goal, which is its last state

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -21,16 +22,24 @@
 namespace sf::scenarios {
 namespace {
 
-constexpr const char* kRoom = R"(
-define fence model( size [0.04 2.04 0.4] )
-fence( pose [-1 0 0 0] ) fence( pose [1 0 0 0] ) fence( pose [0 -1 0 90] ) fence( pose [0 1 0 90] )
+const std::string kExplorer = R"(
 define explorer position
 (
   size [0.33 0.33 0.1] drive "diff" velocity_bounds [-0.5 0.5 0 0 0 0 -90 90]
   laser( pose [0.1 0 0.1 0] samples 91 fov 180 range_max 0.75 rate 10 )
 )
+)";
+const std::string kRoom = kExplorer + R"(
+define fence model( size [0.04 2.04 0.4] )
+fence( pose [-1 0 0 0] ) fence( pose [1 0 0 0] ) fence( pose [0 -1 0 90] ) fence( pose [0 1 0 90] )
 explorer( name "a" pose [-0.6 -0.5 0 0] )
 explorer( name "b" pose [0.6 0.5 0 180] )
+)";
+const std::string kPassage = kExplorer + R"(
+model( pose [0 0.3 0 0] size [3 0.04 0.4] ) model( pose [0 -0.3 0 0] size [3 0.04 0.4] )
+model( pose [-1.2 0 0 0] size [0.04 0.6 0.4] ) model( pose [1.5 0 0 0] size [0.04 0.6 0.4] )
+explorer( name "a" pose [-0.8 0 0 0] )
+explorer( name "b" pose [0.2 0 0 180] )
 )";
 
 world::World room() { return world::build_world("room.world", kRoom, {.sensors = sensors::world_file_words()}); }
@@ -114,6 +123,16 @@ TEST(TeamExploration, ARobotThatLeavesOrIsDrivenReleasesItsClaim) {
     for (int i = 0; i < 2000 && !explorer(simulation, 1).done(); ++i) simulation.step();
     EXPECT_TRUE(explorer(simulation, 1).done()) << "b explores the rest";
   }
+}
+
+TEST(TeamExploration, ARobotAtRestInAPassageIsNotAwaitedForever) {
+  const world::World world = world::build_world("passage.world", kPassage, {.sensors = sensors::world_file_words()});
+  SimulationOptions options = exploring(true);
+  options.actors.assign(2, options.actor);
+  options.actors[1].controller.name.clear();
+  Simulation simulation(world, device(), options);
+  for (int i = 0; i < 1500 && !explorer(simulation, 0).done(); ++i) simulation.step();
+  EXPECT_TRUE(explorer(simulation, 0).done()) << "it gives up the cells behind the other robot";
 }
 
 TEST(TeamExploration, IsRefusedAcrossRanks) {
