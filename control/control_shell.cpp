@@ -17,7 +17,10 @@ ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_
 
 ControlShell::ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings,
                            std::optional<OwnLocalization> localization)
-    : inner_(std::move(inner)), settings_(settings), localization_(std::move(localization)) {
+    : inner_(std::move(inner)),
+      sharing_(dynamic_cast<SharesMap*>(inner_.get())),
+      settings_(settings),
+      localization_(std::move(localization)) {
   SF_CHECK(inner_ != nullptr, "a shell without a controller");
 }
 

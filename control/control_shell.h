@@ -12,6 +12,7 @@
 
 #include "control/controllers.h"
 #include "control/own_localization.h"
+#include "control/shared_map.h"
 #include "control/stop_reason.h"
 
 namespace sf::control {
@@ -29,7 +30,7 @@ struct ControlShellSettings {
 /// @throws base::InputError for an unknown value of `start`
 ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_on_bumper);
 
-class ControlShell final : public Controller, public StatesStopReason {
+class ControlShell final : public Controller, public StatesStopReason, public SharesMap {
  public:
   /// @param inner not null
   ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings,
@@ -45,6 +46,9 @@ class ControlShell final : public Controller, public StatesStopReason {
   /// Returns NaN after steps in which the inner controller was not called.
   double error() const override;
   std::string stop_reason() const override;
+  std::shared_ptr<const SharedMap> shared_map() const override { return sharing_->shared_map(); }
+  void receive_maps(std::span<const TeammateMap> maps) override { sharing_->receive_maps(maps); }
+  bool shares_map() const override { return sharing_ != nullptr && sharing_->shares_map(); }
 
   ControlShellState state() const { return state_; }
   const Controller& inner() const { return *inner_; }
@@ -55,6 +59,7 @@ class ControlShell final : public Controller, public StatesStopReason {
   void change(const ControllerInput& input);
 
   std::unique_ptr<Controller> inner_;
+  SharesMap* sharing_;  ///< the inner controller; null: it does not share maps
   ControlShellSettings settings_;
   std::optional<OwnLocalization> localization_;  ///< nullopt: the state of the input is used
   ControlShellState state_ = ControlShellState::start;

@@ -84,6 +84,11 @@ void ExplorationMap::mark_free(glm::dvec2 p, double radius) {
       if (glm::length(maps::middle(grid_.geometry, {column, row}) - p) <= radius) explore({column, row});
 }
 
+void ExplorationMap::lower_clearance(glm::dvec2 p) {
+  around(p, radius_ + kMaxClearance,
+         [&](std::size_t node, double far) { clearance_[node] = std::min(clearance_[node], static_cast<float>(far)); });
+}
+
 bool ExplorationMap::add_point(glm::dvec2 p) {
   if (!contains(p)) return false;
   const double fine = cell_ / kPointsFiner;
@@ -94,18 +99,63 @@ bool ExplorationMap::add_point(glm::dvec2 p) {
   if (bit / 8 >= taken_.size() || (taken_[bit / 8] & flag) != 0) return false;
   taken_[bit / 8] |= flag;
   points_.push_back(p);
+  if (recording_) changes_.points.push_back(p);
   occupied_[static_cast<std::size_t>(node_at(p))] = 1;
-  around(p, radius_ + kMaxClearance,
-         [&](std::size_t node, double far) { clearance_[node] = std::min(clearance_[node], static_cast<float>(far)); });
+  lower_clearance(p);
   return true;
+}
+
+void ExplorationMap::mark_occupied(glm::dvec2 p) {
+  const Node node = node_at(p);
+  auto& occupied = occupied_[static_cast<std::size_t>(node)];
+  if (recording_ && occupied == 0) changes_.nodes.push_back(node);
+  occupied = 1;
 }
 
 void ExplorationMap::mark_line(glm::dvec2 a, glm::dvec2 b) {
   const int steps = 1 + static_cast<int>(glm::length(b - a) / (0.25 * cell_));
   for (int i = 0; i <= steps; ++i) {
     const glm::dvec2 p = a + (static_cast<double>(i) / steps) * (b - a);
-    if (contains(p)) occupied_[static_cast<std::size_t>(node_at(p))] = 1;
+    if (contains(p)) mark_occupied(p);
   }
+}
+
+void ExplorationMap::explore_cell(maps::CellAt cell) {
+  explore(cell);
+  for (Node k = 0; k < kFiner * kFiner; ++k)
+    explored_[static_cast<std::size_t>((kFiner * cell.row + k / kFiner) * columns_ + kFiner * cell.column +
+                                       k % kFiner)] = 1;
+}
+
+bool ExplorationMap::merge(const MapChanges& changes) {
+  bool news = false;
+  const bool recording = std::exchange(recording_, false);
+  for (const auto& [at, state] : changes.cells) {
+    const maps::Cell old = grid_.at(at);
+    if (old == state || old == maps::Cell::occupied) continue;
+    grid_.set(at, state);
+    if (old == maps::Cell::unexplored) explore_cell(at);
+    news = true;
+  }
+  for (const glm::dvec2& p : changes.points) {
+    if (add_point(p))
+      news = true;
+    else if (contains(p))
+      lower_clearance(p);
+  }
+  for (const Node node : changes.nodes) occupied_[static_cast<std::size_t>(node)] = 1;
+  recording_ = recording;
+  return news;
+}
+
+void ExplorationMap::set_bodies(std::span<const glm::dvec2> places, std::span<const double> distances) {
+  for (const std::size_t node : bodies_) unknown_[node] = static_cast<std::uint16_t>(unknown_[node] - 1);
+  bodies_.clear();
+  for (std::size_t i = 0; i < places.size(); ++i)
+    around(places[i], distances[i], [&](std::size_t node, double) {
+      unknown_[node] = static_cast<std::uint16_t>(unknown_[node] + 1);
+      bodies_.push_back(node);
+    });
 }
 
 bool ExplorationMap::add(const maps::ScanView& scan) {
@@ -114,14 +164,13 @@ bool ExplorationMap::add(const maps::ScanView& scan) {
   bool news = false;
   for (std::size_t word = 0; word < before.size(); ++word) {
     for (int i = 0; before[word] != grid_.words[word] && i < 16; ++i) {
-      if ((before[word] >> 2 * i & 3u) != SF_CELL_UNEXPLORED || (grid_.words[word] >> 2 * i & 3u) == SF_CELL_UNEXPLORED)
-        continue;
+      const std::uint32_t old = before[word] >> 2 * i & 3u, now = grid_.words[word] >> 2 * i & 3u;
+      if (old == now) continue;
       const auto wide = static_cast<std::int64_t>(grid_.geometry.word_columns), at = static_cast<std::int64_t>(word);
       const maps::CellAt cell{4 * (at % wide) + i % 4, 4 * (at / wide) + i / 4};
-      explore(cell);
-      for (Node k = 0; k < kFiner * kFiner; ++k)
-        explored_[static_cast<std::size_t>((kFiner * cell.row + k / kFiner) * columns_ + kFiner * cell.column +
-                                           k % kFiner)] = 1;
+      if (recording_) changes_.cells.push_back({cell, static_cast<maps::Cell>(now)});
+      if (old != SF_CELL_UNEXPLORED) continue;
+      explore_cell(cell);
       news = true;
     }
   }

@@ -7,8 +7,11 @@
 // between the beams that hit a surface (0.1 mm for a flat surface nearby).
 
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "control/shared_map.h"
 #include "maps/grid.h"
 #include "maps/grid_update.h"
 
@@ -30,7 +33,20 @@ class ExplorationMap {
   /// Adds an obstacle point at `p`, such as a contact. @return true if it changed the map
   bool add_point(glm::dvec2 p);
 
+  /// Records own measurements for `take_changes` from now on.
+  void record_changes() { recording_ = true; }
+  /// Returns the measurements since the last call. Merged ones are not included.
+  MapChanges take_changes() { return std::exchange(changes_, {}); }
+  /// Merges measurements of another robot. Cells that differ become occupied. The order of merges does not matter.
+  /// @param changes on the same geometry @return true if they changed the map
+  bool merge(const MapChanges& changes);
+  /// Sets the places of other robots' bodies, which the own body must not approach. Replaces those of the last call.
+  /// @param distances [m] between the centres, one per place
+  void set_bodies(std::span<const glm::dvec2> places, std::span<const double> distances);
+
   const maps::OccupancyGrid& grid() const { return grid_; }
+  /// Returns the index of a cell, row by row.
+  std::int64_t key(maps::CellAt cell) const { return cell.row * maps::columns(grid_.geometry) + cell.column; }
   Node columns() const { return columns_; }
   Node nodes() const { return static_cast<Node>(occupied_.size()); }
   double cell() const { return cell_; }  ///< [m] spacing of the lattice
@@ -41,7 +57,7 @@ class ExplorationMap {
   /// Returns the distance [m] from a node to the nearest surface point. Limited to the body's radius plus
   /// kMaxClearance.
   float clearance(Node node) const { return clearance_[static_cast<std::size_t>(node)]; }
-  /// Returns whether a body at the node would cover unexplored ground or leave the map.
+  /// Returns whether a body at the node would cover unexplored ground, leave the map or be too close to another robot.
   bool covers_unknown(Node node) const { return unknown_[static_cast<std::size_t>(node)] != 0; }
   /// Returns whether a surface passes through the node's square.
   bool occupied(Node node) const { return occupied_[static_cast<std::size_t>(node)] != 0; }
@@ -53,6 +69,9 @@ class ExplorationMap {
   static constexpr double kMaxClearance = 0.06;  ///< [m]
 
  private:
+  void lower_clearance(glm::dvec2 p);
+  void mark_occupied(glm::dvec2 p);
+  void explore_cell(maps::CellAt cell);
   void mark_line(glm::dvec2 a, glm::dvec2 b);
   void explore(maps::CellAt at);
   template <typename Visit>
@@ -65,9 +84,13 @@ class ExplorationMap {
   std::vector<glm::dvec2> points_;
   std::vector<std::uint8_t> taken_;  ///< one bit per fine square, set if the square contains a point
   std::vector<float> clearance_;
-  std::vector<std::uint16_t> unknown_;  ///< number of unexplored cells whose centre is under the body
+  std::vector<std::uint16_t> unknown_;  ///< number of unexplored cells whose centre is under the body, and of other
+                                        ///< robots that it would be too close to
   std::vector<std::uint8_t> occupied_, explored_;
   std::vector<std::uint8_t> driven_;  ///< per cell of the map: explored
+  bool recording_ = false;
+  MapChanges changes_;               ///< since the last `take_changes`
+  std::vector<std::size_t> bodies_;  ///< nodes counted in `unknown_` for other robots
 };
 
 }  // namespace sf::control

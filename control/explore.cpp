@@ -22,18 +22,8 @@ constexpr double kNearRange = 0.85;    // part of the laser's range used in the 
 constexpr double kFarRange = 1.0;
 constexpr int kGraze = 2;  // nodes
 
-/// Targets, margin and range of one stage of the exploration.
-struct Stage {
-  bool roomy;
-  bool all;
-  double range;
-  int graze;
-};
-constexpr Stage kStage[Explore::kStages] = {{true, false, kNearRange, 0},
-                                            {true, false, kFarRange, 0},
-                                            {false, false, kFarRange, 0},
-                                            {false, true, kFarRange, 0},
-                                            {false, false, kFarRange, kGraze}};
+constexpr int kMostBlocked = 10;                // plans
+constexpr std::int64_t kPause = 1'000'000'000;  // [ns] until the next plan while teammates explore the rest
 
 glm::dvec2 origin(const Pose& X) { return {X.x, X.y}; }
 
@@ -43,15 +33,42 @@ double reach_of(const ExploreSettings& settings) {
 
 }  // namespace
 
+/// Targets, margin and range of one stage of the exploration.
+struct Explore::Stage {
+  bool roomy;
+  bool all;
+  double range;
+  int graze;
+};
+constexpr Explore::Stage Explore::kStage[kStages] = {{true, false, kNearRange, 0},
+                                                     {true, false, kFarRange, 0},
+                                                     {false, false, kFarRange, 0},
+                                                     {false, true, kFarRange, 0},
+                                                     {false, false, kFarRange, kGraze}};
+
 Explore::Explore(const ExploreSettings& settings)
     : settings_(settings),
       map_(settings.geometry, settings.body.radius, reach_of(settings)),
       search_(map_, settings.body),
-      viewpoint_planner_(map_, settings.eye) {}
+      viewpoint_planner_(map_, settings.eye) {
+  if (!settings.team) return;
+  team_.emplace(*settings.team);
+  map_.record_changes();
+}
 
 Twist Explore::step(const ControllerInput& input) {
+  const Twist twist = decide(input);
+  if (!team_) return twist;
+  std::vector<std::int64_t> claim;
+  for (const maps::CellAt cell : targets_) claim.push_back(map_.key(cell));
+  team_->publish(input.time, std::move(claim), map_);
+  return twist;
+}
+
+Twist Explore::decide(const ControllerInput& input) {
   const Pose& X_WM = input.state.X_WM;
-  const bool news = update_map(input);
+  const bool merged = team_ && team_->update(input, map_);
+  const bool news = update_map(input) || merged;
   if (!started_) {
     map_.mark_free(origin(X_WM), reach_of(settings_) + kFreeAtStart);
     last_yaw_ = X_WM.yaw;
@@ -63,11 +80,14 @@ Twist Explore::step(const ControllerInput& input) {
   if (input.contact) {
     // A contact with an obstacle that no beam hit.
     const double ahead = legs_.empty() || !legs_.back().backwards ? 1.0 : -1.0;
-    map_.add_point(base::transform(X_WM, {ahead * settings_.body.radius, 0.0}));
+    const glm::dvec2 p = base::transform(X_WM, {ahead * settings_.body.radius, 0.0});
+    if (!team_ || !team_->is_body(p)) map_.add_point(p);
     path_.clear();
   }
-  if (path_.empty() || targets_seen() || (news && blocked())) plan(X_WM);
-  const Twist twist = done() ? Twist{} : legs_.empty() ? wait(input) : drive(input);
+  if (team_) drop_claimed_targets();
+  if (input.time < paused_until_) return {};
+  if (path_.empty() || targets_seen() || (news && blocked())) plan(input);
+  const Twist twist = done() || path_.empty() ? Twist{} : legs_.empty() ? wait(input) : drive(input);
   last_time_ = input.time;
   return twist;
 }
@@ -78,8 +98,26 @@ bool Explore::update_map(const ControllerInput& input) {
     return false;
   sequence_ = reading->sequence;
   X_WS_ = reading->X_WS;
-  const auto ranges = base::marked_values(*reading, ranges_);
+  auto ranges = base::marked_values(*reading, ranges_);
+  if (team_) ranges = without_bodies(*reading, ranges);
   return map_.add({reading->X_WS, ranges, settings_.beams, settings_.range_min, settings_.eye.range});
+}
+
+// Removes the ranges that end on other robots, which will not stay there.
+std::span<const double> Explore::without_bodies(const base::ReadingBlock& reading, std::span<const double> ranges) {
+  seen_ranges_.assign(ranges.begin(), ranges.end());
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    if (ranges[i] < settings_.eye.range &&
+        team_->is_body(base::transform(reading.X_WS, ranges[i] * settings_.beams[i])))
+      seen_ranges_[i] = std::nan("");
+  return seen_ranges_;
+}
+
+// Gives up the cells that a teammate with priority has claimed.
+void Explore::drop_claimed_targets() {
+  std::erase_if(targets_, [&](maps::CellAt cell) {
+    return grid().at(cell) == maps::Cell::unexplored && team_->claimed(cell, map_);
+  });
 }
 
 // Makes one full turn in place at the start.
@@ -102,7 +140,8 @@ bool Explore::blocked() const {
   });
 }
 
-void Explore::plan(const Pose& X_WM) {
+void Explore::plan(const ControllerInput& input) {
+  const Pose& X_WM = input.state.X_WM;
   arrived_.reset();
   legs_.clear();
   int heading = 0;
@@ -111,15 +150,40 @@ void Explore::plan(const Pose& X_WM) {
         std::abs(base::wrap_angle(heading_angle(heading) - X_WM.yaw)))
       heading = k;
   const LatticeState from{map_.node_at(origin(X_WM)), heading};
+  std::function<bool(maps::CellAt)> claimed;
+  if (team_) claimed = [&](maps::CellAt cell) { return team_->claimed(cell, map_); };
+  targets_.clear();
+  in_way_since_.reset();
   for (; stage_ < kStages; ++stage_) {
     const Stage& stage = kStage[stage_];
     if (stage.graze > 0 && !settings_.thorough) continue;
-    if (viewpoint_planner_.update(stage.all, stage.range * settings_.eye.range, stage.graze) == 0) continue;
-    path_ = search_.find(from, stage.roomy ? settings_.margin : settings_.least_margin, [&](const LatticeState& state) {
+    const double range = stage.range * settings_.eye.range;
+    const bool any = viewpoint_planner_.update(stage.all, range, stage.graze, claimed) > 0;
+    if (any && find_goal(from, stage)) return path_.empty() ? pause(input.time) : set_path(path_);
+    if (viewpoint_planner_.claimed() > 0) return pause(input.time);
+  }
+  path_.clear();
+}
+
+// Returns whether a goal is reachable. Its path remains empty while the bodies of others block it. Blocked goals count
+// as unreachable after several plans, because robots that are done stay where they are.
+bool Explore::find_goal(const LatticeState& from, const Stage& stage) {
+  const auto find = [&] {
+    return search_.find(from, stage.roomy ? settings_.margin : settings_.least_margin, [&](const LatticeState& state) {
       return viewpoint_planner_.sees_target(search_.sensor_at(state), state.heading);
     });
-    if (!path_.empty()) return set_path(path_);
-  }
+  };
+  if (team_) team_->add_bodies(map_);
+  path_ = find();
+  if (!path_.empty()) blocked_plans_ = 0;
+  if (!path_.empty() || !team_) return !path_.empty();
+  map_.set_bodies({}, {});
+  return blocked_plans_ < kMostBlocked && !find().empty() && ++blocked_plans_ < kMostBlocked;
+}
+
+// Waits at rest while teammates explore the remaining cells or block the path.
+void Explore::pause(std::int64_t time) {
+  paused_until_ = time + kPause;
   path_.clear();
 }
 
@@ -161,6 +225,12 @@ Twist Explore::drive(const ControllerInput& input) {
   if (legs_.empty()) return wait(input);
   const double dt = std::clamp(1e-9 * static_cast<double>(input.time - last_time_), 0.02, 0.5);
   const Twist twist = follow(legs_.back(), X_WM, dt);
+  if (team_ && twist.forward != 0.0 && team_->blocks(base::transform(X_WM, {0.2 * twist.forward, 0.0}))) {
+    if (!in_way_since_) in_way_since_ = input.time;
+    if (input.time - *in_way_since_ >= kPause) give_up();
+    return {};
+  }
+  in_way_since_.reset();
   if (safe(X_WM, twist, dt)) return twist;
   give_up();
   return {};

@@ -8,6 +8,9 @@
 // Goals that allow `margin` come first, then goals with `least_margin`: the robot drives through a passage that is
 // `least_margin` wider than the body on both sides.
 //
+// Robots of a team also use the maps of the others, and do not choose cells that another robot with priority is about
+// to see (control/teammates.h).
+//
 // Assumptions: a static world, a body that turns in place (modelled as its circumscribed disc), and a precise pose,
 // since margins are in millimetres. Readings of laser 0 are added at the pose of their measurement.
 
@@ -17,6 +20,7 @@
 #include "control/controllers.h"
 #include "control/exploration_map.h"
 #include "control/pose_search.h"
+#include "control/teammates.h"
 #include "control/viewpoint_planner.h"
 
 namespace sf::control {
@@ -25,16 +29,17 @@ struct ExploreSettings {
   maps::GridGeometry geometry;
   Footprint body;
   ScannerModel eye;
-  std::vector<glm::dvec2> beams;  ///< directions in the laser's frame
-  double range_min = 0.0;         ///< [m] minimum range of the laser
-  double speed = 0.1;             ///< [m/s]
-  double slow_speed = 0.05;       ///< [m/s] while an obstacle ahead of the body is nearer than `slow`
-  double slow = 0.05;             ///< [m]
-  double turn = 1.0;              ///< [rad/s] maximum
-  double margin = 0.01;           ///< [m] between body and surfaces, in the first stages
-  double least_margin = 0.003;    ///< [m] the same in the last stages; <= margin
-  bool thorough = false;          ///< adds a last stage that looks along surfaces for hidden cells
-  double patience = 2.0;          ///< [s] maximum wait for a reading at a goal
+  std::vector<glm::dvec2> beams;     ///< directions in the laser's frame
+  double range_min = 0.0;            ///< [m] minimum range of the laser
+  double speed = 0.1;                ///< [m/s]
+  double slow_speed = 0.05;          ///< [m/s] while an obstacle ahead of the body is nearer than `slow`
+  double slow = 0.05;                ///< [m]
+  double turn = 1.0;                 ///< [rad/s] maximum
+  double margin = 0.01;              ///< [m] between body and surfaces, in the first stages
+  double least_margin = 0.003;       ///< [m] the same in the last stages; <= margin
+  bool thorough = false;             ///< adds a last stage that looks along surfaces for hidden cells
+  double patience = 2.0;             ///< [s] maximum wait for a reading at a goal
+  std::optional<TeamSettings> team;  ///< nullopt: the robot explores alone, and ignores other robots
 };
 
 /// Returns a grid with cells of 3 cm (default) around all walls, at least as large as the thesis' 30 x 30 words, with
@@ -42,18 +47,24 @@ struct ExploreSettings {
 /// @throws base::InputError for an area that is too large
 maps::GridGeometry grid_around(const world::World& world, double cell = 0.03);
 
-class Explore final : public Controller {
+class Explore final : public Controller, public SharesMap {
  public:
   explicit Explore(const ExploreSettings& settings);
 
   base::Twist step(const ControllerInput& input) override;
   bool done() const override { return stage_ == kStages; }
+  double v2v_range() const override { return team_ ? team_->radio() : 0.0; }
+  bool shares_map() const override { return team_.has_value(); }
+  std::shared_ptr<const SharedMap> shared_map() const override { return team_->published(); }
+  void receive_maps(std::span<const TeammateMap> maps) override { team_->receive(maps); }
 
   const maps::OccupancyGrid& grid() const { return map_.grid(); }
   int stage() const { return stage_; }  ///< in [0, kStages]
   static constexpr int kStages = 5;
 
  private:
+  struct Stage;
+  static const Stage kStage[kStages];
   /// Part of a path: a turn in place, or a straight line.
   struct Leg {
     bool straight = false;
@@ -62,11 +73,16 @@ class Explore final : public Controller {
     double heading = 0.0;  ///< [rad]
     double side = 1.0;     ///< +1: turn to the left; -1: to the right
   };
+  base::Twist decide(const ControllerInput& input);
   bool update_map(const ControllerInput& input);
+  std::span<const double> without_bodies(const base::ReadingBlock& reading, std::span<const double> ranges);
+  void drop_claimed_targets();
   base::Twist turn_once(const base::Pose& X_WM);
   bool targets_seen() const;
   bool blocked() const;
-  void plan(const base::Pose& X_WM);
+  void plan(const ControllerInput& input);
+  bool find_goal(const LatticeState& from, const Stage& stage);
+  void pause(std::int64_t time);
   void set_path(const std::vector<LatticeState>& way);
   base::Twist drive(const ControllerInput& input);
   base::Twist wait(const ControllerInput& input);
@@ -79,15 +95,20 @@ class Explore final : public Controller {
   ExplorationMap map_;
   PoseSearch search_;
   ViewpointPlanner viewpoint_planner_;
+  std::optional<Teammates> team_;  ///< nullopt: alone
   int stage_ = 0;
   bool started_ = false, turned_once_ = false;
   double turned_ = 0.0, last_yaw_ = 0.0;
   std::optional<std::uint32_t> sequence_;  ///< sequence of the last scan
   base::Pose X_WS_;                        ///< sensor pose of the last scan
   std::vector<double> ranges_;             ///< [m] ranges of the last scan with flags
+  std::vector<double> seen_ranges_;        ///< [m] ranges of the last scan without other robots
   std::int64_t last_time_ = 0;
-  std::vector<LatticeState> path_;  ///< path to the goal, which is its last state
-  std::vector<Leg> legs_;           ///< remaining legs; the next leg is last
+  int blocked_plans_ = 0;                     ///< successive plans without a path around other robots
+  std::int64_t paused_until_ = 0;             ///< [ns] waits for teammates
+  std::optional<std::int64_t> in_way_since_;  ///< [ns] a teammate blocks the path
+  std::vector<LatticeState> path_;            ///< path to the goal, which is its last state
+  std::vector<Leg> legs_;                     ///< remaining legs; the next leg is last
   std::vector<maps::CellAt> targets_;
   std::optional<std::int64_t> arrived_;  ///< [ns] time of arrival at the goal
 };

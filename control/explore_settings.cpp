@@ -50,6 +50,14 @@ maps::GridGeometry read_geometry(const ControllerContext& context, Settings& set
   return geometry;
 }
 
+TeamSettings read_team(const ControllerContext& context, Settings& settings, double radius) {
+  TeamSettings team{.id = context.world.movers[context.mover].id, .radius = radius, .others = radius};
+  team.radio = settings.number("radio", team.radio, 0.5, 1e6);
+  for (const world::Mover& other : context.world.movers)
+    if (!other.is_tag) team.others = std::max(team.others, robots::footprint_of(other).radius);
+  return team;
+}
+
 std::unique_ptr<Controller> make_explore(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
   const std::vector<sensors::SensorSpec> lasers = context.sensors_of(sensors::kLaser);
@@ -74,6 +82,7 @@ std::unique_ptr<Controller> make_explore(const ControllerContext& context, Setti
   explore.least_margin =
       settings.number("least_margin", std::min(explore.least_margin, explore.margin), 0.0, explore.margin);
   explore.thorough = settings.flag("thorough", explore.thorough);
+  if (settings.flag("team", false)) explore.team = read_team(context, settings, explore.body.radius);
   return std::make_unique<Explore>(explore);
 }
 

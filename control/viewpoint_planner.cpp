@@ -31,10 +31,6 @@ ViewpointPlanner::ViewpointPlanner(const ExplorationMap& map, const ScannerModel
   }
 }
 
-std::int64_t ViewpointPlanner::key(CellAt cell) const {
-  return cell.row * maps::columns(map_.grid().geometry) + cell.column;
-}
-
 bool ViewpointPlanner::is_target(CellAt cell, bool all) const {
   const maps::OccupancyGrid& grid = map_.grid();
   if (grid.at(cell) != Cell::unexplored) return false;
@@ -46,7 +42,7 @@ bool ViewpointPlanner::is_target(CellAt cell, bool all) const {
     }
     if (!beside) return false;
   }
-  const auto tried = unseen_from_.find(key(cell));
+  const auto tried = unseen_from_.find(map_.key(cell));
   return tried == unseen_from_.end() || tried->second.size() < kTries;
 }
 
@@ -81,7 +77,7 @@ void ViewpointPlanner::cast(CellAt cell, std::size_t ray, Visit visit) const {
 }
 
 void ViewpointPlanner::add_target(CellAt cell) {
-  const auto tried = unseen_from_.find(key(cell));
+  const auto tried = unseen_from_.find(map_.key(cell));
   const bool afresh = tried == unseen_from_.end();
   for (std::size_t ray = 0; ray < kRays; ++ray) {
     cast(cell, ray, [&](Node node) {
@@ -95,15 +91,20 @@ void ViewpointPlanner::add_target(CellAt cell) {
   }
 }
 
-std::size_t ViewpointPlanner::update(bool all, double range, int graze) {
+std::size_t ViewpointPlanner::update(bool all, double range, int graze, const std::function<bool(CellAt)>& claimed) {
   range_ = range;
   graze_ = graze;
   std::fill(headings_.begin(), headings_.end(), std::uint16_t{0});
   cells_.clear();
+  claimed_ = 0;
   const maps::GridGeometry& geometry = map_.grid().geometry;
   for (std::int64_t row = 0; row < maps::rows(geometry); ++row) {
     for (std::int64_t column = 0; column < maps::columns(geometry); ++column) {
       if (!is_target({column, row}, all)) continue;
+      if (claimed && claimed({column, row})) {
+        ++claimed_;
+        continue;
+      }
       cells_.push_back({column, row});
       add_target(cells_.back());
     }
@@ -128,6 +129,6 @@ std::vector<CellAt> ViewpointPlanner::targets(Node sensor, int heading) const {
   return seen;
 }
 
-void ViewpointPlanner::mark_unseen(CellAt cell, Node sensor) { unseen_from_[key(cell)].push_back(sensor); }
+void ViewpointPlanner::mark_unseen(CellAt cell, Node sensor) { unseen_from_[map_.key(cell)].push_back(sensor); }
 
 }  // namespace sf::control

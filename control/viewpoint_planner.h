@@ -3,6 +3,7 @@
 // unexplored target cell, within field of view and range, without an obstacle or much unexplored ground in between.
 
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -26,8 +27,11 @@ class ViewpointPlanner {
   /// @param all true: all unexplored cells are targets; false: only those adjacent to free cells
   /// @param range [m] maximum viewing distance
   /// @param graze occupied nodes that a line of sight may cross, since it may pass next to the surface
+  /// @param claimed returns true for cells that are not targets, because another robot explores them; may be empty
   /// @return number of target cells
-  std::size_t update(bool all, double range, int graze = 0);
+  std::size_t update(bool all, double range, int graze = 0, const std::function<bool(maps::CellAt)>& claimed = {});
+  /// Returns the number of cells that were not targets in the last update only because they were claimed.
+  std::size_t claimed() const { return claimed_; }
 
   /// Returns whether a laser at node `sensor` of a robot with this heading would see a target cell.
   bool sees_target(Node sensor, int heading) const {
@@ -45,7 +49,6 @@ class ViewpointPlanner {
   template <typename Visit>
   void cast(maps::CellAt cell, std::size_t ray, Visit visit) const;
   void add_target(maps::CellAt cell);
-  std::int64_t key(maps::CellAt cell) const;
 
   struct Ray {
     double x, y;             ///< direction from the cell to the sensor
@@ -57,6 +60,7 @@ class ViewpointPlanner {
   std::vector<maps::CellAt> cells_;      ///< targets
   double range_ = 0.0;
   int graze_ = 0;
+  std::size_t claimed_ = 0;
   std::unordered_map<std::int64_t, std::vector<Node>> unseen_from_;
 };
 

@@ -17,6 +17,13 @@ class RankShare : public FleetShare {
  public:
   explicit RankShare(cluster::Ranks& ranks) : ranks_(ranks) {}
 
+  void check_may_share_maps() const override {
+    if (ranks_.size() > 1)
+      throw base::InputError(
+          "controller 'explore': robots cannot share maps across ranks; expected one process, or the setting "
+          "'team = false'");
+  }
+
   bool owns(std::uint32_t mover) const override { return exchange_->owns(mover); }
   void add_mover() override {
     exchange_->add_mover();

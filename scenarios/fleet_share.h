@@ -53,6 +53,8 @@ class FleetShare {
   virtual bool owns(std::uint32_t) const { return true; }
   /// @throws base::InputError if robots can neither join nor leave
   virtual void check_may_join() const {}
+  /// @throws base::InputError if maps of robots (control/shared_map.h) do not reach all processes
+  virtual void check_may_share_maps() const {}
   virtual void add_mover() {}                                      ///< adds the mover that joined in the last row
   virtual void remove_last() {}                                    ///< undoes `add_mover`
   virtual void set_status(std::uint32_t, const ControlStatus&) {}  ///< of a mover that joins, returns or leaves

@@ -116,6 +116,9 @@ void Simulation::use_control(RobotControl control) {
 /// Reserves memory for all movers and sensors, so that ticks allocate nothing.
 void Simulation::make_room() {
   for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world_.movers.size() : 0);
+  const auto shares = [](const RobotControl& robot) { return robot.sharing != nullptr; };
+  if (!maps_.empty() || std::any_of(controls_.begin(), controls_.end(), shares))
+    for (auto* const maps : {&maps_, &next_maps_}) maps->resize(controls_.size());
   sorted_.reserve(farm_.sensor_set().count());
   next_.reserve(first_.size());
 }
@@ -133,6 +136,9 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   control::ConfiguredController made = control::make_controller(site, actor.controller);
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
   robot.controller = std::move(made.controller);
+  robot.sharing = dynamic_cast<control::SharesMap*>(robot.controller.get());
+  if (robot.sharing != nullptr && !robot.sharing->shares_map()) robot.sharing = nullptr;
+  if (robot.sharing != nullptr) share_->check_may_share_maps();
   robot.rate = made.rate;
   robot.on_scans = made.on_scans;
   if (!(robot.on_scans && actor.link.perfect())) robot.mailbox.emplace(actor.link, world_.movers[mover].id);
@@ -179,6 +185,7 @@ void Simulation::set_absent(std::uint32_t mover, bool gone) {
   absent_[mover] = gone;
   commands_[mover] = {};
   intents_[mover] = next_intents_[mover] = {};
+  if (!maps_.empty()) maps_[mover] = next_maps_[mover] = {};
   fleet_.set_absent(mover, gone);
   farm_.set_absent(mover, gone);
   if (!gone) farm_.subscribe(mover, farm::kAllSensorTypes);
@@ -283,6 +290,7 @@ void Simulation::command(std::span<const base::Twist> commands) {
 void Simulation::drive(std::uint32_t mover, const base::Twist& command) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   controls_[mover].driven = true;
+  if (!maps_.empty()) maps_[mover] = next_maps_[mover] = {};
   commands_[mover] = command;
 }
 
@@ -335,6 +343,7 @@ void Simulation::decide(std::int64_t time) {
 void Simulation::settle() {
   share_->finish_step({commands_, next_intents_});
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
+  std::copy(next_maps_.begin(), next_maps_.end(), maps_.begin());
 }
 
 ControlStatus Simulation::own_status(std::uint32_t mover) const {
@@ -378,10 +387,12 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   std::vector<control::Neighbour>& others = others_[thread];
   others.clear();
   find_others(mover, time, others);
+  if (robot.sharing != nullptr) exchange_maps(*robot.sharing, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
   commands_[mover] =
       robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
   next_intents_[mover] = robot.controller->intent();
+  if (robot.sharing != nullptr) next_maps_[mover] = robot.sharing->shared_map();
   robot.stepped = true;
 }
 
@@ -405,6 +416,14 @@ bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fr
   if (begun <= robot.begun) return false;
   robot.begun = begun;
   return true;
+}
+
+/// Passes the maps that the others have sent by the last tick. Those of a [v2v] link are not delayed.
+void Simulation::exchange_maps(control::SharesMap& controller, std::span<const control::Neighbour> others) const {
+  std::vector<control::TeammateMap> maps;
+  for (const control::Neighbour& other : others)
+    if (const auto& map = maps_[other.state.mover]) maps.push_back({other.id, map});
+  controller.receive_maps(maps);
 }
 
 void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const {

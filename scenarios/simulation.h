@@ -20,6 +20,7 @@
 #include "base/thread_pool.h"
 #include "base/tick_record.h"
 #include "control/controllers.h"
+#include "control/shared_map.h"
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
 #include "netio/link_model.h"
@@ -146,6 +147,7 @@ class Simulation {
   void warn_of_long_ways();
   struct RobotControl {
     std::unique_ptr<control::Controller> controller;  ///< null: the mover remains at rest
+    control::SharesMap* sharing = nullptr;            ///< the controller; null: it does not share its map
     double rate = 10.0;                               ///< [Hz]
     bool on_scans = false;                            ///< steps on new scans and on contact instead of at its rate
     bool stepped = false;
@@ -170,6 +172,7 @@ class Simulation {
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void begin();
   ControlStatus own_status(std::uint32_t mover) const;
+  void exchange_maps(control::SharesMap& controller, std::span<const control::Neighbour> others) const;
   void find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const;
 
   std::unique_ptr<FleetShare> share_;
@@ -189,11 +192,13 @@ class Simulation {
   std::vector<std::uint32_t> first_;  ///< per mover: index of its first reading; the last entry is the end
   std::vector<std::uint32_t> next_;   ///< scratch
   std::vector<base::ReadingBlock> sorted_;
-  std::vector<farm::StoredReading> early_;               ///< readings delivered between ticks; slots reuse their memory
-  std::vector<base::ReadingBlock> readings_;             ///< `early_` and the tick's; empty if `early_` is
-  std::vector<base::Intent> intents_;                    ///< per mover, broadcast in this tick
-  std::vector<base::Intent> next_intents_;               ///< broadcast from the next tick on
-  std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
+  std::vector<farm::StoredReading> early_;    ///< readings delivered between ticks; slots reuse their memory
+  std::vector<base::ReadingBlock> readings_;  ///< `early_` and the tick's; empty if `early_` is
+  std::vector<base::Intent> intents_;         ///< per mover, broadcast in this tick
+  std::vector<base::Intent> next_intents_;    ///< broadcast from the next tick on
+  std::vector<std::shared_ptr<const control::SharedMap>> maps_;       ///< as `intents_`; empty: no robot shares its map
+  std::vector<std::shared_ptr<const control::SharedMap>> next_maps_;  ///< as `next_intents_`
+  std::vector<std::vector<control::Neighbour>> others_;               ///< per thread
   std::vector<world::Signal> signals_;
   std::vector<base::LightStatus> light_states_;  ///< per light, of the recorded tick
   std::vector<bool> absent_;                     ///< per mover
