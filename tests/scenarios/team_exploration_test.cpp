@@ -126,6 +126,7 @@ TEST(TeamExploration, ARobotThatLeavesOrIsDrivenReleasesItsClaim) {
 }
 
 TEST(TeamExploration, ARobotAtRestInAPassageIsNotAwaitedForever) {
+  if (instrumented()) GTEST_SKIP() << "a minute under sanitizers; Teammates tests its parts";
   const world::World world = world::build_world("passage.world", kPassage, {.sensors = sensors::world_file_words()});
   SimulationOptions options = exploring(true);
   options.actors.assign(2, options.actor);
