@@ -27,16 +27,19 @@ netio::StateQuality quality_of(const estimation::Prediction& p) {
 
 StateFilter::StateFilter(const world::World& world, const StateFilterOptions& options)
     : world_(world), options_(options), movers_(options.mode == FilterMode::off ? 0 : world.movers.size()) {
-  for (MoverState& mover : movers_) {
-    mover.clock = estimation::SenderClock(options.clock);
-    mover.filtered = options.mode == FilterMode::on;
-  }
+  for (std::uint32_t row = 0; row < movers_.size(); ++row) reset(row);
   reports_.reserve(movers_.size());
 }
 
 void StateFilter::add_mover() {
   if (options_.mode == FilterMode::off) return;
-  MoverState& mover = movers_.emplace_back();
+  movers_.emplace_back();
+  reset(static_cast<std::uint32_t>(movers_.size() - 1));
+}
+
+void StateFilter::reset(std::uint32_t row) {
+  if (options_.mode == FilterMode::off) return;
+  MoverState& mover = movers_[row] = MoverState();
   mover.clock = estimation::SenderClock(options_.clock);
   mover.filtered = options_.mode == FilterMode::on;
 }

@@ -68,6 +68,9 @@ class StateFilter {
   /// Adds the mover that was appended to the world.
   void add_mover();
 
+  /// Removes all that is known of a mover's sender.
+  void reset(std::uint32_t row);
+
   /// Accepts a state of a mover, including late ones.
   /// @param report at the sender's time `header.time`
   /// @return whether its sender is filtered; otherwise the state is to be used as of its arrival

@@ -40,6 +40,7 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
                   ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kSenderTimeout)
                   : kNever),
       removed_(world.movers.size(), false),
+      joining_(world.movers.size(), false),
       last_active_(world.movers.size(), kNever),
       last_state_(world.movers.size(), kNever),
       periods_(world.movers.size(), 0),
@@ -48,6 +49,7 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
       log_(options.log_descriptor),
       rejections_(ids_of(names_.robots)) {
   reports_.reserve(netio::Inbox::kMaxPerReceive);
+  for (const std::uint32_t row : options.joining) joining_.at(row) = true;
 }
 
 void StateReceiver::receive_pending(std::int64_t now) {
@@ -142,9 +144,10 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
   std::int64_t& last = last_active_[row];
   const bool active = inbox_.is_active(id, now);
   const bool forgotten = !active && forget_ != kNever && last != kNever && now - last >= forget_;
-  const bool never = !active && last_state_[row] == kNever && hides_stale();
+  if (joining_[row] && !active) forget_sender(id, row);
+  const bool never = last_state_[row] == kNever && (joining_[row] || (!active && hides_stale()));
   const bool absent = forgotten || never || is_gone(row, now);
-  if (active && absent && !hidden_[row])
+  if (active && absent && !hidden_[row] && !never)
     log_.write(fmt::format("{} (id {}) requests readings, but none of its states was accepted for {:g} s: it has left "
                            "the world until its next state (--stale freeze keeps it)",
                            world_.movers[row].name, id, 1e-9 * static_cast<double>(filter_.options().stale_after)),
@@ -153,6 +156,16 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
   if (active) last = now;
   fleet_.set_absent(row, absent);
   return absent;
+}
+
+/// A robot that joined has left: the next one with its id inherits nothing.
+void StateReceiver::forget_sender(std::uint32_t id, std::uint32_t row) {
+  if (last_state_[row] == kNever) return;
+  last_state_[row] = last_active_[row] = kNever;
+  periods_[row] = 0;
+  filter_logged_[row] = filter_.options().mode == FilterMode::on;
+  filter_.reset(row);
+  inbox_.set_take_late(netio::PeerKind::robot, id, takes_late(filter_.options()));
 }
 
 bool StateReceiver::hides_stale() const { return filter_.options().policy != estimation::StalePolicy::freeze; }

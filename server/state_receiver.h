@@ -28,7 +28,9 @@ struct StateReceiverOptions {
   double radio = netio::kV2vRange;  ///< [m] range within which states are relayed; 0: no relay
   double forget = 10.0;             ///< [s] of silence after which a robot is no longer an obstacle; 0: never
   int log_descriptor = 2;           ///< -1: no log
-  bool keep_heights = false;        ///< movers keep their heights at load, regardless of their states
+  /// Rows of robots that are in the world only from their first state until they leave or are silent.
+  std::vector<std::uint32_t> joining;
+  bool keep_heights = false;  ///< movers keep their heights at load, regardless of their states
   StateFilterOptions filter;
   std::vector<netio::Peer> peers;     ///< of the world's robots, tags and intersections, and of START
   std::vector<std::uint32_t> lights;  ///< ids of intersections whose V2I are accepted
@@ -80,6 +82,7 @@ class StateReceiver {
   void take(const netio::Packet& packet, std::int64_t now);
   bool filter(const base::Report& report, const netio::Header& header, std::int64_t now);
   bool hides_stale() const;
+  void forget_sender(std::uint32_t id, std::uint32_t row);
   bool is_gone(std::uint32_t row, std::int64_t now) const;
   std::string sender_name(const netio::Header& header) const;
   std::string sender_text(const netio::Header& header) const;
@@ -103,6 +106,7 @@ class StateReceiver {
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
   std::vector<bool> removed_;              ///< per mover, by OBJECT
+  std::vector<bool> joining_;              ///< per mover: StateReceiverOptions::joining
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever
   std::vector<std::int64_t> last_state_;   ///< [ns] arrival per mover, or kNever
   std::vector<std::int64_t> periods_;      ///< [ns] per mover, between its last two states; at most kLongestPeriod

@@ -160,12 +160,13 @@ void check_name(const World& world, const std::string& name) {
           fmt::format("the name '{}' is taken; expected one that no model of {} has", name, world.file));
 }
 
-std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM) {
-  return append_robot(world, world, original, name, X_WM);
+std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM,
+                           std::optional<std::uint32_t> id) {
+  return append_robot(world, world, original, name, X_WM, id);
 }
 
 std::uint32_t append_robot(World& world, const World& from, std::uint32_t original, const std::string& name,
-                           const Pose& X_WM) {
+                           const Pose& X_WM, std::optional<std::uint32_t> id) {
   SF_CHECK(original < from.movers.size(), "a copy of a robot that does not exist");
   if (world.movers.size() >= kMostMovers)
     throw base::InputError(
@@ -177,7 +178,7 @@ std::uint32_t append_robot(World& world, const World& from, std::uint32_t origin
   Mover copy = from.movers[original];
   copy.name = name;
   copy.X_WM = X_join;
-  copy.id = next_id(world);
+  copy.id = id ? *id : next_id(world);
   copy.model = rows[copy.model];
   for (Segment& side : copy.body) side.model = rows[side.model];
   for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];

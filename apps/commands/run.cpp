@@ -179,8 +179,9 @@ struct Ground {
 
 /// Hash of everything that the results depend on.
 std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
-  std::string text = fmt::format("{} {} {} {} {} {} {}", base::hash_hex(world.hash), world.movers.size(), options.of,
-                                 options.seed, options.controller, options.localize.value_or(true), options.no_return_inf);
+  std::string text =
+      fmt::format("{} {} {} {} {} {} {}", base::hash_hex(world.hash), world.movers.size(), options.of, options.seed,
+                  options.controller, options.localize.value_or(true), options.no_return_inf);
   for (const auto* words : {&options.set, &options.drive})
     for (const std::string& word : *words) text += "\n" + word;
   for (const world::Mover& mover : world.movers) {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "apps/commands/commands.h"
+#include "apps/commands/joining_robots.h"
 #include "apps/commands/lockstep.h"
 #include "apps/commands/run_settings.h"
 #include "apps/options/address.h"
@@ -148,8 +149,10 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
 int serve(const ServeOptions& options) {
   if (options.lockstep) return serve_lockstep(options);
   world::World world = load_with_robots(options, options);
+  const std::vector<std::uint32_t> joining = append_joining(world, options.join);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
-  const server::ServiceOptions chosen = service_options(options, world);
+  server::ServiceOptions chosen = service_options(options, world);
+  chosen.receiver.joining = joining;
   gpu::Device device = open_device(options);
   choose_accuracy(world, device, options, options.seed, 0);
   const sensors::SensorSet sensor_set(world);
@@ -175,8 +178,9 @@ int serve(const ServeOptions& options) {
     LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false,
                      &service.drives());
     if (!live.empty()) service.record_to(live);
+    if (!joining.empty()) print_message("{} more may join", counted(joining.size(), "robot"));
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; press Ctrl-C to stop",
-                  counted(service.robots(), "robot"), world.file, options.bind, service.port(),
+                  counted(service.robots() - joining.size(), "robot"), world.file, options.bind, service.port(),
                   1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
     RunReport facts = report_of(service.stats(), world, device.info());

@@ -14,7 +14,8 @@ netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& m
   const auto about = [](double angle, glm::dvec3 axis) { return glm::angleAxis(angle, axis); };
   const glm::dvec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
   const glm::dquat R_WO = about(tag.X_WT.yaw, z) * about(tag.pitch, y) * about(tag.roll, x) * about(-mount.X_OT.yaw, z);
-  const glm::dvec3 arm = R_WO * glm::dvec3{mount.X_OT.x, mount.X_OT.y, mount.X_OT.z};  // from the object's origin to the tag
+  const glm::dvec3 arm =
+      R_WO * glm::dvec3{mount.X_OT.x, mount.X_OT.y, mount.X_OT.z};  // from the object's origin to the tag
   netio::Tag state;
   state.position = {tag.X_WT.x - arm.x, tag.X_WT.y - arm.y, tag.X_WT.z - arm.z};
   state.orientation = {R_WO.x, R_WO.y, R_WO.z, R_WO.w};

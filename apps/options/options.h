@@ -295,6 +295,7 @@ struct ServeOptions : WorldOptions,
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free port
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
   double radio = netio::kV2vRange;         ///< [m] range beyond which states are not relayed; 0: no states are relayed
+  std::vector<std::string> join;           ///< "ROBOT=FIRST-LAST": copies of a robot that may join, by id
   std::string record;                      ///< folder; empty: not recorded
   bool lockstep = false;                   ///< clients command the robots tick by tick
   double lockstep_timeout = 5.0;           ///< [s] maximum time to wait for a client; 0: unlimited

@@ -265,6 +265,11 @@ void add_serve(CLI::App& app, Call& call) {
   add_forget(*sub, o);
   add_peers(*sub, o);
   add_lockstep(*sub, o);
+  sub->add_option("--join", o.join,
+                  "Robots that may join: copies of the world's robot ROBOT with the ids FIRST to LAST, each in the world "
+                  "from its first state until it leaves or is silent for 2 s; may be repeated")
+      ->excludes("--lockstep")
+      ->type_name("ROBOT=FIRST-LAST");
   add_filter(*sub, o);
   sub->add_option("--mirror", o.mirror,
                   "Address of an observer that receives a copy of every reading packet (`vps --readings`)")

@@ -271,6 +271,45 @@ TEST(Serve, ATagIsAtItsMount) {
   }
 }
 
+/// A robot that no file names: a subscription alone does not place it, its first state does, under each policy. It gets
+/// readings, and leaves without a trace, so that a subscription after that does not bring it back.
+TEST(Serve, RobotsOfAPatternMayJoinAndLeave) {
+  for (const std::vector<std::string>& policy : {std::vector<std::string>{}, {"--raw"}, {"--filter"}}) {
+    std::vector<std::string> options{"--join", "roomba1=50-51"};
+    options.insert(options.end(), policy.begin(), policy.end());
+    Service service(kRoom, options);
+    ASSERT_NE(service.port, 0u) << service.program.err();
+    Robot one(1, service.port, service.laser_port(1)), guest(50, service.port, service.laser_port(50));
+    std::vector<double> ranges, of_guest;
+    bool drives = false;
+    const auto sees = [&](double range) {
+      return until([&] {
+        one.send_state({-1.0, 0.5, 0.0, 0.0});
+        one.ask(), guest.ask();
+        if (drives) guest.send_state({0.5, 0.5, 0.0, 0.0});
+        if (const auto own = guest.receive(); !own.empty()) of_guest = own;
+        ranges = one.receive();
+        return ranges.size() == 91 && std::fabs(ranges[45] - range) <= 0.000501;
+      });
+    };
+    const std::vector<double> alone = sensed(service.world, "roomba1", "-1,0.5,0");
+    EXPECT_TRUE(sees(alone[45])) << testing::PrintToString(ranges);
+    EXPECT_TRUE(of_guest.empty()) << "it has no pose yet";
+    drives = true;
+    EXPECT_TRUE(sees(1.25)) << "1.5 m less the mount and half a body: " << testing::PrintToString(ranges);
+    EXPECT_TRUE(until([&] { return sees(1.25) && of_guest.size() == 91; }));
+    drives = false;
+    EXPECT_TRUE(until([&] {
+      guest.leave();
+      one.send_state({-1.0, 0.5, 0.0, 0.0});
+      one.ask();
+      ranges = one.receive();
+      return ranges.size() == 91 && std::fabs(ranges[45] - alone[45]) <= 0.000501;
+    }));
+    EXPECT_TRUE(sees(alone[45])) << "it subscribes again";
+  }
+}
+
 TEST(Serve, StatesAreRelayedWithinRadioRange) {
   Service service(kRoom, {"--rate", "50", "--radio", "3"});
   ASSERT_NE(service.port, 0u) << service.program.err();
