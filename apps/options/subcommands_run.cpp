@@ -265,9 +265,10 @@ void add_serve(CLI::App& app, Call& call) {
   add_forget(*sub, o);
   add_peers(*sub, o);
   add_lockstep(*sub, o);
-  sub->add_option("--join", o.join,
-                  "Robots that may join: copies of the world's robot ROBOT with the ids FIRST to LAST, each in the world "
-                  "from its first state until it leaves or is silent for 2 s; may be repeated")
+  sub->add_option(
+         "--join", o.join,
+         "Robots that may join: copies of the world's robot ROBOT with the ids FIRST to LAST, each in the world "
+         "from its first state until it leaves or is silent for 2 s; may be repeated")
       ->excludes("--lockstep")
       ->type_name("ROBOT=FIRST-LAST");
   add_filter(*sub, o);
