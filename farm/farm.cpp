@@ -177,7 +177,8 @@ void Farm::State::begin_tick(bool is_sample) {
 void Farm::State::apply(const base::Report& report) {
   if (is_gone(report.mover)) return;
   const base::Pose& X = report.X_WM;
-  SF_CHECK(std::isfinite(X.x + X.y + X.z + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
+  SF_CHECK(std::isfinite(X.x + X.y + X.z + X.yaw),
+           "the pose of mover " + std::to_string(report.mover) + " is not finite");
   pose_changes->add(report.mover, states[report.mover].X_WM, X);
   states[report.mover] = report;
 }

@@ -16,7 +16,9 @@ namespace sf::world {
 inline constexpr auto words_of(Drive) { return std::to_array<std::string_view>({"diff", "omni", "car", "skid"}); }
 inline constexpr auto words_of(ActuatorModel) { return std::to_array<std::string_view>({"direct", "player_create"}); }
 inline constexpr auto words_of(Emitter::Kind) { return std::to_array<std::string_view>({"virtual_wall", "dock"}); }
-inline constexpr auto words_of(Fiducial::Type) { return std::to_array<std::string_view>({"marker", "target", "threat"}); }
+inline constexpr auto words_of(Fiducial::Type) {
+  return std::to_array<std::string_view>({"marker", "target", "threat"});
+}
 inline constexpr auto words_of(LightState) {
   return std::to_array<std::string_view>({"dark", "red", "yellow", "green", "flashing red", "flashing yellow"});
 }

@@ -17,8 +17,8 @@ struct FilteredScene {
   std::vector<world::LaneMarking> paint;  ///< distinct markings of the road
 };
 
-/// Builds the filtered scene. @param exact true: markings become walls, at the heights of the sensors on their road; false: markings are left to
-/// the raster
+/// Builds the filtered scene. @param exact true: markings become walls, at the heights of the sensors on their road;
+/// false: markings are left to the raster
 /// @throws base::InputError when bitmaps have more pixel sizes than a point's tag can encode
 FilteredScene filter_scene(const world::World& world, bool exact);
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "netio/player/xdr.h"
 #include "bridges/player_bridge.h"
+#include "netio/player/xdr.h"
 #include "sensors/sensor_set.h"
 
 namespace sf::bridges::player {
