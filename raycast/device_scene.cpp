@@ -42,7 +42,7 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
   std::uint32_t rows = 0;
   for (const OutlineTable::Shape& shape : movers_.outlines().of_mover) {
     first_mover_rows_.push_back(rows);
-    rows += shape.slices;
+    rows += std::max(shape.slices, 2u) - 2;
   }
 
   const std::vector<world::Segment>& walls = configs.walls();
@@ -88,8 +88,8 @@ void DeviceScene::place_movers(std::span<const base::Report> states) {
   const auto mover_rows = mover_rows_->host<MoverRow>();
   const OutlineTable& outlines = movers_.outlines();
   for (std::size_t m = 0; m < states.size(); ++m)
-    for (std::uint32_t i = 0; i < outlines.of_mover[m].slices; ++i)
-      mover_rows[first_mover_rows_[m] + i] = {
+    for (std::uint32_t i = 1; i + 1 < outlines.of_mover[m].slices; ++i)
+      mover_rows[first_mover_rows_[m] + i - 1] = {
           states[m].X_WM.x,
           states[m].X_WM.y,
           static_cast<float>(movers_.headings()[m].x),

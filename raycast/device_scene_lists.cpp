@@ -160,7 +160,7 @@ void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scr
   const Pose& X = movers_.states()[near.mover].X_WM;
   const std::uint32_t slice = outlines.slice_of(near.mover, view.X_WS.z - X.z);
   const OutlineTable::Outline& outline = outlines.slices[outlines.of_mover[near.mover].first + slice].outline;
-  near.row = first_mover_rows_[near.mover] + slice;
+  near.row = outline.all > 0 ? first_mover_rows_[near.mover] + slice - 1 : 0;
   const glm::dvec2 heading = movers_.headings()[near.mover], p{view.X_WS.x - X.x, view.X_WS.y - X.y};
   const auto x = static_cast<float>(heading.x * p.x + heading.y * p.y);
   const auto y = static_cast<float>(heading.x * p.y - heading.y * p.x);

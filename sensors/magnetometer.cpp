@@ -97,6 +97,7 @@ class Magnetometers : public SensorBackend {
   std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;              ///< per due array
   std::vector<FieldBound> bounds_;      ///< per due array
+  bool level_ = true;                   ///< all movers with magnets are at their heights at load
   std::vector<double> magnets_z_;       ///< [m] heights of the movers that carry magnets, in this tick
   std::vector<double> load_z_;          ///< [m] the same at load
   std::map<std::uint8_t, double> cut_;  ///< [T] by mode: bound of the cut-off at any height
@@ -148,6 +149,7 @@ void Magnetometers::place_movers() {
     moved = moved || magnets_z_[k] != states_[m].X_WM.z;
     magnets_z_[k++] = states_[m].X_WM.z;
   }
+  level_ = magnets_z_ == load_z_;
   if (moved || lifted_.size() > kMostLifted) lifted_.clear();
 }
 
@@ -161,7 +163,7 @@ const FieldBound& Magnetometers::lifted_bound(std::uint8_t mode, double height) 
 
 /// Returns the bound of an array whose origin is at height `z` [m].
 FieldBound Magnetometers::bound_of(const Array& array, double z) {
-  if (z == array.height && magnets_z_ == load_z_) return array.bound;
+  if (z == array.height && level_) return array.bound;
   FieldBound bound;
   for (const Pose& X_SE : array.settings.X_SE) bound.include(lifted_bound(array.row.mode, z + X_SE.z));
   return bound;

@@ -53,11 +53,13 @@ void DriveRelay::refuse(Row& row, std::uint32_t mover, std::int64_t now, StateRe
   if (rests || now < row.next_line) return;
   row.next_line = now + kLineEvery;
   const world::Mover& robot = world_.movers[mover];
-  const std::string who = fmt::format("commands of Player clients for {} (id {}) are dropped: ", robot.name, robot.id);
+  const std::string event =
+      fmt::format("commands of Player clients for {} (id {}) are dropped: ", robot.name, robot.id);
   receiver.log().write(
-      who + (receiver.inbox().is_active(robot.id, now)
-                 ? "its process runs another controller; start it with `robot --controller remote`"
-                 : fmt::format("no process sends its state; start `robot --name {} --controller remote`", robot.name)),
+      event +
+          (receiver.inbox().is_active(robot.id, now)
+               ? "its process runs another controller; start it with `robot --controller remote`"
+               : fmt::format("no process sends its state; start `robot --name {} --controller remote`", robot.name)),
       now);
 }
 

@@ -126,6 +126,25 @@ std::vector<Fiducial> fiducials_on(const World& world, std::uint32_t mover, std:
   return fiducials;
 }
 
+/// Appends a copy with all models that it carries. Does not update extent and hash.
+void append_copy(World& world, const World& from, std::uint32_t original, const std::string& name, const Pose& X_WM,
+                 std::uint32_t id) {
+  if (world.movers.size() >= kMostMovers)
+    throw base::InputError(
+        fmt::format("'{}' cannot join: a run has at most {} robots, including those that left", name, kMostMovers));
+  const std::vector<std::uint32_t> rows = append_models(world, from, original, name, X_WM);
+  Mover copy = from.movers[original];
+  copy.name = name;
+  copy.X_WM = X_WM;
+  copy.id = id;
+  copy.model = rows[copy.model];
+  for (Segment& side : copy.body) side.model = rows[side.model];
+  for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];
+  const std::vector<Fiducial> fiducials = fiducials_on(from, original, rows);
+  world.movers.push_back(std::move(copy));
+  world.fiducials.insert(world.fiducials.end(), fiducials.begin(), fiducials.end());
+}
+
 Pose moved_with(const Pose& X_before, const Pose& X_after, const Pose& X_WM) {
   return compose(X_after, compose(inverse(X_before), X_WM));
 }
@@ -160,33 +179,31 @@ void check_name(const World& world, const std::string& name) {
           fmt::format("the name '{}' is taken; expected one that no model of {} has", name, world.file));
 }
 
-std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM,
-                           std::optional<std::uint32_t> id) {
-  return append_robot(world, world, original, name, X_WM, id);
+std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM) {
+  return append_robot(world, world, original, name, X_WM);
 }
 
 std::uint32_t append_robot(World& world, const World& from, std::uint32_t original, const std::string& name,
-                           const Pose& X_WM, std::optional<std::uint32_t> id) {
+                           const Pose& X_WM) {
   SF_CHECK(original < from.movers.size(), "a copy of a robot that does not exist");
-  if (world.movers.size() >= kMostMovers)
-    throw base::InputError(
-        fmt::format("'{}' cannot join: a run has at most {} robots, including those that left", name, kMostMovers));
-  const auto row = static_cast<std::uint32_t>(world.movers.size());
   const double clearance = clearance_of(from, from.movers[original]);
   const Pose X_join{X_WM.x, X_WM.y, height_on_road(world, {X_WM.x, X_WM.y}, clearance), X_WM.yaw};
-  const std::vector<std::uint32_t> rows = append_models(world, from, original, name, X_join);
-  Mover copy = from.movers[original];
-  copy.name = name;
-  copy.X_WM = X_join;
-  copy.id = id ? *id : next_id(world);
-  copy.model = rows[copy.model];
-  for (Segment& side : copy.body) side.model = rows[side.model];
-  for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];
-  world.movers.push_back(std::move(copy));
-  const std::vector<Fiducial> fiducials = fiducials_on(from, original, rows);
-  world.fiducials.insert(world.fiducials.end(), fiducials.begin(), fiducials.end());
+  append_copy(world, from, original, name, X_join, next_id(world));
   update_extent_and_hash(world);
-  return row;
+  return static_cast<std::uint32_t>(world.movers.size() - 1);
+}
+
+std::uint32_t append_robots(World& world, std::uint32_t original, std::span<const std::uint32_t> ids) {
+  const auto first = static_cast<std::uint32_t>(world.movers.size());
+  const std::string name = world.movers[original].name;
+  const Pose X_WM = world.movers[original].X_WM;
+  for (const std::uint32_t id : ids) {
+    const std::string own = fmt::format("{}_{}", name, id);
+    check_name(world, own);
+    append_copy(world, world, original, own, X_WM, id);
+  }
+  update_extent_and_hash(world);
+  return first;
 }
 
 std::uint32_t append_robot_of(World& world, const std::string& file, const std::string& name,

@@ -2,7 +2,6 @@
 // Adds robots to a world after it was loaded.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,17 +27,21 @@ void check_name(const World& world, const std::string& name);
 
 /// Appends a copy of the robot in row `original`, at rest at `X_WM` (on the highest road there, as high above it
 /// as the original above the ground), with all models that it carries. Existing rows keep their places. The copy's id
-/// is `id`, or the smallest unused one from 1. Updates extent and hash, in time proportional to the size of the world.
+/// is the smallest unused one from 1. Updates extent and hash, in time proportional to the size of the world.
 /// Precondition: `check_name` accepts the name.
 /// @return its row
-/// @param id unused by robots; nullopt: the smallest unused one from 1
 /// @throws base::InputError beyond kMostMovers
-std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM,
-                           std::optional<std::uint32_t> id = std::nullopt);
+std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM);
 
 /// Same, for the robot in row `original` of another world. @param from may be `world`
 std::uint32_t append_robot(World& world, const World& from, std::uint32_t original, const std::string& name,
-                           const Pose& X_WM, std::optional<std::uint32_t> id = std::nullopt);
+                           const Pose& X_WM);
+
+/// Appends copies of the robot in row `original`, at its place, with the ids `ids`, which no robot has, and names such
+/// as roomba1_100. Updates extent and hash once.
+/// @return the first row
+/// @throws base::InputError beyond kMostMovers, or if a name is taken
+std::uint32_t append_robots(World& world, std::uint32_t original, std::span<const std::uint32_t> ids);
 
 /// Appends the robot `name` of the world file `file`, at rest at the origin: a robot of that world, or else one of the
 /// type that the file or its includes define under that name. Renames the robot if a model of `world` has that name.

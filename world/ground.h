@@ -20,8 +20,8 @@ class Ground {
   /// Returns the height [m] of the highest surface at `p` that is at most `most` [m] high; 0: the floor.
   double height(glm::dvec2 p, double most) const;
   /// Returns the z [m] of a body after a move. On a surface (within 1 cm) it stays on it, and above a surface it keeps
-  /// its height above it. It climbs what rises by at most kMostStep and kMostSlope times the length of the move, passes
-  /// under what is higher, and drops off edges at once.
+  /// its height above it. It climbs a rise of at most kMostStep plus kMostSlope times the length of the move, passes
+  /// under higher surfaces, and drops from an edge within the move.
   double follow(const base::Pose& from, glm::dvec2 to) const;
 
   static constexpr double kMostStep = 0.05;  ///< [m]

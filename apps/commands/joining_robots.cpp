@@ -51,14 +51,15 @@ std::vector<std::uint32_t> append_joining(world::World& world, const std::vector
     const std::uint32_t original = world::robot_like(world, wish.robot);
     if (std::size_t{wish.last - wish.first} + 1 + rows.size() > kMostJoining)
       refuse(text, fmt::format("makes more than {} robots that may join", kMostJoining));
+    std::vector<std::uint32_t> ids;
     for (std::uint32_t id = wish.first; id <= wish.last; ++id) {
       const auto has = std::ranges::find_if(
           world.movers, [id](const world::Mover& mover) { return !mover.is_tag && mover.id == id; });
       if (has != world.movers.end()) refuse(text, fmt::format("contains the id {} of '{}'", id, has->name));
-      const std::string name = fmt::format("{}_{}", world.movers[original].name, id);
-      world::check_name(world, name);
-      rows.push_back(world::append_robot(world, original, name, world.movers[original].X_WM, id));
+      ids.push_back(id);
     }
+    std::uint32_t row = world::append_robots(world, original, ids);
+    for (std::size_t k = 0; k < ids.size(); ++k) rows.push_back(row++);
   }
   return rows;
 }

@@ -26,8 +26,8 @@ double highest_mount(const world::World& world) {
   return highest;
 }
 
-/// Sorts the markings by their heights. Without ramps, all sensors detect all markings. Otherwise a sensor detects
-/// those on the road below it: it is at most as high above them as the highest sensor is above its robot.
+/// Groups the markings by the heights from which sensors detect them. Without ramps, every sensor detects every
+/// marking. With ramps, a marking is visible from its road up to the mounting height of the highest sensor.
 std::map<Heights, std::vector<world::LaneMarking>> by_height(const world::World& world) {
   if (world.ramps.empty()) return {{{-kAllHeights, kAllHeights}, world.lane_markings}};
   const double above = highest_mount(world) + kClearance;

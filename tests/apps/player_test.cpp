@@ -35,6 +35,18 @@ struct PlayerProgram {
   netio::Endpoint server;
 };
 
+/// [m] Returns the y of the robot "ann" by the simulation interface.
+double y_of_ann(TestClient& client) {
+  base::Bytes ann;
+  bridges::player::XdrWriter writer(ann);
+  writer.put_text("ann");
+  writer.put_all({0.0, 0.0, 0.0});
+  const Message answer = client.request(kSimulation, 1, ann);
+  XdrReader xdr(answer.payload);
+  xdr.get_text(10), xdr.get_double();
+  return xdr.get_double();
+}
+
 }  // namespace
 
 TEST(PlayerProgram, ARobotIsDrivenAcrossTheRoomAndReset) {
@@ -108,16 +120,7 @@ TEST(PlayerProgram, AServiceForwardsCommandsToTheOwningProcess) {
   client.send(MessageType::command, kPosition, 1, xdr_of(0.3, 0.0, 0.0, 1u));
   TestClient second(serve.server);  // the newest command counts, whoever sends it
   second.banner();
-  EXPECT_TRUE(until([&] {
-    base::Bytes ann;
-    bridges::player::XdrWriter writer(ann);
-    writer.put_text("ann");
-    writer.put_all({0.0, 0.0, 0.0});
-    const Message answer = second.request(kSimulation, 1, ann);
-    XdrReader xdr(answer.payload);
-    xdr.get_text(10), xdr.get_double();
-    return xdr.get_double() > 0.1;
-  })) << robot.err();
+  EXPECT_TRUE(until([&] { return y_of_ann(second) > 0.1; })) << robot.err();
   second.open(kPosition);
   second.send(MessageType::command, kPosition, 1, xdr_of(0.0, 0.0, 0.0, 1u));
   const Outcome outcome = robot.stop();
@@ -139,14 +142,7 @@ TEST(PlayerProgram, ARobotProcessDrivesItsRobotAsAClient) {
   client.banner();
   double y = 0.0;
   EXPECT_TRUE(until([&] {
-    base::Bytes ann;
-    bridges::player::XdrWriter writer(ann);
-    writer.put_text("ann");
-    writer.put_all({0.0, 0.0, 0.0});
-    const Message answer = client.request(kSimulation, 1, ann);
-    XdrReader xdr(answer.payload);
-    xdr.get_text(10), xdr.get_double();
-    y = xdr.get_double();
+    y = y_of_ann(client);
     return y > 0.15;
   })) << robot.err();
   EXPECT_EQ(run.end().code, 0);

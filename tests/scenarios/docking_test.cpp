@@ -104,7 +104,8 @@ world::World room(const std::string& box) {
   return world::read_world(text, {.sensors = sensors::world_file_words()});
 }
 
-// Boxes on the axis and beside it, turned, long, and between the dock and the staging point: found by contact alone.
+// Boxes on the axis, at its side, turned, long, and between the dock and the staging point. The robot detects them by
+// contact only.
 TEST(DockingInARoom, SucceedsAroundABox) {
   for (const char* box : {"", "pose [-0.4 0 0 0] size [0.4 0.4 0.4]", "pose [-0.4 0.4 0 0] size [0.4 0.4 0.4]",
                           "pose [-0.9 0 0 30] size [0.25 0.6 0.4]", "pose [0.3 -0.3 0 45] size [0.7 0.5 0.4]"}) {

@@ -10,6 +10,7 @@
 #include "sensors/sonar.h"
 #include "server/real_robot.h"
 #include "tests/pioneer_emulator.h"
+#include "tests/server/own_values.h"
 #include "tests/units.h"
 
 namespace sf::server {
@@ -46,11 +47,7 @@ struct PioneerTest : testing::Test {
     EXPECT_NEAR(X.y, pioneer.X.y, within);
     EXPECT_NEAR(base::wrap_angle(X.yaw - pioneer.X.yaw), 0.0, within);
   }
-  std::vector<double> values(std::uint8_t type) const {
-    for (const OwnReading& own : drive->readings())
-      if (own.type == type) return own.values;
-    return {};
-  }
+  std::vector<double> values(std::uint8_t type) const { return own_values(*drive, type); }
 
   PioneerEmulator pioneer;
   std::unique_ptr<RealRobot> drive;

@@ -13,6 +13,7 @@
 #include "server/player_drive.h"
 #include "tests/player_emulator.h"
 #include "tests/refusal.h"
+#include "tests/server/own_values.h"
 #include "tests/units.h"
 
 namespace sf::server {
@@ -63,11 +64,7 @@ struct PlayerDriveTest : testing::Test {
     until([&] { return drive->counts().frames + drive->counts().wrong > before.frames + before.wrong; });
   }
   void wait(std::int64_t time) { drive->update(now += time); }
-  std::vector<double> values(std::uint8_t type) const {
-    for (const OwnReading& own : drive->readings())
-      if (own.type == type) return own.values;
-    return {};
-  }
+  std::vector<double> values(std::uint8_t type) const { return own_values(*drive, type); }
 
   PlayerEmulator player;
   std::unique_ptr<RealRobot> drive;

@@ -70,7 +70,7 @@ TEST(StateFilter, LateStatesArePredictedToNow) {
   EXPECT_NEAR(static_cast<double>(clocks[0].clock.offset), -3600e9, 2e6);
 }
 
-// Whatever a packet states, the filter uses it only if it is a covariance, and never as more exact than 0.1 mm.
+// The filter ignores matrices that are not covariances, and raises standard deviations below 0.1 mm to that.
 TEST(StateFilter, UsesStatedCovariancesThatArePossible) {
   const auto variance = [](const std::array<float, 6>& stated) {
     Fixture f;
