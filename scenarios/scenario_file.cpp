@@ -150,11 +150,12 @@ std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* 
   return states;
 }
 
-/// @return z is NaN if it is not stated
-base::Pose pose_of(const Reader& reader, const TomlNode& node) {
+/// @param with_z z may be stated  @return z is NaN if it is not stated
+base::Pose pose_of(const Reader& reader, const TomlNode& node, bool with_z) {
   const std::size_t count = node.items.size();
-  if (node.kind != NodeKind::list || (count != 3 && count != 4))
-    reader.fail(node, "'pose' expects [x, y, yaw] or [x, y, z, yaw] in metres and degrees");
+  if (node.kind != NodeKind::list || (count != 3 && !(with_z && count == 4)))
+    reader.fail(node,
+                fmt::format("'pose' expects [x, y, yaw]{} in metres and degrees", with_z ? " or [x, y, z, yaw]" : ""));
   const auto at = [&](std::size_t i, double most) { return reader.number(node.items[i], "pose", -most, most); };
   return {at(0, kMostPosition), at(1, kMostPosition), count == 4 ? at(2, kMostPosition) : NAN,
           at(count - 1, 1e6) * M_PI / 180.0};
@@ -191,7 +192,7 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
     if (sets_actor)
       setup.actor = Actor{controller_config_of(reader, node, scenario.actor.controller),
                           link_of(reader, reader.table(node, "link"), scenario.actor.link)};
-    if (const TomlNode* pose = world::find(node, "pose")) setup.pose = pose_of(reader, *pose);
+    if (const TomlNode* pose = world::find(node, "pose")) setup.pose = pose_of(reader, *pose, true);
     const TomlNode* driver = world::find(node, "controller");
     setup.controller_line = driver == nullptr ? node.line : driver->line;
     const auto [other, fresh] = lines.emplace(setup.name, setup.line);
@@ -266,7 +267,7 @@ ObjectEvent read_joining(const Reader& reader, const TomlNode& table, const Scen
                "at = SECONDS, add = \"NAME\", like = \"ROBOT\" and pose = [x, y, yaw]");
   ObjectEvent event{reader.text(table, "add", ""), reader.number(table, "at", 0.0, 0.0, kLongest, "seconds"), true,
                     table.line, ObjectEvent::Kind::add};
-  event.joining = {event.object, reader.text(table, "like", ""), pose_of(reader, *world::find(table, "pose")),
+  event.joining = {event.object, reader.text(table, "like", ""), pose_of(reader, *world::find(table, "pose"), false),
                    Actor{controller_config_of(reader, table, scenario.actor.controller),
                          link_of(reader, reader.table(table, "link"), scenario.actor.link)}};
   event.joining.actor.link.seed = scenario.seed;

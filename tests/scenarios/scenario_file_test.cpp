@@ -193,6 +193,8 @@ TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
       {w + "robot = [3]\n", "test.toml:2: 'robot' expects [[robot]] tables"},
       {w + "[[robot]]\ncontroller = \"none\"\n", "test.toml:2: a robot without a name"},
       {w + "[[robot]]\nname = \"a\"\npose = [1, 2]\n", "test.toml:4: 'pose' expects [x, y, yaw]"},
+      {w + "[[event]]\nat = 1\nadd = \"a\"\nlike = \"b\"\npose = [1, 2, 3, 4]\n",
+       "test.toml:6: 'pose' expects [x, y, yaw] in metres"},
       {w + "[[robot]]\nname = \"a\"\npose = [1, 2, inf]\n", "test.toml:4: 'pose' expects a number"},
       {w + "[[robot]]\nname = \"a\"\n[[robot]]\nname = \"b\"\n[[robot]]\nname = \"a\"\n",
        "test.toml:6: the robot 'a' is already configured at line 2; expected one [[robot]] per robot"},

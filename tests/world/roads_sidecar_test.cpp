@@ -150,6 +150,7 @@ TEST(Sidecar, PointsMayHaveHeights) {
   EXPECT_EQ(s.points.at({1, 1, 2}).p->x, 1.0);
   expect_in("'height_m' expects a number from 0 to 1000", refusal("[points.\"1.1.1\"]\nheight_m = -0.1\n"));
   expect_in("'height_m' expects a number from 0 to 1000", refusal("[points.\"1.1.1\"]\nheight_m = 1001\n"));
+  expect_in("small.toml:1: point 3.0.1 is in a zone", refusal("[points.\"3.0.1\"]\nheight_m = 1\n"));
   expect_in("small.toml:1: expected position = [x, y] in metres, or height_m", refusal("[points.\"1.1.1\"]\n"));
 }
 

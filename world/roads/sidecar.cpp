@@ -176,6 +176,12 @@ void check_against(const RoadSidecar& sidecar, const Rndf& rndf) {
       throw base::InputError(
           sidecar.file, point.line,
           fmt::format("{} has no point {}; expected one of its points", rndf.file, point_id_text(id)));
+  for (const auto& [id, point] : sidecar.points)
+    if (point.height != 0.0 && lanes.count({id.segment, id.lane, 0}) == 0)
+      throw base::InputError(sidecar.file, point.line,
+                             fmt::format("point {} is in a zone, which is on the floor; expected 'height_m' of "
+                                         "way-points of lanes only",
+                                         point_id_text(id)));
 }
 
 }  // namespace sf::world
