@@ -2,10 +2,13 @@
 
 #include <dlfcn.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace sf::base {
 
@@ -47,6 +50,12 @@ std::string plugin_file(const std::string& name) {
   for (const fs::path folder : plugin_folders())
     if (fs::exists(folder / file, ignored)) return (folder / file).string();
   return file;
+}
+
+bool names_a_plugin(std::string_view name) {
+  const std::size_t slash = name.rfind('/');
+  const std::string_view file = name.substr(0, name.find(':', slash == std::string_view::npos ? 0 : slash));
+  return slash != std::string_view::npos || file.ends_with(".so") || file.ends_with(".py");
 }
 
 std::string installed_file(const std::string& file) {

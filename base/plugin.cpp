@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <string_view>
 
 #include "base/error.h"
 #include "base/installation.h"
@@ -47,12 +46,6 @@ void require_whole(const std::string& file) {
 }
 
 }  // namespace
-
-bool names_a_plugin(std::string_view name) {
-  const std::size_t slash = name.rfind('/');
-  const std::string_view file = name.substr(0, name.find(':', slash == std::string_view::npos ? 0 : slash));
-  return slash != std::string_view::npos || file.ends_with(".so") || file.ends_with(".py");
-}
 
 const void* load_plugin(const char* name, const char* without, const char* library) {
   const std::string file = plugin_file(name);

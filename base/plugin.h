@@ -2,7 +2,6 @@
 // Loads shared objects at run time. They are never unloaded.
 
 #include <string>
-#include <string_view>
 
 namespace sf::base {
 
@@ -12,10 +11,6 @@ namespace sf::base {
 /// @param library library that the plug-in needs, with its package, e.g. "VTK 9.1 (Debian: libvtk9.1)"
 /// @throws InputError naming the file, the reason and the remedy
 const void* load_plugin(const char* name, const char* without, const char* library);
-
-/// Returns whether a controller's name has the form "./libmine.so", "folder/libmine.so:name" or "mine.py:Class",
-/// instead of a plain name.
-bool names_a_plugin(std::string_view name);
 
 /// A library supplied by the user. @throws InputError naming the file and the reason
 class SharedLibrary {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/plugin.h"
+#include "base/installation.h"
 #include "base/suggest.h"
 #include "control/control_shell.h"
 #include "control/own_controllers.h"

@@ -5,7 +5,7 @@
 #include <deque>
 
 #include "base/error.h"
-#include "base/plugin.h"
+#include "base/installation.h"
 #include "control/own_controller.h"
 
 namespace sf::control {

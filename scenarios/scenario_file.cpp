@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/installation.h"
-#include "base/plugin.h"
 #include "base/suggest.h"
 #include "control/own_controllers.h"
 #include "scenarios/scenario.h"

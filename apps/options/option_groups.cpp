@@ -10,7 +10,6 @@
 #include "apps/options/option_parsers.h"
 #include "apps/reports/text.h"
 #include "base/installation.h"
-#include "base/plugin.h"
 #include "bridges/dds.h"
 #include "control/own_controllers.h"
 #include "raycast/casters.h"

@@ -26,7 +26,6 @@
 #include "base/elapsed.h"
 #include "base/files.h"
 #include "base/installation.h"
-#include "base/plugin.h"
 #include "base/plugin_calls.h"
 #include "base/thread_pool.h"
 #include "cluster/ranks.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/plugin.h"
+#include "base/installation.h"
 #include "base/suggest.h"
 
 namespace sf::world {
