@@ -23,6 +23,10 @@ enum class QualityFlag : std::uint8_t {
   too_near = 5       ///< range: the surface is nearer than the sensor's minimum (base/echo.h)
 };
 
+/// A set of sensor types: bit k for the type with wire id k, in [1, 63].
+using SensorTypes = std::uint64_t;
+constexpr SensorTypes only(std::uint8_t type) { return SensorTypes{1} << type; }
+
 /// One reading of one sensor. The spans are valid until the next tick of the farm that returned them.
 struct ReadingBlock {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`

@@ -55,7 +55,7 @@ struct Farm::State {
   std::vector<base::Report> states;           ///< per mover, as sensed in this tick or sample; backends view it
   std::vector<base::Report> tick_states;      ///< of the last tick, while samples follow it
   bool between = false;                       ///< `states` belongs to a sample
-  std::vector<std::uint32_t> subscribed;      ///< per mover: bits of sensor types
+  std::vector<base::SensorTypes> subscribed;  ///< per mover
   std::vector<std::uint8_t> gone;             ///< per mover
   std::vector<base::StateQuality> qualities;  ///< per mover; empty: none was set
   std::vector<base::ReadingBlock> blocks;
@@ -104,7 +104,7 @@ struct Farm::State {
   void append(SensorPipeline& pipeline);
   /// @param reuse whether cached readings may be used
   void measure(std::int64_t now, bool reuse);
-  void subscribe(std::uint32_t mover, std::uint32_t types);
+  void subscribe(std::uint32_t mover, base::SensorTypes types);
   void add_to_hash(std::int64_t now, std::span<const base::ReadingBlock> readings);
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
 };
@@ -156,7 +156,7 @@ std::shared_ptr<const void> Farm::State::add_mover() {
 
 bool Farm::State::find_due(std::int64_t now) {
   for (SensorPipeline& pipeline : pipelines)
-    stats.missed += pipeline.find_due(now, !sharing             ? std::span<const std::uint32_t>(subscribed)
+    stats.missed += pipeline.find_due(now, !sharing             ? std::span<const base::SensorTypes>(subscribed)
                                            : pipeline.derived() ? sharing->delivered_types()
                                                                 : sharing->measured_types());
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
@@ -290,7 +290,7 @@ void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlo
     hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
 }
 
-void Farm::State::subscribe(std::uint32_t mover, std::uint32_t types) {
+void Farm::State::subscribe(std::uint32_t mover, base::SensorTypes types) {
   subscribed.at(mover) = types;
   if (sharing) sharing->subscribe(mover, types);
 }
@@ -318,7 +318,7 @@ Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& op
 
 Farm::~Farm() = default;
 
-void Farm::subscribe(std::uint32_t mover, std::uint32_t types) {
+void Farm::subscribe(std::uint32_t mover, base::SensorTypes types) {
   s_->subscribe(mover, s_->gone.at(mover) != 0 ? 0 : types);
 }
 void Farm::set_absent(std::uint32_t mover, bool gone) {

@@ -64,7 +64,7 @@ struct FarmStats {
   double sensing_s() const { return place_s + lists_s + device_s + collect_s; }
 };
 
-inline constexpr std::uint32_t kAllSensorTypes = 0xFFFFFFFFu;
+inline constexpr base::SensorTypes kAllSensorTypes = ~base::SensorTypes{0};
 
 /// Not thread-safe. `world` and `device` must outlive it. Creates backends only for sensor types that the world
 /// contains.
@@ -76,8 +76,7 @@ class Farm {
   ~Farm();
 
   /// Sets the sensors of a mover that are computed; initially none. Absent movers have none.
-  /// @param types bit k: sensor type with wire id k
-  void subscribe(std::uint32_t mover, std::uint32_t types);
+  void subscribe(std::uint32_t mover, base::SensorTypes types);
   void subscribe(std::uint32_t mover, bool) = delete;
   void subscribe_all();
 

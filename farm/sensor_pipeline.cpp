@@ -40,7 +40,7 @@ SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sens
 void SensorPipeline::go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call) {
   if (last_tick >= 0) backend->accumulate(last_tick, false);
   // Two steps suffice to find a past due time, because rounding may place it before its reading.
-  const std::vector<std::uint32_t> none(movers.empty() ? 0 : movers.back() + 1, 0u);
+  const std::vector<base::SensorTypes> none(movers.empty() ? 0 : movers.back() + 1, 0u);
   for (int step = 0; step < 2 && last_call >= 0; ++step) find_due(last_call, none);
   due.clear();
   if (before == nullptr) return;
@@ -51,10 +51,10 @@ void SensorPipeline::go_on(SensorPipeline* before, std::int64_t last_tick, std::
   backend->take_over(*before->backend, rows);
 }
 
-std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::uint32_t> subscribed) {
+std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const base::SensorTypes> subscribed) {
   due.clear();
   std::uint64_t missed = 0;
-  const std::uint32_t type = 1u << group->type->id;
+  const base::SensorTypes type = base::only(group->type->id);
   for (Timing& timing : timings) {
     if (now < timing.next - 1) continue;
     const std::uint64_t ready = readings_started(now, timing.rate, timing.phase);
@@ -74,8 +74,8 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
   return missed;
 }
 
-std::int64_t SensorPipeline::next_due(std::span<const std::uint32_t> subscribed) const {
-  const std::uint32_t type = 1u << group->type->id;
+std::int64_t SensorPipeline::next_due(std::span<const base::SensorTypes> subscribed) const {
+  const base::SensorTypes type = base::only(group->type->id);
   std::int64_t soonest = kNever;
   for (const Timing& timing : timings) {
     if (timing.next >= soonest) continue;

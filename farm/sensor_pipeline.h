@@ -53,12 +53,12 @@ struct SensorPipeline {
   void go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call);
   bool derived() const { return group->type->derived_from != 0; }
   /// Finds the sensors of this type that are due at `now` [ns].
-  /// @param subscribed per mover: bits of sensor types
+  /// @param subscribed per mover
   /// @return number of readings of subscribed sensors that were due before, are superseded at `now` and were never
   /// measured
-  std::uint64_t find_due(std::int64_t now, std::span<const std::uint32_t> subscribed);
+  std::uint64_t find_due(std::int64_t now, std::span<const base::SensorTypes> subscribed);
   /// Returns the due time [ns] of the next subscribed sensor; kNever: none.
-  std::int64_t next_due(std::span<const std::uint32_t> subscribed) const;
+  std::int64_t next_due(std::span<const base::SensorTypes> subscribed) const;
   /// Splits the due sensors. @param reuse whether cached readings may be used
   void split(bool reuse);
   /// @return true if the batch must be recorded again

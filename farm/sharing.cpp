@@ -21,7 +21,7 @@ void Sharing::set_measured_here(std::uint32_t mover, bool here) {
   subscribe(mover, types_[mover]);
 }
 
-void Sharing::subscribe(std::uint32_t mover, std::uint32_t types) {
+void Sharing::subscribe(std::uint32_t mover, base::SensorTypes types) {
   types_.at(mover) = types;
   measured_types_[mover] = measures_[mover] != 0 ? types : 0;
   delivered_types_[mover] = delivers_[mover] != 0 ? types : 0;

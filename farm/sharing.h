@@ -39,14 +39,14 @@ class Sharing {
 
   // For use by the farm:
 
-  void subscribe(std::uint32_t mover, std::uint32_t types);
+  void subscribe(std::uint32_t mover, base::SensorTypes types);
   /// Call this after the world has gained one mover, in its last row.
   void add_mover(const sensors::SensorSet& sensor_set);
   bool is_hidden(std::uint32_t mover) const { return hidden_[mover] != 0; }
   ReadingExchange* exchange() const { return exchange_; }
-  /// Returns per mover the bits of the subscribed sensor types that are measured here, or delivered here.
-  std::span<const std::uint32_t> measured_types() const { return measured_types_; }
-  std::span<const std::uint32_t> delivered_types() const { return delivered_types_; }
+  /// Returns per mover the subscribed sensor types that are measured here, or delivered here.
+  std::span<const base::SensorTypes> measured_types() const { return measured_types_; }
+  std::span<const base::SensorTypes> delivered_types() const { return delivered_types_; }
   void add_call(std::int64_t now, std::span<const base::ReadingBlock> readings, std::span<const std::uint64_t> hashes) {
     hashes_.add_call(now, readings, hashes);
   }
@@ -54,7 +54,7 @@ class Sharing {
  private:
   // Per mover.
   std::vector<std::uint8_t> measures_, delivers_, hidden_;
-  std::vector<std::uint32_t> types_, measured_types_, delivered_types_;
+  std::vector<base::SensorTypes> types_, measured_types_, delivered_types_;
   ReadingExchange* exchange_ = nullptr;
   SharedHash hashes_;
   std::uint64_t hash_ = 0;

@@ -268,9 +268,9 @@ bool Inbox::follows_drive(std::uint32_t robot, std::int64_t now) const {
 }
 
 bool Inbox::is_subscribed(std::uint32_t robot, std::uint32_t type, std::int64_t now) const {
-  SF_CHECK(type < 32, "sensor type " + std::to_string(type));
+  SF_CHECK(type < 64, "sensor type " + std::to_string(type));
   if (!is_active(robot, now)) return false;
-  const std::uint32_t types = types_[*robots_.row(robot)];
+  const base::SensorTypes types = types_[*robots_.row(robot)];
   return types == 0 || (types >> type & 1u) != 0;
 }
 

@@ -100,7 +100,7 @@ class Inbox {
   /// since.
   bool is_active(std::uint32_t robot, std::int64_t now) const { return robots_.is_active(robot, now); }
 
-  /// Returns whether `robot` is active and its last SUBSCRIBE since then includes sensor type `type` in [1, 31].
+  /// Returns whether `robot` is active and its last SUBSCRIBE since then includes sensor type `type` in [1, 63].
   /// Without a SUBSCRIBE it includes all types.
   bool is_subscribed(std::uint32_t robot, std::uint32_t type, std::int64_t now) const;
 
@@ -165,7 +165,7 @@ class Inbox {
   SenderBindings objects_;  ///< objects, bound by the id of their tag
   SenderBindings lights_;
   PeerTable peers_;
-  std::vector<std::uint32_t> types_;           ///< per robot row: mask of its last SUBSCRIBE, 0 for all
+  std::vector<base::SensorTypes> types_;       ///< per robot row: mask of its last SUBSCRIBE, 0 for all
   std::vector<std::uint8_t> follows_drive_;    ///< per robot row: by its last SUBSCRIBE
   std::vector<std::uint32_t> sessions_;        ///< per robot row: of its last packet
   std::vector<std::uint32_t> light_sessions_;  ///< the same per row of lights

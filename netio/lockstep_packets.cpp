@@ -152,7 +152,7 @@ PacketStatus read_payload(std::span<const std::uint8_t> payload, Values& out) {
     return PacketStatus::not_finite;
   const bool placed = out.total >= 1 && out.total <= kMaxTotal && out.first < out.total &&
                       out.first % kMaxValues == 0 && count == count_values(out.total, out.first);
-  return status_if(placed && type >= 1 && type <= 31 && out.part.index < out.part.datagrams && out.bound >= 0.0);
+  return status_if(placed && type >= 1 && type <= 63 && out.part.index < out.part.datagrams && out.bound >= 0.0);
 }
 
 void write_payload(const Command& command, base::ByteWriter& writer) {

@@ -71,7 +71,7 @@ struct State {
 /// From the farm: an unrounded reading, or a part of one.
 struct Values {
   AnswerPart part;
-  std::uint8_t type = 0;    ///< wire id of the sensor type, in [1, 31]
+  std::uint8_t type = 0;    ///< wire id of the sensor type, in [1, 63]
   std::uint32_t total = 0;  ///< values of the whole reading, in [1, kMaxTotal]
   std::uint32_t first = 0;  ///< index of the first value of this part: a multiple of kMaxValues
   base::Pose X_WS;          ///< pose of the sensor at the measurement

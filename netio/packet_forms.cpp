@@ -9,7 +9,7 @@ namespace {
 
 constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
                                  {Type::tag, "TAG", kHeaderBytes + kTagBytes},
-                                 {Type::subscribe, "SUBSCRIBE", kHeaderBytes + kSubscribeBytes},
+                                 {Type::subscribe, "SUBSCRIBE", 0},
                                  {Type::start, "START", kHeaderBytes},
                                  {Type::leave, "LEAVE", kHeaderBytes},
                                  {Type::challenge, "CHALLENGE", kHeaderBytes + kChallengeBytes},

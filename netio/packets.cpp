@@ -147,6 +147,10 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       status = check_size(payload.size(), kTagBytes);
       return status == PacketStatus::accepted ? read_tag(reader, packet) : status;
     case Type::subscribe:
+      if (payload.size() == kWideSubscribeBytes) {
+        packet.body = Subscribe{reader.get<std::uint64_t>()};
+        return status;
+      }
       packet.body = Subscribe{reader.get<std::uint32_t>()};
       return check_size(payload.size(), kSubscribeBytes);
     case Type::start:
@@ -330,7 +334,10 @@ void encode(const Header& header, const Tag& state, base::Bytes& out) {
 void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
   start(header, Type::subscribe, out);
   base::ByteWriter writer(out);
-  writer.put(request.types);
+  if (request.types >> 32 != 0)
+    writer.put(request.types);
+  else
+    writer.put(static_cast<std::uint32_t>(request.types));
 }
 
 void encode(const Header& header, const Start&, base::Bytes& out) { start(header, Type::start, out); }

@@ -12,6 +12,7 @@
 
 #include "base/bytes.h"
 #include "base/pose.h"
+#include "base/reading.h"
 #include "base/report.h"
 #include "base/state_quality.h"
 #include "netio/lockstep_packets.h"
@@ -61,7 +62,7 @@ enum class Type : std::uint8_t {
   drive = 143
 };
 
-/// Returns the wire id (below 64; sensor types end at 31) of the sensor type whose readings, in either form, have type
+/// Returns the wire id (below 64) of the sensor type whose readings, in either form, have type
 /// `type`; 0 for other types.
 constexpr std::uint8_t sensor_type_of(Type type) {
   const auto number = static_cast<std::uint8_t>(type);
@@ -115,11 +116,11 @@ struct Tag {
 
 /// Request for readings that does not set the robot's state.
 struct Subscribe {
-  std::uint32_t types = 0;  ///< bit k: sensor type k; bit 0: states of other robots, see kNeighboursBit; 0: all types
-                            ///< without these states
+  base::SensorTypes types = 0;  ///< bit 0: states of other robots, see kNeighboursBit; 0: all types without these
+                                ///< states
 };
-inline constexpr std::uint32_t kNeighboursBit = 1;  ///< requests the states of other robots
-inline constexpr std::uint16_t kFollowsDrive = 1;   ///< `Header::sensor` of SUBSCRIBE: the robot follows DRIVE
+inline constexpr base::SensorTypes kNeighboursBit = 1;  ///< requests the states of other robots
+inline constexpr std::uint16_t kFollowsDrive = 1;       ///< `Header::sensor` of SUBSCRIBE: the robot follows DRIVE
 
 /// Start signal to the robot in the header, or to all with kBroadcastId.
 struct Start {};
@@ -149,8 +150,9 @@ struct Drive {
   base::Twist twist;  ///< in the robot's frame; each number within kMaxSpeed
 };
 
-inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                           ///< size of a complete V2V packet
-inline constexpr std::size_t kTagBytes = 104, kSubscribeBytes = 4, kObjectBytes = 4;  ///< payload sizes
+inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                 ///< size of a complete V2V packet
+inline constexpr std::size_t kTagBytes = 104, kObjectBytes = 4;             ///< payload sizes
+inline constexpr std::size_t kSubscribeBytes = 4, kWideSubscribeBytes = 8;  ///< without and with types above 31
 inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes = 24;
 inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V

@@ -31,7 +31,7 @@ class Drive {
   Drive(const world::World& world, gpu::Device& device, RecordedPaths paths, const farm::FarmOptions& options)
       : farm_(world, device, options), paths_(std::move(paths)), interval_(base::nanoseconds(world.interval)) {}
 
-  void subscribe(std::uint32_t types) {
+  void subscribe(base::SensorTypes types) {
     for (std::uint32_t m = 0; m < paths_[0].size(); ++m) farm_.subscribe(m, types);
   }
   void tick(std::size_t at) {
@@ -145,7 +145,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
     SensorTypeCost cost = facts_of(group);
     const sensors::SensorType* const source = sensors::find_sensor_type(group.type->derived_from);
     if (source != nullptr) cost.source = source->name;
-    farm.subscribe(1u << group.type->id | (source != nullptr ? 1u << source->id : 0u));
+    farm.subscribe(base::only(group.type->id) | (source != nullptr ? base::only(source->id) : 0u));
     cost.tick = farm.laps();
     cost.readings = farm.readings();
     cost.reused = farm.again();

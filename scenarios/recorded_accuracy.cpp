@@ -28,7 +28,7 @@ class Pair {
         exact_(exact_world_, device, options_of(recording, options)) {
     for (const sensors::SensorSet::Group& group : farm_.sensor_set().groups()) {
       if (group.type->modes.empty()) continue;
-      types_ |= 1u << group.type->id;
+      types_ |= base::only(group.type->id);
       result_.types.push_back({.sensor = std::string(group.type->name),
                                .mode = std::string(sensors::word_of(*group.type, group.rows.front().mode)),
                                .unit = std::string(sensors::unit_of(*group.type)),
@@ -88,8 +88,8 @@ class Pair {
   const record::Recording& recording_;
   const world::World world_, exact_world_;
   farm::Farm farm_, exact_;
-  std::uint32_t types_ = 0;  ///< bits of the types that have modes
-  std::vector<Row> rows_;    ///< of `result_.types`
+  base::SensorTypes types_ = 0;  ///< types that have modes
+  std::vector<Row> rows_;        ///< of `result_.types`
   std::vector<base::Report> reports_;
   RecordedAccuracy result_;
 };

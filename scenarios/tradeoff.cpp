@@ -41,7 +41,7 @@ class ModeEntrant {
     farm_ = std::make_unique<farm::Farm>(
         world_, device,
         farm::FarmOptions{.seed = options.seed, .noise = false, .reuse_unchanged = false, .threads = options.threads});
-    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->subscribe(m, 1u << type.id);
+    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->subscribe(m, base::only(type.id));
   }
 
   /// First lap: collects the readings and warms up.

@@ -157,7 +157,7 @@ struct PayloadPart {
 inline constexpr std::uint8_t kExtended = 64;
 
 struct SensorType {
-  std::uint8_t id = 0;                   ///< wire id, in [1, 31]
+  std::uint8_t id = 0;                   ///< wire id, in [1, 63]
   std::string_view name;                 ///< name in commands, JSON and files, such as "laser"
   world::SensorKeyword word;             ///< keyword in world files
   world::SensorKeyword other_word = {};  ///< a second keyword; empty: none

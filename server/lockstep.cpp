@@ -104,7 +104,7 @@ void Lockstep::take(Process& process, const netio::Fetch& fetch) {
   if (fetch.tick == published_.tick() && answerable(process)) answer_again(process, fetch.first, fetch.count);
 }
 
-void Lockstep::subscribe(const netio::Header& header, std::uint32_t types, std::int64_t now) {
+void Lockstep::subscribe(const netio::Header& header, base::SensorTypes types, std::int64_t now) {
   const std::uint32_t mover = names_.robots.at(header.robot);
   const netio::Endpoint endpoint = *inbox_.address(header.robot);
   if (Process* old = find(endpoint); old != nullptr && old->session != header.session) release_all(*old);

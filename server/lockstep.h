@@ -101,7 +101,7 @@ class Lockstep {
   /// A mover, seen from the process that drives it.
   struct Seat {
     Process* driver = nullptr;               ///< null: the mover is at rest
-    std::uint32_t types = 0;                 ///< type mask of its SUBSCRIBE
+    base::SensorTypes types = 0;             ///< type mask of its SUBSCRIBE
     std::optional<std::uint64_t> answered;   ///< tick of its newest answer
     std::optional<std::uint64_t> before;     ///< tick of the previous answer
     std::optional<std::uint64_t> commanded;  ///< tick of its last command
@@ -113,7 +113,7 @@ class Lockstep {
   void take(Process& process, const netio::Command& command, const netio::Header& header);
   void take(Process& process, const netio::Step& step, std::int64_t now);
   void take(Process& process, const netio::Fetch& fetch);
-  void subscribe(const netio::Header& header, std::uint32_t types, std::int64_t now);
+  void subscribe(const netio::Header& header, base::SensorTypes types, std::int64_t now);
   void acknowledge();
   void release(std::uint32_t mover);
   void release_all(Process& process);

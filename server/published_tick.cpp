@@ -32,7 +32,7 @@ std::uint32_t PublishedTick::row_of(const base::ReadingBlock& reading) const {
   return first_[static_cast<std::size_t>(at - groups.begin())] + at->first[reading.mover] + reading.sensor;
 }
 
-void PublishedTick::find_new(std::uint32_t mover, std::uint32_t types, std::optional<std::uint64_t> after,
+void PublishedTick::find_new(std::uint32_t mover, base::SensorTypes types, std::optional<std::uint64_t> after,
                              std::vector<std::uint32_t>& rows) const {
   const auto groups = sensor_set_.groups();
   for (std::size_t g = 0; g < groups.size(); ++g) {

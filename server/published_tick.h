@@ -26,7 +26,7 @@ class PublishedTick {
   /// Appends the rows of the mover's sensors with a reading delivered after tick `after` (nullopt: ever), ordered by
   /// type and sensor.
   /// @param types bit k: sensor type with wire id k
-  void find_new(std::uint32_t mover, std::uint32_t types, std::optional<std::uint64_t> after,
+  void find_new(std::uint32_t mover, base::SensorTypes types, std::optional<std::uint64_t> after,
                 std::vector<std::uint32_t>& rows) const;
   /// Returns the newest reading of a row found by `find_new`.
   const base::ReadingBlock& reading(std::uint32_t row) const { return newest_[row].reading.block(); }

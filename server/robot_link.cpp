@@ -97,7 +97,7 @@ netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, c
 void RobotLink::send_request(std::int64_t now) {
   if (now < next_request_) return;
   netio::Subscribe request{netio::kNeighboursBit};
-  for (const Stream& stream : streams_) request.types |= 1u << stream.source.type->id;
+  for (const Stream& stream : streams_) request.types |= base::only(stream.source.type->id);
   const std::uint16_t drive = follows_drive_ ? netio::kFollowsDrive : 0;
   netio::encode({.robot = static_cast<std::uint16_t>(id_), .sensor = drive, .sequence = requests_, .time = now},
                 request, packet_);

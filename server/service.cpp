@@ -184,11 +184,11 @@ bool Service::write(base::Sink& sink, const base::TickRecord& record) {
 }
 
 /// Bit k: robot `id` is active and subscribed to sensors of type k.
-std::uint32_t Service::subscribed_types(std::uint32_t id, std::int64_t now) const {
-  std::uint32_t types = 0;
+base::SensorTypes Service::subscribed_types(std::uint32_t id, std::int64_t now) const {
+  base::SensorTypes types = 0;
   for (const sensors::SensorSet::Group& group : sensor_set_.groups())
     if (receiver_.inbox().is_subscribed(id, group.type->id, now) && layout_.sends_any(group))
-      types |= 1u << group.type->id;
+      types |= base::only(group.type->id);
   return types;
 }
 

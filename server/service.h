@@ -98,7 +98,7 @@ class Service {
   void run_ticks(const Clock& clock, const std::atomic<bool>& stop, double duration);
   void wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop);
   void publish_due(std::int64_t now, bool between);
-  std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const;
+  base::SensorTypes subscribed_types(std::uint32_t id, std::int64_t now) const;
   void warn_of_missed(std::int64_t now);
   std::span<const base::Report> update_movers(std::int64_t now);
   void address(std::span<const base::ReadingBlock> readings);

@@ -40,5 +40,5 @@ expect(no_kernel shaders/x.comp "shaders/x.comp is missing" -DID=4 -DWHERE=DEVIC
 expect(no_test tests/sensors/x_test.cpp "x_test.cpp is missing" -DID=4 -DWHERE=DEVICE)
 expect(host_needs_no_kernel shaders/x.comp "" -DID=4 -DWHERE=HOST)
 expect(no_place none "expected DEVICE or HOST" -DID=4 -DWHERE=CLOUD)
-expect(bad_id none "wire id from 1 to 31" -DID=32 -DWHERE=HOST)
+expect(bad_id none "wire id from 1 to 63" -DID=64 -DWHERE=HOST)
 expect(same_id none "has that id or name already" -DID=4 -DWHERE=HOST -DTWICE=ON)

@@ -167,7 +167,15 @@ TEST(Packets, TagRoundTrips) {
   EXPECT_EQ(got.angular, (std::array<double, 3>{0, 0, 0.25}));
 }
 
-TEST(Packets, SubscribeRoundTrips) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).types, 2u); }
+TEST(Packets, SubscribeRoundTrips) {
+  EXPECT_EQ(body_of<Subscribe>(subscribe_example()).types, 2u);
+  base::Bytes bytes;
+  for (const base::SensorTypes types : {base::only(31), base::only(32), base::only(63) | 1u}) {
+    encode({}, Subscribe{types}, bytes);
+    EXPECT_EQ(bytes.size(), kHeaderBytes + (types >> 32 == 0 ? 4 : 8)) << "senders of earlier versions stay valid";
+    EXPECT_EQ(body_of<Subscribe>(bytes).types, types);
+  }
+}
 
 TEST(Packets, NeighboursContainWholeV2v) {
   static_assert(kMaxNeighbours == 9 && kV2vBytes == 132);
