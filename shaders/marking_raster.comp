@@ -7,6 +7,7 @@
 #include "shaders/raycast/records.glsl"
 
 layout(local_size_x = SF_LANES_PER_GROUP) in;  // raycast/records.h
+layout(constant_id = 0) const bool kRounds32 = true;  // device property: lib/exact32.glsl
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;          // RasterRow of each sensor
 layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;            // Lane of each lane
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer directions64;  // BeamDirection of each beam, actual

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -44,7 +45,8 @@ RasterCaster::RasterCaster(const SensorContext& context, const MarkingRaster& ra
       block_rows_(raster.rows()),
       tag_(tag),
       with_casts_(with_casts),
-      kernel_(context.device, "paint raster", marking_raster_comp_spv),
+      kernel_(context.device, "paint raster", marking_raster_comp_spv,
+              std::array{std::uint32_t{context.device.rounds32()}}),
       place_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
              gpu::texels_of<RasterRow>(caster.scanners().size())),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),

@@ -4,7 +4,10 @@
 // Based on J. Amanatides and A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987. The squares
 // are given by the chessboard distance between blocks, and are aligned squares of 2 or 4 cells within a block. Cell
 // indices are exact integers. 32-bit floats, relative to the sensor's cell, only decide the order of crossings. A ray
-// that passes a cell's corner within 1e-7 of its length may take either side.
+// that passes a cell's corner within 1e-7 of its length may take either side: rounding as on the host makes it the same
+// one on every device.
+
+#include "shaders/lib/exact32.glsl"
 
 // The words of a cell and their contents.
 struct Cell {
@@ -41,7 +44,7 @@ struct Walk {
 // Walks from `from` in cell `start` along `d`, until paint begins (or ends, if the sensor starts on paint) or `reach`
 // [cells].
 Walk walk(ivec2 start, vec2 from, vec2 d, float reach, ivec2 size, bool going) {
-  const vec2 inverse = vec2(d.x == 0.0 ? 1e30 : 1.0 / d.x, d.y == 0.0 ? 1e30 : 1.0 / d.y);
+  const vec2 inverse = vec2(d.x == 0.0 ? 1e30 : quotient32(1.0, d.x), d.y == 0.0 ? 1e30 : quotient32(1.0, d.y));
   const uint wanted = 1u - cell_at(start, size).painted;
   Walk w = Walk(false, false, 0, start);
   ivec2 at = start;
@@ -54,10 +57,11 @@ Walk walk(ivec2 start, vec2 from, vec2 d, float reach, ivec2 size, bool going) {
     const ivec2 low = clear > 0 ? (block - (clear - 1)) << 3 : at & -side;
     const ivec2 high = clear > 0 ? (block + clear) << 3 : low + side;
     const ivec2 exit = ivec2(d.x > 0.0 ? high.x : low.x, d.y > 0.0 ? high.y : low.y) - start;
-    const vec2 t = (vec2(exit) - from) * inverse;
+    precise vec2 t = (vec2(exit) - from) * inverse;
     const bool across_x = d.x != 0.0 && (d.y == 0.0 || t.x < t.y);
     const float out_at = across_x ? t.x : t.y;
-    const ivec2 beside = clamp(ivec2(floor(from + out_at * d)) + start, low, high - 1);
+    precise vec2 left_at = from + out_at * d;
+    const ivec2 beside = clamp(ivec2(floor(left_at)) + start, low, high - 1);
     const ivec2 beyond = ivec2(d.x > 0.0 ? high.x : low.x - 1, d.y > 0.0 ? high.y : low.y - 1);
     const ivec2 next = across_x ? ivec2(beyond.x, beside.y) : ivec2(beside.x, beyond.y);
     going = !met && c.inside && out_at < reach;
