@@ -27,6 +27,14 @@ void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {
   place->used = true;
 }
 
+bool Delivery::hold_if_late(const base::ReadingBlock& block) {
+  const std::int64_t latency = any_ ? latency_of(block) : 0;
+  if (latency == 0) return false;
+  hold(block, block.time + latency);
+  next_ = std::min(next_, block.time + latency);
+  return true;
+}
+
 std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::span<const base::ReadingBlock> measured) {
   if (!any_) return measured;
   for (Waiting* slot : last_delivered_) slot->used = false;

@@ -25,6 +25,9 @@ class Delivery {
   /// of their delivery times, then those without latency. Blocks are valid until the next call.
   std::span<const base::ReadingBlock> deliver(std::int64_t now, std::span<const base::ReadingBlock> measured);
 
+  /// Delays a reading of a sensor with latency until a later call of `deliver`. @return false if it has none
+  bool hold_if_late(const base::ReadingBlock& block);
+
   /// Returns the delivery time [ns] of the next delayed reading; kNever: no reading is waiting.
   std::int64_t next() const { return next_; }
 

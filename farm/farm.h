@@ -13,6 +13,7 @@
 //
 // Uses no sockets, clocks or windows: the same calls in the same order give the same bytes on one device.
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -77,7 +78,7 @@ class Farm {
 
   /// Sets the sensors of a mover that are computed; initially none. Absent movers have none.
   void subscribe(std::uint32_t mover, base::SensorTypes types);
-  void subscribe(std::uint32_t mover, bool) = delete;
+  void subscribe(std::uint32_t mover, std::same_as<bool> auto) = delete;
   void subscribe_all();
 
   /// Sets whether a mover is absent. An absent mover is not sensed and loses its subscription. The first report after

@@ -45,7 +45,7 @@ std::span<const base::ReadingBlock> ScanReplay::scans_at(std::size_t tick) {
     const bool known = tick < states.size();
     farm_.set_absent(m, !known || base::is_absent(states[tick].X_WM));
     if (!known) continue;
-    if (part_.chosen[m] != 0) farm_.subscribe(m, 1u << sensors::kLaser);
+    if (part_.chosen[m] != 0) farm_.subscribe(m, base::only(sensors::kLaser));
     reports_.push_back({m, states[tick].time, states[tick].X_WM, states[tick].velocity});
   }
   // Advances by a long time in each call, so that sensors with long periods are due, too.

@@ -66,7 +66,7 @@ TEST(Price, TypesSubscribedLaterGiveTheSameReadings) {
     mover.sensors.push_back(trial::cones("infrared", trial::ring(4, 0.1)));
   }
   auto caster = &raycast::host_caster;
-  const auto readings = [&](const std::vector<std::uint32_t>& subscribed) {
+  const auto readings = [&](const std::vector<base::SensorTypes>& subscribed) {
     Farm farm(world, device(), {.reuse_unchanged = false, .scene = {.caster = caster}});
     std::vector<Kept> kept;
     for (int k = 0; k < 12; ++k) {

@@ -118,7 +118,7 @@ std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) 
   for (int k = 0; k < ticks; ++k) {
     const std::vector<base::Report> reports = day.next();
     const std::uint32_t deaf = chance.below(static_cast<std::uint32_t>(world.movers.size()));
-    const std::uint32_t types = chance.below(4) == 0 ? chance.below(1u << 12) : kAllSensorTypes;
+    const base::SensorTypes types = chance.below(4) == 0 ? chance.below(1u << 12) : kAllSensorTypes;
     for (Farm* farm : {&again, &fresh}) farm->subscribe(deaf, types);
     for (std::int64_t due = again.next_due(); due < k * kTick / 2; due = again.next_due()) {
       const std::vector<base::Report> on_the_way = day.next();
