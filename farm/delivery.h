@@ -2,6 +2,7 @@
 // Latency: readings are measured at one time and delivered later.
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -43,7 +44,7 @@ class Delivery {
   const sensors::SensorSet& sensor_set_;
   bool any_ = false;
   std::int64_t next_ = kNever;
-  std::vector<Waiting> waiting_;  ///< slots are reused with their memory
+  std::deque<Waiting> waiting_;  ///< slots are reused with their memory, at fixed addresses
   std::vector<Waiting*> ready_;
   std::vector<Waiting*> last_delivered_;  ///< their slots are freed at the next call
   std::vector<base::ReadingBlock> delivered_;

@@ -20,30 +20,6 @@ namespace sf::sensors {
 
 namespace {
 
-class PublicSensorSettings final : public sensorfarm::SensorSettings {
- public:
-  explicit PublicSensorSettings(const world::Sensor& sensor) : sensor_(sensor) {}
-  double number(std::string_view key, double fallback, double least, double most) const override {
-    return sensors::number(sensor_, key, fallback, least, most);
-  }
-  double length(std::string_view key, double fallback, double least, double most) const override {
-    return sensors::length(sensor_, key, fallback, least, most);
-  }
-  double angle(std::string_view key, double fallback, double least, double most) const override {
-    return sensors::angle(sensor_, key, fallback, least, most);
-  }
-  std::string text(std::string_view key, const std::string& fallback) const override {
-    const world::Setting* const setting = find(sensor_, key);
-    return setting == nullptr ? fallback : setting->text;
-  }
-  void refuse(std::string_view key, const std::string& message) const override {
-    sensors::refuse(sensor_, key, message);
-  }
-
- private:
-  const world::Sensor& sensor_;
-};
-
 /// View of the surroundings during one measurement.
 class SensorSurroundings final : public sensorfarm::Surroundings {
  public:

@@ -108,7 +108,7 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
 }
 
 template <class Wanted>
-void DerivedSensors::want(const Wanted& wanted) {
+void DerivedSensors::want_if(const Wanted& wanted) {
   const auto groups = sensor_set_.groups();
   for (std::size_t g = 0; g < groups.size(); ++g) needed_[g].assign(nodes_.empty() ? 0 : groups[g].rows.size(), 0);
   for (std::size_t level = levels_.size(); level-- > 0;)
@@ -128,11 +128,11 @@ void DerivedSensors::want(const Wanted& wanted) {
 }
 
 void DerivedSensors::want(std::span<const base::SensorTypes> subscribed) {
-  want([&](const DerivedNode& node) { return (subscribed[node.spec.mover] & base::only(node.type->id)) != 0; });
+  want_if([&](const DerivedNode& node) { return (subscribed[node.spec.mover] & base::only(node.type->id)) != 0; });
 }
 
 void DerivedSensors::want_only(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor) {
-  want([&](const DerivedNode& node) {
+  want_if([&](const DerivedNode& node) {
     return node.type->id == type && node.spec.mover == mover && node.spec.sensor == sensor;
   });
 }

@@ -76,7 +76,7 @@ class DerivedSensors {
     std::uint32_t node, input;
   };
   template <class Wanted>
-  void want(const Wanted& wanted);
+  void want_if(const Wanted& wanted);
   void create_wanted(std::span<const base::Report> states);
   void route(const base::ReadingBlock& reading);
   void process(std::size_t node, std::int64_t now);

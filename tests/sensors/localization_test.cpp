@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
@@ -14,16 +12,17 @@
 #include "farm/farm.h"
 #include "tests/device.h"
 #include "tests/sensors/host_trial.h"
+#include "world/stage/build_world.h"
 
 namespace sf::trial {
 namespace {
 
 world::World robot_with(const std::string& own) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "localized.world";
-  std::ofstream(file)
-      << "define bot position( size [0.3 0.3 0.1] drive \"diff\" encoder( per_count 0.001 slip 0.01 rate 20 )\n"
-      << own << " )\nbot( name \"r0\" pose [1 2 0 30] )\n";
-  return world::load_world(file, {.sensors = sensors::world_file_words()});
+  return world::build_world(
+      "localized.world",
+      "define bot position( size [0.3 0.3 0.1] drive \"diff\" encoder( per_count 0.001 slip 0.01 rate 20 )\n" + own +
+          " )\nbot( name \"r0\" pose [1 2 0 30] )\n",
+      {.sensors = sensors::world_file_words()});
 }
 
 /// Drives an arc of 0.3 m/s and 0.2 rad/s. Returns the last reading of the localization.
