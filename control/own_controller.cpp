@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/plugin_calls.h"
 #include "base/printable.h"
+#include "sensors/derived/public_types.h"
 
 namespace sf::control {
 
@@ -17,13 +18,6 @@ namespace {
 static_assert(static_cast<int>(sensorfarm::LightState::flashing_yellow) ==
               static_cast<int>(world::LightState::flashing_yellow));
 static_assert(sensorfarm::kNone == base::kNoHit && sensorfarm::kNone == base::kNoId);
-
-sensorfarm::Pose pose_of(const base::Pose& X) { return {X.x, X.y, X.z, X.yaw}; }
-sensorfarm::Twist twist_of(const base::Twist& twist) { return {twist.forward, twist.left, twist.turn}; }
-
-std::span<const std::uint8_t> flags_of(const base::ReadingBlock& reading) {
-  return {reinterpret_cast<const std::uint8_t*>(reading.quality.data()), reading.quality.size()};
-}
 
 /// Adapts the farm's settings to the public interface.
 class PublicSettings final : public sensorfarm::Settings {
@@ -42,27 +36,18 @@ class PublicSettings final : public sensorfarm::Settings {
   control::Settings& settings_;
 };
 
-sensorfarm::SensorInfo info_of(const sensors::SensorType& type, const sensors::SensorSpec& spec) {
-  sensorfarm::SensorInfo info{
-      std::string(type.name), spec.sensor, spec.name, pose_of(spec.X_MS), spec.rate, spec.elements, {}, spec.limit, {}};
-  for (const sensors::Column& column : type.columns)
-    for (std::uint32_t k = 0; k < column.width; ++k)
-      info.columns.push_back(column.width == 1 ? std::string(column.name) : fmt::format("{}[{}]", column.name, k));
-  for (std::uint32_t i = 0; type.is_scan && i < spec.elements; ++i) info.bearings.push_back(bearing_of(spec, i));
-  return info;
-}
-
 }  // namespace
 
 sensorfarm::Robot robot_of(const ControllerContext& context) {
   const world::Mover& mover = context.world.movers[context.mover];
-  sensorfarm::Robot robot{mover.name,     mover.id, context.mover, pose_of(mover.X_WM), mover.radius, mover.max_forward,
-                          mover.max_turn, {},       context.seed,  context.world.file};
+  sensorfarm::Robot robot{mover.name,   mover.id,          context.mover,  sensors::public_pose(mover.X_WM),
+                          mover.radius, mover.max_forward, mover.max_turn, {},
+                          context.seed, context.world.file};
   std::optional<sensors::SensorSet> made;
   const sensors::SensorSet& all = context.sensor_set != nullptr ? *context.sensor_set : made.emplace(context.world);
   for (const sensors::SensorSet::Group& group : all.groups())
     for (const sensors::SensorSpec& spec : all.of(group.type->id, context.mover))
-      robot.sensors.push_back(info_of(*group.type, spec));
+      robot.sensors.push_back(sensors::public_info(*group.type, spec));
   return robot;
 }
 
@@ -128,12 +113,12 @@ class OwnController final : public Controller {
 void OwnController::translate(const ControllerInput& input) {
   readings_.clear(), others_.clear(), lights_.clear();
   for (const base::ReadingBlock& r : input.readings)
-    readings_.push_back({sensors::find_sensor_type(r.type)->name, r.sensor, 1e-9 * static_cast<double>(r.time),
-                         pose_of(r.X_WS), r.values, r.hits, r.bound, r.bound_without_noise, r.sigma, flags_of(r)});
+    readings_.push_back(sensors::public_reading(r, *sensors::find_sensor_type(r.type)));
   for (const Neighbour& other : input.others)
-    others_.push_back({other.id, pose_of(other.state.X_WM), twist_of(other.state.velocity), other.intent.follows});
+    others_.push_back({other.id, sensors::public_pose(other.state.X_WM), sensors::public_twist(other.state.velocity),
+                       other.intent.follows});
   for (std::size_t i = 0; i < input.signals.size(); ++i)
-    lights_.push_back({world_.lights[i].name, pose_of(world_.lights[i].X_WL),
+    lights_.push_back({world_.lights[i].name, sensors::public_pose(world_.lights[i].X_WL),
                        static_cast<sensorfarm::LightState>(input.signals[i].state), input.signals[i].left});
 }
 
@@ -141,8 +126,8 @@ base::Twist OwnController::step(const ControllerInput& input) {
   time_ = 1e-9 * static_cast<double>(input.time);
   translate(input);
   const sensorfarm::Twist twist = guarded([&] {
-    return inner_->step({time_, pose_of(input.state.X_WM), twist_of(input.state.velocity), readings_, input.contact,
-                         input.started, others_, lights_});
+    return inner_->step({time_, sensors::public_pose(input.state.X_WM), sensors::public_twist(input.state.velocity),
+                         readings_, input.contact, input.started, others_, lights_});
   });
   if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
     fail(fmt::format("its twist is ({}, {}, {}); expected finite numbers", twist.forward, twist.left, twist.turn));

@@ -43,20 +43,6 @@ PositionSensors position_sensors_of(const world::Mover& mover) {
 
 bool can_localize(const world::Mover& mover) { return first_sensor(mover, "encoder") != nullptr; }
 
-estimation::LocalizationOptions localization_options(const world::Mover& mover, const PositionSensors& sensors) {
-  estimation::LocalizationOptions options{.sideways = mover.drive == world::Drive::omni};
-  if (const auto& wheels = sensors.wheels)
-    options.encoder = {.per_count = wheels->per_count, .slip = wheels->slip, .track = wheels->track};
-  if (sensors.gyro) options.gyro = {sensors.gyro->noise, sensors.gyro->bias};
-  // Receivers without noise still have the error of their latency and of rounding.
-  if (sensors.gps) options.gps_noise = std::max(sensors.gps->noise, 1e-3);
-  return options;
-}
-
-glm::dvec2 origin_of(const glm::dvec2& antenna, double yaw, const glm::dvec2& p_MS) {
-  return antenna - base::rotate(yaw, p_MS);
-}
-
 void LocalizationError::add(const base::Pose& estimated, const base::Pose& truth) {
   const double distance = std::hypot(estimated.x - truth.x, estimated.y - truth.y);
   const double turned = base::wrap_angle(estimated.yaw - truth.yaw);
@@ -79,7 +65,7 @@ double LocalizationError::yaw_rms() const {
 }
 
 OwnLocalization::OwnLocalization(const world::Mover& mover)
-    : options_(localization_options(mover, required_sensors_of(mover))) {
+    : options_(sensors::localization_options(mover, required_sensors_of(mover))) {
   last_.fill(std::numeric_limits<std::int64_t>::min());
 }
 
@@ -121,7 +107,7 @@ void OwnLocalization::take(const base::ReadingBlock& reading) {
     // The antenna moves with the robot: its position uses the estimated heading.
     const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
     const double yaw = localization_->predict(reading.time).estimate.X_WM.yaw;
-    const glm::dvec2 p = origin_of({v[0], v[1]}, yaw, {X_MS.x, X_MS.y});
+    const glm::dvec2 p = sensors::origin_of({v[0], v[1]}, yaw, {X_MS.x, X_MS.y});
     localization_->add_gps(reading.time, p.x, p.y, v[2]);
   }
   last_[reading.type] = reading.time;

@@ -9,27 +9,16 @@
 
 #include "control/controller.h"
 #include "robots/estimation/localization.h"
-#include "sensors/encoder.h"
-#include "sensors/gps.h"
-#include "sensors/gyro.h"
+#include "sensors/localization.h"
 #include "world/world.h"
 
 namespace sf::control {
 
-/// The sensors by which a robot estimates its own pose: the first of each type.
-struct PositionSensors {
-  std::optional<sensors::Encoder> wheels;  ///< as the robot knows them: without the error `scale`
-  std::optional<sensors::Gyro> gyro;
-  std::optional<sensors::Gps> gps;
-};
+using sensors::PositionSensors;
 /// @throws base::InputError for invalid settings of these sensors
 PositionSensors position_sensors_of(const world::Mover& mover);
 /// Returns whether a robot localizes itself unless its settings state otherwise: it has encoders.
 bool can_localize(const world::Mover& mover);
-estimation::LocalizationOptions localization_options(const world::Mover& mover, const PositionSensors& sensors);
-
-/// Returns the position of the robot's origin, given that of an antenna. @param p_MS [m] antenna in the robot's frame
-glm::dvec2 origin_of(const glm::dvec2& antenna, double yaw, const glm::dvec2& p_MS);
 
 /// Errors of a robot's estimated poses relative to its true ones, at the steps of its controller.
 struct LocalizationError {

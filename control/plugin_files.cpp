@@ -12,6 +12,7 @@
 #include "base/plugin_calls.h"
 #include "base/printable.h"
 #include "control/own_controllers.h"
+#include "sensors/derived/own_derived.h"
 #include "sensors/own_sensors.h"
 
 namespace sf::control {
@@ -83,6 +84,7 @@ std::vector<const ControllerType*> load(const std::string& file, const std::stri
   for (sensorfarm::ControllerEntry& entry : plugin.controllers)
     types.push_back(add_own_controller(std::move(entry), file));
   for (sensorfarm::SensorEntry& entry : plugin.sensors) sensors::add_own_sensor(std::move(entry), file);
+  for (sensorfarm::DerivedEntry& entry : plugin.derived) sensors::add_own_derived(std::move(entry), file);
   return types;
 }
 

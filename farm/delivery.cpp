@@ -20,11 +20,19 @@ std::int64_t Delivery::latency_of(const base::ReadingBlock& block) const {
 }
 
 void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {
-  auto place = std::find_if(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return !w.used; });
-  if (place == waiting_.end()) place = waiting_.insert(waiting_.end(), Waiting{});
-  place->reading.take(block);
-  place->due = due;
-  place->used = true;
+  const auto free = std::find_if(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return !w.used; });
+  Waiting& place = free != waiting_.end() ? *free : waiting_.emplace_back();
+  place.reading.take(block);
+  place.due = due;
+  place.used = true;
+}
+
+bool Delivery::hold_if_late(const base::ReadingBlock& block) {
+  const std::int64_t latency = any_ ? latency_of(block) : 0;
+  if (latency == 0) return false;
+  hold(block, block.time + latency);
+  next_ = std::min(next_, block.time + latency);
+  return true;
 }
 
 std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::span<const base::ReadingBlock> measured) {

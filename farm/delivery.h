@@ -2,6 +2,7 @@
 // Latency: readings are measured at one time and delivered later.
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,9 @@ class Delivery {
   /// of their delivery times, then those without latency. Blocks are valid until the next call.
   std::span<const base::ReadingBlock> deliver(std::int64_t now, std::span<const base::ReadingBlock> measured);
 
+  /// Delays a reading of a sensor with latency until a later call of `deliver`. @return false if it has none
+  bool hold_if_late(const base::ReadingBlock& block);
+
   /// Returns the delivery time [ns] of the next delayed reading; kNever: no reading is waiting.
   std::int64_t next() const { return next_; }
 
@@ -40,7 +44,7 @@ class Delivery {
   const sensors::SensorSet& sensor_set_;
   bool any_ = false;
   std::int64_t next_ = kNever;
-  std::vector<Waiting> waiting_;  ///< slots are reused with their memory
+  std::deque<Waiting> waiting_;  ///< slots are reused with their memory, at fixed addresses
   std::vector<Waiting*> ready_;
   std::vector<Waiting*> last_delivered_;  ///< their slots are freed at the next call
   std::vector<base::ReadingBlock> delivered_;

@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "base/thread_pool.h"
 #include "farm/delivery.h"
+#include "farm/derivation.h"
 #include "farm/pose_changes.h"
 #include "farm/sensor_pipeline.h"
 #include "gpu/batch.h"
@@ -48,7 +49,9 @@ struct Farm::State {
   bool reuse_unchanged;
   bool no_return_inf;
   std::vector<std::vector<double>> marked;  ///< per thread: ranges as sent
-  std::vector<SensorPipeline> pipelines;
+  std::vector<SensorPipeline> pipelines;    ///< of all types except derived ones
+  std::unique_ptr<Derivation> derivation;
+  bool demand_changed = true;  ///< subscriptions have changed since derived sensors were last told
   std::unique_ptr<gpu::Batch> batch;
   Delivery delivery;
   std::unique_ptr<PoseChanges> pose_changes;  ///< of the current tick
@@ -84,11 +87,16 @@ struct Farm::State {
         options(given) {
     SF_CHECK(w.unread.empty(), "the walls of " + w.unread.front().file + " are not read");
     pipelines = make_pipelines(sensor_set, states);
+    derivation = std::make_unique<Derivation>(context_of(states), sensor_set);
     batch = std::make_unique<gpu::Batch>(device);
     pose_changes = std::make_unique<PoseChanges>(world);
     if (options.shared) sharing.emplace(sensor_set, w.movers.size());
+    if (options.shared) derivation->require_own_inputs(world);
   }
 
+  sensors::SensorContext context_of(std::span<const base::Report> sensed) {
+    return {world, device, thread_pool, sensed, options.seed, options.noise, options.true_poses, options.scene};
+  }
   std::vector<SensorPipeline> make_pipelines(const sensors::SensorSet& of, std::span<const base::Report> sensed);
   std::shared_ptr<const void> add_mover();
   ReadingExchange* exchange() const { return sharing ? sharing->exchange() : nullptr; }
@@ -96,6 +104,7 @@ struct Farm::State {
   void begin_tick(bool is_sample);
   void apply(const base::Report& report);
   std::span<const base::ReadingBlock> read(std::int64_t now);
+  void update_demand();
   bool find_due(std::int64_t now);
   void prepare();
   void submit();
@@ -112,10 +121,10 @@ struct Farm::State {
 /// @param of must outlive the pipelines, as must the states
 std::vector<SensorPipeline> Farm::State::make_pipelines(const sensors::SensorSet& of,
                                                         std::span<const base::Report> sensed) {
-  const sensors::SensorContext context{world,        device,        thread_pool,        sensed,
-                                       options.seed, options.noise, options.true_poses, options.scene};
+  const sensors::SensorContext context = context_of(sensed);
   std::vector<SensorPipeline> made;
   for (const auto& group : of.groups()) {
+    if (group.type->derived != nullptr) continue;
     device.set_owner(group.type->name);
     made.emplace_back(context, group);
   }
@@ -133,11 +142,16 @@ std::shared_ptr<const void> Farm::State::add_mover() {
   std::vector<base::Report> sensed = states;
   sensed.push_back(absent);
   auto made = make_pipelines(all, sensed);
-  auto before = std::make_shared<std::vector<SensorPipeline>>(std::move(pipelines));
+  struct Before {
+    std::vector<SensorPipeline> pipelines;
+    std::unique_ptr<Derivation> derivation;
+  };
+  auto before = std::make_shared<Before>(std::move(pipelines), std::move(derivation));
   batch = std::make_unique<gpu::Batch>(device);
   pipelines = std::move(made);
   states.swap(sensed);
   const sensors::SensorSet earlier = std::exchange(sensor_set, std::move(all));  // `before` points into it
+  derivation = std::make_unique<Derivation>(context_of(states), sensor_set);
   if (between) tick_states.push_back(absent);
   subscribed.push_back(0);
   gone.push_back(0);
@@ -147,18 +161,30 @@ std::shared_ptr<const void> Farm::State::add_mover() {
   if (sharing) sharing->add_mover(sensor_set);
   for (SensorPipeline& pipeline : pipelines) {
     const auto same = [&](const SensorPipeline& other) { return other.group->type == pipeline.group->type; };
-    const auto old = std::find_if(before->begin(), before->end(), same);
-    pipeline.go_on(old == before->end() ? nullptr : &*old, last_tick, last_call);
+    const auto old = std::find_if(before->pipelines.begin(), before->pipelines.end(), same);
+    pipeline.go_on(old == before->pipelines.end() ? nullptr : &*old, last_tick, last_call);
   }
-  for (const SensorPipeline& pipeline : *before) earlier_work += pipeline.backend->stats();
+  derivation->go_on(*before->derivation, last_tick, last_call);
+  demand_changed = true;
+  for (const SensorPipeline& pipeline : before->pipelines) earlier_work += pipeline.backend->stats();
   return before;
 }
 
+void Farm::State::update_demand() {
+  if (!std::exchange(demand_changed, false) || derivation->empty()) return;
+  if (sharing)
+    derivation->update_demand(sharing->delivered_types(), {});
+  else
+    derivation->update_demand(subscribed, pipelines);
+}
+
 bool Farm::State::find_due(std::int64_t now) {
+  update_demand();
   for (SensorPipeline& pipeline : pipelines)
     stats.missed += pipeline.find_due(now, !sharing             ? std::span<const base::SensorTypes>(subscribed)
                                            : pipeline.derived() ? sharing->delivered_types()
                                                                 : sharing->measured_types());
+  stats.missed += derivation->find_due(now, sharing ? sharing->delivered_types() : subscribed);
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
 }
 
@@ -292,6 +318,7 @@ void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlo
 
 void Farm::State::subscribe(std::uint32_t mover, base::SensorTypes types) {
   subscribed.at(mover) = types;
+  demand_changed = true;
   if (sharing) sharing->subscribe(mover, types);
 }
 
@@ -306,7 +333,8 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
   if (!qualities.empty())
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
-  const auto delivered = delivery.deliver(now, blocks);
+  auto delivered = delivery.deliver(now, blocks);
+  if (!derivation->empty()) delivered = derivation->derive(now, delivered, states, delivery, subscribed);
   add_to_hash(now, delivered);
   watch.lap(stats.collect_s);
   stats.readings += delivered.size();
@@ -364,7 +392,8 @@ std::span<const base::ReadingBlock> Farm::sample_between(std::int64_t now, std::
 }
 
 std::int64_t Farm::next_due() const {
-  std::int64_t soonest = kNever;
+  s_->update_demand();
+  std::int64_t soonest = s_->derivation->next_due(s_->subscribed);
   for (const SensorPipeline& pipeline : s_->pipelines) soonest = std::min(soonest, pipeline.next_due(s_->subscribed));
   return soonest;
 }
@@ -372,20 +401,19 @@ std::int64_t Farm::next_due() const {
 base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM) {
   State& s = *s_;
   s.clear_blocks();
-  for (SensorPipeline& pipeline : s.pipelines) {
-    pipeline.due.clear();
-    const auto& rows = pipeline.group->rows;
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const sensors::SensorSpec& r) {
-      return pipeline.group->type->id == type && r.mover == mover && r.sensor == sensor;
-    });
-    if (row != rows.end()) pipeline.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
-  }
+  s.derivation->request(mover, type, sensor, s.pipelines);
+  s.demand_changed = true;
   const base::Pose stands = std::exchange(s.states[mover].X_WM, X_WM);
   s.measure(0, false);
+  std::span<const base::ReadingBlock> readings = s.blocks;
+  if (!s.derivation->empty()) readings = s.derivation->evaluate(0, s.blocks, s.states);
   s.states[mover].X_WM = stands;
-  SF_CHECK(s.blocks.size() == 1, "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor) +
-                                     " of type " + std::to_string(type));
-  return s.blocks.front();
+  const auto reading = std::ranges::find_if(readings, [&](const base::ReadingBlock& block) {
+    return block.mover == mover && block.type == type && block.sensor == sensor;
+  });
+  SF_CHECK(reading != readings.end(), "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor) +
+                                          " of type " + std::to_string(type));
+  return *reading;
 }
 
 std::uint64_t Farm::hash() const { return s_->sharing ? s_->sharing->hash() : s_->hash; }

@@ -38,7 +38,7 @@ SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sens
 }
 
 void SensorPipeline::go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call) {
-  if (last_tick >= 0) backend->accumulate(last_tick, false);
+  if (last_tick >= 0 && !computed()) backend->accumulate(last_tick, false);
   // Two steps suffice to find a past due time, because rounding may place it before its reading.
   const std::vector<base::SensorTypes> none(movers.empty() ? 0 : movers.back() + 1, 0u);
   for (int step = 0; step < 2 && last_call >= 0; ++step) find_due(last_call, none);
@@ -48,13 +48,12 @@ void SensorPipeline::go_on(SensorPipeline* before, std::int64_t last_tick, std::
   for (Timing& timing : timings)
     for (const Timing& old : before->timings)
       if (old.first == timing.first) timing.started = old.started, timing.next = old.next;
-  backend->take_over(*before->backend, rows);
+  if (!computed()) backend->take_over(*before->backend, rows);
 }
 
 std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const base::SensorTypes> subscribed) {
   due.clear();
   std::uint64_t missed = 0;
-  const base::SensorTypes type = base::only(group->type->id);
   for (Timing& timing : timings) {
     if (now < timing.next - 1) continue;
     const std::uint64_t ready = readings_started(now, timing.rate, timing.phase);
@@ -66,7 +65,7 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const base::S
     // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers are not
     // used.
     for (std::uint32_t row = timing.first; row < timing.end; ++row) {
-      if ((subscribed[movers[row]] & type) == 0) continue;
+      if (!is_wanted(row, subscribed)) continue;
       due.push_back({row, should - 1});
       missed += skipped;
     }
@@ -75,12 +74,11 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const base::S
 }
 
 std::int64_t SensorPipeline::next_due(std::span<const base::SensorTypes> subscribed) const {
-  const base::SensorTypes type = base::only(group->type->id);
   std::int64_t soonest = kNever;
   for (const Timing& timing : timings) {
     if (timing.next >= soonest) continue;
     for (std::uint32_t row = timing.first; row < timing.end && timing.next < soonest; ++row)
-      if ((subscribed[movers[row]] & type) != 0) soonest = timing.next;
+      if (is_wanted(row, subscribed)) soonest = timing.next;
   }
   return soonest;
 }

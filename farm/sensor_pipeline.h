@@ -15,7 +15,7 @@ namespace sf::farm {
 
 struct SensorPipeline {
   const sensors::SensorSet::Group* group = nullptr;
-  std::unique_ptr<sensors::SensorBackend> backend;
+  std::unique_ptr<sensors::SensorBackend> backend;  ///< null: a derived type
   ReadingCache cache;
   std::vector<double> sigmas;  ///< SensorSpec::sigma per row; empty: no sensor is noisy
   /// The due times of consecutive sensors with the same rate and phase.
@@ -26,7 +26,9 @@ struct SensorPipeline {
     std::uint32_t first, end;  ///< rows
   };
   std::vector<Timing> timings;
-  std::vector<std::uint32_t> movers;  ///< per row
+  std::vector<std::uint32_t> movers;     ///< per row
+  std::span<const std::uint8_t> needed;  ///< per row: due without a subscription, as an input of a derived sensor; may
+                                         ///< be empty
   std::vector<sensors::DueSample> due;
   std::vector<sensors::DueSample> to_measure;  ///< due sensors without a reusable reading
   std::vector<base::ReadingBlock> blocks;      ///< readings of all due sensors, in order
@@ -52,6 +54,10 @@ struct SensorPipeline {
   /// @param last_tick, last_call [ns] of the farm's last tick, and of that or a later sample; -1: there was none
   void go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call);
   bool derived() const { return group->type->derived_from != 0; }
+  bool computed() const { return backend == nullptr; }
+  bool is_wanted(std::uint32_t row, std::span<const base::SensorTypes> subscribed) const {
+    return (subscribed[movers[row]] & base::only(group->type->id)) != 0 || (!needed.empty() && needed[row] != 0);
+  }
   /// Finds the sensors of this type that are due at `now` [ns].
   /// @param subscribed per mover
   /// @return number of readings of subscribed sensors that were due before, are superseded at `now` and were never

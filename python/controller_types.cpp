@@ -183,6 +183,8 @@ void add_controller_types(py::module_& module) {
   add_robot(module), add_input(module), add_settings(module);
 }
 
+py::object reading_object(const Reading& reading, std::size_t columns) { return py::cast(owned(reading, columns)); }
+
 py::object input_of(const Input& input, const Robot& robot) {
   OwnedInput own{.time = input.time, .pose = input.pose, .velocity = input.velocity};
   own.contact = input.contact, own.started = input.started;

@@ -102,6 +102,8 @@ void fill(const std::string& file, Plugin& plugin) {
       if (!is_class_of(value, file)) continue;
       if (py::hasattr(value, "step"))
         plugin.controllers.push_back(entry_of(value));
+      else if (py::hasattr(value, "take") && py::hasattr(value, "read"))
+        plugin.derived.push_back(derived_entry_of(value, file));
       else if (without_step.empty())
         without_step =
             "; " + place_of(value) + "class " + py::str(value.attr("__name__")).cast<std::string>() + " has none";
@@ -109,15 +111,18 @@ void fill(const std::string& file, Plugin& plugin) {
   } catch (py::error_already_set& error) {
     throw std::runtime_error(last_line(error, file));
   }
-  if (plugin.controllers.empty())
-    throw std::runtime_error("it has no class with a method step(self, input)" + without_step);
+  if (plugin.controllers.empty() && plugin.derived.empty())
+    throw std::runtime_error(
+        "it has no class with a method step(self, input), or with take(self, input, reading) and read(self, time)" +
+        without_step);
 }
 
 }  // namespace
 
 }  // namespace sensorfarm::python
 
-/// Adds the classes of `file` (a canonical path) that have a method `step`. @throws std::exception
+/// Adds the classes of `file` (a canonical path) that have a method `step`, or `take` and `read`. @throws
+/// std::exception
 extern "C" __attribute__((visibility("default"))) void sensorfarm_python(const char* file, sensorfarm::Plugin& plugin) {
   sensorfarm::python::fill(file, plugin);
 }

@@ -8,18 +8,20 @@
 #include <vector>
 
 #include "sensorfarm/controller.h"
+#include "sensorfarm/derived.h"
 #include "sensorfarm/sensor.h"
 
 namespace sensorfarm {
 
 /// Incremented with every change of these headers that changes the layout of a type. A library with another number is
 /// refused.
-inline constexpr int kPluginInterface = 3;
+inline constexpr int kPluginInterface = 4;
 
-/// The controllers and sensors of a plug-in.
+/// The controllers, sensors and derived sensors of a plug-in.
 struct Plugin {
   std::vector<ControllerEntry> controllers;
   std::vector<SensorEntry> sensors;
+  std::vector<DerivedEntry> derived;
 
   /// Adds a controller. `Made` is constructed from (const Robot&, Settings&).
   template <class Made>
@@ -37,6 +39,16 @@ struct Plugin {
       return std::make_unique<Made>(site, settings);
     };
     return sensors.emplace_back(std::move(entry));
+  }
+
+  /// Adds a derived sensor type. `Made` is constructed from (const DerivedSite&, const SensorSettings&). @param entry
+  /// without `make`
+  template <class Made>
+  DerivedEntry& add_derived(DerivedEntry entry) {
+    entry.make = [](const DerivedSite& site, const SensorSettings& settings) {
+      return std::make_unique<Made>(site, settings);
+    };
+    return derived.emplace_back(std::move(entry));
   }
 };
 

@@ -11,6 +11,7 @@
 #include "base/plugin_calls.h"
 #include "base/printable.h"
 #include "base/random.h"
+#include "sensors/derived/public_types.h"
 #include "sensors/own_kernel.h"
 #include "sensors/own_surroundings.h"
 #include "sensors/settings.h"
@@ -18,30 +19,6 @@
 namespace sf::sensors {
 
 namespace {
-
-class PublicSensorSettings final : public sensorfarm::SensorSettings {
- public:
-  explicit PublicSensorSettings(const world::Sensor& sensor) : sensor_(sensor) {}
-  double number(std::string_view key, double fallback, double least, double most) const override {
-    return sensors::number(sensor_, key, fallback, least, most);
-  }
-  double length(std::string_view key, double fallback, double least, double most) const override {
-    return sensors::length(sensor_, key, fallback, least, most);
-  }
-  double angle(std::string_view key, double fallback, double least, double most) const override {
-    return sensors::angle(sensor_, key, fallback, least, most);
-  }
-  std::string text(std::string_view key, const std::string& fallback) const override {
-    const world::Setting* const setting = find(sensor_, key);
-    return setting == nullptr ? fallback : setting->text;
-  }
-  void refuse(std::string_view key, const std::string& message) const override {
-    sensors::refuse(sensor_, key, message);
-  }
-
- private:
-  const world::Sensor& sensor_;
-};
 
 /// View of the surroundings during one measurement.
 class SensorSurroundings final : public sensorfarm::Surroundings {
@@ -52,13 +29,9 @@ class SensorSurroundings final : public sensorfarm::Surroundings {
     return surroundings_.cast(key_.a, {x, y, z, bearing}, range);
   }
   std::size_t robots() const override { return surroundings_.states().size(); }
-  sensorfarm::Pose pose(std::size_t row) const override {
-    const base::Pose& X = surroundings_.states()[row].X_WM;
-    return {X.x, X.y, X.z, X.yaw};
-  }
+  sensorfarm::Pose pose(std::size_t row) const override { return public_pose(surroundings_.states()[row].X_WM); }
   sensorfarm::Twist velocity(std::size_t row) const override {
-    const base::Twist& twist = surroundings_.states()[row].velocity;
-    return {twist.forward, twist.left, twist.turn};
+    return public_twist(surroundings_.states()[row].velocity);
   }
   std::array<double, 2> normal(std::uint32_t draw) const override {
     return noise_ ? base::random_normal(key_, draw) : std::array<double, 2>{};
@@ -157,7 +130,6 @@ void OwnSensors::measure(std::size_t i) {
   const base::RandomKey key{context_.seed, base::RandomStream::own_sensors, own.spec.mover,
                             own.spec.sensor | std::uint32_t{type_.entry.id} << 24, due.sequence};
   const SensorSurroundings around(surroundings_, key, context_.noise);
-  const Pose& X = X_WS_[i];
   const double now = 1e-9 * static_cast<double>(now_);
   const base::PluginCall under_way(names_[due.row], now);
   const auto fail = [&](const char* why) {
@@ -165,7 +137,7 @@ void OwnSensors::measure(std::size_t i) {
     failure_ = fmt::format("{} failed at {:.3f} s: {}", names_[due.row], now, base::one_line(why));
   };
   try {
-    own.sensor->read({now, {X.x, X.y, X.z, X.yaw}, around}, values);
+    own.sensor->read({now, public_pose(X_WS_[i]), around}, values);
   } catch (const std::exception& error) {
     fail(error.what());
   } catch (...) {
@@ -194,10 +166,9 @@ std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& typ
     OwnSensor own{common_spec(sensor, mover, number), nullptr};
     own.spec.rate = rate_of(sensor, type.entry.rate);
     own.spec.sigma = HUGE_VAL;  // the sensor may add noise
-    const Pose& X = own.spec.X_MS;
     const base::PluginCall under_way(own_sensor_name(own.spec, type));
     try {
-      own.sensor = type.entry.make({own.spec.name, mover, number, {X.x, X.y, X.z, X.yaw}, sensor.height},
+      own.sensor = type.entry.make({own.spec.name, mover, number, public_pose(own.spec.X_MS), sensor.height},
                                    PublicSensorSettings(sensor));
     } catch (const base::InputError&) {
       throw;  // an invalid setting

@@ -69,31 +69,9 @@ SensorType functions_of(std::uint8_t id, std::index_sequence<kIds...>) {
   return type;
 }
 
-bool is_word(const std::string& name) {
+bool is_word(std::string_view name) {
   return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos &&
          (name[0] < '0' || name[0] > '9');
-}
-
-void check_entry(const sensorfarm::SensorEntry& entry, const std::string& from) {
-  const auto refuse = [&](const std::string& why) { throw base::InputError(from, 0, why); };
-  if (!is_word(entry.name))
-    refuse(fmt::format("a sensor type cannot be called '{}': expected small letters, digits and _", entry.name));
-  if (entry.id < kFirstOwnId || entry.id > kLastOwnId)
-    refuse(fmt::format("sensor type '{}' has id {}; expected {} to {}", entry.name, entry.id, kFirstOwnId, kLastOwnId));
-  for (const SensorType* type : sensor_types())
-    if (type->id == entry.id || type->name == entry.name || type->word.type == entry.name ||
-        type->other_word.type == entry.name)
-      refuse(fmt::format("sensor type '{}' with id {}: '{}' with id {} already exists; choose another", entry.name,
-                         entry.id, type->name, type->id));
-  if (entry.columns.empty()) refuse(fmt::format("sensor type '{}' has no column", entry.name));
-  for (const sensorfarm::SensorColumn& column : entry.columns)
-    if (!is_word(column.name) || !(column.unit > 0.0))
-      refuse(fmt::format("sensor type '{}': column '{}' with unit {}; expected a word and a unit above 0", entry.name,
-                         column.name, column.unit));
-  if (!(entry.rate > 0.0 && entry.rate <= 1e6))
-    refuse(
-        fmt::format("sensor type '{}' has a rate of {} Hz; expected more than 0, at most 1e6", entry.name, entry.rate));
-  if (!entry.make) refuse(fmt::format("sensor type '{}' has no function that creates sensors", entry.name));
 }
 
 std::vector<std::uint32_t> read_kernel(const std::string& file) {
@@ -107,8 +85,30 @@ std::vector<std::uint32_t> read_kernel(const std::string& file) {
 
 }  // namespace
 
+void check_own_type(const OwnTypeFacts& facts, const std::string& from) {
+  const auto refuse = [&](const std::string& why) { throw base::InputError(from, 0, why); };
+  if (!is_word(facts.name))
+    refuse(fmt::format("a sensor type cannot be called '{}': expected small letters, digits and _", facts.name));
+  if (facts.id < kFirstOwnId || facts.id > kLastOwnId)
+    refuse(fmt::format("sensor type '{}' has id {}; expected {} to {}", facts.name, facts.id, kFirstOwnId, kLastOwnId));
+  for (const SensorType* type : sensor_types())
+    if (type->id == facts.id || type->name == facts.name || type->word.type == facts.name ||
+        type->other_word.type == facts.name)
+      refuse(fmt::format("sensor type '{}' with id {}: '{}' with id {} already exists; choose another", facts.name,
+                         facts.id, type->name, type->id));
+  if (facts.columns.empty()) refuse(fmt::format("sensor type '{}' has no column", facts.name));
+  for (const sensorfarm::SensorColumn& column : facts.columns)
+    if (!is_word(column.name) || !(column.unit > 0.0))
+      refuse(fmt::format("sensor type '{}': column '{}' with unit {}; expected a word and a unit above 0", facts.name,
+                         column.name, column.unit));
+  if (!(facts.rate > 0.0 && facts.rate <= 1e6))
+    refuse(
+        fmt::format("sensor type '{}' has a rate of {} Hz; expected more than 0, at most 1e6", facts.name, facts.rate));
+  if (!facts.has_make) refuse(fmt::format("sensor type '{}' has no function that creates sensors", facts.name));
+}
+
 void add_own_sensor(sensorfarm::SensorEntry entry, const std::string& from) {
-  check_entry(entry, from);
+  check_own_type({entry.name, entry.id, entry.columns, entry.rate, static_cast<bool>(entry.make)}, from);
   const std::uint8_t id = entry.id;
   auto type = std::make_unique<Added>();
   type->entry = std::move(entry);

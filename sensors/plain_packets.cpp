@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/error.h"
@@ -19,11 +20,13 @@ constexpr std::size_t kHeader = 4;  // [bytes]
 constexpr std::size_t kWord = 4;    // [bytes]
 
 Word to_word(double value, const PlainNumber& number) {
+  if (number.real) return std::bit_cast<Word>(static_cast<float>(value));
   if (std::isnan(value)) return kNoNumber;
   return static_cast<Word>(std::clamp(std::round(value / number.unit), kLeastWord, kMostWord));
 }
 
 double from_word(Word word, const PlainNumber& number) {
+  if (number.real) return std::bit_cast<float>(word);
   return word == kNoNumber ? std::numeric_limits<double>::quiet_NaN() : word * number.unit;
 }
 
@@ -34,7 +37,7 @@ WireLimits wire_limits(const SensorSpec& sensor, const PlainNumber& number) {
 
 /// A saturated word means "this or more". The tolerance is one unit of rounding.
 bool plausible(Word word, const PlainNumber& number) {
-  if (word == kNoNumber) return true;
+  if (number.real || word == kNoNumber) return true;
   const double value = word * number.unit;
   const bool low = word > kLeastWord && value < number.least - 0.5001 * number.unit;
   const bool high = word < kMostWord && value > number.most + 0.5001 * number.unit;

@@ -1,7 +1,7 @@
 #pragma once
 // Readings of a few plain numbers as payloads, in a single little-endian layout; docs/packets.md specifies every byte.
 //
-//   u16 count, u16 0, then for each row i32 for each of the type's numbers
+//   u16 count, u16 0, then for each row i32 (or f32) for each of the type's numbers
 //
 // Each number has its own unit and is rounded to nearest (half away from zero). Words saturate and never wrap. The
 // smallest word means NaN. The thesis format has no layout for these types.
@@ -29,6 +29,7 @@ struct PlainNumber {
   double most = std::numeric_limits<double>::infinity();  ///< in units of the column; values beyond are invalid
   bool range =
       false;  ///< number of a range sensor: a word at or beyond that of a limit is read as the limit (WireLimits)
+  bool real = false;  ///< on the wire an IEEE 754 f32 instead of a multiple of `unit`
 };
 
 /// Wire form of one sensor type.

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "sensors/accuracy.h"
+#include "sensors/derived/derived_sensors.h"
 
 namespace sf::sensors {
 
@@ -21,6 +22,7 @@ SensorSet::SensorSet(const world::World& world) {
   std::vector<const SensorType*> present;
   for (const Group& group : groups_) present.push_back(group.type);
   check_accuracy(world, present);
+  check_derived_sensors(world, *this);
 }
 
 const SensorSet::Group* SensorSet::group(std::uint8_t type) const {

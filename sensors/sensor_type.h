@@ -156,6 +156,8 @@ struct PayloadPart {
 /// Packet types: the id of a sensor type (below 64), plus this offset for its extended form.
 inline constexpr std::uint8_t kExtended = 64;
 
+struct DerivedForm;
+
 struct SensorType {
   std::uint8_t id = 0;                   ///< wire id, in [1, 63]
   std::string_view name;                 ///< name in commands, JSON and files, such as "laser"
@@ -169,6 +171,9 @@ struct SensorType {
   std::uint8_t derived_from = 0;  ///< id of the type whose readings this type is computed from: `observe` is called,
                                   ///< and `collect` runs after theirs; 0: none
 
+  const DerivedForm* derived = nullptr;  ///< computed from readings of other sensors (sensors/derived/derived_type.h);
+                                         ///< null: measured
+
   std::span<const AccuracyMode> modes;  ///< the first is `exact`; empty: no other mode
   /// Returns the error bound of one sensor's readings without noise. Null: no bound is stated, neither here nor in
   /// readings.
@@ -176,7 +181,8 @@ struct SensorType {
 
   /// Parses all sensors of this type. @throws base::InputError with file and line for invalid settings
   ParsedSensors (*parse)(const world::World& world);
-  /// Creates the backend of a world with such sensors. @param sensors result of `parse`; must outlive the backend
+  /// Creates the backend of a world with such sensors; null for derived types. @param sensors result of `parse`; must
+  /// outlive the backend
   /// @throws base::DeviceError when the device cannot hold its tables
   std::unique_ptr<SensorBackend> (*make)(const SensorContext& context, const ParsedSensors& sensors);
 

@@ -26,7 +26,7 @@ void add(PositionErrors& errors, const base::Pose& estimate, const base::Pose& t
 
 OwnState::OwnState(const world::Mover& mover, std::uint32_t row, const OwnStateOptions& options)
     : options_(options),
-      localization_(control::localization_options(mover, options.sensors)),
+      localization_(sensors::localization_options(mover, options.sensors)),
       clock_(options.cameras ? options.cameras->clock : estimation::ClockOptions{}),
       state_{.mover = row, .X_WM = mover.X_WM} {
   if (options.start) localization_.add_pose(0, *options.start, estimation::kKnownStart);
@@ -87,7 +87,7 @@ void OwnState::add_wheels(std::int64_t now, const sensors::Rolled& rolled) {
 void OwnState::add_gyro(std::int64_t now, double rate) { localization_.add_gyro(now, rate); }
 
 void OwnState::add_gps(std::int64_t time, const glm::dvec2& antenna, double hdop, const glm::dvec2& p_MS) {
-  const glm::dvec2 p = control::origin_of(antenna, localization_.predict(time).estimate.X_WM.yaw, p_MS);
+  const glm::dvec2 p = sensors::origin_of(antenna, localization_.predict(time).estimate.X_WM.yaw, p_MS);
   localization_.add_gps(time, p.x, p.y, hdop);
 }
 

@@ -28,7 +28,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"robots/estimation", {"robots", "world", "base"}},
     {"maps", {"base"}},
     {"raycast", {"world", "gpu", "base", "shaders"}},
-    {"sensors", {"sensorfarm", "raycast", "maps", "robots", "world", "gpu", "base", "shaders"}},
+    {"sensors", {"sensorfarm", "raycast", "maps", "robots/estimation", "robots", "world", "gpu", "base", "shaders"}},
     {"sensorfarm", {}},
     {"python", {"sensorfarm"}},
     {"control", {"sensorfarm", "sensors", "maps", "robots/estimation", "robots", "world", "base"}},

@@ -82,7 +82,7 @@ struct Magnet {
 struct Setting {
   std::string key;              ///< with its index, e.g. `spose[3]`
   std::vector<double> numbers;  ///< as written, finite; empty for a text
-  std::string text;             ///< as written; empty for numbers
+  std::string text;             ///< as written, one line per element of a tuple; empty for numbers
   int line = 0;                 ///< 1-based, in `file`
   std::string file;
 };
@@ -109,6 +109,7 @@ struct SensorKeyword {
   std::span<const std::string_view> keys;  ///< without indices: `spose[]`
   /// Properties of its `sensor( )` blocks, each of which is a sensor of this type; empty: the type has no blocks.
   std::span<const std::string_view> block_keys = {};
+  bool derived = false;  ///< written `derived( type "localization" ... )`
 };
 
 /// The requested accuracy of one sensor or of all sensors: a word defined by the sensor type (sensors/accuracy.h).

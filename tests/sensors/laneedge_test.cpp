@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "farm/farm.h"
 #include "sensors/laneedge_settings.h"
+#include "tests/device.h"
 #include "tests/refusal.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/laneedge_trial.h"

@@ -47,7 +47,7 @@ world::World mapped(std::uint32_t robots, const std::vector<world::Setting>& set
 
 sensors::Occupancy only(const world::World& world) { return sensors::occupancies_of(world).at(0); }
 
-void expect_refused(const std::vector<world::Setting>& settings, const std::string& part) {
+void expect_map_refused(const std::vector<world::Setting>& settings, const std::string& part) {
   const std::string error = refusal_of([&] { sensors::occupancies_of(mapped(1, settings)); });
   expect_in(part, error);
   EXPECT_TRUE(error.starts_with("a.world:")) << error;
@@ -97,19 +97,19 @@ TEST(OccupancySettings, ReadsAllSettings) {
 }
 
 TEST(OccupancySettings, RejectsInvalidSettings) {
-  expect_refused({numbers("cell", {0.0})}, "'cell' is 0");
-  expect_refused({numbers("cell", {0.0005})}, "more than 1022 cells");
-  expect_refused({numbers("words", {30})}, "[columns rows]");
-  expect_refused({numbers("words", {30, 2.5})}, "whole numbers from 1 to 4096");
-  expect_refused({numbers("words", {0, 30})}, "whole numbers from 1 to 4096");
-  expect_refused({numbers("words", {4096, 257})}, "too large");
-  expect_refused({numbers("offset", {1e8, 0})}, "change 'offset'");
-  expect_refused({text("laser", "lidar")}, "has no laser 'lidar'; it has laser");
-  expect_refused({numbers("log_odds", {2})}, "'log_odds' expects");
-  expect_refused({numbers("log_odds", {1, 2})}, "'log_odds' expects");
-  expect_refused({numbers("log_odds", {1.5, 2, 3})}, "'log_odds' expects");
-  expect_refused({numbers("log_odds", {85, 40, 40000})}, "'log_odds' expects");
-  expect_refused({numbers("log_odds", {85, 40, 0})}, "'log_odds' expects");
+  expect_map_refused({numbers("cell", {0.0})}, "'cell' is 0");
+  expect_map_refused({numbers("cell", {0.0005})}, "more than 1022 cells");
+  expect_map_refused({numbers("words", {30})}, "[columns rows]");
+  expect_map_refused({numbers("words", {30, 2.5})}, "whole numbers from 1 to 4096");
+  expect_map_refused({numbers("words", {0, 30})}, "whole numbers from 1 to 4096");
+  expect_map_refused({numbers("words", {4096, 257})}, "too large");
+  expect_map_refused({numbers("offset", {1e8, 0})}, "change 'offset'");
+  expect_map_refused({text("laser", "lidar")}, "has no laser 'lidar'; it has laser");
+  expect_map_refused({numbers("log_odds", {2})}, "'log_odds' expects");
+  expect_map_refused({numbers("log_odds", {1, 2})}, "'log_odds' expects");
+  expect_map_refused({numbers("log_odds", {1.5, 2, 3})}, "'log_odds' expects");
+  expect_map_refused({numbers("log_odds", {85, 40, 40000})}, "'log_odds' expects");
+  expect_map_refused({numbers("log_odds", {85, 40, 0})}, "'log_odds' expects");
   world::World blind = mapped(1);
   scenes::remove_lasers(blind.movers[0]);
   EXPECT_THROW(sensors::occupancies_of(blind), base::InputError);

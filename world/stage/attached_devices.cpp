@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/suggest.h"
 #include "world/keys.h"
 #include "world/stage/entity_color.h"
 #include "world/stage/unit_hints.h"
@@ -15,6 +16,19 @@ const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view t
   const auto& words = b.options.sensors;
   const auto word = std::find_if(words.begin(), words.end(), [&](const SensorKeyword& w) { return w.type == type; });
   return word == words.end() || type.empty() ? nullptr : &*word;
+}
+
+const SensorKeyword* derived_keyword(const BuildState& b, const Entity& entity) {
+  std::vector<std::string_view> names;
+  for (const SensorKeyword& word : b.options.sensors)
+    if (word.derived) names.push_back(word.type);
+  if (names.empty()) return nullptr;
+  const std::string name = text(b.context, entity, "type", "");
+  const SensorKeyword* const word = find_sensor_keyword(b, name);
+  if (word != nullptr && word->derived) return word;
+  fail(b.context, location_of(entity, "type"),
+       fmt::format("derived sensor type '{}' is unknown; expected one of: {}{}", name, fmt::join(names, ", "),
+                   base::suggest(name, names)));
 }
 
 namespace {
@@ -39,7 +53,7 @@ void add_settings(BuildState& b, const Entity& entity, std::span<const std::stri
     Setting setting{property.key, {}, "", property.at.line, b.context.document.files[property.at.file]};
     for (const Value& value : property.values) {
       if (!value.is_text) setting.numbers.push_back(value.number);
-      if (value.is_text) setting.text = value.text;
+      if (value.is_text) setting.text += (setting.text.empty() ? "" : "\n") + value.text;
     }
     if (setting.key == "samples" && !setting.numbers.empty())
       charge(b.context, property.at, b.context.usage.samples, std::max(0.0, setting.numbers[0]), kMaxSamples,

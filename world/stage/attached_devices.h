@@ -14,6 +14,9 @@ inline constexpr double kMaxMoment = 1e16;   ///< as written; corresponds to 1e1
 
 /// Returns the keyword of the sensor type with the word `type`, or null. Valid for the lifetime of the options' list.
 const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view type);
+/// Returns the type of a `derived( type "name" )`; null if no derived types are known. @throws base::InputError for an
+/// unknown name
+const SensorKeyword* derived_keyword(const BuildState& b, const Entity& entity);
 
 /// Adds a sensor with the settings of `entity` to the mover of `model`. For types with `sensor( )` blocks, adds a
 /// sensor per block, with the settings of the block and the common sensor settings of `entity`. Warns if no mover

@@ -145,7 +145,7 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
   // A laser named like a lane edge sensor measures the edge of the lane instead of ranges.
   const bool is_lane_edge = entity.type == "laser" && (said.name == "laneedge" || said.name == "/laneedge");
   const std::string type = is_lane_edge ? "laneedge" : entity.type;
-  said.sensor = find_sensor_keyword(b, type);
+  said.sensor = type == "derived" ? derived_keyword(b, entity) : find_sensor_keyword(b, type);
   if (said.sensor != nullptr) {
     check_keys(b.context, entity, KeyScope::device, said.sensor->keys);
     return said;

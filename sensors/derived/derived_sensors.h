@@ -1,0 +1,107 @@
+#pragma once
+// Evaluates the derived sensors of a world from the readings that are delivered.
+//
+//   DerivedSensors derived(world, sensor_set, thread_pool);
+//   derived.want(subscribed);                          // whenever subscriptions change
+//   readings = derived.evaluate(now, delivered, due);  // for each tick and sample
+//
+// Sensors are evaluated level by level, a level's in parallel, so results do not depend on the number of threads. Each
+// sensor processes the readings delivered since its last call in order of measurement time, then of input, so they do
+// not depend on the order of arrival either.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "base/thread_pool.h"
+#include "sensors/derived/wiring.h"
+#include "sensors/sensor_set.h"
+
+namespace sf::sensors {
+
+/// Not thread-safe.
+class DerivedSensors {
+ public:
+  /// All arguments must outlive it.
+  DerivedSensors(const world::World& world, const SensorSet& sensor_set, base::ThreadPool& thread_pool);
+
+  bool empty() const { return nodes_.empty(); }
+  std::span<const DerivedNode> nodes() const { return wired_; }
+
+  /// Sets the sensors to evaluate: those subscribed and those that are inputs of others. A sensor that was not
+  /// evaluated before starts over, with the next call of `evaluate`. @param subscribed per mover
+  void want(std::span<const base::SensorTypes> subscribed);
+  /// Wants one sensor and its inputs, until the next call of `want`.
+  void want_only(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor);
+  /// Returns per sensor of group `group` of the sensor set whether it is an input of an evaluated sensor; empty: none.
+  std::span<const std::uint8_t> needed(std::size_t group) const { return needed_[group]; }
+
+  /// @param delivered readings delivered at `now` [ns], in any order
+  /// @param due per derived group of the sensor set, in order: its due sensors
+  /// @param states per mover @return readings of the due sensors, by type and row, except that latency is not applied;
+  /// valid until the next call
+  /// @throws base::InputError when a sensor throws an exception
+  std::span<const base::ReadingBlock> evaluate(std::int64_t now, std::span<const base::ReadingBlock> delivered,
+                                               std::span<const std::span<const DueSample>> due,
+                                               std::span<const base::Report> states);
+
+  /// Continues the sensors of `before`, a world with fewer movers in its first rows. `before` must not be used
+  /// afterwards.
+  void take_over(DerivedSensors& before);
+
+ private:
+  struct Pending {
+    std::int64_t time;
+    std::uint32_t input, sequence;
+    const base::ReadingBlock* reading;
+    auto key() const { return std::tuple(time, input, sequence); }
+  };
+  struct Node {
+    std::unique_ptr<sensorfarm::DerivedSensor> sensor;  ///< null: not evaluated
+    std::vector<Pending> pending;
+    std::string name;  ///< for messages
+    std::vector<double> quantities, covariance;
+    std::vector<std::uint8_t> valid;
+    std::vector<double> values;  ///< of the reading: the three above, row by row
+    std::string failure;
+    std::uint32_t sequence = 0;
+    bool is_due = false;
+    bool active = false;
+    bool wanted = false;
+  };
+  struct Listener {
+    std::uint32_t node, input;
+  };
+  template <class Wanted>
+  void want_if(const Wanted& wanted);
+  void create_wanted(std::span<const base::Report> states);
+  void route(const base::ReadingBlock& reading);
+  void process(std::size_t node, std::int64_t now);
+  void call(std::size_t node, std::int64_t now);
+  void run_level(std::size_t level, std::int64_t now, std::span<const base::Report> states);
+
+  const world::World& world_;
+  const SensorSet& sensor_set_;
+  base::ThreadPool& thread_pool_;
+  std::vector<DerivedNode> wired_;
+  std::vector<Node> nodes_;                                    ///< like `wired_`
+  std::vector<std::vector<std::size_t>> levels_;               ///< nodes by level
+  std::vector<std::vector<std::uint8_t>> needed_;              ///< per group and row
+  std::vector<std::vector<std::vector<Listener>>> listeners_;  ///< per group and row
+  std::vector<int> group_of_;                                  ///< by wire id; -1: none
+  std::vector<const SensorType*> input_types_;                 ///< by wire id
+  std::vector<std::size_t> due_nodes_;
+  std::vector<std::vector<std::size_t>> active_;  ///< per level: nodes with pending readings, or due
+  std::vector<base::ReadingBlock> blocks_;        ///< per node
+  std::vector<base::ReadingBlock> out_;
+  bool demand_changed_ = false;  ///< since `create_wanted`
+  bool started_ = false;         ///< `evaluate` was called
+};
+
+/// Wires and creates all derived sensors of a world once. @throws base::InputError for invalid wiring or settings
+void check_derived_sensors(const world::World& world, const SensorSet& sensor_set);
+
+}  // namespace sf::sensors

@@ -1,0 +1,198 @@
+#include "sensors/derived/wiring.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <tuple>
+
+#include "base/suggest.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::size_t kMostLevels = 64;
+
+/// An input as written: "[port=][robot/]type[:number]".
+struct InputText {
+  std::string_view port, robot, type, number;
+};
+
+InputText parts_of(std::string_view text) {
+  InputText parts;
+  if (const std::size_t equal = text.find('='); equal != std::string_view::npos) {
+    parts.port = text.substr(0, equal);
+    text.remove_prefix(equal + 1);
+  }
+  if (const std::size_t slash = text.rfind('/'); slash != std::string_view::npos) {
+    parts.robot = text.substr(0, slash);
+    text.remove_prefix(slash + 1);
+  }
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  parts.type = text.substr(0, colon);
+  parts.number = colon < text.size() ? text.substr(colon + 1) : "0";
+  return parts;
+}
+
+std::vector<std::string> column_names(const SensorType& type) {
+  std::vector<std::string> names;
+  for (const Column& column : type.columns) names.emplace_back(column.name);
+  return names;
+}
+
+bool accepts(const DerivedPort& port, const SensorType& type) {
+  if (port.columns.size() > type.columns.size()) return false;
+  return std::equal(port.columns.begin(), port.columns.end(), type.columns.begin(),
+                    [](std::string_view wanted, const Column& column) { return wanted == column.name; });
+}
+
+class Wiring {
+ public:
+  Wiring(const world::World& world, std::span<const WiredGroup> groups) : world_(world), groups_(groups) {
+    for (const WiredGroup& group : groups) {
+      if (group.type->derived == nullptr) continue;
+      std::uint32_t row = 0;
+      for_each_of(world, group.type->word.type, [&](const world::Sensor& sensor, std::uint32_t, std::uint32_t) {
+        nodes_.push_back({group.type, &sensor, group.rows[row], row, 0, {}});
+        ++row;
+      });
+    }
+    for (DerivedNode& node : nodes_) add_inputs(node);
+    number_levels();
+  }
+  std::vector<DerivedNode> nodes() && { return std::move(nodes_); }
+
+ private:
+  void add_inputs(DerivedNode& node);
+  void add_input(DerivedNode& node, std::string_view text);
+  std::uint32_t port_of(const DerivedNode& node, const InputText& parts, const SensorType& type) const;
+  const WiredGroup& group_of(const DerivedNode& node, std::string_view type) const;
+  std::vector<std::uint32_t> movers_of(const DerivedNode& node, const InputText& parts) const;
+  void number_levels();
+  std::uint32_t level_of(std::size_t node, std::vector<std::size_t>& path);
+  [[noreturn]] void refuse_input(const DerivedNode& node, const std::string& why) const {
+    refuse(*node.settings, "inputs", fmt::format("{}: {}", derived_name(world_, node), why));
+  }
+
+  const world::World& world_;
+  std::span<const WiredGroup> groups_;
+  std::vector<DerivedNode> nodes_;
+  std::map<std::tuple<std::uint8_t, std::uint32_t, std::uint32_t>, std::size_t> node_of_;  ///< by type, mover, sensor
+  enum class Visit : std::uint8_t { open, under_way, done };
+  std::vector<Visit> visits_;
+};
+
+const WiredGroup& Wiring::group_of(const DerivedNode& node, std::string_view type) const {
+  std::vector<std::string_view> names;
+  for (const WiredGroup& group : groups_) {
+    if (group.type->name == type || group.type->word.type == type || group.type->other_word.type == type) return group;
+    names.push_back(group.type->name);
+  }
+  refuse_input(node, fmt::format("no robot of this world has a sensor of type '{}'; there are: {}{}", type,
+                                 fmt::join(names, ", "), base::suggest(type, names)));
+}
+
+std::vector<std::uint32_t> Wiring::movers_of(const DerivedNode& node, const InputText& parts) const {
+  if (parts.robot.empty()) return {node.spec.mover};
+  std::vector<std::uint32_t> found;
+  std::vector<std::string_view> names;
+  for (std::uint32_t m = 0; m < world_.movers.size(); ++m) {
+    if (parts.robot == "*" || world_.movers[m].name == parts.robot) found.push_back(m);
+    names.push_back(world_.movers[m].name);
+  }
+  if (found.empty())
+    refuse_input(node, fmt::format("no robot is called '{}'{}", parts.robot, base::suggest(parts.robot, names)));
+  return found;
+}
+
+std::uint32_t Wiring::port_of(const DerivedNode& node, const InputText& parts, const SensorType& type) const {
+  const auto& ports = node.type->derived->ports;
+  std::string expected;
+  for (std::uint32_t k = 0; k < ports.size(); ++k) {
+    const bool named = parts.port.empty() || parts.port == ports[k].name;
+    if (named && accepts(ports[k], type)) return k;
+    expected += fmt::format("{}{}{}", expected.empty() ? "" : " or ", ports[k].name,
+                            ports[k].columns.empty() ? "" : fmt::format(" ({})", fmt::join(ports[k].columns, ", ")));
+  }
+  refuse_input(node, fmt::format("{} has {}; expected {}", type.name, fmt::join(column_names(type), ", "), expected));
+}
+
+void Wiring::add_input(DerivedNode& node, std::string_view text) {
+  const InputText parts = parts_of(text);
+  const WiredGroup& group = group_of(node, parts.type);
+  const std::uint32_t port = port_of(node, parts, *group.type);
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(parts.number.data(), parts.number.data() + parts.number.size(), number);
+  if (error != std::errc() || end != parts.number.data() + parts.number.size())
+    refuse_input(node, fmt::format("'{}' is not an input: expected [port=][robot/]type[:number]", text));
+  const std::size_t before = node.inputs.size();
+  for (const std::uint32_t mover : movers_of(node, parts)) {
+    const auto is_it = [&](const SensorSpec& row) { return row.mover == mover && row.sensor == number; };
+    if (std::ranges::any_of(group.rows, is_it)) node.inputs.push_back({port, mover, group.type->id, number});
+  }
+  if (node.inputs.size() > before) return;
+  refuse_input(node, fmt::format("there is no sensor '{}': sensors of one type are numbered per robot, from 0", text));
+}
+
+void Wiring::add_inputs(DerivedNode& node) {
+  node_of_[{node.type->id, node.spec.mover, node.spec.sensor}] = static_cast<std::size_t>(&node - nodes_.data());
+  const world::Setting* const setting = find(*node.settings, "inputs");
+  if (setting == nullptr || !setting->numbers.empty() || setting->text.empty())
+    refuse_input(node, "expected inputs [\"type\" ...]: the sensors from which it is computed");
+  std::string_view rest = setting->text;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    add_input(node, rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  const auto& ports = node.type->derived->ports;
+  for (std::uint32_t k = 0; k < ports.size(); ++k) {
+    const auto count = std::ranges::count(node.inputs, k, &WiredInput::port);
+    if (count < ports[k].least || count > ports[k].most)
+      refuse_input(node, fmt::format("it has {} inputs '{}'; expected {} to {}", count, ports[k].name, ports[k].least,
+                                     ports[k].most));
+  }
+}
+
+std::uint32_t Wiring::level_of(std::size_t row, std::vector<std::size_t>& path) {
+  DerivedNode& node = nodes_[row];
+  path.push_back(row);
+  if (visits_[row] == Visit::under_way) {
+    std::string circle;
+    for (auto it = std::ranges::find(path, row); it != path.end(); ++it)
+      circle = derived_name(world_, nodes_[*it]) + (circle.empty() ? "" : " -> ") + circle;
+    refuse_input(node, "it is an input of itself: " + circle);
+  }
+  if (path.size() > kMostLevels)
+    refuse_input(node, fmt::format("more than {} derived sensors depend on each other in a row", kMostLevels));
+  if (visits_[row] == Visit::open) {
+    visits_[row] = Visit::under_way;
+    for (const WiredInput& input : node.inputs)
+      if (const auto below = node_of_.find({input.type, input.mover, input.sensor}); below != node_of_.end())
+        node.level = std::max(node.level, 1 + level_of(below->second, path));
+    visits_[row] = Visit::done;
+  }
+  path.pop_back();
+  return node.level;
+}
+
+void Wiring::number_levels() {
+  visits_.assign(nodes_.size(), Visit::open);
+  std::vector<std::size_t> path;
+  for (std::size_t row = 0; row < nodes_.size(); ++row) level_of(row, path);
+}
+
+}  // namespace
+
+std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGroup> groups) {
+  return Wiring(world, groups).nodes();
+}
+
+std::string derived_name(const world::World& world, const DerivedNode& node) {
+  return fmt::format("{} '{}' of '{}'", node.type->name, node.spec.name, world.movers[node.spec.mover].name);
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,36 @@
+#pragma once
+// Which readings each derived sensor of a world takes as inputs, checked when the world is loaded.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sensors/derived/derived_type.h"
+
+namespace sf::sensors {
+
+/// A derived sensor of a world.
+struct DerivedNode {
+  const SensorType* type = nullptr;
+  const world::Sensor* settings = nullptr;  ///< in the world
+  SensorSpec spec;
+  std::uint32_t row = 0;           ///< among the world's sensors of its type
+  std::uint32_t level = 0;         ///< above the levels of all its inputs; 0: it has no derived input
+  std::vector<WiredInput> inputs;  ///< in the order of the world file
+};
+
+/// The sensors of a type: SensorSet::Group, as far as wiring needs it.
+struct WiredGroup {
+  const SensorType* type;
+  std::span<const SensorSpec> rows;  ///< by mover
+};
+
+/// Returns the world's derived sensors, in order of type and row. @param groups all types of the world
+/// @throws base::InputError with file and line for an input that does not exist, that no port of the type accepts, or
+/// that depends on the sensor itself, and for too few or too many inputs
+std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGroup> groups);
+
+/// Returns "localization 'pose' of 'r0'", for messages.
+std::string derived_name(const world::World& world, const DerivedNode& node);
+
+}  // namespace sf::sensors

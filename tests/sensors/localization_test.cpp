@@ -1,0 +1,92 @@
+// The derived sensor `localization`: covariance, order of arrival, and consistency.
+
+#include "sensors/localization.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "base/time.h"
+#include "farm/farm.h"
+#include "tests/device.h"
+#include "tests/sensors/host_trial.h"
+#include "world/stage/build_world.h"
+
+namespace sf::trial {
+namespace {
+
+world::World robot_with(const std::string& own) {
+  return world::build_world(
+      "localized.world",
+      "define bot position( size [0.3 0.3 0.1] drive \"diff\" encoder( per_count 0.001 slip 0.01 rate 20 )\n" + own +
+          " )\nbot( name \"r0\" pose [1 2 0 30] )\n",
+      {.sensors = sensors::world_file_words()});
+}
+
+/// Drives an arc of 0.3 m/s and 0.2 rad/s. Returns the last reading of the localization.
+std::vector<double> reading_after_an_arc(const world::World& world, std::uint64_t seed, double seconds,
+                                         base::Pose& truth, bool known_start = true) {
+  farm::Farm farm(world, host_device(), {.seed = seed, .threads = 1});
+  if (known_start) farm.subscribe_all();
+  std::vector<double> last;
+  truth = world.movers[0].X_WM;
+  constexpr double kStep = 0.05, kTurn = 0.2;
+  for (int tick = 0; tick * kStep <= seconds; ++tick) {
+    const base::Report report{0, 0, truth, {0.3, 0.0, kTurn}};
+    for (const base::ReadingBlock& block : farm.tick(base::nanoseconds(tick * kStep), {&report, 1}))
+      if (block.type == sensors::kLocalization) last.assign(block.values.begin(), block.values.end());
+    truth = {truth.x + 0.3 * kStep * std::cos(truth.yaw + 0.5 * kTurn * kStep),
+             truth.y + 0.3 * kStep * std::sin(truth.yaw + 0.5 * kTurn * kStep), truth.z, truth.yaw + kTurn * kStep};
+    if (tick == 0) farm.subscribe_all();
+    if ((tick + 1) * kStep > seconds) truth = report.X_WM;
+  }
+  return last;
+}
+
+TEST(Localization, FollowsItsEncodersFromTheStartPose) {
+  const world::World world = robot_with("derived( type \"localization\" inputs [\"encoder\"] )");
+  base::Pose truth;
+  const std::vector<double> reading = reading_after_an_arc(world, 1, 20.0, truth);
+  ASSERT_EQ(reading.size(), 10u);
+  EXPECT_EQ(reading[3], 1.0) << "valid";
+  EXPECT_NEAR(reading[0], truth.x, 4.0 * std::sqrt(reading[4])) << "within four standard deviations";
+  EXPECT_NEAR(reading[1], truth.y, 4.0 * std::sqrt(reading[7]));
+  EXPECT_GT(reading[4] * reading[7], reading[5] * reading[5]) << "positive definite";
+}
+
+/// The mean normalized squared error of 100 seeds is within its 95 % band: chi square of 300 degrees of freedom.
+TEST(Localization, CovarianceIsConsistentOver100Seeds) {
+  const world::World world = robot_with(
+      "gyro( noise 0.2 bias 0.5 rate 20 ) gps( noise 1.5 rate 5 ) derived( type \"localization\" inputs [\"encoder\" "
+      "\"gyro\" \"gps\"] )");
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    base::Pose truth;
+    const std::vector<double> r = reading_after_an_arc(world, seed, 30.0, truth, false);
+    const glm::dvec3 e{r[0] - truth.x, r[1] - truth.y, base::wrap_angle(r[2] - truth.yaw)};
+    const glm::dmat3 P{{r[4], r[5], r[6]}, {r[5], r[7], r[8]}, {r[6], r[8], r[9]}};
+    sum += glm::dot(e, glm::inverse(P) * e);
+  }
+  EXPECT_GT(sum / 300.0, 0.846);
+  EXPECT_LT(sum / 300.0, 1.166);
+}
+
+TEST(Localization, NeedsSomethingThatLocates) {
+  const auto refusal = [](const std::string& inputs) {
+    try {
+      const sensors::SensorSet all(robot_with("gyro( ) derived( type \"localization\" inputs " + inputs + " )"));
+    } catch (const base::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal("[\"encoder\"]"), "accepted");
+  EXPECT_NE(refusal("[\"gyro\"]").find("needs an encoder, a gps or a pose"), std::string::npos)
+      << refusal("[\"gyro\"]");
+  EXPECT_NE(refusal("[\"encoder\" \"encoder\"]").find("2 inputs 'encoder'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sf::trial
