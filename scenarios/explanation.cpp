@@ -15,6 +15,7 @@
 #include "farm/farm.h"
 #include "raycast/casters.h"
 #include "scenarios/recorded_paths.h"
+#include "sensors/derived/wiring.h"
 
 namespace sf::scenarios {
 
@@ -117,6 +118,18 @@ std::size_t resident_bytes() {
 
 }  // namespace
 
+namespace {
+
+std::vector<std::string> input_types(std::span<const sensors::DerivedNode> wired, const sensors::SensorType* type) {
+  std::set<std::string> names;
+  for (const sensors::DerivedNode& node : wired)
+    for (const sensors::WiredInput& input : node.inputs)
+      if (node.type == type) names.emplace(sensors::find_sensor_type(input.type)->name);
+  return {names.begin(), names.end()};
+}
+
+}  // namespace
+
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
                     const std::function<void(double)>& progress) {
   Explanation e;
@@ -136,6 +149,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
 
   farm.subscribe(0);
   const std::size_t types = farm.sensor_set().groups().size();
+  const std::vector<sensors::DerivedNode> wired = sensors::wire(world, farm.sensor_set());
   step(types);
   e.silent = farm.laps();
   step(types);
@@ -145,6 +159,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
     SensorTypeCost cost = facts_of(group);
     const sensors::SensorType* const source = sensors::find_sensor_type(group.type->derived_from);
     if (source != nullptr) cost.source = source->name;
+    cost.inputs = input_types(wired, group.type);
     farm.subscribe(base::only(group.type->id) | (source != nullptr ? base::only(source->id) : 0u));
     cost.tick = farm.laps();
     cost.readings = farm.readings();

@@ -21,11 +21,12 @@ struct SensorTypeCost {
   std::vector<std::string> kernels;
   std::vector<gpu::DeviceAllocation> tables;  ///< largest first
   std::size_t bytes = 0;                      ///< of all tables
-  std::string source;     ///< sensor type whose readings it is computed from, subscribed together with it; empty: none
-  double tick = 0.0;      ///< [s] mean wall time of a tick with this type alone
-  double readings = 0.0;  ///< mean number per tick
-  double reused = 0.0;    ///< mean number per tick
-  sensors::SensorStats work;  ///< sum over all measured ticks
+  std::string source;  ///< sensor type whose readings it is computed from, subscribed together with it; empty: none
+  std::vector<std::string> inputs;  ///< of a derived type: sensor types that are measured for it alone
+  double tick = 0.0;                ///< [s] mean wall time of a tick with this type alone
+  double readings = 0.0;            ///< mean number per tick
+  double reused = 0.0;              ///< mean number per tick
+  sensors::SensorStats work;        ///< sum over all measured ticks
 };
 
 /// Number of walls in view of lasers at one height.

@@ -145,7 +145,7 @@ estimation::LocalizationOptions localization_options(const world::Mover& mover, 
 
 constinit const SensorType localization_type = plain<kForm>({
     .word = {"localization", kDerivedKeys, {}, true},
-    .base_port = 54000,
+    .base_port = 64000,
     .list = "",
     .columns = kColumns,
     .derived = &kDerived,

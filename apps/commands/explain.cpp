@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "apps/commands/commands.h"
@@ -11,7 +14,10 @@
 #include "apps/reports/progress_line.h"
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
+#include "base/error.h"
 #include "scenarios/explanation.h"
+#include "sensors/derived/wiring.h"
+#include "viz/wiring_figure.h"
 
 namespace sf::apps {
 
@@ -50,7 +56,10 @@ std::string costs_of(const scenarios::SensorTypeCost& k, const scenarios::Explan
   std::string text =
       fmt::format("{}: {} on {}, {}\n", k.type, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
   text += row("per tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
-              k.source.empty() ? "alone" : fmt::format("with the {}s", k.source), 1e3 * (k.tick - e.silent));
+              !k.inputs.empty()  ? fmt::format("alone, which measures its inputs ({})", fmt::join(k.inputs, ", "))
+              : k.source.empty() ? "alone"
+                                 : fmt::format("with the {}s", k.source),
+              1e3 * (k.tick - e.silent));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
   std::string_view label = "accuracy";
   for (const sensors::AccuracyStatement& s : e.statements)
@@ -82,8 +91,54 @@ std::string explanation_text(const scenarios::Explanation& e) {
   return text;
 }
 
+/// The graph of the first kMostBoxes sensors that are derived or inputs.
+int draw_graph(const world::World& world, const ExplainOptions& options) {
+  constexpr std::size_t kMostBoxes = 100;
+  const sensors::SensorSet sensor_set(world);
+  const auto nodes = sensors::wire(world, sensor_set);
+  if (nodes.empty()) throw base::InputError(options.world, 0, "has no derived sensor; see docs/derived.md");
+  using Key = std::tuple<std::uint8_t, std::uint32_t, std::uint32_t>;
+  std::map<Key, std::size_t> box_of;
+  std::vector<viz::WiringBox> boxes;
+  const auto add = [&](const Key& key, std::uint32_t column) {
+    const auto [type, mover, number] = key;
+    const auto [place, is_new] = box_of.try_emplace(key, boxes.size());
+    const sensors::SensorType& form = *sensors::find_sensor_type(type);
+    const sensors::SensorSpec& spec = sensor_set.of(type, mover)[number];
+    if (is_new)
+      boxes.push_back({fmt::format("{} '{}' of {}", form.name, spec.name, world.movers[mover].name),
+                       fmt::format("{:g} Hz, {}", spec.rate, form.columns[0].name),
+                       column,
+                       {}});
+    return place->second;
+  };
+  std::vector<const sensors::DerivedNode*> in_order;
+  for (const sensors::DerivedNode& node : nodes) in_order.push_back(&node);
+  std::ranges::stable_sort(in_order, {}, &sensors::DerivedNode::level);
+  std::size_t left_out = 0;
+  for (const sensors::DerivedNode* node : in_order) {
+    if (boxes.size() + node->inputs.size() >= kMostBoxes) {
+      ++left_out;
+      continue;
+    }
+    std::vector<std::size_t> inputs;
+    for (const sensors::WiredInput& input : node->inputs) {
+      const Key key{input.type, input.mover, input.sensor};
+      const bool is_derived = sensors::find_sensor_type(input.type)->derived != nullptr;
+      if (!is_derived || box_of.contains(key)) inputs.push_back(add(key, 0));
+    }
+    boxes[add({node->type->id, node->spec.mover, node->spec.sensor}, node->level + 1)].inputs = inputs;
+  }
+  const std::string more = left_out > 0 ? fmt::format("; {} more are not drawn", left_out) : "";
+  viz::draw_wiring(boxes, fmt::format("{}: {}{}", options.world, counted(nodes.size(), "derived sensor"), more),
+                   options.graph, {});
+  print(row("graph", "{}{}", options.graph, more));
+  return 0;
+}
+
 int explain(const ExplainOptions& options) {
   const world::World world = load_with_robots(options, options);
+  if (!options.graph.empty()) return draw_graph(world, options);
   gpu::Device device = open_device(options);
   scenarios::Explanation explanation;
   {

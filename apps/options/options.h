@@ -236,7 +236,9 @@ struct ViewOptions : RecordingOption, PartOption, DeviceOption, VideoOptions {
   std::string screenshot;    ///< picture to write instead of waiting for a user; empty: none
 };
 
-struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {};
+struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {
+  std::string graph;  ///< picture file of the derived sensors; empty: measure
+};
 
 /// Names of topics and frames, in recordings too.
 struct NamingOption {

@@ -142,7 +142,7 @@ void add_explain(CLI::App& app, Call& call) {
       "explain",
       "Report the structures and computations that a world requires, and the cost of each sensor type on this machine");
   auto& o = add_command(*sub, call, explain);
-  add_examples(*sub, {"worlds/simville/simville.world"});
+  add_examples(*sub, {"worlds/simville/simville.world", "robots.world --graph graph.png"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_json(*sub, o);
@@ -150,6 +150,12 @@ void add_explain(CLI::App& app, Call& call) {
   add_robots(*sub, o);
   add_robot_from(*sub, o);
   add_threads(*sub, o);
+  sub->add_option("--graph", o.graph, "Draw the derived sensors and their inputs instead of measuring")
+      ->check(picture())
+      ->expected(0, 1)
+      ->default_str("graph.png")
+      ->type_name("FILE")
+      ->group("Graph");
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ typedef struct {
     const char* name;
     unsigned width;
     double unit;
-  } columns[6];
+  } columns[11];  // a unit of 0: f32
 } sf_type;
 static const sf_type sf_types[] = {
     {1, "laser", 10000, {0}, {{"range_m", 1, 1e-3}}},
@@ -103,6 +103,20 @@ static const sf_type sf_types[] = {
      {{"voltage_V", 1, 1e-3}, {"current_A", 1, 1e-3}, {"charge_Ah", 1, 1e-6}, {"docked", 1, 1}}},
     {30, "analog", 58000, {0}, {{"voltage_V", 1, 1e-4}, {"value", 1, 1}}},
     {31, "ptz", 60000, {0}, {{"pan_rad", 1, 1e-6}, {"tilt_rad", 1, 1e-6}, {"fov_rad", 1, 1e-6}}},
+    {32,
+     "localization",
+     64000,
+     {0},
+     {{"x_m", 1, 5e-3},
+      {"y_m", 1, 5e-3},
+      {"yaw_rad", 1, 1e-6},
+      {"valid", 1, 1},
+      {"xx_m2", 1, 0},
+      {"xy_m2", 1, 0},
+      {"x_yaw_m_rad", 1, 0},
+      {"yy_m2", 1, 0},
+      {"y_yaw_m_rad", 1, 0},
+      {"yaw_yaw_rad2", 1, 0}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},
@@ -229,9 +243,12 @@ static const char* decode_rows(sf_packet* p, const sf_type* type, const uint8_t*
   for (unsigned r = 0; r < rows; ++r)
     for (unsigned c = 0; type->columns[c].name; ++c)
       for (unsigned k = 0; k < type->columns[c].width; ++k, ++p->count) {
-        const int32_t word = (int32_t)(uint32_t)get(b + 4 + 4 * p->count, 4);
+        const uint32_t bits = (uint32_t)get(b + 4 + 4 * p->count, 4);
+        const int32_t word = (int32_t)bits;
+        float real;
+        memcpy(&real, &bits, 4);
         const bool missing = word == INT32_MIN && p->type != SF_MAGNETOMETER;
-        p->values[p->count] = missing ? NAN : word * type->columns[c].unit;
+        p->values[p->count] = type->columns[c].unit == 0 ? real : missing ? NAN : word * type->columns[c].unit;
       }
   return NULL;
 }
@@ -359,7 +376,7 @@ static const char* decode_values(sf_packet* p, const uint8_t* b, size_t size) {
   p->error = get_f64(b + 64);
   if (check_numbers(p->sensor_pose, 4, HUGE_VAL) || isnan(p->error)) return "not finite";
   if (w[3] < 1 || w[3] > 1u << 24 || w[4] >= w[3] || w[4] % SF_MAX_PART != 0 ||
-      p->count != (w[3] - w[4] < SF_MAX_PART ? w[3] - w[4] : SF_MAX_PART) || w[2] < 1 || w[2] > 31 || w[0] >= w[1] ||
+      p->count != (w[3] - w[4] < SF_MAX_PART ? w[3] - w[4] : SF_MAX_PART) || w[2] < 1 || w[2] > 63 || w[0] >= w[1] ||
       !(p->error >= 0))
     return "out of range";
   for (unsigned i = 0; i < p->count; ++i) p->values[i] = get_f64(b + 72 + 8 * i);

@@ -61,6 +61,9 @@ SENSORS = {
     29: ("battery", 56000, [("voltage_V", 1e-3), ("current_A", 1e-3), ("charge_Ah", 1e-6), ("docked", 1)]),
     30: ("analog", 58000, [("voltage_V", 1e-4), ("value", 1)]),
     31: ("ptz", 60000, [("pan_rad", 1e-6), ("tilt_rad", 1e-6), ("fov_rad", 1e-6)]),
+    32: ("localization", 64000, [("x_m", 5e-3), ("y_m", 5e-3), ("yaw_rad", 1e-6), ("valid", 1), ("xx_m2", None),
+                                 ("xy_m2", None), ("x_yaw_m_rad", None), ("yy_m2", None), ("y_yaw_m_rad", None),
+                                 ("yaw_yaw_rad2", None)]),  # None: f32
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
@@ -127,8 +130,9 @@ def decode_rows(type, payload):
     require(1 <= count and len(words) <= 313 and (type != MAGNETOMETER or count <= 16))
     body = {}
     for word, (name, unit) in zip(words, columns * count):
-        missing = word == -2**31 and type != MAGNETOMETER
-        body.setdefault(name, []).append(None if missing else word * unit)
+        real = struct.unpack("<f", struct.pack("<i", word))[0]
+        missing = math.isnan(real) if unit is None else word == -2**31 and type != MAGNETOMETER
+        body.setdefault(name, []).append(None if missing else real if unit is None else word * unit)
     return body
 
 
@@ -190,7 +194,7 @@ def decode_values(payload):
     values = unpack("<%dd" % count, payload[72:])
     require(all(map(math.isfinite, (x, y, z, yaw))) and not math.isnan(error), "not finite")
     require(1 <= total <= 2**24 and first < total and first % 148 == 0 and count == min(148, total - first))
-    require(1 <= type <= 31 and index < datagrams and error >= 0)
+    require(1 <= type <= 63 and index < datagrams and error >= 0)
     return {"tick": tick, "index": index, "datagrams": datagrams, "values_type": type, "total": total, "first": first,
             "sensor_pose": [x, y, z, yaw], "error": None if math.isinf(error) else error, "value": list(values)}
 

@@ -25,12 +25,6 @@ namespace {
 
 constexpr std::size_t kPiece = 16;  // sensors per piece of a parallel loop
 
-std::vector<WiredGroup> wired_groups(const SensorSet& sensor_set) {
-  std::vector<WiredGroup> groups;
-  for (const SensorSet::Group& group : sensor_set.groups()) groups.push_back({group.type, group.rows});
-  return groups;
-}
-
 constexpr sensorfarm::Pose kUnknownPose{NAN, NAN, NAN, NAN};
 
 bool is_own_type(const SensorType& type) { return type.id >= kFirstOwnId && type.id <= kLastOwnId; }
@@ -66,15 +60,14 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_derived_sensor(const world::Worl
 }  // namespace
 
 void check_derived_sensors(const world::World& world, const SensorSet& sensor_set) {
-  for (const DerivedNode& node : wire(world, wired_groups(sensor_set)))
-    make_derived_sensor(world, sensor_set, node, kUnknownPose);
+  for (const DerivedNode& node : wire(world, sensor_set)) make_derived_sensor(world, sensor_set, node, kUnknownPose);
 }
 
 DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& sensor_set, base::ThreadPool& thread_pool)
     : world_(world),
       sensor_set_(sensor_set),
       thread_pool_(thread_pool),
-      wired_(wire(world, wired_groups(sensor_set))),
+      wired_(wire(world, sensor_set)),
       nodes_(wired_.size()),
       group_of_(64, -1),
       input_types_(64, nullptr) {

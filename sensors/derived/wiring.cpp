@@ -191,6 +191,12 @@ std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGr
   return Wiring(world, groups).nodes();
 }
 
+std::vector<DerivedNode> wire(const world::World& world, const SensorSet& sensor_set) {
+  std::vector<WiredGroup> groups;
+  for (const SensorSet::Group& group : sensor_set.groups()) groups.push_back({group.type, group.rows});
+  return wire(world, groups);
+}
+
 std::string derived_name(const world::World& world, const DerivedNode& node) {
   return fmt::format("{} '{}' of '{}'", node.type->name, node.spec.name, world.movers[node.spec.mover].name);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sensors/derived/derived_type.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::sensors {
 
@@ -29,6 +30,7 @@ struct WiredGroup {
 /// @throws base::InputError with file and line for an input that does not exist, that no port of the type accepts, or
 /// that depends on the sensor itself, and for too few or too many inputs
 std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGroup> groups);
+std::vector<DerivedNode> wire(const world::World& world, const SensorSet& sensor_set);
 
 /// Returns "localization 'pose' of 'r0'", for messages.
 std::string derived_name(const world::World& world, const DerivedNode& node);

@@ -146,7 +146,8 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"lightsensor", 28, 2, {250.5, 337, 0, 450}},
              {"battery", 29, 1, {14.4, -0.6, 1.35, 0}},
              {"analog", 30, 2, {2.5, 512, 5, 1023}},
-             {"ptz", 31, 1, {0.5, -0.1, 0.4}}};
+             {"ptz", 31, 1, {0.5, -0.1, 0.4}},
+             {"localization", 32, 1, {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;
