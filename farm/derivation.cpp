@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "base/error.h"
 
@@ -76,7 +77,7 @@ std::span<const base::ReadingBlock> Derivation::evaluate(std::int64_t now,
                                                          std::span<const base::Report> states) {
   due_.clear();
   for (const SensorPipeline& pipeline : pipelines_) due_.emplace_back(pipeline.due);
-  const auto derived = sensors_.evaluate(now, delivered, due_, states);
+  const auto derived = sensors_.evaluate(now, delivered, due_, states, std::exchange(commands_, {}));
   delivered_.assign(delivered.begin(), delivered.end());
   delivered_.insert(delivered_.end(), derived.begin(), derived.end());
   return delivered_;

@@ -36,6 +36,8 @@ class Derivation {
   /// Returns `delivered` and the due readings of derived sensors, without latency; valid until the next call.
   std::span<const base::ReadingBlock> evaluate(std::int64_t now, std::span<const base::ReadingBlock> delivered,
                                                std::span<const base::Report> states);
+  /// Sets the inputs `command` of the next evaluation: per mover.
+  void set_commands(std::span<const base::Twist> commands) { commands_ = commands; }
   /// @param delivered readings delivered at `now`, including late ones of derived sensors
   /// @param delivery holds readings of derived sensors with latency until they are delivered
   /// @param subscribed per mover: the others' readings serve as inputs only, and are left out of the result
@@ -50,6 +52,7 @@ class Derivation {
   std::vector<SensorPipeline> pipelines_;  ///< of the derived types, for their due times
   std::vector<std::span<const sensors::DueSample>> due_;
   std::vector<base::ReadingBlock> delivered_;
+  std::span<const base::Twist> commands_;
 };
 
 }  // namespace sf::farm

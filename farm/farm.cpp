@@ -51,7 +51,8 @@ struct Farm::State {
   std::vector<std::vector<double>> marked;  ///< per thread: ranges as sent
   std::vector<SensorPipeline> pipelines;    ///< of all types except derived ones
   std::unique_ptr<Derivation> derivation;
-  bool demand_changed = true;  ///< subscriptions have changed since derived sensors were last told
+  std::span<const base::Twist> commands;  ///< for the next tick
+  bool demand_changed = true;             ///< subscriptions have changed since derived sensors were last told
   std::unique_ptr<gpu::Batch> batch;
   Delivery delivery;
   std::unique_ptr<PoseChanges> pose_changes;  ///< of the current tick
@@ -367,11 +368,14 @@ base::ThreadPool& Farm::thread_pool() { return s_->thread_pool; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   ++s_->stats.ticks;
+  s_->derivation->set_commands(std::exchange(s_->commands, {}));
   s_->last_tick = now;
   s_->begin_tick(false);
   for (const base::Report& report : reports) s_->apply(report);
   return s_->read(now);
 }
+
+void Farm::set_commands(std::span<const base::Twist> commands) { s_->commands = commands; }
 
 std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }
 

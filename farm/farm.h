@@ -113,6 +113,10 @@ class Farm {
   /// @return blocks that are valid until the next call of `tick`, `sample`, `sample_between` or `sense`
   std::span<const base::ReadingBlock> tick(std::int64_t now, std::span<const base::Report> reports);
 
+  /// Sets the twists that movers executed until the next tick, per mover: inputs of derived sensors. They are read
+  /// during that tick.
+  void set_commands(std::span<const base::Twist> commands);
+
   /// Returns when the next subscribed sensor is due [ns]: phase + k / rate to the nearest nanosecond. farm::kNever
   /// without subscribed sensors.
   std::int64_t next_due() const;

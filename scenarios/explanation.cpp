@@ -124,7 +124,7 @@ std::vector<std::string> input_types(std::span<const sensors::DerivedNode> wired
   std::set<std::string> names;
   for (const sensors::DerivedNode& node : wired)
     for (const sensors::WiredInput& input : node.inputs)
-      if (node.type == type) names.emplace(sensors::find_sensor_type(input.type)->name);
+      if (node.type == type) names.emplace(sensors::input_type(input.type).name);
   return {names.begin(), names.end()};
 }
 

@@ -189,6 +189,9 @@ class Verifier {
     };
     for (std::int64_t due = farm_.next_due(); tick > 0 && due < time; due = farm_.next_due())
       look_at(farm_.sample_between(due, reports_));
+    commands_.clear();
+    for (const auto& states : recording_.states) commands_.push_back(states[tick].command);
+    farm_.set_commands(commands_);
     look_at(farm_.tick(time, reports_));
   }
 
@@ -392,6 +395,7 @@ class Verifier {
   bool recorded_ = false;                 ///< whether the recording has scans
   std::map<Name, std::size_t> readings_;  ///< recorded readings not yet compared
   std::vector<base::Report> reports_;     ///< of one tick
+  std::vector<base::Twist> commands_;
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;

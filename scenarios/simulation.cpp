@@ -266,6 +266,7 @@ std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
     if (early_.size() < early + delivered.size()) early_.resize(early + delivered.size());
     for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
   }
+  farm_.set_commands(executed_commands_);
   const auto delivered = farm_.tick(time, states);
   if (early == 0) return delivered;
   for (std::size_t i = 0; i < early; ++i) readings_.push_back(early_[i].block());

@@ -103,8 +103,9 @@ int draw_graph(const world::World& world, const ExplainOptions& options) {
   const auto add = [&](const Key& key, std::uint32_t column) {
     const auto [type, mover, number] = key;
     const auto [place, is_new] = box_of.try_emplace(key, boxes.size());
-    const sensors::SensorType& form = *sensors::find_sensor_type(type);
-    const sensors::SensorSpec& spec = sensor_set.of(type, mover)[number];
+    const sensors::SensorType& form = sensors::input_type(type);
+    const sensors::SensorSpec spec =
+        type == sensors::kCommandInput ? sensors::SensorSpec{.name = "command"} : sensor_set.of(type, mover)[number];
     if (is_new)
       boxes.push_back({fmt::format("{} '{}' of {}", form.name, spec.name, world.movers[mover].name),
                        fmt::format("{:g} Hz, {}", spec.rate, form.columns[0].name),
@@ -124,7 +125,7 @@ int draw_graph(const world::World& world, const ExplainOptions& options) {
     std::vector<std::size_t> inputs;
     for (const sensors::WiredInput& input : node->inputs) {
       const Key key{input.type, input.mover, input.sensor};
-      const bool is_derived = sensors::find_sensor_type(input.type)->derived != nullptr;
+      const bool is_derived = sensors::input_type(input.type).derived != nullptr;
       if (!is_derived || box_of.contains(key)) inputs.push_back(add(key, 0));
     }
     boxes[add({node->type->id, node->spec.mover, node->spec.sensor}, node->level + 1)].inputs = inputs;

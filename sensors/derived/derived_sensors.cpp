@@ -27,6 +27,8 @@ constexpr std::size_t kPiece = 16;  // sensors per piece of a parallel loop
 
 constexpr sensorfarm::Pose kUnknownPose{NAN, NAN, NAN, NAN};
 
+const SensorSpec kCommandSpec{.name = "command"};
+
 bool is_own_type(const SensorType& type) { return type.id >= kFirstOwnId && type.id <= kLastOwnId; }
 
 sensorfarm::DerivedSite public_site(const SensorSet& sensor_set, const DerivedNode& node,
@@ -34,10 +36,11 @@ sensorfarm::DerivedSite public_site(const SensorSet& sensor_set, const DerivedNo
   const SensorSpec& spec = node.spec;
   sensorfarm::DerivedSite site{
       {spec.name, spec.mover, spec.sensor, public_pose(spec.X_MS), node.settings->height}, start, {}};
-  for (const WiredInput& input : node.inputs)
-    site.inputs.push_back(
-        {input.port, input.mover,
-         public_info(*find_sensor_type(input.type), sensor_set.of(input.type, input.mover)[input.sensor])});
+  for (const WiredInput& input : node.inputs) {
+    const SensorSpec& of =
+        input.type == kCommandInput ? kCommandSpec : sensor_set.of(input.type, input.mover)[input.sensor];
+    site.inputs.push_back({input.port, input.mover, public_info(input_type(input.type), of)});
+  }
   return site;
 }
 
@@ -71,6 +74,7 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
       nodes_(wired_.size()),
       group_of_(64, -1),
       input_types_(64, nullptr) {
+  input_types_[kCommandInput] = &input_type(kCommandInput);
   const auto groups = sensor_set.groups();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     group_of_[groups[g].type->id] = static_cast<int>(g);
@@ -86,6 +90,8 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
     levels_[node.level].push_back(i);
     for (std::uint32_t k = 0; k < node.inputs.size(); ++k) {
       const WiredInput& input = node.inputs[k];
+      if (input.type == kCommandInput) command_listeners_.push_back({i, k});
+      if (input.type == kCommandInput) continue;
       const auto g = static_cast<std::size_t>(group_of_[input.type]);
       listeners_[g][groups[g].first[input.mover] + input.sensor].push_back({i, k});
     }
@@ -111,6 +117,7 @@ void DerivedSensors::want_if(const Wanted& wanted) {
       nodes_[i].wanted = wanted(node) || needed_[own][node.row] != 0;
       if (!nodes_[i].wanted) continue;
       for (const WiredInput& input : node.inputs) {
+        if (input.type == kCommandInput) continue;
         const auto g = static_cast<std::size_t>(group_of_[input.type]);
         needed_[g][groups[g].first[input.mover] + input.sensor] = 1;
       }
@@ -144,12 +151,8 @@ void DerivedSensors::route(const base::ReadingBlock& reading) {
   const int g = group_of_[reading.type];
   if (g < 0) return;
   const std::uint32_t row = sensor_set_.groups()[static_cast<std::size_t>(g)].first[reading.mover] + reading.sensor;
-  for (const Listener& listener : listeners_[static_cast<std::size_t>(g)][row]) {
-    Node& node = nodes_[listener.node];
-    if (node.sensor == nullptr) continue;
-    node.pending.push_back({reading.time, listener.input, reading.sequence, &reading});
-    if (!std::exchange(node.active, true)) active_[wired_[listener.node].level].push_back(listener.node);
-  }
+  for (const Listener& listener : listeners_[static_cast<std::size_t>(g)][row])
+    add_pending(listener.node, {reading.time, listener.input, reading.sequence, &reading});
 }
 
 void DerivedSensors::call(std::size_t i, std::int64_t now) {
@@ -175,6 +178,25 @@ void DerivedSensors::call(std::size_t i, std::int64_t now) {
     *out++ = valid ? 1.0 : 0.0;
     out = std::copy_n(node.covariance.data() + row * covariances, covariances, out);
   }
+}
+
+void DerivedSensors::take_commands(std::int64_t now, std::span<const base::Twist> commands) {
+  commands_.resize(command_listeners_.size());
+  for (std::size_t k = 0; k < command_listeners_.size(); ++k) {
+    const auto [i, input] = command_listeners_[k];
+    const std::uint32_t mover = wired_[i].inputs[input].mover;
+    Command& command = commands_[k];
+    command.values = {commands[mover].forward, commands[mover].left, commands[mover].turn};
+    command.reading = {.mover = mover, .type = kCommandInput, .time = now, .values = command.values};
+    add_pending(i, {now, input, 0, &command.reading});
+  }
+}
+
+void DerivedSensors::add_pending(std::size_t i, const Pending& pending) {
+  Node& node = nodes_[i];
+  if (node.sensor == nullptr) return;
+  node.pending.push_back(pending);
+  if (!std::exchange(node.active, true)) active_[wired_[i].level].push_back(i);
 }
 
 void DerivedSensors::process(std::size_t i, std::int64_t now) {
@@ -222,10 +244,12 @@ void DerivedSensors::run_level(std::size_t level, std::int64_t now, std::span<co
 std::span<const base::ReadingBlock> DerivedSensors::evaluate(std::int64_t now,
                                                              std::span<const base::ReadingBlock> delivered,
                                                              std::span<const std::span<const DueSample>> due,
-                                                             std::span<const base::Report> states) {
+                                                             std::span<const base::Report> states,
+                                                             std::span<const base::Twist> commands) {
   create_wanted(states);
   started_ = true;
   out_.clear();
+  if (!commands.empty()) take_commands(now, commands);
   for (const base::ReadingBlock& reading : delivered) route(reading);
   std::size_t first = 0;  // node of the group's first row
   std::size_t group = 0;

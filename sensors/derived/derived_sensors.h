@@ -9,6 +9,7 @@
 // sensor processes the readings delivered since its last call in order of measurement time, then of input, so they do
 // not depend on the order of arrival either.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -41,12 +42,14 @@ class DerivedSensors {
 
   /// @param delivered readings delivered at `now` [ns], in any order
   /// @param due per derived group of the sensor set, in order: its due sensors
-  /// @param states per mover @return readings of the due sensors, by type and row, except that latency is not applied;
+  /// @param states per mover @param commands per mover: the twists executed since the last tick; empty: none
+  /// @return readings of the due sensors, by type and row, except that latency is not applied;
   /// valid until the next call
   /// @throws base::InputError when a sensor throws an exception
   std::span<const base::ReadingBlock> evaluate(std::int64_t now, std::span<const base::ReadingBlock> delivered,
                                                std::span<const std::span<const DueSample>> due,
-                                               std::span<const base::Report> states);
+                                               std::span<const base::Report> states,
+                                               std::span<const base::Twist> commands = {});
 
   /// Continues the sensors of `before`, a world with fewer movers in its first rows. `before` must not be used
   /// afterwards.
@@ -79,6 +82,8 @@ class DerivedSensors {
   void want_if(const Wanted& wanted);
   void create_wanted(std::span<const base::Report> states);
   void route(const base::ReadingBlock& reading);
+  void take_commands(std::int64_t now, std::span<const base::Twist> commands);
+  void add_pending(std::size_t node, const Pending& pending);
   void process(std::size_t node, std::int64_t now);
   void call(std::size_t node, std::int64_t now);
   void run_level(std::size_t level, std::int64_t now, std::span<const base::Report> states);
@@ -91,8 +96,14 @@ class DerivedSensors {
   std::vector<std::vector<std::size_t>> levels_;               ///< nodes by level
   std::vector<std::vector<std::uint8_t>> needed_;              ///< per group and row
   std::vector<std::vector<std::vector<Listener>>> listeners_;  ///< per group and row
-  std::vector<int> group_of_;                                  ///< by wire id; -1: none
-  std::vector<const SensorType*> input_types_;                 ///< by wire id
+  struct Command {
+    std::array<double, 3> values;
+    base::ReadingBlock reading;
+  };
+  std::vector<Listener> command_listeners_;
+  std::vector<Command> commands_;               ///< per command listener
+  std::vector<int> group_of_;                   ///< by wire id; -1: none
+  std::vector<const SensorType*> input_types_;  ///< by wire id
   std::vector<std::size_t> due_nodes_;
   std::vector<std::vector<std::size_t>> active_;  ///< per level: nodes with pending readings, or due
   std::vector<base::ReadingBlock> blocks_;        ///< per node

@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::size_t kMostLevels = 64;
 
+constexpr Column kCommandColumns[] = {{"forward_m_s"}, {"left_m_s"}, {"turn_rad_s"}};
+const SensorType kCommandType{.id = kCommandInput, .name = "command", .columns = kCommandColumns};
+
 /// An input as written: "[port=][robot/]type[:number]".
 struct InputText {
   std::string_view port, robot, type, number;
@@ -191,9 +194,14 @@ std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGr
   return Wiring(world, groups).nodes();
 }
 
+const SensorType& input_type(std::uint8_t id) { return id == kCommandInput ? kCommandType : *find_sensor_type(id); }
+
 std::vector<DerivedNode> wire(const world::World& world, const SensorSet& sensor_set) {
   std::vector<WiredGroup> groups;
   for (const SensorSet::Group& group : sensor_set.groups()) groups.push_back({group.type, group.rows});
+  std::vector<SensorSpec> robots(world.movers.size());
+  for (std::uint32_t m = 0; m < robots.size(); ++m) robots[m].mover = m;
+  groups.push_back({&kCommandType, robots});
   return wire(world, groups);
 }
 

@@ -10,6 +10,12 @@
 
 namespace sf::sensors {
 
+/// Wire id of the pseudo-type `command`, which only derived sensors read: the twist that a robot executed since the
+/// last tick, in runs.
+inline constexpr std::uint8_t kCommandInput = 63;
+/// Returns the type with that id, or the pseudo-type. @pre it exists
+const SensorType& input_type(std::uint8_t id);
+
 /// A derived sensor of a world.
 struct DerivedNode {
   const SensorType* type = nullptr;

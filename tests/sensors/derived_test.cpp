@@ -257,6 +257,17 @@ TEST(Derived, RobotsThatJoinBecomeInputs) {
   EXPECT_EQ(tally(1), (std::pair{5.0, 3.0})) << "its count goes on";
 }
 
+TEST(Derived, CommandsOfTheLastTickAreInputs) {
+  const world::World world = robot_of("derived( type \"tally\" inputs [\"command\" \"r1/command\"] )");
+  farm::Farm farm(world, host_device(), {.threads = 1});
+  farm.subscribe(0, base::only(kTally));
+  const base::Twist commands[] = {{0.5, 0.0, 0.0}, {0.25, 0.0, 0.0}};
+  farm.set_commands(commands);
+  const auto reports = robots::states_at_load(world);
+  EXPECT_EQ(farm.tick(0, reports)[0].values[0], 1.5) << "0.5, then half of it, 0.25 and the number of the input, 1";
+  EXPECT_EQ(farm.tick(kSecond / 10, reports)[0].values[1], 2.0) << "none since then";
+}
+
 TEST(Derived, AnExceptionEndsTheRunWithItsMessage) {
   const world::World world = robot_of("derived( name \"bad\" type \"tally\" inputs [\"encoder\"] rate 20 )");
   expect_in("tally 'bad' of 'r0' failed at 0.600 s: thirteen", refusal_of([&] {
