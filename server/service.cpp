@@ -135,7 +135,11 @@ std::span<const base::Report> Service::update_movers(std::int64_t now) {
     farm_.set_state_quality(row, receiver_.quality(row, now));
   }
   for (const auto& [id, row] : receiver_.tags()) {
-    absent_[row] = receiver_.update_absent_tag(row, now);
+    absent_[row] = receiver_.update_absent_tag(id, now);
+    farm_.set_absent(row, absent_[row]);
+  }
+  for (const auto& [id, row] : receiver_.lights()) {
+    absent_[row] = receiver_.update_absent_light(id, now);
     farm_.set_absent(row, absent_[row]);
   }
   return receiver_.states(now);

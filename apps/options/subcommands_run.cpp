@@ -265,12 +265,12 @@ void add_serve(CLI::App& app, Call& call) {
   add_forget(*sub, o);
   add_peers(*sub, o);
   add_lockstep(*sub, o);
-  sub->add_option(
-         "--join", o.join,
-         "Robots that may join: copies of the world's robot ROBOT with the ids FIRST to LAST, each in the world "
-         "from its first state until it leaves or is silent for 2 s; may be repeated")
+  sub->add_option("--join", o.join,
+                  "What may join: copies of the world's robot, object or light NAME with the ids FIRST to LAST (of "
+                  "robots, tags or intersections), each in the world from its first state until it leaves or is silent "
+                  "for 2 s; may be repeated")
       ->excludes("--lockstep")
-      ->type_name("ROBOT=FIRST-LAST");
+      ->type_name("NAME=FIRST-LAST");
   add_filter(*sub, o);
   sub->add_option("--mirror", o.mirror,
                   "Address of an observer that receives a copy of every reading packet (`vps --readings`)")
@@ -485,6 +485,9 @@ void add_light(CLI::App& app, Call& call) {
       ->allow_extra_args(false)
       ->type_name("PORT")
       ->capture_default_str();
+  sub->add_option("--first-id", o.first_id,
+                  "Id of the first intersection, for a light that joins a farm (`serve --join`); others follow")
+      ->check(CLI::Range(0u, netio::kMaxId));
   sub->add_option("--rate", o.rate, "SPaT and V2I messages per second for each intersection")
       ->check(number(0.1, 100.0))
       ->type_name("HZ")
