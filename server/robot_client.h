@@ -17,6 +17,7 @@
 #include "control/remote.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
+#include "server/lane_service.h"
 #include "server/light_listener.h"
 #include "server/own_map.h"
 #include "server/own_state.h"
@@ -167,6 +168,7 @@ class RobotClient {
   robots::RobotBody body_;
   std::optional<world::RoadNetwork> roads_;
   LightListener lights_;
+  ReceivedLanes lanes_;
   RobotLink link_;
   control::ConfiguredController made_;
   std::vector<base::Intent> intents_;  ///< last received, per mover

@@ -78,6 +78,10 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
     if (light_handler_) light_handler_(packet.header, *signals, now);
     return place_light(packet.header, *signals, now);
   }
+  if (const auto* lane = std::get_if<netio::Lane>(&packet.body)) {
+    if (lane_handler_) lane_handler_(*lane);
+    return;
+  }
   if (const auto* object = std::get_if<netio::Object>(&packet.body)) {
     removed_[names_.tags.at(packet.header.robot)] = !object->present;
     return;

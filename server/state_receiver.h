@@ -46,6 +46,9 @@ class StateReceiver {
   /// Sets the handler of accepted V2I.
   using LightHandler = std::function<void(const netio::Header&, const netio::V2i&, std::int64_t now)>;
   void set_light_handler(LightHandler handler) { light_handler_ = std::move(handler); }
+  /// Sets the handler of accepted LANE.
+  using LaneHandler = std::function<void(const netio::Lane&)>;
+  void set_lane_handler(LaneHandler handler) { lane_handler_ = std::move(handler); }
 
   /// Processes every waiting datagram.
   void receive_pending(std::int64_t now);
@@ -111,6 +114,7 @@ class StateReceiver {
   bool keep_heights_;
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
+  LaneHandler lane_handler_;
   std::vector<bool> removed_;              ///< per mover, by OBJECT
   std::vector<bool> joining_;              ///< per mover: StateReceiverOptions::joining
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever

@@ -365,6 +365,11 @@ struct ObjectOptions : FarmOptions, PeersOption {
   State state = State::present;
 };
 
+struct LaneOptions : FarmOptions, PeersOption {
+  std::string lane;  ///< "SEGMENT.LANE"
+  std::string use;   ///< a word of world::lane_use_of
+};
+
 struct ListenOptions : WorldOptions, JsonOption, CloneOptions, PortOptions, ReceiveOptions, DurationOption {};
 
 struct DumpOptions : JsonOption, BindOption, DurationOption {

@@ -533,6 +533,20 @@ void add_object(CLI::App& app, Call& call) {
       ->type_name("ID");
 }
 
+void add_lane(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "lane", "Close, reverse or open a lane of a farm's road network, or let only turns leave it (not acknowledged)");
+  auto& o = add_command(*sub, call, lane);
+  add_examples(*sub, {"3.1 closed", "1.1 reversed --server 192.168.1.5"});
+  add_farm(*sub, o);
+  add_peers(*sub, o);
+  sub->add_option("lane", o.lane, "Segment and number of the lane in the RNDF")->required()->type_name("SEGMENT.LANE");
+  sub->add_option("use", o.use,
+                  "New use: open, closed, reversed, or turn, left or right for a lane whose end only turns may leave")
+      ->required()
+      ->type_name("USE");
+}
+
 void add_listen(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("listen",
                                      "Receive the packets of `run --send` on every robot's ports, and count and check "
@@ -622,6 +636,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_light(app, call);
   add_start(app, call);
   add_object(app, call);
+  add_lane(app, call);
   add_listen(app, call);
   add_dump(app, call);
   add_map(app, call);

@@ -42,6 +42,8 @@ class LaneControl {
   const std::shared_ptr<const RoadNetwork>& network() const { return network_; }
   /// Returns the current uses, one per lane; a lane that is to change its direction is closed.
   std::span<const LaneUse> uses() const { return uses_; }
+  /// Returns the use that was requested last.
+  const LaneUse& wanted(std::uint32_t lane) const { return wanted_[lane]; }
   /// Returns whether a lane waits to be empty.
   bool is_clearing(std::uint32_t lane) const { return wanted_[lane].reversed != uses_[lane].reversed; }
 
