@@ -233,8 +233,10 @@ RobotClientStats RobotClient::stats() const {
   stats.started = started_;
   stats.done = done();
   stats.answered = link_.last_answer().has_value();
-  stats.listens = link_.listens();
   stats.link = link_.counts();
+  const bool meets_others =
+      stats.link.direct && stats.link.direct->packets[netio::PacketStatus::accepted] > 0 && made_.needs == 0;
+  stats.listens = link_.listens() && !meets_others;
   stats.contacts = contacts_;
   stats.distance_m = body_.distance();
   stats.pose = body_.state().X_WM;

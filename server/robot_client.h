@@ -86,7 +86,8 @@ struct RobotClientStats {
   bool started = true;      ///< no start signal was required, or it arrived
   bool done = false;        ///< as reported by the controller
   bool answered = false;    ///< a packet arrived from the farm
-  bool listens = true;      ///< it has sensors and therefore expects packets
+  bool listens = true;      ///< it has sensors and therefore expects packets; false if its controller needs no readings
+                            ///< and it received states of others directly
   LinkCounts link;
   std::uint64_t contacts = 0;        ///< number of contacts that began
   std::uint64_t stops = 0;           ///< number of stops for lack of readings or positions
