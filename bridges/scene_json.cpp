@@ -15,6 +15,7 @@
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 #include "world/ground.h"
+#include "world/lights.h"
 
 namespace sf::bridges {
 
@@ -109,8 +110,10 @@ Json markings_json(const World& world) {
 
 Json lights_json(const World& world) {
   Json lights = Json::array();
-  for (const world::Light& light : world.lights)
+  for (const world::Light& light : world.lights) {
     lights.push_back({{"name", light.name}, {"pose", pose_json(light.X_WL)}});
+    if (const auto mover = carrier_of(world, light); mover != world::kNone) lights.back()["mover"] = mover;
+  }
   return lights;
 }
 

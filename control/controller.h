@@ -4,12 +4,17 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 
 #include "base/pose.h"
 #include "base/reading.h"
 #include "base/report.h"
 #include "world/lights.h"
+
+namespace sf::world {
+struct RoadNetwork;
+}
 
 namespace sf::control {
 
@@ -31,6 +36,8 @@ struct ControllerInput {
   bool started = true;                       ///< the start signal was given
   std::span<const Neighbour> others;         ///< robots within `Controller::v2v_range`, in order of id
   std::span<const world::Signal> signals{};  ///< one per row of `World::lights`
+  /// Roads with the current uses of their lanes (world/roads/lane_use.h); null: as at the start.
+  std::shared_ptr<const world::RoadNetwork> roads{};
 };
 
 /// One object per robot. Calls on one object are made by one thread at a time; different objects may run in parallel.

@@ -121,7 +121,7 @@ void LaneCorridors::add_lanes(const world::World& world) {
   }
   for (const world::StopLine& stop : roads_.stops) {
     LaneStop mark{roads_.lanes[stop.at.row].points[stop.at.index].s, {}};
-    const std::string name = point_id_text(id_of(roads_, stop.at));
+    const std::string name = point_id_text(stop.lights);
     for (std::uint32_t light = 0; light < world.lights.size(); ++light) {
       const auto& points = world.lights[light].points;
       if (std::find(points.begin(), points.end(), name) != points.end()) mark.lights.push_back(light);
@@ -153,7 +153,7 @@ void LaneCorridors::add_exits() {
     }
     const std::uint32_t row =
         add_way(way, exit_curve(roads_, exit), height_of(roads_, exit.from), height_of(roads_, exit.to));
-    add_edge(exit.from, exit.to, row, 0.0, ways_[row].length, 0.0);
+    if (exit.open) add_edge(exit.from, exit.to, row, 0.0, ways_[row].length, 0.0);
   }
 }
 
@@ -167,7 +167,7 @@ void LaneCorridors::add_changes() {
         way.enter = roads_.lanes[step.to.row].points[step.to.index].s;
         const std::uint32_t added =
             add_way(way, lane_change_curve(roads_, from, step.to), height_of(roads_, from), height_of(roads_, step.to));
-        add_edge(from, step.to, added, 0.0, ways_[added].length, kChangeCost);
+        if (roads_.lanes[step.to.row].open) add_edge(from, step.to, added, 0.0, ways_[added].length, kChangeCost);
       }
     }
   }

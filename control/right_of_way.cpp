@@ -36,7 +36,13 @@ Rule rule_of(const LaneStop& mark, std::span<const world::Signal> signals) {
 }
 
 RightOfWay::RightOfWay(const LaneCorridors& corridors, std::uint32_t own_id)
-    : corridors_(corridors), own_id_(own_id), margin_(0.15 * corridors.body().radius) {}
+    : corridors_(&corridors), own_id_(own_id), margin_(0.15 * corridors.body().radius) {}
+
+void RightOfWay::use(const LaneCorridors& corridors) {
+  corridors_ = &corridors;
+  known_.clear();
+  road_users_.clear();
+}
 
 bool RightOfWay::committed(double ahead, double speed) const {
   return ahead + margin_ < speed * speed / (2.0 * kHardBraking);
@@ -50,9 +56,9 @@ const RoadPositions& RightOfWay::positions_of(std::uint32_t id, const Pose& X_WM
   if (known->X_WM.x == X_WM.x && known->X_WM.y == X_WM.y && known->X_WM.yaw == X_WM.yaw) return known->positions;
   known->X_WM = X_WM;
   RoadPositions& positions = known->positions;
-  positions = corridors_.positions(X_WM, 0.8 * corridors_.body().radius);
+  positions = corridors_->positions(X_WM, 0.8 * corridors_->body().radius);
   // Keeps the ways that are about as near as the nearest one.
-  const double most = positions.count > 0 ? positions.all[0].offset + 0.25 * corridors_.body().radius : 0.0;
+  const double most = positions.count > 0 ? positions.all[0].offset + 0.25 * corridors_->body().radius : 0.0;
   while (positions.count > 1 && positions.all[positions.count - 1].offset > most) --positions.count;
   return positions;
 }
@@ -86,7 +92,7 @@ void RightOfWay::observe(const ControllerInput& input, std::uint32_t follows, bo
 
 void RightOfWay::find_approach(RoadUser& driver, std::span<const world::Signal> signals) const {
   for (const RoadPosition& place : driver.positions) {
-    const Way& lane = corridors_.way(place.way);
+    const Way& lane = corridors_->way(place.way);
     if (lane.kind != Way::Kind::lane || lane.lines.empty()) continue;
     const auto next = std::lower_bound(lane.lines.begin(), lane.lines.end(), place.s - 0.03);
     Approach& approach = driver.approach;
@@ -94,7 +100,7 @@ void RightOfWay::find_approach(RoadUser& driver, std::span<const world::Signal> 
     approach.ahead = approach.line - place.s;
     if (approach.ahead > kApproachDistance) return;  // too far to matter
     for (const LaneStop& mark : lane.stops)
-      if (std::abs(mark.s - corridors_.body().front - approach.line) < corridors_.body().radius)
+      if (std::abs(mark.s - corridors_->body().front - approach.line) < corridors_->body().radius)
         approach.rule = rule_of(mark, signals);
     approach.first = std::none_of(road_users_.begin(), road_users_.end(), [&](const RoadUser& other) {
       if (&other == &driver) return false;
@@ -116,7 +122,7 @@ void RightOfWay::remember(RoadUser& driver, std::int64_t time) {
     known = arrivals_.insert(arrivals_.end(), {driver.id, approach.lane, approach.line, time, time, false, false});
   Arrival& arrival = *known;
   arrival.seen = time;
-  const bool stands = driver.speed < kStanding && std::abs(approach.ahead) < 0.5 * corridors_.body().radius;
+  const bool stands = driver.speed < kStanding && std::abs(approach.ahead) < 0.5 * corridors_->body().radius;
   arrival.stood = arrival.stood || stands;
   const bool contends = approach.rule == Rule::free || (approach.rule == Rule::stop && arrival.stood);
   if (contends && !arrival.contends) arrival.since = time;
@@ -144,7 +150,7 @@ bool RightOfWay::precedes(const RoadUser& other, const Approach& own) const {
 }
 
 bool RightOfWay::is_in_way(const RoadUser& other, const Conflict& conflict, const Approach& own) const {
-  const Way& way = corridors_.way(conflict.way);
+  const Way& way = corridors_->way(conflict.way);
   const Approach& theirs = other.approach;
   // A merging robot yields to its leader, at any distance.
   const bool leads = merges_ && other.id == road_users_.front().follows;
@@ -162,12 +168,12 @@ bool RightOfWay::is_in_way(const RoadUser& other, const Conflict& conflict, cons
       // If two stopped robots want to swap lanes, the one with the smaller id begins.
       if (other.speed < kStanding && road_users_.front().id < other.id) continue;
       // A robot that drives on ahead is followed.
-      const double body = 2.5 * corridors_.body().radius;
+      const double body = 2.5 * corridors_->body().radius;
       if (place.s > conflict.other_from + body && other.speed > kStanding) continue;
       // The other follower of the same leader opens a gap for a merging robot. It blocks only the way next to that gap.
       const bool lets_in = merges_ && other.follows == road_users_.front().follows;
       if (lets_in && place.s < conflict.other_from - body) continue;
-      if (place.s > conflict.other_from - 2.0 * corridors_.body().radius - 2.5 * other.speed) return true;
+      if (place.s > conflict.other_from - 2.0 * corridors_->body().radius - 2.5 * other.speed) return true;
       continue;
     }
     for (const ConflictZone& conflict_zone : way.conflict_zones) {
@@ -184,7 +190,7 @@ bool RightOfWay::is_in_way(const RoadUser& other, const Conflict& conflict, cons
 }
 
 bool RightOfWay::may_enter(std::uint32_t row, const ConflictZone& conflict_zone) const {
-  const Way& way = corridors_.way(row);
+  const Way& way = corridors_->way(row);
   const RoadUser& self = road_users_.front();
   // A robot before a line of a lane has to contend; a lane change has no such line.
   Approach own = self.approach;
@@ -199,24 +205,24 @@ bool RightOfWay::may_enter(std::uint32_t row, const ConflictZone& conflict_zone)
 
 bool RightOfWay::zone_free(std::uint32_t zone) const {
   const auto parked = [&](const RoadUser& driver) {
-    const auto& roads = corridors_.roads();
+    const auto& roads = corridors_->roads();
     const world::RoadZone& z = roads.zones[zone];
     for (std::uint32_t spot = z.first_spot; spot < z.first_spot + z.spots; ++spot) {
-      const Pose at = corridors_.parked(spot);
+      const Pose at = corridors_->parked(spot);
       const glm::dvec2 d{driver.X_WM.x - at.x, driver.X_WM.y - at.y};
-      if (length(d) < 0.35 * corridors_.body().radius && driver.speed < kStanding) return true;
+      if (length(d) < 0.35 * corridors_->body().radius && driver.speed < kStanding) return true;
     }
     return false;
   };
   for (std::size_t i = 1; i < road_users_.size(); ++i) {
     const RoadUser& driver = road_users_[i];
-    if (corridors_.inside(zone, {driver.X_WM.x, driver.X_WM.y}) && !parked(driver)) return false;
+    if (corridors_->inside(zone, {driver.X_WM.x, driver.X_WM.y}) && !parked(driver)) return false;
     for (const RoadPosition& place : driver.positions) {
-      const Way& way = corridors_.way(place.way);
+      const Way& way = corridors_->way(place.way);
       if (way.zone == zone && way.kind == Way::Kind::exit) return false;
-      if (way.kind != Way::Kind::lane || place.s < way.length - corridors_.body().front) continue;
+      if (way.kind != Way::Kind::lane || place.s < way.length - corridors_->body().front) continue;
       for (const std::uint32_t out : way.out)
-        if (corridors_.way(out).zone == zone && corridors_.way(out).leave >= place.s) return false;
+        if (corridors_->way(out).zone == zone && corridors_->way(out).leave >= place.s) return false;
     }
   }
   return true;

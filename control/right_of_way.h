@@ -66,6 +66,9 @@ class RightOfWay {
   /// @param merges it has yet to merge behind the leader
   void observe(const ControllerInput& input, std::uint32_t follows, bool merges);
 
+  /// Continues on a network with other lane uses. Keeps the order of arrivals.
+  void use(const LaneCorridors& corridors);
+
   /// Returns all observed robots; the first is the robot itself. Valid until the next `observe`.
   const std::vector<RoadUser>& road_users() const { return road_users_; }
 
@@ -96,7 +99,7 @@ class RightOfWay {
   bool is_in_way(const RoadUser& other, const Conflict& conflict, const Approach& own) const;
   bool precedes(const RoadUser& other, const Approach& own) const;
 
-  const LaneCorridors& corridors_;
+  const LaneCorridors* corridors_;
   std::uint32_t own_id_;
   double margin_;
   bool merges_ = false;

@@ -38,6 +38,7 @@ base::Intent Route::intent() const {
 
 base::Twist Route::step(const ControllerInput& input) {
   if (!input.started) return {};
+  adopt(input);
   if (!started_) start(input);
   const double dt = last_ < 0 ? 0.1 : std::clamp(1e-9 * static_cast<double>(input.time - last_), 0.01, 0.5);
   last_ = input.time;

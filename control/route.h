@@ -3,7 +3,8 @@
 // lights, keeps its distance, yields the right of way, and never enters a crossing that it cannot leave.
 //
 // Each rule sets a speed limit, and the lowest applies. Each step
-//   1. updates the position on the route, passes checkpoints, extends the plan;
+//   1. updates the position on the route, passes checkpoints, extends the plan; replans if lanes are used in another
+//   way;
 //   2. observes the road users (control/right_of_way.h) and the robots ahead (control/robots_ahead.h);
 //   3. limits the speed by curvature, stop lines, conflict zones, robots ahead and the end of the route;
 //   4. steers along the line.
@@ -54,6 +55,8 @@ class Route : public Controller, public StatesStopReason {
     void stop_in(double distance, const char* why);  ///< @param distance [m] to the place to stop at
   };
   void start(const ControllerInput& input);
+  void adopt(const ControllerInput& input);
+  world::RoadCheckpoint here(const world::RoadCheckpoint& goal) const;
   void check_goals() const;
   [[noreturn]] void refuse(const world::RoadCheckpoint& goal) const;
   void fill();
@@ -74,6 +77,7 @@ class Route : public Controller, public StatesStopReason {
   bool room_beyond(double end) const;
   base::Twist drive(const ControllerInput& input, double speed);
 
+  std::shared_ptr<const world::RoadNetwork> roads_;  ///< of `corridors_`; null: as at the start
   std::shared_ptr<const LaneCorridors> corridors_;
   const ControllerContext site_;
   RouteSettings settings_;
@@ -90,6 +94,7 @@ class Route : public Controller, public StatesStopReason {
   std::uint64_t next_goal_ = 0;  ///< index of the current goal
   std::uint64_t planned_ = 0;    ///< goals in the plan or passed
   std::uint64_t searched_ = 0;   ///< random goals drawn
+  bool unreachable_ = false;     ///< no open lane leads to the next goal to plan
   std::vector<LeadRobot> ahead_;
   std::int64_t last_ = -1;  ///< [ns] time of the last step
   double offset_ = 0.0;     ///< [m]

@@ -135,7 +135,8 @@ void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
         limit.stop_in(std::max(ahead, 0.0), "another robot is driving in the zone");
     }
     if (cusp_after(*corridors_, plan_, i)) {
-      limit.stop_in(std::max(end_of(leg) - s, 0.0), "its route ends");
+      limit.stop_in(std::max(end_of(leg) - s, 0.0),
+                    unreachable_ ? "no open lane leads to its checkpoint" : "its route ends");
       break;
     }
   }

@@ -80,6 +80,20 @@ std::uint32_t entry_of(const LaneCorridors& corridors, const Way& way) {
   return corridors.node_of({PointRef::Kind::lane, way.into, point_from(corridors.roads().lanes[way.into], way.enter)});
 }
 
+/// Returns the row of the same line, driven in the same way.
+std::optional<std::uint32_t> same_way(const LaneCorridors& from, const LaneCorridors& to, std::uint32_t row) {
+  const Way& way = from.way(row);
+  const auto is_same = [&](const Way& other) {
+    return other.kind == way.kind && other.from == way.from && other.into == way.into &&
+           other.backwards == way.backwards && other.length == way.length &&
+           other.points.front() == way.points.front() && other.points.back() == way.points.back();
+  };
+  if (row < to.ways().size() && is_same(to.way(row))) return row;
+  const auto found = std::ranges::find_if(to.ways(), is_same);
+  if (found == to.ways().end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - to.ways().begin());
+}
+
 }  // namespace
 
 std::uint32_t point_from(const world::RoadLane& lane, double s) {
@@ -180,6 +194,26 @@ void cut_after(const LaneCorridors& corridors, RoutePlan& plan, double s) {
   }
   leg.to = way.length;
   plan.node = entry_of(corridors, way);
+}
+
+std::optional<std::size_t> moved_to(const LaneCorridors& from, const LaneCorridors& to, RoutePlan& plan,
+                                    std::size_t leg) {
+  std::size_t first = plan.legs.size(), end = plan.legs.size();  // legs that remain
+  for (std::size_t i = leg + 1; i-- > 0;) {
+    const auto row = same_way(from, to, plan.legs[i].way);
+    if (!row) break;
+    plan.legs[first = i].way = *row;
+  }
+  if (first > leg) return std::nullopt;
+  for (std::size_t i = leg + 1; i < end; ++i) {
+    const auto row = same_way(from, to, plan.legs[i].way);
+    row ? plan.legs[i].way = *row : end = i;
+  }
+  const bool whole = end == plan.legs.size();
+  plan.legs.resize(end);
+  plan.legs.erase(plan.legs.begin(), plan.legs.begin() + static_cast<std::ptrdiff_t>(first));
+  if (!whole) cut_after(to, plan, length_of(plan));
+  return first;
 }
 
 std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count, std::uint64_t seed, double apart) {

@@ -67,6 +67,14 @@ bool extend(const LaneCorridors& corridors, RoutePlan& plan, world::PointRef to,
 /// up to the next lane, or all of them if the plan ends in the zone.
 void cut_after(const LaneCorridors& corridors, RoutePlan& plan, double s);
 
+/// Moves a plan to the same ways of corridors of other lane uses. Drops passed legs, and legs ahead up to the plan's
+/// end, from the first one whose way no longer exists, with their goals.
+/// @param leg the current one
+/// @return number of passed legs dropped; nullopt if the way of the current leg no longer exists, and the plan is
+/// undefined
+std::optional<std::size_t> moved_to(const LaneCorridors& from, const LaneCorridors& to, RoutePlan& plan,
+                                    std::size_t leg);
+
 /// Returns random start poses for `count` robots on lanes, in driving direction, at least `apart` [m] from each other
 /// and from the lanes' ends. Depends only on the arguments.
 /// @throws base::InputError if there is no room for that many

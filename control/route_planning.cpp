@@ -32,7 +32,7 @@ void Route::start(const ControllerInput& input) {
     plan_ = plan_from(*corridors_, *place);
   }
   started_ = true;
-  check_goals();
+  if (!roads_) check_goals();
   fill();
 }
 
@@ -53,18 +53,55 @@ void Route::refuse(const world::RoadCheckpoint& goal) const {
       site_.world.movers[site_.mover].name, goal.id, point_id_text(id_of(*site_.roads, goal.at)), site_.roads->file));
 }
 
-// Plans two goals ahead, so that the route continues beyond the next goal.
+// Plans two goals ahead, so that the route continues beyond the next goal. Where lanes were closed, the robot waits at
+// the end of its route until they open.
 void Route::fill() {
   if (!goals_) return;
+  unreachable_ = false;
   int refused = 0;
   while (plan_.goals.size() < 2) {
     const world::RoadCheckpoint* goal = goals_->at(planned_);
     if (goal == nullptr) return;
     ++planned_;
-    if (extend(*corridors_, plan_, *goal)) continue;
+    if (extend(*corridors_, plan_, here(*goal))) continue;
     // Skips a random goal without a path.
-    if (!goals_->by_lot() || ++refused > 100) refuse(*goal);
+    if (goals_->by_lot() && ++refused <= 100) continue;
+    if (!roads_) refuse(*goal);
+    --planned_;
+    unreachable_ = true;
+    return;
   }
+}
+
+/// Returns the goal in the current network, where a reversed lane has its points in the opposite order.
+world::RoadCheckpoint Route::here(const world::RoadCheckpoint& goal) const {
+  const auto* checkpoint = goal.id >= 0 ? find_checkpoint(corridors_->roads(), goal.id) : nullptr;
+  return checkpoint != nullptr ? *checkpoint : goal;
+}
+
+// Continues on the way it is on, and on the next if it can no longer stop before it, and replans from there. A robot on
+// a way that no longer exists finishes it first.
+void Route::adopt(const ControllerInput& input) {
+  if (!input.roads || input.roads == roads_) return;
+  auto corridors = shared_lane_corridors(*input.roads, site_.world, corridors_->body());
+  if (started_ && !done_) {
+    RoutePlan plan = plan_;
+    const double v = input.state.velocity.forward;
+    const double s = progress_.s() + v * v / (2.0 * kHardBraking) + 0.15 * corridors_->body().radius;
+    cut_after(*corridors_, plan, s);
+    const auto passed = moved_to(*corridors_, *corridors, plan, progress_.leg());
+    if (!passed) return;
+    planned_ -= plan_.goals.size() - plan.goals.size();
+    plan_ = std::move(plan);
+    progress_.set(progress_.s(), progress_.leg() - *passed);
+  }
+  corridors_ = std::move(corridors);
+  roads_ = input.roads;
+  right_of_way_.use(*corridors_);
+  blocked_way_ = world::kNone;
+  blocked_since_ = -1;
+  pass_until_ = -1.0;
+  if (started_ && !done_) fill();
 }
 
 void Route::trim() {
@@ -100,14 +137,14 @@ void Route::follow_leader() {
   plan_.goals.clear();
   RoutePlan plan = plan_;
   cut_after(*corridors_, plan, progress_.s());
-  const world::PointRef to = site_.roads->index[*node].second;
+  const world::PointRef to = corridors_->roads().index[*node].second;
   if (plan.node == *node || extend(*corridors_, plan, to)) plan_ = std::move(plan);
 }
 
 // Without a leader in range the robot drives to random goals, so that it does not block others.
 void Route::search() {
   for (int tries = 0; tries < 10 && length_of(plan_) < progress_.s() + kLookaheadDistance + 0.1; ++tries)
-    if (const world::RoadCheckpoint* goal = lots_.at(searched_++)) extend(*corridors_, plan_, goal->at);
+    if (const world::RoadCheckpoint* goal = lots_.at(searched_++)) extend(*corridors_, plan_, here(*goal).at);
 }
 
 // Avoids a lane that stays full.
@@ -126,7 +163,7 @@ void Route::reroute(const ControllerInput& input) {
 bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
   for (const Goal& goal : plan_.goals) {
     if (goal.s <= progress_.s()) continue;
-    const auto* checkpoint = goal.id >= 0 ? find_checkpoint(*site_.roads, goal.id) : nullptr;
+    const auto* checkpoint = goal.id >= 0 ? find_checkpoint(corridors_->roads(), goal.id) : nullptr;
     if (checkpoint == nullptr || !extend(*corridors_, plan, *checkpoint, avoid)) return false;
   }
   return true;

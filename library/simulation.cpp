@@ -363,6 +363,10 @@ void Simulation::remove_robot(std::size_t row) {
   library::translated([&] { state_->remove(row); });
 }
 
+void Simulation::set_lane(const std::string& lane, const std::string& use) {
+  library::translated([&] { state_->simulation->set_lane(lane, use); });
+}
+
 void Simulation::put(std::size_t row, const Pose& pose) {
   library::translated([&] { state_->put(row, pose); });
 }

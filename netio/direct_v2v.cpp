@@ -103,8 +103,7 @@ std::string refusal_text(PacketStatus status) {
     case PacketStatus::replayed:
       return "sent before, or the sender's clock was set back";
     default:
-      return "another process sends as this robot, it restarted less than two seconds ago, or --peers has another "
-             "address for it";
+      return "another process sends as this robot, or --peers has another address for it";
   }
 }
 
@@ -192,16 +191,33 @@ PacketStatus DirectV2v::check_sender(const Packet& packet, std::span<const std::
   return sender.checker ? sender.checker->check(bytes) : PacketStatus::accepted;
 }
 
+/// Returns whether a robot with another session than before has started again. A valid signature with a newer counter
+/// proves it; otherwise its silence has to. The session that it replaced does not come back: of two processes with one
+/// id, the later one remains.
+bool DirectV2v::has_restarted(const Header& header, const Endpoint& source, std::int64_t now) const {
+  const Sender& sender = details_[*senders_.row(header.robot)];
+  if (sender.restarted && now - *sender.restarted < kSenderTimeout && header.session == sender.session_before)
+    return false;
+  return sender.checker || (now - sender.last >= kRestart && senders_.source(header.robot)->address == source.address);
+}
+
 /// A signature identifies a sender better than its address: whoever sends a copy of a signed packet first must not bind
 /// the id to the address of the copy.
 PacketStatus DirectV2v::bind_sender(const Header& header, const Endpoint& source, std::int64_t now) {
   Sender& sender = details_[*senders_.row(header.robot)];
-  if (senders_.is_active(header.robot, now) && header.session != sender.session) return PacketStatus::wrong_source;
+  if (senders_.is_active(header.robot, now) && header.session != sender.session) {
+    if (!has_restarted(header, source, now)) return PacketStatus::wrong_source;
+    senders_.forget(header.robot);
+    newest_.forget(header.robot);
+    sender.session_before = sender.session;
+    sender.restarted = now;
+  }
   const PacketStatus status =
       senders_.admit(header.robot, kDirectChannel, header.sequence, sender.checker ? Endpoint{} : source, now);
   if (status != PacketStatus::accepted) return status;
   sender.session = header.session;
   sender.sequence = header.sequence;
+  sender.last = now;
   return status;
 }
 
@@ -210,8 +226,13 @@ bool DirectV2v::is_far(const V2v& state) const {
 }
 
 bool DirectV2v::admit(const Header& header, std::int64_t now) {
-  if (!newest_.row(header.robot)) return false;
-  if (newest_.admit(header.robot, kDirectChannel, header.sequence, {}, now) == PacketStatus::accepted) return true;
+  const auto row = senders_.row(header.robot);
+  if (!row) return false;
+  const Sender& sender = details_[*row];
+  const bool is_direct = header.session == sender.session;
+  const bool old = !is_direct && sender.restarted && now - *sender.restarted < kSenderTimeout;
+  if (!old && newest_.admit(header.robot, kDirectChannel, header.sequence, {}, now) == PacketStatus::accepted)
+    return true;
   ++counts_.duplicates;
   return false;
 }

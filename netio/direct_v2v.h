@@ -65,6 +65,8 @@ struct DirectV2vCounts {
 
 class DirectV2v {
  public:
+  /// [ns] of silence after which an unsigned sender at the same IP address counts as restarted.
+  static constexpr std::int64_t kRestart = 500'000'000;
   static constexpr std::size_t kMaxReceivers = 1024;    ///< addresses in `DirectV2vOptions::peers`
   static constexpr std::size_t kMaxPerPeriod = 10'000;  ///< datagrams checked in each 0.1 s
   static constexpr std::size_t kMaxPerCall = 65'536;    ///< datagrams taken from each socket by one `receive`
@@ -95,7 +97,9 @@ class DirectV2v {
   }
 
   /// Returns whether a state, received directly or relayed by the farm, is newer than all states of its robot before.
-  /// Otherwise it counts as a duplicate. A robot that restarts its count is accepted after two seconds of silence.
+  /// Otherwise it counts as a duplicate. After a restart of the robot that was noticed directly, only direct states are
+  /// newer for two seconds: relayed ones may be from before. A robot that restarts its count is otherwise accepted
+  /// after two seconds of silence.
   bool admit(const Header& header, std::int64_t now);
 
   /// Returns whether a state of `robot` was admitted less than two seconds before `now`.
@@ -115,10 +119,14 @@ class DirectV2v {
     std::optional<SignatureChecker> checker;  ///< with the key of the group or of the robot
     std::uint32_t session = 0;                ///< of its last accepted state
     std::uint32_t sequence = 0;               ///< the same
+    std::int64_t last = 0;                    ///< [ns] when it was accepted
+    std::uint32_t session_before = 0;         ///< the session that this one replaced
+    std::optional<std::int64_t> restarted;    ///< [ns] when it did
   };
   bool accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now);
   PacketStatus check_sender(const Packet& packet, std::span<const std::uint8_t> bytes, const Endpoint& source);
   PacketStatus bind_sender(const Header& header, const Endpoint& source, std::int64_t now);
+  bool has_restarted(const Header& header, const Endpoint& source, std::int64_t now) const;
   bool is_repeated(const Header& header, std::int64_t now) const;
   bool is_far(const V2v& state) const;
   bool is_over_rate(std::int64_t now);

@@ -91,6 +91,9 @@ PacketStatus Inbox::check_id(const Header& header) const {
     case Type::start:
       if (lockstep_) break;
       return known(header.robot == kBroadcastId || robots_.row(header.robot));
+    case Type::lane:
+      if (lockstep_) break;
+      return PacketStatus::accepted;
     case Type::tag:
     case Type::object:
       if (lockstep_) break;
@@ -109,7 +112,7 @@ PacketStatus Inbox::check_id(const Header& header) const {
   return PacketStatus::wrong_direction;
 }
 
-/// Checks the token of the source address. START, TAG and OBJECT have no token.
+/// Checks the token of the source address. START, LANE, TAG and OBJECT have no token.
 bool Inbox::is_proven(const Header& header, const Endpoint& source) const {
   const PeerKind kind = claim_of(header).kind;
   return kind == PeerKind::start || kind == PeerKind::tag || header.token == tokens_.of(source);
@@ -150,7 +153,7 @@ bool Inbox::is_notable(PacketStatus status, const Packet& packet) {
 }
 
 PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t now) {
-  if (packet.header.type == Type::start) return PacketStatus::accepted;
+  if (claim_of(packet.header).kind == PeerKind::start) return PacketStatus::accepted;
   if (packet.header.type == Type::tag) return admit_state(tags_, packet, source, now);
   if (packet.header.type == Type::object)
     return objects_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);

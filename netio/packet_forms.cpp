@@ -22,7 +22,8 @@ constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
                                  {Type::neighbours, "NEIGHBOURS", 0},
                                  {Type::state, "STATE", kHeaderBytes + kStateBytes},
                                  {Type::values, "VALUES", 0},
-                                 {Type::drive, "DRIVE", kHeaderBytes + kDriveBytes}};
+                                 {Type::drive, "DRIVE", kHeaderBytes + kDriveBytes},
+                                 {Type::lane, "LANE", kHeaderBytes + kLaneBytes}};
 
 }  // namespace
 

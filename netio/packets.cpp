@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] offset of session and token
 constexpr std::uint32_t kDockingBit = 1;
 constexpr std::uint32_t kPresentBit = 1;
+constexpr std::uint32_t kReversedBit = 8;
 constexpr std::uint16_t kStaleBit = 1, kNoStateBit = 2;
 constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
 /// By number, from 1.
@@ -136,6 +137,17 @@ PacketStatus read_drive(base::ByteReader& reader, Packet& packet) {
   return check(drive);
 }
 
+PacketStatus read_lane(base::ByteReader& reader, Packet& packet) {
+  Lane lane;
+  lane.segment = reader.get<std::uint32_t>();
+  lane.lane = reader.get<std::uint32_t>();
+  const auto use = reader.get<std::uint32_t>();
+  lane.rule = use & ~kReversedBit;
+  lane.reversed = (use & kReversedBit) != 0;
+  packet.body = lane;
+  return lane.rule <= kMaxLaneRule ? PacketStatus::accepted : PacketStatus::out_of_range;
+}
+
 PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   base::ByteReader reader(payload);
   PacketStatus status = PacketStatus::accepted;
@@ -177,6 +189,9 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::drive:
       status = check_size(payload.size(), kDriveBytes);
       return status == PacketStatus::accepted ? read_drive(reader, packet) : status;
+    case Type::lane:
+      status = check_size(payload.size(), kLaneBytes);
+      return status == PacketStatus::accepted ? read_lane(reader, packet) : status;
     case Type::neighbours:
       packet.body = Neighbours{payload};
       if (payload.size() > kMaxNeighbours * kV2vBytes) return PacketStatus::too_long;
@@ -376,6 +391,15 @@ void encode(const Header& header, const Drive& command, base::Bytes& out) {
   start(header, Type::drive, out);
   base::ByteWriter writer(out);
   put_doubles(std::array{command.twist.forward, command.twist.left, command.twist.turn}, writer);
+}
+
+void encode(const Header& header, const Lane& lane, base::Bytes& out) {
+  SF_CHECK(lane.rule <= kMaxLaneRule, "rule " + std::to_string(lane.rule) + " of a lane");
+  start(header, Type::lane, out);
+  base::ByteWriter writer(out);
+  writer.put(lane.segment);
+  writer.put(lane.lane);
+  writer.put(lane.rule | (lane.reversed ? kReversedBit : 0u));
 }
 
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out) {

@@ -40,9 +40,9 @@ inline constexpr double kMaxYaw = 1e6;                       ///< [rad] covers h
 inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences do not overflow
 
-/// Types from 128 are states and requests sent to the farm. The farm forwards V2V and START, and also sends V2I.
-/// CHALLENGE, REFUSAL and types from 140 are answers of the farm. A type below 64 is a reading of the sensor type with
-/// this wire id; the same number plus 64 is its second form.
+/// Types from 128 are states and requests sent to the farm. The farm forwards V2V and START, and also sends V2I and
+/// LANE. CHALLENGE, REFUSAL and types from 140 to 143 are answers of the farm. A type below 64 is a reading of the
+/// sensor type with this wire id; the same number plus 64 is its second form.
 enum class Type : std::uint8_t {
   v2v = 128,
   tag = 129,
@@ -59,7 +59,8 @@ enum class Type : std::uint8_t {
   neighbours = 140,
   state = 141,
   values = 142,
-  drive = 143
+  drive = 143,
+  lane = 144
 };
 
 /// Returns the wire id (below 64) of the sensor type whose readings, in either form, have type
@@ -150,10 +151,20 @@ struct Drive {
   base::Twist twist;  ///< in the robot's frame; each number within kMaxSpeed
 };
 
+/// To the farm: the use that a lane is to have. From the farm to a robot: the use that it has.
+struct Lane {
+  std::uint32_t segment = 0, lane = 0;  ///< numbers in the road network
+  std::uint32_t rule = 0;               ///< in [0, kMaxLaneRule]: open, closed, turn, left, right
+  bool reversed = false;                ///< driven against the order of its way-points
+
+  friend bool operator==(const Lane&, const Lane&) = default;
+};
+inline constexpr std::uint32_t kMaxLaneRule = 4;
+
 inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                 ///< size of a complete V2V packet
 inline constexpr std::size_t kTagBytes = 104, kObjectBytes = 4;             ///< payload sizes
 inline constexpr std::size_t kSubscribeBytes = 4, kWideSubscribeBytes = 8;  ///< without and with types above 31
-inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes = 24;
+inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes = 24, kLaneBytes = 12;
 inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V
 
@@ -171,7 +182,7 @@ struct Reading {
 struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading, Command, Step, Fetch,
-               State, Values, Refusal, Drive>
+               State, Values, Refusal, Drive, Lane>
       body;
   bool late = false;       ///< a state whose sequence is not newer than the last one of its sender
                            ///< (`InboxOptions::take_late`)
@@ -193,6 +204,7 @@ void encode(const Header& header, const Object& object, base::Bytes& out);
 void encode(const Header& header, const Refusal& refusal, base::Bytes& out);
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out);
 void encode(const Header& header, const Drive& command, base::Bytes& out);
+void encode(const Header& header, const Lane& lane, base::Bytes& out);
 void encode(const Header& header, const Command& command, base::Bytes& out);
 void encode(const Header& header, const Step& step, base::Bytes& out);
 void encode(const Header& header, const Fetch& fetch, base::Bytes& out);

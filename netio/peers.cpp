@@ -11,7 +11,7 @@ const Peer* find(std::span<const Peer> peers, PeerKind kind, std::uint32_t id) {
 }
 
 Claim claim_of(const Header& header) {
-  if (header.type == Type::start) return {PeerKind::start, 0};
+  if (header.type == Type::start || header.type == Type::lane) return {PeerKind::start, 0};
   if (header.type == Type::v2i) return {PeerKind::light, header.robot};
   const bool tag = header.type == Type::tag || header.type == Type::object;
   return {tag ? PeerKind::tag : PeerKind::robot, header.robot};

@@ -16,9 +16,9 @@ namespace sf::netio {
 enum class PeerKind : std::uint8_t { robot, tag, start, light, group };
 
 struct Peer {
-  PeerKind kind = PeerKind::robot;       ///< start: the sender of START; light: the sender of V2I and SPaT; group: all
-                                         ///< robots that send V2V to each other
-  std::uint32_t id = 0;                  ///< id of the robot, tag or intersection; 0 for start and group
+  PeerKind kind = PeerKind::robot;  ///< start: the sender of START and LANE; light: the sender of V2I and SPaT; group:
+                                    ///< all robots that send V2V to each other
+  std::uint32_t id = 0;             ///< id of the robot, tag or intersection; 0 for start and group
   std::optional<std::uint32_t> address;  ///< IPv4, host byte order; nullopt: any
   std::optional<SigningKey> key;         ///< nullopt: packets need no signature
 };

@@ -71,6 +71,12 @@ PacketStatus SenderBindings::leave(std::uint32_t id, const Endpoint& source, std
   return PacketStatus::accepted;
 }
 
+void SenderBindings::forget(std::uint32_t id) {
+  const auto at = row(id);
+  SF_CHECK(at, "id " + std::to_string(id));
+  bindings_[*at] = {.id = id, .source = {}, .last = {}, .takes_late = bindings_[*at].takes_late, .departed = {}};
+}
+
 bool SenderBindings::is_active(std::uint32_t id, std::int64_t now) const {
   const auto at = row(id);
   return at && is_recent(bindings_[*at].last, now);

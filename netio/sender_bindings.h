@@ -45,6 +45,9 @@ class SenderBindings {
   /// they were sent earlier.
   PacketStatus leave(std::uint32_t id, const Endpoint& source, std::int64_t now);
 
+  /// Ends the binding of `id`, whose next packet is accepted from any sender. @pre `id` is known
+  void forget(std::uint32_t id);
+
   /// Returns whether a packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
   bool is_active(std::uint32_t id, std::int64_t now) const;
 

@@ -63,6 +63,12 @@ SignalApproach approach_at(const V2i& v2i, std::size_t k) {
   return a;
 }
 
+std::optional<SignalApproach> find_approach(const V2i& v2i, std::uint8_t group) {
+  for (std::size_t k = 0; k < count(v2i.approaches); ++k)
+    if (const SignalApproach approach = approach_at(v2i, k); approach.group == group) return approach;
+  return std::nullopt;
+}
+
 SignalStop stop_at(const V2i& v2i, std::size_t k) {
   base::ByteReader reader(row_at(v2i.stops, k));
   SignalStop s;

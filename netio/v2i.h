@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "base/bytes.h"
@@ -51,6 +52,8 @@ struct V2i {
 
 inline std::size_t count(std::span<const std::uint8_t> rows) { return rows.size() / kV2iRowBytes; }
 SignalApproach approach_at(const V2i& v2i, std::size_t k);
+/// Returns the approach with that group; nullopt if there is none.
+std::optional<SignalApproach> find_approach(const V2i& v2i, std::uint8_t group);
 SignalStop stop_at(const V2i& v2i, std::size_t k);
 
 /// Appends a row. @pre within the limits of docs/packets.md

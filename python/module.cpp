@@ -346,6 +346,9 @@ void add_simulation(py::module_& module) {
           "remove_robot", [](PySimulation& s, std::size_t row) { in_farm(s, [&] { s.farm.remove_robot(row); }); },
           py::arg("row"), "Removes a robot from the world; its row remains.")
       .def(
+          "set_lane", [](PySimulation& s, Text lane, Text use) { in_farm(s, [&] { s.farm.set_lane(lane, use); }); },
+          py::arg("lane"), py::arg("use"), "Requests the use of a lane: open, closed, reversed, turn, left or right.")
+      .def(
           "draw", [](const PySimulation& s, Text file) { in_farm(s, [&] { s.farm.draw(file); }); }, py::arg("file"),
           "Writes a picture of the world at this time: PNG, SVG or PDF by its suffix.")
       .def("image", &image, py::arg("width") = 640, py::arg("height") = 480, py::arg("view") = py::none(),

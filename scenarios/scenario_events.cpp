@@ -6,6 +6,8 @@
 
 #include "base/error.h"
 #include "world/append_robot.h"
+#include "world/roads/lane_control.h"
+#include "world/roads/roads.h"
 
 namespace sf::scenarios {
 
@@ -46,13 +48,28 @@ void join(const Scenario& scenario, const ObjectEvent& event, world::World& worl
   });
 }
 
+/// Checks that each change of lane use is possible after those before it.
+void check_lanes(const Scenario& scenario, const world::World& world) {
+  std::optional<world::LaneControl> lanes;
+  for (const ObjectEvent& event : scenario.events) {
+    if (event.kind != ObjectEvent::Kind::lane) continue;
+    at_line(scenario, event, [&] {
+      const auto roads = world::roads_of(world);
+      if (!roads) throw base::InputError("the world has no road network; expected road( rndf \"...\" ) in it");
+      if (!lanes) lanes.emplace(*roads);
+      lanes->request(lane_named(lanes->base(), event.object), world::lane_use_of(event.use));
+    });
+  }
+}
+
 }  // namespace
 
 void check_events(const Scenario& scenario, world::World& world, SimulationOptions& options) {
   for (const ObjectEvent& event : scenario.events)
     if (event.kind == ObjectEvent::Kind::add) join(scenario, event, world, options);
+  check_lanes(scenario, world);
   for (const ObjectEvent& event : scenario.events) {
-    if (event.kind == ObjectEvent::Kind::add) continue;
+    if (event.kind == ObjectEvent::Kind::add || event.kind == ObjectEvent::Kind::lane) continue;
     const std::uint32_t row = row_of(scenario, world, event.object, event.line);
     if (event.kind == ObjectEvent::Kind::remove) continue;
     if (!world.movers[row].sensors.empty() || !options.actors[row].controller.name.empty())
@@ -82,6 +99,10 @@ void ScenarioEvents::apply(Simulation& simulation, world::World& world, double t
       std::uint32_t row = 0;
       at_line(scenario_, event, [&] { row = simulation.add_robot(world, event.joining); });
       if (row >= before) joined(row);
+      continue;
+    }
+    if (event.kind == ObjectEvent::Kind::lane) {
+      at_line(scenario_, event, [&] { simulation.set_lane(event.object, event.use); });
       continue;
     }
     const std::uint32_t row = row_of(scenario_, world, event.object, event.line);

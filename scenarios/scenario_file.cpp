@@ -36,6 +36,7 @@ constexpr std::array<std::string_view, 3> kEventKeys{"at", "object", "present"};
 constexpr std::array<std::string_view, 8> kAddKeys{"at",         "add",  "like",     "pose",
                                                    "controller", "rate", "settings", "link"};
 constexpr std::array<std::string_view, 2> kRemoveKeys{"at", "remove"};
+constexpr std::array<std::string_view, 3> kLaneKeys{"at", "lane", "use"};
 constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "settings"};
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
 constexpr std::array<std::string_view, 7> kStatesKeys{"rate",   "delay",          "jitter",   "loss",
@@ -282,6 +283,15 @@ void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario)
       scenario.events.push_back({reader.text(*table, "remove", ""),
                                  reader.number(*table, "at", 0.0, 0.0, kLongest, "seconds"), false, table->line,
                                  ObjectEvent::Kind::remove});
+    } else if (world::find(*table, "lane") != nullptr) {
+      require_keys(reader, *table, kLaneKeys, kLaneKeys, "at = SECONDS, lane = \"SEGMENT.LANE\" and use = \"USE\"");
+      scenario.events.push_back({reader.text(*table, "lane", ""),
+                                 reader.number(*table, "at", 0.0, 0.0, kLongest, "seconds"),
+                                 true,
+                                 table->line,
+                                 ObjectEvent::Kind::lane,
+                                 {},
+                                 reader.text(*table, "use", "")});
     } else {
       require_keys(reader, *table, kEventKeys, kEventKeys,
                    "at = SECONDS, object = \"NAME\" and present = true or false");

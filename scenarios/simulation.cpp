@@ -191,6 +191,16 @@ void Simulation::set_absent(std::uint32_t mover, bool gone) {
   if (!gone) farm_.subscribe(mover, farm::kAllSensorTypes);
 }
 
+void Simulation::set_lane(const std::string& lane, const std::string& use) {
+  if (share_->passed_on())
+    throw base::InputError("the use of a lane cannot change with --tiles; expected ranks that share the whole world");
+  if (!roads_) throw base::InputError(world_.file, 0, "has no road network; expected road( rndf \"...\" ) in it");
+  const std::uint32_t row = lane_named(*roads_, lane);
+  const world::LaneUse wanted = world::lane_use_of(use);
+  world::LaneControl& lanes = lanes_ ? *lanes_ : lanes_.emplace(*roads_);
+  lanes.request(row, wanted);
+}
+
 void Simulation::check_joining(const world::World& world, const JoiningRobot& robot) const {
   SF_CHECK(&world == &whole_, "another world");
   share_->check_may_join();
@@ -334,6 +344,7 @@ void Simulation::decide(std::int64_t time) {
     signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
     light_states_[i] = world::status_of(signals_[i]);
   }
+  if (lanes_) lanes_->update(time, recorded_reports());
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
   if (v2v_) v2v_->send(time, fleet_.reports(), intents_, absent_);
   farm_.thread_pool().parallel_for_each(controls_.size(), 16, [&](std::size_t m, unsigned thread) {
@@ -390,8 +401,8 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   find_others(mover, time, others);
   if (robot.sharing != nullptr) exchange_maps(*robot.sharing, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
-  commands_[mover] =
-      robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
+  commands_[mover] = robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_,
+                                             others, signals_, lanes_ ? lanes_->network() : nullptr});
   next_intents_[mover] = robot.controller->intent();
   if (robot.sharing != nullptr) next_maps_[mover] = robot.sharing->shared_map();
   robot.stepped = true;

@@ -32,7 +32,7 @@
 #include "scenarios/state_link.h"
 #include "scenarios/v2v_link.h"
 #include "world/lights.h"
-#include "world/roads/network.h"
+#include "world/roads/lane_control.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
@@ -107,6 +107,17 @@ class Simulation {
   /// nothing and remains at rest. Call it between two steps: sensors see the change from the next step on.
   void set_absent(std::uint32_t mover, bool gone);
 
+  /// Requests the use of a lane, between two steps (world/roads/lane_control.h). Route controllers replan. With ranks,
+  /// all make the same call.
+  /// @param lane such as "3.1" @param use a word of world::lane_use_of
+  /// @throws base::InputError, with nothing changed, for an unknown lane or use, a use that the lane cannot have, a world
+  /// without roads, and with tiles
+  void set_lane(const std::string& lane, const std::string& use);
+  /// Returns the current uses, one per lane; empty before the first request.
+  std::span<const world::LaneUse> lane_uses() const {
+    return lanes_ ? lanes_->uses() : std::span<const world::LaneUse>();
+  }
+
   /// Adds a robot to the world and the run, between two steps. Its sensors are read from the next step on. It affects
   /// the readings of others only by its body. A removed robot of the same name and kind returns in its row, with its
   /// id, and continues its random numbers and counts. Takes time in proportion to the fleet and the world. With ranks,
@@ -179,6 +190,7 @@ class Simulation {
   const world::World& whole_;  ///< as loaded
   const world::World& world_;  ///< the part that this process needs
   std::optional<world::RoadNetwork> roads_;
+  std::optional<world::LaneControl> lanes_;  ///< since the first request
   farm::Farm farm_;
   robots::Fleet fleet_;
   std::optional<StateLink> states_;  ///< nullopt: the farm has the true states

@@ -157,6 +157,14 @@ class SENSORFARM_API Simulation {
   /// Removes a robot or tag between two steps. From the next step on it has a pose of NaN, no body and no readings. Its
   /// row remains, and no other robot gets its row, id or name. @throws Error for a row without a present robot
   void remove_robot(std::size_t row);
+  /// Requests the use of a lane of the road network between two steps. Robots with a route controller replan. A lane is
+  /// reversed once it has been empty for 2 s; until then it is closed. With ranks, all of them make this call. A reset
+  /// restores all lanes.
+  /// @param lane segment and number, such as "3.1" @param use "open", "closed", "reversed", or, for a lane whose end
+  /// only turns may leave, "turn", "left" or "right"
+  /// @throws Error, with nothing changed, for another lane or use, a use that the lane cannot have, and a world without
+  /// roads
+  void set_lane(const std::string& lane, const std::string& use);
   /// Places a robot or tag, at rest, between two steps. Its sensors see the new place from the next step on.
   void put(std::size_t row, const Pose& pose);
 

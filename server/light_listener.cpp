@@ -22,6 +22,7 @@ LightListener::LightListener(const world::World& world, const world::RoadNetwork
       heard_(world.lights.size(), kNever),
       silent_(world.lights.size(), false),
       batch_(kBatch) {
+  for (const world::Light& light : world.lights) joins_.push_back(carrier_of(world, light) != world::kNone);
   if (options.spat) socket_ = netio::open_udp(*options.spat);
 }
 
@@ -44,10 +45,13 @@ void LightListener::accept(std::span<const std::uint8_t> bytes, const netio::End
     ++counts_.refused;
     return;
   }
+  // Lights that join are last. SPaT does not state where they are.
+  const auto joins = [&](const Intersection& one) { return joins_[one.lights.front()]; };
+  const auto fixed = std::span(intersections_.begin(), std::ranges::find_if(intersections_, joins));
   const std::size_t states =
-      spat == nullptr ? 0
-                      : read_spat(*spat, intersections_, utc,
-                                  [&](std::uint32_t light, const world::Signal& signal) { hear(light, signal, now); });
+      spat == nullptr ? 0 : read_spat(*spat, fixed, utc, [&](std::uint32_t light, const world::Signal& signal) {
+        hear(light, signal, now);
+      });
   ++(states > 0 ? counts_.messages : counts_.others);
 }
 
@@ -81,6 +85,7 @@ void LightListener::hear(std::uint32_t light, const world::Signal& signal, std::
 
 void LightListener::apply(std::int64_t now, std::span<world::Signal> signals) {
   for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (!is_present(i, now)) signals[i] = {};
     if (heard_[i] == kNever) continue;
     const std::int64_t age = now - heard_[i];
     const bool silent = age >= kSilence;
@@ -90,6 +95,10 @@ void LightListener::apply(std::int64_t now, std::span<world::Signal> signals) {
     signals[i] = silent ? world::Signal{} : signals_[i];
     if (!silent) signals[i].left = std::max(0.0, signals[i].left - 1e-9 * static_cast<double>(age));
   }
+}
+
+bool LightListener::is_present(std::size_t light, std::int64_t now) const {
+  return !joins_[light] || (heard_[light] != kNever && now - heard_[light] < kSilence);
 }
 
 }  // namespace sf::server

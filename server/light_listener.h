@@ -58,9 +58,12 @@ class LightListener {
   void accept(std::span<const std::uint8_t> bytes, const netio::Endpoint& source, std::int64_t now, std::int64_t utc);
   /// Processes an accepted V2I packet.
   void accept(const netio::Header& header, const netio::V2i& signals, std::int64_t now);
-  /// Replaces the states of lights that have ever been received.
+  /// Replaces the states of lights that have ever been received, and darkens absent ones.
   /// @param signals one per row of `World::lights`
   void apply(std::int64_t now, std::span<world::Signal> signals);
+
+  /// Returns whether the light is in the world: it is fixed, or it joins and was received within kSilence.
+  bool is_present(std::size_t light, std::int64_t now) const;
 
   bool listens() const { return socket_.has_value(); }                  ///< whether it has a port for SPaT
   std::uint16_t port() const { return bound_endpoint(*socket_).port; }  ///< @pre listens()
@@ -77,6 +80,7 @@ class LightListener {
   std::vector<world::Signal> signals_;  ///< last received state per light
   std::vector<std::int64_t> heard_;     ///< [ns] per light, or kNever
   std::vector<bool> silent_;            ///< per light
+  std::vector<bool> joins_;             ///< per light: it has a post that is a mover
   LightCounts counts_;
   std::optional<netio::Socket> socket_;
   netio::ReceiveBatch batch_;

@@ -24,6 +24,10 @@ std::vector<std::uint32_t> LightService::ids() const {
 
 void LightService::accept(const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
   listener_.accept(header, signals, now);
+  const auto approach = netio::find_approach(signals, 1);
+  for (const Intersection& one : messages_.intersections())
+    if (approach && one.id == header.robot && carrier_of(world_, world_.lights[one.lights.front()]) != world::kNone)
+      messages_.place(one.lights.front(), approach->X_WL);
 }
 
 void LightService::update(std::int64_t now) {
@@ -46,6 +50,7 @@ void LightService::publish(std::int64_t now, StateReceiver& receiver) {
   published_ = now;
   for (const base::Report& state : receiver.states(now)) places_[state.mover] = glm::dvec2{state.X_WM.x, state.X_WM.y};
   for (std::size_t k = 0; k < messages_.intersections().size(); ++k) {
+    if (!listener_.is_present(messages_.intersections()[k].lights.front(), now)) continue;
     messages_.for_each_packet(k, forecasts_, now, [&](const base::Bytes& packet) {
       for (const auto& [id, row] : receiver.robots()) {
         if (!receiver.inbox().wants_neighbours(id, now)) continue;

@@ -79,6 +79,11 @@ void add_body(const netio::Start&, Fields&) {}
 void add_body(const netio::Drive& drive, Fields& out) {
   add(out, "velocity", std::array{drive.twist.forward, drive.twist.left, drive.twist.turn});
 }
+void add_body(const netio::Lane& lane, Fields& out) {
+  add(out, "segment", lane.segment);
+  add(out, "lane", lane.lane);
+  add(out, "use", lane.rule + (lane.reversed ? 8u : 0u));
+}
 void add_body(const netio::Leave&, Fields&) {}
 void add_body(const netio::Refusal& refusal, Fields& out) {
   const bool by_source = refusal.reason == netio::PacketStatus::wrong_source;

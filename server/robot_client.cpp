@@ -71,6 +71,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       body_(world, mover, base::nanoseconds(options.forget)),
       roads_(world::roads_of(world)),
       lights_(world, roads_ ? &*roads_ : nullptr, {.spat = options.spat}),
+      lanes_(roads_ ? &*roads_ : nullptr),
       link_(world, sensor_set, mover, sent, link_options_of(options, lights_.intersections()),
             [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
       intents_(world.movers.size()),
@@ -232,8 +233,10 @@ RobotClientStats RobotClient::stats() const {
   stats.started = started_;
   stats.done = done();
   stats.answered = link_.last_answer().has_value();
-  stats.listens = link_.listens();
   stats.link = link_.counts();
+  const bool meets_others =
+      stats.link.direct && stats.link.direct->packets[netio::PacketStatus::accepted] > 0 && made_.needs == 0;
+  stats.listens = link_.listens() && !meets_others;
   stats.contacts = contacts_;
   stats.distance_m = body_.distance();
   stats.pose = body_.state().X_WM;
@@ -268,6 +271,10 @@ void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
     return;
   }
   if (const auto* drive = std::get_if<netio::Drive>(&packet.body)) return take_drive(*drive, now);
+  if (const auto* lane = std::get_if<netio::Lane>(&packet.body)) {
+    if (!lanes_.take(*lane)) log_.note_unknown_lane(lane->segment, lane->lane, now);
+    return;
+  }
   const auto* state = std::get_if<netio::V2v>(&packet.body);
   if (state == nullptr) {
     started_ = true;
@@ -288,7 +295,8 @@ void RobotClient::decide(std::int64_t now) {
   gather_readings(now);
   gather_others(now);
   gather_signals(now);
-  control::ControllerInput input{now, own_state(), readings_, body_.contact(), started_, others_, signals_};
+  control::ControllerInput input{now,      own_state(), readings_, body_.contact(),
+                                 started_, others_,     signals_,  lanes_.network()};
   input.state.time = now;
   command_ = made_.controller->step(input);
   ++steps_;

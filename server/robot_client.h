@@ -17,6 +17,7 @@
 #include "control/remote.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
+#include "server/lane_service.h"
 #include "server/light_listener.h"
 #include "server/own_map.h"
 #include "server/own_state.h"
@@ -85,7 +86,8 @@ struct RobotClientStats {
   bool started = true;      ///< no start signal was required, or it arrived
   bool done = false;        ///< as reported by the controller
   bool answered = false;    ///< a packet arrived from the farm
-  bool listens = true;      ///< it has sensors and therefore expects packets
+  bool listens = true;      ///< it has sensors and therefore expects packets; false if its controller needs no readings
+                            ///< and it received states of others directly
   LinkCounts link;
   std::uint64_t contacts = 0;        ///< number of contacts that began
   std::uint64_t stops = 0;           ///< number of stops for lack of readings or positions
@@ -167,6 +169,7 @@ class RobotClient {
   robots::RobotBody body_;
   std::optional<world::RoadNetwork> roads_;
   LightListener lights_;
+  ReceivedLanes lanes_;
   RobotLink link_;
   control::ConfiguredController made_;
   std::vector<base::Intent> intents_;  ///< last received, per mover

@@ -78,6 +78,15 @@ void RobotClientLog::note_ignored_drive(const std::string& controller, std::int6
       now);
 }
 
+void RobotClientLog::note_unknown_lane(std::uint32_t segment, std::uint32_t lane, std::int64_t now) {
+  if (now < next_lane_) return;
+  next_lane_ = now + kTroubleEvery;
+  log_.write(fmt::format("the farm changes the use of lane {}.{}, which the robot's world lacks or cannot change; "
+                         "expected the road network of the farm's world",
+                         segment, lane),
+             now);
+}
+
 void RobotClientLog::note_real(std::string_view title, const std::string& problem, bool answered, std::int64_t now) {
   if (problem == real_problem_ || (!answered && now < kAnswerIn)) return;
   real_problem_ = problem;

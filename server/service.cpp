@@ -40,6 +40,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       layout_(layout),
       lights_(world, {.spat = options.spat, .stale = options.stale_lights, .peers = options.receiver.peers},
               options.receiver.radio),
+      lanes_(world),
       receiver_(world, with_lights(options.receiver, lights_.ids())),
       drives_(world),
       publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set)),
@@ -53,6 +54,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
   receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
     lights_.accept(header, signals, now);
   });
+  receiver_.set_lane_handler([this](const netio::Lane& lane) { lanes_.accept(lane); });
 }
 
 void Service::run(const std::atomic<bool>& stop, double duration) {
@@ -106,6 +108,8 @@ std::int64_t Service::next_due() const {
 void Service::tick(std::int64_t now) {
   publish_due(now, false);
   lights_.publish(now, receiver_);
+  lanes_.update(now, receiver_.states(now), absent_, receiver_.log());
+  lanes_.publish(now, receiver_);
   drives_.send(now, receiver_);
   receiver_.relay(now);
   ++ticks_;
@@ -135,7 +139,11 @@ std::span<const base::Report> Service::update_movers(std::int64_t now) {
     farm_.set_state_quality(row, receiver_.quality(row, now));
   }
   for (const auto& [id, row] : receiver_.tags()) {
-    absent_[row] = receiver_.update_absent_tag(row, now);
+    absent_[row] = receiver_.update_absent_tag(id, now);
+    farm_.set_absent(row, absent_[row]);
+  }
+  for (const auto& [id, row] : receiver_.lights()) {
+    absent_[row] = receiver_.update_absent_light(id, now);
     farm_.set_absent(row, absent_[row]);
   }
   return receiver_.states(now);

@@ -18,6 +18,7 @@
 #include "gpu/device.h"
 #include "sensors/sensor_set.h"
 #include "server/drive_relay.h"
+#include "server/lane_service.h"
 #include "server/light_service.h"
 #include "server/no_return_filter.h"
 #include "server/reading_publisher.h"
@@ -89,6 +90,7 @@ class Service {
   std::size_t robots() const { return receiver_.robots().size(); }
   StateReceiver& receiver() { return receiver_; }
   const LightService& lights() const { return lights_; }
+  const LaneService& lanes() const { return lanes_; }
   /// Takes users' commands for robots. Its packets are sent at each tick.
   DriveRelay& drives() { return drives_; }
   ServiceStats stats() const;
@@ -109,6 +111,7 @@ class Service {
   const sensors::SensorSet& sensor_set_;
   const StreamLayout& layout_;
   LightService lights_;
+  LaneService lanes_;
   StateReceiver receiver_;
   DriveRelay drives_;
   ReadingPublisher publisher_;

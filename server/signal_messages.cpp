@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "netio/packets.h"
 #include "world/roads/rndf_statement_reader.h"
 #include "world/wall_tree.h"
 
@@ -160,16 +161,22 @@ LightState light_of(PhaseState phase) {
   return LightState::dark;
 }
 
-std::vector<Intersection> intersections_of(const world::World& world, const RoadNetwork* roads) {
+std::vector<Intersection> intersections_of(const world::World& world, const RoadNetwork* roads, std::uint32_t first) {
   const std::vector<LightStop> stops = roads != nullptr ? stops_of(world, *roads) : std::vector<LightStop>{};
-  const std::vector<std::uint32_t> first = first_lights(world.lights.size(), stops);
+  const std::vector<std::uint32_t> leads = first_lights(world.lights.size(), stops);
   std::vector<Intersection> all;
-  for (std::uint32_t light = 0; light < first.size(); ++light) {
-    if (first[light] != light) continue;
+  for (std::uint32_t light = 0; light < leads.size(); ++light) {
+    if (leads[light] != light) continue;
+    const std::uint32_t post = carrier_of(world, world.lights[light]);
+    const std::size_t id = post != world::kNone ? world.movers[post].id : first + all.size();
+    if (id > netio::kMaxId)
+      throw base::InputError(world.file, 0,
+                             fmt::format("the intersection of light '{}' would have the id {}; expected at most {}",
+                                         world.lights[light].name, id, netio::kMaxId));
     Intersection& one = all.emplace_back();
-    one.id = static_cast<std::uint16_t>(all.size());
-    for (std::uint32_t other = light; other < first.size(); ++other) {
-      if (first[other] != light) continue;
+    one.id = static_cast<std::uint16_t>(id);
+    for (std::uint32_t other = light; other < leads.size(); ++other) {
+      if (leads[other] != light) continue;
       one.lights.push_back(other);
       for (const LightStop& stop : stops) {
         if (stop.light != other) continue;

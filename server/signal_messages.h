@@ -25,15 +25,18 @@
 namespace sf::server {
 
 struct Intersection {
-  std::uint16_t id = 0;                ///< from 1, in the order of their first lights
+  std::uint16_t id = 0;                ///< from `first`, in the order of their first lights; of a light that joins,
+                                       ///< the id of its post
   std::vector<std::uint32_t> lights;   ///< rows of `World::lights`, ascending; the k-th is signal group k + 1
   std::vector<world::PointRef> stops;  ///< way-points of their stop lines, ordered by light
   std::vector<std::uint32_t> groups;   ///< signal group per stop
 };
 
 /// @param roads the world's network; null: none
-/// @throws base::InputError if an intersection has more than 254 lights
-std::vector<Intersection> intersections_of(const world::World& world, const world::RoadNetwork* roads);
+/// @param first in [0, netio::kMaxId], id of the first one
+/// @throws base::InputError if an intersection has more than 254 lights, or an id is above netio::kMaxId
+std::vector<Intersection> intersections_of(const world::World& world, const world::RoadNetwork* roads,
+                                           std::uint32_t first = 1);
 
 /// Returns the present state of each light, the time of its change, and the next state. Times are rounded up to 0.1 s,
 /// never before `utc`, with start <= min_end <= max_end. Changes an hour or more ahead are `kMoreThanAnHour`.

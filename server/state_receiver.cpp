@@ -76,6 +76,10 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   if (!packet.late) relay_.take(packet);
   if (const auto* signals = std::get_if<netio::V2i>(&packet.body)) {
     if (light_handler_) light_handler_(packet.header, *signals, now);
+    return place_light(packet.header, *signals, now);
+  }
+  if (const auto* lane = std::get_if<netio::Lane>(&packet.body)) {
+    if (lane_handler_) lane_handler_(*lane);
     return;
   }
   if (const auto* object = std::get_if<netio::Object>(&packet.body)) {
@@ -98,6 +102,17 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   if (filter(report, packet.header, now)) return;
   // Senders' clocks are not comparable: a state is valid at its arrival.
   report.time = now;
+  reports_.push_back(report);
+}
+
+/// A light that joins is where the first group of its V2I is.
+void StateReceiver::place_light(const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
+  const auto post = names_.lights.find(header.robot);
+  const auto approach = netio::find_approach(signals, 1);
+  if (post == names_.lights.end() || !approach) return;
+  base::Report report{post->second, now, approach->X_WL, {}};
+  if (keep_heights_) report.X_WM.z = world_.movers[report.mover].X_WM.z;
+  last_state_[report.mover] = now;
   reports_.push_back(report);
 }
 
@@ -144,7 +159,7 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
   std::int64_t& last = last_active_[row];
   const bool active = inbox_.is_active(id, now);
   const bool forgotten = !active && forget_ != kNever && last != kNever && now - last >= forget_;
-  if (joining_[row] && !active) forget_sender(id, row);
+  if (joining_[row] && !active) forget_sender({netio::PeerKind::robot, id}, row);
   const bool never = last_state_[row] == kNever && (joining_[row] || (!active && hides_stale()));
   const bool absent = forgotten || never || is_gone(row, now);
   if (active && absent && !hidden_[row] && !never)
@@ -158,14 +173,22 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
   return absent;
 }
 
-/// A robot that joined has left: the next one with its id inherits nothing.
-void StateReceiver::forget_sender(std::uint32_t id, std::uint32_t row) {
+/// A sender that joined has left: the next one with its id inherits nothing.
+void StateReceiver::forget_sender(const netio::Claim& sender, std::uint32_t row) {
+  removed_[row] = false;
   if (last_state_[row] == kNever) return;
   last_state_[row] = last_active_[row] = kNever;
   periods_[row] = 0;
   filter_logged_[row] = filter_.options().mode == FilterMode::on;
   filter_.reset(row);
-  inbox_.set_take_late(netio::PeerKind::robot, id, takes_late(filter_.options()));
+  if (sender.kind != netio::PeerKind::light)
+    inbox_.set_take_late(sender.kind, sender.id, takes_late(filter_.options()));
+}
+
+/// Tags and lights send no LEAVE.
+void StateReceiver::forget_silent(const netio::Claim& sender, std::uint32_t row, std::int64_t now) {
+  const std::int64_t last = last_state_[row];
+  if (joining_[row] && (last == kNever || now - last >= netio::kSenderTimeout)) forget_sender(sender, row);
 }
 
 bool StateReceiver::hides_stale() const { return filter_.options().policy != estimation::StalePolicy::freeze; }
@@ -178,10 +201,20 @@ bool StateReceiver::is_gone(std::uint32_t row, std::int64_t now) const {
   return hides_stale() && last_state_[row] != kNever && now - last_state_[row] > limit;
 }
 
-bool StateReceiver::update_absent_tag(std::uint32_t row, std::int64_t now) {
-  const bool absent = removed_[row] || is_gone(row, now);
+bool StateReceiver::update_absent_tag(std::uint32_t id, std::int64_t now) {
+  const std::uint32_t row = names_.tags.at(id);
+  forget_silent({netio::PeerKind::tag, id}, row, now);
+  const bool never = joining_[row] && last_state_[row] == kNever;
+  const bool absent = never || removed_[row] || is_gone(row, now);
   fleet_.set_absent(row, absent);
   return absent;
+}
+
+bool StateReceiver::update_absent_light(std::uint32_t id, std::int64_t now) {
+  const std::uint32_t row = names_.lights.at(id);
+  forget_silent({netio::PeerKind::light, id}, row, now);
+  fleet_.set_absent(row, last_state_[row] == kNever);
+  return last_state_[row] == kNever;
 }
 
 /// Of the mover that a packet claims to be from; empty: it is from none.

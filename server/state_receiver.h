@@ -28,7 +28,8 @@ struct StateReceiverOptions {
   double radio = netio::kV2vRange;  ///< [m] range within which states are relayed; 0: no relay
   double forget = 10.0;             ///< [s] of silence after which a robot is no longer an obstacle; 0: never
   int log_descriptor = 2;           ///< -1: no log
-  /// Rows of robots that are in the world only from their first state until they leave or are silent.
+  /// Rows of robots, tags and posts of lights that are in the world only from their first state until they leave or are
+  /// silent for netio::kSenderTimeout.
   std::vector<std::uint32_t> joining;
   bool keep_heights = false;  ///< movers keep their heights at load, regardless of their states
   StateFilterOptions filter;
@@ -45,6 +46,9 @@ class StateReceiver {
   /// Sets the handler of accepted V2I.
   using LightHandler = std::function<void(const netio::Header&, const netio::V2i&, std::int64_t now)>;
   void set_light_handler(LightHandler handler) { light_handler_ = std::move(handler); }
+  /// Sets the handler of accepted LANE.
+  using LaneHandler = std::function<void(const netio::Lane&)>;
+  void set_lane_handler(LaneHandler handler) { lane_handler_ = std::move(handler); }
 
   /// Processes every waiting datagram.
   void receive_pending(std::int64_t now);
@@ -59,8 +63,10 @@ class StateReceiver {
   /// each tick.
   bool update_absent(std::uint32_t id, std::int64_t now);
   /// Returns whether a tag is absent: an OBJECT removed it, or its state is stale and the policy removes stale states.
-  /// A tag without any state is in the world.
-  bool update_absent_tag(std::uint32_t row, std::int64_t now);
+  /// A tag without any state is in the world, unless it is one that joins.
+  bool update_absent_tag(std::uint32_t id, std::int64_t now);
+  /// Returns whether the post of a light that joins is absent: no V2I of it was accepted in the last two seconds.
+  bool update_absent_light(std::uint32_t id, std::int64_t now);
   /// Returns the newest states at `now`, valid until the next call.
   std::span<const base::Report> states(std::int64_t now) { return fleet_.predict(now); }
   /// Returns the quality of a mover's state at `now`. The age of unfiltered states counts from their arrival, and their
@@ -69,6 +75,7 @@ class StateReceiver {
 
   const std::map<std::uint32_t, std::uint32_t>& robots() const { return names_.robots; }  ///< rows by id
   const std::map<std::uint32_t, std::uint32_t>& tags() const { return names_.tags; }      ///< rows by id
+  const std::map<std::uint32_t, std::uint32_t>& lights() const { return names_.lights; }  ///< rows of posts by id
   const StateFilter& filter() const { return filter_; }
   StateFilter& filter() { return filter_; }
   const netio::Inbox& inbox() const { return inbox_; }
@@ -82,7 +89,9 @@ class StateReceiver {
   void take(const netio::Packet& packet, std::int64_t now);
   bool filter(const base::Report& report, const netio::Header& header, std::int64_t now);
   bool hides_stale() const;
-  void forget_sender(std::uint32_t id, std::uint32_t row);
+  void forget_sender(const netio::Claim& sender, std::uint32_t row);
+  void forget_silent(const netio::Claim& sender, std::uint32_t row, std::int64_t now);
+  void place_light(const netio::Header& header, const netio::V2i& signals, std::int64_t now);
   bool is_gone(std::uint32_t row, std::int64_t now) const;
   std::string sender_name(const netio::Header& header) const;
   std::string sender_text(const netio::Header& header) const;
@@ -105,6 +114,7 @@ class StateReceiver {
   bool keep_heights_;
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
+  LaneHandler lane_handler_;
   std::vector<bool> removed_;              ///< per mover, by OBJECT
   std::vector<bool> joining_;              ///< per mover: StateReceiverOptions::joining
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever

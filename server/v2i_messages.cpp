@@ -13,11 +13,11 @@ double bounded(double value) { return std::clamp(value, -netio::kMaxPosition, ne
 
 }  // namespace
 
-V2iMessages::V2iMessages(const world::World& world, const world::RoadNetwork* roads)
-    : world_(world),
-      intersections_(intersections_of(world, roads)),
+V2iMessages::V2iMessages(const world::World& world, const world::RoadNetwork* roads, std::uint32_t first)
+    : intersections_(intersections_of(world, roads, first)),
       stops_(intersections_.size()),
       sent_(intersections_.size(), 0) {
+  for (const world::Light& light : world.lights) poses_.push_back(light.X_WL);
   for (std::size_t k = 0; k < intersections_.size() && roads != nullptr; ++k) {
     const Intersection& one = intersections_[k];
     for (std::size_t i = 0; i < one.stops.size(); ++i) {
@@ -34,13 +34,13 @@ V2iMessages::V2iMessages(const world::World& world, const world::RoadNetwork* ro
 }
 
 glm::dvec2 V2iMessages::position(std::size_t intersection) const {
-  const base::Pose& X_WL = world_.lights[intersections_[intersection].lights.front()].X_WL;
+  const base::Pose& X_WL = poses_[intersections_[intersection].lights.front()];
   return {X_WL.x, X_WL.y};
 }
 
 netio::SignalApproach V2iMessages::approach_of(const Intersection& one, std::size_t i,
                                                const world::SignalForecast& forecast) const {
-  const base::Pose& X_WL = world_.lights[one.lights[i]].X_WL;
+  const base::Pose& X_WL = poses_[one.lights[i]];
   netio::SignalApproach approach;
   approach.group = static_cast<std::uint8_t>(i + 1);
   approach.state = static_cast<std::uint8_t>(forecast.now.state);

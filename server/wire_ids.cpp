@@ -1,11 +1,18 @@
 #include "server/wire_ids.h"
 
+#include "world/lights.h"
+
 namespace sf::server {
 
 WireNames wire_names(const world::World& world) {
   WireNames names;
-  for (std::uint32_t i = 0; i < world.movers.size(); ++i)
-    (world.movers[i].is_tag ? names.tags : names.robots)[world.movers[i].id] = i;
+  std::vector<bool> posts(world.movers.size(), false);
+  for (const world::Light& light : world.lights)
+    if (const auto post = carrier_of(world, light); post != world::kNone) posts[post] = true;
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
+    const world::Mover& mover = world.movers[i];
+    (posts[i] ? names.lights : mover.is_tag ? names.tags : names.robots)[mover.id] = i;
+  }
   return names;
 }
 

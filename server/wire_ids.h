@@ -13,6 +13,7 @@ namespace sf::server {
 struct WireNames {
   std::map<std::uint32_t, std::uint32_t> robots;
   std::map<std::uint32_t, std::uint32_t> tags;
+  std::map<std::uint32_t, std::uint32_t> lights;  ///< posts of lights that join, by the id of their intersection
 };
 
 WireNames wire_names(const world::World& world);

@@ -111,7 +111,7 @@ PixelImage RunView::paint(const RunFrame& frame) {
   if (frame.lights.empty())
     draw_lights(axes, world_, frame.time);
   else
-    draw_lights(axes, world_, frame.lights);
+    draw_lights(axes, world_, frame.lights, frame.X_WM);
   view_.draw_bodies(axes, frame.X_WM);
   draw_contacts(axes, frame);
   draw_names(axes, frame);

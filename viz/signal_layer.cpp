@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/report.h"
 #include "viz/color.h"
 #include "viz/theme.h"
 #include "viz/view_sector.h"
@@ -94,11 +95,15 @@ void draw_lights(Axes& axes, const world::World& world, double time) {
   draw_lights(axes, world, states);
 }
 
-void draw_lights(Axes& axes, const world::World& world, std::span<const LightState> states) {
+void draw_lights(Axes& axes, const world::World& world, std::span<const LightState> states,
+                 std::span<const base::Pose> X_WM) {
   for (std::size_t i = 0; i < states.size(); ++i) {
     const world::Light& light = world.lights[i];
-    const glm::dvec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
-    axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), theme::kBold, theme::kInk);
+    const std::uint32_t mover = carrier_of(world, light);
+    const base::Pose& X_WL = mover == world::kNone ? light.X_WL : mover < X_WM.size() ? X_WM[mover] : base::kAbsent;
+    if (base::is_absent(X_WL)) continue;
+    const glm::dvec2 at = axes.pixel({X_WL.x, X_WL.y});
+    axes.canvas().line(at, at + base::rotate(-X_WL.yaw, {2.2 * kLightRadius, 0.0}), theme::kBold, theme::kInk);
     const LightMark& shown = mark_of(states[i]);
     draw_signal(axes.canvas(), at, kLightRadius, shown.mark, shown.color);
   }

@@ -20,8 +20,10 @@ void draw_emitters(Axes& axes, const world::World& world);
 /// Draws one mark per light in its state at `time` [s]: a dot for green, a diamond for yellow, a square for red, hollow
 /// marks for flashing, a crossed dot for dark. A short line shows the direction of its lamps.
 void draw_lights(Axes& axes, const world::World& world, double time = 0.0);
-/// The same with one state per light, taken from a run.
-void draw_lights(Axes& axes, const world::World& world, std::span<const world::LightState> states);
+/// The same with one state per light, taken from a run. @param X_WM one per mover, of lights that join; empty: those
+/// are not drawn
+void draw_lights(Axes& axes, const world::World& world, std::span<const world::LightState> states,
+                 std::span<const base::Pose> X_WM = {});
 
 /// Legend items for the objects of this layer in the world; lights as at time 0.
 std::vector<LegendItem> signal_layer_legend(const world::World& world);

@@ -105,6 +105,12 @@ RobotsOfFile read_robots(const std::string& file, const LoadOptions& options) {
                                       : fmt::format("has no robot '{}'{}", name, base::suggest(name, names, expected)));
 }
 
+void require_free(const World& world, const std::string& name) {
+  if (std::ranges::find(world.models, name, &Model::name) != world.models.end())
+    throw base::InputError(
+        fmt::format("the name '{}' is taken; expected one that no model of {} has", name, world.file));
+}
+
 /// Appends to `name` until no model of `world` has it.
 std::string free_model_name(const World& world, std::string name) {
   const auto taken = [&] {
@@ -173,10 +179,7 @@ std::uint32_t robot_like(const World& world, const std::string& like) {
 
 void check_name(const World& world, const std::string& name) {
   if (!is_robot_name(name)) throw base::InputError(fmt::format("no robot can join as '{}'; {}", name, kNameRule));
-  for (const Model& model : world.models)
-    if (model.name == name)
-      throw base::InputError(
-          fmt::format("the name '{}' is taken; expected one that no model of {} has", name, world.file));
+  require_free(world, name);
 }
 
 std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM) {
@@ -193,15 +196,20 @@ std::uint32_t append_robot(World& world, const World& from, std::uint32_t origin
   return static_cast<std::uint32_t>(world.movers.size() - 1);
 }
 
-std::uint32_t append_robots(World& world, std::uint32_t original, std::span<const std::uint32_t> ids) {
-  const auto first = static_cast<std::uint32_t>(world.movers.size());
-  const std::string name = world.movers[original].name;
-  const Pose X_WM = world.movers[original].X_WM;
+void append_copies(World& world, const World& from, std::uint32_t original, std::span<const std::uint32_t> ids) {
+  const std::string name = from.movers[original].name;
+  const Pose X_WM = from.movers[original].X_WM;
+  const bool is_tag = from.movers[original].is_tag;
   for (const std::uint32_t id : ids) {
     const std::string own = fmt::format("{}_{}", name, id);
-    check_name(world, own);
-    append_copy(world, world, original, own, X_WM, id);
+    is_tag ? require_free(world, own) : check_name(world, own);
+    append_copy(world, from, original, own, X_WM, id);
   }
+}
+
+std::uint32_t append_robots(World& world, std::uint32_t original, std::span<const std::uint32_t> ids) {
+  const auto first = static_cast<std::uint32_t>(world.movers.size());
+  append_copies(world, world, original, ids);
   update_extent_and_hash(world);
   return first;
 }

@@ -43,6 +43,11 @@ std::uint32_t append_robot(World& world, const World& from, std::uint32_t origin
 /// @throws base::InputError beyond kMostMovers, or if a name is taken
 std::uint32_t append_robots(World& world, std::uint32_t original, std::span<const std::uint32_t> ids);
 
+/// Appends copies of the mover in row `original` of `from`, which may be `world`, as above. Does not update extent and
+/// hash.
+/// @throws base::InputError beyond kMostMovers, if a name is taken, or if that of a robot is invalid
+void append_copies(World& world, const World& from, std::uint32_t original, std::span<const std::uint32_t> ids);
+
 /// Appends the robot `name` of the world file `file`, at rest at the origin: a robot of that world, or else one of the
 /// type that the file or its includes define under that name. Renames the robot if a model of `world` has that name.
 /// Adds the file's warnings to those of `world`. Takes time proportional to the size of both worlds.

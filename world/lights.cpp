@@ -37,6 +37,12 @@ std::vector<SignalForecast> forecasts_at(const World& world, double time) {
   return forecasts;
 }
 
+std::uint32_t carrier_of(const World& world, const Light& light) {
+  const std::uint32_t mover = light.model < world.models.size() ? world.models[light.model].mover : kNone;
+  const bool is_post = mover != kNone && world.movers[mover].is_tag && world.movers[mover].model == light.model;
+  return is_post ? mover : kNone;
+}
+
 std::string_view light_state_name(LightState state) { return words_of(state).at(static_cast<std::size_t>(state)); }
 
 }  // namespace sf::world

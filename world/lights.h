@@ -36,6 +36,9 @@ inline base::LightStatus status_of(const Signal& signal) {
   return {static_cast<std::uint8_t>(signal.state), signal.left};
 }
 
+/// Returns the row of the mover that is the light's post, for lights that join and leave; kNone: the light is fixed.
+std::uint32_t carrier_of(const World& world, const Light& light);
+
 std::string_view light_state_name(LightState state);  ///< "flashing red"
 
 }  // namespace sf::world

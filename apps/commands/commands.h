@@ -17,6 +17,7 @@ int robot(const RobotOptions& options);
 int light(const LightOptions& options);
 int start(const StartOptions& options);
 int object(const ObjectOptions& options);
+int lane(const LaneOptions& options);
 int plot(const PlotOptions& options);
 int export_recording(const ExportOptions& options);
 int view(const ViewOptions& options);

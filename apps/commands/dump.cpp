@@ -43,7 +43,10 @@ std::string subject_of(const server::PacketDescription& packet) {
       return fmt::format("V2I of intersection {}", header.robot);
     case netio::Type::start:
       if (header.robot == netio::kBroadcastId) return "START to all robots";
-      [[fallthrough]];
+      return fmt::format("START to robot {}", header.robot);
+    case netio::Type::lane:
+      if (header.robot == netio::kBroadcastId) return "LANE to the farm";
+      return fmt::format("LANE to robot {}", header.robot);
     case netio::Type::values:
       return fmt::format("VALUES of sensor {} to robot {}", header.sensor, header.robot);
     case netio::Type::challenge:

@@ -84,7 +84,7 @@ class Sender {
       : address_(options.send.empty() ? std::nullopt : std::optional(netio::resolve(options.send))),
         ports_(options.ports),
         outbox_({.bind = netio::own_end_for(address_.value_or(0))}) {
-    for (server::Intersection& one : server::intersections_of(world, roads)) {
+    for (server::Intersection& one : server::intersections_of(world, roads, options.first_id)) {
       const auto map = roads != nullptr ? map_of(*roads, one, {options.latitude, options.longitude}) : std::nullopt;
       if (map) maps_.push_back(encoded(*map, one));
       intersections_.push_back(std::move(one));
@@ -160,7 +160,8 @@ int light(const LightOptions& options) {
   const auto roads = world::roads_of(world);
   Sender sender(options, world, roads ? &*roads : nullptr);
   std::optional<LightRadio> radio;
-  if (!options.farm.empty()) radio.emplace(world, roads ? &*roads : nullptr, options.farm, peers_of(options, nullptr));
+  if (!options.farm.empty())
+    radio.emplace(world, roads ? &*roads : nullptr, options.farm, peers_of(options, nullptr), options.first_id);
   world::ActuatedLights actuated(world, plan, options.time);
   install_stop_handlers();
   std::string to = sender.to();

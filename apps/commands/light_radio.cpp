@@ -14,8 +14,8 @@
 namespace sf::apps {
 
 LightRadio::LightRadio(const world::World& world, const world::RoadNetwork* roads, const std::string& farm,
-                       const std::vector<netio::Peer>& peers)
-    : messages_(world, roads) {
+                       const std::vector<netio::Peer>& peers, std::uint32_t first)
+    : messages_(world, roads, first) {
   const auto address = netio::AddressBook().find(farm);
   if (!address) throw base::InputError(fmt::format("--farm: expected HOST:PORT, got '{}'", farm));
   farm_ = netio::endpoint_text(*address);

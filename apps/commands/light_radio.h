@@ -17,10 +17,10 @@ namespace sf::apps {
 /// One sender per intersection, with its key in `peers`. The world must outlive it. Not thread-safe.
 class LightRadio {
  public:
-  /// @param farm "HOST:PORT"
+  /// @param farm "HOST:PORT" @param first as `server::intersections_of`
   /// @throws base::InputError if it has another form or the host is unknown
   LightRadio(const world::World& world, const world::RoadNetwork* roads, const std::string& farm,
-             const std::vector<netio::Peer>& peers);
+             const std::vector<netio::Peer>& peers, std::uint32_t first = 1);
 
   /// Processes received packets. Calls `hear` with the position [m] of each robot state.
   void receive(std::int64_t now, const std::function<void(glm::dvec2)>& hear);

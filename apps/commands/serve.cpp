@@ -7,7 +7,7 @@
 #include <span>
 
 #include "apps/commands/commands.h"
-#include "apps/commands/joining_robots.h"
+#include "apps/commands/joining.h"
 #include "apps/commands/lockstep.h"
 #include "apps/commands/run_settings.h"
 #include "apps/options/address.h"
@@ -29,6 +29,7 @@
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "server/service.h"
+#include "server/wire_ids.h"
 
 namespace sf::apps {
 
@@ -71,9 +72,11 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
 std::vector<NamedPeer> senders_of(const ServeOptions& options, const world::World& world,
                                   std::span<const std::uint32_t> lights) {
   std::vector<NamedPeer> senders;
-  for (const world::Mover& mover : world.movers)
-    senders.push_back(
-        {netio::Claim{mover.is_tag ? netio::PeerKind::tag : netio::PeerKind::robot, mover.id}, mover.name});
+  const server::WireNames names = server::wire_names(world);
+  for (const auto& [id, row] : names.robots)
+    senders.push_back({netio::Claim{netio::PeerKind::robot, id}, world.movers[row].name});
+  for (const auto& [id, row] : names.tags)
+    senders.push_back({netio::Claim{netio::PeerKind::tag, id}, world.movers[row].name});
   for (const std::uint32_t id : lights)
     senders.push_back({netio::Claim{netio::PeerKind::light, id}, fmt::format("intersection {}", id)});
   senders.push_back({netio::Claim{netio::PeerKind::start, 0}, "START"});
@@ -149,10 +152,10 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
 int serve(const ServeOptions& options) {
   if (options.lockstep) return serve_lockstep(options);
   world::World world = load_with_robots(options, options);
-  const std::vector<std::uint32_t> joining = append_joining(world, options.join);
+  const Joining joining = append_joining(world, options.join);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
   server::ServiceOptions chosen = service_options(options, world);
-  chosen.receiver.joining = joining;
+  chosen.receiver.joining = joining.rows;
   gpu::Device device = open_device(options);
   choose_accuracy(world, device, options, options.seed, 0);
   const sensors::SensorSet sensor_set(world);
@@ -178,9 +181,9 @@ int serve(const ServeOptions& options) {
     LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false,
                      &service.drives());
     if (!live.empty()) service.record_to(live);
-    if (!joining.empty()) print_message("{} more may join", counted(joining.size(), "robot"));
+    if (!joining.rows.empty()) print_message("{} more may join", joining_text(joining));
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; press Ctrl-C to stop",
-                  counted(service.robots() - joining.size(), "robot"), world.file, options.bind, service.port(),
+                  counted(service.robots() - joining.robots, "robot"), world.file, options.bind, service.port(),
                   1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
     RunReport facts = report_of(service.stats(), world, device.info());

@@ -1,4 +1,4 @@
-// `start` and `object`: send a signal to a farm several times, since packets may be lost.
+// `start`, `object` and `lane`: send a signal to a farm several times, since packets may be lost.
 
 #include <fmt/format.h>
 
@@ -14,6 +14,8 @@
 #include "netio/outbox.h"
 #include "netio/own_end.h"
 #include "netio/packets.h"
+#include "world/roads/lane_use.h"
+#include "world/roads/rndf_statement_reader.h"
 
 namespace sf::apps {
 
@@ -22,16 +24,16 @@ namespace {
 constexpr int kRepetitions = 3;
 
 /// @throws base::InputError if the table lacks the key, since a farm with a key would drop the packet
-std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const netio::Claim& claim) {
+std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const netio::Claim& claim,
+                                             std::string_view what) {
   if (options.peers.empty()) return std::nullopt;
   const std::vector<netio::Peer> peers = peers_of(options, nullptr);
   const netio::Peer* own = netio::find(peers, claim.kind, claim.id);
   const bool start = claim.kind == netio::PeerKind::start;
   if (own == nullptr || !own->key)
-    throw base::InputError(
-        options.peers, 0,
-        fmt::format("has no key for {}; expected a [[peer]] section with {} and key", start ? "START" : "the object",
-                    start ? "start = true" : fmt::format("tag = {}", claim.id)));
+    throw base::InputError(options.peers, 0,
+                           fmt::format("has no key for {}; expected a [[peer]] section with {} and key", what,
+                                       start ? "start = true" : fmt::format("tag = {}", claim.id)));
   return netio::PacketSigner(*own->key);
 }
 
@@ -56,7 +58,7 @@ void send_repeatedly(const netio::Endpoint& farm, netio::Header header, const Bo
 int start(const StartOptions& options) {
   const netio::Endpoint farm = farm_of(options);
   send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.start_id)}, netio::Start{},
-                  signer_of(options, {netio::PeerKind::start, 0}));
+                  signer_of(options, {netio::PeerKind::start, 0}, "START"));
   print_message("start signal sent to {} for {}, {} times; it is not acknowledged", netio::endpoint_text(farm),
                 options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)),
                 kRepetitions);
@@ -67,9 +69,22 @@ int object(const ObjectOptions& options) {
   const netio::Endpoint farm = farm_of(options);
   const bool present = options.state == ObjectOptions::State::present;
   send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.tag)}, netio::Object{present},
-                  signer_of(options, {netio::PeerKind::tag, options.tag}));
+                  signer_of(options, {netio::PeerKind::tag, options.tag}, "the object"));
   print_message("'{}' sent to {} for the object of tag {}, {} times; it is not acknowledged",
                 present ? "present" : "absent", netio::endpoint_text(farm), options.tag, kRepetitions);
+  return 0;
+}
+
+int lane(const LaneOptions& options) {
+  const netio::Endpoint farm = farm_of(options);
+  const auto id = world::read_point_id(options.lane + ".1");
+  if (!id) throw base::InputError(fmt::format("'{}' is no lane; expected segment.lane, such as 3.1", options.lane));
+  const world::LaneUse use = world::lane_use_of(options.use);
+  send_repeatedly(farm, {.robot = netio::kBroadcastId},
+                  netio::Lane{id->segment, id->lane, static_cast<std::uint32_t>(use.rule), use.reversed},
+                  signer_of(options, {netio::PeerKind::start, 0}, "LANE"));
+  print_message("'{}' sent to {} for lane {}, {} times; it is not acknowledged", options.use,
+                netio::endpoint_text(farm), options.lane, kRepetitions);
   return 0;
 }
 

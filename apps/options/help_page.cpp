@@ -19,7 +19,7 @@ const Section kSections[] = {
     {"Common", {"run", "check", "view", "plot", "test"}},
     {"Run", {"experiment", "sweep", "serve", "robot", "merge"}},
     {"Inspect", {"draw", "sense", "field", "explain", "map", "listen", "dump"}},
-    {"Testbed", {"vps", "calibrate", "light", "start", "object", "v2x"}},
+    {"Testbed", {"vps", "calibrate", "light", "start", "object", "lane", "v2x"}},
     {"Analyse", {"export", "derive", "tradeoff"}},
     {"Check", {"devices", "selftest", "verify", "help"}},
 };

@@ -297,7 +297,7 @@ struct ServeOptions : WorldOptions,
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free port
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
   double radio = netio::kV2vRange;         ///< [m] range beyond which states are not relayed; 0: no states are relayed
-  std::vector<std::string> join;           ///< "ROBOT=FIRST-LAST": copies of a robot that may join, by id
+  std::vector<std::string> join;           ///< "NAME=FIRST-LAST": copies that may join, by id
   std::string record;                      ///< folder; empty: not recorded
   bool lockstep = false;                   ///< clients command the robots tick by tick
   double lockstep_timeout = 5.0;           ///< [s] maximum time to wait for a client; 0: unlimited
@@ -353,6 +353,7 @@ struct LightOptions : OriginOption, DurationOption, PeersOption {
   std::vector<std::uint16_t> ports{kSpatPort};
   double rate = 10.0;            ///< [Hz]
   double time = 0.0;             ///< [s] simulated time at the start
+  std::uint32_t first_id = 1;    ///< of its intersections
   std::vector<std::string> set;  ///< "NAME=STATE", in place of a plan
 };
 
@@ -364,6 +365,11 @@ struct ObjectOptions : FarmOptions, PeersOption {
   std::uint32_t tag = 1;  ///< id of the object's tag
   enum class State { present, absent };
   State state = State::present;
+};
+
+struct LaneOptions : FarmOptions, PeersOption {
+  std::string lane;  ///< "SEGMENT.LANE"
+  std::string use;   ///< a word of world::lane_use_of
 };
 
 struct ListenOptions : WorldOptions, JsonOption, CloneOptions, PortOptions, ReceiveOptions, DurationOption {};

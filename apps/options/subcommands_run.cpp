@@ -265,12 +265,12 @@ void add_serve(CLI::App& app, Call& call) {
   add_forget(*sub, o);
   add_peers(*sub, o);
   add_lockstep(*sub, o);
-  sub->add_option(
-         "--join", o.join,
-         "Robots that may join: copies of the world's robot ROBOT with the ids FIRST to LAST, each in the world "
-         "from its first state until it leaves or is silent for 2 s; may be repeated")
+  sub->add_option("--join", o.join,
+                  "What may join: copies of the world's robot, object or light NAME with the ids FIRST to LAST (of "
+                  "robots, tags or intersections), each in the world from its first state until it leaves or is silent "
+                  "for 2 s; may be repeated")
       ->excludes("--lockstep")
-      ->type_name("ROBOT=FIRST-LAST");
+      ->type_name("NAME=FIRST-LAST");
   add_filter(*sub, o);
   sub->add_option("--mirror", o.mirror,
                   "Address of an observer that receives a copy of every reading packet (`vps --readings`)")
@@ -485,6 +485,9 @@ void add_light(CLI::App& app, Call& call) {
       ->allow_extra_args(false)
       ->type_name("PORT")
       ->capture_default_str();
+  sub->add_option("--first-id", o.first_id,
+                  "Id of the first intersection, for a light that joins a farm (`serve --join`); others follow")
+      ->check(CLI::Range(0u, netio::kMaxId));
   sub->add_option("--rate", o.rate, "SPaT and V2I messages per second for each intersection")
       ->check(number(0.1, 100.0))
       ->type_name("HZ")
@@ -528,6 +531,20 @@ void add_object(CLI::App& app, Call& call) {
       ->required()
       ->check(whole(netio::kMinTag, netio::kMaxId))
       ->type_name("ID");
+}
+
+void add_lane(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "lane", "Close, reverse or open a lane of a farm's road network, or let only turns leave it (not acknowledged)");
+  auto& o = add_command(*sub, call, lane);
+  add_examples(*sub, {"3.1 closed", "1.1 reversed --server 192.168.1.5"});
+  add_farm(*sub, o);
+  add_peers(*sub, o);
+  sub->add_option("lane", o.lane, "Segment and number of the lane in the RNDF")->required()->type_name("SEGMENT.LANE");
+  sub->add_option("use", o.use,
+                  "New use: open, closed, reversed, or turn, left or right for a lane whose end only turns may leave")
+      ->required()
+      ->type_name("USE");
 }
 
 void add_listen(CLI::App& app, Call& call) {
@@ -619,6 +636,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_light(app, call);
   add_start(app, call);
   add_object(app, call);
+  add_lane(app, call);
   add_listen(app, call);
   add_dump(app, call);
   add_map(app, call);

@@ -46,7 +46,8 @@ enum {
   SF_OBJECT,
   SF_REFUSAL,
   SF_NEIGHBOURS,
-  SF_DRIVE = 143
+  SF_DRIVE = 143,
+  SF_LANE
 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
 enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
@@ -135,6 +136,7 @@ static const sf_type sf_types[] = {
     {141, "STATE", 0, {"index", "datagrams", "contact", "flags"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {142, "VALUES", 0, {"index", "datagrams", "values_type", "total", "first"}, {{"value", 1, 1}}},
     {143, "DRIVE", 0, {0}, {{"velocity", 3, 1}}},
+    {144, "LANE", 0, {"segment", "lane", "use"}, {{0}}},
     {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
 
 typedef struct {
@@ -341,6 +343,7 @@ static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t
                     fabs(hypot(hypot(v[3], v[4]), hypot(v[5], v[6])) - 1.0) <= 1e-3);
   if (p->type == SF_DRIVE) return in_range(!check_numbers(v, 3, 1e3));
   if (p->type == SF_OBJECT) return in_range(p->words[0] <= 1 && p->robot > 0);
+  if (p->type == SF_LANE) return in_range(p->words[2] < 16 && p->words[2] % 8 <= 4);
   if (p->type == SF_REFUSAL) return in_range(p->words[0] >= 1 && p->words[0] <= 4);
   return NULL;
 }
@@ -456,11 +459,12 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
 }
 
-// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE or OBJECT from type, robot, sequence, time_ns, session, token, words,
+// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE, OBJECT or LANE from type, robot, sequence, time_ns, session, token, words,
 // values and, of an estimate in V2V or TAG, age_us, stale and covariance. Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
 size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   const sf_type* const type = sf_find_type(packet->type);
-  if (!type || packet->type < SF_V2V || (packet->type > SF_LEAVE && packet->type != SF_OBJECT)) return 0;
+  if (!type || packet->type < SF_V2V || (packet->type > SF_LEAVE && packet->type != SF_OBJECT && packet->type != SF_LANE))
+    return 0;
   memset(bytes, 0, SF_TAG_BYTES);
   memcpy(bytes, "SFPK\2", 5);
   bytes[5] = packet->type;

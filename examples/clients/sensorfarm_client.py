@@ -31,15 +31,15 @@ LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
             4: "refused: wrong address"}
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE = (
-    128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143)
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE, LANE = (
+    128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143, 144)
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
 HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
 HEADER = struct.Struct("<4sBBHHHIqIII6fHH")
 STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I",
-          OBJECT: "<I", REFUSAL: "<I", DRIVE: "<3d"}  # payloads
+          OBJECT: "<I", REFUSAL: "<I", DRIVE: "<3d", LANE: "<3I"}  # payloads
 
 # Sensor types: name, base of the ports, columns of a row with the unit of each number on the wire.
 SENSORS = {
@@ -67,7 +67,8 @@ SENSORS = {
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
-              137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE"}
+              137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE",
+              144: "LANE"}
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
 
 
@@ -242,6 +243,9 @@ def decode_state(type, robot, payload):
     if type == DRIVE:
         require_numbers(numbers, 1e3)
         return {"velocity": list(numbers)}
+    if type == LANE:
+        require(numbers[2] < 16 and numbers[2] % 8 <= 4)
+        return dict(zip(("segment", "lane", "use"), numbers))
     require(type != OBJECT or numbers[0] <= 1 and robot > 0)
     require(type != REFUSAL or 1 <= numbers[0] <= 4)
     name = {SUBSCRIBE: "types", OBJECT: "present", REFUSAL: "reason"}.get(type, "challenge")
@@ -309,6 +313,11 @@ def encode_tag(position, orientation, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0,
 def encode_object(present, **header):
     """Removes the object of tag `robot` from the world, or puts it back."""
     return encode(OBJECT, struct.pack("<I", present), **header)
+
+
+def encode_lane(segment, lane, use, **header):
+    """Requests the use of a lane. use: 0 open, 1 closed, 2 turn, 3 left, 4 right; plus 8 if it is reversed."""
+    return encode(LANE, struct.pack("<3I", segment, lane, use), **header)
 
 
 def encode_subscribe(types=0, **header):

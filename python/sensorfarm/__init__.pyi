@@ -228,6 +228,10 @@ class Simulation:
     def remove_robot(self, row: int) -> None:
         """Removes a robot from the world: its pose is NaN, its readings are unchanged. Its row, id and name remain
         reserved. Raises Error for a row without a present robot."""
+    def set_lane(self, lane: str, use: str) -> None:
+        """Requests the use of a lane such as "3.1": "open", "closed", "reversed", or "turn", "left" or "right" for one
+        whose end only turns may leave. Robots with a route controller replan. A lane is reversed once it has been empty
+        for 2 s; until then it is closed. A reset restores all lanes. Raises Error, with nothing changed."""
     def put(self, row: int, pose: Sequence[float]) -> None:
         """Places a robot at (x, y, z, yaw), at rest. Its sensors see the new place from the next step on."""
     def draw(self, file: str) -> None:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "control/controllers.h"
@@ -12,6 +13,7 @@
 #include "robots/fleet.h"
 #include "tests/robots/scenes.h"
 #include "tests/units.h"
+#include "world/roads/lane_control.h"
 #include "world/roads/roads.h"
 
 namespace sf::traffic {
@@ -85,8 +87,15 @@ class Streets {
     intents.resize(world.movers.size());
   }
 
+  /// Requests the use of a lane.
+  void use(const std::string& lane, const std::string& word) {
+    if (!lanes) lanes.emplace(roads);
+    lanes->request(lane_named(roads, lane), world::lane_use_of(word));
+  }
+
   void tick() {
     const auto reports = fleet->reports();
+    if (lanes) lanes->update(time, reports);
     signals.clear();
     for (const world::Light& light : world.lights) signals.push_back(signal_at(light, 1e-9 * double(time)));
     std::vector<control::Neighbour> others;
@@ -102,7 +111,8 @@ class Streets {
                                                .readings = {},
                                                .contact = fleet->contacts()[row] != 0,
                                                .others = others,
-                                               .signals = signals});
+                                               .signals = signals,
+                                               .roads = lanes ? lanes->network() : nullptr});
     }
     for (std::uint32_t row = 0; row < controllers.size(); ++row) intents[row] = controllers[row]->intent();
     fleet->move(commands_, kTick);
@@ -124,6 +134,7 @@ class Streets {
   std::vector<std::unique_ptr<control::Controller>> controllers;
   std::vector<base::Intent> intents;
   std::vector<world::Signal> signals;
+  std::optional<world::LaneControl> lanes;  ///< since the first request
   std::int64_t time = 0;
   int contacts = 0;
 

@@ -170,6 +170,32 @@ TEST_F(DirectV2vTest, TheFirstSenderBindsARobotWithoutAKey) {
   EXPECT_EQ(feed(direct_state(2, 0, 1.0, 0x3333), elsewhere), 1) << "after two seconds of silence";
 }
 
+/// Without a signature, half a second of silence and the same machine.
+TEST_F(DirectV2vTest, ARestartedSenderIsAcceptedAfterHalfASecond) {
+  EXPECT_EQ(feed(direct_state(2, 900)), 1);
+  now = DirectV2v::kRestart - 1;
+  EXPECT_EQ(feed(direct_state(2, 0, 1.0, 0x3333), elsewhere), 0);
+  now = DirectV2v::kRestart;
+  EXPECT_EQ(feed(direct_state(2, 0, 1.0, 0x3333), elsewhere), 1);
+  EXPECT_EQ(feed(direct_state(2, 901)), 0) << "the process that it replaced";
+  EXPECT_FALSE(one->admit({.robot = 2, .sequence = 950, .session = 0x1234}, now)) << "relayed from before";
+  EXPECT_EQ(feed(direct_state(2, 1, 1.0, 0x3333), elsewhere), 1);
+  now += 2 * kDirectSecond;
+  EXPECT_TRUE(one->admit({.robot = 2, .sequence = 2, .session = 0x1234}, now)) << "relayed";
+}
+
+/// With one, at once; and the other process with this id and key does not return.
+TEST_F(DirectV2vTest, ARestartedSenderWithAKeyIsAcceptedAtOnce) {
+  one = make({{PeerKind::group, 0, std::nullopt, kGroupKey}});
+  PacketSigner before(kGroupKey, 1000), after(kGroupKey, 2000), forger(kSecondKey, 3000);
+  EXPECT_EQ(feed(signed_with(before, direct_state(2, 900))), 1);
+  EXPECT_EQ(feed(signed_with(forger, direct_state(2, 0, 1.0, 0x4444))), 0);
+  EXPECT_EQ(feed(signed_with(after, direct_state(2, 0, 1.0, 0x3333))), 1);
+  PacketSigner again(kGroupKey, 4000);
+  EXPECT_EQ(feed(signed_with(again, direct_state(2, 901))), 0);
+  EXPECT_EQ(count(PacketStatus::wrong_source), 1u);
+}
+
 TEST_F(DirectV2vTest, AddressesOfTheTableAreChecked) {
   one = make({{PeerKind::robot, 2, kLoopback + 1, std::nullopt}, {PeerKind::robot, 3, kLoopback, std::nullopt}});
   EXPECT_EQ(feed(direct_state(2, 0)), 0);

@@ -96,6 +96,12 @@ inline base::Bytes object_example() {
   return out;
 }
 
+inline base::Bytes lane_example() {
+  base::Bytes out;
+  encode({.robot = kBroadcastId}, Lane{3, 1, 1}, out);
+  return out;
+}
+
 /// Forwarded states of two other robots.
 inline base::Bytes neighbours_example() {
   base::Bytes first = v2v_example(), second, out;
@@ -118,7 +124,7 @@ inline std::vector<base::Bytes> states() {
 inline std::vector<base::Bytes> examples() {
   return {reading_example(), extended_example(),   v2v_example(),       tag_example(), subscribe_example(),
           start_example(),   leave_example(),      challenge_example(), v2i_example(), object_example(),
-          refusal_example(), neighbours_example(), drive_example()};
+          refusal_example(), neighbours_example(), drive_example(),     lane_example()};
 }
 
 inline base::Bytes command_example() {

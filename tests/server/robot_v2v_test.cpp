@@ -84,6 +84,7 @@ TEST_F(RobotV2vTest, RobotsSeeEachOtherWithoutAFarm) {
   EXPECT_EQ(seen_others()[1][0].id, 1u);
   const RobotClientStats stats = robots[0]->stats();
   EXPECT_FALSE(stats.answered) << "the farm does not answer";
+  EXPECT_FALSE(stats.listens) << "its controller needs no readings";
   EXPECT_EQ(counts(0).sent.sent, 30u);
   EXPECT_GE(counts(0).packets[netio::PacketStatus::accepted], 29u);
   robots.pop_back();

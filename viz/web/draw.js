@@ -203,9 +203,11 @@ export class Drawing {
 
   #lights(c) {
     const blink = performance.now() % 1000 < 500;
-    this.scene.lights.forEach(({ name, pose }, i) => {
-      const status = this.lights[i];
-      if (!status) return;
+    const { fleet } = this;
+    this.scene.lights.forEach(({ name, pose: fixed, mover }, i) => {
+      const status = this.lights[i], joins = mover !== undefined;
+      if (!status || (joins && fleet.absent[mover])) return;
+      const pose = joins ? [fleet.shownX[mover], fleet.shownY[mover], fleet.shownYaw[mover]] : fixed;
       const [x, y] = this.camera.toScreen(pose[0], pose[1]);
       c.strokeStyle = theme.ink;
       c.lineWidth = 2.5;

@@ -46,6 +46,7 @@ struct RoadLane {
   Curve centre;                        ///< its knots are `points`
   std::vector<glm::dvec2> left_edge;   ///< [m] half the width to the left of the centre line, in driving direction
   std::vector<glm::dvec2> right_edge;  ///< [m] half the width to the right
+  bool open = true;                    ///< false: no route enters it (world/roads/lane_use.h)
 };
 inline double length_of(const RoadLane& lane) { return lane.centre.s.back(); }
 
@@ -81,6 +82,7 @@ struct RoadExit {
   PointRef from;
   PointRef to;
   double length = 0.0;  ///< [m] along `exit_curve`
+  bool open = true;     ///< false: no route takes it
 };
 
 /// A line across the full width of the lane. Lanes without a direction have no stop lines.
@@ -88,6 +90,7 @@ struct StopLine {
   PointRef at;
   glm::dvec2 left;   ///< [m] end on the lane's left edge
   glm::dvec2 right;  ///< [m]
+  PointId lights;    ///< way-point whose lights govern it: that of `at`, except on reversed lanes
 };
 
 struct RoadCheckpoint {

@@ -164,7 +164,7 @@ void add_stop(RoadNetwork& network, const RndfStop& stop) {
   if (lane.centre.points.size() < 2) return;
   const LanePoint& point = lane.points[at.index];
   const glm::dvec2 half = base::rotate(point.yaw, {0.0, 0.5 * lane.width});
-  network.stops.push_back({at, point.p + half, point.p - half});
+  network.stops.push_back({at, point.p + half, point.p - half, stop.at});
 }
 
 void join(Builder& b) {
