@@ -60,7 +60,7 @@ glm::dvec2 origin_of(const glm::dvec2& antenna, double yaw, const glm::dvec2& p_
 void LocalizationError::add(const base::Pose& estimated, const base::Pose& truth) {
   const double distance = std::hypot(estimated.x - truth.x, estimated.y - truth.y);
   const double turned = base::wrap_angle(estimated.yaw - truth.yaw);
-  add({1, distance * distance, turned * turned, distance});
+  add({1, distance * distance, turned * turned, distance, std::abs(turned)});
 }
 
 void LocalizationError::add(const LocalizationError& other) {
@@ -68,6 +68,7 @@ void LocalizationError::add(const LocalizationError& other) {
   squares += other.squares;
   yaw_squares += other.yaw_squares;
   max = std::max(max, other.max);
+  yaw_max = std::max(yaw_max, other.yaw_max);
 }
 
 double LocalizationError::rms() const {

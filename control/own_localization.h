@@ -34,14 +34,15 @@ glm::dvec2 origin_of(const glm::dvec2& antenna, double yaw, const glm::dvec2& p_
 /// Errors of a robot's estimated poses relative to its true ones, at the steps of its controller.
 struct LocalizationError {
   std::uint64_t steps = 0;
-  double squares = 0.0;      ///< [m^2] sum of squared distances
+  double squares = 0.0;      ///< [m^2] sum of squared horizontal distances
   double yaw_squares = 0.0;  ///< [rad^2] sum
   double max = 0.0;          ///< [m] largest distance
+  double yaw_max = 0.0;      ///< [rad]
 
   void add(const base::Pose& estimated, const base::Pose& truth);
   void add(const LocalizationError& other);
   double rms() const;      ///< [m]; 0 without steps
-  double yaw_rms() const;  ///< [rad]
+  double yaw_rms() const;  ///< [rad]; 0 without steps
 };
 
 /// Called once per step. Uses the first sensor of each type, with the errors stated in its settings.

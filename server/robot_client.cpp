@@ -151,7 +151,7 @@ void RobotClient::step(std::int64_t now) {
   scans_ = link_.scans();
   next_ = next_step(now);
   if (own_) own_->predict(now, body_.state().X_WM.z);
-  if (own_ && !real_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
+  if (own_ && !real_ && !is_lost()) position_errors_.add(own_state().X_WM, body_.state().X_WM);
   command_ = {};
   if (started_ && !is_lost() && !is_blind(now) && (!real_ || real_->ready(now))) decide(now);
   if (real_) real_->drive(command_, now);

@@ -61,7 +61,7 @@ struct OwnStateStats {
   bool gyro = false;
   bool gps = false;
   OwnStateCounts counts;
-  PositionErrors errors;                ///< of a simulated robot, at its steps that were not lost
+  control::LocalizationError errors;    ///< of a simulated robot, at its steps that were not lost
   double sigma = 0.0;                   ///< [m] standard deviation of the position, at the end
   estimation::Calibration calibration;  ///< at the end
 };
@@ -187,7 +187,7 @@ class RobotClient {
   std::function<std::int64_t()> utc_;
   std::optional<OwnState> own_;                        ///< empty: drives by its true state
   std::optional<SimulatedSensors> simulated_sensors_;  ///< by which a simulated robot localizes itself
-  PositionErrors position_errors_;
+  control::LocalizationError position_errors_;
   std::optional<TruthReport> truth_;
   std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, set in `run`
   std::unique_ptr<RealRobot> real_;    ///< null: the body is a model
