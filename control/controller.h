@@ -9,6 +9,7 @@
 #include "base/pose.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "base/state_quality.h"
 #include "world/lights.h"
 
 namespace sf::control {
@@ -18,6 +19,7 @@ struct Neighbour {
   std::uint32_t id = 0;  ///< id in packets
   base::Report state;    ///< ignore its `mover`
   base::Intent intent;
+  base::StateQuality quality = {};  ///< of `state`, as the robot estimates it; not stated: unknown, or the true state
 };
 
 /// Inputs of one control step. Spans are valid during the call.

@@ -93,13 +93,17 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
     if (reading.sensor == 0) take(reading);
 
   ControllerInput seen = input;
-  const estimation::Estimate now = localization_->predict(input.time).estimate;
+  const estimation::Prediction prediction = localization_->predict(input.time);
+  const estimation::Estimate& now = prediction.estimate;
   const auto at_height = [&](base::Pose X_WM) {
     X_WM.z = input.state.X_WM.z;
     return X_WM;
   };
   seen.state.X_WM = at_height(now.X_WM);
   seen.state.velocity = now.velocity;
+  state_ = seen.state;
+  state_.time = input.time;
+  quality_ = quality_of(prediction);
   readings_.assign(input.readings.begin(), input.readings.end());
   std::pair last{input.time, now.X_WM};  // most readings have one time
   for (base::ReadingBlock& reading : readings_) {

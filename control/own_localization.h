@@ -55,6 +55,9 @@ class OwnLocalization {
   /// The pose of the first call is taken as the known start. Spans are valid until the next call.
   ControllerInput localize(const ControllerInput& input);
 
+  /// Returns the estimate at the last step, which the robot broadcasts, and its quality.
+  const base::Report& state() const { return state_; }
+  const base::StateQuality& quality() const { return quality_; }
   /// [ns] within the last second, or later. @pre after a step; z is 0
   base::Pose pose_at(std::int64_t time) const { return localization_->predict(time).estimate.X_WM; }
   /// Returns the error relative to the poses of the inputs.
@@ -67,6 +70,8 @@ class OwnLocalization {
   std::optional<estimation::Localization> localization_;  ///< set from the first step on
   std::array<std::int64_t, 256> last_;                    ///< [ns] by sensor type: time of the last reading
   std::vector<base::ReadingBlock> readings_;
+  base::Report state_;
+  base::StateQuality quality_;  ///< not stated before the first step
   LocalizationError error_;
 };
 

@@ -12,8 +12,10 @@
 #include "base/error.h"
 #include "base/thread_pool.h"
 #include "base/time.h"
+#include "control/own_localization.h"
 #include "farm/schedule.h"
 #include "netio/packets.h"
+#include "robots/kinematics.h"
 #include "sensors/laser.h"
 #include "world/append_robot.h"
 #include "world/ground.h"
@@ -62,6 +64,8 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       first_(world.movers.size() + 1),
       intents_(world.movers.size()),
       next_intents_(world.movers.size()),
+      estimates_(world.movers.size()),
+      next_estimates_(world.movers.size()),
       others_(farm_.thread_pool().threads()),
       signals_(world.lights.size()),
       light_states_(world.lights.size()),
@@ -168,7 +172,8 @@ base::TickRecord Simulation::step() {
   sort_by_mover(readings);
   decide(time);
   move_s_ += base::seconds_since(start);
-  share_->end_step({commands_, next_intents_}, {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
+  share_->end_step({commands_, next_intents_, next_estimates_},
+                   {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
   return {tick_++, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_};
 }
 
@@ -185,6 +190,7 @@ void Simulation::set_absent(std::uint32_t mover, bool gone) {
   absent_[mover] = gone;
   commands_[mover] = {};
   intents_[mover] = next_intents_[mover] = {};
+  estimates_[mover] = next_estimates_[mover] = {};
   if (!maps_.empty()) maps_[mover] = next_maps_[mover] = {};
   fleet_.set_absent(mover, gone);
   farm_.set_absent(mover, gone);
@@ -227,6 +233,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
   if (states_) states_->add_mover(fleet_.reports()[row]);
   for (auto* const twists : {&commands_, &executed_commands_}) twists->emplace_back();
   for (auto* const intents : {&intents_, &next_intents_}) intents->emplace_back();
+  for (auto* const estimates : {&estimates_, &next_estimates_}) estimates->emplace_back();
   first_.push_back(0);
   absent_.push_back(false);
   if (!share_->owns(row)) farm_.sharing().leave_to_others(row);
@@ -290,6 +297,7 @@ void Simulation::command(std::span<const base::Twist> commands) {
 void Simulation::drive(std::uint32_t mover, const base::Twist& command) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   controls_[mover].driven = true;
+  estimates_[mover] = next_estimates_[mover] = {};
   if (!maps_.empty()) maps_[mover] = next_maps_[mover] = {};
   commands_[mover] = command;
 }
@@ -334,15 +342,20 @@ void Simulation::decide(std::int64_t time) {
     light_states_[i] = world::status_of(signals_[i]);
   }
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
-  if (v2v_) v2v_->send(time, fleet_.reports(), intents_, absent_);
+  if (v2v_) {
+    broadcasts_.clear();
+    for (const base::Report& report : fleet_.reports()) broadcasts_.push_back(broadcast_of(report, time));
+    v2v_->send(time, broadcasts_, absent_);
+  }
   farm_.thread_pool().parallel_for_each(controls_.size(), 16, [&](std::size_t m, unsigned thread) {
     try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
 }
 
 void Simulation::settle() {
-  share_->finish_step({commands_, next_intents_});
+  share_->finish_step({commands_, next_intents_, next_estimates_});
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
+  std::copy(next_estimates_.begin(), next_estimates_.end(), estimates_.begin());
   std::copy(next_maps_.begin(), next_maps_.end(), maps_.begin());
 }
 
@@ -392,6 +405,8 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   commands_[mover] =
       robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
   next_intents_[mover] = robot.controller->intent();
+  if (const control::OwnLocalization* own = control::localization_of(*robot.controller))
+    next_estimates_[mover] = {own->state(), own->quality()};
   if (robot.sharing != nullptr) next_maps_[mover] = robot.sharing->shared_map();
   robot.stepped = true;
 }
@@ -426,6 +441,17 @@ void Simulation::exchange_maps(control::SharesMap& controller, std::span<const c
   controller.receive_maps(maps);
 }
 
+/// Returns what a robot broadcasts at `time` [ns]: the estimate of its last step, extrapolated, if it has one.
+Broadcast Simulation::broadcast_of(const base::Report& truth, std::int64_t time) const {
+  const auto& [estimate, quality] = estimates_[truth.mover];
+  Broadcast broadcast{truth, intents_[truth.mover], quality};
+  if (!quality.stated) return broadcast;
+  const base::Report state = robots::extrapolate(estimate, time);
+  broadcast.state.X_WM = state.X_WM;
+  broadcast.state.velocity = state.velocity;
+  return broadcast;
+}
+
 void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const {
   const double v2v_range = controls_[mover].controller->v2v_range();
   if (v2v_range <= 0.0) return;
@@ -433,10 +459,9 @@ void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector
   const auto add = [&](const base::Report& other) {
     const std::uint32_t id = world_.movers[other.mover].id;
     if (other.mover == mover || world_.movers[other.mover].is_tag || absent_[other.mover]) return;
-    if (!v2v_)
-      others.push_back({id, other, intents_[other.mover]});
-    else if (const auto received = v2v_->receive(time, other.mover, {world_.movers[mover].id, id}))
-      others.push_back({id, received->state, received->intent});
+    const auto received = v2v_ ? v2v_->receive(time, other.mover, {world_.movers[mover].id, id})
+                               : std::optional(broadcast_of(other, time));
+    if (received) others.push_back({id, received->state, received->intent, received->quality});
   };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
   if (const auto remote = share_->remote_neighbours(mover))

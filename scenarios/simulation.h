@@ -136,6 +136,8 @@ class Simulation {
   /// Returns the status of the mover's controller, on any rank, after `settle`.
   ControlStatus status(std::uint32_t mover) const;
   const base::Intent& intent(std::uint32_t mover) const { return next_intents_[mover]; }
+  /// Returns the mover's estimate of its own state after the last tick, which it broadcasts from the next tick on.
+  const OwnEstimate& estimate(std::uint32_t mover) const { return next_estimates_[mover]; }
   /// Returns whether all active controllers are done, on all ranks after `settle`; false without any, and before the
   /// first tick.
   bool all_done() const;
@@ -173,6 +175,7 @@ class Simulation {
   void begin();
   ControlStatus own_status(std::uint32_t mover) const;
   void exchange_maps(control::SharesMap& controller, std::span<const control::Neighbour> others) const;
+  Broadcast broadcast_of(const base::Report& truth, std::int64_t time) const;
   void find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const;
 
   std::unique_ptr<FleetShare> share_;
@@ -196,6 +199,9 @@ class Simulation {
   std::vector<base::ReadingBlock> readings_;  ///< `early_` and the tick's; empty if `early_` is
   std::vector<base::Intent> intents_;         ///< per mover, broadcast in this tick
   std::vector<base::Intent> next_intents_;    ///< broadcast from the next tick on
+  std::vector<OwnEstimate> estimates_;        ///< as `intents_`
+  std::vector<OwnEstimate> next_estimates_;   ///< as `next_intents_`
+  std::vector<Broadcast> broadcasts_;         ///< per mover, for `v2v_`
   std::vector<std::shared_ptr<const control::SharedMap>> maps_;       ///< as `intents_`; empty: no robot shares its map
   std::vector<std::shared_ptr<const control::SharedMap>> next_maps_;  ///< as `next_intents_`
   std::vector<std::vector<control::Neighbour>> others_;               ///< per thread
