@@ -2,6 +2,7 @@
 // Interface of robot controllers: readings in, twist out. The simulation calls a controller in process; `sensorfarm
 // robot` runs the same code over UDP. For the list of controllers, their names and settings see control/controllers.h.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -22,6 +23,13 @@ struct Neighbour {
   base::StateQuality quality = {};  ///< of `state`, as the robot estimates it; not stated: unknown, or the true state
 };
 
+/// The robot's pose as measured by a positioning system.
+struct MeasuredPose {
+  std::int64_t time = 0;               ///< [ns] of the measurement
+  base::Pose X_WM;                     ///< finite
+  std::array<double, 6> covariance{};  ///< xx, xy, x yaw, yy, y yaw, yaw yaw [m^2, m rad, rad^2], positive definite
+};
+
 /// Inputs of one control step. Spans are valid during the call.
 struct ControllerInput {
   std::int64_t time = 0;  ///< [ns] simulated time, or the robot's clock; does not decrease
@@ -33,6 +41,8 @@ struct ControllerInput {
   bool started = true;                       ///< the start signal was given
   std::span<const Neighbour> others;         ///< robots within `Controller::v2v_range`, in order of id
   std::span<const world::Signal> signals{};  ///< one per row of `World::lights`
+  /// Arrived since the last call, for the estimate of its own state; may be late and out of order.
+  std::span<const MeasuredPose> poses = {};
 };
 
 /// One object per robot. Calls on one object are made by one thread at a time; different objects may run in parallel.

@@ -91,6 +91,7 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
   }
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.sensor == 0) take(reading);
+  for (const MeasuredPose& pose : input.poses) localization_->add_pose(pose.time, pose.X_WM, pose.covariance);
 
   ControllerInput seen = input;
   const estimation::Prediction prediction = localization_->predict(input.time);

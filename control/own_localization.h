@@ -1,6 +1,6 @@
 #pragma once
-// Estimates a controller's state from the robot's own encoders, gyro and GPS receiver, in place of its true state (the
-// shell's setting `localize`).
+// Estimates a controller's state from the robot's own encoders, gyro and GPS receiver, and from poses measured by a
+// positioning system, in place of its true state (the shell's setting `localize`).
 
 #include <array>
 #include <cstdint>

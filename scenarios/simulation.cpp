@@ -70,6 +70,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       signals_(world.lights.size()),
       light_states_(world.lights.size()),
       absent_(world.movers.size(), false),
+      positioning_(options.positioning),
       seed_(options.seed),
       start_at_(base::nanoseconds(options.start_at)),
       interval_(base::nanoseconds(world.interval)) {
@@ -88,6 +89,15 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
                                                          : options.actor));
   make_room();
   warn_of_long_ways();
+  if (positioning_) warn_of_unused_poses();
+}
+
+void Simulation::warn_of_unused_poses() {
+  for (std::uint32_t m = 0; m < controls_.size(); ++m)
+    if (controls_[m].positioning || !share_->owns(m)) return;
+  warnings_.push_back({world_.file, 0,
+                       "[positioning] measures poses of robots that localize themselves, but there are none; expected "
+                       "a robot with a controller and encoder( ... )"});
 }
 
 /// Warns about the first robot whose speed limits allow displacements longer than contact tests cover in a tick.
@@ -143,6 +153,8 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   robot.sharing = dynamic_cast<control::SharesMap*>(robot.controller.get());
   if (robot.sharing != nullptr && !robot.sharing->shares_map()) robot.sharing = nullptr;
   if (robot.sharing != nullptr) share_->check_may_share_maps();
+  if (positioning_ && control::localization_of(*robot.controller) != nullptr)
+    robot.positioning.emplace(*positioning_, world_.movers[mover].id);
   robot.rate = made.rate;
   robot.on_scans = made.on_scans;
   if (!(robot.on_scans && actor.link.perfect())) robot.mailbox.emplace(actor.link, world_.movers[mover].id);
@@ -394,6 +406,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   } else if (!readings_.empty()) {
     fresh = newest_of(std::span(sorted_).subspan(first, count));
   }
+  if (robot.positioning) robot.positioning->measure(time, fleet_.reports()[mover].X_WM);
   const bool contact = fleet_.contacts()[mover] != 0;
   if (!due(robot, fresh, time, contact)) return;
 
@@ -402,8 +415,9 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   find_others(mover, time, others);
   if (robot.sharing != nullptr) exchange_maps(*robot.sharing, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
-  commands_[mover] =
-      robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
+  const auto poses = robot.positioning ? robot.positioning->receive(time) : std::span<const control::MeasuredPose>();
+  commands_[mover] = robot.controller->step(
+      {time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_, poses});
   next_intents_[mover] = robot.controller->intent();
   if (const control::OwnLocalization* own = control::localization_of(*robot.controller))
     next_estimates_[mover] = {own->state(), own->quality()};

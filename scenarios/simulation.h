@@ -29,6 +29,7 @@
 #include "robots/neighbour_grid.h"
 #include "scenarios/fleet_share.h"
 #include "scenarios/mailbox.h"
+#include "scenarios/positioning.h"
 #include "scenarios/state_link.h"
 #include "scenarios/v2v_link.h"
 #include "world/lights.h"
@@ -58,10 +59,11 @@ struct SimulationOptions {
   std::vector<Actor> actors;  ///< per mover by row, tags included; empty: `actor` for all robots, and tags at rest
   double start_at = 0.0;      ///< [s] time of the start signal
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: the farm has the true states
-  std::optional<V2vLinkOptions> v2v;       ///< between robots; nullopt: V2V is current. Not with tiles
-  bool no_return_inf = false;              ///< see farm::FarmOptions
-  bool noise = true;                       ///< see farm::FarmOptions
-  const raycast::CasterType* caster = nullptr;  ///< null: chosen by `raycast::choose_caster`
+  std::optional<PositioningOptions> positioning;  ///< of robots that localize themselves; nullopt: none
+  std::optional<V2vLinkOptions> v2v;              ///< between robots; nullopt: V2V is current. Not with tiles
+  bool no_return_inf = false;                     ///< see farm::FarmOptions
+  bool noise = true;                              ///< see farm::FarmOptions
+  const raycast::CasterType* caster = nullptr;    ///< null: chosen by `raycast::choose_caster`
   cluster::Ranks* ranks = nullptr;  ///< share the fleet, with the same options; null: this process has all of it
   double balance = 0.0;  ///< [s] simulated time between repartitions of the tiles by measured times; 0: fixed tiles,
                          ///< and ranks keep only the walls of their own
@@ -147,15 +149,17 @@ class Simulation {
 
  private:
   void warn_of_long_ways();
+  void warn_of_unused_poses();
   struct RobotControl {
     std::unique_ptr<control::Controller> controller;  ///< null: the mover remains at rest
     control::SharesMap* sharing = nullptr;            ///< the controller; null: it does not share its map
     double rate = 10.0;                               ///< [Hz]
     bool on_scans = false;                            ///< steps on new scans and on contact instead of at its rate
     bool stepped = false;
-    bool driven = false;             ///< externally (`drive`)
-    std::uint64_t begun = 0;         ///< number of steps at its rate
-    std::optional<Mailbox> mailbox;  ///< nullopt: readings arrive immediately
+    bool driven = false;                     ///< externally (`drive`)
+    std::uint64_t begun = 0;                 ///< number of steps at its rate
+    std::optional<Mailbox> mailbox;          ///< nullopt: readings arrive immediately
+    std::optional<Positioning> positioning;  ///< nullopt: no poses
   };
   RobotControl make_control(std::uint32_t mover, const Actor& actor);
   void use_control(RobotControl control);
@@ -216,6 +220,7 @@ class Simulation {
   double v2v_range_ = 0.0;                        ///< [m] largest of all controllers
   std::shared_ptr<const void> earlier_readings_;  ///< valid until the next step
   std::vector<record::JoinedMover> joined_;
+  std::optional<PositioningOptions> positioning_;
   std::uint64_t seed_;
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]
