@@ -60,6 +60,8 @@ class Controller {
   virtual bool done() const { return false; }
   /// Returns the control error of the last step, in the controller's own unit, for statistics; NaN without an error.
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
+  /// Returns the digital outputs that a real robot with such pins sets after a step, by bit (docs/robots.md).
+  virtual std::uint8_t outputs() const { return 0; }
 };
 
 /// Returns the newest reading of one sensor; null if there is none.

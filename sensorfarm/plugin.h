@@ -14,7 +14,7 @@ namespace sensorfarm {
 
 /// Incremented with every change of these headers that changes the layout of a type. A library with another number is
 /// refused.
-inline constexpr int kPluginInterface = 3;
+inline constexpr int kPluginInterface = 4;
 
 /// The controllers and sensors of a plug-in.
 struct Plugin {

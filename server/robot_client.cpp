@@ -291,9 +291,14 @@ void RobotClient::decide(std::int64_t now) {
   control::ControllerInput input{now, own_state(), readings_, body_.contact(), started_, others_, signals_};
   input.state.time = now;
   command_ = made_.controller->step(input);
+  if (real_) set_outputs(made_.controller->outputs(), now);
   ++steps_;
   control::add(error_, made_.controller->error());
   if (map_) draw_map(now);
+}
+
+void RobotClient::set_outputs(std::uint8_t bits, std::int64_t now) {
+  if (!real_->set_outputs(bits) && bits != 0) log_.note_ignored_outputs(real_->type().title, now);
 }
 
 void RobotClient::draw_map(std::int64_t now) {

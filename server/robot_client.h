@@ -158,6 +158,7 @@ class RobotClient {
   void add_own_state(const RobotClientOptions& options);
   void update_real(std::int64_t now);
   void follow_real(std::int64_t now);
+  void set_outputs(std::uint8_t bits, std::int64_t now);
   void draw_map(std::int64_t now);
 
   const world::World& world_;

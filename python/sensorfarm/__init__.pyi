@@ -182,7 +182,7 @@ class Settings:
 class Controller(Protocol):
     """Your own controller: a class of this shape, not a subclass. Optional: class attributes `rate` [Hz] (10),
     `on_scans` (False: steps at `rate`, not on each new scan) and `stops_on_bumper` (True); methods radio_range() [m],
-    done() and error()."""
+    done(), error() and outputs() (bits of a real robot's digital outputs, docs/robots.md)."""
     def __init__(self, robot: Robot, settings: Settings) -> None: ...
     def step(self, input: Input) -> tuple[float, float, float]:
         """Returns forward [m/s], left [m/s], turn [rad/s] to drive until the next call."""
