@@ -2,6 +2,7 @@
 // Interface of robot controllers: readings in, twist out. The simulation calls a controller in process; `sensorfarm
 // robot` runs the same code over UDP. For the list of controllers, their names and settings see control/controllers.h.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "base/pose.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "base/state_quality.h"
 #include "world/lights.h"
 
 namespace sf::world {
@@ -23,6 +25,14 @@ struct Neighbour {
   std::uint32_t id = 0;  ///< id in packets
   base::Report state;    ///< ignore its `mover`
   base::Intent intent;
+  base::StateQuality quality = {};  ///< of `state`, as the robot estimates it; not stated: unknown, or the true state
+};
+
+/// The robot's pose as measured by a positioning system.
+struct MeasuredPose {
+  std::int64_t time = 0;               ///< [ns] of the measurement
+  base::Pose X_WM;                     ///< finite
+  std::array<double, 6> covariance{};  ///< xx, xy, x yaw, yy, y yaw, yaw yaw [m^2, m rad, rad^2], positive definite
 };
 
 /// Inputs of one control step. Spans are valid during the call.
@@ -38,6 +48,8 @@ struct ControllerInput {
   std::span<const world::Signal> signals{};  ///< one per row of `World::lights`
   /// Roads with the current uses of their lanes (world/roads/lane_use.h); null: as at the start.
   std::shared_ptr<const world::RoadNetwork> roads{};
+  /// Arrived since the last call, for the estimate of its own state; may be late and out of order.
+  std::span<const MeasuredPose> poses = {};
 };
 
 /// One object per robot. Calls on one object are made by one thread at a time; different objects may run in parallel.
@@ -55,6 +67,8 @@ class Controller {
   virtual bool done() const { return false; }
   /// Returns the control error of the last step, in the controller's own unit, for statistics; NaN without an error.
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
+  /// Returns the digital outputs that a real robot with such pins sets after a step, by bit (docs/robots.md).
+  virtual std::uint8_t outputs() const { return 0; }
 };
 
 /// Returns the newest reading of one sensor; null if there is none.

@@ -98,6 +98,9 @@ class OwnController final : public Controller {
   double error() const override {
     return guarded([&] { return inner_->error(); });
   }
+  std::uint8_t outputs() const override {
+    return guarded([&] { return inner_->outputs(); });
+  }
 
  private:
   const world::World& world_;

@@ -46,7 +46,7 @@ bool can_localize(const world::Mover& mover) { return first_sensor(mover, "encod
 void LocalizationError::add(const base::Pose& estimated, const base::Pose& truth) {
   const double distance = std::hypot(estimated.x - truth.x, estimated.y - truth.y);
   const double turned = base::wrap_angle(estimated.yaw - truth.yaw);
-  add({1, distance * distance, turned * turned, distance});
+  add({1, distance * distance, turned * turned, distance, std::abs(turned)});
 }
 
 void LocalizationError::add(const LocalizationError& other) {
@@ -54,6 +54,7 @@ void LocalizationError::add(const LocalizationError& other) {
   squares += other.squares;
   yaw_squares += other.yaw_squares;
   max = std::max(max, other.max);
+  yaw_max = std::max(yaw_max, other.yaw_max);
 }
 
 double LocalizationError::rms() const {
@@ -76,15 +77,20 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
   }
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.sensor == 0) take(reading);
+  for (const MeasuredPose& pose : input.poses) localization_->add_pose(pose.time, pose.X_WM, pose.covariance);
 
   ControllerInput seen = input;
-  const estimation::Estimate now = localization_->predict(input.time).estimate;
+  const estimation::Prediction prediction = localization_->predict(input.time);
+  const estimation::Estimate& now = prediction.estimate;
   const auto at_height = [&](base::Pose X_WM) {
     X_WM.z = input.state.X_WM.z;
     return X_WM;
   };
   seen.state.X_WM = at_height(now.X_WM);
   seen.state.velocity = now.velocity;
+  state_ = seen.state;
+  state_.time = input.time;
+  quality_ = quality_of(prediction);
   readings_.assign(input.readings.begin(), input.readings.end());
   std::pair last{input.time, now.X_WM};  // most readings have one time
   for (base::ReadingBlock& reading : readings_) {

@@ -1,6 +1,6 @@
 #pragma once
-// Estimates a controller's state from the robot's own encoders, gyro and GPS receiver, in place of its true state (the
-// shell's setting `localize`).
+// Estimates a controller's state from the robot's own encoders, gyro and GPS receiver, and from poses measured by a
+// positioning system, in place of its true state (the shell's setting `localize`).
 
 #include <array>
 #include <cstdint>
@@ -23,14 +23,15 @@ bool can_localize(const world::Mover& mover);
 /// Errors of a robot's estimated poses relative to its true ones, at the steps of its controller.
 struct LocalizationError {
   std::uint64_t steps = 0;
-  double squares = 0.0;      ///< [m^2] sum of squared distances
+  double squares = 0.0;      ///< [m^2] sum of squared horizontal distances
   double yaw_squares = 0.0;  ///< [rad^2] sum
   double max = 0.0;          ///< [m] largest distance
+  double yaw_max = 0.0;      ///< [rad]
 
   void add(const base::Pose& estimated, const base::Pose& truth);
   void add(const LocalizationError& other);
   double rms() const;      ///< [m]; 0 without steps
-  double yaw_rms() const;  ///< [rad]
+  double yaw_rms() const;  ///< [rad]; 0 without steps
 };
 
 /// Called once per step. Uses the first sensor of each type, with the errors stated in its settings.
@@ -43,6 +44,9 @@ class OwnLocalization {
   /// The pose of the first call is taken as the known start. Spans are valid until the next call.
   ControllerInput localize(const ControllerInput& input);
 
+  /// Returns the estimate at the last step, which the robot broadcasts, and its quality.
+  const base::Report& state() const { return state_; }
+  const base::StateQuality& quality() const { return quality_; }
   /// [ns] within the last second, or later. @pre after a step; z is 0
   base::Pose pose_at(std::int64_t time) const { return localization_->predict(time).estimate.X_WM; }
   /// Returns the error relative to the poses of the inputs.
@@ -55,6 +59,8 @@ class OwnLocalization {
   std::optional<estimation::Localization> localization_;  ///< set from the first step on
   std::array<std::int64_t, 256> last_;                    ///< [ns] by sensor type: time of the last reading
   std::vector<base::ReadingBlock> readings_;
+  base::Report state_;
+  base::StateQuality quality_;  ///< not stated before the first step
   LocalizationError error_;
 };
 

@@ -22,6 +22,7 @@
 #include "raycast/casters.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
+#include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
 #include "sensors/own_sensors.h"
 #include "viz/top_view.h"
@@ -39,6 +40,10 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
   simulation.ranks = ranks;
   simulation.noise = options.noise;
   simulation.caster = raycast::caster_named(options.caster);
+  if (!options.positioning.empty()) {
+    simulation.positioning = scenarios::parse_positioning("positioning", options.positioning);
+    simulation.positioning->link.seed = options.seed;
+  }
   const bool none = options.controller == "none";
   simulation.actor.controller = library::controller_of(none ? "" : options.controller, options.settings);
   if (options.controller.empty())

@@ -112,7 +112,7 @@ Options options_of(Keywords& given) {
   Options options;
   py::object controller = py::str("");
   given.read("robots", options.robots), given.read("of", options.of), given.read("seed", options.seed);
-  given.read("robot_from", options.robot_from);
+  given.read("robot_from", options.robot_from), given.read("positioning", options.positioning);
   given.read("threads", options.threads), given.read("noise", options.noise);
   given.read("accuracy", options.accuracy), given.read("device", options.device), given.read("caster", options.caster);
   given.read("require_vulkan", options.require_vulkan);
@@ -321,7 +321,7 @@ void add_simulation(py::module_& module) {
         "device='', caster='auto', "
         "require_vulkan=False, "
         "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
-        "compression='zstd', writable=False (docs/python.md)")
+        "compression='zstd', positioning='', writable=False (docs/python.md)")
       .def_static(
           "from_text",
           [](Text text, Text name, const py::kwargs& options) {

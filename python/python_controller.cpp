@@ -32,6 +32,7 @@ std::string object_text(py::handle text) {
 constexpr const char* expected_of(const Twist&) { return "three numbers (forward, left, turn) in m/s, m/s and rad/s"; }
 constexpr const char* expected_of(bool) { return "True or False"; }
 constexpr const char* expected_of(double) { return "a number"; }
+constexpr const char* expected_of(std::uint8_t) { return "a whole number from 0 to 255"; }
 
 /// @param from origin of the value, called if it has another type: "mine.py:7: step() returned "
 template <class Value, class From>
@@ -49,7 +50,8 @@ class PythonController final : public Controller {
         robot_(std::move(robot)),
         object_(std::move(object)),
         has_done_(py::hasattr(object_, "done")),
-        has_error_(py::hasattr(object_, "error")) {}
+        has_error_(py::hasattr(object_, "error")),
+        has_outputs_(py::hasattr(object_, "outputs")) {}
   PythonController(const PythonController&) = delete;
   PythonController& operator=(const PythonController&) = delete;
   ~PythonController() override {
@@ -74,6 +76,9 @@ class PythonController final : public Controller {
   double error() const override {
     return has_error_ ? in_python(file_, [&] { return returned<double>("error"); }) : Controller::error();
   }
+  std::uint8_t outputs() const override {
+    return has_outputs_ ? in_python(file_, [&] { return returned<std::uint8_t>("outputs"); }) : std::uint8_t{0};
+  }
 
  private:
   template <class Value, class... Arguments>
@@ -85,7 +90,7 @@ class PythonController final : public Controller {
   std::string file_;
   Robot robot_;
   py::object object_;
-  bool has_done_, has_error_;
+  bool has_done_, has_error_, has_outputs_;
 };
 
 /// Returns whether the callable takes these arguments: Python's `bind` refuses them otherwise. Callables without a
@@ -133,7 +138,7 @@ void check_method(const py::object& object, const char* method, const char* para
 /// @throws std::runtime_error with the place and the expected signature of the first method that cannot be called
 py::object with_checked_methods(py::object object) {
   check_method(object, "step", "(self, input)", 1);
-  for (const char* method : {"radio_range", "done", "error"}) check_method(object, method, "(self)", 0);
+  for (const char* method : {"radio_range", "done", "error", "outputs"}) check_method(object, method, "(self)", 0);
   return object;
 }
 

@@ -10,7 +10,8 @@ namespace sf::robots {
 namespace {
 
 // Commands.
-constexpr std::uint8_t kStart = 128, kSafe = 131, kDriveDirect = 145, kStream = 148, kPauseStream = 150;
+constexpr std::uint8_t kStart = 128, kSafe = 131, kLowSideDrivers = 138, kDriveDirect = 145, kDigitalOutputs = 147,
+                       kStream = 148, kPauseStream = 150;
 constexpr std::uint8_t kHeader = 19;
 
 /// Fixed bytes of a frame: positions and values of ids and lengths.
@@ -78,6 +79,11 @@ base::Bytes create_drive(const CreateWheels& wheels) {
   return bytes;
 }
 
+base::Bytes create_outputs(std::uint8_t bits) {
+  return {kDigitalOutputs, static_cast<std::uint8_t>(bits & 7u), kLowSideDrivers,
+          static_cast<std::uint8_t>(bits >> 3 & 7u)};
+}
+
 base::Bytes create_stop() {
   base::Bytes bytes = create_drive({});
   bytes.insert(bytes.end(), {kPauseStream, 0, kStart});
@@ -111,6 +117,8 @@ CreateFrame decoded(std::span<const std::uint8_t> bytes) {
   f.temperature = static_cast<std::int8_t>(byte(data_of(24)));
   f.charge = word(data_of(25));
   f.capacity = word(data_of(26));
+  f.inputs = byte(data_of(32));
+  f.analog = word(data_of(33));
   f.mode = byte(data_of(35));
   return f;
 }

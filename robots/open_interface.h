@@ -40,6 +40,9 @@ base::Bytes create_start(CreateOdometry odometry = CreateOdometry::motion);
 /// Safe mode: the robot stops by itself at cliffs, when a wheel drops and when the charger is plugged in.
 base::Bytes create_safe();
 base::Bytes create_drive(const CreateWheels& wheels);
+/// Sets the outputs of the cargo bay. Works in safe and full mode.
+/// @param bits 0 to 2: digital outputs at pins 19, 7, 20; 3 to 5: low-side drivers at pins 23, 22, 24
+base::Bytes create_outputs(std::uint8_t bits);
 /// Wheels stopped, stream paused, passive mode.
 base::Bytes create_stop();
 
@@ -64,6 +67,8 @@ struct CreateFrame {
   std::int8_t temperature = 0;           ///< [24] [degree Celsius] of the battery
   std::uint16_t charge = 0;              ///< [25] [mAh]
   std::uint16_t capacity = 0;            ///< [26] [mAh]
+  std::uint8_t inputs = 0;               ///< [32] bits 0 to 3: digital inputs of the cargo bay, pins 17, 5, 18, 6
+  std::uint16_t analog = 0;              ///< [33] 0 to 1023 for 0 to 5 V at pin 4
   std::uint8_t mode = safe;              ///< [35]
 };
 
@@ -73,7 +78,7 @@ struct CreatePacket {
 };
 inline constexpr CreatePacket kCreatePackets[] = {{7, 1},  {8, 1},  {9, 1},  {10, 1}, {11, 1}, {12, 1}, {13, 1},
                                                   {14, 1}, {17, 1}, {18, 1}, {19, 2}, {20, 2}, {21, 1}, {22, 2},
-                                                  {23, 2}, {24, 1}, {25, 2}, {26, 2}, {35, 1}};
+                                                  {23, 2}, {24, 1}, {25, 2}, {26, 2}, {32, 1}, {33, 2}, {35, 1}};
 
 /// Finds frames in a byte stream with losses and other data.
 class CreateStream {

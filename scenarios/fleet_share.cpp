@@ -62,7 +62,7 @@ class RankShare : public FleetShare {
   farm::Farm& farm() { return *farm_; }
 
  private:
-  FleetDecisions decisions(const FleetStep& step) { return {step.commands, step.intents, statuses_}; }
+  FleetDecisions decisions(const FleetStep& step) { return {step.commands, step.intents, step.estimates, statuses_}; }
 
   cluster::Ranks& ranks_;
   farm::Farm* farm_ = nullptr;

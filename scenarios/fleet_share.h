@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/report.h"
+#include "base/state_quality.h"
 #include "cluster/ranks.h"
 #include "farm/farm.h"
 #include "robots/fleet.h"
@@ -27,10 +28,17 @@ struct ControlStatus {
   double error = std::numeric_limits<double>::quiet_NaN();  ///< see control::Controller
 };
 
+/// A robot's estimate of its own state, which it broadcasts.
+struct OwnEstimate {
+  base::Report state;
+  base::StateQuality quality;  ///< not stated: it has no estimate, and broadcasts its true state
+};
+
 /// Decisions of one step, one row per mover. `FleetShare::finish_step` fills in those of other processes.
 struct FleetStep {
   std::span<base::Twist> commands;
   std::span<base::Intent> intents;
+  std::span<OwnEstimate> estimates;
 };
 
 /// Outcome of this process's part of a step.

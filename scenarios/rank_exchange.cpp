@@ -13,7 +13,15 @@ namespace sf::scenarios {
 namespace {
 
 enum Header : std::uint8_t { kStop = 1, kFailed = 2 };
-enum Present : std::uint8_t { kStepped = 1, kDone = 2, kError = 4, kIntent = 8, kCommand = 16, kLeft = 32 };
+enum Present : std::uint8_t {
+  kStepped = 1,
+  kDone = 2,
+  kError = 4,
+  kIntent = 8,
+  kCommand = 16,
+  kLeft = 32,
+  kEstimate = 64
+};
 
 /// [1/s] Rays, or the number of rays that take as long as a robot's motion and controller, and each reading.
 constexpr double kPerRobot = 500.0, kPerReading = 20.0;
@@ -22,6 +30,28 @@ constexpr double kPerRobot = 500.0, kPerReading = 20.0;
 bool same(const base::Twist& p, const base::Twist& q) { return std::memcmp(&p, &q, sizeof p) == 0; }
 bool same(const base::Intent& p, const base::Intent& q) {
   return p.follows == q.follows && p.checkpoint == q.checkpoint && p.docking == q.docking;
+}
+
+/// An estimate changes in every step. The id of the mover and its contacts are not part of it.
+void put_estimate(const OwnEstimate& estimate, base::ByteWriter& out) {
+  const base::Pose& X = estimate.state.X_WM;
+  const base::Twist& v = estimate.state.velocity;
+  out.put(estimate.state.time);
+  for (const double value : {X.x, X.y, X.z, X.yaw, v.forward, v.left, v.turn}) out.put(value);
+  out.put(estimate.quality.age);
+  for (const float value : estimate.quality.covariance) out.put(value);
+}
+
+OwnEstimate get_estimate(base::ByteReader& in) {
+  OwnEstimate estimate;
+  base::Pose& X = estimate.state.X_WM;
+  base::Twist& v = estimate.state.velocity;
+  estimate.state.time = in.get<std::int64_t>();
+  for (double* value : {&X.x, &X.y, &X.z, &X.yaw, &v.forward, &v.left, &v.turn}) *value = in.get<double>();
+  estimate.quality.stated = true;
+  estimate.quality.age = in.get<std::int64_t>();
+  for (float& value : estimate.quality.covariance) value = in.get<float>();
+  return estimate;
 }
 
 }  // namespace
@@ -121,14 +151,18 @@ void RankExchange::put_mover(std::uint32_t mover, const FleetDecisions& own, bas
   const bool new_intent = !same(intent, sent_intents_[mover]);
   const bool new_command = !same(command, sent_commands_[mover]);
   const bool left = command.left != 0.0 || std::signbit(command.left);
+  const OwnEstimate& estimate = own.estimates[mover];
+  const bool new_estimate = status.stepped && estimate.quality.stated;
   out.put(static_cast<std::uint8_t>((status.stepped ? kStepped : 0) | (status.done ? kDone : 0) | (error ? kError : 0) |
-                                    (new_intent ? kIntent : 0) | (new_command ? kCommand : 0) | (left ? kLeft : 0)));
+                                    (new_intent ? kIntent : 0) | (new_command ? kCommand : 0) | (left ? kLeft : 0) |
+                                    (new_estimate ? kEstimate : 0)));
   if (error) out.put(status.error);
   if (new_intent) {
     out.put(intent.follows);
     out.put(intent.checkpoint);
     out.put(static_cast<std::uint8_t>(intent.docking));
   }
+  if (new_estimate) put_estimate(estimate, out);
   if (!new_command) return;
   out.put(command.forward);
   if (left) out.put(command.left);
@@ -147,6 +181,7 @@ void RankExchange::get_mover(std::uint32_t mover, const FleetDecisions& all, bas
     intent.checkpoint = in.get<std::uint32_t>();
     intent.docking = in.get<std::uint8_t>() != 0;
   }
+  if ((present & kEstimate) != 0) all.estimates[mover] = get_estimate(in);
   if ((present & kCommand) != 0) {
     base::Twist& command = sent_commands_[mover];
     command.forward = in.get<double>();

@@ -1,6 +1,6 @@
 #pragma once
 // A fleet shared by the ranks of a job. A rank decides and records for its own robots. Once per tick it sends the
-// others what they cannot compute: commands, intents, and data for reports.
+// others what they cannot compute: commands, intents, estimates of own states, and data for reports.
 
 #include <cstdint>
 #include <exception>
@@ -19,6 +19,7 @@ namespace sf::scenarios {
 struct FleetDecisions {
   std::span<base::Twist> commands;
   std::span<base::Intent> intents;
+  std::span<OwnEstimate> estimates;
   std::span<ControlStatus> statuses;
 };
 

@@ -85,11 +85,12 @@ struct Scenario {
   double duration = 60.0;
   int duration_line = 0;  ///< line that sets it
   std::uint64_t seed = 1;
-  double tick = 0.0;                       ///< [s]; 0: the world's
-  FleetSpawn fleet;                        ///< replaces the world's robots
-  std::optional<Plant> plant;              ///< of every robot; nullopt: as in the world file
-  double start_at = 0.0;                   ///< [s] time of the start signal
-  std::optional<V2vLinkOptions> v2v;       ///< between robots; nullopt: V2V is current
+  double tick = 0.0;                              ///< [s]; 0: the world's
+  FleetSpawn fleet;                               ///< replaces the world's robots
+  std::optional<Plant> plant;                     ///< of every robot; nullopt: as in the world file
+  double start_at = 0.0;                          ///< [s] time of the start signal
+  std::optional<PositioningOptions> positioning;  ///< of robots that localize themselves; nullopt: none
+  std::optional<V2vLinkOptions> v2v;              ///< between robots; nullopt: V2V is current
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: it has the true states
   Actor actor;                             ///< default of all robots
   int default_line = 0;                    ///< line of its controller; 0: not in the file
@@ -103,6 +104,10 @@ struct Scenario {
 Scenario parse_scenario(const std::string& file, std::string_view text);
 Scenario parse_scenario(const std::string& file, const world::TomlNode& root);
 Scenario read_scenario(const std::string& file);
+
+/// Returns the options stated by the text of a scenario's table [positioning], without its heading.
+/// @throws base::InputError with `file` and line
+PositioningOptions parse_positioning(const std::string& file, std::string_view text);
 
 /// Returns the world with the scenario's changes.
 /// @throws base::InputError for unknown robots or lack of space

@@ -29,9 +29,9 @@ constexpr double kMostWhole = 9.0e15;     // limit up to which a double represen
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
-constexpr std::array<std::string_view, 17> kKeys{"name", "world", "duration", "seed",     "tick",    "robots",
+constexpr std::array<std::string_view, 18> kKeys{"name", "world", "duration", "seed",     "tick",    "robots",
                                                  "of",   "place", "plant",    "start_at", "default", "states",
-                                                 "v2v",  "link",  "robot",    "expect",   "event"};
+                                                 "v2v",  "link",  "robot",    "expect",   "event",   "positioning"};
 constexpr std::array<std::string_view, 3> kEventKeys{"at", "object", "present"};
 constexpr std::array<std::string_view, 8> kAddKeys{"at",         "add",  "like",     "pose",
                                                    "controller", "rate", "settings", "link"};
@@ -41,6 +41,9 @@ constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "se
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
 constexpr std::array<std::string_view, 7> kStatesKeys{"rate",   "delay",          "jitter",   "loss",
                                                       "filter", "position_sigma", "yaw_sigma"};
+constexpr std::array<std::string_view, 9> kPositioningKeys{
+    "rate",   "delay", "jitter", "loss", "position_sigma", "yaw_sigma", "stated_position_sigma", "stated_yaw_sigma",
+    "outages"};
 constexpr std::array<std::string_view, 5> kV2vKeys{"rate", "delay", "jitter", "loss", "forget"};
 constexpr std::array<std::string_view, 3> kLinkKeys{"delay", "jitter", "loss"};
 
@@ -148,6 +151,28 @@ std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* 
   states->position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0, "metres");
   states->yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0, "radians");
   return states;
+}
+
+PositioningOptions::Outage outage_of(const Reader& reader, const TomlNode& node) {
+  if (node.kind != NodeKind::list || node.items.size() != 2)
+    reader.fail(node, "'outages' expects a list of intervals [begin, end] in seconds");
+  const double begin = reader.number(node.items[0], "outages", 0.0, kLongest);
+  return {begin, reader.number(node.items[1], "outages", begin, kLongest)};
+}
+
+std::optional<PositioningOptions> positioning_of(const Reader& reader, const TomlNode* table) {
+  auto positioning = sent_states_of<PositioningOptions>(reader, table, kPositioningKeys);
+  if (!positioning) return positioning;
+  positioning->position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0, "metres");
+  positioning->yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0, "radians");
+  positioning->stated_position_sigma = reader.number(*table, "stated_position_sigma", 0.0, 0.0, 1.0, "metres");
+  positioning->stated_yaw_sigma = reader.number(*table, "stated_yaw_sigma", 0.0, 0.0, 1.0, "radians");
+  if (const TomlNode* outages = world::find(*table, "outages")) {
+    if (outages->kind != NodeKind::list)
+      reader.fail(*outages, "'outages' expects a list of intervals [begin, end] in seconds");
+    for (const TomlNode& node : outages->items) positioning->outages.push_back(outage_of(reader, node));
+  }
+  return positioning;
 }
 
 /// @param with_z z may be stated  @return z is NaN if it is not stated
@@ -345,6 +370,7 @@ Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest, "seconds");
   read_plant(reader, root, scenario);
   scenario.states = states_of(reader, reader.table(root, "states"));
+  scenario.positioning = positioning_of(reader, reader.table(root, "positioning"));
   scenario.v2v = v2v_of(reader, reader.table(root, "v2v"));
   scenario.actor.link = link_of(reader, reader.table(root, "link"), {});
   if (const TomlNode* table = reader.table(root, "default")) {
@@ -357,6 +383,11 @@ Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   read_expectations(reader, root, scenario);
   read_events(reader, root, scenario);
   return scenario;
+}
+
+PositioningOptions parse_positioning(const std::string& file, std::string_view text) {
+  const TomlNode root = world::parse_toml(file, text);
+  return positioning_of(Reader(file), &root).value();
 }
 
 Scenario read_scenario(const std::string& file) {

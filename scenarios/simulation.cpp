@@ -12,8 +12,10 @@
 #include "base/error.h"
 #include "base/thread_pool.h"
 #include "base/time.h"
+#include "control/own_localization.h"
 #include "farm/schedule.h"
 #include "netio/packets.h"
+#include "robots/kinematics.h"
 #include "sensors/laser.h"
 #include "world/append_robot.h"
 #include "world/ground.h"
@@ -62,10 +64,13 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       first_(world.movers.size() + 1),
       intents_(world.movers.size()),
       next_intents_(world.movers.size()),
+      estimates_(world.movers.size()),
+      next_estimates_(world.movers.size()),
       others_(farm_.thread_pool().threads()),
       signals_(world.lights.size()),
       light_states_(world.lights.size()),
       absent_(world.movers.size(), false),
+      positioning_(options.positioning),
       seed_(options.seed),
       start_at_(base::nanoseconds(options.start_at)),
       interval_(base::nanoseconds(world.interval)) {
@@ -84,6 +89,15 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
                                                          : options.actor));
   make_room();
   warn_of_long_ways();
+  if (positioning_) warn_of_unused_poses();
+}
+
+void Simulation::warn_of_unused_poses() {
+  for (std::uint32_t m = 0; m < controls_.size(); ++m)
+    if (controls_[m].positioning || !share_->owns(m)) return;
+  warnings_.push_back({world_.file, 0,
+                       "[positioning] measures poses of robots that localize themselves, but there are none; expected "
+                       "a robot with a controller and encoder( ... )"});
 }
 
 /// Warns about the first robot whose speed limits allow displacements longer than contact tests cover in a tick.
@@ -139,6 +153,8 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   robot.sharing = dynamic_cast<control::SharesMap*>(robot.controller.get());
   if (robot.sharing != nullptr && !robot.sharing->shares_map()) robot.sharing = nullptr;
   if (robot.sharing != nullptr) share_->check_may_share_maps();
+  if (positioning_ && control::localization_of(*robot.controller) != nullptr)
+    robot.positioning.emplace(*positioning_, world_.movers[mover].id);
   robot.rate = made.rate;
   robot.on_scans = made.on_scans;
   if (!(robot.on_scans && actor.link.perfect())) robot.mailbox.emplace(actor.link, world_.movers[mover].id);
@@ -168,7 +184,8 @@ base::TickRecord Simulation::step() {
   sort_by_mover(readings);
   decide(time);
   move_s_ += base::seconds_since(start);
-  share_->end_step({commands_, next_intents_}, {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
+  share_->end_step({commands_, next_intents_, next_estimates_},
+                   {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
   return {tick_++, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_};
 }
 
@@ -185,6 +202,7 @@ void Simulation::set_absent(std::uint32_t mover, bool gone) {
   absent_[mover] = gone;
   commands_[mover] = {};
   intents_[mover] = next_intents_[mover] = {};
+  estimates_[mover] = next_estimates_[mover] = {};
   if (!maps_.empty()) maps_[mover] = next_maps_[mover] = {};
   fleet_.set_absent(mover, gone);
   farm_.set_absent(mover, gone);
@@ -237,6 +255,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
   if (states_) states_->add_mover(fleet_.reports()[row]);
   for (auto* const twists : {&commands_, &executed_commands_}) twists->emplace_back();
   for (auto* const intents : {&intents_, &next_intents_}) intents->emplace_back();
+  for (auto* const estimates : {&estimates_, &next_estimates_}) estimates->emplace_back();
   first_.push_back(0);
   absent_.push_back(false);
   if (!share_->owns(row)) farm_.sharing().leave_to_others(row);
@@ -301,6 +320,7 @@ void Simulation::command(std::span<const base::Twist> commands) {
 void Simulation::drive(std::uint32_t mover, const base::Twist& command) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   controls_[mover].driven = true;
+  estimates_[mover] = next_estimates_[mover] = {};
   if (!maps_.empty()) maps_[mover] = next_maps_[mover] = {};
   commands_[mover] = command;
 }
@@ -346,15 +366,20 @@ void Simulation::decide(std::int64_t time) {
   }
   if (lanes_) lanes_->update(time, recorded_reports());
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
-  if (v2v_) v2v_->send(time, fleet_.reports(), intents_, absent_);
+  if (v2v_) {
+    broadcasts_.clear();
+    for (const base::Report& report : fleet_.reports()) broadcasts_.push_back(broadcast_of(report, time));
+    v2v_->send(time, broadcasts_, absent_);
+  }
   farm_.thread_pool().parallel_for_each(controls_.size(), 16, [&](std::size_t m, unsigned thread) {
     try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
 }
 
 void Simulation::settle() {
-  share_->finish_step({commands_, next_intents_});
+  share_->finish_step({commands_, next_intents_, next_estimates_});
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
+  std::copy(next_estimates_.begin(), next_estimates_.end(), estimates_.begin());
   std::copy(next_maps_.begin(), next_maps_.end(), maps_.begin());
 }
 
@@ -393,6 +418,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   } else if (!readings_.empty()) {
     fresh = newest_of(std::span(sorted_).subspan(first, count));
   }
+  if (robot.positioning) robot.positioning->measure(time, fleet_.reports()[mover].X_WM);
   const bool contact = fleet_.contacts()[mover] != 0;
   if (!due(robot, fresh, time, contact)) return;
 
@@ -401,9 +427,12 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   find_others(mover, time, others);
   if (robot.sharing != nullptr) exchange_maps(*robot.sharing, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
+  const auto poses = robot.positioning ? robot.positioning->receive(time) : std::span<const control::MeasuredPose>();
   commands_[mover] = robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_,
-                                             others, signals_, lanes_ ? lanes_->network() : nullptr});
+                                             others, signals_, lanes_ ? lanes_->network() : nullptr, poses});
   next_intents_[mover] = robot.controller->intent();
+  if (const control::OwnLocalization* own = control::localization_of(*robot.controller))
+    next_estimates_[mover] = {own->state(), own->quality()};
   if (robot.sharing != nullptr) next_maps_[mover] = robot.sharing->shared_map();
   robot.stepped = true;
 }
@@ -438,6 +467,17 @@ void Simulation::exchange_maps(control::SharesMap& controller, std::span<const c
   controller.receive_maps(maps);
 }
 
+/// Returns what a robot broadcasts at `time` [ns]: the estimate of its last step, extrapolated, if it has one.
+Broadcast Simulation::broadcast_of(const base::Report& truth, std::int64_t time) const {
+  const auto& [estimate, quality] = estimates_[truth.mover];
+  Broadcast broadcast{truth, intents_[truth.mover], quality};
+  if (!quality.stated) return broadcast;
+  const base::Report state = robots::extrapolate(estimate, time);
+  broadcast.state.X_WM = state.X_WM;
+  broadcast.state.velocity = state.velocity;
+  return broadcast;
+}
+
 void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const {
   const double v2v_range = controls_[mover].controller->v2v_range();
   if (v2v_range <= 0.0) return;
@@ -445,10 +485,9 @@ void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector
   const auto add = [&](const base::Report& other) {
     const std::uint32_t id = world_.movers[other.mover].id;
     if (other.mover == mover || world_.movers[other.mover].is_tag || absent_[other.mover]) return;
-    if (!v2v_)
-      others.push_back({id, other, intents_[other.mover]});
-    else if (const auto received = v2v_->receive(time, other.mover, {world_.movers[mover].id, id}))
-      others.push_back({id, received->state, received->intent});
+    const auto received = v2v_ ? v2v_->receive(time, other.mover, {world_.movers[mover].id, id})
+                               : std::optional(broadcast_of(other, time));
+    if (received) others.push_back({id, received->state, received->intent, received->quality});
   };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
   if (const auto remote = share_->remote_neighbours(mover))

@@ -29,6 +29,7 @@
 #include "robots/neighbour_grid.h"
 #include "scenarios/fleet_share.h"
 #include "scenarios/mailbox.h"
+#include "scenarios/positioning.h"
 #include "scenarios/state_link.h"
 #include "scenarios/v2v_link.h"
 #include "world/lights.h"
@@ -58,10 +59,11 @@ struct SimulationOptions {
   std::vector<Actor> actors;  ///< per mover by row, tags included; empty: `actor` for all robots, and tags at rest
   double start_at = 0.0;      ///< [s] time of the start signal
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: the farm has the true states
-  std::optional<V2vLinkOptions> v2v;       ///< between robots; nullopt: V2V is current. Not with tiles
-  bool no_return_inf = false;              ///< see farm::FarmOptions
-  bool noise = true;                       ///< see farm::FarmOptions
-  const raycast::CasterType* caster = nullptr;  ///< null: chosen by `raycast::choose_caster`
+  std::optional<PositioningOptions> positioning;  ///< of robots that localize themselves; nullopt: none
+  std::optional<V2vLinkOptions> v2v;              ///< between robots; nullopt: V2V is current. Not with tiles
+  bool no_return_inf = false;                     ///< see farm::FarmOptions
+  bool noise = true;                              ///< see farm::FarmOptions
+  const raycast::CasterType* caster = nullptr;    ///< null: chosen by `raycast::choose_caster`
   cluster::Ranks* ranks = nullptr;  ///< share the fleet, with the same options; null: this process has all of it
   double balance = 0.0;  ///< [s] simulated time between repartitions of the tiles by measured times; 0: fixed tiles,
                          ///< and ranks keep only the walls of their own
@@ -147,6 +149,8 @@ class Simulation {
   /// Returns the status of the mover's controller, on any rank, after `settle`.
   ControlStatus status(std::uint32_t mover) const;
   const base::Intent& intent(std::uint32_t mover) const { return next_intents_[mover]; }
+  /// Returns the mover's estimate of its own state after the last tick, which it broadcasts from the next tick on.
+  const OwnEstimate& estimate(std::uint32_t mover) const { return next_estimates_[mover]; }
   /// Returns whether all active controllers are done, on all ranks after `settle`; false without any, and before the
   /// first tick.
   bool all_done() const;
@@ -156,15 +160,17 @@ class Simulation {
 
  private:
   void warn_of_long_ways();
+  void warn_of_unused_poses();
   struct RobotControl {
     std::unique_ptr<control::Controller> controller;  ///< null: the mover remains at rest
     control::SharesMap* sharing = nullptr;            ///< the controller; null: it does not share its map
     double rate = 10.0;                               ///< [Hz]
     bool on_scans = false;                            ///< steps on new scans and on contact instead of at its rate
     bool stepped = false;
-    bool driven = false;             ///< externally (`drive`)
-    std::uint64_t begun = 0;         ///< number of steps at its rate
-    std::optional<Mailbox> mailbox;  ///< nullopt: readings arrive immediately
+    bool driven = false;                     ///< externally (`drive`)
+    std::uint64_t begun = 0;                 ///< number of steps at its rate
+    std::optional<Mailbox> mailbox;          ///< nullopt: readings arrive immediately
+    std::optional<Positioning> positioning;  ///< nullopt: no poses
   };
   RobotControl make_control(std::uint32_t mover, const Actor& actor);
   void use_control(RobotControl control);
@@ -184,6 +190,7 @@ class Simulation {
   void begin();
   ControlStatus own_status(std::uint32_t mover) const;
   void exchange_maps(control::SharesMap& controller, std::span<const control::Neighbour> others) const;
+  Broadcast broadcast_of(const base::Report& truth, std::int64_t time) const;
   void find_others(std::uint32_t mover, std::int64_t time, std::vector<control::Neighbour>& others) const;
 
   std::unique_ptr<FleetShare> share_;
@@ -208,6 +215,9 @@ class Simulation {
   std::vector<base::ReadingBlock> readings_;  ///< `early_` and the tick's; empty if `early_` is
   std::vector<base::Intent> intents_;         ///< per mover, broadcast in this tick
   std::vector<base::Intent> next_intents_;    ///< broadcast from the next tick on
+  std::vector<OwnEstimate> estimates_;        ///< as `intents_`
+  std::vector<OwnEstimate> next_estimates_;   ///< as `next_intents_`
+  std::vector<Broadcast> broadcasts_;         ///< per mover, for `v2v_`
   std::vector<std::shared_ptr<const control::SharedMap>> maps_;       ///< as `intents_`; empty: no robot shares its map
   std::vector<std::shared_ptr<const control::SharedMap>> next_maps_;  ///< as `next_intents_`
   std::vector<std::vector<control::Neighbour>> others_;               ///< per thread
@@ -222,6 +232,7 @@ class Simulation {
   double v2v_range_ = 0.0;                        ///< [m] largest of all controllers
   std::shared_ptr<const void> earlier_readings_;  ///< valid until the next step
   std::vector<record::JoinedMover> joined_;
+  std::optional<PositioningOptions> positioning_;
   std::uint64_t seed_;
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]

@@ -20,8 +20,7 @@ V2vLink::V2vLink(const V2vLinkOptions& options, std::size_t movers)
                     kept, movers, kMostKept));
 }
 
-void V2vLink::send(std::int64_t time, std::span<const base::Report> states, std::span<const base::Intent> intents,
-                   const std::vector<bool>& absent) {
+void V2vLink::send(std::int64_t time, std::span<const Broadcast> broadcasts, const std::vector<bool>& absent) {
   if (farm::readings_started(time, options_.rate, 0.0) <= sent_) return;
   Round round;
   if (!rounds_.empty() && rounds_.front().time < time - kept_) {
@@ -30,8 +29,8 @@ void V2vLink::send(std::int64_t time, std::span<const base::Report> states, std:
   }
   round.time = time;
   round.sequence = sent_++;
-  round.messages.resize(states.size());
-  for (std::size_t m = 0; m < states.size(); ++m) round.messages[m] = {!absent[m], states[m], intents[m]};
+  round.messages.resize(broadcasts.size());
+  for (std::size_t m = 0; m < broadcasts.size(); ++m) round.messages[m] = {!absent[m], broadcasts[m]};
   rounds_.push_back(std::move(round));
 }
 
@@ -43,9 +42,10 @@ std::optional<Broadcast> V2vLink::receive(std::int64_t time, std::uint32_t sende
     if (!message.sent) continue;
     const auto delay = netio::sample_delay(options_.link, {ids.receiver, stream, round->sequence});
     if (!delay || round->time + *delay > time) continue;
-    base::Report state = message.state;
-    state.time = round->time + *delay;
-    return Broadcast{robots::extrapolate(state, time), message.intent};
+    Broadcast received = message.broadcast;
+    received.state.time = round->time + *delay;
+    received.state = robots::extrapolate(received.state, time);
+    return received;
   }
   return std::nullopt;
 }

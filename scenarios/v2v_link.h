@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/report.h"
+#include "base/state_quality.h"
 #include "netio/link_model.h"
 
 namespace sf::scenarios {
@@ -18,10 +19,10 @@ struct V2vLinkOptions {
   netio::LinkModel link;  ///< of every broadcast to every receiver
 };
 
-/// A received broadcast.
 struct Broadcast {
-  base::Report state;  ///< extrapolated from its arrival to the present, as `robot` does
+  base::Report state;  ///< a received one is extrapolated from its arrival to the present, as `robot` does
   base::Intent intent;
+  base::StateQuality quality = {};  ///< of an estimated state; not stated: it is the true state
 };
 
 /// The latest broadcasts of a fleet. Arrivals are drawn per receiver, sender and broadcast, and do not depend on the
@@ -33,10 +34,9 @@ class V2vLink {
   /// @throws base::InputError if more than `kMostKept` broadcasts of `movers` robots would be kept
   V2vLink(const V2vLinkOptions& options, std::size_t movers);
 
-  /// Broadcasts the states at `time` [ns], if due.
-  /// @param absent per mover: sends nothing
-  void send(std::int64_t time, std::span<const base::Report> states, std::span<const base::Intent> intents,
-            const std::vector<bool>& absent);
+  /// Sends the broadcasts at `time` [ns], if due.
+  /// @param broadcasts one per mover @param absent per mover: sends nothing
+  void send(std::int64_t time, std::span<const Broadcast> broadcasts, const std::vector<bool>& absent);
 
   /// Ids of two robots in packets.
   struct Ids {
@@ -51,8 +51,7 @@ class V2vLink {
  private:
   struct Message {
     bool sent = false;
-    base::Report state;
-    base::Intent intent;
+    Broadcast broadcast;
   };
   struct Round {
     std::int64_t time = 0;

@@ -127,6 +127,8 @@ class Controller {
   virtual bool done() const { return false; }
   /// Returns the control error of the last step in your own unit, for statistics and scenarios; NaN: none.
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
+  /// Returns the digital outputs that a real robot with such pins sets after a step, by bit (docs/robots.md#create).
+  virtual std::uint8_t outputs() const { return 0; }
 };
 
 /// Settings by key, from `--set KEY=VALUE` or a scenario's `[robots.settings]`. Each function returns the fallback if

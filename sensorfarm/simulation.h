@@ -73,6 +73,9 @@ struct Options {
   /// robots (a ROS map), or as the robot to clone. FILE is found in the same way as worlds. Empty: the default robot,
   /// or `of`.
   std::string robot_from;
+  /// Simulates a positioning system for robots that localize themselves: keys of a scenario's table [positioning], one
+  /// per line, such as "rate = 10\nposition_sigma = 0.01" (docs/scenarios.md). Empty: none.
+  std::string positioning;
 };
 
 /// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next

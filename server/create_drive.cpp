@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sensors/analog.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/irreceiver.h"
@@ -12,6 +13,19 @@ namespace {
 
 robots::CreateOdometry odometry_of(const RealRobotType& type) {
   return type.angle == 0.0 ? robots::CreateOdometry::wheels : robots::CreateOdometry::motion;
+}
+
+/// A Create 2 has no cargo bay.
+bool has_cargo_bay(const RealRobotType& type) { return odometry_of(type) == robots::CreateOdometry::motion; }
+
+/// Returns voltage and number of each input: the analogue one, then the digital ones.
+std::vector<double> inputs_of(const robots::CreateFrame& frame) {
+  std::vector<double> inputs{5.0 * frame.analog / 1023.0, static_cast<double>(frame.analog)};
+  for (int pin = 0; pin < 4; ++pin) {
+    const double high = frame.inputs >> pin & 1;
+    inputs.insert(inputs.end(), {5.0 * high, high});
+  }
+  return inputs;
 }
 
 }  // namespace
@@ -43,6 +57,7 @@ void CreateDrive::take_frame(const robots::CreateFrame& frame, std::int64_t now)
   const bool dock = frame.infrared > sensors::kDockByte && frame.infrared < sensors::kNoIrByte;
   measured(sensors::kIrReceiver,
            {frame.virtual_wall ? 1.0 : 0.0, static_cast<double>(dock ? frame.infrared : sensors::kNoIrByte)}, now);
+  if (has_cargo_bay(type())) measured(sensors::kAnalog, inputs_of(frame), now);
   // People put a lifted robot down where it may drive, so it resumes. At a cliff, it waits for them.
   lifted_ = (lifted_ || frame.wheel_drop) && frame.mode != robots::CreateFrame::safe;
   if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive) write(robots::create_safe());
@@ -61,10 +76,18 @@ void CreateDrive::add_motion(const robots::CreateFrame& frame) {
 
 void CreateDrive::drive(const base::Twist& twist, std::int64_t now) {
   write(robots::create_drive(ready(now) ? robots::create_wheels(twist, track_) : robots::CreateWheels{}));
+  if (outputs_) write(robots::create_outputs(*outputs_));
+}
+
+bool CreateDrive::set_outputs(std::uint8_t bits) {
+  if (!has_cargo_bay(type())) return false;
+  if (bits != 0 || outputs_) outputs_ = bits;
+  return true;
 }
 
 void CreateDrive::stop() {
   if (line() == nullptr) return;
+  if (outputs_) line()->write(robots::create_outputs(0));
   line()->write(robots::create_stop());
   line()->drain();
 }

@@ -1,6 +1,7 @@
 #pragma once
 // A real iRobot Create, driven by its Open Interface.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ class CreateDrive final : public RealRobot {
   ~CreateDrive() override { stop(); }
 
   void drive(const base::Twist& twist, std::int64_t now) override;
-  /// Stops the wheels and the stream, and enters passive mode.
+  bool set_outputs(std::uint8_t bits) override;
+  /// Stops the wheels and the stream, clears outputs that were set, and enters passive mode.
   void stop() override;
   std::vector<RobotFact> facts() const override;
   RealRobotCounts counts() const override { return counts_with(stream_); }
@@ -31,9 +33,10 @@ class CreateDrive final : public RealRobot {
 
   double track_;
   robots::CreateStream stream_;
-  robots::CreateFrame frame_;  ///< most recent
-  bool counting_ = false;      ///< `frame_` is of this start, so the wheels are counted from it
-  bool lifted_ = false;        ///< lifted since it was last in safe mode
+  robots::CreateFrame frame_;            ///< most recent
+  std::optional<std::uint8_t> outputs_;  ///< of the cargo bay; nullopt: never set
+  bool counting_ = false;                ///< `frame_` is of this start, so the wheels are counted from it
+  bool lifted_ = false;                  ///< lifted since it was last in safe mode
 };
 
 }  // namespace sf::server

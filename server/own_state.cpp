@@ -14,16 +14,6 @@ double square(double v) { return v * v; }
 
 }  // namespace
 
-double PositionErrors::rms() const { return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0; }
-
-void add(PositionErrors& errors, const base::Pose& estimate, const base::Pose& truth) {
-  const double error = std::hypot(estimate.x - truth.x, estimate.y - truth.y);
-  ++errors.count;
-  errors.squares += error * error;
-  errors.largest = std::max(errors.largest, error);
-  errors.largest_heading = std::max(errors.largest_heading, std::abs(base::wrap_angle(estimate.yaw - truth.yaw)));
-}
-
 OwnState::OwnState(const world::Mover& mover, std::uint32_t row, const OwnStateOptions& options)
     : options_(options),
       localization_(sensors::localization_options(mover, options.sensors)),

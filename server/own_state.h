@@ -39,17 +39,6 @@ struct OwnStateOptions {
   double most_sigma = 0.5;           ///< [m] > 0 standard deviation of the position at which a robot is lost
 };
 
-/// Errors of estimates compared with the truth.
-struct PositionErrors {
-  std::uint64_t count = 0;
-  double squares = 0.0;          ///< [m²] sum of squared position errors
-  double largest = 0.0;          ///< [m]
-  double largest_heading = 0.0;  ///< [rad]
-
-  double rms() const;  ///< [m]; 0 if empty
-};
-void add(PositionErrors& errors, const base::Pose& estimate, const base::Pose& truth);
-
 struct OwnStateCounts {
   netio::PacketCounts packets;            ///< from cameras
   estimation::VerdictCounts readings{};   ///< of wheels and cameras, by verdict

@@ -92,6 +92,9 @@ class RealRobot {
   void update(std::int64_t now);
   /// Applies until the next call; call it at every step. The robot stops while it is not ready.
   virtual void drive(const base::Twist& twist, std::int64_t now) = 0;
+  /// Sets digital outputs, by the numbers of the robot's bits, from the next `drive` on.
+  /// @return false if it has none
+  virtual bool set_outputs(std::uint8_t /*bits*/) { return false; }
   /// Stops the wheels and ends the session. Blocks for less than a second.
   virtual void stop() = 0;
   /// Returns the time of the next `update` that the robot needs between steps, INT64_MAX: none.

@@ -152,7 +152,7 @@ void RobotClient::step(std::int64_t now) {
   scans_ = link_.scans();
   next_ = next_step(now);
   if (own_) own_->predict(now, body_.state().X_WM.z);
-  if (own_ && !real_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
+  if (own_ && !real_ && !is_lost()) position_errors_.add(own_state().X_WM, body_.state().X_WM);
   command_ = {};
   if (started_ && !is_lost() && !is_blind(now) && (!real_ || real_->ready(now))) decide(now);
   if (real_) real_->drive(command_, now);
@@ -299,9 +299,14 @@ void RobotClient::decide(std::int64_t now) {
                                  started_, others_,     signals_,  lanes_.network()};
   input.state.time = now;
   command_ = made_.controller->step(input);
+  if (real_) set_outputs(made_.controller->outputs(), now);
   ++steps_;
   control::add(error_, made_.controller->error());
   if (map_) draw_map(now);
+}
+
+void RobotClient::set_outputs(std::uint8_t bits, std::int64_t now) {
+  if (!real_->set_outputs(bits) && bits != 0) log_.note_ignored_outputs(real_->type().title, now);
 }
 
 void RobotClient::draw_map(std::int64_t now) {

@@ -62,7 +62,7 @@ struct OwnStateStats {
   bool gyro = false;
   bool gps = false;
   OwnStateCounts counts;
-  PositionErrors errors;                ///< of a simulated robot, at its steps that were not lost
+  control::LocalizationError errors;    ///< of a simulated robot, at its steps that were not lost
   double sigma = 0.0;                   ///< [m] standard deviation of the position, at the end
   estimation::Calibration calibration;  ///< at the end
 };
@@ -160,6 +160,7 @@ class RobotClient {
   void add_own_state(const RobotClientOptions& options);
   void update_real(std::int64_t now);
   void follow_real(std::int64_t now);
+  void set_outputs(std::uint8_t bits, std::int64_t now);
   void draw_map(std::int64_t now);
 
   const world::World& world_;
@@ -190,7 +191,7 @@ class RobotClient {
   std::function<std::int64_t()> utc_;
   std::optional<OwnState> own_;                        ///< empty: drives by its true state
   std::optional<SimulatedSensors> simulated_sensors_;  ///< by which a simulated robot localizes itself
-  PositionErrors position_errors_;
+  control::LocalizationError position_errors_;
   std::optional<TruthReport> truth_;
   std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, set in `run`
   std::unique_ptr<RealRobot> real_;    ///< null: the body is a model

@@ -87,6 +87,11 @@ void RobotClientLog::note_unknown_lane(std::uint32_t segment, std::uint32_t lane
              now);
 }
 
+void RobotClientLog::note_ignored_outputs(std::string_view title, std::int64_t now) {
+  if (std::exchange(outputs_ignored_, true)) return;
+  log_.write(fmt::format("a {} has no digital outputs; those that the controller sets are ignored", title), now);
+}
+
 void RobotClientLog::note_real(std::string_view title, const std::string& problem, bool answered, std::int64_t now) {
   if (problem == real_problem_ || (!answered && now < kAnswerIn)) return;
   real_problem_ = problem;

@@ -25,6 +25,8 @@ class RobotClientLog {
   void note_ignored_drive(const std::string& controller, std::int64_t now);
   /// Logs that the farm changes a lane that the robot's world cannot change, at most every ten seconds.
   void note_unknown_lane(std::uint32_t segment, std::uint32_t lane, std::int64_t now);
+  /// Logs that a real robot does not have the digital outputs that its controller sets, once.
+  void note_ignored_outputs(std::string_view title, std::int64_t now);
   /// Logs that the robot's own position was lost or found.
   /// @param cameras it has cameras, and is lost until one sees it; else it is lost once its wheels' errors are too
   /// large
@@ -52,8 +54,10 @@ class RobotClientLog {
   bool stands_ = false;            ///< stopped for lack of readings
   std::optional<bool> lost_;       ///< as of the last step
   std::uint64_t stops_ = 0;
-  std::string real_problem_;     ///< last logged
-  std::int64_t next_lane_ = 0;   ///< [ns] time before which no unknown lane is logged
+  std::string real_problem_;    ///< last logged
+  std::int64_t next_lane_ = 0;  ///< [ns] time before which no unknown lane is logged
+  std::string real_problem_;    ///< last logged
+  bool outputs_ignored_ = false;
   std::int64_t next_drive_ = 0;  ///< [ns] time before which no ignored DRIVE is logged
 };
 

@@ -16,15 +16,6 @@ estimation::MotionModel motion_model(const world::Mover& mover) {
 
 }  // namespace
 
-netio::StateQuality quality_of(const estimation::Prediction& p) {
-  using enum estimation::Component;
-  const auto c = [&](int i, int j) { return static_cast<float>(p.estimate.covariance[6 * i + j]); };
-  return {.stated = true,
-          .stale = p.status == estimation::Prediction::Status::stale,
-          .age = p.age,
-          .covariance = {c(kX, kX), c(kX, kY), c(kX, kYaw), c(kY, kY), c(kY, kYaw), c(kYaw, kYaw)}};
-}
-
 StateFilter::StateFilter(const world::World& world, const StateFilterOptions& options)
     : world_(world), options_(options), movers_(options.mode == FilterMode::off ? 0 : world.movers.size()) {
   for (std::uint32_t row = 0; row < movers_.size(); ++row) reset(row);

@@ -47,9 +47,6 @@ struct StateFilterCounts {
   std::uint64_t flooded = 0;              ///< dropped beyond StateFilter::kMostBetweenPredictions
 };
 
-/// Returns the age and the covariance of a prediction, as readings, V2V and TAG state them.
-netio::StateQuality quality_of(const estimation::Prediction& prediction);
-
 /// The clock of one mover's sender.
 struct SenderClockState {
   std::uint32_t mover = 0;

@@ -59,6 +59,8 @@ class CreateSimulator : public PseudoTerminal {
       if (id == 24) bytes.push_back(static_cast<std::uint8_t>(temperature));
       if (id == 25) put(charge, bytes);
       if (id == 26) put(capacity, bytes);
+      if (id == 32) bytes.push_back(inputs);
+      if (id == 33) put(analog, bytes);
       if (id == 35) bytes.push_back(static_cast<std::uint8_t>(mode));
     }
     bytes[1] = static_cast<std::uint8_t>(bytes.size() - 2);
@@ -87,7 +89,9 @@ class CreateSimulator : public PseudoTerminal {
   // As in the packets of these names.
   std::uint8_t wall = 0, virtual_wall = 0, overcurrents = 0, infrared = 255, buttons = 0, charging = 0;
   unsigned cliffs = 0;  ///< bits 0 to 3: left, front left, front right, right
-  int voltage = 15'700, current = -240, temperature = 24, charge = 2300, capacity = 2700;
+  int voltage = 15'700, current = -240, temperature = 24, charge = 2300, capacity = 2700, analog = 0;
+  std::uint8_t inputs = 0;                         ///< as in packet 32
+  std::uint8_t outputs = 0, low_side_drivers = 0;  ///< as in commands 147 and 138
 
  private:
   template <class Done>
@@ -100,7 +104,7 @@ class CreateSimulator : public PseudoTerminal {
     const std::uint8_t code = command_[0];
     const std::size_t count = command_.size();
     if (code == 148 && (count < 2 || count < 2u + command_[1])) return;
-    if ((code == 145 && count < 5) || (code == 150 && count < 2)) return;
+    if ((code == 145 && count < 5) || ((code == 150 || code == 147 || code == 138) && count < 2)) return;
     obey(code);
     command_.clear();
   }
@@ -110,11 +114,15 @@ class CreateSimulator : public PseudoTerminal {
     if (code == 131) return drops == 0 ? set_mode(safe) : void();
     if (code == 148) return streams.assign(command_.begin() + 2, command_.end());
     if (code == 150) return command_[1] == 0 ? streams.clear() : void();
+    if (code == 147 || code == 138) return set_outputs(code == 147 ? outputs : low_side_drivers);
     if (code != 145) return void(++unknown);
     ++drives;
     if (mode < safe) return;
     right = speed(1);
     left = speed(3);
+  }
+  void set_outputs(std::uint8_t& which) const {
+    if (mode >= safe) which = command_[1];
   }
   void set_mode(Mode next) {
     mode = next;

@@ -2,14 +2,17 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "base/bearing.h"
+#include "viz/signal_layer.h"
 #include "world/path_geometry.h"
 
 namespace sf::viz {
 namespace {
 
 constexpr double kPathStep = 0.05;  // [m]
+constexpr double kAbove = 1e-3;     // [m] from a surface to the mark on it
 
 std::int64_t add_point(PolyData& data, glm::dvec2 p, double z) {
   data.points.push_back({p.x, p.y, z});
@@ -72,6 +75,39 @@ void add_line(PolyData& data, const std::vector<glm::dvec2>& points, double widt
   append_color(data.cell_data, color);
 }
 
+/// The box on the post of a light, about its axis.
+struct Head {
+  glm::dvec2 half{};               ///< [m] extents along and across its direction
+  double bottom = 0.0, top = 0.0;  ///< [m] above the light's origin
+};
+
+Head head_of(const world::World& world, const world::Light& light) {
+  Head head;
+  for (const world::Segment& wall : world.walls)
+    if (wall.model == light.model) head.top = std::max(head.top, wall.z_max - light.X_WL.z);
+  head.bottom = head.top;
+  for (const world::Segment& wall : world.walls) {
+    if (wall.model != light.model || wall.z_max - light.X_WL.z < head.top) continue;
+    head.bottom = std::min(head.bottom, wall.z_min - light.X_WL.z);
+    const glm::dvec2 p = base::rotate(-light.X_WL.yaw, wall.a - glm::dvec2{light.X_WL.x, light.X_WL.y});
+    head.half = max(head.half, abs(p));
+  }
+  return head;
+}
+
+bool flashes(world::LightState state) {
+  return state == world::LightState::flashing_red || state == world::LightState::flashing_yellow;
+}
+
+/// [m] Returns the heights of the lamp that is lit: of three, red is on top and green below.
+std::pair<double, double> lamp_of(const Head& head, bool single, world::LightState state) {
+  using enum world::LightState;
+  if (single || state == dark) return {head.bottom, head.top};
+  const double third = (head.top - head.bottom) / 3.0;
+  const double row = state == green ? 0.0 : state == red || state == flashing_red ? 2.0 : 1.0;
+  return {head.bottom + row * third, head.bottom + (row + 1.0) * third};
+}
+
 }  // namespace
 
 PolyData walls_geometry(const world::World& world) {
@@ -125,6 +161,32 @@ PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> 
                   poses[m].z + side.z_max);
       add_cell(side.model);
     }
+  }
+  return data;
+}
+
+PolyData lights_geometry(const world::World& world, std::span<const world::LightState> states) {
+  PolyData data;
+  for (std::size_t i = 0; i < std::min(states.size(), world.lights.size()); ++i) {
+    const world::Light& light = world.lights[i];
+    const auto add_cell = [&] {
+      append(data.cell_data, "light", {static_cast<double>(i)});
+      append_color(data.cell_data, signal_legend_item(states[i]).color);
+      data.names.push_back(light.name);
+    };
+    const Head head = head_of(world, light);
+    const double size = flashes(states[i]) ? 0.5 : 1.0;
+    std::vector<std::int64_t>& indicator = data.polygons.emplace_back();
+    for (const glm::dvec2& corner : {glm::dvec2{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+      indicator.push_back(
+          add_point(data, transform(light.X_WL, size * corner * head.half), light.X_WL.z + head.top + kAbove));
+    add_cell();
+    const auto [low, high] = lamp_of(head, light.single, states[i]);
+    const double middle = 0.5 * (low + high), half = 0.5 * size * (high - low), front = head.half.x + kAbove;
+    add_upright(data, transform(light.X_WL, {front, -size * head.half.y}),
+                transform(light.X_WL, {front, size * head.half.y}), light.X_WL.z + middle - half,
+                light.X_WL.z + middle + half);
+    add_cell();
   }
   return data;
 }

@@ -25,6 +25,11 @@ PolyData roads_geometry(const world::World& world);
 /// omitted. Cell arrays: `robot` (row of the world's movers), `rgb`; `name`.
 PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses);
 
+/// Returns the states of traffic lights, one per light of the world: on top of each head an indicator, and on its front
+/// a lamp, at the height of its colour if the head has three. They are half as large while a light flashes. Cell
+/// arrays: `light` (row of the world's lights), `rgb`; `name`.
+PolyData lights_geometry(const world::World& world, std::span<const world::LightState> states);
+
 /// A mover's state at one tick.
 struct MotionSample {
   double time = 0.0;  ///< [s]

@@ -41,6 +41,15 @@ std::vector<double> times_of(const RecordingPart& part, const std::vector<std::s
   return times;
 }
 
+/// Returns the lights' states at a tick; none if the recording has none.
+std::vector<world::LightState> lights_at(const record::Recording& recording, std::size_t tick) {
+  std::vector<world::LightState> states;
+  if (tick < recording.lights.size())
+    for (const base::LightStatus& light : recording.lights[tick].lights)
+      states.push_back(static_cast<world::LightState>(light.state));
+  return states;
+}
+
 int view_3d(const ViewOptions& options) {
   const RecordingPart part = open_part(options.recording, options);
   const world::World world = scenarios::recorded_world(part.recording);
@@ -58,7 +67,8 @@ int view_3d(const ViewOptions& options) {
   scene.frame = [&](std::size_t row) {
     viz::ScanGeometry beams(true);
     for (const base::ReadingBlock& scan : replay.scans_at(ticks[row])) beams.add(replay.laser(scan), scan);
-    return viz::Frame3d{viz::bodies_geometry(world, poses_at(part, ticks[row])), beams.data()};
+    return viz::Frame3d{viz::bodies_geometry(world, poses_at(part, ticks[row])), beams.data(),
+                        viz::lights_geometry(world, lights_at(part.recording, ticks[row]))};
   };
   const auto first = std::lower_bound(scene.times.begin(), scene.times.end(), options.time - 1e-9);
   scene.first = static_cast<std::size_t>(first - scene.times.begin());

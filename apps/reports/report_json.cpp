@@ -379,10 +379,9 @@ Json constant_json(const estimation::Constant& constant) {
 Json own_state_json(const server::OwnStateStats& own) {
   Json json{{"sigma_m", own.sigma}};
   if (own.cameras) json.update({{"packets", own.counts.packets.total()}, {"by_reason", reasons(own.counts.packets)}});
-  const server::PositionErrors& e = own.errors;
-  if (e.count > 0)
-    json.update(
-        {{"compared", e.count}, {"rms_m", e.rms()}, {"largest_m", e.largest}, {"largest_rad", e.largest_heading}});
+  const control::LocalizationError& e = own.errors;
+  if (e.steps > 0)
+    json.update({{"compared", e.steps}, {"rms_m", e.rms()}, {"largest_m", e.max}, {"largest_rad", e.yaw_max}});
   const estimation::Calibration& c = own.calibration;
   if (own.gyro) json["gyro"] = {{"bias_rad_s", constant_json(c.gyro_bias)}};
   json["gps"] = own.gps;
@@ -459,7 +458,7 @@ Json accuracy_json(const scenarios::RecordedAccuracy& accuracy) {
                              {"mode", t.mode},
                              {"unit", t.unit},
                              {"recorded_with_noise", t.noisy},
-                             {"count", e.count()},
+                             {"count", e.steps()},
                              {"zero", e.zero()},
                              {"median", finite_json(e.quantile(0.5))},
                              {"p99", finite_json(e.quantile(0.99))},

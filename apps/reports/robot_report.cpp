@@ -62,10 +62,10 @@ std::string link_text(const server::LinkCounts& link) {
 std::string own_state_text(const server::OwnStateStats& own) {
   std::string text;
   if (own.cameras) text += row("positions", "{} by TAG packets", netio::packet_counts_text(own.counts.packets));
-  const server::PositionErrors& e = own.errors;
-  if (e.count > 0)
-    text += row("position error", "RMS {:.1f} mm, largest {:.1f} mm and {:.2f} degrees", 1e3 * e.rms(), 1e3 * e.largest,
-                e.largest_heading * 180.0 / M_PI);
+  const control::LocalizationError& e = own.errors;
+  if (e.steps > 0)
+    text += row("position error", "RMS {:.1f} mm, largest {:.1f} mm and {:.2f} degrees", 1e3 * e.rms(), 1e3 * e.max,
+                e.yaw_max * 180.0 / M_PI);
   text += row("  estimated", "{:.1f} mm (standard deviation, at the end)", 1e3 * own.sigma);
   const estimation::Calibration& c = own.calibration;
   if (own.gyro)

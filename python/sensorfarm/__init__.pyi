@@ -182,7 +182,7 @@ class Settings:
 class Controller(Protocol):
     """Your own controller: a class of this shape, not a subclass. Optional: class attributes `rate` [Hz] (10),
     `on_scans` (False: steps at `rate`, not on each new scan) and `stops_on_bumper` (True); methods radio_range() [m],
-    done() and error()."""
+    done(), error() and outputs() (bits of a real robot's digital outputs, docs/robots.md)."""
     def __init__(self, robot: Robot, settings: Settings) -> None: ...
     def step(self, input: Input) -> tuple[float, float, float]:
         """Returns forward [m/s], left [m/s], turn [rad/s] to drive until the next call."""
@@ -195,7 +195,8 @@ class Simulation:
                  seed: int = 1, threads: int = 0, noise: bool = True, accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
-                 ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", writable: bool = False) -> None:
+                 ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", positioning: str = "",
+                 writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), possibly one of the installed worlds. robots: clones of one robot
         (`of`; otherwise the first with sensors) at free poses; 0: the world's own robots. robot_from: "FILE:NAME", a
         robot of another world file, for a world without robots (a ROS map) or as the robot to clone. seed: of poses,
@@ -205,7 +206,8 @@ class Simulation:
         controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty: `ctrl` of the world
         file, or else twists; "none": twists drive all. record: folder of a recording. too_near_min: record ranges of
         surfaces that are too near as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd
-        or none (docs/recordings.md). ranks: processes of mpirun share the fleet; all make the same calls, and each has
+        or none (docs/recordings.md). positioning: of robots that localize themselves, by keys of a scenario's table
+        [positioning], one per line (docs/scenarios.md). ranks: processes of mpirun share the fleet; all make the same calls, and each has
         the readings of its own robots only and commands these (docs/cluster.md). Raises Error, DeviceError,
         TypeError."""
     @staticmethod

@@ -158,10 +158,10 @@ void Localization::start_encoders(const WheeledMeasurement& m, State& state) con
   state.rolled = true;
 }
 
-/// Starts or restarts the pose. The constants and the distances rolled remain.
+/// Starts or restarts the pose. The constants remain, as do the distances rolled by the time of the measurement.
 Verdict Localization::start(const WheeledMeasurement& m, State& state) const {
   WheeledState first = prior_of(options_, model_);
-  if (state.known()) first = heaviest(state.hypotheses).state;
+  if (state.known()) first = estimation::predict(model_, heaviest(state.hypotheses).state, m.time);
   first.time = m.time;
   replace(first, m);
   state.last_fix = m.time;

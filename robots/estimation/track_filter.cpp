@@ -50,6 +50,14 @@ GateLimits gate_limits(double gate) {
   return limits;
 }
 
+base::StateQuality quality_of(const Prediction& p) {
+  const auto c = [&](int i, int j) { return static_cast<float>(p.estimate.covariance[kComponents * i + j]); };
+  return {.stated = true,
+          .stale = p.status == Prediction::Status::stale,
+          .age = p.age,
+          .covariance = {c(kX, kX), c(kX, kY), c(kX, kYaw), c(kY, kY), c(kY, kYaw), c(kYaw, kYaw)}};
+}
+
 TrackFilter::TrackFilter(const FilterOptions& options, const GateLimits& limits)
     : options_(options), limits_(limits), window_(options.window, options.capacity) {
   for (Hypotheses* each : {&predicted_, &ahead_}) each->reserve(1);

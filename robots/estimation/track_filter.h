@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/state_quality.h"
 #include "robots/estimation/hypotheses.h"
 #include "robots/estimation/measurement_window.h"
 #include "robots/estimation/state.h"
@@ -56,6 +57,9 @@ struct Prediction {
   /// grows with age. An unknown heading has a variance of at least pi^2 / 3.
   Estimate estimate;
 };
+
+/// Returns the age and the covariance of a prediction, as readings, V2V and TAG state them.
+base::StateQuality quality_of(const Prediction& prediction);
 
 /// Limits of the squared innovation, by degrees of freedom from 1 on.
 using GateLimits = std::array<double, kComponents + 1>;

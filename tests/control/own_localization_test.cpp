@@ -60,6 +60,19 @@ TEST(OwnLocalization, ReplacesTheStateByTheEstimate) {
   EXPECT_GT(robot.localization.error().max, 50.0) << "from the poses of the inputs";
 }
 
+TEST(LocalizationError, RootMeanSquaresAndMaxima) {
+  LocalizationError error;
+  EXPECT_EQ(error.rms(), 0.0) << "of none";
+  error.add({3.0, 4.0, 9.0, 3.1}, {0.0, 0.0, 0.0, -3.1});
+  LocalizationError other;
+  other.add({1.0, 1.0, 0.0, 0.25}, {1.0, 2.0, 0.0, 0.0});
+  error.add(other);
+  EXPECT_EQ(error.steps, 2u);
+  EXPECT_DOUBLE_EQ(error.rms(), std::sqrt(0.5 * (25.0 + 1.0)));
+  EXPECT_EQ(error.max, 5.0) << "heights do not count";
+  EXPECT_DOUBLE_EQ(error.yaw_max, 0.25) << "3.1 and -3.1 are 0.083 apart";
+}
+
 TEST(OwnLocalization, PlacesReadingsAtTheEstimateForTheirTime) {
   Straight robot(localized_create({"encoder"}));
   for (int k = 0; k < 20; ++k) robot.step();

@@ -35,17 +35,18 @@ TEST(OpenInterface, SaturatesWheelsAlongTheArc) {
 
 TEST(OpenInterface, EncodesCommandsAsSpecified) {
   EXPECT_EQ(create_drive({-200, 500}), (base::Bytes{145, 0xFF, 0x38, 0x01, 0xF4}));
-  EXPECT_EQ(create_start(), (base::Bytes{128, 131, 145, 0,  0,  0,  0,  148, 19, 7,  8,  9,  10, 11,
-                                         12,  13,  14,  17, 18, 19, 20, 21,  22, 23, 24, 25, 26, 35}));
+  EXPECT_EQ(create_start(), (base::Bytes{128, 131, 145, 0,  0,  0,  0,  148, 21, 7,  8,  9,  10, 11, 12,
+                                         13,  14,  17,  18, 19, 20, 21, 22,  23, 24, 25, 26, 32, 33, 35}));
+  EXPECT_EQ(create_outputs(0b11101010), (base::Bytes{147, 0b010, 138, 0b101}));
   EXPECT_EQ(create_stop(), (base::Bytes{145, 0, 0, 0, 0, 150, 0, 128}));
 }
 
 /// Bumped right, no floor at the front right, 12 mm backwards, 3 degrees to the right, 16.1 V, -0.3 A, -1 degree
-/// Celsius, 40000 mAh, safe.
+/// Celsius, 40000 mAh, inputs 0 and 2 high, 1022 of 1023 at the analogue one, safe.
 const base::Bytes kFrame = [] {
-  base::Bytes bytes{19,   44, 7,    1,    8,  0,    9,  0,    10,   0,  11,   1,    12, 0, 13, 0,
-                    14,   8,  17,   248,  18, 1,    19, 0xFF, 0xF4, 20, 0xFF, 0xFD, 21, 3, 22, 0x3E,
-                    0xE4, 23, 0xFE, 0xD4, 24, 0xFF, 25, 0x9C, 0x40, 26, 0x0A, 0x8C, 35, 2};
+  base::Bytes bytes{19,   49,   7,   1,    8,  0,    9,    0,    10,   0,    11,   1,  12, 0,    13,   0,    14,
+                    8,    17,   248, 18,   1,  19,   0xFF, 0xF4, 20,   0xFF, 0xFD, 21, 3,  22,   0x3E, 0xE4, 23,
+                    0xFE, 0xD4, 24,  0xFF, 25, 0x9C, 0x40, 26,   0x0A, 0x8C, 32,   5,  33, 0x03, 0xFE, 35,   2};
   bytes.push_back(static_cast<std::uint8_t>(-std::accumulate(bytes.begin(), bytes.end(), 0)));
   return bytes;
 }();
@@ -88,6 +89,8 @@ TEST(CreateStream, ReadsAFrame) {
   EXPECT_EQ(frames[0].temperature, -1);
   EXPECT_EQ(frames[0].charge, 40'000) << "unsigned";
   EXPECT_EQ(frames[0].capacity, 2700);
+  EXPECT_EQ(frames[0].inputs, 5);
+  EXPECT_EQ(frames[0].analog, 1022);
   EXPECT_FALSE(frames[0].wheel_drop);
   EXPECT_EQ(frames[0].distance, -12);
   EXPECT_EQ(frames[0].angle, -3);

@@ -34,14 +34,27 @@ TEST(RankExchange, AllRanksGetTheStatusOfAllControllers) {
     RankExchange exchange(one, homes);
     std::vector<base::Twist> commands(4);
     std::vector<base::Intent> intents(4);
+    std::vector<OwnEstimate> estimates(4);
     std::vector<ControlStatus> statuses(4, {.drives = true});
     for (std::uint32_t m = 0; m < 4; ++m)
-      if (exchange.owns(m)) statuses[m] = {true, m % 2 == 1, m >= 2, 0.25 * m};
-    exchange.begin({commands, intents, statuses}, farm, base::kNoId, nullptr, false);
-    EXPECT_FALSE(exchange.finish({commands, intents, statuses}, farm));
+      if (exchange.owns(m)) {
+        statuses[m] = {true, m % 2 == 1, m >= 2, 0.25 * m};
+        estimates[m].quality.stated = m < 2;
+        estimates[m].quality.covariance[5] = 0.5f * static_cast<float>(m);
+        estimates[m].state = {.time = m, .X_WM = {1.0 * m, 2.0, 3.0, 4.0}, .velocity = {5.0, 6.0, 7.0 * m}};
+      }
+    exchange.begin({commands, intents, estimates, statuses}, farm, base::kNoId, nullptr, false);
+    EXPECT_FALSE(exchange.finish({commands, intents, estimates, statuses}, farm));
     for (std::uint32_t m = 0; m < 4; ++m) {
       EXPECT_EQ(statuses[m].stepped, m % 2 == 1) << m;
       EXPECT_EQ(statuses[m].done, m >= 2) << m;
+      if (exchange.owns(m)) continue;
+      EXPECT_EQ(estimates[m].quality.stated, m == 1) << "sent after steps by robots that have one";
+      if (m != 1) continue;
+      EXPECT_EQ(estimates[m].quality.covariance[5], 0.5f);
+      EXPECT_EQ(estimates[m].state.time, 1);
+      EXPECT_EQ(estimates[m].state.X_WM.yaw, 4.0);
+      EXPECT_EQ(estimates[m].state.velocity.turn, 7.0);
       EXPECT_EQ(std::isnan(statuses[m].error), !statuses[m].stepped) << m;
     }
   });

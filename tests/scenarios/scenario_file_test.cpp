@@ -158,6 +158,24 @@ TEST(ScenarioFile, V2vHasALinkIfConfigured) {
   EXPECT_EQ(v2v.link.seed, 9u);
 }
 
+TEST(ScenarioFile, PositioningHasALinkNoiseAndOutagesIfConfigured) {
+  EXPECT_FALSE(parse_text("").positioning);
+  const Scenario s = parse_text(
+      "seed = 9\n[positioning]\nrate = 5\ndelay = 0.5\nposition_sigma = 0.01\nyaw_sigma = 0.02\n"
+      "stated_position_sigma = 0.03\nstated_yaw_sigma = 0.04\noutages = [[1, 2], [3, 3]]\n");
+  const PositioningOptions positioning = *simulation_of(s, world_of(s)).positioning;
+  EXPECT_EQ(positioning.rate, 5.0);
+  EXPECT_EQ(positioning.link.delay, 0.5);
+  EXPECT_EQ(positioning.link.seed, 9u);
+  EXPECT_EQ(positioning.position_sigma, 0.01);
+  EXPECT_EQ(positioning.yaw_sigma, 0.02);
+  EXPECT_EQ(positioning.stated_position_sigma, 0.03);
+  EXPECT_EQ(positioning.stated_yaw_sigma, 0.04);
+  ASSERT_EQ(positioning.outages.size(), 2u);
+  EXPECT_EQ(positioning.outages[0].begin, 1.0);
+  EXPECT_EQ(positioning.outages[0].end, 2.0);
+}
+
 /// One mistake each, with its message.
 TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
   const std::string w = kWorld;
@@ -182,6 +200,10 @@ TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
       {w + "[states]\nrate = 0\n", "test.toml:3: 'rate' expects a number from 0.01"},
       {w + "[v2v]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
       {w + "[states]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
+      {w + "[positioning]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
+      {w + "[positioning]\noutages = 3\n", "test.toml:3: 'outages' expects a list of intervals"},
+      {w + "[positioning]\noutages = [[1]]\n", "test.toml:3: 'outages' expects a list of intervals"},
+      {w + "[positioning]\noutages = [[2, 1]]\n", "test.toml:3: 'outages' expects a number from 2"},
       {w + "[default]\ncontroller = \"wandr\"\n",
        "test.toml:3: there is no controller 'wandr'; did you mean 'wander'?"},
       {w + "[default]\nrate = 0\n", "test.toml:3: 'rate' expects a number from 0.01"},

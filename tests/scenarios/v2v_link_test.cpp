@@ -8,8 +8,10 @@
 #include "base/time.h"
 #include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
+#include "sensors/sensor_type.h"
 #include "tests/device.h"
 #include "tests/units.h"
+#include "tests/world/read_world.h"
 
 namespace sf::scenarios {
 namespace {
@@ -20,9 +22,8 @@ constexpr V2vLink::Ids kIds{7, 8};
 struct Radio {
   explicit Radio(const V2vLinkOptions& options) : link(options, 1) {}
   void send(std::uint32_t tick, bool absent = false) {
-    const base::Report state{0, tick * kTick, {0.1 * tick, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
-    const base::Intent intent{.checkpoint = tick};
-    link.send(state.time, {&state, 1}, {&intent, 1}, {absent});
+    const Broadcast sent{{0, tick * kTick, {0.1 * tick, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {.checkpoint = tick}};
+    link.send(sent.state.time, {&sent, 1}, {absent});
   }
   std::optional<Broadcast> received(std::uint32_t tick, const V2vLink::Ids& ids = kIds) const {
     return link.receive(tick * kTick, 0, ids);
@@ -112,12 +113,11 @@ TEST(V2vLink, NothingArrivesIfAllIsLost) {
 /// A robot that has joined since has sent nothing.
 TEST(V2vLink, RobotsMayJoin) {
   V2vLink link({}, 1);
-  const base::Report first{0, 0, {}, {}};
-  const std::vector<base::Report> two{{0, kTick, {}, {}}, {1, kTick, {5.0, 0.0, 0.0, 0.0}, {}}};
-  const std::vector<base::Intent> intents(2);
-  link.send(0, {&first, 1}, {intents.data(), 1}, {false});
+  const Broadcast first{{0, 0, {}, {}}, {}};
+  const std::vector<Broadcast> two{{{0, kTick, {}, {}}, {}}, {{1, kTick, {5.0, 0.0, 0.0, 0.0}, {}}, {}}};
+  link.send(0, {&first, 1}, {false});
   EXPECT_FALSE(link.receive(0, 1, kIds));
-  link.send(kTick, two, intents, {false, false});
+  link.send(kTick, two, {false, false});
   EXPECT_EQ(link.receive(kTick, 1, kIds)->state.X_WM.x, 5.0);
 }
 
@@ -142,6 +142,42 @@ TEST(V2vLink, ReachesControllers) {
   const std::uint64_t late = convoy(V2vLinkOptions{.link = {.delay = 0.5}});
   EXPECT_NE(late, current);
   EXPECT_EQ(convoy(V2vLinkOptions{.link = {.delay = 0.5}}), late);
+}
+
+/// A leader whose wheels count 30 % too much patrols ahead of a follower that keeps a distance of 1 m by V2V.
+struct Pair {
+  explicit Pair(bool localize, const std::optional<V2vLinkOptions>& v2v = {})
+      : simulation(world, device(), {.actors = {leader(localize), follower()}, .v2v = v2v}) {
+    for (int tick = 0; tick <= 100; ++tick) reports = simulation.step().reports;
+  }
+  static Actor leader(bool localize) {
+    return patrol({{"points", std::vector{50.0, 0.0}}, {"speed", 0.1}, {"localize", localize}});
+  }
+  static Actor follower() {
+    return patrol({{"points", std::vector{50.0, 0.0}}, {"speed", 0.3}, {"keep", 1.0}, {"localize", false}});
+  }
+  static Actor patrol(std::vector<control::Setting> settings) {
+    return {.controller = {"patrol", 0.0, {"controller 'patrol'", std::move(settings)}}, .link = {}};
+  }
+  double gap() const { return reports[0].X_WM.x - reports[1].X_WM.x; }  ///< [m]
+
+  world::World world = world::read_world(
+      "define robot position( size [0.3 0.3 0.1] drive \"diff\" track 0.258 encoder( track 0.258 scale [1.3 1.3] ) )\n"
+      "robot( name \"leader\" pose [0 0 0 0] )\nrobot( name \"follower\" pose [-2 0 0 0] )\n",
+      {.sensors = sensors::world_file_words()});
+  Simulation simulation;
+  std::span<const base::Report> reports;
+};
+
+TEST(V2v, CarriesTheStateThatARobotEstimates) {
+  const Pair truth(false), own(true);
+  EXPECT_FALSE(truth.simulation.estimate(0).quality.stated);
+  EXPECT_TRUE(own.simulation.estimate(0).quality.stated);
+  EXPECT_GT(own.simulation.estimate(0).quality.covariance[0], 0.0f);
+  const double ahead = own.simulation.estimate(0).state.X_WM.x - own.reports[0].X_WM.x;
+  EXPECT_GT(ahead, 0.2) << "its wheels count too much";
+  EXPECT_NEAR(truth.gap() - own.gap(), ahead, 0.1) << "the follower keeps its distance from the estimate";
+  EXPECT_NEAR(Pair(true, V2vLinkOptions{}).gap(), own.gap(), 1e-9) << "also by a simulated link";
 }
 
 }  // namespace

@@ -19,17 +19,6 @@ namespace {
 
 constexpr std::uint32_t kTag = 7;
 
-TEST(PositionErrors, RootMeanSquareAndMaximum) {
-  PositionErrors errors;
-  EXPECT_EQ(errors.rms(), 0.0) << "of none";
-  add(errors, {3.0, 4.0, 9.0, 3.1}, {0.0, 0.0, 0.0, -3.1});
-  add(errors, {1.0, 1.0, 0.0, 0.25}, {1.0, 2.0, 0.0, 0.0});
-  EXPECT_EQ(errors.count, 2u);
-  EXPECT_DOUBLE_EQ(errors.rms(), std::sqrt(0.5 * (25.0 + 1.0)));
-  EXPECT_EQ(errors.largest, 5.0) << "heights do not count";
-  EXPECT_DOUBLE_EQ(errors.largest_heading, 0.25) << "3.1 and -3.1 are 0.083 apart";
-}
-
 /// A robot that starts at (1, 2) with a heading of 0.5, and cameras that see its tag with errors of 5 mm and 0.01 rad.
 struct OwnStateTest : testing::Test {
   explicit OwnStateTest(bool wheels = true) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "control/controllers.h"
+#include "sensors/analog.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/irreceiver.h"
@@ -26,6 +27,7 @@ struct Seen {
   std::map<std::uint8_t, std::uint32_t> numbers;
   base::Pose X_WM;
   bool contact = false;
+  std::uint8_t outputs = 0;  ///< that it sets
 };
 Seen& seen() {
   static Seen last;
@@ -35,7 +37,7 @@ Seen& seen() {
 class Recorder final : public control::Controller {
  public:
   base::Twist step(const control::ControllerInput& input) override {
-    seen() = {.X_WM = input.state.X_WM, .contact = input.contact};
+    seen() = {.X_WM = input.state.X_WM, .contact = input.contact, .outputs = seen().outputs};
     for (const base::ReadingBlock& reading : input.readings) {
       seen().values[reading.type] = {reading.values.begin(), reading.values.end()};
       seen().poses[reading.type] = reading.X_WS;
@@ -43,6 +45,7 @@ class Recorder final : public control::Controller {
     }
     return {0.2, 0.0, 0.0};
   }
+  std::uint8_t outputs() const override { return seen().outputs; }
 };
 
 constinit const control::ControllerType recorder{
@@ -102,6 +105,46 @@ TEST_F(RealRobotTest, OwnReadingsOfACreateReachItsController) {
   EXPECT_EQ(stats.real->counts.frames, 70u);
   EXPECT_EQ(stats.real->readings.at("cliff"), 70u);
   EXPECT_EQ(stats.real->facts[0].name, "battery_V");
+}
+
+TEST_F(RealRobotTest, PinsOfACargoBayAreReadAndSet) {
+  CreateSimulator create;
+  create.analog = 1023;
+  create.inputs = 0b0101;
+  seen().outputs = 0;
+  auto robot = client({.device = create.device()});
+  EXPECT_TRUE(create.streaming());
+  std::int64_t now = 0;
+  const auto step = [&](std::uint8_t outputs, std::uint64_t drives) {
+    seen().outputs = outputs;
+    create.run(7);
+    robot->step(now += kTick);
+    EXPECT_TRUE(create.driven(drives));
+  };
+  step(0, 1);
+  EXPECT_EQ(seen().values[sensors::kAnalog], (std::vector<double>{5, 1023, 5, 1, 0, 0, 5, 1, 0, 0}));
+  for (std::uint64_t k = 2; k <= 4; ++k) step(0b101011, k);
+  EXPECT_EQ(create.outputs, 0b011);
+  EXPECT_EQ(create.low_side_drivers, 0b101);
+  robot->leave(now);
+  EXPECT_TRUE(create.reaches(CreateSimulator::passive));
+  EXPECT_EQ(create.outputs + create.low_side_drivers, 0) << "cleared at the end";
+  EXPECT_EQ(create.unknown, 0u);
+  seen().outputs = 0;
+}
+
+TEST_F(RealRobotTest, OutputsThatARobotDoesNotHaveAreReported) {
+  CreateSimulator create;
+  seen().outputs = 1;
+  const auto robot = client({.type = "create2", .device = create.device()});
+  EXPECT_TRUE(create.streaming());
+  create.run(7);
+  robot->step(kTick);
+  EXPECT_TRUE(create.driven(1));
+  EXPECT_EQ(create.outputs, 0);
+  EXPECT_FALSE(seen().values.contains(sensors::kAnalog));
+  EXPECT_NE(f.log.read_all().find("has no digital outputs"), std::string::npos);
+  seen().outputs = 0;
 }
 
 TEST_F(RealRobotTest, OwnSensorsAreNumberedAfterVirtualOnes) {

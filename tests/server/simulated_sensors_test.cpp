@@ -38,7 +38,7 @@ struct Round {
           0, k * kTick, {std::cos(angle), std::sin(angle), 0.0, angle + 0.5 * M_PI}, {kRate, 0.0, kRate}};
       sensors.measure(before.X_WM, after, k * kTick, own);
       own.predict(k * kTick);
-      if (!own.is_lost()) add(errors, own.state().X_WM, after.X_WM);
+      if (!own.is_lost()) errors.add(own.state().X_WM, after.X_WM);
       lost += own.is_lost();
       before = after;
     }
@@ -48,7 +48,7 @@ struct Round {
   sensors::SensorSet sensor_set;
   OwnState own;
   SimulatedSensors sensors;
-  PositionErrors errors;
+  control::LocalizationError errors;
   int lost = 0;
 };
 
@@ -57,11 +57,11 @@ TEST(SimulatedSensors, GyroAndSatellitesBoundTheDriftOfWheels) {
       all("gyro( bias 0.5 noise 0.1 ) gps( satellites 8 noise 0.2 rate 1 latency 0.1 pose [0.1 0 0 0] )");
   for (Round* round : {&wheels, &gyro, &all}) round->drive();
   EXPECT_EQ(all.lost, 0);
-  EXPECT_GT(all.errors.count, 1100u);
+  EXPECT_GT(all.errors.steps, 1100u);
   EXPECT_LT(all.errors.rms(), 0.12);
-  EXPECT_GT(wheels.errors.largest, 2.0 * all.errors.largest);
-  EXPECT_LT(all.errors.largest_heading, 0.2);
-  EXPECT_GT(wheels.errors.largest_heading, 2.0 * all.errors.largest_heading);
+  EXPECT_GT(wheels.errors.max, 2.0 * all.errors.max);
+  EXPECT_LT(all.errors.yaw_max, 0.2);
+  EXPECT_GT(wheels.errors.yaw_max, 2.0 * all.errors.yaw_max);
   EXPECT_GT(gyro.own.calibration().gyro_bias.sigma, 0.0);
 }
 

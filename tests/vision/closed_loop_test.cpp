@@ -169,9 +169,9 @@ TEST(ClosedLoop, ARobotKeepsItsLaneUsingOnlyCameras) {
   EXPECT_EQ(stats.stops, 0u);
   EXPECT_LT(glm::distance(loop.place(), glm::dvec2(3.65, 2.03)), 0.1) << loop.place().x << " " << loop.place().y;
   ASSERT_TRUE(stats.own);
-  EXPECT_GT(stats.own->errors.count, 150u);
+  EXPECT_GT(stats.own->errors.steps, 150u);
   EXPECT_LT(stats.own->errors.rms(), 0.003) << "1.2 mm";
-  EXPECT_LT(stats.own->errors.largest, 0.02) << "12 mm, at the start";
+  EXPECT_LT(stats.own->errors.max, 0.02) << "12 mm, at the start";
   EXPECT_LT(stats.error.abs_mean, 0.02) << "offset in the lane, by readings: 12 mm";
   EXPECT_LE(stats.link.stale, 3u) << "readings before its first state";
 }

@@ -263,6 +263,21 @@ TEST(Localization, ARelocatedRobotKeepsItsConstants) {
   EXPECT_NEAR(localization.calibration().left_scale.value, 1.05, 0.01);
 }
 
+TEST(Localization, ARelocationBetweenTwoEncoderReadingsLosesNoMotion) {
+  // At 0.2 m/s along x, with readings of the encoders at whole seconds and poses half a second later.
+  Localization localization = started(kKnownWheels);
+  double moved = 0.0;  // [m] by hand, along y
+  for (int k = 0; k < 12; ++k) {
+    if (k == 4) moved = 4.0;
+    localization.add_encoder(k * kSecond, 0.2 * k, 0.2 * k);
+    EXPECT_NEAR(localization.predict(k * kSecond).estimate.X_WM.x, 0.2 * k, 0.02) << k;
+    localization.add_pose(k * kSecond + kSecond / 2, {0.2 * (k + 0.5), moved, 0.0, 0.0},
+                          {1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6});
+  }
+  EXPECT_EQ(count(localization, Verdict::started), 2u);
+  EXPECT_NEAR(localization.predict(12 * kSecond).estimate.X_WM.y, 4.0, 0.02);
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Unknown starts, and robots without encoders
 

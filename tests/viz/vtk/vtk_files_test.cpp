@@ -23,6 +23,7 @@
 #include "tests/viz/png.h"
 #include "tests/viz/scenes.h"
 #include "viz/world_geometry.h"
+#include "world/stage/build_world.h"
 
 namespace sf::viz {
 namespace {
@@ -136,6 +137,33 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   const auto other = read_poly_data(scenes::own_file("beams.vtp"));
   EXPECT_EQ(other->GetOutput()->GetNumberOfLines(), 3);
   EXPECT_EQ(other->GetOutput()->GetNumberOfPoints(), 6);
+}
+
+/// A light of three lamps that faces along y, and one of a single lamp.
+TEST(VtkFiles, LightsShowTheirStates) {
+  const world::World world =
+      world::build_world("lights.world",
+                         "light( name \"a\" pose [2 3 0 90] size [0.2 0.1 1] lamps 3 phases 1 phase[0] [\"red\" 1] )\n"
+                         "light( name \"b\" pose [5 3 0 0] size [0.2 0.1 1] lamps 1 phases 1 phase[0] [\"red\" 1] )\n");
+  using enum world::LightState;
+  const PolyData data = lights_geometry(world, std::vector{red, flashing_yellow});
+  ASSERT_EQ(data.polygons.size(), 4u) << "an indicator and a lamp each";
+  const auto corner = [&](std::size_t polygon, std::size_t i) { return data.points[data.polygons[polygon][i]]; };
+  EXPECT_NEAR(corner(0, 2).z, 1.001, 1e-9) << "above its head";
+  EXPECT_NEAR(corner(0, 2).x, 2.0 - 0.05, 1e-9);
+  EXPECT_NEAR(corner(0, 2).y, 3.0 + 0.1, 1e-9);
+  EXPECT_NEAR(corner(1, 0).y, 3.0 + 0.101, 1e-9) << "in front of its head";
+  EXPECT_NEAR(corner(1, 0).z, 0.6 + 0.4 * 2.0 / 3.0, 1e-9) << "the upper third";
+  EXPECT_NEAR(corner(1, 2).z, 1.0, 1e-9);
+  EXPECT_NEAR(corner(2, 2).x, 5.0 + 0.05, 1e-9) << "half as large while it flashes";
+  EXPECT_NEAR(corner(3, 0).z, 0.85, 1e-9) << "the only lamp";
+  const std::vector<double>& rgb = data.cell_data[1].values;
+  EXPECT_GT(rgb[0], 2.0 * rgb[1]) << "red";
+  EXPECT_GT(rgb[7], 2.0 * rgb[8]) << "yellow";
+  EXPECT_EQ(data.names[3], "b");
+  const PolyData green_one = lights_geometry(world, std::vector{green});
+  EXPECT_NEAR(green_one.points[green_one.polygons[1][0]].z, 0.6, 1e-9);
+  EXPECT_EQ(green_one.polygons.size(), 2u);
 }
 
 TEST(VtkFiles, AbsentRobotsHaveNoBody) {
