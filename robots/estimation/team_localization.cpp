@@ -110,7 +110,7 @@ Prediction TeamLocalization::predict(std::uint32_t robot, std::int64_t time) con
   if (own < 0) return {};
   const std::vector<Speeds>& speeds = speeds_[robot];
   Ahead& ahead = ahead_[robot];
-  if (ahead.from != own || ahead.time > time) ahead = {own, own, {.mean = robot_mean(*state, robot)}};
+  if (ahead.from != own || ahead.time > time) ahead = {own, own, TeamMotion::from(*state, robot)};
   // Stop at the newest speeds: from there the next prediction continues with the same bits.
   const auto after = std::upper_bound(speeds.begin(), speeds.end(), time,
                                       [](std::int64_t t, const Speeds& each) { return t < each.time; });

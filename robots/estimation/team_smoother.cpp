@@ -16,11 +16,19 @@ struct Node {
   std::size_t first = 0, last = 0;  ///< [first, last) of the events
 };
 
+using RobotBlock = Eigen::Map<const Eigen::Matrix<double, kTeamComponents, kTeamComponents>>;
+
 /// Mean and covariance from all readings.
 struct Smoothed {
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
+  std::vector<double> mean, covariance;
 };
+
+Eigen::Map<const Eigen::VectorXd> vector_of(const std::vector<double>& all) {
+  return {all.data(), static_cast<Eigen::Index>(all.size())};
+}
+Eigen::Map<const Eigen::MatrixXd> matrix_of(const std::vector<double>& all, Eigen::Index size) {
+  return {all.data(), size, size};
+}
 
 std::vector<TeamEvent> sorted_events(const Team& team, std::vector<TeamEvent> events) {
   std::sort(events.begin(), events.end());
@@ -98,27 +106,31 @@ class Smoother {
 
   /// Returns the smoothed state at a node, given that of the next one.
   Smoothed smoothed(const TeamState& here, std::int64_t time, std::int64_t next, const Smoothed& later) const {
-    Eigen::VectorXd mean = here.mean;
-    Eigen::MatrixXd C = here.covariance, P = here.covariance;  // C: covariance of here and next
+    const auto size = static_cast<Eigen::Index>(here.mean.size());
+    const auto covariance = matrix_of(here.covariance, size), later_covariance = matrix_of(later.covariance, size);
+    Eigen::VectorXd mean = vector_of(here.mean);
+    Eigen::MatrixXd C = covariance, P = covariance;  // C: covariance of here and next
     for (std::uint32_t r = 0; r < team_.robots; ++r) {
       const Eigen::Index at = kTeamComponents * static_cast<Eigen::Index>(r);
       if (here.robots[r].time < 0) {  // starts later; nothing to learn about it
         P.block<kTeamComponents, kTeamComponents>(at, at).setIdentity();
-        mean.segment<kTeamComponents>(at) = later.mean.segment<kTeamComponents>(at);
+        mean.segment<kTeamComponents>(at) = vector_of(later.mean).segment<kTeamComponents>(at);
         continue;
       }
-      TeamMotion moved{.mean = robot_mean(here, r)};
+      TeamMotion moved = TeamMotion::from(here, r);
       drive(team_.model, time, next, speeds_[r], moved);
-      mean.segment<kTeamComponents>(at) = moved.mean;
-      C.middleCols<kTeamComponents>(at) = C.middleCols<kTeamComponents>(at).eval() * moved.derivative.transpose();
-      P.middleRows<kTeamComponents>(at) = moved.derivative * P.middleRows<kTeamComponents>(at).eval();
-      P.middleCols<kTeamComponents>(at) = P.middleCols<kTeamComponents>(at).eval() * moved.derivative.transpose();
-      P.block<kTeamComponents, kTeamComponents>(at, at) += moved.noise;
+      const RobotBlock F(moved.derivative.data()), Q(moved.noise.data());
+      std::copy(moved.mean.begin(), moved.mean.end(), mean.begin() + at);
+      C.middleCols<kTeamComponents>(at) = C.middleCols<kTeamComponents>(at).eval() * F.transpose();
+      P.middleRows<kTeamComponents>(at) = F * P.middleRows<kTeamComponents>(at).eval();
+      P.middleCols<kTeamComponents>(at) = P.middleCols<kTeamComponents>(at).eval() * F.transpose();
+      P.block<kTeamComponents, kTeamComponents>(at, at) += Q;
     }
     const Eigen::MatrixXd G = P.ldlt().solve(C.transpose()).transpose();
-    Smoothed result{here.mean + G * (later.mean - mean), here.covariance};
-    result.covariance += G * (later.covariance - P) * G.transpose();
-    result.covariance = (0.5 * (result.covariance + result.covariance.transpose())).eval();
+    const Eigen::VectorXd refined = vector_of(here.mean) + G * (vector_of(later.mean) - mean);
+    const Eigen::MatrixXd rest = covariance + G * (later_covariance - P) * G.transpose();
+    Smoothed result{{refined.begin(), refined.end()}, std::vector<double>(here.covariance.size())};
+    Eigen::Map<Eigen::MatrixXd>(result.covariance.data(), size, size) = 0.5 * (rest + rest.transpose());
     return result;
   }
 
@@ -127,7 +139,7 @@ class Smoother {
     for (std::uint32_t r = 0; r < team_.robots; ++r) {
       for (; left_[r] > 0 && times_[r][left_[r] - 1] >= time; --left_[r]) {
         if (state.robots[r].time < 0) continue;
-        TeamMotion moved{.mean = robot_mean(state, r)};
+        TeamMotion moved = TeamMotion::from(state, r);
         drive(team_.model, time, times_[r][left_[r] - 1], speeds_[r], moved);
         results_[r].push_back(estimate_after(team_, state, r, moved, times_[r][left_[r] - 1]));
       }

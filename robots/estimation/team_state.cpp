@@ -16,28 +16,44 @@ constexpr double kShortestRepeat = 0.05;  // [s]
 constexpr double kNearest = 0.05;         // [m] sightings from nearer have no direction
 constexpr double kLeastYawVariance = 1e-8;
 
+using RobotVector = Eigen::Matrix<double, kTeamComponents, 1>;
+using RobotMatrix = Eigen::Matrix<double, kTeamComponents, kTeamComponents>;
+
+Eigen::Map<Eigen::VectorXd> mean_of(TeamState& state) {
+  return {state.mean.data(), static_cast<Eigen::Index>(state.mean.size())};
+}
+Eigen::Map<const Eigen::VectorXd> mean_of(const TeamState& state) {
+  return {state.mean.data(), static_cast<Eigen::Index>(state.mean.size())};
+}
+Eigen::Map<Eigen::MatrixXd> covariance_of(TeamState& state) {
+  const auto size = static_cast<Eigen::Index>(state.mean.size());
+  return {state.covariance.data(), size, size};
+}
+Eigen::Index first_of(std::uint32_t robot) { return kTeamComponents * static_cast<Eigen::Index>(robot); }
+
 double square(double v) { return v * v; }
 double seconds(std::int64_t from, std::int64_t to) { return 1e-9 * static_cast<double>(to - from); }
 
-/// Applies F to the rows and columns of one robot's components.
+/// Applies a motion to one robot's components.
 void carry(const TeamMotion& moved, Eigen::Index first, TeamState& state) {
-  Eigen::MatrixXd& P = state.covariance;
-  P.middleRows<kTeamComponents>(first) = moved.derivative * P.middleRows<kTeamComponents>(first).eval();
-  P.middleCols<kTeamComponents>(first) = P.middleCols<kTeamComponents>(first).eval() * moved.derivative.transpose();
-  P.block<kTeamComponents, kTeamComponents>(first, first) += moved.noise;
-  state.mean.segment<kTeamComponents>(first) = moved.mean;
+  auto P = covariance_of(state);
+  const Eigen::Map<const RobotMatrix> F(moved.derivative.data()), Q(moved.noise.data());
+  P.middleRows<kTeamComponents>(first) = F * P.middleRows<kTeamComponents>(first).eval();
+  P.middleCols<kTeamComponents>(first) = P.middleCols<kTeamComponents>(first).eval() * F.transpose();
+  P.block<kTeamComponents, kTeamComponents>(first, first) += Q;
+  std::copy(moved.mean.begin(), moved.mean.end(), state.mean.begin() + first);
 }
 
 /// Adds a stretch of constant speeds, driven along its chord.
 void drive_evenly(const TeamModel& model, const Speeds& speeds, double dt, TeamMotion& all) {
-  TeamMotion::Vector& m = all.mean;
+  Eigen::Map<RobotVector> m(all.mean.data());
   const double v = speeds.forward, w = speeds.turn, distance = std::abs(v) * dt, angle = std::abs(w) * dt;
   const bool moves = v != 0.0 || w != 0.0;
   const double kept = moves ? std::exp(-dt / model.turn_drift[1]) : 1.0;
   const double step = m(kSpeedScale) * v * dt, turned = (m(kTurnScale) * w + (moves ? m(kTurnDrift) : 0.0)) * dt;
   const double c = std::cos(m(kTeamYaw) + 0.5 * turned), s = std::sin(m(kTeamYaw) + 0.5 * turned);
 
-  TeamMotion::Matrix F = TeamMotion::Matrix::Identity();
+  RobotMatrix F = RobotMatrix::Identity();
   const Eigen::Vector2d along(c, s), across(-s, c);
   F.block<2, 1>(kTeamX, kTeamYaw) = step * across;
   F.block<2, 1>(kTeamX, kSpeedScale) = v * dt * along;
@@ -50,7 +66,7 @@ void drive_evenly(const TeamModel& model, const Speeds& speeds, double dt, TeamM
   m(kTurnDrift) *= kept;
 
   const double pivot = square(model.pivot) * angle + kRestRate * dt;
-  TeamMotion::Matrix& Q = all.noise;
+  Eigen::Map<RobotMatrix> Q(all.noise.data()), derivative(all.derivative.data());
   Q = (F * Q * F.transpose()).eval();
   Q.topLeftCorner<2, 2>() += (square(model.along) * distance + pivot) * along * along.transpose() +
                              (square(model.across) * distance + pivot) * across * across.transpose();
@@ -59,15 +75,16 @@ void drive_evenly(const TeamModel& model, const Speeds& speeds, double dt, TeamM
   for (const int k : {kSpeedScale, kTurnScale})
     if (moves) Q(k, k) += square(model.scale_drift) * dt;
   Q(kTurnDrift, kTurnDrift) += square(model.turn_drift[0]) * (1.0 - square(kept));
-  all.derivative = (F * all.derivative).eval();
+  derivative = (F * derivative).eval();
 }
 
 /// Adds the error of the time at which the speeds changed.
 void change(const TeamModel& model, const Speeds& from, const Speeds& to, TeamMotion& all) {
-  const double c = std::cos(all.mean(kTeamYaw)), s = std::sin(all.mean(kTeamYaw));
+  const double c = std::cos(all.mean[kTeamYaw]), s = std::sin(all.mean[kTeamYaw]);
+  Eigen::Map<RobotMatrix> Q(all.noise.data());
   const Eigen::Vector2d along(c, s);
-  all.noise.topLeftCorner<2, 2>() += square(model.jitter * (to.forward - from.forward)) * along * along.transpose();
-  all.noise(kTeamYaw, kTeamYaw) += square(model.jitter * (to.turn - from.turn));
+  Q.topLeftCorner<2, 2>() += square(model.jitter * (to.forward - from.forward)) * along * along.transpose();
+  Q(kTeamYaw, kTeamYaw) += square(model.jitter * (to.turn - from.turn));
 }
 
 /// Adds a stretch with the speeds held since `speeds.time`, or with unknown ones if that is too long ago.
@@ -78,15 +95,16 @@ void hold(const TeamModel& model, const Speeds& speeds, std::int64_t begin, std:
   const double dt = seconds(known, end);
   if (dt <= 0.0) return;
   drive_evenly(model, {}, dt, all);
-  all.noise.topLeftCorner<2, 2>().diagonal().array() += kUnknownPlace * dt;
-  all.noise(kTeamYaw, kTeamYaw) += kUnknownYaw * dt;
+  Eigen::Map<RobotMatrix> Q(all.noise.data());
+  Q.diagonal().head<2>().array() += kUnknownPlace * dt;
+  Q(kTeamYaw, kTeamYaw) += kUnknownYaw * dt;
 }
 
 Eigen::Index landmark_component(const Team& team, std::size_t landmark) {
   const auto unknown =
       std::count(team.landmarks.begin(), team.landmarks.begin() + static_cast<std::ptrdiff_t>(landmark),
                  std::optional<glm::dvec2>());
-  return kTeamComponents * static_cast<Eigen::Index>(team.robots) + 2 * unknown;
+  return first_of(team.robots) + 2 * unknown;
 }
 
 /// Position of a target: fixed, or two components of the state.
@@ -97,21 +115,21 @@ struct Target {
 
 Target target_of(const Team& team, const TeamEvent& event, const TeamState& state) {
   if (event.target < team.robots) {
-    const Eigen::Index at = kTeamComponents * static_cast<Eigen::Index>(event.target);
-    return {state.mean.segment<2>(at), at};
+    const Eigen::Index at = first_of(event.target);
+    return {mean_of(state).segment<2>(at), at};
   }
   const std::size_t landmark = event.target - team.robots;
   if (const auto& p = team.landmarks[landmark]) return {{p->x, p->y}, -1};
   const Eigen::Index at = landmark_component(team, landmark);
-  return {state.mean.segment<2>(at), at};
+  return {mean_of(state).segment<2>(at), at};
 }
 
 /// Places an unmapped landmark where it is seen; its variance remains that of an unknown position.
 void map_landmark(const Team& team, const TeamEvent& event, TeamState& state) {
   if (event.target < team.robots || state.mapped[event.target - team.robots] != 0) return;
-  const auto robot = state.mean.segment<kTeamComponents>(kTeamComponents * static_cast<Eigen::Index>(event.robot));
+  const auto robot = mean_of(state).segment<kTeamComponents>(first_of(event.robot));
   const double direction = robot(kTeamYaw) + event.values[1] - robot(kBearingOffset);
-  state.mean.segment<2>(landmark_component(team, event.target - team.robots)) =
+  mean_of(state).segment<2>(landmark_component(team, event.target - team.robots)) =
       robot.head<2>() + event.values[0] * Eigen::Vector2d(std::cos(direction), std::sin(direction));
   state.mapped[event.target - team.robots] = 1;
 }
@@ -136,15 +154,15 @@ Eigen::Vector2d noise_of(const TeamModel& model, double range, double turn, doub
 TeamResult sight(const Team& team, const TeamEvent& event, double turn, TeamState& state) {
   map_landmark(team, event, state);
   const TeamModel& model = team.model;
-  const Eigen::Index at = kTeamComponents * static_cast<Eigen::Index>(event.robot);
+  const Eigen::Index at = first_of(event.robot);
   const Target target = target_of(team, event, state);
-  const Eigen::Vector2d d = target.p - state.mean.segment<2>(at);
+  const Eigen::Vector2d d = target.p - mean_of(state).segment<2>(at);
   const double range = d.norm();
   if (!(range >= kNearest)) return {};
 
   const Eigen::Vector2d z(event.values[0] - (1.0 + model.range_scale) * range,
-                          base::wrap_angle(event.values[1] - std::atan2(d.y(), d.x()) + state.mean(at + kTeamYaw) -
-                                           state.mean(at + kBearingOffset)));
+                          base::wrap_angle(event.values[1] - std::atan2(d.y(), d.x()) + mean_of(state)(at + kTeamYaw) -
+                                           mean_of(state)(at + kBearingOffset)));
   Eigen::Matrix2d slope;  // of range and bearing by the target's position
   slope.row(0) = (1.0 + model.range_scale) / range * d.transpose();
   slope.row(1) = Eigen::RowVector2d(-d.y(), d.x()) / square(range);
@@ -153,7 +171,7 @@ TeamResult sight(const Team& team, const TeamEvent& event, double turn, TeamStat
   H(1, kTeamYaw) = -1.0;
   H(1, kBearingOffset) = 1.0;
 
-  const auto& P = state.covariance;
+  auto P = covariance_of(state);
   Eigen::MatrixX2d PH = P.middleCols<kTeamComponents>(at) * H.transpose();
   if (target.component >= 0) PH += P.middleCols<2>(target.component) * slope.transpose();
   Eigen::Matrix2d S = H * PH.middleRows<kTeamComponents>(at);
@@ -170,25 +188,26 @@ TeamResult sight(const Team& team, const TeamEvent& event, double turn, TeamStat
   all = S;
   all.diagonal() += noise / weight;
   const Eigen::MatrixX2d K = PH * all.inverse();
-  state.mean += K * z;
-  state.covariance -= K * PH.transpose();
-  state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();
+  mean_of(state) += K * z;
+  P -= K * PH.transpose();
+  P = (0.5 * (P + P.transpose())).eval();
   return {TeamUse::used, squared};
 }
 
 void place(const Team& team, const TeamEvent& event, TeamState& state) {
   TeamState::Robot& robot = state.robots[event.robot];
-  const Eigen::Index at = kTeamComponents * static_cast<Eigen::Index>(event.robot);
+  const Eigen::Index at = first_of(event.robot);
   const TeamModel& model = team.model;
+  auto P = covariance_of(state);
   const auto set = [&](Eigen::Index k, double mean, double variance) {
-    state.covariance.row(k).setZero();
-    state.covariance.col(k).setZero();
-    state.mean(k) = mean;
-    state.covariance(k, k) = variance;
+    P.row(k).setZero();
+    P.col(k).setZero();
+    P(k, k) = variance;
+    mean_of(state)(k) = mean;
   };
   for (int k = 0; k < 3; ++k) set(at + k, event.values[static_cast<std::size_t>(k)], 0.0);
   const auto& c = event.covariance;
-  state.covariance.block<3, 3>(at, at) << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  P.block<3, 3>(at, at) << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
   if (robot.time < 0) {
     set(at + kSpeedScale, model.speed_scale[0], square(model.speed_scale[1]));
     set(at + kTurnScale, model.turn_scale[0], square(model.turn_scale[1]));
@@ -202,14 +221,21 @@ void place(const Team& team, const TeamEvent& event, TeamState& state) {
 
 TeamState first_state(const Team& team) {
   const auto unknown = std::count(team.landmarks.begin(), team.landmarks.end(), std::optional<glm::dvec2>());
-  const Eigen::Index size = kTeamComponents * static_cast<Eigen::Index>(team.robots) + 2 * unknown;
+  const Eigen::Index size = first_of(team.robots) + 2 * unknown;
   TeamState state;
   state.robots.assign(team.robots, {-1, std::vector<std::int64_t>(team.robots + team.landmarks.size(), -1)});
   for (const auto& landmark : team.landmarks) state.mapped.push_back(landmark ? 1 : 0);
-  state.mean = Eigen::VectorXd::Zero(size);
-  state.covariance = Eigen::MatrixXd::Zero(size, size);
-  state.covariance.diagonal().tail(2 * unknown).setConstant(kUnmapped);
+  state.mean.assign(static_cast<std::size_t>(size), 0.0);
+  state.covariance.assign(static_cast<std::size_t>(size * size), 0.0);
+  covariance_of(state).diagonal().tail(2 * unknown).setConstant(kUnmapped);
   return state;
+}
+
+TeamMotion TeamMotion::from(const TeamState& state, std::uint32_t robot) {
+  TeamMotion all;
+  std::copy_n(state.mean.begin() + first_of(robot), kSize, all.mean.begin());
+  for (std::size_t k = 0; k < kSize; ++k) all.derivative[k * (kSize + 1)] = 1.0;
+  return all;
 }
 
 void drive(const TeamModel& model, std::int64_t begin, std::int64_t end, std::span<const Speeds> speeds,
@@ -233,8 +259,8 @@ void advance(const Team& team, std::uint32_t robot, std::int64_t time, std::span
              TeamState& state) {
   std::int64_t& own = state.robots[robot].time;
   if (own < 0 || time <= own) return;
-  const Eigen::Index at = kTeamComponents * static_cast<Eigen::Index>(robot);
-  TeamMotion moved{.mean = state.mean.segment<kTeamComponents>(at)};
+  const Eigen::Index at = first_of(robot);
+  TeamMotion moved = TeamMotion::from(state, robot);
   drive(team.model, own, time, speeds, moved);
   carry(moved, at, state);
   own = time;
@@ -260,16 +286,17 @@ TeamResult apply(const Team& team, const TeamEvent& event, std::span<const std::
 
 Estimate estimate_after(const Team& team, const TeamState& state, std::uint32_t robot, const TeamMotion& moved,
                         std::int64_t time) {
-  const Eigen::Index at = kTeamComponents * static_cast<Eigen::Index>(robot);
-  TeamMotion::Matrix P = state.covariance.block<kTeamComponents, kTeamComponents>(at, at);
-  P = (moved.derivative * P * moved.derivative.transpose()).eval() + moved.noise;
-  P.diagonal().head<2>().array() += square(team.model.place_error);
-  P(kTeamYaw, kTeamYaw) += square(team.model.yaw_error) + kLeastYawVariance;
+  const auto size = static_cast<Eigen::Index>(state.mean.size());
+  const Eigen::Map<const Eigen::MatrixXd> all(state.covariance.data(), size, size);
+  const Eigen::Map<const RobotMatrix> F(moved.derivative.data()), Q(moved.noise.data());
+  const Eigen::Index at = first_of(robot);
+  const RobotMatrix P = F * all.block<kTeamComponents, kTeamComponents>(at, at) * F.transpose() + Q;
   const auto& m = moved.mean;
-  Estimate estimate{.time = time, .X_WM = {m(kTeamX), m(kTeamY), 0.0, base::wrap_angle(m(kTeamYaw))}};
-  using Full = Eigen::Matrix<double, kComponents, kComponents, Eigen::RowMajor>;
-  Eigen::Map<Full>(estimate.covariance.data()).topLeftCorner<3, 3>() =
-      0.5 * (P.topLeftCorner<3, 3>() + P.topLeftCorner<3, 3>().transpose());
+  Estimate estimate{.time = time, .X_WM = {m[kTeamX], m[kTeamY], 0.0, base::wrap_angle(m[kTeamYaw])}};
+  Eigen::Map<Eigen::Matrix<double, kComponents, kComponents, Eigen::RowMajor>> full(estimate.covariance.data());
+  full.topLeftCorner<3, 3>() = 0.5 * (P.topLeftCorner<3, 3>() + P.topLeftCorner<3, 3>().transpose());
+  full.diagonal().head<2>().array() += square(team.model.place_error);
+  full(kYaw, kYaw) += square(team.model.yaw_error) + kLeastYawVariance;
   return estimate;
 }
 

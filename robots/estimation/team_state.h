@@ -11,7 +11,6 @@
 // modeling using the t distribution, JASA 84, 1989; for the smoother H. E. Rauch, F. Tung and C. T. Striebel, AIAA
 // Journal 3, 1965.
 
-#include <Eigen/Core>
 #include <array>
 #include <compare>
 #include <cstdint>
@@ -36,38 +35,38 @@ enum TeamComponent : std::uint8_t {
   kTeamComponents
 };
 
-/// Noise and constants of all robots of a team. Each standard deviation is >= 0. The defaults are those of the robots
-/// of MRCLAM; docs/derived.md says how they were found.
+/// Noise and constants of all robots of a team. Each standard deviation is >= 0. The defaults are those of the iRobot
+/// Creates of MRCLAM; docs/derived.md says how they were found.
 struct TeamModel {
   // Odometry. Speeds are held until the next ones take effect.
-  double delay = 0.2;                   ///< [s] >= 0 from reported speeds to the motion
-  double hold = 1.5;                    ///< [s] > 0 after which a robot without new speeds may do anything
-  std::array<double, 2> speed_scale{};  ///< [-] mean and standard deviation over robots
-  std::array<double, 2> turn_scale{};   ///< [-] the same
-  double scale_drift = 0.0;             ///< [s^(-1/2)] change of a scale in one second of motion
-  std::array<double, 2> turn_drift{};   ///< [rad/s], [s] standard deviation and correlation time
-  double along = 0.0, across = 0.0;     ///< [m^(1/2)] slip after one metre
-  double pivot = 0.0;                   ///< [m rad^(-1/2)] change of position by turning one radian
-  double yaw_per_metre = 0.0;           ///< [rad m^(-1/2)] change of yaw after one metre
-  double yaw_per_radian = 0.0;          ///< [rad^(1/2)] change of yaw after turning one radian
-  double jitter = 0.0;                  ///< [s] standard deviation of `delay`, from change to change
+  double delay = 0.22;                            ///< [s] >= 0 from reported speeds to the motion
+  double jitter = 0.05;                           ///< [s] standard deviation of `delay`, from change to change
+  double hold = 1.5;                              ///< [s] > 0 after which a robot without new speeds may do anything
+  std::array<double, 2> speed_scale{0.94, 0.02};  ///< [-] mean and standard deviation over robots
+  std::array<double, 2> turn_scale{0.93, 0.025};  ///< [-] the same
+  double scale_drift = 3e-4;                      ///< [s^(-1/2)] change of a scale in one second of motion
+  std::array<double, 2> turn_drift{0.006, 10.0};  ///< [rad/s], [s] > 0 standard deviation and correlation time
+  double along = 0.06, across = 0.01;             ///< [m^(1/2)] slip after one metre
+  double pivot = 0.042;                           ///< [m rad^(-1/2)] change of position by turning one radian
+  double yaw_per_metre = 0.05;                    ///< [rad m^(-1/2)] change of yaw after one metre
+  double yaw_per_radian = 0.05;                   ///< [rad^(1/2)] change of yaw after turning one radian
 
   // Sightings.
-  double exposure = 0.0;           ///< [s] >= 0 from the measurement to its timestamp
-  double range_scale = 0.0;        ///< [-] > -1 measured range over the true one, minus 1
-  double range_noise = 0.1;        ///< [m] > 0
-  double range_noise_share = 0.0;  ///< [-] of the range; both add in squares
-  double bearing_noise = 0.01;     ///< [rad] > 0
-  double target_size = 0.0;        ///< [m] bearing noise at one metre, falling with the range
-  double turn_blur = 0.0;          ///< [s] bearing noise per turn rate
-  double bearing_offset = 0.0;     ///< [rad] standard deviation over robots
-  double repeat = 0.0;             ///< [s] correlation time of the errors of one target
-  double freedom = 5.0;            ///< [-] > 0 degrees of freedom of Student's t distribution
-  double outlier = 400.0;          ///< [-] > 0 squared innovation beyond which a sighting is rejected
+  double exposure = 0.04;            ///< [s] >= 0 from the measurement to its timestamp
+  double range_scale = -0.015;       ///< [-] > -1 measured range over the true one, minus 1
+  double range_noise = 0.03;         ///< [m] > 0
+  double range_noise_share = 0.085;  ///< [-] of the range; both add in squares
+  double bearing_noise = 0.009;      ///< [rad] > 0
+  double target_size = 0.003;        ///< [m] bearing noise at one metre, falling with the range
+  double turn_blur = 0.03;           ///< [s] bearing noise per turn rate
+  double bearing_offset = 0.01;      ///< [rad] standard deviation over robots
+  double repeat = 2.9;               ///< [s] correlation time of the errors of one target
+  double freedom = 12.0;             ///< [-] > 0 degrees of freedom of Student's t distribution
+  double outlier = 400.0;            ///< [-] > 0 squared innovation beyond which a sighting is rejected
 
   // Errors that do not average out, added to the covariance of every estimate.
-  double place_error = 0.0;  ///< [m]
-  double yaw_error = 0.0;    ///< [rad]
+  double place_error = 0.025;  ///< [m]
+  double yaw_error = 0.008;    ///< [rad]
 };
 
 /// Reported speeds.
@@ -111,8 +110,8 @@ struct TeamState {
   std::int64_t event = -1;  ///< [ns] time of the last event
   std::vector<Robot> robots;
   std::vector<std::uint8_t> mapped;  ///< by landmark: its position is known or estimated
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
+  std::vector<double> mean;          ///< kTeamComponents of each robot, then two of each landmark not known at first
+  std::vector<double> covariance;    ///< symmetric
 
   bool known() const { return event >= 0; }
   std::int64_t time() const { return event; }
@@ -123,12 +122,13 @@ TeamState first_state(const Team& team);
 
 /// Mean of one robot's components at a later time, with its derivative and the noise added on the way.
 struct TeamMotion {
-  static constexpr int kSize = kTeamComponents;
-  using Vector = Eigen::Matrix<double, kSize, 1>;
-  using Matrix = Eigen::Matrix<double, kSize, kSize>;
-  Vector mean;
-  Matrix derivative = Matrix::Identity();
-  Matrix noise = Matrix::Zero();
+  static constexpr std::size_t kSize = kTeamComponents;
+  std::array<double, kSize> mean{};
+  std::array<double, kSize * kSize> derivative{};  ///< column-major
+  std::array<double, kSize * kSize> noise{};       ///< symmetric
+
+  /// Begins with the components of a robot.
+  static TeamMotion from(const TeamState& state, std::uint32_t robot);
 };
 
 /// Continues a motion from `begin` to `end`. Stops at the times of speeds on the way change no bit of the result.
@@ -154,11 +154,6 @@ TeamResult apply(const Team& team, const TeamEvent& event, std::span<const std::
 /// average out. The velocity is 0.
 Estimate estimate_after(const Team& team, const TeamState& state, std::uint32_t robot, const TeamMotion& moved,
                         std::int64_t time);
-
-/// Returns the components of one robot.
-inline auto robot_mean(const TeamState& state, std::uint32_t robot) {
-  return state.mean.segment<kTeamComponents>(kTeamComponents * static_cast<Eigen::Index>(robot));
-}
 
 // Events and speeds of readings, with the times at which they are applied. `time` [ns] is the reading's timestamp.
 
