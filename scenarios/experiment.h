@@ -19,6 +19,7 @@ struct ExperimentOptions {
   std::uint64_t seed = 1;                                       ///< trial k has seed + k
   std::optional<Plant> plant;                                   ///< nullopt: the experiment's own
   std::string folder;                                           ///< contains the scenario files
+  std::string data;                                             ///< folder of the measurements, if `measured`
   std::string out;                                              ///< output folder
   record::Compression compression = record::Compression::zstd;  ///< of recordings
   unsigned threads = 0;
@@ -41,8 +42,10 @@ struct ExperimentContext {
 
 struct ExperimentType {
   std::string_view name;
-  std::string_view scenario;   ///< stem of its scenario file; empty: its name
-  std::string_view summary;    ///< one line for help
+  std::string_view scenario;  ///< stem of its scenario file; empty: its name
+  std::string_view summary;   ///< one line for help
+  /// Evaluates the measurements in `ExperimentOptions::data`: no scenario, no trials, no device.
+  bool measured = false;
   Plant plant = Plant::ideal;  ///< default for the scenario and the user
   /// Text for the report: reasons for deviations from the thesis, or the findings.
   std::string_view reasons;

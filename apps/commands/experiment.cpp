@@ -45,7 +45,8 @@ std::string folder_of(const ExperimentOptions& options) {
 
 int list_all() {
   for (const scenarios::ExperimentType* type : scenarios::experiments())
-    print(fmt::format("{:<14} {}; plant {}\n", type->name, type->summary, plant_name(type->plant)));
+    print(fmt::format("{:<14} {}; {}\n", type->name, type->summary,
+                      type->measured ? std::string("needs --data") : fmt::format("plant {}", plant_name(type->plant))));
   return 0;
 }
 
@@ -53,6 +54,7 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
   scenarios::ExperimentOptions experiment_options{.trials = options.trials,
                                                   .seed = options.seed,
                                                   .plant = options.plant,
+                                                  .data = options.data,
                                                   .out = options.out,
                                                   .compression = options.compression,
                                                   .threads = cluster::threads_of(0, ranks),
@@ -61,6 +63,10 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
                                                   .stop = [] { return stop_requested().load(); }};
   std::optional<gpu::Device> device;
   on_all(ranks, [&] {
+    if (scenarios::find_experiment(options.experiment)->measured) {
+      device.emplace(std::string(gpu::kHostDevice));
+      return;
+    }
     experiment_options.folder = folder_of(options);
     device.emplace(open_device(options));
   });

@@ -396,6 +396,7 @@ struct ExperimentOptions : SeedOption, DeviceOption, InProcessOption, Compressio
   std::uint32_t trials = 3;
   std::optional<scenarios::Plant> plant;  ///< nullopt: the experiment's own
   std::string experiments;                ///< folder of their files; empty: searched for
+  std::string data;                       ///< folder of measurements; empty: none
 };
 
 struct TestOptions : DeviceOption, InProcessOption {

@@ -1,5 +1,6 @@
 // Subcommands that test: experiments, scenarios, and the farm itself.
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -17,14 +18,28 @@ namespace sf::apps {
 
 namespace {
 
+/// Experiments on measurements need --data and have none of the options of simulations; the others are the reverse.
+void check_data(const CLI::App& sub) {
+  if (sub.count("experiment") == 0) return;
+  const std::string name = sub.get_option("experiment")->as<std::string>();
+  if (!scenarios::find_experiment(name)->measured) {
+    if (sub.count("--data") > 0) throw CLI::ExcludesError("--data", name);
+    return;
+  }
+  if (sub.count("--data") == 0) throw CLI::RequiredError(fmt::format("--data, the folder that {} evaluates,", name));
+  for (const char* option : {"--trials", "--seed", "--plant", "--compression", "--files", "--device"})
+    if (sub.count(option) > 0) throw CLI::ExcludesError(option, name);
+}
+
 void add_experiment(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "experiment",
       "Run an experiment and write its trials, its statistics compared with the thesis, and its figures to one folder");
   auto& o = add_command(*sub, call, experiment, [sub] {
     if (sub->count("--list") + sub->count("experiment") == 0) throw CLI::RequiredError("experiment (or --list)");
+    check_data(*sub);
   });
-  add_examples(*sub, {"--list", "mapping -o out/mapping"});
+  add_examples(*sub, {"--list", "mapping -o out/mapping", "mrclam --data MRCLAM_Dataset6 -o out/mrclam"});
   auto* list = sub->add_flag("--list", o.list, "List all experiments");
   std::vector<std::string> names;
   for (const scenarios::ExperimentType* type : scenarios::experiments()) names.emplace_back(type->name);
@@ -45,6 +60,9 @@ void add_experiment(CLI::App& app, Call& call) {
       "Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
   add_compression(*sub, o);
   sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: sensorfarm's own)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  sub->add_option("--data", o.data, "Folder of the measurements that mrclam evaluates: an unpacked MRCLAM data set")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_in_process(*sub, o);

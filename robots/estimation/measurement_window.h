@@ -40,6 +40,10 @@ class MeasurementWindow {
   /// @param span [ns] > 0 measurements older than the newest by more are rejected
   /// @param capacity > 0 measurements; when full, the window becomes shorter
   MeasurementWindow(std::int64_t span, std::size_t capacity) : span_(span), entries_(capacity) {}
+  /// @param first the state before any measurement
+  MeasurementWindow(std::int64_t span, std::size_t capacity, const State& first) : MeasurementWindow(span, capacity) {
+    before_ = first;
+  }
 
   /// Inserts a measurement, and applies it and all later ones again.
   /// @param apply Verdict(const Measurement&, State&); a rejected measurement leaves the state unchanged
@@ -48,13 +52,16 @@ class MeasurementWindow {
   Verdict take(const Measurement& measurement, const Apply& apply) {
     if (const Verdict refusal = place_for(measurement); refusal != Verdict::used) return count(refusal);
     const std::size_t place = insert(measurement);
-    for (std::size_t k = place; k < size_; ++k) {
-      Entry& next = entry(k);
-      next.after = k > 0 ? entry(k - 1).after : before_;
-      --counts_[static_cast<std::size_t>(next.verdict)];
-      next.verdict = count(apply(next.measurement, next.after));
-    }
+    apply_from(place, apply);
     return entry(place).verdict;
+  }
+
+  /// Applies all measurements later than `time` again, after a change of something else that `apply` uses.
+  template <class Apply>
+  void apply_after(std::int64_t time, const Apply& apply) {
+    std::size_t place = size_;
+    while (place > 0 && entry(place - 1).measurement.time > time) --place;
+    apply_from(place, apply);
   }
 
   /// Counts a measurement that was rejected elsewhere.
@@ -75,6 +82,9 @@ class MeasurementWindow {
     return state;
   }
 
+  /// Returns the state after the measurements that left the window.
+  const State& before() const { return before_; }
+
   /// Drops everything except the counts.
   void clear() {
     first_ = size_ = 0;
@@ -90,6 +100,16 @@ class MeasurementWindow {
   };
   Entry& entry(std::size_t k) { return entries_[(first_ + k) % entries_.size()]; }
   const Entry& entry(std::size_t k) const { return entries_[(first_ + k) % entries_.size()]; }
+
+  template <class Apply>
+  void apply_from(std::size_t place, const Apply& apply) {
+    for (std::size_t k = place; k < size_; ++k) {
+      Entry& next = entry(k);
+      next.after = k > 0 ? entry(k - 1).after : before_;
+      --counts_[static_cast<std::size_t>(next.verdict)];
+      next.verdict = count(apply(next.measurement, next.after));
+    }
+  }
 
   /// Makes room for a measurement. Returns `used` if it may be inserted.
   Verdict place_for(const Measurement& measurement) {
