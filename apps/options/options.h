@@ -426,11 +426,6 @@ struct VerifyOptions : RecordingOption, ThreadsOption, JsonOption, DeviceOption 
   std::string accuracy;        ///< modes whose errors are measured at the recorded poses; empty: none
 };
 
-struct DeriveOptions : RecordingOption, ThreadsOption {
-  std::string with;  ///< file of the derived sensors
-  std::string out;   ///< folder
-};
-
 struct MergeOptions {
   std::vector<std::string> places;  ///< folders of ranks' recordings, or the recordings themselves
   std::string out;                  ///< folder

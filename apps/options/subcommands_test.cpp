@@ -158,21 +158,6 @@ void add_merge(CLI::App& app, Call& call) {
       ->type_name("DIR");
 }
 
-void add_derive(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("derive", "Compute derived sensors from the readings of a recorded run");
-  auto& o = add_command(*sub, call, derive);
-  add_examples(*sub, {"out/run --with sensors.toml -o out/derived"});
-  add_recording(*sub, o);
-  sub->add_option("--with", o.with, "TOML file of the derived sensors (docs/derived.md)")
-      ->required()
-      ->check(CLI::ExistingFile)
-      ->type_name("FILE");
-  sub->add_option("-o,--out", o.out, "Folder of the new recording, run.mcap, and of a table per sensor type")
-      ->required()
-      ->type_name("DIR");
-  add_threads(*sub, o);
-}
-
 void add_verify(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("verify",
                                      "Recompute a recorded run on this device and in plain C++, and compare bit by bit "
@@ -252,7 +237,6 @@ void add_test_commands(CLI::App& app, Call& call) {
   add_test(app, call);
   add_sweep(app, call);
   add_merge(app, call);
-  add_derive(app, call);
   add_verify(app, call);
   add_tradeoff(app, call);
   add_selftest(app, call);
