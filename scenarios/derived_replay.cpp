@@ -137,12 +137,14 @@ void Replayer::add_feed(std::size_t row) {
   const auto sensors = type == nullptr || sensor_set_.group(reading.type) == nullptr
                            ? std::span<const sensors::SensorSpec>()
                            : sensor_set_.of(reading.type, reading.mover);
-  const std::size_t width = type == nullptr ? 1 : sensors::element_width(*type);
-  if (reading.time < 0 || reading.sensor >= sensors.size() || reading.values.size() % width != 0 ||
-      (type->list.empty() && reading.values.size() != width))
-    throw base::InputError(recording_.file, 0,
-                           fmt::format("a reading of sensor {} of type {} of '{}' does not fit its world",
-                                       reading.sensor, reading.type, source_.world.movers.at(reading.mover).name));
+  const std::size_t expected =
+      reading.sensor < sensors.size() ? sensors[reading.sensor].elements * sensors::element_width(*type) : 0;
+  if (reading.time < 0 || expected == 0 || reading.values.size() != expected)
+    throw base::InputError(
+        recording_.file, 0,
+        fmt::format("a reading of sensor {} of type {} of '{}' does not fit its world: it has {} numbers; expected {}",
+                    reading.sensor, reading.type, source_.world.movers.at(reading.mover).name, reading.values.size(),
+                    expected));
   if (type->derived != nullptr) {
     recorded_[{reading.type, reading.mover, reading.sensor, reading.sequence}] = row;
     return;

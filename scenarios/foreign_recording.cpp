@@ -27,8 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMostStates = 5e6;
-constexpr std::int64_t kMostApart = 10 * base::kSecond;  ///< between the stamp of a message and its logging
-constexpr std::size_t kMostNames = 40;                   ///< of topics, in messages
+constexpr std::int64_t kMostApart = 10 * base::kSecond;            ///< between the stamp of a message and its logging
+constexpr std::int64_t kMostTime = 4'000'000'000 * base::kSecond;  ///< differences of such times fit into 64 bits
+constexpr std::size_t kMostNames = 40;                             ///< of topics, in messages
 
 /// A plane that touches WGS84; see the header.
 class LocalPlane {
@@ -209,7 +210,8 @@ double ForeignReader::configure_scan(ForeignInput& input) {
     return false;
   });
   const double fov = first.angle_max - first.angle_min;
-  if (!good || first.values.empty() || !(fov > 0.0 && fov <= 2.0 * M_PI + 1e-3) || !(first.range_max > 0.0))
+  if (!good || first.values.empty() || !(fov > 0.0 && fov <= 2.0 * M_PI + 1e-3) ||
+      !(first.range_max > 0.0 && std::isfinite(first.range_max)))
     fail(input,
          fmt::format("the first message of topic '{}' is not a scan with beams, counter-clockwise", input.topic));
   const auto state = [&](const char* key, const std::string& value) {
@@ -286,7 +288,7 @@ void ForeignReader::read_topic(const ForeignSensor& sensor) {
       throw base::InputError(bag.name, 0,
                              fmt::format("a message of {}, logged at {} ns, {}", sensor.source, raw.log_time, why));
     };
-    if (raw.log_time > static_cast<std::uint64_t>(INT64_MAX) || !record::decode_foreign(type, raw.data, message))
+    if (raw.log_time > static_cast<std::uint64_t>(kMostTime) || !record::decode_foreign(type, raw.data, message))
       refuse("is malformed");
     if (type == record::kNavSatFix) convert_fix(sensor, message);
     values_.clear();
@@ -310,7 +312,7 @@ std::optional<std::int64_t> read_time(std::string_view text, long double unit) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   value *= 1e9L * unit;
-  if (!(value >= -9e18L && value <= 9e18L)) return std::nullopt;
+  if (!(std::abs(value) <= kMostTime)) return std::nullopt;
   return static_cast<std::int64_t>(std::llround(value));
 }
 
