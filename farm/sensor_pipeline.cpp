@@ -20,8 +20,8 @@ void withdraw_bound(double sigma, base::ReadingBlock& block) {
 
 }  // namespace
 
-SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
-    : group(&g), backend(g.type->make(context, g)), cache(g.rows, context.noise) {
+SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g, bool measures)
+    : group(&g), backend(measures ? g.type->make(context, g) : nullptr), cache(g.rows, context.noise) {
   for (std::uint32_t i = 0; i < g.rows.size(); ++i) {
     const sensors::SensorSpec& row = g.rows[i];
     if (timings.empty() || timings.back().rate != row.rate || timings.back().phase != row.phase)

@@ -38,8 +38,8 @@ struct SensorPipeline {
   bool uploaded = true;                        ///< the device's tables match that preparation, as far as the kernels
                                                ///< are recorded
 
-  /// @param group must outlive it
-  SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& group);
+  /// @param group must outlive it @param measures false: there is no backend, only due times
+  SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& group, bool measures = true);
 
   /// Rows are in order of movers.
   template <class Visit>

@@ -29,6 +29,7 @@ int sweep(const SweepOptions& options);
 int map(const MapOptions& options);
 int verify(const VerifyOptions& options);
 int merge(const MergeOptions& options);
+int derive(const DeriveOptions& options);
 int explain(const ExplainOptions& options);
 int tradeoff(const TradeoffOptions& options);
 int v2x_messages(const V2xOptions& options);

@@ -431,6 +431,11 @@ struct MergeOptions {
   std::string out;                  ///< folder
 };
 
+struct DeriveOptions : RecordingOption, ThreadsOption {
+  std::string with;  ///< file of derived sensors
+  std::string out;   ///< folder
+};
+
 struct TradeoffOptions : WorldOptions,
                          AccuracyTargetOptions,
                          JsonOption,

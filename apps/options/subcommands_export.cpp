@@ -98,6 +98,25 @@ void add_export(CLI::App& app, Call& call) {
   add_device(*sub, o);
 }
 
+void add_derive(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "derive",
+      "Compute derived sensors from the readings of a recording: sensorfarm's own, MCAP with ROS 2 messages, or CSV "
+      "(docs/recordings.md; exit code 1 if recorded derived readings differ)");
+  auto& o = add_command(*sub, call, derive);
+  add_examples(*sub, {"out/run --with pose.toml -o out/derived", "drive.mcap --with imu_and_gps.toml -o out/derived"});
+  add_recording(*sub, o);
+  sub->add_option("--with", o.with, "File of derived sensors, and of the recording's inputs (.toml)")
+      ->required()
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  sub->add_option("-o,--out", o.out, "Folder for the recording (run.mcap) and one table per derived sensor (NAME.csv)")
+      ->required()
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_threads(*sub, o);
+}
+
 void add_view(CLI::App& app, Call& call) {
   constexpr const char* kGroup = "VTK window";
   CLI::App* sub = app.add_subcommand(
@@ -146,6 +165,7 @@ void add_view(CLI::App& app, Call& call) {
 void add_export_commands(CLI::App& app, Call& call) {
   add_plot(app, call);
   add_export(app, call);
+  add_derive(app, call);
   add_view(app, call);
 }
 

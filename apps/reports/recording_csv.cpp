@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -15,8 +16,6 @@
 #include "world/world.h"
 
 namespace sf::apps {
-
-namespace {
 
 /// A CSV file that gets its name once it is complete; until `close`, its name is FILE.new.
 class CsvFile {
@@ -49,18 +48,20 @@ class CsvFile {
   bool whole_ = false;
 };
 
+namespace {
+
 std::string seconds(std::int64_t time) { return csv_number(1e-9 * static_cast<double>(time)); }
 
 std::string twist_fields(const base::Twist& v) {
   return csv_number(v.forward) + "," + csv_number(v.left) + "," + csv_number(v.turn);
 }
 
-/// "range_m", "vector_T_x".
-std::string column_names(const record::SensorTypeInfo& type) {
+/// "range_m", "vector_T_x". @param type a record::SensorTypeInfo or a sensors::SensorType
+std::string column_names(const auto& type) {
   std::string text;
-  for (const record::ColumnInfo& column : type.columns)
+  for (const auto& column : type.columns)
     for (std::uint32_t k = 0; k < column.width; ++k)
-      text += "," + csv_field(column.width == 1   ? column.name
+      text += "," + csv_field(column.width == 1   ? std::string(column.name)
                               : column.width <= 3 ? fmt::format("{}_{}", column.name, "xyz"[k])
                                                   : fmt::format("{}_{}", column.name, k));
   return text;
@@ -139,6 +140,45 @@ std::vector<std::string> write_readings_csv(const RecordingPart& part, const std
     for (const record::ReadingSample& reading : recording.readings)
       if (is_one(reading)) write_reading(file, recording.info, type, reading);
     file.close();
+  }
+  return files;
+}
+
+DerivedCsv::DerivedCsv(const world::World& world, const sensors::SensorSet& sensor_set, const std::string& folder) {
+  std::map<std::string, int> count;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows) count[row.name] += group.type->derived != nullptr;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
+    if (group.type->derived == nullptr) continue;
+    for (const sensors::SensorSpec& row : group.rows) {
+      std::string name = count[row.name] > 1 ? world.movers[row.mover].name + "_" + row.name : row.name;
+      std::ranges::replace(name, '/', '_');
+      Table table{folder + "/" + name + ".csv", sensors::element_width(*group.type), nullptr};
+      table.file = std::make_unique<CsvFile>(table.path);
+      table.file->row("time_s" + column_names(*group.type));
+      tables_.emplace(std::tuple(group.type->id, row.mover, row.sensor), std::move(table));
+    }
+  }
+}
+
+DerivedCsv::~DerivedCsv() = default;
+
+void DerivedCsv::add(const base::ReadingBlock& reading) {
+  const auto found = tables_.find({reading.type, reading.mover, reading.sensor});
+  if (found == tables_.end()) return;
+  const std::string time = seconds(reading.time);
+  for (std::size_t first = 0; first < reading.values.size(); first += found->second.width) {
+    std::string row = time;
+    for (const double value : reading.values.subspan(first, found->second.width)) row += "," + csv_number(value);
+    found->second.file->row(row);
+  }
+}
+
+std::vector<std::string> DerivedCsv::close() {
+  std::vector<std::string> files;
+  for (auto& [sensor, table] : tables_) {
+    table.file->close();
+    files.push_back(table.path);
   }
   return files;
 }
