@@ -24,6 +24,7 @@
 #include "scenarios/run_info.h"
 #include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
+#include "sensors/derived/own_derived.h"
 #include "sensors/own_sensors.h"
 #include "viz/top_view.h"
 #include "viz/world_figure.h"
@@ -450,6 +451,10 @@ void add_controller(ControllerEntry entry) {
 
 void add_sensor(SensorEntry entry) {
   library::translated([&] { sensors::add_own_sensor(std::move(entry), "add_sensor"); });
+}
+
+void add_derived(DerivedEntry entry) {
+  library::translated([&] { sensors::add_own_derived(std::move(entry), "add_derived"); });
 }
 
 void load_plugin(const std::string& file) {

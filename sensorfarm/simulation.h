@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "sensorfarm/controller.h"
+#include "sensorfarm/derived.h"
 #include "sensorfarm/sensor.h"
 
 #define SENSORFARM_API __attribute__((visibility("default")))
@@ -219,6 +220,8 @@ SENSORFARM_API void add_controller(ControllerEntry entry);
 /// Adds your own sensor type for the rest of the program: worlds loaded from now on may contain such sensors. A
 /// kernel's file is relative to the working directory. @throws Error
 SENSORFARM_API void add_sensor(SensorEntry entry);
+/// The same for a derived sensor type. @throws Error
+SENSORFARM_API void add_derived(DerivedEntry entry);
 /// Loads a plug-in. Its controllers can be named, and worlds may contain its sensors. @throws Error
 SENSORFARM_API void load_plugin(const std::string& file);
 
