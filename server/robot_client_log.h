@@ -56,7 +56,6 @@ class RobotClientLog {
   std::uint64_t stops_ = 0;
   std::string real_problem_;    ///< last logged
   std::int64_t next_lane_ = 0;  ///< [ns] time before which no unknown lane is logged
-  std::string real_problem_;    ///< last logged
   bool outputs_ignored_ = false;
   std::int64_t next_drive_ = 0;  ///< [ns] time before which no ignored DRIVE is logged
 };
