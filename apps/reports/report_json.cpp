@@ -458,7 +458,7 @@ Json accuracy_json(const scenarios::RecordedAccuracy& accuracy) {
                              {"mode", t.mode},
                              {"unit", t.unit},
                              {"recorded_with_noise", t.noisy},
-                             {"count", e.steps()},
+                             {"count", e.count()},
                              {"zero", e.zero()},
                              {"median", finite_json(e.quantile(0.5))},
                              {"p99", finite_json(e.quantile(0.99))},
