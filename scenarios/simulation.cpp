@@ -400,9 +400,8 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   find_others(mover, time, others);
   if (robot.sharing != nullptr) exchange_maps(*robot.sharing, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
-  commands_[mover] =
-      robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_,
-                              lanes_ ? lanes_->network() : nullptr});
+  commands_[mover] = robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_,
+                                             others, signals_, lanes_ ? lanes_->network() : nullptr});
   next_intents_[mover] = robot.controller->intent();
   if (robot.sharing != nullptr) next_maps_[mover] = robot.sharing->shared_map();
   robot.stepped = true;

@@ -19,7 +19,7 @@ namespace {
 const Words kSubcommands{"devices", "check",  "draw",     "sense",     "run",  "serve",    "robot",   "start",
                          "plot",    "listen", "dump",     "field",     "map",  "selftest", "explain", "experiment",
                          "test",    "verify", "tradeoff", "export",    "view", "merge",    "sweep",   "help",
-                         "light",   "object", "vps",      "calibrate", "v2x", "lane"};
+                         "light",   "object", "vps",      "calibrate", "v2x",  "lane"};
 
 struct Wrong {
   Words arguments;
