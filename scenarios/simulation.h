@@ -112,8 +112,8 @@ class Simulation {
   /// Requests the use of a lane, between two steps (world/roads/lane_control.h). Route controllers replan. With ranks,
   /// all make the same call.
   /// @param lane such as "3.1" @param use a word of world::lane_use_of
-  /// @throws base::InputError, with nothing changed, for an unknown lane or use, a use that the lane cannot have, a world
-  /// without roads, and with tiles
+  /// @throws base::InputError, with nothing changed, for an unknown lane or use, a use that the lane cannot have, a
+  /// world without roads, and with tiles
   void set_lane(const std::string& lane, const std::string& use);
   /// Returns the current uses, one per lane; empty before the first request.
   std::span<const world::LaneUse> lane_uses() const {
