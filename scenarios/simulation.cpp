@@ -427,14 +427,9 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   find_others(mover, time, others);
   if (robot.sharing != nullptr) exchange_maps(*robot.sharing, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
-<<<<<<< HEAD
   const auto poses = robot.positioning ? robot.positioning->receive(time) : std::span<const control::MeasuredPose>();
   commands_[mover] = robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_,
                                              others, signals_, lanes_ ? lanes_->network() : nullptr, poses});
-=======
-  commands_[mover] = robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_,
-                                             others, signals_, lanes_ ? lanes_->network() : nullptr});
->>>>>>> joining2
   next_intents_[mover] = robot.controller->intent();
   if (const control::OwnLocalization* own = control::localization_of(*robot.controller))
     next_estimates_[mover] = {own->state(), own->quality()};
