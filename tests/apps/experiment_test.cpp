@@ -24,6 +24,11 @@ TEST(Experiment, WrongUsageIsRejected) {
   EXPECT_NE(nowhere.err.find("--out"), std::string::npos) << nowhere.err;
   expect_refused({"experiment"});
   expect_refused({"experiment", "mapping", "-o", "x", "--files", "/nowhere"}, "/nowhere/mapping.toml");
+  expect_refused({"experiment", "mapping", "-o", "x", "--data", "d"}, "--data");
+  expect_refused({"experiment", "mrclam", "-o", "x"}, "--data");
+  expect_refused({"experiment", "mrclam", "-o", "x", "--data", "d", "--trials", "2"}, "--trials");
+  const Folder folder;
+  expect_refused({"experiment", "mrclam", "-o", folder.path("out"), "--data", "/nowhere"}, "/nowhere");
 }
 
 TEST(Experiment, WritesItsFolder) {

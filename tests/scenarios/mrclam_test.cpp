@@ -41,7 +41,7 @@ TEST_F(MrclamData, ReachesItsGoals) {
     if (row.landmarks != MrclamLandmarks::all || row.cooperative) continue;
     SCOPED_TRACE(row.robot);
     (row.smoother ? smoother : filter) += row.rms_m / 5.0;
-    if (!row.smoother) EXPECT_LE(row.rms_m, 0.22);
+    EXPECT_LE(row.rms_m, 0.22);
     EXPECT_GE(row.nees, 0.5);
     EXPECT_LE(row.nees, 2.0);
   }
