@@ -54,6 +54,7 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world) {
   SimulationOptions options{
       .seed = scenario.seed, .start_at = scenario.start_at, .states = scenario.states, .v2v = scenario.v2v};
+  options.faults = scenario.faults;
   if (options.states) options.states->link.seed = scenario.seed;
   if (options.v2v) options.v2v->link.seed = scenario.seed;
   // Tags remain at rest unless a [[robot]] names them. A robot's controller in the world file overrides the scenario's
