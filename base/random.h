@@ -22,7 +22,8 @@ enum class RandomStream : std::uint32_t {
   link = 10,         ///< delay and loss between a robot and the farm
   decision = 11,     ///< random decisions of controllers
   own_sensors = 12,  ///< users' own sensor types
-  fiducials = 13
+  fiducials = 13,
+  faults = 14  ///< of sensors
 };
 
 /// Identifies one draw by all five fields.

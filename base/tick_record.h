@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/fault.h"
 #include "base/reading.h"
 #include "base/report.h"
 #include "base/state_quality.h"
@@ -28,6 +29,7 @@ struct TickRecord {
   std::span<const ReadingBlock> readings;   ///< delivered this tick
   std::span<const StateQuality> qualities;  ///< one per report; empty: the states are exact
   std::span<const LightStatus> lights;      ///< one per traffic light of the world; empty: not recorded
+  std::span<const FaultMark> faults;        ///< readings measured since the last tick that faults affected
 };
 
 class Sink {

@@ -8,15 +8,19 @@
 
 namespace sf::farm {
 
-Delivery::Delivery(const sensors::SensorSet& sensor_set) : sensor_set_(sensor_set) { add_sensors(); }
+Delivery::Delivery(const sensors::SensorSet& sensor_set, const Faults* faults)
+    : sensor_set_(sensor_set), faults_(faults) {
+  add_sensors();
+}
 
 void Delivery::add_sensors() {
+  any_ = any_ || (faults_ != nullptr && faults_->delays());
   for (const auto& group : sensor_set_.groups())
     for (const sensors::SensorSpec& row : group.rows) any_ = any_ || base::nanoseconds(row.latency) > 0;
 }
 
 std::int64_t Delivery::latency_of(const base::ReadingBlock& block) const {
-  return base::nanoseconds(sensor_set_.row(block).latency);
+  return base::nanoseconds(sensor_set_.row(block).latency) + (faults_ != nullptr ? faults_->delay_of(block) : 0);
 }
 
 void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {

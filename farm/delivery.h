@@ -7,17 +7,19 @@
 #include <vector>
 
 #include "base/reading.h"
+#include "farm/faults.h"
 #include "farm/schedule.h"
 #include "farm/stored_reading.h"
 #include "sensors/sensor_set.h"
 
 namespace sf::farm {
 
-/// Delays the readings of sensors with a latency. Without such sensors `deliver` returns its argument.
+/// Delays the readings of sensors with a latency, or delayed by a fault. Without such sensors `deliver` returns its
+/// argument.
 class Delivery {
  public:
-  /// `sensor_set` must outlive it.
-  explicit Delivery(const sensors::SensorSet& sensor_set);
+  /// @param faults delay readings further; null: none. Both must outlive it.
+  explicit Delivery(const sensors::SensorSet& sensor_set, const Faults* faults = nullptr);
 
   /// Call this after the sensor set has gained sensors.
   void add_sensors();
@@ -29,6 +31,9 @@ class Delivery {
   /// Delays a reading of a sensor with latency until a later call of `deliver`. @return false if it has none
   bool hold_if_late(const base::ReadingBlock& block);
 
+  /// [ns] Returns the time from measurement to delivery.
+  std::int64_t latency_of(const base::ReadingBlock& block) const;
+
   /// Returns the delivery time [ns] of the next delayed reading; kNever: no reading is waiting.
   std::int64_t next() const { return next_; }
 
@@ -38,10 +43,10 @@ class Delivery {
     std::int64_t due = 0;
     bool used = false;
   };
-  std::int64_t latency_of(const base::ReadingBlock& block) const;
   void hold(const base::ReadingBlock& block, std::int64_t due);
 
   const sensors::SensorSet& sensor_set_;
+  const Faults* faults_;
   bool any_ = false;
   std::int64_t next_ = kNever;
   std::deque<Waiting> waiting_;  ///< slots are reused with their memory, at fixed addresses

@@ -74,20 +74,26 @@ std::int64_t Derivation::next_due(std::span<const base::SensorTypes> subscribed)
 
 std::span<const base::ReadingBlock> Derivation::evaluate(std::int64_t now,
                                                          std::span<const base::ReadingBlock> delivered,
-                                                         std::span<const base::Report> states) {
+                                                         std::span<const base::Report> states,
+                                                         const sensors::DerivedSensors::Stage& stage) {
   due_.clear();
   for (const SensorPipeline& pipeline : pipelines_) due_.emplace_back(pipeline.due);
-  const auto derived = sensors_.evaluate(now, delivered, due_, states, std::exchange(commands_, {}));
+  const auto derived = sensors_.evaluate(now, delivered, due_, states, stage, std::exchange(commands_, {}));
   delivered_.assign(delivered.begin(), delivered.end());
   delivered_.insert(delivered_.end(), derived.begin(), derived.end());
   return delivered_;
 }
 
 std::span<const base::ReadingBlock> Derivation::derive(std::int64_t now, std::span<const base::ReadingBlock> delivered,
-                                                       std::span<const base::Report> states, Delivery& delivery,
+                                                       std::span<const base::Report> states, Faults& faults,
+                                                       Delivery& delivery,
                                                        std::span<const base::SensorTypes> subscribed) {
   const std::size_t known = delivered.size();
-  const auto all = evaluate(now, delivered, states);
+  using Fate = sensors::DerivedSensors::Fate;
+  const auto all = evaluate(now, delivered, states, [&](base::ReadingBlock& reading) {
+    if (!faults.empty() && !faults.apply(reading)) return Fate::lost;
+    return delivery.latency_of(reading) > 0 ? Fate::late : Fate::delivered;
+  });
   const auto is_subscribed = [&](const base::ReadingBlock& block) {
     return (subscribed[block.mover] & base::only(block.type)) != 0;
   };

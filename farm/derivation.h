@@ -34,16 +34,19 @@ class Derivation {
   std::int64_t next_due(std::span<const base::SensorTypes> subscribed) const;
 
   /// Returns `delivered` and the due readings of derived sensors, without latency; valid until the next call.
+  /// @param stage see sensors::DerivedSensors
   std::span<const base::ReadingBlock> evaluate(std::int64_t now, std::span<const base::ReadingBlock> delivered,
-                                               std::span<const base::Report> states);
+                                               std::span<const base::Report> states,
+                                               const sensors::DerivedSensors::Stage& stage = {});
   /// Sets the inputs `command` of the next evaluation: per mover.
   void set_commands(std::span<const base::Twist> commands) { commands_ = commands; }
   /// @param delivered readings delivered at `now`, including late ones of derived sensors
+  /// @param faults apply to readings of derived sensors
   /// @param delivery holds readings of derived sensors with latency until they are delivered
   /// @param subscribed per mover: the others' readings serve as inputs only, and are left out of the result
   /// @return the delivered readings, then those of derived sensors; valid until the next call
   std::span<const base::ReadingBlock> derive(std::int64_t now, std::span<const base::ReadingBlock> delivered,
-                                             std::span<const base::Report> states, Delivery& delivery,
+                                             std::span<const base::Report> states, Faults& faults, Delivery& delivery,
                                              std::span<const base::SensorTypes> subscribed);
 
  private:

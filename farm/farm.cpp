@@ -13,6 +13,7 @@
 #include "base/thread_pool.h"
 #include "farm/delivery.h"
 #include "farm/derivation.h"
+#include "farm/faults.h"
 #include "farm/pose_changes.h"
 #include "farm/sensor_pipeline.h"
 #include "gpu/batch.h"
@@ -54,6 +55,7 @@ struct Farm::State {
   std::span<const base::Twist> commands;  ///< for the next tick
   bool demand_changed = true;             ///< subscriptions have changed since derived sensors were last told
   std::unique_ptr<gpu::Batch> batch;
+  Faults faults;
   Delivery delivery;
   std::unique_ptr<PoseChanges> pose_changes;  ///< of the current tick
   std::vector<base::Report> states;           ///< per mover, as sensed in this tick or sample; backends view it
@@ -81,7 +83,8 @@ struct Farm::State {
         reuse_unchanged(given.reuse_unchanged),
         no_return_inf(given.no_return_inf),
         marked(thread_pool.threads()),
-        delivery(sensor_set),
+        faults(w, sensor_set, given.faults, given.seed, given.noise, thread_pool),
+        delivery(sensor_set, &faults),
         states(robots::states_at_load(w)),
         subscribed(w.movers.size(), 0),
         gone(w.movers.size(), 0),
@@ -112,8 +115,8 @@ struct Farm::State {
   void collect(SensorPipeline& pipeline, std::int64_t now, bool reuse);
   void clear_blocks();
   void append(SensorPipeline& pipeline);
-  /// @param reuse whether cached readings may be used
-  void measure(std::int64_t now, bool reuse);
+  /// @param reuse whether cached readings may be used @param faulty whether faults apply
+  void measure(std::int64_t now, bool reuse, bool faulty);
   void subscribe(std::uint32_t mover, base::SensorTypes types);
   void add_to_hash(std::int64_t now, std::span<const base::ReadingBlock> readings);
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
@@ -158,6 +161,7 @@ std::shared_ptr<const void> Farm::State::add_mover() {
   gone.push_back(0);
   if (!qualities.empty()) qualities.resize(gone.size());
   pose_changes = std::make_unique<PoseChanges>(world);
+  faults.add_sensors(world, sensor_set);
   delivery.add_sensors();
   if (sharing) sharing->add_mover(sensor_set);
   for (SensorPipeline& pipeline : pipelines) {
@@ -235,7 +239,7 @@ void Farm::State::submit() {
   ++stats.batches;
 }
 
-void Farm::State::measure(std::int64_t now, bool reuse) {
+void Farm::State::measure(std::int64_t now, bool reuse, bool faulty) {
   Stopwatch watch;
   for (SensorPipeline& pipeline : pipelines) {
     pipeline.split(reuse);
@@ -261,6 +265,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   watch.lap(stats.collect_s);
   if (exchange() != nullptr) exchange()->exchange(blocks);
   watch.lap(stats.exchange_s);
+  if (faulty) faults.apply(blocks, 0);
   const std::size_t known = blocks.size();
   for (SensorPipeline& pipeline : pipelines) {
     if (!pipeline.derived()) continue;
@@ -268,6 +273,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
     collect(pipeline, now, reuse);
     append(pipeline);
   }
+  if (faulty) faults.apply(blocks, known);
   watch.lap(stats.collect_s);
 }
 
@@ -330,12 +336,13 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
     pipeline.backend->accumulate(now, between);
   }
   clear_blocks();
-  if (find_due(now) || exchange() != nullptr) measure(now, reuse_unchanged);
+  faults.begin();
+  if (find_due(now) || exchange() != nullptr) measure(now, reuse_unchanged, !faults.empty());
   if (!qualities.empty())
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
   auto delivered = delivery.deliver(now, blocks);
-  if (!derivation->empty()) delivered = derivation->derive(now, delivered, states, delivery, subscribed);
+  if (!derivation->empty()) delivered = derivation->derive(now, delivered, states, faults, delivery, subscribed);
   add_to_hash(now, delivered);
   watch.lap(stats.collect_s);
   stats.readings += delivered.size();
@@ -378,6 +385,10 @@ std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const
 void Farm::set_commands(std::span<const base::Twist> commands) { s_->commands = commands; }
 
 std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }
+std::int64_t Farm::delivery_time(const base::ReadingBlock& reading) const {
+  return reading.time + s_->delivery.latency_of(reading);
+}
+std::span<const base::FaultMark> Farm::fault_marks() const { return s_->faults.marks(); }
 
 std::span<const base::ReadingBlock> Farm::sample(std::int64_t now, std::span<const base::Report> reports) {
   s_->begin_tick(true);
@@ -408,7 +419,7 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint
   s.derivation->request(mover, type, sensor, s.pipelines);
   s.demand_changed = true;
   const base::Pose stands = std::exchange(s.states[mover].X_WM, X_WM);
-  s.measure(0, false);
+  s.measure(0, false, false);
   std::span<const base::ReadingBlock> readings = s.blocks;
   if (!s.derivation->empty()) readings = s.derivation->evaluate(0, s.blocks, s.states);
   s.states[mover].X_WM = stands;
@@ -437,6 +448,7 @@ void Farm::read_sensors(std::uint32_t mover, base::ByteReader& in) {
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;
+  stats.faults = s_->faults.counts();
   stats.work += s_->earlier_work;
   for (const SensorPipeline& pipeline : s_->pipelines) stats.work += pipeline.backend->stats();
   return stats;

@@ -22,6 +22,7 @@
 #include "base/bytes.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "farm/fault.h"
 #include "farm/schedule.h"
 #include "farm/sharing.h"
 #include "gpu/device.h"
@@ -44,24 +45,26 @@ struct FarmOptions {
                                ///< server::NoReturnFilter; readings are unchanged
   unsigned threads = 0;        ///< number of host threads; 0: all cores. Does not affect readings
   raycast::SceneOptions scene;
-  bool shared = false;  ///< shares the fleet with other processes, each of which senses a part of it; see
-                        ///< `Farm::sharing`
+  bool shared = false;        ///< shares the fleet with other processes, each of which senses a part of it; see
+                              ///< `Farm::sharing`
+  std::vector<Fault> faults;  ///< of its sensors, in the order in which they act; not of `Farm::sense`
 };
 
 /// Costs and counts of all ticks so far.
 struct FarmStats {
   std::uint64_t ticks = 0;
   std::uint64_t readings = 0;
-  std::uint64_t missed = 0;   ///< subscribed readings that were not measured, because newer ones were due at the same
-                              ///< tick
-  std::uint64_t reused = 0;   ///< cached readings that were delivered again
-  std::uint64_t batches = 0;  ///< submitted to the device, excluding those of maps
-  sensors::SensorStats work;  ///< work of all sensor types
-  double place_s = 0.0;       ///< [s] host: outlines of the movers
-  double lists_s = 0.0;       ///< [s] host: lists of candidate walls, ray casting on the host, recording of kernels
-  double device_s = 0.0;      ///< [s] host: preparation of the submission, and the wait for its completion
-  double collect_s = 0.0;     ///< [s] host sensors, noise, interpolation, maps with their batch, delivery
-  double exchange_s = 0.0;    ///< [s] readings of other processes, and the wait for them
+  std::uint64_t missed = 0;    ///< subscribed readings that were not measured, because newer ones were due at the same
+                               ///< tick
+  std::uint64_t reused = 0;    ///< cached readings that were delivered again
+  std::uint64_t batches = 0;   ///< submitted to the device, excluding those of maps
+  base::FaultCounts faults{};  ///< readings affected by faults
+  sensors::SensorStats work;   ///< work of all sensor types
+  double place_s = 0.0;        ///< [s] host: outlines of the movers
+  double lists_s = 0.0;        ///< [s] host: lists of candidate walls, ray casting on the host, recording of kernels
+  double device_s = 0.0;       ///< [s] host: preparation of the submission, and the wait for its completion
+  double collect_s = 0.0;      ///< [s] host sensors, noise, interpolation, maps with their batch, delivery
+  double exchange_s = 0.0;     ///< [s] readings of other processes, and the wait for them
   double sensing_s() const { return place_s + lists_s + device_s + collect_s; }
 };
 
@@ -71,7 +74,8 @@ inline constexpr base::SensorTypes kAllSensorTypes = ~base::SensorTypes{0};
 /// contains.
 class Farm {
  public:
-  /// @throws base::InputError for a sensor with invalid settings
+  /// @throws base::InputError for a sensor with invalid settings, and for invalid faults (check_faults), except that
+  /// faults of unknown robots or sensors have no effect
   /// @throws base::DeviceError if the device is too small
   Farm(const world::World& world, gpu::Device& device, const FarmOptions& options = {});
   ~Farm();
@@ -122,6 +126,11 @@ class Farm {
   std::int64_t next_due() const;
   /// Returns the delivery time [ns] of the next reading delayed by latency; farm::kNever: none.
   std::int64_t next_delivery() const;
+  /// [ns] Returns when a delivered reading was due for delivery, possibly between two ticks.
+  std::int64_t delivery_time(const base::ReadingBlock& reading) const;
+  /// Returns the readings measured by the last `tick`, `sample` or `sample_between` that faults affected, including
+  /// lost ones; valid until the next call.
+  std::span<const base::FaultMark> fault_marks() const;
   /// Does the same as `tick`, at a time between two ticks. Accumulating quantities (wheel rotation) are read at `now`
   /// but continue from the last tick, so readings at ticks do not depend on samples in between.
   std::span<const base::ReadingBlock> sample(std::int64_t now, std::span<const base::Report> reports);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "record/faults_message.h"
 #include "record/lights_message.h"
 #include "record/mcap_reader.h"
 #include "record/reading_messages.h"
@@ -111,6 +112,7 @@ bool read_message(const McapMessage& message, std::string_view type, const std::
     if (!good) recording.lights.pop_back();
     return good;
   }
+  if (type == kFaults) return decode_faults(message.data, recording.faults);
   const auto found = topics.find(name);
   if (found == topics.end()) return type != kLaserScan;
   return type == type_of(*found->second.type) && read_reading(message, found->second, recording);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/fault.h"
 #include "record/fleet_message.h"
 #include "record/run_info.h"
 
@@ -46,10 +47,11 @@ struct Recording {
   std::vector<std::vector<StateSample>> states;  ///< by mover, then by tick
   std::vector<ReadingSample> readings;           ///< in order of delivery; empty when not recorded
   std::vector<LightsSample> lights;              ///< by tick; empty if the world has none
-  std::uint64_t ticks = 0;                       ///< number of ticks in the file
-  std::int64_t end_time = 0;                     ///< [ns] simulated time of the last tick
-  bool truncated = false;           ///< not finished: killed, or still being written; contains all whole ticks
-  std::vector<std::string> damage;  ///< omitted data: checksum errors and unreadable messages
+  std::vector<base::FaultMark> faults;  ///< readings that faults affected, recorded or not, by time of the tick
+  std::uint64_t ticks = 0;              ///< number of ticks in the file
+  std::int64_t end_time = 0;            ///< [ns] simulated time of the last tick
+  bool truncated = false;               ///< not finished: killed, or still being written; contains all whole ticks
+  std::vector<std::string> damage;      ///< omitted data: checksum errors and unreadable messages
 };
 
 /// @param directory as passed to the recorder, or the path of an MCAP file

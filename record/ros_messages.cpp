@@ -13,16 +13,24 @@ using base::Bytes;
 using base::Pose;
 using base::Twist;
 
-void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame) {
+void put_time(CdrWriter& cdr, std::int64_t time) {
   SF_CHECK(time >= 0, "time " + std::to_string(time) + " ns");
   cdr.put(static_cast<std::int32_t>(time / base::kSecond));
   cdr.put(static_cast<std::uint32_t>(time % base::kSecond));
+}
+
+std::int64_t get_time(CdrReader& cdr) {
+  const std::int64_t whole = cdr.get<std::int32_t>() * base::kSecond;
+  return whole + cdr.get<std::uint32_t>();
+}
+
+void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame) {
+  put_time(cdr, time);
   cdr.put(frame);
 }
 
 std::string get_header(CdrReader& cdr, std::int64_t& time) {
-  time = cdr.get<std::int32_t>() * base::kSecond;
-  time += cdr.get<std::uint32_t>();
+  time = get_time(cdr);
   return cdr.get_string();
 }
 

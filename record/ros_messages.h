@@ -18,6 +18,9 @@
 
 namespace sf::record {
 
+/// Writes and reads a builtin_interfaces/Time. @param time [ns] >= 0
+void put_time(CdrWriter& cdr, std::int64_t time);
+std::int64_t get_time(CdrReader& cdr);
 /// Writes time stamp and frame, the first fields of every message. @param time [ns] >= 0
 void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame);
 /// Reads both. @param time out: [ns] @return the frame

@@ -143,6 +143,8 @@ inline constexpr std::string_view kNoReturn = "no_return";  ///< "max" or "inf"
 /// "min": ranges of surfaces that are too near are range_min in messages. Absent: they are -infinity, or range_min in
 /// recordings of versions without this option.
 inline constexpr std::string_view kTooNear = "too_near";
+/// Faults of sensors, as [[fault]] tables of a scenario. Absent: none.
+inline constexpr std::string_view kFaultsOption = "faults";
 /// Returns the value of an option; empty if the run has no option of that name.
 std::string_view option_of(const RunInfo& info, std::string_view key);
 

@@ -87,6 +87,12 @@ constexpr std::array kDefinitions = {
                "uint8 DARK=0\nuint8 RED=1\nuint8 YELLOW=2\nuint8 GREEN=3\nuint8 FLASHING_RED=4\n"
                "uint8 FLASHING_YELLOW=5\nstring name\nuint8 state\nfloat64 left\n"},
     Definition{"sensorfarm_msgs/Lights", "std_msgs/Header header\nsensorfarm_msgs/Light[] lights\n"},
+    Definition{"sensorfarm_msgs/Fault",
+               "uint16 BIAS=1\nuint16 DRIFT=2\nuint16 SCALE=4\nuint16 STUCK=8\nuint16 SPIKES=16\nuint16 NOISE=32\n"
+               "uint16 QUANTIZATION=64\nuint16 SWAP=128\nuint16 DROPOUT=256\nuint16 DELAY=512\n"
+               "builtin_interfaces/Time stamp\nuint32 mover\nuint32 sensor\nuint32 sequence\nuint16 faults\n"
+               "uint8 kind\n"},
+    Definition{"sensorfarm_msgs/Faults", "std_msgs/Header header\nsensorfarm_msgs/Fault[] faults\n"},
     Definition{"sensorfarm_msgs/StateQuality",
                "std_msgs/Header header\nbool stale\nfloat64 age\nfloat32[6] covariance\n"},
     Definition{"sensorfarm_msgs/Tag",

@@ -118,7 +118,7 @@ void name_by_types(const RunInfo& info, TopicStyle style, MoverInfo& mover, std:
   Taken topics =
       taken_names({"odom", "cmd_vel", "ground_truth", "state_quality", "tf", "tf_static", "map", "bodies"}, 1);
   if (mover.plain)
-    for (const char* shared : {"run", "fleet", "clock", "walls", "lights"}) topics.emplace(shared, 1);
+    for (const char* shared : {"run", "fleet", "clock", "walls", "lights", "faults"}) topics.emplace(shared, 1);
   Taken frames = taken_names({"odom", "base_link", "base_footprint", "map", "world"}, 1);
   std::map<std::string, int> counts;  // of sensors by type
   for (SensorInfo& sensor : mover.sensors) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/marked_values.h"
+#include "record/faults_message.h"
 #include "record/fleet_message.h"
 #include "record/lights_message.h"
 #include "record/reading_messages.h"
@@ -58,6 +59,7 @@ TickMessages::TickMessages(const RunInfo& info)
   add("/clock", kClock);
   add("/walls", kMarkers, true);
   if (!info.lights.empty()) add("/lights", kLights);
+  if (!option_of(info, kFaultsOption).empty()) faults_ = add("/faults", kFaults);
   if (naming_.style != TopicStyle::nav2) add_tree("", 0, info.movers.size());
   for (std::size_t row = 0; row < info.movers.size(); ++row) {
     if (naming_.style == TopicStyle::nav2) add_tree(info.movers[row].space, row, row + 1);
@@ -187,6 +189,9 @@ void TickMessages::encode(const base::TickRecord& record, const Emit& emit, cons
   if (!record.lights.empty())
     out.send(kLightsRow, ticks_, record.time,
              [&](base::Bytes& bytes) { encode_lights(record.time, info_.lights, record.lights, bytes); });
+  if (faults_ != 0 && !record.faults.empty())
+    out.send(faults_, ticks_, record.time,
+             [&](base::Bytes& bytes) { encode_faults(record.time, record.faults, bytes); });
   if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) {
     send_odometry(out);
     send_truth(out);

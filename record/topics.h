@@ -117,6 +117,7 @@ class TickMessages {
   std::size_t first_reading_ = 0;   ///< row of the first topic of readings; all later topics are readings too
   std::int64_t next_odometry_ = 0;  ///< [ns]
   std::uint32_t ticks_ = 0, odometries_ = 0;
+  std::uint32_t faults_ = 0;    ///< row of /faults; 0: the run has no faults
   bool marks_too_near_ = true;  ///< ranges of surfaces that are too near are -infinity
   std::vector<double> marked_;  ///< values of one reading
   base::Bytes message_;

@@ -47,6 +47,7 @@ class Replayer {
         thread_pool_(options.threads),
         sensor_set_(source.world),
         derivation_(context(), sensor_set_),
+        faults_(source.world, sensor_set_, {}, 0, false, thread_pool_),
         delivery_(sensor_set_),
         subscribed_(source.world.movers.size(), 0) {
     if (derivation_.empty())
@@ -98,6 +99,7 @@ class Replayer {
   std::vector<base::Report> states_;
   sensors::SensorSet sensor_set_;
   farm::Derivation derivation_;
+  farm::Faults faults_;  ///< none
   farm::Delivery delivery_;
   std::vector<farm::SensorPipeline> measured_;
   std::vector<base::SensorTypes> subscribed_;
@@ -196,7 +198,7 @@ void Replayer::call(std::int64_t now) {
   derivation_.find_due(now, subscribed_);
   const auto prompt = delivery_.deliver(now, measured_now_);
   delivered_.insert(delivered_.begin(), prompt.begin(), prompt.end());
-  for (const base::ReadingBlock& reading : derivation_.derive(now, delivered_, states_, delivery_, subscribed_))
+  for (const base::ReadingBlock& reading : derivation_.derive(now, delivered_, states_, faults_, delivery_, subscribed_))
     keep(reading);
 }
 
@@ -223,15 +225,16 @@ base::TickRecord Replayer::tick(std::size_t t) {
   kept_count_ = 0;
   const std::int64_t time = tick_time(t);
   for (std::int64_t due = next_call(); t > 0 && due < time; due = next_call()) call(due);
-  call(time);
-  readings_.clear();
-  for (std::size_t i = 0; i < kept_count_; ++i) readings_.push_back(kept_[i].block());
   commands_.clear();
   contacts_.clear();
   for (const auto& states : recording_.states) {
     commands_.push_back(states[t].command);
     contacts_.push_back(states[t].contact ? 1 : 0);
   }
+  derivation_.set_commands(commands_);
+  call(time);
+  readings_.clear();
+  for (std::size_t i = 0; i < kept_count_; ++i) readings_.push_back(kept_[i].block());
   if (recording_.info.estimated) qualities_.resize(states_.size());
   std::span<const base::LightStatus> lights;
   if (t < recording_.lights.size()) lights = recording_.lights[t].lights;

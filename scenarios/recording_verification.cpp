@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <tuple>
 
@@ -14,6 +15,7 @@
 #include "farm/farm.h"
 #include "raycast/casters.h"
 #include "robots/kinematics.h"
+#include "scenarios/fault_tables.h"
 #include "scenarios/recorded_states.h"
 #include "scenarios/run_info.h"
 #include "sensors/bumper.h"
@@ -90,7 +92,11 @@ class Verifier {
         options_(options),
         world_(recorded_world(recording)),
         caster_(caster_of(recording, device.info().software)),
-        farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads, .scene = {.caster = &caster_}}),
+        farm_(world_, device,
+              {.seed = recording.info.seed,
+               .threads = options.threads,
+               .scene = {.caster = &caster_},
+               .faults = recorded_faults(recording)}),
         reference_(world_, recording.info.seed),
         longest_(sensors::reaches_of(world_).longest),
         infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
@@ -142,6 +148,12 @@ class Verifier {
     if (unfelt_ > 0)
       result_.skipped.push_back(
           fmt::format("{} readings of bumpers: where a robot was touched is not recorded", unfelt_));
+    if (marks_ != recording_.faults && !result_.interrupted && !recording_.truncated)
+      result_.damage.push_back(fmt::format("{} marks of faulty readings, but {} when recomputed, or others",
+                                           recording_.faults.size(), marks_.size()));
+    if (faulty_scans_ > 0)
+      result_.skipped.push_back(
+          fmt::format("{} faulty scans in plain C++, which has no faults of sensors", faulty_scans_));
     if (near_maps_ > 0)
       result_.skipped.push_back(
           fmt::format("{} occupancy maps: earlier versions treated surfaces nearer than a laser's minimum as obstacles",
@@ -185,6 +197,10 @@ class Verifier {
     set_absent(reports_, farm_);
     const std::int64_t time = reports_[0].time;
     const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
+      for (const base::FaultMark& mark : farm_.fault_marks()) {
+        marks_.push_back(mark);
+        faulty_.insert({mark.type, mark.mover, mark.sensor, mark.sequence});
+      }
       for (const base::ReadingBlock& reading : readings) check_reading(reading);
     };
     for (std::int64_t due = farm_.next_due(); tick > 0 && due < time; due = farm_.next_due())
@@ -320,6 +336,10 @@ class Verifier {
 
   /// Adds every `stride_`-th scan to the list for plain C++.
   void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {
+    if (faulty_.contains({reading.type, reading.mover, reading.sensor, reading.sequence})) {
+      ++faulty_scans_;
+      return;
+    }
     if (seen_++ % stride_ == 0)
       asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), reading.time, ranges,
                         allowed_of(reading.mover, reading.sensor, reading.X_WS)});
@@ -399,7 +419,9 @@ class Verifier {
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;
-  std::uint64_t unfelt_ = 0, near_maps_ = 0;
+  std::uint64_t unfelt_ = 0, near_maps_ = 0, faulty_scans_ = 0;
+  std::vector<base::FaultMark> marks_;  ///< of all recomputed readings
+  std::set<Name> faulty_;               ///< their readings
   Verification result_;
 };
 

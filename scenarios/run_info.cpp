@@ -82,6 +82,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
                   {"caster", settings.caster}};
   info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
   if (settings.too_near_min) info.options.emplace_back(record::kTooNear, "min");
+  if (!settings.faults.empty()) info.options.emplace_back(record::kFaultsOption, settings.faults);
   record::put_naming(settings.naming, info);
   info.snapshot = world::snapshot(world);
   info.joined = settings.joined;

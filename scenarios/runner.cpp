@@ -174,6 +174,7 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
   check_events(scenario, world, options);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);
   const sensors::SensorSet sensor_set(world);
+  farm::check_faults(scenario.faults, world, sensor_set);
   std::vector<control::ConfiguredController> made;  // kept to the end: robots of one shape share their corridors
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     const control::ControllerConfig& config = options.actors[m].controller;

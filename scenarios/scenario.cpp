@@ -57,6 +57,7 @@ SimulationOptions simulation_of(const Scenario& scenario, const world::World& wo
                             .states = scenario.states,
                             .positioning = scenario.positioning,
                             .v2v = scenario.v2v};
+  options.faults = scenario.faults;
   if (options.states) options.states->link.seed = scenario.seed;
   if (options.positioning) options.positioning->link.seed = scenario.seed;
   if (options.v2v) options.v2v->link.seed = scenario.seed;

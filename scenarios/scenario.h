@@ -10,6 +10,7 @@
 
 #include "base/pose.h"
 #include "control/controllers.h"
+#include "farm/fault.h"
 #include "netio/link_model.h"
 #include "scenarios/plant.h"
 #include "scenarios/simulation.h"
@@ -97,6 +98,7 @@ struct Scenario {
   std::vector<RobotSetup> robot_setups;
   std::vector<Expectation> expect;
   std::vector<ObjectEvent> events;  ///< sorted by time
+  std::vector<farm::Fault> faults;  ///< of sensors, in the order of the file
 };
 
 /// The path of the world is relative to the scenario's folder.

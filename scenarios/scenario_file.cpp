@@ -14,6 +14,7 @@
 #include "base/installation.h"
 #include "base/suggest.h"
 #include "control/own_controllers.h"
+#include "scenarios/fault_tables.h"
 #include "scenarios/scenario.h"
 #include "world/toml_reader.h"
 
@@ -29,9 +30,9 @@ constexpr double kMostWhole = 9.0e15;     // limit up to which a double represen
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
-constexpr std::array<std::string_view, 18> kKeys{"name", "world", "duration", "seed",     "tick",    "robots",
-                                                 "of",   "place", "plant",    "start_at", "default", "states",
-                                                 "v2v",  "link",  "robot",    "expect",   "event",   "positioning"};
+constexpr std::array<std::string_view, 19> kKeys{
+    "name",    "world",  "duration", "seed", "tick",  "robots", "of",    "place",       "plant", "start_at",
+    "default", "states", "v2v",      "link", "robot", "expect", "event", "positioning", "fault"};
 constexpr std::array<std::string_view, 3> kEventKeys{"at", "object", "present"};
 constexpr std::array<std::string_view, 8> kAddKeys{"at",         "add",  "like",     "pose",
                                                    "controller", "rate", "settings", "link"};
@@ -382,6 +383,7 @@ Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   read_robots(reader, root, scenario);
   read_expectations(reader, root, scenario);
   read_events(reader, root, scenario);
+  scenario.faults = read_faults(reader, root);
   return scenario;
 }
 

@@ -34,6 +34,10 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm.noise = options.noise;
   farm.scene.caster = options.caster;
   farm.shared = options.ranks != nullptr;
+  farm.faults = options.faults;
+  if (farm.shared && !farm.faults.empty())
+    throw base::InputError(farm.faults[0].file, farm.faults[0].line,
+                           "faults of sensors cannot be simulated by several ranks; expected a run in one process");
   return farm;
 }
 
@@ -186,7 +190,8 @@ base::TickRecord Simulation::step() {
   move_s_ += base::seconds_since(start);
   share_->end_step({commands_, next_intents_, next_estimates_},
                    {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
-  return {tick_++, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_};
+  return {tick_++,       time,   recorded_reports(), executed_commands_, fleet_.contacts(), readings, {},
+          light_states_, faults_};
 }
 
 std::span<const base::Report> Simulation::recorded_reports() {
@@ -289,14 +294,21 @@ void Simulation::remove_robot(std::uint32_t mover) {
 std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
   std::size_t early = 0;
   readings_.clear();
+  faults_.clear();
+  const auto mark_faults = [this] {
+    const auto marks = farm_.fault_marks();
+    faults_.insert(faults_.end(), marks.begin(), marks.end());
+  };
   const auto states = states_ ? states_->pass(time, fleet_.reports()) : fleet_.reports();
   for (std::int64_t due = farm_.next_due(); due < time; due = farm_.next_due()) {
     const auto delivered = farm_.sample_between(due, states);
+    mark_faults();
     if (early_.size() < early + delivered.size()) early_.resize(early + delivered.size());
     for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
   }
   farm_.set_commands(executed_commands_);
   const auto delivered = farm_.tick(time, states);
+  mark_faults();
   if (early == 0) return delivered;
   for (std::size_t i = 0; i < early; ++i) readings_.push_back(early_[i].block());
   readings_.insert(readings_.end(), delivered.begin(), delivered.end());
@@ -438,9 +450,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
 }
 
 /// [ns] Returns the delivery time of a reading, possibly between two ticks.
-std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
-  return reading.time + base::nanoseconds(farm_.sensor_set().row(reading).latency);
-}
+std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const { return farm_.delivery_time(reading); }
 
 /// Returns whether the controller steps at this tick. Otherwise its last command remains in effect.
 bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time,

@@ -67,13 +67,15 @@ struct SimulationOptions {
   cluster::Ranks* ranks = nullptr;  ///< share the fleet, with the same options; null: this process has all of it
   double balance = 0.0;  ///< [s] simulated time between repartitions of the tiles by measured times; 0: fixed tiles,
                          ///< and ranks keep only the walls of their own
-  bool tiles = false;    ///< each rank stores and senses a part of the world (scenarios/fleet_tiles.h); requires ranks
+  std::vector<farm::Fault> faults = {};  ///< see farm::FarmOptions; not with ranks
+  bool tiles = false;  ///< each rank stores and senses a part of the world (scenarios/fleet_tiles.h); requires ranks
 };
 
 /// `world` and `device` must outlive it. One thread at a time. Ticks allocate nothing after warm-up.
 class Simulation {
  public:
-  /// @throws base::InputError for an unknown controller, invalid settings, or a missing requirement of a controller
+  /// @throws base::InputError for an unknown controller, invalid settings, a missing requirement of a controller, and
+  /// for faults with ranks
   Simulation(const world::World& world, gpu::Device& device, SimulationOptions options);
 
   /// Performs one tick of `world.interval`; the first tick measures at time 0 without motion. Returns the readings
@@ -211,6 +213,7 @@ class Simulation {
   std::vector<std::uint32_t> first_;  ///< per mover: index of its first reading; the last entry is the end
   std::vector<std::uint32_t> next_;   ///< scratch
   std::vector<base::ReadingBlock> sorted_;
+  std::vector<base::FaultMark> faults_;       ///< readings measured since the last tick that faults affected
   std::vector<farm::StoredReading> early_;    ///< readings delivered between ticks; slots reuse their memory
   std::vector<base::ReadingBlock> readings_;  ///< `early_` and the tick's; empty if `early_` is
   std::vector<base::Intent> intents_;         ///< per mover, broadcast in this tick

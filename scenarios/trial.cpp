@@ -11,6 +11,7 @@
 #include "cluster/failure.h"
 #include "raycast/casters.h"
 #include "scenarios/coverage.h"
+#include "scenarios/fault_tables.h"
 #include "scenarios/run_info.h"
 #include "sensors/fiducial.h"
 #include "sensors/laser.h"
@@ -228,7 +229,8 @@ struct Course {
                                 {.seed = scenario.seed,
                                  .record_readings = true,
                                  .caster = raycast::describe_caster(device.info().software),
-                                 .naming = {.odometry = record::OdometrySource::exact}}),  // also with ranks
+                                 .naming = {.odometry = record::OdometrySource::exact},  // also with ranks
+                                 .faults = faults_text(scenario.faults)}),
                        recording_part_of(options.ranks, options.compression));
     });
   }

@@ -5,6 +5,7 @@
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
+#include "scenarios/fault_tables.h"
 #include "scenarios/runner.h"
 
 namespace sf::apps {
@@ -16,6 +17,7 @@ std::optional<scenarios::Scenario> scenario_of(RunOptions& options) {
   scenarios::Scenario scenario = scenarios::read_scenario(options.world);
   scenarios::check_scenario(scenario);
   options.seed = scenario.seed;
+  options.faults = scenarios::faults_text(scenario.faults);
   const bool kept = !options.record.empty() || !options.video.empty();
   if (!options.duration && (kept || !options.BridgeOptions::any())) options.duration = scenario.duration;
   if (!scenario.expect.empty())

@@ -277,6 +277,7 @@ struct RunOptions : WorldOptions,
   double balance = 0.0;     ///< [s] simulated time between rebalancing of tiles; 0: never
   double checkpoint = 0.0;  ///< [s] simulated time between checkpoints; 0: none
   bool resume = false;      ///< restart an interrupted run and compare it with its checkpoints
+  std::string faults;       ///< the scenario's faults of sensors, as in its recording; not on the command line
 };
 
 struct ServeOptions : WorldOptions,

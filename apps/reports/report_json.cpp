@@ -282,6 +282,8 @@ std::string run_report_json(const RunReport& f) {
                       {"wait_s", f.shared->wait_s},
                       {"imbalance", f.shared->imbalance}};
   if (f.shared && f.shared->passed_on) json["shared"]["passed_on"] = *f.shared->passed_on;
+  for (std::size_t kind = 0; kind < f.farm.faults.size(); ++kind)
+    if (f.farm.faults[kind] > 0) json["faults"][std::string(base::kFaultNames[kind])] = f.farm.faults[kind];
   if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
   if (f.control.robots > 0) json["control"] = control_json(f.control);
   if (f.strayed) json["outside_known_space"] = *f.strayed;

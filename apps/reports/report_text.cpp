@@ -153,6 +153,11 @@ std::string work_text(const RunReport& f) {
         row("missed", "{}, besides {} readings: newer ones were due at the same tick", f.farm.missed, f.farm.readings);
   if (work.host_scans > 0)
     text += row("cast on the host", "{} scans: too many surfaces around them for the device's lists", work.host_scans);
+  std::string faults;
+  for (std::size_t kind = 0; kind < f.farm.faults.size(); ++kind)
+    if (f.farm.faults[kind] > 0)
+      faults += fmt::format("{}{} {}", faults.empty() ? "" : ", ", base::kFaultNames[kind], f.farm.faults[kind]);
+  if (!faults.empty()) text += row("faulty readings", faults);
   if (f.farm.reused > 0) text += row("reused", "{} of {} readings: nothing had moved", f.farm.reused, f.farm.readings);
   return text;
 }

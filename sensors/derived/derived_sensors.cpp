@@ -214,7 +214,8 @@ void DerivedSensors::process(std::size_t i, std::int64_t now) {
 }
 
 /// Readings without latency reach the levels above at once.
-void DerivedSensors::run_level(std::size_t level, std::int64_t now, std::span<const base::Report> states) {
+void DerivedSensors::run_level(std::size_t level, std::int64_t now, std::span<const base::Report> states,
+                               const Stage& stage) {
   std::vector<std::size_t>& active = active_[level];
   thread_pool_.parallel_for_each(active.size(), kPiece, [&](std::size_t k, unsigned) { process(active[k], now); });
   for (const std::size_t i : active) {
@@ -236,7 +237,10 @@ void DerivedSensors::run_level(std::size_t level, std::int64_t now, std::span<co
                   .X_WS = base::compose(X_WM, spec.X_MS),
                   .values = node.values,
                   .sigma = HUGE_VAL};
-    if (base::nanoseconds(spec.latency) == 0) route(blocks_[i]);
+    const Fate prompt = base::nanoseconds(spec.latency) == 0 ? Fate::delivered : Fate::late;
+    const Fate fate = stage ? stage(blocks_[i]) : prompt;
+    node.is_lost = fate == Fate::lost;
+    if (fate == Fate::delivered) route(blocks_[i]);
   }
   active.clear();
 }
@@ -244,7 +248,7 @@ void DerivedSensors::run_level(std::size_t level, std::int64_t now, std::span<co
 std::span<const base::ReadingBlock> DerivedSensors::evaluate(std::int64_t now,
                                                              std::span<const base::ReadingBlock> delivered,
                                                              std::span<const std::span<const DueSample>> due,
-                                                             std::span<const base::Report> states,
+                                                             std::span<const base::Report> states, const Stage& stage,
                                                              std::span<const base::Twist> commands) {
   create_wanted(states);
   started_ = true;
@@ -267,8 +271,9 @@ std::span<const base::ReadingBlock> DerivedSensors::evaluate(std::int64_t now,
     first += each.rows.size();
     ++group;
   }
-  for (std::size_t level = 0; level < levels_.size(); ++level) run_level(level, now, states);
-  for (const std::size_t i : due_nodes_) out_.push_back(blocks_[i]);
+  for (std::size_t level = 0; level < levels_.size(); ++level) run_level(level, now, states, stage);
+  for (const std::size_t i : due_nodes_)
+    if (!nodes_[i].is_lost) out_.push_back(blocks_[i]);
   return out_;
 }
 

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,15 +41,20 @@ class DerivedSensors {
   /// Returns per sensor of group `group` of the sensor set whether it is an input of an evaluated sensor; empty: none.
   std::span<const std::uint8_t> needed(std::size_t group) const { return needed_[group]; }
 
+  /// What becomes of a new reading: only a delivered one reaches the sensors above at once.
+  enum class Fate : std::uint8_t { delivered, late, lost };
+  /// Called once for each reading, before other sensors take it; may alter it. Empty: sensors without latency deliver.
+  using Stage = std::function<Fate(base::ReadingBlock& reading)>;
+
   /// @param delivered readings delivered at `now` [ns], in any order
   /// @param due per derived group of the sensor set, in order: its due sensors
   /// @param states per mover @param commands per mover: the twists executed since the last tick; empty: none
-  /// @return readings of the due sensors, by type and row, except that latency is not applied;
-  /// valid until the next call
+  /// @return readings of the due sensors that are not lost, by type and row, except that latency is not applied; valid
+  /// until the next call
   /// @throws base::InputError when a sensor throws an exception
   std::span<const base::ReadingBlock> evaluate(std::int64_t now, std::span<const base::ReadingBlock> delivered,
                                                std::span<const std::span<const DueSample>> due,
-                                               std::span<const base::Report> states,
+                                               std::span<const base::Report> states, const Stage& stage = {},
                                                std::span<const base::Twist> commands = {});
 
   /// Continues the sensors of `before`, a world with fewer movers in its first rows. `before` must not be used
@@ -72,6 +78,7 @@ class DerivedSensors {
     std::string failure;
     std::uint32_t sequence = 0;
     bool is_due = false;
+    bool is_lost = false;  ///< its last reading
     bool active = false;
     bool wanted = false;
   };
@@ -86,7 +93,7 @@ class DerivedSensors {
   void add_pending(std::size_t node, const Pending& pending);
   void process(std::size_t node, std::int64_t now);
   void call(std::size_t node, std::int64_t now);
-  void run_level(std::size_t level, std::int64_t now, std::span<const base::Report> states);
+  void run_level(std::size_t level, std::int64_t now, std::span<const base::Report> states, const Stage& stage);
 
   const world::World& world_;
   const SensorSet& sensor_set_;

@@ -82,6 +82,24 @@ remove = "b"
   EXPECT_EQ(run_program({"view", folder.path("r"), "--frames", frames}).code, 0);
 }
 
+// Faulty readings are counted in both reports, recorded, and verified with their faults.
+TEST(RunScenario, SensorsHaveFaults) {
+  const Folder folder;
+  folder.write("room.world", kDoorRoom);
+  const std::string bias = "[[fault]]\nrobot = \"*\"\nsensor = \"laser\"\nkind = \"bias\"\noffset = 0.1\nuntil = 1\n";
+  const std::string lost = "[[fault]]\nrobot = \"a\"\nsensor = \"laser\"\nkind = \"dropout\"\nfrom = 1.45\n";
+  const std::string file = folder.write("faults.toml", kDoorScenario + bias + lost);
+  const Json facts = run_json({"run", file, "--json", "--record", folder.path("r"), "--record-readings"});
+  EXPECT_EQ(facts.number("/faults/bias"), 20);
+  EXPECT_EQ(facts.number("/faults/dropout"), 5);
+  EXPECT_NE(run_successfully({"run", file}).out.find("bias 20, dropout 5"), std::string::npos);
+  const Outcome verified = run_successfully({"verify", folder.path("r")});
+  EXPECT_NE(verified.out.find("20 faulty scans in plain C++"), std::string::npos) << verified.out;
+  const std::string wrong =
+      folder.write("wrong.toml", kDoorScenario + "[[fault]]\nrobot = \"c\"\nsensor = \"laser\"\nkind = \"stuck\"\n");
+  expect_refused({"run", wrong}, "wrong.toml:11: no robot is called 'c'");
+}
+
 TEST(RunScenario, RejectsOptionsThatTheScenarioDefines) {
   for (const Words& option : {Words{"--robots", "3"}, Words{"--robots", "3", "--of", "roomba0"}, Words{"--seed", "2"},
                               Words{"--seed", "1"}, Words{"--controller", "wander"}, Words{"--controller", "avoid"},

@@ -193,6 +193,31 @@ TEST(Derived, LevelsFollowEachOtherWithinATick) {
   EXPECT_EQ(prompt.at({7 * kSecond / 10, 0, kTally, 0})[0], late.at({7 * kSecond / 10, 0, kTally, 0})[0]);
 }
 
+/// Derived sensors take faulty inputs, measured and derived, and have faults of their own.
+TEST(Derived, InputsHaveTheirFaults) {
+  const world::World world = robot_of(
+      "derived( name \"below\" type \"tally\" inputs [\"encoder\"] )\n"
+      "derived( name \"above\" type \"tally\" inputs [\"tally:0\"] )");
+  const auto last = [&](std::vector<farm::Fault> faults) {
+    farm::Farm farm(world, host_device(), {.seed = 3, .threads = 1, .faults = std::move(faults)});
+    farm.subscribe_all();
+    std::vector<std::vector<double>> values(2);
+    for (int tick = 0; tick < 10; ++tick)
+      for (const base::ReadingBlock& r : farm.tick(tick * kSecond / 10, robots::states_at_load(world)))
+        if (r.type == kTally && r.mover == 0) values[r.sensor].assign(r.values.begin(), r.values.end());
+    return values;
+  };
+  const auto clean = last({});
+  const farm::Fault bias{.kind = base::FaultKind::bias, .robot = "r0", .type = "encoder", .amount = 1.0};
+  EXPECT_EQ(clean[0][0], 0.0);
+  EXPECT_NEAR(last({bias})[0][0], 2.0, 0.01) << "the sum of 1, 1/2, 1/4 and so on";
+  farm::Fault lost{.kind = base::FaultKind::dropout, .robot = "r0", .type = "tally", .from = 0.35};
+  EXPECT_EQ(clean[1][1], 10.0);
+  EXPECT_EQ(last({lost})[1][1], 4.0) << "it has readings until then";
+  lost.kind = base::FaultKind::delay, lost.from = 0.0, lost.amount = 0.2;
+  EXPECT_EQ(last({lost})[1][1], 8.0);
+}
+
 TEST(Derived, ThreadsDoNotChangeAByte) {
   std::string many;
   for (int k = 0; k < 40; ++k) many += "derived( type \"tally\" inputs [\"gyro\" \"*/encoder\" \"*/gyro\"] )\n";
