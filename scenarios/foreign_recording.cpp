@@ -17,7 +17,6 @@
 #include "record/mcap_reader.h"
 #include "record/recording_files.h"
 #include "record/schemas.h"
-#include "scenarios/foreign_sensors.h"
 #include "world/table_record.h"
 
 namespace sf::scenarios {

@@ -5,6 +5,7 @@
 
 #include "scenarios/derive_file.h"
 #include "scenarios/derived_replay.h"
+#include "scenarios/foreign_sensors.h"
 
 namespace sf::scenarios {
 
@@ -17,8 +18,5 @@ namespace sf::scenarios {
 /// @throws base::InputError with the file and what it has for a topic, column or unit that does not exist, for
 /// malformed messages and rows, and for more than 5e6 states (5e5 s times robots, in ticks of 0.1 s)
 DerivedSource read_foreign(const std::string& recording, const DeriveFile& file);
-
-/// Option of the run: nanoseconds since 1970, or of the recording's own clock.
-inline constexpr const char* kTimeZero = "time_zero_ns";
 
 }  // namespace sf::scenarios

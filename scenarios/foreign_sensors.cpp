@@ -35,11 +35,17 @@ const sensors::SensorType* type_called(std::string_view word) {
   return nullptr;
 }
 
-const sensors::SensorType* add_type(const std::string& file, const std::string& word, const Columns& columns) {
+std::uint8_t free_id() {
+  std::uint8_t id = sensors::kFirstOwnId;
+  while (id < sensors::kLastOwnId && sensors::find_sensor_type(id) != nullptr) ++id;
+  return id;
+}
+
+const sensors::SensorType* add_type(const std::string& file, const std::string& word, std::uint8_t id,
+                                    const Columns& columns) {
   sensorfarm::SensorEntry entry;
   entry.name = word;
-  entry.id = sensors::kFirstOwnId;
-  while (entry.id < sensors::kLastOwnId && sensors::find_sensor_type(entry.id) != nullptr) ++entry.id;
+  entry.id = id;
   for (const auto& [name, source] : columns) entry.columns.push_back({name});
   entry.make = [](const sensorfarm::SensorSite&, const sensorfarm::SensorSettings&) {
     return std::make_unique<Recorded>();
@@ -79,7 +85,7 @@ ForeignSensor bind_sensor(const std::string& file, const ForeignInput& input, co
     if (columns.empty())
       fail(fmt::format("expected columns = [...] of the new sensor type '{}'; {} has {}", input.sensor.word, source,
                        fmt::join(available, ", ")));
-    sensor.type = add_type(file, input.sensor.word, columns);
+    sensor.type = add_type(file, input.sensor.word, free_id(), columns);
   }
   if (sensor.type->derived != nullptr)
     fail(fmt::format("'{}' is a derived sensor type, which has no recorded readings", input.sensor.word));
@@ -103,6 +109,16 @@ ForeignSensor bind_sensor(const std::string& file, const ForeignInput& input, co
     }
   }
   return sensor;
+}
+
+void add_foreign_types(const record::RunInfo& info) {
+  for (const record::SensorTypeInfo& type : info.sensor_types) {
+    const bool is_own = type.id >= sensors::kFirstOwnId && type.id <= sensors::kLastOwnId;
+    if (!is_own || sensors::find_sensor_type(type.id) != nullptr || type_called(type.name) != nullptr) continue;
+    Columns columns;
+    for (const record::ColumnInfo& column : type.columns) columns.emplace_back(column.name, column.name);
+    add_type(info.world, type.name, type.id, columns);
+  }
 }
 
 world::World foreign_world(const DeriveFile& file, std::span<ForeignSensor> sensors) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "record/run_info.h"
 #include "scenarios/derive_file.h"
 #include "sensors/sensor_type.h"
 
@@ -24,11 +25,18 @@ struct ForeignSensor {
 
 inline constexpr std::size_t kNotMeasured = SIZE_MAX;
 
+/// Option of the run: nanoseconds since 1970, or of the recording's own clock.
+inline constexpr const char* kTimeZero = "time_zero_ns";
+
 /// Finds the sensor type, which is a new one for a word that no type has, and its columns in the source.
 /// @param file for messages @param available columns of the source
 /// @throws base::InputError for a column that does not exist, or has another unit
 ForeignSensor bind_sensor(const std::string& file, const ForeignInput& input, const std::string& source,
                           const std::vector<std::string>& available);
+
+/// Adds the sensor types of a recording that was made by `read_foreign`, so that its world can be read. Ids that other
+/// types have are left out.
+void add_foreign_types(const record::RunInfo& info);
 
 /// Returns a world that contains only the robots of the file, with their sensors; sets `mover` and `number`.
 world::World foreign_world(const DeriveFile& file, std::span<ForeignSensor> sensors);

@@ -5,11 +5,13 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "scenarios/foreign_sensors.h"
 #include "world/append_robot.h"
 
 namespace sf::scenarios {
 
 world::World recorded_world(const record::Recording& recording) {
+  if (!record::option_of(recording.info, kTimeZero).empty()) add_foreign_types(recording.info);
   world::World world = world::from_snapshot(recording.info.snapshot);
   for (const record::JoinedMover& joined : recording.info.joined) {
     if (joined.original >= world.movers.size())

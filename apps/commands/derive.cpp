@@ -26,6 +26,10 @@ scenarios::DerivedSource open_source(const std::string& place, const scenarios::
   scenarios::DerivedSource source;
   if (file.inputs.empty()) {
     source.recording = scenarios::open_run(place);
+    if (!record::option_of(source.recording.info, scenarios::kTimeZero).empty())
+      throw base::InputError(place, 0,
+                             "was derived from the recording of another program, and has the ticks of deliveries only: "
+                             "derive from that recording");
     source.world = scenarios::recorded_world(source.recording);
   } else {
     source = scenarios::read_foreign(place, file);

@@ -105,7 +105,12 @@ void add_derive(CLI::App& app, Call& call) {
       "(docs/recordings.md; exit code 1 if recorded derived readings differ)");
   auto& o = add_command(*sub, call, derive);
   add_examples(*sub, {"out/run --with pose.toml -o out/derived", "drive.mcap --with imu_and_gps.toml -o out/derived"});
-  add_recording(*sub, o);
+  sub->add_option(
+         "recording", o.recording,
+         "Folder of the recording; or an MCAP file, a CSV file or a folder of such files, with [[input]] in FILE")
+      ->required()
+      ->check(not_empty("a recording"))
+      ->type_name("PATH");
   sub->add_option("--with", o.with, "File of derived sensors, and of the recording's inputs (.toml)")
       ->required()
       ->check(not_empty("a file"))

@@ -328,8 +328,7 @@ TEST_F(DerivedReplayTest, ForeignRefusalsNameWhatExists) {
   expect_in("add noise = 2", refusal("topic = \"/fix\""));
   EXPECT_EQ(refusal("topic = \"/fix\"\nnoise = 2"), "");
   expect_in("has no column 'x_m' for 'x_m' of gps; it has rate_rad_s", refusal("topic = \"/imu\"\nas = \"gps\""));
-  expect_in("cannot be read as laser",
-            refusal("topic = \"/imu\"\nas = \"laser\"\ncolumns = { range_m = \"up_m_s2\" }"));
+  expect_in("cannot be read as laser", refusal("topic = \"/odom\"\nas = \"laser\"\ncolumns = { range_m = \"valid\" }"));
   expect_in("expected topic = \"/NAME\" or file", refusal("as = \"gyro\"", folder_.string()));
   expect_in("'turn_deg_s' of " + path("a.csv") + " is in deg_s, but 'rate_rad_s' of gyro needs rad_s",
             refusal("file = \"a.csv\"\nas = \"gyro\"\ncolumns = { rate_rad_s = \"turn_deg_s\" }"));
