@@ -12,7 +12,7 @@
 namespace sf {
 namespace {
 
-constexpr const char* kWorld =
+constexpr const char* kWheeledWorld =
     "define bot position( size [0.3 0.3 0.1] drive \"diff\" encoder( rate 20 slip 0.01 ) gyro( rate 50 noise 1 ) )\n"
     "bot( name \"r0\" ctrl \"wander\" ) bot( name \"r1\" pose [3 0 0 0] )\n";
 constexpr const char* kFile =
@@ -29,7 +29,7 @@ std::string text_of(const std::string& path) {
 std::string recorded(const Folder& folder, const Words& more) {
   const std::string run = folder.path("run");
   const Outcome outcome = run_program(
-      with({"run", folder.write("two.world", kWorld), "--duration", "2", "--seed", "4", "--record", run}, more));
+      with({"run", folder.write("two.world", kWheeledWorld), "--duration", "2", "--seed", "4", "--record", run}, more));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return run;
 }

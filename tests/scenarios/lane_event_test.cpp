@@ -9,7 +9,7 @@
 namespace sf::scenarios {
 namespace {
 
-const std::string kTown = R"(world = "../worlds/simville/simville.world"
+const std::string kLaneTown = R"(world = "../worlds/simville/simville.world"
 duration = 100
 robots = 6
 of = "roomba4"
@@ -24,7 +24,7 @@ all_checkpoints = 2
 )";
 
 Scenario with_events(const std::string& events) {
-  return parse_scenario(SF_SOURCE_DIR "/experiments/test.toml", kTown + events);
+  return parse_scenario(SF_SOURCE_DIR "/experiments/test.toml", kLaneTown + events);
 }
 
 /// Six robots tour the town, again with the same result, and with another one than without the events.
