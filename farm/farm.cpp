@@ -53,7 +53,7 @@ struct Farm::State {
   std::vector<SensorPipeline> pipelines;    ///< of all types except derived ones
   std::unique_ptr<Derivation> derivation;
   std::span<const base::Twist> commands;  ///< for the next tick
-  bool demand_changed = true;             ///< subscriptions have changed since derived sensors were last told
+  bool demand_changed = true;             ///< subscriptions have changed since `update_demand`
   std::unique_ptr<gpu::Batch> batch;
   Faults faults;
   Delivery delivery;

@@ -192,7 +192,7 @@ PacketStatus DirectV2v::check_sender(const Packet& packet, std::span<const std::
 }
 
 /// Returns whether a robot with another session than before has started again. A valid signature with a newer counter
-/// proves it; otherwise its silence has to. The session that it replaced does not come back: of two processes with one
+/// proves it; otherwise its silence does. The session that it replaced is not accepted again: of two processes with one
 /// id, the later one remains.
 bool DirectV2v::has_restarted(const Header& header, const Endpoint& source, std::int64_t now) const {
   const Sender& sender = details_[*senders_.row(header.robot)];

@@ -107,7 +107,7 @@ std::string entity_of(const SensorText& sensor) {
   return text + " )";
 }
 
-/// Has the reader of world files read the sensors. Each is on its own line of the file, for messages.
+/// Reads the sensors with the reader of world files. Each is on its own line of the file, for messages.
 std::vector<world::Sensor> read_sensors(const std::string& file, std::span<const SensorText> sensors) {
   if (sensors.empty()) return {};
   std::vector<const SensorText*> order;

@@ -116,7 +116,7 @@ class Replayer {
   DerivedReplay result_;
 };
 
-/// Bounds the work before it starts: times of a damaged recording may be anything.
+/// Bounds the work before it starts: a damaged recording may have arbitrary times.
 void Replayer::refuse_endless() const {
   const auto& ticks = recording_.states[0];
   const auto is_back = [](const record::StateSample& a, const record::StateSample& b) { return b.time <= a.time; };

@@ -352,7 +352,7 @@ void ForeignReader::read_table(const ForeignSensor& sensor) {
   }
 }
 
-/// Sorts readings by delivery, numbers those of each sensor, and lets time begin with the first.
+/// Sorts readings by delivery, numbers those of each sensor, and subtracts the time of the first measurement.
 void ForeignReader::number_readings() {
   auto& readings = source_.recording.readings;
   std::ranges::stable_sort(readings, {}, &record::ReadingSample::delivered);

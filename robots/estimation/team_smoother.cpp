@@ -112,7 +112,7 @@ class Smoother {
     Eigen::MatrixXd C = covariance, P = covariance;  // C: covariance of here and next
     for (std::uint32_t r = 0; r < team_.robots; ++r) {
       const Eigen::Index at = kTeamComponents * static_cast<Eigen::Index>(r);
-      if (here.robots[r].time < 0) {  // starts later; nothing to learn about it
+      if (here.robots[r].time < 0) {  // starts later: keep its later mean
         P.block<kTeamComponents, kTeamComponents>(at, at).setIdentity();
         mean.segment<kTeamComponents>(at) = vector_of(later.mean).segment<kTeamComponents>(at);
         continue;
