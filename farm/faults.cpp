@@ -262,12 +262,13 @@ void Faults::swap(const Rule& rule, base::ReadingBlock& reading, Target& target)
   if (std::max(rows[0], rows[1]) >= count) return;
   std::swap_ranges(values + rows[0] * width, values + (rows[0] + 1) * width, values + rows[1] * width);
   if (reading.hits.size() == count) {
-    target.hits.assign(reading.hits.begin(), reading.hits.end());
+    if (reading.hits.data() != target.hits.data()) target.hits.assign(reading.hits.begin(), reading.hits.end());
     std::swap(target.hits[rows[0]], target.hits[rows[1]]);
     reading.hits = target.hits;
   }
   if (reading.quality.size() == count) {
-    target.quality.assign(reading.quality.begin(), reading.quality.end());
+    if (reading.quality.data() != target.quality.data())
+      target.quality.assign(reading.quality.begin(), reading.quality.end());
     std::swap(target.quality[rows[0]], target.quality[rows[1]]);
     reading.quality = target.quality;
   }

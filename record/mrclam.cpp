@@ -16,6 +16,8 @@ namespace sf::record {
 
 namespace {
 
+constexpr double kLongest = 1e14;  // [ns] from the first reading to the last
+
 constexpr int kMostRobots = 32;
 constexpr int kMostSubject = 1'000'000;
 constexpr std::size_t kMostRows = 20'000'000;  // of one file
@@ -167,6 +169,13 @@ MrclamData read_mrclam(const std::string& folder) {
     throw base::InputError(folder, 0,
                            fmt::format("has no robot; expected Robot<k>_Odometry.dat, k from 1 to {}", kMostRobots));
   drop_unknown_subjects(data);
+  std::int64_t first = INT64_MAX, last = INT64_MIN;
+  const auto cover = [&](const auto& rows) {
+    if (!rows.empty()) first = std::min(first, rows.front().time), last = std::max(last, rows.back().time);
+  };
+  for (const MrclamRobot& robot : data.robots) cover(robot.odometry), cover(robot.sightings);
+  if (first<last&& static_cast<double>(last) - static_cast<double>(first)> kLongest)
+    throw base::InputError(folder, 0, "has times more than 100 000 s apart; expected the readings of one experiment");
   return data;
 }
 

@@ -16,6 +16,7 @@
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
 #include "record/topic_names.h"
+#include "scenarios/fault_tables.h"
 #include "scenarios/recorded_states.h"
 #include "scenarios/run_info.h"
 
@@ -32,6 +33,11 @@ struct Feed {
   bool late;  ///< delivered at `time`
 };
 
+/// The faults of the recorded run; derived sensors have theirs again.
+std::vector<farm::Fault> faults_of(const DerivedSource& source) {
+  return source.foreign ? std::vector<farm::Fault>() : recorded_faults(source.recording);
+}
+
 bool same_bits(std::span<const double> a, std::span<const double> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
     return std::memcmp(&x, &y, sizeof x) == 0 || (std::isnan(x) && std::isnan(y));
@@ -47,8 +53,8 @@ class Replayer {
         thread_pool_(options.threads),
         sensor_set_(source.world),
         derivation_(context(), sensor_set_),
-        faults_(source.world, sensor_set_, {}, 0, false, thread_pool_),
-        delivery_(sensor_set_),
+        faults_(source.world, sensor_set_, faults_of(source), recording_.info.seed, true, thread_pool_),
+        delivery_(sensor_set_, &faults_),
         subscribed_(source.world.movers.size(), 0) {
     if (derivation_.empty())
       throw base::InputError(recording_.file, 0, "no derived sensors: list them as [[derived]] in the file of --with");
@@ -99,12 +105,13 @@ class Replayer {
   std::vector<base::Report> states_;
   sensors::SensorSet sensor_set_;
   farm::Derivation derivation_;
-  farm::Faults faults_;  ///< none
+  farm::Faults faults_;
   farm::Delivery delivery_;
   std::vector<farm::SensorPipeline> measured_;
   std::vector<base::SensorTypes> subscribed_;
   std::vector<Feed> feeds_;
   std::size_t next_feed_ = 0;
+  std::size_t next_fault_ = 0;           ///< row of the recorded marks
   std::map<Key, std::size_t> recorded_;  ///< readings of derived sensors
   std::vector<base::ReadingBlock> measured_now_, delivered_;
   std::vector<farm::StoredReading> kept_;  ///< of the current tick
@@ -124,10 +131,13 @@ void Replayer::refuse_endless() const {
     throw base::InputError(recording_.file, 0, "the times of its ticks do not increase: it is damaged");
   const std::size_t last = ticks.size() - 1;
   const double seconds = 1e-9 * (static_cast<double>(tick_time(last)) - static_cast<double>(tick_time(0)));
-  double rates = 0.0;
+  double rates = 0.0, fastest = 0.0;
   for (const sensors::SensorSet::Group& group : sensor_set_.groups())
-    for (const sensors::SensorSpec& row : group.rows) rates += group.type->derived != nullptr ? row.rate : 0.0;
-  if (seconds * rates <= kMostDerived) return;
+    for (const sensors::SensorSpec& row : group.rows) {
+      rates += group.type->derived != nullptr ? row.rate : 0.0;
+      fastest = std::max(fastest, row.rate);
+    }
+  if (seconds * std::max(rates, fastest) <= kMostDerived) return;
   throw base::InputError(
       recording_.file, 0,
       fmt::format("spans {:.0f} s, in which derived sensors would have more than a billion readings", seconds));
@@ -189,6 +199,7 @@ base::ReadingBlock Replayer::block_of(const record::ReadingSample& reading) cons
 }
 
 void Replayer::call(std::int64_t now) {
+  faults_.begin();
   measured_now_.clear();
   delivered_.clear();
   for (; next_feed_ < feeds_.size() && feeds_[next_feed_].time <= now; ++next_feed_)
@@ -198,7 +209,8 @@ void Replayer::call(std::int64_t now) {
   derivation_.find_due(now, subscribed_);
   const auto prompt = delivery_.deliver(now, measured_now_);
   delivered_.insert(delivered_.begin(), prompt.begin(), prompt.end());
-  for (const base::ReadingBlock& reading : derivation_.derive(now, delivered_, states_, faults_, delivery_, subscribed_))
+  for (const base::ReadingBlock& reading :
+       derivation_.derive(now, delivered_, states_, faults_, delivery_, subscribed_))
     keep(reading);
 }
 
@@ -231,7 +243,7 @@ base::TickRecord Replayer::tick(std::size_t t) {
     commands_.push_back(states[t].command);
     contacts_.push_back(states[t].contact ? 1 : 0);
   }
-  derivation_.set_commands(commands_);
+  if (!source_.foreign && !recording_.info.estimated) derivation_.set_commands(commands_);
   call(time);
   readings_.clear();
   for (std::size_t i = 0; i < kept_count_; ++i) readings_.push_back(kept_[i].block());
@@ -239,7 +251,10 @@ base::TickRecord Replayer::tick(std::size_t t) {
   std::span<const base::LightStatus> lights;
   if (t < recording_.lights.size()) lights = recording_.lights[t].lights;
   if (lights.size() != source_.world.lights.size()) lights = {};
-  return {recording_.states[0][t].tick, time, states_, commands_, contacts_, readings_, qualities_, lights};
+  const std::size_t fault = next_fault_;
+  while (next_fault_ < recording_.faults.size() && recording_.faults[next_fault_].time <= time) ++next_fault_;
+  const auto marks = std::span(recording_.faults).subspan(fault, next_fault_ - fault);
+  return {recording_.states[0][t].tick, time, states_, commands_, contacts_, readings_, qualities_, lights, marks};
 }
 
 }  // namespace

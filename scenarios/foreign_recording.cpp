@@ -282,11 +282,14 @@ void ForeignReader::convert_fix(const ForeignSensor& sensor, record::ForeignMess
 void ForeignReader::read_topic(const ForeignSensor& sensor) {
   record::ForeignMessage message;
   std::size_t beams = 0;
+  std::string bound;  ///< type of the first message
   for_messages(sensor.input.topic, [&](const Bag& bag, std::string_view type, const record::McapMessage& raw) {
     const auto refuse = [&](const std::string& why) {
       throw base::InputError(bag.name, 0,
                              fmt::format("a message of {}, logged at {} ns, {}", sensor.source, raw.log_time, why));
     };
+    if (bound.empty()) bound = type;
+    if (type != bound) refuse("has another type than the first");
     if (raw.log_time > static_cast<std::uint64_t>(kMostTime) || !record::decode_foreign(type, raw.data, message))
       refuse("is malformed");
     if (type == record::kNavSatFix) convert_fix(sensor, message);

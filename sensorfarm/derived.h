@@ -43,7 +43,7 @@ struct DerivedInput {
 struct DerivedSite {
   SensorSite sensor;
   Pose start;                        ///< pose of its robot when the run starts; NaN if the sensor starts later
-  std::vector<DerivedInput> inputs;  ///< in the order of the world file
+  std::vector<DerivedInput> inputs;  ///< by robot, then in the order of the world file
 };
 
 /// A reading to be filled in.

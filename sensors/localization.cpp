@@ -31,8 +31,7 @@ class LocalizationSensor final : public sensorfarm::DerivedSensor {
  public:
   LocalizationSensor(const DerivedContext& context, const estimation::LocalizationOptions& options)
       : localization_(options), start_(context.site.start) {
-    for (const sensorfarm::DerivedInput& input : context.site.inputs)
-      inputs_.push_back({input.port, input.sensor.X_RS});
+    for (const sensorfarm::DerivedInput& input : context.site.inputs) add_input(input);
     const std::vector<double> noise = tuple(context.settings, "noise", 2, "[metres degrees]").value_or(kNoise);
     const double position = noise[0] * context.settings.metres_per_unit;
     const double yaw = noise[1] * context.settings.radians_per_unit;
@@ -54,7 +53,13 @@ class LocalizationSensor final : public sensorfarm::DerivedSensor {
       const glm::dvec2 p = origin_of({v[0], v[1]}, yaw, {from.X_RS.x, from.X_RS.y});
       localization_.add_gps(time, p.x, p.y, v[2]);
     }
-    if (from.port == kPoses) take_pose(time, v);
+    if (from.port == kPoses) take_pose(time, v, from.stated);
+  }
+
+  void add_input(const sensorfarm::DerivedInput& input) final {
+    const std::vector<std::string>& columns = input.sensor.columns;
+    const bool stated = columns.size() >= kPoseNumbers && columns[kValidAt] == "valid";
+    inputs_.push_back({input.port, input.sensor.X_RS, stated});
   }
 
   void read(double seconds, sensorfarm::DerivedReading out) override {
@@ -75,6 +80,7 @@ class LocalizationSensor final : public sensorfarm::DerivedSensor {
   struct Input {
     std::uint32_t port;
     sensorfarm::Pose X_RS;
+    bool stated;  ///< readings have `valid` and a covariance
   };
   inline static const std::vector<double> kNoise{0.05, 0.02 * 180.0 / M_PI};
 
@@ -84,8 +90,7 @@ class LocalizationSensor final : public sensorfarm::DerivedSensor {
       localization_.add_pose(time, {start_.x, start_.y, start_.z, start_.yaw}, estimation::kKnownStart);
   }
 
-  void take_pose(std::int64_t time, std::span<const double> v) {
-    const bool stated = v.size() >= kPoseNumbers;
+  void take_pose(std::int64_t time, std::span<const double> v, bool stated) {
     if (stated && v[kValidAt] == 0.0) return;
     std::array<double, 6> covariance = covariance_;
     if (stated && std::isfinite(v[kCovarianceAt])) std::copy_n(v.begin() + kCovarianceAt, 6, covariance.begin());

@@ -41,7 +41,8 @@ scenarios::DerivedSource open_source(const std::string& place, const scenarios::
 /// The recording would be replaced while it is read.
 void refuse_same_file(const std::string& recorded, const std::string& folder) {
   std::error_code ignored;
-  if (std::filesystem::equivalent(recorded, folder + "/" + record::RecordingPart{}.file(), ignored))
+  if (std::filesystem::equivalent(recorded, folder + "/" + record::RecordingPart{}.file(), ignored) ||
+      std::filesystem::equivalent(recorded, folder, ignored))
     throw base::InputError(folder, 0, "is the folder of the recording itself: choose another with -o");
 }
 

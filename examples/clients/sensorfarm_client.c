@@ -459,11 +459,13 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
 }
 
-// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE, OBJECT or LANE from type, robot, sequence, time_ns, session, token, words,
-// values and, of an estimate in V2V or TAG, age_us, stale and covariance. Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
+// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE, OBJECT or LANE from type, robot, sequence, time_ns, session, token,
+// words, values and, of an estimate in V2V or TAG, age_us, stale and covariance. Returns its size, at most
+// SF_TAG_BYTES; 0 for numbers that the farm would drop.
 size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   const sf_type* const type = sf_find_type(packet->type);
-  if (!type || packet->type < SF_V2V || (packet->type > SF_LEAVE && packet->type != SF_OBJECT && packet->type != SF_LANE))
+  if (!type || packet->type < SF_V2V ||
+      (packet->type > SF_LEAVE && packet->type != SF_OBJECT && packet->type != SF_LANE))
     return 0;
   memset(bytes, 0, SF_TAG_BYTES);
   memcpy(bytes, "SFPK\2", 5);
@@ -707,6 +709,7 @@ typedef struct {
   uint16_t robot;
   struct sockaddr_in farm;
   uint32_t session, token, farm_session, types, states, requests;
+  bool all;             // requests all types, and no states of others
   double next_request;  // [s] on the monotonic clock
   unsigned sockets;
   struct pollfd polled[1 + SF_MAX_SENSORS];
@@ -786,7 +789,10 @@ bool sf_read_key(sf_client* c, const char* file) {
 // Listens for one sensor, numbered from 0 among the sensors of its type. @param port 0: the farm's default
 bool sf_add_sensor(sf_client* c, const sf_type* type, unsigned number, unsigned port) {
   if (port == 0) port = type->port + 8u * c->robot + number;
-  c->types |= 1u << type->type;
+  if (type->type > 31)
+    c->all = true;  // its bit would need a SUBSCRIBE of 72 bytes
+  else
+    c->types |= 1u << type->type;
   return port <= 65535 && open_port(c, (uint16_t)port);
 }
 
@@ -806,7 +812,7 @@ static void send_packet(sf_client* c, sf_packet* p) {
 // [rad/s].
 void sf_send_state(sf_client* c, const double state[7], uint32_t follows, uint32_t checkpoint, bool docking) {
   if (now_s() >= c->next_request) {
-    send_packet(c, &(sf_packet){.type = SF_SUBSCRIBE, .sequence = c->requests++, .words = {c->types}});
+    send_packet(c, &(sf_packet){.type = SF_SUBSCRIBE, .sequence = c->requests++, .words = {c->all ? 0 : c->types}});
     c->next_request = now_s() + 0.5;
   }
   sf_packet packet = {.type = SF_V2V, .sequence = c->states++, .words = {follows, checkpoint, docking}};

@@ -225,7 +225,7 @@ def decode_state(type, robot, payload):
         states = [decode(payload[at:at + V2V_BYTES]) for at in range(0, len(payload), V2V_BYTES)]
         require(all(state["type"] == V2V for state in states), "wrong direction")
         return {"states": states}
-    numbers = unpack(STATES[type], payload)
+    numbers = unpack("<Q" if type == SUBSCRIBE and len(payload) == 8 else STATES[type], payload)
     if type == V2V:
         require(all(map(math.isfinite, numbers[:7])), "not finite")
         for part, limit in ((numbers[:3], 1e7), (numbers[3:4], 1e6), (numbers[4:7], 1e3)):
@@ -322,7 +322,7 @@ def encode_lane(segment, lane, use, **header):
 
 def encode_subscribe(types=0, **header):
     """types: bit k for sensor type k, bit 0 for states of others; 0: all sensor types."""
-    return encode(SUBSCRIBE, struct.pack("<I", types), **header)
+    return encode(SUBSCRIBE, struct.pack("<Q" if types >> 32 else "<I", types), **header)
 
 
 def encode_command(tick, robots, twists, **header):

@@ -207,7 +207,7 @@ void DerivedSensors::process(std::size_t i, std::int64_t now) {
   try {
     call(i, now);
   } catch (const std::exception& error) {
-    node.failure = error.what();
+    node.failure = *error.what() != '\0' ? error.what() : "it threw an exception without a message";
   } catch (...) {
     node.failure = "it threw something that is not a std::exception";
   }

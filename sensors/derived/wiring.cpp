@@ -133,8 +133,8 @@ void Wiring::add_input(DerivedNode& node, std::string_view text) {
     refuse_input(node, fmt::format("'{}' is not an input: expected [port=][robot/]type[:number]", text));
   const std::size_t before = node.inputs.size();
   for (const std::uint32_t mover : movers_of(node, parts)) {
-    const auto is_it = [&](const SensorSpec& row) { return row.mover == mover && row.sensor == number; };
-    if (std::ranges::any_of(group.rows, is_it)) node.inputs.push_back({port, mover, group.type->id, number});
+    const auto own = std::ranges::equal_range(group.rows, mover, {}, &SensorSpec::mover);
+    if (number < own.size()) node.inputs.push_back({port, mover, group.type->id, number});
   }
   if (node.inputs.size() > before) return;
   refuse_input(node, fmt::format("there is no sensor '{}': sensors of one type are numbered per robot, from 0", text));
@@ -151,6 +151,7 @@ void Wiring::add_inputs(DerivedNode& node) {
     add_input(node, rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
+  std::ranges::stable_sort(node.inputs, {}, &WiredInput::mover);  // robots that join come last
   const auto& ports = node.type->derived->ports;
   for (std::uint32_t k = 0; k < ports.size(); ++k) {
     const auto count = std::ranges::count(node.inputs, k, &WiredInput::port);
@@ -178,6 +179,8 @@ std::uint32_t Wiring::level_of(std::size_t row, std::vector<std::size_t>& path) 
         node.level = std::max(node.level, 1 + level_of(below->second, path));
     visits_[row] = Visit::done;
   }
+  if (node.level >= kMostLevels)
+    refuse_input(node, fmt::format("more than {} derived sensors depend on each other in a row", kMostLevels));
   path.pop_back();
   return node.level;
 }

@@ -23,7 +23,7 @@ struct DerivedNode {
   SensorSpec spec;
   std::uint32_t row = 0;           ///< among the world's sensors of its type
   std::uint32_t level = 0;         ///< above the levels of all its inputs; 0: it has no derived input
-  std::vector<WiredInput> inputs;  ///< in the order of the world file
+  std::vector<WiredInput> inputs;  ///< by robot, then in the order of the world file
 };
 
 /// The sensors of a type: SensorSet::Group, as far as wiring needs it.
