@@ -195,7 +195,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 13u) << "plain readings";
+  EXPECT_EQ(rows, 14u) << "plain readings";
 }
 
 }  // namespace
