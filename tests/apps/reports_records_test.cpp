@@ -105,7 +105,7 @@ server::RobotClientStats robot_stats() {
   f.link.direct = netio::DirectV2vCounts{outbox(61), {}, 62, 63, 64, 65, 66, 0};
   fill(f.link.direct->packets, 4);
   f.error = {5, 0.5, 0.75};
-  f.own = {.cameras = true, .wheels = true, .errors = {4, 0.0004, 0.015, 0.1}, .sigma = 0.0125};
+  f.own = {.cameras = true, .wheels = true, .errors = {4, 0.0004, 0.0, 0.015, 0.1}, .sigma = 0.0125};
   fill(f.own->counts.packets, 2);
   f.own->calibration = {{1.05, 0.0025}, {1.04, 0.003}, {0.26, 0.004}, {0.0, 0.0}};
   f.real = {.type = "create",
