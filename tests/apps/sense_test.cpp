@@ -88,9 +88,10 @@ TEST(Sense, NoReturnAppliesOnlyToLasers) {
   const Folder folder;
   std::string robot = "position( name \"scout\"\n";
   for (const sensors::SensorType* type : sensors::built_in_sensor_types())
-    robot += std::string(type->word.type) + "( )\n";
+    if (type->derived == nullptr) robot += std::string(type->word.type) + "( )\n";
   const std::string world = folder.write("empty.world", robot + ")\n");
   for (const sensors::SensorType* type : sensors::built_in_sensor_types()) {
+    if (type->derived != nullptr) continue;  // they need inputs
     const Words words{"sense", world, "--type", std::string(type->name)};
     const Words infinite = with(words, {"--no-return", "inf"});
     const Outcome plain = run_program(words), marked = run_program(infinite);

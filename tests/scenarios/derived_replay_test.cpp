@@ -70,7 +70,7 @@ struct Kept final : base::Sink {
   Derived readings;
 };
 
-Derived recorded(const record::Recording& recording) {
+Derived recorded_derived(const record::Recording& recording) {
   Derived kept;
   for (const record::ReadingSample& r : recording.readings)
     if (sensors::find_sensor_type(r.type)->derived != nullptr) kept[{r.time, r.mover, r.type, r.sensor}] = r.values;
@@ -106,16 +106,16 @@ constexpr const char* kInFile =
 /// As if the sensors had been in the world of the run.
 TEST_F(DerivedReplayTest, NewSensorsHaveTheBytesOfTheRun) {
   const record::Recording with = run("with", kInWorld), without = run("without", "");
-  ASSERT_GT(recorded(with).size(), 100u);
-  ASSERT_TRUE(recorded(without).empty());
-  expect_same(derived(source_of(without, file(kInFile))), recorded(with));
+  ASSERT_GT(recorded_derived(with).size(), 100u);
+  ASSERT_TRUE(recorded_derived(without).empty());
+  expect_same(derived(source_of(without, file(kInFile))), recorded_derived(with));
 }
 
 TEST_F(DerivedReplayTest, RecordedSensorsAreRecomputedBitByBit) {
   DerivedSource source = source_of(run("with", kInWorld));
   Kept kept;
   const DerivedReplay replay = replay_derived(source, kept, {});
-  EXPECT_EQ(replay.equal, recorded(source.recording).size());
+  EXPECT_EQ(replay.equal, recorded_derived(source.recording).size());
   EXPECT_EQ(replay.different, 0u);
   EXPECT_EQ(replay.inputs + replay.equal, source.recording.readings.size());
   const auto gyro = std::ranges::find_if(source.recording.readings, [](const record::ReadingSample& r) {
@@ -150,7 +150,7 @@ TEST_F(DerivedReplayTest, DerivedRecordingsAreRecordings) {
   const record::Recording out = record::open_recording(path("out"));
   EXPECT_TRUE(out.damage.empty());
   EXPECT_EQ(out.ticks, 20u);
-  expect_same(derived(source_of(out)), recorded(out));
+  expect_same(derived(source_of(out)), recorded_derived(out));
   EXPECT_EQ(out.states[1][19].X_WM.x, source.recording.states[1][19].X_WM.x);
 }
 

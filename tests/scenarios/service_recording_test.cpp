@@ -14,7 +14,7 @@ namespace sf::scenarios {
 namespace {
 
 /// Two robots drive, with samples between ticks; one becomes silent and is removed from the world before the end.
-record::Recording recorded(const std::string& accuracy = "exact") {
+record::Recording recorded_service(const std::string& accuracy = "exact") {
   server::Fixture f({.sensor_rate = 13.0,
                      .filter = {.mode = server::FilterMode::on, .policy = estimation::StalePolicy::hide},
                      .accuracy = accuracy});
@@ -38,7 +38,7 @@ record::Recording recorded(const std::string& accuracy = "exact") {
 }
 
 TEST(ServiceRecording, ScansMatchPlainCpp) {
-  const record::Recording recording = recorded();
+  const record::Recording recording = recorded_service();
   ASSERT_EQ(recording.states.size(), 2u);
   EXPECT_GT(recording.ticks, 80u) << "60 ticks, and samples between them";
   EXPECT_TRUE(base::is_absent(recording.states[1].back().X_WM)) << "silent for 3 s";
@@ -52,7 +52,7 @@ TEST(ServiceRecording, ScansMatchPlainCpp) {
 
 /// Within the bound of each reading, which the metadata states and which follows from the sensor's pose.
 TEST(ServiceRecording, ScansIn32BitsAreComparedWithinTheirBound) {
-  record::Recording recording = recorded("single");
+  record::Recording recording = recorded_service("single");
   const Verification v = verify(recording, server::Fixture::device(), {});
   EXPECT_TRUE(v.sound()) << v.reference.first;
   EXPECT_TRUE(v.skipped.empty());
@@ -64,7 +64,7 @@ TEST(ServiceRecording, ScansIn32BitsAreComparedWithinTheirBound) {
 
 /// A service's readings of other types cannot be recomputed.
 TEST(ServiceRecording, WithoutComparisonsItIsNotSound) {
-  record::Recording recording = recorded();
+  record::Recording recording = recorded_service();
   for (record::ReadingSample& reading : recording.readings) reading.type = sensors::kLaser + 1;
   const Verification v = verify(recording, server::Fixture::device(), {});
   EXPECT_EQ(v.compared(), 0u);
@@ -73,7 +73,7 @@ TEST(ServiceRecording, WithoutComparisonsItIsNotSound) {
 }
 
 TEST(ServiceRecording, AWrongRangeIsDetected) {
-  record::Recording recording = recorded();
+  record::Recording recording = recorded_service();
   recording.readings[20].values[7] += 1e-6;
   EXPECT_FALSE(verify(recording, server::Fixture::device(), {}).sound());
 }
