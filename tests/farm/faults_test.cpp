@@ -64,6 +64,7 @@ FaultRun run_with(const world::World& world, std::vector<Fault> faults, int tick
                   bool moves = true, std::int64_t tick_time = kTenth) {
   options.faults = std::move(faults);
   if (options.threads == 0) options.threads = 1;
+  options.scene.caster = &raycast::host_caster;
   Farm farm(world, host_device(), options);
   farm.subscribe_all();
   FaultRun run;
