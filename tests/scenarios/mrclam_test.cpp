@@ -7,6 +7,7 @@
 
 #include "scenarios/mrclam_runs.h"
 #include "tests/folder.h"
+#include "tests/instrumented.h"
 #include "tests/units.h"
 
 namespace sf::scenarios {
@@ -28,6 +29,7 @@ class MrclamData : public FolderTest {};
 TEST_F(MrclamData, ReachesItsGoals) {
   const std::string packed = SF_SOURCE_DIR "/../shared/data/mrclam/dataset6.tar.xz";
   if (!std::filesystem::exists(packed)) GTEST_SKIP() << packed << " is missing: no real measurements to compare with";
+  if (instrumented()) GTEST_SKIP() << "takes minutes with sanitizers";
   const std::string unpack = "tar -xJf '" + packed + "' -C '" + folder_.string() + "'";
   ASSERT_EQ(std::system(unpack.c_str()), 0);
   const record::MrclamData data = record::read_mrclam(path("MRCLAM_Dataset6"));
