@@ -35,14 +35,6 @@ ParsedSensors parse_own_sensors(const world::World& world, const OwnType& type) 
   return {std::move(rows), {}};
 }
 
-std::string wire_problem_of(const Added& type, const SensorSpec& sensor, WireFormat wire) {
-  const std::size_t numbers = sensor.elements * type.numbers.size();
-  if (numbers > kMaxPlainWords)
-    return fmt::format("{} numbers do not fit into a packet of {} ({} at most): it can be recorded, but not sent",
-                       numbers, type.entry.name, kMaxPlainWords);
-  return plain_wire_problem(type.form, wire);
-}
-
 /// The functions of SensorType are plain pointers, so each id has its own set.
 template <std::uint8_t kId>
 SensorType functions_of() {
@@ -50,7 +42,7 @@ SensorType functions_of() {
   type.parse = [](const world::World& world) { return parse_own_sensors(world, *added[kId]); };
   type.make = [](const SensorContext& context, const ParsedSensors&) { return make_own_backend(context, *added[kId]); };
   type.wire_problem = [](const SensorSpec& sensor, WireFormat wire) {
-    return wire_problem_of(*added[kId], sensor, wire);
+    return plain_wire_problem(added[kId]->form, sensor, wire);
   };
   type.parts = [](const SensorSpec&, WireFormat) -> std::uint32_t { return 1; };
   type.encode = [](const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat, std::uint32_t,

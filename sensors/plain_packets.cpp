@@ -51,6 +51,14 @@ std::string plain_wire_problem(const PlainForm& form, WireFormat wire) {
   return fmt::format("the thesis has no layout for {} readings: use the farm's packets (`--wire farm`)", form.name);
 }
 
+std::string plain_wire_problem(const PlainForm& form, const SensorSpec& sensor, WireFormat wire) {
+  const std::size_t numbers = sensor.elements * form.numbers.size();
+  if (numbers > kMaxPlainWords)
+    return fmt::format("{} numbers do not fit into a packet of {} ({} at most): it can be recorded, but not sent",
+                       numbers, form.name, kMaxPlainWords);
+  return plain_wire_problem(form, wire);
+}
+
 std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,
                           base::Bytes& out) {
   const std::span<const double> values = reading.values;

@@ -43,6 +43,8 @@ struct PlainForm {
 
 /// Rejects the thesis format.
 std::string plain_wire_problem(const PlainForm& form, WireFormat wire);
+/// Also rejects readings that do not fit into one datagram.
+std::string plain_wire_problem(const PlainForm& form, const SensorSpec& sensor, WireFormat wire);
 std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,
                           base::Bytes& out);
 /// Accepts any bytes. A spec with 0 elements disables the check of their number.

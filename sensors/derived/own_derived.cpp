@@ -34,14 +34,6 @@ struct AddedDerived {
 /// Added types by id, at a fixed address for the rest of the program.
 std::array<std::unique_ptr<AddedDerived>, kLastOwnId + 1> added_derived;
 
-std::string wire_problem_of_derived(const AddedDerived& added, const SensorSpec& sensor, WireFormat wire) {
-  const std::size_t numbers = sensor.elements * added.numbers.size();
-  if (numbers > kMaxPlainWords)
-    return fmt::format("{} numbers do not fit into a packet of {} ({} at most): it can be recorded, but not sent",
-                       numbers, added.entry.name, kMaxPlainWords);
-  return plain_wire_problem(added.packets, wire);
-}
-
 /// The functions of SensorType and DerivedForm are plain pointers, so each id has its own set.
 template <std::uint8_t kId>
 void set_functions(AddedDerived& added) {
@@ -55,7 +47,7 @@ void set_functions(AddedDerived& added) {
   };
   type.make = no_backend;
   type.wire_problem = [](const SensorSpec& sensor, WireFormat wire) {
-    return wire_problem_of_derived(*added_derived[kId], sensor, wire);
+    return plain_wire_problem(added_derived[kId]->packets, sensor, wire);
   };
   type.parts = [](const SensorSpec&, WireFormat) -> std::uint32_t { return 1; };
   type.encode = [](const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat, std::uint32_t,
