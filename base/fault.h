@@ -7,7 +7,7 @@
 
 namespace sf::base {
 
-/// What a fault does to a reading (docs/scenarios.md#faults-of-sensors).
+/// The effect of a fault on a reading (docs/scenarios.md#faults-of-sensors).
 enum class FaultKind : std::uint8_t { bias, drift, scale, stuck, spikes, noise, quantization, swap, dropout, delay };
 
 /// By FaultKind, as written in scenario files and reports.

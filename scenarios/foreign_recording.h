@@ -15,8 +15,8 @@ namespace sf::scenarios {
 ///
 /// A NavSatFix becomes x (east) and y (north) [m] on a plane that touches WGS84 at the origin, at the ellipsoid's
 /// height: a distance d from the origin is short by d^3 / (6 R^2), 4 mm at 10 km and 4 m at 100 km.
-/// @throws base::InputError with the file and what it has for a topic, column or unit that does not exist, for
-/// malformed messages and rows, and for more than 5e6 states (5e5 s times robots, in ticks of 0.1 s)
+/// @throws base::InputError naming the file, and the available names, if a topic, column or unit does not exist; for
+/// malformed messages and rows; and for more than 5e6 states (5e5 s times robots, in ticks of 0.1 s)
 DerivedSource read_foreign(const std::string& recording, const DeriveFile& file);
 
 }  // namespace sf::scenarios

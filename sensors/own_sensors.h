@@ -13,7 +13,7 @@ namespace sf::sensors {
 inline constexpr std::uint8_t kFirstOwnId = 13;
 inline constexpr std::uint8_t kLastOwnId = 26;
 
-/// What all types of users have.
+/// Properties common to all user-defined types.
 struct OwnTypeFacts {
   std::string_view name;
   std::uint8_t id = 0;

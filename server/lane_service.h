@@ -1,5 +1,5 @@
 #pragma once
-// Uses of lanes that change while a farm serves: requests of operators, and what each robot is told.
+// Changes the use of lanes in a running service: applies LANE packets of operators and forwards them to robots.
 //
 //   LaneService lanes(world);
 //   lanes.accept(packet);                              // LANE accepted by the inbox

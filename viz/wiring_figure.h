@@ -1,6 +1,5 @@
 #pragma once
-// The graph of derived sensors and their inputs: one column per level, arrows from inputs to what is computed from
-// them.
+// Draws the graph of derived sensors: one column per level, with arrows from each sensor to those that it feeds.
 
 #include <cstdint>
 #include <string>

@@ -11,7 +11,7 @@ namespace sf::world {
 
 enum class JoiningKind : std::uint8_t { robot, object, light };
 
-/// What copies are made of.
+/// The model of which copies may join.
 struct JoiningTemplate {
   JoiningKind kind = JoiningKind::robot;
   std::uint32_t row = 0;  ///< robot: in `World::movers`; object: in `World::models`; light: in `World::lights`

@@ -1,5 +1,5 @@
 #pragma once
-// What may join a service though no world file names it (`serve --join`).
+// Templates of robots, objects and lights that may join a running service (`serve --join`).
 
 #include <cstdint>
 #include <string>

@@ -41,7 +41,7 @@ class DerivedSensors {
   /// Returns per sensor of group `group` of the sensor set whether it is an input of an evaluated sensor; empty: none.
   std::span<const std::uint8_t> needed(std::size_t group) const { return needed_[group]; }
 
-  /// What becomes of a new reading: only a delivered one reaches the sensors above at once.
+  /// Delivery of a new reading: sensors on higher levels receive only delivered ones in the same call.
   enum class Fate : std::uint8_t { delivered, late, lost };
   /// Called once for each reading, before other sensors take it; may alter it. Empty: sensors without latency deliver.
   using Stage = std::function<Fate(base::ReadingBlock& reading)>;

@@ -1,5 +1,5 @@
 #pragma once
-// What makes a sensor type a derived one: its inputs, and how its sensors are created.
+// The part of a sensor type that only derived types have: ports for inputs, and a factory.
 //
 // In a world file, inside a robot:
 //   derived( type "localization"  inputs ["encoder" "gyro" "gps:0"]  rate 20 )

@@ -1,6 +1,6 @@
 #pragma once
-// What the lanes of a road network are used for, which may change during a run: a lane is closed, its direction is
-// reversed, or all that drive along it have to turn. The network of other uses is a new one. Paint does not change.
+// Uses of lanes, which may change during a run: a lane may be closed, reversed, or reserved for turns. Each set of uses
+// has a road network of its own. Paint does not change.
 //
 // A reversed lane keeps the ids of its way-points, in the opposite order. An exit that led from lane A to it leads from
 // it to the lane next to A that runs against A, and an exit from it to lane B leads to it from the lane next to B that
