@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
+#include <variant>
 
 #include "netio/inbox.h"
 #include "netio/receiver.h"
@@ -38,14 +40,14 @@ void examine(const netio::Packet& packet) {
 /// Accepted packets keep their meaning when encoded and decoded again.
 void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes) {
   base::Bytes again;
-  if (const auto* state = std::get_if<netio::V2v>(&packet.body)) netio::encode(packet.header, *state, again);
-  if (const auto* state = std::get_if<netio::Tag>(&packet.body)) netio::encode(packet.header, *state, again);
-  if (const auto* request = std::get_if<netio::Subscribe>(&packet.body)) netio::encode(packet.header, *request, again);
-  if (const auto* signal = std::get_if<netio::Start>(&packet.body)) netio::encode(packet.header, *signal, again);
-  if (const auto* word = std::get_if<netio::Leave>(&packet.body)) netio::encode(packet.header, *word, again);
-  if (const auto* signals = std::get_if<netio::V2i>(&packet.body)) netio::encode(packet.header, *signals, again);
-  if (const auto* object = std::get_if<netio::Object>(&packet.body)) netio::encode(packet.header, *object, again);
+  std::visit(
+      [&]<class Body>(const Body& body) {
+        if constexpr (!std::is_same_v<Body, netio::Reading>) netio::encode(packet.header, body, again);
+      },
+      packet.body);
   const std::size_t trailer = bytes[60] | std::size_t{bytes[61]} << 8;
+  if (packet.header.type == netio::Type::subscribe && again.size() + 4 + trailer == bytes.size())
+    again.resize(again.size() + 4);  // the long form without types above 31: its last four bytes are 0
   require(trailer <= netio::kMaxTrailer && again.size() + trailer == bytes.size());
   const bool v2i = packet.header.type == netio::Type::v2i;
   const auto reserved = [&](std::size_t i) {

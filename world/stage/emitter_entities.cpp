@@ -59,7 +59,8 @@ void add_lamp(BuildState& b, const Entity& entity, const Model& model, const Siz
 
 void add_fiducial(BuildState& b, const Entity& entity, const Size& size, const Pose& X_B) {
   const StageContext& context = b.context;
-  const std::uint32_t id = whole(context, entity, "fiducial_return", 0, 0, kMaxFiducialId);
+  constexpr auto kMaxId = static_cast<std::uint32_t>(kMaxFiducialId);
+  const std::uint32_t id = whole(context, entity, "fiducial_return", 0, 0, kMaxId);
   if (id == 0) return;
   if (b.world.fiducials.size() >= kMaxFiducials)
     fail(context, find(entity, "fiducial_return")->at,
@@ -68,7 +69,7 @@ void add_fiducial(BuildState& b, const Entity& entity, const Size& size, const P
   read_keys(context, entity, fiducial);
   fiducial.model = static_cast<std::uint32_t>(b.world.models.size());
   fiducial.id = id;
-  fiducial.key = whole(context, entity, "fiducial_key", 0, 0, kMaxFiducialId);
+  fiducial.key = whole(context, entity, "fiducial_key", 0, 0, kMaxId);
   fiducial.X_BF = X_B;
   fiducial.X_BF.z += 0.5 * size.z;
   b.world.fiducials.push_back(fiducial);
