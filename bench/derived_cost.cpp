@@ -24,7 +24,8 @@ namespace sf::bench {
 
 namespace {
 
-constexpr int kTicks = 40, kWarmUp = 4;
+constexpr int kTicks = 40;
+constexpr int kWarmUp = 40;  // windows of late readings are full
 constexpr std::int64_t kTick = base::kSecond / 20;
 
 world::World fleet(int robots) {

@@ -16,7 +16,7 @@ constexpr int kMostRejected = 5;    // in succession, of a robot that was not re
 constexpr int kStartHeadings = 36;  // of a start without a heading
 constexpr double kLeastShare = 1e-6;
 // A window of one second with encoders and gyro at 250 Hz each, and poses.
-constexpr std::size_t kCapacity = 576;
+constexpr std::size_t kCapacity = 576, kFirstCapacity = 8;
 constexpr double kFastest = 10.0;  // [m/s] encoders that differ from the prediction by more were reset, or are wrong
 
 double square(double v) { return v * v; }
@@ -86,7 +86,7 @@ bool was_reset(const WheeledState& predicted, const WheeledMeasurement& m, std::
 }  // namespace
 
 Localization::Localization(const LocalizationOptions& options)
-    : options_(options), model_(model_of(options)), limits_(gate_limits(kGate)), window_(kWindow, kCapacity) {}
+    : options_(options), model_(model_of(options)), window_(kWindow, kCapacity, kFirstCapacity) {}
 
 Verdict Localization::add_encoder(std::int64_t time, double left, double right) {
   if (!options_.encoder) return Verdict::invalid;
@@ -133,7 +133,8 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   }
   const Innovation surprise = weigh(m);
   // Encoders are not gated, since commands change the speeds at once. `!(a <= b)` rejects NaN as well.
-  if (!encoder && !(surprise.squared <= limits_[surprise.degrees])) return reject(m, state);
+  static const GateLimits kLimits = gate_limits(kGate);
+  if (!encoder && !(surprise.squared <= kLimits[surprise.degrees])) return reject(m, state);
   for (Weighted& each : predicted_) each.state = correct(each.state, m);
   reduce(predicted_);
   state.hypotheses = predicted_;
@@ -188,6 +189,7 @@ Verdict Localization::reject(const WheeledMeasurement& m, State& state) const {
 Innovation Localization::weigh(const WheeledMeasurement& m) {
   Innovation least{.squared = HUGE_VAL};
   double most = -HUGE_VAL;
+  if (predicted_.size() == 1) return innovation(predicted_[0].state, m);
   for (Weighted& each : predicted_) {
     const Innovation surprise = innovation(each.state, m);
     if (!(surprise.squared >= least.squared)) least = surprise;

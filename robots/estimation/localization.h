@@ -114,7 +114,6 @@ class Localization {
 
   LocalizationOptions options_;
   WheeledModel model_;
-  GateLimits limits_;
   MeasurementWindow<WheeledMeasurement, State> window_;
   std::vector<Weighted> predicted_;  ///< reused
   std::uint32_t sequence_ = 0;

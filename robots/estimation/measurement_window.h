@@ -31,7 +31,7 @@ std::string_view name(Verdict verdict);
 /// once.
 using VerdictCounts = std::array<std::uint64_t, kVerdicts>;
 
-/// Allocates in the constructor; copies of a State may allocate, too.
+/// Allocates in the constructor, or until it first is as large as needed; copies of a State may allocate, too.
 /// @tparam Measurement totally ordered, first by its `time` [ns]; only identical measurements are equal
 /// @tparam State with known() and, if known, time() [ns]; by default the state before any measurement
 template <class Measurement, class State>
@@ -39,7 +39,10 @@ class MeasurementWindow {
  public:
   /// @param span [ns] > 0 measurements older than the newest by more are rejected
   /// @param capacity > 0 measurements; when full, the window becomes shorter
-  MeasurementWindow(std::int64_t span, std::size_t capacity) : span_(span), entries_(capacity) {}
+  MeasurementWindow(std::int64_t span, std::size_t capacity) : span_(span), capacity_(capacity), entries_(capacity) {}
+  /// @param allocated in (0, capacity] measurements; more memory is allocated when they do not suffice
+  MeasurementWindow(std::int64_t span, std::size_t capacity, std::size_t allocated)
+      : span_(span), capacity_(capacity), entries_(allocated) {}
   /// @param first the state before any measurement
   MeasurementWindow(std::int64_t span, std::size_t capacity, const State& first) : MeasurementWindow(span, capacity) {
     before_ = first;
@@ -74,12 +77,13 @@ class MeasurementWindow {
   /// Returns the last state at or before `time` for which `known` is true, or the first such state; null if there is
   /// none. Valid until the next measurement.
   const State* state_at(std::int64_t time) const {
-    const State* state = before_.known() ? &before_ : nullptr;
-    for (std::size_t k = 0; k < size_; ++k) {
-      const State& after = entry(k).after;
-      if (after.known() && (state == nullptr || after.time() <= time)) state = &after;
-    }
-    return state;
+    // Backwards, since the newest is wanted most often.
+    for (std::size_t k = size_; k-- > 0;)
+      if (const State& after = entry(k).after; after.known() && after.time() <= time) return &after;
+    if (before_.known()) return &before_;
+    for (std::size_t k = 0; k < size_; ++k)
+      if (entry(k).after.known()) return &entry(k).after;
+    return nullptr;
   }
 
   /// Returns the state after the measurements that left the window.
@@ -120,11 +124,20 @@ class MeasurementWindow {
       if (measurement == entry(k - 1).measurement) return Verdict::replayed;
     const std::int64_t start = std::max(newest, measurement.time) - span_;
     while (size_ > 0 && entry(0).measurement.time < start) drop_oldest();
-    if (size_ < entries_.size()) return Verdict::used;
+    if (size_ < entries_.size() || grow()) return Verdict::used;
     // The oldest entry leaves, unless the new one is even older.
     if (measurement < entry(0).measurement) return Verdict::too_late;
     drop_oldest();
     return Verdict::used;
+  }
+
+  /// Returns false if the window has `capacity_` entries. A ring no larger than needed reuses memory that is in caches.
+  bool grow() {
+    if (entries_.size() == capacity_) return false;
+    std::rotate(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(first_), entries_.end());
+    entries_.resize(std::min(capacity_, 2 * entries_.size()));
+    first_ = 0;
+    return true;
   }
 
   void drop_oldest() {
@@ -145,7 +158,8 @@ class MeasurementWindow {
   }
 
   std::int64_t span_;
-  std::vector<Entry> entries_;  ///< ring of `capacity`, sorted from first_ on
+  std::size_t capacity_;
+  std::vector<Entry> entries_;  ///< ring of at most `capacity_`, sorted from first_ on
   std::size_t first_ = 0;
   std::size_t size_ = 0;
   State before_;             ///< after the measurements that left the window
