@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "world/serialization.h"
+#include "world/shapes.h"
 
 namespace sf::world {
 
@@ -58,6 +59,9 @@ void check_rows(const World& world) {
   bool good = is_within(world);
   for (const Path& path : world.paths) good &= !path.pieces.empty();
   for (const Light& light : world.lights) good &= !light.phases.empty();
+  for (const Shape& shape : world.shapes)
+    good &=
+        shape.outline.size() <= kMostShapeSides && shape.size.x >= 0.0 && shape.size.y >= 0.0 && shape.size.z >= 0.0;
   for (const FloorHole& hole : world.floor_holes) good &= hole.outline.size() >= 3;
   good &= world.marking_heights.size() <= world.lane_markings.size();
   if (!good) refuse("a row breaks the rules of its table");

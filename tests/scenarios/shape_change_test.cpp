@@ -2,8 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "base/error.h"
 #include "raycast/casters.h"
+#include "record/recorder.h"
+#include "record/recording.h"
+#include "scenarios/recorded_states.h"
+#include "scenarios/recording_verification.h"
+#include "scenarios/run_info.h"
+#include "scenarios/runner.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
 #include "tests/device.h"
@@ -15,8 +24,7 @@ namespace sf::scenarios {
 namespace {
 
 /// Two robots far from each other, each with sensors of several kinds; the object is in the range of the first only.
-world::World room(const std::string& object, const std::string& shapes = "") {
-  return world::build_world("shapes.world", R"(
+constexpr const char* kProbes = R"(
 interval_sim 100
 define probe position
 (
@@ -28,11 +36,12 @@ define probe position
   encoder ( slip 0.1 )
   gyro ( )
 )
-)" + shapes + R"(
 probe ( name "a" )
 probe ( name "b" pose [40 0 0 0] )
-)" + object,
-                            {.sensors = sensors::world_file_words()});
+)";
+
+world::World room(const std::string& object, const std::string& shapes = "") {
+  return world::build_world("shapes.world", shapes + kProbes + object, {.sensors = sensors::world_file_words()});
 }
 
 constexpr const char* kBlocks =
@@ -146,6 +155,80 @@ TEST(ShapeChange, RobotsTouchTheNewOutline) {
     EXPECT_TRUE(contact);
   }
   EXPECT_NEAR(stopped[0] - stopped[1], 0.5, 2e-3);
+}
+
+/// Delayed scans, samples between ticks and plain C++ use the geometry of their times.
+TEST(ShapeChange, RecordingsAreVerified) {
+  world::World world = room(tag("size [0.2 0.2 0.3] origin [0.05 0 0 10]"), kShapes);
+  const std::string folder = (std::filesystem::temp_directory_path() / "shape_change").string();
+  {
+    const sensors::SensorSet sensor_set(world);
+    record::Recorder recorder(folder, run_info(world, sensor_set, {.seed = 5, .record_readings = true}));
+    Simulation simulation(world, device(), standing("host"));
+    for (int tick = 0; tick < 40; ++tick) {
+      if (tick % 5 == 2) simulation.set_shape(world, 2, {.shape = "wedge"});
+      if (tick % 7 == 3) simulation.set_shape(world, 2, {.size = glm::dvec3{0.9, 0.4, 0.3}});
+      if (tick % 11 == 6) simulation.set_shape(world, 2, {.shape = "original", .color = 0xFF00FF00u});
+      recorder.write(simulation.step());
+    }
+  }
+  record::Recording recording = record::open_recording(folder);
+  EXPECT_TRUE(recording.damage.empty());
+  EXPECT_GT(recording.shapes.size(), 10u);
+  const Verification v = verify(recording, device(), {.sample = 0});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  EXPECT_GT(v.reference.readings, 60u);
+  world::World replayed = recorded_world(recording);
+  RecordedShapes shapes(recording, replayed);
+  EXPECT_TRUE(shapes.go_to(recording.end_time));
+  EXPECT_EQ(replayed.movers[2].body.size(), world.movers[2].body.size());
+  EXPECT_EQ(replayed.models[replayed.movers[2].model].color, world.models[world.movers[2].model].color);
+  shapes.go_to(0);
+  EXPECT_EQ(replayed.movers[2].body.size(), 4u);
+  EXPECT_EQ(shapes.changed().size(), 1u);
+  recording.shapes.clear();
+  EXPECT_FALSE(verify(recording, device(), {.sample = 0}).sound());
+}
+
+/// A robot that joins as a copy has the shape that its original had at the start, as in a recording.
+TEST(ShapeChange, CopiesHaveTheOriginalShape) {
+  world::World world = room("", kShapes);
+  Simulation simulation(world, device(), standing("host"));
+  simulation.set_shape(world, 0, {.shape = "wedge", .color = 0xFF00FF00u});
+  simulation.step();
+  const std::uint32_t row = simulation.add_robot(world, {.name = "c", .like = "a", .X_WM = {8.0, 0.0, 0.0, 0.0}});
+  EXPECT_EQ(world.movers[row].body.size(), world.movers[1].body.size());
+  EXPECT_EQ(world.movers[row].radius, world.movers[1].radius);
+  EXPECT_EQ(world.models[world.movers[row].model].color, world.models[world.movers[1].model].color);
+  simulation.set_shape(world, row, {.shape = "wedge"});
+  simulation.step();
+  EXPECT_EQ(world.movers[row].body.size(), world.movers[0].body.size());
+}
+
+std::string event_text(const std::string& events) {
+  return "world = \"shapes.world\"\nduration = 2\n[default]\ncontroller = \"none\"\n" + events;
+}
+
+TEST(ShapeChange, ScenariosHaveEvents) {
+  const std::string folder = std::filesystem::temp_directory_path().string();
+  std::ofstream(folder + "/shapes.world") << kShapes << kProbes << tag("size [0.2 0.2 0.3]");
+  const auto run = [&](const std::string& events) {
+    return run_scenario(parse_scenario(folder + "/shapes.toml", event_text(events)), device());
+  };
+  const std::string event = "[[event]]\nat = 1\nobject = \"tag3\"\n";
+  EXPECT_NE(run(event + "shape = \"crate\"\n").hash, run("").hash);
+  EXPECT_NE(run(event + "size = [0.7, 0.31, 0.4]\npresent = true\n").hash, run("").hash);
+  EXPECT_EQ(run(event + "shape = \"crate\"\n").hash, run(event + "size = [0.7, 0.31, 0.4]\n").hash);
+  EXPECT_EQ(run(event + "color = \"#00ff00\"\n").hash, run("").hash);
+  const std::pair<std::string, std::string> kCorpus[] = {
+      {"", "shapes.toml:5: 'present' is missing"},
+      {"shape = \"crat\"\n", "shapes.toml:5: "},
+      {"shape = 3\n", "shapes.toml:8: 'shape' expects"},
+      {"color = \"redd\"\n", "shapes.toml:8: unknown colour"},
+      {"size = [1, 2]\n", "shapes.toml:8: 'size' expects a list [x, y, z] in metres"},
+      {"size = [1, 2, 0]\n", "shapes.toml:5: 'tag3' cannot change: size (1, 2, 0); expected lengths above 0"}};
+  for (const auto& [text, message] : kCorpus)
+    EXPECT_EQ(refusal_from("shapes.toml", [&] { run(event + text); }).substr(0, message.size()), message) << text;
 }
 
 TEST(ShapeChange, RefusesInOneLine) {
