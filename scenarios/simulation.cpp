@@ -223,8 +223,10 @@ void Simulation::set_shape(world::World& world, std::uint32_t mover, const world
   if (shape_changes_ >= kMostShapeChanges)
     throw base::InputError(
         fmt::format("more than {} changes of shapes in one tick; expected fewer", kMostShapeChanges));
+  const std::uint32_t color = world::shape_state(world, mover).color;
   const bool outline = world::change_shape(world, mover, change);
   ++shape_changes_;
+  if (!outline && world::shape_state(world, mover).color == color) return;
   if (std::ranges::find(reshaped_, mover) == reshaped_.end()) reshaped_.push_back(mover);
   if (!outline) return;
   outlines_changed_ = true;

@@ -118,8 +118,11 @@ void apply(World& world, std::uint32_t row, const ChangedShape& now) {
 /// @return whether the outline changed
 bool use_shape(World& world, std::uint32_t row, const ChangedShape& now) {
   const ChangedShape before = current_shape(world, row);
-  world.changed_shapes[row] = now;
   apply(world, row, now);
+  const OriginalShape& own = now.original;
+  const bool original = now.shape == kNone && now.size == own.size && now.color == own.color;
+  if (original) world.changed_shapes.erase(row);
+  if (!original) world.changed_shapes[row] = now;
   return now.shape != before.shape || now.size != before.size;
 }
 

@@ -15,6 +15,7 @@
 #include "scenarios/runner.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
+#include "tests/cluster/thread_ranks.h"
 #include "tests/device.h"
 #include "tests/refusal.h"
 #include "world/shapes.h"
@@ -186,6 +187,7 @@ TEST(ShapeChange, RecordingsAreVerified) {
   shapes.go_to(0);
   EXPECT_EQ(replayed.movers[2].body.size(), 4u);
   EXPECT_EQ(shapes.changed().size(), 1u);
+  EXPECT_TRUE(replayed.changed_shapes.empty());
   recording.shapes.clear();
   EXPECT_FALSE(verify(recording, device(), {.sample = 0}).sound());
 }
@@ -252,6 +254,36 @@ TEST(ShapeChange, RefusesInOneLine) {
             "more than 1000 changes of shapes in one tick; expected fewer");
   simulation.step();
   simulation.set_shape(world, 2, {.shape = "crate"});
+}
+
+TEST(ShapeChange, RanksAgreeAndTilesRefuse) {
+  const auto go = [](Simulation& simulation, world::World& world) {
+    for (int tick = 0; tick < 20; ++tick) {
+      if (tick == 7) simulation.set_shape(world, 2, {.shape = "wedge"});
+      if (tick == 13) simulation.set_shape(world, 2, {.size = glm::dvec3{0.5, 1.5, 0.4}});
+      simulation.step();
+    }
+    simulation.settle();
+  };
+  world::World alone = room(tag("size [0.2 0.2 0.3]"), kShapes);
+  Simulation one(alone, device(), standing("host"));
+  go(one, alone);
+  gpu::Device devices[2];
+  cluster::ThreadRanks(2).run([&](cluster::Ranks& rank) {
+    world::World world = room(tag("size [0.2 0.2 0.3]"), kShapes);
+    SimulationOptions shared = standing("host");
+    shared.threads = 1;
+    shared.ranks = &rank;
+    Simulation simulation(world, devices[rank.rank()], shared);
+    go(simulation, world);
+    if (rank.rank() == 0) {
+      EXPECT_EQ(simulation.farm().hash(), one.farm().hash());
+    }
+    shared.tiles = true;
+    Simulation tiled(world, devices[rank.rank()], shared);
+    EXPECT_EQ(refusal_of([&] { tiled.set_shape(world, 2, {.shape = "wedge"}); }),
+              "objects cannot change their shapes with --tiles; expected ranks that share the whole world");
+  });
 }
 
 }  // namespace
