@@ -34,11 +34,13 @@ struct Newest : base::Sink {
   std::vector<double> ranges;
   std::vector<base::LightStatus> lights;
   std::vector<base::Report> states;
+  std::size_t shapes = 0;  ///< changes of all ticks
   void write(const base::TickRecord& record) override {
     for (const base::ReadingBlock& reading : record.readings)
       ranges.assign(reading.values.begin(), reading.values.end());
     lights.assign(record.lights.begin(), record.lights.end());
     states.assign(record.reports.begin(), record.reports.end());
+    shapes += record.shapes.size();
   }
 };
 
@@ -159,6 +161,7 @@ TEST(Joining, ShapesChangeUntilTheirObjectLeaves) {
   hall.see(kGone);
   EXPECT_NEAR(depth({}), 0.2, 1e-9) << "the next one has its own shape";
   EXPECT_EQ(hall.world.movers[hall.world.movers.size() - 1].body.size(), 4u);
+  EXPECT_EQ(hall.sink.shapes, 6u) << "repeated OBJECTs change nothing";
 }
 
 TEST(Joining, ShapesThatDoNotExistAreLogged) {
