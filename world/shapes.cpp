@@ -33,13 +33,13 @@ OriginalShape original_of(const World& world, std::uint32_t row) {
 }
 
 /// The rule of sizes: the ratio first, so that a box gets exactly its new size.
-double scaled(double value, double from, double to) { return from == to || from <= 0.0 ? value : value / from * to; }
+double stretched(double value, double from, double to) { return from == to || from <= 0.0 ? value : value / from * to; }
 
-void scale(std::vector<Segment>& outline, const glm::dvec3& from, const glm::dvec3& to) {
+void stretch(std::vector<Segment>& outline, const glm::dvec3& from, const glm::dvec3& to) {
   for (Segment& side : outline) {
-    for (glm::dvec2* const p : {&side.a, &side.b}) *p = {scaled(p->x, from.x, to.x), scaled(p->y, from.y, to.y)};
-    side.z_min = scaled(side.z_min, from.z, to.z);
-    side.z_max = scaled(side.z_max, from.z, to.z);
+    for (glm::dvec2* const p : {&side.a, &side.b}) *p = {stretched(p->x, from.x, to.x), stretched(p->y, from.y, to.y)};
+    side.z_min = stretched(side.z_min, from.z, to.z);
+    side.z_max = stretched(side.z_max, from.z, to.z);
   }
 }
 
@@ -51,7 +51,7 @@ std::vector<Segment> outline_of(const World& world, const Mover& mover, const Ch
   std::vector<Segment> local, placed;
   original ? place_outline(own.outline, inverse(mover.X_MB), own.surface, local)
            : void(local = world.shapes[now.shape].outline);
-  scale(local, original ? own.size : world.shapes[now.shape].size, now.size);
+  stretch(local, original ? own.size : world.shapes[now.shape].size, now.size);
   place_outline(local, mover.X_MB, own.surface, placed);
   return placed;
 }
@@ -100,7 +100,7 @@ void move_middle(World& world, Mover& mover, const ChangedShape& now) {
     if (fiducial.model == mover.model) fiducial.X_BF.z = original ? now.original.fiducial_z : z;
 }
 
-void apply(World& world, std::uint32_t row, const ChangedShape& now) {
+void write_shape(World& world, std::uint32_t row, const ChangedShape& now) {
   Mover& mover = world.movers[row];
   Model& model = world.models[mover.model];
   std::vector<Segment> body = outline_of(world, mover, now);
@@ -118,7 +118,7 @@ void apply(World& world, std::uint32_t row, const ChangedShape& now) {
 /// @return whether the outline changed
 bool use_shape(World& world, std::uint32_t row, const ChangedShape& now) {
   const ChangedShape before = current_shape(world, row);
-  apply(world, row, now);
+  write_shape(world, row, now);
   const OriginalShape& own = now.original;
   const bool original = now.shape == kNone && now.size == own.size && now.color == own.color;
   if (original) world.changed_shapes.erase(row);
@@ -194,7 +194,7 @@ void restore_copy(World& world, std::uint32_t copy, const World& from, std::uint
   for (Segment& side : own.original.outline) side.model = world.movers[copy].model;
   for (std::size_t i = 0; i < changed.magnets.size(); ++i)
     own.original.magnets[i].model = world.movers[copy].magnets[i].model;
-  apply(world, copy, own);
+  write_shape(world, copy, own);
 }
 
 void place_outline(std::span<const Segment> outline, const Pose& X, const Segment& surface,

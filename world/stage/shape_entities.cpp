@@ -13,7 +13,7 @@ namespace sf::world {
 
 namespace {
 
-std::string name_of(const BuildState& b, const Entity& entity) {
+std::string name_of_shape(const BuildState& b, const Entity& entity) {
   std::string name = text(b.context, entity, "name", "");
   const SourceLocation at = location_of(entity, "name");
   if (name.empty()) fail(b.context, at, "'shape' has no name; expected name \"...\" in it");
@@ -35,7 +35,7 @@ std::string name_of(const BuildState& b, const Entity& entity) {
 void add_shape(BuildState& b, const Entity& entity) {
   check_keys(b.context, entity, KeyScope::shape);
   Shape shape;
-  shape.name = name_of(b, entity);
+  shape.name = name_of_shape(b, entity);
   const Size size = size_of(b.context, entity, {});
   shape.size = {size.x, size.y, size.z};
   shape.color = entity_color(b.context, entity, "color", 0, static_cast<std::uint32_t>(b.world.shapes.size()));
