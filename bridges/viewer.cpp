@@ -32,7 +32,8 @@ std::uint32_t row_of(std::string_view name, std::span<const record::Topic> topic
 }  // namespace
 
 Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
-    : messages_(scene.info),
+    : scene_(scene),
+      messages_(scene.info),
       scene_json_(scene_json(scene, options.mode)),
       mode_(options.mode),
       wishes_(messages_.topics().size()),
@@ -59,6 +60,7 @@ std::string Viewer::describe() const { return "view on " + server_->url(); }
 
 void Viewer::publish(const base::TickRecord& tick, const RunState& state) {
   if (!last_.empty() && tick.time < last_.time()) messages_.begin([](const record::TopicMessage&) {});  // a new run
+  if (!tick.shapes.empty()) show_shapes();
   const bool is_watched = !sessions_.empty();
   // Copying all readings of a large fleet in every tick would cost more than sending the displayed ones.
   is_kept_ = state.paused || pausing_ || (mode_ == ViewerMode::recording && is_watched);
@@ -84,6 +86,15 @@ void Viewer::publish(const RunState& state) {
   choose_topics(!paused_shown_);  // ticks may have been skipped before the pause
   paused_shown_ = true;
   if (!due_.empty()) send(last_.record());
+}
+
+/// Between two ticks the world does not change, so this thread may read it.
+void Viewer::show_shapes() {
+  server_->post([this, text = scene_json(scene_, mode_)]() mutable {
+    scene_json_ = std::move(text);
+    server_->set_file("/scene.json", scene_json_);
+    sessions_.show_shapes();
+  });
 }
 
 void Viewer::show(const RunState& state) {

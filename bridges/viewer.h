@@ -50,10 +50,12 @@ class Viewer : public Bridge {
   using Clock = std::chrono::steady_clock;
 
   void show(const RunState& state);
+  void show_shapes();
   void choose_topics(bool all);
   void send(const base::TickRecord& tick);
   std::shared_ptr<const base::Bytes> copy_of(std::span<const std::uint8_t> message);
 
+  const Scene scene_;
   record::TickMessages messages_;
   std::string scene_json_;
   const ViewerMode mode_;

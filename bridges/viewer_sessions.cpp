@@ -21,7 +21,8 @@ constexpr const char* kPaused = "/paused";
 constexpr const char* kSpeed = "/speed";  // 0: as fast as the machine allows
 constexpr const char* kMeasured = "/measured_speed";
 constexpr const char* kRuns = "/runs";
-const std::vector<std::string> kParameters{kPaused, kSpeed, kMeasured, kRuns};
+constexpr const char* kShapes = "/shapes";  // only if shapes have changed
+const std::vector<std::string> kParameters{kPaused, kSpeed, kMeasured, kRuns, kShapes};
 
 enum ServiceId : std::uint32_t { kPause = 1, kStep, kReset };
 constexpr const char* kResponse = "bool success\nstring message\n";
@@ -294,6 +295,8 @@ std::vector<Parameter> ViewerSessions::parameters(const std::vector<std::string>
         Parameter{kMeasured, state_.measured}, Parameter{kRuns, static_cast<double>(state_.runs)}})
     if (names.empty() || std::find(names.begin(), names.end(), parameter.name) != names.end())
       found.push_back(parameter);
+  if (shapes_ > 0 && (names.empty() || std::ranges::find(names, kShapes) != names.end()))
+    found.push_back({kShapes, static_cast<double>(shapes_)});
   return found;
 }
 
@@ -330,13 +333,22 @@ void ViewerSessions::show(const RunState& state, std::int64_t time) {
   state_ = state;
   time_ = time;
   for (const auto& [id, client] : clients_) {
-    std::vector<std::string> names;
-    for (const std::string& name : changed)
-      if (client.watched.count(name) > 0) names.push_back(name);
-    if (!names.empty()) send(id, parameters_text(parameters(names), ""));
+    send_changed(id, client, changed);
     if (playback_changed && client.is_sdk && about_.mode == ViewerMode::recording)
       send(id, playback_state_bytes(playback()));
   }
+}
+
+void ViewerSessions::send_changed(ClientId id, const Client& client, const std::vector<std::string>& changed) {
+  std::vector<std::string> names;
+  for (const std::string& name : changed)
+    if (client.watched.count(name) > 0) names.push_back(name);
+  if (!names.empty()) send(id, parameters_text(parameters(names), ""));
+}
+
+void ViewerSessions::show_shapes() {
+  ++shapes_;
+  for (const auto& [id, client] : clients_) send_changed(id, client, {kShapes});
 }
 
 }  // namespace sf::bridges

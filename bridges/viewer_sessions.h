@@ -84,6 +84,8 @@ class ViewerSessions : public WebApplication {
   /// Sends changes of the run's state to clients.
   /// @param time [ns]
   void show(const RunState& state, std::int64_t time);
+  /// Tells clients that shapes of movers have changed: `/scene.json` is new.
+  void show_shapes();
 
  private:
   struct Client {
@@ -110,6 +112,7 @@ class ViewerSessions : public WebApplication {
   void complain(ClientId id, const std::string& what);
   bool is_controlled() const { return about_.mode != ViewerMode::service; }
   PlaybackState playback() const;
+  void send_changed(ClientId id, const Client& client, const std::vector<std::string>& changed);
 
   const About about_;
   ViewerWishes& wishes_;
@@ -122,6 +125,7 @@ class ViewerSessions : public WebApplication {
   std::map<ClientId, Client> clients_;
   std::atomic<std::size_t> count_ = 0;  ///< of clients
   RunState state_;
+  std::uint32_t shapes_ = 0;  ///< number of changes of shapes
   std::int64_t time_ = 0;
 };
 

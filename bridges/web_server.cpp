@@ -87,7 +87,7 @@ class WebServer::Implementation {
   /// Returns why a request is refused; empty: accepted.
   std::string refuse(const Request& request, bool needs_token) const;
 
-  const WebOptions options;
+  WebOptions options;  ///< only the server's thread changes them
   WebApplication& application;
 
  private:
@@ -384,6 +384,10 @@ std::string WebServer::url() const {
 }
 
 void WebServer::post(std::function<void()> function) { implementation_->post(std::move(function)); }
+
+void WebServer::set_file(const std::string& path, std::string_view text) {
+  implementation_->options.files.at(path).text = text;
+}
 
 void WebServer::reply(ClientId client, WebMessage message) {
   if (Connection* const connection = implementation_->find(client)) connection->reply(std::move(message));

@@ -88,6 +88,10 @@ class WebServer {
   /// Runs a function on the server's thread. Thread-safe; never blocks.
   void post(std::function<void()> function);
 
+  /// Replaces the text of a file. Server's thread only.
+  /// @param text outlives the server
+  void set_file(const std::string& path, std::string_view text);
+
   // Server's thread only. These functions do nothing for closed clients.
 
   /// Queues a reply until it is sent.

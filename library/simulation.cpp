@@ -55,7 +55,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
 
 }  // namespace
 
-/// Memory of views created before a robot joined. The views keep it alive.
+/// Memory of views created before a robot joined or an outline changed. The views keep it alive.
 struct Earlier {
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
@@ -84,6 +84,7 @@ struct Simulation::State {
   std::size_t add(const NewRobot& robot);
   void add_tables(std::vector<library::ReadingTable>& before);
   void remove(std::size_t row);
+  void set_shape(std::size_t row, const ShapeChange& given);
   record::RunInfo run_info() const;
   void take(const base::TickRecord& tick);
   const library::ReadingTable& table(std::string_view type) const;
@@ -174,6 +175,10 @@ void Simulation::State::step(std::span<const Twist> given) {
     exchange(given);
   simulation->command(commands);
   take(simulation->step());
+  if (auto readings = simulation->earlier_readings()) {
+    earlier->readings = std::move(readings);
+    earlier = std::make_shared<Earlier>();
+  }
 }
 
 /// Sets the commands of this rank's rows.
@@ -280,6 +285,16 @@ void Simulation::State::remove(std::size_t row) {
   poses[row] = {NAN, NAN, NAN, NAN}, velocities[row] = {};
 }
 
+void Simulation::State::set_shape(std::size_t row, const ShapeChange& given) {
+  if (row >= poses.size())
+    throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
+  world::ShapeChange change;
+  if (!given.shape.empty()) change.shape = given.shape;
+  if (!given.color.empty()) change.color = world::color_named(given.color);
+  if (const auto& size = given.size) change.size = glm::dvec3{(*size)[0], (*size)[1], (*size)[2]};
+  simulation->set_shape(world, static_cast<std::uint32_t>(row), change);
+}
+
 void Simulation::State::take(const base::TickRecord& record) {
   tick = record.tick, time = 1e-9 * static_cast<double>(record.time);
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
@@ -294,6 +309,7 @@ void Simulation::State::take(const base::TickRecord& record) {
       if (reading.type == table.type()) of_type.push_back(reading);
     table.take(of_type);
   }
+  if (recorder && ranks == nullptr && !record.shapes.empty()) recorder->add_movers(run_info());  // with new bodies
   if (recorder) recorder->write(record);
   simulation->settle();
   for (std::uint32_t i = 0; i < done.size(); ++i) {
@@ -371,6 +387,16 @@ void Simulation::remove_robot(std::size_t row) {
 
 void Simulation::set_lane(const std::string& lane, const std::string& use) {
   library::translated([&] { state_->simulation->set_lane(lane, use); });
+}
+
+void Simulation::set_shape(std::size_t row, const ShapeChange& change) {
+  library::translated([&] { state_->set_shape(row, change); });
+}
+
+std::vector<std::string> Simulation::shapes() const {
+  std::vector<std::string> names;
+  for (const world::Shape& shape : state_->world.shapes) names.push_back(shape.name);
+  return names;
 }
 
 void Simulation::put(std::size_t row, const Pose& pose) {

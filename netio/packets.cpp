@@ -1,6 +1,7 @@
 #include "netio/packets.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] offset of session and token
 constexpr std::uint32_t kDockingBit = 1;
-constexpr std::uint32_t kPresentBit = 1;
+constexpr std::uint32_t kPresentBit = 1, kShapeBit = 2, kColorBit = 4, kSizeBit = 8;
 constexpr std::uint32_t kReversedBit = 8;
 constexpr std::uint16_t kStaleBit = 1, kNoStateBit = 2;
 constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
@@ -117,10 +118,36 @@ PacketStatus read_lockstep(std::span<const std::uint8_t> payload, Packet& packet
   return status;
 }
 
-PacketStatus read_object(base::ByteReader& reader, Packet& packet) {
+/// Fields without their flag are 0.
+PacketStatus read_shape(base::ByteReader& reader, std::uint32_t flags, Object& object) {
+  const auto color = reader.get<std::uint32_t>();
+  const auto size = get_doubles<3>(reader);
+  const auto name = reader.get_bytes(base::kMostShapeName);
+  const auto end = std::find(name.begin(), name.end(), std::uint8_t{0});
+  object.shape.assign(name.begin(), end);
+  if ((flags & kColorBit) != 0) object.color = color;
+  if ((flags & kSizeBit) != 0) object.size = size;
+  if (!std::isfinite(size[0] + size[1] + size[2])) return PacketStatus::not_finite;
+  const auto is_length = [](double length) { return length > 0.0 && length <= kMaxObjectSize; };
+  const auto is_zero = [](double length) { return std::bit_cast<std::uint64_t>(length) == 0; };
+  const bool good = flags > kPresentBit && flags < 2 * kSizeBit && ((flags & kShapeBit) != 0) != object.shape.empty() &&
+                    (object.shape.empty() || base::is_shape_name(object.shape)) &&
+                    std::all_of(end, name.end(), [](std::uint8_t byte) { return byte == 0; }) &&
+                    (object.color || color == 0) &&
+                    (object.size ? std::ranges::all_of(size, is_length) : std::ranges::all_of(size, is_zero));
+  return good ? PacketStatus::accepted : PacketStatus::out_of_range;
+}
+
+PacketStatus read_object(std::span<const std::uint8_t> payload, base::ByteReader& reader, Packet& packet) {
+  const bool shaped = payload.size() == kShapedObjectBytes;
+  PacketStatus status = shaped ? PacketStatus::accepted : check_size(payload.size(), kObjectBytes);
+  if (status != PacketStatus::accepted) return status;
   const auto flags = reader.get<std::uint32_t>();
-  packet.body = Object{flags == kPresentBit};
-  return flags <= kPresentBit && packet.header.robot >= kMinTag ? PacketStatus::accepted : PacketStatus::out_of_range;
+  Object object{.present = (flags & kPresentBit) != 0};
+  if (shaped) status = read_shape(reader, flags, object);
+  if (packet.header.robot < kMinTag || (!shaped && flags > kPresentBit)) status = PacketStatus::out_of_range;
+  packet.body = std::move(object);
+  return status;
 }
 
 PacketStatus read_refusal(base::ByteReader& reader, Packet& packet) {
@@ -181,8 +208,7 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       return status;
     }
     case Type::object:
-      status = check_size(payload.size(), kObjectBytes);
-      return status == PacketStatus::accepted ? read_object(reader, packet) : status;
+      return read_object(payload, reader, packet);
     case Type::refusal:
       status = check_size(payload.size(), kRefusalBytes);
       return status == PacketStatus::accepted ? read_refusal(reader, packet) : status;
@@ -372,10 +398,17 @@ void encode(const Header& header, const V2i& signals, base::Bytes& out) {
 }
 
 void encode(const Header& header, const Object& object, base::Bytes& out) {
-  SF_CHECK(header.robot >= kMinTag, "object of tag 0 in a packet");
+  SF_CHECK(header.robot >= kMinTag && (object.shape.empty() || base::is_shape_name(object.shape)),
+           "object of tag 0 in a packet, or '" + object.shape + "'");
   start(header, Type::object, out);
   base::ByteWriter writer(out);
-  writer.put(object.present ? kPresentBit : std::uint32_t{0});
+  writer.put((object.present ? kPresentBit : 0) | (object.shape.empty() ? 0 : kShapeBit) |
+             (object.color ? kColorBit : 0) | (object.size ? kSizeBit : 0));
+  if (!object.changes_shape()) return;
+  writer.put(object.color.value_or(0));
+  for (const double length : object.size.value_or(std::array<double, 3>{})) writer.put(length);
+  out.insert(out.end(), object.shape.begin(), object.shape.end());
+  out.resize(out.size() + base::kMostShapeName - object.shape.size());
 }
 
 void encode(const Header& header, const Refusal& refusal, base::Bytes& out) {

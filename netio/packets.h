@@ -7,13 +7,16 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <variant>
 
 #include "base/bytes.h"
 #include "base/pose.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "base/shape_state.h"
 #include "base/state_quality.h"
 #include "netio/lockstep_packets.h"
 #include "netio/packet_status.h"
@@ -129,10 +132,16 @@ struct Start {};
 /// Ends a robot's participation; its id is free afterwards.
 struct Leave {};
 
-/// States whether an object, identified by the id of its tag, is in the world.
+/// States whether an object, identified by the id of its tag, is in the world, and changes its shape, colour or size.
 struct Object {
   bool present = true;
+  std::string shape = {};                          ///< name (base::is_shape_name); empty: unchanged
+  std::optional<std::uint32_t> color = {};         ///< 0xAARRGGBB
+  std::optional<std::array<double, 3>> size = {};  ///< [m] each in (0, kMaxObjectSize]
+
+  bool changes_shape() const { return !shape.empty() || color || size; }
 };
+inline constexpr double kMaxObjectSize = 1'000.0;  ///< [m]
 
 /// Answer of the farm to an unproven address. Packets from there are accepted once they carry the token.
 struct Challenge {
@@ -162,7 +171,8 @@ struct Lane {
 inline constexpr std::uint32_t kMaxLaneRule = 4;
 
 inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                 ///< size of a complete V2V packet
-inline constexpr std::size_t kTagBytes = 104, kObjectBytes = 4;             ///< payload sizes
+inline constexpr std::size_t kTagBytes = 104;                               ///< payload sizes
+inline constexpr std::size_t kObjectBytes = 4, kShapedObjectBytes = 96;     ///< without and with a change of shape
 inline constexpr std::size_t kSubscribeBytes = 4, kWideSubscribeBytes = 8;  ///< without and with types above 31
 inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes = 24, kLaneBytes = 12;
 inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS

@@ -238,6 +238,11 @@ py::array image(const PySimulation& s, int width, int height, const std::optiona
   return py::array_t<std::uint8_t>({made->height, made->width, 3}, made->rgb.data(), owner);
 }
 
+void set_shape(PySimulation& s, std::size_t row, Text shape, Text color,
+               const std::optional<std::array<double, 3>>& size) {
+  in_farm(s, [&] { s.farm.set_shape(row, {shape, color, size}); });
+}
+
 void add_state(py::class_<PySimulation>& c) {
   c.def_property_readonly(
        "poses", [](const PySimulation& s) { return rows(s, s.farm.poses()); },
@@ -255,6 +260,8 @@ void add_state(py::class_<PySimulation>& c) {
           "(robots,): the robot has not been removed.")
       .def_property_readonly(
           "robots", [](const PySimulation& s) { return s.farm.robots(); }, "Of each row, at the start.")
+      .def_property_readonly(
+          "shapes", [](const PySimulation& s) { return s.farm.shapes(); }, "Names of the shapes of this world.")
       .def_property_readonly(
           "types", [](const PySimulation& s) { return s.farm.types(); }, "Sensor types of this world.")
       .def_property_readonly(
@@ -345,6 +352,8 @@ void add_simulation(py::module_& module) {
       .def(
           "remove_robot", [](PySimulation& s, std::size_t row) { in_farm(s, [&] { s.farm.remove_robot(row); }); },
           py::arg("row"), "Removes a robot from the world; its row remains.")
+      .def("set_shape", &set_shape, py::arg("row"), py::arg("shape") = "", py::kw_only(), py::arg("color") = "",
+           py::arg("size") = py::none(), "Changes the shape, colour or size (x, y, z) [m] of a robot or tag.")
       .def(
           "set_lane", [](PySimulation& s, Text lane, Text use) { in_farm(s, [&] { s.farm.set_lane(lane, use); }); },
           py::arg("lane"), py::arg("use"), "Requests the use of a lane: open, closed, reversed, turn, left or right.")

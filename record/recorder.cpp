@@ -122,9 +122,24 @@ Recorder::~Recorder() {
 void Recorder::write(const base::TickRecord& record) {
   SF_CHECK(!finished_, "tick " + std::to_string(record.tick) + " after the end of the recording");
   time_ = record.time;
+  const bool new_topic = !record.shapes.empty() && wanted_.empty() && messages_->add_shapes();
+  const bool threaded = new_topic && stop_writer();
+  if (new_topic) add_channels();
   messages_->encode(
       record, [this](const TopicMessage& message) { add(message); }, wanted_);
   flush();
+  if (threaded) start_writer();
+}
+
+/// Until a writer starts again, this thread owns the file.
+/// @return whether there was one
+bool Recorder::stop_writer() {
+  const bool threaded = writer_.has_value();
+  finished_ = true;  // reset when the writer has finished: a failure is final
+  if (threaded) writer_->finish();
+  writer_.reset();
+  finished_ = false;
+  return threaded;
 }
 
 void Recorder::start_writer() {
@@ -167,11 +182,8 @@ void Recorder::add_movers(RunInfo info) {
   info_.snapshot = {};
   info_.shape = {};
   messages_.emplace(info_);
-  const bool threaded = writer_.has_value();
-  finished_ = true;                 // reset when the writer has finished: a failure is final
-  if (threaded) writer_->finish();  // this thread owns the file until a writer starts again
-  writer_.reset();
-  finished_ = false;
+  if (before.has_shapes()) messages_->add_shapes();
+  const bool threaded = stop_writer();
   for (std::size_t i = known; i < info_.joined.size(); ++i)
     mcap_.add_metadata({kJoinedMetadata, pairs_of(info_.joined[i])});
   add_channels();

@@ -77,6 +77,7 @@ class Recorder : public base::Sink {
   void add_channels();
   void flush();
   void start_writer();
+  bool stop_writer();
 
   std::vector<std::string> taken_names_;  ///< set during the construction of `info_`
   RunInfo info_;

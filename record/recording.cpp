@@ -112,6 +112,12 @@ bool read_message(const McapMessage& message, std::string_view type, const std::
     if (!good) recording.lights.pop_back();
     return good;
   }
+  if (type == kShapes) {
+    ShapesSample& sample = recording.shapes.emplace_back();
+    const bool good = decode_shapes(message.data, sample);
+    if (!good) recording.shapes.pop_back();
+    return good;
+  }
   if (type == kFaults) return decode_faults(message.data, recording.faults);
   const auto found = topics.find(name);
   if (found == topics.end()) return type != kLaserScan;

@@ -9,6 +9,7 @@
 #include "base/fault.h"
 #include "record/fleet_message.h"
 #include "record/run_info.h"
+#include "record/shapes_message.h"
 
 namespace sf::record {
 
@@ -47,6 +48,7 @@ struct Recording {
   std::vector<std::vector<StateSample>> states;  ///< by mover, then by tick
   std::vector<ReadingSample> readings;           ///< in order of delivery; empty when not recorded
   std::vector<LightsSample> lights;              ///< by tick; empty if the world has none
+  std::vector<ShapesSample> shapes;              ///< changes of objects' shapes, by time of the tick
   std::vector<base::FaultMark> faults;  ///< readings that faults affected, recorded or not, by time of the tick
   std::uint64_t ticks = 0;              ///< number of ticks in the file
   std::int64_t end_time = 0;            ///< [ns] simulated time of the last tick

@@ -93,6 +93,10 @@ constexpr std::array kDefinitions = {
                "builtin_interfaces/Time stamp\nuint32 mover\nuint32 sensor\nuint32 sequence\nuint16 faults\n"
                "uint8 kind\n"},
     Definition{"sensorfarm_msgs/Faults", "std_msgs/Header header\nsensorfarm_msgs/Fault[] faults\n"},
+    Definition{"sensorfarm_msgs/Shape",
+               "uint32 ORIGINAL=4294967295\nuint32 mover\nuint32 shape\nuint32 color\nfloat64[3] size\n"
+               "sensorfarm_msgs/Pose origin\n"},
+    Definition{"sensorfarm_msgs/Shapes", "std_msgs/Header header\nsensorfarm_msgs/Shape[] shapes\n"},
     Definition{"sensorfarm_msgs/StateQuality",
                "std_msgs/Header header\nbool stale\nfloat64 age\nfloat32[6] covariance\n"},
     Definition{"sensorfarm_msgs/Tag",

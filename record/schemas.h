@@ -22,6 +22,7 @@ inline constexpr std::string_view kTags = "sensorfarm_msgs/msg/Tags";
 inline constexpr std::string_view kStateQuality = "sensorfarm_msgs/msg/StateQuality";
 inline constexpr std::string_view kLights = "sensorfarm_msgs/msg/Lights";
 inline constexpr std::string_view kFaults = "sensorfarm_msgs/msg/Faults";
+inline constexpr std::string_view kShapes = "sensorfarm_msgs/msg/Shapes";
 inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
 inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 

@@ -11,6 +11,7 @@
 #include "record/lights_message.h"
 #include "record/reading_messages.h"
 #include "record/schemas.h"
+#include "record/shapes_message.h"
 #include "record/standard_readings.h"
 #include "record/world_messages.h"
 
@@ -70,6 +71,12 @@ TickMessages::TickMessages(const RunInfo& info)
     for (std::size_t row = 0; row < info.movers.size(); ++row) add_readings(row);
 }
 
+bool TickMessages::add_shapes() {
+  if (shapes_ != 0) return false;
+  shapes_ = add("/shapes", kShapes);
+  return true;
+}
+
 /// @param prefix of its topics
 void TickMessages::add_tree(const std::string& prefix, std::size_t first, std::size_t end) {
   Tree& tree = trees_.emplace_back();
@@ -121,7 +128,7 @@ void TickMessages::add_readings(std::size_t row) {
 
 std::vector<bool> TickMessages::readings_and_clock() const {
   std::vector<bool> wanted(topics_.size());
-  for (std::size_t topic = first_reading_; topic < wanted.size(); ++topic) wanted[topic] = true;
+  for (std::size_t topic = first_reading_; topic < wanted.size(); ++topic) wanted[topic] = topic != shapes_;
   wanted[kClockRow] = true;
   return wanted;
 }
@@ -192,6 +199,9 @@ void TickMessages::encode(const base::TickRecord& record, const Emit& emit, cons
   if (faults_ != 0 && !record.faults.empty())
     out.send(faults_, ticks_, record.time,
              [&](base::Bytes& bytes) { encode_faults(record.time, record.faults, bytes); });
+  if (shapes_ != 0 && !record.shapes.empty())
+    out.send(shapes_, ticks_, record.time,
+             [&](base::Bytes& bytes) { encode_shapes(record.time, record.shapes, bytes); });
   if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) {
     send_odometry(out);
     send_truth(out);

@@ -52,6 +52,11 @@ class TickMessages {
   /// Returns a flag per topic, for `encode`: set for readings and /clock.
   std::vector<bool> readings_and_clock() const;
 
+  /// Adds the topic of objects that change their shapes, at the end.
+  /// @return whether it is new
+  bool add_shapes();
+  bool has_shapes() const { return shapes_ != 0; }
+
   /// Emits the latched topics. The next tick is the first of a run: its time may be earlier than that of the last one.
   void begin(const Emit& emit);
   /// Continues from `before`, which had fewer movers: sends the latched topics, except map and walls.
@@ -117,6 +122,7 @@ class TickMessages {
   std::size_t first_reading_ = 0;   ///< row of the first topic of readings; all later topics are readings too
   std::int64_t next_odometry_ = 0;  ///< [ns]
   std::uint32_t ticks_ = 0, odometries_ = 0;
+  std::uint32_t shapes_ = 0;    ///< row of /shapes; 0: there is none
   std::uint32_t faults_ = 0;    ///< row of /faults; 0: the run has no faults
   bool marks_too_near_ = true;  ///< ranges of surfaces that are too near are -infinity
   std::vector<double> marked_;  ///< values of one reading

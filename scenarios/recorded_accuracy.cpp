@@ -24,6 +24,8 @@ class Pair {
       : recording_(recording),
         world_(world_in(recording, words)),
         exact_world_(world_in(recording, "exact")),
+        shapes_(recording, world_),
+        exact_shapes_(recording, exact_world_),
         farm_(world_, device, options_of(recording, options)),
         exact_(exact_world_, device, options_of(recording, options)) {
     for (const sensors::SensorSet::Group& group : farm_.sensor_set().groups()) {
@@ -66,6 +68,8 @@ class Pair {
     recorded_reports(recording_, tick, reports_);
     for (farm::Farm* farm : {&farm_, &exact_}) set_absent(reports_, *farm);
     const std::int64_t time = reports_[0].time;
+    if (shapes_.go_to(time)) farm_.update_outlines();
+    if (exact_shapes_.go_to(time)) exact_.update_outlines();
     for (std::int64_t due = farm_.next_due(); tick > 0 && due < time; due = farm_.next_due())
       compare(farm_.sample_between(due, reports_), exact_.sample_between(due, reports_));
     compare(farm_.tick(time, reports_), exact_.tick(time, reports_));
@@ -86,7 +90,8 @@ class Pair {
   }
 
   const record::Recording& recording_;
-  const world::World world_, exact_world_;
+  world::World world_, exact_world_;
+  RecordedShapes shapes_, exact_shapes_;
   farm::Farm farm_, exact_;
   base::SensorTypes types_ = 0;  ///< types that have modes
   std::vector<Row> rows_;        ///< of `result_.types`

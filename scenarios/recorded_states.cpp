@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "base/error.h"
 #include "scenarios/foreign_sensors.h"
 #include "world/append_robot.h"
+#include "world/shapes.h"
 
 namespace sf::scenarios {
 
@@ -39,6 +41,24 @@ void recorded_reports(const record::Recording& recording, std::size_t tick, std:
     const record::StateSample& s = recording.states[m][tick];
     reports.push_back({m, s.time, s.X_WM, s.velocity});
   }
+}
+
+bool RecordedShapes::go_to(std::int64_t time) {
+  bool outlines = false;
+  changed_.clear();
+  if (next_ > 0 && time < shapes_[next_ - 1].time) {
+    next_ = 0;
+    for (const auto& [mover, shape] : std::map(world_.changed_shapes)) {
+      outlines |= world::change_shape(world_, mover, {.shape = std::string(world::kOriginalShape)});
+      changed_.push_back(world::shape_state(world_, mover));
+    }
+  }
+  for (; next_ < shapes_.size() && shapes_[next_].time <= time; ++next_)
+    for (const base::ShapeState& state : shapes_[next_].shapes) {
+      outlines |= world::restore_shape(world_, state);
+      changed_.push_back(state);
+    }
+  return outlines;
 }
 
 void set_absent(std::span<const base::Report> reports, farm::Farm& farm) {

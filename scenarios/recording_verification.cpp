@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <tuple>
@@ -91,13 +92,15 @@ class Verifier {
       : recording_(recording),
         options_(options),
         world_(recorded_world(recording)),
+        shapes_(recording, world_),
         caster_(caster_of(recording, device.info().software)),
         farm_(world_, device,
               {.seed = recording.info.seed,
                .threads = options.threads,
                .scene = {.caster = &caster_},
                .faults = recorded_faults(recording)}),
-        reference_(world_, recording.info.seed),
+        earlier_world_(recording.shapes.empty() ? std::nullopt : std::optional(world_)),
+        reference_(earlier_world_ ? *earlier_world_ : world_, recording.info.seed),
         longest_(sensors::reaches_of(world_).longest),
         infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
         marks_too_near_(any_marked(recording)),
@@ -107,6 +110,7 @@ class Verifier {
       const record::ReadingSample& r = recording.readings[i];
       readings_[{r.type, r.mover, r.sensor, r.sequence}] = i;
     }
+    if (earlier_world_) reference_shapes_.emplace(recording, *earlier_world_);
     farm_.subscribe_all();
   }
 
@@ -193,6 +197,7 @@ class Verifier {
   }
 
   void look_at_tick(std::size_t tick) {
+    if (shapes_.go_to(recording_.states[0][tick].time)) farm_.update_outlines();
     recorded_reports(recording_, tick, reports_);
     set_absent(reports_, farm_);
     const std::int64_t time = reports_[0].time;
@@ -354,6 +359,8 @@ class Verifier {
       std::size_t last = first;
       while (last < asked_.size() && asked_[last].time == asked_[first].time) ++last;
       poses_of(asked_[first], poses);
+      // Delayed scans may be older than those compared before them.
+      if (reference_shapes_) reference_shapes_->go_to(recording_.states[0][asked_[first].tick].time);
       reference_.set_poses(poses);
       farm_.thread_pool().parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = first + begin; i < first + end; ++i) scans[i] = cast_in_plain_cpp(asked_[i]);
@@ -403,9 +410,12 @@ class Verifier {
 
   const record::Recording& recording_;
   const VerifyOptions& options_;
-  const world::World world_;
+  world::World world_;  ///< with the shapes of the current tick
+  RecordedShapes shapes_;
   const raycast::CasterType& caster_;
   farm::Farm farm_;
+  std::optional<world::World> earlier_world_;  ///< of `reference_` if shapes change
+  std::optional<RecordedShapes> reference_shapes_;
   sensors::LaserReference reference_;
   const double longest_;                  ///< [m] surface of the world
   const bool infinite_;                   ///< beams without a return are recorded as infinity

@@ -65,15 +65,16 @@ struct FleetSpawn {
 
 /// A change of an object, of the fleet or of a lane during the run.
 struct ObjectEvent {
-  enum class Kind : std::uint8_t { object, add, remove, lane };
+  enum class Kind : std::uint8_t { object, add, remove, lane, shape };
   std::string object;   ///< name of a mover without sensors and controller, or of the robot that joins or leaves, or of
                         ///< the lane
   double at = 0.0;      ///< [s] simulated; takes effect at the first tick at or after it
   bool present = true;  ///< in the world
   int line = 0;
   Kind kind = Kind::object;
-  JoiningRobot joining = {};  ///< for `add`
-  std::string use = {};       ///< for `lane` (world/roads/lane_use.h)
+  JoiningRobot joining = {};      ///< for `add`
+  std::string use = {};           ///< for `lane` (world/roads/lane_use.h)
+  world::ShapeChange shape = {};  ///< for `shape`, of any mover
 };
 
 struct Scenario {

@@ -72,6 +72,10 @@ void check_events(const Scenario& scenario, world::World& world, SimulationOptio
     if (event.kind == ObjectEvent::Kind::add || event.kind == ObjectEvent::Kind::lane) continue;
     const std::uint32_t row = row_of(scenario, world, event.object, event.line);
     if (event.kind == ObjectEvent::Kind::remove) continue;
+    if (event.kind == ObjectEvent::Kind::shape) {
+      at_line(scenario, event, [&] { world::check_change(world, row, event.shape); });
+      continue;
+    }
     if (!world.movers[row].sensors.empty() || !options.actors[row].controller.name.empty())
       throw base::InputError(scenario.file, event.line,
                              fmt::format("'{}' has sensors or a controller; expected an object without, such as a "
@@ -106,7 +110,9 @@ void ScenarioEvents::apply(Simulation& simulation, world::World& world, double t
       continue;
     }
     const std::uint32_t row = row_of(scenario_, world, event.object, event.line);
-    if (event.kind == ObjectEvent::Kind::object)
+    if (event.kind == ObjectEvent::Kind::shape)
+      at_line(scenario_, event, [&] { simulation.set_shape(world, row, event.shape); });
+    else if (event.kind == ObjectEvent::Kind::object)
       simulation.set_absent(row, !event.present);
     else
       at_line(scenario_, event, [&] { simulation.remove_robot(row); });

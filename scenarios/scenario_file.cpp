@@ -33,7 +33,7 @@ constexpr double kLongestDelay = 3600.0;  // [s]
 constexpr std::array<std::string_view, 19> kKeys{
     "name",    "world",  "duration", "seed", "tick",  "robots", "of",    "place",       "plant", "start_at",
     "default", "states", "v2v",      "link", "robot", "expect", "event", "positioning", "fault"};
-constexpr std::array<std::string_view, 3> kEventKeys{"at", "object", "present"};
+constexpr std::array<std::string_view, 6> kEventKeys{"at", "object", "present", "shape", "color", "size"};
 constexpr std::array<std::string_view, 8> kAddKeys{"at",         "add",  "like",     "pose",
                                                    "controller", "rate", "settings", "link"};
 constexpr std::array<std::string_view, 2> kRemoveKeys{"at", "remove"};
@@ -300,6 +300,41 @@ ObjectEvent read_joining(const Reader& reader, const TomlNode& table, const Scen
   return event;
 }
 
+world::ShapeChange read_shape(const Reader& reader, const TomlNode& table) {
+  world::ShapeChange change;
+  if (world::find(table, "shape") != nullptr) change.shape = reader.text(table, "shape", "");
+  const TomlNode* const color = world::find(table, "color");
+  try {
+    if (color != nullptr) change.color = world::color_named(reader.text(table, "color", ""));
+  } catch (const base::InputError& error) {
+    reader.fail(*color, error.what());
+  }
+  const TomlNode* const size = world::find(table, "size");
+  if (size == nullptr) return change;
+  const auto is_number = [](const TomlNode& item) { return item.kind == NodeKind::number; };
+  if (size->kind != NodeKind::list || size->items.size() != 3 || !std::ranges::all_of(size->items, is_number))
+    reader.fail(*size, "'size' expects a list [x, y, z] in metres");
+  change.size = glm::dvec3{size->items[0].number, size->items[1].number, size->items[2].number};
+  return change;
+}
+
+/// Presence and shape of one object are two events.
+void read_object(const Reader& reader, const TomlNode& table, Scenario& scenario) {
+  constexpr const char* kForm =
+      "at = SECONDS, object = \"NAME\" and present = true or false, shape = \"NAME\", color = \"NAME\" or size = [x, "
+      "y, z]";
+  const world::ShapeChange shape = read_shape(reader, table);
+  const bool presence = world::find(table, "present") != nullptr;
+  require_keys(reader, table, kEventKeys, std::span(kEventKeys).first(presence || !shape.any() ? 3 : 2), kForm);
+  ObjectEvent event{reader.text(table, "object", ""), reader.number(table, "at", 0.0, 0.0, kLongest, "seconds"),
+                    presence && reader.flag(table, "present"), table.line};
+  if (presence) scenario.events.push_back(event);
+  if (!shape.any()) return;
+  event.kind = ObjectEvent::Kind::shape;
+  event.shape = shape;
+  scenario.events.push_back(std::move(event));
+}
+
 void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario) {
   for (const TomlNode* table : reader.tables(root, "event")) {
     if (world::find(*table, "add") != nullptr) {
@@ -319,11 +354,7 @@ void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario)
                                  {},
                                  reader.text(*table, "use", "")});
     } else {
-      require_keys(reader, *table, kEventKeys, kEventKeys,
-                   "at = SECONDS, object = \"NAME\" and present = true or false");
-      scenario.events.push_back({reader.text(*table, "object", ""),
-                                 reader.number(*table, "at", 0.0, 0.0, kLongest, "seconds"),
-                                 reader.flag(*table, "present"), table->line});
+      read_object(reader, *table, scenario);
     }
   }
   std::stable_sort(scenario.events.begin(), scenario.events.end(),

@@ -113,6 +113,13 @@ struct NewRobot {
   std::vector<std::pair<std::string, std::string>> settings = {};  ///< settings of that controller
 };
 
+/// A change of an object or robot. What is not given remains, except that a shape brings its own size and colour.
+struct ShapeChange {
+  std::string shape = {};                          ///< one of Simulation::shapes(), or "original"; empty: unchanged
+  std::string color = {};                          ///< X11 name or "#RRGGBB"; empty: unchanged
+  std::optional<std::array<double, 3>> size = {};  ///< [m] x, y, z in (0, 1000] each
+};
+
 /// Size and view of an image.
 struct ImageOptions {
   int width = 640, height = 480;  ///< [px] in [1, 4096]
@@ -161,6 +168,13 @@ class SENSORFARM_API Simulation {
   /// Removes a robot or tag between two steps. From the next step on it has a pose of NaN, no body and no readings. Its
   /// row remains, and no other robot gets its row, id or name. @throws Error for a row without a present robot
   void remove_robot(std::size_t row);
+  /// Changes the shape, colour or size of a robot or tag between two steps (docs/worlds.md). Sensors, contacts and
+  /// images have it from the next step on; readings that do not see it keep their bytes. That step takes time
+  /// proportional to the fleet. Controllers keep the footprint of their start. With ranks, all of them make this call
+  /// with the same arguments. A reset restores all shapes.
+  /// @throws Error, with nothing changed, for an unknown row, shape or colour, a size out of range or of a row without
+  /// an outline, and for more than 1000 changes before a step
+  void set_shape(std::size_t row, const ShapeChange& change);
   /// Requests the use of a lane of the road network between two steps. Robots with a route controller replan. A lane is
   /// reversed once it has been empty for 2 s; until then it is closed. With ranks, all of them make this call. A reset
   /// restores all lanes.
@@ -180,6 +194,7 @@ class SENSORFARM_API Simulation {
   std::span<const std::uint8_t> done() const;      ///< per row: 1 if its controller is done
   std::span<const std::uint8_t> present() const;   ///< per row: 0 if it was removed
 
+  std::vector<std::string> shapes() const;         ///< names of the world's shapes, in the order of its file
   std::vector<std::string> types() const;          ///< sensor types of this world: "laser", ...
   Readings readings(std::string_view type) const;  ///< @throws Error for a type that the world does not contain
   const std::vector<std::string>& models() const;  ///< names, indexed by `hits`

@@ -164,7 +164,15 @@ void add_body(const netio::V2i& signals, Fields& out) {
   add(out, "stop_point", stop_point);
   add(out, "stop_line", stop_line);
 }
-void add_body(const netio::Object& object, Fields& out) { add(out, "present", object.present); }
+/// A long OBJECT has all fields: what it leaves as it is, is none.
+void add_body(const netio::Object& object, Fields& out) {
+  add(out, "present", object.present);
+  if (!object.changes_shape()) return;
+  out.push_back({"shape", object.shape.empty() ? "none" : object.shape});
+  if (object.color) add(out, "color", *object.color);
+  if (!object.color) add(out, "color", kNan);
+  add(out, "size_m", object.size.value_or(std::array{kNan, kNan, kNan}));
+}
 
 /// Adds the states, prefixed by their index: "0.robot", ... States that are not valid V2V are omitted.
 void add_body(const netio::Neighbours& neighbours, Fields& out) {
@@ -254,6 +262,7 @@ std::string_view packet_type_name(netio::Type type) {
 std::string packet_field_text(const PacketField& field) {
   if (const auto* whole = std::get_if<std::int64_t>(&field.value)) return std::to_string(*whole);
   if (const auto* number = std::get_if<double>(&field.value)) return number_text(*number);
+  if (const auto* text = std::get_if<std::string>(&field.value)) return *text;
   std::string text;
   for (const double number : std::get<std::vector<double>>(field.value))
     text += (text.empty() ? "" : " ") + number_text(number);

@@ -14,7 +14,7 @@ namespace sf::server {
 /// A list contains the values of a reading's column or of a vector. NaN: no number; infinity: no return of a laser.
 struct PacketField {
   std::string name;
-  std::variant<std::int64_t, double, std::vector<double>> value;
+  std::variant<std::int64_t, double, std::vector<double>, std::string> value;
 };
 
 /// Returns the values, floating-point numbers with ten digits: "3", "0.25", "1 none inf".

@@ -105,7 +105,47 @@ std::int64_t Service::next_due() const {
   return only_at_ticks_ ? farm::kNever : std::min(farm_.next_due(), farm_.next_delivery());
 }
 
+/// Rebuilding takes time, and anyone may send an OBJECT: hence the period. Undoes changes for which the device is too
+/// small.
+void Service::change_shapes(std::int64_t now) {
+  if (now < next_shapes_) return;
+  const auto changes = receiver_.take_shape_changes();
+  if (!changes.empty()) next_shapes_ = now + kShapePeriod;
+  std::vector<base::ShapeState> before;
+  bool outlines = false;
+  for (const auto& [row, change] : changes) {
+    before.push_back(world::shape_state(world_, row));
+    outlines |= change_shape(row, change, now);
+  }
+  try {
+    if (outlines) farm_.update_outlines();
+  } catch (const base::DeviceError& error) {
+    for (const base::ShapeState& state : before)
+      if (world::restore_shape(*shapes_world_, state)) receiver_.update_outline(state.mover);
+    shapes_.clear();
+    receiver_.log().write(fmt::format("{} changes of shapes are undone: {}", before.size(), error.what()), now);
+  }
+}
+
+/// @return whether the outline changed
+bool Service::change_shape(std::uint32_t row, const world::ShapeChange& change, std::int64_t now) {
+  try {
+    if (shapes_world_ == nullptr) throw base::InputError("shapes do not change in this service");
+    const std::uint32_t color = world::shape_state(world_, row).color;
+    const bool outline = world::change_shape(*shapes_world_, row, change);
+    const base::ShapeState state = world::shape_state(world_, row);
+    if (outline || state.color != color) shapes_.push_back(state);
+    if (outline) receiver_.update_outline(row);
+    return outline;
+  } catch (const base::InputError& error) {
+    receiver_.log().write(fmt::format("OBJECT for tag {}: {}", world_.movers[row].id, error.what()), now);
+    return false;
+  }
+}
+
 void Service::tick(std::int64_t now) {
+  receive_pending(now);
+  change_shapes(now);
   publish_due(now, false);
   lights_.publish(now, receiver_);
   lanes_.update(now, receiver_.states(now), absent_, receiver_.log());
@@ -126,6 +166,7 @@ void Service::publish_due(std::int64_t now, bool between) {
   publisher_.flush();
   addressed_readings_.clear();
   if (!sinks_.empty()) record(now, states, readings);
+  shapes_.clear();
   warn_of_missed(now);
 }
 
@@ -175,7 +216,8 @@ void Service::record(std::int64_t now, std::span<const base::Report> states,
                               .reports = states_,
                               .readings = readings,
                               .qualities = qualities_,
-                              .lights = light_states_};
+                              .lights = light_states_,
+                              .shapes = shapes_};
   std::erase_if(sinks_, [&](base::Sink* sink) { return !write(*sink, tick); });
 }
 

@@ -73,6 +73,12 @@ class Service {
   /// served.
   void record_to(base::Sink& sink) { sinks_.push_back(&sink); }
 
+  /// Lets OBJECTs change the shapes of objects in `world`, the one given to the constructor. Without this call they are
+  /// refused with a line in the log. Changes are applied at ticks, at most every kShapePeriod, with those of the same
+  /// object since then combined.
+  void change_shapes_in(world::World& world) { shapes_world_ = &world; }
+  static constexpr std::int64_t kShapePeriod = 100'000'000;  ///< [ns]
+
   /// Serves by the system clock, from time 0, until `stop` is set or `duration` [s] have passed (0: no limit). Call it
   /// once only, and not after `tick`.
   void run(const std::atomic<bool>& stop, double duration);
@@ -105,6 +111,8 @@ class Service {
   std::span<const base::Report> update_movers(std::int64_t now);
   void address(std::span<const base::ReadingBlock> readings);
   void record(std::int64_t now, std::span<const base::Report> states, std::span<const base::ReadingBlock> readings);
+  void change_shapes(std::int64_t now);
+  bool change_shape(std::uint32_t row, const world::ShapeChange& change, std::int64_t now);
   bool write(base::Sink& sink, const base::TickRecord& record);
 
   const world::World& world_;
@@ -121,6 +129,9 @@ class Service {
   std::vector<base::StateQuality> qualities_;    ///< per mover, for one tick or sample
   std::vector<bool> absent_;                     ///< per mover
   std::vector<base::LightStatus> light_states_;  ///< per light, for one tick or sample
+  world::World* shapes_world_ = nullptr;         ///< null: shapes do not change
+  std::int64_t next_shapes_ = 0;                 ///< [ns] when shapes may change again
+  std::vector<base::ShapeState> shapes_;         ///< changed since the last record
   std::string recording_error_;
   std::uint64_t records_ = 0;  ///< number written to the sinks
   NoReturnFilter no_return_filter_;

@@ -83,8 +83,9 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
     return;
   }
   if (const auto* object = std::get_if<netio::Object>(&packet.body)) {
-    removed_[names_.tags.at(packet.header.robot)] = !object->present;
-    return;
+    const std::uint32_t row = names_.tags.at(packet.header.robot);
+    removed_[row] = !object->present;
+    return change_shape(row, *object);
   }
   base::Report report;
   if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
@@ -103,6 +104,15 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   // Senders' clocks are not comparable: a state is valid at its arrival.
   report.time = now;
   reports_.push_back(report);
+}
+
+void StateReceiver::change_shape(std::uint32_t row, const netio::Object& object) {
+  if (!object.changes_shape()) return;
+  world::ShapeChange& change = shape_changes_[row];
+  // A new shape brings its own size and colour.
+  if (!object.shape.empty()) change = {.shape = object.shape};
+  if (object.color) change.color = object.color;
+  if (object.size) change.size = glm::dvec3{(*object.size)[0], (*object.size)[1], (*object.size)[2]};
 }
 
 /// A light that joins is where the first group of its V2I is.
@@ -176,6 +186,8 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
 /// A sender that joined has left: the next one with its id inherits nothing.
 void StateReceiver::forget_sender(const netio::Claim& sender, std::uint32_t row) {
   removed_[row] = false;
+  shape_changes_.erase(row);
+  if (world_.changed_shapes.contains(row)) shape_changes_[row] = {.shape = std::string(world::kOriginalShape)};
   if (last_state_[row] == kNever) return;
   last_state_[row] = last_active_[row] = kNever;
   periods_[row] = 0;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/report.h"
@@ -19,6 +20,7 @@
 #include "robots/fleet.h"
 #include "server/state_filter.h"
 #include "server/wire_ids.h"
+#include "world/shapes.h"
 #include "world/world.h"
 
 namespace sf::server {
@@ -49,6 +51,12 @@ class StateReceiver {
   /// Sets the handler of accepted LANE.
   using LaneHandler = std::function<void(const netio::Lane&)>;
   void set_lane_handler(LaneHandler handler) { lane_handler_ = std::move(handler); }
+
+  /// Returns the changes of shapes that OBJECTs requested since the last call, by row: the newest of each kind. Robots
+  /// and tags that joined and left get their original shape.
+  std::map<std::uint32_t, world::ShapeChange> take_shape_changes() { return std::exchange(shape_changes_, {}); }
+  /// Call this after the outline of a mover has changed in the world.
+  void update_outline(std::uint32_t row) { fleet_.update_outline(row); }
 
   /// Processes every waiting datagram.
   void receive_pending(std::int64_t now);
@@ -89,6 +97,7 @@ class StateReceiver {
   void take(const netio::Packet& packet, std::int64_t now);
   bool filter(const base::Report& report, const netio::Header& header, std::int64_t now);
   bool hides_stale() const;
+  void change_shape(std::uint32_t row, const netio::Object& object);
   void forget_sender(const netio::Claim& sender, std::uint32_t row);
   void forget_silent(const netio::Claim& sender, std::uint32_t row, std::int64_t now);
   void place_light(const netio::Header& header, const netio::V2i& signals, std::int64_t now);
@@ -115,7 +124,8 @@ class StateReceiver {
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
   LaneHandler lane_handler_;
-  std::vector<bool> removed_;              ///< per mover, by OBJECT
+  std::vector<bool> removed_;  ///< per mover, by OBJECT
+  std::map<std::uint32_t, world::ShapeChange> shape_changes_;
   std::vector<bool> joining_;              ///< per mover: StateReceiverOptions::joining
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever
   std::vector<std::int64_t> last_state_;   ///< [ns] arrival per mover, or kNever

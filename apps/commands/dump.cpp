@@ -69,7 +69,8 @@ std::string words_of(double number, bool exact) {
 
 /// "range_m = 1 0.25 8"; for a long list, its length, minimum and maximum.
 std::string words_of(const server::PacketField& field, bool exact) {
-  if (std::holds_alternative<std::int64_t>(field.value)) return field.name + " = " + packet_field_text(field);
+  if (std::holds_alternative<std::int64_t>(field.value) || std::holds_alternative<std::string>(field.value))
+    return field.name + " = " + packet_field_text(field);
   if (const auto* number = std::get_if<double>(&field.value)) return field.name + " = " + words_of(*number, exact);
   const auto& list = std::get<std::vector<double>>(field.value);
   std::string text = field.name + " =";
@@ -119,6 +120,7 @@ std::string json_number(double value) { return std::isfinite(value) ? fmt::forma
 std::string json_value(const server::PacketField& field) {
   if (const auto* whole = std::get_if<std::int64_t>(&field.value)) return std::to_string(*whole);
   if (const auto* number = std::get_if<double>(&field.value)) return json_number(*number);
+  if (const auto* name = std::get_if<std::string>(&field.value)) return "\"" + *name + "\"";
   std::string text;
   for (const double number : std::get<std::vector<double>>(field.value))
     text += (text.empty() ? "" : ",") + json_number(number);

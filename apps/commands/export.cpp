@@ -77,7 +77,7 @@ viz::GridData grid_of(const maps::OccupancyGrid& map) {
   return grid;
 }
 
-std::vector<std::string> write_scans(const RecordingPart& part, const world::World& world, gpu::Device& device,
+std::vector<std::string> write_scans(const RecordingPart& part, world::World& world, gpu::Device& device,
                                      const ExportOptions& options) {
   ScanReplay replay(part, world, device);
   viz::ScanMap map(viz::grid_over(world.extent));
@@ -103,7 +103,7 @@ std::vector<std::string> write_scans(const RecordingPart& part, const world::Wor
 /// `field.vti` into `options.out`, as far as the recording and its world have such data.
 /// @return the files written; for a series only the `.pvd` file
 std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOptions& options) {
-  const world::World world = scenarios::recorded_world(part.recording);
+  world::World world = scenarios::recorded_world(part.recording);
   std::vector<std::string> files;
   const auto write = [&](const viz::PolyData& data, const char* name) {
     if (data.points.empty()) return;
@@ -115,12 +115,16 @@ std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOption
   write(viz::roads_geometry(world), "roads.vtp");
   write(viz::trajectories_geometry(world, motions_of(part, world)), "trajectories.vtp");
   FileSeries robots(options.out, "robots");
-  for (const std::size_t tick : ticks_apart(part, options.every))
+  scenarios::RecordedShapes shapes(part.recording, world);
+  for (const std::size_t tick : ticks_apart(part, options.every)) {
+    shapes.go_to(part.recording.states.front()[tick].time);
     robots.add(time_at(part, tick), viz::bodies_geometry(world, poses_at(part, tick))), heed_stop();
+  }
   files.push_back(robots.close());
   if (!has_laser(part, world) && world.magnets.empty()) return files;
 
   gpu::Device device = open_device(options);
+  shapes.go_to(0);  // the scans begin with the first tick
   if (has_laser(part, world))
     for (std::string& file : write_scans(part, world, device, options)) files.push_back(std::move(file));
   if (const auto field = field_grid(world, device, options.height)) {

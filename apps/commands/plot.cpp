@@ -72,7 +72,7 @@ std::vector<viz::LightRow> light_rows(const record::Recording& recording, const 
 }
 
 /// Computes the scan of every chosen laser once per simulated second, at the recorded pose of its robot.
-void map_scans(const RecordingPart& part, const world::World& world, gpu::Device& device, viz::ScanMap& map) {
+void map_scans(const RecordingPart& part, world::World& world, gpu::Device& device, viz::ScanMap& map) {
   ScanReplay replay(part, world, device);
   const std::vector<std::size_t> ticks = ticks_apart(part, 1.0);
   Progress progress("mapping");
@@ -131,7 +131,7 @@ void draw_lights(const RecordingPart& part, const world::World& world, const Plo
   if (options.csv) Written{}(write_lights_csv(part, folder));
 }
 
-void draw_occupancy(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+void draw_occupancy(const RecordingPart& part, world::World& world, const PlotOptions& options,
                     const std::string& folder) {
   if (!has_laser(part, world))
     return print_message("no occupancy.{}: none of these robots has a laser", options.format);
@@ -172,7 +172,7 @@ int plot(const PlotOptions& options) {
     throw base::InputError(options.recording, 0, "--over and --x-axis apply to the folder of a sweep");
   RecordingPart part = open_part(options.recording, options);
   if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;
-  const world::World world = scenarios::recorded_world(part.recording);
+  world::World world = scenarios::recorded_world(part.recording);
   const std::string folder =
       options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
   scenarios::make_folder(folder);

@@ -21,8 +21,7 @@ namespace {
 /// Recomputes the scans of the shown robots at the last tick before each frame.
 class MissingScans {
  public:
-  MissingScans(const RecordingPart& part, const world::World& world, const VideoOptions& options,
-               const std::string& device)
+  MissingScans(const RecordingPart& part, world::World& world, const VideoOptions& options, const std::string& device)
       : device_(device),
         replay_(part, world, device_),
         ticks_(
@@ -47,7 +46,8 @@ class MissingScans {
 
 void write_recorded_video(RecordingPart& part, const VideoOptions& options, const std::string& device) {
   const record::Recording& recording = part.recording;
-  const world::World world = scenarios::recorded_world(recording);
+  world::World world = scenarios::recorded_world(recording);
+  scenarios::RecordedShapes shapes(recording, world);
   const record::RunInfo info =
       scenarios::run_info(world, sensors::SensorSet(world), {.seed = recording.info.seed, .record_readings = true});
   std::vector<std::uint8_t> hidden;
@@ -64,6 +64,8 @@ void write_recorded_video(RecordingPart& part, const VideoOptions& options, cons
     Progress progress(options.frames.empty() ? "encoding" : "painting");
     for (std::size_t i = 0; i < replay.ticks() && (i == 0 || !stop_requested()); ++i) {
       base::TickRecord tick = replay.tick(i, i == 0 ? std::nullopt : std::optional(i - 1));
+      shapes.go_to(tick.time);
+      if (!shapes.changed().empty()) video.add_movers(world);
       if (scans) scans->add_to(tick, i);
       video.write(tick);
       progress.show(static_cast<double>(i) / static_cast<double>(replay.ticks()));

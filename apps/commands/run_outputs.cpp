@@ -22,6 +22,7 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
       settings_(run_settings(options, caster, options.record_readings)),
       no_return_filter_(sensor_set, options.no_return_inf),
       session_token_{netio::random_session(), 0},
+      is_whole_(part.parts == 1),
       sent_movers_(world.movers.size()) {
   if (layout) {
     address_ = netio::resolve(options.send);
@@ -43,6 +44,7 @@ std::vector<std::string> RunOutputs::taken_names() const {
 
 void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait) {
   const auto start = Clock::now();
+  if (!tick.shapes.empty()) update_bodies();
   tick.readings = no_return_filter_.apply(tick.readings);
   double waited = 0.0;
   std::int64_t sent_at = tick.time;
@@ -65,7 +67,11 @@ void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int6
 
 void RunOutputs::add_movers(const std::vector<record::JoinedMover>& joined) {
   settings_.joined = joined;
-  if (recorder_) recorder_->add_movers(scenarios::run_info(world_, sensor_set_, settings_));
+  update_bodies();
+}
+
+void RunOutputs::update_bodies() {
+  if (recorder_ && is_whole_) recorder_->add_movers(scenarios::run_info(world_, sensor_set_, settings_));
   if (video_) video_->add_movers(world_);
 }
 

@@ -37,6 +37,7 @@ class RunOutputs {
 
  private:
   void send();
+  void update_bodies();
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
@@ -48,6 +49,7 @@ class RunOutputs {
   std::optional<server::ReadingPublisher> publisher_;
   std::optional<record::Recorder> recorder_;
   std::optional<RunVideo> video_;
+  bool is_whole_;            ///< one process records everything
   std::size_t sent_movers_;  ///< number of movers whose readings have ports
   double seconds_ = 0.0;
 };

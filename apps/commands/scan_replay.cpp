@@ -31,8 +31,8 @@ std::vector<base::Pose> poses_at(const RecordingPart& part, std::size_t tick) {
   return poses;
 }
 
-ScanReplay::ScanReplay(const RecordingPart& part, const world::World& world, gpu::Device& device)
-    : part_(part), farm_(world, device, [] {
+ScanReplay::ScanReplay(const RecordingPart& part, world::World& world, gpu::Device& device)
+    : part_(part), shapes_(part.recording, world), farm_(world, device, [] {
         farm::FarmOptions quiet;
         quiet.noise = false;
         return quiet;
@@ -40,6 +40,9 @@ ScanReplay::ScanReplay(const RecordingPart& part, const world::World& world, gpu
 
 std::span<const base::ReadingBlock> ScanReplay::scans_at(std::size_t tick) {
   reports_.clear();
+  const auto& first = part_.recording.states.front();
+  if (tick < first.size()) shapes_.go_to(first[tick].time);
+  if (!shapes_.changed().empty()) farm_.update_outlines();
   for (std::uint32_t m = 0; m < part_.recording.states.size(); ++m) {
     const auto& states = part_.recording.states[m];
     const bool known = tick < states.size();

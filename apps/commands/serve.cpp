@@ -164,6 +164,7 @@ int serve(const ServeOptions& options) {
   std::optional<record::Recorder> recorder;
   try {
     server::Service service(world, sensor_set, device, layout, chosen);
+    service.change_shapes_in(world);
     require_lights(options, chosen.receiver.peers, service.lights().ids());
     const std::string since =
         why_unsigned(options, chosen.receiver.peers, senders_of(options, world, service.lights().ids()));

@@ -16,6 +16,7 @@
 #include "netio/packets.h"
 #include "world/roads/lane_use.h"
 #include "world/roads/rndf_statement_reader.h"
+#include "world/shapes.h"
 
 namespace sf::apps {
 
@@ -67,11 +68,21 @@ int start(const StartOptions& options) {
 
 int object(const ObjectOptions& options) {
   const netio::Endpoint farm = farm_of(options);
-  const bool present = options.state == ObjectOptions::State::present;
-  send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.tag)}, netio::Object{present},
+  netio::Object object{.present = options.state == ObjectOptions::State::present,
+                       .shape = options.shape,
+                       .color = std::nullopt,
+                       .size = options.size};
+  if (!options.shape.empty() && !base::is_shape_name(options.shape))
+    throw base::InputError(
+        fmt::format("--shape: '{}' is no name of a shape; expected ASCII letters, digits, '_', '-' "
+                    "or '.'",
+                    options.shape));
+  if (!options.color.empty()) object.color = world::color_named(options.color);
+  send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.tag)}, object,
                   signer_of(options, {netio::PeerKind::tag, options.tag}, "the object"));
-  print_message("'{}' sent to {} for the object of tag {}, {} times; it is not acknowledged",
-                present ? "present" : "absent", netio::endpoint_text(farm), options.tag, kRepetitions);
+  print_message("'{}{}' sent to {} for the object of tag {}, {} times; it is not acknowledged",
+                object.present ? "present" : "absent", object.changes_shape() ? ", with another shape" : "",
+                netio::endpoint_text(farm), options.tag, kRepetitions);
   return 0;
 }
 

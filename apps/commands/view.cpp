@@ -52,7 +52,7 @@ std::vector<world::LightState> lights_at(const record::Recording& recording, std
 
 int view_3d(const ViewOptions& options) {
   const RecordingPart part = open_part(options.recording, options);
-  const world::World world = scenarios::recorded_world(part.recording);
+  world::World world = scenarios::recorded_world(part.recording);
   const std::vector<std::size_t> ticks = ticks_apart(part, options.every);
   viz::Scene3d scene;
   scene.times = times_of(part, ticks);
@@ -97,8 +97,8 @@ constexpr double kFastest = 1000.0;             // [1] ratio of recorded to real
 /// Plays a recording to users of the bridges, with time control.
 class Playback {
  public:
-  Playback(scenarios::Replay& replay, bridges::Bridge& viewer)
-      : replay_(replay), viewer_(viewer), time_(static_cast<double>(replay.start())) {}
+  Playback(scenarios::Replay& replay, scenarios::RecordedShapes& shapes, bridges::Bridge& viewer)
+      : replay_(replay), shapes_(shapes), viewer_(viewer), time_(static_cast<double>(replay.start())) {}
 
   void look() {
     requests_.clear();
@@ -111,7 +111,10 @@ class Playback {
     time_ = std::min(time_, end);
     const std::size_t tick = replay_.tick_at(static_cast<std::int64_t>(time_));
     if (shown_ == tick && !moved) return viewer_.publish(state_);
-    viewer_.publish(replay_.tick(tick, moved ? std::nullopt : shown_), state_);
+    base::TickRecord record = replay_.tick(tick, moved ? std::nullopt : shown_);
+    shapes_.go_to(record.time);
+    record.shapes = shapes_.changed();
+    viewer_.publish(record, state_);
     shown_ = tick;
   }
 
@@ -131,6 +134,7 @@ class Playback {
   }
 
   scenarios::Replay& replay_;
+  scenarios::RecordedShapes& shapes_;
   bridges::Bridge& viewer_;
   bridges::Requests requests_;
   RunState state_;
@@ -153,7 +157,8 @@ int view(const ViewOptions& options) {
   if (!options.frames.empty()) return write_frames(options);
   const record::Recording recording = scenarios::open_run(options.recording);
   print_damage(recording);
-  const world::World world = scenarios::recorded_world(recording);
+  world::World world = scenarios::recorded_world(recording);
+  scenarios::RecordedShapes shapes(recording, world);
   const sensors::SensorSet sensor_set(world);
   record::Naming naming = record::naming_of(recording.info);
   naming.odometry = record::OdometrySource::truth;  // users can jump to any time
@@ -170,7 +175,8 @@ int view(const ViewOptions& options) {
                          {options.port, bridges::ViewerMode::recording, replay.start(), replay.end()});
   install_stop_handlers();
   print_message("{}", viewer.describe());
-  for (Playback playback(replay, viewer); !stop_requested(); std::this_thread::sleep_for(kLook)) playback.look();
+  for (Playback playback(replay, shapes, viewer); !stop_requested(); std::this_thread::sleep_for(kLook))
+    playback.look();
   return 0;
 }
 

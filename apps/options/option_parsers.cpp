@@ -11,6 +11,7 @@
 #include "apps/reports/text.h"
 #include "base/suggest.h"
 #include "control/raw_text.h"
+#include "netio/packets.h"
 #include "viz/picture_file.h"
 #include "viz/top_view.h"
 #include "viz/video_file.h"
@@ -145,6 +146,12 @@ std::optional<base::Pose> read_pose(const std::string& text) {
   const auto v = read_coordinates(text, 3);
   if (!v) return std::nullopt;
   return base::Pose{(*v)[0], (*v)[1], 0.0, (*v)[2] * M_PI / 180.0};
+}
+
+std::optional<std::array<double, 3>> read_lengths(const std::string& text) {
+  const auto v = read_coordinates(text, 3);
+  const auto good = [](double length) { return length > 0.0 && length <= netio::kMaxObjectSize; };
+  return v && std::ranges::all_of(*v, good) ? std::optional(std::array{(*v)[0], (*v)[1], (*v)[2]}) : std::nullopt;
 }
 
 std::optional<viz::Line> read_line(const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -50,6 +51,8 @@ Validator readable(Read read, const char* expected) {
 std::optional<std::pair<std::string, std::string>> read_setting(const std::string& text);
 /// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7.
 std::optional<base::Pose> read_pose(const std::string& text);
+/// "X,Y,Z" in (0, netio::kMaxObjectSize] [m] each.
+std::optional<std::array<double, 3>> read_lengths(const std::string& text);
 /// "X0,Y0,X1,Y1" [m], each within 1e7; two distinct points.
 std::optional<viz::Line> read_line(const std::string& text);
 /// "XMIN,YMIN,XMAX,YMAX" [m], each within 1e7; not empty.

@@ -2,6 +2,7 @@
 // The arguments of each command as plain values. Groups shared by several commands come first; a command derives from
 // its groups and adds its own options.
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -366,6 +367,9 @@ struct ObjectOptions : FarmOptions, PeersOption {
   std::uint32_t tag = 1;  ///< id of the object's tag
   enum class State { present, absent };
   State state = State::present;
+  std::string shape;                          ///< name; empty: unchanged
+  std::string color;                          ///< X11 name or "#RRGGBB"; empty: unchanged
+  std::optional<std::array<double, 3>> size;  ///< [m]; nullopt: unchanged
 };
 
 struct LaneOptions : FarmOptions, PeersOption {

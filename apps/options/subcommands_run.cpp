@@ -517,10 +517,13 @@ void add_start(CLI::App& app, Call& call) {
 }
 
 void add_object(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "object", "Open and close doors: remove an object from a farm's world, or put it back (not acknowledged)");
+  CLI::App* sub = app.add_subcommand("object",
+                                     "Open and close doors: remove an object from a farm's world, put it back, or "
+                                     "change its shape, colour or size (not "
+                                     "acknowledged)");
   auto& o = add_command(*sub, call, object);
-  add_examples(*sub, {"absent --tag 3", "present --tag 3 --server 192.168.1.5"});
+  add_examples(*sub, {"absent --tag 3", "present --tag 3 --server 192.168.1.5",
+                      "present --tag 3 --shape crate --color red --size 1,0.5,0.4"});
   add_farm(*sub, o);
   add_peers(*sub, o);
   using State = ObjectOptions::State;
@@ -531,6 +534,15 @@ void add_object(CLI::App& app, Call& call) {
       ->required()
       ->check(whole(netio::kMinTag, netio::kMaxId))
       ->type_name("ID");
+  sub->add_option("--shape", o.shape,
+                  "New shape: a shape( ) of the farm's world, with its size and colour, or 'original' (default: "
+                  "unchanged)")
+      ->type_name("NAME");
+  sub->add_option("--color", o.color, "New colour: an X11 name or #RRGGBB (default: unchanged)")->type_name("COLOR");
+  sub->add_option_function<std::string>(
+         "--size", [&o](const std::string& text) { o.size = read_lengths(text); }, "New size [m] (default: unchanged)")
+      ->check(readable(read_lengths, "X,Y,Z above 0 and at most 1000, such as 1,0.5,0.4"))
+      ->type_name("X,Y,Z");
 }
 
 void add_lane(CLI::App& app, Call& call) {

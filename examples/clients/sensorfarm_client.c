@@ -157,6 +157,8 @@ typedef struct {
   unsigned approaches;           // V2I: number of rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
   const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; valid as long as the datagram
+  unsigned changes;              // OBJECT: sum of 2: shape, 4: colour (words[1], 0xAARRGGBB), 8: size (values, m)
+  char shape[65];                // OBJECT: name of a shape, or "original"
   uint64_t tick;                 // lockstep
   double sensor_pose[4], error;  // VALUES: x, y, z [m], yaw [rad] in the world frame; error bound, INFINITY: not stated
 } sf_packet;
@@ -326,9 +328,31 @@ static const char* decode_v2i(sf_packet* p, const uint8_t* b, size_t size) {
   return status;
 }
 
+// An OBJECT that changes a shape, colour or size.
+enum { SF_SHAPED_OBJECT = 96 };
+static const char* decode_shaped(sf_packet* p, const uint8_t* b) {
+  static const char* const plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+  const uint32_t flags = (uint32_t)get(b, 4);
+  p->words[0] = flags & 1;
+  p->words[1] = (uint32_t)get(b + 4, 4);
+  p->changes = flags & ~1u;
+  memcpy(p->shape, b + 32, 64);
+  p->shape[64] = 0;
+  const size_t length = strlen(p->shape);
+  bool good = flags > 1 && flags < 16 && p->robot > 0 && length == strspn(p->shape, plain) &&
+              (length > 0) == ((flags & 2) != 0) && ((flags & 4) || p->words[1] == 0);
+  for (size_t i = length; i < 64; ++i) good = good && b[32 + i] == 0;
+  for (p->count = 0; p->count < 3; ++p->count) {
+    const double v = p->values[p->count] = get_f64(b + 8 + 8 * p->count);
+    good = good && ((flags & 8) ? v > 0 && v <= 1000 : get(b + 8 + 8 * p->count, 8) == 0);
+  }
+  return check_numbers(p->values, 3, HUGE_VAL) ? "not finite" : in_range(good);
+}
+
 static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t* b, size_t size) {
   unsigned words = 0;
   while (type->words[words]) ++words;
+  if (p->type == SF_OBJECT && size == SF_SHAPED_OBJECT) return decode_shaped(p, b);
   p->count = sf_row_width(type);
   if (size != 8 * p->count + 4 * words) return check_size(size, 8 * p->count + 4 * words);
   for (unsigned i = 0; i < p->count; ++i) p->values[i] = get_f64(b + 8 * i);
@@ -485,6 +509,13 @@ size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   size_t size = SF_HEADER;
   for (unsigned i = 0; i < sf_row_width(type); ++i, size += 8) put_f64(bytes + size, packet->values[i]);
   for (unsigned i = 0; type->words[i]; ++i, size += 4) put(bytes + size, 4, packet->words[i]);
+  if (packet->type == SF_OBJECT && packet->changes) {
+    put(bytes + SF_HEADER, 4, (packet->words[0] & 1) | packet->changes);
+    put(bytes + size, 4, packet->changes & 4 ? packet->words[1] : 0);
+    for (unsigned i = 0; i < 3 && (packet->changes & 8); ++i) put_f64(bytes + size + 4 + 8 * i, packet->values[i]);
+    if (packet->changes & 2) memcpy(bytes + SF_HEADER + 32, packet->shape, strnlen(packet->shape, 64));
+    size = SF_HEADER + SF_SHAPED_OBJECT;
+  }
   static _Thread_local sf_packet back;
   return sf_decode(bytes, size, &back) == NULL ? size : 0;
 }
@@ -538,6 +569,14 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     char number[12] = "none";
     if (p->type != SF_V2V || p->words[i] != SF_NONE) snprintf(number, sizeof number, "%lu", (unsigned long)p->words[i]);
     fprintf(out, "%s%s = %s%s", before, type->words[i], number, after);
+  }
+  if (p->type == SF_OBJECT && p->changes) {
+    fprintf(out, "%sshape = %s%s", before, p->changes & 2 ? p->shape : "none", after);
+    fprintf(out, "%scolor = ", before);
+    fprintf(out, p->changes & 4 ? "%lu" : "none", (unsigned long)p->words[1]);
+    fprintf(out, "%s%ssize_m =", after, before);
+    for (unsigned i = 0; i < 3; ++i) fprintf(out, p->changes & 8 ? " %.10g" : " none", p->values[i]);
+    fputs(after, out);
   }
   if (p->type == SF_VALUES) {
     fprintf(out, "%ssensor_pose =", before);

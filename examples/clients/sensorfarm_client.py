@@ -19,6 +19,7 @@ import argparse
 import collections
 import hmac
 import math
+import re
 import os
 import select
 import signal
@@ -69,6 +70,8 @@ TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
               137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE",
               144: "LANE"}
+SHAPED_OBJECT = "<2I3d64s"  # payload of an OBJECT that changes a shape
+SHAPE_NAME = re.compile(rb"[A-Za-z0-9_.-]{1,64}")
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
 
 
@@ -216,6 +219,19 @@ def decode_lockstep(type, payload):
     return dict(zip(("tick", "ticks", "commands") if type == STEP else ("tick", "first", "count"), (tick, first, second)))
 
 
+def decode_shaped(robot, payload):
+    """Decodes an OBJECT that changes a shape, colour or size. None: unchanged."""
+    flags, color, *size, name = struct.unpack(SHAPED_OBJECT, payload)
+    require_numbers(size, math.inf)
+    name, padding = name.split(b"\0", 1)[0], name[len(name.split(b"\0", 1)[0]):]
+    require(1 < flags < 16 and robot > 0 and not padding.strip(b"\0"))
+    require(SHAPE_NAME.fullmatch(name) if flags & 2 else not name)
+    require(flags & 4 or color == 0)
+    require(all(0 < length <= 1000 for length in size) if flags & 8 else payload[8:32] == bytes(24))
+    return {"present": flags & 1, "shape": name.decode() if flags & 2 else None, "color": color if flags & 4 else None,
+            "size_m": size if flags & 8 else [None] * 3}
+
+
 def decode_state(type, robot, payload):
     if type == V2I:
         return decode_v2i(payload)
@@ -225,6 +241,8 @@ def decode_state(type, robot, payload):
         states = [decode(payload[at:at + V2V_BYTES]) for at in range(0, len(payload), V2V_BYTES)]
         require(all(state["type"] == V2V for state in states), "wrong direction")
         return {"states": states}
+    if type == OBJECT and len(payload) == struct.calcsize(SHAPED_OBJECT):
+        return decode_shaped(robot, payload)
     numbers = unpack("<Q" if type == SUBSCRIBE and len(payload) == 8 else STATES[type], payload)
     if type == V2V:
         require(all(map(math.isfinite, numbers[:7])), "not finite")
@@ -310,9 +328,15 @@ def encode_tag(position, orientation, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0,
     return encode(TAG, struct.pack(STATES[TAG], *position, *orientation, *linear, *angular), **header)
 
 
-def encode_object(present, **header):
-    """Removes the object of tag `robot` from the world, or puts it back."""
-    return encode(OBJECT, struct.pack("<I", present), **header)
+def encode_object(present, shape=None, color=None, size_m=None, **header):
+    """Removes the object of tag `robot` from the world, or puts it back. shape: name of a shape of the world, or
+    "original"; color: 0xAARRGGBB; size_m: x, y, z; None: unchanged."""
+    size = None if size_m is None or None in size_m else size_m
+    flags = present | (shape is not None) << 1 | (color is not None) << 2 | (size is not None) << 3
+    if flags == present:
+        return encode(OBJECT, struct.pack("<I", present), **header)
+    return encode(OBJECT, struct.pack(SHAPED_OBJECT, flags, color or 0, *(size or (0.0,) * 3),
+                                      (shape or "").encode()), **header)
 
 
 def encode_lane(segment, lane, use, **header):
@@ -465,6 +489,8 @@ class Client:
 def text(value):
     if isinstance(value, list):
         return " ".join(map(text, value))
+    if isinstance(value, str):
+        return value
     return "none" if value is None or value != value else "%d" % value if isinstance(value, int) else "%.10g" % value
 
 

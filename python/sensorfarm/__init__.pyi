@@ -230,6 +230,12 @@ class Simulation:
     def remove_robot(self, row: int) -> None:
         """Removes a robot from the world: its pose is NaN, its readings are unchanged. Its row, id and name remain
         reserved. Raises Error for a row without a present robot."""
+    def set_shape(self, row: int, shape: str = "", *, color: str = "",
+                  size: tuple[float, float, float] | None = None) -> None:
+        """Changes the shape ("original": its own), colour (X11 name or "#RRGGBB") or size (x, y, z) [m] of a robot or
+        tag between two steps; what is not given remains, except that a shape brings its own size and colour. Sensors,
+        contacts and images have it from the next step on, which takes time proportional to the fleet. Arrays read
+        before keep their content. A reset restores all shapes. Raises Error, with nothing changed."""
     def set_lane(self, lane: str, use: str) -> None:
         """Requests the use of a lane such as "3.1": "open", "closed", "reversed", or "turn", "left" or "right" for one
         whose end only turns may leave. Robots with a route controller replan. A lane is reversed once it has been empty
@@ -265,6 +271,9 @@ class Simulation:
         """(robots,): False if remove_robot removed it from the world."""
     @property
     def robots(self) -> list[Robot]: ...
+    @property
+    def shapes(self) -> list[str]:
+        """Names of the world's shapes, in the order of its file."""
     @property
     def types(self) -> list[str]:
         """Sensor types of this world: "laser", ..."""

@@ -291,6 +291,25 @@ TEST(Viewer, SendsChangesToWatchers) {
   EXPECT_EQ(update.find("/speed"), std::string::npos) << "not watched";
 }
 
+/// Clients that open the page later get the new scene at once; others are told to load it.
+TEST(Viewer, ShowsNewShapes) {
+  ViewerFixture fixture;
+  const auto scene = [&] { return RawClient(fixture.port()).request("/scene.json", "Host: localhost\r\n"); };
+  Watcher client(fixture);
+  client.text(R"({"op":"subscribeParameterUpdates","parameterNames":["/shapes"]})");
+  client.settle();
+  const std::string before = scene();
+  EXPECT_EQ(scene(), before);
+  fixture.world.movers[1].radius = 0.75;
+  const std::vector<base::Report> reports = fixture.states();
+  const base::ShapeState changed{.mover = 1};
+  fixture.viewer->publish(base::TickRecord{.tick = 1, .time = 100'000'000, .reports = reports, .shapes = {&changed, 1}},
+                          {.paused = true});
+  const std::string update = client.receive_with("parameterValues");
+  EXPECT_NE(update.find(R"("/shapes","value":1)"), std::string::npos) << update;
+  EXPECT_NE(scene(), before) << "its length";
+}
+
 TEST(Viewer, DrivesRobots) {
   ViewerFixture fixture;
   Watcher client(fixture);

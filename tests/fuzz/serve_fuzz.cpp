@@ -44,6 +44,7 @@ world::World make_world() {
   world::Mover& tag = scenes::add_square(world, {0.0, 2.0, 0.0, 0.0});
   tag.is_tag = true;
   tag.id = kTag;
+  world.shapes.push_back({.name = "crate", .size = {0.4, 0.4, 0.4}, .outline = tag.body});
   return world;
 }
 
@@ -92,7 +93,12 @@ class Harness {
       senders_[i].answers = i != 3;
       senders_[i].session_token.session = static_cast<std::uint32_t>(i + 1);
     }
+    service_.change_shapes_in(scene.world);
     drain(false);  // datagrams for the previous service
+  }
+  ~Harness() {
+    for (const auto& [row, shape] : std::map(scene_.world.changed_shapes))
+      world::change_shape(scene_.world, row, {.shape = "original"});
   }
   /// Robots of the previous input have been silent for so long that they have left the world.
   void run(std::span<const std::uint8_t> input) {

@@ -350,5 +350,43 @@ TEST(Library, FailingControllerEndsTheStepAndNamesTheFirstRobot) {
   expect_in("of robot 'roomba1' failed at 0.200 s: had enough", refusal_of<Error>([&] { simulation.step(); }));
 }
 
+/// Views of readings stay valid when a change of an outline replaces the farm's tables.
+TEST(Library, ShapesChange) {
+  const std::string world =
+      "shape( name \"crate\" size [1 1 1] color \"red\" )\n"
+      "position( name \"a\" size [0.2 0.2 0.2] laser( samples 31 fov 60 range_max 5 ) )\n"
+      "model( name \"tag1\" pose [2 0 0 0] size [0.4 0.4 0.5] )\n";
+  Simulation simulation = Simulation::from_text(world, {.controller = "none"});
+  EXPECT_EQ(simulation.shapes(), std::vector<std::string>{"crate"});
+  simulation.step();
+  const Readings before = simulation.readings("laser");
+  const auto memory = simulation.memory();
+  const std::vector<double> seen(before.row(0).begin(), before.row(0).end());
+  simulation.set_shape(1, {.shape = "crate"});
+  for (int i = 0; i < 2; ++i) simulation.step();
+  EXPECT_TRUE(std::equal(seen.begin(), seen.end(), before.row(0).begin())) << "the old view";
+  const auto ahead = [&] { return simulation.readings("laser").row(0)[15]; };
+  EXPECT_NEAR(seen[15] - ahead(), 0.3, 1e-9);
+  simulation.set_shape(1, {.color = "#00ff00", .size = std::array{2.0, 1.0, 0.5}});
+  simulation.step();
+  EXPECT_NEAR(seen[15] - ahead(), 0.8, 1e-9);
+  const std::size_t green = [&] {
+    const Image image = simulation.image({.width = 100, .height = 100});
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+      count += image.rgb[i] < 60 && image.rgb[i + 1] > 180 && image.rgb[i + 2] < 60;
+    return count;
+  }();
+  EXPECT_GT(green, 20u);
+  expect_in("has no shape 'crat'; did you mean 'crate'?",
+            refusal_of<Error>([&] { simulation.set_shape(1, {.shape = "crat"}); }));
+  EXPECT_EQ(refusal_of<Error>([&] { simulation.set_shape(2, {.shape = "crate"}); }),
+            "there is no row 2; expected less than 2");
+  expect_in("unknown colour", refusal_of<Error>([&] { simulation.set_shape(1, {.color = "redd"}); }));
+  simulation.reset();
+  simulation.step();
+  EXPECT_EQ(ahead(), seen[15]);
+}
+
 }  // namespace
 }  // namespace sensorfarm

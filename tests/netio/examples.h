@@ -96,6 +96,13 @@ inline base::Bytes object_example() {
   return out;
 }
 
+inline base::Bytes shaped_object_example() {
+  base::Bytes out;
+  encode({.robot = 12, .sequence = 5, .time = 32'000'000'000},
+         Object{.present = true, .shape = "crate", .color = 0xFFFF0000u, .size = std::array{1.5, 0.5, 0.25}}, out);
+  return out;
+}
+
 inline base::Bytes lane_example() {
   base::Bytes out;
   encode({.robot = kBroadcastId}, Lane{3, 1, 1}, out);

@@ -42,6 +42,7 @@ TEST(Packets, BytesMatchTheDocumentation) {
   EXPECT_EQ(drive_example(), documented("drive"));
   EXPECT_EQ(v2i_example(), documented("v2i"));
   EXPECT_EQ(object_example(), documented("object"));
+  EXPECT_EQ(shaped_object_example(), documented("shaped_object"));
   EXPECT_EQ(lane_example(), documented("lane"));
   EXPECT_EQ(neighbours_example(), documented("neighbours"));
   EXPECT_EQ(command_example(), documented("command"));

@@ -256,6 +256,25 @@ class Joining(unittest.TestCase):
         numpy.testing.assert_array_equal(sim.present, [True, True, False])
         self.assertTrue(numpy.isnan(sim.poses[2]).all())
 
+    def test_shapes_change(self):
+        sim = sensorfarm.Simulation.from_text(
+            'shape( name "crate" size [1 1 1] )\n'
+            'position( name "a" size [0.2 0.2 0.2] laser( samples 31 fov 60 range_max 5 ) )\n'
+            'model( name "tag1" pose [2 0 0 0] size [0.4 0.4 0.5] )', controller="none")
+        self.assertEqual(sim.shapes, ["crate"])
+        sim.step()
+        before = sim.readings("laser")
+        kept = before.copy()
+        sim.set_shape(1, "crate", color="steel blue")
+        sim.step()
+        numpy.testing.assert_array_equal(before, kept)
+        self.assertAlmostEqual(kept[0, 15] - sim.readings("laser")[0, 15], 0.3)
+        sim.set_shape(1, size=(2, 1, 0.5))
+        sim.step()
+        self.assertAlmostEqual(kept[0, 15] - sim.readings("laser")[0, 15], 0.8)
+        with self.assertRaisesRegex(sensorfarm.Error, "did you mean 'crate'"):
+            sim.set_shape(1, "crat")
+
     def test_refusals(self):
         sim = room()
         for arguments, said in ((("lead", "lead", (0, 0, 0, 0)), "taken"), (("a b", "lead", (0, 0, 0, 0)), "letters"),

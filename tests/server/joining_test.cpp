@@ -8,6 +8,7 @@
 #include "sensors/laser.h"
 #include "server/service.h"
 #include "tests/netio/log_pipe.h"
+#include "tests/refusal.h"
 #include "tests/units.h"
 #include "tests/world/read_world.h"
 #include "world/append_object.h"
@@ -20,6 +21,7 @@ constexpr netio::SigningKey kGuestKey{4, 5, 6};
 
 /// A robot at the left looks along y = 0 at the far wall, 4.9 m ahead of its laser.
 constexpr const char* kRoomText = R"(
+shape( name "crate" size [0.8 0.6 0.2] )
 model( name "room" size [6 4 1] boundary 1 noblocks 0 )
 define bot position( size [0.3 0.3 0.1] laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
 bot( name "roomba1" pose [-2 0 0 0] )
@@ -32,11 +34,13 @@ struct Newest : base::Sink {
   std::vector<double> ranges;
   std::vector<base::LightStatus> lights;
   std::vector<base::Report> states;
+  std::size_t shapes = 0;  ///< changes of all ticks
   void write(const base::TickRecord& record) override {
     for (const base::ReadingBlock& reading : record.readings)
       ranges.assign(reading.values.begin(), reading.values.end());
     lights.assign(record.lights.begin(), record.lights.end());
     states.assign(record.reports.begin(), record.reports.end());
+    shapes += record.shapes.size();
   }
 };
 
@@ -93,8 +97,8 @@ struct Hall {
     outbox.queue({netio::kLoopback, service->port()}, bytes);
     outbox.flush();
   }
-  void object(bool present) {
-    netio::encode({.robot = kFirstId, .sequence = sequence}, netio::Object{present}, bytes);
+  void object(const netio::Object& state) {
+    netio::encode({.robot = kFirstId, .sequence = sequence}, state, bytes);
     guest->send(bytes);
   }
   void light(double x, world::LightState state) {
@@ -134,10 +138,60 @@ TEST(Joining, ObjectsJoinByTheirFirstStateAndLeaveWithoutATrace) {
       EXPECT_TRUE(base::is_absent(hall.sink.states.back().X_WM)) << "the other copy";
       EXPECT_EQ(hall.see(kGone), alone) << "silent for 2 s";
       EXPECT_NEAR(hall.see(3, [&] { hall.tag(1.0); })[45], 2.9 - depth, 1e-9) << "joins again";
-      EXPECT_EQ(hall.see(3, [&] { hall.tag(1.0), hall.object(false); }), alone) << "removed while it is tracked";
+      EXPECT_EQ(hall.see(3, [&] { hall.tag(1.0), hall.object({.present = false}); }), alone)
+          << "removed while it is tracked";
       hall.see(kGone);
       EXPECT_NEAR(hall.see(3, [&] { hall.tag(1.0); })[45], 2.9 - depth, 1e-9) << "the next one is not removed";
     }
+}
+
+/// The robot sees the new outline, and the next object with the id does not have it. The other copy keeps its own.
+TEST(Joining, ShapesChangeUntilTheirObjectLeaves) {
+  Hall hall("tag9");
+  hall.service->change_shapes_in(hall.world);
+  const auto depth = [&](const netio::Object& object) {
+    return 2.9 - hall.see(3, [&] { hall.tag(1.0), hall.object(object); })[45];
+  };
+  EXPECT_NEAR(depth({}), 0.2, 1e-9);
+  EXPECT_NEAR(depth({.shape = "crate"}), 0.4, 1e-9);
+  EXPECT_NEAR(depth({.color = 0xFF00FF00u}), 0.4, 1e-9);
+  EXPECT_NEAR(depth({.size = std::array{0.5, 0.5, 0.2}}), 0.25, 1e-9);
+  EXPECT_NEAR(depth({.shape = "original"}), 0.2, 1e-9);
+  EXPECT_NEAR(depth({.shape = "crate"}), 0.4, 1e-9);
+  hall.see(kGone);
+  EXPECT_NEAR(depth({}), 0.2, 1e-9) << "the next one has its own shape";
+  EXPECT_EQ(hall.world.movers[hall.world.movers.size() - 1].body.size(), 4u);
+  EXPECT_EQ(hall.sink.shapes, 6u) << "repeated OBJECTs change nothing";
+}
+
+TEST(Joining, ShapesThatDoNotExistAreLogged) {
+  for (const bool allowed : {false, true}) {
+    Hall hall("tag9");
+    if (allowed) hall.service->change_shapes_in(hall.world);
+    const std::vector<double> before = hall.see(3, [&] { hall.tag(1.0); });
+    EXPECT_EQ(hall.see(3, [&] { hall.tag(1.0), hall.object({.shape = "crat"}); }), before);
+    expect_in(allowed ? "test.world: has no shape 'crat'; did you mean 'crate'? Expected one of: "
+                        "original, crate"
+                      : "OBJECT for tag 40: shapes do not change in this service",
+              hall.log.read_all());
+  }
+}
+
+/// Changes between two rebuilds are combined: the newest shape, with the colour and size after it.
+TEST(Joining, ShapesChangeAtMostOncePerPeriod) {
+  Hall hall("tag9");
+  hall.service->change_shapes_in(hall.world);
+  hall.see(3, [&] { hall.tag(1.0); });
+  const auto range = [&](const netio::Object& object) {
+    hall.object(object);
+    ++hall.sequence;
+    hall.service->sample(hall.now += 1'000'000);
+  };
+  range({.size = std::array{0.6, 0.6, 0.2}});
+  range({.shape = "crate"});
+  range({.size = std::array{1.0, 0.6, 0.2}});
+  EXPECT_NEAR(hall.sink.ranges[45], 2.7, 1e-9) << "only at ticks";
+  EXPECT_NEAR(hall.see(2, [&] { hall.tag(1.0); })[45], 2.4, 1e-9);
 }
 
 TEST(Joining, ALightIsWhereItsPacketsSayAndIsDarkOnceSilent) {

@@ -36,9 +36,12 @@ export class Fleet {
     this.length = Math.round(Math.min(400, Math.max(24, 24000 / Math.max(1, this.count))));
     this.trail = new Float32Array(2 * this.length * this.count);
     this.trailCount = new Uint32Array(this.count);
-    this.radius = scene.movers.map((mover) => Math.max(0.02, mover.radius));
+    this.measure(scene);
     this.origin = scene.origin;
   }
+
+  /** Takes the sizes of all movers. */
+  measure(scene) { this.radius = scene.movers.map((mover) => Math.max(0.02, mover.radius)); }
 
   /** @param message sensorfarm_msgs/msg/Fleet  @param now [s] of real time */
   update(message, time, now) {

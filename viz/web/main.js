@@ -18,7 +18,7 @@ const seconds = () => performance.now() / 1000;
 
 let scene, camera, fleet, drawing, panel, connection;
 let paused = false, speed = 1, following = false, driving = false, sliding = false, dirty = true, time = 0;
-let runs = null, range = [0, 0];
+let runs = null, shapes = 0, range = [0, 0];
 const readings = new HeldReadings();
 
 function notice(text, lasts = 6) {
@@ -83,9 +83,27 @@ function showParameters(values) {
     if (runs !== null && values['/runs'] !== runs) panel.clear();
     runs = values['/runs'];
   }
+  if ('/shapes' in values && values['/shapes'] !== shapes) {
+    shapes = values['/shapes'];
+    loadShapes();
+  }
   if (paused) $('pace').textContent = '';
   showPaused();
   dirty = true;
+}
+
+/** Objects have changed their shapes, colours or sizes: takes them from the new scene. */
+async function loadShapes() {
+  const known = shapes;
+  try {
+    const next = await loadScene(token);
+    if (known !== shapes || next.movers.length !== scene.movers.length) return;
+    scene.shapes = next.shapes;
+    next.movers.forEach(({ shape, radius, color }, i) => Object.assign(scene.movers[i], { shape, radius, color }));
+    fleet.measure(scene);
+    drawing.restyle();
+    dirty = true;
+  } catch { /* the connection is lost: the page loads the scene again */ }
 }
 
 // Robots
