@@ -59,6 +59,7 @@ class Explore final : public Controller, public SharesMap {
   void receive_maps(std::span<const TeammateMap> maps) override { team_->receive(maps); }
 
   const maps::OccupancyGrid& grid() const { return map_.grid(); }
+  const maps::OccupancyGrid* own_map() const override { return &map_.grid(); }
   int stage() const { return stage_; }  ///< in [0, kStages]
   static constexpr int kStages = 5;
 
