@@ -36,8 +36,8 @@ class ControlShell final : public Controller, public StatesStopReason, public Sh
   ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings,
                std::optional<OwnLocalization> localization = std::nullopt);
 
-  /// Returns a zero twist in Start, Wait and Stop. Does not call the inner controller in these states, so its time
-  /// jumps over a Wait.
+  /// Returns a zero twist in Start, Wait and Stop, and while the robot is lost. Does not call the inner controller in
+  /// these states, so its time jumps over a Wait.
   base::Twist step(const ControllerInput& given) override;
 
   base::Intent intent() const override { return inner_->intent(); }
