@@ -27,6 +27,7 @@ ControlShell::ControlShell(std::unique_ptr<Controller> inner, const ControlShell
 base::Twist ControlShell::step(const ControllerInput& given) {
   const ControllerInput input = localization_ ? localization_->localize(given) : given;
   change(input);
+  if (localization_ && localization_->is_lost()) return stepped_ = false, base::Twist{};
   stepped_ = state_ == ControlShellState::control;
   if (!stepped_) return {};
   const base::Twist twist = inner_->step(input);
@@ -38,6 +39,7 @@ base::Twist ControlShell::step(const ControllerInput& given) {
 double ControlShell::error() const { return stepped_ ? inner_->error() : Controller::error(); }
 
 std::string ControlShell::stop_reason() const {
+  if (localization_ && localization_->is_lost()) return "its pose is unknown: no camera has seen it yet";
   if (state_ == ControlShellState::start) return "the start signal has not arrived";
   if (state_ == ControlShellState::wait) return "its bumper is pressed, or its last motion was blocked";
   return state_ == ControlShellState::control ? stop_reason_of(*inner_) : "";

@@ -36,13 +36,14 @@ class ControlShell final : public Controller, public StatesStopReason, public Sh
   ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings,
                std::optional<OwnLocalization> localization = std::nullopt);
 
-  /// Returns a zero twist in Start, Wait and Stop. Does not call the inner controller in these states, so its time
-  /// jumps over a Wait.
+  /// Returns a zero twist in Start, Wait and Stop, and while the robot is lost. Does not call the inner controller in
+  /// these states, so its time jumps over a Wait.
   base::Twist step(const ControllerInput& given) override;
 
   base::Intent intent() const override { return inner_->intent(); }
   double v2v_range() const override { return inner_->v2v_range(); }
   std::uint8_t outputs() const override { return inner_->outputs(); }
+  const maps::OccupancyGrid* own_map() const override { return inner_->own_map(); }
   bool done() const override { return state_ == ControlShellState::stop; }
   /// Returns NaN after steps in which the inner controller was not called.
   double error() const override;

@@ -14,6 +14,9 @@
 #include "base/state_quality.h"
 #include "world/lights.h"
 
+namespace sf::maps {
+struct OccupancyGrid;
+}
 namespace sf::world {
 struct RoadNetwork;
 }
@@ -69,6 +72,8 @@ class Controller {
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
   /// Returns the digital outputs that a real robot with such pins sets after a step, by bit (docs/robots.md).
   virtual std::uint8_t outputs() const { return 0; }
+  /// Returns the map that the robot drives by, valid until the next step; null: it keeps none.
+  virtual const maps::OccupancyGrid* own_map() const { return nullptr; }
 };
 
 /// Returns the newest reading of one sensor; null if there is none.

@@ -90,7 +90,8 @@ ConfiguredController make(const ControllerContext& context, ControllerConfig con
   const world::Mover& mover = context.world.movers[context.mover];
   const bool on_scans = type->on_scans && config.rate == 0.0 && sensors::has_laser(mover);
   std::optional<OwnLocalization> localization;
-  if (shell.localize.value_or(can_localize(mover)) && !config.localized_outside) localization.emplace(mover);
+  if (shell.localize.value_or(can_localize(mover)) && !config.localized_outside)
+    localization.emplace(mover, config.known_start);
   return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),
           config.rate > 0.0 ? config.rate : type->rate, on_scans, shell.localize, type->needs};
 }

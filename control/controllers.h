@@ -75,6 +75,7 @@ struct ControllerConfig {
   std::string name;
   double rate = 0.0;               ///< [Hz]; 0: the controller's default
   Settings settings;               ///< including the shell's: `start`, `wait_on_bumper`, `localize`
+  bool known_start = true;         ///< see OwnLocalization
   bool localized_outside = false;  ///< inputs already contain estimates: the shell never replaces them
   std::string at = {};             ///< "FILE:LINE: " of the name in a world file, prefix of errors; empty: elsewhere
 };

@@ -14,16 +14,18 @@ namespace {
 using base::Pose;
 using base::Twist;
 
-constexpr double kFreeAtStart = 0.02;  // [m] initially free ground beyond the body and the parts on it
-constexpr double kHere = 0.002;        // [m] tolerance at which a place is reached
-constexpr double kAligned = 0.01;      // [rad] tolerance at which a heading is reached
-constexpr double kTouch = 5e-4;        // [m] minimum distance to a surface
-constexpr double kNearRange = 0.85;    // part of the laser's range used in the first stage
+constexpr double kFreeAtStart = 0.02;    // [m] initially free ground beyond the body and the parts on it
+constexpr double kAligned = 0.01;        // [rad] tolerance at which a heading is reached
+constexpr double kMovingAligned = 0.05;  // [rad] the same in a moving world, where poses are less precise
+constexpr double kTouch = 5e-4;          // [m] minimum distance to a surface
+constexpr double kNearRange = 0.85;      // part of the laser's range used in the first stage
 constexpr double kFarRange = 1.0;
 constexpr int kGraze = 2;  // nodes
 
-constexpr int kMostBlocked = 10;                // plans
-constexpr std::int64_t kPause = 1'000'000'000;  // [ns] until the next plan while teammates explore the rest
+constexpr int kMostBlocked = 10;                    // plans
+constexpr std::int64_t kPause = 1'000'000'000;      // [ns] until the next plan while teammates explore the rest
+constexpr std::int64_t kMostPause = 8'000'000'000;  // [ns] the same in a moving world, where planning costs more
+constexpr double kMoreClearance = 0.05;             // [m] beyond the margin
 
 glm::dvec2 origin(const Pose& X) { return {X.x, X.y}; }
 
@@ -48,16 +50,26 @@ constexpr Explore::Stage Explore::kStage[kStages] = {{true, false, kNearRange, 0
 
 Explore::Explore(const ExploreSettings& settings)
     : settings_(settings),
-      map_(settings.geometry, settings.body.radius, reach_of(settings)),
+      map_(settings.geometry, settings.body.radius, reach_of(settings),
+           {std::max(ExplorationMapSettings{}.most_clearance, settings.margin + kMoreClearance), settings.moving}),
       search_(map_, settings.body),
-      viewpoint_planner_(map_, settings.eye) {
+      viewpoint_planner_(map_, settings.eye),
+      pause_(kPause) {
+  settings_.eye.range = std::min(settings_.eye.range, settings_.view);
   if (!settings.team) return;
   team_.emplace(*settings.team);
   map_.record_changes();
 }
 
+double Explore::v2v_range() const {
+  const double swept = settings_.swept_area ? settings_.swept_area->v2v_range() : 0.0;
+  return std::max(team_ ? team_->radio() : 0.0, swept);
+}
+
+double Explore::aligned() const { return settings_.moving ? kMovingAligned : kAligned; }
+
 Twist Explore::step(const ControllerInput& input) {
-  const Twist twist = decide(input);
+  const Twist twist = checked(input, decide(input));
   if (!team_) return twist;
   std::vector<std::int64_t> claim;
   for (const maps::CellAt cell : targets_) claim.push_back(map_.key(cell));
@@ -98,7 +110,7 @@ bool Explore::update_map(const ControllerInput& input) {
     return false;
   sequence_ = reading->sequence;
   X_WS_ = reading->X_WS;
-  auto ranges = base::marked_values(*reading, ranges_);
+  auto ranges = base::marked_values(*reading, ranges_);  // ranges from `eye.range` on free the cells up to there
   if (team_) ranges = without_bodies(*reading, ranges);
   return map_.add({reading->X_WS, ranges, settings_.beams, settings_.range_min, settings_.eye.range});
 }
@@ -154,6 +166,7 @@ void Explore::plan(const ControllerInput& input) {
   if (team_) claimed = [&](maps::CellAt cell) { return team_->claimed(cell, map_); };
   targets_.clear();
   in_way_since_.reset();
+  map_.refresh();
   for (; stage_ < kStages; ++stage_) {
     const Stage& stage = kStage[stage_];
     if (stage.graze > 0 && !settings_.thorough) continue;
@@ -183,12 +196,14 @@ bool Explore::find_goal(const LatticeState& from, const Stage& stage) {
 
 // Waits at rest while teammates explore the remaining cells or block the path.
 void Explore::pause(std::int64_t time) {
-  paused_until_ = time + kPause;
+  paused_until_ = time + pause_;
+  if (settings_.moving) pause_ = std::min(2 * pause_, kMostPause);
   path_.clear();
 }
 
 // Splits a path into turns and straight lines.
 void Explore::set_path(const std::vector<LatticeState>& way) {
+  pause_ = kPause;
   targets_ = viewpoint_planner_.targets(search_.sensor_at(way.back()), way.back().heading);
   const auto is_turn = [&](std::size_t i) { return way[i].heading != way[i - 1].heading; };
   const auto step = [&](std::size_t i) {
@@ -213,10 +228,10 @@ void Explore::set_path(const std::vector<LatticeState>& way) {
 }
 
 bool Explore::finished(const Leg& leg, const Pose& X_WM) const {
-  if (!leg.straight) return std::abs(base::wrap_angle(leg.heading - X_WM.yaw)) < kAligned;
+  if (!leg.straight) return std::abs(base::wrap_angle(leg.heading - X_WM.yaw)) < aligned();
   const glm::dvec2 rest = leg.end - origin(X_WM);
   const double ahead = glm::dot(rest, base::rotate(leg.heading, {leg.backwards ? -1.0 : 1.0, 0.0}));
-  return glm::length(rest) < kHere || ahead < 0.5 * kHere;
+  return glm::length(rest) < here() || ahead < 0.5 * here();
 }
 
 Twist Explore::drive(const ControllerInput& input) {
@@ -257,22 +272,40 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
 
 // Rejects a twist with which the body would touch a surface within two steps, unless the distance grows.
 bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
-  if (twist.forward == 0.0) return true;
+  if (twist.forward == 0.0 || settings_.swept_area) return true;
   const double now = map_.nearest(origin(X_WM), 1.0);
   const double rest = glm::length(legs_.back().end - origin(X_WM));
-  const double ahead = std::copysign(std::min(2.0 * dt * std::abs(twist.forward), rest + kHere), twist.forward);
+  const double ahead = std::copysign(std::min(2.0 * dt * std::abs(twist.forward), rest + here()), twist.forward);
   const double then = map_.nearest(base::transform(X_WM, {ahead, 0.0}), 1.0);
   return then >= settings_.body.radius + kTouch || then > now;
+}
+
+// Replaces a command whose swept area is not free, and gives up the path if that lasts.
+Twist Explore::checked(const ControllerInput& input, const Twist& wanted) {
+  if (!settings_.swept_area) return wanted;
+  SweptArea& area = *settings_.swept_area;
+  area.update(input);
+  if (wanted.forward == 0.0 && wanted.turn == 0.0) return wanted;
+  const Twist twist = area.limit(input.state, wanted, 0.5 * settings_.turn, 0.5 * settings_.slow_speed);
+  if (twist.forward * wanted.forward > 0.0 || (wanted.forward == 0.0 && twist.turn * wanted.turn > 0.0)) {
+    evades_since_.reset();
+    return twist;
+  }
+  if (!evades_since_) evades_since_ = input.time;
+  if (input.time - *evades_since_ < kPause) return twist;
+  evades_since_.reset();
+  if (!path_.empty()) give_up();
+  return twist;
 }
 
 // Waits at the goal for a scan.
 Twist Explore::wait(const ControllerInput& input) {
   if (!arrived_) arrived_ = input.time;
   const Pose X_WS = base::compose(input.state.X_WM, settings_.eye.X_MS);
-  const bool here = sequence_ && glm::length(origin(X_WS) - origin(X_WS_)) < kHere &&
-                    std::abs(base::wrap_angle(X_WS.yaw - X_WS_.yaw)) < kAligned;
+  const bool arrived = sequence_ && glm::length(origin(X_WS) - origin(X_WS_)) < here() &&
+                       std::abs(base::wrap_angle(X_WS.yaw - X_WS_.yaw)) < aligned();
   const bool late = 1e-9 * static_cast<double>(input.time - *arrived_) > settings_.patience;
-  if (!here && !late) return {};
+  if (!arrived && !late) return {};
   give_up();
   return {};
 }

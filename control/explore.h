@@ -13,6 +13,9 @@
 //
 // Assumptions: a static world, a body that turns in place (modelled as its circumscribed disc), and a precise pose,
 // since margins are in millimetres. Readings of laser 0 are added at the pose of their measurement.
+//
+// In a moving world, cells may become free again, and commands are checked by the area that the outline sweeps
+// (control/swept_area.h), not by the map. Margins are then centimetres.
 
 #include <optional>
 #include <vector>
@@ -20,6 +23,7 @@
 #include "control/controllers.h"
 #include "control/exploration_map.h"
 #include "control/pose_search.h"
+#include "control/swept_area.h"
 #include "control/teammates.h"
 #include "control/viewpoint_planner.h"
 
@@ -29,17 +33,20 @@ struct ExploreSettings {
   maps::GridGeometry geometry;
   Footprint body;
   ScannerModel eye;
-  std::vector<glm::dvec2> beams;     ///< directions in the laser's frame
-  double range_min = 0.0;            ///< [m] minimum range of the laser
-  double speed = 0.1;                ///< [m/s]
-  double slow_speed = 0.05;          ///< [m/s] while an obstacle ahead of the body is nearer than `slow`
-  double slow = 0.05;                ///< [m]
-  double turn = 1.0;                 ///< [rad/s] maximum
-  double margin = 0.01;              ///< [m] between body and surfaces, in the first stages
-  double least_margin = 0.003;       ///< [m] the same in the last stages; <= margin
-  bool thorough = false;             ///< adds a last stage that looks along surfaces for hidden cells
-  double patience = 2.0;             ///< [s] maximum wait for a reading at a goal
-  std::optional<TeamSettings> team;  ///< nullopt: the robot explores alone, and ignores other robots
+  std::vector<glm::dvec2> beams;        ///< directions in the laser's frame
+  double range_min = 0.0;               ///< [m] minimum range of the laser
+  double speed = 0.1;                   ///< [m/s]
+  double slow_speed = 0.05;             ///< [m/s] while an obstacle ahead of the body is nearer than `slow`
+  double slow = 0.05;                   ///< [m]
+  double turn = 1.0;                    ///< [rad/s] maximum
+  double view = HUGE_VAL;               ///< [m] cells count as explored when seen from within
+  double margin = 0.01;                 ///< [m] between body and surfaces, in the first stages
+  double least_margin = 0.003;          ///< [m] the same in the last stages; <= margin
+  bool thorough = false;                ///< adds a last stage that looks along surfaces for hidden cells
+  double patience = 2.0;                ///< [s] maximum wait for a reading at a goal
+  bool moving = false;                  ///< objects move
+  std::optional<SweptArea> swept_area;  ///< checks commands; nullopt: the map does. Requires `moving`
+  std::optional<TeamSettings> team;     ///< nullopt: the robot explores alone, and ignores other robots
 };
 
 /// Returns a grid with cells of 3 cm (default) around all walls, at least as large as the thesis' 30 x 30 words, with
@@ -53,12 +60,13 @@ class Explore final : public Controller, public SharesMap {
 
   base::Twist step(const ControllerInput& input) override;
   bool done() const override { return stage_ == kStages; }
-  double v2v_range() const override { return team_ ? team_->radio() : 0.0; }
+  double v2v_range() const override;
   bool shares_map() const override { return team_.has_value(); }
   std::shared_ptr<const SharedMap> shared_map() const override { return team_->published(); }
   void receive_maps(std::span<const TeammateMap> maps) override { team_->receive(maps); }
 
   const maps::OccupancyGrid& grid() const { return map_.grid(); }
+  const maps::OccupancyGrid* own_map() const override { return &map_.grid(); }
   int stage() const { return stage_; }  ///< in [0, kStages]
   static constexpr int kStages = 5;
 
@@ -90,6 +98,9 @@ class Explore final : public Controller, public SharesMap {
   base::Twist follow(const Leg& leg, const base::Pose& X_WM, double dt) const;
   bool finished(const Leg& leg, const base::Pose& X_WM) const;
   bool safe(const base::Pose& X_WM, const base::Twist& twist, double dt) const;
+  base::Twist checked(const ControllerInput& input, const base::Twist& wanted);
+  double here() const { return 0.2 * map_.cell(); }
+  double aligned() const;
 
   ExploreSettings settings_;
   ExplorationMap map_;
@@ -104,6 +115,8 @@ class Explore final : public Controller, public SharesMap {
   std::vector<double> ranges_;             ///< [m] ranges of the last scan with flags
   std::vector<double> seen_ranges_;        ///< [m] ranges of the last scan without other robots
   std::int64_t last_time_ = 0;
+  std::int64_t pause_;                        ///< [ns] until the next plan while teammates explore the rest
+  std::optional<std::int64_t> evades_since_;  ///< [ns] the swept area is not free
   int blocked_plans_ = 0;                     ///< successive plans without a path around other robots
   std::int64_t paused_until_ = 0;             ///< [ns] waits for teammates
   std::optional<std::int64_t> in_way_since_;  ///< [ns] a teammate blocks the path

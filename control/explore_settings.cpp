@@ -35,8 +35,11 @@ maps::GridGeometry grid_around(const world::World& world, double cell) {
 
 namespace {
 
-maps::GridGeometry read_geometry(const ControllerContext& context, Settings& settings) {
-  const double cell = settings.number("cell", 0.03, 0.005, 1.0);
+// Distances in a moving world are several times as large, as poses and surfaces are less precise.
+constexpr double kMovingCell = 0.09, kMovingMargin = 0.15, kMovingLeastMargin = 0.1;  // [m]
+
+maps::GridGeometry read_geometry(const ControllerContext& context, Settings& settings, bool moving) {
+  const double cell = settings.number("cell", moving ? kMovingCell : 0.03, 0.005, 1.0);
   const bool given = settings.has("map_width") || settings.has("map_height");
   if (!given) return grid_around(context.world, cell);
   maps::GridGeometry geometry{.cell = cell};
@@ -69,7 +72,9 @@ std::unique_ptr<Controller> make_explore(const ControllerContext& context, Setti
         fmt::format("controller 'explore': '{}' is a car; expected a drive that turns in place", mover.name));
   const sensors::SensorSpec& laser = lasers.front();
   ExploreSettings explore;
-  explore.geometry = read_geometry(context, settings);
+  explore.moving = settings.flag("moving", explore.moving);
+  if (explore.moving) explore.swept_area = read_swept_area(context, settings);
+  explore.geometry = read_geometry(context, settings, explore.moving);
   explore.body = {robots::footprint_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
   explore.eye = {laser.X_MS, laser.fov, laser.limit};
   explore.beams = maps::beam_directions(laser.fov, laser.elements);
@@ -78,9 +83,11 @@ std::unique_ptr<Controller> make_explore(const ControllerContext& context, Setti
   explore.slow_speed = settings.number("slow_speed", std::min(explore.slow_speed, explore.speed), 1e-3, explore.speed);
   explore.slow = settings.number("slow", explore.slow, 0.0, 1.0);
   explore.turn = settings.number("turn_speed", std::min(explore.turn, mover.max_turn), 1e-2, mover.max_turn);
-  explore.margin = settings.number("margin", explore.margin, 0.0, 1.0);
+  explore.margin = settings.number("margin", explore.moving ? kMovingMargin : explore.margin, 0.0, 1.0);
+  explore.least_margin = explore.moving ? kMovingLeastMargin : explore.least_margin;
   explore.least_margin =
       settings.number("least_margin", std::min(explore.least_margin, explore.margin), 0.0, explore.margin);
+  explore.view = settings.number("view", laser.limit, 0.1, 1e3);
   explore.thorough = settings.flag("thorough", explore.thorough);
   if (settings.flag("team", false)) explore.team = read_team(context, settings, explore.body.radius);
   return std::make_unique<Explore>(explore);

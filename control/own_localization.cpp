@@ -65,15 +65,16 @@ double LocalizationError::yaw_rms() const {
   return std::sqrt(yaw_squares / static_cast<double>(std::max<std::uint64_t>(steps, 1)));
 }
 
-OwnLocalization::OwnLocalization(const world::Mover& mover)
-    : options_(sensors::localization_options(mover, required_sensors_of(mover))) {
+OwnLocalization::OwnLocalization(const world::Mover& mover, bool known_start)
+    : options_(sensors::localization_options(mover, required_sensors_of(mover))), known_start_(known_start) {
   last_.fill(std::numeric_limits<std::int64_t>::min());
 }
 
 ControllerInput OwnLocalization::localize(const ControllerInput& input) {
   if (!localization_) {
     localization_.emplace(options_);
-    localization_->add_pose(std::max<std::int64_t>(input.time, 0), input.state.X_WM, estimation::kKnownStart);
+    if (known_start_)
+      localization_->add_pose(std::max<std::int64_t>(input.time, 0), input.state.X_WM, estimation::kKnownStart);
   }
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.sensor == 0) take(reading);
@@ -81,6 +82,10 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
 
   ControllerInput seen = input;
   const estimation::Prediction prediction = localization_->predict(input.time);
+  if (prediction.status == estimation::Prediction::Status::none) {
+    quality_ = {.stated = true, .stale = true, .age = base::kNoStateYet};
+    return input;
+  }
   const estimation::Estimate& now = prediction.estimate;
   const auto at_height = [&](base::Pose X_WM) {
     X_WM.z = input.state.X_WM.z;

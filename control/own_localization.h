@@ -37,17 +37,21 @@ struct LocalizationError {
 /// Called once per step. Uses the first sensor of each type, with the errors stated in its settings.
 class OwnLocalization {
  public:
+  /// @param known_start the pose of the first step is known; otherwise the robot is lost until a positioning system or
+  /// its GPS receiver finds it
   /// @throws base::InputError for a robot without encoders, or with invalid settings of these sensors
-  explicit OwnLocalization(const world::Mover& mover);
+  explicit OwnLocalization(const world::Mover& mover, bool known_start = true);
 
   /// Returns `input` with the estimate as the robot's pose and twist, and as the poses of its readings at their times.
-  /// The pose of the first call is taken as the known start. Spans are valid until the next call.
+  /// While the robot is lost, returns `input` unchanged. Spans are valid until the next call.
   ControllerInput localize(const ControllerInput& input);
 
   /// Returns the estimate at the last step, which the robot broadcasts, and its quality.
   const base::Report& state() const { return state_; }
   const base::StateQuality& quality() const { return quality_; }
-  /// [ns] within the last second, or later. @pre after a step; z is 0
+  /// Returns whether the last step found no pose: `state` is not valid, and the robot broadcasts nothing.
+  bool is_lost() const { return quality_.age == base::kNoStateYet; }
+  /// [ns] within the last second, or later. @pre after a step that was not lost; z is 0
   base::Pose pose_at(std::int64_t time) const { return localization_->predict(time).estimate.X_WM; }
   /// Returns the error relative to the poses of the inputs.
   const LocalizationError& error() const { return error_; }
@@ -56,6 +60,7 @@ class OwnLocalization {
   void take(const base::ReadingBlock& reading);
 
   estimation::LocalizationOptions options_;
+  bool known_start_;
   std::optional<estimation::Localization> localization_;  ///< set from the first step on
   std::array<std::int64_t, 256> last_;                    ///< [ns] by sensor type: time of the last reading
   std::vector<base::ReadingBlock> readings_;

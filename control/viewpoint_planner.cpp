@@ -13,7 +13,7 @@ using maps::CellAt;
 constexpr std::size_t kRays = 240;
 constexpr double kEdge = 0.02;     // [rad] margin at both ends of the field of view
 constexpr int kUnknown = 9;        // nodes of unexplored ground that a line of sight may cross
-constexpr double kOther = 0.04;    // [m] between viewpoints tried for one cell
+constexpr double kOther = 4.0;     // nodes between viewpoints tried for one cell
 constexpr std::size_t kTries = 6;  // failed viewpoints per cell
 
 }  // namespace
@@ -82,7 +82,7 @@ void ViewpointPlanner::add_target(CellAt cell) {
   for (std::size_t ray = 0; ray < kRays; ++ray) {
     cast(cell, ray, [&](Node node) {
       if (!afresh && std::any_of(tried->second.begin(), tried->second.end(), [&](Node other) {
-            return glm::length(map_.place(node) - map_.place(other)) < kOther;
+            return glm::length(map_.place(node) - map_.place(other)) < kOther * map_.cell();
           }))
         return;
       auto& headings = headings_[static_cast<std::size_t>(node)];

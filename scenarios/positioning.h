@@ -12,6 +12,7 @@
 namespace sf::scenarios {
 
 struct PositioningOptions {
+  bool known_start = true;      ///< false: robots rest until they receive their first pose
   double rate = 10.0;           ///< [Hz] > 0, at most one pose per tick
   netio::LinkModel link;        ///< of every pose; delay and jitter sum to at most `Positioning::kLatest`
   double position_sigma = 0.0;  ///< [m] noise along x and y

@@ -42,9 +42,16 @@ constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "se
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
 constexpr std::array<std::string_view, 7> kStatesKeys{"rate",   "delay",          "jitter",   "loss",
                                                       "filter", "position_sigma", "yaw_sigma"};
-constexpr std::array<std::string_view, 9> kPositioningKeys{
-    "rate",   "delay", "jitter", "loss", "position_sigma", "yaw_sigma", "stated_position_sigma", "stated_yaw_sigma",
-    "outages"};
+constexpr std::array<std::string_view, 10> kPositioningKeys{"start",
+                                                            "rate",
+                                                            "delay",
+                                                            "jitter",
+                                                            "loss",
+                                                            "position_sigma",
+                                                            "yaw_sigma",
+                                                            "stated_position_sigma",
+                                                            "stated_yaw_sigma",
+                                                            "outages"};
 constexpr std::array<std::string_view, 5> kV2vKeys{"rate", "delay", "jitter", "loss", "forget"};
 constexpr std::array<std::string_view, 3> kLinkKeys{"delay", "jitter", "loss"};
 
@@ -164,6 +171,11 @@ PositioningOptions::Outage outage_of(const Reader& reader, const TomlNode& node)
 std::optional<PositioningOptions> positioning_of(const Reader& reader, const TomlNode* table) {
   auto positioning = sent_states_of<PositioningOptions>(reader, table, kPositioningKeys);
   if (!positioning) return positioning;
+  const std::string start = reader.text(*table, "start", "known");
+  if (start != "known" && start != "unknown")
+    reader.fail(*world::find(*table, "start"),
+                fmt::format("'start' is '{}'; expected \"known\" or \"unknown\"", start));
+  positioning->known_start = start == "known";
   positioning->position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0, "metres");
   positioning->yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0, "radians");
   positioning->stated_position_sigma = reader.number(*table, "stated_position_sigma", 0.0, 0.0, 1.0, "metres");

@@ -151,7 +151,9 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   std::optional<sensors::SensorSet> with_joining;
   const control::ControllerContext site{
       world_, mover, seed_, roads(), &warnings, joins ? &with_joining.emplace(world_) : &farm_.sensor_set()};
-  control::ConfiguredController made = control::make_controller(site, actor.controller);
+  control::ControllerConfig config = actor.controller;
+  config.known_start = !positioning_ || positioning_->known_start;
+  control::ConfiguredController made = control::make_controller(site, std::move(config));
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
   robot.controller = std::move(made.controller);
   robot.sharing = dynamic_cast<control::SharesMap*>(robot.controller.get());
@@ -523,7 +525,8 @@ void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector
     if (other.mover == mover || world_.movers[other.mover].is_tag || absent_[other.mover]) return;
     const auto received = v2v_ ? v2v_->receive(time, other.mover, {world_.movers[mover].id, id})
                                : std::optional(broadcast_of(other, time));
-    if (received) others.push_back({id, received->state, received->intent, received->quality});
+    if (received && received->quality.age != base::kNoStateYet)  // a lost robot broadcasts nothing
+      others.push_back({id, received->state, received->intent, received->quality});
   };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
   if (const auto remote = share_->remote_neighbours(mover))

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scenarios/experiment.h"
+#include "viz/map_figure.h"
 #include "viz/town_figure.h"
 #include "viz/trajectory_figure.h"
 #include "world/fields.h"
@@ -67,6 +68,14 @@ std::string report_of(const ExperimentContext& context, const std::vector<Trial>
   return text + fmt::format("\n## Comparison with the thesis\n\n{}\n", context.type.reasons);
 }
 
+std::string draw_own_map(const ExperimentContext& context, const Trial& trial, std::size_t number) {
+  viz::MapFigure figure{fmt::format("Merged map of trial {}", number), "", {}};
+  for (const viz::Track& track : trial.tracks) figure.places.push_back({track.name, track.poses.back()});
+  const std::string file = in_folder(context, fmt::format("map-{}.png", number));
+  viz::draw_map(*trial.own_map, figure, file);
+  return file;
+}
+
 std::vector<std::string> run_town(const ExperimentContext& context) {
   const std::vector<Trial> trials = run_trials(context, {});
   if (!reports(context)) return {};
@@ -77,6 +86,7 @@ std::vector<std::string> run_town(const ExperimentContext& context) {
   if (!world.fiducials.empty())
     write_text(files.emplace_back(in_folder(context, "fiducials.csv")), sightings_csv(context, trials));
   for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (trials[k].own_map) files.push_back(draw_own_map(context, trials[k], k + 1));
     files.push_back(in_folder(context, fmt::format("trajectories-{}.png", k + 1)));
     if (world.road_files.empty())
       viz::draw_trajectories(world, trials[k].tracks, files.back());
@@ -94,11 +104,9 @@ constexpr std::string_view kTownReasons =
     "pedestrians have none.";
 constexpr std::string_view kMagicReasons =
     "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. Contacts must be "
-    "zero: "
-    "Pioneers wander without a map, but check the area that their outline sweeps, and obstacles stop while a Pioneer "
-    "is "
+    "zero: Pioneers explore as a team, check the area that their outline sweeps, and obstacles stop while a Pioneer is "
     "ahead of them. The plant is `ideal` by default, since Player's driver of the Create is not a Pioneer's. Trials "
-    "differ by the robots' start poses and random turns.";
+    "differ by the robots' start poses and by noise.";
 
 }  // namespace
 
@@ -120,7 +128,7 @@ constinit const ExperimentType simville_merge_experiment{
 };
 constinit const ExperimentType minimagic_experiment{
     .name = "minimagic",
-    .summary = "Pioneers between buildings and obstacles that move",
+    .summary = "Pioneers explore among buildings and obstacles that move",
     .plant = Plant::ideal,
     .reasons = kMagicReasons,
     .run = run_town,

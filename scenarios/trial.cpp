@@ -9,6 +9,7 @@
 #include "base/elapsed.h"
 #include "base/random.h"
 #include "cluster/failure.h"
+#include "maps/merge.h"
 #include "raycast/casters.h"
 #include "scenarios/coverage.h"
 #include "scenarios/fault_tables.h"
@@ -251,6 +252,19 @@ struct Course {
 
 }  // namespace
 
+namespace {
+
+std::optional<maps::OccupancyGrid> merged_own_maps(const world::World& world, const Simulation& simulation) {
+  std::vector<const maps::OccupancyGrid*> grids;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m)
+    if (const control::Controller* controller = simulation.controller(m); controller && controller->own_map())
+      grids.push_back(controller->own_map());
+  if (grids.empty() || !maps::merge_problem(grids).empty()) return std::nullopt;
+  return maps::merge(grids);
+}
+
+}  // namespace
+
 Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options) {
   Course course(scenario, world, device, options);
   Simulation& simulation = *course.simulation;
@@ -277,6 +291,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   trial.simulated = static_cast<double>(tick) * world.interval;
   trial.done = simulation.all_done();
   trial.hash = simulation.farm().hash();
+  trial.own_map = merged_own_maps(world, simulation);
   keeper.give(metrics, world, simulation, options.ranks, trial);
   return trial;
 }

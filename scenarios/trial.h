@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -43,22 +44,23 @@ struct Sighting {
 
 /// Results of one run.
 struct Trial {
-  std::vector<viz::Track> tracks;            ///< per robot, and per tag with a controller
-  std::vector<std::uint32_t> rows;           ///< rows of their movers
-  std::vector<std::uint32_t> follows;        ///< per track: track of the leader at the end; world::kNone: none
-  std::vector<RobotMetrics> counts;          ///< one per track
-  std::vector<ErrorStatistics> errors;       ///< one per track
-  std::vector<DeadEndDetector> dead_ends;    ///< one per track
-  std::vector<std::uint32_t> interventions;  ///< one per track: number of the supervisor's interventions
-  std::vector<double> times;                 ///< [s] of the first robot's errors
-  std::vector<maps::OccupancyGrid> maps;     ///< of each robot with a laser, if requested
-  std::vector<std::uint32_t> mapped;         ///< rows of the movers of `maps`
-  std::vector<Sighting> sightings;           ///< one per fiducial that was seen, in order of ids
-  double simulated = 0.0;                    ///< [s]
-  double wall = 0.0;                         ///< [s]
-  double decided = 0.0;                      ///< [s] of `wall`, spent on controllers and motion
-  bool done = false;                         ///< all controllers have finished
-  std::uint64_t hash = 0;                    ///< of all readings
+  std::vector<viz::Track> tracks;              ///< per robot, and per tag with a controller
+  std::vector<std::uint32_t> rows;             ///< rows of their movers
+  std::vector<std::uint32_t> follows;          ///< per track: track of the leader at the end; world::kNone: none
+  std::vector<RobotMetrics> counts;            ///< one per track
+  std::vector<ErrorStatistics> errors;         ///< one per track
+  std::vector<DeadEndDetector> dead_ends;      ///< one per track
+  std::vector<std::uint32_t> interventions;    ///< one per track: number of the supervisor's interventions
+  std::vector<double> times;                   ///< [s] of the first robot's errors
+  std::vector<maps::OccupancyGrid> maps;       ///< of each robot with a laser, if requested
+  std::vector<std::uint32_t> mapped;           ///< rows of the movers of `maps`
+  std::optional<maps::OccupancyGrid> own_map;  ///< merged maps that controllers keep; nullopt: none, or not mergeable
+  std::vector<Sighting> sightings;             ///< one per fiducial that was seen, in order of ids
+  double simulated = 0.0;                      ///< [s]
+  double wall = 0.0;                           ///< [s]
+  double decided = 0.0;                        ///< [s] of `wall`, spent on controllers and motion
+  bool done = false;                           ///< all controllers have finished
+  std::uint64_t hash = 0;                      ///< of all readings
 };
 
 struct TrialOptions {

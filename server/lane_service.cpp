@@ -40,9 +40,14 @@ std::span<const world::LaneUse> LaneService::uses() const {
   return control_ ? control_->uses() : std::span<const world::LaneUse>();
 }
 
-/// Each request on its own, in order of lanes: one that is refused leaves the others.
+/// Each request on its own, in order of lanes from the last one on: one that is refused leaves the others.
 void LaneService::apply(std::int64_t now, netio::RateLimitedLog& log) {
-  for (const auto& [key, use] : requests_) {
+  for (std::size_t tried = 0; tried < kMostTried && !requests_.empty();) {
+    auto next = requests_.upper_bound(last_);
+    if (next == requests_.end()) next = requests_.begin();
+    const auto [key, use] = *next;
+    last_ = key;
+    requests_.erase(next);
     const std::string name = fmt::format("{}.{}", key.first, key.second);
     try {
       if (!roads_) throw base::InputError(file_, 0, "has no road network");
@@ -51,6 +56,7 @@ void LaneService::apply(std::int64_t now, netio::RateLimitedLog& log) {
         throw base::InputError(fmt::format("the uses of {} lanes have changed, which is the most", kMostLanes));
       if (!control_) control_.emplace(*roads_);
       if (control_->wanted(row) == use) continue;
+      ++tried;
       control_->request(row, use);
       changed_.insert(row);
     } catch (const base::InputError& error) {
@@ -58,7 +64,6 @@ void LaneService::apply(std::int64_t now, netio::RateLimitedLog& log) {
       log.write(fmt::format("LANE {}: '{}' is refused: {}", name, lane_use_name(use), error.what()), now);
     }
   }
-  requests_.clear();
   if (left_out_ > 0)
     log.write(fmt::format("{} LANE for more than {} lanes in one tick are left out", left_out_, kMostLanes), now);
   refused_ += std::exchange(left_out_, 0);

@@ -35,13 +35,15 @@ class LaneService {
  public:
   static constexpr std::int64_t kPeriod = 1'000'000'000;  ///< [ns] between two LANE of one lane to a robot
   static constexpr std::size_t kMostLanes = 64;           ///< lanes whose uses may change during a run
+  /// Requests per update that are tried on the road network, which builds it anew; the others wait.
+  static constexpr std::size_t kMostTried = 4;
 
   /// @throws base::InputError if the road network cannot be read
   explicit LaneService(const world::World& world);
 
   /// Keeps the newest request for each lane until the next update, for at most kMostLanes lanes.
   void accept(const netio::Lane& lane);
-  /// Applies the requests, or logs why they are refused, and logs each change of use.
+  /// Applies requests, or logs why they are refused, and logs each change of use. Lanes take turns.
   /// @param states one per mover @param absent per mover
   void update(std::int64_t now, std::span<const base::Report> states, const std::vector<bool>& absent,
               netio::RateLimitedLog& log);
@@ -60,11 +62,12 @@ class LaneService {
   std::optional<world::RoadNetwork> roads_;
   std::optional<world::LaneControl> control_;                                   ///< since the first accepted request
   std::map<std::pair<std::uint32_t, std::uint32_t>, world::LaneUse> requests_;  ///< by segment and lane
-  std::set<std::uint32_t> changed_;                                             ///< rows of lanes
-  std::vector<base::Report> present_;                                           ///< for one update
-  std::map<std::uint32_t, std::uint32_t> sent_;                                 ///< packets by robot
-  std::optional<std::int64_t> published_;                                       ///< [ns]
-  bool news_ = false;                                                           ///< since the last `publish`
+  std::pair<std::uint32_t, std::uint32_t> last_{};  ///< key of the last request that was tried
+  std::set<std::uint32_t> changed_;                 ///< rows of lanes
+  std::vector<base::Report> present_;               ///< for one update
+  std::map<std::uint32_t, std::uint32_t> sent_;     ///< packets by robot
+  std::optional<std::int64_t> published_;           ///< [ns]
+  bool news_ = false;                               ///< since the last `publish`
   std::uint64_t refused_ = 0;
   std::uint64_t left_out_ = 0;  ///< requests beyond kMostLanes since the last update
   base::Bytes packet_;

@@ -45,7 +45,7 @@ sensors::Occupancy settings_of(const world::World& world, const sensors::SensorS
   if (!maps.empty()) return maps.front();
   const std::span<const sensors::SensorSpec> lasers = sensor_set.of(sensors::kLaser, mover);
   if (lasers.empty())
-    throw base::InputError("--map: '" + world.movers[mover].name +
+    throw base::InputError("map: '" + world.movers[mover].name +
                            "' has no laser to build a map with; expected laser( ... ) in its definition");
   world::World with;
   with.movers = {world.movers[mover]};
@@ -84,13 +84,15 @@ void OwnMap::send(std::int64_t now, bool true_poses) {
   if (now < next_ || scans_ == 0) return;
   next_ = now + std::llround(1e9 / settings_.row.rate);
   if (outbox_) send_parts(now, true_poses);
-  if (options_.show) {
-    const std::span<const std::uint32_t> words = map_.words(0);
-    maps::OccupancyGrid grid(settings_.settings.grid);
-    std::copy(words.begin(), words.end(), grid.words.begin());
-    options_.show(grid, X_WM_);
-  }
+  if (options_.show) options_.show(grid(), X_WM_);
   ++sequence_;
+}
+
+maps::OccupancyGrid OwnMap::grid() const {
+  const std::span<const std::uint32_t> words = map_.words(0);
+  maps::OccupancyGrid grid(settings_.settings.grid);
+  std::copy(words.begin(), words.end(), grid.words.begin());
+  return grid;
 }
 
 void OwnMap::send_parts(std::int64_t now, bool true_poses) {

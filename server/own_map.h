@@ -50,6 +50,8 @@ class OwnMap {
   /// @param now [ns] timestamp of the packets @param true_poses whether the map was built from true poses
   void send(std::int64_t now, bool true_poses);
 
+  /// Returns a copy of the map.
+  maps::OccupancyGrid grid() const;
   const sensors::Occupancy& settings() const { return settings_; }
   OwnMapCounts counts() const;
 

@@ -70,6 +70,9 @@ void check_for_ranks(const RunOptions& options) {
     throw base::InputError(
         "a video can show the fleet of one process only: record the run (--record DIR), then use `plot DIR --video "
         "FILE`");
+  if (!options.map_file.empty() || options.map_view)
+    throw base::InputError(
+        "--map-file and --map-view can show the fleet of one process only: leave them out, or run without mpirun");
   if (options.BridgeOptions::any())
     throw base::InputError("bridges can show the fleet of one process only: leave them out, or run without mpirun");
 }

@@ -13,6 +13,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/commands/rank_run.h"
+#include "apps/commands/run_maps.h"
 #include "apps/commands/run_outputs.h"
 #include "apps/commands/run_scenario.h"
 #include "apps/commands/run_settings.h"
@@ -43,6 +44,8 @@
 namespace sf::apps {
 
 namespace {
+
+bool draws_maps(const RunOptions& options) { return !options.map_file.empty() || options.map_view; }
 
 /// True if `refusal` by a controller names one of several driven robots.
 bool names_one_of_several(const std::string& refusal, const world::World& world, const RunOptions& options) {
@@ -232,6 +235,7 @@ struct Course {
   StrayedRobots strayed;
   std::optional<Checkpoints> checkpoints;
   RunOutputs outputs;
+  std::optional<RunMaps> maps;
   std::uint64_t ticks = 0;
   std::uint64_t contacts_begun = 0;
 
@@ -253,6 +257,7 @@ struct Course {
     // The simulation has copied the walls of its tile, and a recording begins with all of them.
     if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
     if (ground.scenario) events.emplace(*ground.scenario);
+    if (draws_maps(options)) maps.emplace(world, simulation, options.map_file, options.map_view);
     if (ranks == nullptr) simulation.interrupt_on([] { return stop_requested().load(); });
   }
 
@@ -292,6 +297,7 @@ struct Course {
     users.publish(tick);
     outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
     simulation.settle();
+    if (maps) maps->write(tick);
     tally.update(tick);
     strayed.write(tick);
     for (std::size_t m = 0; m < contacts.size(); ++m)
@@ -310,6 +316,7 @@ struct Course {
     facts.farm = simulation.farm().stats();
     facts.hash = simulation.farm().hash();
     outputs.finish(facts);
+    if (maps) maps->finish();
     if (ranks != nullptr) add_up(*ranks, facts, simulation.share().passed_on());
   }
 };
@@ -367,7 +374,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   if (!heard.empty()) print_warnings(heard.front().file, heard);
   std::atomic<bool> all_stop = false;
   scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),
-                            speed_of(options, !live->empty()));
+                            speed_of(options, !live->empty() || options.map_view));
   if (ranks == nullptr) {
     users.on_fleet_changes(
         [&](const auto& joining, const auto& leaving) { change_fleet(*course, *ground, *live, joining, leaving); });
@@ -407,7 +414,8 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
     users.pause();
     live->show_scene(true);
   };
-  const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
+  const bool watched = !live->empty() || options.map_view;
+  const double duration = options.duration.value_or(watched ? kWithoutEnd : 60.0);
   const double ticks = std::round(duration / ground->world.interval);
   if (ticks < 1.0)
     print_message(

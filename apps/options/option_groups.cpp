@@ -262,11 +262,12 @@ void add_bridges(CLI::App& app, BridgeOptions& o) {
   add_live_view(app, o.view, "a live view")->group(kBridgeGroup);
 }
 
-CLI::Option* add_live_view(CLI::App& app, std::optional<bridges::WebAddress>& view, const char* what) {
+CLI::Option* add_live_view(CLI::App& app, std::optional<bridges::WebAddress>& view, const char* what,
+                           const char* name) {
   const auto read = [&view](const std::string& text) { view = bridges::read_web_address(text); };
   return app
       .add_option_function<std::string>(
-          "--view", read,
+          name, read,
           fmt::format("Serve {} at this address, for a browser and for Foxglove's viewers (default: 127.0.0.1:8765)",
                       what))
       ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))

@@ -92,7 +92,15 @@ void add_run(CLI::App& app, Call& call) {
   sub->add_flag("--resume", o.resume,
                 "Recompute an interrupted run, with the same bytes, and compare it with its checkpoints")
       ->needs(record);
+  auto* map_file =
+      sub->add_option("--map-file", o.map_file,
+                      "Draw the map that the robots build, merged, into this picture (.png, .svg or .pdf), which is "
+                      "replaced as the map grows")
+          ->check(picture())
+          ->type_name("FILE");
+  auto* map_view = add_live_view(*sub, o.map_view, "a page with the maps that the robots build", "--map-view");
   add_video(*sub, o, "Video of the run to write (VP9 in WebM, encoded by FFmpeg)");
+  for (CLI::Option* map : {map_file, map_view}) map->excludes("--video");  // which draws on another thread
   auto* tiles =
       sub->add_flag("--tiles", o.tiles, "Divide the world into tiles: each rank (mpirun) holds and senses one");
   sub->add_option("--balance", o.balance, "Rebalance the tiles every S simulated seconds by the time that they take")

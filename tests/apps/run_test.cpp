@@ -263,6 +263,39 @@ TEST(Run, ItsMapUsesOneScanPerSecond) {
   EXPECT_FALSE(map_of("1.1") == first) << "the eleventh is scanned from where the robots are then";
 }
 
+TEST(Run, DrawsTheMapsOfItsRobotsWhileTheyDrive) {
+  const Folder folder;
+  const std::string picture = folder.path("map.png");
+  Program team({"run", our_world("mapping/team.world"), "--controller", "explore", "--set", "team=true", "--map-file",
+                picture, "--map-view", "0"});
+  EXPECT_TRUE(team.prints("view on http://127.0.0.1:")) << team.err();
+  EXPECT_TRUE(until([&] { return std::filesystem::exists(picture) || !team.running(); })) << team.err();
+  EXPECT_TRUE(team.running()) << "the picture appears while they drive";
+  EXPECT_EQ(team.stop().code, 0);
+  EXPECT_GT(scenes::read_png(picture).count(0xFFFEFEFEu), 1000) << "free cells";
+}
+
+TEST(Run, MergesMapsOfScansAtTheRobotsOwnPoses) {
+  const Folder folder;
+  const auto free_cells = [&](const Words& more) {
+    run("mapping/team.world",
+        with({"--controller", "avoid", "--duration", "1", "--map-file", folder.path("m.png")}, more));
+    return scenes::read_png(folder.path("m.png")).count(0xFFFEFEFEu);
+  };
+  const auto one = free_cells({"--drive", "roomba1"});
+  EXPECT_GT(one, 1000);
+  EXPECT_GT(free_cells({}), 2 * one) << "three robots far from each other";
+  const std::pair<Words, std::string> refused[] = {
+      {{"worlds/cave.world", "--robots", "33"}, "at most 32 robots"},
+      {{"worlds/cave.world", "--robots", "2", "--drive", "none"}, "none"},
+      {{"worlds/cave.world", "--robots", "2", "--video", "a.webm"}, "--map-file excludes --video"},
+  };
+  for (const auto& [more, message] : refused)
+    expect_refused(with({"run", SF_SOURCE_DIR "/" + more[0], "--map-file", folder.path("m.png"), "--duration", "1"},
+                        Words(more.begin() + 1, more.end())),
+                   message);
+}
+
 /// `run` and `plot` count contacts when they begin.
 TEST(Run, CountsContactsAsInItsPicture) {
   const Folder folder;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "tests/control/closed_loop.h"
@@ -221,6 +222,68 @@ TEST(ExplorationMap, GroundIsExploredOnceSeenOrOccupied) {
   EXPECT_TRUE(terrain.explored(terrain.node_at({0.5, 0.2})));
   terrain.mark_free({1.75, 0}, 0.3);
   EXPECT_TRUE(terrain.covers_unknown(terrain.node_at({1.7, 0}))) << "it would leave the map";
+}
+
+TEST(ExplorationMap, NearestIsTheLeastDistanceToAllPoints) {
+  ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
+  std::vector<glm::dvec2> points;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const auto draw = base::random_uniform({.seed = i}, 0);
+    points.emplace_back(3.0 * draw[0] - 1.5, 3.0 * draw[1] - 1.5);
+    terrain.add_point(points.back());
+  }
+  for (std::uint64_t i = 100; i < 300; ++i) {
+    const auto draw = base::random_uniform({.seed = i}, 0);
+    const glm::dvec2 p{5.0 * draw[0] - 2.5, 5.0 * draw[1] - 2.5};  // also beyond the map
+    double least = 1.0;
+    for (const glm::dvec2& q : points) least = std::min(least, std::sqrt(glm::dot(q - p, q - p)));
+    EXPECT_EQ(terrain.nearest(p, 1.0), least) << p.x << ' ' << p.y;
+  }
+}
+
+constexpr maps::GridGeometry kCoarse{.left = -5.4, .top = 5.4, .cell = 0.09};
+
+/// Adds scans of a laser at the origin that looks along x and hits something at `range`; >= 4: nothing.
+void look(ExplorationMap& terrain, double range, int scans) {
+  const std::vector<double> ranges(91, range);
+  const auto beams = maps::beam_directions(0.5, 91);
+  for (int i = 0; i < scans; ++i) terrain.add({{0, 0, 0, 0}, ranges, beams, 0.0, 4.0});
+}
+
+TEST(ExplorationMap, InAMovingWorldCellsThatAreSeenFreeBecomeFree) {
+  const glm::dvec2 p{2.0, 0.0};
+  for (const bool moving : {false, true}) {
+    ExplorationMap terrain(kCoarse, 0.3, 0.3, {.most_clearance = 0.2, .moving = moving});
+    look(terrain, 2.0, 30);
+    const maps::CellAt cell = maps::cell_at(kCoarse, p);
+    EXPECT_EQ(terrain.grid().at(cell), maps::Cell::occupied);
+    EXPECT_LT(terrain.clearance(terrain.node_at(p)), 0.1);
+    look(terrain, 4.0, 12);
+    terrain.refresh();
+    EXPECT_EQ(terrain.grid().at(cell), maps::Cell::free);
+    EXPECT_EQ(terrain.clearance(terrain.node_at(p)) > 0.3, moving) << "a static world keeps its points";
+    EXPECT_EQ(terrain.nearest(p, 1.0) > 0.3, moving);
+    EXPECT_EQ(terrain.occupied(terrain.node_at(p)), !moving);
+    look(terrain, 2.0, 30);
+    EXPECT_LT(terrain.clearance(terrain.node_at(p)), 0.1) << "it may come back";
+  }
+}
+
+TEST(ExplorationMap, InAMovingWorldTheLastMeasurementOfATeamCounts) {
+  const ExplorationMapSettings settings{.most_clearance = 0.2, .moving = true};
+  ExplorationMap own(kCoarse, 0.3, 0.3, settings), other(kCoarse, 0.3, 0.3, settings);
+  other.record_changes();
+  const Node node = own.node_at({2.0, 0.0});
+  look(other, 2.0, 5);
+  const MapChanges with = other.take_changes();
+  EXPECT_TRUE(with.points.empty() && with.nodes.empty()) << "cells only, so that they may be forgotten";
+  EXPECT_TRUE(own.merge(with));
+  EXPECT_LT(own.clearance(node), 0.1);
+  look(other, 4.0, 12);
+  EXPECT_TRUE(own.merge(other.take_changes()));
+  own.refresh();
+  EXPECT_GT(own.clearance(node), 0.3);
+  EXPECT_EQ(own.grid().words, other.grid().words);
 }
 
 // Returns a completely explored map with a wall of points at y = 0.

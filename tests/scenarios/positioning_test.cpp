@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "control/stop_reason.h"
 #include "robots/estimation/chi_square.h"
 #include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
@@ -75,6 +76,11 @@ TEST(Positioning, PosesAreLateOutOfOrderAndLost) {
 /// A robot whose encoders count 5 % too much drives around a square at 0.1 m/s.
 struct Round {
   explicit Round(std::uint64_t seed)
+      : Round(seed, {.link = {.delay = 0.1, .jitter = 0.2, .loss = 0.1},
+                     .position_sigma = 0.005,
+                     .yaw_sigma = 0.01,
+                     .outages = {{60.0, 80.0}}}) {}
+  Round(std::uint64_t seed, PositioningOptions positioning)
       : simulation(world, device(),
                    {.seed = seed,
                     .actor = {.controller = {"patrol",
@@ -84,15 +90,12 @@ struct Round {
                                                {"pause", 0.0},
                                                {"speed", 0.1}}}},
                               .link = {}},
-                    .positioning = PositioningOptions{.link = {.delay = 0.1, .jitter = 0.2, .loss = 0.1, .seed = seed},
-                                                      .position_sigma = 0.005,
-                                                      .yaw_sigma = 0.01,
-                                                      .outages = {{60.0, 80.0}}}}) {}
+                    .positioning = (positioning.link.seed = seed, positioning)}) {}
   /// Drives until `end` [s]. Returns the normalised squared error of the estimate.
   double drive(double end) {
     base::TickRecord tick = simulation.step();
     while (1e-9 * static_cast<double>(tick.time) < end - 0.01) tick = simulation.step();
-    const base::Pose& truth = tick.reports[0].X_WM;
+    truth = tick.reports[0].X_WM;
     const auto& [state, quality] = simulation.estimate(0);
     const auto& P = quality.covariance;
     const std::array<double, 3> e{state.X_WM.x - truth.x, state.X_WM.y - truth.y,
@@ -116,8 +119,28 @@ struct Round {
       "robot( name \"create\" pose [0 0 0 0] )\n",
       {.sensors = sensors::world_file_words()});
   Simulation simulation;
+  base::Pose truth;
   double error = 0.0;  ///< [m]
 };
+
+/// In a robot's process it is lost until a camera sees it (server/own_state.h).
+TEST(Positioning, ARobotWithAnUnknownStartRestsUntilItIsSeen) {
+  const auto with = [](bool known) {
+    return Round(1, {.known_start = known, .position_sigma = 0.005, .yaw_sigma = 0.01, .outages = {{0.0, 1.0}}});
+  };
+  Round known = with(true), unknown = with(false);
+  known.drive(0.9);
+  EXPECT_GT(known.truth.x, 0.05) << "it drives by its wheels";
+  base::TickRecord tick = unknown.simulation.step();
+  for (int i = 0; i < 9; ++i) tick = unknown.simulation.step();
+  EXPECT_EQ(tick.reports[0].X_WM.x, 0.0);
+  EXPECT_EQ(unknown.simulation.estimate(0).quality.age, base::kNoStateYet);
+  EXPECT_EQ(control::stop_reason_of(*unknown.simulation.controller(0)),
+            "its pose is unknown: no camera has seen it yet");
+  unknown.drive(4.0);
+  EXPECT_GT(unknown.truth.x, 0.1);
+  EXPECT_LT(unknown.error, 0.02);
+}
 
 TEST(Positioning, ARobotLearnsItsScaleAndCoastsThroughAnOutage) {
   const int seeds = instrumented() ? 5 : 100;

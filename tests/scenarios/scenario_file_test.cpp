@@ -164,6 +164,8 @@ TEST(ScenarioFile, PositioningHasALinkNoiseAndOutagesIfConfigured) {
       "seed = 9\n[positioning]\nrate = 5\ndelay = 0.5\nposition_sigma = 0.01\nyaw_sigma = 0.02\n"
       "stated_position_sigma = 0.03\nstated_yaw_sigma = 0.04\noutages = [[1, 2], [3, 3]]\n");
   const PositioningOptions positioning = *simulation_of(s, world_of(s)).positioning;
+  EXPECT_TRUE(positioning.known_start);
+  EXPECT_FALSE(parse_text("[positioning]\nstart = \"unknown\"\n").positioning->known_start);
   EXPECT_EQ(positioning.rate, 5.0);
   EXPECT_EQ(positioning.link.delay, 0.5);
   EXPECT_EQ(positioning.link.seed, 9u);

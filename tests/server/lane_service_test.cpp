@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "netio/v2v_socket.h"
@@ -114,6 +115,28 @@ TEST(LaneService, RefusedRequestsAreLogged) {
   for (std::uint32_t lane = 100; lane < 300; ++lane) town.ask({1, lane, 1});
   town.run(1);
   EXPECT_EQ(town.service->lanes().refused(), 202u) << "all, but only 64 of them one by one";
+}
+
+/// Each request that is tried builds the road network anew.
+TEST(LaneService, RequestsForManyLanesAreSpreadOverTicks) {
+  Town town;
+  std::size_t asked = 0;
+  for (const world::RoadLane& lane : town.roads->lanes) {
+    if (asked == 10) break;
+    town.ask({static_cast<std::uint32_t>(town.roads->segments[lane.segment].id),
+              static_cast<std::uint32_t>(lane.number), 1});
+    ++asked;
+  }
+  ASSERT_EQ(asked, 10u);
+  const auto closed = [&] {
+    const auto uses = town.service->lanes().uses();
+    return std::count_if(uses.begin(), uses.end(), [](const world::LaneUse& use) { return use != world::LaneUse{}; });
+  };
+  for (const int expected : {4, 8, 10, 10}) {
+    town.run(1);
+    EXPECT_EQ(closed(), expected);
+  }
+  EXPECT_EQ(town.service->lanes().refused(), 0u);
 }
 
 TEST(LaneService, OnlyTheOperatorOfAKeyChangesLanes) {
