@@ -287,6 +287,7 @@ void Simulation::State::take(const base::TickRecord& record) {
     poses[i] = {report.X_WM.x, report.X_WM.y, report.X_WM.z, report.X_WM.yaw};
     velocities[i] = {report.velocity.forward, report.velocity.left, report.velocity.turn};
     contacts[i] = record.contacts[i];
+    present[i] = base::is_absent(report.X_WM) ? 0 : 1;
   }
   for (library::ReadingTable& table : tables) {
     of_type.clear();

@@ -4,8 +4,10 @@
 //   Simulation simulation(world, device, {.seed = 7, .actor = {.controller = {.name = "wander"}}});
 //   while (running) recorder.write(simulation.step());
 //
-// One tick consists of the motion since the last tick, readings, and decisions. A command decided at a tick is executed
-// until the next. Sensors measure at their own due times, also between ticks.
+// One tick consists of the motion since the last tick, readings, and decisions. Then the controllers of models are
+// called (sensorfarm/model.h): at the start of the next step, so that changes by the caller between two steps come
+// first. A command decided at a tick is executed until the next. Sensors measure at their own due times, also between
+// ticks.
 
 #include <chrono>
 #include <cstdint>
@@ -20,6 +22,7 @@
 #include "base/thread_pool.h"
 #include "base/tick_record.h"
 #include "control/controllers.h"
+#include "control/model_controllers.h"
 #include "control/shared_map.h"
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
@@ -75,12 +78,12 @@ struct SimulationOptions {
 class Simulation {
  public:
   /// @throws base::InputError for an unknown controller, invalid settings, a missing requirement of a controller, and
-  /// for faults with ranks
+  /// for faults and controllers of models with ranks
   Simulation(const world::World& world, gpu::Device& device, SimulationOptions options);
 
   /// Performs one tick of `world.interval`; the first tick measures at time 0 without motion. Returns the readings
   /// delivered since the last tick, in order of delivery. Spans are valid until the next call.
-  /// @throws base::InputError if a controller fails, with the first robot's error
+  /// @throws base::InputError if a controller fails, with the first model's or robot's error
   base::TickRecord step();
 
   /// Completes the last step's exchange with other ranks, which otherwise continues until the next step.
@@ -179,6 +182,7 @@ class Simulation {
   void make_room();
   void check_joining(const world::World& world, const JoiningRobot& robot) const;
   std::uint32_t bring_back(std::uint32_t mover, const JoiningRobot& robot);
+  void call_models();
   void move();
   std::span<const base::ReadingBlock> sense(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
@@ -206,6 +210,7 @@ class Simulation {
   std::optional<V2vLink> v2v_;       ///< nullopt: V2V is current
   robots::NeighbourGrid neighbours_;
   std::vector<RobotControl> controls_;  ///< per mover
+  control::ModelControllers models_;
   std::vector<base::Twist> commands_;
   std::vector<base::Twist> executed_commands_;  ///< executed in the interval before the recorded tick
   /// Readings of this tick: the returned span if already in order, else `sorted_`.
