@@ -7,6 +7,7 @@
 #include "base/fault.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "base/shape_state.h"
 #include "base/state_quality.h"
 
 namespace sf::base {
@@ -30,6 +31,7 @@ struct TickRecord {
   std::span<const StateQuality> qualities;  ///< one per report; empty: the states are exact
   std::span<const LightStatus> lights;      ///< one per traffic light of the world; empty: not recorded
   std::span<const FaultMark> faults;        ///< readings measured since the last tick that faults affected
+  std::span<const ShapeState> shapes;       ///< of movers changed since the last tick; this tick has the new shapes
 };
 
 class Sink {

@@ -102,7 +102,7 @@ struct Farm::State {
     return {world, device, thread_pool, sensed, options.seed, options.noise, options.true_poses, options.scene};
   }
   std::vector<SensorPipeline> make_pipelines(const sensors::SensorSet& of, std::span<const base::Report> sensed);
-  std::shared_ptr<const void> add_mover();
+  std::shared_ptr<const void> rebuild();
   ReadingExchange* exchange() const { return sharing ? sharing->exchange() : nullptr; }
   bool is_gone(std::uint32_t mover) const { return gone.at(mover) != 0 || (sharing && sharing->is_hidden(mover)); }
   void begin_tick(bool is_sample);
@@ -137,15 +137,17 @@ std::vector<SensorPipeline> Farm::State::make_pipelines(const sensors::SensorSet
   return made;
 }
 
-/// Everything that can fail comes first.
-std::shared_ptr<const void> Farm::State::add_mover() {
-  SF_CHECK(states.size() + 1 == world.movers.size() && exchange() == nullptr, std::to_string(states.size()));
+/// Rebuilds all tables for the movers of the world, of which the last may be new. Everything that can fail comes first.
+std::shared_ptr<const void> Farm::State::rebuild() {
+  const std::size_t added = world.movers.size() - states.size();
+  SF_CHECK(added <= 1 && exchange() == nullptr, std::to_string(states.size()));
   clear_blocks();
-  sensors::SensorSet all(world);
+  std::optional<sensors::SensorSet> all;  // settings of sensors do not depend on outlines
+  if (added > 0) all.emplace(world);
   const base::Report absent{.mover = static_cast<std::uint32_t>(states.size()), .X_WM = base::kAbsent, .velocity = {}};
   std::vector<base::Report> sensed = states;
-  sensed.push_back(absent);
-  auto made = make_pipelines(all, sensed);
+  sensed.resize(states.size() + added, absent);
+  auto made = make_pipelines(all ? *all : sensor_set, sensed);
   struct Before {
     std::vector<SensorPipeline> pipelines;
     std::unique_ptr<Derivation> derivation;
@@ -154,16 +156,16 @@ std::shared_ptr<const void> Farm::State::add_mover() {
   batch = std::make_unique<gpu::Batch>(device);
   pipelines = std::move(made);
   states.swap(sensed);
-  const sensors::SensorSet earlier = std::exchange(sensor_set, std::move(all));  // `before` points into it
+  if (all) std::swap(sensor_set, *all);  // `before` points into it
   derivation = std::make_unique<Derivation>(context_of(states), sensor_set);
-  if (between) tick_states.push_back(absent);
-  subscribed.push_back(0);
-  gone.push_back(0);
+  if (between) tick_states.resize(states.size(), absent);
+  subscribed.resize(states.size(), 0);
+  gone.resize(states.size(), 0);
   if (!qualities.empty()) qualities.resize(gone.size());
   pose_changes = std::make_unique<PoseChanges>(world);
   faults.add_sensors(world, sensor_set);
   delivery.add_sensors();
-  if (sharing) sharing->add_mover(sensor_set);
+  if (sharing && added > 0) sharing->add_mover(sensor_set);
   for (SensorPipeline& pipeline : pipelines) {
     const auto same = [&](const SensorPipeline& other) { return other.group->type == pipeline.group->type; };
     const auto old = std::find_if(before->pipelines.begin(), before->pipelines.end(), same);
@@ -361,7 +363,14 @@ void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
   if (gone) s_->subscribe(mover, 0);
 }
-std::shared_ptr<const void> Farm::add_mover() { return s_->add_mover(); }
+std::shared_ptr<const void> Farm::add_mover() {
+  SF_CHECK(s_->states.size() + 1 == s_->world.movers.size(), std::to_string(s_->states.size()));
+  return s_->rebuild();
+}
+std::shared_ptr<const void> Farm::update_outlines() {
+  SF_CHECK(s_->states.size() == s_->world.movers.size(), std::to_string(s_->states.size()));
+  return s_->rebuild();
+}
 void Farm::set_state_quality(std::uint32_t mover, const base::StateQuality& quality) {
   s_->qualities.resize(s_->gone.size());
   s_->qualities.at(mover) = quality;

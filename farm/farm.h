@@ -96,6 +96,10 @@ class Farm {
   /// @return the memory of readings that were returned before; they are valid as long as it is held
   std::shared_ptr<const void> add_mover();
 
+  /// Call this after outlines of movers have changed in the world (world::change_shape). Rebuilds as `add_mover`, with
+  /// the same guarantees, except that `sensor_set` remains; may be called once for many changes, and before any tick.
+  std::shared_ptr<const void> update_outlines();
+
   /// Sets the state quality stamped on this mover's readings from now on; initially none.
   void set_state_quality(std::uint32_t mover, const base::StateQuality& quality);
 

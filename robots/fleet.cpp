@@ -79,10 +79,17 @@ void Fleet::add_mover() {
   make_room();
 }
 
+void Fleet::update_outline(std::uint32_t row) {
+  footprints_.at(row) = footprint_of(world_.movers[row]);
+  free_discs_[row] = {};
+  make_room();
+}
+
 /// Resizes everything for all movers, so that ticks do not allocate.
 void Fleet::make_room() {
   const std::size_t count = reports_.size();
   std::size_t edges = 0;
+  widest_ = 0.0;
   for (std::uint32_t row = 0; row < count; ++row) {
     widest_ = std::max(widest_, footprints_[row].radius);
     edges = std::max(edges, footprints_[row].edges.size());

@@ -82,6 +82,9 @@ class Fleet {
   /// Adds the world's new last mover: at rest at its load pose, at the time of the others.
   void add_mover();
 
+  /// Call this after the outline of a mover has changed in the world (world::change_shape).
+  void update_outline(std::uint32_t row);
+
   /// Sets the state of a mover that another process computed with `move`.
   /// @param contact its entry in `contacts`
   void set_moved(const base::Report& report, bool contact);

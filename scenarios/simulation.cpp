@@ -192,6 +192,7 @@ base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
   earlier_readings_.reset();
   settle();
+  take_shapes();
   if (tick_ == 0) begin();
   if (tick_ > 0) call_models();
   share_->begin_step(tick_);
@@ -203,8 +204,8 @@ base::TickRecord Simulation::step() {
   move_s_ += base::seconds_since(start);
   share_->end_step({commands_, next_intents_, next_estimates_},
                    {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
-  return {tick_++,       time,   recorded_reports(), executed_commands_, fleet_.contacts(), readings, {},
-          light_states_, faults_};
+  return {tick_++, time,   recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_,
+          faults_, shapes_};
 }
 
 std::span<const base::Report> Simulation::recorded_reports() {
@@ -225,6 +226,29 @@ void Simulation::set_absent(std::uint32_t mover, bool gone) {
   fleet_.set_absent(mover, gone);
   farm_.set_absent(mover, gone);
   if (!gone) farm_.subscribe(mover, farm::kAllSensorTypes);
+}
+
+void Simulation::set_shape(world::World& world, std::uint32_t mover, const world::ShapeChange& change) {
+  SF_CHECK(&world == &whole_ && mover < absent_.size(), "mover " + std::to_string(mover));
+  if (share_->passed_on())
+    throw base::InputError(
+        "objects cannot change their shapes with --tiles; expected ranks that share the whole world");
+  if (shape_changes_ >= kMostShapeChanges)
+    throw base::InputError(
+        fmt::format("more than {} changes of shapes in one tick; expected fewer", kMostShapeChanges));
+  const bool outline = world::change_shape(world, mover, change);
+  ++shape_changes_;
+  if (std::ranges::find(reshaped_, mover) == reshaped_.end()) reshaped_.push_back(mover);
+  if (!outline) return;
+  outlines_changed_ = true;
+  fleet_.update_outline(mover);
+}
+
+void Simulation::take_shapes() {
+  shapes_.clear();
+  for (const std::uint32_t mover : std::exchange(reshaped_, {})) shapes_.push_back(world::shape_state(world_, mover));
+  shape_changes_ = 0;
+  if (std::exchange(outlines_changed_, false)) earlier_readings_ = farm_.update_outlines();
 }
 
 void Simulation::set_lane(const std::string& lane, const std::string& use) {

@@ -37,6 +37,7 @@
 #include "scenarios/v2v_link.h"
 #include "world/lights.h"
 #include "world/roads/lane_control.h"
+#include "world/shapes.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
@@ -114,6 +115,16 @@ class Simulation {
   /// nothing and remains at rest. Call it between two steps: sensors see the change from the next step on.
   void set_absent(std::uint32_t mover, bool gone);
 
+  /// Changes the shape, colour or size of a mover, between two steps (world/shapes.h). Sensors and contacts see it from
+  /// the next step on, which rebuilds the tables of all sensors once for all changes before it, in time proportional to
+  /// the fleet. Readings that do not see the mover keep their bytes. Controllers keep the footprint of their start.
+  /// With ranks, all make the same call.
+  /// @param world the one given to the constructor
+  /// @throws base::InputError, with nothing changed, as world::check_change, for more than kMostShapeChanges before a
+  /// step, and with tiles
+  void set_shape(world::World& world, std::uint32_t mover, const world::ShapeChange& change);
+  static constexpr std::size_t kMostShapeChanges = 1'000;  ///< between two steps
+
   /// Requests the use of a lane, between two steps (world/roads/lane_control.h). Route controllers replan. With ranks,
   /// all make the same call.
   /// @param lane such as "3.1" @param use a word of world::lane_use_of
@@ -141,7 +152,8 @@ class Simulation {
   /// Returns the robots that joined, in the order of their rows.
   const std::vector<record::JoinedMover>& joined() const { return joined_; }
   bool is_absent(std::uint32_t mover) const { return absent_[mover]; }
-  /// Returns the memory of the readings returned before the last `add_robot`; null after the next step.
+  /// Returns the memory of the readings returned before the last `add_robot`, or before a step that changed outlines;
+  /// null after the next step.
   std::shared_ptr<const void> earlier_readings() const { return earlier_readings_; }
 
   const farm::Farm& farm() const { return farm_; }
@@ -180,6 +192,7 @@ class Simulation {
   RobotControl make_control(std::uint32_t mover, const Actor& actor);
   void use_control(RobotControl control);
   void make_room();
+  void take_shapes();
   void check_joining(const world::World& world, const JoiningRobot& robot) const;
   std::uint32_t bring_back(std::uint32_t mover, const JoiningRobot& robot);
   void call_models();
@@ -232,6 +245,10 @@ class Simulation {
   std::vector<world::Signal> signals_;
   std::vector<base::LightStatus> light_states_;  ///< per light, of the recorded tick
   std::vector<bool> absent_;                     ///< per mover
+  std::vector<std::uint32_t> reshaped_;          ///< movers changed since the last step
+  std::vector<base::ShapeState> shapes_;         ///< of the recorded tick
+  std::size_t shape_changes_ = 0;                ///< since the last step
+  bool outlines_changed_ = false;                ///< the farm's tables do not have them yet
   std::vector<base::Report> present_;            ///< reports with kAbsent, of one tick; empty: all are present
   std::vector<world::Warning> warnings_;
   std::mutex failure_lock_;

@@ -13,6 +13,7 @@
 #include "world/ground.h"
 #include "world/ros_map.h"
 #include "world/serialization.h"
+#include "world/shapes.h"
 #include "world/stage/build_world.h"
 #include "world/stage/document.h"
 
@@ -149,6 +150,7 @@ void append_copy(World& world, const World& from, std::uint32_t original, const 
   const std::vector<Fiducial> fiducials = fiducials_on(from, original, rows);
   world.movers.push_back(std::move(copy));
   world.fiducials.insert(world.fiducials.end(), fiducials.begin(), fiducials.end());
+  restore_copy(world, static_cast<std::uint32_t>(world.movers.size() - 1), from, original);
 }
 
 Pose moved_with(const Pose& X_before, const Pose& X_after, const Pose& X_WM) {

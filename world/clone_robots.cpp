@@ -161,6 +161,7 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   retarget(world.floor_holes, kept.model_rows);
   world.models = std::move(models);
   world.movers = std::move(movers);
+  world.changed_shapes.clear();
   update_extent_and_hash(world);
 }
 

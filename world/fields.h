@@ -119,6 +119,10 @@ template <> inline constexpr auto kFields<Fiducial> = std::make_tuple(
 template <> inline constexpr auto kFields<FloorHole> = std::make_tuple(
     field(&FloorHole::model), field(&FloorHole::outline));
 
+template <> inline constexpr auto kFields<Shape> = std::make_tuple(
+    label(&Shape::name), field(&Shape::size), label(&Shape::color), field(&Shape::is_bitmap), field(&Shape::pixel),
+    field(&Shape::outline));
+
 template <> inline constexpr auto kFields<Warning> = std::make_tuple(
     path(&Warning::file), label(&Warning::line), label(&Warning::message));
 
@@ -136,7 +140,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     field(&World::earth_field), field(&World::lamps),
     field(&World::ambient_light, Key{"ambient_light"}, Bounds{0.0, 1e9}),
     // since version 7
-    field(&World::ramps), field(&World::marking_heights), field(&World::fiducials));
+    field(&World::ramps), field(&World::marking_heights), field(&World::fiducials),
+    // since version 8
+    field(&World::shapes));
 
 // clang-format on
 

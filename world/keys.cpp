@@ -47,6 +47,11 @@ constexpr auto kRoad = std::to_array<std::string_view>({"name", "rndf", "magneti
 constexpr auto kPath = std::to_array<std::string_view>({"name", "pose", "pieces", "straight[]", "arc[]", "left", "right", "paint_width", "dash",
   "magnetic_moment", "magnet_spacing", "magnet_size", "magnet_top"});
 
+constexpr auto kShape = std::to_array<std::string_view>({"name", "size", "color", "color_rgba", "bitmap", "boundary", "noblocks", "blocks",
+  "block[].points", "block[].point[]", "block[].z",
+  // known, not modelled
+  "block[].color"});
+
 constexpr auto kUnmodelledTypes = std::to_array<std::string_view>({"actuator", "blinkenlight", "blobfinder", "bumper", "camera", "charger", "fiducial", "gripper",
   "laneedge", "laser", "lightindicator", "magnetometer", "map", "powerpack", "puck", "ranger", "sonar", "speech", "wifi"});
 constexpr auto kNoBodyTypes = std::to_array<std::string_view>({"blobfinder", "bumper", "fiducial", "laneedge", "magnetometer", "powerpack", "ranger", "sonar",
@@ -107,6 +112,8 @@ std::vector<Words> keys_in(KeyScope where) {
       return {kRoad};
     case KeyScope::path:
       return {kPath};
+    case KeyScope::shape:
+      return {kShape};
     case KeyScope::model:
     case KeyScope::unmodelled:
       break;
@@ -122,6 +129,7 @@ EntityKind entity_kind(std::string_view type) {
   if (type == "light") return EntityKind::light;
   if (type == "road") return EntityKind::road;
   if (type == "path") return EntityKind::path;
+  if (type == "shape") return EntityKind::shape;
   if (has(kIgnoredTypes, type)) return EntityKind::ignored;
   return has(kUnmodelledTypes, type) ? EntityKind::unmodelled : EntityKind::unknown;
 }
@@ -129,7 +137,7 @@ EntityKind entity_kind(std::string_view type) {
 bool has_no_body(std::string_view type) { return has(kNoBodyTypes, type); }
 
 std::vector<std::string_view> known_types() {
-  std::vector<std::string_view> types{"model", "position", "light", "sensor", "block", "road", "path"};
+  std::vector<std::string_view> types{"model", "position", "light", "sensor", "block", "road", "path", "shape"};
   types.insert(types.end(), kUnmodelledTypes.begin(), kUnmodelledTypes.end());
   types.insert(types.end(), kIgnoredTypes.begin(), kIgnoredTypes.end());
   return types;

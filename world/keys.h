@@ -11,10 +11,10 @@
 namespace sf::world {
 
 /// The entity that contains a property.
-enum class KeyScope { world, model, position, light, sensor, block, device, sensing, road, path, unmodelled };
+enum class KeyScope { world, model, position, light, sensor, block, device, sensing, road, path, shape, unmodelled };
 
 /// How a type of the world file is treated.
-enum class EntityKind { model, position, light, road, path, unmodelled, ignored, unknown };
+enum class EntityKind { model, position, light, road, path, shape, unmodelled, ignored, unknown };
 
 EntityKind entity_kind(std::string_view type);
 

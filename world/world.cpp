@@ -80,19 +80,13 @@ Extent extent_of(const World& world, Extent extent) {
   return extent.x_min <= extent.x_max ? extent : Extent{};
 }
 
-double radius_of(const Mover& mover) {
-  double radius = 0.0;
-  for (const Segment& segment : mover.body) radius = std::max({radius, length(segment.a), length(segment.b)});
-  return radius;
-}
-
 /// Fields up to the accuracy keep the hash order from before the table of fields existed.
 constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, &World::walls, &World::road_resolution,
                                               &World::lane_markings, &World::magnet_cutoff, &World::accuracy);
 
 /// Worlds without these keep the hash that they had before the fields existed.
 constexpr auto kHashedIfSet = std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps,
-                                              &World::marking_heights, &World::fiducials);
+                                              &World::marking_heights, &World::fiducials, &World::shapes);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -169,6 +163,12 @@ std::uint64_t hash_of(const World& world, std::uint64_t unread) {
 }
 
 }  // namespace
+
+double radius_of(const Mover& mover) {
+  double radius = 0.0;
+  for (const Segment& segment : mover.body) radius = std::max({radius, length(segment.a), length(segment.b)});
+  return radius;
+}
 
 void update_extent_and_hash(World& world) {
   for (Mover& mover : world.movers) mover.radius = radius_of(mover);

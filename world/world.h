@@ -135,6 +135,7 @@ struct Mover {
   std::uint32_t id = 0;       ///< number in packets, unique among robots (or among tags)
   bool is_tag = false;        ///< follows TAG packets (`tag<N>`); otherwise V2V packets of robot `id`
   Pose X_WM;                  ///< pose at load
+  Pose X_MB;                  ///< frame of its own outline (`origin`); not in snapshots, but recorded with changes
   Pose X_MT;                  ///< pose of the mounted tag; not in snapshots, since recorded runs do not use TAG packets
   std::vector<Segment> body;  ///< outline in the mover's frame, z above the mover's origin; includes carried models
   double radius = 0.0;        ///< [m] radius of the circle about the origin that contains the body
@@ -223,6 +224,36 @@ struct FloorHole {
   std::uint32_t model = 0;          ///< row in `World::models`
 };
 
+/// A named outline that objects can take on at run time (`shape( name "crate" ... )`, world/shapes.h).
+struct Shape {
+  std::string name;              ///< unique among shapes, not kOriginalShape
+  glm::dvec3 size{};             ///< [m] >= 0
+  std::uint32_t color = 0;       ///< 0xAARRGGBB; 0: objects keep their own
+  bool is_bitmap = false;        ///< as Model::is_bitmap
+  double pixel = 0.0;            ///< [m] as Model::pixel
+  std::vector<Segment> outline;  ///< [m] of that size, centred in x and y, z from 0; without model and flags
+};
+
+/// A mover's own outline, size and colour, kept while it has others (world/shapes.h).
+struct OriginalShape {
+  std::vector<Segment> outline;  ///< the sides of the mover's own model, in the mover's frame
+  Segment surface;               ///< model and flags of its sides
+  glm::dvec3 size{};             ///< [m]
+  std::uint32_t color = 0;       ///< 0xAARRGGBB
+  bool is_bitmap = false;
+  double pixel = 0.0;           ///< [m]
+  std::vector<Magnet> magnets;  ///< of the mover
+  double fiducial_z = 0.0;      ///< [m] of its own fiducial, in its frame; 0: none
+};
+
+/// The current shape of a mover that was changed since the world was loaded.
+struct ChangedShape {
+  std::uint32_t shape = kNone;  ///< row in `World::shapes`; kNone: its own outline
+  glm::dvec3 size{};            ///< [m]
+  std::uint32_t color = 0;      ///< 0xAARRGGBB
+  OriginalShape original;
+};
+
 /// A user message about a problem that did not stop the load.
 struct Warning {
   std::string file;
@@ -268,6 +299,9 @@ struct World {
   std::vector<Emitter> emitters;
   std::vector<Lamp> lamps;
   std::vector<Fiducial> fiducials;
+  std::vector<Shape> shapes;  ///< at most kMostShapes
+  /// By row of the mover; not in snapshots. The first change of a mover adds its entry.
+  std::map<std::uint32_t, ChangedShape> changed_shapes;
   double ambient_light = 0.0;  ///< [lx] on every surface, without shadows
   std::vector<FloorHole> floor_holes;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
@@ -275,7 +309,7 @@ struct World {
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
-  std::uint64_t hash = 0;  ///< of all data above that readings depend on
+  std::uint64_t hash = 0;  ///< of all data above that readings depend on; changes of shapes do not update it
 };
 
 /// Options for loading.
@@ -314,6 +348,9 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
 /// elsewhere.
 std::vector<std::uint8_t> snapshot(const World& world);
 World from_snapshot(const std::vector<std::uint8_t>& bytes);
+
+/// [m] Returns the radius of the circle about the mover's origin that contains its body.
+double radius_of(const Mover& mover);
 
 /// Recomputes every mover's `radius`, then `extent` and `hash`, from the tables.
 void update_extent_and_hash(World& world);

@@ -6,6 +6,7 @@
 
 #include "base/suggest.h"
 #include "world/keys.h"
+#include "world/shapes.h"
 #include "world/stage/attached_devices.h"
 #include "world/stage/ctrl.h"
 #include "world/stage/emitter_entities.h"
@@ -16,6 +17,7 @@
 #include "world/stage/outline_entities.h"
 #include "world/stage/read_keys.h"
 #include "world/stage/road_entities.h"
+#include "world/stage/shape_entities.h"
 
 namespace sf::world {
 
@@ -83,17 +85,6 @@ Size default_size(const Entity& entity) {
   return entity.type == "laser" ? Size{0.15, 0.15, 0.2} : Size{};
 }
 
-/// Returns `local` at X, with the model and the flags of `surface`.
-Segment placed(const Segment& local, const Pose& X, const Segment& surface) {
-  Segment segment = surface;
-  segment.a = transform(X, local.a);
-  segment.b = transform(X, local.b);
-  segment.z_min = local.z_min + X.z;
-  segment.z_max = local.z_max + X.z;
-  segment.solid_left = local.solid_left;
-  return segment;
-}
-
 /// Returns the model and flags of a body's surface.
 Segment surface_of(BuildState& b, const Entity& entity, const Model& model) {
   StageContext& context = b.context;
@@ -116,13 +107,7 @@ Segment surface_of(BuildState& b, const Entity& entity, const Model& model) {
 void add_body(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
               const Pose& X_B) {
   const Segment surface = surface_of(b, entity, model);
-  auto& segments = model.mover == kNone ? b.world.walls : b.world.movers[model.mover].body;
-  for (const Segment& local : shape) {
-    const Segment segment = placed(local, X_B, surface);
-    const bool lost_in_rounding = segment.a.x == segment.b.x && segment.a.y == segment.b.y;
-    if (lost_in_rounding) continue;
-    segments.push_back(segment);
-  }
+  place_outline(shape, X_B, surface, model.mover == kNone ? b.world.walls : b.world.movers[model.mover].body);
 }
 
 /// Properties of a model as written, before anything is derived from them.
@@ -219,6 +204,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   }
 
   const Pose X_B = compose(model.mover == kNone ? model.X_WM : own.X_MP, pose(b.context, entity, "origin"));
+  if (moves) b.world.movers[model.mover].X_MB = X_B;
   const std::vector<Segment> shape = shape_of_model(b, entity, said);
   is_floor_hole(b.context, entity) ? add_floor_holes(b, entity, model, shape, X_B)
                                    : add_body(b, entity, model, shape, X_B);
@@ -289,6 +275,10 @@ void add_children(BuildState& b, const Entity& entity, Parent& parent) {
       if (parent.model != kNone)
         fail(b.context, child.at, fmt::format("'{}' is part of a model; expected it at the top level", child.word));
       entity_kind(child.type) == EntityKind::road ? add_road(b, child) : add_path(b, child);
+    } else if (entity_kind(child.type) == EntityKind::shape) {
+      if (parent.model != kNone)
+        fail(b.context, child.at, fmt::format("'{}' is part of a model; expected it at the top level", child.word));
+      add_shape(b, child);
     } else {
       add_model(b, child, parent);
     }

@@ -1,0 +1,29 @@
+#pragma once
+// The shape of a mover after a change at run time.
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string_view>
+
+#include "base/pose.h"
+
+namespace sf::base {
+
+inline constexpr std::size_t kMostShapeName = 64;  ///< characters
+
+/// Returns whether a shape may have that name: 1 to kMostShapeName ASCII letters, digits, '_', '-' and '.'.
+inline bool is_shape_name(std::string_view name) {
+  constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+  return !name.empty() && name.size() <= kMostShapeName && name.find_first_not_of(kPlain) == std::string_view::npos;
+}
+
+struct ShapeState {
+  std::uint32_t mover = 0;
+  std::uint32_t shape = 0xFFFFFFFFu;  ///< row in `world::World::shapes`; 0xFFFFFFFF: its own
+  std::uint32_t color = 0;            ///< 0xAARRGGBB
+  glm::dvec3 size{};                  ///< [m]
+  Pose X_MB;                          ///< `world::Mover::X_MB`
+};
+
+}  // namespace sf::base

@@ -1,0 +1,211 @@
+#include "world/shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "world/stage/color_names.h"
+
+namespace sf::world {
+
+namespace {
+
+OriginalShape original_of(const World& world, std::uint32_t row) {
+  const Mover& mover = world.movers[row];
+  const Model& model = world.models[mover.model];
+  OriginalShape own{.color = model.color, .is_bitmap = model.is_bitmap, .pixel = model.pixel, .magnets = mover.magnets};
+  own.surface.model = mover.model;
+  double top = 0.0;
+  for (const Segment& side : mover.body) {
+    if (side.model != mover.model) continue;
+    if (own.outline.empty()) own.surface = side;
+    own.outline.push_back(side);
+    top = std::max(top, side.z_max - mover.X_MB.z);
+  }
+  own.size = {model.size.x, model.size.y, top};
+  for (const Fiducial& fiducial : world.fiducials)
+    if (fiducial.model == mover.model) own.fiducial_z = fiducial.X_BF.z;
+  return own;
+}
+
+/// The rule of sizes: the ratio first, so that a box gets exactly its new size.
+double scaled(double value, double from, double to) { return from == to || from <= 0.0 ? value : value / from * to; }
+
+void scale(std::vector<Segment>& outline, const glm::dvec3& from, const glm::dvec3& to) {
+  for (Segment& side : outline) {
+    for (glm::dvec2* const p : {&side.a, &side.b}) *p = {scaled(p->x, from.x, to.x), scaled(p->y, from.y, to.y)};
+    side.z_min = scaled(side.z_min, from.z, to.z);
+    side.z_max = scaled(side.z_max, from.z, to.z);
+  }
+}
+
+/// Returns the mover's own outline in its current shape, in the mover's frame.
+std::vector<Segment> outline_of(const World& world, const Mover& mover, const ChangedShape& now) {
+  const OriginalShape& own = now.original;
+  const bool original = now.shape == kNone;
+  if (original && now.size == own.size) return own.outline;
+  std::vector<Segment> local, placed;
+  original ? place_outline(own.outline, inverse(mover.X_MB), own.surface, local)
+           : void(local = world.shapes[now.shape].outline);
+  scale(local, original ? own.size : world.shapes[now.shape].size, now.size);
+  place_outline(local, mover.X_MB, own.surface, placed);
+  return placed;
+}
+
+/// Returns the row of the shape; kNone for kOriginalShape.
+std::uint32_t shape_named(const World& world, const std::string& name) {
+  if (name == kOriginalShape) return kNone;
+  const auto found = std::ranges::find(world.shapes, name, &Shape::name);
+  if (found != world.shapes.end()) return static_cast<std::uint32_t>(found - world.shapes.begin());
+  std::vector<std::string_view> names{kOriginalShape};
+  for (const Shape& shape : world.shapes) names.emplace_back(shape.name);
+  throw base::InputError(world.file, 0, fmt::format("has no shape '{}'{}", name, base::expected_one_of(name, names)));
+}
+
+ChangedShape current_shape(const World& world, std::uint32_t mover) {
+  const auto found = world.changed_shapes.find(mover);
+  if (found != world.changed_shapes.end()) return found->second;
+  ChangedShape shape{.original = original_of(world, mover)};
+  shape.size = shape.original.size;
+  shape.color = shape.original.color;
+  return shape;
+}
+
+/// Returns the state after a change.
+ChangedShape changed(const World& world, const ChangedShape& before, const ShapeChange& change) {
+  ChangedShape now = before;
+  if (change.shape) {
+    now.shape = shape_named(world, *change.shape);
+    now.size = now.shape == kNone ? now.original.size : world.shapes[now.shape].size;
+    const std::uint32_t color = now.shape == kNone ? 0 : world.shapes[now.shape].color;
+    now.color = color != 0 ? color : now.original.color;
+  }
+  if (change.size) now.size = *change.size;
+  if (change.color) now.color = *change.color;
+  return now;
+}
+
+/// Magnets and fiducials of the mover's own model are at its middle height.
+void move_middle(World& world, Mover& mover, const ChangedShape& now) {
+  const bool original = now.shape == kNone && now.size == now.original.size;
+  const double z = mover.X_MB.z + 0.5 * now.size.z;
+  mover.magnets = now.original.magnets;
+  for (Magnet& magnet : mover.magnets)
+    if (!original && magnet.model == mover.model) magnet.z = z, magnet.radius = 0.5 * std::min(now.size.x, now.size.y);
+  for (Fiducial& fiducial : world.fiducials)
+    if (fiducial.model == mover.model) fiducial.X_BF.z = original ? now.original.fiducial_z : z;
+}
+
+void apply(World& world, std::uint32_t row, const ChangedShape& now) {
+  Mover& mover = world.movers[row];
+  Model& model = world.models[mover.model];
+  std::vector<Segment> body = outline_of(world, mover, now);
+  for (const Segment& side : mover.body)
+    if (side.model != mover.model) body.push_back(side);
+  mover.body = std::move(body);
+  mover.radius = radius_of(mover);
+  move_middle(world, mover, now);
+  model.size = {now.size.x, now.size.y};
+  model.color = now.color;
+  model.is_bitmap = now.shape == kNone ? now.original.is_bitmap : world.shapes[now.shape].is_bitmap;
+  model.pixel = now.shape == kNone ? now.original.pixel : world.shapes[now.shape].pixel;
+}
+
+/// @return whether the outline changed
+bool use_shape(World& world, std::uint32_t row, const ChangedShape& now) {
+  const ChangedShape before = current_shape(world, row);
+  world.changed_shapes[row] = now;
+  apply(world, row, now);
+  return now.shape != before.shape || now.size != before.size;
+}
+
+std::size_t sides_of(const World& world, const ChangedShape& shape) {
+  return shape.shape == kNone ? shape.original.outline.size() : world.shapes[shape.shape].outline.size();
+}
+
+}  // namespace
+
+std::uint32_t color_named(const std::string& text) {
+  if (const auto color = color_of(text)) return *color;
+  std::uint32_t rgb = 0;
+  const char* const end = text.data() + text.size();
+  const bool hex = text.size() == 7 && text[0] == '#' && std::from_chars(text.data() + 1, end, rgb, 16).ptr == end;
+  if (!hex)
+    throw base::InputError(
+        fmt::format("unknown colour \"{}\"; expected a name of X11, e.g. \"steel blue\", or \"#RRGGBB\"", text));
+  return 0xFF000000u | rgb;
+}
+
+void check_change(const World& world, std::uint32_t mover, const ShapeChange& change) {
+  const auto refuse = [&](const std::string& what) {
+    throw base::InputError(fmt::format("'{}' cannot change: {}", world.movers.at(mover).name, what));
+  };
+  const ChangedShape now = changed(world, current_shape(world, mover), change);
+  if (change.size) {
+    const glm::dvec3& s = *change.size;
+    const auto good = [](double length) { return length > 0.0 && length <= kMostShapeSize; };
+    if (!good(s.x) || !good(s.y) || !good(s.z))
+      refuse(fmt::format("size ({:g}, {:g}, {:g}); expected lengths above 0 and at most {:g} m", s.x, s.y, s.z,
+                         kMostShapeSize));
+    if (sides_of(world, now) == 0) refuse("it has no outline of its own to scale; give a shape, too");
+  }
+  std::size_t sides = sides_of(world, now);
+  for (const auto& [row, other] : world.changed_shapes) sides += row == mover ? 0 : sides_of(world, other);
+  if (sides > kMostChangedSides)
+    refuse(fmt::format("changed objects would have {} sides together; expected at most {}", sides, kMostChangedSides));
+}
+
+bool change_shape(World& world, std::uint32_t mover, const ShapeChange& change) {
+  check_change(world, mover, change);
+  return use_shape(world, mover, changed(world, current_shape(world, mover), change));
+}
+
+base::ShapeState shape_state(const World& world, std::uint32_t mover) {
+  const ChangedShape now = current_shape(world, mover);
+  return {mover, now.shape, now.color, now.size, world.movers[mover].X_MB};
+}
+
+bool restore_shape(World& world, const base::ShapeState& state) {
+  const Pose& X = state.X_MB;
+  const auto good = [](double length) { return length >= 0.0 && length <= 1e7; };
+  if (state.mover >= world.movers.size() || (state.shape != kNone && state.shape >= world.shapes.size()) ||
+      !good(state.size.x) || !good(state.size.y) || !good(state.size.z) || !std::isfinite(X.x + X.y + X.z + X.yaw))
+    throw base::InputError(fmt::format("shape {} of mover {} does not belong to this world", state.shape, state.mover));
+  world.movers[state.mover].X_MB = X;
+  ChangedShape now = current_shape(world, state.mover);
+  now.shape = state.shape, now.size = state.size, now.color = state.color;
+  return use_shape(world, state.mover, now);
+}
+
+void restore_copy(World& world, std::uint32_t copy, const World& from, std::uint32_t original) {
+  const auto found = from.changed_shapes.find(original);
+  if (found == from.changed_shapes.end()) return;
+  const Mover& changed = from.movers[original];
+  ChangedShape own = found->second;
+  own.shape = kNone, own.size = own.original.size, own.color = own.original.color;
+  own.original.surface.model = world.movers[copy].model;
+  for (Segment& side : own.original.outline) side.model = world.movers[copy].model;
+  for (std::size_t i = 0; i < changed.magnets.size(); ++i)
+    own.original.magnets[i].model = world.movers[copy].magnets[i].model;
+  apply(world, copy, own);
+}
+
+void place_outline(std::span<const Segment> outline, const Pose& X, const Segment& surface,
+                   std::vector<Segment>& segments) {
+  for (const Segment& local : outline) {
+    Segment segment = surface;
+    segment.a = transform(X, local.a);
+    segment.b = transform(X, local.b);
+    segment.z_min = local.z_min + X.z;
+    segment.z_max = local.z_max + X.z;
+    segment.solid_left = local.solid_left;
+    const bool lost_in_rounding = segment.a.x == segment.b.x && segment.a.y == segment.b.y;
+    if (!lost_in_rounding) segments.push_back(segment);
+  }
+}
+
+}  // namespace sf::world
