@@ -63,14 +63,16 @@ struct ModelControllers::Controlled {
 /// The model as its controller sees it.
 class ModelControllers::Handle final : public sensorfarm::Model {
  public:
-  Handle(Controlled& model, std::uint64_t seed, const base::Report& state, bool present,
+  Handle(const world::World& world, Controlled& model, std::uint64_t seed, const Scene& scene,
          std::span<const sensorfarm::NearRobot> robots)
-      : model_(model),
+      : world_(world),
+        model_(model),
         seed_(seed),
-        state_(state),
-        present_(present),
+        state_(scene.states[model.mover]),
+        present_(!scene.absent[model.mover]),
+        shapes_change_(scene.shapes_change),
         robots_(robots),
-        change_{model.mover, {}, {}, {}} {}
+        change_{.mover = model.mover, .present = {}, .X_WM = {}, .velocity = {}, .shape = {}} {}
 
   double time() const override { return model_.time; }
   sensorfarm::Pose pose() const override { return sensors::public_pose(state_.X_WM); }
@@ -98,6 +100,19 @@ class ModelControllers::Handle final : public sensorfarm::Model {
     if (present != present_) model_.velocity = {};
   }
 
+  // A new shape brings its own size and colour, so earlier ones of this tick are dropped.
+  void set_shape(std::string_view name) override { reshape({.shape = std::string(name)}); }
+  void set_size(double x, double y, double z) override {
+    world::ShapeChange shape = change_.shape;
+    shape.size = glm::dvec3{x, y, z};
+    reshape(shape);
+  }
+  void set_color(std::string_view color) override {
+    world::ShapeChange shape = change_.shape;
+    shape.color = world::color_named(std::string(color));
+    reshape(shape);
+  }
+
   double uniform() override { return base::random_uniform(next_draw(), 0)[0]; }
   double normal() override { return base::random_normal(next_draw(), 0)[0]; }
 
@@ -107,14 +122,22 @@ class ModelControllers::Handle final : public sensorfarm::Model {
   }
 
  private:
+  void reshape(const world::ShapeChange& shape) {
+    if (!shapes_change_)
+      throw std::runtime_error("shape, size and colour cannot change here; expected a run, a scenario or the library");
+    world::check_change(world_, model_.mover, shape);
+    change_.shape = shape;
+  }
+
   base::RandomKey next_draw() {
     return {seed_, base::RandomStream::decision, model_.mover, 0x6D6F646Cu, model_.draws++};
   }
 
+  const world::World& world_;
   Controlled& model_;
   std::uint64_t seed_;
   const base::Report& state_;
-  bool present_;
+  bool present_, shapes_change_;
   std::span<const sensorfarm::NearRobot> robots_;
   Change change_;
 };
@@ -239,10 +262,9 @@ void ModelControllers::find_near(const Controlled& model, const Scene& scene) {
 void ModelControllers::call_one(Controlled& model, const Scene& scene) {
   find_near(model, scene);
   model.time = 1e-9 * static_cast<double>(scene.time);
-  const bool present = !scene.absent[model.mover];
-  Handle handle(model, options_.seed, scene.states[model.mover], present, robots_);
+  Handle handle(world_, model, options_.seed, scene, robots_);
   touches_.clear();
-  if (present) scene.fleet.find_touches(model.mover, scene.states, near_, touches_);
+  if (handle.present()) scene.fleet.find_touches(model.mover, scene.states, near_, touches_);
   call_contacts(model, handle);
   model.guarded([&] { model.controller->tick(handle); });
   changes_.push_back(handle.change());

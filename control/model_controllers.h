@@ -15,6 +15,7 @@
 #include "base/report.h"
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
+#include "world/shapes.h"
 #include "world/world.h"
 
 namespace sensorfarm {
@@ -39,13 +40,15 @@ class ModelControllers {
     std::span<const base::Report> states;
     const std::vector<bool>& absent;
     const robots::Fleet& fleet;  ///< with the outlines of the movers, and the absent ones marked
+    bool shapes_change = false;  ///< controllers may change shape, size and colour
   };
-  /// What a controller requests. Apply presence first, then the pose, then the velocity.
+  /// What a controller requests. Apply the shape and presence first, then the pose, then the velocity.
   struct Change {
     std::uint32_t mover = 0;
     std::optional<bool> present;
     std::optional<base::Pose> X_WM;  ///< at rest
     base::Twist velocity;            ///< until the next change
+    world::ShapeChange shape;
   };
 
   /// Loads the plug-ins and creates the controllers.

@@ -123,6 +123,7 @@ void Simulation::State::prepare() {
   device = library::shared_device(options);
   world = library::load(source, options);
   simulation.emplace(world, *device, simulation_options(world, options, ranks));
+  simulation->change_shapes_in(world);
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)

@@ -1,5 +1,6 @@
 // Controllers of models written in Python.
 
+#include <array>
 #include <memory>
 #include <stdexcept>
 
@@ -42,7 +43,9 @@ template <class Call>
 void change(Call&& call) {
   try {
     call();
-  } catch (const std::invalid_argument& error) {
+  } catch (const py::builtin_exception&) {
+    throw;
+  } catch (const std::exception& error) {
     throw py::value_error(error.what());
   }
 }
@@ -62,6 +65,16 @@ void add_model(py::module_& module) {
           py::arg("velocity"))
       .def(
           "set_present", [](Given m, bool present) { m.get().set_present(present); }, py::arg("present"))
+      .def(
+          "set_shape", [](Given m, const std::string& name) { change([&] { m.get().set_shape(name); }); },
+          py::arg("name"))
+      .def(
+          "set_size",
+          [](Given m, const std::array<double, 3>& s) { change([&] { m.get().set_size(s[0], s[1], s[2]); }); },
+          py::arg("size"))
+      .def(
+          "set_color", [](Given m, const std::string& color) { change([&] { m.get().set_color(color); }); },
+          py::arg("color"))
       .def("uniform", [](Given m) { return m.get().uniform(); })
       .def("normal", [](Given m) { return m.get().normal(); });
 }

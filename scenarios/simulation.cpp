@@ -192,9 +192,9 @@ base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
   earlier_readings_.reset();
   settle();
+  if (tick_ > 0) call_models();
   take_shapes();
   if (tick_ == 0) begin();
-  if (tick_ > 0) call_models();
   share_->begin_step(tick_);
   if (tick_ > 0) move();
   const auto readings = sense(time);
@@ -357,8 +357,9 @@ std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
 void Simulation::call_models() {
   const auto start = std::chrono::steady_clock::now();
   const std::int64_t time = static_cast<std::int64_t>(tick_ - 1) * interval_;
-  for (const auto& change : models_.call({time, fleet_.reports(), absent_, fleet_})) {
+  for (const auto& change : models_.call({time, fleet_.reports(), absent_, fleet_, shapes_world_ != nullptr})) {
     const std::uint32_t mover = change.mover;
+    if (change.shape.any()) set_shape(*shapes_world_, mover, change.shape);
     if (change.present && *change.present == absent_[mover]) set_absent(mover, !*change.present);
     if (change.X_WM) put(mover, *change.X_WM);
     commands_[mover] = change.velocity;

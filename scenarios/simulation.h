@@ -125,6 +125,10 @@ class Simulation {
   void set_shape(world::World& world, std::uint32_t mover, const world::ShapeChange& change);
   static constexpr std::size_t kMostShapeChanges = 1'000;  ///< between two steps
 
+  /// Lets controllers of models change shapes in `world`, the one given to the constructor. Without this call they
+  /// cannot.
+  void change_shapes_in(world::World& world) { shapes_world_ = &world; }
+
   /// Requests the use of a lane, between two steps (world/roads/lane_control.h). Route controllers replan. With ranks,
   /// all make the same call.
   /// @param lane such as "3.1" @param use a word of world::lane_use_of
@@ -247,6 +251,7 @@ class Simulation {
   std::vector<bool> absent_;                     ///< per mover
   std::vector<std::uint32_t> reshaped_;          ///< movers changed since the last step
   std::vector<base::ShapeState> shapes_;         ///< of the recorded tick
+  world::World* shapes_world_ = nullptr;         ///< null: controllers change no shapes
   std::size_t shape_changes_ = 0;                ///< since the last step
   bool outlines_changed_ = false;                ///< the farm's tables do not have them yet
   std::vector<base::Report> present_;            ///< reports with kAbsent, of one tick; empty: all are present

@@ -85,6 +85,15 @@ class Model {
   virtual void set_velocity(const Twist& velocity) = 0;
   /// Removes the model from the world, or restores it, at rest, at its last pose.
   virtual void set_present(bool present) = 0;
+  /// Gives the model a shape of the world file (`shape( name "crate" ... )`), with its size and colour, or "original".
+  /// Costs a rebuild of the tables of all sensors, as do other sizes, so do it when something changes, not at each
+  /// tick. @throws std::exception, with nothing changed, for an unknown shape, and where shapes do not change (`serve`,
+  /// experiments)
+  virtual void set_shape(std::string_view name) = 0;
+  /// Scales the model's own outline. @param x, y, z [m] in (0, 1000] @throws as set_shape
+  virtual void set_size(double x, double y, double z) = 0;
+  /// @param color an X11 name such as "steel blue", or "#RRGGBB" @throws as set_shape
+  virtual void set_color(std::string_view color) = 0;
 
   virtual double uniform() = 0;  ///< next random number in (0, 1) of this model, by the seed of the run
   virtual double normal() = 0;   ///< next random number of the standard normal distribution

@@ -269,6 +269,12 @@ class Model:
         """Sets forward, left [m/s] and turn [rad/s] for all following ticks."""
     def set_present(self, present: bool) -> None:
         """Removes the model from the world, or restores it at its last pose."""
+    def set_shape(self, name: str) -> None:
+        """Gives the model a shape of the world file, with its size and colour, or "original"."""
+    def set_size(self, size: Sequence[float]) -> None:
+        """Scales the model's own outline to (x, y, z) [m]."""
+    def set_color(self, color: str) -> None:
+        """An X11 name, or "#RRGGBB"."""
     def uniform(self) -> float:
         """Returns the model's next random number in (0, 1)."""
     def normal(self) -> float:

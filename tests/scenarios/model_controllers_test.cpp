@@ -51,6 +51,7 @@ world::World acting_world(const std::string& ctrl = "acts") {
     bot( name "r0" ctrl "wander" ) bot( name "r1" pose [-1 1 0 90] ctrl "wander" )
     model( name "room" size [6 6 1] boundary 1 noblocks 1 ) model( name "tag3" pose [2 0 0 0] size [0.3 0.2 1] )
     model( name "tag4" pose [0 -2 0 0] size [0.8 0.1 1] )
+    shape( name "post" size [0.1 0.1 1] color "green" )
   )";
   world::World world = world::build_world("acting.world", kText, {.sensors = sensors::world_file_words()});
   for (const std::uint32_t row : control::controlled_models(world)) world.movers[row].controller.clear();
@@ -218,6 +219,41 @@ TEST(ModelControllers, ObstaclesStopAModelUntilOthersTakeOver) {
   removed.remove_robot(2);
   removed.step();
   EXPECT_EQ(ticks, 41);
+}
+
+/// Shapes set by a controller give the bytes of those that the caller sets between the same steps.
+TEST(ModelControllers, ChangeShapeSizeAndColour) {
+  world::World world = acting_world(), same = acting_world();
+  Simulation controlled(world, host_device(), acting_options(world));
+  controlled.change_shapes_in(world);
+  act.tick = [](Model& model) {
+    if (model.pose().x < 1.0) return;  // tag3 only
+    if (model.time() > 0.95 && model.time() < 1.05) model.set_shape("post"), model.set_color("#0000ff");
+    if (model.time() > 1.95 && model.time() < 2.05) model.set_size(0.5, 1.5, 1.0);
+    if (model.time() > 2.95 && model.time() < 3.05) model.set_shape("original");
+  };
+  for (world::Mover& mover : same.movers)
+    if (mover.is_tag) mover.controller.clear();
+  Simulation by_hand(same, host_device(), acting_options(same));
+  for (int tick = 0; tick < 40; ++tick) {
+    if (tick == 11) by_hand.set_shape(same, 2, {.shape = "post", .color = 0xFF0000FFu});
+    if (tick == 21) by_hand.set_shape(same, 2, {.size = glm::dvec3{0.5, 1.5, 1.0}});
+    if (tick == 31) by_hand.set_shape(same, 2, {.shape = "original"});
+    const base::TickRecord one = controlled.step(), other = by_hand.step();
+    EXPECT_EQ(one.shapes.size(), other.shapes.size()) << tick;
+    EXPECT_EQ(one.shapes.size(), tick % 10 == 1 && tick > 10 ? 1u : 0u) << tick;
+    EXPECT_EQ(controlled.farm().hash(), by_hand.farm().hash()) << tick;
+  }
+  act.tick = [](Model& model) { model.set_shape("pots"); };
+  expect_in("'tag3' cannot change: ", refusal_of([&] { controlled.step(); }));
+  act.tick = [](Model& model) { model.set_size(0.0, 1.0, 1.0); };
+  expect_in("size (0, 1, 1); expected lengths above 0", refusal_of([&] { controlled.step(); }));
+  act.tick = [](Model& model) { model.set_color("blurple"); };
+  expect_in("controller 'acts' of model 'tag3' failed at 3.900 s: ", refusal_of([&] { controlled.step(); }));
+  Simulation fixed(world, host_device(), acting_options(world));
+  fixed.step();
+  act.tick = [](Model& model) { model.set_shape("post"); };
+  expect_in("shape, size and colour cannot change here", refusal_of([&] { fixed.step(); }));
 }
 
 TEST(ModelControllers, FailuresEndTheStep) {
