@@ -55,16 +55,18 @@ std::vector<std::string_view> controller_names() {
   return names;
 }
 
+Settings settings_of_ctrl(const world::Mover& mover) {
+  std::vector<Setting> settings;
+  for (const auto& [key, value] : mover.controller_settings)
+    settings.push_back({key, RawText{value}, mover.controller_at});
+  return {fmt::format("controller '{}'", mover.controller), std::move(settings)};
+}
+
 ControllerConfig controller_of(const world::Mover& mover, const ControllerConfig& fallback) {
   if (mover.is_tag || mover.controller == "none") return {};
   if (mover.controller.empty()) return fallback;
   if (mover.controller == fallback.name && mover.controller_settings.empty()) return fallback;
-  std::vector<Setting> settings;
-  for (const auto& [key, value] : mover.controller_settings)
-    settings.push_back({key, RawText{value}, mover.controller_at});
-  return {.name = mover.controller,
-          .settings = Settings(fmt::format("controller '{}'", mover.controller), std::move(settings)),
-          .at = mover.controller_at};
+  return {.name = mover.controller, .settings = settings_of_ctrl(mover), .at = mover.controller_at};
 }
 
 std::vector<sensors::SensorSpec> ControllerContext::sensors_of(std::uint8_t sensor_type) const {
@@ -99,14 +101,8 @@ ConfiguredController make(const ControllerContext& context, ControllerConfig con
 }  // namespace
 
 ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config) {
-  if (config.at.empty()) return make(context, std::move(config));
   const std::string at = config.at;
-  try {
-    return make(context, std::move(config));
-  } catch (const base::InputError& error) {
-    const std::string what = error.what();
-    throw base::InputError(what.starts_with(at) ? what : at + what);
-  }
+  return with_place(at, [&] { return make(context, std::move(config)); });
 }
 
 }  // namespace sf::control

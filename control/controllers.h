@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "control/controller.h"
 #include "control/settings.h"
 #include "sensors/sensor_set.h"
@@ -79,6 +80,20 @@ struct ControllerConfig {
   bool localized_outside = false;  ///< inputs already contain estimates: the shell never replaces them
   std::string at = {};             ///< "FILE:LINE: " of the name in a world file, prefix of errors; empty: elsewhere
 };
+
+/// Returns the settings of `ctrl`, with its line in their errors.
+Settings settings_of_ctrl(const world::Mover& mover);
+
+/// Calls `make()` and puts `at` ("FILE:LINE: " or empty) in front of errors that lack it.
+template <class Make>
+auto with_place(const std::string& at, Make&& make) {
+  try {
+    return make();
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    throw base::InputError(what.starts_with(at) ? what : at + what);
+  }
+}
 
 /// Returns the controller that the world file gives the robot (`ctrl`), or else `fallback`. The latter also applies,
 /// with its settings, if `ctrl` has the same name and no settings. Tags have none.

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/plugin_calls.h"
 #include "base/printable.h"
+#include "control/public_settings.h"
 #include "sensors/derived/public_types.h"
 
 namespace sf::control {
@@ -18,23 +19,6 @@ namespace {
 static_assert(static_cast<int>(sensorfarm::LightState::flashing_yellow) ==
               static_cast<int>(world::LightState::flashing_yellow));
 static_assert(sensorfarm::kNone == base::kNoHit && sensorfarm::kNone == base::kNoId);
-
-/// Adapts the farm's settings to the public interface.
-class PublicSettings final : public sensorfarm::Settings {
- public:
-  explicit PublicSettings(control::Settings& settings) : settings_(settings) {}
-  double number(std::string_view key, double fallback, double least, double most) override {
-    return settings_.number(key, fallback, least, most);
-  }
-  bool flag(std::string_view key, bool fallback) override { return settings_.flag(key, fallback); }
-  std::string text(std::string_view key, const std::string& fallback) override { return settings_.text(key, fallback); }
-  std::vector<double> numbers(std::string_view key, const std::vector<double>& fallback) override {
-    return settings_.numbers(key, fallback);
-  }
-
- private:
-  control::Settings& settings_;
-};
 
 }  // namespace
 

@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/installation.h"
 #include "base/plugin.h"
 #include "base/plugin_calls.h"
 #include "base/printable.h"
+#include "base/suggest.h"
 #include "control/own_controllers.h"
 #include "sensors/derived/own_derived.h"
 #include "sensors/own_sensors.h"
@@ -21,8 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct PluginControllers {
+  std::vector<const ControllerType*> robots;
+  std::vector<const sensorfarm::ModelEntry*> models;
+};
+
 /// Controllers of the files loaded so far, by canonical path.
-using Loaded = std::map<std::string, std::vector<const ControllerType*>>;
+using Loaded = std::map<std::string, PluginControllers>;
 Loaded& loaded() {
   static Loaded files;
   return files;
@@ -70,7 +77,7 @@ void fill_from_library(const std::string& file, sensorfarm::Plugin& plugin) {
   }
 }
 
-std::vector<const ControllerType*> load(const std::string& file, const std::string& whole) {
+PluginControllers load(const std::string& file, const std::string& whole) {
   sensorfarm::Plugin plugin;
   {
     const base::PluginCall under_way(base::one_line("plug-in " + file));
@@ -80,15 +87,17 @@ std::vector<const ControllerType*> load(const std::string& file, const std::stri
       fill_from_library(file, plugin);
   }
   base::renew_plugin_watch();
-  std::vector<const ControllerType*> types;
+  PluginControllers types;
   for (sensorfarm::ControllerEntry& entry : plugin.controllers)
-    types.push_back(add_own_controller(std::move(entry), file));
+    types.robots.push_back(add_own_controller(std::move(entry), file));
+  for (sensorfarm::ModelEntry& entry : plugin.models)
+    types.models.push_back(add_own_model_controller(std::move(entry), file));
   for (sensorfarm::SensorEntry& entry : plugin.sensors) sensors::add_own_sensor(std::move(entry), file);
   for (sensorfarm::DerivedEntry& entry : plugin.derived) sensors::add_own_derived(std::move(entry), file);
   return types;
 }
 
-const std::vector<const ControllerType*>& controllers_in(const std::string& file) {
+const PluginControllers& controllers_in(const std::string& file) {
   std::error_code error;
   const std::string whole = fs::canonical(file, error).string();
   if (error) throw base::InputError(file, 0, "cannot be opened: " + error.message());
@@ -96,21 +105,34 @@ const std::vector<const ControllerType*>& controllers_in(const std::string& file
   return known != loaded().end() ? known->second : loaded().emplace(whole, load(file, whole)).first->second;
 }
 
-}  // namespace
-
-const ControllerType* load_controller(const std::string& name) {
+/// Returns the one with the name after the colon, or the only one. @param kind "controller"
+template <class Type>
+const Type* chosen(const std::string& name, const std::vector<const Type*>& types, std::string_view kind) {
   const auto [file, wanted] = parts_of(name);
-  const auto& types = controllers_in(file);
-  if (types.empty()) throw base::InputError(file, 0, "has no controller");
+  if (types.empty()) throw base::InputError(file, 0, fmt::format("has no {}", kind));
   if (wanted.empty() && types.size() == 1) return types.front();
   const auto found = std::find_if(types.begin(), types.end(), [&](const auto* type) { return type->name == wanted; });
   if (found != types.end()) return *found;
   std::string names;
-  for (const ControllerType* type : types) names += fmt::format("{}{}:{}", names.empty() ? "" : ", ", file, type->name);
+  for (const Type* type : types) names += fmt::format("{}{}:{}", names.empty() ? "" : ", ", file, type->name);
   throw base::InputError(
       file, 0,
       fmt::format("has {}; expected one of: {}",
-                  wanted.empty() ? "several controllers" : fmt::format("no controller '{}'", wanted), names));
+                  wanted.empty() ? fmt::format("several {}s", kind) : fmt::format("no {} '{}'", kind, wanted), names));
+}
+
+}  // namespace
+
+const ControllerType* load_controller(const std::string& name) {
+  return chosen(name, controllers_in(parts_of(name).first).robots, "controller");
+}
+
+const sensorfarm::ModelEntry& find_model_controller(const std::string& name) {
+  if (base::names_a_plugin(name)) return *chosen(name, controllers_in(parts_of(name).first).models, "model controller");
+  for (const sensorfarm::ModelEntry& entry : model_controllers())
+    if (entry.name == name) return entry;
+  throw base::InputError(
+      fmt::format("there is no model controller '{}'{}", name, base::expected_one_of(name, model_controller_names())));
 }
 
 void load_plugin_file(const std::string& file) { controllers_in(file); }

@@ -124,6 +124,7 @@ void Simulation::State::prepare() {
   device = library::shared_device(options);
   world = library::load(source, options);
   simulation.emplace(world, *device, simulation_options(world, options, ranks));
+  simulation->change_shapes_in(world);
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
@@ -302,6 +303,7 @@ void Simulation::State::take(const base::TickRecord& record) {
     poses[i] = {report.X_WM.x, report.X_WM.y, report.X_WM.z, report.X_WM.yaw};
     velocities[i] = {report.velocity.forward, report.velocity.left, report.velocity.turn};
     contacts[i] = record.contacts[i];
+    present[i] = base::is_absent(report.X_WM) ? 0 : 1;
   }
   for (library::ReadingTable& table : tables) {
     of_type.clear();

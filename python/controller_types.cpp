@@ -180,7 +180,7 @@ void add_settings(py::module_& module) {
 
 void add_controller_types(py::module_& module) {
   module.attr("Pose") = pose_type(), module.attr("Twist") = twist_type();
-  add_robot(module), add_input(module), add_settings(module);
+  add_robot(module), add_input(module), add_settings(module), add_model_types(module);
 }
 
 py::object reading_object(const Reading& reading, std::size_t columns) { return py::cast(owned(reading, columns)); }
@@ -195,13 +195,13 @@ py::object input_of(const Input& input, const Robot& robot) {
   return py::cast(std::move(own));
 }
 
-py::object with_settings(Settings& settings, const py::handle& type, const Robot& robot) {
+py::object with_settings(Settings& settings, const py::handle& type, const py::object& site) {
   const py::object lent = py::cast(LentSettings{&settings});
   struct Return {
     LentSettings& lent;
     ~Return() { lent.settings = nullptr; }
   } const give_back{lent.cast<LentSettings&>()};
-  return type(robot, lent);
+  return type(site, lent);
 }
 
 }  // namespace sensorfarm::python

@@ -13,16 +13,6 @@ namespace py = pybind11;
 
 namespace {
 
-template <class Call>
-auto under_gil(const std::string& file, Call&& call) {
-  const py::gil_scoped_acquire gil;
-  try {
-    return call();
-  } catch (py::error_already_set& error) {
-    throw std::runtime_error(last_line(error, file));
-  }
-}
-
 py::object site_object(const DerivedSite& site, const std::vector<InputPort>& ports) {
   const py::object made = py::module_::import("types").attr("SimpleNamespace");
   py::list inputs;
@@ -66,27 +56,17 @@ class PythonDerivedSensor final : public DerivedSensor {
       : file_(std::move(file)), object_(std::move(object)) {
     for (const DerivedInput& input : site.inputs) columns_.push_back(input.sensor.columns.size());
   }
-  PythonDerivedSensor(const PythonDerivedSensor&) = delete;
-  PythonDerivedSensor& operator=(const PythonDerivedSensor&) = delete;
-  ~PythonDerivedSensor() override {
-    if (Py_IsInitialized() != 0) {
-      const py::gil_scoped_acquire gil;
-      object_ = py::object();
-    } else {
-      object_.release();
-    }
-  }
 
   void take(std::uint32_t input, const Reading& reading) override {
-    under_gil(file_, [&] { object_.attr("take")(input, reading_object(reading, columns_.at(input))); });
+    in_python(file_, [&] { object_->attr("take")(input, reading_object(reading, columns_.at(input))); });
   }
   void read(double time, DerivedReading out) override {
-    under_gil(file_, [&] { put(object_.attr("read")(time), out); });
+    in_python(file_, [&] { put(object_->attr("read")(time), out); });
   }
   void add_input(const DerivedInput& input) override {
     columns_.push_back(input.sensor.columns.size());
-    under_gil(file_, [&] {
-      if (py::hasattr(object_, "add_input")) object_.attr("add_input")(input.robot, input.sensor);
+    in_python(file_, [&] {
+      if (py::hasattr(*object_, "add_input")) object_->attr("add_input")(input.robot, input.sensor);
     });
   }
 
@@ -104,7 +84,7 @@ class PythonDerivedSensor final : public DerivedSensor {
     const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
     if (!numbers || static_cast<std::size_t>(numbers.size()) != to.size()) {
       PyErr_Clear();
-      throw std::runtime_error(place_of(object_.attr("read")) + "read() returned " +
+      throw std::runtime_error(place_of(object_->attr("read")) + "read() returned " +
                                py::repr(given).cast<std::string>() + "; expected " + std::to_string(to.size()) + " " +
                                what + ", or None");
     }
@@ -112,7 +92,7 @@ class PythonDerivedSensor final : public DerivedSensor {
   }
 
   std::string file_;
-  py::object object_;
+  HeldObject object_;
   std::vector<std::size_t> columns_;  ///< per input
 };
 
@@ -143,7 +123,7 @@ DerivedEntry derived_entry_of(py::handle type, const std::string& file) {
   entry.covariance = own_attribute(type, "covariance", entry.covariance);
   type.inc_ref();  // for the rest of the program
   entry.make = [type, file, ports = entry.ports](const DerivedSite& site, const SensorSettings& settings) {
-    return under_gil(file, [&]() -> std::unique_ptr<DerivedSensor> {
+    return in_python(file, [&]() -> std::unique_ptr<DerivedSensor> {
       const auto lent = std::make_shared<const SensorSettings*>(&settings);
       struct Return {
         const SensorSettings*& lent;

@@ -102,6 +102,8 @@ void fill(const std::string& file, Plugin& plugin) {
       if (!is_class_of(value, file)) continue;
       if (py::hasattr(value, "step"))
         plugin.controllers.push_back(entry_of(value));
+      else if (py::hasattr(value, "tick"))
+        plugin.models.push_back(model_entry_of(value));
       else if (py::hasattr(value, "take") && py::hasattr(value, "read"))
         plugin.derived.push_back(derived_entry_of(value, file));
       else if (without_step.empty())
@@ -111,9 +113,10 @@ void fill(const std::string& file, Plugin& plugin) {
   } catch (py::error_already_set& error) {
     throw std::runtime_error(last_line(error, file));
   }
-  if (plugin.controllers.empty() && plugin.derived.empty())
+  if (plugin.controllers.empty() && plugin.models.empty() && plugin.derived.empty())
     throw std::runtime_error(
-        "it has no class with a method step(self, input), or with take(self, input, reading) and read(self, time)" +
+        "it has no class with a method step(self, input), tick(self, model), or take(self, input, reading) and "
+        "read(self, time)" +
         without_step);
 }
 
@@ -121,7 +124,7 @@ void fill(const std::string& file, Plugin& plugin) {
 
 }  // namespace sensorfarm::python
 
-/// Adds the classes of `file` (a canonical path) that have a method `step`, or `take` and `read`. @throws
+/// Adds the classes of `file` (a canonical path) that have a method `step`, `tick`, or `take` and `read`. @throws
 /// std::exception
 extern "C" __attribute__((visibility("default"))) void sensorfarm_python(const char* file, sensorfarm::Plugin& plugin) {
   sensorfarm::python::fill(file, plugin);

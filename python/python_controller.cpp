@@ -11,24 +11,6 @@ namespace py = pybind11;
 
 namespace {
 
-/// Calls with the GIL. Converts Python exceptions to std::runtime_error with their last line.
-template <class Call>
-auto in_python(const std::string& file, Call&& call) {
-  const py::gil_scoped_acquire gil;
-  try {
-    return call();
-  } catch (py::error_already_set& error) {
-    throw std::runtime_error(last_line(error, file));
-  }
-}
-
-/// One line, whatever the text.
-std::string object_text(py::handle text) {
-  std::string line = py::bytes(py::str(text).attr("encode")("utf-8", "backslashreplace"));
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  return line;
-}
-
 constexpr const char* expected_of(const Twist&) { return "three numbers (forward, left, turn) in m/s, m/s and rad/s"; }
 constexpr const char* expected_of(bool) { return "True or False"; }
 constexpr const char* expected_of(double) { return "a number"; }
@@ -49,26 +31,15 @@ class PythonController final : public Controller {
       : file_(std::move(file)),
         robot_(std::move(robot)),
         object_(std::move(object)),
-        has_done_(py::hasattr(object_, "done")),
-        has_error_(py::hasattr(object_, "error")),
-        has_outputs_(py::hasattr(object_, "outputs")) {}
-  PythonController(const PythonController&) = delete;
-  PythonController& operator=(const PythonController&) = delete;
-  ~PythonController() override {
-    if (Py_IsInitialized() != 0) {
-      const py::gil_scoped_acquire gil;
-      object_ = py::object();
-    } else {
-      object_.release();
-    }
-  }
-
+        has_done_(py::hasattr(*object_, "done")),
+        has_error_(py::hasattr(*object_, "error")),
+        has_outputs_(py::hasattr(*object_, "outputs")) {}
   Twist step(const Input& input) override {
     return in_python(file_, [&] { return returned<Twist>("step", input_of(input, robot_)); });
   }
   double radio_range() const override {
     return in_python(file_,
-                     [&] { return py::hasattr(object_, "radio_range") ? returned<double>("radio_range") : 0.0; });
+                     [&] { return py::hasattr(*object_, "radio_range") ? returned<double>("radio_range") : 0.0; });
   }
   bool done() const override {
     return has_done_ && in_python(file_, [&] { return returned<bool>("done"); });
@@ -83,13 +54,13 @@ class PythonController final : public Controller {
  private:
   template <class Value, class... Arguments>
   Value returned(const char* method, const Arguments&... arguments) const {
-    const py::object bound = object_.attr(method);
+    const py::object bound = object_->attr(method);
     return value_of<Value>(bound(arguments...), [&] { return place_of(bound) + method + "() returned "; });
   }
 
   std::string file_;
   Robot robot_;
-  py::object object_;
+  HeldObject object_;
   bool has_done_, has_error_, has_outputs_;
 };
 
@@ -111,17 +82,18 @@ bool takes(const py::object& callable, int arguments) {
   return true;
 }
 
-constexpr const char* kConstructor = "expected def __init__(self, robot, settings)";
+}  // namespace
 
-void check_constructor(py::handle type) {
+void check_constructor(py::handle type, const std::string& first) {
+  const std::string expected = "expected def __init__(self, " + first + ", settings)";
   if (takes(py::reinterpret_borrow<py::object>(type), 2)) return;
   const std::string name = object_text(type.attr("__name__"));
   const py::object made = type.attr("__init__");
   if (!py::hasattr(made, "__code__"))
-    throw std::runtime_error(place_of(type) + "class " + name + " has no __init__; " + kConstructor);
+    throw std::runtime_error(place_of(type) + "class " + name + " has no __init__; " + expected);
   throw std::runtime_error(place_of(made) + name + ".__init__" +
                            object_text(py::str(py::module_::import("inspect").attr("signature")(made))) +
-                           " has other parameters; " + kConstructor);
+                           " has other parameters; " + expected);
 }
 
 void check_method(const py::object& object, const char* method, const char* parameters, int arguments) {
@@ -135,16 +107,13 @@ void check_method(const py::object& object, const char* method, const char* para
                            parameters);
 }
 
+namespace {
+
 /// @throws std::runtime_error with the place and the expected signature of the first method that cannot be called
 py::object with_checked_methods(py::object object) {
   check_method(object, "step", "(self, input)", 1);
   for (const char* method : {"radio_range", "done", "error", "outputs"}) check_method(object, method, "(self)", 0);
   return object;
-}
-
-std::string file_of(py::handle type) {
-  const py::object module = py::module_::import("sys").attr("modules").attr("get")(type.attr("__module__"));
-  return py::str(py::getattr(module, "__file__", py::str("")));
 }
 
 template <class Value>
@@ -155,12 +124,24 @@ Value attribute(py::handle type, const char* name, Value fallback) {
   });
 }
 
+}  // namespace
+
+/// One line, whatever the text.
+std::string object_text(py::handle text) {
+  std::string line = py::bytes(py::str(text).attr("encode")("utf-8", "backslashreplace"));
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
+}
+
+std::string file_of(py::handle type) {
+  const py::object module = py::module_::import("sys").attr("modules").attr("get")(type.attr("__module__"));
+  return py::str(py::getattr(module, "__file__", py::str("")));
+}
+
 std::string first_line(py::handle text) {
   const std::string all = text.is_none() ? "" : py::str(text.attr("strip")());
   return all.substr(0, all.find('\n'));
 }
-
-}  // namespace
 
 std::string last_line(py::error_already_set& error, const std::string& file) {
   const py::module_ traceback = py::module_::import("traceback");
@@ -205,8 +186,8 @@ ControllerEntry entry_of(py::handle type) {
   type.inc_ref();
   entry.make = [type, file = file_of(type), checked = false](const Robot& robot, Settings& settings) mutable {
     return in_python(file, [&]() -> std::unique_ptr<Controller> {
-      if (!checked) check_constructor(type);
-      py::object object = with_settings(settings, type, robot);
+      if (!checked) check_constructor(type, "robot");
+      py::object object = with_settings(settings, type, py::cast(robot));
       if (!checked) object = with_checked_methods(std::move(object));
       checked = true;
       return std::make_unique<PythonController>(file, robot, std::move(object));

@@ -98,6 +98,18 @@ class Fleet {
   /// outside are computed at these poses and added to those in the reports. Valid until the next call.
   std::span<const base::Report> predict(std::int64_t time);
 
+  /// A surface within kContactDistance of a mover's outline, or inside it.
+  struct Touch {
+    std::uint32_t model = 0;             ///< row in World::models: of the other mover, or of the static model
+    std::uint32_t mover = world::kNone;  ///< row of the other mover; kNone: it is static
+    glm::dvec2 p;                        ///< [m] world frame: the surface's point nearest to the outline, or inside it
+  };
+  /// Appends one touch per static model, and one per mover of `others` that is present. Stateless: a touch needs no
+  /// refused step.
+  /// @param states one per mover
+  void find_touches(std::uint32_t row, std::span<const base::Report> states, std::span<const std::uint32_t> others,
+                    std::vector<Touch>& touches) const;
+
   /// Returns the number of substeps that `move` has tested against obstacles near them, in all ticks.
   std::uint64_t steps_tested() const;
 

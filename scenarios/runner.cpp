@@ -63,6 +63,7 @@ class Run {
         events_(scenario),
         metrics_(world_, simulation_) {
     for (std::uint32_t row = 0; row < world_.movers.size(); ++row) add_map(row);
+    simulation_.change_shapes_in(world_);
   }
 
   void go(const std::function<void(double)>& progress, const std::function<bool()>& stop, ScenarioResult& result) {

@@ -41,6 +41,17 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   return farm;
 }
 
+/// Returns the models with a controller, except those that a robot's controller drives.
+std::vector<std::uint32_t> own_models(const world::World& world, const SimulationOptions& options) {
+  std::vector<std::uint32_t> rows = control::controlled_models(world);
+  if (!options.actors.empty())
+    std::erase_if(rows, [&](std::uint32_t row) { return !options.actors[row].controller.name.empty(); });
+  if (options.ranks != nullptr && !rows.empty())
+    throw base::InputError(world.movers[rows[0]].controller_at +
+                           "controllers of models cannot run in several ranks; expected a run in one process");
+  return rows;
+}
+
 /// Moves the newest reading of each sensor to the front, because a sensor may have several between two ticks.
 std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) {
   std::size_t kept = 0;
@@ -63,6 +74,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       roads_(world::roads_of(world_)),
       farm_(world_, device, farm_options(options)),
       fleet_(world_, &farm_.thread_pool()),
+      models_(world_, own_models(world, options), {.seed = options.seed, .interval = world.interval}),
       commands_(world.movers.size()),
       executed_commands_(world.movers.size()),
       first_(world.movers.size() + 1),
@@ -182,6 +194,7 @@ base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
   earlier_readings_.reset();
   settle();
+  if (tick_ > 0) call_models();
   take_shapes();
   if (tick_ == 0) begin();
   share_->begin_step(tick_);
@@ -316,6 +329,7 @@ void Simulation::remove_robot(std::uint32_t mover) {
   settle();
   set_absent(mover, true);
   controls_[mover] = {};
+  models_.remove(mover);
   share_->set_status(mover, {});
 }
 
@@ -343,6 +357,20 @@ std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
   return readings_;
 }
 
+/// Calls the controllers of models with the states of the last tick.
+void Simulation::call_models() {
+  const auto start = std::chrono::steady_clock::now();
+  const std::int64_t time = static_cast<std::int64_t>(tick_ - 1) * interval_;
+  for (const auto& change : models_.call({time, fleet_.reports(), absent_, fleet_, shapes_world_ != nullptr})) {
+    const std::uint32_t mover = change.mover;
+    if (change.shape.any()) set_shape(*shapes_world_, mover, change.shape);
+    if (change.present && *change.present == absent_[mover]) set_absent(mover, !*change.present);
+    if (change.X_WM) put(mover, *change.X_WM);
+    commands_[mover] = change.velocity;
+  }
+  move_s_ += base::seconds_since(start);
+}
+
 void Simulation::move() {
   const auto start = std::chrono::steady_clock::now();
   fleet_.move(commands_, interval_);
@@ -360,6 +388,7 @@ void Simulation::command(std::span<const base::Twist> commands) {
 void Simulation::drive(std::uint32_t mover, const base::Twist& command) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   controls_[mover].driven = true;
+  models_.remove(mover);
   estimates_[mover] = next_estimates_[mover] = {};
   if (!maps_.empty()) maps_[mover] = next_maps_[mover] = {};
   commands_[mover] = command;

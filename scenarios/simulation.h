@@ -4,8 +4,10 @@
 //   Simulation simulation(world, device, {.seed = 7, .actor = {.controller = {.name = "wander"}}});
 //   while (running) recorder.write(simulation.step());
 //
-// One tick consists of the motion since the last tick, readings, and decisions. A command decided at a tick is executed
-// until the next. Sensors measure at their own due times, also between ticks.
+// One tick consists of the motion since the last tick, readings, and decisions. Then the controllers of models are
+// called (sensorfarm/model.h): at the start of the next step, so that changes by the caller between two steps come
+// first. A command decided at a tick is executed until the next. Sensors measure at their own due times, also between
+// ticks.
 
 #include <chrono>
 #include <cstdint>
@@ -20,6 +22,7 @@
 #include "base/thread_pool.h"
 #include "base/tick_record.h"
 #include "control/controllers.h"
+#include "control/model_controllers.h"
 #include "control/shared_map.h"
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
@@ -76,12 +79,12 @@ struct SimulationOptions {
 class Simulation {
  public:
   /// @throws base::InputError for an unknown controller, invalid settings, a missing requirement of a controller, and
-  /// for faults with ranks
+  /// for faults and controllers of models with ranks
   Simulation(const world::World& world, gpu::Device& device, SimulationOptions options);
 
   /// Performs one tick of `world.interval`; the first tick measures at time 0 without motion. Returns the readings
   /// delivered since the last tick, in order of delivery. Spans are valid until the next call.
-  /// @throws base::InputError if a controller fails, with the first robot's error
+  /// @throws base::InputError if a controller fails, with the first model's or robot's error
   base::TickRecord step();
 
   /// Completes the last step's exchange with other ranks, which otherwise continues until the next step.
@@ -121,6 +124,10 @@ class Simulation {
   /// step, and with tiles
   void set_shape(world::World& world, std::uint32_t mover, const world::ShapeChange& change);
   static constexpr std::size_t kMostShapeChanges = 1'000;  ///< between two steps
+
+  /// Lets controllers of models change shapes in `world`, the one given to the constructor. Without this call they
+  /// cannot.
+  void change_shapes_in(world::World& world) { shapes_world_ = &world; }
 
   /// Requests the use of a lane, between two steps (world/roads/lane_control.h). Route controllers replan. With ranks,
   /// all make the same call.
@@ -192,6 +199,7 @@ class Simulation {
   void take_shapes();
   void check_joining(const world::World& world, const JoiningRobot& robot) const;
   std::uint32_t bring_back(std::uint32_t mover, const JoiningRobot& robot);
+  void call_models();
   void move();
   std::span<const base::ReadingBlock> sense(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
@@ -219,6 +227,7 @@ class Simulation {
   std::optional<V2vLink> v2v_;       ///< nullopt: V2V is current
   robots::NeighbourGrid neighbours_;
   std::vector<RobotControl> controls_;  ///< per mover
+  control::ModelControllers models_;
   std::vector<base::Twist> commands_;
   std::vector<base::Twist> executed_commands_;  ///< executed in the interval before the recorded tick
   /// Readings of this tick: the returned span if already in order, else `sorted_`.
@@ -242,6 +251,7 @@ class Simulation {
   std::vector<bool> absent_;                     ///< per mover
   std::vector<std::uint32_t> reshaped_;          ///< movers changed since the last step
   std::vector<base::ShapeState> shapes_;         ///< of the recorded tick
+  world::World* shapes_world_ = nullptr;         ///< null: controllers change no shapes
   std::size_t shape_changes_ = 0;                ///< since the last step
   bool outlines_changed_ = false;                ///< the farm's tables do not have them yet
   std::vector<base::Report> present_;            ///< reports with kAbsent, of one tick; empty: all are present

@@ -1,6 +1,6 @@
 #pragma once
-// A plug-in: a shared library with your own controllers and sensors. It needs only these headers, and no library of the
-// farm.
+// A plug-in: a shared library with your own controllers, model controllers and sensors. It needs only these headers,
+// and no library of the farm.
 
 #include <memory>
 #include <string>
@@ -9,17 +9,19 @@
 
 #include "sensorfarm/controller.h"
 #include "sensorfarm/derived.h"
+#include "sensorfarm/model.h"
 #include "sensorfarm/sensor.h"
 
 namespace sensorfarm {
 
 /// Incremented with every change of these headers that changes the layout of a type. A library with another number is
 /// refused.
-inline constexpr int kPluginInterface = 4;
+inline constexpr int kPluginInterface = 5;
 
-/// The controllers, sensors and derived sensors of a plug-in.
+/// The controllers, model controllers, sensors and derived sensors of a plug-in.
 struct Plugin {
   std::vector<ControllerEntry> controllers;
+  std::vector<ModelEntry> models;
   std::vector<SensorEntry> sensors;
   std::vector<DerivedEntry> derived;
 
@@ -29,6 +31,14 @@ struct Plugin {
     return controllers.emplace_back(ControllerEntry{
         std::move(name), std::move(summary), rate, true,
         [](const Robot& robot, Settings& settings) { return std::make_unique<Made>(robot, settings); }});
+  }
+
+  /// Adds a model controller. `Made` is constructed from (const ModelSite&, Settings&).
+  template <class Made>
+  ModelEntry& add_model_controller(std::string name, std::string summary) {
+    return models.emplace_back(
+        ModelEntry{std::move(name), std::move(summary),
+                   [](const ModelSite& site, Settings& settings) { return std::make_unique<Made>(site, settings); }});
   }
 
   /// Adds a sensor type. `Made` is constructed from (const SensorSite&, const SensorSettings&). @param entry without

@@ -192,7 +192,8 @@ class SENSORFARM_API Simulation {
   std::span<const Twist> velocities() const;       ///< per row
   std::span<const std::uint8_t> contacts() const;  ///< per row: 1 if a wall or a robot stopped it
   std::span<const std::uint8_t> done() const;      ///< per row: 1 if its controller is done
-  std::span<const std::uint8_t> present() const;   ///< per row: 0 if it was removed
+  std::span<const std::uint8_t> present() const;   ///< per row: 0 if it is not in the world: removed, or
+                                                   ///< absent by its model controller
 
   std::vector<std::string> shapes() const;         ///< names of the world's shapes, in the order of its file
   std::vector<std::string> types() const;          ///< sensor types of this world: "laser", ...

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/thread_pool.h"
 #include "base/time.h"
+#include "robots/motion_limits.h"
 
 namespace sf::server {
 
@@ -31,6 +32,19 @@ StateReceiverOptions with_lights(StateReceiverOptions options, std::vector<std::
   return options;
 }
 
+/// Objects that join belong to their senders.
+std::vector<std::uint32_t> own_models(const world::World& world, const StateReceiverOptions& options) {
+  std::vector<std::uint32_t> rows = control::controlled_models(world);
+  std::erase_if(rows, [&](std::uint32_t row) {
+    return std::find(options.joining.begin(), options.joining.end(), row) != options.joining.end();
+  });
+  return rows;
+}
+
+double interval_of(const world::World& world, const ServiceOptions& options) {
+  return options.rate > 0.0 ? 1.0 / options.rate : world.interval;
+}
+
 }  // namespace
 
 Service::Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
@@ -47,9 +61,11 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
                  options.mirror),
       farm_(world, device,
             farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
+      models_(world, own_models(world, options.receiver),
+              {.seed = options.seed, .interval = interval_of(world, options)}),
       absent_(world.movers.size(), false),
       no_return_filter_(sensor_set, options.no_return_inf),
-      interval_(options.rate > 0.0 ? 1.0 / options.rate : world.interval),
+      interval_(interval_of(world, options)),
       only_at_ticks_(options.rate > 0.0) {
   receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
     lights_.accept(header, signals, now);
@@ -152,7 +168,25 @@ void Service::tick(std::int64_t now) {
   lanes_.publish(now, receiver_);
   drives_.send(now, receiver_);
   receiver_.relay(now);
+  call_models(now);
   ++ticks_;
+}
+
+/// An object belongs to its controller until the first packet that moves it.
+void Service::call_models(std::int64_t now) {
+  for (const std::uint32_t row : models_.rows()) {
+    if (!receiver_.is_moved_by_packets(row)) continue;
+    models_.remove(row);
+    receiver_.log().write(fmt::format("'{}' is moved by packets from now on: its controller is no longer called",
+                                      world_.movers[row].name),
+                          now);
+  }
+  if (models_.empty()) return;
+  const auto states = receiver_.states(now);
+  for (const auto& change : models_.call({now, states, absent_, receiver_.fleet()}))
+    receiver_.place({change.mover, now, change.X_WM.value_or(states[change.mover].X_WM),
+                     robots::limit_kinematics(world_.movers[change.mover], change.velocity)},
+                    change.present.value_or(!absent_[change.mover]));
 }
 
 void Service::publish_due(std::int64_t now, bool between) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/tick_record.h"
+#include "control/model_controllers.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "sensors/sensor_set.h"
@@ -64,7 +65,8 @@ struct ServiceStats {
 /// One caller at a time.
 class Service {
  public:
-  /// @throws netio::PortInUse, base::InputError if the address cannot be bound, and as `farm::Farm`
+  /// @throws netio::PortInUse, base::InputError if the address cannot be bound, as `farm::Farm`, and as
+  /// `control::ModelControllers`
   Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
           const StreamLayout& layout, const ServiceOptions& options);
 
@@ -83,7 +85,8 @@ class Service {
   /// once only, and not after `tick`.
   void run(const std::atomic<bool>& stop, double duration);
 
-  /// Reads and sends all due sensors, and relays the states of neighbours.
+  /// Reads and sends all due sensors, relays the states of neighbours, and calls the controllers of models.
+  /// @throws base::InputError if one of these fails
   void tick(std::int64_t now);
   /// Reads and sends the sensors that are due between two ticks.
   void sample(std::int64_t now) { publish_due(now, true); }
@@ -107,6 +110,7 @@ class Service {
   void wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop);
   void publish_due(std::int64_t now, bool between);
   base::SensorTypes subscribed_types(std::uint32_t id, std::int64_t now) const;
+  void call_models(std::int64_t now);
   void warn_of_missed(std::int64_t now);
   std::span<const base::Report> update_movers(std::int64_t now);
   void address(std::span<const base::ReadingBlock> readings);
@@ -124,6 +128,7 @@ class Service {
   DriveRelay drives_;
   ReadingPublisher publisher_;
   farm::Farm farm_;
+  control::ModelControllers models_;  ///< of the objects that no packets move
   std::vector<base::Sink*> sinks_;
   std::vector<base::Report> states_;             ///< per mover, for one tick or sample
   std::vector<base::StateQuality> qualities_;    ///< per mover, for one tick or sample

@@ -40,6 +40,7 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
                   ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kSenderTimeout)
                   : kNever),
       removed_(world.movers.size(), false),
+      heard_(world.movers.size(), false),
       joining_(world.movers.size(), false),
       last_active_(world.movers.size(), kNever),
       last_state_(world.movers.size(), kNever),
@@ -84,6 +85,7 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   }
   if (const auto* object = std::get_if<netio::Object>(&packet.body)) {
     const std::uint32_t row = names_.tags.at(packet.header.robot);
+    heard_[row] = true;
     removed_[row] = !object->present;
     return change_shape(row, *object);
   }
@@ -96,6 +98,7 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   } else {
     return;
   }
+  heard_[report.mover] = true;
   if (keep_heights_) report.X_WM.z = world_.movers[report.mover].X_WM.z;
   std::int64_t& last = last_state_[report.mover];
   if (last != kNever) periods_[report.mover] = std::min(now - last, kLongestPeriod);
@@ -138,6 +141,12 @@ bool StateReceiver::filter(const base::Report& report, const netio::Header& head
   log_.write(sender_text(header) + ": its states arrive late by changing amounts, so they are filtered while they do",
              now);
   return filtered;
+}
+
+void StateReceiver::place(const base::Report& report, bool present) {
+  removed_[report.mover] = !present;
+  last_state_[report.mover] = report.time;
+  fleet_.apply({&report, 1});
 }
 
 void StateReceiver::predict(std::int64_t now) {

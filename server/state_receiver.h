@@ -75,6 +75,12 @@ class StateReceiver {
   bool update_absent_tag(std::uint32_t id, std::int64_t now);
   /// Returns whether the post of a light that joins is absent: no V2I of it was accepted in the last two seconds.
   bool update_absent_light(std::uint32_t id, std::int64_t now);
+  /// Returns whether a TAG or an OBJECT was accepted for the object in this row: packets move it.
+  bool is_moved_by_packets(std::uint32_t row) const { return heard_[row]; }
+  /// Sets the state of an object that no packets move, as if a packet with it had arrived at its time.
+  void place(const base::Report& report, bool present);
+  /// Returns the outlines and the presence of the movers.
+  const robots::Fleet& fleet() const { return fleet_; }
   /// Returns the newest states at `now`, valid until the next call.
   std::span<const base::Report> states(std::int64_t now) { return fleet_.predict(now); }
   /// Returns the quality of a mover's state at `now`. The age of unfiltered states counts from their arrival, and their
@@ -124,7 +130,8 @@ class StateReceiver {
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
   LaneHandler lane_handler_;
-  std::vector<bool> removed_;  ///< per mover, by OBJECT
+  std::vector<bool> removed_;              ///< per mover, by OBJECT or `place`
+  std::vector<bool> heard_;                ///< per mover: see is_moved_by_packets
   std::map<std::uint32_t, world::ShapeChange> shape_changes_;
   std::vector<bool> joining_;              ///< per mover: StateReceiverOptions::joining
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever

@@ -256,6 +256,7 @@ struct Course {
                 recording_folder(options, ranks, resets), part_of(options, ranks), video_file(options, resets)) {
     // The simulation has copied the walls of its tile, and a recording begins with all of them.
     if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
+    simulation.change_shapes_in(ground.world);
     if (ground.scenario) events.emplace(*ground.scenario);
     if (draws_maps(options)) maps.emplace(world, simulation, options.map_file, options.map_view);
     if (ranks == nullptr) simulation.interrupt_on([] { return stop_requested().load(); });

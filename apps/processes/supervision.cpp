@@ -196,7 +196,7 @@ bool needs_supervision(int argc, const char* const* argv) {
   const char* const plugins = std::getenv("SENSORFARM_PLUGINS");
   // Scenarios may name controllers, too. `test` and sweeps start their own processes.
   if (command == "run" && any([](std::string_view word) { return word.ends_with(".toml"); })) return true;
-  if ((command == "run" || command == "robot") && any(is_world_with_code)) return true;
+  if ((command == "run" || command == "serve" || command == "robot") && any(is_world_with_code)) return true;
   return !memory_limit_note().empty() || (plugins != nullptr && *plugins != '\0') || command == "experiment" ||
          any(is_code);
 }

@@ -15,11 +15,11 @@ import tempfile as _tempfile
 
 import numpy as _numpy
 
-from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Neighbour, Pose, Reading, Robot, SensorInfo,
-                          Settings, Simulation, Twist, _abort_ranks, load_plugin)
+from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot, Neighbour,
+                          Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, _abort_ranks, load_plugin)
 
-__all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Neighbour", "Pose", "Reading", "Robot", "SensorInfo",
-           "Settings", "Simulation", "Twist", "load_plugin"]
+__all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite", "NearRobot",
+           "Neighbour", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist", "load_plugin"]
 
 
 def _valid(self, type, without_noise=False):

@@ -187,6 +187,105 @@ class Controller(Protocol):
     def step(self, input: Input) -> tuple[float, float, float]:
         """Returns forward [m/s], left [m/s], turn [rad/s] to drive until the next call."""
 
+class ModelSite:
+    """A model with a controller of models, as at the start."""
+    @property
+    def name(self) -> str: ...
+    @property
+    def row(self) -> int:
+        """Row in `Simulation.poses`."""
+    @property
+    def pose(self) -> Pose: ...
+    @property
+    def radius(self) -> float:
+        """[m] radius of the circle about its origin that contains its body."""
+    @property
+    def max_forward(self) -> float:
+        """[m/s] in any direction."""
+    @property
+    def max_turn(self) -> float:
+        """[rad/s]"""
+    @property
+    def interval(self) -> float:
+        """[s] from one call of tick() to the next."""
+    @property
+    def seed(self) -> int: ...
+    @property
+    def world(self) -> str:
+        """Path of the world file."""
+
+class NearRobot:
+    """A robot near a model, with its true state."""
+    @property
+    def name(self) -> str: ...
+    @property
+    def row(self) -> int:
+        """Row in `Simulation.poses`."""
+    @property
+    def pose(self) -> Pose: ...
+    @property
+    def velocity(self) -> Twist: ...
+    @property
+    def radius(self) -> float:
+        """[m] radius of the circle about its origin that contains its body."""
+    @property
+    def distance(self) -> float:
+        """[m] between the origins of robot and model."""
+
+class ModelContact:
+    """The beginning of a contact: the other's surface is within 1 mm of the model's outline, or inside it."""
+    @property
+    def name(self) -> str:
+        """Of the other: a robot, an object or a static model."""
+    @property
+    def row(self) -> int | None:
+        """Row of the other in `Simulation.poses`; None: it is static."""
+    @property
+    def robot(self) -> bool:
+        """The other is a robot."""
+    @property
+    def point(self) -> tuple[float, float]:
+        """x and y [m] of the other's point that is nearest to the model's outline, or inside it."""
+
+class Model:
+    """The model in one call: its state at this tick, and changes, which take effect after the calls of the tick. It can
+    be used during the call only."""
+    @property
+    def time(self) -> float:
+        """[s] of the tick."""
+    @property
+    def pose(self) -> Pose:
+        """Its last one while it is absent."""
+    @property
+    def velocity(self) -> Twist: ...
+    @property
+    def present(self) -> bool: ...
+    @property
+    def robots(self) -> list[NearRobot]:
+        """Robots within range(), the nearest first; at most 1024."""
+    def set_pose(self, pose: Sequence[float]) -> None:
+        """Places the model at (x, y, z [m], yaw [rad]), at rest."""
+    def set_velocity(self, velocity: Sequence[float]) -> None:
+        """Sets forward, left [m/s] and turn [rad/s] for all following ticks."""
+    def set_present(self, present: bool) -> None:
+        """Removes the model from the world, or restores it at its last pose."""
+    def set_shape(self, name: str) -> None:
+        """Gives the model a shape of the world file, with its size and colour, or "original"."""
+    def set_size(self, size: Sequence[float]) -> None:
+        """Scales the model's own outline to (x, y, z) [m]."""
+    def set_color(self, color: str) -> None:
+        """An X11 name, or "#RRGGBB"."""
+    def uniform(self) -> float:
+        """Returns the model's next random number in (0, 1)."""
+    def normal(self) -> float:
+        """Returns the model's next random number of the standard normal distribution."""
+
+class ModelController(Protocol):
+    """Your own controller of a model that is not a robot: a class of this shape, not a subclass, in a file that `ctrl`
+    names. Optional: contact(contact, model), and range() [m] of `Model.robots` (docs/own_controller.md)."""
+    def __init__(self, model: ModelSite, settings: Settings) -> None: ...
+    def tick(self, model: Model) -> None: ...
+
 class Simulation:
     """A simulated fleet. Not thread-safe. Arrays are views without a copy, valid until the next step, put or reset:
     read them again after it, and copy the data that you keep. They are read-only unless `writable`."""

@@ -1,4 +1,4 @@
-// Controllers that a world file names (`ctrl`), from a plug-in next to it.
+// Controllers of robots and models that a world file names (`ctrl`), from a plug-in next to it.
 
 #include <gtest/gtest.h>
 
@@ -67,6 +67,46 @@ TEST_F(Ctrl, CodeOfIncludedFilesRunsInAChildProcess) {
       run_program({"run", folder_.write("outer.world", "include \"robots.inc\"\n"), "--duration", "2"});
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   expect_in("of robot 'a'", outcome.err);
+}
+
+/// Returns a world with a robot that sees an object with this `ctrl`.
+std::string world_of_slide(const std::string& ctrl) {
+  return "model( name \"shelf\" pose [2 0 0 0] size [0.3 0.3 0.5]\n ctrl \"" + ctrl +
+         "\" )\nposition( name \"b\" size [0.3 0.3 0.1] ctrl \"none\" laser( ) )";
+}
+
+TEST_F(Ctrl, ModelsMoveInRunsAndTheirRecordingsVerify) {
+  const std::string world = folder_.write("slide.world", world_of_slide("./mine.so:test-slide way=0.3"));
+  const auto hash = [&](const Words& more) {
+    return Json(run_successfully(with({"run", world, "--duration", "3", "--json"}, more)).out).text("/hash");
+  };
+  const std::string expected = hash({});
+  EXPECT_EQ(hash({"--threads", "1", "--in-process"}), expected);
+  EXPECT_EQ(hash({"--device", "host", "--record", folder_.path("run")}), expected);
+  run_successfully({"verify", folder_.path("run")});
+  folder_.write("slide.world", world_of_slide("./mine.so:test-slide way=0.4"));
+  EXPECT_NE(hash({}), expected);
+  folder_.write("slide.world", world_of_slide("none"));
+  EXPECT_NE(hash({}), expected);
+}
+
+TEST_F(Ctrl, FailuresOfModelsNameThem) {
+  const std::string world = folder_.write("slide.world", world_of_slide("./mine.so:test-slide how=number"));
+  const Words kCommands[] = {{"run", world, "--duration", "2"}, {"serve", world, "--port", "0"}};
+  for (const Words& words : kCommands) {
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    expect_in("controller 'test-slide' of model 'shelf' failed at ", outcome.err);
+    expect_in("not a std::exception", outcome.err);
+  }
+  folder_.write("slide.world", world_of_slide("./mine.so:test-slide how=abort"));
+  for (const Words& words : kCommands) {
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    expect_in("controller 'test-slide' of model 'shelf' ended the process", outcome.err);
+  }
+  folder_.write("slide.world", world_of_slide("./mine.so:test-straight"));
+  expect_refused({"run", world, "--duration", "2"}, "has no model controller 'test-straight'", "slide.world:2: ");
 }
 
 }  // namespace

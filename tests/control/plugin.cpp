@@ -1,4 +1,5 @@
-// A plug-in of tests: two controllers, and one that affects its process as its setting `how` states.
+// A plug-in of tests: two controllers, one that affects its process as its setting `how` states, and controllers of
+// models.
 
 #include <fcntl.h>
 #include <sensorfarm/plugin.h>
@@ -127,9 +128,37 @@ class Ends : public sensorfarm::Controller {
   bool done_ = false;
 };
 
+/// Slides to and fro along its x axis; at 1 s does what `how` states.
+class Slide : public sensorfarm::ModelController {
+ public:
+  Slide(const sensorfarm::ModelSite& site, sensorfarm::Settings& settings)
+      : start_(site.pose), way_(settings.number("way", 0.5, 0.0, 10.0)), how_(settings.text("how", "")) {}
+  void tick(sensorfarm::Model& model) override {
+    if (model.time() >= 0.999) end_by(how_, "");
+    const double gone = model.pose().x - start_.x;
+    if (gone >= way_) speed_ = -0.5;
+    if (gone <= 0.0) speed_ = 0.5;
+    model.set_velocity({speed_});
+  }
+
+ private:
+  sensorfarm::Pose start_;
+  double way_, speed_ = 0.0;
+  std::string how_;
+};
+
+class Shy : public Slide {
+ public:
+  Shy(const sensorfarm::ModelSite& site, sensorfarm::Settings& settings) : Slide(site, settings) {
+    throw std::invalid_argument("not this one");
+  }
+};
+
 }  // namespace
 
 SENSORFARM_PLUGIN(plugin) {
+  plugin.add_model_controller<Slide>("test-slide", "slides to and fro");
+  plugin.add_model_controller<Shy>("test-shy", "refuses every model");
   plugin.add_controller<Straight>("test-straight", "drives straight on", 5.0);
   plugin.add_controller<Ends>("test-ends", "ends its process", 10.0);
   plugin.add_controller<Picky>("test-picky", "refuses every robot");

@@ -109,3 +109,42 @@ class Ends:
 class _Hidden:
     def step(self, input):
         return 0, 0, 0
+
+
+class Gate:
+    """Slides to and fro like test-slide of tests/control/plugin.cpp; `fault` chooses a mistake."""
+
+    def __init__(self, model, settings):
+        self.start, self.speed = model.pose.x, 0.0
+        self.way = settings.number("way", 0.5, 0, 10)
+        self.fault = settings.text("fault", "")
+
+    def range(self):
+        return "far" if self.fault == "range" else 5.0
+
+    def tick(self, model):
+        if model.time > 0.95 and self.fault == "divide":
+            model.time / 0
+        if self.fault == "pose":
+            model.set_pose((float("nan"), 0, 0, 0))
+        if self.fault == "late":
+            Gate.kept = getattr(Gate, "kept", model)
+            Gate.kept.set_present(False)
+        gone = model.pose.x - self.start
+        if gone >= self.way:
+            self.speed = -0.5
+        if gone <= 0.0:
+            self.speed = 0.5
+        model.set_velocity((self.speed, 0, 0))
+        Gate.seen = [(robot.name, robot.row, robot.distance) for robot in model.robots]
+
+    def contact(self, contact, model):
+        Gate.touched = (contact.name, contact.row, contact.robot, contact.point)
+
+
+class GateWithoutModel:
+    def __init__(self):
+        pass
+
+    def tick(self, model):
+        pass

@@ -420,5 +420,49 @@ class InProcess(unittest.TestCase):
         self.assertEqual(simulated(controller=fast), simulated(controller=fast))
 
 
+class Models(unittest.TestCase):
+    """Controllers of models that are not robots."""
+
+    WORLD = ('model( name "gate" pose [2 0 0 0] size [0.3 0.3 0.5] ctrl "{}" )\n'
+             'position( name "b" size [0.3 0.3 0.3] ctrl "none" laser( ) )')
+
+    def simulated(self, ctrl, ticks=30, pose=None):
+        sim = sensorfarm.Simulation.from_text(self.WORLD.format(ctrl))
+        if pose:
+            sim.put(1, pose)
+        for _ in range(ticks):
+            sim.step()
+        return sim
+
+    def test_same_bytes_as_a_plugin(self):
+        plugin = os.path.join(os.path.dirname(PROGRAM), "test_plugin.so")
+        ours = self.simulated(FILE + ":Gate way=0.3")
+        self.assertEqual(ours.hash, self.simulated(plugin + ":test-slide way=0.3").hash)
+        self.assertNotEqual(ours.hash, self.simulated(FILE + ":Gate way=0.4").hash)
+        self.assertEqual(ours.models[0], "gate")
+        self.assertNotEqual(ours.poses[0, 0], 2.0)
+
+    def test_contacts_and_robots(self):
+        kept = self.simulated(FILE + ":Gate", 10, (2.6, 0, 0, 0))
+        gate = sys.modules[FILE].Gate
+        name, row, robot, (x, y) = gate.touched
+        self.assertEqual((name, row, robot), ("b", 1, True))
+        self.assertAlmostEqual(x, 2.45, 2)
+        self.assertLess(kept.poses[0, 0], 2.31)
+        self.assertEqual(gate.seen[0][:2], ("b", 1))
+
+    def test_faults(self):
+        for fault, said in (("divide", r"controller 'Gate' of model 'gate' failed at 1.000 s: .*controllers.py:\d+: ZeroDivisionError"),
+                            ("pose", r"ValueError: set_pose\(nan, 0, 0, 0\): expected finite numbers"),
+                            ("range", r"controllers.py:\d+: range\(\) returned 'far'; expected a number"),
+                            ("late", "ValueError: a model can be used during the call")):
+            with self.assertRaisesRegex(sensorfarm.Error, said):
+                self.simulated(FILE + ":Gate fault=" + fault)
+        with self.assertRaisesRegex(sensorfarm.Error, r"refuses model 'gate': .*expected def __init__\(self, model, settings\)"):
+            self.simulated(FILE + ":GateWithoutModel")
+        with self.assertRaisesRegex(sensorfarm.Error, "has no model controller 'Careful'"):
+            self.simulated(FILE + ":Careful")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -17,8 +17,9 @@ class Stubs(unittest.TestCase):
             body = ast.parse(file.read()).body
         classes = {node.name: node for node in body if isinstance(node, ast.ClassDef)}
         self.assertEqual(public(sensorfarm.__all__), public(
-            set(classes) - {"Controller"} | {n.name for n in body if isinstance(n, ast.FunctionDef)} | {"NONE"}))
-        for name in ("SensorInfo", "Robot", "Reading", "Neighbour", "Light", "Input", "Settings", "Simulation"):
+            set(classes) - {"Controller", "ModelController"} | {n.name for n in body if isinstance(n, ast.FunctionDef)} | {"NONE"}))
+        for name in ("SensorInfo", "Robot", "Reading", "Neighbour", "Light", "Input", "Settings", "Simulation", "Model",
+                     "ModelContact", "ModelSite", "NearRobot"):
             stated = public(n.name for n in classes[name].body if isinstance(n, ast.FunctionDef))
             self.assertEqual(stated, public(dir(getattr(sensorfarm, name))), name)
         for name in ("Pose", "Twist"):

@@ -208,5 +208,35 @@ TEST(Contact, ReportedRobotsTouchEachOther) {
   EXPECT_NE(reports[1].contact_mask & (sector_bit(15) | sector_bit(16)), 0u);
 }
 
+/// Walls of one model are one touch, at the nearest point. Movers must be near, present, and in the list.
+TEST(Contact, TouchesSayWhatAndWhere) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {-5.0, 0.5005}, {5.0, 0.5005});
+  scenes::add_wall(world, {0.3, 0.5005}, {0.3, 2.0});
+  scenes::add_mover(world, {}, scenes::rectangle({}, 2.0, 1.0));                      // its sides: x = +-1, y = +-0.5
+  scenes::add_mover(world, {1.1, 0.2, 0.0, 0.0}, scenes::rectangle({}, 0.199, 0.2));  // 0.5 mm apart
+  scenes::add_mover(world, {-1.2, 0.0, 0.0, 0.0}, scenes::rectangle({}, 0.2, 0.2));   // 0.1 m apart
+  scenes::add_mover(world, {0.0, 0.0, 0.0, 0.0}, scenes::rectangle({}, 0.1, 0.1));    // inside
+  Fleet fleet(world);
+  const std::vector<std::uint32_t> all{0, 1, 2, 3};
+  std::vector<Fleet::Touch> touches;
+  fleet.find_touches(0, fleet.reports(), all, touches);
+  ASSERT_EQ(touches.size(), 3u);
+  EXPECT_EQ(touches[0].mover, world::kNone);
+  EXPECT_EQ(touches[0].model, 0u);
+  EXPECT_NEAR(touches[0].p.y, 0.5005, 1e-12);
+  EXPECT_EQ(touches[1].mover, 1u);
+  EXPECT_EQ(touches[1].model, world.movers[1].model);
+  EXPECT_NEAR(touches[1].p.x, 1.0005, 1e-12);
+  EXPECT_GE(touches[1].p.y, 0.1 - 1e-12);
+  EXPECT_LE(touches[1].p.y, 0.3 + 1e-12);
+  EXPECT_EQ(touches[2].mover, 3u);
+  EXPECT_LE(std::abs(touches[2].p.x), 0.05 + 1e-12);
+  touches.clear();
+  fleet.set_absent(1, true);
+  fleet.find_touches(0, fleet.reports(), std::vector<std::uint32_t>{1}, touches);
+  EXPECT_EQ(touches.size(), 1u) << "the wall";
+}
+
 }  // namespace
 }  // namespace sf::robots

@@ -7,7 +7,9 @@
 #include <map>
 #include <set>
 
+#include "control/own_controllers.h"
 #include "netio/v2v_socket.h"
+#include "tests/refusal.h"
 #include "tests/server/fixture.h"
 #include "v2x/frame.h"
 #include "world/roads/roads.h"
@@ -324,6 +326,50 @@ TEST(Service, AnObjectDisappearsAndReturns) {
   put(true);
   EXPECT_NEAR(middle(), 0.875, 1e-9);
   EXPECT_EQ(f.service->stats().inbox[PacketStatus::unknown_tag], 0u);
+}
+
+/// A model's controller moves it, until a packet does.
+TEST(Service, AControllerMovesAModelUntilPacketsDo) {
+  struct Slides : sensorfarm::ModelController {
+    void tick(sensorfarm::Model& model) override {
+      ++calls();
+      if (model.time() < 0.05) model.set_velocity({0.5, 0.0, 0.0});
+      if (model.time() > 0.85 && model.time() < 0.95) model.set_present(false);
+      if (model.time() > 0.95) model.set_present(true), model.set_pose({0.5, 0.0, 0.0, 0.0});
+    }
+    static int& calls() {
+      static int count = 0;
+      return count;
+    }
+  };
+  control::add_own_model_controller({"slides", "", [](const auto&, auto&) { return std::make_unique<Slides>(); }},
+                                    "test");
+  Fixture f;
+  world::Mover& door = scenes::add_mover(f.world, {-1.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.05, 1.0));
+  door.is_tag = true;
+  door.id = 5;
+  door.controller = "slides";
+  f.make_service();
+  struct States : base::Sink {
+    std::vector<base::Pose> poses;
+    void write(const base::TickRecord& record) override { poses.push_back(record.reports.back().X_WM); }
+  } sink;
+  f.service->record_to(sink);
+  for (int tick = 0; tick < 15; ++tick, f.now += kTick) f.service->tick(f.now);
+  EXPECT_EQ(sink.poses[0].x, -1.0);
+  EXPECT_NEAR(sink.poses[5].x, -0.75, 1e-9);
+  EXPECT_TRUE(base::is_absent(sink.poses[10]));
+  EXPECT_NEAR(sink.poses[12].x, 0.5, 1e-9);
+  EXPECT_EQ(Slides::calls(), 15);
+  netio::Outbox camera;
+  base::Bytes bytes;
+  netio::encode({.robot = 5, .sequence = 1}, netio::Tag{.position = {2.0, 0.0, 0.0}}, bytes);
+  camera.queue({netio::kLoopback, f.service->port()}, bytes);
+  camera.flush();
+  for (int tick = 0; tick < 3; ++tick, f.now += kTick) f.service->tick(f.now);
+  EXPECT_NEAR(sink.poses.back().x, 2.0, 1e-6);
+  EXPECT_EQ(Slides::calls(), 15) << "packets move it";
+  expect_in("is moved by packets from now on", f.log.read_all());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/refusal.h"
 #include "tests/units.h"
 #include "tests/world/read_world.h"
 
@@ -521,7 +522,8 @@ TEST(Stage, PluginsOfStageAreNotRun) {
   EXPECT_EQ(warnings_of(world),
             "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, "
             "or write ctrl \"wander\"\n"
-            "6: 'ctrl' is for robots, but 'e' is not a robot: write it inside the robot's parentheses\n"
+            "6: ctrl \"wander\" of 'e' is ignored: it is not a robot; expected ctrl inside a robot's parentheses, or a "
+            "model controller in a file (./libmine.so, mine.py:MyClass)\n"
             "7: 'fast' in ctrl \"wander\" is ignored: expected a setting KEY=VALUE\n"
             "4: 5 robots overlap others at the start: 'a', 'b', 'c' and 2 more; 'c' starts at (0, 0), in 'a': expected "
             "separate poses\n");
@@ -550,6 +552,38 @@ TEST(Stage, CtrlNamesAControllerWithItsSettings) {
   EXPECT_TRUE(with_ctrl("\"mine.py:Go near=1\"").movers.at(0).controller.ends_with("mine.py:Go"));
 }
 
+/// A model with a file of code moves like an object of TAG packets, whose numbers it may not take.
+TEST(Stage, CtrlMakesAModelMove) {
+  const World world = read_world(
+      "model( name \"gate\" pose [1 2 0 90] model( name \"door\" pose [0 3 0 0]\n ctrl \"/a/libdoor.so:slide speed=1\" "
+      "model( name \"knob\" ) ) )\nmodel( name \"tag1\" ctrl \"door.py:Door\" )\nmodel( name \"tag7\" ctrl \"none\" )");
+  EXPECT_EQ(warnings_of(world), "");
+  ASSERT_EQ(world.movers.size(), 3u);
+  const Mover& door = world.movers[0];
+  EXPECT_EQ(door.name, "gate.door");
+  EXPECT_TRUE(door.is_tag);
+  EXPECT_EQ(door.id, 2u) << "1 belongs to tag1";
+  EXPECT_EQ(door.drive, Drive::omni);
+  EXPECT_NEAR(door.X_WM.x, -2.0, 1e-12);
+  EXPECT_EQ(door.body.size(), 8u) << "with its knob";
+  EXPECT_EQ(door.controller, "/a/libdoor.so:slide");
+  EXPECT_EQ(door.controller_settings.at(0).second, "1");
+  EXPECT_TRUE(door.controller_at.ends_with(":2: ")) << door.controller_at;
+  EXPECT_TRUE(world.movers[1].controller.ends_with("door.py:Door"));
+  EXPECT_EQ(world.movers[2].controller, "");
+}
+
+TEST(Stage, ModelsThatCannotMoveHaveNoController) {
+  const std::pair<const char*, const char*> kCorpus[] = {
+      {"position( name \"r\" model( name \"arm\"\n ctrl \"./a.so\" ) )",
+       ":2: 'arm' is mounted on 'r', which moves it, so it can have no controller"},
+      {"light( ctrl \"./a.so\" )", ":1: a light cannot move"},
+      {"model( ctrl \"./a.so\"\n lamp_intensity 3 )", ":2: a lamp cannot move"},
+      {"model( ctrl \"./a.so\"\n ir_emitter \"dock\" )", ":2: an infrared emitter cannot move"},
+  };
+  for (const auto& [text, message] : kCorpus) expect_in(message, sf::refusal_of([&] { read_world(text); }));
+}
+
 TEST(Stage, MistakesInCtrlAreReported) {
   const std::pair<const char*, const char*> kCorpus[] = {
       {"\"roote speed=1\"",
@@ -558,7 +592,7 @@ TEST(Stage, MistakesInCtrlAreReported) {
       {"\"route speed=1 =2 speed=3\"",
        "2: '=2' in ctrl \"route\" is ignored: expected a setting KEY=VALUE\n"
        "2: 'speed=3' in ctrl \"route\" is ignored: the setting is given twice\n"},
-      {"[\"route\" \"wander\"]", "2: 'ctrl' expects one controller per robot; only the first is used\n"},
+      {"[\"route\" \"wander\"]", "2: 'ctrl' expects one controller per model; only the first is used\n"},
   };
   for (const auto& [ctrl, warnings] : kCorpus) EXPECT_EQ(warnings_of(with_ctrl(ctrl)), warnings) << ctrl;
 }

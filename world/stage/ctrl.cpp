@@ -53,15 +53,37 @@ std::string fault_of(const BuildState& b, const std::string& name) {
       base::expected_one_of(name, known));
 }
 
+/// Returns the controller and its settings; empty without `ctrl`.
+std::vector<std::string> words_of_ctrl(const Entity& entity) {
+  const Property* property = find(entity, "ctrl");
+  if (property == nullptr || property->values.empty()) return {};
+  return words_of(property->values.front().text);
+}
+
 }  // namespace
+
+bool names_model_controller(const BuildState&, const Entity& entity) {
+  const std::vector<std::string> words = words_of_ctrl(entity);
+  return !words.empty() && base::names_a_plugin(words.front());
+}
+
+void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model) {
+  const std::vector<std::string> words = words_of_ctrl(entity);
+  if (words.empty() || words.front() == "none") return;
+  warn(
+      b.context, location_of(entity, "ctrl"),
+      fmt::format("ctrl \"{}\" of '{}' is ignored: it is not a robot; expected ctrl inside a robot's parentheses, or a "
+                  "model controller in a file (./libmine.so, mine.py:MyClass)",
+                  words.front(), model));
+}
 
 void read_ctrl(BuildState& b, const Entity& entity, Mover& mover) {
   const Property* property = find(entity, "ctrl");
-  if (property == nullptr || property->values.empty()) return;
-  if (property->values.size() > 1)
-    warn(b.context, property->at, "'ctrl' expects one controller per robot; only the first is used");
-  const std::vector<std::string> words = words_of(property->values.front().text);
+  const std::vector<std::string> words = words_of_ctrl(entity);
   if (words.empty()) return;
+  if (mover.is_tag && !names_model_controller(b, entity)) return warn_of_ctrl(b, entity, mover.name);
+  if (property->values.size() > 1)
+    warn(b.context, property->at, "'ctrl' expects one controller per model; only the first is used");
   const std::string& name = words.front();
   if (const std::string fault = fault_of(b, name); !fault.empty()) {
     if (b.warned_types.insert("ctrl " + name).second) warn(b.context, property->at, fault);

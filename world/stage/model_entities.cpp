@@ -135,7 +135,8 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
     check_keys(b.context, entity, KeyScope::device, said.sensor->keys);
     return said;
   }
-  check_keys(b.context, entity, key_scope(said.kind));
+  const bool moves = said.kind == EntityKind::model && names_model_controller(b, entity);
+  check_keys(b.context, entity, moves ? KeyScope::position : key_scope(said.kind));
   if (said.kind == EntityKind::unmodelled || said.kind == EntityKind::unknown)
     count_unmodelled(b, entity, type, said.kind == EntityKind::unmodelled);
   return said;
@@ -168,8 +169,15 @@ Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const 
 // Returns true if the model becomes a mover: a robot or a linked object. A model carried by a mover belongs to that
 // mover, whatever its type or name.
 bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
-  if (said.kind != EntityKind::position && !packet_id_of(said.name)) return false;
+  const bool controlled = said.kind != EntityKind::position && names_model_controller(b, entity);
+  if (said.kind != EntityKind::position && !packet_id_of(said.name) && !controlled) return false;
   if (parent.mover == kNone) return true;
+  if (controlled)
+    fail(
+        b.context, location_of(entity, "ctrl"),
+        fmt::format("'{}' is mounted on '{}', which moves it, so it can have no controller; expected 'ctrl' in a model "
+                    "that stands free, or is on a static one",
+                    said.name, parent.name));
   warn(b.context, entity.at, fmt::format("'{}' is mounted on '{}' and moves with it", said.name, parent.name));
   return false;
 }
@@ -186,14 +194,13 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   const std::optional<PacketId> packet_id = packet_id_of(said.name);
   const Pose X_MT = tag_pose_of(b.context, entity, moves && packet_id && packet_id->is_tag);
   if (moves) {
-    model.mover = add_mover(b, entity, model, packet_id);
+    const bool is_tag = packet_id ? packet_id->is_tag : said.kind != EntityKind::position;
+    model.mover = add_mover(b, entity, model, packet_id, is_tag);
     read_ctrl(b, entity, b.world.movers[model.mover]);
     b.world.movers[model.mover].X_MT = X_MT;
     own.X_MP = {};
-  } else if (find(entity, "ctrl") != nullptr) {
-    warn(b.context, location_of(entity, "ctrl"),
-         fmt::format("'ctrl' is for robots, but '{}' is not a robot: write it inside the robot's parentheses",
-                     said.name));
+  } else {
+    warn_of_ctrl(b, entity, said.name);
   }
 
   const Pose X_B = compose(model.mover == kNone ? model.X_WM : own.X_MP, pose(b.context, entity, "origin"));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "world/stage/ctrl.h"
 #include "world/stage/read_keys.h"
 
 namespace sf::world {
@@ -49,12 +50,14 @@ Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag) {
   return {};
 }
 
-std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, std::optional<PacketId> packet_id) {
+std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, std::optional<PacketId> packet_id,
+                        bool is_tag) {
   Mover mover;
   mover.name = model.name;
   mover.model = static_cast<std::uint32_t>(b.world.models.size());
   mover.X_WM = model.X_WM;
-  mover.is_tag = packet_id && packet_id->is_tag;
+  mover.is_tag = is_tag;
+  if (is_tag && names_model_controller(b, entity)) mover.drive = Drive::omni;
   mover.max_forward = 1.0;  // Stage's default
   read_keys(b.context, entity, mover);
   b.world.movers.push_back(std::move(mover));
@@ -75,10 +78,11 @@ void number_movers(BuildState& b) {
          fmt::format("'{}' and '{}' both follow the packets of {} {}; give each its own number",
                      movers[first->second].name, movers[m].name, movers[m].is_tag ? "tag" : "robot", movers[m].id));
   }
-  std::uint32_t next = 0;
+  std::uint32_t next_robot = 0, next_tag = 1;
   for (std::uint32_t m = 0; m < movers.size(); ++m) {
     if (b.numbers[m]) continue;
-    while (taken.contains({false, next})) ++next;
+    std::uint32_t& next = movers[m].is_tag ? next_tag : next_robot;
+    while (taken.contains({movers[m].is_tag, next})) ++next;
     movers[m].id = next++;
   }
 }
