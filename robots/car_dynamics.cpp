@@ -31,7 +31,7 @@ Grip grip_of(const CarModel& m, const CarState& s, std::size_t wheel) {
   Grip grip{.cosine = std::cos(steer), .sine = std::sin(steer)};
   const double vx = s[kCarForward] - s[kCarTurn] * at.y, vy = s[kCarLeft] + s[kCarTurn] * at.x;
   const double ahead = grip.cosine * vx + grip.sine * vy, aside = grip.cosine * vy - grip.sine * vx;
-  const double rim = s[kCarSpin + wheel] * m.wheel_radius;
+  const double rim = rim_speed(m, s, wheel);
   const double reference = std::max({std::abs(rim), std::abs(ahead), kSlipSpeed});
   const double along = (rim - ahead) / reference;
   const double across = -(at.front ? m.front_stiffness : m.rear_stiffness) * aside / reference;
@@ -131,6 +131,10 @@ CarState car_rate(const CarModel& m, const CarState& s, const CarCommand& comman
 
 CarState step(const CarModel& model, const CarState& state, const CarCommand& command, double dt) {
   return runge_kutta(state, dt, [&](const CarState& at) { return car_rate(model, at, command); });
+}
+
+double rim_speed(const CarModel& model, const CarState& state, std::size_t wheel) {
+  return model.wheel_radius * state[kCarSpin + wheel];
 }
 
 double sideslip(const CarState& state) { return std::atan2(state[kCarLeft], state[kCarForward]); }

@@ -64,6 +64,9 @@ CarState car_rate(const CarModel& model, const CarState& state, const CarCommand
 /// Returns the state after `dt` [s], in (0, kCarStep], by the Runge-Kutta method of order four.
 CarState step(const CarModel& model, const CarState& state, const CarCommand& command, double dt = kCarStep);
 
+/// Returns the circumferential speed [m/s] of a wheel.
+double rim_speed(const CarModel& model, const CarState& state, std::size_t wheel);
+
 /// Returns the angle [rad] from the car's forward direction to its velocity, left positive.
 double sideslip(const CarState& state);
 
