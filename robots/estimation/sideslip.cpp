@@ -12,12 +12,12 @@ namespace sf::estimation {
 namespace {
 
 using SlipMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-using Kind = SideslipMeasurement::Kind;
+using SideslipKind = SideslipMeasurement::Kind;
 
 constexpr double kLongestStep = 0.01;     // [s] of the integration
 constexpr double kLongestInterval = 0.1;  // [s] over which one measurement corrects
 constexpr double kCoupled = 0.05;         // [-] least effect of the sideways speed on the yaw rate, see `coupling`
-constexpr double kMostGain = 50.0;        // [m/rad] of a yaw rate's error on the sideways speed
+constexpr double kMostGain = 50.0;        // largest `left` and `equivalent` of TurnGains
 constexpr double kSlowest = 3.0;          // [1/s] least frequency from which poles are placed
 
 Eigen::Map<SlipMatrix> covariance_of(SideslipState& state) { return Eigen::Map<SlipMatrix>(state.covariance.data()); }
@@ -58,9 +58,9 @@ void correct_filter(std::size_t component, double value, double sigma, SideslipS
 
 /// Gains of an error of the yaw rate.
 struct TurnGains {
-  double left = 0.0;        ///< [m/rad] 1/s is that of `turn`: on the sideways speed
+  double left = 0.0;        ///< [m/s] per second and [rad/s] of the error: on the sideways speed
   double turn = 0.0;        ///< [1/s] on the yaw rate
-  double equivalent = 0.0;  ///< [m/rad] sideways speed per correction of the yaw rate, in sliding mode
+  double equivalent = 0.0;  ///< [m/rad] correction of the sideways speed over that of the yaw rate, in sliding mode
 };
 
 /// Places both poles of sideways speed and yaw rate, linearised at the estimate.
@@ -99,7 +99,7 @@ void correct_speed(const SideslipModel& model, double value, double seconds, Sid
 }
 
 void correct(const SideslipModel& model, const SideslipMeasurement& m, SideslipState& state) {
-  const bool turn = m.kind == Kind::turn;
+  const bool turn = m.kind == SideslipKind::turn;
   if (model.observer == SideslipObserver::ekf)
     return correct_filter(turn ? kTrackTurn : kTrackForward, m.value, turn ? model.turn_noise : model.speed_noise,
                           state);
@@ -140,13 +140,13 @@ Verdict apply(const SideslipModel& model, const SideslipMeasurement& m, Sideslip
   if (!std::isfinite(m.value)) return Verdict::invalid;
   state = predict(model, state, m.time);
   Verdict verdict = Verdict::used;
-  if (m.kind == Kind::steer)
+  if (m.kind == SideslipKind::steer)
     state.input.steer = m.value;
-  else if (m.kind == Kind::torque)
+  else if (m.kind == SideslipKind::torque)
     state.input.force = m.value / model.car.wheel_radius;
   else if (state.known())
     correct(model, m, state);
-  else if (m.kind == Kind::speed) {
+  else if (m.kind == SideslipKind::speed) {
     const SingleTrackInput input = state.input;
     state = started(model, m.time, m.value);
     state.input = input;
