@@ -25,12 +25,14 @@ extern const ExperimentType sweeps_experiment;
 extern const ExperimentType late_states_experiment;
 extern const ExperimentType accuracy_experiment;
 extern const ExperimentType mrclam_experiment;
+extern const ExperimentType sideslip_experiment;
 
 std::span<const ExperimentType* const> experiments() {
   static constexpr const ExperimentType* kKinds[] = {
       &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,       &magnet_pi_experiment,
       &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
-      &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment,       &mrclam_experiment};
+      &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment,       &mrclam_experiment,
+      &sideslip_experiment};
   return kKinds;
 }
 
@@ -45,7 +47,7 @@ std::vector<std::string> run_experiment(const ExperimentType& type, const Experi
                                         const std::function<void(double, const std::string&)>& progress) {
   Scenario scenario;
   cluster::agree(options.ranks, [&] {
-    if (type.measured) return make_folder(options.out);
+    if (type.source != ExperimentSource::scenario) return make_folder(options.out);
     scenario = read_scenario((std::filesystem::path(options.folder) /
                               (std::string(type.scenario.empty() ? type.name : type.scenario) + ".toml"))
                                  .string());

@@ -19,7 +19,7 @@ struct ExperimentOptions {
   std::uint64_t seed = 1;                                       ///< trial k has seed + k
   std::optional<Plant> plant;                                   ///< nullopt: the experiment's own
   std::string folder;                                           ///< contains the scenario files
-  std::string data;                                             ///< folder of the measurements, if `measured`
+  std::string data;                                             ///< folder of the measurements
   std::string out;                                              ///< output folder
   record::Compression compression = record::Compression::zstd;  ///< of recordings
   unsigned threads = 0;
@@ -40,12 +40,18 @@ struct ExperimentContext {
   std::function<void(double, const std::string&)> progress;  ///< receives the completed fraction and the next step
 };
 
+/// What an experiment runs.
+enum class ExperimentSource : std::uint8_t {
+  scenario,      ///< a scenario file
+  measurements,  ///< evaluates `ExperimentOptions::data`: no scenario, no trials, no device
+  model          ///< a model of its own: no scenario, no device
+};
+
 struct ExperimentType {
   std::string_view name;
   std::string_view scenario;  ///< stem of its scenario file; empty: its name
   std::string_view summary;   ///< one line for help
-  /// Evaluates the measurements in `ExperimentOptions::data`: no scenario, no trials, no device.
-  bool measured = false;
+  ExperimentSource source = ExperimentSource::scenario;
   Plant plant = Plant::ideal;  ///< default for the scenario and the user
   /// Text for the report: reasons for deviations from the thesis, or the findings.
   std::string_view reasons;

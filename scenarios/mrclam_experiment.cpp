@@ -147,7 +147,7 @@ extern const ExperimentType mrclam_experiment;
 constinit const ExperimentType mrclam_experiment{
     .name = "mrclam",
     .summary = "localization by landmarks on measurements of real robots (UTIAS MRCLAM)",
-    .measured = true,
+    .source = ExperimentSource::measurements,
     .reasons = kMrclamReasons,
     .run = run_mrclam_experiment,
 };

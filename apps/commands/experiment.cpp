@@ -43,10 +43,15 @@ std::string folder_of(const ExperimentOptions& options) {
       "cannot find the folder 'experiments' here, above the program or in the installation; name it with --files");
 }
 
+std::string needs_of(const scenarios::ExperimentType& type) {
+  if (type.source == scenarios::ExperimentSource::measurements) return "needs --data";
+  if (type.source == scenarios::ExperimentSource::model) return "no world";
+  return fmt::format("plant {}", plant_name(type.plant));
+}
+
 int list_all() {
   for (const scenarios::ExperimentType* type : scenarios::experiments())
-    print(fmt::format("{:<14} {}; {}\n", type->name, type->summary,
-                      type->measured ? std::string("needs --data") : fmt::format("plant {}", plant_name(type->plant))));
+    print(fmt::format("{:<14} {}; {}\n", type->name, type->summary, needs_of(*type)));
   return 0;
 }
 
@@ -63,7 +68,7 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
                                                   .stop = [] { return stop_requested().load(); }};
   std::optional<gpu::Device> device;
   on_all(ranks, [&] {
-    if (scenarios::find_experiment(options.experiment)->measured) {
+    if (scenarios::find_experiment(options.experiment)->source != scenarios::ExperimentSource::scenario) {
       device.emplace(std::string(gpu::kHostDevice));
       return;
     }

@@ -18,17 +18,22 @@ namespace sf::apps {
 
 namespace {
 
-/// Experiments on measurements need --data and have none of the options of simulations; the others are the reverse.
-void check_data(const CLI::App& sub) {
+/// Experiments on measurements need --data and have no trials; only those with a scenario have its options.
+void check_source(const CLI::App& sub) {
   if (sub.count("experiment") == 0) return;
   const std::string name = sub.get_option("experiment")->as<std::string>();
-  if (!scenarios::find_experiment(name)->measured) {
-    if (sub.count("--data") > 0) throw CLI::ExcludesError("--data", name);
-    return;
-  }
-  if (sub.count("--data") == 0) throw CLI::RequiredError(fmt::format("--data, the folder that {} evaluates,", name));
-  for (const char* option : {"--trials", "--seed", "--plant", "--compression", "--files", "--device"})
-    if (sub.count(option) > 0) throw CLI::ExcludesError(option, name);
+  const scenarios::ExperimentSource source = scenarios::find_experiment(name)->source;
+  const auto exclude = [&](std::initializer_list<const char*> options) {
+    for (const char* option : options)
+      if (sub.count(option) > 0) throw CLI::ExcludesError(option, name);
+  };
+  if (source != scenarios::ExperimentSource::measurements)
+    exclude({"--data"});
+  else if (sub.count("--data") == 0)
+    throw CLI::RequiredError(fmt::format("--data, the folder that {} evaluates,", name));
+  else
+    exclude({"--trials", "--seed"});
+  if (source != scenarios::ExperimentSource::scenario) exclude({"--plant", "--compression", "--files", "--device"});
 }
 
 void add_experiment(CLI::App& app, Call& call) {
@@ -37,7 +42,7 @@ void add_experiment(CLI::App& app, Call& call) {
       "Run an experiment and write its trials, its statistics compared with the thesis, and its figures to one folder");
   auto& o = add_command(*sub, call, experiment, [sub] {
     if (sub->count("--list") + sub->count("experiment") == 0) throw CLI::RequiredError("experiment (or --list)");
-    check_data(*sub);
+    check_source(*sub);
   });
   add_examples(*sub, {"--list", "mapping -o out/mapping", "mrclam --data MRCLAM_Dataset6 -o out/mrclam"});
   auto* list = sub->add_flag("--list", o.list, "List all experiments");

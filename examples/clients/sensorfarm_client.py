@@ -65,6 +65,10 @@ SENSORS = {
     32: ("localization", 64000, [("x_m", 5e-3), ("y_m", 5e-3), ("yaw_rad", 1e-6), ("valid", 1), ("xx_m2", None),
                                  ("xy_m2", None), ("x_yaw_m_rad", None), ("yy_m2", None), ("y_yaw_m_rad", None),
                                  ("yaw_yaw_rad2", None)]),  # None: f32
+    33: ("sideslip", 34000, [("sideslip_rad", 1e-6), ("front_force_n", 1e-2), ("rear_force_n", 1e-2), ("valid", 1),
+                             ("sideslip_sideslip_rad2", None), ("sideslip_front_rad_n", None),
+                             ("sideslip_rear_rad_n", None), ("front_front_n2", None), ("front_rear_n2", None),
+                             ("rear_rear_n2", None)]),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",

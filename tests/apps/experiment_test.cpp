@@ -27,6 +27,8 @@ TEST(Experiment, WrongUsageIsRejected) {
   expect_refused({"experiment", "mapping", "-o", "x", "--data", "d"}, "--data");
   expect_refused({"experiment", "mrclam", "-o", "x"}, "--data");
   expect_refused({"experiment", "mrclam", "-o", "x", "--data", "d", "--trials", "2"}, "--trials");
+  expect_refused({"experiment", "sideslip", "-o", "x", "--plant", "ideal"}, "--plant");
+  expect_refused({"experiment", "sideslip", "-o", "x", "--data", "d"}, "--data");
   const Folder folder;
   expect_refused({"experiment", "mrclam", "-o", folder.path("out"), "--data", "/nowhere"}, "/nowhere");
 }

@@ -92,8 +92,10 @@ TEST(Derived, WiringIsCheckedWhenTheWorldIsLoaded) {
   expect_in("'gyro:x' is not an input", refusal(inputs("[\"gyro:x\"]")));
   expect_in("expected inputs [\"type\" ...]", refusal("derived( type \"tally\" inputs 3 )"));
   expect_in("expected inputs [\"type\" ...]", refusal("derived( type \"tally\" )") + refusal(inputs("[ ]")));
-  expect_in("derived sensor type 'taly' is unknown; expected one of: tally, timer, localization; did you mean 'tally'?",
-            refusal("derived( type \"taly\" inputs [\"gyro\"] )"));
+  expect_in(
+      "derived sensor type 'taly' is unknown; expected one of: tally, timer, localization, sideslip; did you mean "
+      "'tally'?",
+      refusal("derived( type \"taly\" inputs [\"gyro\"] )"));
 }
 
 /// Columns name their units, so a port accepts what has its quantities in its units.

@@ -147,7 +147,8 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"battery", 29, 1, {14.4, -0.6, 1.35, 0}},
              {"analog", 30, 2, {2.5, 512, 5, 1023}},
              {"ptz", 31, 1, {0.5, -0.1, 0.4}},
-             {"localization", 32, 1, {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625}}};
+             {"localization", 32, 1, {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625}},
+             {"sideslip", 33, 1, {-0.05, 4000, 2500, 1, 0.0009765625, 0, 0, 1024, 0, 256}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;
@@ -195,7 +196,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 14u) << "plain readings";
+  EXPECT_EQ(rows, 15u) << "plain readings";
 }
 
 }  // namespace
