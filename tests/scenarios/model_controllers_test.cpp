@@ -245,7 +245,8 @@ TEST(ModelControllers, ChangeShapeSizeAndColour) {
     EXPECT_EQ(controlled.farm().hash(), by_hand.farm().hash()) << tick;
   }
   act.tick = [](Model& model) { model.set_shape("pots"); };
-  expect_in("'tag3' cannot change: ", refusal_of([&] { controlled.step(); }));
+  expect_in("controller 'acts' of model 'tag3' failed at 3.900 s: acting.world: has no shape 'pots'",
+            refusal_of([&] { controlled.step(); }));
   act.tick = [](Model& model) { model.set_size(0.0, 1.0, 1.0); };
   expect_in("size (0, 1, 1); expected lengths above 0", refusal_of([&] { controlled.step(); }));
   act.tick = [](Model& model) { model.set_color("blurple"); };
