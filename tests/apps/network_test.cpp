@@ -7,6 +7,7 @@
 
 #include "netio/outbox.h"
 #include "netio/packets.h"
+#include "record/recording.h"
 #include "tests/apps/remote_robot.h"
 
 namespace sf {
@@ -490,6 +491,33 @@ TEST(Serve, ATakenPortIsReported) {
   const unsigned port = free_ports(1);
   const netio::Socket taken = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(port)});
   expect_refused({"serve", our_world("rooms.world"), "--port", std::to_string(port)}, std::to_string(port), "--port 0");
+}
+
+/// Packets of two commands arrive in order: when the second is refused, the first has been applied.
+TEST(Serve, ObjectsChangeTheirShapes) {
+  const Folder folder;
+  const std::string world =
+      folder.write("w.world",
+                   "shape( name \"crate\" size [1 1 1] )\nposition( name \"roomba1\" laser( samples 9 ) )\n"
+                   "model( name \"tag3\" pose [2 0 0 0] size [0.2 0.2 0.5] )\nmodel( name \"tag4\" pose [4 0 0 0] )\n");
+  const std::string port = std::to_string(free_ports(1)), record = folder.path("r");
+  Program service({"serve", world, "--port", port, "--record", record});
+  ASSERT_TRUE(service.prints("serving 1 robot")) << service.err();
+  const auto object = [&](const std::string& tag, const std::string& shape) {
+    run_successfully({"object", "present", "--tag", tag, "--shape", shape, "--color", "red", "--port", port});
+  };
+  object("3", "crate");
+  object("4", "crat");
+  EXPECT_TRUE(service.prints("has no shape 'crat'; did you mean 'crate'?")) << service.err();
+  EXPECT_EQ(service.stop().code, 0);
+  const record::Recording recording = record::open_recording(record);
+  ASSERT_EQ(recording.shapes.size(), 1u);
+  ASSERT_EQ(recording.shapes[0].shapes.size(), 1u);
+  EXPECT_EQ(recording.shapes[0].shapes[0].color, 0xFFFF0000u);
+  EXPECT_EQ(recording.shapes[0].shapes[0].shape, 0u);
+  run_successfully({"verify", record});
+  expect_refused({"object", "present", "--tag", "3", "--shape", "a b"}, "'a b' is no name of a shape");
+  expect_refused({"object", "present", "--tag", "3", "--size", "1,2,0"}, "--size: expected X,Y,Z above 0");
 }
 
 }  // namespace sf
