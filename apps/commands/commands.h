@@ -30,6 +30,7 @@ int map(const MapOptions& options);
 int verify(const VerifyOptions& options);
 int merge(const MergeOptions& options);
 int derive(const DeriveOptions& options);
+int identify(const IdentifyOptions& options);
 int explain(const ExplainOptions& options);
 int tradeoff(const TradeoffOptions& options);
 int v2x_messages(const V2xOptions& options);

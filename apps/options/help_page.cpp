@@ -20,7 +20,7 @@ const Section kSections[] = {
     {"Run", {"experiment", "sweep", "serve", "robot", "merge"}},
     {"Inspect", {"draw", "sense", "field", "explain", "map", "listen", "dump"}},
     {"Testbed", {"vps", "calibrate", "light", "start", "object", "lane", "v2x"}},
-    {"Analyse", {"export", "derive", "tradeoff"}},
+    {"Analyse", {"export", "derive", "identify", "tradeoff"}},
     {"Check", {"devices", "selftest", "verify", "help"}},
 };
 

@@ -443,6 +443,23 @@ struct DeriveOptions : RecordingOption, ThreadsOption {
   std::string out;   ///< folder
 };
 
+struct IdentifyOptions : ThreadsOption {
+  std::vector<std::string> recordings;  ///< their folders
+  std::string robot;
+  std::vector<std::string> inputs;  ///< TYPE or TYPE:NUMBER each
+  std::string output;               ///< the same
+  double rate = 10.0;               ///< [Hz]
+  std::vector<double> between;      ///< least and most output; empty: any
+  std::vector<std::string> where;   ///< NAME=LEAST,MOST each
+  std::vector<std::string> kinds{"arx", "narx", "network"};
+  std::vector<std::uint32_t> lags{1, 2, 4};
+  std::vector<std::uint32_t> hidden{4, 8};
+  std::uint32_t folds = 5;
+  std::uint64_t seed = 1;
+  bool measured = false;  ///< choose by the error of one step from measured outputs
+  std::string out;        ///< file of the model
+};
+
 struct TradeoffOptions : WorldOptions,
                          AccuracyTargetOptions,
                          JsonOption,

@@ -9,6 +9,7 @@
 #include "apps/options/option_groups.h"
 #include "apps/options/option_parsers.h"
 #include "apps/options/subcommands.h"
+#include "robots/estimation/regression.h"
 
 namespace sf::apps {
 
@@ -122,6 +123,67 @@ void add_derive(CLI::App& app, Call& call) {
   add_threads(*sub, o);
 }
 
+void add_identify(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "identify",
+      "Learn a model of one sensor from others of its robot, for derived sensors of type `model` (docs/derived.md)");
+  auto& o = add_command(*sub, call, identify);
+  add_examples(*sub, {"out/run1 out/run2 --robot roomba0 --inputs magnetometer --output laneedge -o edge.toml"});
+  sub->add_option("recordings", o.recordings, "Folders of recordings with readings (run --record-readings)")
+      ->required()
+      ->type_name("DIR...");
+  sub->add_option("--robot", o.robot, "Robot whose sensors these are")->required()->type_name("NAME");
+  sub->add_option("--inputs", o.inputs, "Sensors that the model is computed from, separated by commas")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("TYPE[:NUMBER],...");
+  sub->add_option("--output", o.output, "Sensor whose first number the model gives")
+      ->required()
+      ->type_name("TYPE[:NUMBER]");
+  sub->add_option("--rate", o.rate, "Steps of the model per second")
+      ->check(number(1e-3, 1e4))
+      ->type_name("HZ")
+      ->capture_default_str();
+  sub->add_option("--between", o.between, "Leave out outputs that are not between these two values")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->expected(2)
+      ->check(number(-1e18, 1e18))
+      ->type_name("LEAST,MOST");
+  sub->add_option("--where", o.where,
+                  "Leave out steps at which this number of an input is not between LEAST and MOST; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("NAME=LEAST,MOST");
+  sub->add_option("--kinds", o.kinds, "Kinds of models to try: arx, narx, network (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of({"arx", "narx", "network"}))
+      ->type_name("KIND,...");
+  sub->add_option("--lags", o.lags, "Numbers of steps to try (default: 1,2,4)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(whole(1, estimation::kMostLags))
+      ->type_name("N,...");
+  sub->add_option("--hidden", o.hidden, "Numbers of sigmoids to try, of narx and network (default: 4,8)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(whole(1, estimation::kMostHidden))
+      ->type_name("N,...");
+  sub->add_option("--folds", o.folds, "Parts of the recordings in cross-validation")
+      ->check(whole(2, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  sub->add_option("--seed", o.seed, "Seed of the first weights")->type_name("N")->capture_default_str();
+  sub->add_flag("--measured", o.measured,
+                "Choose for models that have the measured output as an input, by the error of one step");
+  sub->add_option("-o,--out", o.out, "File for the model (.toml)")
+      ->required()
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  add_threads(*sub, o);
+}
+
 void add_view(CLI::App& app, Call& call) {
   constexpr const char* kGroup = "VTK window";
   CLI::App* sub = app.add_subcommand(
@@ -171,6 +233,7 @@ void add_export_commands(CLI::App& app, Call& call) {
   add_plot(app, call);
   add_export(app, call);
   add_derive(app, call);
+  add_identify(app, call);
   add_view(app, call);
 }
 

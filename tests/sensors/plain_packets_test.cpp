@@ -148,7 +148,8 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"analog", 30, 2, {2.5, 512, 5, 1023}},
              {"ptz", 31, 1, {0.5, -0.1, 0.4}},
              {"localization", 32, 1, {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625}},
-             {"sideslip", 33, 1, {-0.05, 4000, 2500, 1, 0.0009765625, 0, 0, 1024, 0, 256}}};
+             {"sideslip", 33, 1, {-0.05, 4000, 2500, 1, 0.0009765625, 0, 0, 1024, 0, 256}},
+             {"model", 34, 1, {0.25, 1, 0.00390625}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;

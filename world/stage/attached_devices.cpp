@@ -12,10 +12,19 @@
 
 namespace sf::world {
 
-const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view type) {
+namespace {
+
+const SensorKeyword* find_keyword(const BuildState& b, std::string_view type, bool derived) {
   const auto& words = b.options.sensors;
-  const auto word = std::find_if(words.begin(), words.end(), [&](const SensorKeyword& w) { return w.type == type; });
+  const auto word = std::find_if(words.begin(), words.end(),
+                                 [&](const SensorKeyword& w) { return w.type == type && w.derived == derived; });
   return word == words.end() || type.empty() ? nullptr : &*word;
+}
+
+}  // namespace
+
+const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view type) {
+  return find_keyword(b, type, false);
 }
 
 const SensorKeyword* derived_keyword(const BuildState& b, const Entity& entity) {
@@ -24,8 +33,7 @@ const SensorKeyword* derived_keyword(const BuildState& b, const Entity& entity) 
     if (word.derived) names.push_back(word.type);
   if (names.empty()) return nullptr;
   const std::string name = text(b.context, entity, "type", "");
-  const SensorKeyword* const word = find_sensor_keyword(b, name);
-  if (word != nullptr && word->derived) return word;
+  if (const SensorKeyword* const word = find_keyword(b, name, true)) return word;
   fail(b.context, location_of(entity, "type"),
        fmt::format("derived sensor type '{}' is unknown; expected one of: {}{}", name, fmt::join(names, ", "),
                    base::suggest(name, names)));
