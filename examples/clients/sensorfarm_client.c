@@ -132,6 +132,7 @@ static const sf_type sf_types[] = {
       {"front_front_n2", 1, 0},
       {"front_rear_n2", 1, 0},
       {"rear_rear_n2", 1, 0}}},
+    {34, "model", 6000, {0}, {{"value", 1, 0}, {"valid", 1, 1}, {"variance", 1, 0}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},

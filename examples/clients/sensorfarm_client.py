@@ -69,6 +69,7 @@ SENSORS = {
                              ("sideslip_sideslip_rad2", None), ("sideslip_front_rad_n", None),
                              ("sideslip_rear_rad_n", None), ("front_front_n2", None), ("front_rear_n2", None),
                              ("rear_rear_n2", None)]),
+    34: ("model", 6000, [("value", None), ("valid", 1), ("variance", None)]),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
