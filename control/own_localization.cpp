@@ -10,6 +10,8 @@ namespace sf::control {
 
 namespace {
 
+constexpr float kFoundHeading = 0.5f;  // [rad] standard deviation below which a robot is no longer lost
+
 const world::Sensor* first_sensor(const world::Mover& mover, std::string_view type) {
   const auto found =
       std::find_if(mover.sensors.begin(), mover.sensors.end(), [&](const auto& sensor) { return sensor.type == type; });
@@ -82,7 +84,10 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
 
   ControllerInput seen = input;
   const estimation::Prediction prediction = localization_->predict(input.time);
-  if (prediction.status == estimation::Prediction::Status::none) {
+  // Satellites alone do not show the heading of a robot at rest.
+  const bool fixed = prediction.status != estimation::Prediction::Status::none;
+  known_start_ = known_start_ || (fixed && quality_of(prediction).covariance[5] < kFoundHeading * kFoundHeading);
+  if (!fixed || !known_start_) {
     quality_ = {.stated = true, .stale = true, .age = base::kNoStateYet};
     return input;
   }

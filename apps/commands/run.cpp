@@ -56,6 +56,16 @@ bool names_one_of_several(const std::string& refusal, const world::World& world,
          });
 }
 
+/// @throws base::InputError for an invalid file
+std::optional<scenarios::PositioningOptions> positioning_of(const RunOptions& options) {
+  if (!options.positioning) return std::nullopt;
+  const std::string& file = *options.positioning;
+  scenarios::PositioningOptions cameras{.position_sigma = 0.005, .yaw_sigma = 0.01};
+  if (!file.empty()) cameras = scenarios::parse_positioning(file, base::read_text(file));
+  cameras.link.seed = options.seed;
+  return cameras;
+}
+
 /// @param scenario null: the options define the fleet
 scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options,
                                                 cluster::Ranks* ranks, const scenarios::Scenario* scenario) {
@@ -66,6 +76,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
     simulation.seed = options.seed;
     simulation.actor.controller = controller_config_of(options);
     simulation.actors = make_actors(world, options);
+    simulation.positioning = positioning_of(options);
   }
   simulation.threads = threads_of(options, ranks);
   simulation.no_return_inf = options.no_return_inf;
@@ -192,6 +203,8 @@ std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
     text += fmt::format("\n{} {} {} {}", mover.name, mover.controller, options.controller_given, options.keep_ctrl);
     for (const auto& [key, value] : mover.controller_settings) text += fmt::format(" {}={}", key, value);
   }
+  if (options.positioning)
+    text += "\npositioning " + (options.positioning->empty() ? "" : base::read_text(*options.positioning));
   if (is_scenario(options.world)) text += base::read_text(options.world);
   return base::hash_bytes(text.data(), text.size());
 }

@@ -62,6 +62,8 @@ void RunMaps::write(const base::TickRecord& tick) {
   for (RobotMap& robot : robots_) {
     const control::OwnLocalization* own = control::localization_of(*simulation_.controller(robot.mover));
     if (own != nullptr && !own->quality().stated) own = nullptr;  // before its first step
+    robot.lost = own != nullptr && own->is_lost();
+    if (robot.lost) continue;
     robot.X_WM = own != nullptr ? own->state().X_WM : tick.reports[robot.mover].X_WM;
     if (!robot.scans) continue;
     for (const base::ReadingBlock& reading : tick.readings)
@@ -80,18 +82,23 @@ void RunMaps::finish() {
   live_->finish();
 }
 
+std::vector<viz::PoseMarker> RunMaps::place_of(const RobotMap& robot) const {
+  if (robot.lost) return {};
+  return {{world_.movers[robot.mover].name, robot.X_WM}};
+}
+
 void RunMaps::show() {
   std::vector<maps::OccupancyGrid> grids;
   std::vector<viz::PoseMarker> places;
   for (const RobotMap& robot : robots_) {
     grids.push_back(grid_of(robot));
-    places.push_back({world_.movers[robot.mover].name, robot.X_WM});
+    for (const viz::PoseMarker& place : place_of(robot)) places.push_back(place);
   }
   const bool several = grids.size() > 1;
   if (several) live_->show(0, maps::merge(pointers_to(grids)), {"Merged map", "", places}, file_);
   for (std::size_t i = 0; i < grids.size() && (page_ || !several); ++i)
-    live_->show(several ? i + 1 : 0, std::move(grids[i]), {"Map of " + places[i].name, "", {places[i]}},
-                several ? "" : file_);
+    live_->show(several ? i + 1 : 0, std::move(grids[i]),
+                {"Map of " + world_.movers[robots_[i].mover].name, "", place_of(robots_[i])}, several ? "" : file_);
 }
 
 }  // namespace sf::apps

@@ -38,9 +38,11 @@ class RunMaps {
     std::uint32_t mover = 0;
     std::unique_ptr<server::OwnMap> scans;  ///< null: its controller keeps the map
     base::Pose X_WM;                        ///< its own estimate, of the last tick
+    bool lost = false;                      ///< it has no estimate yet
   };
 
   maps::OccupancyGrid grid_of(const RobotMap& robot) const;
+  std::vector<viz::PoseMarker> place_of(const RobotMap& robot) const;
   void show();
 
   const world::World& world_;

@@ -273,12 +273,13 @@ struct RunOptions : WorldOptions,
   std::optional<double> speed;     ///< [1] simulated over real time, 0: no limit; nullopt: none, or 1 with bridges
   std::string record;              ///< folder; empty: no recording
   bool record_readings = false;
-  std::string send;                             ///< host; empty: none
-  bool tiles = false;                           ///< each rank owns a part of the world
-  double balance = 0.0;                         ///< [s] simulated time between rebalancing of tiles; 0: never
-  double checkpoint = 0.0;                      ///< [s] simulated time between checkpoints; 0: none
-  bool resume = false;                          ///< restart an interrupted run and compare it with its checkpoints
-  std::string map_file;                         ///< picture of the map that the robots build; empty: none
+  std::string send;                        ///< host; empty: none
+  bool tiles = false;                      ///< each rank owns a part of the world
+  double balance = 0.0;                    ///< [s] simulated time between rebalancing of tiles; 0: never
+  double checkpoint = 0.0;                 ///< [s] simulated time between checkpoints; 0: none
+  bool resume = false;                     ///< restart an interrupted run and compare it with its checkpoints
+  std::optional<std::string> positioning;  ///< file with keys of [positioning]; empty: the default; nullopt: no cameras
+  std::string map_file;                    ///< picture of the map that the robots build; empty: none
   std::optional<bridges::WebAddress> map_view;  ///< of the page with their maps; nullopt: none
   std::string faults;  ///< the scenario's faults of sensors, as in its recording; not on the command line
 };

@@ -39,6 +39,7 @@ void refuse_options_of_worlds(const CLI::App& run) {
                                     {"--controller", "controller"},
                                     {"--set", "settings"},
                                     {"--localize", "settings"},
+                                    {"--positioning", "positioning"},
                                     {"--drive", "controller"}})
     if (run.count(option) > 0)
       throw CLI::ValidationError(option, fmt::format("applies to worlds; a scenario sets `{}`: change {}", key, world));
@@ -71,6 +72,11 @@ void add_run(CLI::App& app, Call& call) {
       ->type_name("NAME");
   sub->add_flag("--keep-ctrl", o.keep_ctrl,
                 "Robots with `ctrl` in the world file keep that controller; --controller drives the others");
+  sub->add_option("--positioning", o.positioning,
+                  "Overhead cameras for robots that localize themselves, as in the file's keys of [positioning] "
+                  "(docs/scenarios.md; default: 10 poses/s, 5 mm, 0.01 rad)")
+      ->expected(0, 1)
+      ->type_name("[FILE]");
   add_no_return(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; unlimited with bridges)")

@@ -119,6 +119,46 @@ TEST(Library, RobotsJoinAndLeave) {
   EXPECT_EQ(simulation.size(), 5u);
 }
 
+const std::string kLanes = "road( rndf \"" SF_SOURCE_DIR
+                           "/worlds/simville/simville.rndf\" )\n"
+                           "position( name \"car\" pose [2.4 0.75 0 0] size [0.33 0.33 0.1] laser( samples 9 ) )\n";
+
+TEST(Library, ChangesTheUseOfLanes) {
+  Simulation car = Simulation::from_text(kLanes, {.controller = "route", .settings = {{"checkpoints", "1"}}});
+  const auto drive_from_start = [&](const std::string& closed) {
+    car.reset();
+    if (!closed.empty()) car.set_lane(closed, "closed");
+    for (int i = 0; i < 50; ++i) car.step();
+    return car.poses()[0].x;
+  };
+  EXPECT_GT(drive_from_start(""), 3.3);
+  EXPECT_LT(drive_from_start("1.1"), 2.7) << "it stops in the lane";
+  EXPECT_GT(drive_from_start("3.1"), 3.3) << "a reset opened 1.1, and its way does not use 3.1";
+  expect_in("did you mean 'closed'?", refusal_of<Error>([&] { car.set_lane("1.1", "close"); }));
+  expect_in("has no lane '99.1'", refusal_of<Error>([&] { car.set_lane("99.1", "closed"); }));
+  Simulation cave(kCave, {.robots = 1});
+  expect_in("has no road network", refusal_of<Error>([&] { cave.set_lane("1.1", "closed"); }));
+}
+
+/// A robot whose wheels slip, with and without cameras that see it exactly.
+TEST(Library, CamerasPositionRobotsThatLocalizeThemselves) {
+  const std::string world =
+      "position( name \"a\" size [0.3 0.3 0.1] track 0.25 encoder( slip 0.05 track 0.25 ) laser( samples 9 ) )\n";
+  const auto drive_with = [&](const std::string& positioning, int ticks) {
+    Simulation robot = Simulation::from_text(
+        world, {.controller = "patrol", .settings = {{"points", "0 0 2 1"}}, .positioning = positioning});
+    for (int i = 0; i < ticks; ++i) robot.step();
+    return robot.poses()[0];
+  };
+  const Pose seen = drive_with("rate = 10\n", 100), blind = drive_with("", 100);
+  EXPECT_LT(std::abs(seen.y - 0.5 * seen.x), 0.05) << "on the line to its point";
+  EXPECT_GT(std::abs(blind.y - 0.5 * blind.x), 0.1);
+  EXPECT_GT(drive_with("delay = 0.5\n", 5).yaw, 0.0);
+  EXPECT_EQ(drive_with("start = \"unknown\"\ndelay = 0.5\n", 5).yaw, 0.0) << "it rests";
+  expect_in("positioning:1: unknown key 'sigma'", refusal_of<Error>([&] { drive_with("sigma = 0.01", 1); }));
+  expect_in("'start' is 'lost'; expected", refusal_of<Error>([&] { drive_with("start = \"lost\"", 1); }));
+}
+
 TEST(Library, WithoutMpirunOneRankOwnsAll) {
   Simulation alone(kCave, {.robots = 5});
   Simulation shared(kCave, {.robots = 5, .ranks = true});

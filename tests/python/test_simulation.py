@@ -237,6 +237,37 @@ class Steps(unittest.TestCase):
         self.assertGreater(len(picture), 5000)
 
 
+class Options(unittest.TestCase):
+    def test_lanes_change_their_use(self):
+        text = ('road( rndf "%s" )\nposition( name "car" pose [2.4 0.75 0 0] size [0.33 0.33 0.1] laser( samples 9 ) )'
+                % os.path.abspath("worlds/simville/simville.rndf"))
+        sim = sensorfarm.Simulation.from_text(text, controller="route", settings={"checkpoints": "1"})
+        sim.set_lane("1.1", "closed")
+        for _ in range(50):
+            sim.step()
+        self.assertLess(sim.poses[0, 0], 2.7, "it stops in the lane")
+        sim.set_lane("1.1", "open")
+        for _ in range(50):
+            sim.step()
+        self.assertGreater(sim.poses[0, 0], 3.2)
+        with self.assertRaisesRegex(sensorfarm.Error, "did you mean 'closed'"):
+            sim.set_lane("1.1", "close")
+
+    def test_positioning(self):
+        text = 'position( name "a" size [0.3 0.3 0.1] track 0.25 encoder( slip 0.05 track 0.25 ) laser( samples 9 ) )'
+
+        def off_the_line(**options):
+            sim = sensorfarm.Simulation.from_text(text, controller="patrol", settings={"points": "0 0 2 1"}, **options)
+            for _ in range(100):
+                sim.step()
+            return abs(sim.poses[0, 1] - 0.5 * sim.poses[0, 0])
+
+        self.assertLess(off_the_line(positioning="rate = 10"), 0.05)
+        self.assertGreater(off_the_line(), 0.1)
+        with self.assertRaisesRegex(sensorfarm.Error, "unknown key 'sigma'"):
+            off_the_line(positioning="sigma = 0.01")
+
+
 class Joining(unittest.TestCase):
     def test_robots_join_and_leave(self):
         """Earlier arrays keep their rows and values; commands have one more row."""

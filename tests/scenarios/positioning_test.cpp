@@ -123,7 +123,24 @@ struct Round {
   double error = 0.0;  ///< [m]
 };
 
-/// In a robot's process it is lost until a camera sees it (server/own_state.h).
+/// Satellites do not show its heading.
+TEST(Positioning, ARobotSeenBySatellitesAloneIsLost) {
+  const world::World world = world::read_world(
+      "define robot position( size [0.3 0.3 0.1] drive \"diff\" track 0.258 encoder( track 0.258 ) gps( noise 0.01 ) "
+      ")\n"
+      "robot( name \"a\" pose [3 4 0 120] )\n",
+      {.sensors = sensors::world_file_words()});
+  PositioningOptions cameras{.known_start = false, .link = {.delay = 0.1}, .outages = {{0.0, 1.0}}};
+  Simulation simulation(world, device(),
+                        {.actor = {.controller = {"wander", 0.0, {}}, .link = {}}, .positioning = cameras});
+  for (int i = 0; i < 10; ++i) simulation.step();
+  EXPECT_EQ(simulation.estimate(0).quality.age, base::kNoStateYet);
+  for (int i = 0; i < 5; ++i) simulation.step();
+  EXPECT_NE(simulation.estimate(0).quality.age, base::kNoStateYet);
+  EXPECT_NEAR(base::wrap_angle(simulation.estimate(0).state.X_WM.yaw - 2.0 * M_PI / 3.0), 0.0, 0.3);
+}
+
+/// In its process a robot is lost until a camera sees it (server/own_state.h).
 TEST(Positioning, ARobotWithAnUnknownStartRestsUntilItIsSeen) {
   const auto with = [](bool known) {
     return Round(1, {.known_start = known, .position_sigma = 0.005, .yaw_sigma = 0.01, .outages = {{0.0, 1.0}}});
