@@ -48,10 +48,8 @@ bool RecordedShapes::go_to(std::int64_t time) {
   changed_.clear();
   if (next_ > 0 && time < shapes_[next_ - 1].time) {
     next_ = 0;
-    for (const auto& [mover, shape] : std::map(world_.changed_shapes)) {
-      outlines |= world::change_shape(world_, mover, {.shape = std::string(world::kOriginalShape)});
-      changed_.push_back(world::shape_state(world_, mover));
-    }
+    changed_ = world::restore_originals(world_);
+    outlines = !changed_.empty();
   }
   for (; next_ < shapes_.size() && shapes_[next_].time <= time; ++next_)
     for (const base::ShapeState& state : shapes_[next_].shapes) {

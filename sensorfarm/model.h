@@ -87,8 +87,8 @@ class Model {
   virtual void set_present(bool present) = 0;
   /// Gives the model a shape of the world file (`shape( name "crate" ... )`), with its size and colour, or "original".
   /// Costs a rebuild of the tables of all sensors, as do other sizes, so do it when something changes, not at each
-  /// tick. @throws std::exception, with nothing changed, for an unknown shape, and where shapes do not change (`serve`,
-  /// experiments)
+  /// tick. @throws std::exception, with nothing changed, for an unknown shape, and where shapes do not change
+  /// (experiments, tiles)
   virtual void set_shape(std::string_view name) = 0;
   /// Scales the model's own outline. @param x, y, z [m] in (0, 1000] @throws as set_shape
   virtual void set_size(double x, double y, double z) = 0;

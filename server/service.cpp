@@ -183,10 +183,12 @@ void Service::call_models(std::int64_t now) {
   }
   if (models_.empty()) return;
   const auto states = receiver_.states(now);
-  for (const auto& change : models_.call({now, states, absent_, receiver_.fleet()}))
+  for (const auto& change : models_.call({now, states, absent_, receiver_.fleet(), shapes_world_ != nullptr})) {
+    receiver_.change_shape(change.mover, change.shape);
     receiver_.place({change.mover, now, change.X_WM.value_or(states[change.mover].X_WM),
                      robots::limit_kinematics(world_.movers[change.mover], change.velocity)},
                     change.present.value_or(!absent_[change.mover]));
+  }
 }
 
 void Service::publish_due(std::int64_t now, bool between) {

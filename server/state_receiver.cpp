@@ -110,12 +110,20 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
 }
 
 void StateReceiver::change_shape(std::uint32_t row, const netio::Object& object) {
-  if (!object.changes_shape()) return;
+  world::ShapeChange wanted;
+  if (!object.shape.empty()) wanted.shape = object.shape;
+  wanted.color = object.color;
+  if (object.size) wanted.size = glm::dvec3{(*object.size)[0], (*object.size)[1], (*object.size)[2]};
+  change_shape(row, wanted);
+}
+
+void StateReceiver::change_shape(std::uint32_t row, const world::ShapeChange& wanted) {
+  if (!wanted.any()) return;
   world::ShapeChange& change = shape_changes_[row];
   // A new shape brings its own size and colour.
-  if (!object.shape.empty()) change = {.shape = object.shape};
-  if (object.color) change.color = object.color;
-  if (object.size) change.size = glm::dvec3{(*object.size)[0], (*object.size)[1], (*object.size)[2]};
+  if (wanted.shape) change = {.shape = wanted.shape};
+  if (wanted.color) change.color = wanted.color;
+  if (wanted.size) change.size = wanted.size;
 }
 
 /// A light that joins is where the first group of its V2I is.

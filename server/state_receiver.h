@@ -52,9 +52,11 @@ class StateReceiver {
   using LaneHandler = std::function<void(const netio::Lane&)>;
   void set_lane_handler(LaneHandler handler) { lane_handler_ = std::move(handler); }
 
-  /// Returns the changes of shapes that OBJECTs requested since the last call, by row: the newest of each kind. Robots
+  /// Returns the changes of shapes that were requested since the last call, by row: the newest of each kind. Robots
   /// and tags that joined and left get their original shape.
   std::map<std::uint32_t, world::ShapeChange> take_shape_changes() { return std::exchange(shape_changes_, {}); }
+  /// Requests a change as an OBJECT does.
+  void change_shape(std::uint32_t row, const world::ShapeChange& wanted);
   /// Call this after the outline of a mover has changed in the world.
   void update_outline(std::uint32_t row) { fleet_.update_outline(row); }
 

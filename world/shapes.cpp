@@ -184,6 +184,15 @@ bool restore_shape(World& world, const base::ShapeState& state) {
   return use_shape(world, state.mover, now);
 }
 
+std::vector<base::ShapeState> restore_originals(World& world) {
+  std::vector<base::ShapeState> restored;
+  for (const auto& [mover, shape] : std::map(world.changed_shapes)) {
+    change_shape(world, mover, {.shape = std::string(kOriginalShape)});
+    restored.push_back(shape_state(world, mover));
+  }
+  return restored;
+}
+
 void restore_copy(World& world, std::uint32_t copy, const World& from, std::uint32_t original) {
   const auto found = from.changed_shapes.find(original);
   if (found == from.changed_shapes.end()) return;

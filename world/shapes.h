@@ -58,6 +58,9 @@ base::ShapeState shape_state(const World& world, std::uint32_t mover);
 /// @throws base::InputError for a row that does not exist and for numbers out of range, with nothing changed
 bool restore_shape(World& world, const base::ShapeState& state);
 
+/// Gives all movers their original shapes. @return the states of those that had another
+std::vector<base::ShapeState> restore_originals(World& world);
+
 /// Gives a copy of a mover the original shape that `original` of `from` has.
 /// @pre `copy` is a copy of that mover, also of its current shape
 void restore_copy(World& world, std::uint32_t copy, const World& from, std::uint32_t original);

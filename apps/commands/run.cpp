@@ -151,7 +151,8 @@ struct Ground {
   }
   /// Robots that joined during the run occupy the last rows.
   bool has_joined() const { return world.movers.size() > movers_; }
-  void forget_joined() {
+  void forget_changes() {
+    world::restore_originals(world);
     if (!has_joined()) return;
     world.movers.resize(movers_);
     world.models.resize(models_);
@@ -397,9 +398,9 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   const auto reset = [&] {
     users.begin_again();
     course.reset();
-    if (!ground->has_joined()) return begin(users.resets());
+    if (!ground->has_joined() && ground->world.changed_shapes.empty()) return begin(users.resets());
     live->prepare_change();
-    ground->forget_joined();
+    ground->forget_changes();
     begin(users.resets());
     live->show_scene(true);
   };
@@ -417,7 +418,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
     }
     course.reset();
     live->prepare_change();
-    ground->forget_joined();
+    ground->forget_changes();
     ground->swap(next);
     users.begin_again();
     attempt(*change.outcome, Fault::failed, [&] { begin(users.resets()); });

@@ -96,10 +96,7 @@ class Harness {
     service_.change_shapes_in(scene.world);
     drain(false);  // datagrams for the previous service
   }
-  ~Harness() {
-    for (const auto& [row, shape] : std::map(scene_.world.changed_shapes))
-      world::change_shape(scene_.world, row, {.shape = "original"});
-  }
+  ~Harness() { world::restore_originals(scene_.world); }
   /// Robots of the previous input have been silent for so long that they have left the world.
   void run(std::span<const std::uint8_t> input) {
     input_ = base::ByteReader(input);

@@ -334,6 +334,7 @@ TEST(Service, AControllerMovesAModelUntilPacketsDo) {
     void tick(sensorfarm::Model& model) override {
       ++calls();
       if (model.time() < 0.05) model.set_velocity({0.5, 0.0, 0.0});
+      if (model.time() > 0.35 && model.time() < 0.45) model.set_color("#ff0000");
       if (model.time() > 0.85 && model.time() < 0.95) model.set_present(false);
       if (model.time() > 0.95) model.set_present(true), model.set_pose({0.5, 0.0, 0.0, 0.0});
     }
@@ -352,8 +353,13 @@ TEST(Service, AControllerMovesAModelUntilPacketsDo) {
   f.make_service();
   struct States : base::Sink {
     std::vector<base::Pose> poses;
-    void write(const base::TickRecord& record) override { poses.push_back(record.reports.back().X_WM); }
+    std::vector<std::uint32_t> colors;  ///< of changes
+    void write(const base::TickRecord& record) override {
+      poses.push_back(record.reports.back().X_WM);
+      for (const base::ShapeState& shape : record.shapes) colors.push_back(shape.color);
+    }
   } sink;
+  f.service->change_shapes_in(f.world);
   f.service->record_to(sink);
   for (int tick = 0; tick < 15; ++tick, f.now += kTick) f.service->tick(f.now);
   EXPECT_EQ(sink.poses[0].x, -1.0);
@@ -361,6 +367,7 @@ TEST(Service, AControllerMovesAModelUntilPacketsDo) {
   EXPECT_TRUE(base::is_absent(sink.poses[10]));
   EXPECT_NEAR(sink.poses[12].x, 0.5, 1e-9);
   EXPECT_EQ(Slides::calls(), 15);
+  EXPECT_EQ(sink.colors, std::vector<std::uint32_t>{0xFFFF0000u});
   netio::Outbox camera;
   base::Bytes bytes;
   netio::encode({.robot = 5, .sequence = 1}, netio::Tag{.position = {2.0, 0.0, 0.0}}, bytes);
