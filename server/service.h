@@ -76,8 +76,8 @@ class Service {
   void record_to(base::Sink& sink) { sinks_.push_back(&sink); }
 
   /// Lets OBJECTs and controllers of models change the shapes of objects in `world`, the one given to the constructor.
-  /// Without this call OBJECTs are refused with a line in the log, and controllers with an error. Changes are applied at
-  /// ticks, at most every kShapePeriod, with those of the same object since then combined.
+  /// Without this call OBJECTs are refused with a line in the log, and controllers with an error. Changes are applied
+  /// at ticks, at most every kShapePeriod, with those of the same object since then combined.
   void change_shapes_in(world::World& world) { shapes_world_ = &world; }
   static constexpr std::int64_t kShapePeriod = 100'000'000;  ///< [ns]
 

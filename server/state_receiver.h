@@ -132,8 +132,8 @@ class StateReceiver {
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
   LaneHandler lane_handler_;
-  std::vector<bool> removed_;              ///< per mover, by OBJECT or `place`
-  std::vector<bool> heard_;                ///< per mover: see is_moved_by_packets
+  std::vector<bool> removed_;  ///< per mover, by OBJECT or `place`
+  std::vector<bool> heard_;    ///< per mover: see is_moved_by_packets
   std::map<std::uint32_t, world::ShapeChange> shape_changes_;
   std::vector<bool> joining_;              ///< per mover: StateReceiverOptions::joining
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever
