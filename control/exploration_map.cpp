@@ -32,10 +32,10 @@ ExplorationMap::ExplorationMap(const maps::GridGeometry& geometry, double radius
   points_.resize(driven_.size());
 
   // Nodes too close to the map's border always count as unknown.
-  const Node rim = static_cast<Node>(std::ceil(std::max(radius, reach) / cell_)) + 2;
+  rim_ = static_cast<Node>(std::ceil(std::max(radius, reach) / cell_)) + 2;
   for (Node row = 0; row < rows_; ++row) {
     for (Node column = 0; column < columns_; ++column) {
-      const bool inner = column >= rim && row >= rim && column < columns_ - rim && row < rows_ - rim;
+      const bool inner = column >= rim_ && row >= rim_ && column < columns_ - rim_ && row < rows_ - rim_;
       unknown_[static_cast<std::size_t>(row * columns_ + column)] = inner ? 0 : 1;
     }
   }
@@ -62,6 +62,12 @@ void ExplorationMap::count_unknown(maps::CellAt cell, int by) {
 
 bool ExplorationMap::contains(glm::dvec2 p) const {
   return maps::contains(grid_.geometry, maps::cell_at(grid_.geometry, p));
+}
+
+bool ExplorationMap::surrounds(glm::dvec2 p) const {
+  if (!contains(p)) return false;
+  const Node node = node_at(p), column = node % columns_, row = node / columns_;
+  return std::min(column, row) >= rim_ && column < columns_ - rim_ && row < rows_ - rim_;
 }
 
 Node ExplorationMap::node_at(glm::dvec2 p) const {

@@ -65,6 +65,8 @@ class ExplorationMap {
   Node nodes() const { return static_cast<Node>(occupied_.size()); }
   double cell() const { return cell_; }  ///< [m] spacing of the lattice
   bool contains(glm::dvec2 p) const;
+  /// Returns whether a body at `p` is within the map, with the reach of its parts and some nodes around it.
+  bool surrounds(glm::dvec2 p) const;
   Node node_at(glm::dvec2 p) const;  ///< @pre contains(p)
   glm::dvec2 place(Node node) const;
 
@@ -102,6 +104,7 @@ class ExplorationMap {
   std::size_t finer_;  ///< fine squares per side of a node's square; each keeps one point
   double cell_;
   Node columns_, rows_;
+  Node rim_ = 0;                 ///< nodes at the border that count as unknown
   std::vector<Node> half_rows_;  ///< nodes under a body in the middle of a cell: half widths of rows, middle row first
   std::vector<std::vector<glm::dvec2>> points_;  ///< per cell of the map
   bool stale_ = false;                           ///< points were removed since `refresh`

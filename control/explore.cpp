@@ -167,6 +167,10 @@ void Explore::plan(const ControllerInput& input) {
   targets_.clear();
   in_way_since_.reset();
   map_.refresh();
+  // Nothing is reachable from outside; estimates of poses may leave the map for a moment.
+  const bool outside = !map_.surrounds(origin(X_WM));
+  if (outside && settings_.moving) return pause(input.time);
+  if (outside) stage_ = kStages;
   for (; stage_ < kStages; ++stage_) {
     const Stage& stage = kStage[stage_];
     if (stage.graze > 0 && !settings_.thorough) continue;

@@ -168,6 +168,8 @@ PositioningOptions::Outage outage_of(const Reader& reader, const TomlNode& node)
   return {begin, reader.number(node.items[1], "outages", begin, kLongest)};
 }
 
+constexpr double kLeastStatedSigma = 1e-4;  // packets state no less
+
 std::optional<PositioningOptions> positioning_of(const Reader& reader, const TomlNode* table) {
   auto positioning = sent_states_of<PositioningOptions>(reader, table, kPositioningKeys);
   if (!positioning) return positioning;
@@ -178,8 +180,9 @@ std::optional<PositioningOptions> positioning_of(const Reader& reader, const Tom
   positioning->known_start = start == "known";
   positioning->position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0, "metres");
   positioning->yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0, "radians");
-  positioning->stated_position_sigma = reader.number(*table, "stated_position_sigma", 0.0, 0.0, 1.0, "metres");
-  positioning->stated_yaw_sigma = reader.number(*table, "stated_yaw_sigma", 0.0, 0.0, 1.0, "radians");
+  positioning->stated_position_sigma =
+      reader.number(*table, "stated_position_sigma", 0.0, kLeastStatedSigma, 1.0, "metres");
+  positioning->stated_yaw_sigma = reader.number(*table, "stated_yaw_sigma", 0.0, kLeastStatedSigma, 1.0, "radians");
   if (const TomlNode* outages = world::find(*table, "outages")) {
     if (outages->kind != NodeKind::list)
       reader.fail(*outages, "'outages' expects a list of intervals [begin, end] in seconds");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "apps/commands/commands.h"
 #include "apps/processes/stop_signals.h"
@@ -38,6 +39,10 @@ scenarios::InputBounds bounds_of(const std::string& text) {
 
 scenarios::IdentificationData read_all(const IdentifyOptions& options) {
   scenarios::IdentificationSignals signals{options.robot, options.inputs, options.output, options.rate};
+  if (!options.between.empty() && !(options.between[0] <= options.between[1]))
+    throw base::InputError("--between: expected LEAST,MOST, the smaller number first");
+  if (std::ranges::find(options.inputs, options.output) != options.inputs.end())
+    throw base::InputError(fmt::format("--output {} is one of the inputs; expected another sensor", options.output));
   if (!options.between.empty()) signals.least = options.between[0], signals.most = options.between[1];
   for (const std::string& text : options.where) signals.where.push_back(bounds_of(text));
   scenarios::IdentificationData data;
@@ -79,6 +84,8 @@ std::string table_of(const estimation::Selection& selection, const std::string& 
 
 int identify(const IdentifyOptions& options) {
   install_stop_handlers();
+  const std::filesystem::path folder = std::filesystem::path(options.out).parent_path();
+  if (!folder.empty()) scenarios::make_folder(folder.string());  // before the work
   scenarios::IdentificationData data = read_all(options);
   const std::vector<estimation::Structure> structures = candidates_of(options, data.signals.inputs);
   base::ThreadPool thread_pool(options.threads);

@@ -127,6 +127,19 @@ Validator picture() {
   };
 }
 
+Validator replaced_picture() {
+  return [is_picture = picture()](const std::string& text) {
+    if (const std::string problem = is_picture(text); !problem.empty()) return problem;
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const fs::path file(text), folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, ignored)) return fmt::format("there is no folder '{}'; create it", folder.string());
+    const fs::file_status status = fs::symlink_status(file, ignored);
+    if (!fs::exists(status) || fs::is_regular_file(status)) return std::string();
+    return fmt::format("'{}' is not a regular file, and would be replaced; choose another name", text);
+  };
+}
+
 Validator video() {
   return [is_file = new_file(std::string("run") + viz::kVideoSuffix)](const std::string& text) {
     std::filesystem::path file(text);

@@ -35,6 +35,8 @@ Validator not_empty(const std::string& expected);
 Validator new_file(const std::string& example);
 /// Accepts a picture file to write, with a suffix that viz::format_of supports.
 Validator picture();
+/// The same for a file that is replaced again and again: its folder must exist, and what it replaces is a regular file.
+Validator replaced_picture();
 /// Accepts a video file to write.
 Validator video();
 /// Accepts an argument that `read` can parse. @param expected with its article

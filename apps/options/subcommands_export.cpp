@@ -174,7 +174,10 @@ void add_identify(CLI::App& app, Call& call) {
       ->check(whole(2, 1000))
       ->type_name("N")
       ->capture_default_str();
-  sub->add_option("--seed", o.seed, "Seed of the first weights")->type_name("N")->capture_default_str();
+  sub->add_option("--seed", o.seed, "Seed of the first weights")
+      ->check(whole(0, UINT64_MAX))
+      ->type_name("N")
+      ->capture_default_str();
   sub->add_flag("--measured", o.measured,
                 "Choose for models that have the measured output as an input, by the error of one step");
   sub->add_option("-o,--out", o.out, "File for the model (.toml)")

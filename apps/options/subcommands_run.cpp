@@ -102,7 +102,7 @@ void add_run(CLI::App& app, Call& call) {
       sub->add_option("--map-file", o.map_file,
                       "Draw the map that the robots build, merged, into this picture (.png, .svg or .pdf), which is "
                       "replaced as the map grows")
-          ->check(picture())
+          ->check(replaced_picture())
           ->type_name("FILE");
   auto* map_view = add_live_view(*sub, o.map_view, "a page with the maps that the robots build", "--map-view");
   add_video(*sub, o, "Video of the run to write (VP9 in WebM, encoded by FFmpeg)");
@@ -442,7 +442,7 @@ void add_robot(CLI::App& app, Call& call) {
   sub->add_option(
          "--map-file", o.map_file,
          "Build this map and draw it into this picture (.png, .svg or .pdf), which is replaced as the map grows")
-      ->check(picture())
+      ->check(replaced_picture())
       ->type_name("FILE");
   add_live_view(*sub, o.view, "a page with this map as a picture");
   auto* serial = sub->add_option("--serial", o.serial, "Serial line of a real robot, which replaces the simulated one")
@@ -551,6 +551,7 @@ void add_object(CLI::App& app, Call& call) {
   sub->add_option("--shape", o.shape,
                   "New shape: a shape( ) of the farm's world, with its size and colour, or 'original' (default: "
                   "unchanged)")
+      ->check(not_empty("the name of a shape"))
       ->type_name("NAME");
   sub->add_option("--color", o.color, "New colour: an X11 name or #RRGGBB (default: unchanged)")->type_name("COLOR");
   sub->add_option_function<std::string>(

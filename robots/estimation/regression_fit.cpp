@@ -16,7 +16,6 @@ namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kMargin = 0.05;         // of the training data's box, in each direction
 constexpr double kLeastVariance = 1e-9;  // of scaled regressors, as a ridge: some are constant, or multiples of others
 
 /// Regressors, a row each, and the outputs that follow them.
@@ -145,11 +144,6 @@ TrainingRange range_of(const Scaled& data, const Design& design) {
   for (std::size_t i = 0; i < design.regressors.size(); ++i) {
     range.least[i % n] = std::min(range.least[i % n], design.regressors[i]);
     range.most[i % n] = std::max(range.most[i % n], design.regressors[i]);
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const double margin = kMargin * (range.most[i] - range.least[i]);
-    range.least[i] -= margin;
-    range.most[i] += margin;
   }
   const Eigen::Index size = data.X.cols();
   Eigen::MatrixXd covariance = data.X.transpose() * data.X / static_cast<double>(data.X.rows());

@@ -19,6 +19,8 @@ constexpr double kLongestInterval = 0.1;  // [s] over which one measurement corr
 constexpr double kCoupled = 0.05;         // [-] least effect of the sideways speed on the yaw rate, see `coupling`
 constexpr double kMostGain = 50.0;        // largest `left` and `equivalent` of TurnGains
 constexpr double kSlowest = 3.0;          // [1/s] least frequency from which poles are placed
+constexpr double kMostSpeed = 500.0;      // [m/s] of any car
+constexpr double kMostTurn = 30.0;        // [rad/s] of any car
 
 Eigen::Map<SlipMatrix> covariance_of(SideslipState& state) { return Eigen::Map<SlipMatrix>(state.covariance.data()); }
 
@@ -111,6 +113,22 @@ void correct(const SideslipModel& model, const SideslipMeasurement& m, SideslipS
     correct_speed(model, m.value, seconds, state);
 }
 
+/// False for a state that no car has, as after a wrong reading: the observer then stops.
+bool is_sound(const SideslipState& state) {
+  if (!state.known()) return true;
+  const auto within = [](double v, double most) { return std::abs(v) <= most; };
+  return within(state.mean[kTrackForward], kMostSpeed) && within(state.mean[kTrackLeft], kMostSpeed) &&
+         within(state.mean[kTrackTurn], kMostTurn) &&
+         std::ranges::all_of(state.covariance, [&](double v) { return within(v, kMostSpeed * kMostSpeed); });
+}
+
+/// The last inputs remain.
+SideslipState stopped(const SideslipState& state) {
+  SideslipState none;
+  none.input = state.input;
+  return none;
+}
+
 }  // namespace
 
 SideslipState started(const SideslipModel& model, std::int64_t time, double speed) {
@@ -123,21 +141,19 @@ SideslipState started(const SideslipModel& model, std::int64_t time, double spee
 
 SideslipState predict(const SideslipModel& model, const SideslipState& state, std::int64_t time) {
   if (!state.known() || time <= state.at) return state;
-  if (time - state.at > kSideslipGap) {
-    SideslipState stopped;
-    stopped.input = state.input;
-    return stopped;
-  }
+  if (time - state.at > kSideslipGap) return stopped(state);
   SideslipState later = state;
   const double seconds = 1e-9 * static_cast<double>(time - state.at);
   const int steps = static_cast<int>(std::ceil(seconds / kLongestStep - 1e-9));
   for (int k = 0; k < steps; ++k) advance_by(model, seconds / steps, later);
   later.at = time;
-  return later;
+  return is_sound(later) ? later : stopped(state);
 }
 
 Verdict apply(const SideslipModel& model, const SideslipMeasurement& m, SideslipState& state) {
-  if (!std::isfinite(m.value)) return Verdict::invalid;
+  // No car turns or drives faster, and wheels turn less than a right angle.
+  static constexpr double kMost[]{0.5 * M_PI, 1e6, kMostSpeed, kMostTurn};
+  if (!(std::abs(m.value) <= kMost[static_cast<std::size_t>(m.kind)])) return Verdict::invalid;
   state = predict(model, state, m.time);
   Verdict verdict = Verdict::used;
   if (m.kind == SideslipKind::steer)
@@ -154,6 +170,7 @@ Verdict apply(const SideslipModel& model, const SideslipMeasurement& m, Sideslip
   } else
     return Verdict::no_track;
   state.last[static_cast<std::size_t>(m.kind)] = m.time;
+  if (!is_sound(state)) state = stopped(state);
   return verdict;
 }
 

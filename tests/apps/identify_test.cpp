@@ -75,7 +75,7 @@ TEST_F(Identify, RefusesWithoutAModel) {
     return outcome.err;
   };
   expect_in("no sensor 'laser'; expected TYPE or TYPE:NUMBER, of: gyro",
-            error({"--inputs", "laser", "--output", "gyro"}));
+            error({"--inputs", "laser", "--output", "gyro:1"}));
   expect_in("no sensor 'gyro:2'", error({"--inputs", "gyro:2", "--output", "gyro"}));
   expect_in("no sensor 'gyro:'", error({"--inputs", "gyro:", "--output", "gyro"}));
   expect_in("has no robot 'r1'", identify(gyros, "model.toml", "20", "r1").err);
@@ -83,6 +83,8 @@ TEST_F(Identify, RefusesWithoutAModel) {
   expect_in("expected NAME=LEAST,MOST", error(with(gyros, {"--where", "gyro.rate_rad_s=1"})));
   expect_in("have no 'rate'; expected one of: gyro.rate_rad_s", error(with(gyros, {"--where", "rate=0,1"})));
   expect_in("too few", error(with(gyros, {"--where", "gyro.rate_rad_s=1000,1001"})));
+  expect_in("smaller number first", error(with(gyros, {"--between", "1,0"})));
+  expect_in("is one of the inputs", error({"--inputs", "gyro", "--output", "gyro"}));
   expect_in("--kinds", error(with(gyros, {"--kinds", "svm"})));
   expect_in("too few", identify(with(gyros, {"--lags", "30", "--kinds", "arx"}), "model.toml", "0.1").err);
   EXPECT_FALSE(std::filesystem::exists(folder.path("model.toml")));
