@@ -46,7 +46,7 @@ class ModelTest : public FolderTest {
   world::World robot_with(const std::string& model) {
     write("model.toml", text_of(file_));
     return world::build_world(path("model.world"),
-                              "bot position( name \"r\" size [0.3 0.3 0.1] drive \"diff\" gyro( name \"a\" rate 20 ) "
+                              "position( name \"r\" size [0.3 0.3 0.1] drive \"diff\" gyro( name \"a\" rate 20 ) "
                               "gyro( name \"b\" rate 20 ) encoder( rate 20 )\n" +
                                   model + " )\n",
                               {.sensors = world_file_words()});
@@ -142,8 +142,8 @@ TEST(ModelFiles, EachDefectIsNamedWithItsLine) {
     return refusal_of([&] { parse_model_file("m.toml", text); });
   };
   expect_in("'weights' has 2 numbers; expected 3", refusal_with("weights = [0, 1, 0.5]", "weights = [0, 1]"));
-  expect_in("m.toml:6: 'hidden' expects a number from 0 to 64", refusal_with("hidden = 0", "hidden = 1000000000"));
-  expect_in("m.toml:6: 'hidden' expects a whole number", refusal_with("hidden = 0", "hidden = 0.5"));
+  expect_in("m.toml:7: 'hidden' expects a number from 0 to 64", refusal_with("hidden = 0", "hidden = 1000000000"));
+  expect_in("m.toml:7: 'hidden' expects a whole number", refusal_with("hidden = 0", "hidden = 0.5"));
   expect_in("expects a number", refusal_with("weights = [0, 1, 0.5]", "weights = [0, 1, nan]"));
   expect_in("'deviations' expects a number", refusal_with("deviations = [1, 1]", "deviations = [1, 0]"));
   expect_in("deviation > 0", refusal_with("output_scale = [0, 1]", "output_scale = [0, -1]"));

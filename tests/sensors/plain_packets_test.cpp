@@ -197,7 +197,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 15u) << "plain readings";
+  EXPECT_EQ(rows, 16u) << "plain readings";
 }
 
 }  // namespace
