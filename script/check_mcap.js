@@ -81,7 +81,7 @@ function checkContent(seen) {
       for (const { x, y, z, w } of turns) check(Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-12, `${name}: no unit quaternion`);
     }
   }
-  check(seen.topics.get("/run")?.count === 1, "no single /run message");
+  check(seen.topics.get("/run")?.count >= 1, "no /run message"); // again when robots join or shapes change
 }
 
 /** Reads by the index, as viewers do. */
