@@ -18,6 +18,11 @@ inline bool is_shape_name(std::string_view name) {
   return !name.empty() && name.size() <= kMostShapeName && name.find_first_not_of(kPlain) == std::string_view::npos;
 }
 
+inline constexpr double kMostShapeSize = 1'000.0;  ///< [m] along each axis
+
+/// Returns whether a shape may extend that far along an axis [m]: in (0, kMostShapeSize].
+inline bool is_shape_length(double length) { return length > 0.0 && length <= kMostShapeSize; }
+
 struct ShapeState {
   std::uint32_t mover = 0;
   std::uint32_t shape = 0xFFFFFFFFu;  ///< row in `world::World::shapes`; 0xFFFFFFFF: its own

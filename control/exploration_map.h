@@ -23,7 +23,7 @@ namespace sf::control {
 /// Index of a lattice node, row-major like the cells of the map.
 using Node = std::int32_t;
 
-/// What kind of world is mapped, and how exactly.
+/// Resolution of the clearances, and whether objects of the world move.
 struct ExplorationMapSettings {
   double most_clearance = 0.06;  ///< [m] beyond the body's radius up to which clearances are kept
   bool moving = false;           ///< objects move: cells may become free again

@@ -100,18 +100,9 @@ class ModelControllers::Handle final : public sensorfarm::Model {
     if (present != present_) model_.velocity = {};
   }
 
-  // A new shape brings its own size and colour, so earlier ones of this tick are dropped.
   void set_shape(std::string_view name) override { reshape({.shape = std::string(name)}); }
-  void set_size(double x, double y, double z) override {
-    world::ShapeChange shape = change_.shape;
-    shape.size = glm::dvec3{x, y, z};
-    reshape(shape);
-  }
-  void set_color(std::string_view color) override {
-    world::ShapeChange shape = change_.shape;
-    shape.color = world::color_named(std::string(color));
-    reshape(shape);
-  }
+  void set_size(double x, double y, double z) override { reshape({.size = glm::dvec3{x, y, z}}); }
+  void set_color(std::string_view color) override { reshape({.color = world::color_named(std::string(color))}); }
 
   double uniform() override { return base::random_uniform(next_draw(), 0)[0]; }
   double normal() override { return base::random_normal(next_draw(), 0)[0]; }
@@ -122,11 +113,13 @@ class ModelControllers::Handle final : public sensorfarm::Model {
   }
 
  private:
-  void reshape(const world::ShapeChange& shape) {
+  void reshape(const world::ShapeChange& wanted) {
     if (!shapes_change_)
       throw std::runtime_error("shape, size and colour cannot change here; expected a run, a scenario or the library");
-    world::check_change(world_, model_.mover, shape);
-    change_.shape = shape;
+    world::ShapeChange all = change_.shape;
+    all.add(wanted);
+    world::check_change(world_, model_.mover, all);
+    change_.shape = std::move(all);
   }
 
   base::RandomKey next_draw() {

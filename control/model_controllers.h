@@ -34,7 +34,7 @@ class ModelControllers {
     std::uint64_t seed = 1;  ///< seed of the models' random numbers
     double interval = 0.1;   ///< [s] between calls
   };
-  /// What the controllers see: the movers at one tick.
+  /// The movers at one tick, as passed to the controllers.
   struct Scene {
     std::int64_t time = 0;  ///< [ns]
     std::span<const base::Report> states;
@@ -42,7 +42,7 @@ class ModelControllers {
     const robots::Fleet& fleet;  ///< with the outlines of the movers, and the absent ones marked
     bool shapes_change = false;  ///< controllers may change shape, size and colour
   };
-  /// What a controller requests. Apply the shape and presence first, then the pose, then the velocity.
+  /// The request of one controller. The caller applies shape and presence first, then the pose, then the velocity.
   struct Change {
     std::uint32_t mover = 0;
     std::optional<bool> present;

@@ -128,13 +128,12 @@ PacketStatus read_shape(base::ByteReader& reader, std::uint32_t flags, Object& o
   if ((flags & kColorBit) != 0) object.color = color;
   if ((flags & kSizeBit) != 0) object.size = size;
   if (!std::isfinite(size[0] + size[1] + size[2])) return PacketStatus::not_finite;
-  const auto is_length = [](double length) { return length > 0.0 && length <= kMaxObjectSize; };
   const auto is_zero = [](double length) { return std::bit_cast<std::uint64_t>(length) == 0; };
-  const bool good = flags > kPresentBit && flags < 2 * kSizeBit && ((flags & kShapeBit) != 0) != object.shape.empty() &&
-                    (object.shape.empty() || base::is_shape_name(object.shape)) &&
-                    std::all_of(end, name.end(), [](std::uint8_t byte) { return byte == 0; }) &&
-                    (object.color || color == 0) &&
-                    (object.size ? std::ranges::all_of(size, is_length) : std::ranges::all_of(size, is_zero));
+  const bool good =
+      flags > kPresentBit && flags < 2 * kSizeBit && ((flags & kShapeBit) != 0) != object.shape.empty() &&
+      (object.shape.empty() || base::is_shape_name(object.shape)) &&
+      std::all_of(end, name.end(), [](std::uint8_t byte) { return byte == 0; }) && (object.color || color == 0) &&
+      (object.size ? std::ranges::all_of(size, base::is_shape_length) : std::ranges::all_of(size, is_zero));
   return good ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 

@@ -137,11 +137,10 @@ struct Object {
   bool present = true;
   std::string shape = {};                          ///< name (base::is_shape_name); empty: unchanged
   std::optional<std::uint32_t> color = {};         ///< 0xAARRGGBB
-  std::optional<std::array<double, 3>> size = {};  ///< [m] each in (0, kMaxObjectSize]
+  std::optional<std::array<double, 3>> size = {};  ///< [m] base::is_shape_length each
 
   bool changes_shape() const { return !shape.empty() || color || size; }
 };
-inline constexpr double kMaxObjectSize = 1'000.0;  ///< [m]
 
 /// Answer of the farm to an unproven address. Packets from there are accepted once they carry the token.
 struct Challenge {

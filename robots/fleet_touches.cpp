@@ -1,4 +1,4 @@
-// What touches a mover, and where.
+// Finds the bodies in contact with a mover, and the points of contact.
 
 #include <algorithm>
 #include <cmath>

@@ -40,7 +40,7 @@ struct ExperimentContext {
   std::function<void(double, const std::string&)> progress;  ///< receives the completed fraction and the next step
 };
 
-/// What an experiment runs.
+/// The input of an experiment.
 enum class ExperimentSource : std::uint8_t {
   scenario,      ///< a scenario file
   measurements,  ///< evaluates `ExperimentOptions::data`: no scenario, no trials, no device
@@ -52,6 +52,7 @@ struct ExperimentType {
   std::string_view scenario;  ///< stem of its scenario file; empty: its name
   std::string_view summary;   ///< one line for help
   ExperimentSource source = ExperimentSource::scenario;
+  bool fixed_trials = false;   ///< ignores `ExperimentOptions::trials`
   Plant plant = Plant::ideal;  ///< default for the scenario and the user
   /// Text for the report: reasons for deviations from the thesis, or the findings.
   std::string_view reasons;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -14,6 +13,7 @@
 #include "base/time.h"
 #include "scenarios/recorded_states.h"
 #include "sensors/derived/public_types.h"
+#include "sensors/derived/wiring.h"
 #include "sensors/sensor_set.h"
 
 namespace sf::scenarios {
@@ -43,24 +43,20 @@ std::uint32_t robot_row(const record::Recording& recording, const world::World& 
 /// Finds a sensor written as "type" or "type:number".
 const sensors::SensorSpec& spec_of(const record::Recording& recording, const sensors::SensorSet& sensor_set,
                                    std::uint32_t mover, const std::string& text, const sensors::SensorType*& type) {
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  const std::string_view name = std::string_view(text).substr(0, colon);
-  std::uint32_t number = 0;
-  const char* const end = text.data() + text.size();
-  const bool whole = colon == text.size() ||
-                     (std::from_chars(text.data() + colon + 1, end, number).ptr == end && colon + 1 < text.size());
+  const sensors::InputText input = sensors::read_input(text);
+  const bool own_sensor = input.port.empty() && input.robot.empty() && input.number;
   std::vector<std::string_view> names;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     const auto own = sensor_set.of(group.type->id, mover);
     if (own.empty()) continue;
     names.push_back(group.type->name);
-    if (group.type->name != name || !whole || number >= own.size()) continue;
+    if (!own_sensor || !sensors::is_called(*group.type, input.type) || *input.number >= own.size()) continue;
     type = group.type;
-    return own[number];
+    return own[*input.number];
   }
   throw base::InputError(recording.file, 0,
                          fmt::format("the robot has no sensor '{}'; expected TYPE or TYPE:NUMBER, of: {}{}", text,
-                                     fmt::join(names, ", "), base::suggest(name, names)));
+                                     fmt::join(names, ", "), base::suggest(input.type, names)));
 }
 
 class Sampler {

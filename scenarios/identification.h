@@ -46,8 +46,8 @@ struct IdentificationData {
 /// signals that differ from those of the recordings before
 void add_recording(const record::Recording& recording, const IdentificationSignals& signals, IdentificationData& data);
 
-/// What a model may use: `arx` (linear, with values of the output before), `narx` (the same with sigmoids), `network`
-/// (sigmoids of inputs only).
+/// Families of models. `arx` is linear and uses past outputs, `narx` adds sigmoids, and `network` has sigmoids but no
+/// past outputs.
 enum class ModelKind : std::uint8_t { arx, narx, network };
 inline constexpr std::string_view kModelKinds[] = {"arx", "narx", "network"};
 

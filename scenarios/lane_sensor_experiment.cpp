@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include "base/thread_pool.h"
 #include "record/recording.h"
@@ -26,16 +28,12 @@ constexpr double kWidestLane = 0.45;  // [m] farther edges are those of other la
 constexpr std::uint32_t kLags[] = {1, 2}, kHidden[] = {4, 8};
 constexpr ModelKind kKinds[] = {ModelKind::arx, ModelKind::network};
 
-/// What the model is worth on one run of the south loop.
+/// Errors [m] of the model in one run of the south loop, at the steps with a measured edge.
 struct LaneSensorRow {
   std::uint64_t seed = 0;
-  std::size_t steps = 0;       ///< with a measured edge
-  std::size_t valid = 0;       ///< of these, with a valid reading of the model
-  double squares = 0.0;        ///< [m^2] sum of squared errors of valid readings
-  double refused = 0.0;        ///< [m^2] the same of readings outside the training range, as if they were valid
-  std::size_t refusals = 0;    ///< number of these
-  std::size_t in_two = 0;      ///< valid readings with an error of at most two standard deviations
-  std::vector<double> errors;  ///< [m] of valid readings
+  std::size_t steps = 0;        ///< with a measured edge
+  std::vector<double> errors;   ///< of valid readings
+  std::vector<double> outside;  ///< of readings outside the training range, as if they were valid
 };
 
 /// One run, as a recording in memory.
@@ -43,7 +41,8 @@ record::Recording recorded_run(const ExperimentContext& context, std::uint64_t s
   Scenario scenario = context.scenario;
   scenario.seed = seed;
   TrialOptions options = trial_options(context);
-  options.record = in_folder(context, "run");
+  options.ranks = nullptr;  // the first rank computes everything
+  options.record = in_folder(context, "run-in-progress");
   const world::World world = disturbed_world(scenario, options.disturbance);
   run_trial(scenario, world, context.device, options);
   record::Recording recording = record::open_recording(options.record);
@@ -67,32 +66,18 @@ IdentificationSignals lane_signals(const std::string& robot, bool training) {
 LaneSensorRow compare(const estimation::Regression& model, const estimation::SampledSignals& signals,
                       std::uint64_t seed, std::vector<viz::Panel>* panels) {
   LaneSensorRow row{.seed = seed};
-  estimation::History history(model.structure);
-  history.fill_outputs(model.output.mean);
-  std::vector<double> scratch;
+  estimation::ModelRun run(model, true);
   viz::Series measured{"lane edge sensor", {}, {}}, learnt{"model", {}, {}}, valid{"valid", {}, {}};
   for (std::size_t k = 0; k < signals.size(); ++k) {
-    history.add_inputs(signals.inputs_at(k));
     const double edge = signals.output_at(k);
-    estimation::ModelPrediction prediction{NAN, false};
-    if (history.complete()) prediction = estimation::predict(model, history, scratch);
-    if (history.complete()) history.add_output(prediction.value);
-    if (!history.outputs_known()) history.fill_outputs(model.output.mean);
+    const auto [value, in_range] = run.step(signals.inputs_at(k), edge).value_or(estimation::ModelPrediction{NAN});
     for (viz::Series* each : {&measured, &learnt, &valid}) each->times.push_back(static_cast<double>(k) / kModelRate);
     measured.values.push_back(std::isfinite(edge) ? edge : NAN);
-    learnt.values.push_back(prediction.in_range ? prediction.value : NAN);
-    valid.values.push_back(prediction.in_range ? 1.0 : 0.0);
+    learnt.values.push_back(in_range ? value : NAN);
+    valid.values.push_back(in_range ? 1.0 : 0.0);
     if (!std::isfinite(edge)) continue;
     ++row.steps;
-    const double error = prediction.value - edge;
-    if (!prediction.in_range) {
-      if (std::isfinite(error)) row.refused += error * error, ++row.refusals;
-      continue;
-    }
-    ++row.valid;
-    row.squares += error * error;
-    row.errors.push_back(error);
-    if (std::abs(error) <= 2.0 * model.error.free_run) ++row.in_two;
+    if (std::isfinite(value)) (in_range ? row.errors : row.outside).push_back(value - edge);
   }
   if (panels != nullptr)
     *panels = {{.y_name = "distance of the edge [m]", .series = {measured, learnt}},
@@ -100,13 +85,21 @@ LaneSensorRow compare(const estimation::Regression& model, const estimation::Sam
   return row;
 }
 
-double rms(double squares, std::size_t count) { return std::sqrt(squares / static_cast<double>(count)); }
+double rms(std::span<const double> errors) {
+  double squares = 0.0;
+  for (const double error : errors) squares += error * error;
+  return errors.empty() ? NAN : std::sqrt(squares / static_cast<double>(errors.size()));
+}
 
-std::string lane_csv(const std::vector<LaneSensorRow>& rows) {
+std::size_t within(std::span<const double> errors, double most) {
+  return static_cast<std::size_t>(std::ranges::count_if(errors, [&](double e) { return std::abs(e) <= most; }));
+}
+
+std::string lane_csv(const std::vector<LaneSensorRow>& rows, double sigma) {
   std::string text = "seed,steps,valid,rms_m,within_two_sigma,outside,rms_outside_m\n";
   for (const LaneSensorRow& r : rows)
-    text += fmt::format("{},{},{},{:.6g},{},{},{:.6g}\n", r.seed, r.steps, r.valid, rms(r.squares, r.valid), r.in_two,
-                        r.refusals, rms(r.refused, r.refusals));
+    text += fmt::format("{},{},{},{:.6g},{},{},{:.6g}\n", r.seed, r.steps, r.errors.size(), rms(r.errors),
+                        within(r.errors, 2.0 * sigma), r.outside.size(), rms(r.outside));
   return text;
 }
 
@@ -124,11 +117,11 @@ std::string lane_report(const ExperimentContext& context, const IdentificationDa
                         const estimation::Selection& selection, const std::vector<LaneSensorRow>& rows) {
   LaneSensorRow all;
   for (const LaneSensorRow& r : rows) {
-    all.steps += r.steps, all.valid += r.valid, all.squares += r.squares, all.in_two += r.in_two;
-    all.refused += r.refused, all.refusals += r.refusals;
+    all.steps += r.steps;
     all.errors.insert(all.errors.end(), r.errors.begin(), r.errors.end());
+    all.outside.insert(all.outside.end(), r.outside.begin(), r.outside.end());
   }
-  const ErrorStatistics statistics = statistics_of(all.errors);
+  const double sigma = selection.model.error.free_run, error = rms(all.errors);
   const auto share = [](std::size_t part, std::size_t whole) {
     return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
   };
@@ -141,14 +134,14 @@ std::string lane_report(const ExperimentContext& context, const IdentificationDa
       "| within two standard deviations | {:.1f} % |\n| not valid: outside the training range | {:.1f} % of steps |\n"
       "| RMS error there, had they been valid | {:.1f} mm |\n\n{}\n",
       kTrainingSeeds, context.options.seed, context.options.seed + kTrainingSeeds - 1, data.signals.size(), kModelRate,
-      candidates_text(selection), rows.size(), rows.front().seed, rows.back().seed, all.steps,
-      1e3 * selection.model.error.free_run, 1e3 * rms(all.squares, all.valid), 1e3 * statistics.mean,
-      all.squares / static_cast<double>(all.valid) / std::pow(selection.model.error.free_run, 2),
-      share(all.in_two, all.valid), share(all.steps - all.valid, all.steps), 1e3 * rms(all.refused, all.refusals),
-      context.type.reasons);
+      candidates_text(selection), rows.size(), rows.front().seed, rows.back().seed, all.steps, 1e3 * sigma, 1e3 * error,
+      1e3 * statistics_of(all.errors).mean, error * error / (sigma * sigma),
+      share(within(all.errors, 2.0 * sigma), all.errors.size()), share(all.steps - all.errors.size(), all.steps),
+      1e3 * rms(all.outside), context.type.reasons);
 }
 
 std::vector<std::string> run_lane_sensor(const ExperimentContext& context) {
+  if (!reports(context)) return {};
   const auto progress = [&](std::uint32_t run, const char* what) {
     if (context.progress) context.progress(run / static_cast<double>(kTrainingSeeds + kTestSeeds + 5), what);
   };
@@ -173,11 +166,10 @@ std::vector<std::string> run_lane_sensor(const ExperimentContext& context) {
     add_recording(recorded_run(context, seed), lane_signals("roomba2", false), run);
     rows.push_back(compare(selection.model, run.signals, seed, k == 0 ? &panels : nullptr));
   }
-  if (!reports(context)) return {};
   std::vector<std::string> files{in_folder(context, "results.csv"), in_folder(context, "report.md"),
                                  in_folder(context, "edge.toml"), in_folder(context, "edge.png")};
   data.model.regression = selection.model;
-  write_text(files[0], lane_csv(rows));
+  write_text(files[0], lane_csv(rows, selection.model.error.free_run));
   write_text(files[1], lane_report(context, data, selection, rows));
   write_text(files[2], sensors::text_of(data.model));
   viz::draw_series({.title = "A magnetometer as a lane sensor",
@@ -199,6 +191,7 @@ extern const ExperimentType lane_sensor_experiment;
 constinit const ExperimentType lane_sensor_experiment{
     .name = "lane-sensor",
     .summary = "a magnetometer as a lane sensor, learnt on one loop and used on another",
+    .fixed_trials = true,
     .reasons = kLaneSensorReasons,
     .run = run_lane_sensor,
 };

@@ -121,8 +121,7 @@ std::string observability_table(std::span<const Case> cases) {
   std::string text =
       "\n## Observability\n\nRank of the local observability matrix along the slalom at 0.2 and 0.9 g, and the effect "
       "of the sideways speed alone (median; less than 0.02 counts as none).\n\n| car | model | sensors | components | "
-      "rank, 0.2 "
-      "g | effect | rank, 0.9 g | effect |\n|---|---|---|---|---|---|---|---|\n";
+      "rank, 0.2 g | effect | rank, 0.9 g | effect |\n|---|---|---|---|---|---|---|---|\n";
   const auto find = [&](std::string_view car, double level) {
     return std::ranges::find_if(cases, [&](const Case& each) {
       return each.name == car && each.manoeuvre == Manoeuvre::slalom && each.level == level;
@@ -245,23 +244,19 @@ constexpr std::string_view kSideslipReasons =
     "The source (by the thesis' account): nonlinear observers do best, the speed is not needed, and all observers "
     "suffice at low lateral acceleration. With 20 trials from seed 51:\n\n"
     "- Nonlinear observers do best: confirmed from 0.4 g on where a yaw rate corrects them. At 0.9 g the linear "
-    "observer "
-    "then errs by 1.2 to 2.2 degrees RMS, the extended ones by 0.2 to 0.4, since the tyres' forces no longer grow with "
-    "slip. Exceptions at 0.9 g: the sliding mode loses the step steer (1.2 degrees), and with the speed alone the "
-    "nonlinear model errs as much as the linear one.\n"
+    "observer then errs by 1.2 to 2.2 degrees RMS, the extended ones by 0.2 to 0.4, since the tyres' forces no "
+    "longer grow with slip. Exceptions at 0.9 g: the sliding mode loses the step steer (1.2 degrees), and with the "
+    "speed alone the nonlinear model errs as much as the linear one.\n"
     "- The speed is not needed: confirmed. Yaw rate and both differ by less than 0.1 degrees RMS.\n"
     "- All suffice at low lateral acceleration: confirmed as an absolute error, at most 0.2 degrees at 0.2 g. As a "
-    "share "
-    "of the sideslip, the linear observer with a yaw rate fails in the step steer even there.\n"
+    "share of the sideslip, the linear observer with a yaw rate fails in the step steer even there.\n"
     "- Up to 0.7 g the nonlinear model alone, which measures only its inputs, tracks as well as any observer: such "
-    "runs "
-    "do not show that sensors help. Above, the yaw rate does.\n"
+    "runs do not show that sensors help. Above, the yaw rate does.\n"
     "- Speed alone: a linear model has no output then and nothing is corrected. In the nonlinear one the sideways "
-    "speed "
-    "acts on the speed only through the turn, too little to track further than the model alone. The other observers "
-    "than the filter leave the sideways speed to the model.\n"
-    "- The neutral car: l_f C_f = l_r C_r makes the linear sideslip unobservable from the yaw rate (rank 1 of 2). Its "
-    "errors are small because the model is good, not because the sideslip is measured.";
+    "speed acts on the speed only through the turn, too little to track further than the model alone. The other "
+    "observers than the filter leave the sideways speed to the model.\n"
+    "- The neutral car: l_f C_f = l_r C_r makes the linear sideslip unobservable from the yaw rate (rank 1 of 2). "
+    "Its errors are small because the model is good, not because the sideslip is measured.";
 
 }  // namespace
 

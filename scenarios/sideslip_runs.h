@@ -28,7 +28,7 @@ inline constexpr double kSideslipSpeed = 25.0;  ///< [m/s]
 inline constexpr double kSignalRate = 100.0;    ///< [Hz]
 inline constexpr double kManoeuvreStart = 0.5;  ///< [s] errors count from then on
 
-/// Standard deviations of signals, each time anew, and of constants, once per trial.
+/// Standard deviations of noise, drawn for each sample, and of constant errors, drawn once per trial.
 struct SideslipErrors {
   double steer = 1.75e-3;        ///< [rad]
   double turn = 3.5e-3;          ///< [rad/s]

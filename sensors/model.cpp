@@ -21,14 +21,15 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 class ModelSensor final : public sensorfarm::DerivedSensor {
  public:
   ModelSensor(ModelFile file, const sensorfarm::DerivedSite& site)
-      : file_(std::move(file)), history_(file_.regression.structure), inputs_(file_.inputs.size(), kUnknown) {
+      : file_(std::move(file)),
+        measured_known_(std::ranges::any_of(site.inputs, [](auto& input) { return input.port == kModelMeasured; })),
+        run_(file_.regression, !measured_known_),
+        inputs_(file_.inputs.size(), kUnknown) {
     std::size_t next = 0;
     for (const sensorfarm::DerivedInput& input : site.inputs) {
       first_.push_back(input.port == kModelMeasured ? kNone : next);
-      if (input.port == kModelMeasured) measured_known_ = true;
       if (input.port == kModelInput) next += signal_names(input.sensor).size();
     }
-    if (!measured_known_) history_.fill_outputs(file_.regression.output.mean);
   }
 
   void take(std::uint32_t input, const sensorfarm::Reading& reading) override {
@@ -39,32 +40,24 @@ class ModelSensor final : public sensorfarm::DerivedSensor {
   }
 
   void read(double, sensorfarm::DerivedReading out) override {
-    const estimation::Regression& model = file_.regression;
-    history_.add_inputs(inputs_);
+    const auto prediction = run_.step(inputs_, measured_);
     out.valid[0] = 0;
-    double value = kUnknown;
-    if (history_.complete()) {
-      const estimation::ModelPrediction prediction = estimation::predict(model, history_, scratch_);
-      value = prediction.value;
-      out.values[0] = value;
-      out.valid[0] = prediction.in_range && std::isfinite(value) ? 1 : 0;
-      const double error = measured_known_ ? model.error.one_step : model.error.free_run;
-      out.covariance[0] = error * error;
-    }
-    if (measured_known_) return history_.add_output(measured_);
-    if (history_.complete()) history_.add_output(value);
-    if (!history_.outputs_known()) history_.fill_outputs(model.output.mean);
+    if (!prediction) return;
+    out.values[0] = prediction->value;
+    out.valid[0] = prediction->in_range && std::isfinite(prediction->value) ? 1 : 0;
+    const estimation::ModelError& rms = file_.regression.error;
+    const double error = measured_known_ ? rms.one_step : rms.free_run;
+    out.covariance[0] = error * error;
   }
 
  private:
   static constexpr std::size_t kNone = SIZE_MAX;
   ModelFile file_;
-  estimation::History history_;
+  bool measured_known_;  ///< the output is an input
+  estimation::ModelRun run_;
   std::vector<double> inputs_;      ///< newest values
   std::vector<std::size_t> first_;  ///< per input: its place in `inputs_`; kNone: the measured output
   double measured_ = kUnknown;
-  bool measured_known_ = false;  ///< the output is an input
-  std::vector<double> scratch_;
 };
 
 /// Refuses inputs other than those that the model was learnt from.

@@ -118,12 +118,7 @@ void StateReceiver::change_shape(std::uint32_t row, const netio::Object& object)
 }
 
 void StateReceiver::change_shape(std::uint32_t row, const world::ShapeChange& wanted) {
-  if (!wanted.any()) return;
-  world::ShapeChange& change = shape_changes_[row];
-  // A new shape brings its own size and colour.
-  if (wanted.shape) change = {.shape = wanted.shape};
-  if (wanted.color) change.color = wanted.color;
-  if (wanted.size) change.size = wanted.size;
+  if (wanted.any()) shape_changes_[row].add(wanted);
 }
 
 /// A light that joins is where the first group of its V2I is.

@@ -132,6 +132,12 @@ std::size_t sides_of(const World& world, const ChangedShape& shape) {
 
 }  // namespace
 
+void ShapeChange::add(const ShapeChange& later) {
+  if (later.shape) *this = {.shape = later.shape};
+  if (later.color) color = later.color;
+  if (later.size) size = later.size;
+}
+
 std::uint32_t color_named(const std::string& text) {
   if (const auto color = color_of(text)) return *color;
   std::uint32_t rgb = 0;
@@ -150,10 +156,9 @@ void check_change(const World& world, std::uint32_t mover, const ShapeChange& ch
   const ChangedShape now = changed(world, current_shape(world, mover), change);
   if (change.size) {
     const glm::dvec3& s = *change.size;
-    const auto good = [](double length) { return length > 0.0 && length <= kMostShapeSize; };
-    if (!good(s.x) || !good(s.y) || !good(s.z))
+    if (!base::is_shape_length(s.x) || !base::is_shape_length(s.y) || !base::is_shape_length(s.z))
       refuse(fmt::format("size ({:g}, {:g}, {:g}); expected lengths above 0 and at most {:g} m", s.x, s.y, s.z,
-                         kMostShapeSize));
+                         base::kMostShapeSize));
     if (sides_of(world, now) == 0) refuse("it has no outline of its own to scale; give a shape, too");
   }
   std::size_t sides = sides_of(world, now);

@@ -22,7 +22,6 @@ namespace sf::world {
 
 inline constexpr std::size_t kMostShapes = 200;                 ///< of one world
 inline constexpr std::size_t kMostShapeSides = 10'000;          ///< of one shape
-inline constexpr double kMostShapeSize = 1'000.0;               ///< [m] each
 inline constexpr std::size_t kMostChangedSides = 2'000'000;     ///< of all movers with changed shapes
 inline constexpr std::string_view kOriginalShape = "original";  ///< name of each object's own shape
 
@@ -30,9 +29,11 @@ inline constexpr std::string_view kOriginalShape = "original";  ///< name of eac
 struct ShapeChange {
   std::optional<std::string> shape = {};    ///< name of a shape of the world, or kOriginalShape: with size and colour
   std::optional<std::uint32_t> color = {};  ///< 0xAARRGGBB
-  std::optional<glm::dvec3> size = {};      ///< [m] in (0, kMostShapeSize] each
+  std::optional<glm::dvec3> size = {};      ///< [m] in (0, base::kMostShapeSize] each
 
   bool any() const { return shape || color || size; }
+  /// Adds a later change. A new shape brings its own size and colour, so earlier ones are dropped.
+  void add(const ShapeChange& later);
 };
 
 /// Returns the colour (0xAARRGGBB) of an X11 name such as "steel blue", or of "#RRGGBB".

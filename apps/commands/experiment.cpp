@@ -84,7 +84,9 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
                                         if (ranks == nullptr || ranks->rank() == 0) progress.show(part, note);
                                       });
   } catch (const scenarios::Interrupted&) {
-    print_message("interrupted: no report was written; {} has the completed trials", options.out);
+    const bool kept = std::filesystem::exists(options.out + "/trial-1");
+    print_message("interrupted: no report was written{}",
+                  kept ? fmt::format("; {} has the completed trials", options.out) : "");
     return interrupted_code();
   }
   for (const std::string& file : files) print_message("wrote {}", file);

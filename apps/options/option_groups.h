@@ -90,7 +90,7 @@ void add_threads(CLI::App& app, ThreadsOption& o);
 /// Group of the options for other programs that run alongside `run` and `serve`.
 inline constexpr const char* kBridgeGroup = "Bridges to other programs (docs/bridges.md)";
 void add_bridges(CLI::App& app, BridgeOptions& o);
-/// Adds `NAME [HOST:]PORT`. @param what is served, for the help: "a live view"
+/// Adds the option `NAME [HOST:]PORT`. @param what the content of the page, for the help: "a live view"
 CLI::Option* add_live_view(CLI::App& app, std::optional<bridges::WebAddress>& view, const char* what,
                            const char* name = "--view");
 /// `--topics`, `--odometry` and `--external`.

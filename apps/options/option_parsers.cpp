@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "apps/reports/text.h"
+#include "base/shape_state.h"
 #include "base/suggest.h"
 #include "control/raw_text.h"
-#include "netio/packets.h"
 #include "viz/picture_file.h"
 #include "viz/top_view.h"
 #include "viz/video_file.h"
@@ -163,8 +163,8 @@ std::optional<base::Pose> read_pose(const std::string& text) {
 
 std::optional<std::array<double, 3>> read_lengths(const std::string& text) {
   const auto v = read_coordinates(text, 3);
-  const auto good = [](double length) { return length > 0.0 && length <= netio::kMaxObjectSize; };
-  return v && std::ranges::all_of(*v, good) ? std::optional(std::array{(*v)[0], (*v)[1], (*v)[2]}) : std::nullopt;
+  return v && std::ranges::all_of(*v, base::is_shape_length) ? std::optional(std::array{(*v)[0], (*v)[1], (*v)[2]})
+                                                             : std::nullopt;
 }
 
 std::optional<viz::Line> read_line(const std::string& text) {

@@ -35,7 +35,8 @@ Validator not_empty(const std::string& expected);
 Validator new_file(const std::string& example);
 /// Accepts a picture file to write, with a suffix that viz::format_of supports.
 Validator picture();
-/// The same for a file that is replaced again and again: its folder must exist, and what it replaces is a regular file.
+/// The same for a file that a command rewrites while it runs: its folder must exist, and an existing file must be a
+/// regular one.
 Validator replaced_picture();
 /// Accepts a video file to write.
 Validator video();
@@ -53,7 +54,7 @@ Validator readable(Read read, const char* expected) {
 std::optional<std::pair<std::string, std::string>> read_setting(const std::string& text);
 /// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7.
 std::optional<base::Pose> read_pose(const std::string& text);
-/// "X,Y,Z" in (0, netio::kMaxObjectSize] [m] each.
+/// "X,Y,Z" [m], each a length of a shape (base::is_shape_length).
 std::optional<std::array<double, 3>> read_lengths(const std::string& text);
 /// "X0,Y0,X1,Y1" [m], each within 1e7; two distinct points.
 std::optional<viz::Line> read_line(const std::string& text);

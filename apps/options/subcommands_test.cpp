@@ -22,7 +22,8 @@ namespace {
 void check_source(const CLI::App& sub) {
   if (sub.count("experiment") == 0) return;
   const std::string name = sub.get_option("experiment")->as<std::string>();
-  const scenarios::ExperimentSource source = scenarios::find_experiment(name)->source;
+  const scenarios::ExperimentType& type = *scenarios::find_experiment(name);
+  const scenarios::ExperimentSource source = type.source;
   const auto exclude = [&](std::initializer_list<const char*> options) {
     for (const char* option : options)
       if (sub.count(option) > 0) throw CLI::ExcludesError(option, name);
@@ -33,6 +34,7 @@ void check_source(const CLI::App& sub) {
     throw CLI::RequiredError(fmt::format("--data, the folder that {} evaluates,", name));
   else
     exclude({"--trials", "--seed"});
+  if (type.fixed_trials) exclude({"--trials"});
   if (source != scenarios::ExperimentSource::scenario) exclude({"--plant", "--compression", "--files", "--device"});
 }
 

@@ -74,12 +74,30 @@ void History::fill_outputs(double output) {
   for (std::uint32_t k = 0; k < structure_.output_lags; ++k) add_output(output);
 }
 
-ModelPrediction predict(const Regression& model, const History& history, std::vector<double>& scaled) {
-  const std::span<const double> regressors = history.regressors();
-  scaled.resize(regressors.size());
-  for (std::size_t i = 0; i < scaled.size(); ++i) scaled[i] = model.scales[i].apply(regressors[i]);
-  return {model.output.revert(evaluate(model.structure, model.weights, scaled)),
-          model.range.contains(regressors, scaled)};
+ModelRun::ModelRun(const Regression& model, bool free_run)
+    : model_(model), free_run_(free_run), history_(model.structure) {
+  restart();
+}
+
+void ModelRun::restart() {
+  history_.clear();
+  if (free_run_) history_.fill_outputs(model_.output.mean);
+}
+
+std::optional<ModelPrediction> ModelRun::step(std::span<const double> inputs, double measured) {
+  std::optional<ModelPrediction> prediction;
+  history_.add_inputs(inputs);
+  if (history_.complete()) {
+    const std::span<const double> regressors = history_.regressors();
+    scaled_.resize(regressors.size());
+    for (std::size_t i = 0; i < scaled_.size(); ++i) scaled_[i] = model_.scales[i].apply(regressors[i]);
+    prediction = {model_.output.revert(evaluate(model_.structure, model_.weights, scaled_)),
+                  model_.range.contains(regressors, scaled_)};
+  }
+  if (!free_run_) history_.add_output(measured);
+  if (free_run_ && prediction) history_.add_output(prediction->value);
+  if (free_run_ && !history_.outputs_known()) history_.fill_outputs(model_.output.mean);
+  return prediction;
 }
 
 }  // namespace sf::estimation

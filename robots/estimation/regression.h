@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -103,7 +104,25 @@ struct ModelPrediction {
   bool in_range = false;  ///< the regressors lie in the range of the training data
 };
 
-/// @pre history.complete() @param scaled reused memory
-ModelPrediction predict(const Regression& model, const History& history, std::vector<double>& scaled);
+/// Computes a model step by step. In a free run the model uses its own values of the output, from the mean of the
+/// training data on; otherwise it uses measured ones.
+class ModelRun {
+ public:
+  /// `model` must outlive it.
+  ModelRun(const Regression& model, bool free_run);
+
+  /// Starts over.
+  void restart();
+  /// Computes the present output, before it is measured. Returns nullopt while earlier values are not known.
+  /// @param inputs one per input of the model; values that are not finite are not known
+  /// @param measured the present output, for the next steps; NaN: not known. Unused in a free run
+  std::optional<ModelPrediction> step(std::span<const double> inputs, double measured);
+
+ private:
+  const Regression& model_;
+  bool free_run_;
+  History history_;
+  std::vector<double> scaled_;
+};
 
 }  // namespace sf::estimation

@@ -232,23 +232,18 @@ Regression fit(const Structure& structure, const SampledSignals& signals, std::s
 
 SquaredErrors errors_of(const Regression& model, const SampledSignals& signals, std::span<const StepRange> ranges) {
   SquaredErrors errors;
-  std::vector<double> scratch;
   for (const bool free_run : {false, true}) {
     double& sum = free_run ? errors.free_run : errors.one_step;
     std::size_t& steps = free_run ? errors.free_steps : errors.one_steps;
-    History history(model.structure);
+    ModelRun run(model, free_run);
     for (const StepRange& range : ranges) {
-      history.clear();
-      if (free_run) history.fill_outputs(model.output.mean);
+      run.restart();
       for (std::size_t k = range.first; k < range.last; ++k) {
         const double output = signals.output_at(k);
-        history.add_inputs(signals.inputs_at(k));
-        double value = NAN;
-        if (history.complete()) value = predict(model, history, scratch).value;
-        if (std::isfinite(output) && history.complete()) sum += (value - output) * (value - output), ++steps;
-        if (!free_run) history.add_output(output);
-        if (free_run && history.complete()) history.add_output(value);
-        if (free_run && !history.outputs_known()) history.fill_outputs(model.output.mean);
+        const auto prediction = run.step(signals.inputs_at(k), output);
+        if (!prediction || !std::isfinite(output)) continue;
+        sum += (prediction->value - output) * (prediction->value - output);
+        ++steps;
       }
     }
     if (!std::isfinite(sum)) sum = HUGE_VAL;

@@ -49,7 +49,7 @@ struct SideslipModel {
   // Other observers.
   double pace = 1.0;         ///< [-] > 0 poles over the frequency of the car's own yaw motion
   double speed_pole = 10.0;  ///< [1/s] > 0 of the speed's error
-  double turn_reach = 2.0;   ///< [rad/s^2] > 0 largest correction of a sliding mode; larger than what it rejects
+  double turn_reach = 2.0;   ///< [rad/s^2] > 0 largest correction of a sliding mode; must exceed the disturbances
   double turn_layer = 0.06;  ///< [rad/s] > 0 errors within it are corrected in proportion
   double speed_reach = 2.0;  ///< [m/s^2] > 0 the same of the speed
   double speed_layer = 0.2;  ///< [m/s] > 0
@@ -94,7 +94,8 @@ SideslipState started(const SideslipModel& model, std::int64_t time, double spee
 /// Returns the state at `time` with its inputs held; not known beyond kSideslipGap. Earlier times leave it unchanged.
 SideslipState predict(const SideslipModel& model, const SideslipState& state, std::int64_t time);
 
-/// Applies a measurement. @return `started`, `used`, `no_track` before the start, or `invalid` if it is not finite
+/// Applies a measurement. @return `started`, `used`, `no_track` before the start, or `invalid` if no car could
+/// have it
 Verdict apply(const SideslipModel& model, const SideslipMeasurement& measurement, SideslipState& state);
 
 struct SideslipEstimate {

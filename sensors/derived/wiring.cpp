@@ -19,27 +19,6 @@ constexpr std::size_t kMostLevels = 64;
 constexpr Column kCommandColumns[] = {{"forward_m_s"}, {"left_m_s"}, {"turn_rad_s"}};
 const SensorType kCommandType{.id = kCommandInput, .name = "command", .columns = kCommandColumns};
 
-/// An input as written: "[port=][robot/]type[:number]".
-struct InputText {
-  std::string_view port, robot, type, number;
-};
-
-InputText parts_of(std::string_view text) {
-  InputText parts;
-  if (const std::size_t equal = text.find('='); equal != std::string_view::npos) {
-    parts.port = text.substr(0, equal);
-    text.remove_prefix(equal + 1);
-  }
-  if (const std::size_t slash = text.rfind('/'); slash != std::string_view::npos) {
-    parts.robot = text.substr(0, slash);
-    text.remove_prefix(slash + 1);
-  }
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  parts.type = text.substr(0, colon);
-  parts.number = colon < text.size() ? text.substr(colon + 1) : "0";
-  return parts;
-}
-
 std::vector<std::string> column_names(const SensorType& type) {
   std::vector<std::string> names;
   for (const Column& column : type.columns) names.emplace_back(column.name);
@@ -91,7 +70,7 @@ class Wiring {
 const WiredGroup& Wiring::group_of(const DerivedNode& node, std::string_view type) const {
   std::vector<std::string_view> names;
   for (const WiredGroup& group : groups_) {
-    if (group.type->name == type || group.type->word.type == type || group.type->other_word.type == type) return group;
+    if (is_called(*group.type, type)) return group;
     names.push_back(group.type->name);
   }
   refuse_input(node, fmt::format("no robot of this world has a sensor of type '{}'; there are: {}{}", type,
@@ -124,17 +103,15 @@ std::uint32_t Wiring::port_of(const DerivedNode& node, const InputText& parts, c
 }
 
 void Wiring::add_input(DerivedNode& node, std::string_view text) {
-  const InputText parts = parts_of(text);
+  const InputText parts = read_input(text);
   const WiredGroup& group = group_of(node, parts.type);
   const std::uint32_t port = port_of(node, parts, *group.type);
-  std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(parts.number.data(), parts.number.data() + parts.number.size(), number);
-  if (error != std::errc() || end != parts.number.data() + parts.number.size())
+  if (!parts.number)
     refuse_input(node, fmt::format("'{}' is not an input: expected [port=][robot/]type[:number]", text));
   const std::size_t before = node.inputs.size();
   for (const std::uint32_t mover : movers_of(node, parts)) {
     const auto own = std::ranges::equal_range(group.rows, mover, {}, &SensorSpec::mover);
-    if (number < own.size()) node.inputs.push_back({port, mover, group.type->id, number});
+    if (*parts.number < own.size()) node.inputs.push_back({port, mover, group.type->id, *parts.number});
   }
   if (node.inputs.size() > before) return;
   refuse_input(node, fmt::format("there is no sensor '{}': sensors of one type are numbered per robot, from 0", text));
@@ -192,6 +169,30 @@ void Wiring::number_levels() {
 }
 
 }  // namespace
+
+InputText read_input(std::string_view text) {
+  InputText input;
+  if (const std::size_t equal = text.find('='); equal != std::string_view::npos) {
+    input.port = text.substr(0, equal);
+    text.remove_prefix(equal + 1);
+  }
+  if (const std::size_t slash = text.rfind('/'); slash != std::string_view::npos) {
+    input.robot = text.substr(0, slash);
+    text.remove_prefix(slash + 1);
+  }
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  input.type = text.substr(0, colon);
+  if (colon == text.size()) return input;
+  const char* const end = text.data() + text.size();
+  std::uint32_t number = 0;
+  const auto [last, error] = std::from_chars(text.data() + colon + 1, end, number);
+  input.number = error == std::errc() && last == end ? std::optional(number) : std::nullopt;
+  return input;
+}
+
+bool is_called(const SensorType& type, std::string_view word) {
+  return word == type.name || word == type.word.type || word == type.other_word.type;
+}
 
 std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGroup> groups) {
   return Wiring(world, groups).nodes();

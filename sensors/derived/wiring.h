@@ -2,7 +2,9 @@
 // Which readings each derived sensor of a world takes as inputs, checked when the world is loaded.
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "sensors/derived/derived_type.h"
@@ -15,6 +17,15 @@ namespace sf::sensors {
 inline constexpr std::uint8_t kCommandInput = 63;
 /// Returns the type with that id, or the pseudo-type. @pre it exists
 const SensorType& input_type(std::uint8_t id);
+
+/// An input as written: "[port=][robot/]type[:number]". Views of that text.
+struct InputText {
+  std::string_view port, robot, type;
+  std::optional<std::uint32_t> number = 0;  ///< nullopt: not a number
+};
+InputText read_input(std::string_view text);
+/// Returns whether inputs may call the type so: by its name or a word of world files.
+bool is_called(const SensorType& type, std::string_view word);
 
 /// A derived sensor of a world.
 struct DerivedNode {

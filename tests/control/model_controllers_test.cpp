@@ -35,18 +35,24 @@ struct ScriptedModel : sensorfarm::ModelController {
   sensorfarm::ModelSite site;
 };
 
+/// Once per process: another test may have loaded a plug-in with model controllers before.
+bool add_scripted() {
+  add_own_model_controller({"scripted", "",
+                            [](const sensorfarm::ModelSite& site, sensorfarm::Settings& settings) {
+                              settings.number("speed", 1.0, 0.0, 2.0);
+                              return std::make_unique<ScriptedModel>(site);
+                            }},
+                           "test");
+  return true;
+}
+
 /// A robot (row 0), and two objects with scripted controllers (rows 1 and 2), in a row along x.
 class ModelControllersTest : public ::testing::Test {
  protected:
   ModelControllersTest() : world_(scenes::empty_world()) {
     model_script = {};
-    if (model_controller_names().empty())
-      add_own_model_controller({"scripted", "",
-                                [](const sensorfarm::ModelSite& site, sensorfarm::Settings& settings) {
-                                  settings.number("speed", 1.0, 0.0, 2.0);
-                                  return std::make_unique<ScriptedModel>(site);
-                                }},
-                               "test");
+    static const bool added = add_scripted();
+    static_cast<void>(added);
     for (int k = 0; k < 3; ++k) scenes::add_mover(world_, {1.0 * k, 0, 0, 0}, scenes::rectangle({}, 0.4, 0.4));
     world_.movers[0].name = "r0";
     for (const std::uint32_t row : {1u, 2u}) {

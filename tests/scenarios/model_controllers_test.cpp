@@ -38,12 +38,18 @@ struct ActingModel : sensorfarm::ModelController {
   double range() const override { return 3.0; }
 };
 
+/// Once per process: another test may have loaded a plug-in with model controllers before.
+bool add_acts() {
+  control::add_own_model_controller({"acts", "", [](const auto&, auto&) { return std::make_unique<ActingModel>(); }},
+                                    "test");
+  return true;
+}
+
 /// Two robots that wander, with sensors between ticks, and two objects, the first `tag3`.
 world::World acting_world(const std::string& ctrl = "acts") {
   act = {};
-  if (control::model_controller_names().empty())
-    control::add_own_model_controller({"acts", "", [](const auto&, auto&) { return std::make_unique<ActingModel>(); }},
-                                      "test");
+  static const bool added = add_acts();
+  static_cast<void>(added);
   const char* const kText = R"(
     interval_sim 100
     define bot position( size [0.3 0.3 0.3] laser( samples 91 fov 270 range_max 6 rate 7 noise [0.01 0 0] )

@@ -62,7 +62,7 @@ std::vector<std::string> words_of_ctrl(const Entity& entity) {
 
 }  // namespace
 
-bool names_model_controller(const BuildState&, const Entity& entity) {
+bool names_model_controller(const Entity& entity) {
   const std::vector<std::string> words = words_of_ctrl(entity);
   return !words.empty() && base::names_a_plugin(words.front());
 }
@@ -81,7 +81,7 @@ void read_ctrl(BuildState& b, const Entity& entity, Mover& mover) {
   const Property* property = find(entity, "ctrl");
   const std::vector<std::string> words = words_of_ctrl(entity);
   if (words.empty()) return;
-  if (mover.is_tag && !names_model_controller(b, entity)) return warn_of_ctrl(b, entity, mover.name);
+  if (mover.is_tag && !names_model_controller(entity)) return warn_of_ctrl(b, entity, mover.name);
   if (property->values.size() > 1)
     warn(b.context, property->at, "'ctrl' expects one controller per model; only the first is used");
   const std::string& name = words.front();

@@ -8,7 +8,7 @@
 namespace sf::world {
 
 /// Returns whether `ctrl` names a controller for a model that is not a robot: a file of code, which may have one.
-bool names_model_controller(const BuildState& b, const Entity& entity);
+bool names_model_controller(const Entity& entity);
 
 /// Warns that a model that is not a robot ignores `ctrl`, if it has one that is not "none".
 void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model);

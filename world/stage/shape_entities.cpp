@@ -38,11 +38,10 @@ void add_shape(BuildState& b, const Entity& entity) {
   shape.name = name_of_shape(b, entity);
   const Size size = size_of(b.context, entity, {});
   shape.size = {size.x, size.y, size.z};
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(shape.size[axis] > 0.0 && shape.size[axis] <= kMostShapeSize))
-      fail(b.context, location_of(entity, "size"),
-           fmt::format("shape '{}' has the size {:g} x {:g} x {:g} m; expected each in (0, {:g}]", shape.name,
-                       shape.size.x, shape.size.y, shape.size.z, kMostShapeSize));
+  if (!base::is_shape_length(size.x) || !base::is_shape_length(size.y) || !base::is_shape_length(size.z))
+    fail(b.context, location_of(entity, "size"),
+         fmt::format("shape '{}' has the size {:g} x {:g} x {:g} m; expected each in (0, {:g}]", shape.name, size.x,
+                     size.y, size.z, base::kMostShapeSize));
   shape.color = entity_color(b.context, entity, "color", 0, static_cast<std::uint32_t>(b.world.shapes.size()));
   shape.is_bitmap = find(entity, "bitmap") != nullptr;
   shape.pixel = pixel_of(b.context, b.bitmaps, entity, size);

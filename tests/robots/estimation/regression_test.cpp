@@ -127,11 +127,8 @@ TEST(Regression, RangeIsABoxAndAnEllipsoid) {
   const StepRange all = all_of(signals);
   const Regression model = fit({2, 1, 0, 0}, signals, {&all, 1}, {});
   const auto in_range = [&](double a, double b) {
-    History history(model.structure);
     const double inputs[]{a, b};
-    history.add_inputs(inputs);
-    std::vector<double> scratch;
-    return predict(model, history, scratch).in_range;
+    return ModelRun(model, true).step(inputs, 0.0)->in_range;
   };
   EXPECT_TRUE(in_range(0.5, 0.5));
   EXPECT_FALSE(in_range(0.5, -0.5));
