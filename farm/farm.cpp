@@ -55,6 +55,7 @@ struct Farm::State {
   std::span<const base::Twist> commands;  ///< for the next tick
   bool demand_changed = true;             ///< subscriptions have changed since `update_demand`
   std::unique_ptr<gpu::Batch> batch;
+  bool must_record = false;  ///< the batch is new
   Faults faults;
   Delivery delivery;
   std::unique_ptr<PoseChanges> pose_changes;  ///< of the current tick
@@ -103,6 +104,7 @@ struct Farm::State {
   }
   std::vector<SensorPipeline> make_pipelines(const sensors::SensorSet& of, std::span<const base::Report> sensed);
   std::shared_ptr<const void> rebuild();
+  std::shared_ptr<const void> update_outlines();
   ReadingExchange* exchange() const { return sharing ? sharing->exchange() : nullptr; }
   bool is_gone(std::uint32_t mover) const { return gone.at(mover) != 0 || (sharing && sharing->is_hidden(mover)); }
   void begin_tick(bool is_sample);
@@ -177,6 +179,29 @@ std::shared_ptr<const void> Farm::State::rebuild() {
   return before;
 }
 
+/// Updates the sensors whose tables allow it, and replaces the others.
+std::shared_ptr<const void> Farm::State::update_outlines() {
+  SF_CHECK(exchange() == nullptr, "readings are exchanged");
+  clear_blocks();
+  auto before = std::make_shared<std::vector<SensorPipeline>>();
+  const sensors::SensorContext context = context_of(states);
+  for (SensorPipeline& pipeline : pipelines) {
+    pipeline.cache = ReadingCache(pipeline.group->rows, context.noise);
+    if (pipeline.backend->update_outlines(world)) continue;
+    device.set_owner(pipeline.group->type->name);
+    SensorPipeline made(context, *pipeline.group);
+    made.go_on(&pipeline, last_tick, last_call);
+    earlier_work += pipeline.backend->stats();
+    before->push_back(std::exchange(pipeline, std::move(made)));
+  }
+  if (!before->empty()) {
+    batch = std::make_unique<gpu::Batch>(device);
+    must_record = demand_changed = true;
+  }
+  pose_changes = std::make_unique<PoseChanges>(world);
+  return before;
+}
+
 void Farm::State::update_demand() {
   if (!std::exchange(demand_changed, false) || derivation->empty()) return;
   if (sharing)
@@ -217,7 +242,7 @@ void Farm::State::apply(const base::Report& report) {
 }
 
 void Farm::State::prepare() {
-  bool rerecord = false;
+  bool rerecord = std::exchange(must_record, false);
   for (SensorPipeline& pipeline : pipelines) {
     device.set_owner(pipeline.group->type->name);  // tables may grow
     rerecord |= pipeline.prepare();
@@ -369,7 +394,7 @@ std::shared_ptr<const void> Farm::add_mover() {
 }
 std::shared_ptr<const void> Farm::update_outlines() {
   SF_CHECK(s_->states.size() == s_->world.movers.size(), std::to_string(s_->states.size()));
-  return s_->rebuild();
+  return s_->update_outlines();
 }
 void Farm::set_state_quality(std::uint32_t mover, const base::StateQuality& quality) {
   s_->qualities.resize(s_->gone.size());

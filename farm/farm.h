@@ -96,8 +96,10 @@ class Farm {
   /// @return the memory of readings that were returned before; they are valid as long as it is held
   std::shared_ptr<const void> add_mover();
 
-  /// Call this after outlines of movers have changed in the world (world::change_shape). Rebuilds as `add_mover`, with
-  /// the same guarantees, except that `sensor_set` remains; may be called once for many changes, and before any tick.
+  /// Call this after outlines of movers have changed in the world (world::change_shape), once for many changes, and
+  /// before any tick. Casters keep their lists of walls; sensors whose tables cannot be updated
+  /// (SensorBackend::update_outlines) are rebuilt. The guarantees are those of `add_mover`; `sensor_set` remains.
+  /// @return the memory of readings of rebuilt sensors that were returned before; valid as long as it is held
   std::shared_ptr<const void> update_outlines();
 
   /// Sets the state quality stamped on this mover's readings from now on; initially none.

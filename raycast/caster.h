@@ -44,6 +44,10 @@ class Caster {
 
   /// Moves the movers to this tick's poses. Call before `prepare`.
   virtual void place() = 0;
+  /// Replaces the outlines of the movers; lists of walls stay. Call `place` before the next `prepare`.
+  /// @param world the world of construction, except for its movers' bodies and radii
+  /// @return false, without changes, if the tables are too small: make another caster
+  virtual bool update_outlines(const world::World& world) = 0;
   /// Casts the due scans on the host, or prepares the kernels that cast them.
   /// @param cast false skips scans on the host; the caller does not record a cast, and reads only the beams' directions
   /// @return true if kernels must be recorded again

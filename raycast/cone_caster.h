@@ -34,6 +34,8 @@ class ConeCaster {
   ConeCaster(const SensorContext& context, std::span<const Cone> cones, const ConeKernel& kernel);
 
   void place_movers();
+  /// See Caster::update_outlines; false also where the angle of incidence limits echoes.
+  bool update_outlines(const world::World& world) { return !incidence_ && caster_.update_outlines(world); }
   /// @param due rows are cones  @return true if kernels must be recorded again
   bool prepare(std::span<const DueSample> due);
   void record_measure(gpu::Batch& batch) { caster_.record(batch); }

@@ -40,6 +40,8 @@ class Crowds {
   explicit Crowds(const MoverGeometry& movers);
   ~Crowds();
 
+  /// Call when the outlines of the movers have changed.
+  void update_outlines() { size_ = 0.0; }
   /// Finds the crowds around `views`.
   void find(std::span<const Viewpoint> views, base::ThreadPool& thread_pool);
   /// Returns the crowd of a view of the last `find`, or null.

@@ -20,6 +20,9 @@ class DeviceCaster : public Caster {
   explicit DeviceCaster(const CasterInputs& in);
 
   void place() override;
+  bool update_outlines(const world::World& world) override {
+    return scene_.update_outlines(world) && host_.update_outlines(world);
+  }
   bool prepare(const DueScans& due, bool cast) override;
   void record(gpu::Batch& batch) override;
   void add_copies(gpu::Batch& batch, const DueScans& due, bool results) override;

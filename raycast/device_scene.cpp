@@ -16,6 +16,9 @@ constexpr SceneOptions kPerRobot{.pool_chunks = 1u << 12, .pool_cells = 1u << 6}
 constexpr SceneOptions kMinimum{.pool_chunks = 1u << 15, .pool_cells = 1u << 10};
 constexpr std::uint32_t kPageChunks = 8;
 
+/// Returns room for outlines that change, so that most changes keep the tables.
+std::size_t with_reserve(std::size_t count) { return count == 0 ? 0 : count + count / 4 + 256; }
+
 /// Returns the side of a cell [m] for kernels that run on the CPU, where short lists save more than small cells cost. A
 /// 32nd of the range suits a scanner with several hundred beams; scanners with few beams use larger cells
 /// (docs/performance.md).
@@ -38,15 +41,11 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
   for (unsigned i = 0; i < thread_pool.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
   for (std::size_t i = 0; i < configs.size(); ++i)
     config_tables_.push_back({{cells_.size_of(i), configs[i].range}, configs[i].spread + 5e-4});
-  pool_begin_ += kBlockTexels * static_cast<std::uint32_t>(movers_.outlines().blocks.size());
-  std::uint32_t rows = 0;
-  for (const OutlineTable::Shape& shape : movers_.outlines().of_mover) {
-    first_mover_rows_.push_back(rows);
-    rows += std::max(shape.slices, 2u) - 2;
-  }
+  pool_begin_ += kBlockTexels * static_cast<std::uint32_t>(with_reserve(movers_.outlines().blocks.size()));
+  const std::size_t rows = with_reserve(count_mover_rows(movers_.outlines()));
 
   const std::vector<world::Segment>& walls = configs.walls();
-  const std::size_t count = walls.size() + movers_.segments();
+  const std::size_t count = walls.size() + with_reserve(movers_.segments());
   segments_ = std::make_unique<gpu::Buffer>(device, "walls and movers in 64 bits", gpu::Role::upload, gpu::Texel::u32x4,
                                             gpu::texels_of<ExactSegment>(count + 1));
   models_ = std::make_unique<gpu::Buffer>(device, "whose walls", gpu::Role::upload, gpu::Texel::u32, count + 1);
@@ -58,15 +57,43 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
     exact[i] = {walls[i].a.x, walls[i].a.y, walls[i].b.x, walls[i].b.y};
     models[i] = walls[i].model;
   }
-  std::copy(movers_.models().begin(), movers_.models().end(),
-            models.begin() + static_cast<std::ptrdiff_t>(walls.size()));
   make_room(sensing_movers);
   write_outlines();
 }
 
 DeviceScene::~DeviceScene() = default;
 
+/// Assigns rows to the movers. @return their number
+std::uint32_t DeviceScene::count_mover_rows(const OutlineTable& outlines) {
+  std::uint32_t rows = 0;
+  first_mover_rows_.clear();
+  for (const OutlineTable::Shape& shape : outlines.of_mover) {
+    first_mover_rows_.push_back(rows);
+    rows += std::max(shape.slices, 2u) - 2;
+  }
+  return rows;
+}
+
+bool DeviceScene::update_outlines(const world::World& world) {
+  MoverGeometry movers(world);
+  const std::vector<std::uint32_t> rows_before = first_mover_rows_;
+  const std::size_t rows = count_mover_rows(movers.outlines());
+  if (has_movers() != (movers.segments() > 0) ||
+      SF_SECTORS + kBlockTexels * movers.outlines().blocks.size() > pool_begin_ ||
+      configs_.walls().size() + movers.segments() + 1 > models_->texels() ||
+      gpu::texels_of<MoverRow>(rows + 1) > mover_rows_->texels()) {
+    first_mover_rows_ = rows_before;
+    return false;
+  }
+  movers_ = std::move(movers);
+  write_outlines();
+  upload_outlines_ = true;
+  return true;
+}
+
 void DeviceScene::write_outlines() {
+  std::copy(movers_.models().begin(), movers_.models().end(),
+            models_->host<std::uint32_t>().begin() + static_cast<std::ptrdiff_t>(configs_.walls().size()));
   const auto entries = lists_->host<ListEntry>();
   const auto segment_ids = segment_ids_->host<std::uint32_t>();
   std::memset(entries.data(), 0, SF_SECTORS * sizeof(ListHead));  // empty lists
@@ -194,6 +221,11 @@ void DeviceScene::upload(gpu::Batch& batch) {
     batch.upload(*segments_, 0, segments_->bytes());
     batch.upload(*models_, 0, models_->bytes());
   } else {
+    if (upload_outlines_) {
+      lists_up(SF_SECTORS, pool_begin_ - SF_SECTORS);
+      batch.upload(*segment_ids_, 4 * SF_SECTORS, 4 * (pool_begin_ - SF_SECTORS));
+      batch.upload(*models_, 4 * configs_.walls().size(), 4 * movers_.segments());
+    }
     // Copies whole pages. Pages of new cells are mostly adjacent, so one copy covers many of them.
     constexpr std::size_t kPageTexels = kPageChunks * kChunkTexels;
     for (const std::uint32_t slot : new_slots_) {
@@ -206,7 +238,7 @@ void DeviceScene::upload(gpu::Batch& batch) {
     batch.upload(*segments_, configs_.walls().size() * sizeof(ExactSegment), movers_.segments() * sizeof(ExactSegment));
   }
   batch.upload(*mover_rows_, 0, mover_rows_->bytes());
-  upload_all_ = false;
+  upload_all_ = upload_outlines_ = false;
   new_slots_.clear();
 }
 

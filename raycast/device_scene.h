@@ -33,6 +33,10 @@ class DeviceScene {
   /// Moves the movers to this tick's poses. @param states one per mover; after a change, call again before `prepare`
   void place_movers(std::span<const base::Report> states);
 
+  /// Replaces the movers' outlines by those of `world`, which has the same walls. Call `place_movers` before `prepare`.
+  /// @return false, without changes, if the tables are too small
+  bool update_outlines(const world::World& world);
+
   /// Builds the lists for all `views` and fills `rows`, one per view: all fields except beams, results and range_min.
   /// @return true if tables were replaced and kernels must be bound again
   bool prepare(std::span<const Viewpoint> views, std::span<RayRow> rows);
@@ -71,6 +75,7 @@ class DeviceScene {
   struct NearbyMover;
   struct Scratch;
 
+  std::uint32_t count_mover_rows(const OutlineTable& outlines);
   void write_outlines();
   void build_missing_cells();
   Cell make_cell(const CellKey& key, Scratch& scratch);
@@ -103,6 +108,7 @@ class DeviceScene {
   std::uint32_t mover_texels_used_ = 0;            ///< may exceed the capacity while a tick is retried
   bool tables_replaced_ = false;                   ///< since `prepare` began
   bool upload_all_ = true;
+  bool upload_outlines_ = false;
 
   std::unique_ptr<gpu::Buffer> lists_, segment_ids_, mover_rows_, segments_, models_;
 };

@@ -19,6 +19,10 @@ class HostCaster : public Caster {
   explicit HostCaster(const CasterInputs& in, bool share = true);
 
   void place() override { placed_ = false; }
+  bool update_outlines(const world::World& world) override {
+    scene_.update_outlines(world);
+    return true;
+  }
   bool prepare(const DueScans& due, bool cast) override;
   SensorStats stats() const override;
 

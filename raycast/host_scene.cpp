@@ -58,12 +58,24 @@ HostScene::HostScene(const world::World& world, const ListConfigs& configs, base
     exact_.push_back({s.a.x, s.a.y, s.b.x, s.b.y});
     models_.push_back(s.model);
   }
-  exact_.resize(exact_.size() + movers_.segments());
-  models_.insert(models_.end(), movers_.models().begin(), movers_.models().end());
+  add_outlines();
   for (unsigned i = 0; i < thread_pool.threads(); ++i) threads_.push_back(std::make_unique<Thread>());
 }
 
 HostScene::~HostScene() = default;
+
+void HostScene::add_outlines() {
+  const std::size_t walls = configs_.walls().size();
+  exact_.resize(walls + movers_.segments());
+  models_.resize(walls);
+  models_.insert(models_.end(), movers_.models().begin(), movers_.models().end());
+}
+
+void HostScene::update_outlines(const world::World& world) {
+  movers_ = MoverGeometry(world);
+  crowds_.update_outlines();
+  add_outlines();
+}
 
 void HostScene::place_movers(std::span<const base::Report> states) {
   if (movers_.segments() > 0) movers_.place(states, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));

@@ -25,6 +25,8 @@ class HostScene {
 
   /// Moves the movers to this tick's poses. @param states one per mover; after a change, call again before `prepare`
   void place_movers(std::span<const base::Report> states);
+  /// Replaces the movers' outlines by those of `world`, which has the same walls. Call `place_movers` before `prepare`.
+  void update_outlines(const world::World& world);
   /// Builds the lists of `views`.
   void prepare(std::span<const Viewpoint> views);
   /// Scans from view `i` of the last `prepare`.
@@ -42,6 +44,7 @@ class HostScene {
   struct Cell {
     std::uint32_t first = 0, front_facing = 0, all = 0;
   };
+  void add_outlines();
   void build_missing_cells();
   void grow();
   void prefetch(std::size_t i) const;

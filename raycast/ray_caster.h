@@ -60,6 +60,8 @@ class RayCaster {
 
   /// Moves the movers to the poses of `SensorContext::states`. Call before `prepare`.
   void place_movers() { caster_->place(); }
+  /// See Caster::update_outlines. Results of the last cast stay.
+  bool update_outlines(const world::World& world) { return caster_->update_outlines(world); }
   /// @param due rows of scanners  @param cast false skips scans on the host; the caller does not record a cast, and
   /// reads only the beams' directions
   /// @return true if kernels must be recorded again

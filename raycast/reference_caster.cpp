@@ -37,12 +37,24 @@ std::uint64_t count_visible(std::span<const world::Segment> surfaces) {
       std::count_if(surfaces.begin(), surfaces.end(), [](const world::Segment& s) { return s.seen_by_laser; }));
 }
 
+std::uint64_t beams_of(const CastPlan& plan) {
+  std::uint64_t beams = 0;
+  for (const ScannerRow& row : plan.rows) beams += row.plan.samples.size();
+  return beams;
+}
+
+/// Returns the number of surfaces, and whether a tick may cast that many beams at them.
+std::pair<std::uint64_t, bool> surfaces_of(const world::World& world, std::uint64_t beams) {
+  std::uint64_t surfaces = count_visible(world.walls);
+  for (const world::Mover& mover : world.movers) surfaces += count_visible(mover.body);
+  return {surfaces, beams == 0 || surfaces <= ReferenceCaster::kMostPairs / beams};
+}
+
 /// Rejects worlds with more than ReferenceCaster::kMostPairs.
 void check_size(const CasterInputs& in) {
-  std::uint64_t beams = 0, surfaces = count_visible(in.world.walls);
-  for (const ScannerRow& row : in.plan.rows) beams += row.plan.samples.size();
-  for (const world::Mover& mover : in.world.movers) surfaces += count_visible(mover.body);
-  if (beams == 0 || surfaces <= ReferenceCaster::kMostPairs / beams) return;
+  const std::uint64_t beams = beams_of(in.plan);
+  const auto [surfaces, fits] = surfaces_of(in.world, beams);
+  if (fits) return;
   const std::string refusal = fmt::format(
       "the caster 'reference' intersects every beam with every surface: {} beams and {} surfaces are more "
       "than {} million pairs; use fewer robots or beams, a smaller world, or the caster 'host'",
@@ -56,8 +68,12 @@ void check_size(const CasterInputs& in) {
 ReferenceCaster::ReferenceCaster(const CasterInputs& in) : Caster(in), scratch_(in.context.thread_pool.threads()) {
   check_size(in);
   for (const world::Segment& wall : in.world.walls) add(wall, kNoMover);
-  for (std::uint32_t m = 0; m < in.world.movers.size(); ++m)
-    for (const world::Segment& edge : in.world.movers[m].body) add(edge, m);
+  add_outlines(in.world);
+}
+
+void ReferenceCaster::add_outlines(const world::World& world) {
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m)
+    for (const world::Segment& edge : world.movers[m].body) add(edge, m);
 }
 
 void ReferenceCaster::add(const world::Segment& s, std::uint32_t mover) {
@@ -65,6 +81,15 @@ void ReferenceCaster::add(const world::Segment& s, std::uint32_t mover) {
   local_.push_back(s);
   movers_.push_back(mover);
   surfaces_.push_back({{s.a.x, s.a.y}, {s.b.x, s.b.y}, s.model});
+}
+
+bool ReferenceCaster::update_outlines(const world::World& world) {
+  if (!surfaces_of(world, beams_of(plan_)).second) return false;
+  const auto first = std::ranges::find_if(movers_, [](std::uint32_t mover) { return mover != kNoMover; });
+  const auto walls = static_cast<std::size_t>(first - movers_.begin());
+  local_.resize(walls), movers_.resize(walls), surfaces_.resize(walls);
+  add_outlines(world);
+  return true;
 }
 
 void ReferenceCaster::place_movers() {

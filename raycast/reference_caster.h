@@ -69,6 +69,7 @@ class ReferenceCaster : public Caster {
   explicit ReferenceCaster(const CasterInputs& in);
 
   void place() override { placed_ = false; }
+  bool update_outlines(const world::World& world) override;
   bool prepare(const DueScans& due, bool cast) override;
   SensorStats stats() const override { return {}; }
 
@@ -88,6 +89,7 @@ class ReferenceCaster : public Caster {
   };
 
   void add(const world::Segment& s, std::uint32_t mover);
+  void add_outlines(const world::World& world);
   void place_movers();
   void find_visible(const Viewpoint& view, std::vector<Surface>& visible) const;
   void scan(const DueScans& due, std::size_t i, unsigned thread);

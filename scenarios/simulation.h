@@ -116,9 +116,9 @@ class Simulation {
   void set_absent(std::uint32_t mover, bool gone);
 
   /// Changes the shape, colour or size of a mover, between two steps (world/shapes.h). Sensors and contacts see it from
-  /// the next step on, which rebuilds the tables of all sensors once for all changes before it, in time proportional to
-  /// the fleet. Readings that do not see the mover keep their bytes. Controllers keep the footprint of their start.
-  /// With ranks, all make the same call.
+  /// the next step on, which updates the tables of all sensors once for all changes before it (Farm::update_outlines).
+  /// Readings that do not see the mover keep their bytes. Controllers keep the footprint of their start. With ranks,
+  /// all make the same call.
   /// @param world the one given to the constructor
   /// @throws base::InputError, with nothing changed, as world::check_change, for more than kMostShapeChanges before a
   /// step, and with tiles

@@ -169,9 +169,9 @@ class SENSORFARM_API Simulation {
   /// row remains, and no other robot gets its row, id or name. @throws Error for a row without a present robot
   void remove_robot(std::size_t row);
   /// Changes the shape, colour or size of a robot or tag between two steps (docs/worlds.md). Sensors, contacts and
-  /// images have it from the next step on; readings that do not see it keep their bytes. That step takes time
-  /// proportional to the fleet. Controllers keep the footprint of their start. With ranks, all of them make this call
-  /// with the same arguments. A reset restores all shapes.
+  /// images have it from the next step on, which measures all sensors that are due again; readings that do not see it
+  /// keep their bytes. Controllers keep the footprint of their start. With ranks, all of them make this call with the
+  /// same arguments. A reset restores all shapes.
   /// @throws Error, with nothing changed, for an unknown row, shape or colour, a size out of range or of a row without
   /// an outline, and for more than 1000 changes before a step
   void set_shape(std::size_t row, const ShapeChange& change);

@@ -41,6 +41,7 @@ class LaneEdges : public SensorBackend {
   LaneEdges(const SensorContext& context, const ParsedSensors& sensors);
 
   void place_movers() override { caster_.place_movers(); }
+  bool update_outlines(const world::World& world) override;
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override;
   void record_derive(gpu::Batch& batch) override {
@@ -86,6 +87,12 @@ LaneEdges::LaneEdges(const SensorContext& context, const ParsedSensors& sensors)
       on_device_(caster_.on_device() || (!exact_ && !context.device.is_host())),
       fit_(context, edges_, scene_.grains, !on_device()) {
   if (!exact_) make_raster_caster(context);
+}
+
+bool LaneEdges::update_outlines(const world::World& world) {
+  take_movers(world, scene_);
+  longest_ = reaches_of(scene_.world).longest;
+  return casting_ == (exact_ || anything_else(scene_.world)) && caster_.update_outlines(scene_.world);
 }
 
 void LaneEdges::make_raster_caster(const SensorContext& context) {

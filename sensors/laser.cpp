@@ -42,6 +42,10 @@ class Lasers : public SensorBackend {
   Lasers(const SensorContext& context, const ParsedSensors& sensors);
 
   void place_movers() override { caster_.place_movers(); }
+  bool update_outlines(const world::World& world) override {
+    longest_ = reaches_of(world).longest;
+    return caster_.update_outlines(world);
+  }
   bool prepare(std::span<const DueSample> due) override {
     due_.assign(due.begin(), due.end());
     return caster_.prepare(due);

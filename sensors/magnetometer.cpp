@@ -62,11 +62,20 @@ struct Wave {
   std::vector<std::uint32_t> ends;  ///< per group
 };
 
+std::vector<world::Magnet> magnets_of_movers(const world::World& world) {
+  std::vector<world::Magnet> magnets;
+  for (const world::Mover& mover : world.movers)
+    magnets.insert(magnets.end(), mover.magnets.begin(), mover.magnets.end());
+  return magnets;
+}
+
 class Magnetometers : public SensorBackend {
  public:
   Magnetometers(const SensorContext& context, const ParsedSensors& sensors);
 
   void place_movers() override;
+  /// Magnets of movers stay at half of their height.
+  bool update_outlines(const world::World& world) override { return moving_magnets_ == magnets_of_movers(world); }
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override {
     if (!on_device_) return;
@@ -95,11 +104,12 @@ class Magnetometers : public SensorBackend {
   std::vector<Array> arrays_;
   std::map<std::uint8_t, Wave> waves_;  ///< by mode
   std::vector<DueSample> due_;
-  std::vector<Pose> X_WS_;              ///< per due array
-  std::vector<FieldBound> bounds_;      ///< per due array
-  bool level_ = true;                   ///< all movers with magnets are at their heights at load
-  std::vector<double> magnets_z_;       ///< [m] heights of the movers that carry magnets, in this tick
-  std::vector<double> load_z_;          ///< [m] the same at load
+  std::vector<Pose> X_WS_;          ///< per due array
+  std::vector<FieldBound> bounds_;  ///< per due array
+  bool level_ = true;               ///< all movers with magnets are at their heights at load
+  std::vector<double> magnets_z_;   ///< [m] heights of the movers that carry magnets, in this tick
+  std::vector<double> load_z_;      ///< [m] the same at load
+  std::vector<world::Magnet> moving_magnets_;
   std::map<std::uint8_t, double> cut_;  ///< [T] by mode: bound of the cut-off at any height
   /// By mode and height of an element, for this tick's heights of magnets.
   std::map<std::pair<std::uint8_t, double>, FieldBound> lifted_;
@@ -126,6 +136,7 @@ Magnetometers::Magnetometers(const SensorContext& context, const ParsedSensors& 
   for (const world::Mover& mover : world_.movers)
     if (!mover.magnets.empty()) load_z_.push_back(mover.X_WM.z);
   magnets_z_ = load_z_;
+  moving_magnets_ = magnets_of_movers(world_);
   if (!arrays_.empty()) values_.resize(arrays_.back().values + kMagnetometerColumns * arrays_.back().row.elements);
 }
 

@@ -104,6 +104,9 @@ class SensorBackend {
   /// Moves surfaces and magnets of movers to their poses. Called before `prepare` when a sensor is measured. Absent
   /// movers are invisible.
   virtual void place_movers() {}
+  /// Replaces the movers' outlines by those of `world`, the world of construction, which has changed. Readings of the
+  /// last tick stay.  @return false: the farm must make another backend, which continues this one (`take_over`)
+  virtual bool update_outlines(const world::World& /*world*/) { return false; }
   /// Does host work before the batch, even when nothing is due. @return true when the batch must be recorded again
   virtual bool prepare(std::span<const DueSample> due) = 0;
   /// Records the kernels that read the world (`record_measure`) and those that read their results (`record_derive`).

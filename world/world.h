@@ -76,6 +76,8 @@ struct Magnet {
   double moment = 0.0;      ///< [A m^2] not 0; negative: the south pole is up
   double radius = 0.0;      ///< [m] > 0: smaller distances are clamped to this value
   std::uint32_t model = 0;  ///< row in `World::models`
+
+  bool operator==(const Magnet&) const = default;
 };
 
 /// One property of a sensor as written in the world file, interpreted by the sensor type.

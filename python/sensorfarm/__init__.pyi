@@ -333,8 +333,8 @@ class Simulation:
                   size: tuple[float, float, float] | None = None) -> None:
         """Changes the shape ("original": its own), colour (X11 name or "#RRGGBB") or size (x, y, z) [m] of a robot or
         tag between two steps; what is not given remains, except that a shape brings its own size and colour. Sensors,
-        contacts and images have it from the next step on, which takes time proportional to the fleet. Arrays read
-        before keep their content. A reset restores all shapes. Raises Error, with nothing changed."""
+        contacts and images have it from the next step on. A reset restores all shapes. Raises Error, with nothing
+        changed."""
     def set_lane(self, lane: str, use: str) -> None:
         """Requests the use of a lane such as "3.1": "open", "closed", "reversed", or "turn", "left" or "right" for one
         whose end only turns may leave. Robots with a route controller replan. A lane is reversed once it has been empty

@@ -32,6 +32,7 @@ class Rangers : public SensorBackend {
   Rangers(const SensorContext& context, const std::vector<ConeArray>& arrays, const RangerType& type);
 
   void place_movers() override { cones_.place_movers(); }
+  bool update_outlines(const world::World& world) override { return cones_.update_outlines(world); }
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override { cones_.record_measure(batch); }
   void record_derive(gpu::Batch& batch) override { cones_.record_derive(batch); }

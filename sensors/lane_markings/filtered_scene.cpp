@@ -90,10 +90,14 @@ FilteredScene filter_scene(const world::World& world, bool exact) {
                                .model = f.is_end ? SF_TAG_END : 0u,
                                .solid_left = f.is_solid});
   }
-  e.world.movers = world.movers;
-  for (world::Mover& mover : e.world.movers)
-    for (world::Segment& s : mover.body) s.model = SF_TAG_MOVER;
+  take_movers(world, e);
   return e;
+}
+
+void take_movers(const world::World& world, FilteredScene& scene) {
+  scene.world.movers = world.movers;
+  for (world::Mover& mover : scene.world.movers)
+    for (world::Segment& s : mover.body) s.model = SF_TAG_MOVER;
 }
 
 }  // namespace sf::sensors

@@ -21,5 +21,7 @@ struct FilteredScene {
 /// false: markings are left to the raster
 /// @throws base::InputError when bitmaps have more pixel sizes than a point's tag can encode
 FilteredScene filter_scene(const world::World& world, bool exact);
+/// Replaces the movers of a filtered scene by those of `world`.
+void take_movers(const world::World& world, FilteredScene& scene);
 
 }  // namespace sf::sensors
