@@ -9,6 +9,7 @@ namespace sf::raycast {
 namespace {
 
 constexpr std::size_t kMaxBands = 1024;
+constexpr double kBandsPerWall = 16.0;  ///< limit of the mean: long walls are in many bands
 constexpr std::size_t kLeafWalls = 8;
 constexpr std::size_t kAhead = 8;  ///< number of walls to prefetch ahead
 
@@ -33,8 +34,13 @@ WallIndex::WallIndex(std::span<const world::Segment> walls) {
 
 void WallIndex::index_bands() {
   const base::Box all = tree_.extent();
-  bands_.resize(std::clamp<std::size_t>(segments_.size() / 8, 1, kMaxBands));
-  band_height_ = std::max((all.max.y - all.min.y) / static_cast<double>(bands_.size()), 1e-9);
+  const double height = std::max(all.max.y - all.min.y, 1e-9);
+  double heights = 0.0;
+  for (const IndexedWall& s : segments_) heights += std::abs(s.b.y - s.a.y) / height;
+  const double most = kBandsPerWall * static_cast<double>(segments_.size()) / std::max(heights, 1e-9);
+  bands_.resize(std::clamp<std::size_t>(segments_.size() / 8, 1,
+                                        static_cast<std::size_t>(std::clamp(most, 1.0, double{kMaxBands}))));
+  band_height_ = std::max(height / static_cast<double>(bands_.size()), 1e-9);
   for (std::uint32_t i = 0; i < segments_.size(); ++i) {
     const IndexedWall& s = segments_[i];
     const std::size_t last = band_of(std::max(s.a.y, s.b.y) + 1e-6 * band_height_);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
@@ -44,6 +45,21 @@ TEST(WallIndex, DetectsPointsInsideSolids) {
   EXPECT_FALSE(wall_index.inside_solid({6.0, 0.0}, 0.1)) << "out of the room";
   EXPECT_FALSE(wall_index.inside_solid({1e9, -1e9}, 0.1));
   EXPECT_FALSE(WallIndex(std::span<const world::Segment>()).inside_solid({0, 0}, 0.1)) << "no walls";
+}
+
+/// Walls as long as the world are in every band, so there must be few bands; short ones ask for many.
+TEST(WallIndex, DetectsPointsBetweenLongSlats) {
+  world::World world;
+  for (int k = 0; k < 400; ++k) {
+    const double x = 2.0 * k, y = k % 2 == 0 ? -50.0 : 0.25 * k - 50.0, height = k % 2 == 0 ? 100.0 : 0.2;
+    scenes::add_outline(world, {{x, y}, {x + 1.0, y}, {x + 1.0, y + height}, {x, y + height}}, "slat");
+  }
+  const WallIndex wall_index(world.walls);
+  for (int k = 0; k < 400; ++k)
+    for (const double y : {-49.9, -0.1, 0.25 * k - 49.9, 49.9}) {
+      EXPECT_EQ(wall_index.inside_solid({2.0 * k + 0.5, y}, 0.1), k % 2 == 0 || std::abs(y - (0.25 * k - 49.9)) < 0.1);
+      EXPECT_FALSE(wall_index.inside_solid({2.0 * k + 1.5, y}, 0.1));
+    }
 }
 
 }  // namespace
