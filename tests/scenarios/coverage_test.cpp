@@ -12,6 +12,7 @@
 #include "sensors/laser_settings.h"
 #include "sensors/sensor_type.h"
 #include "sensors/sonar.h"
+#include "tests/instrumented.h"
 #include "world/wall_tree.h"
 
 namespace sf::scenarios {
@@ -168,6 +169,7 @@ TEST(Coverage, TheVisibleAreaEqualsThatOfAllRays) {
   };
   for (const Case& c : {Case{0, 8.0, M_PI, 0.0}, Case{25, 8.0, M_PI, 0.07}, Case{40, 0.5, 0.9, 0.05},
                         Case{40, 1.1, 0.2, 0.0}, Case{60, 8.0, 4.5, -0.06}}) {
+    if (instrumented() && c.walls != 25) continue;
     world::World world = mapping_world();
     const glm::dvec2 start{world.movers[0].X_WM.x, world.movers[0].X_WM.y};
     std::erase_if(world.walls, [](const world::Segment& wall) { return wall.z_min > 0.0; });  // above the beams

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/instrumented.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/laneedge_trial.h"
 
@@ -162,7 +163,7 @@ TEST(LaneEdgeBounds, HoldForAnyFan) {
   for (const double fov : {0.5, 5.0, 120.0, 300.0})
     for (const double samples : {3.0, 4.0, 5.0, 200.0}) {
       const Settings settings{{"perpendicular", {0}}, {"fov", {fov}}, {"samples", {samples}}};
-      const Seen seen = judge(world, faces, anywhere(1000, {}, 0.9, 12), settings);
+      const Seen seen = judge(world, faces, anywhere(instrumented() ? 100 : 1000, {}, 0.9, 12), settings);
       EXPECT_EQ(seen.beyond, 0) << fov << " deg, " << samples << " samples: " << seen.example;
       EXPECT_GT(seen.read, 0);
     }

@@ -29,6 +29,7 @@ world::World with_random_robots(world::World world, double range, std::uint64_t 
 TEST(Exact, ClosedCaveAtAnyDistanceFromTheOrigin) {
   for (const double far : {0.0, 1e5, 1e7})
     for (const double range : kRanges) {
+      if (instrumented() && (far == 0.0 || range > 8.0)) continue;
       world::World world = with_random_robots(scenes::cave(500, 16.0, 3), range, 1);
       world::translate(world, far, -far);
       const Tally tally = sweep(world);

@@ -62,18 +62,19 @@ TEST(Localization, CovarianceIsConsistentOver100Seeds) {
   const world::World world = robot_with(
       "gyro( noise 0.2 bias 0.5 rate 20 ) gps( noise 1.5 rate 5 ) derived( type \"localization\" inputs [\"encoder\" "
       "\"gyro\" \"gps\"] )");
-  const std::uint64_t seeds = instrumented() ? 10 : 100;
+  if (instrumented()) GTEST_SKIP() << "a statistic; FollowsItsEncodersFromTheStartPose runs the same code";
+  constexpr std::uint64_t kSeeds = 100;
   double sum = 0.0;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     base::Pose truth;
     const std::vector<double> r = reading_after_an_arc(world, seed, 30.0, truth, false);
     const glm::dvec3 e{r[0] - truth.x, r[1] - truth.y, base::wrap_angle(r[2] - truth.yaw)};
     const glm::dmat3 P{{r[4], r[5], r[6]}, {r[5], r[7], r[8]}, {r[6], r[8], r[9]}};
     sum += glm::dot(e, glm::inverse(P) * e);
   }
-  const double mean = sum / (3.0 * static_cast<double>(seeds));
-  EXPECT_GT(mean, instrumented() ? 0.33 : 0.846);
-  EXPECT_LT(mean, instrumented() ? 2.2 : 1.166);
+  const double mean = sum / (3.0 * static_cast<double>(kSeeds));
+  EXPECT_GT(mean, 0.846);
+  EXPECT_LT(mean, 1.166);
 }
 
 TEST(Localization, NeedsSomethingThatLocates) {
