@@ -19,6 +19,7 @@
 #include "netio/signature.h"
 #include "netio/socket.h"
 #include "sensors/laser.h"
+#include "sensors/occupancy.h"
 #include "sensors/sensor_set.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
@@ -45,19 +46,19 @@ constexpr const char* kTestbed =
     "id = 2\n"
     "offset = [0.1, 0, 90]\n";
 
-/// A reading of a laser whose beams all end at 0.3 m, as `serve --mirror` sends it.
-base::Bytes mirrored_scan(const std::string& world_file, std::uint32_t sequence) {
+/// A reading of the first robot as `serve --mirror` sends it.
+base::Bytes mirrored(const std::string& world_file, std::uint8_t sensor_type, const std::vector<double>& values,
+                     std::uint32_t sequence) {
   const world::World world = world::load_world(world_file, {.sensors = sensors::world_file_words()});
   const sensors::SensorSet sensor_set(world);
-  const std::vector<double> ranges(31, 0.3);
   base::ReadingBlock block;
-  block.type = sensors::kLaser, block.values = ranges;
+  block.type = sensor_type, block.values = values;
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(world.movers[0].id);
   header.sequence = sequence;
   header.time = std::int64_t{100'000'000} * sequence;
   base::Bytes payload, packet;
-  const auto& type = *sensor_set.group(sensors::kLaser)->type;
+  const auto& type = *sensor_set.group(sensor_type)->type;
   const std::uint8_t kind = type.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
   netio::encode_reading(header, kind, payload, packet);
   return packet;
@@ -444,22 +445,28 @@ TEST(Vps, ReportsErrors) {
 }
 
 /// Readings are sent repeatedly while it runs, so some are available when a tag is seen.
-TEST(Vps, ReadingsAreDrawnFromTheSeenTags) {
+TEST(Vps, ReadingsAreDrawnFromTheSeenTagsAndMapsInTheWorld) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", std::string(kTestbed) + "robot = 5\n");  // carries tag 2
-  const std::string world = folder.write(
-      "w.world", "position( name \"roomba5\" size [0.2 0.2 0.1] laser( samples 31 fov 180 range_max 2 ) )\n");
+  const std::string world =
+      folder.write("w.world",
+                   "position( name \"roomba5\" size [0.2 0.2 0.1] laser( samples 31 fov 180 range_max 2 ) "
+                   "occupancy( cell 0.1 words [1 1] offset [0.2 -0.2] ) )\n");
   const unsigned port = free_ports(1);
   Program vps({"vps", testbed, "--rendered", "2", "--images", "6", "--overlay", folder.path("seen"), "--world", world,
                "--readings", std::to_string(port)});
   netio::Outbox outbox;
   for (std::uint32_t sequence = 0; vps.running(); ++sequence) {
-    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, mirrored_scan(world, sequence));
+    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)},
+                 mirrored(world, sensors::kLaser, std::vector<double>(31, 0.3), sequence));
+    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)},
+                 mirrored(world, sensors::kOccupancy, {0x99999999}, sequence));
     outbox.flush();
   }
   const Outcome outcome = vps.wait();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  scenes::expect_painted(folder.path("seen/a-000005.png"), {{0xFFEBC846u, 10}});  // beams; lines have soft borders
+  scenes::expect_painted(folder.path("seen/a-000005.png"),
+                         {{0xFFEBC846u, 10}, {0xFF00E1EBu, 10}});  // beams and map; lines have soft borders
 }
 
 }  // namespace sf
