@@ -122,7 +122,10 @@ int vps(const VpsOptions& options) {
     if (complete) break;
     if (real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
     if (stop_requested()) break;
-    if (std::all_of(frames.begin(), frames.end(), [](const vision::Frame& frame) { return frame.missing; })) continue;
+    if (std::all_of(frames.begin(), frames.end(), [](const vision::Frame& frame) { return frame.missing; })) {
+      pictures.skip();
+      continue;
+    }
     const auto tags = process(frames, positioning, report);
     for (const std::string& warning : positioning.warnings()) print_message(warning);
     sender.send(tags, epoch);

@@ -19,24 +19,19 @@ namespace sf::apps {
 
 namespace {
 
-/// The limit of a camera's image: 2 s, or three of its periods if that is longer.
-std::chrono::milliseconds image_limit(const vision::Camera& camera) {
-  return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * std::min(std::max(2.0, 3.0 / camera.rate), 3600.0)));
-}
-
 class OpenedInputs : public CameraInputs {
  public:
   using Result = vision::WatchedSource::Result;
   OpenedInputs(const vision::Testbed& testbed, std::vector<std::unique_ptr<vision::ImageSource>> sources,
-               const std::atomic<bool>& stop)
-      : testbed_(testbed), stop_(stop), rate_(testbed.cameras[0].camera.rate) {
+               std::chrono::milliseconds limit, const std::atomic<bool>& stop)
+      : testbed_(testbed), limit_(limit), stop_(stop), rate_(testbed.cameras[0].camera.rate) {
     for (const auto& source : sources) live_ = live_ || source->is_live();
     if (sources[0]->rate() > 0.0) rate_ = sources[0]->rate();
     for (std::size_t i = 0; i < sources.size(); ++i) {
       Input input;
       if (sources[i]->is_live())
-        input.watched = std::make_unique<vision::WatchedSource>(std::move(sources[i]),
-                                                                image_limit(testbed.cameras[i].camera), stop);
+        input.watched =
+            std::make_unique<vision::WatchedSource>(std::move(sources[i]), limit_of(testbed.cameras[i].camera), stop);
       else
         input.file = std::move(sources[i]);
       inputs_.push_back(std::move(input));
@@ -74,10 +69,15 @@ class OpenedInputs : public CameraInputs {
     return input.last = result;
   }
 
-  static void report(const vision::Camera& camera, Result result) {
+  /// Slow cameras have three periods.
+  std::chrono::milliseconds limit_of(const vision::Camera& camera) const {
+    return std::max(limit_, std::chrono::milliseconds(static_cast<std::int64_t>(3e3 / camera.rate)));
+  }
+
+  void report(const vision::Camera& camera, Result result) const {
     if (result == Result::stalled)
       print_message("camera '{}' has sent no image for {:g} s; going on without it. Check the camera and its cable",
-                    camera.name, 1e-3 * static_cast<double>(image_limit(camera).count()));
+                    camera.name, 1e-3 * static_cast<double>(limit_of(camera).count()));
     else
       print_message("camera '{}' sends {}", camera.name, result == Result::image ? "images again" : "no more images");
   }
@@ -87,6 +87,7 @@ class OpenedInputs : public CameraInputs {
   }
 
   const vision::Testbed& testbed_;
+  std::chrono::milliseconds limit_;
   const std::atomic<bool>& stop_;
   std::vector<Input> inputs_;
   double rate_;
@@ -231,7 +232,13 @@ std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
     const vision::Intrinsics& i = each.camera.intrinsics;
     sources.push_back(vision::opencv().open_source(source, i.width, i.height, each.camera.rate));
   }
-  return std::make_unique<OpenedInputs>(testbed, std::move(sources), stop);
+  return source_inputs(testbed, std::move(sources), std::chrono::seconds(2), stop);
+}
+
+std::unique_ptr<CameraInputs> source_inputs(const vision::Testbed& testbed,
+                                            std::vector<std::unique_ptr<vision::ImageSource>> sources,
+                                            std::chrono::milliseconds limit, const std::atomic<bool>& stop) {
+  return std::make_unique<OpenedInputs>(testbed, std::move(sources), limit, stop);
 }
 
 std::unique_ptr<CameraInputs> rendered_inputs(const vision::Testbed& testbed, const vision::RenderedFleet& fleet,

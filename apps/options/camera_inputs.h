@@ -2,12 +2,14 @@
 // The images of all cameras of a testbed, from devices, files or a renderer.
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "netio/socket.h"
+#include "vision/opencv.h"
 #include "vision/positioning.h"
 #include "vision/rendered_fleet.h"
 #include "vision/rendered_robots.h"
@@ -30,6 +32,12 @@ class CameraInputs {
 std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
                                           const std::vector<std::pair<std::string, std::string>>& chosen,
                                           const std::atomic<bool>& stop);
+
+/// Reads sources, one per camera. @param testbed, stop must outlive the result
+/// @param limit time in which a live source must send an image; three periods of its camera if that is longer
+std::unique_ptr<CameraInputs> source_inputs(const vision::Testbed& testbed,
+                                            std::vector<std::unique_ptr<vision::ImageSource>> sources,
+                                            std::chrono::milliseconds limit, const std::atomic<bool>& stop);
 
 /// @param fleet must outlive the result
 /// @throws base::InputError if the cameras have more than 64 Mpx in total, since a renderer needs 32 bytes per pixel

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <semaphore>
 #include <thread>
 
 #include "apps/options/camera_inputs.h"
@@ -394,6 +395,59 @@ TEST(Vps, LiveImagesHaveTimesSinceTheFirst) {
   }
   stop = true;
   EXPECT_FALSE(inputs->next(frames));
+}
+
+namespace {
+
+/// Noise, so that no image equals the one before, until the test blocks it.
+class NoisyCamera : public vision::ImageSource {
+ public:
+  explicit NoisyCamera(std::shared_ptr<std::counting_semaphore<>> images) : images_(std::move(images)) {}
+  bool next(vision::Image& out) override {
+    images_->acquire();
+    out = {32, 24, 1, std::vector<std::uint8_t>(32 * 24, static_cast<std::uint8_t>(++count_))};
+    return true;
+  }
+  bool is_live() const override { return true; }
+
+ private:
+  std::shared_ptr<std::counting_semaphore<>> images_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+/// With limits of 0 ms, so that nothing waits: images of b arrive while a sends none, and are counted alone.
+TEST(Vps, OtherCamerasGoOnWithoutOneThatStalls) {
+  const Folder folder;
+  const std::string camera = "[[camera]]\nsize = [32, 24]\nfocal = [40, 40]\nposition = [0, 0, 2]\nname = ";
+  vision::Testbed testbed = vision::read_testbed(folder.write(
+      "t.toml", "dictionary = \"aruco_4x4_50\"\ntag_side = 0.15\n" + camera + "\"a\"\n" + camera + "\"b\"\n"));
+  for (vision::TestbedCamera& each : testbed.cameras) each.camera.rate = 1e6;
+  const auto stalled = std::make_shared<std::counting_semaphore<>>(0);
+  const auto running = std::make_shared<std::counting_semaphore<>>(3);
+  std::vector<std::unique_ptr<vision::ImageSource>> sources;
+  sources.push_back(std::make_unique<NoisyCamera>(stalled));
+  sources.push_back(std::make_unique<NoisyCamera>(running));
+  std::atomic<bool> stop{false};
+  const auto inputs = apps::source_inputs(testbed, std::move(sources), std::chrono::milliseconds(0), stop);
+  vision::Positioning positioning(testbed, 1, true);
+  std::vector<vision::Frame> frames;
+  const auto next = [&] {
+    EXPECT_TRUE(inputs->next(frames));
+    positioning.update(frames);
+  };
+  while (positioning.counts().images < 3) next();
+  EXPECT_TRUE(frames.at(0).missing);
+  EXPECT_FALSE(frames.at(1).missing);
+  EXPECT_EQ(positioning.counts().unreadable, 0u) << "missing images are not unreadable ones";
+  stalled->release();
+  while (positioning.counts().images < 4) next();
+  EXPECT_FALSE(frames.at(0).missing) << "it continues";
+  stop = true;
+  EXPECT_FALSE(inputs->next(frames));
+  stalled->release();
+  running->release();
 }
 
 TEST(Calibrate, ReportsErrors) {
