@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "maps/borders.h"
 #include "netio/packets.h"
 #include "sensors/laneedge_settings.h"
+#include "sensors/occupancy.h"
 
 namespace sf::server {
 
@@ -41,9 +43,14 @@ MirroredReadings::MirroredReadings(const world::World& world, const sensors::Sen
               static_cast<std::uint16_t>(row.sensor)}] = i;
     by_mover_[row.mover].push_back(i);
   }
+  const auto stream_of = [&](std::uint8_t type, const sensors::SensorSpec& row) {
+    return streams_.at(
+        {type, static_cast<std::uint16_t>(world.movers[row.mover].id), static_cast<std::uint16_t>(row.sensor)});
+  };
   for (const sensors::LaneEdge& edge : sensor_set.settings_of<sensors::LaneEdge>(sensors::kLaneEdge))
-    perpendiculars_[streams_.at({sensors::kLaneEdge, static_cast<std::uint16_t>(world.movers[edge.row.mover].id),
-                                 static_cast<std::uint16_t>(edge.row.sensor)})] = edge.perpendicular;
+    perpendiculars_[stream_of(sensors::kLaneEdge, edge.row)] = edge.perpendicular;
+  for (const sensors::Occupancy& map : sensor_set.settings_of<sensors::Occupancy>(sensors::kOccupancy))
+    maps_.push_back({.stream = stream_of(sensors::kOccupancy, map.row), .grid = map.settings.grid});
 }
 
 void MirroredReadings::accept(std::span<const std::uint8_t> bytes, std::int64_t now) {
@@ -68,6 +75,29 @@ void MirroredReadings::add_lines(std::uint32_t mover, const base::Pose& X_WM, st
     if (sources_[i].type->is_scan) add_scan(*sources_[i].row, X_WS, reading->values, lines);
     if (sources_[i].type->id == sensors::kLaneEdge) add_edge(i, X_WS, reading->values[0], lines);
   }
+}
+
+void MirroredReadings::add_maps(std::int64_t now, std::vector<SightLine>& lines) {
+  for (Map& map : maps_) {
+    const auto reading = receiver_.newest(map.stream);
+    if (!reading) continue;
+    const double period = 1e9 / sources_[map.stream].row->rate;  // [ns]
+    if (static_cast<double>(now - reading->arrival - kFresh) > 3.0 * period) continue;
+    if (map.sequence != reading->sequence || map.arrival != reading->arrival) draw(map, reading->values);
+    map.sequence = reading->sequence;
+    map.arrival = reading->arrival;
+    lines.insert(lines.end(), map.lines.begin(), map.lines.end());
+  }
+}
+
+void MirroredReadings::draw(Map& map, std::span<const double> words) {
+  maps::OccupancyGrid grid(map.grid);
+  for (std::size_t i = 0; i < grid.words.size(); ++i)
+    if (std::isfinite(words[i])) grid.words[i] = static_cast<std::uint32_t>(words[i]);
+  const maps::MapBorders borders = maps::borders_of(grid, kMostBorders);
+  map.lines.clear();
+  for (const auto& [a, b] : borders.explored) map.lines.push_back({SightLine::Kind::explored, {a, b}});
+  for (const auto& [a, b] : borders.occupied) map.lines.push_back({SightLine::Kind::occupied, {a, b}});
 }
 
 void MirroredReadings::add_scan(const sensors::SensorSpec& laser, const base::Pose& X_WS,

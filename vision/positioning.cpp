@@ -51,16 +51,18 @@ std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
                       camera.name, camera.intrinsics.width, camera.intrinsics.height, image.width, image.height));
   }
   s.is_new.assign(s.detectors.size(), 0);
-  std::vector<std::uint8_t> frozen(frames.size(), 0);  // std::vector<bool> is not safe to share between threads
-  for (std::size_t i = 0; s.live && i < frames.size(); ++i) {
+  std::vector<std::uint8_t> skipped(frames.size(), 0);  // std::vector<bool> is not safe to share between threads
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    skipped[i] = frames[i].missing ? 1 : 0;
+    if (!s.live || frames[i].missing) continue;
     const std::vector<std::uint8_t>& pixels = frames[i].image.pixels;
-    frozen[i] = !pixels.empty() && pixels == s.last[i] ? 1 : 0;
-    s.frozen += frozen[i];
+    skipped[i] = !pixels.empty() && pixels == s.last[i] ? 1 : 0;  // frozen
+    s.frozen += skipped[i];
     s.last[i] = pixels;
   }
   s.pool.parallel_for(frames.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i)
-      if (frozen[i] == 0) {
+      if (skipped[i] == 0) {
         s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
         s.is_new[i] = 1;
       } else {

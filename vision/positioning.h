@@ -13,8 +13,9 @@ namespace sf::vision {
 
 /// An image of one camera.
 struct Frame {
-  Image image;        ///< grey, of the camera's size; empty: unreadable
-  double time = 0.0;  ///< [s] start of the exposure of the first row
+  Image image;           ///< grey, of the camera's size; empty: unreadable
+  double time = 0.0;     ///< [s] start of the exposure of the first row
+  bool missing = false;  ///< the camera has no image now: nothing is counted
 };
 
 /// Not thread-safe; processes cameras on several threads.

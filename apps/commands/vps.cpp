@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <fstream>
@@ -75,7 +76,7 @@ std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frame
 std::unique_ptr<CameraInputs> open(const VpsOptions& options, const vision::Testbed& testbed,
                                    const vision::RenderedFleet* fleet, const RobotInputs*& robots) {
   if (fleet != nullptr) return rendered_inputs(testbed, *fleet, options.seed);
-  if (options.robots == 0) return open_inputs(testbed, options.inputs);
+  if (options.robots == 0) return open_inputs(testbed, options.inputs, stop_requested());
   const netio::Endpoint listen{netio::resolve(options.bind), options.robots};
   auto inputs = robot_inputs(testbed, listen, options.seed, stop_requested());
   robots = &*inputs;
@@ -116,17 +117,22 @@ int vps(const VpsOptions& options) {
   const Clock::time_point start = Clock::now();
   std::uint64_t n = 0;
   bool complete = false;
-  for (; !stop_requested() && (most == 0 || n < most) && inputs->next(frames); ++n) {
+  for (; !stop_requested() && (most == 0 || n < most) && inputs->next(frames);) {
     complete = options.duration > 0.0 && frames[0].time >= options.duration;
     if (complete) break;
     if (real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
     if (stop_requested()) break;
+    if (std::all_of(frames.begin(), frames.end(), [](const vision::Frame& frame) { return frame.missing; })) {
+      pictures.skip();
+      continue;
+    }
     const auto tags = process(frames, positioning, report);
     for (const std::string& warning : positioning.warnings()) print_message(warning);
     sender.send(tags, epoch);
     track.write(tags);
     pictures.show(positioning, tags, frames, n, epoch + static_cast<std::int64_t>(1e9 * frames[0].time));
     if (meter) meter->add(frames[0].time, tags);
+    ++n;
   }
   report.counts = positioning.counts();
   report.refused = positioning.refused();

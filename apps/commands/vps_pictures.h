@@ -31,6 +31,10 @@ class VpsPictures {
   /// @param time [ns] of the images since 1970
   void show(const vision::Positioning& positioning, std::span<const vision::TrackedTag> tags,
             std::span<const vision::Frame> frames, std::uint64_t number, std::int64_t time);
+  /// Receives readings while there are no images: their socket must not fill up with old ones.
+  void skip() {
+    if (readings_) readings_->lines({});
+  }
 
  private:
   using Lines = std::span<const vision::PlaneLine>;

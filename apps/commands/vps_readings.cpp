@@ -10,9 +10,10 @@ namespace sf::apps {
 namespace {
 
 using Color = std::array<std::uint8_t, 3>;
-constexpr Color kBeam{235, 200, 70}, kEcho{255, 255, 255}, kEdge{255, 110, 220};
-constexpr std::size_t kReceiveBuffer = 4u << 20;  // [byte]
-constexpr std::size_t kMostAtOnce = 4096;         // datagrams between two images
+constexpr std::array<Color, 5> kColors{
+    {{235, 200, 70}, {255, 255, 255}, {255, 110, 220}, {0, 225, 235}, {95, 110, 225}}};  // by kind
+constexpr std::size_t kReceiveBuffer = 4u << 20;                                         // [byte]
+constexpr std::size_t kMostAtOnce = 4096;                                                // datagrams between two images
 
 std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
@@ -21,8 +22,8 @@ std::int64_t now() {
 
 vision::PlaneLine drawn(const server::SightLine& line) {
   using Kind = server::SightLine::Kind;
-  const Color color = line.kind == Kind::beam ? kBeam : line.kind == Kind::echoes ? kEcho : kEdge;
-  return {line.points, line.z, color, line.kind == Kind::beam ? 1 : 2};
+  const bool thin = line.kind == Kind::beam || line.kind == Kind::explored;
+  return {line.points, line.z, kColors[static_cast<std::size_t>(line.kind)], thin ? 1 : 2};
 }
 
 /// Returns the mover's pose from that of its tag's object, since the world may define the mount, too (`tag_pose`).
@@ -54,6 +55,7 @@ std::span<const vision::PlaneLine> SeenReadings::lines(std::span<const vision::T
   batch_.drain(socket_, kMostAtOnce,
                [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) { readings_.accept(bytes, time); });
   sights_.clear();
+  readings_.add_maps(time, sights_);
   for (const vision::TrackedTag& tag : tags)
     if (const auto mover = mover_of(tag.id))
       readings_.add_lines(*mover, mover_pose(object_state(tag, testbed_.mount(tag.id)), world_.movers[*mover]), time,

@@ -1,5 +1,5 @@
 #pragma once
-// Draws the robots' sensor readings over the images of the cameras that see them (`vps --readings`).
+// Draws the robots' sensor readings and maps over the images of the cameras that see them (`vps --readings`).
 
 #include <span>
 #include <string>
@@ -22,7 +22,8 @@ class SeenReadings {
   SeenReadings(const std::string& world_file, const netio::Endpoint& bind, const vision::Testbed& testbed);
 
   const world::World& world() const { return world_; }
-  /// Processes received packets, and returns the lines of the robots whose tags were seen. Valid until the next call.
+  /// Processes received packets, and returns the lines of all maps, and of the readings of robots whose tags
+  /// were seen. Valid until the next call.
   std::span<const vision::PlaneLine> lines(std::span<const vision::TrackedTag> tags);
 
  private:

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <variant>
 
+#include "apps/reports/text.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "base/suggest.h"
 #include "base/thread_pool.h"
 #include "netio/packets.h"
+#include "vision/watched_source.h"
 
 namespace sf::apps {
 
@@ -19,18 +21,32 @@ namespace {
 
 class OpenedInputs : public CameraInputs {
  public:
-  explicit OpenedInputs(std::vector<std::unique_ptr<vision::ImageSource>> sources, double rate)
-      : sources_(std::move(sources)), rate_(rate) {
-    for (const auto& source : sources_) live_ = live_ || source->is_live();
-    if (sources_[0]->rate() > 0.0) rate_ = sources_[0]->rate();
+  using Result = vision::WatchedSource::Result;
+  OpenedInputs(const vision::Testbed& testbed, std::vector<std::unique_ptr<vision::ImageSource>> sources,
+               std::chrono::milliseconds limit, const std::atomic<bool>& stop)
+      : testbed_(testbed), limit_(limit), stop_(stop), rate_(testbed.cameras[0].camera.rate) {
+    for (const auto& source : sources) live_ = live_ || source->is_live();
+    if (sources[0]->rate() > 0.0) rate_ = sources[0]->rate();
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      Input input;
+      if (sources[i]->is_live())
+        input.watched =
+            std::make_unique<vision::WatchedSource>(std::move(sources[i]), limit_of(testbed.cameras[i].camera), stop);
+      else
+        input.file = std::move(sources[i]);
+      inputs_.push_back(std::move(input));
+    }
   }
 
   bool next(std::vector<vision::Frame>& frames) override {
     if (count_ == 0) start_ = now();
-    frames.resize(sources_.size());
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-      if (!sources_[i]->next(frames[i].image)) return false;
+    frames.resize(inputs_.size());
+    std::size_t ended = 0;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      const Result result = read(i, frames[i].image);
+      if (result == Result::ended && (inputs_[i].file || ++ended == inputs_.size())) return false;
       frames[i].time = live_ ? now() - start_ : static_cast<double>(count_) / rate_;
+      frames[i].missing = result != Result::image;
     }
     ++count_;
     return true;
@@ -38,12 +54,43 @@ class OpenedInputs : public CameraInputs {
   bool is_live() const override { return live_; }
 
  private:
+  struct Input {
+    std::unique_ptr<vision::ImageSource> file;       ///< null: live
+    std::unique_ptr<vision::WatchedSource> watched;  ///< null: a file
+    Result last = Result::image;
+  };
+
+  Result read(std::size_t i, vision::Image& image) {
+    Input& input = inputs_[i];
+    if (input.file) return input.file->next(image) ? Result::image : Result::ended;
+    if (input.last == Result::ended) return Result::ended;
+    const Result result = input.watched->next(image);
+    if (result != input.last && !stop_) report(testbed_.cameras[i].camera, result);
+    return input.last = result;
+  }
+
+  /// Slow cameras have three periods.
+  std::chrono::milliseconds limit_of(const vision::Camera& camera) const {
+    return std::max(limit_, std::chrono::milliseconds(static_cast<std::int64_t>(3e3 / camera.rate)));
+  }
+
+  void report(const vision::Camera& camera, Result result) const {
+    if (result == Result::stalled)
+      print_message("camera '{}' has sent no image for {:g} s; going on without it. Check the camera and its cable",
+                    camera.name, 1e-3 * static_cast<double>(limit_of(camera).count()));
+    else
+      print_message("camera '{}' sends {}", camera.name, result == Result::image ? "images again" : "no more images");
+  }
+
   static double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
 
-  std::vector<std::unique_ptr<vision::ImageSource>> sources_;
-  double rate_ = 15.0;
+  const vision::Testbed& testbed_;
+  std::chrono::milliseconds limit_;
+  const std::atomic<bool>& stop_;
+  std::vector<Input> inputs_;
+  double rate_;
   bool live_ = false;
   double start_ = 0.0;  ///< [s] time of the first call of `next`, which is time 0 of live images
   std::uint64_t count_ = 0;
@@ -164,7 +211,8 @@ class LiveRobotInputs : public RobotInputs {
 }  // namespace
 
 std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
-                                          const std::vector<std::pair<std::string, std::string>>& chosen) {
+                                          const std::vector<std::pair<std::string, std::string>>& chosen,
+                                          const std::atomic<bool>& stop) {
   std::vector<std::string_view> names;
   for (const vision::TestbedCamera& each : testbed.cameras) names.push_back(each.camera.name);
   for (const auto& [name, source] : chosen)
@@ -184,7 +232,13 @@ std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
     const vision::Intrinsics& i = each.camera.intrinsics;
     sources.push_back(vision::opencv().open_source(source, i.width, i.height, each.camera.rate));
   }
-  return std::make_unique<OpenedInputs>(std::move(sources), testbed.cameras[0].camera.rate);
+  return source_inputs(testbed, std::move(sources), std::chrono::seconds(2), stop);
+}
+
+std::unique_ptr<CameraInputs> source_inputs(const vision::Testbed& testbed,
+                                            std::vector<std::unique_ptr<vision::ImageSource>> sources,
+                                            std::chrono::milliseconds limit, const std::atomic<bool>& stop) {
+  return std::make_unique<OpenedInputs>(testbed, std::move(sources), limit, stop);
 }
 
 std::unique_ptr<CameraInputs> rendered_inputs(const vision::Testbed& testbed, const vision::RenderedFleet& fleet,

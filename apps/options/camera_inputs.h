@@ -2,12 +2,14 @@
 // The images of all cameras of a testbed, from devices, files or a renderer.
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "netio/socket.h"
+#include "vision/opencv.h"
 #include "vision/positioning.h"
 #include "vision/rendered_fleet.h"
 #include "vision/rendered_robots.h"
@@ -18,15 +20,24 @@ namespace sf::apps {
 class CameraInputs {
  public:
   virtual ~CameraInputs() = default;
-  /// Reads the next image of each camera; blocks for devices. @return false if any source has ended
+  /// Reads the next image of each camera. A device or pipeline that sends none within a limit is reported, and its
+  /// frames are missing until it continues. @return false if a file or all live sources have ended, or at a stop
   virtual bool next(std::vector<vision::Frame>& frames) = 0;
   virtual bool is_live() const { return false; }
 };
 
-/// @param chosen pairs of camera and source that override the file
+/// @param testbed must outlive the result  @param chosen pairs of camera and source that override the file
+/// @param stop ends the wait for the next image
 /// @throws base::InputError for cameras without a source, sources of unknown cameras, and sources that cannot be opened
 std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
-                                          const std::vector<std::pair<std::string, std::string>>& chosen);
+                                          const std::vector<std::pair<std::string, std::string>>& chosen,
+                                          const std::atomic<bool>& stop);
+
+/// Reads sources, one per camera. @param testbed, stop must outlive the result
+/// @param limit time in which a live source must send an image; three periods of its camera if that is longer
+std::unique_ptr<CameraInputs> source_inputs(const vision::Testbed& testbed,
+                                            std::vector<std::unique_ptr<vision::ImageSource>> sources,
+                                            std::chrono::milliseconds limit, const std::atomic<bool>& stop);
 
 /// @param fleet must outlive the result
 /// @throws base::InputError if the cameras have more than 64 Mpx in total, since a renderer needs 32 bytes per pixel

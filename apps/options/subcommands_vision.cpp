@@ -108,7 +108,7 @@ void add_vps(CLI::App& app, Call& call) {
       ->type_name("WORLD");
   sub->add_option("--readings", o.readings,
                   "UDP port for readings of the world's robots (`serve --mirror`): draws their beams and lane edges at "
-                  "the poses that the cameras measure")
+                  "the poses that the cameras measure, and their occupancy maps")
       ->check(whole(1, 65535))
       ->needs("--world")
       ->type_name("PORT");

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <semaphore>
 #include <thread>
 
 #include "apps/options/camera_inputs.h"
@@ -19,6 +20,7 @@
 #include "netio/signature.h"
 #include "netio/socket.h"
 #include "sensors/laser.h"
+#include "sensors/occupancy.h"
 #include "sensors/sensor_set.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
@@ -45,19 +47,19 @@ constexpr const char* kTestbed =
     "id = 2\n"
     "offset = [0.1, 0, 90]\n";
 
-/// A reading of a laser whose beams all end at 0.3 m, as `serve --mirror` sends it.
-base::Bytes mirrored_scan(const std::string& world_file, std::uint32_t sequence) {
+/// A reading of the first robot as `serve --mirror` sends it.
+base::Bytes mirrored(const std::string& world_file, std::uint8_t sensor_type, const std::vector<double>& values,
+                     std::uint32_t sequence) {
   const world::World world = world::load_world(world_file, {.sensors = sensors::world_file_words()});
   const sensors::SensorSet sensor_set(world);
-  const std::vector<double> ranges(31, 0.3);
   base::ReadingBlock block;
-  block.type = sensors::kLaser, block.values = ranges;
+  block.type = sensor_type, block.values = values;
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(world.movers[0].id);
   header.sequence = sequence;
   header.time = std::int64_t{100'000'000} * sequence;
   base::Bytes payload, packet;
-  const auto& type = *sensor_set.group(sensors::kLaser)->type;
+  const auto& type = *sensor_set.group(sensor_type)->type;
   const std::uint8_t kind = type.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
   netio::encode_reading(header, kind, payload, packet);
   return packet;
@@ -395,6 +397,59 @@ TEST(Vps, LiveImagesHaveTimesSinceTheFirst) {
   EXPECT_FALSE(inputs->next(frames));
 }
 
+namespace {
+
+/// Noise, so that no image equals the one before, until the test blocks it.
+class NoisyCamera : public vision::ImageSource {
+ public:
+  explicit NoisyCamera(std::shared_ptr<std::counting_semaphore<>> images) : images_(std::move(images)) {}
+  bool next(vision::Image& out) override {
+    images_->acquire();
+    out = {32, 24, 1, std::vector<std::uint8_t>(32 * 24, static_cast<std::uint8_t>(++count_))};
+    return true;
+  }
+  bool is_live() const override { return true; }
+
+ private:
+  std::shared_ptr<std::counting_semaphore<>> images_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+/// With limits of 0 ms, so that nothing waits: images of b arrive while a sends none, and are counted alone.
+TEST(Vps, OtherCamerasGoOnWithoutOneThatStalls) {
+  const Folder folder;
+  const std::string camera = "[[camera]]\nsize = [32, 24]\nfocal = [40, 40]\nposition = [0, 0, 2]\nname = ";
+  vision::Testbed testbed = vision::read_testbed(folder.write(
+      "t.toml", "dictionary = \"aruco_4x4_50\"\ntag_side = 0.15\n" + camera + "\"a\"\n" + camera + "\"b\"\n"));
+  for (vision::TestbedCamera& each : testbed.cameras) each.camera.rate = 1e6;
+  const auto stalled = std::make_shared<std::counting_semaphore<>>(0);
+  const auto running = std::make_shared<std::counting_semaphore<>>(3);
+  std::vector<std::unique_ptr<vision::ImageSource>> sources;
+  sources.push_back(std::make_unique<NoisyCamera>(stalled));
+  sources.push_back(std::make_unique<NoisyCamera>(running));
+  std::atomic<bool> stop{false};
+  const auto inputs = apps::source_inputs(testbed, std::move(sources), std::chrono::milliseconds(0), stop);
+  vision::Positioning positioning(testbed, 1, true);
+  std::vector<vision::Frame> frames;
+  const auto next = [&] {
+    EXPECT_TRUE(inputs->next(frames));
+    positioning.update(frames);
+  };
+  while (positioning.counts().images < 3) next();
+  EXPECT_TRUE(frames.at(0).missing);
+  EXPECT_FALSE(frames.at(1).missing);
+  EXPECT_EQ(positioning.counts().unreadable, 0u) << "missing images are not unreadable ones";
+  stalled->release();
+  while (positioning.counts().images < 4) next();
+  EXPECT_FALSE(frames.at(0).missing) << "it continues";
+  stop = true;
+  EXPECT_FALSE(inputs->next(frames));
+  stalled->release();
+  running->release();
+}
+
 TEST(Calibrate, ReportsErrors) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
@@ -444,22 +499,28 @@ TEST(Vps, ReportsErrors) {
 }
 
 /// Readings are sent repeatedly while it runs, so some are available when a tag is seen.
-TEST(Vps, ReadingsAreDrawnFromTheSeenTags) {
+TEST(Vps, ReadingsAreDrawnFromTheSeenTagsAndMapsInTheWorld) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", std::string(kTestbed) + "robot = 5\n");  // carries tag 2
-  const std::string world = folder.write(
-      "w.world", "position( name \"roomba5\" size [0.2 0.2 0.1] laser( samples 31 fov 180 range_max 2 ) )\n");
+  const std::string world =
+      folder.write("w.world",
+                   "position( name \"roomba5\" size [0.2 0.2 0.1] laser( samples 31 fov 180 range_max 2 ) "
+                   "occupancy( cell 0.1 words [1 1] offset [0.2 -0.2] ) )\n");
   const unsigned port = free_ports(1);
   Program vps({"vps", testbed, "--rendered", "2", "--images", "6", "--overlay", folder.path("seen"), "--world", world,
                "--readings", std::to_string(port)});
   netio::Outbox outbox;
   for (std::uint32_t sequence = 0; vps.running(); ++sequence) {
-    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, mirrored_scan(world, sequence));
+    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)},
+                 mirrored(world, sensors::kLaser, std::vector<double>(31, 0.3), sequence));
+    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)},
+                 mirrored(world, sensors::kOccupancy, {0x99999999}, sequence));
     outbox.flush();
   }
   const Outcome outcome = vps.wait();
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  scenes::expect_painted(folder.path("seen/a-000005.png"), {{0xFFEBC846u, 10}});  // beams; lines have soft borders
+  scenes::expect_painted(folder.path("seen/a-000005.png"),
+                         {{0xFFEBC846u, 10}, {0xFF00E1EBu, 10}});  // beams and map; lines have soft borders
 }
 
 }  // namespace sf

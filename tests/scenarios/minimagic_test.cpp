@@ -69,5 +69,31 @@ TEST(MiniMagic, PioneersMapTheAreaAndLocateAllWithoutContact) {
   }
 }
 
+/// Through the barracks' doors of 0.7 m: from the south into the western room, into the eastern one, and out.
+TEST(MiniMagic, APioneerDrivesThroughTheBarracks) {
+  const Scenario scenario = parse_scenario(SF_SOURCE_DIR "/experiments/barracks.toml", R"(
+world = "../worlds/minimagic/minimagic.world"
+duration = 75
+[positioning]
+[[robot]]
+name = "pioneer0"
+controller = "patrol"
+settings = { points = [-5.2, -0.3, -4.05, 0.1, -4.05, 2.35, -2.55, 2.35, -2.55, 0.0], speed = 0.2, pause = 60 }
+)");
+  const Trial trial = run_trial(scenario, disturbed_world(scenario, {}), device(), {});
+  const auto track = std::find_if(trial.tracks.begin(), trial.tracks.end(),
+                                  [](const viz::Track& each) { return each.name == "pioneer0"; });
+  ASSERT_NE(track, trial.tracks.end());
+  EXPECT_EQ(trial.counts[static_cast<std::size_t>(track - trial.tracks.begin())].contacts, 0u);
+  const auto was_near = [&](glm::dvec2 p) {
+    return std::any_of(track->poses.begin(), track->poses.end(), [&](const base::Pose& X) {
+      return glm::distance(p, {X.x, X.y}) < 0.1;
+    });
+  };
+  for (const glm::dvec2& p : {glm::dvec2{-4.05, 2.35}, {-3.37, 2.35}, {-2.55, 2.35}, {-2.55, 0.83}})
+    EXPECT_TRUE(was_near(p)) << p.x << " " << p.y;
+  EXPECT_NEAR(track->poses.back().y, 0.0, 0.1) << "outside again";
+}
+
 }  // namespace
 }  // namespace sf::scenarios

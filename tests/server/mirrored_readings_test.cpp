@@ -10,6 +10,7 @@
 #include "netio/packets.h"
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser.h"
+#include "sensors/occupancy.h"
 #include "tests/sensors/scenes.h"
 #include "tests/units.h"
 
@@ -25,7 +26,9 @@ world::World with_sensors(double least, double most) {
   world::Sensor laser{.type = "laser", .name = "laser", .X_MS = {0.1, 0.0, 0.0, 0.0}, .height = 0.2};
   laser.settings = {{"samples", {5}, ""}, {"fov", {M_PI}, ""}, {"range", {least, most}, ""}};
   world::Sensor edge{.type = "laneedge", .name = "edge", .X_MS = {0.0, 0.0, 0.0, M_PI / 2}};
-  world.movers[robot].sensors = {laser, edge};
+  world::Sensor map{.type = "occupancy", .name = "map"};  // 8 x 8 cells from (-1, 2) to (1, 0)
+  map.settings = {{"cell", {0.25}, ""}, {"words", {2, 2}, ""}, {"offset", {1.0, -2.0}, ""}, {"rate", {2.0}, ""}};
+  world.movers[robot].sensors = {laser, edge, map};
   return world;
 }
 
@@ -108,6 +111,30 @@ TEST_F(MirroredReadingsTest, OldReadingsAreNotDrawn) {
   readings.accept(packet(sensors::kLaser, {1.0, 1.0, 1.0, 1.0, 1.0}), 0);
   EXPECT_FALSE(lines({}, MirroredReadings::kFresh).empty());
   EXPECT_TRUE(lines({}, MirroredReadings::kFresh + 1).empty());
+}
+
+/// Two free cells and an occupied one next to them, in the upper left corner of the map.
+TEST_F(MirroredReadingsTest, MapsAreDrawnByTheBordersOfTheirCells) {
+  const auto maps = [&](std::int64_t now = 0) {
+    std::vector<SightLine> all;
+    readings.add_maps(now, all);
+    return all;
+  };
+  EXPECT_TRUE(maps().empty());
+  readings.accept(packet(sensors::kOccupancy, {2.0 + 4 * 2.0 + 16 * 1.0, 0.0, 0.0, 0.0}), 0);
+  const auto all = maps();
+  ASSERT_EQ(all.size(), 8u) << "two rectangles";
+  EXPECT_EQ(all[0].kind, Kind::explored);
+  EXPECT_EQ(all[0].points, (std::vector<glm::dvec2>{{-1.0, 2.0}, {-0.25, 2.0}}));
+  EXPECT_EQ(all[4].kind, Kind::occupied);
+  EXPECT_EQ(all[4].points, (std::vector<glm::dvec2>{{-0.5, 2.0}, {-0.25, 2.0}}));
+  EXPECT_EQ(all[7].points, (std::vector<glm::dvec2>{{-0.25, 2.0}, {-0.25, 1.75}}));
+  constexpr std::int64_t kLast = MirroredReadings::kFresh + 1'500'000'000;  // three periods
+  EXPECT_EQ(maps(kLast).size(), 8u);
+  EXPECT_TRUE(maps(kLast + 1).empty());
+  readings.accept(packet(sensors::kOccupancy, {0.0, 0.0, 0.0, 2.0}, 1), kLast);
+  ASSERT_EQ(maps(kLast).size(), 4u) << "the new map replaces the old one";
+  EXPECT_EQ(maps(kLast)[0].points, (std::vector<glm::dvec2>{{0.0, 1.0}, {0.25, 1.0}}));
 }
 
 TEST_F(MirroredReadingsTest, AnyBytesAreAccepted) {

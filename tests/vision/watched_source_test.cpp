@@ -1,0 +1,116 @@
+// Cameras that stall.
+
+#include "vision/watched_source.h"
+
+#include <gtest/gtest.h>
+
+#include <semaphore>
+#include <thread>
+
+#include "base/error.h"
+
+namespace sf::vision {
+
+namespace {
+
+using Result = WatchedSource::Result;
+using namespace std::chrono_literals;
+
+/// What the test lets a camera send. Outlives the source, whose thread may be left behind.
+struct Feed {
+  std::counting_semaphore<> images{0};
+  std::atomic<int> left{1000};  ///< images until the end
+  std::atomic<bool> fails{false}, closed{false};
+};
+
+class Blocking : public ImageSource {
+ public:
+  explicit Blocking(std::shared_ptr<Feed> camera) : camera_(std::move(camera)) {}
+  ~Blocking() override { camera_->closed = true; }
+  bool next(Image& out) override {
+    camera_->images.acquire();
+    if (camera_->fails) throw base::InputError("the camera failed");
+    if (camera_->left-- == 0) return false;
+    out = {1, 1, 1, {static_cast<std::uint8_t>(++count_)}};
+    return true;
+  }
+  bool is_live() const override { return true; }
+  double rate() const override { return 12.0; }
+
+ private:
+  std::shared_ptr<Feed> camera_;
+  int count_ = 0;
+};
+
+struct WatchedSourceTest : testing::Test {
+  std::unique_ptr<WatchedSource> watch(std::chrono::milliseconds limit) const {
+    return std::make_unique<WatchedSource>(std::make_unique<Blocking>(camera), limit, stop);
+  }
+  /// The next result that is not `stalled`.
+  static Result finally(WatchedSource& source, Image& image) {
+    Result result = Result::stalled;
+    while ((result = source.next(image)) == Result::stalled) std::this_thread::yield();
+    return result;
+  }
+  std::shared_ptr<Feed> camera = std::make_shared<Feed>();
+  std::atomic<bool> stop{false};
+};
+
+}  // namespace
+
+TEST_F(WatchedSourceTest, DeliversEveryImageAndTheEnd) {
+  camera->left = 3;
+  camera->images.release(4);
+  const auto source = watch(1h);
+  EXPECT_EQ(source->rate(), 12.0);
+  Image image;
+  for (const int expected : {1, 2, 3}) {
+    ASSERT_EQ(source->next(image), Result::image);
+    EXPECT_EQ(image.pixels, std::vector<std::uint8_t>{static_cast<std::uint8_t>(expected)});
+  }
+  EXPECT_EQ(source->next(image), Result::ended);
+  EXPECT_TRUE(image.pixels.empty());
+}
+
+/// A limit of 0, so that the test does not wait.
+TEST_F(WatchedSourceTest, AStalledCameraReturnsAndContinuesWithItsNextImage) {
+  const auto source = watch(0ms);
+  Image image{1, 1, 1, {9}};
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(source->next(image), Result::stalled);
+  EXPECT_TRUE(image.pixels.empty()) << "not an old image";
+  camera->images.release();
+  ASSERT_EQ(finally(*source, image), Result::image);
+  EXPECT_EQ(image.pixels, std::vector<std::uint8_t>{1}) << "none is lost";
+  EXPECT_EQ(source->next(image), Result::stalled);
+  camera->images.release();
+}
+
+TEST_F(WatchedSourceTest, AStopEndsTheWait) {
+  const auto source = watch(1h);
+  std::thread stopping([&] { stop = true; });
+  Image image;
+  EXPECT_EQ(source->next(image), Result::ended) << "not after an hour";
+  stopping.join();
+  camera->images.release();  // for the destructor, which waits for the call under way
+}
+
+TEST_F(WatchedSourceTest, ErrorsReachTheCaller) {
+  camera->fails = true;
+  camera->images.release();
+  const auto source = watch(1h);
+  Image image;
+  EXPECT_THROW(source->next(image), base::InputError);
+}
+
+/// The thread is left behind, and closes the camera once the driver returns.
+TEST_F(WatchedSourceTest, ABlockedCameraDoesNotBlockTheEnd) {
+  {
+    const auto source = watch(0ms);
+    Image image;
+    EXPECT_EQ(source->next(image), Result::stalled);
+  }
+  camera->images.release();
+  while (!camera->closed) std::this_thread::yield();
+}
+
+}  // namespace sf::vision

@@ -1,0 +1,90 @@
+#include "vision/watched_source.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace sf::vision {
+
+using Clock = std::chrono::steady_clock;
+
+struct WatchedSource::Shared {
+  std::unique_ptr<ImageSource> source;  ///< used by the thread only
+  std::mutex mutex;                     ///< of all below
+  std::condition_variable changed;
+  enum class State { idle, wanted, done, quit, left } state = State::idle;
+  bool more = false;
+  Image image;
+  std::exception_ptr error;
+};
+
+WatchedSource::WatchedSource(std::unique_ptr<ImageSource> source, std::chrono::milliseconds limit,
+                             const std::atomic<bool>& stop)
+    : shared_(std::make_shared<Shared>()), limit_(limit), stop_(stop), rate_(source->rate()) {
+  shared_->source = std::move(source);
+  // A thread inside a driver cannot be stopped.
+  std::thread([shared = shared_] { read_images(shared); }).detach();
+}
+
+WatchedSource::~WatchedSource() {
+  std::unique_lock lock(shared_->mutex);
+  shared_->state = Shared::State::quit;
+  shared_->changed.notify_all();
+  shared_->changed.wait_for(lock, limit_, [this] { return shared_->state == Shared::State::left; });
+}
+
+void WatchedSource::read_images(const std::shared_ptr<Shared>& shared) {
+  using State = Shared::State;
+  Shared& s = *shared;
+  std::unique_lock lock(s.mutex);
+  while (true) {
+    s.changed.wait(lock, [&] { return s.state == State::wanted || s.state == State::quit; });
+    if (s.state == State::quit) break;
+    lock.unlock();
+    bool more = false;
+    std::exception_ptr error;
+    try {
+      more = s.source->next(s.image);
+    } catch (...) {
+      error = std::current_exception();
+    }
+    lock.lock();
+    s.more = more;
+    s.error = error;
+    if (s.state == State::wanted) s.state = State::done;
+    s.changed.notify_all();
+  }
+  lock.unlock();
+  s.source.reset();  // closes the device
+  lock.lock();
+  s.state = State::left;
+  s.changed.notify_all();
+}
+
+WatchedSource::Result WatchedSource::next(Image& out) {
+  using State = Shared::State;
+  constexpr std::chrono::milliseconds kSlice{50};
+  Shared& s = *shared_;
+  out.pixels.clear();
+  std::unique_lock lock(s.mutex);
+  if (s.state == State::idle) s.state = State::wanted;
+  s.changed.notify_all();
+  const Clock::time_point end = Clock::now() + (stalled_ ? std::min(limit_, kGlance) : limit_);
+  while (s.state == State::wanted && !stop_ && Clock::now() < end)
+    s.changed.wait_until(lock, std::min(end, Clock::now() + kSlice));
+  if (s.state == State::wanted) {
+    stalled_ = true;
+    return stop_ ? Result::ended : Result::stalled;
+  }
+  s.state = State::idle;
+  stalled_ = false;
+  if (s.error) std::rethrow_exception(std::exchange(s.error, nullptr));
+  if (!s.more) return Result::ended;
+  std::swap(out, s.image);
+  return Result::image;
+}
+
+}  // namespace sf::vision
