@@ -154,7 +154,10 @@ bool Service::change_shape(std::uint32_t row, const world::ShapeChange& change, 
     if (outline) receiver_.update_outline(row);
     return outline;
   } catch (const base::InputError& error) {
-    receiver_.log().write(fmt::format("OBJECT for tag {}: {}", world_.movers[row].id, error.what()), now);
+    auto& [refusal, at] = refused_[row];  // senders repeat their packets
+    if (refusal != error.what() || now - at > netio::kSenderTimeout)
+      receiver_.log().write(fmt::format("OBJECT for tag {}: {}", world_.movers[row].id, error.what()), now);
+    refusal = error.what(), at = now;
     return false;
   }
 }
