@@ -19,7 +19,7 @@ class Stubs(unittest.TestCase):
         self.assertEqual(public(sensorfarm.__all__), public(
             set(classes) - {"Controller", "ModelController"} | {n.name for n in body if isinstance(n, ast.FunctionDef)} | {"NONE"}))
         for name in ("SensorInfo", "Robot", "Reading", "Neighbour", "Light", "Input", "Settings", "Simulation", "Model",
-                     "ModelContact", "ModelSite", "NearRobot"):
+                     "ModelContact", "ModelSite", "NearRobot", "WorldObject"):
             stated = public(n.name for n in classes[name].body if isinstance(n, ast.FunctionDef))
             self.assertEqual(stated, public(dir(getattr(sensorfarm, name))), name)
         for name in ("Pose", "Twist"):
