@@ -143,6 +143,18 @@ TEST(ObjectEvent, PosesAreSet) {
   EXPECT_GT(v.reference.readings, 40u);
 }
 
+/// A robot at rest that is placed 2 m away has not driven.
+TEST(ObjectEvent, APlacedRobotHasNotDriven) {
+  Scenario scenario = parse_scenario(SF_SOURCE_DIR "/experiments/test.toml",
+                                     "world = \"../worlds/minimagic/minimagic.world\"\nduration = 2\n[default]\n"
+                                     "controller = \"patrol\"\nsettings = { points = [0, 0], speed = 0.0001 }\n"
+                                     "[expect]\ndistance = { pioneer1 = 1 }\n"
+                                     "[[event]]\nat = 1\nobject = \"pioneer1\"\npose = [1, 0.5, 30]\n");
+  const ScenarioResult result = run_scenario(scenario, host_device());
+  ASSERT_EQ(result.outcomes.size(), 1u);
+  EXPECT_FALSE(result.outcomes[0].met);
+}
+
 TEST(ObjectEvent, ARemovedRobotHasNoPlace) {
   const Scenario scenario =
       parse_scenario("test.toml", "world = \"w.world\"\n[[event]]\nat = 1\nobject = \"r0\"\npose = [0, 0, 0]\n");
