@@ -27,6 +27,9 @@ constexpr std::int64_t kPause = 1'000'000'000;      // [ns] until the next plan 
 constexpr std::int64_t kMostPause = 8'000'000'000;  // [ns] the same in a moving world, where planning costs more
 constexpr double kMoreClearance = 0.05;             // [m] beyond the margin
 
+constexpr std::int64_t kStuck = 15'000'000'000;  // [ns] at one place while commands are executed: two full turns
+constexpr double kOnePlace = 0.15;               // [m]
+
 glm::dvec2 origin(const Pose& X) { return {X.x, X.y}; }
 
 double reach_of(const ExploreSettings& settings) {
@@ -284,12 +287,23 @@ bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
   return then >= settings_.body.radius + kTouch || then > now;
 }
 
-// Replaces a command whose swept area is not free, and gives up the path if that lasts.
+// Replaces a command whose swept area is not free, and gives up the path if that lasts. Next to an obstacle, a turn and
+// its evasion may alternate for ever: a robot that does not leave its place drives away from it, and plans again.
 Twist Explore::checked(const ControllerInput& input, const Twist& wanted) {
   if (!settings_.swept_area) return wanted;
   SweptArea& area = *settings_.swept_area;
   area.update(input);
-  if (wanted.forward == 0.0 && wanted.turn == 0.0) return wanted;
+  const bool rests = wanted.forward == 0.0 && wanted.turn == 0.0;
+  if (!stands_ || rests || glm::length(origin(input.state.X_WM) - stands_->p) > kOnePlace) {
+    if (stands_ && stands_->leaves) path_.clear();
+    stands_ = {origin(input.state.X_WM), input.time};
+  }
+  if (rests) return wanted;
+  if (input.time - stands_->since > kStuck) {
+    stands_->leaves = true;
+    for (const double ahead : {0.5 * settings_.slow_speed, -0.5 * settings_.slow_speed})
+      if (area.free(input.state, {ahead, 0.0, 0.0})) return {ahead, 0.0, 0.0};
+  }
   const Twist twist = area.limit(input.state, wanted, 0.5 * settings_.turn, 0.5 * settings_.slow_speed);
   if (twist.forward * wanted.forward > 0.0 || (wanted.forward == 0.0 && twist.turn * wanted.turn > 0.0)) {
     evades_since_.reset();

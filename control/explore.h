@@ -117,6 +117,12 @@ class Explore final : public Controller, public SharesMap {
   std::int64_t last_time_ = 0;
   std::int64_t pause_;                        ///< [ns] until the next plan while teammates explore the rest
   std::optional<std::int64_t> evades_since_;  ///< [ns] the swept area is not free
+  struct Stand {
+    glm::dvec2 p;            ///< [m]
+    std::int64_t since = 0;  ///< [ns]
+    bool leaves = false;     ///< drives away from there
+  };
+  std::optional<Stand> stands_;               ///< the place of the last commands
   int blocked_plans_ = 0;                     ///< successive plans without a path around other robots
   std::int64_t paused_until_ = 0;             ///< [ns] waits for teammates
   std::optional<std::int64_t> in_way_since_;  ///< [ns] a teammate blocks the path

@@ -12,6 +12,7 @@
 #include "base/plugin_calls.h"
 #include "base/printable.h"
 #include "base/random.h"
+#include "base/suggest.h"
 #include "control/controllers.h"
 #include "control/own_controllers.h"
 #include "control/public_settings.h"
@@ -34,7 +35,6 @@ struct ModelControllers::Controlled {
   std::unique_ptr<sensorfarm::ModelController> controller;
   double range = 0.0;                  ///< [m]
   double time = 0.0;                   ///< [s] of the last call
-  base::Twist velocity;                ///< as last requested
   std::uint64_t draws = 0;             ///< random numbers drawn so far
   std::vector<std::uint32_t> touched;  ///< models in contact at the last call, ascending
 
@@ -60,25 +60,16 @@ struct ModelControllers::Controlled {
   }
 };
 
-/// The model as its controller sees it.
-class ModelControllers::Handle final : public sensorfarm::Model {
+/// An object as a controller sees it. `Interface`: WorldObject or Model of sensorfarm/model.h
+template <class Interface>
+class ModelControllers::Handle : public Interface {
  public:
-  Handle(const world::World& world, Controlled& model, std::uint64_t seed, const Scene& scene,
-         std::span<const sensorfarm::NearRobot> robots)
-      : world_(world),
-        model_(model),
-        seed_(seed),
-        state_(scene.states[model.mover]),
-        present_(!scene.absent[model.mover]),
-        shapes_change_(scene.shapes_change),
-        robots_(robots),
-        change_{.mover = model.mover, .present = {}, .X_WM = {}, .velocity = {}, .shape = {}} {}
+  Handle(ModelControllers& all, std::uint32_t mover, const Scene& scene) : all_(all), mover_(mover), scene_(scene) {}
 
-  double time() const override { return model_.time; }
-  sensorfarm::Pose pose() const override { return sensors::public_pose(state_.X_WM); }
-  sensorfarm::Twist velocity() const override { return sensors::public_twist(state_.velocity); }
-  bool present() const override { return present_; }
-  std::span<const sensorfarm::NearRobot> robots() const override { return robots_; }
+  sensorfarm::Pose pose() const override { return sensors::public_pose(scene_.states[mover_].X_WM); }
+  sensorfarm::Twist velocity() const override { return sensors::public_twist(scene_.states[mover_].velocity); }
+  bool present() const override { return !scene_.absent[mover_]; }
+  bool changeable() const override { return !all_.is_taken(mover_); }
 
   void set_pose(const sensorfarm::Pose& pose) override {
     for (const double place : {pose.x, pose.y, pose.z})
@@ -86,53 +77,64 @@ class ModelControllers::Handle final : public sensorfarm::Model {
         throw std::invalid_argument(
             fmt::format("set_pose({}, {}, {}, {}): expected finite numbers, and x, y and z within {:g} m", pose.x,
                         pose.y, pose.z, pose.yaw, kFarthestModel));
-    change_.X_WM = {pose.x, pose.y, pose.z, pose.yaw};
-    model_.velocity = {};
+    change().X_WM = {pose.x, pose.y, pose.z, pose.yaw};
+    change().velocity = base::Twist{};
   }
   void set_velocity(const sensorfarm::Twist& twist) override {
     if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
       throw std::invalid_argument(
           fmt::format("set_velocity({}, {}, {}): expected finite numbers", twist.forward, twist.left, twist.turn));
-    model_.velocity = {twist.forward, twist.left, twist.turn};
+    change().velocity = base::Twist{twist.forward, twist.left, twist.turn};
   }
-  void set_present(bool present) override {
-    change_.present = present;
-    if (present != present_) model_.velocity = {};
+  void set_present(bool wanted) override {
+    change().present = wanted;
+    if (wanted != present()) change().velocity = base::Twist{};
   }
 
   void set_shape(std::string_view name) override { reshape({.shape = std::string(name)}); }
   void set_size(double x, double y, double z) override { reshape({.size = glm::dvec3{x, y, z}}); }
   void set_color(std::string_view color) override { reshape({.color = world::color_named(std::string(color))}); }
 
+ protected:
+  ModelControllers& all_;
+  std::uint32_t mover_;
+  const Scene& scene_;
+
+ private:
+  Change& change() { return all_.change_of(mover_); }
+  void reshape(const world::ShapeChange& wanted) {
+    if (!scene_.shapes_change)
+      throw std::runtime_error("shape, size and colour cannot change here; expected a run, a scenario or the library");
+    world::ShapeChange all = change().shape;
+    all.add(wanted);
+    world::check_change(all_.world_, mover_, all);
+    change().shape = std::move(all);
+  }
+};
+
+/// The model as its controller sees it.
+class ModelControllers::ModelHandle final : public Handle<sensorfarm::Model> {
+ public:
+  ModelHandle(ModelControllers& all, Controlled& model, const Scene& scene)
+      : Handle(all, model.mover, scene), model_(model) {}
+
+  double time() const override { return model_.time; }
+  std::span<const sensorfarm::NearRobot> robots() const override { return all_.robots_; }
+  sensorfarm::WorldObject& object(std::string_view name) override {
+    const std::uint32_t row = all_.object_named(name);
+    if (row == mover_) return *this;
+    return others_.try_emplace(row, all_, row, scene_).first->second;
+  }
   double uniform() override { return base::random_uniform(next_draw(), 0)[0]; }
   double normal() override { return base::random_normal(next_draw(), 0)[0]; }
 
-  const Change& change() {
-    change_.velocity = model_.velocity;
-    return change_;
-  }
-
  private:
-  void reshape(const world::ShapeChange& wanted) {
-    if (!shapes_change_)
-      throw std::runtime_error("shape, size and colour cannot change here; expected a run, a scenario or the library");
-    world::ShapeChange all = change_.shape;
-    all.add(wanted);
-    world::check_change(world_, model_.mover, all);
-    change_.shape = std::move(all);
-  }
-
   base::RandomKey next_draw() {
-    return {seed_, base::RandomStream::decision, model_.mover, 0x6D6F646Cu, model_.draws++};
+    return {all_.options_.seed, base::RandomStream::decision, mover_, 0x6D6F646Cu, model_.draws++};
   }
 
-  const world::World& world_;
   Controlled& model_;
-  std::uint64_t seed_;
-  const base::Report& state_;
-  bool present_, shapes_change_;
-  std::span<const sensorfarm::NearRobot> robots_;
-  Change change_;
+  std::map<std::uint32_t, Handle<sensorfarm::WorldObject>> others_;  ///< by row
 };
 
 namespace {
@@ -202,20 +204,41 @@ ModelControllers::ModelControllers(const world::World& world, std::span<const st
         throw base::InputError(
             fmt::format("{} has a range of {} m; expected 0 to {:g}", model->name, model->range, kLongestRange));
       models_.push_back(std::move(model));
+      change_of(row).velocity = base::Twist{};
     });
   }
 }
 
 ModelControllers::~ModelControllers() = default;
 
-std::vector<std::uint32_t> ModelControllers::rows() const {
-  std::vector<std::uint32_t> rows;
-  for (const auto& model : models_) rows.push_back(model->mover);
-  return rows;
+bool ModelControllers::remove(std::uint32_t mover) {
+  if (is_taken(mover)) return false;
+  if (taken_.size() <= mover) taken_.resize(mover + 1, false);
+  taken_[mover] = true;
+  requested_.erase(mover);
+  return std::erase_if(models_, [&](const auto& model) { return model->mover == mover; }) > 0;
 }
 
-void ModelControllers::remove(std::uint32_t mover) {
-  std::erase_if(models_, [&](const auto& model) { return model->mover == mover; });
+/// Returns the requests for a mover in this tick; for one that is taken, a place for requests without effect.
+ModelControllers::Change& ModelControllers::change_of(std::uint32_t mover) {
+  if (is_taken(mover)) return ignored_ = {.mover = mover};
+  return requested_.try_emplace(mover, Change{.mover = mover}).first->second;
+}
+
+/// @throws std::invalid_argument unless the name is that of a mover that is not a robot
+std::uint32_t ModelControllers::object_named(std::string_view name) {
+  for (std::size_t row = named_.size(); row < world_.movers.size(); ++row)
+    named_.emplace(world_.movers[row].name, static_cast<std::uint32_t>(row));
+  const auto found = named_.find(name);
+  if (found != named_.end() && world_.movers[found->second].is_tag) return found->second;
+  if (found != named_.end())
+    throw std::invalid_argument(fmt::format("'{}' is a robot; expected an object: models cannot move robots", name));
+  std::vector<std::string_view> names;
+  for (const world::Mover& mover : world_.movers)
+    if (mover.is_tag) names.push_back(mover.name);
+  throw std::invalid_argument(
+      fmt::format("there is no object '{}' that moves{}", name,
+                  base::suggest(name, names, "expected a model named tag<N>, or one with ctrl")));
 }
 
 std::span<const ModelControllers::Change> ModelControllers::call(const Scene& scene) {
@@ -225,7 +248,9 @@ std::span<const ModelControllers::Change> ModelControllers::call(const Scene& sc
   for (const world::Mover& mover : world_.movers) widest_ = std::max(widest_, mover.radius);
   for (const auto& model : models_) reach = std::max({reach, model->range, 2.0 * widest_});
   grid_.build(scene.states, 2.0 * reach + 1e-3);
+  for (auto& [row, change] : requested_) change = {.mover = row, .velocity = change.velocity};
   for (const auto& model : models_) call_one(*model, scene);
+  for (const auto& [row, change] : requested_) changes_.push_back(change);
   return changes_;
 }
 
@@ -255,16 +280,15 @@ void ModelControllers::find_near(const Controlled& model, const Scene& scene) {
 void ModelControllers::call_one(Controlled& model, const Scene& scene) {
   find_near(model, scene);
   model.time = 1e-9 * static_cast<double>(scene.time);
-  Handle handle(world_, model, options_.seed, scene, robots_);
+  ModelHandle handle(*this, model, scene);
   touches_.clear();
   if (handle.present()) scene.fleet.find_touches(model.mover, scene.states, near_, touches_);
   call_contacts(model, handle);
   model.guarded([&] { model.controller->tick(handle); });
-  changes_.push_back(handle.change());
 }
 
 /// Reports the contacts in `touches_` that the last call did not have.
-void ModelControllers::call_contacts(Controlled& model, Handle& handle) {
+void ModelControllers::call_contacts(Controlled& model, ModelHandle& handle) {
   const auto by_model = [](const auto& p, const auto& q) { return p.model < q.model; };
   std::sort(touches_.begin(), touches_.end(), by_model);
   for (const robots::Fleet::Touch& touch : touches_) {

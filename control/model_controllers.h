@@ -6,10 +6,13 @@
 //   for (const ModelControllers::Change& change : models.call({time, states, absent, fleet})) ...
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/report.h"
@@ -42,13 +45,14 @@ class ModelControllers {
     const robots::Fleet& fleet;  ///< with the outlines of the movers, and the absent ones marked
     bool shapes_change = false;  ///< controllers may change shape, size and colour
   };
-  /// The request of one controller. The caller applies shape and presence first, then the pose, then the velocity.
+  /// The requests of all controllers for one object. The caller applies shape and presence first, then the pose, then
+  /// the velocity.
   struct Change {
     std::uint32_t mover = 0;
-    std::optional<bool> present;
-    std::optional<base::Pose> X_WM;  ///< at rest
-    base::Twist velocity;            ///< until the next change
-    world::ShapeChange shape;
+    std::optional<bool> present = {};
+    std::optional<base::Pose> X_WM = {};       ///< at rest
+    std::optional<base::Twist> velocity = {};  ///< until the next change; nullopt: no controller has moved the object
+    world::ShapeChange shape = {};
   };
 
   /// Loads the plug-ins and creates the controllers.
@@ -58,22 +62,27 @@ class ModelControllers {
   ~ModelControllers();
 
   bool empty() const { return models_.empty(); }
-  /// Returns the rows of the models.
-  std::vector<std::uint32_t> rows() const;
-  /// Ends the control of a model. Other rows are ignored.
-  void remove(std::uint32_t mover);
+  /// Ends the control of a mover by all controllers of models: others move it from now on.
+  /// @return whether it had a controller
+  bool remove(std::uint32_t mover);
 
   /// Calls all controllers in order of their rows.
-  /// @return one change per model in order of rows, valid until the next call
+  /// @return one change per model, and per other object that a controller has changed so far, in order of rows; valid
+  /// until the next call
   /// @throws base::InputError with the name of the model whose controller failed
   std::span<const Change> call(const Scene& scene);
 
  private:
   struct Controlled;
+  template <class Interface>
   class Handle;
+  class ModelHandle;
+  bool is_taken(std::uint32_t mover) const { return mover < taken_.size() && taken_[mover]; }
+  Change& change_of(std::uint32_t mover);
+  std::uint32_t object_named(std::string_view name);
   void find_near(const Controlled& model, const Scene& scene);
   void call_one(Controlled& model, const Scene& scene);
-  void call_contacts(Controlled& model, Handle& handle);
+  void call_contacts(Controlled& model, ModelHandle& handle);
 
   const world::World& world_;
   Options options_;
@@ -83,7 +92,11 @@ class ModelControllers {
   std::vector<std::uint32_t> near_;  ///< scratch, ascending
   std::vector<sensorfarm::NearRobot> robots_;
   std::vector<robots::Fleet::Touch> touches_;
-  std::vector<Change> changes_;
+  std::vector<bool> taken_;                                  ///< per mover: removed; shorter: the others are not
+  std::map<std::string, std::uint32_t, std::less<>> named_;  ///< rows of the movers so far, by name
+  std::map<std::uint32_t, Change> requested_;                ///< by row
+  Change ignored_;                                           ///< of movers that are taken
+  std::vector<Change> changes_;                              ///< as `requested_`
 };
 
 }  // namespace sf::control

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/installation.h"
+#include "control/own_controllers.h"
 #include "raycast/casters.h"
 #include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
@@ -26,6 +27,7 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
   load.accuracy = options.accuracy;
   load.sensors = sensors::world_file_words();
   load.controllers = control::controller_names;
+  load.model_controllers = control::model_controller_names;
   world::World world =
       source.text.empty() ? world::load_world(source.file, load) : world::build_world(source.file, source.text, load);
   if (!options.robot_from.empty() && !options.of.empty())

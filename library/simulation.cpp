@@ -477,6 +477,10 @@ void add_controller(ControllerEntry entry) {
   library::translated([&] { control::add_own_controller(std::move(entry), "add_controller"); });
 }
 
+void add_model_controller(ModelEntry entry) {
+  library::translated([&] { control::add_own_model_controller(std::move(entry), "add_model_controller"); });
+}
+
 void add_sensor(SensorEntry entry) {
   library::translated([&] { sensors::add_own_sensor(std::move(entry), "add_sensor"); });
 }

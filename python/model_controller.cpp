@@ -13,13 +13,17 @@ namespace py = pybind11;
 
 namespace {
 
-/// The model during a call; null afterwards.
-struct LentModel {
-  Model* model = nullptr;
-  Model& get() const {
-    if (model == nullptr) throw py::value_error("a model can be used during the call that receives it only");
-    return *model;
+/// An object, or the model itself, during a call.
+struct LentObject {
+  WorldObject* object = nullptr;
+  std::shared_ptr<const bool> ended;  ///< the call has returned
+  WorldObject& get() const {
+    if (*ended) throw py::value_error("a model can be used during the call that receives it only");
+    return *object;
   }
+};
+struct LentModel : LentObject {
+  Model& get() const { return static_cast<Model&>(LentObject::get()); }
 };
 
 struct OwnedRobot {
@@ -50,31 +54,45 @@ void change(Call&& call) {
   }
 }
 
-void add_model(py::module_& module) {
-  using Given = const LentModel&;
-  py::class_<LentModel>(module, "Model", py::module_local(), "The model in one call: its state, and changes.")
-      .def_property_readonly("time", [](Given m) { return m.get().time(); })
-      .def_property_readonly("pose", [](Given m) { return m.get().pose(); })
-      .def_property_readonly("velocity", [](Given m) { return m.get().velocity(); })
-      .def_property_readonly("present", [](Given m) { return m.get().present(); })
-      .def_property_readonly("robots", &robots_of)
+void add_object(py::module_& module) {
+  using Given = const LentObject&;
+  py::class_<LentObject>(module, "WorldObject", py::module_local(), "An object in one call: its state, and changes.")
+      .def_property_readonly("pose", [](Given o) { return o.get().pose(); })
+      .def_property_readonly("velocity", [](Given o) { return o.get().velocity(); })
+      .def_property_readonly("present", [](Given o) { return o.get().present(); })
+      .def_property_readonly("changeable", [](Given o) { return o.get().changeable(); })
       .def(
-          "set_pose", [](Given m, const Pose& pose) { change([&] { m.get().set_pose(pose); }); }, py::arg("pose"))
+          "set_pose", [](Given o, const Pose& pose) { change([&] { o.get().set_pose(pose); }); }, py::arg("pose"))
       .def(
-          "set_velocity", [](Given m, const Twist& twist) { change([&] { m.get().set_velocity(twist); }); },
+          "set_velocity", [](Given o, const Twist& twist) { change([&] { o.get().set_velocity(twist); }); },
           py::arg("velocity"))
       .def(
-          "set_present", [](Given m, bool present) { m.get().set_present(present); }, py::arg("present"))
+          "set_present", [](Given o, bool present) { o.get().set_present(present); }, py::arg("present"))
       .def(
-          "set_shape", [](Given m, const std::string& name) { change([&] { m.get().set_shape(name); }); },
+          "set_shape", [](Given o, const std::string& name) { change([&] { o.get().set_shape(name); }); },
           py::arg("name"))
       .def(
           "set_size",
-          [](Given m, const std::array<double, 3>& s) { change([&] { m.get().set_size(s[0], s[1], s[2]); }); },
+          [](Given o, const std::array<double, 3>& s) { change([&] { o.get().set_size(s[0], s[1], s[2]); }); },
           py::arg("size"))
       .def(
-          "set_color", [](Given m, const std::string& color) { change([&] { m.get().set_color(color); }); },
-          py::arg("color"))
+          "set_color", [](Given o, const std::string& color) { change([&] { o.get().set_color(color); }); },
+          py::arg("color"));
+}
+
+void add_model(py::module_& module) {
+  using Given = const LentModel&;
+  py::class_<LentModel, LentObject>(module, "Model", py::module_local(), "The controller's own model in one call.")
+      .def_property_readonly("time", [](Given m) { return m.get().time(); })
+      .def_property_readonly("robots", &robots_of)
+      .def(
+          "object",
+          [](Given m, const std::string& name) {
+            LentObject object{nullptr, m.ended};
+            change([&] { object.object = &m.get().object(name); });
+            return object;
+          },
+          py::arg("name"))
       .def("uniform", [](Given m) { return m.get().uniform(); })
       .def("normal", [](Given m) { return m.get().normal(); });
 }
@@ -107,11 +125,12 @@ class PythonModelController final : public ModelController {
   template <class Call>
   void lend(Model& model, Call&& call) {
     in_python(file_, [&] {
-      const py::object lent = py::cast(LentModel{&model});
+      const auto ended = std::make_shared<bool>(false);
       struct Return {
-        LentModel& lent;
-        ~Return() { lent.model = nullptr; }
-      } const give_back{lent.cast<LentModel&>()};
+        bool& ended;
+        ~Return() { ended = true; }
+      } const give_back{*ended};
+      const py::object lent = py::cast(LentModel{{&model, ended}});
       call(lent);
     });
   }
@@ -149,7 +168,7 @@ void add_model_types(py::module_& module) {
                              })
       .def_property_readonly("robot", [](const OwnedContact& c) { return c.contact.robot; })
       .def_property_readonly("point", [](const OwnedContact& c) { return py::make_tuple(c.contact.x, c.contact.y); });
-  add_model(module);
+  add_object(module), add_model(module);
 }
 
 ModelEntry model_entry_of(py::handle type) {

@@ -156,6 +156,16 @@ std::string controller_name(py::handle controller) {
   return names[controller.ptr()] = name;
 }
 
+/// Makes a class with tick(self, model) available to `ctrl`. @param name nullopt: the name of the class
+void add_model_class(py::handle controller, const std::optional<std::string>& name) {
+  if (PyType_Check(controller.ptr()) == 0 || !py::hasattr(controller, "tick"))
+    throw py::type_error(place_of(controller) + std::string(py::repr(controller)) +
+                         " is not a controller of models; expected a class with a method tick(self, model)");
+  ModelEntry entry = model_entry_of(controller);
+  if (name) entry.name = *name;
+  in_farm([&] { add_model_controller(std::move(entry)); });
+}
+
 /// Returns a view whose rows begin `stride` bytes apart.
 py::array view(const PySimulation& s, const py::dtype& type, const void* data, std::vector<py::ssize_t> shape,
                std::size_t stride) {
@@ -376,6 +386,7 @@ PYBIND11_MODULE(_sensorfarm, module) {
   add_controller_types(module);
   add_simulation(module);
   module.def("_abort_ranks", &abort_ranks);
+  module.def("add_model_controller", &add_model_class, py::arg("controller"), py::arg("name") = py::none());
   module.def(
       "load_plugin", [](Text file) { in_farm([&] { load_plugin(file); }); }, py::arg("file"));
 }

@@ -336,8 +336,13 @@ void ForeignReader::read_table(const ForeignSensor& sensor) {
   table.split(',', false);
   std::size_t time_column = 0;
   while (table.field(time_column) != time_name) ++time_column;
+  const std::size_t columns = table.size();
   while (table.next()) {
     table.split(',', false);
+    if (table.size() != columns)
+      throw base::InputError(sensor.source, table.first_line(),
+                             fmt::format("has {} fields; expected {}, as in the line with the names of the columns",
+                                         table.size(), columns));
     const auto refuse = [&](std::string_view name, std::string_view got) {
       throw base::InputError(sensor.source, table.first_line(),
                              fmt::format("'{}' expects a number; got '{:.40}'", name, got));

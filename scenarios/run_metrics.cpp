@@ -83,8 +83,11 @@ void RunMetrics::update(const base::TickRecord& tick) {
       continue;
     }
     counts.contacts += before.contact.begins(tick.contacts[m] != 0);
-    if (before.seen) {
-      counts.travelled += std::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);
+    const double way = std::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);
+    // Farther than it can drive: an event or `put` has placed it.
+    const bool placed = way > 2.0 * world_.movers[m].max_forward * world_.interval;
+    if (before.seen && !placed) {
+      counts.travelled += way;
       update_red_lights(tick, m);
     }
     before.X_WM = X_WM;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "control/own_controllers.h"
 #include "scenarios/fleet_spawn.h"
 #include "sensors/sensor_type.h"
 #include "world/ground.h"
@@ -25,7 +26,9 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
 }
 
 world::World world_of(const Scenario& scenario) {
-  return world_of(scenario, {.controllers = control::controller_names, .sensors = sensors::world_file_words()});
+  return world_of(scenario, {.controllers = control::controller_names,
+                             .model_controllers = control::model_controller_names,
+                             .sensors = sensors::world_file_words()});
 }
 
 world::World world_of(const Scenario& scenario, const world::LoadOptions& load) {
@@ -42,12 +45,20 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
           *scenario.plant == Plant::thesis ? world::ActuatorModel::player_create : world::ActuatorModel::direct;
   for (const RobotSetup& setup : scenario.robot_setups) {
     world::Mover& mover = world.movers[row_of(scenario, world, setup.name, setup.line)];
+    if (mover.is_tag && setup.actor && setup.actor->controller.name.empty()) mover.controller.clear();
     if (!setup.pose) continue;
     const double clearance = world::clearance_of(world, mover);
     mover.X_WM = *setup.pose;
     if (std::isnan(mover.X_WM.z)) mover.X_WM.z = world::height_on_road(world, {mover.X_WM.x, mover.X_WM.y}, clearance);
   }
   world::update_extent_and_hash(world);
+  for (const ObjectEvent& event : scenario.events)
+    if (event.at > scenario.duration - world.interval + 1e-9)
+      world.warnings.push_back(
+          {scenario.file, event.line,
+           fmt::format("the event at {:g} s is after the last tick of the scenario, whose duration "
+                       "is {:g} s: it has no effect unless a longer run is requested",
+                       event.at, scenario.duration)});
   return world;
 }
 

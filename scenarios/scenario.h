@@ -65,7 +65,7 @@ struct FleetSpawn {
 
 /// A change of an object, of the fleet or of a lane during the run.
 struct ObjectEvent {
-  enum class Kind : std::uint8_t { object, add, remove, lane, shape };
+  enum class Kind : std::uint8_t { object, add, remove, lane, shape, pose };
   std::string object;   ///< name of a mover without sensors and controller, or of the robot that joins or leaves, or of
                         ///< the lane
   double at = 0.0;      ///< [s] simulated; takes effect at the first tick at or after it
@@ -75,6 +75,7 @@ struct ObjectEvent {
   JoiningRobot joining = {};      ///< for `add`
   std::string use = {};           ///< for `lane` (world/roads/lane_use.h)
   world::ShapeChange shape = {};  ///< for `shape`, of any mover
+  base::Pose X_WM = {};           ///< for `pose`, of any mover; z NaN: see Simulation::put
 };
 
 struct Scenario {

@@ -48,6 +48,15 @@ void join(const Scenario& scenario, const ObjectEvent& event, world::World& worl
   });
 }
 
+void place(Simulation& simulation, const world::Mover& mover, std::uint32_t row, const base::Pose& X_WM) {
+  if (simulation.share().passed_on())
+    throw base::InputError("poses cannot be set with --tiles; expected ranks that share the whole world");
+  if (!mover.is_tag && simulation.is_absent(row))
+    throw base::InputError(
+        fmt::format("'{}' was removed; expected a pose before that, or after it has been added again", mover.name));
+  simulation.put(row, X_WM);
+}
+
 /// Checks that each change of lane use is possible after those before it.
 void check_lanes(const Scenario& scenario, const world::World& world) {
   std::optional<world::LaneControl> lanes;
@@ -71,7 +80,7 @@ void check_events(const Scenario& scenario, world::World& world, SimulationOptio
   for (const ObjectEvent& event : scenario.events) {
     if (event.kind == ObjectEvent::Kind::add || event.kind == ObjectEvent::Kind::lane) continue;
     const std::uint32_t row = row_of(scenario, world, event.object, event.line);
-    if (event.kind == ObjectEvent::Kind::remove) continue;
+    if (event.kind == ObjectEvent::Kind::remove || event.kind == ObjectEvent::Kind::pose) continue;
     if (event.kind == ObjectEvent::Kind::shape) {
       at_line(scenario, event, [&] { world::check_change(world, row, event.shape); });
       continue;
@@ -112,6 +121,8 @@ void ScenarioEvents::apply(Simulation& simulation, world::World& world, double t
     const std::uint32_t row = row_of(scenario_, world, event.object, event.line);
     if (event.kind == ObjectEvent::Kind::shape)
       at_line(scenario_, event, [&] { simulation.set_shape(world, row, event.shape); });
+    else if (event.kind == ObjectEvent::Kind::pose)
+      at_line(scenario_, event, [&] { place(simulation, world.movers[row], row, event.X_WM); });
     else if (event.kind == ObjectEvent::Kind::object)
       simulation.set_absent(row, !event.present);
     else

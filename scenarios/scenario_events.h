@@ -1,6 +1,6 @@
 #pragma once
-// The events of a scenario during a run: objects appear, disappear and change their shapes, robots join and leave,
-// lanes change their use.
+// The events of a scenario during a run: objects appear, disappear, move and change their shapes, robots join and
+// leave, lanes change their use.
 
 #include <cstdint>
 #include <functional>

@@ -33,7 +33,7 @@ constexpr double kLongestDelay = 3600.0;  // [s]
 constexpr std::array<std::string_view, 19> kKeys{
     "name",    "world",  "duration", "seed", "tick",  "robots", "of",    "place",       "plant", "start_at",
     "default", "states", "v2v",      "link", "robot", "expect", "event", "positioning", "fault"};
-constexpr std::array<std::string_view, 6> kEventKeys{"at", "object", "present", "shape", "color", "size"};
+constexpr std::array<std::string_view, 7> kEventKeys{"at", "object", "present", "pose", "shape", "color", "size"};
 constexpr std::array<std::string_view, 8> kAddKeys{"at",         "add",  "like",     "pose",
                                                    "controller", "rate", "settings", "link"};
 constexpr std::array<std::string_view, 2> kRemoveKeys{"at", "remove"};
@@ -333,17 +333,25 @@ world::ShapeChange read_shape(const Reader& reader, const TomlNode& table) {
   return change;
 }
 
-/// Presence and shape of one object are two events.
+/// Presence, pose and shape of one object are separate events.
 void read_object(const Reader& reader, const TomlNode& table, Scenario& scenario) {
   constexpr const char* kForm =
-      "at = SECONDS, object = \"NAME\" and present = true or false, shape = \"NAME\", color = \"NAME\" or size = [x, "
+      "at = SECONDS, object = \"NAME\" and present = true or false, pose = [x, y, yaw], shape = \"NAME\", color = "
+      "\"NAME\" or size = [x, "
       "y, z]";
   const world::ShapeChange shape = read_shape(reader, table);
   const bool presence = world::find(table, "present") != nullptr;
-  require_keys(reader, table, kEventKeys, std::span(kEventKeys).first(presence || !shape.any() ? 3 : 2), kForm);
+  const TomlNode* const pose = world::find(table, "pose");
+  require_keys(reader, table, kEventKeys,
+               std::span(kEventKeys).first(presence || (pose == nullptr && !shape.any()) ? 3 : 2), kForm);
   ObjectEvent event{reader.text(table, "object", ""), reader.number(table, "at", 0.0, 0.0, kLongest, "seconds"),
                     presence && reader.flag(table, "present"), table.line};
   if (presence) scenario.events.push_back(event);
+  if (pose != nullptr) {
+    event.kind = ObjectEvent::Kind::pose;
+    event.X_WM = pose_of(reader, *pose, true);
+    scenario.events.push_back(event);
+  }
   if (!shape.any()) return;
   event.kind = ObjectEvent::Kind::shape;
   event.shape = shape;

@@ -103,6 +103,8 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
     use_control(make_control(i, !options.actors.empty()  ? options.actors[i]
                                 : world.movers[i].is_tag ? none
                                                          : options.actor));
+  for (std::uint32_t i = 0; i < controls_.size(); ++i)
+    if (controls_[i].controller) models_.remove(i);
   make_room();
   warn_of_long_ways();
   if (positioning_) warn_of_unused_poses();
@@ -316,9 +318,7 @@ std::uint32_t Simulation::bring_back(std::uint32_t mover, const JoiningRobot& ro
   if (const auto& controller = controls_[mover].controller) v2v_range_ = std::max(v2v_range_, controller->v2v_range());
   make_room();
   set_absent(mover, false);
-  const double clearance = world::clearance_of(world_, world_.movers[mover]);
-  const base::Pose& X = robot.X_WM;
-  put(mover, {X.x, X.y, world::height_on_road(world_, {X.x, X.y}, clearance), X.yaw});
+  put(mover, {robot.X_WM.x, robot.X_WM.y, NAN, robot.X_WM.yaw});
   return mover;
 }
 
@@ -366,7 +366,7 @@ void Simulation::call_models() {
     if (change.shape.any()) set_shape(*shapes_world_, mover, change.shape);
     if (change.present && *change.present == absent_[mover]) set_absent(mover, !*change.present);
     if (change.X_WM) put(mover, *change.X_WM);
-    commands_[mover] = change.velocity;
+    if (change.velocity) commands_[mover] = *change.velocity;
   }
   move_s_ += base::seconds_since(start);
 }
@@ -396,7 +396,9 @@ void Simulation::drive(std::uint32_t mover, const base::Twist& command) {
 
 void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
-  const base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}};
+  base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}};
+  if (std::isnan(X_WM.z))
+    report.X_WM.z = world::height_on_road(world_, {X_WM.x, X_WM.y}, world::clearance_of(world_, world_.movers[mover]));
   fleet_.apply({&report, 1});
 }
 

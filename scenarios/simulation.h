@@ -109,6 +109,7 @@ class Simulation {
   void drive(std::uint32_t mover, const base::Twist& command);
 
   /// Places the mover at a pose, at rest. Call it between two steps.
+  /// @param X_WM z NaN: on the highest road there, as high above it as in the world file
   void put(std::uint32_t mover, const base::Pose& X_WM);
 
   /// Removes a mover from the world, or restores it at its last pose, at rest. An absent mover has no readings, decides

@@ -63,38 +63,48 @@ struct ModelContact {
 /// The most robots that a model receives per tick: the nearest.
 inline constexpr std::size_t kMostNearRobots = 1024;
 
-/// The model in one call: its state at this tick, and changes. Changes of all models take effect together, after the
-/// calls of the tick and before the motion that follows. The last value of a call, or of a later call of the same tick,
-/// counts. Valid during the call.
-class Model {
+/// An object in one call: its state at this tick, and changes. Changes of all objects take effect together, after the
+/// calls of the tick and before the motion that follows. The last value counts: of a call, of a later call of the same
+/// tick, or of another model's controller in a later row. Valid during the call.
+class WorldObject {
  public:
-  virtual ~Model() = default;
-  virtual double time() const = 0;     ///< [s] of the tick
+  virtual ~WorldObject() = default;
   virtual Pose pose() const = 0;       ///< its last one while it is absent
   virtual Twist velocity() const = 0;  ///< true velocity, 0 after a stop by an obstacle
   virtual bool present() const = 0;    ///< it is in the world
-  /// Returns the robots within `ModelController::range`, the nearest first, then by row; at most kMostNearRobots.
-  virtual std::span<const NearRobot> robots() const = 0;
+  /// false: changes have no effect, because a robot's controller, the user (`drive`) or, in `serve`, packets move it
+  virtual bool changeable() const = 0;
 
-  /// Places the model, at rest, whatever is at that place. @throws std::invalid_argument, with nothing changed, for
+  /// Places the object, at rest, whatever is at that place. @throws std::invalid_argument, with nothing changed, for
   /// numbers that are not finite, and for x, y or z beyond 1e7 m
   virtual void set_pose(const Pose& pose) = 0;
-  /// Sets the velocity for all following ticks, within `max_forward` and `max_turn`. Walls, robots and other objects
-  /// stop the model, as they stop robots; in `serve` nothing stops it. @throws std::invalid_argument for numbers that
-  /// are not finite
+  /// Sets the velocity for all following ticks, within its `velocity_bounds`. Walls, robots and other objects stop the
+  /// object, as they stop robots; in `serve` nothing stops it. Objects without `ctrl` move sideways only with
+  /// `drive "omni"`. @throws std::invalid_argument for numbers that are not finite
   virtual void set_velocity(const Twist& velocity) = 0;
-  /// Removes the model from the world, or restores it, at rest, at its last pose.
+  /// Removes the object from the world, or restores it, at rest, at its last pose.
   virtual void set_present(bool present) = 0;
-  /// Gives the model a shape of the world file (`shape( name "crate" ... )`), with its size and colour, or "original".
+  /// Gives the object a shape of the world file (`shape( name "crate" ... )`), with its size and colour, or "original".
   /// Costs a rebuild of the tables of all sensors, as do other sizes, so do it when something changes, not at each
   /// tick. @throws std::exception, with nothing changed, for an unknown shape, and where shapes do not change
   /// (experiments, tiles)
   virtual void set_shape(std::string_view name) = 0;
-  /// Scales the model's own outline. @param x, y, z [m] in (0, 1000] @throws as set_shape
+  /// Scales the object's own outline. @param x, y, z [m] in (0, 1000] @throws as set_shape
   virtual void set_size(double x, double y, double z) = 0;
   /// @param color an X11 name such as "steel blue", or "#RRGGBB" @throws as set_shape
   virtual void set_color(std::string_view color) = 0;
+};
 
+/// The controller's own model in one call.
+class Model : public WorldObject {
+ public:
+  virtual double time() const = 0;  ///< [s] of the tick
+  /// Returns the robots within `ModelController::range`, the nearest first, then by row; at most kMostNearRobots.
+  virtual std::span<const NearRobot> robots() const = 0;
+  /// Returns another object of the world that moves: a model named `tag<N>`, or one with `ctrl`. An object without
+  /// `ctrl` may be moved in this way, too. @param name in the world file
+  /// @throws std::invalid_argument for an unknown name, a robot, and a model that does not move
+  virtual WorldObject& object(std::string_view name) = 0;
   virtual double uniform() = 0;  ///< next random number in (0, 1) of this model, by the seed of the run
   virtual double normal() = 0;   ///< next random number of the standard normal distribution
 };

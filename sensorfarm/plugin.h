@@ -16,7 +16,7 @@ namespace sensorfarm {
 
 /// Incremented with every change of these headers that changes the layout of a type. A library with another number is
 /// refused.
-inline constexpr int kPluginInterface = 5;
+inline constexpr int kPluginInterface = 6;
 
 /// The controllers, model controllers, sensors and derived sensors of a plug-in.
 struct Plugin {

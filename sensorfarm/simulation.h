@@ -25,6 +25,7 @@
 
 #include "sensorfarm/controller.h"
 #include "sensorfarm/derived.h"
+#include "sensorfarm/model.h"
 #include "sensorfarm/sensor.h"
 
 #define SENSORFARM_API __attribute__((visibility("default")))
@@ -233,6 +234,9 @@ class SENSORFARM_API Simulation {
 [[noreturn]] SENSORFARM_API void abort_ranks(int code);
 /// Adds your own controller for the rest of the program, so that `Options::controller` can name it. @throws Error
 SENSORFARM_API void add_controller(ControllerEntry entry);
+/// Adds your own controller of models for the rest of the program: `ctrl "NAME KEY=VALUE ..."` of models that are not
+/// robots can name it in worlds loaded from now on. @throws Error
+SENSORFARM_API void add_model_controller(ModelEntry entry);
 /// Adds your own sensor type for the rest of the program: worlds loaded from now on may contain such sensors. A
 /// kernel's file is relative to the working directory. @throws Error
 SENSORFARM_API void add_sensor(SensorEntry entry);

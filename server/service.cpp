@@ -67,6 +67,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       no_return_filter_(sensor_set, options.no_return_inf),
       interval_(interval_of(world, options)),
       only_at_ticks_(options.rate > 0.0) {
+  for (const std::uint32_t row : options.receiver.joining) models_.remove(row);
   receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
     lights_.accept(header, signals, now);
   });
@@ -154,7 +155,10 @@ bool Service::change_shape(std::uint32_t row, const world::ShapeChange& change, 
     if (outline) receiver_.update_outline(row);
     return outline;
   } catch (const base::InputError& error) {
-    receiver_.log().write(fmt::format("OBJECT for tag {}: {}", world_.movers[row].id, error.what()), now);
+    auto& [refusal, at] = refused_[row];  // senders repeat their packets
+    if (refusal != error.what() || now - at > netio::kSenderTimeout)
+      receiver_.log().write(fmt::format("OBJECT for tag {}: {}", world_.movers[row].id, error.what()), now);
+    refusal = error.what(), at = now;
     return false;
   }
 }
@@ -174,9 +178,9 @@ void Service::tick(std::int64_t now) {
 
 /// An object belongs to its controller until the first packet that moves it.
 void Service::call_models(std::int64_t now) {
-  for (const std::uint32_t row : models_.rows()) {
-    if (!receiver_.is_moved_by_packets(row)) continue;
-    models_.remove(row);
+  if (models_.empty()) return;
+  for (const auto& [id, row] : receiver_.tags()) {
+    if (!receiver_.is_moved_by_packets(row) || !models_.remove(row)) continue;
     receiver_.log().write(fmt::format("'{}' is moved by packets from now on: its controller is no longer called",
                                       world_.movers[row].name),
                           now);
@@ -185,8 +189,9 @@ void Service::call_models(std::int64_t now) {
   const auto states = receiver_.states(now);
   for (const auto& change : models_.call({now, states, absent_, receiver_.fleet(), shapes_world_ != nullptr})) {
     receiver_.change_shape(change.mover, change.shape);
+    if (!change.velocity) continue;
     receiver_.place({change.mover, now, change.X_WM.value_or(states[change.mover].X_WM),
-                     robots::limit_kinematics(world_.movers[change.mover], change.velocity)},
+                     robots::limit_kinematics(world_.movers[change.mover], *change.velocity)},
                     change.present.value_or(!absent_[change.mover]));
   }
 }

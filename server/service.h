@@ -8,9 +8,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/tick_record.h"
@@ -137,6 +139,8 @@ class Service {
   world::World* shapes_world_ = nullptr;         ///< null: shapes do not change
   std::int64_t next_shapes_ = 0;                 ///< [ns] when shapes may change again
   std::vector<base::ShapeState> shapes_;         ///< changed since the last record
+  /// By row: the last refusal of a change of shape, and its time [ns].
+  std::map<std::uint32_t, std::pair<std::string, std::int64_t>> refused_;
   std::string recording_error_;
   std::uint64_t records_ = 0;  ///< number written to the sinks
   NoReturnFilter no_return_filter_;

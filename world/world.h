@@ -324,6 +324,8 @@ struct LoadOptions {
   std::string accuracy;          ///< word for all sensors, overrides those of the file; empty: no override
   /// Returns the names of all controllers that `ctrl` may choose; null: only "wander".
   std::vector<std::string_view> (*controllers)() = nullptr;
+  /// Returns the names of all controllers that `ctrl` of models that are not robots may choose; null: only files.
+  std::vector<std::string_view> (*model_controllers)() = nullptr;
   std::span<const SensorKeyword> sensors;  ///< modelled sensor types; models of other types become plain bodies
 };
 

@@ -24,6 +24,26 @@ namespace {
 
 constexpr int kRepetitions = 3;
 
+/// Returns the local port of OBJECTs of one tag: a farm refuses OBJECTs from a second source for two seconds, also
+/// those of the next command.
+std::uint16_t port_of_object(std::uint32_t tag) { return static_cast<std::uint16_t>(49152 + tag % 16384); }
+
+/// @param port 0, or one that is taken: any
+netio::Outbox outbox_at(std::uint32_t farm, std::uint16_t port) {
+  try {
+    return netio::Outbox({.bind = netio::own_end_for(farm, port)});
+  } catch (const base::InputError&) {
+    if (port == 0) throw;
+    return outbox_at(farm, 0);
+  }
+}
+
+/// Returns a number that grows from command to command: milliseconds.
+std::uint32_t next_sequence() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(now).count());
+}
+
 /// @throws base::InputError if the table lacks the key, since a farm with a key would drop the packet
 std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const netio::Claim& claim,
                                              std::string_view what) {
@@ -40,12 +60,12 @@ std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const n
 
 template <class Body>
 void send_repeatedly(const netio::Endpoint& farm, netio::Header header, const Body& body,
-                     std::optional<netio::PacketSigner> signer) {
-  netio::Outbox outbox({.bind = netio::own_end_for(farm.address)});
+                     std::optional<netio::PacketSigner> signer, std::uint16_t port = 0) {
+  netio::Outbox outbox = outbox_at(farm.address, port);
   base::Bytes packet;
   for (int i = 0; i < kRepetitions; ++i) {
     if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    header.sequence = static_cast<std::uint32_t>(i);
+    header.sequence = next_sequence();
     netio::encode(header, body, packet);
     if (signer) signer->sign(packet);
     outbox.queue(farm, packet);
@@ -79,7 +99,7 @@ int object(const ObjectOptions& options) {
                     options.shape));
   if (!options.color.empty()) object.color = world::color_named(options.color);
   send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.tag)}, object,
-                  signer_of(options, {netio::PeerKind::tag, options.tag}, "the object"));
+                  signer_of(options, {netio::PeerKind::tag, options.tag}, "the object"), port_of_object(options.tag));
   print_message("'{}{}' sent to {} for the object of tag {}, {} times; it is not acknowledged",
                 object.present ? "present" : "absent", object.changes_shape() ? ", with another shape" : "",
                 netio::endpoint_text(farm), options.tag, kRepetitions);

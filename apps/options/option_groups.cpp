@@ -87,6 +87,7 @@ void add_device(CLI::App& app, DeviceOption& o) {
 void add_world(CLI::App& app, WorldOptions& o) {
   o.load.sensors = sensors::world_file_words();
   o.load.controllers = control::controller_names;
+  o.load.model_controllers = control::model_controller_names;
   app.add_option(
          "world", o.world,
          "World file: Stage .world (3.x or 4.x) or ROS map .yaml; check and draw also accept .rndf, and check .mdf")

@@ -16,10 +16,12 @@ import tempfile as _tempfile
 import numpy as _numpy
 
 from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot, Neighbour,
-                          Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, _abort_ranks, load_plugin)
+                          Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, WorldObject, _abort_ranks,
+                          add_model_controller, load_plugin)
 
 __all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite", "NearRobot",
-           "Neighbour", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist", "load_plugin"]
+           "Neighbour", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist", "WorldObject",
+           "add_model_controller", "load_plugin"]
 
 
 def _valid(self, type, without_noise=False):

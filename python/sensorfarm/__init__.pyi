@@ -247,12 +247,9 @@ class ModelContact:
     def point(self) -> tuple[float, float]:
         """x and y [m] of the other's point that is nearest to the model's outline, or inside it."""
 
-class Model:
-    """The model in one call: its state at this tick, and changes, which take effect after the calls of the tick. It can
-    be used during the call only."""
-    @property
-    def time(self) -> float:
-        """[s] of the tick."""
+class WorldObject:
+    """An object that moves, in one call: its state at this tick, and changes, which take effect after the calls of the
+    tick. It can be used during the call only."""
     @property
     def pose(self) -> Pose:
         """Its last one while it is absent."""
@@ -261,20 +258,32 @@ class Model:
     @property
     def present(self) -> bool: ...
     @property
-    def robots(self) -> list[NearRobot]:
-        """Robots within range(), the nearest first; at most 1024."""
+    def changeable(self) -> bool:
+        """False: changes have no effect, because a robot's controller, the user or packets move it."""
     def set_pose(self, pose: Sequence[float]) -> None:
-        """Places the model at (x, y, z [m], yaw [rad]), at rest."""
+        """Places the object at (x, y, z [m], yaw [rad]), at rest."""
     def set_velocity(self, velocity: Sequence[float]) -> None:
         """Sets forward, left [m/s] and turn [rad/s] for all following ticks."""
     def set_present(self, present: bool) -> None:
-        """Removes the model from the world, or restores it at its last pose."""
+        """Removes the object from the world, or restores it at its last pose."""
     def set_shape(self, name: str) -> None:
-        """Gives the model a shape of the world file, with its size and colour, or "original"."""
+        """Gives the object a shape of the world file, with its size and colour, or "original"."""
     def set_size(self, size: Sequence[float]) -> None:
-        """Scales the model's own outline to (x, y, z) [m]."""
+        """Scales the object's own outline to (x, y, z) [m]: one argument, a tuple or list of three lengths."""
     def set_color(self, color: str) -> None:
         """An X11 name, or "#RRGGBB"."""
+
+class Model(WorldObject):
+    """The controller's own model in one call."""
+    @property
+    def time(self) -> float:
+        """[s] of the tick."""
+    @property
+    def robots(self) -> list[NearRobot]:
+        """Robots within range(), the nearest first; at most 1024."""
+    def object(self, name: str) -> WorldObject:
+        """Returns another object that moves: a model named tag<N>, or one with `ctrl`. Raises ValueError for an unknown
+        name, a robot, and a model that does not move."""
     def uniform(self) -> float:
         """Returns the model's next random number in (0, 1)."""
     def normal(self) -> float:
@@ -282,7 +291,7 @@ class Model:
 
 class ModelController(Protocol):
     """Your own controller of a model that is not a robot: a class of this shape, not a subclass, in a file that `ctrl`
-    names. Optional: contact(contact, model), and range() [m] of `Model.robots` (docs/own_controller.md)."""
+    names, or given to add_model_controller. Optional: contact(contact, model), and range() [m] of `Model.robots` (docs/own_controller.md)."""
     def __init__(self, model: ModelSite, settings: Settings) -> None: ...
     def tick(self, model: Model) -> None: ...
 
@@ -429,6 +438,10 @@ class Simulation:
         """Returns (sensors,): row of the sensor's robot in `poses`."""
     def fresh(self, type: str) -> NDArray[np.bool_]:
         """Returns (sensors,): True if delivered in the last step."""
+
+def add_model_controller(controller: type[ModelController], name: str | None = None) -> None:
+    """Adds a controller of models for the rest of the program: `ctrl "NAME KEY=VALUE ..."` of models that are not robots
+    can name it in worlds loaded from now on. name: by default that of the class. Raises Error, TypeError."""
 
 def load_plugin(file: str) -> None:
     """Loads controllers from a shared library or Python file, so that `controller` can name them. Raises Error."""

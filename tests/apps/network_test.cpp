@@ -509,15 +509,37 @@ TEST(Serve, ObjectsChangeTheirShapes) {
   object("3", "crate");
   object("4", "crat");
   EXPECT_TRUE(service.prints("has no shape 'crat'; did you mean 'crate'?")) << service.err();
-  EXPECT_EQ(service.stop().code, 0);
+  run_successfully({"object", "present", "--tag", "3", "--color", "blue", "--port", port});  // soon after the first
+  run_successfully({"object", "present", "--tag", "4", "--shape", "crats", "--port", port});
+  EXPECT_TRUE(service.prints("has no shape 'crats'")) << service.err();
+  const Outcome served = service.stop();
+  EXPECT_EQ(served.code, 0);
+  EXPECT_EQ(served.err.find("no shape 'crat';"), served.err.rfind("no shape 'crat';")) << "once: " << served.err;
+  EXPECT_EQ(served.err.find("another"), std::string::npos) << served.err;
   const record::Recording recording = record::open_recording(record);
-  ASSERT_EQ(recording.shapes.size(), 1u);
+  ASSERT_EQ(recording.shapes.size(), 2u);
   ASSERT_EQ(recording.shapes[0].shapes.size(), 1u);
   EXPECT_EQ(recording.shapes[0].shapes[0].color, 0xFFFF0000u);
+  ASSERT_EQ(recording.shapes[1].shapes.size(), 1u);
+  EXPECT_EQ(recording.shapes[1].shapes[0].color, 0xFF0000FFu) << "the second command is not from a wrong source";
   EXPECT_EQ(recording.shapes[0].shapes[0].shape, 0u);
   run_successfully({"verify", record});
   expect_refused({"object", "present", "--tag", "3", "--shape", "a b"}, "'a b' is no name of a shape");
   expect_refused({"object", "present", "--tag", "3", "--size", "1,2,0"}, "--size: expected X,Y,Z above 0");
+}
+
+TEST(Serve, LanesChangeTheirUse) {
+  const std::string port = std::to_string(free_ports(1));
+  Program service({"serve", our_world("simville/simville.world"), "--port", port});
+  ASSERT_TRUE(service.prints("serving ")) << service.err();
+  run_successfully({"lane", "3.1", "closed", "--port", port});
+  EXPECT_TRUE(service.prints("lane 3.1 is closed")) << service.err();
+  run_successfully({"lane", "3.1", "open", "--port", port});
+  EXPECT_TRUE(service.prints("lane 3.1 is open")) << service.err();
+  run_successfully({"lane", "99.1", "closed", "--port", port});
+  EXPECT_TRUE(service.prints("LANE 99.1: 'closed' is refused: ")) << service.err();
+  EXPECT_EQ(service.stop().code, 0);
+  expect_refused({"lane", "3", "closed", "--port", port}, "'3' is no lane; expected segment.lane");
 }
 
 }  // namespace sf

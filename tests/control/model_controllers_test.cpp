@@ -92,15 +92,62 @@ TEST_F(ModelControllersTest, CallsInOrderOfRowsWithTheStatesOfTheTick) {
   EXPECT_EQ(calls, (std::vector<std::string>{"door", "lift"}));
   ASSERT_EQ(changes.size(), 2u);
   EXPECT_EQ(changes[0].X_WM->y, 6.0);
-  EXPECT_EQ(changes[0].velocity.forward, 0.3);
+  EXPECT_EQ(changes[0].velocity->forward, 0.3);
   EXPECT_FALSE(changes[0].present.has_value());
   EXPECT_EQ(changes[1].present, false);
-  EXPECT_EQ(changes[1].velocity.forward, 0.0) << "at rest where it returns";
+  EXPECT_EQ(changes[1].velocity->forward, 0.0) << "at rest where it returns";
   model_script.tick = [](const auto&, Model&) {};
-  EXPECT_EQ(call(models, fleet)[0].velocity.forward, 0.3) << "until it is set again";
+  EXPECT_EQ(call(models, fleet)[0].velocity->forward, 0.3) << "until it is set again";
   EXPECT_FALSE(call(models, fleet)[0].X_WM.has_value());
-  models.remove(1);
-  EXPECT_EQ(models.rows(), std::vector<std::uint32_t>{2});
+  EXPECT_TRUE(models.remove(1));
+  EXPECT_FALSE(models.remove(1)) << "once";
+  ASSERT_EQ(call(models, fleet).size(), 1u);
+  EXPECT_EQ(call(models, fleet)[0].mover, 2u);
+}
+
+/// The lift (row 2) moves the door (row 1), which has a controller, and a box, which has none.
+TEST_F(ModelControllersTest, ReachesOtherObjectsByName) {
+  scenes::add_mover(world_, {7, 0, 0, 0}, scenes::rectangle({}, 0.1, 0.1));
+  world_.movers[3].name = "box";
+  world_.movers[3].is_tag = true;
+  absent_.resize(4);
+  ModelControllers models = made();
+  robots::Fleet fleet(world_);
+  model_script.tick = [](const sensorfarm::ModelSite& site, Model& model) {
+    if (site.row == 1) return model.set_velocity({0.1});
+    EXPECT_EQ(model.object("box").pose().x, 7.0);
+    EXPECT_EQ(model.object("lift").pose().x, 2.0) << "itself";
+    model.object("door").set_velocity({0.4});
+  };
+  auto changes = call(models, fleet);
+  ASSERT_EQ(changes.size(), 2u) << "the box is read, but not changed";
+  EXPECT_EQ(changes[0].velocity->forward, 0.4) << "the later row's value counts";
+
+  model_script.tick = [](const sensorfarm::ModelSite& site, Model& model) {
+    if (site.row == 1) model.object("box").set_pose({8, 0, 0, 0});
+    if (site.row == 2) model.object("box").set_velocity({0.2}), model.object("box").set_present(false);
+  };
+  changes = call(models, fleet);
+  ASSERT_EQ(changes.size(), 3u);
+  EXPECT_EQ(changes[2].mover, 3u);
+  EXPECT_EQ(changes[2].X_WM->x, 8.0);
+  EXPECT_EQ(changes[2].present, false);
+  EXPECT_EQ(changes[2].velocity->forward, 0.0) << "at rest where it returns";
+
+  model_script.tick = [](const sensorfarm::ModelSite&, Model& model) {
+    EXPECT_FALSE(model.object("box").changeable());
+    EXPECT_TRUE(model.object("door").changeable());
+    model.object("box").set_pose({9, 0, 0, 0});
+  };
+  EXPECT_FALSE(models.remove(3)) << "it has no controller";
+  EXPECT_EQ(call(models, fleet).size(), 2u) << "others move it";
+
+  const auto failure = [&](const char* name) {
+    model_script.tick = [name](const auto&, Model& model) { model.object(name); };
+    return refusal_of([&] { call(models, fleet); });
+  };
+  expect_in("there is no object 'bok' that moves; did you mean 'box'? Expected a model named tag<N>", failure("bok"));
+  expect_in("'r0' is a robot; expected an object", failure("r0"));
 }
 
 TEST_F(ModelControllersTest, RobotsInRangeAreSortedAndBounded) {

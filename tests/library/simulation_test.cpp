@@ -51,6 +51,31 @@ TEST(Library, CommandsAndControllersGiveOneHash) {
   EXPECT_NE(other.hash(), commanded.hash());
 }
 
+/// A program's own controller of models, chosen by its name in `ctrl`, moves its model and another one.
+TEST(Library, ModelsRunTheProgramsControllers) {
+  struct Pusher : ModelController {
+    double speed = 0.0;
+    void tick(Model& model) override {
+      model.set_velocity({speed});
+      model.object("tag7").set_pose({5.0, model.pose().x, 0.0, 0.0});
+    }
+  };
+  const ModelEntry entry{"test-pusher", "", [](const ModelSite&, Settings& settings) {
+                           auto made = std::make_unique<Pusher>();
+                           made->speed = settings.number("speed", 0.1, 0.0, 1.0);
+                           return made;
+                         }};
+  add_model_controller(entry);
+  expect_in("a controller 'test-pusher' already exists", refusal_of<Error>([&] { add_model_controller(entry); }));
+  Simulation simulation = Simulation::from_text(
+      "position( name \"a\" pose [0 3 0 0] )\nmodel( name \"cart\" size [0.1 0.1 1] ctrl \"test-pusher speed=0.5\" )\n"
+      "model( name \"tag7\" pose [5 0 0 0] size [0.1 0.1 1] )",
+      {});
+  for (int i = 0; i < 11; ++i) simulation.step();
+  EXPECT_NEAR(simulation.poses()[1].x, 0.55, 1e-9);
+  EXPECT_NEAR(simulation.poses()[2].y, 0.5, 1e-9) << "one tick behind";
+}
+
 /// Without `Options::controller`, `ctrl` chooses the controller; "none" restores commands.
 TEST(Library, RobotsRunTheControllersOfTheirWorldFile) {
   add_controller({"test-keep-on", "drives on", 10.0, false, [](const Robot&, Settings& settings) {

@@ -451,6 +451,38 @@ class Models(unittest.TestCase):
         self.assertLess(kept.poses[0, 0], 2.31)
         self.assertEqual(gate.seen[0][:2], ("b", 1))
 
+    def test_added_by_the_program(self):
+        """`ctrl` names the class; it reaches another object, which it cannot use after the call."""
+        class Button:
+            def __init__(self, model, settings):
+                self.door, self.kept = settings.text("door", ""), None
+
+            def tick(self, model):
+                if self.kept is not None:
+                    self.kept.set_present(False)
+                door = model.object(self.door)
+                door.set_size([0.5, 0.5, 0.5])
+                door.set_pose((3, 1, 0, 0))
+                if model.time > 0.55:
+                    self.kept = door
+
+        sensorfarm.add_model_controller(Button, "test-button")
+        with self.assertRaisesRegex(sensorfarm.Error, "a controller 'test-button' already exists"):
+            sensorfarm.add_model_controller(Button, name="test-button")
+        with self.assertRaisesRegex(TypeError, "expected a class with a method tick"):
+            sensorfarm.add_model_controller(print)
+        world = self.WORLD.format("test-button door={}") + '\nmodel( name "tag4" pose [3 0 0 0] size [1 1 1] )'
+        sim = sensorfarm.Simulation.from_text(world.format("tag4"))
+        for _ in range(3):
+            sim.step()
+        self.assertEqual(tuple(sim.poses[2]), (3, 1, 0, 0))
+        with self.assertRaisesRegex(sensorfarm.Error, "a model can be used during the call"):
+            for _ in range(8):
+                sim.step()
+        with self.assertRaisesRegex(sensorfarm.Error, "there is no object 'tag5' that moves; did you mean 'tag4'"):
+            other = sensorfarm.Simulation.from_text(world.format("tag5"))
+            other.step(), other.step()
+
     def test_faults(self):
         for fault, said in (("divide", r"controller 'Gate' of model 'gate' failed at 1.000 s: .*controllers.py:\d+: ZeroDivisionError"),
                             ("pose", r"ValueError: set_pose\(nan, 0, 0, 0\): expected finite numbers"),

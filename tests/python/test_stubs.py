@@ -19,8 +19,9 @@ class Stubs(unittest.TestCase):
         self.assertEqual(public(sensorfarm.__all__), public(
             set(classes) - {"Controller", "ModelController"} | {n.name for n in body if isinstance(n, ast.FunctionDef)} | {"NONE"}))
         for name in ("SensorInfo", "Robot", "Reading", "Neighbour", "Light", "Input", "Settings", "Simulation", "Model",
-                     "ModelContact", "ModelSite", "NearRobot"):
-            stated = public(n.name for n in classes[name].body if isinstance(n, ast.FunctionDef))
+                     "ModelContact", "ModelSite", "NearRobot", "WorldObject"):
+            bases = [classes[base.id] for base in classes[name].bases]
+            stated = public(n.name for c in [classes[name], *bases] for n in c.body if isinstance(n, ast.FunctionDef))
             self.assertEqual(stated, public(dir(getattr(sensorfarm, name))), name)
         for name in ("Pose", "Twist"):
             fields = tuple(n.target.id for n in classes[name].body if isinstance(n, ast.AnnAssign))

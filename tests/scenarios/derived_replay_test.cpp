@@ -334,6 +334,8 @@ TEST_F(DerivedReplayTest, ForeignRefusalsNameWhatExists) {
             refusal("file = \"a.csv\"\nas = \"gyro\"\ncolumns = { rate_rad_s = \"turn_deg_s\" }"));
   expect_in("a.csv has no column 'when'", refusal("file = \"a.csv\"\nas = \"gyro\"\ntime = \"when\""));
   expect_in("b.csv:3: 'rate_rad_s' expects a number; got 'x'", refusal("file = \"b.csv\"\nas = \"gyro\""));
+  write("b.csv", "time_s,rate_rad_s\n0,1\n1\n2,3\n");
+  expect_in("b.csv:3: has 1 fields; expected 2", refusal("file = \"b.csv\"\nas = \"gyro\""));
   expect_in("no such recording", refusal("topic = \"/imu\"", path("none.mcap")));
   expect_in("not an MCAP file", refusal("topic = \"/imu\"", path("b.csv")));
   expect_in("robot \"a b\"", refusal_of([&] { file("[[input]]\nrobot = \"a b\"\ntopic = \"/imu\"\n"); }));

@@ -23,6 +23,18 @@ void expect_no_contacts(const Trial& trial) {
   }
 }
 
+// With this seed, an obstacle stops for a Pioneer whose turns it blocks: both would wait for ever.
+TEST(MiniMagic, PioneersLeaveObstaclesThatWaitForThem) {
+  if (instrumented()) GTEST_SKIP() << "half a minute is not enough";
+  Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/minimagic.toml");
+  scenario.seed = 14;
+  const Trial trial = run_trial(scenario, disturbed_world(scenario, {}), device(), {});
+  for (std::size_t i = 0; i < trial.counts.size(); ++i) {
+    EXPECT_EQ(trial.counts[i].contacts, 0u) << trial.tracks[i].name;
+    EXPECT_GT(trial.counts[i].travelled, trial.tracks[i].name == "tag2" ? 7.0 : 15.0) << trial.tracks[i].name;
+  }
+}
+
 // Unknown are the insides of solids, what is outside the fence, and what only a robot in the barracks would see.
 void expect_a_map(const Trial& trial) {
   ASSERT_TRUE(trial.own_map);

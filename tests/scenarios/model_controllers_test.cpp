@@ -13,6 +13,7 @@
 #include "record/recording.h"
 #include "scenarios/recording_verification.h"
 #include "scenarios/run_info.h"
+#include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
 #include "tests/cluster/thread_ranks.h"
 #include "tests/device.h"
@@ -83,7 +84,10 @@ void do_everything() {
       model.set_velocity({near ? -0.3 : 0.4, 0.2, model.normal()});
     }
   };
-  act.contact = [](const ModelContact& contact, Model& model) { model.set_velocity({0.1 * contact.x, 0.3}); };
+  act.contact = [](const ModelContact& contact, Model& model) {
+    model.set_velocity({0.1 * contact.x, 0.3});
+    model.object("tag3").set_velocity({0.2, 0.1 * contact.y});
+  };
 }
 
 std::uint64_t hash_of(SimulationOptions options, gpu::Device& device, const world::World& world) {
@@ -227,6 +231,42 @@ TEST(ModelControllers, ObstaclesStopAModelUntilOthersTakeOver) {
   EXPECT_EQ(ticks, 41);
 }
 
+/// A button, touched by a robot, removes a door that has no controller; `drive` and robots' controllers take
+/// precedence.
+TEST(ModelControllers, AButtonOpensADoor) {
+  world::World world = acting_world();
+  for (world::Mover& mover : world.movers)
+    mover.controller = !mover.is_tag ? "none" : mover.name == "tag3" ? "acts" : "";
+  bool changeable = true;
+  act.contact = [](const ModelContact& contact, Model& model) {
+    if (contact.robot) model.object("tag4").set_present(false);
+  };
+  act.tick = [&](Model& model) {
+    changeable = model.object("tag4").changeable();
+    if (!model.robots().empty()) model.object("tag4").set_velocity({0.5});
+  };
+  Simulation simulation(world, host_device(), acting_options(world));
+  simulation.step();
+  simulation.put(0, {1.7, 0.0, 0.0, 0.0});
+  base::TickRecord record = simulation.step();
+  EXPECT_TRUE(base::is_absent(record.reports[3].X_WM));
+  simulation.set_absent(3, false);
+  record = simulation.step();
+  EXPECT_NEAR(record.reports[3].X_WM.x, 0.05, 1e-9) << "it moves";
+  EXPECT_TRUE(changeable);
+  simulation.drive(3, {-0.1, 0.0, 0.0});
+  record = simulation.step();
+  EXPECT_NEAR(record.reports[3].X_WM.x, 0.04, 1e-9) << "the user drives it";
+  EXPECT_FALSE(changeable);
+
+  SimulationOptions options = acting_options(world);
+  options.actors[3].controller.name = "patrol";
+  options.actors[3].controller.settings = control::Settings("patrol", {{"points", control::RawText{"0 -1.9"}, ""}});
+  Simulation patrolled(world, host_device(), options);
+  patrolled.step(), patrolled.step();
+  EXPECT_FALSE(changeable) << "a robot's controller drives it";
+}
+
 /// Shapes set by a controller give the bytes of those that the caller sets between the same steps.
 TEST(ModelControllers, ChangeShapeSizeAndColour) {
   world::World world = acting_world(), same = acting_world();
@@ -261,6 +301,16 @@ TEST(ModelControllers, ChangeShapeSizeAndColour) {
   fixed.step();
   act.tick = [](Model& model) { model.set_shape("post"); };
   expect_in("shape, size and colour cannot change here", refusal_of([&] { fixed.step(); }));
+}
+
+TEST(ModelControllers, NoneInAScenarioEndsCtrl) {
+  const std::string text = "world = \"../examples/door/door.world\"\n";
+  const auto models = [&](const std::string& more) {
+    return control::controlled_models(world_of(parse_scenario(SF_SOURCE_DIR "/experiments/test.toml", text + more)));
+  };
+  EXPECT_EQ(models("").size(), 1u);
+  EXPECT_EQ(models("[[robot]]\nname = \"door\"\npose = [0, 1, 0]\n").size(), 1u);
+  EXPECT_TRUE(models("[[robot]]\nname = \"door\"\ncontroller = \"none\"\n").empty());
 }
 
 TEST(ModelControllers, FailuresEndTheStep) {

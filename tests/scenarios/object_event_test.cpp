@@ -10,6 +10,7 @@
 #include "scenarios/recording_verification.h"
 #include "scenarios/run_info.h"
 #include "scenarios/runner.h"
+#include "scenarios/scenario_events.h"
 #include "scenarios/simulation.h"
 #include "sensors/laser_settings.h"
 #include "tests/device.h"
@@ -107,6 +108,79 @@ TEST(ObjectEvent, RecordingsAreVerified) {
   EXPECT_GT(v.reference.readings, 40u);
 }
 
+/// Objects and robots are placed by events as by `put`, and the recording is verified.
+TEST(ObjectEvent, PosesAreSet) {
+  const Scenario scenario = parse_scenario("test.toml",
+                                           "world = \"w.world\"\n"
+                                           "[[event]]\nat = 0.95\nobject = \"tag1\"\npose = [1.5, 0.25, 90]\n"
+                                           "[[event]]\nat = 2\nobject = \"tag1\"\npose = [2, 0, 0.125, 0]\n"
+                                           "[[event]]\nat = 3\nobject = \"r0\"\npose = [0.5, 0, 0]\n");
+  world::World by_events = corridor(), by_hand = corridor();
+  by_events.movers[0].name = by_hand.movers[0].name = "r0";
+  world::update_extent_and_hash(by_events);
+  Simulation simulation(by_events, device(), standing(by_events)), same(by_hand, device(), standing(by_hand));
+  const std::string folder = (std::filesystem::temp_directory_path() / "pose_event").string();
+  {
+    const sensors::SensorSet sensor_set(by_events);
+    record::Recorder recorder(folder, run_info(by_events, sensor_set, {.record_readings = true}));
+    ScenarioEvents events(scenario);
+    for (int tick = 0; tick < 40; ++tick) {
+      events.apply(simulation, by_events, 0.1 * tick, [](std::uint32_t) {});
+      if (tick == 10) same.put(1, {1.5, 0.25, 0.0, M_PI / 2});
+      if (tick == 20) same.put(1, {2.0, 0.0, 0.125, 0.0});
+      if (tick == 30) same.put(0, {0.5, 0.0, 0.0, 0.0});
+      const base::TickRecord record = simulation.step();
+      same.step();
+      recorder.write(record);
+      EXPECT_EQ(record.reports[1].X_WM.x, tick < 10 ? 1.0 : tick < 20 ? 1.5 : 2.0) << tick;
+      EXPECT_EQ(record.reports[1].X_WM.z, tick < 20 ? 0.0 : 0.125) << tick;
+      EXPECT_EQ(record.reports[0].X_WM.x, tick < 30 ? 0.0 : 0.5) << tick;
+      EXPECT_EQ(simulation.farm().hash(), same.farm().hash()) << tick;
+    }
+  }
+  const Verification v = verify(record::open_recording(folder), device(), {.sample = 0});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  EXPECT_GT(v.reference.readings, 40u);
+}
+
+/// A robot at rest that is placed 2 m away has not driven.
+TEST(ObjectEvent, APlacedRobotHasNotDriven) {
+  Scenario scenario = parse_scenario(SF_SOURCE_DIR "/experiments/test.toml",
+                                     "world = \"../worlds/minimagic/minimagic.world\"\nduration = 2\n[default]\n"
+                                     "controller = \"patrol\"\nsettings = { points = [0, 0], speed = 0.0001 }\n"
+                                     "[expect]\ndistance = { pioneer1 = 1 }\n"
+                                     "[[event]]\nat = 1\nobject = \"pioneer1\"\npose = [1, 0.5, 30]\n");
+  const ScenarioResult result = run_scenario(scenario, host_device());
+  ASSERT_EQ(result.outcomes.size(), 1u);
+  EXPECT_FALSE(result.outcomes[0].met);
+}
+
+TEST(ObjectEvent, ARemovedRobotHasNoPlace) {
+  const Scenario scenario =
+      parse_scenario("test.toml", "world = \"w.world\"\n[[event]]\nat = 1\nobject = \"r0\"\npose = [0, 0, 0]\n");
+  world::World world = corridor();
+  world.movers[0].name = "r0";
+  Simulation simulation(world, host_device(), standing(world));
+  simulation.remove_robot(0);
+  ScenarioEvents events(scenario);
+  expect_in("test.toml:2: 'r0' was removed; expected a pose before that",
+            refusal_of([&] { events.apply(simulation, world, 1.0, [](std::uint32_t) {}); }));
+}
+
+TEST(ObjectEvent, EventsAfterTheEndAreReported) {
+  const auto warnings = [](const std::string& at) {
+    return check_scenario(
+        parse_scenario(SF_SOURCE_DIR "/experiments/test.toml",
+                       "world = \"../worlds/minimagic/minimagic.world\"\nduration = 10\n[[event]]\nat = " + at +
+                           "\nobject = \"tag1\"\npresent = false\n"));
+  };
+  EXPECT_TRUE(warnings("9.9").empty());
+  const auto late = warnings("10");
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late[0].line, 3);
+  expect_in("the event at 10 s is after the last tick of the scenario, whose duration is 10 s", late[0].message);
+}
+
 /// Recorded ticks have the states of the lights at their time.
 TEST(Simulation, RecordsTheLights) {
   world::World world = corridor();
@@ -128,12 +202,15 @@ std::string event_refusal(const std::string& event) {
 
 TEST(ObjectEvent, ErrorsNameLineAndRemedy) {
   EXPECT_EQ(event_refusal("at = 1\nobject = \"tag1\"\npresent = false\n"), "");
+  EXPECT_EQ(event_refusal("at = 1\nobject = \"pioneer1\"\npose = [1, 2, 30]\n"), "");
   const std::pair<std::string, std::string> kCorpus[] = {
       {"at = 1\nobject = \"tag1\"\n", "test.toml:2: 'present' is missing"},
       {"at = -1\nobject = \"tag1\"\npresent = true\n", "test.toml:3: 'at' expects a number from 0"},
       {"at = 1\nobject = \"tag9\"\npresent = true\n", "test.toml:2: "},
       {"at = 1\nobject = \"tag1\"\npresent = 1\n", "test.toml:5: 'present' expects true or false"},
       {"at = 1\nobjekt = \"tag1\"\npresent = true\n", "test.toml:4: unknown key 'objekt'; did you mean 'object'?"},
+      {"at = 1\nobject = \"tag1\"\npose = [1, 2]\n", "test.toml:5: 'pose' expects [x, y, yaw] or [x, y, z, yaw]"},
+      {"at = 1\nobject = \"tag1\"\npose = [1, 2e7, 0]\n", "test.toml:5: 'pose' expects a number from -1"},
       {"at = 1\nobject = \"pioneer1\"\npresent = false\n", "test.toml:2: 'pioneer1' has sensors or a controller"},
   };
   for (const auto& [text, message] : kCorpus) EXPECT_EQ(event_refusal(text).substr(0, message.size()), message) << text;

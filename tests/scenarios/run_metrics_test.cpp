@@ -156,8 +156,10 @@ TEST(RunMetrics, FullStopsAreCounted) {
 TEST(RunMetrics, DistancesAreSummed) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
-  for (int i = 0; i <= 10; ++i) town.look(0.1 * i, base::compose(X, {0.1 * i, 0.0, 0.0, 0.0}));
-  EXPECT_NEAR(town.metrics().of(0).travelled, 1.0, 1e-12);
+  for (int i = 0; i <= 10; ++i) town.look(0.1 * i, base::compose(X, {0.01 * i, 0.0, 0.0, 0.0}));
+  EXPECT_NEAR(town.metrics().of(0).travelled, 0.1, 1e-12);
+  town.look(1.1, base::compose(X, {5.0, 0.0, 0.0, 0.0}));
+  EXPECT_NEAR(town.metrics().of(0).travelled, 0.1, 1e-12) << "placed, not driven";
   EXPECT_EQ(town.metrics().of(1).travelled, 0.0);
 }
 

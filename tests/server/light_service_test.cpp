@@ -337,6 +337,7 @@ TEST(Service, AControllerMovesAModelUntilPacketsDo) {
       if (model.time() > 0.35 && model.time() < 0.45) model.set_color("#ff0000");
       if (model.time() > 0.85 && model.time() < 0.95) model.set_present(false);
       if (model.time() > 0.95) model.set_present(true), model.set_pose({0.5, 0.0, 0.0, 0.0});
+      if (model.time() > 0.95) model.object("tag6").set_pose({0.0, 3.0, 0.0, 0.0});
     }
     static int& calls() {
       static int count = 0;
@@ -350,12 +351,17 @@ TEST(Service, AControllerMovesAModelUntilPacketsDo) {
   door.is_tag = true;
   door.id = 5;
   door.controller = "slides";
+  world::Mover& box = scenes::add_mover(f.world, {-1.0, 3.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.1, 0.1));
+  box.name = "tag6";
+  box.is_tag = true;
+  box.id = 6;
   f.make_service();
   struct States : base::Sink {
-    std::vector<base::Pose> poses;
+    std::vector<base::Pose> poses, boxes;
     std::vector<std::uint32_t> colors;  ///< of changes
     void write(const base::TickRecord& record) override {
-      poses.push_back(record.reports.back().X_WM);
+      poses.push_back(record.reports[record.reports.size() - 2].X_WM);
+      boxes.push_back(record.reports.back().X_WM);
       for (const base::ShapeState& shape : record.shapes) colors.push_back(shape.color);
     }
   } sink;
@@ -366,6 +372,8 @@ TEST(Service, AControllerMovesAModelUntilPacketsDo) {
   EXPECT_NEAR(sink.poses[5].x, -0.75, 1e-9);
   EXPECT_TRUE(base::is_absent(sink.poses[10]));
   EXPECT_NEAR(sink.poses[12].x, 0.5, 1e-9);
+  EXPECT_EQ(sink.boxes[10].x, -1.0);
+  EXPECT_EQ(sink.boxes[12].x, 0.0) << "reached by its name";
   EXPECT_EQ(Slides::calls(), 15);
   EXPECT_EQ(sink.colors, std::vector<std::uint32_t>{0xFFFF0000u});
   netio::Outbox camera;

@@ -523,7 +523,7 @@ TEST(Stage, PluginsOfStageAreNotRun) {
             "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, "
             "or write ctrl \"wander\"\n"
             "6: ctrl \"wander\" of 'e' is ignored: it is not a robot; expected ctrl inside a robot's parentheses, or a "
-            "model controller in a file (./libmine.so, mine.py:MyClass)\n"
+            "model controller: in a file (./libmine.so, mine.py:MyClass), or the name of a loaded one\n"
             "7: 'fast' in ctrl \"wander\" is ignored: expected a setting KEY=VALUE\n"
             "4: 5 robots overlap others at the start: 'a', 'b', 'c' and 2 more; 'c' starts at (0, 0), in 'a': expected "
             "separate poses\n");
@@ -571,6 +571,24 @@ TEST(Stage, CtrlMakesAModelMove) {
   EXPECT_TRUE(door.controller_at.ends_with(":2: ")) << door.controller_at;
   EXPECT_TRUE(world.movers[1].controller.ends_with("door.py:Door"));
   EXPECT_EQ(world.movers[2].controller, "");
+}
+
+/// The names of loaded controllers of models are known to models only.
+TEST(Stage, CtrlOfAModelNamesALoadedController) {
+  const World world = read_world(
+      "model( name \"door\" ctrl \"slide speed=1\" )\nmodel( name \"tag1\" pose [5 0 0 0] ctrl \"slid\" )\n"
+      "position( name \"r\" pose [0 5 0 0] ctrl \"slide\" )",
+      {.controllers = [] { return std::vector<std::string_view>{"route"}; },
+       .model_controllers = [] { return std::vector<std::string_view>{"slide"}; }});
+  ASSERT_EQ(world.movers.size(), 3u);
+  EXPECT_EQ(world.movers[0].controller, "slide");
+  EXPECT_EQ(world.movers[0].controller_settings.at(0).second, "1");
+  EXPECT_EQ(world.movers[0].drive, Drive::omni);
+  EXPECT_EQ(world.movers[1].controller, "");
+  EXPECT_EQ(world.movers[2].controller, "");
+  expect_in("2: ctrl \"slid\" of 'tag1' is ignored: it is not a robot", warnings_of(world));
+  expect_in("or the name of a loaded one; did you mean 'slide'?", warnings_of(world));
+  expect_in("3: ctrl \"slide\" is ignored: there is no controller of this name", warnings_of(world));
 }
 
 TEST(Stage, ModelsThatCannotMoveHaveNoController) {

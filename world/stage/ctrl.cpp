@@ -37,7 +37,11 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-/// Returns why `ctrl` cannot choose this controller; empty: it can.
+std::vector<std::string_view> model_controllers(const BuildState& b) {
+  return b.options.model_controllers != nullptr ? b.options.model_controllers() : std::vector<std::string_view>();
+}
+
+/// Returns why a robot's `ctrl` cannot choose this controller; empty: it can.
 std::string fault_of(const BuildState& b, const std::string& name) {
   std::vector<std::string_view> known{"wander"};
   if (b.options.controllers != nullptr) known = b.options.controllers();
@@ -62,9 +66,11 @@ std::vector<std::string> words_of_ctrl(const Entity& entity) {
 
 }  // namespace
 
-bool names_model_controller(const Entity& entity) {
+bool names_model_controller(const BuildState& b, const Entity& entity) {
   const std::vector<std::string> words = words_of_ctrl(entity);
-  return !words.empty() && base::names_a_plugin(words.front());
+  if (words.empty()) return false;
+  const std::vector<std::string_view> known = model_controllers(b);
+  return base::names_a_plugin(words.front()) || std::ranges::find(known, words.front()) != known.end();
 }
 
 void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model) {
@@ -73,19 +79,19 @@ void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model)
   warn(
       b.context, location_of(entity, "ctrl"),
       fmt::format("ctrl \"{}\" of '{}' is ignored: it is not a robot; expected ctrl inside a robot's parentheses, or a "
-                  "model controller in a file (./libmine.so, mine.py:MyClass)",
-                  words.front(), model));
+                  "model controller: in a file (./libmine.so, mine.py:MyClass), or the name of a loaded one{}",
+                  words.front(), model, base::suggest(words.front(), model_controllers(b))));
 }
 
 void read_ctrl(BuildState& b, const Entity& entity, Mover& mover) {
   const Property* property = find(entity, "ctrl");
   const std::vector<std::string> words = words_of_ctrl(entity);
   if (words.empty()) return;
-  if (mover.is_tag && !names_model_controller(entity)) return warn_of_ctrl(b, entity, mover.name);
+  if (mover.is_tag && !names_model_controller(b, entity)) return warn_of_ctrl(b, entity, mover.name);
   if (property->values.size() > 1)
     warn(b.context, property->at, "'ctrl' expects one controller per model; only the first is used");
   const std::string& name = words.front();
-  if (const std::string fault = fault_of(b, name); !fault.empty()) {
+  if (const std::string fault = mover.is_tag ? "" : fault_of(b, name); !fault.empty()) {
     if (b.warned_types.insert("ctrl " + name).second) warn(b.context, property->at, fault);
     return;
   }

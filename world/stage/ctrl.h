@@ -7,8 +7,9 @@
 
 namespace sf::world {
 
-/// Returns whether `ctrl` names a controller for a model that is not a robot: a file of code, which may have one.
-bool names_model_controller(const Entity& entity);
+/// Returns whether `ctrl` names a controller for a model that is not a robot: one of LoadOptions::model_controllers, or
+/// a file of code, which may have one.
+bool names_model_controller(const BuildState& b, const Entity& entity);
 
 /// Warns that a model that is not a robot ignores `ctrl`, if it has one that is not "none".
 void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model);
@@ -16,7 +17,7 @@ void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model)
 /// Reads `ctrl` into the fields of the mover (`controller`, `controller_settings`, `controller_at`). A file's name is
 /// relative to the folder of the world file that contains it. Loads no code. Warns about plug-ins of Stage, unknown
 /// names, words that are not KEY=VALUE, and further controllers; such a robot is driven as without `ctrl`. Movers that
-/// are not robots accept files of code only.
+/// are not robots accept controllers of models only.
 void read_ctrl(BuildState& b, const Entity& entity, Mover& mover);
 
 }  // namespace sf::world

@@ -135,7 +135,7 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
     check_keys(b.context, entity, KeyScope::device, said.sensor->keys);
     return said;
   }
-  const bool moves = said.kind == EntityKind::model && names_model_controller(entity);
+  const bool moves = said.kind == EntityKind::model && names_model_controller(b, entity);
   check_keys(b.context, entity, moves ? KeyScope::position : key_scope(said.kind));
   if (said.kind == EntityKind::unmodelled || said.kind == EntityKind::unknown)
     count_unmodelled(b, entity, type, said.kind == EntityKind::unmodelled);
@@ -169,7 +169,7 @@ Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const 
 // Returns true if the model becomes a mover: a robot or a linked object. A model carried by a mover belongs to that
 // mover, whatever its type or name.
 bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
-  const bool controlled = said.kind != EntityKind::position && names_model_controller(entity);
+  const bool controlled = said.kind != EntityKind::position && names_model_controller(b, entity);
   if (said.kind != EntityKind::position && !packet_id_of(said.name) && !controlled) return false;
   if (parent.mover == kNone) return true;
   if (controlled)

@@ -57,7 +57,7 @@ std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model,
   mover.model = static_cast<std::uint32_t>(b.world.models.size());
   mover.X_WM = model.X_WM;
   mover.is_tag = is_tag;
-  if (is_tag && names_model_controller(entity)) mover.drive = Drive::omni;
+  if (is_tag && names_model_controller(b, entity)) mover.drive = Drive::omni;
   mover.max_forward = 1.0;  // Stage's default
   read_keys(b.context, entity, mover);
   b.world.movers.push_back(std::move(mover));
