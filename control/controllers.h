@@ -54,7 +54,8 @@ struct ControllerType {
   std::unique_ptr<Controller> (*make)(const ControllerContext& context, Settings& settings);
   const sensorfarm::ControllerEntry* entry = nullptr;  ///< entry of a user's own controller (control/own_controllers.h)
   /// Bit k: readings of sensor type k suffice to drive; any one of these types does. 0: needs no readings. A robot
-  /// drives on with them while the readings of the farm are missing.
+  /// drives on with them while the readings of the farm are missing. None are needed of types that the robot does not
+  /// have in the world file.
   std::uint32_t needs = kNeedsFarm;
 };
 

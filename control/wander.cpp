@@ -164,6 +164,7 @@ constinit const ControllerType wander_controller{
     .stops_on_bumper = false,
     .on_scans = true,
     .make = make_wander,
+    .needs = 1u << sensors::kLaser,
 };
 
 }  // namespace sf::control

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sensors/analog.h"
+#include "sensors/battery.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/irreceiver.h"
@@ -18,14 +19,26 @@ robots::CreateOdometry odometry_of(const RealRobotType& type) {
 /// A Create 2 has no cargo bay.
 bool has_cargo_bay(const RealRobotType& type) { return odometry_of(type) == robots::CreateOdometry::motion; }
 
-/// Returns voltage and number of each input: the analogue one, then the digital ones.
-std::vector<double> inputs_of(const robots::CreateFrame& frame) {
-  std::vector<double> inputs{5.0 * frame.analog / 1023.0, static_cast<double>(frame.analog)};
-  for (int pin = 0; pin < 4; ++pin) {
-    const double high = frame.inputs >> pin & 1;
-    inputs.insert(inputs.end(), {5.0 * high, high});
+/// Returns voltage and number of each input: those of the cargo bay (the analogue one, then the digital ones), then the
+/// wall sensor, the buttons Play and Advance, and the overcurrents of the left and the right wheel (5 V: on).
+std::vector<double> inputs_of(const robots::CreateFrame& frame, bool cargo_bay) {
+  std::vector<double> inputs;
+  const auto add = [&](bool on) { inputs.insert(inputs.end(), {on ? 5.0 : 0.0, on ? 1.0 : 0.0}); };
+  if (cargo_bay) {
+    inputs = {5.0 * frame.analog / 1023.0, static_cast<double>(frame.analog)};
+    for (int pin = 0; pin < 4; ++pin) add((frame.inputs >> pin & 1) != 0);
   }
+  for (const bool on : {frame.wall, (frame.buttons & 0x01) != 0, (frame.buttons & 0x04) != 0,
+                        (frame.overcurrents & 0x10) != 0, (frame.overcurrents & 0x08) != 0})
+    add(on);
   return inputs;
+}
+
+/// Returns voltage, current, charge and whether it is at a charger: in the states 1 to 4 (reconditioning, full, trickle
+/// and waiting).
+std::vector<double> battery_of(const robots::CreateFrame& frame) {
+  const bool charging = frame.charging >= 1 && frame.charging <= 4;
+  return {1e-3 * frame.voltage, 1e-3 * frame.current, 1e-3 * frame.charge, charging ? 1.0 : 0.0};
 }
 
 }  // namespace
@@ -57,7 +70,8 @@ void CreateDrive::take_frame(const robots::CreateFrame& frame, std::int64_t now)
   const bool dock = frame.infrared > sensors::kDockByte && frame.infrared < sensors::kNoIrByte;
   measured(sensors::kIrReceiver,
            {frame.virtual_wall ? 1.0 : 0.0, static_cast<double>(dock ? frame.infrared : sensors::kNoIrByte)}, now);
-  if (has_cargo_bay(type())) measured(sensors::kAnalog, inputs_of(frame), now);
+  measured(sensors::kAnalog, inputs_of(frame, has_cargo_bay(type())), now);
+  measured(sensors::kBattery, battery_of(frame), now);
   // People put a lifted robot down where it may drive, so it resumes. At a cliff, it waits for them.
   lifted_ = (lifted_ || frame.wheel_drop) && frame.mode != robots::CreateFrame::safe;
   if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive) write(robots::create_safe());

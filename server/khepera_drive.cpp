@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "sensors/infrared.h"
+#include "sensors/lightsensor.h"
 
 namespace sf::server {
 
@@ -90,9 +91,18 @@ bool KheperaDrive::accept(const robots::KheperaAnswer& answer, std::int64_t now)
       measured(sensors::kInfrared, std::move(values), now);
       return true;
     }
-    default:
-      if (n.size() == kSensors) light_ = n;
-      return n.size() == kSensors;
+    default: {
+      if (n.size() != kSensors) return false;
+      light_ = n;
+      const sensors::LightSensor rule;
+      std::vector<double> values;
+      for (const std::int64_t number : n) {
+        const double value = std::clamp(static_cast<double>(number), 0.0, sensors::kMostLightValue);
+        values.insert(values.end(), {rule.bright * std::max(0.0, 1.0 - value / rule.dark), value});
+      }
+      measured(sensors::kLightSensor, std::move(values), now);
+      return true;
+    }
   }
 }
 

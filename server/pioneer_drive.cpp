@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/battery.h"
 #include "sensors/bumper.h"
 #include "sensors/sonar.h"
 
@@ -93,6 +94,7 @@ void PioneerDrive::take_sip(const robots::ArcosSip& sip, std::int64_t now) {
   touch(sip.left_stall || sip.right_stall ||
         std::any_of(sip.bumpers.begin(), sip.bumpers.end(), [](std::uint8_t pressed) { return pressed != 0; }));
   measured(sensors::kBumper, {sip.bumpers.begin(), sip.bumpers.end()}, now);
+  measured(sensors::kBattery, {sip.volts, std::nan(""), std::nan(""), std::nan("")}, now);
   if (sip.sonar_count == 0) return;
   for (std::size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = std::min(sip.ranges[i].value_or(ranges_[i]), kNoEcho);
   measured(sensors::kSonar, {ranges_.begin(), ranges_.end()}, now);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "netio/endpoint.h"
+#include "sensors/battery.h"
 #include "sensors/bumper.h"
 #include "sensors/infrared.h"
 #include "sensors/sonar.h"
@@ -182,7 +183,7 @@ bool PlayerDrive::take_data(Interface interf, XdrReader& xdr, std::int64_t now) 
     case Interface::bumper:
       return take_bumpers(xdr, now);
     case Interface::power:
-      return take_power(xdr);
+      return take_power(xdr, now);
     default:
       return true;
   }
@@ -237,7 +238,8 @@ bool PlayerDrive::take_bumpers(XdrReader& xdr, std::int64_t now) {
   return true;
 }
 
-bool PlayerDrive::take_power(XdrReader& xdr) {
+/// The sign of the power and the capacity in ampere hours are unknown, and so are current and charge.
+bool PlayerDrive::take_power(XdrReader& xdr, std::int64_t now) {
   Power power;
   power.valid = xdr.get();
   for (float* value : {&power.volts, &power.percent, &power.joules, &power.watts}) {
@@ -245,8 +247,12 @@ bool PlayerDrive::take_power(XdrReader& xdr) {
     if (!std::isfinite(*value)) return false;
   }
   power.charging = static_cast<std::int32_t>(xdr.get());
-  if (xdr.done()) power_ = power;
-  return xdr.done();
+  if (!xdr.done()) return false;
+  power_ = power;
+  const auto known = [&](std::uint32_t bit, double value) { return power.valid & bit ? value : std::nan(""); };
+  measured(sensors::kBattery,
+           {known(1, power.volts), std::nan(""), std::nan(""), known(16, power.charging == 1 ? 1.0 : 0.0)}, now);
+  return true;
 }
 
 void PlayerDrive::drive(const base::Twist& twist, std::int64_t now) {

@@ -55,7 +55,7 @@ class PlayerDrive final : public RealRobot {
   bool take_sonar(netio::player::XdrReader& xdr, std::int64_t now);
   bool take_infrared(netio::player::XdrReader& xdr, std::int64_t now);
   bool take_bumpers(netio::player::XdrReader& xdr, std::int64_t now);
-  bool take_power(netio::player::XdrReader& xdr);
+  bool take_power(netio::player::XdrReader& xdr, std::int64_t now);
 
   base::Bytes in_;                  ///< received, incomplete message
   bool greeted_ = false;            ///< the banner arrived

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "sensors/infrared.h"
+#include "sensors/lightsensor.h"
 #include "server/real_robot.h"
 #include "tests/khepera_emulator.h"
 #include "tests/units.h"
@@ -65,7 +66,7 @@ TEST_F(KheperaTest, DrivesAndTracksItsPose) {
 
 TEST_F(KheperaTest, ReportsItsSensors) {
   exchange(8);
-  ASSERT_EQ(drive->readings().size(), 1u);
+  ASSERT_EQ(drive->readings().size(), 2u);
   const OwnReading& own = drive->readings()[0];
   EXPECT_EQ(own.type, sensors::kInfrared);
   ASSERT_EQ(own.values.size(), 16u);
@@ -75,6 +76,11 @@ TEST_F(KheperaTest, ReportsItsSensors) {
   EXPECT_EQ(own.values[14], 0.05 * (1.0 - 50.0 / 1023.0));
   ASSERT_EQ(drive->facts().size(), 8u);
   EXPECT_EQ(drive->facts()[3].value, 50.0);
+  const OwnReading& light = drive->readings()[1];
+  EXPECT_EQ(light.type, sensors::kLightSensor);
+  ASSERT_EQ(light.values.size(), 16u);
+  EXPECT_EQ(light.values[7], 50.0);
+  EXPECT_NEAR(light.values[6], 1000.0 * (1.0 - 50.0 / 450.0), 1e-9);
   EXPECT_FALSE(drive->contact());
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "sensors/battery.h"
 #include "sensors/bumper.h"
 #include "sensors/sonar.h"
 #include "server/real_robot.h"
@@ -104,6 +105,10 @@ TEST_F(PioneerTest, ReportsItsSensors) {
   EXPECT_EQ(ranges[12], 5.0);
   EXPECT_EQ(ranges[0], 5.0) << "nothing received yet";
   EXPECT_EQ(values(sensors::kBumper), (std::vector<double>{1, 0, 0, 0, 0, 0, 0, 0, 0, 1}));
+  const std::vector<double> battery = values(sensors::kBattery);
+  ASSERT_EQ(battery.size(), 4u);
+  EXPECT_DOUBLE_EQ(battery[0], 12.4);
+  EXPECT_TRUE(std::isnan(battery[1]) && std::isnan(battery[2]) && std::isnan(battery[3])) << "not reported";
   EXPECT_TRUE(drive->contact());
   pioneer.front = pioneer.rear = 0;
   step({});

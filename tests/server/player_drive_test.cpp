@@ -6,6 +6,7 @@
 #include <memory>
 #include <random>
 
+#include "sensors/battery.h"
 #include "sensors/bumper.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
@@ -104,6 +105,10 @@ TEST_F(PlayerDriveTest, ReportsItsSensors) {
   EXPECT_NEAR(infrared[0], 0.01, 1e-6);
   EXPECT_EQ(infrared[1], 512.0) << "half of the voltage";
   EXPECT_EQ(infrared[3], 0.0);
+  const std::vector<double> battery = values(sensors::kBattery);
+  ASSERT_EQ(battery.size(), 4u);
+  EXPECT_EQ(battery[0], 12.5);
+  EXPECT_TRUE(std::isnan(battery[1]) && std::isnan(battery[2])) << "unknown";
   const std::vector<RobotFact> facts = drive->facts();
   ASSERT_EQ(facts.size(), 5u);
   EXPECT_EQ(facts[0].name, "battery_V");

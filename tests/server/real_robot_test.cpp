@@ -9,9 +9,11 @@
 
 #include "control/controllers.h"
 #include "sensors/analog.h"
+#include "sensors/battery.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/irreceiver.h"
+#include "sensors/laser.h"
 #include "tests/create_simulator.h"
 #include "tests/pioneer_emulator.h"
 #include "tests/refusal.h"
@@ -56,12 +58,12 @@ constinit const control::ControllerType recorder{
       return std::make_unique<Recorder>();
     }};
 
-/// The same, by infrared receivers alone.
+/// The same, by infrared receivers or lasers alone.
 constinit const control::ControllerType own_recorder{.name = "test-own-recorder",
                                                      .summary = recorder.summary,
                                                      .stops_on_bumper = false,
                                                      .make = recorder.make,
-                                                     .needs = 1u << sensors::kIrReceiver};
+                                                     .needs = 1u << sensors::kIrReceiver | 1u << sensors::kLaser};
 
 struct RealRobotTest : testing::Test {
   static void SetUpTestSuite() {
@@ -85,6 +87,13 @@ TEST_F(RealRobotTest, OwnReadingsOfACreateReachItsController) {
   EXPECT_TRUE(create.streaming());
   create.cliffs = 0b1000;
   create.infrared = 244;
+  create.wall = 1;
+  create.buttons = 4;          // Advance
+  create.overcurrents = 0x10;  // left wheel
+  create.charging = 2;         // full
+  create.voltage = 15'700;
+  create.current = 1'200;
+  create.charge = 2'100;
   std::int64_t now = 0;
   for (std::uint64_t k = 1; k <= 10; ++k) {
     create.run(7);
@@ -95,6 +104,11 @@ TEST_F(RealRobotTest, OwnReadingsOfACreateReachItsController) {
   EXPECT_EQ(seen().values[sensors::kCliff], (std::vector<double>{0, 0, 0, 1}));
   EXPECT_EQ(seen().values[sensors::kIrReceiver], (std::vector<double>{0, 244}));
   EXPECT_EQ(seen().values[sensors::kBumper], (std::vector<double>{0, 0}));
+  const std::vector<double>& inputs = seen().values[sensors::kAnalog];
+  ASSERT_EQ(inputs.size(), 20u);
+  EXPECT_EQ(std::vector<double>(inputs.begin() + 10, inputs.end()), (std::vector<double>{5, 1, 0, 0, 5, 1, 5, 1, 0, 0}))
+      << "wall, Play, Advance, overcurrent left and right";
+  EXPECT_EQ(seen().values[sensors::kBattery], (std::vector<double>{1e-3 * 15'700, 1e-3 * 1'200, 1e-3 * 2'100, 1}));
   EXPECT_GT(seen().X_WM.x, 2.1) << "it moved";
   EXPECT_EQ(seen().poses[sensors::kCliff].x, seen().X_WM.x);
   EXPECT_EQ(seen().numbers[sensors::kCliff], 0u) << "it has no virtual sensor of this type";
@@ -122,7 +136,8 @@ TEST_F(RealRobotTest, PinsOfACargoBayAreReadAndSet) {
     EXPECT_TRUE(create.driven(drives));
   };
   step(0, 1);
-  EXPECT_EQ(seen().values[sensors::kAnalog], (std::vector<double>{5, 1023, 5, 1, 0, 0, 5, 1, 0, 0}));
+  EXPECT_EQ(seen().values[sensors::kAnalog],
+            (std::vector<double>{5, 1023, 5, 1, 0, 0, 5, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
   for (std::uint64_t k = 2; k <= 4; ++k) step(0b101011, k);
   EXPECT_EQ(create.outputs, 0b011);
   EXPECT_EQ(create.low_side_drivers, 0b101);
@@ -142,7 +157,7 @@ TEST_F(RealRobotTest, OutputsThatARobotDoesNotHaveAreReported) {
   robot->step(kTick);
   EXPECT_TRUE(create.driven(1));
   EXPECT_EQ(create.outputs, 0);
-  EXPECT_FALSE(seen().values.contains(sensors::kAnalog));
+  EXPECT_EQ(seen().values[sensors::kAnalog], std::vector<double>(10, 0.0)) << "no cargo bay";
   EXPECT_NE(f.log.read_all().find("has no digital outputs"), std::string::npos);
   seen().outputs = 0;
 }
@@ -181,6 +196,35 @@ TEST_F(RealRobotTest, OwnSensorsThatSufficeReplaceTheFarm) {
     }
     EXPECT_EQ(create.right, continues ? 200 : 0) << controller;
     EXPECT_EQ(seen().values.count(sensors::kLaser), 0u);
+  }
+}
+
+/// `wander` needs only the bumper of a robot without lasers; with one, it waits for its scans.
+TEST_F(RealRobotTest, WandersByItsOwnBumperWithoutTheFarm) {
+  for (const bool laser : {true, false}) {
+    world::World world = f.world;
+    if (!laser) world.movers[1].sensors.clear();
+    const sensors::SensorSet sensor_set(world);
+    CreateSimulator create;
+    RobotClientOptions options{.stop_after = 0.5, .log_descriptor = f.log.descriptor()};
+    options.link.farm = {netio::kLoopback, f.service->port()};
+    options.controller.name = "wander";
+    options.real = RealRobotOptions{.device = create.device()};
+    RobotClient robot(world, sensor_set, 1, f.layout, options);
+    EXPECT_TRUE(create.streaming());
+    std::int64_t now = 0;
+    bool backed_off = false;
+    for (std::uint64_t k = 1; k <= 26; ++k) {
+      create.bumps = k == 20 || k == 21 ? 3 : 0;
+      create.run(7);
+      robot.step(now += kTick);
+      EXPECT_TRUE(create.driven(k));
+      backed_off = backed_off || create.left + create.right < 0;
+      if (k == 19) {
+        EXPECT_EQ(create.left + create.right > 0, !laser);
+      }
+    }
+    EXPECT_EQ(backed_off, !laser) << "from what it touched";
   }
 }
 
