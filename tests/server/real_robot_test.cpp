@@ -199,18 +199,21 @@ TEST_F(RealRobotTest, OwnSensorsThatSufficeReplaceTheFarm) {
   }
 }
 
-/// `wander` needs only the bumper of a robot without lasers; with one, it waits for its scans.
+/// `wander` of a robot without lasers needs only its bumper, although its virtual one is missing, too; with a laser, it
+/// waits for scans.
 TEST_F(RealRobotTest, WandersByItsOwnBumperWithoutTheFarm) {
   for (const bool laser : {true, false}) {
     world::World world = f.world;
-    if (!laser) world.movers[1].sensors.clear();
+    if (!laser) world.movers[1].sensors = {{.type = "bumper"}};
     const sensors::SensorSet sensor_set(world);
+    StreamLayout layout = f.layout;
+    layout.bases[sensors::kBumper] = layout.bases.at(sensors::kLaser) + 2 * layout.stride;
     CreateSimulator create;
     RobotClientOptions options{.stop_after = 0.5, .log_descriptor = f.log.descriptor()};
     options.link.farm = {netio::kLoopback, f.service->port()};
     options.controller.name = "wander";
     options.real = RealRobotOptions{.device = create.device()};
-    RobotClient robot(world, sensor_set, 1, f.layout, options);
+    RobotClient robot(world, sensor_set, 1, layout, options);
     EXPECT_TRUE(create.streaming());
     std::int64_t now = 0;
     bool backed_off = false;
