@@ -24,6 +24,7 @@ inline constexpr std::uint8_t kEncoder = 8;  ///< wire id
 /// Encoder settings of one robot.
 struct Encoder {
   double per_count = 1e-3;   ///< [m] > 0
+  double angle_step = 0.0;   ///< [rad] > 0: a real robot's odometry, which reports distance and angle in such steps
   double slip = 0.0;         ///< [m^(1/2)] >= 0
   double scale_left = 1.0;   ///< [-] > 0
   double scale_right = 1.0;  ///< [-] > 0

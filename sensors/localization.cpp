@@ -141,7 +141,8 @@ constexpr PlainForm kForm{kLocalization, "localization", kNumbers};
 estimation::LocalizationOptions localization_options(const world::Mover& mover, const PositionSensors& sensors) {
   estimation::LocalizationOptions options{.sideways = mover.drive == world::Drive::omni};
   if (const auto& wheels = sensors.wheels)
-    options.encoder = {.per_count = wheels->per_count, .slip = wheels->slip, .track = wheels->track};
+    options.encoder = {
+        .per_count = wheels->per_count, .angle_step = wheels->angle_step, .slip = wheels->slip, .track = wheels->track};
   if (sensors.gyro) options.gyro = {sensors.gyro->noise, sensors.gyro->bias};
   // Receivers without noise still have the error of their latency and of rounding.
   if (sensors.gps) options.gps_noise = std::max(sensors.gps->noise, 1e-3);

@@ -39,7 +39,8 @@ control::PositionSensors position_sensors_of(const world::Mover& mover, const Re
   control::PositionSensors own = control::position_sensors_of(mover);
   if (real == nullptr) return own;
   if (!own.wheels) own.wheels = sensors::Encoder{.slip = real->type().slip, .track = mover.track};
-  own.wheels->per_count = std::max(real->type().distance, own.wheels->track * real->type().angle);
+  own.wheels->per_count = real->type().distance;
+  own.wheels->angle_step = real->type().angle;
   return {.wheels = own.wheels, .gyro = {}, .gps = {}};
 }
 

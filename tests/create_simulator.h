@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <string>
 
 #include "base/pose.h"
@@ -69,6 +70,12 @@ class CreateSimulator : public PseudoTerminal {
     bytes.push_back(static_cast<std::uint8_t>(256 - sum));
     return bytes;
   }
+  /// Draws what it has not sent yet and its slip.
+  void seed(std::uint64_t seed) {
+    random_.seed(seed);
+    distance_ = std::uniform_real_distribution<double>{}(random_);
+    angle_ = std::uniform_real_distribution<double>{}(random_);
+  }
   /// Switches it off and on.
   void restart() {
     mode = off;
@@ -79,6 +86,7 @@ class CreateSimulator : public PseudoTerminal {
 
   double left_counts = 0.0, right_counts = 0.0;  ///< of the wheels of a Create 2, 508.8 to a turn of 72 mm
   double scale = 1.0;                            ///< reported distance and angle over the true ones
+  double slip = 0.0;                             ///< [m^(1/2)] standard deviation of a wheel's slip after one metre
   Mode mode = off;
   base::Pose X;              ///< pose in the world
   int right = 0, left = 0;   ///< [mm/s]
@@ -138,8 +146,13 @@ class CreateSimulator : public PseudoTerminal {
     X.yaw += turn;
     left_counts += left * kStep * 508.8 / (M_PI * 72.0);
     right_counts += right * kStep * 508.8 / (M_PI * 72.0);
-    distance_ += scale * 1e3 * way;
-    angle_ += scale * turn * 180.0 / M_PI;
+    const double slip_left = slip_of(left), slip_right = slip_of(right);
+    distance_ += scale * 1e3 * (way + 0.5 * (slip_left + slip_right));
+    angle_ += scale * (turn + (slip_right - slip_left) / 0.258) * 180.0 / M_PI;
+  }
+  /// Returns the slip [m] of a wheel in one step.
+  double slip_of(int speed) {
+    return slip * std::sqrt(1e-3 * std::abs(speed) * kStep) * std::normal_distribution<double>{}(random_);
   }
   static int take_whole(double& sum) {
     const double whole = std::trunc(sum);
@@ -153,6 +166,7 @@ class CreateSimulator : public PseudoTerminal {
 
   Bytes command_;
   double distance_ = 0.0, angle_ = 0.0;  ///< [mm], [degree] not sent yet
+  std::mt19937_64 random_{1};
 };
 
 }  // namespace sf

@@ -76,6 +76,35 @@ void reduce(std::vector<Hypothesis>& all) {
   }
 }
 
+/// Variance and covariance [m^2] of the wheels' distances by rounding.
+struct Rounding {
+  double each, both;
+};
+Rounding rounding_of(const LocalizationOptions::Encoder& encoder) {
+  if (encoder.angle_step == 0.0) return {std::max(square(encoder.per_count) / 12.0, kLeastVariance), 0.0};
+  const double distance = std::max(square(encoder.per_count) / 3.0, kLeastVariance);
+  const double angle = square(0.5 * encoder.track * encoder.angle_step) / 3.0;
+  return {distance + angle, distance - angle};
+}
+
+/// The error of rounding is constant while the robot is at rest or drives straight on: more readings do not reduce it.
+/// That of a coarse angle turns the path since the last fix.
+void add_rounding(const LocalizationOptions::Encoder& encoder, glm::dvec2 fixed, Estimate& estimate) {
+  Covariance& P = estimate.covariance;
+  const auto at = [&](int i, int k) -> double& { return P[i * kComponents + k]; };
+  if (encoder.angle_step > 0.0) {
+    const double distance = square(encoder.per_count) / 3.0, angle = square(encoder.angle_step) / 3.0;
+    const std::array<double, 3> J{fixed.y - estimate.X_WM.y, estimate.X_WM.x - fixed.x, 1.0};
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) at(i, k) += angle * J[i] * J[k];
+    for (const int k : {kX, kY}) at(k, k) = std::max(at(k, k), distance);
+    return;
+  }
+  const double rounding = square(encoder.per_count) / 12.0;
+  for (const int k : {kX, kY}) at(k, k) = std::max(at(k, k), rounding);
+  at(kYaw, kYaw) = std::max(at(kYaw, kYaw), 2.0 * rounding / square(encoder.track));
+}
+
 /// Returns whether encoders counted more since `before` [ns] than wheels can roll.
 bool was_reset(const WheeledState& predicted, const WheeledMeasurement& m, std::int64_t before) {
   const double seconds = 1e-9 * static_cast<double>(std::abs(m.time - before));
@@ -90,9 +119,8 @@ Localization::Localization(const LocalizationOptions& options)
 
 Verdict Localization::add_encoder(std::int64_t time, double left, double right) {
   if (!options_.encoder) return Verdict::invalid;
-  // Rounding to counts.
-  const double variance = std::max(square(options_.encoder->per_count) / 12.0, kLeastVariance);
-  return take({time, Kind::encoder, 0, {left, right, 0.0}, {variance, 0.0, 0.0, variance, 0.0, 1.0}});
+  const auto [each, both] = rounding_of(*options_.encoder);
+  return take({time, Kind::encoder, 0, {left, right, 0.0}, {each, both, 0.0, each, 0.0, 1.0}});
 }
 
 Verdict Localization::add_gyro(std::int64_t time, double rate) {
@@ -139,7 +167,8 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   reduce(predicted_);
   state.hypotheses = predicted_;
   if (!is_fix(m.kind)) return Verdict::used;
-  state.last_fix = m.time;
+  const auto& mean = heaviest(predicted_).state.mean;
+  state.last_fix = m.time, state.fixed = {mean[kX], mean[kY]};
   state.rejected = 0;
   return Verdict::used;
 }
@@ -165,7 +194,7 @@ Verdict Localization::start(const WheeledMeasurement& m, State& state) const {
   if (state.known()) first = estimation::predict(model_, heaviest(state.hypotheses).state, m.time);
   first.time = m.time;
   replace(first, m);
-  state.last_fix = m.time;
+  state.last_fix = m.time, state.fixed = {first.mean[kX], first.mean[kY]};
   state.rejected = 0;
   state.hypotheses.assign(1, {1.0, first});
   if (m.kind == Kind::pose) return Verdict::started;
@@ -217,11 +246,7 @@ Prediction Localization::predict(std::int64_t time) const {
     P = covariance_about(prediction.estimate, all);
   }
   if (!options_.encoder) return prediction;
-  // The error of rounding is constant while the robot is at rest: more readings do not reduce it.
-  const double rounding = square(options_.encoder->per_count) / 12.0;
-  for (const int k : {kX, kY}) P[k * kComponents + k] = std::max(P[k * kComponents + k], rounding);
-  double& yaw = P[kYaw * kComponents + kYaw];
-  yaw = std::max(yaw, 2.0 * rounding / square(options_.encoder->track));
+  add_rounding(*options_.encoder, state->fixed, prediction.estimate);
   return prediction;
 }
 

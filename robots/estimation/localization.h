@@ -26,6 +26,9 @@ namespace sf::estimation {
 struct LocalizationOptions {
   struct Encoder {
     double per_count = 1e-3;         ///< [m] > 0
+    /// [rad] >= 0. 0: each wheel is counted, rounded to the nearest count. > 0: distance and angle are reported in
+    /// steps of `per_count` and of this, and may be truncated: errors of up to a whole step to either side.
+    double angle_step = 0.0;
     double slip = 0.005;             ///< [m^(1/2)] >= 0 standard deviation of a wheel's slip after one metre
     double track = 0.258;            ///< [m] > 0, nominal
     double scale_sigma = 0.05;       ///< [-] >= 0 standard deviation of the wheels' common unknown scale
@@ -95,6 +98,7 @@ class Localization {
   };
   struct State {
     std::int64_t last_fix = 0;         ///< [ns] time of the last used pose or position
+    glm::dvec2 fixed;                  ///< [m] position at that time
     int rejected = 0;                  ///< poses and positions rejected since then
     bool rolled = false;               ///< the encoders' distances are part of the hypotheses
     std::int64_t counted_at = -1;      ///< [ns] of the last encoder reading before that; -1: none
