@@ -25,7 +25,7 @@ namespace sf::estimation {
 /// Sensor errors, as in the sensors' settings. All values are finite.
 struct LocalizationOptions {
   struct Encoder {
-    double per_count = 1e-3;         ///< [m] > 0
+    double per_count = 1e-3;  ///< [m] > 0
     /// [rad] >= 0. 0: each wheel is counted, rounded to the nearest count. > 0: distance and angle are reported in
     /// steps of `per_count` and of this, and may be truncated: errors of up to a whole step to either side.
     double angle_step = 0.0;
