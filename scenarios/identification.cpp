@@ -37,7 +37,8 @@ std::uint32_t robot_row(const record::Recording& recording, const world::World& 
     if (world.movers[m].name == robot) return m;
     names.push_back(world.movers[m].name);
   }
-  throw base::InputError(recording.file, 0, fmt::format("has no robot '{}'{}", robot, base::expected_one_of(robot, names)));
+  throw base::InputError(recording.file, 0,
+                         fmt::format("has no robot '{}'{}", robot, base::expected_one_of(robot, names)));
 }
 
 /// Finds a sensor written as "type" or "type:number".
