@@ -156,6 +156,7 @@ TEST_F(Ros2Test, EndpointsAreNamedAsInRos2Nodes) {
   ASSERT_TRUE(peer.wait([&] { return find("ros_discovery_info", kDiscovery).has_value(); })) << "created last";
   ASSERT_TRUE(peer.wait([&] {
     return find("rt/scout/scan", kScan) && find("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::Twist_") &&
+           find("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_") &&
            find("rq/set_simulation_stateRequest", "simulation_interfaces::srv::dds_::SetSimulationState_Request_");
   }));
   const Endpoint scan = *find("rt/scout/scan", kScan);
