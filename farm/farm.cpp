@@ -103,7 +103,7 @@ struct Farm::State {
     return {world, device, thread_pool, sensed, options.seed, options.noise, options.true_poses, options.scene};
   }
   std::vector<SensorPipeline> make_pipelines(const sensors::SensorSet& of, std::span<const base::Report> sensed);
-  std::shared_ptr<const void> rebuild();
+  std::shared_ptr<const void> add_mover();
   std::shared_ptr<const void> update_outlines();
   ReadingExchange* exchange() const { return sharing ? sharing->exchange() : nullptr; }
   bool is_gone(std::uint32_t mover) const { return gone.at(mover) != 0 || (sharing && sharing->is_hidden(mover)); }
@@ -139,17 +139,15 @@ std::vector<SensorPipeline> Farm::State::make_pipelines(const sensors::SensorSet
   return made;
 }
 
-/// Rebuilds all tables for the movers of the world, of which the last may be new. Everything that can fail comes first.
-std::shared_ptr<const void> Farm::State::rebuild() {
-  const std::size_t added = world.movers.size() - states.size();
-  SF_CHECK(added <= 1 && exchange() == nullptr, std::to_string(states.size()));
+/// Rebuilds all tables for the movers of the world, of which the last is new. Everything that can fail comes first.
+std::shared_ptr<const void> Farm::State::add_mover() {
+  SF_CHECK(exchange() == nullptr, "readings are exchanged");
   clear_blocks();
-  std::optional<sensors::SensorSet> all;  // settings of sensors do not depend on outlines
-  if (added > 0) all.emplace(world);
+  sensors::SensorSet all(world);
   const base::Report absent{.mover = static_cast<std::uint32_t>(states.size()), .X_WM = base::kAbsent, .velocity = {}};
   std::vector<base::Report> sensed = states;
-  sensed.resize(states.size() + added, absent);
-  auto made = make_pipelines(all ? *all : sensor_set, sensed);
+  sensed.push_back(absent);
+  auto made = make_pipelines(all, sensed);
   struct Before {
     std::vector<SensorPipeline> pipelines;
     std::unique_ptr<Derivation> derivation;
@@ -158,7 +156,7 @@ std::shared_ptr<const void> Farm::State::rebuild() {
   batch = std::make_unique<gpu::Batch>(device);
   pipelines = std::move(made);
   states.swap(sensed);
-  if (all) std::swap(sensor_set, *all);  // `before` points into it
+  std::swap(sensor_set, all);  // `before` points into it
   derivation = std::make_unique<Derivation>(context_of(states), sensor_set);
   if (between) tick_states.resize(states.size(), absent);
   subscribed.resize(states.size(), 0);
@@ -167,7 +165,7 @@ std::shared_ptr<const void> Farm::State::rebuild() {
   pose_changes = std::make_unique<PoseChanges>(world);
   faults.add_sensors(world, sensor_set);
   delivery.add_sensors();
-  if (sharing && added > 0) sharing->add_mover(sensor_set);
+  if (sharing) sharing->add_mover(sensor_set);
   for (SensorPipeline& pipeline : pipelines) {
     const auto same = [&](const SensorPipeline& other) { return other.group->type == pipeline.group->type; };
     const auto old = std::find_if(before->pipelines.begin(), before->pipelines.end(), same);
@@ -179,26 +177,28 @@ std::shared_ptr<const void> Farm::State::rebuild() {
   return before;
 }
 
-/// Updates the sensors whose tables allow it, and replaces the others.
+/// Updates the sensors whose tables allow it, and replaces the others. What can fail comes first.
 std::shared_ptr<const void> Farm::State::update_outlines() {
   SF_CHECK(exchange() == nullptr, "readings are exchanged");
   clear_blocks();
-  auto before = std::make_shared<std::vector<SensorPipeline>>();
   const sensors::SensorContext context = context_of(states);
+  std::vector<std::pair<SensorPipeline*, SensorPipeline>> made;
   for (SensorPipeline& pipeline : pipelines) {
     pipeline.cache = ReadingCache(pipeline.group->rows, context.noise);
     if (pipeline.backend->update_outlines(world)) continue;
     device.set_owner(pipeline.group->type->name);
-    SensorPipeline made(context, *pipeline.group);
-    made.go_on(&pipeline, last_tick, last_call);
-    earlier_work += pipeline.backend->stats();
-    before->push_back(std::exchange(pipeline, std::move(made)));
-  }
-  if (!before->empty()) {
-    batch = std::make_unique<gpu::Batch>(device);
-    must_record = demand_changed = true;
+    made.emplace_back(&pipeline, SensorPipeline(context, *pipeline.group));
   }
   pose_changes = std::make_unique<PoseChanges>(world);
+  auto before = std::make_shared<std::vector<SensorPipeline>>();
+  if (made.empty()) return before;
+  batch = std::make_unique<gpu::Batch>(device);
+  must_record = demand_changed = true;
+  for (auto& [pipeline, next] : made) {
+    next.go_on(pipeline, last_tick, last_call);
+    earlier_work += pipeline->backend->stats();
+    before->push_back(std::exchange(*pipeline, std::move(next)));
+  }
   return before;
 }
 
@@ -390,7 +390,7 @@ void Farm::set_absent(std::uint32_t mover, bool gone) {
 }
 std::shared_ptr<const void> Farm::add_mover() {
   SF_CHECK(s_->states.size() + 1 == s_->world.movers.size(), std::to_string(s_->states.size()));
-  return s_->rebuild();
+  return s_->add_mover();
 }
 std::shared_ptr<const void> Farm::update_outlines() {
   SF_CHECK(s_->states.size() == s_->world.movers.size(), std::to_string(s_->states.size()));

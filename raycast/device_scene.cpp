@@ -19,6 +19,14 @@ constexpr std::uint32_t kPageChunks = 8;
 /// Returns room for outlines that change, so that most changes keep the tables.
 std::size_t with_reserve(std::size_t count) { return count == 0 ? 0 : count + count / 4 + 256; }
 
+/// Returns the first row of each mover, then the end.
+std::vector<std::uint32_t> mover_rows_of(const OutlineTable& outlines) {
+  std::vector<std::uint32_t> first{0};
+  for (const OutlineTable::Shape& shape : outlines.of_mover)
+    first.push_back(first.back() + std::max(shape.slices, 2u) - 2);
+  return first;
+}
+
 /// Returns the side of a cell [m] for kernels that run on the CPU, where short lists save more than small cells cost. A
 /// 32nd of the range suits a scanner with several hundred beams; scanners with few beams use larger cells
 /// (docs/performance.md).
@@ -42,7 +50,8 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
   for (std::size_t i = 0; i < configs.size(); ++i)
     config_tables_.push_back({{cells_.size_of(i), configs[i].range}, configs[i].spread + 5e-4});
   pool_begin_ += kBlockTexels * static_cast<std::uint32_t>(with_reserve(movers_.outlines().blocks.size()));
-  const std::size_t rows = with_reserve(count_mover_rows(movers_.outlines()));
+  first_mover_rows_ = mover_rows_of(movers_.outlines());
+  const std::size_t rows = with_reserve(first_mover_rows_.back());
 
   const std::vector<world::Segment>& walls = configs.walls();
   const std::size_t count = walls.size() + with_reserve(movers_.segments());
@@ -63,29 +72,16 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
 
 DeviceScene::~DeviceScene() = default;
 
-/// Assigns rows to the movers. @return their number
-std::uint32_t DeviceScene::count_mover_rows(const OutlineTable& outlines) {
-  std::uint32_t rows = 0;
-  first_mover_rows_.clear();
-  for (const OutlineTable::Shape& shape : outlines.of_mover) {
-    first_mover_rows_.push_back(rows);
-    rows += std::max(shape.slices, 2u) - 2;
-  }
-  return rows;
-}
-
 bool DeviceScene::update_outlines(const world::World& world) {
   MoverGeometry movers(world);
-  const std::vector<std::uint32_t> rows_before = first_mover_rows_;
-  const std::size_t rows = count_mover_rows(movers.outlines());
+  std::vector<std::uint32_t> rows = mover_rows_of(movers.outlines());
   if (has_movers() != (movers.segments() > 0) ||
       SF_SECTORS + kBlockTexels * movers.outlines().blocks.size() > pool_begin_ ||
       configs_.walls().size() + movers.segments() + 1 > models_->texels() ||
-      gpu::texels_of<MoverRow>(rows + 1) > mover_rows_->texels()) {
-    first_mover_rows_ = rows_before;
+      gpu::texels_of<MoverRow>(rows.back() + 1) > mover_rows_->texels())
     return false;
-  }
   movers_ = std::move(movers);
+  first_mover_rows_ = std::move(rows);
   write_outlines();
   upload_outlines_ = true;
   return true;

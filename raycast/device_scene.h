@@ -75,7 +75,6 @@ class DeviceScene {
   struct NearbyMover;
   struct Scratch;
 
-  std::uint32_t count_mover_rows(const OutlineTable& outlines);
   void write_outlines();
   void build_missing_cells();
   Cell make_cell(const CellKey& key, Scratch& scratch);
@@ -99,7 +98,8 @@ class DeviceScene {
   MoverGeometry movers_;
   ViewCells cells_;
   std::vector<Cell> cell_tables_;                  ///< per slot
-  std::vector<std::uint32_t> first_mover_rows_;    ///< of each mover: one row per slice between its lowest and highest
+  std::vector<std::uint32_t> first_mover_rows_;    ///< of each mover: one row per slice between its lowest and highest;
+                                                   ///< then the end
   std::uint32_t pool_begin_ = SF_SECTORS;          ///< texel
   std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: 1 if the host scans it
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread

@@ -43,18 +43,20 @@ std::uint64_t beams_of(const CastPlan& plan) {
   return beams;
 }
 
-/// Returns the number of surfaces, and whether a tick may cast that many beams at them.
-std::pair<std::uint64_t, bool> surfaces_of(const world::World& world, std::uint64_t beams) {
+std::uint64_t surfaces_of(const world::World& world) {
   std::uint64_t surfaces = count_visible(world.walls);
   for (const world::Mover& mover : world.movers) surfaces += count_visible(mover.body);
-  return {surfaces, beams == 0 || surfaces <= ReferenceCaster::kMostPairs / beams};
+  return surfaces;
+}
+
+bool fits(std::uint64_t beams, std::uint64_t surfaces) {
+  return beams == 0 || surfaces <= ReferenceCaster::kMostPairs / beams;
 }
 
 /// Rejects worlds with more than ReferenceCaster::kMostPairs.
 void check_size(const CasterInputs& in) {
-  const std::uint64_t beams = beams_of(in.plan);
-  const auto [surfaces, fits] = surfaces_of(in.world, beams);
-  if (fits) return;
+  const std::uint64_t beams = beams_of(in.plan), surfaces = surfaces_of(in.world);
+  if (fits(beams, surfaces)) return;
   const std::string refusal = fmt::format(
       "the caster 'reference' intersects every beam with every surface: {} beams and {} surfaces are more "
       "than {} million pairs; use fewer robots or beams, a smaller world, or the caster 'host'",
@@ -84,7 +86,7 @@ void ReferenceCaster::add(const world::Segment& s, std::uint32_t mover) {
 }
 
 bool ReferenceCaster::update_outlines(const world::World& world) {
-  if (!surfaces_of(world, beams_of(plan_)).second) return false;
+  if (!fits(beams_of(plan_), surfaces_of(world))) return false;
   const auto first = std::ranges::find_if(movers_, [](std::uint32_t mover) { return mover != kNoMover; });
   const auto walls = static_cast<std::size_t>(first - movers_.begin());
   local_.resize(walls), movers_.resize(walls), surfaces_.resize(walls);

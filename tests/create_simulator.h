@@ -70,7 +70,7 @@ class CreateSimulator : public PseudoTerminal {
     bytes.push_back(static_cast<std::uint8_t>(256 - sum));
     return bytes;
   }
-  /// Draws what it has not sent yet and its slip.
+  /// Seeds the slip and draws the initial remainders of distance and angle.
   void seed(std::uint64_t seed) {
     random_.seed(seed);
     distance_ = std::uniform_real_distribution<double>{}(random_);

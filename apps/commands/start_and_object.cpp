@@ -24,8 +24,8 @@ namespace {
 
 constexpr int kRepetitions = 3;
 
-/// Returns the local port of OBJECTs of one tag: a farm refuses OBJECTs from a second source for two seconds, also
-/// those of the next command.
+/// Returns the local port from which OBJECTs of one tag are sent. The farm refuses a second source for two seconds, so
+/// consecutive commands share a port.
 std::uint16_t port_of_object(std::uint32_t tag) { return static_cast<std::uint16_t>(49152 + tag % 16384); }
 
 /// @param port 0, or one that is taken: any

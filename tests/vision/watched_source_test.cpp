@@ -16,7 +16,7 @@ namespace {
 using Result = WatchedSource::Result;
 using namespace std::chrono_literals;
 
-/// What the test lets a camera send. Outlives the source, whose thread may be left behind.
+/// Script of a camera. It must outlive the source's thread, which may outlive the source.
 struct Feed {
   std::counting_semaphore<> images{0};
   std::atomic<int> left{1000};  ///< images until the end
