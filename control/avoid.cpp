@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "sensors/sonar.h"
 
 namespace sf::control {
 
@@ -20,6 +21,19 @@ double least(std::span<const double> ranges) {
   return range;
 }
 
+constexpr double kFront = M_PI / 6 + 1e-9;  // [rad] axes on the border belong to the front, as beams do
+constexpr double kSide = M_PI / 2 + 1e-9;   // [rad]
+
+void add_sonar(const sensors::ConeArray& sonar, std::span<const double> ranges, std::optional<Thirds>& thirds) {
+  if (!thirds) thirds = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  for (std::size_t i = 0; i < std::min(ranges.size(), sonar.X_SC.size()); ++i) {
+    const double bearing = base::wrap_angle(sonar.row.X_MS.yaw + sonar.X_SC[i].yaw);
+    if (!(std::abs(bearing) <= kSide)) continue;
+    double& third = std::abs(bearing) <= kFront ? thirds->front : bearing > 0.0 ? thirds->left : thirds->right;
+    if (ranges[i] < third) third = ranges[i];
+  }
+}
+
 }  // namespace
 
 // Beams on the border between two thirds belong to the front.
@@ -27,6 +41,17 @@ Thirds thirds_of(std::span<const double> ranges) {
   if (ranges.size() < 3) return {least(ranges), least(ranges), least(ranges)};
   const std::size_t side = (ranges.size() - 1) / 3;
   return {least(ranges.first(side)), least(ranges.subspan(side, ranges.size() - 2 * side)), least(ranges.last(side))};
+}
+
+std::uint64_t Avoid::needs() const { return sonars_.empty() ? kNeedsFarm : 1ull << sensors::kSonar; }
+
+std::optional<Thirds> Avoid::nearest(const ControllerInput& input) const {
+  const base::ReadingBlock* laser = newest(input, sensors::kLaser);
+  if (laser != nullptr && !laser->values.empty()) return thirds_of(laser->values);
+  std::optional<Thirds> thirds;
+  for (const base::ReadingBlock& reading : input.readings)
+    if (const auto source = sonars_.source_of(reading)) add_sonar(source->sonar, reading.values, thirds);
+  return thirds;
 }
 
 base::Twist Avoid::step(const ControllerInput& input) {
@@ -38,18 +63,16 @@ base::Twist Avoid::step(const ControllerInput& input) {
 }
 
 base::Twist Avoid::drive(const ControllerInput& input) {
-  const base::ReadingBlock* reading = newest(input, sensors::kLaser);
-  if (reading == nullptr || reading->values.empty()) return {};
-  const Thirds nearest = thirds_of(reading->values);
-
+  const std::optional<Thirds> seen = nearest(input);
+  if (!seen) return {};
   const bool turning = state_ == State::turn_left || state_ == State::turn_right;
-  if (turning && nearest.front < settings_.clear)
+  if (turning && seen->front < settings_.clear)
     return {0.0, 0.0, state_ == State::turn_left ? settings_.turn_speed : -settings_.turn_speed};
-  if (nearest.front < settings_.turn) {
-    state_ = nearest.left > nearest.right ? State::turn_left : State::turn_right;
+  if (seen->front < settings_.turn) {
+    state_ = seen->left > seen->right ? State::turn_left : State::turn_right;
     return {0.0, 0.0, state_ == State::turn_left ? settings_.turn_speed : -settings_.turn_speed};
   }
-  state_ = nearest.front < settings_.slow ? State::slow : State::drive;
+  state_ = seen->front < settings_.slow ? State::slow : State::drive;
   return {state_ == State::slow ? settings_.slow_speed : settings_.speed, 0.0, 0.0};
 }
 
@@ -57,9 +80,10 @@ namespace {
 
 std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
-  if (!sensors::has_laser(mover))
+  Sonars sonars(context);
+  if (!sensors::has_laser(mover) && sonars.empty())
     throw base::InputError(
-        fmt::format("controller 'avoid': '{}' has no laser; give it one in the world file", mover.name));
+        fmt::format("controller 'avoid': '{}' has no laser and no sonar; give it one in the world file", mover.name));
   AvoidSettings avoid;
   avoid.speed = settings.number("speed", std::min(avoid.speed, mover.max_forward), 0.0, mover.max_forward);
   avoid.slow_speed = settings.number("slow_speed", std::min(avoid.slow_speed, avoid.speed), 0.0, mover.max_forward);
@@ -67,7 +91,7 @@ std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Setting
   avoid.turn = settings.number("turn", avoid.turn, 0.0, 1e3);
   avoid.clear = settings.number("clear", avoid.turn, avoid.turn, 1e3);
   avoid.turn_speed = settings.number("turn_speed", std::min(avoid.turn_speed, mover.max_turn), 1e-3, mover.max_turn);
-  return std::make_unique<Avoid>(avoid, read_swept_area(context, settings));
+  return std::make_unique<Avoid>(avoid, read_swept_area(context, settings), std::move(sonars));
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ class ControlShell final : public Controller, public StatesStopReason, public Sh
   base::Intent intent() const override { return inner_->intent(); }
   double v2v_range() const override { return inner_->v2v_range(); }
   std::uint8_t outputs() const override { return inner_->outputs(); }
+  std::uint64_t needs() const override { return inner_->needs(); }
   const maps::OccupancyGrid* own_map() const override { return inner_->own_map(); }
   bool done() const override { return state_ == ControlShellState::stop; }
   /// Returns NaN after steps in which the inner controller was not called.

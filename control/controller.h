@@ -58,6 +58,9 @@ struct ControllerInput {
 /// One object per robot. Calls on one object are made by one thread at a time; different objects may run in parallel.
 class Controller {
  public:
+  /// `needs` of controllers that never drive without the farm's readings.
+  static constexpr std::uint64_t kNeedsFarm = ~std::uint64_t{0};
+
   virtual ~Controller() = default;
   /// @return the twist to drive until the next call; finite
   virtual base::Twist step(const ControllerInput& input) = 0;
@@ -72,6 +75,9 @@ class Controller {
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
   /// Returns the digital outputs that a real robot with such pins sets after a step, by bit (docs/robots.md).
   virtual std::uint8_t outputs() const { return 0; }
+  /// Returns the sensor types by wire id, as bits, of which readings of any one suffice to drive; 0: it needs no
+  /// readings. A robot drives on with those of its own sensors while the farm is away. Read once.
+  virtual std::uint64_t needs() const { return kNeedsFarm; }
   /// Returns the map that the robot drives by, valid until the next step; null: it keeps none.
   virtual const maps::OccupancyGrid* own_map() const { return nullptr; }
 };

@@ -78,15 +78,6 @@ std::vector<sensors::SensorSpec> ControllerContext::sensors_of(std::uint8_t sens
 
 namespace {
 
-/// Returns the needs of a controller of this robot. The farm cannot send what the world file does not give the robot: a
-/// controller that can do without such sensors, which its `make` decides, needs no readings.
-std::uint32_t needs_of(const ControllerType& type, const ControllerContext& context) {
-  if (type.needs == kNeedsFarm) return kNeedsFarm;
-  for (std::uint8_t k = 0; k < 32; ++k)
-    if ((type.needs >> k & 1u) != 0 && !context.sensors_of(k).empty()) return type.needs;
-  return 0;
-}
-
 ConfiguredController make(const ControllerContext& context, ControllerConfig config) {
   const ControllerType* type = find_controller(config.name);
   if (type == nullptr) {
@@ -104,7 +95,7 @@ ConfiguredController make(const ControllerContext& context, ControllerConfig con
   if (shell.localize.value_or(can_localize(mover)) && !config.localized_outside)
     localization.emplace(mover, config.known_start);
   return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),
-          config.rate > 0.0 ? config.rate : type->rate, on_scans, shell.localize, needs_of(*type, context)};
+          config.rate > 0.0 ? config.rate : type->rate, on_scans, shell.localize};
 }
 
 }  // namespace

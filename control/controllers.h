@@ -38,9 +38,6 @@ struct ControllerContext {
   std::vector<sensors::SensorSpec> sensors_of(std::uint8_t sensor_type) const;
 };
 
-/// `ControllerType::needs` of controllers that never drive without the farm's readings.
-inline constexpr std::uint32_t kNeedsFarm = 0xFFFFFFFFu;
-
 /// Description of one controller. Defined as `constinit const ControllerType x_controller` next to its class, and
 /// listed in control/controllers.cpp.
 struct ControllerType {
@@ -53,10 +50,6 @@ struct ControllerType {
   /// @throws base::InputError for invalid settings, or if the world or the robot lacks something required
   std::unique_ptr<Controller> (*make)(const ControllerContext& context, Settings& settings);
   const sensorfarm::ControllerEntry* entry = nullptr;  ///< entry of a user's own controller (control/own_controllers.h)
-  /// Bit k: readings of sensor type k suffice to drive; any one of these types does. 0: needs no readings. A robot
-  /// drives on with them while the readings of the farm are missing. None are needed of types that the robot does not
-  /// have in the world file.
-  std::uint32_t needs = kNeedsFarm;
 };
 
 /// Returns the built-in controllers, then those of plug-ins in the order in which they were added.
@@ -102,10 +95,9 @@ ControllerConfig controller_of(const world::Mover& mover, const ControllerConfig
 
 struct ConfiguredController {
   std::unique_ptr<Controller> controller;
-  double rate = 10.0;                ///< [Hz]
-  bool on_scans = false;             ///< steps on each new scan and on contact instead of at its rate
-  std::optional<bool> localize;      ///< the setting of this name; nullopt: not set
-  std::uint32_t needs = kNeedsFarm;  ///< as in ControllerType
+  double rate = 10.0;            ///< [Hz]
+  bool on_scans = false;         ///< steps on each new scan and on contact instead of at its rate
+  std::optional<bool> localize;  ///< the setting of this name; nullopt: not set
 };
 
 /// @throws base::InputError for an unknown name (the message lists all names) and for settings that no code has read

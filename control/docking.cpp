@@ -32,6 +32,8 @@ std::uint32_t light_in(std::span<const base::ReadingBlock> readings) {
 
 }  // namespace
 
+std::uint64_t Docking::needs() const { return 1ull << sensors::kIrReceiver; }
+
 base::Twist Docking::step(const ControllerInput& input) {
   const base::Pose& X_WM = input.state.X_WM;
   const std::uint32_t light = light_in(input.readings);
@@ -202,7 +204,6 @@ constinit const ControllerType docking_controller{
     .rate = 10.0,
     .stops_on_bumper = false,
     .make = make_docking,
-    .needs = 1u << sensors::kIrReceiver,
 };
 
 }  // namespace sf::control

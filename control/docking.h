@@ -34,6 +34,7 @@ class Docking final : public Controller, public StatesStopReason {
 
   base::Twist step(const ControllerInput& input) override;
   base::Intent intent() const override { return {.docking = true}; }
+  std::uint64_t needs() const override;
   bool done() const override { return done_; }
   std::string stop_reason() const override;
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "base/error.h"
 #include "base/plugin_calls.h"
 #include "base/printable.h"
+#include "base/suggest.h"
 #include "control/public_settings.h"
 #include "sensors/derived/public_types.h"
 
@@ -64,7 +66,8 @@ class OwnController final : public Controller {
       : world_(context.world),
         name_(own_controller_name(context)),
         inner_(std::move(inner)),
-        range_(guarded([&] { return inner_->radio_range(); })) {}
+        range_(guarded([&] { return inner_->radio_range(); })),
+        needs_(read_needs()) {}
 
   ~OwnController() override {
     const base::PluginCall under_way(name_, time_);
@@ -76,6 +79,7 @@ class OwnController final : public Controller {
   base::Twist step(const ControllerInput& input) override;
   base::Intent intent() const override { return {}; }
   double v2v_range() const override { return range_; }
+  std::uint64_t needs() const override { return needs_; }
   bool done() const override {
     return guarded([&] { return inner_->done(); });
   }
@@ -87,15 +91,39 @@ class OwnController final : public Controller {
   }
 
  private:
+  [[noreturn]] void refuse_type(const std::string& name) const;
+  std::uint64_t read_needs() const;
+
   const world::World& world_;
   std::string name_;  ///< "controller 'mine' of robot 'r0'"
   std::unique_ptr<sensorfarm::Controller> inner_;
   double time_ = 0.0;  ///< [s] of the last step
   double range_;
+  std::uint64_t needs_;
   std::vector<sensorfarm::Reading> readings_;
   std::vector<sensorfarm::Neighbour> others_;
   std::vector<sensorfarm::Light> lights_;
 };
+
+void OwnController::refuse_type(const std::string& name) const {
+  std::vector<std::string_view> known;
+  for (const sensors::SensorType* type : sensors::sensor_types()) known.push_back(type->name);
+  throw base::InputError(fmt::format("{}: sufficient_sensors() returned the unknown sensor type '{}'{}", name_,
+                                     base::one_line(name), base::expected_one_of(name, known)));
+}
+
+std::uint64_t OwnController::read_needs() const {
+  const auto names = guarded([&] { return inner_->sufficient_sensors(); });
+  if (!names) return kNeedsFarm;
+  std::uint64_t needs = 0;
+  for (const std::string& name : *names) {
+    const auto all = sensors::sensor_types();
+    const auto type = std::find_if(all.begin(), all.end(), [&](const auto* each) { return each->name == name; });
+    if (type == all.end()) refuse_type(name);
+    needs |= std::uint64_t{1} << (*type)->id;
+  }
+  return needs;
+}
 
 void OwnController::translate(const ControllerInput& input) {
   readings_.clear(), others_.clear(), lights_.clear();

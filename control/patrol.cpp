@@ -84,7 +84,6 @@ constinit const ControllerType patrol_controller{
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_patrol,
-    .needs = 0,
 };
 
 }  // namespace sf::control

@@ -28,6 +28,7 @@ class Patrol final : public Controller, public StatesStopReason {
   base::Twist step(const ControllerInput& input) override;
   double v2v_range() const override;
   std::string stop_reason() const override { return stop_reason_; }
+  std::uint64_t needs() const override { return 0; }
 
   std::size_t target() const { return target_; }  ///< index of the point to reach next
 

@@ -30,7 +30,6 @@ constinit const ControllerType remote_controller{
     .rate = 20.0,
     .stops_on_bumper = false,
     .make = make_remote,
-    .needs = 0,
 };
 
 }  // namespace sf::control

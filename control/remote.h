@@ -18,6 +18,7 @@ class Remote final : public Controller {
   void command(const base::Twist& twist, std::int64_t time) { command_ = twist, time_ = time; }
   /// Returns a zero twist without a command, or when the last one is older than the timeout.
   base::Twist step(const ControllerInput& input) override;
+  std::uint64_t needs() const override { return 0; }
 
  private:
   std::int64_t timeout_;

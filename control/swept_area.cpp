@@ -23,20 +23,13 @@ constexpr std::int64_t kScanKept = 8 * base::kSecond;          // laser echoes
 constexpr std::int64_t kSonarKept = base::kSecond * 35 / 100;  // a little longer than a firing cycle
 constexpr int kPointsOfCone = 3, kDiscsOfRobot = 3;
 
-std::vector<sensors::ConeArray> sonars_of(const ControllerContext& context) {
-  std::optional<sensors::SensorSet> made;
-  const auto& all = context.sensor_set != nullptr ? *context.sensor_set : made.emplace(context.world);
-  const auto sonars = all.settings_of<sensors::ConeArray>(sensors::kSonar, context.mover);
-  return {sonars.begin(), sonars.end()};
-}
-
 }  // namespace
 
 SweptArea::SweptArea(const ControllerContext& context)
     : mover_(context.world.movers[context.mover]),
       outline_(robots::footprint_of(mover_)),
       lasers_(context.sensors_of(sensors::kLaser)),
-      sonars_(sonars_of(context)),
+      sonars_(context),
       reach_(0.3 + mover_.max_forward * (kHold + 0.5 * mover_.max_forward / mover_.max_acceleration)) {}
 
 void SweptArea::update(const ControllerInput& input) {
@@ -48,7 +41,7 @@ void SweptArea::update(const ControllerInput& input) {
   add_robots(input);
   for (const base::ReadingBlock& reading : input.readings) {
     if (reading.type == sensors::kLaser && reading.sensor < lasers_.size()) add_scan(reading);
-    if (reading.type == sensors::kSonar && reading.sensor < sonars_.size()) add_echoes(reading);
+    if (const auto source = sonars_.source_of(reading)) add_echoes(*source, reading);
   }
 }
 
@@ -72,11 +65,11 @@ void SweptArea::add_scan(const base::ReadingBlock& reading) {
 }
 
 // An echo may come from anywhere on its arc.
-void SweptArea::add_echoes(const base::ReadingBlock& reading) {
-  const sensors::ConeArray& sonar = sonars_[reading.sensor];
+void SweptArea::add_echoes(const Sonars::Source& source, const base::ReadingBlock& reading) {
+  const sensors::ConeArray& sonar = source.sonar;
   for (std::size_t i = 0; i < std::min(sonar.X_SC.size(), reading.values.size()); ++i) {
     if (!(reading.values[i] < sonar.range_max)) continue;
-    const base::Pose X_WC = base::compose(reading.X_WS, sonar.X_SC[i]);
+    const base::Pose X_WC = base::compose(source.X_WS, sonar.X_SC[i]);
     for (int k = 0; k < kPointsOfCone; ++k) {
       const double bearing = sonar.fov * (static_cast<double>(k) / (kPointsOfCone - 1) - 0.5);
       add(base::transform(X_WC, reading.values[i] * base::rotate(bearing, {1.0, 0.0})), reading.time,

@@ -13,8 +13,8 @@
 
 #include "control/controllers.h"
 #include "control/settings.h"
+#include "control/sonars.h"
 #include "robots/footprint.h"
-#include "sensors/cones/cone_array.h"
 
 namespace sf::control {
 
@@ -44,14 +44,14 @@ class SweptArea {
   };
   void add_robots(const ControllerInput& input);
   void add_scan(const base::ReadingBlock& reading);
-  void add_echoes(const base::ReadingBlock& reading);
+  void add_echoes(const Sonars::Source& source, const base::ReadingBlock& reading);
   void add(glm::dvec2 p, std::int64_t time, std::int64_t kept);
   double clearance(const base::Pose& X_WM, double most) const;
 
   world::Mover mover_;
   robots::Footprint outline_;
   std::vector<sensors::SensorSpec> lasers_;
-  std::vector<sensors::ConeArray> sonars_;
+  Sonars sonars_;
   double reach_;                    ///< [m] from the outline, of echoes that are kept
   base::Pose X_WM_;                 ///< at the last update
   std::vector<Echo> echoes_;        ///< within reach

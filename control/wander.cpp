@@ -37,7 +37,8 @@ Wander::Wander(const world::Mover& mover, std::span<const sensors::SensorSpec> l
       swept_area_(std::move(swept_area)),
       settings_(wander_settings(mover, clearance_estimator_.range())),
       robot_(robot),
-      seed_(seed) {
+      seed_(seed),
+      contacts_suffice_(lasers.empty()) {
   if (speed) settings_.speed = *speed;
 }
 
@@ -164,7 +165,6 @@ constinit const ControllerType wander_controller{
     .stops_on_bumper = false,
     .on_scans = true,
     .make = make_wander,
-    .needs = 1u << sensors::kLaser,
 };
 
 }  // namespace sf::control

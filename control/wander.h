@@ -38,6 +38,7 @@ class Wander final : public Controller {
 
   /// Depends only on the inputs so far and on (seed, robot).
   base::Twist step(const ControllerInput& input) override;
+  std::uint64_t needs() const override { return contacts_suffice_ ? 0 : kNeedsFarm; }
   double v2v_range() const override { return swept_area_ ? swept_area_->v2v_range() : 0.0; }
 
  private:
@@ -57,6 +58,7 @@ class Wander final : public Controller {
   WanderSettings settings_;
   std::uint32_t robot_;
   std::uint64_t seed_;
+  bool contacts_suffice_;  ///< no laser
   std::uint64_t draws_ = 0;
   Mode mode_ = Mode::cruise;
   double side_ = 1.0;             ///< +1 turns left, -1 right

@@ -14,6 +14,8 @@ namespace {
 constexpr const char* expected_of(const Twist&) { return "three numbers (forward, left, turn) in m/s, m/s and rad/s"; }
 constexpr const char* expected_of(bool) { return "True or False"; }
 constexpr const char* expected_of(double) { return "a number"; }
+using Names = std::optional<std::vector<std::string>>;
+constexpr const char* expected_of(const Names&) { return "None or a list of sensor types, such as ['sonar']"; }
 constexpr const char* expected_of(std::uint8_t) { return "a whole number from 0 to 255"; }
 
 /// @param from origin of the value, called if it has another type: "mine.py:7: step() returned "
@@ -46,6 +48,10 @@ class PythonController final : public Controller {
   }
   double error() const override {
     return has_error_ ? in_python(file_, [&] { return returned<double>("error"); }) : Controller::error();
+  }
+  std::optional<std::vector<std::string>> sufficient_sensors() const override {
+    if (!in_python(file_, [&] { return py::hasattr(*object_, "sufficient_sensors"); })) return std::nullopt;
+    return in_python(file_, [&] { return returned<Names>("sufficient_sensors"); });
   }
   std::uint8_t outputs() const override {
     return has_outputs_ ? in_python(file_, [&] { return returned<std::uint8_t>("outputs"); }) : std::uint8_t{0};
@@ -112,7 +118,8 @@ namespace {
 /// @throws std::runtime_error with the place and the expected signature of the first method that cannot be called
 py::object with_checked_methods(py::object object) {
   check_method(object, "step", "(self, input)", 1);
-  for (const char* method : {"radio_range", "done", "error", "outputs"}) check_method(object, method, "(self)", 0);
+  for (const char* method : {"radio_range", "done", "error", "outputs", "sufficient_sensors"})
+    check_method(object, method, "(self)", 0);
   return object;
 }
 

@@ -20,6 +20,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -127,6 +128,10 @@ class Controller {
   virtual bool done() const { return false; }
   /// Returns the control error of the last step in your own unit, for statistics and scenarios; NaN: none.
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
+  /// Returns types of sensors such as "sonar" of which readings of any one suffice to drive: with those of a real
+  /// robot's own sensors, `sensorfarm robot` drives on while the farm is away. Empty: it needs no readings. nullopt: it
+  /// needs those of the farm. Read once.
+  virtual std::optional<std::vector<std::string>> sufficient_sensors() const { return std::nullopt; }
   /// Returns the digital outputs that a real robot with such pins sets after a step, by bit (docs/robots.md#create).
   virtual std::uint8_t outputs() const { return 0; }
 };

@@ -88,7 +88,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
   controller.localized_outside = true;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr, nullptr, &sensor_set},
                                    controller);
-  if (options.stop_without_farm) made_.needs = control::kNeedsFarm;
+  needs_ = options.stop_without_farm ? control::Controller::kNeedsFarm : made_.controller->needs();
   remote_ = control::remote_of(*made_.controller);
   link_.set_follows_drive(remote_ != nullptr);
   add_own_state(options);
@@ -169,11 +169,11 @@ bool RobotClient::is_blind(std::int64_t now) const { return log_.readings_timed_
 
 /// Returns whether its controller does not drive by the readings of the real robot's own sensors alone.
 bool RobotClient::needs_farm(std::int64_t now) const {
-  if (made_.needs == 0 || made_.needs == control::kNeedsFarm) return made_.needs != 0;
+  if (needs_ == 0 || needs_ == control::Controller::kNeedsFarm) return needs_ != 0;
   if (!real_) return true;
   const auto own = real_->readings();
   return std::none_of(own.begin(), own.end(), [&](const OwnReading& reading) {
-    return (made_.needs >> reading.type & 1u) != 0 && now - reading.time < kOwnReadingValid;
+    return (needs_ >> reading.type & 1u) != 0 && now - reading.time < kOwnReadingValid;
   });
 }
 
@@ -236,7 +236,7 @@ RobotClientStats RobotClient::stats() const {
   stats.answered = link_.last_answer().has_value();
   stats.link = link_.counts();
   const bool meets_others =
-      stats.link.direct && stats.link.direct->packets[netio::PacketStatus::accepted] > 0 && made_.needs == 0;
+      stats.link.direct && stats.link.direct->packets[netio::PacketStatus::accepted] > 0 && needs_ == 0;
   stats.listens = link_.listens() && !meets_others;
   stats.contacts = contacts_;
   stats.distance_m = body_.distance();

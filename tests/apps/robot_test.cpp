@@ -296,20 +296,23 @@ TEST(Robot, DrivesACreateOnASerialLine) {
   EXPECT_NEAR(facts.number("/pose/0"), 0.0, 0.05);
 }
 
-TEST(Robot, APythonControllerSetsTheOutputsOfACreate) {
+/// Without a farm: it drives by the Create's own cliff sensors, and sets its outputs.
+TEST(Robot, APythonControllerDrivesACreateByItsOwnSensors) {
   if (std::getenv("SENSORFARM_INSTRUMENTED") != nullptr) GTEST_SKIP() << "Python's plug-in is not instrumented";
   if (!std::filesystem::exists(SF_BINARY_DIR "/sensorfarm_python.so")) GTEST_SKIP() << "built without Python";
   const Folder folder;
-  const std::string world = folder.write("floor.world", "position( name \"create\" size [0.3 0.3 0.1] track 0.258 )\n");
+  const std::string world =
+      folder.write("floor.world", "position( name \"create\" size [0.3 0.3 0.1] track 0.258 laser() )\n");
   const std::string file = folder.write("lights.py",
                                         "class Lights:\n"
                                         "    def __init__(self, robot, settings):\n        pass\n"
                                         "    def step(self, input):\n        return 0, 0, 0\n"
+                                        "    def sufficient_sensors(self):\n        return ['cliff']\n"
                                         "    def outputs(self):\n        return 0b001011\n");
   CreateSimulator create;
   create.alone = false;
   Program robot({"robot", world, "--name", "create", "--port", std::to_string(free_ports(1)), "--controller",
-                 file + ":Lights", "--stop-after", "0", "--serial", create.device()});
+                 file + ":Lights", "--stop-after", "0.1", "--serial", create.device()});
   ASSERT_TRUE(create.streaming()) << robot.err();
   for (std::uint64_t steps = 1; create.outputs == 0 && steps < 300; ++steps) {
     create.run(7);

@@ -1,11 +1,13 @@
 #include "control/avoid.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "sensors/laser.h"
+#include "sensors/sonar.h"
 #include "tests/control/closed_loop.h"
 #include "tests/control/exploration.h"
 #include "tests/units.h"
@@ -72,6 +74,31 @@ TEST(Avoid, TurnsUntilTheConfiguredClearance) {
 TEST(Avoid, StopsUntilTheLaserDelivers) {
   Avoid avoid({});
   EXPECT_EQ(avoid.step({}).forward, 0.0);
+}
+
+/// Axes up to 30 degrees are in front, those up to 90 at the sides; those behind do not matter.
+TEST(Avoid, DrivesBySonarWithoutALaser) {
+  world::World world = exploration::boxes(3, 0);
+  world::Mover& mover = world.movers.at(0);
+  world::Sensor sonar{.type = "sonar", .X_MS = {.yaw = 0.1 * M_PI}};
+  const std::vector<double> axes{0, 30, -30, 31, -31, 90, -90, 91, 180};
+  sonar.settings.push_back({.key = "scount", .numbers = {static_cast<double>(axes.size())}});
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    sonar.settings.push_back(
+        {.key = fmt::format("spose[{}]", i), .numbers = {0, 0, axes[i] * M_PI / 180 - 0.1 * M_PI}});
+  mover.sensors = {sonar};
+  const auto made = make_controller({world, 0}, {.name = "avoid", .settings = {"", {}}});
+  EXPECT_EQ(made.controller->needs(), 1u << sensors::kSonar);
+  const auto twist = [&](std::size_t near, double range, std::uint32_t number) {
+    std::vector<double> ranges(axes.size(), 4.0);
+    ranges[near] = range;
+    const base::ReadingBlock block{.sensor = number, .type = sensors::kSonar, .values = ranges};
+    return make_controller({world, 0}, {.name = "avoid", .settings = {"avoid", {{"check_sweep", false}}}})
+        .controller->step({.readings = {&block, 1}});
+  };
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (const std::uint32_t number : {0u, 1u})  // virtual, and a real robot's own
+      EXPECT_EQ(twist(i, 0.15, number).forward > 0.0, i > 2) << axes[i];
 }
 
 TEST(Avoid, DrivesInAnEmptyArea) {

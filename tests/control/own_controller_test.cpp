@@ -1,5 +1,6 @@
 #include "control/own_controllers.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +8,9 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "sensors/sonar.h"
 #include "tests/refusal.h"
 
 namespace sf::control {
@@ -51,6 +54,31 @@ TEST(OwnController, LoadsFromAPluginWithItsRateAndSettings) {
   EXPECT_EQ(made.controller->step({}).forward, 0.5);
   // Already loaded: returns the same type, now also by its plain name.
   EXPECT_EQ(find_controller("test-straight"), find_controller(kPlugin + ":test-straight"));
+}
+
+/// Drives by the sensor types that a test names.
+struct Frugal final : sensorfarm::Controller {
+  explicit Frugal(std::optional<std::vector<std::string>> types) : types_(std::move(types)) {}
+  sensorfarm::Twist step(const sensorfarm::Input&) override { return {}; }
+  std::optional<std::vector<std::string>> sufficient_sensors() const override { return types_; }
+  std::optional<std::vector<std::string>> types_;
+};
+
+TEST(OwnController, StatesTheSensorsThatSuffice) {
+  const world::World world = one_robot();
+  const auto needs = [&](std::optional<std::vector<std::string>> types) {
+    static int count = 0;
+    const std::string name = fmt::format("frugal-{}", count++);
+    add_own_controller(
+        {name, "", 10.0, false,
+         [types](const sensorfarm::Robot&, sensorfarm::Settings&) { return std::make_unique<Frugal>(types); }},
+        "test");
+    return make_controller({world}, {.name = name}).controller->needs();
+  };
+  EXPECT_EQ(needs(std::nullopt), Controller::kNeedsFarm);
+  EXPECT_EQ(needs({{}}), 0u) << "none";
+  EXPECT_EQ(needs({{"laser", "sonar"}}), 1ull << sensors::kLaser | 1ull << sensors::kSonar);
+  expect_in("unknown sensor type 'sonra'; did you mean 'sonar'?", refusal_of([&] { needs({{"sonra"}}); }));
 }
 
 /// A configured rate overrides it; without a laser there are no scans.

@@ -14,6 +14,7 @@
 #include "sensors/cliff.h"
 #include "sensors/irreceiver.h"
 #include "sensors/laser.h"
+#include "sensors/sonar.h"
 #include "tests/create_simulator.h"
 #include "tests/pioneer_emulator.h"
 #include "tests/refusal.h"
@@ -36,7 +37,7 @@ Seen& seen() {
   return last;
 }
 
-class Recorder final : public control::Controller {
+class Recorder : public control::Controller {
  public:
   base::Twist step(const control::ControllerInput& input) override {
     seen() = {.X_WM = input.state.X_WM, .contact = input.contact, .outputs = seen().outputs};
@@ -59,11 +60,17 @@ constinit const control::ControllerType recorder{
     }};
 
 /// The same, by infrared receivers or lasers alone.
-constinit const control::ControllerType own_recorder{.name = "test-own-recorder",
-                                                     .summary = recorder.summary,
-                                                     .stops_on_bumper = false,
-                                                     .make = recorder.make,
-                                                     .needs = 1u << sensors::kIrReceiver | 1u << sensors::kLaser};
+struct OwnRecorder final : Recorder {
+  std::uint64_t needs() const override { return 1u << sensors::kIrReceiver | 1u << sensors::kLaser; }
+};
+
+constinit const control::ControllerType own_recorder{
+    .name = "test-own-recorder",
+    .summary = recorder.summary,
+    .stops_on_bumper = false,
+    .make = [](const control::ControllerContext&, control::Settings&) -> std::unique_ptr<control::Controller> {
+      return std::make_unique<OwnRecorder>();
+    }};
 
 struct RealRobotTest : testing::Test {
   static void SetUpTestSuite() {
@@ -228,6 +235,51 @@ TEST_F(RealRobotTest, WandersByItsOwnBumperWithoutTheFarm) {
       }
     }
     EXPECT_EQ(backed_off, !laser) << "from what it touched";
+  }
+}
+
+world::Sensor front_sonar() {
+  world::Sensor sonar{.type = "sonar", .settings = {{.key = "scount", .numbers = {4.0}}}};
+  for (const auto& [key, degrees] :
+       {std::pair{"spose[0]", 90.0}, {"spose[1]", 50.0}, {"spose[2]", 30.0}, {"spose[3]", 10.0}})
+    sonar.settings.push_back({.key = key, .numbers = {0.2, 0.0, degrees * M_PI / 180.0}});
+  return sonar;
+}
+
+/// A real Pioneer avoids obstacles by its own sonar while the farm, and with it the laser, is away: it needs the
+/// sonar's mounting from the world file.
+TEST_F(RealRobotTest, AvoidsByItsOwnSonarWithoutTheFarm) {
+  for (const bool mounted : {false, true}) {
+    world::World world = f.world;
+    if (mounted) world.movers[1].sensors.push_back(front_sonar());
+    const sensors::SensorSet sensor_set(world);
+    StreamLayout layout = f.layout;
+    layout.bases[sensors::kSonar] = layout.bases.at(sensors::kLaser) + 2 * layout.stride;
+    PioneerEmulator pioneer;
+    RobotClientOptions options{.stop_after = 0.5, .log_descriptor = f.log.descriptor()};
+    options.link.farm = {netio::kLoopback, f.service->port()};
+    options.controller.name = "avoid";
+    options.real = RealRobotOptions{.type = "pioneer", .device = pioneer.device()};
+    RobotClient robot(world, sensor_set, 1, layout, options);
+    std::int64_t now = 0;
+    const auto steps = [&](int count) {
+      for (int k = 0; k < count; ++k) {
+        pioneer.run(1);
+        robot.step(now += kTick);
+        EXPECT_TRUE(pioneer.driven(pioneer.turns + 1));
+      }
+    };
+    for (int k = 0; k < 20 && !pioneer.motors; ++k) {
+      EXPECT_TRUE(pioneer.obey());
+      robot.move(now += 10 * kMs);
+    }
+    pioneer.ranges[3] = 5000;
+    steps(20);
+    EXPECT_EQ(pioneer.vel > 0, mounted) << "nothing ahead";
+    pioneer.ranges[3] = 150;
+    steps(10);
+    EXPECT_EQ(pioneer.vel, 0);
+    EXPECT_EQ(pioneer.rvel != 0, mounted) << "an obstacle ahead";
   }
 }
 

@@ -23,6 +23,7 @@ class V2vRecorder final : public control::Controller {
     return {0.1, 0.0, 0.0};
   }
   double v2v_range() const override { return 100.0; }
+  std::uint64_t needs() const override { return 0; }
 
  private:
   std::uint32_t mover_;
@@ -34,8 +35,7 @@ constinit const control::ControllerType v2v_recorder{
     .stops_on_bumper = false,
     .make = [](const control::ControllerContext& context, control::Settings&) -> std::unique_ptr<control::Controller> {
       return std::make_unique<V2vRecorder>(context.mover);
-    },
-    .needs = 0};
+    }};
 
 /// Both robots of the room.
 struct RobotV2vTest : testing::Test {
