@@ -19,6 +19,10 @@ constexpr double kLeastShare = 1e-6;
 constexpr std::size_t kCapacity = 576, kFirstCapacity = 8;
 constexpr double kFastest = 10.0;  // [m/s] encoders that differ from the prediction by more were reset, or are wrong
 
+constexpr double kLagShare = 0.02;  // of a fix in the mean innovation
+constexpr double kMostLag = 0.6;    // of a mean innovation by chance: six standard deviations
+constexpr int kLagFixes = 100;      // until the mean has its distribution
+
 double square(double v) { return v * v; }
 
 bool is_fix(Kind kind) { return kind == Kind::pose || kind == Kind::position; }
@@ -163,6 +167,7 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   // Encoders are not gated, since commands change the speeds at once. `!(a <= b)` rejects NaN as well.
   static const GateLimits kLimits = gate_limits(kGate);
   if (!encoder && !(surprise.squared <= kLimits[surprise.degrees])) return reject(m, state);
+  if (is_fix(m.kind) && predicted_.size() == 1 && options_.encoder) watch_slip(m, state);
   for (Weighted& each : predicted_) each.state = correct(each.state, m);
   reduce(predicted_);
   state.hypotheses = predicted_;
@@ -171,6 +176,28 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   state.last_fix = m.time, state.fixed = {mean[kX], mean[kY]};
   state.rejected = 0;
   return Verdict::used;
+}
+
+void Localization::Lag::add(double innovation, double velocity) {
+  const double ahead = velocity < 0.0 ? -innovation : innovation;
+  mean += kLagShare * (ahead - mean);
+  square += kLagShare * (ahead * ahead - square);
+  ++count;
+}
+
+bool Localization::Lag::lasts() const { return count >= kLagFixes && mean * mean > kMostLag * kMostLag * square; }
+
+/// A slip that lasts changes the scales, as on another floor: fixes are then behind the prediction, or ahead of it, for
+/// longer than by chance. The scales are unknown again, each on its own: one wheel may slip alone.
+void Localization::watch_slip(const WheeledMeasurement& m, State& state) {
+  WheeledState& s = predicted_[0].state;
+  const glm::dvec2 d{m.values[0] - s.mean[kX], m.values[1] - s.mean[kY]};
+  state.ahead.add(glm::dot(base::rotate(s.mean[kYaw], {1.0, 0.0}), d), s.mean[kForward]);
+  if (m.kind == Kind::pose) state.turned.add(base::wrap_angle(m.values[2] - s.mean[kYaw]), s.mean[kTurn]);
+  if (!state.ahead.lasts() && !state.turned.lasts()) return;
+  for (const int k : {kLeftScale, kRightScale})
+    s.covariance[k * (kWheeledComponents + 1)] += square(options_.encoder->scale_sigma);
+  state.ahead = state.turned = {};
 }
 
 /// Sets the distances at the time of the state, between the last encoder reading before the start and the first after

@@ -96,10 +96,19 @@ class Localization {
     double weight = 1.0;
     WheeledState state;
   };
+  /// Mean of innovations in the direction of motion, relative to their root mean square, which makes it independent of
+  /// stated covariances: 0 with a standard deviation of 0.1 unless wheels slip.
+  struct Lag {
+    double mean = 0.0, square = 0.0;
+    int count = 0;
+    void add(double innovation, double velocity);
+    bool lasts() const;
+  };
   struct State {
     std::int64_t last_fix = 0;         ///< [ns] time of the last used pose or position
     glm::dvec2 fixed;                  ///< [m] position at that time
     int rejected = 0;                  ///< poses and positions rejected since then
+    Lag ahead, turned;                 ///< of the fixes, in the directions of driving and turning
     bool rolled = false;               ///< the encoders' distances are part of the hypotheses
     std::int64_t counted_at = -1;      ///< [ns] of the last encoder reading before that; -1: none
     std::array<double, 2> counted{};   ///< [m] its values
@@ -115,6 +124,7 @@ class Localization {
   Verdict reject(const WheeledMeasurement& measurement, State& state) const;
   void start_encoders(const WheeledMeasurement& measurement, State& state) const;
   Innovation weigh(const WheeledMeasurement& measurement);
+  void watch_slip(const WheeledMeasurement& measurement, State& state);
 
   LocalizationOptions options_;
   WheeledModel model_;
