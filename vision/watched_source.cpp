@@ -1,11 +1,15 @@
 #include "vision/watched_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
 #include <utility>
+
+#include "base/error.h"
 
 namespace sf::vision {
 
@@ -85,6 +89,38 @@ WatchedSource::Result WatchedSource::next(Image& out) {
   if (!s.more) return Result::ended;
   std::swap(out, s.image);
   return Result::image;
+}
+
+namespace {
+
+const std::atomic<bool> never{false};
+
+class LimitedSource final : public ImageSource {
+ public:
+  LimitedSource(std::unique_ptr<ImageSource> source, std::string place, std::chrono::milliseconds limit)
+      : source_(std::move(source), limit, never), place_(std::move(place)), limit_(limit) {}
+  bool next(Image& out) override {
+    const WatchedSource::Result result = source_.next(out);
+    if (result == WatchedSource::Result::stalled)
+      throw base::InputError(fmt::format("{} has sent no image for {:g} s; check the camera and its cable", place_,
+                                         1e-3 * static_cast<double>(limit_.count())));
+    return result == WatchedSource::Result::image;
+  }
+  bool is_live() const override { return true; }
+  double rate() const override { return source_.rate(); }
+
+ private:
+  WatchedSource source_;
+  std::string place_;
+  std::chrono::milliseconds limit_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImageSource> limited(std::unique_ptr<ImageSource> source, std::string place,
+                                     std::chrono::milliseconds limit) {
+  if (!source->is_live()) return source;
+  return std::make_unique<LimitedSource>(std::move(source), std::move(place), limit);
 }
 
 }  // namespace sf::vision

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <string>
 
 #include "vision/opencv.h"
 
@@ -42,5 +43,10 @@ class WatchedSource {
   double rate_;
   bool stalled_ = false;
 };
+
+/// Returns a source that throws a base::InputError if a live one sends no image within `limit`; files as they are.
+/// @param place of the source, for the message
+std::unique_ptr<ImageSource> limited(std::unique_ptr<ImageSource> source, std::string place,
+                                     std::chrono::milliseconds limit = std::chrono::seconds(2));
 
 }  // namespace sf::vision

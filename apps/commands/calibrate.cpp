@@ -14,6 +14,7 @@
 #include "base/suggest.h"
 #include "vision/placement.h"
 #include "vision/testbed.h"
+#include "vision/watched_source.h"
 
 namespace sf::apps {
 
@@ -29,7 +30,7 @@ vision::Chessboard board_of(const CalibrateOptions& options) {
 }
 
 vision::Calibration calibrate_shown(const CalibrateOptions& options) {
-  const auto source = vision::opencv().open_source(options.images, 0, 0, 0.0);
+  const auto source = vision::limited(vision::opencv().open_source(options.images, 0, 0, 0.0), options.images);
   // The number of images in a video is unknown until its end.
   const double images = static_cast<double>(source->size() > 0 ? source->size() : vision::kMaxCalibrationImages);
   Progress progress("calibrating");
@@ -65,7 +66,8 @@ int place(const CalibrateOptions& options) {
   const vision::Testbed testbed = vision::read_testbed(options.testbed);
   const vision::Camera& camera = find_camera(testbed, options.name);
   const vision::Intrinsics& i = camera.intrinsics;
-  const auto source = vision::opencv().open_source(options.images, i.width, i.height, camera.rate);
+  const auto source =
+      vision::limited(vision::opencv().open_source(options.images, i.width, i.height, camera.rate), options.images);
   const vision::Placement found = vision::place_camera(testbed, camera, *source, options.images);
   std::string text = fmt::format("# Residual {:.3f} px RMS.\n", found.residual);
   for (const vision::TagResidual& tag : found.tags)

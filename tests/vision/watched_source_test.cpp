@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "tests/refusal.h"
 
 namespace sf::vision {
 
@@ -111,6 +112,14 @@ TEST_F(WatchedSourceTest, ABlockedCameraDoesNotBlockTheEnd) {
   }
   camera->images.release();
   while (!camera->closed) std::this_thread::yield();
+}
+
+TEST_F(WatchedSourceTest, ALimitedCameraThatStallsIsAnError) {
+  const auto source = limited(std::make_unique<Blocking>(camera), "/dev/video7", 0ms);
+  Image image;
+  expect_in("/dev/video7 has sent no image for 0 s; check the camera and its cable",
+            refusal_of([&] { source->next(image); }));
+  camera->images.release();
 }
 
 }  // namespace sf::vision
