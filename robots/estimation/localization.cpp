@@ -27,18 +27,6 @@ double square(double v) { return v * v; }
 
 bool is_fix(Kind kind) { return kind == Kind::pose || kind == Kind::position; }
 
-/// With encoders, the readings show how commands change the speeds. Without them, inertia has to bridge the gaps
-/// between poses.
-WheeledModel model_of(const LocalizationOptions& options) {
-  WheeledModel model{.motion = options.encoder ? differential_drive(4.0, 40.0) : differential_drive(),
-                     .steps = options.encoder.has_value()};
-  if (options.sideways) model.motion.left = model.motion.forward;
-  if (!options.encoder) return model;
-  model.track = options.encoder->track;
-  model.slip = options.encoder->slip;
-  return model;
-}
-
 /// A state at rest at the origin, with the prior of all constants.
 WheeledState prior_of(const LocalizationOptions& options, const WheeledModel& model) {
   WheeledState state{.mean = {}};
@@ -119,7 +107,25 @@ bool was_reset(const WheeledState& predicted, const WheeledMeasurement& m, std::
 }  // namespace
 
 Localization::Localization(const LocalizationOptions& options)
-    : options_(options), model_(model_of(options)), window_(kWindow, kCapacity, kFirstCapacity) {}
+    : options_(options),
+      model_(model_of(options, options.encoder.has_value())),
+      window_(kWindow, kCapacity, kFirstCapacity) {}
+
+/// With encoders, the readings show how commands change the speeds. Without them, inertia has to bridge the gaps
+/// between poses.
+WheeledModel Localization::model_of(const LocalizationOptions& options, bool encoder) {
+  WheeledModel model{.motion = encoder ? differential_drive(4.0, 40.0) : differential_drive(), .steps = encoder};
+  if (options.sideways) model.motion.left = model.motion.forward;
+  if (!options.encoder) return model;
+  model.track = options.encoder->track;
+  model.slip = options.encoder->slip;
+  return model;
+}
+
+void Localization::resume_encoder() {
+  model_ = model_of(options_, options_.encoder.has_value());
+  window_.for_each_state([](State& state) { state.rolled = false, state.counted_at = -1; });
+}
 
 Verdict Localization::add_encoder(std::int64_t time, double left, double right) {
   if (!options_.encoder) return Verdict::invalid;

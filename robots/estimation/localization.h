@@ -85,6 +85,12 @@ class Localization {
   static constexpr std::int64_t kRelocated = 1'000'000'000;            ///< [ns]
   static constexpr std::int64_t kRelocatedPositions = 60'000'000'000;  ///< [ns]
 
+  /// Continues without encoders: their distances no longer bound the motion, and the speeds change as those of a body.
+  void pause_encoder() { model_ = model_of(options_, false); }
+  /// Uses encoders again. The distance rolled in between does not count: their next reading is a start.
+  /// @pre paused for longer than `kWindow`, or no encoder reading is in the window
+  void resume_encoder();
+
   /// Returns the estimate at `time`. Its age is the time since the last used pose or position. Never stale.
   Prediction predict(std::int64_t time) const;
   /// Returns the newest estimates of the constants; the initial ones before the first pose.
@@ -118,6 +124,7 @@ class Localization {
     std::int64_t time() const { return hypotheses[0].state.time; }
   };
 
+  static WheeledModel model_of(const LocalizationOptions& options, bool encoder);
   Verdict take(WheeledMeasurement measurement);
   Verdict apply(const WheeledMeasurement& measurement, State& state);
   Verdict start(const WheeledMeasurement& measurement, State& state) const;

@@ -86,6 +86,13 @@ class MeasurementWindow {
     return nullptr;
   }
 
+  /// Changes all states, the one before the window included.
+  template <class Change>
+  void for_each_state(const Change& change) {
+    change(before_);
+    for (std::size_t k = 0; k < size_; ++k) change(entry(k).after);
+  }
+
   /// Returns the state after the measurements that left the window.
   const State& before() const { return before_; }
 

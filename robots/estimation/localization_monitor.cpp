@@ -1,0 +1,310 @@
+#include "robots/estimation/localization_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sf::estimation {
+
+namespace {
+
+constexpr std::int64_t kCopyAge = 10'000'000'000;   // [ns] between copies
+constexpr std::int64_t kPatience = 10'000'000'000;  // [ns] for evidence that isolates a fault
+constexpr std::int64_t kOnset = 2'000'000'000;      // [ns] before a large residual, a sudden fault has not begun
+constexpr double kLatePeriods = 3.5;                // age of the newest reading of an absent input
+constexpr int kMostRepeats = 2, kMostEncoderRepeats = 5;
+// Weights of the newest residual: turns come ten times as often as positions.
+constexpr std::array<double, kRelations> kFast{0.4, 0.6, 0.6, 0.6}, kSlow{0.03, 0.2, 0.2, 0.2};
+constexpr double kRoughWeight = 0.3, kRoughMemory = 0.95;
+constexpr double kLeastMonitored = 1e-12;  // variance
+
+constexpr std::array kAll{MonitoredInput::encoder, MonitoredInput::gyro, MonitoredInput::gps};
+/// The relation between the two other inputs.
+constexpr std::array<MonitorRelation, kMonitoredInputs> kRest{kCourseRelation, kWheelsRelation, kTurnRelation};
+
+double squared(double v) { return v * v; }
+std::size_t row(MonitoredInput input) { return static_cast<std::size_t>(input); }
+double in_seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+}  // namespace
+
+LocalizationMonitor::LocalizationMonitor(const LocalizationOptions& options, const MonitorOptions& monitor,
+                                         bool has_gyro, bool has_gps)
+    : options_(options),
+      monitor_(monitor),
+      main_(options),
+      copies_{{{main_, main_}, {main_, main_}, {main_, main_}}},
+      calibrations_{main_.calibration(), main_.calibration()} {
+  at(MonitoredInput::encoder).wired = options.encoder.has_value();
+  at(MonitoredInput::gyro).wired = has_gyro;
+  at(MonitoredInput::gps).wired = has_gps;
+}
+
+/// Passes a reading to the filters that use the input.
+template <class Add>
+void LocalizationMonitor::feed(MonitoredInput input, const Add& add) {
+  if (at(input).faulty) return;
+  add(main_);
+  // The copies are made again when all inputs are good.
+  if (std::ranges::any_of(inputs_, &Input::faulty)) return;
+  for (const MonitoredInput without : kAll)
+    if (without != input)
+      for (Localization& copy : copies_[row(without)]) add(copy);
+}
+
+void LocalizationMonitor::note(MonitoredInput input, std::int64_t time, std::array<double, 2> values, bool fixed) {
+  Input& known = at(input);
+  if (time <= known.newest) return;
+  known.repeats = fixed && known.newest >= 0 && values == known.values ? known.repeats + 1 : 0;
+  known.newest = time, known.values = values, known.fixed = fixed;
+}
+
+void LocalizationMonitor::add_pose(std::int64_t time, const base::Pose& X_WM, const std::array<double, 6>& covariance) {
+  main_.add_pose(time, X_WM, covariance);
+  for (auto& copies : copies_)
+    for (Localization& copy : copies) copy.add_pose(time, X_WM, covariance);
+}
+
+void LocalizationMonitor::add_encoder(std::int64_t time, double left, double right) {
+  const Input before = at(MonitoredInput::encoder);
+  feed(MonitoredInput::encoder, [&](Localization& filter) { filter.add_encoder(time, left, right); });
+  note(MonitoredInput::encoder, time, {left, right}, std::isfinite(left + right));
+  if (before.newest < 0 || time <= before.newest || !before.fixed) return;
+  const double seconds = in_seconds(time - before.newest);
+  const std::array<double, 2> rolled{left - before.values[0], right - before.values[1]};
+  compare_turns(time, seconds, rolled);
+  if (before.faulty) compare_speed(time, seconds, rolled);
+}
+
+void LocalizationMonitor::add_gyro(std::int64_t time, double rate) {
+  feed(MonitoredInput::gyro, [&](Localization& filter) { filter.add_gyro(time, rate); });
+  note(MonitoredInput::gyro, time, {rate, 0.0}, std::isfinite(rate));
+}
+
+void LocalizationMonitor::add_gps(std::int64_t time, double x, double y, double hdop) {
+  const bool fixed = std::isfinite(x + y + hdop);
+  if (fixed) {
+    const double variance = std::max(0.5 * squared(options_.gps_noise * hdop), kLeastMonitored);
+    const bool faulty = at(MonitoredInput::gps).faulty;
+    const auto& reckoned = faulty ? main_ : copies_[row(MonitoredInput::gps)][0];
+    compare_position(kReckonedRelation, reckoned, time, {x, y}, variance);
+    if (std::ranges::none_of(inputs_, &Input::faulty)) {
+      compare_position(kWheelsRelation, copies_[row(MonitoredInput::gyro)][0], time, {x, y}, variance);
+      compare_position(kCourseRelation, copies_[row(MonitoredInput::encoder)][0], time, {x, y}, variance);
+    }
+  }
+  feed(MonitoredInput::gps, [&](Localization& filter) { filter.add_gps(time, x, y, hdop); });
+  note(MonitoredInput::gps, time, {x, y}, fixed);
+}
+
+namespace {
+
+/// @param residual of unit variance
+void add_residual(LocalizationMonitor::Statistic& of, std::array<double, 2> residual, double degrees, double fast,
+                  double slow) {
+  of.fast += fast * ((squared(residual[0]) + squared(residual[1])) / degrees - of.fast);
+  for (std::size_t k = 0; k < 2; ++k) of.mean[k] += slow * (residual[k] - of.mean[k]);
+  of.slow = (squared(of.mean[0]) + squared(of.mean[1])) / degrees * (2.0 - slow) / slow;
+}
+
+}  // namespace
+
+/// @param seconds since the encoder reading before @param rolled [m] counted since then
+void LocalizationMonitor::compare_turns(std::int64_t time, double seconds, std::array<double, 2> rolled) {
+  const Input& gyro = at(MonitoredInput::gyro);
+  if (gyro.newest != time || !gyro.fixed || seconds > 1.0) return;
+  const LocalizationOptions::Encoder& encoder = *options_.encoder;
+  const auto& [left, right, track, bias] = calibrations_[0];
+  const double turn = (rolled[1] / right.value - rolled[0] / left.value) / (track.value * seconds);
+  const double arm = squared(track.value * seconds);
+  const double rounding = squared(encoder.per_count) / 6.0 + squared(track.value * encoder.angle_step) / 6.0;
+  const double slip = squared(encoder.slip) * (std::abs(rolled[0]) + std::abs(rolled[1]));
+  const double scales = (squared(left.sigma * rolled[0]) + squared(right.sigma * rolled[1])) / arm +
+                        squared(turn * track.sigma / track.value);
+  const double variance = (rounding + slip) / arm + scales + squared(options_.gyro.noise) + squared(bias.sigma);
+  const double rate = gyro.values[0],
+               residual = (rate - bias.value - turn) / std::sqrt(std::max(variance, kLeastMonitored));
+  add_residual(statistics_[kTurnRelation], {residual, 0.0}, 1.0, kFast[kTurnRelation], kSlow[kTurnRelation]);
+  compare_roughness(rate, turn, (rounding + slip) / arm);
+}
+
+/// The true yaw rate changes both alike. @param variance [rad^2/s^2] of the encoder's
+void LocalizationMonitor::compare_roughness(double rate, double turn, double variance) {
+  const double by_gyro = std::abs(rate - std::exchange(compared_rate_, rate));
+  const double by_encoder = std::abs(turn - std::exchange(turn_, turn));
+  const double scale = 2.0 * (variance + std::sqrt(variance) * std::min(by_gyro, by_encoder)) + kLeastMonitored;
+  const double rougher = (squared(by_gyro) - squared(by_encoder) + 2.0 * variance) / scale;
+  mean_roughness_ += kRoughWeight * (rougher - mean_roughness_);
+  roughness_ *= kRoughMemory;
+  if (std::abs(mean_roughness_) > std::abs(roughness_)) roughness_ = mean_roughness_;
+}
+
+/// Of a faulty encoder, with the speed of the filter without it.
+void LocalizationMonitor::compare_speed(std::int64_t time, double seconds, std::array<double, 2> rolled) {
+  const Estimate estimate = main_.predict(time).estimate;
+  const auto& [left, right, track, bias] = calibrations_[0];
+  const double forward = 0.5 * (rolled[0] / left.value + rolled[1] / right.value) / seconds;
+  const double variance = estimate.covariance[kForward * (kComponents + 1)] +
+                          squared(options_.encoder->per_count / seconds) / 6.0 + squared(forward * left.sigma);
+  const double residual = (forward - estimate.velocity.forward) / std::sqrt(std::max(variance, kLeastMonitored));
+  add_residual(statistics_[kWheelsRelation], {residual, 0.0}, 1.0, kFast[kTurnRelation], kSlow[kTurnRelation]);
+}
+
+/// @param variance [m^2] of the position, along each axis
+void LocalizationMonitor::compare_position(MonitorRelation relation, const Localization& filter, std::int64_t time,
+                                           glm::dvec2 p, double variance) {
+  const Prediction prediction = filter.predict(time);
+  if (prediction.status == Prediction::Status::none) return;
+  // Cholesky factor of the innovation's covariance.
+  const Covariance& P = prediction.estimate.covariance;
+  const double l00 = std::sqrt(P[0] + variance), l10 = P[1] / l00;
+  const double l11 = std::sqrt(std::max(P[kComponents + 1] + variance - squared(l10), kLeastMonitored));
+  const double first = (p.x - prediction.estimate.X_WM.x) / l00;
+  const double second = (p.y - prediction.estimate.X_WM.y - l10 * first) / l11;
+  add_residual(statistics_[relation], {first, second}, 2.0, kFast[relation], kSlow[relation]);
+}
+
+double LocalizationMonitor::ratio(MonitorRelation relation) const {
+  const Statistic& of = statistics_[relation];
+  return std::max(of.fast / monitor_.thresholds.fast[relation], of.slow / monitor_.thresholds.slow[relation]);
+}
+
+double LocalizationMonitor::residual(MonitoredInput input) const {
+  if (input == MonitoredInput::gps) return ratio(kReckonedRelation);
+  if (input == MonitoredInput::gyro) return ratio(kTurnRelation);
+  return std::max(ratio(kTurnRelation), ratio(kWheelsRelation));
+}
+
+bool LocalizationMonitor::is_late(MonitoredInput input) const {
+  const Input& of = at(input);
+  const double age = in_seconds(now_ - std::max<std::int64_t>(of.newest, 0));
+  return age > kLatePeriods * monitor_.period[row(input)] + monitor_.latency[row(input)];
+}
+
+InputState LocalizationMonitor::state(MonitoredInput input) const {
+  const Input& of = at(input);
+  if (!of.wired) return InputState::absent;
+  if (of.faulty) return InputState::faulty;
+  if (is_late(input) || !of.fixed) return InputState::absent;
+  if (!suspected_) return InputState::good;
+  // The cause is among the inputs of a residual that is too large.
+  const bool turn = ratio(kTurnRelation) > 1.0;
+  if (turn) return input == MonitoredInput::gps ? InputState::good : InputState::suspected;
+  if (ratio(kReckonedRelation) > 1.0) return InputState::suspected;
+  const auto other = ratio(kWheelsRelation) > 1.0 ? MonitoredInput::gyro : MonitoredInput::encoder;
+  return input == other ? InputState::good : InputState::suspected;
+}
+
+void LocalizationMonitor::update(std::int64_t now) {
+  now_ = now;
+  for (const MonitoredInput input : kAll)
+    if (at(input).faulty) {
+      if (!is_consistent(input)) at(input).wrong = now;
+      const double hold = monitor_.hold * std::exp2(std::min(at(input).faults - 1, 6));
+      if (in_seconds(now - at(input).wrong) > hold) hand_back(input, now);
+      return;
+    }
+  pause_absent_encoder(now);
+  bool large = false;
+  for (int k = 0; k < kRelations; ++k) large = large || ratio(static_cast<MonitorRelation>(k)) > 1.0;
+  if (!large) suspected_.reset();
+  if (large && !suspected_) suspected_ = now, sudden_ = is_sudden();
+  if (const auto input = isolated(now)) return exclude(*input, now);
+  refresh(now);
+}
+
+/// An encoder that is too late for the filter's window cannot bound the motion.
+void LocalizationMonitor::pause_absent_encoder(std::int64_t now) {
+  const Input& encoder = at(MonitoredInput::encoder);
+  if (!encoder.wired) return;
+  const bool absent = now - std::max<std::int64_t>(encoder.newest, 0) > Localization::kWindow;
+  if (absent == paused_) return;
+  paused_ = absent;
+  absent ? main_.pause_encoder() : main_.resume_encoder();
+  make_copies(now);
+}
+
+std::optional<MonitoredInput> LocalizationMonitor::isolated(std::int64_t now) const {
+  using enum MonitoredInput;
+  // Noise does not repeat.
+  if (options_.gyro.noise > 0.0 && at(gyro).repeats >= kMostRepeats) return gyro;
+  if (options_.gps_noise > 0.01 && at(gps).repeats >= kMostRepeats) return gps;
+  if (!suspected_) return std::nullopt;
+  const double turn = ratio(kTurnRelation);
+  if (turn > 1.0) {
+    if (at(encoder).repeats >= kMostEncoderRepeats) return encoder;
+    if (std::abs(roughness_) > monitor_.thresholds.roughness) return roughness_ > 0.0 ? gyro : encoder;
+  }
+  // Without the faulty input the others agree, and without any other they do not.
+  std::array<MonitoredInput, kMonitoredInputs> order = kAll;
+  const auto rest = [&](MonitoredInput input) { return ratio(kRest[row(input)]); };
+  std::ranges::sort(order, {}, rest);
+  const bool all = std::ranges::all_of(inputs_, &Input::wired);
+  if (!all) return std::nullopt;
+  if (rest(order[0]) < 0.5 && rest(order[1]) > 1.0) return order[0];
+  if (now - *suspected_ < kPatience) return std::nullopt;
+  if (turn > 1.0) return rest(encoder) < rest(gyro) ? encoder : gyro;
+  if (ratio(kReckonedRelation) > 1.0 || ratio(kWheelsRelation) > 1.0) return rest(encoder) < rest(gps) ? encoder : gps;
+  return rest(gyro) < rest(gps) ? gyro : gps;
+}
+
+bool LocalizationMonitor::is_sudden() const {
+  for (std::size_t k = 0; k < kRelations; ++k)
+    if (statistics_[k].fast > monitor_.thresholds.fast[k]) return true;
+  return false;
+}
+
+/// Continues without the input from before the fault.
+void LocalizationMonitor::exclude(MonitoredInput input, std::int64_t now) {
+  Input& of = at(input);
+  const bool sudden = suspected_ ? sudden_ : true;
+  const bool recent = sudden && suspected_.value_or(now) - copied_ > kOnset;
+  main_ = copies_[row(input)][recent ? 1 : 0];
+  of.faulty = true, of.wrong = now;
+  ++of.faults;
+  paused_ = false;
+  suspected_.reset();
+  statistics_ = {};
+}
+
+bool LocalizationMonitor::is_consistent(MonitoredInput input) const {
+  const Input& of = at(input);
+  const bool repeats = input == MonitoredInput::encoder ? false : of.repeats >= kMostRepeats;
+  if (is_late(input) || !of.fixed || repeats) return false;
+  if (input == MonitoredInput::gps) return ratio(kReckonedRelation) < monitor_.lower;
+  const bool turns = ratio(kTurnRelation) < monitor_.lower;
+  return turns && (input == MonitoredInput::gyro || ratio(kWheelsRelation) < monitor_.lower);
+}
+
+void LocalizationMonitor::hand_back(MonitoredInput input, std::int64_t now) {
+  at(input).faulty = false;
+  if (input == MonitoredInput::encoder) main_.resume_encoder();
+  statistics_ = {};
+  make_copies(now);
+}
+
+void LocalizationMonitor::make_copies(std::int64_t now) {
+  for (const MonitoredInput without : kAll) {
+    copies_[row(without)] = {main_, main_};
+    if (without == MonitoredInput::encoder)
+      for (Localization& copy : copies_[row(without)]) copy.pause_encoder();
+  }
+  calibrations_ = {main_.calibration(), main_.calibration()};
+  copied_ = now;
+}
+
+/// Replaces the older copies by the newer ones, and these by the main filter, unless it may contain a fault.
+void LocalizationMonitor::refresh(std::int64_t now) {
+  if (copied_ < 0) return make_copies(now);
+  if (suspected_ || now - copied_ < kCopyAge) return;
+  for (const MonitoredInput without : kAll) {
+    auto& [older, newer] = copies_[row(without)];
+    older = std::move(newer);
+    newer = main_;
+    if (without == MonitoredInput::encoder) newer.pause_encoder();
+  }
+  calibrations_ = {calibrations_[1], main_.calibration()};
+  copied_ = now;
+}
+
+}  // namespace sf::estimation
