@@ -12,6 +12,9 @@ ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_
   read.wait_on_bumper = settings.flag("wait_on_bumper", stops_on_bumper);
   const bool set = settings.has("localize"), localize = settings.flag("localize", false);
   if (set) read.localize = localize;
+  read.monitor = settings.flag("monitor", false);
+  if (read.monitor && !read.localize.value_or(true))
+    settings.refuse("monitor", "'monitor' is for robots that localize themselves; expected localize = true");
   return read;
 }
 

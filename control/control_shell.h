@@ -5,7 +5,7 @@
 //                                             Control --(the controller is done)--> Stop
 //
 // Settings: `start`, "at-once" or "signal"; `wait_on_bumper`, default `ControllerType::stops_on_bumper`; `localize`:
-// the controller receives the state estimated from the robot's own sensors.
+// the controller receives the state estimated from the robot's own sensors; `monitor`: without faulty ones.
 
 #include <memory>
 #include <optional>
@@ -25,6 +25,7 @@ struct ControlShellSettings {
   bool wait_on_bumper = true;  ///< Control becomes Wait while `ControllerInput::contact`
   /// Replaces `ControllerInput::state` with estimates, in every state of the shell; nullopt: not set.
   std::optional<bool> localize;
+  bool monitor = false;  ///< it monitors the sensors by which it localizes itself
 };
 
 /// @throws base::InputError for an unknown value of `start`

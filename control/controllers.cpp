@@ -92,8 +92,11 @@ ConfiguredController make(const ControllerContext& context, ControllerConfig con
   const world::Mover& mover = context.world.movers[context.mover];
   const bool on_scans = type->on_scans && config.rate == 0.0 && sensors::has_laser(mover);
   std::optional<OwnLocalization> localization;
-  if (shell.localize.value_or(can_localize(mover)) && !config.localized_outside)
-    localization.emplace(mover, config.known_start);
+  const bool localizes = shell.localize.value_or(can_localize(mover)) && !config.localized_outside;
+  if (localizes) localization.emplace(mover, config.known_start, shell.monitor);
+  if (shell.monitor && !localizes)
+    throw base::InputError("'monitor' is for robots that localize themselves by their own sensors in a run; '" +
+                           mover.name + "' does not");
   return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),
           config.rate > 0.0 ? config.rate : type->rate, on_scans, shell.localize};
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "sensors/monitor.h"
 
 namespace sf::control {
 
@@ -37,9 +38,9 @@ base::Pose relative(const base::Pose& X_AB, const base::Pose& X_AC) {
 
 PositionSensors position_sensors_of(const world::Mover& mover) {
   PositionSensors own;
-  if (const world::Sensor* sensor = first_sensor(mover, "encoder")) own.wheels = sensors::read_encoder(*sensor, mover);
-  if (const world::Sensor* sensor = first_sensor(mover, "gyro")) own.gyro = sensors::read_gyro(*sensor);
-  if (const world::Sensor* sensor = first_sensor(mover, "gps")) own.gps = sensors::read_gps(*sensor);
+  constexpr std::array<std::string_view, 3> kTypes{"encoder", "gyro", "gps"};
+  for (std::size_t kind = 0; kind < kTypes.size(); ++kind)
+    if (const world::Sensor* sensor = first_sensor(mover, kTypes[kind])) own.add(kind, *sensor, mover);
   return own;
 }
 
@@ -67,23 +68,31 @@ double LocalizationError::yaw_rms() const {
   return std::sqrt(yaw_squares / static_cast<double>(std::max<std::uint64_t>(steps, 1)));
 }
 
-OwnLocalization::OwnLocalization(const world::Mover& mover, bool known_start)
-    : options_(sensors::localization_options(mover, required_sensors_of(mover))), known_start_(known_start) {
+OwnLocalization::OwnLocalization(const world::Mover& mover, bool known_start, bool monitored)
+    : first_(estimation::Localization({})), known_start_(known_start) {
+  const PositionSensors sensors = required_sensors_of(mover);
+  if (monitored && !sensors.gyro && !sensors.gps)
+    throw base::InputError("'monitor' compares a robot's own sensors, but '" + mover.name +
+                           "' has encoders only; expected gyro( ... ) or gps( ... ) in its definition");
+  if (monitored)
+    first_ = sensors::monitor_of(mover, sensors, {});
+  else
+    first_ = estimation::Localization(sensors::localization_options(mover, sensors));
   last_.fill(std::numeric_limits<std::int64_t>::min());
 }
 
 ControllerInput OwnLocalization::localize(const ControllerInput& input) {
-  if (!localization_) {
-    localization_.emplace(options_);
-    if (known_start_)
-      localization_->add_pose(std::max<std::int64_t>(input.time, 0), input.state.X_WM, estimation::kKnownStart);
+  if (!filter_) {
+    filter_ = first_;
+    if (known_start_) add_pose(std::max<std::int64_t>(input.time, 0), input.state.X_WM, estimation::kKnownStart);
   }
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.sensor == 0) take(reading);
-  for (const MeasuredPose& pose : input.poses) localization_->add_pose(pose.time, pose.X_WM, pose.covariance);
+  for (const MeasuredPose& pose : input.poses) add_pose(pose.time, pose.X_WM, pose.covariance);
+  if (auto* monitor = std::get_if<estimation::LocalizationMonitor>(&*filter_)) monitor->update(input.time);
 
   ControllerInput seen = input;
-  const estimation::Prediction prediction = localization_->predict(input.time);
+  const estimation::Prediction prediction = predict(input.time);
   // Satellites alone do not show the heading of a robot at rest.
   const bool fixed = prediction.status != estimation::Prediction::Status::none;
   known_start_ = known_start_ || (fixed && quality_of(prediction).covariance[5] < kFoundHeading * kFoundHeading);
@@ -105,7 +114,7 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
   std::pair last{input.time, now.X_WM};  // most readings have one time
   for (base::ReadingBlock& reading : readings_) {
     const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
-    if (reading.time != last.first) last = {reading.time, localization_->predict(reading.time).estimate.X_WM};
+    if (reading.time != last.first) last = {reading.time, predict(reading.time).estimate.X_WM};
     reading.X_WM = at_height(last.second);
     reading.X_WS = base::compose(reading.X_WM, X_MS);
   }
@@ -114,17 +123,27 @@ ControllerInput OwnLocalization::localize(const ControllerInput& input) {
   return seen;
 }
 
+estimation::Prediction OwnLocalization::predict(std::int64_t time) const {
+  return std::visit([&](const auto& filter) { return filter.predict(time); }, *filter_);
+}
+
+void OwnLocalization::add_pose(std::int64_t time, const base::Pose& X_WM, const std::array<double, 6>& covariance) {
+  std::visit([&](auto& filter) { filter.add_pose(time, X_WM, covariance); }, *filter_);
+}
+
 void OwnLocalization::take(const base::ReadingBlock& reading) {
   if (reading.time <= last_[reading.type]) return;  // already used
   const std::span<const double> v = reading.values;
-  if (reading.type == sensors::kEncoder && v.size() >= 2) localization_->add_encoder(reading.time, v[0], v[1]);
-  if (reading.type == sensors::kGyro && !v.empty()) localization_->add_gyro(reading.time, v[0]);
+  const auto add = [&](const auto& call) { std::visit([&](auto& filter) { call(filter); }, *filter_); };
+  if (reading.type == sensors::kEncoder && v.size() >= 2)
+    add([&](auto& filter) { filter.add_encoder(reading.time, v[0], v[1]); });
+  if (reading.type == sensors::kGyro && !v.empty()) add([&](auto& filter) { filter.add_gyro(reading.time, v[0]); });
   if (reading.type == sensors::kGps && v.size() >= 3) {
     // The antenna moves with the robot: its position uses the estimated heading.
     const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
-    const double yaw = localization_->predict(reading.time).estimate.X_WM.yaw;
+    const double yaw = predict(reading.time).estimate.X_WM.yaw;
     const glm::dvec2 p = sensors::origin_of({v[0], v[1]}, yaw, {X_MS.x, X_MS.y});
-    localization_->add_gps(reading.time, p.x, p.y, v[2]);
+    add([&](auto& filter) { filter.add_gps(reading.time, p.x, p.y, v[2]); });
   }
   last_[reading.type] = reading.time;
 }

@@ -5,10 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "control/controller.h"
-#include "robots/estimation/localization.h"
+#include "robots/estimation/localization_monitor.h"
 #include "sensors/localization.h"
 #include "world/world.h"
 
@@ -38,9 +39,10 @@ struct LocalizationError {
 class OwnLocalization {
  public:
   /// @param known_start the pose of the first step is known; otherwise the robot is lost until a positioning system or
-  /// its GPS receiver finds it
-  /// @throws base::InputError for a robot without encoders, or with invalid settings of these sensors
-  explicit OwnLocalization(const world::Mover& mover, bool known_start = true);
+  /// its GPS receiver finds it  @param monitored sensors that become faulty are not used (the shell's `monitor`)
+  /// @throws base::InputError for a robot without encoders, with invalid settings of these sensors, and with nothing to
+  /// compare them with
+  explicit OwnLocalization(const world::Mover& mover, bool known_start = true, bool monitored = false);
 
   /// Returns `input` with the estimate as the robot's pose and twist, and as the poses of its readings at their times.
   /// While the robot is lost, returns `input` unchanged. Spans are valid until the next call.
@@ -52,17 +54,24 @@ class OwnLocalization {
   /// Returns whether the last step found no pose: `state` is not valid, and the robot broadcasts nothing.
   bool is_lost() const { return quality_.age == base::kNoStateYet; }
   /// [ns] within the last second, or later. @pre after a step that was not lost; z is 0
-  base::Pose pose_at(std::int64_t time) const { return localization_->predict(time).estimate.X_WM; }
+  base::Pose pose_at(std::int64_t time) const { return predict(time).estimate.X_WM; }
+  /// Returns the monitor of the robot's sensors; null without one, and before the first step.
+  const estimation::LocalizationMonitor* monitor() const {
+    return filter_ ? std::get_if<estimation::LocalizationMonitor>(&*filter_) : nullptr;
+  }
   /// Returns the error relative to the poses of the inputs.
   const LocalizationError& error() const { return error_; }
 
  private:
+  using Filter = std::variant<estimation::Localization, estimation::LocalizationMonitor>;
+  estimation::Prediction predict(std::int64_t time) const;
+  void add_pose(std::int64_t time, const base::Pose& X_WM, const std::array<double, 6>& covariance);
   void take(const base::ReadingBlock& reading);
 
-  estimation::LocalizationOptions options_;
+  Filter first_;
   bool known_start_;
-  std::optional<estimation::Localization> localization_;  ///< set from the first step on
-  std::array<std::int64_t, 256> last_;                    ///< [ns] by sensor type: time of the last reading
+  std::optional<Filter> filter_;        ///< `first_`, from the first step on
+  std::array<std::int64_t, 256> last_;  ///< [ns] by sensor type: time of the last reading
   std::vector<base::ReadingBlock> readings_;
   base::Report state_;
   base::StateQuality quality_;  ///< not stated before the first step

@@ -12,8 +12,6 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kRate = 1.0;  // [Hz]
-
 class GpsReceivers : public HostBackend {
  public:
   GpsReceivers(const SensorContext& context, const ParsedSensors& sensors);
@@ -29,7 +27,7 @@ ParsedSensors parse_receivers(const world::World& world) {
   return parse_each(world, gps_type, [&, top = top_of_blocking(world)](const world::Sensor& sensor, SensorSpec& row) {
     const Gps gps = read_gps(sensor);
     row.sigma = gps.noise > 0.0 ? HUGE_VAL : 0.0;  // depends on the satellites in sight
-    row.rate = rate_of(sensor, kRate);
+    row.rate = rate_of(sensor, kGpsRate);
     row.X_MS.z += sensor.height;
     const double above = top - world.movers[row.mover].X_WM.z - row.X_MS.z;
     row.reach = std::max(0.0, above / std::tan(kLeastElevation));

@@ -23,6 +23,7 @@ namespace sf::sensors {
 
 inline constexpr std::uint8_t kGps = 10;              ///< wire id
 inline constexpr std::uint32_t kMostSatellites = 64;  ///< in the constellation
+inline constexpr double kGpsRate = 1.0;               ///< [Hz] default
 
 /// Settings of one receiver.
 struct Gps {

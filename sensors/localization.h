@@ -10,6 +10,9 @@
 // A reading is one row: x, y and yaw of the robot's origin in the world frame, whether they are valid, and their
 // covariance. Not valid: before the first pose or position. A run that starts with the sensor gives it the start pose.
 
+#include <array>
+#include <optional>
+
 #include "robots/estimation/localization.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
@@ -25,6 +28,11 @@ struct PositionSensors {
   std::optional<Encoder> wheels;  ///< as the robot knows them: without the error `scale`
   std::optional<Gyro> gyro;
   std::optional<Gps> gps;
+  std::array<double, 3> periods{}, latencies{};  ///< [s] of encoder, gyro and gps
+
+  /// @param kind 0: an encoder, 1: a gyro, 2: a gps
+  /// @throws base::InputError for invalid settings
+  void add(std::size_t kind, const world::Sensor& settings, const world::Mover& mover);
 };
 estimation::LocalizationOptions localization_options(const world::Mover& mover, const PositionSensors& sensors);
 

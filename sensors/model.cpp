@@ -91,7 +91,7 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_model(const DerivedContext& cont
 }
 
 constexpr DerivedPort kPorts[] = {{"input", {}, 1, 16}, {"measured", {}, 0, 1}};
-constexpr DerivedForm kDerived{kPorts, 1, true, make_model};
+constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 1, .covariance = true, .make = make_model};
 
 constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "file"};
 constexpr Column kColumns[] = {{"value"}, {"valid", 1, true}, {"variance"}};

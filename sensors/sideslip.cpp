@@ -157,7 +157,7 @@ constexpr std::string_view kRateColumns[] = {"rate_rad_s"}, kSpeedColumns[] = {"
 constexpr DerivedPort kPorts[] = {{"gyro", kRateColumns},       {"speed", kSpeedColumns},
                                   {"encoder", kWheelColumns},   {"steering", kSteerColumns},
                                   {"command", kCommandColumns}, {"torque", kTorqueColumns}};
-constexpr DerivedForm kDerived{kPorts, 3, true, make_sideslip};
+constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .make = make_sideslip};
 
 constexpr std::string_view kKeys[] = {"type",  "inputs",    "observer", "mass",       "inertia",
                                       "axles", "stiffness", "friction", "start_speed"};

@@ -64,7 +64,7 @@ typedef struct {
     const char* name;
     unsigned width;
     double unit;
-  } columns[11];  // a unit of 0: f32
+  } columns[19];  // a unit of 0: f32
 } sf_type;
 static const sf_type sf_types[] = {
     {1, "laser", 10000, {0}, {{"range_m", 1, 1e-3}}},
@@ -133,6 +133,28 @@ static const sf_type sf_types[] = {
       {"front_rear_n2", 1, 0},
       {"rear_rear_n2", 1, 0}}},
     {34, "model", 6000, {0}, {{"value", 1, 0}, {"valid", 1, 1}, {"variance", 1, 0}}},
+    {35,
+     "monitor",
+     4000,
+     {0},
+     {{"x_m", 1, 5e-3},
+      {"y_m", 1, 5e-3},
+      {"yaw_rad", 1, 1e-6},
+      {"valid", 1, 1},
+      {"xx_m2", 1, 0},
+      {"xy_m2", 1, 0},
+      {"x_yaw_m_rad", 1, 0},
+      {"yy_m2", 1, 0},
+      {"y_yaw_m_rad", 1, 0},
+      {"yaw_yaw_rad2", 1, 0},
+      {"forward_m_s", 1, 0},
+      {"turn_rad_s", 1, 0},
+      {"encoder_state", 1, 1},
+      {"gyro_state", 1, 1},
+      {"gps_state", 1, 1},
+      {"encoder_residual", 1, 0},
+      {"gyro_residual", 1, 0},
+      {"gps_residual", 1, 0}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},

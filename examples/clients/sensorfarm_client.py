@@ -70,6 +70,11 @@ SENSORS = {
                              ("sideslip_rear_rad_n", None), ("front_front_n2", None), ("front_rear_n2", None),
                              ("rear_rear_n2", None)]),
     34: ("model", 6000, [("value", None), ("valid", 1), ("variance", None)]),
+    35: ("monitor", 4000, [("x_m", 5e-3), ("y_m", 5e-3), ("yaw_rad", 1e-6), ("valid", 1), ("xx_m2", None),
+                           ("xy_m2", None), ("x_yaw_m_rad", None), ("yy_m2", None), ("y_yaw_m_rad", None),
+                           ("yaw_yaw_rad2", None), ("forward_m_s", None), ("turn_rad_s", None), ("encoder_state", 1),
+                           ("gyro_state", 1), ("gps_state", 1), ("encoder_residual", None), ("gyro_residual", None),
+                           ("gps_residual", None)]),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "robots/kinematics.h"
+
 namespace sf::estimation {
 
 namespace {
@@ -11,7 +13,9 @@ namespace {
 constexpr std::int64_t kCopyAge = 10'000'000'000;   // [ns] between copies
 constexpr std::int64_t kPatience = 10'000'000'000;  // [ns] for evidence that isolates a fault
 constexpr std::int64_t kOnset = 2'000'000'000;      // [ns] before a large residual, a sudden fault has not begun
+constexpr double kEvidence = 10.0;                  // squared distances by which one of two headings is worse
 constexpr double kLatePeriods = 3.5;                // age of the newest reading of an absent input
+constexpr double kLateness = 0.3;                   // [s] beyond the latency; updates may be 0.1 s apart
 constexpr int kMostRepeats = 2, kMostEncoderRepeats = 5;
 // Weights of the newest residual: turns come ten times as often as positions.
 constexpr std::array<double, kRelations> kFast{0.4, 0.6, 0.6, 0.6}, kSlow{0.03, 0.2, 0.2, 0.2};
@@ -27,6 +31,10 @@ std::size_t row(MonitoredInput input) { return static_cast<std::size_t>(input); 
 double in_seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 }  // namespace
+
+MonitorThresholds default_thresholds() {
+  return {.fast = {16.0, 11.0, 9.0, 16.0}, .slow = {44.0, 20.0, 20.0, 66.0}, .roughness = 14.0};
+}
 
 LocalizationMonitor::LocalizationMonitor(const LocalizationOptions& options, const MonitorOptions& monitor,
                                          bool has_gyro, bool has_gps)
@@ -56,7 +64,8 @@ void LocalizationMonitor::note(MonitoredInput input, std::int64_t time, std::arr
   Input& known = at(input);
   if (time <= known.newest) return;
   known.repeats = fixed && known.newest >= 0 && values == known.values ? known.repeats + 1 : 0;
-  known.newest = time, known.values = values, known.fixed = fixed;
+  if (known.repeats == 0) known.changed = time;
+  known.newest = time, known.values = values, known.fixed = fixed, known.arrived = true;
 }
 
 void LocalizationMonitor::add_pose(std::int64_t time, const base::Pose& X_WM, const std::array<double, 6>& covariance) {
@@ -72,18 +81,24 @@ void LocalizationMonitor::add_encoder(std::int64_t time, double left, double rig
   if (before.newest < 0 || time <= before.newest || !before.fixed) return;
   const double seconds = in_seconds(time - before.newest);
   const std::array<double, 2> rolled{left - before.values[0], right - before.values[1]};
-  compare_turns(time, seconds, rolled);
+  rolled_ = {time, seconds, rolled};
+  compare_turns();
   if (before.faulty) compare_speed(time, seconds, rolled);
 }
 
 void LocalizationMonitor::add_gyro(std::int64_t time, double rate) {
   feed(MonitoredInput::gyro, [&](Localization& filter) { filter.add_gyro(time, rate); });
   note(MonitoredInput::gyro, time, {rate, 0.0}, std::isfinite(rate));
+  compare_turns();
 }
 
 void LocalizationMonitor::add_gps(std::int64_t time, double x, double y, double hdop) {
   const bool fixed = std::isfinite(x + y + hdop);
   if (fixed) {
+    for (Reckoning& each : reckonings_) {
+      const auto squares = [&](const base::Pose& X) { return squared(x - X.x) + squared(y - X.y); };
+      each.evidence += (squares(each.by_encoder) - squares(each.by_gyro)) / squared(options_.gps_noise * hdop);
+    }
     const double variance = std::max(0.5 * squared(options_.gps_noise * hdop), kLeastMonitored);
     const bool faulty = at(MonitoredInput::gps).faulty;
     const auto& reckoned = faulty ? main_ : copies_[row(MonitoredInput::gps)][0];
@@ -109,10 +124,12 @@ void add_residual(LocalizationMonitor::Statistic& of, std::array<double, 2> resi
 
 }  // namespace
 
-/// @param seconds since the encoder reading before @param rolled [m] counted since then
-void LocalizationMonitor::compare_turns(std::int64_t time, double seconds, std::array<double, 2> rolled) {
+/// Compares readings of one time, whichever comes last.
+void LocalizationMonitor::compare_turns() {
   const Input& gyro = at(MonitoredInput::gyro);
+  const auto [time, seconds, rolled] = rolled_;
   if (gyro.newest != time || !gyro.fixed || seconds > 1.0) return;
+  rolled_.time = -1;
   const LocalizationOptions::Encoder& encoder = *options_.encoder;
   const auto& [left, right, track, bias] = calibrations_[0];
   const double turn = (rolled[1] / right.value - rolled[0] / left.value) / (track.value * seconds);
@@ -125,6 +142,11 @@ void LocalizationMonitor::compare_turns(std::int64_t time, double seconds, std::
   const double rate = gyro.values[0],
                residual = (rate - bias.value - turn) / std::sqrt(std::max(variance, kLeastMonitored));
   add_residual(statistics_[kTurnRelation], {residual, 0.0}, 1.0, kFast[kTurnRelation], kSlow[kTurnRelation]);
+  const double forward = 0.5 * (rolled[0] / left.value + rolled[1] / right.value);
+  for (Reckoning& each : reckonings_) {
+    each.by_encoder = robots::advance(each.by_encoder, {forward, 0.0, turn * seconds}, 1.0);
+    each.by_gyro = robots::advance(each.by_gyro, {forward, 0.0, (rate - bias.value) * seconds}, 1.0);
+  }
   compare_roughness(rate, turn, (rounding + slip) / arm);
 }
 
@@ -178,7 +200,7 @@ double LocalizationMonitor::residual(MonitoredInput input) const {
 bool LocalizationMonitor::is_late(MonitoredInput input) const {
   const Input& of = at(input);
   const double age = in_seconds(now_ - std::max<std::int64_t>(of.newest, 0));
-  return age > kLatePeriods * monitor_.period[row(input)] + monitor_.latency[row(input)];
+  return of.delayed || age > kLatePeriods * monitor_.period[row(input)] + monitor_.latency[row(input)];
 }
 
 InputState LocalizationMonitor::state(MonitoredInput input) const {
@@ -197,6 +219,9 @@ InputState LocalizationMonitor::state(MonitoredInput input) const {
 
 void LocalizationMonitor::update(std::int64_t now) {
   now_ = now;
+  for (const MonitoredInput input : kAll)
+    if (std::exchange(at(input).arrived, false))
+      at(input).delayed = in_seconds(now - at(input).newest) > monitor_.latency[row(input)] + kLateness;
   for (const MonitoredInput input : kAll)
     if (at(input).faulty) {
       if (!is_consistent(input)) at(input).wrong = now;
@@ -230,20 +255,24 @@ std::optional<MonitoredInput> LocalizationMonitor::isolated(std::int64_t now) co
   if (options_.gyro.noise > 0.0 && at(gyro).repeats >= kMostRepeats) return gyro;
   if (options_.gps_noise > 0.01 && at(gps).repeats >= kMostRepeats) return gps;
   if (!suspected_) return std::nullopt;
-  const double turn = ratio(kTurnRelation);
-  if (turn > 1.0) {
-    if (at(encoder).repeats >= kMostEncoderRepeats) return encoder;
+  const bool patient = now - *suspected_ < kPatience;
+  if (ratio(kTurnRelation) > 1.0) {
+    // Wheels that were at rest before do not begin to count falsely, and those that stop just then are stuck.
+    const Input& wheels = at(encoder);
+    const std::int64_t rested = *suspected_ - wheels.changed;
+    if (wheels.repeats >= kMostEncoderRepeats && rested >= 0) return rested > kOnset ? gyro : encoder;
     if (std::abs(roughness_) > monitor_.thresholds.roughness) return roughness_ > 0.0 ? gyro : encoder;
+    const double evidence = reckonings_[0].evidence;
+    if (!at(gps).wired || (patient && std::abs(evidence) < kEvidence)) return std::nullopt;
+    return evidence > 0.0 ? encoder : gyro;
   }
+  if (!std::ranges::all_of(inputs_, &Input::wired)) return std::nullopt;
   // Without the faulty input the others agree, and without any other they do not.
   std::array<MonitoredInput, kMonitoredInputs> order = kAll;
   const auto rest = [&](MonitoredInput input) { return ratio(kRest[row(input)]); };
   std::ranges::sort(order, {}, rest);
-  const bool all = std::ranges::all_of(inputs_, &Input::wired);
-  if (!all) return std::nullopt;
   if (rest(order[0]) < 0.5 && rest(order[1]) > 1.0) return order[0];
-  if (now - *suspected_ < kPatience) return std::nullopt;
-  if (turn > 1.0) return rest(encoder) < rest(gyro) ? encoder : gyro;
+  if (patient) return std::nullopt;
   if (ratio(kReckonedRelation) > 1.0 || ratio(kWheelsRelation) > 1.0) return rest(encoder) < rest(gps) ? encoder : gps;
   return rest(gyro) < rest(gps) ? gyro : gps;
 }
@@ -290,6 +319,7 @@ void LocalizationMonitor::make_copies(std::int64_t now) {
       for (Localization& copy : copies_[row(without)]) copy.pause_encoder();
   }
   calibrations_ = {main_.calibration(), main_.calibration()};
+  reckonings_ = {Reckoning(main_.predict(now)), Reckoning(main_.predict(now))};
   copied_ = now;
 }
 
@@ -304,6 +334,7 @@ void LocalizationMonitor::refresh(std::int64_t now) {
     if (without == MonitoredInput::encoder) newer.pause_encoder();
   }
   calibrations_ = {calibrations_[1], main_.calibration()};
+  reckonings_ = {reckonings_[1], Reckoning(main_.predict(now))};
   copied_ = now;
 }
 

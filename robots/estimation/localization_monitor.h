@@ -17,8 +17,9 @@
 //   reckoned  all                  positions against the copy without satellites, dead reckoning
 //
 // A large residual is a fault of one of its inputs. The faulty input is the one without which the others agree: an
-// encoder if `course` is small, a gyro if `wheels` is, a receiver if `turn` is. Which of two yaw rates is wrong is also
-// seen from the one that changes more from reading to reading. Faults of one input at a time are isolated.
+// encoder if `course` is small, a gyro if `wheels` is, a receiver if `turn` is. Where `turn` is large, the faulty yaw
+// rate is the one that changes more from reading to reading, else the one by which dead reckoning leaves the positions.
+// Faults of one input at a time are isolated.
 //
 // Reference: P. M. Frank, Fault diagnosis in dynamic systems using analytical and knowledge-based redundancy,
 // Automatica 26, 1990. We deviate in the copies: a filter that never used an input would not know the constants that
@@ -38,7 +39,7 @@ inline constexpr std::size_t kMonitoredInputs = 3;
 enum class InputState : std::uint8_t {
   good,
   faulty,    ///< not used
-  absent,    ///< no reading, or none with a fix, for three of its periods; or the robot does not have it
+  absent,    ///< no reading for 3.5 of its periods, late readings, or none with a fix; or the robot does not have it
   suspected  ///< used; a residual is too large, and this input is one of those that may be the cause
 };
 
@@ -47,16 +48,16 @@ enum MonitorRelation : std::uint8_t { kTurnRelation, kWheelsRelation, kCourseRel
 
 /// Limits of the statistics of residuals: 1 is their mean without faults if the model is exact.
 struct MonitorThresholds {
-  /// Per relation: the mean of squared residuals over the last two to five, for sudden faults.
-  std::array<double, kRelations> fast{30.0, 12.0, 12.0, 12.0};
-  /// Per relation: the squared mean residual over 2 to 10 s, for slow faults.
-  std::array<double, kRelations> slow{30.0, 12.0, 12.0, 12.0};
-  /// Mean difference between the squared changes of both yaw rates, normalised; below, neither counts as rougher.
-  double roughness = 6.0;
+  std::array<double, kRelations> fast;  ///< mean of the squares of the last two to five residuals, for sudden faults
+  std::array<double, kRelations> slow;  ///< squared mean residual of 2 to 10 s, for slow faults
+  double roughness;  ///< mean difference between the squared changes of both yaw rates, normalised; below, neither
+                     ///< counts as rougher
 };
+/// Those of docs/derived.md, fixed on runs without faults.
+MonitorThresholds default_thresholds();
 
 struct MonitorOptions {
-  MonitorThresholds thresholds;
+  MonitorThresholds thresholds = default_thresholds();
   std::array<double, kMonitoredInputs> period{0.1, 0.1, 1.0};  ///< [s] > 0 between readings
   std::array<double, kMonitoredInputs> latency{};              ///< [s] >= 0
   double lower = 0.5;  ///< share of the thresholds below which an input is handed back
@@ -95,9 +96,12 @@ class LocalizationMonitor {
   struct Input {
     bool wired = false;
     bool faulty = false;
+    bool arrived = false;            ///< the newest reading came after the last update
+    bool delayed = false;            ///< it came later than its latency
     std::int64_t newest = -1;        ///< [ns] of measurement; -1: none
     bool fixed = true;               ///< the newest reading has a value
     std::array<double, 2> values{};  ///< the newest
+    std::int64_t changed = 0;        ///< [ns] when its values last changed
     int repeats = 0;                 ///< identical successive readings before the newest
     std::int64_t wrong = 0;          ///< [ns] last time at which a faulty input was inconsistent
     int faults = 0;                  ///< how often it was faulty
@@ -108,7 +112,7 @@ class LocalizationMonitor {
   template <class Add>
   void feed(MonitoredInput input, const Add& add);
   void note(MonitoredInput input, std::int64_t time, std::array<double, 2> values, bool fixed);
-  void compare_turns(std::int64_t time, double seconds, std::array<double, 2> rolled);
+  void compare_turns();
   void compare_roughness(double rate, double turn, double variance);
   void compare_speed(std::int64_t time, double seconds, std::array<double, 2> rolled);
   void compare_position(MonitorRelation relation, const Localization& filter, std::int64_t time, glm::dvec2 p,
@@ -132,6 +136,20 @@ class LocalizationMonitor {
   std::int64_t copied_ = -1;                 ///< [ns] when the newer copies were made; -1: never
   std::array<Input, kMonitoredInputs> inputs_;
   std::array<Statistic, kRelations> statistics_;
+  /// Two poses by the wheels' distance, one with each yaw rate: satellites show which is wrong.
+  struct Reckoning {
+    Reckoning() = default;
+    explicit Reckoning(const Prediction& start) : by_encoder(start.estimate.X_WM), by_gyro(start.estimate.X_WM) {}
+    base::Pose by_encoder, by_gyro;
+    double evidence = 0.0;  ///< sum of differences of squared distances, normalised; > 0: the encoder's is wrong
+  };
+  std::array<Reckoning, 2> reckonings_;  ///< as old as the copies
+  struct Rolled {
+    std::int64_t time = -1;            ///< [ns] of an encoder reading; -1: compared
+    double seconds = 0.0;              ///< [s] since the one before
+    std::array<double, 2> distance{};  ///< [m] counted since then
+  };
+  Rolled rolled_;                                  ///< not yet compared with the gyro
   double mean_roughness_ = 0.0, roughness_ = 0.0;  ///< now; its largest magnitude, with decay
   double turn_ = 0.0;                              ///< [rad/s] yaw rate of the last encoder interval
   double compared_rate_ = 0.0;                     ///< [rad/s] the gyro's at that time

@@ -98,7 +98,7 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
     const DerivedForm& form = *node.type->derived;
     const std::size_t rows = node.spec.elements;
     nodes_[i].name = derived_name(world, node);
-    nodes_[i].quantities.resize(rows * form.quantities);
+    nodes_[i].quantities.resize(rows * (form.quantities + form.extra));
     nodes_[i].covariance.resize(form.covariance ? rows * triangle(form.quantities) : 0);
     nodes_[i].valid.resize(rows);
     nodes_[i].values.resize(rows * element_width(*node.type));
@@ -168,15 +168,17 @@ void DerivedSensors::call(std::size_t i, std::int64_t now) {
   std::ranges::fill(node.covariance, std::numeric_limits<double>::quiet_NaN());
   std::ranges::fill(node.valid, std::uint8_t{1});
   node.sensor->read(1e-9 * static_cast<double>(now), {node.quantities, node.covariance, node.valid});
-  const std::size_t quantities = wired.type->derived->quantities;
-  const std::size_t covariances = wired.type->derived->covariance ? triangle(wired.type->derived->quantities) : 0;
+  const DerivedForm& form = *wired.type->derived;
+  const std::size_t quantities = form.quantities;
+  const std::size_t covariances = form.covariance ? triangle(form.quantities) : 0;
   double* out = node.values.data();
   for (std::size_t row = 0; row < node.valid.size(); ++row) {
     const bool valid = node.valid[row] != 0;
-    const double* const from = node.quantities.data() + row * quantities;
+    const double* const from = node.quantities.data() + row * (quantities + form.extra);
     for (std::size_t k = 0; k < quantities; ++k) *out++ = valid ? from[k] : std::numeric_limits<double>::quiet_NaN();
     *out++ = valid ? 1.0 : 0.0;
     out = std::copy_n(node.covariance.data() + row * covariances, covariances, out);
+    out = std::copy_n(from + quantities, form.extra, out);
   }
 }
 

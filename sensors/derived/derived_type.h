@@ -4,7 +4,7 @@
 // In a world file, inside a robot:
 //   derived( type "localization"  inputs ["encoder" "gyro" "gps:0"]  rate 20 )
 // An input is "[port=][robot/]type[:number]". Without a robot it is a sensor of the same robot; "*/type" is that sensor
-// of every robot. Columns of a reading: the quantities, `valid`, then the upper triangle of their covariance.
+// of every robot. Columns of a reading: the quantities, `valid`, the upper triangle of their covariance, then others.
 
 #include <cstdint>
 #include <memory>
@@ -48,6 +48,8 @@ struct DerivedForm {
   std::span<const DerivedPort> ports;
   std::uint32_t quantities = 1;  ///< columns of a row before `valid`
   bool covariance = false;
+  std::uint32_t extra = 0;  ///< columns of a row after the covariance, also of a row that is not valid; in
+                            ///< `DerivedReading::values` they follow the row's quantities
   /// @throws base::InputError for invalid settings
   std::unique_ptr<sensorfarm::DerivedSensor> (*make)(const DerivedContext& context) = nullptr;
 };

@@ -149,7 +149,12 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"ptz", 31, 1, {0.5, -0.1, 0.4}},
              {"localization", 32, 1, {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625}},
              {"sideslip", 33, 1, {-0.05, 4000, 2500, 1, 0.0009765625, 0, 0, 1024, 0, 256}},
-             {"model", 34, 1, {0.25, 1, 0.00390625}}};
+             {"model", 34, 1, {0.25, 1, 0.00390625}},
+             {"monitor",
+              35,
+              1,
+              {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625, 0.25, -0.125, 0, 1, 0, 0.5,
+               2, 0.25}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;
@@ -197,7 +202,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 16u) << "plain readings";
+  EXPECT_EQ(rows, 17u) << "plain readings";
 }
 
 }  // namespace
