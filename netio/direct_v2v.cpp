@@ -17,7 +17,7 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kDirectBatch = 64;
-constexpr std::size_t kDirectChannel = 0;
+constexpr std::size_t kDirectChannel = 0, kMapChannel = 1;
 constexpr std::int64_t kDirectPeriod = 100'000'000;       ///< [ns]
 constexpr std::uint64_t kDirectClockTrouble = 1'000'000;  ///< [us] lag from which a replayed packet is reported
 
@@ -164,7 +164,7 @@ bool DirectV2v::accept(std::span<const std::uint8_t> bytes, const Endpoint& sour
     status = check_sender(packet, bytes, source);
   }
   if (status == PacketStatus::accepted) {
-    if (is_far(std::get<V2v>(packet.body))) return ++counts_.far, false;
+    if (is_far(packet, now)) return ++counts_.far, false;
     status = bind_sender(header, source, now);
   }
   counts_.packets.add(status);
@@ -172,17 +172,20 @@ bool DirectV2v::accept(std::span<const std::uint8_t> bytes, const Endpoint& sour
   return status == PacketStatus::accepted;
 }
 
-/// A state that was sent both to an address and to the group arrives twice.
+/// A packet that was sent both to an address and to the group arrives twice.
 bool DirectV2v::is_repeated(const Header& header, std::int64_t now) const {
-  if (header.type != Type::v2v || !senders_.is_active(header.robot, now)) return false;
+  const bool is_map = header.type == Type::team_map;
+  if ((header.type != Type::v2v && !is_map) || !senders_.is_active(header.robot, now)) return false;
   const Sender& sender = details_[*senders_.row(header.robot)];
-  return header.session == sender.session && header.sequence == sender.sequence;
+  return header.session == sender.session &&
+         (is_map ? header.sequence == sender.map_sequence : header.sequence == sender.sequence);
 }
 
 PacketStatus DirectV2v::check_sender(const Packet& packet, std::span<const std::uint8_t> bytes,
                                      const Endpoint& source) {
   const std::uint32_t id = packet.header.robot;
-  if (!std::holds_alternative<V2v>(packet.body)) return PacketStatus::wrong_direction;
+  const bool is_state = std::holds_alternative<V2v>(packet.body);
+  if (!is_state && !std::holds_alternative<TeamMap>(packet.body)) return PacketStatus::wrong_direction;
   if (id == options_.robot) return PacketStatus::wrong_source;
   const auto row = senders_.row(id);
   if (!row) return PacketStatus::unknown_robot;
@@ -212,17 +215,28 @@ PacketStatus DirectV2v::bind_sender(const Header& header, const Endpoint& source
     sender.session_before = sender.session;
     sender.restarted = now;
   }
-  const PacketStatus status =
-      senders_.admit(header.robot, kDirectChannel, header.sequence, sender.checker ? Endpoint{} : source, now);
+  const bool is_map = header.type == Type::team_map;
+  const PacketStatus status = senders_.admit(header.robot, is_map ? kMapChannel : kDirectChannel, header.sequence,
+                                             sender.checker ? Endpoint{} : source, now);
   if (status != PacketStatus::accepted) return status;
+  sender.last = now;
+  if (is_map) {
+    sender.map_sequence = header.sequence;
+    return status;
+  }
+  if (header.session != sender.session) sender.map_sequence.reset();
   sender.session = header.session;
   sender.sequence = header.sequence;
-  sender.last = now;
+  sender.last_state = now;
   return status;
 }
 
-bool DirectV2v::is_far(const V2v& state) const {
-  return p_ && std::hypot(state.X_WR.x - p_->x, state.X_WR.y - p_->y) > options_.radio;
+/// A map has no position: its sender is as far away as its last state says.
+bool DirectV2v::is_far(const Packet& packet, std::int64_t now) const {
+  if (const auto* state = std::get_if<V2v>(&packet.body))
+    return p_ && std::hypot(state->X_WR.x - p_->x, state->X_WR.y - p_->y) > options_.radio;
+  const Sender& sender = details_[*senders_.row(packet.header.robot)];
+  return packet.header.session != sender.session || !sender.last_state || now - *sender.last_state >= kSenderTimeout;
 }
 
 bool DirectV2v::admit(const Header& header, std::int64_t now) {

@@ -1,10 +1,10 @@
 #pragma once
-// V2V between robots without the farm: sends a robot's states to a list of addresses and to a multicast group, and
-// receives those of other robots. docs/packets.md specifies the accepted packets.
+// V2V between robots without the farm: sends a robot's states, and its map to its team, to a list of addresses and to a
+// multicast group, and receives those of other robots. docs/packets.md specifies the accepted packets.
 //
 //   DirectV2v direct({.peers = {{address, port}}, .robot = 7, .others = ids});
 //   direct.set_position({x, y});
-//   direct.send(bytes);                                                       // an encoded V2V
+//   direct.send(bytes);                                                       // an encoded V2V or TEAM_MAP
 //   direct.receive(now, [&](std::span<const std::uint8_t> bytes) { ... });
 //   if (direct.admit(header, now)) ...                                        // also for states relayed by the farm
 //
@@ -53,10 +53,10 @@ struct DirectV2vOptions {
 /// Each received datagram is counted once.
 struct DirectV2vCounts {
   OutboxCounts sent;             ///< per receiver
-  PacketCounts packets;          ///< received; accepted: new states
+  PacketCounts packets;          ///< received; accepted: new states and TEAM_MAP
   std::uint64_t duplicates = 0;  ///< datagrams received before, and states, also relayed ones, that arrived by the
                                  ///< other way before or were overtaken there
-  std::uint64_t far = 0;         ///< from robots beyond radio range
+  std::uint64_t far = 0;         ///< from robots beyond radio range, and TEAM_MAP without a recent state
   std::uint64_t own = 0;         ///< from this robot, returned by the network
   std::uint64_t over_rate = 0;   ///< dropped without a check, because too many arrived
   std::uint64_t socket_drops = 0;
@@ -80,11 +80,11 @@ class DirectV2v {
   /// accepted.
   void set_position(const glm::dvec2& p) { p_ = p; }
 
-  /// Sends an encoded V2V with this robot's session to all receivers, signed once if there is a key.
+  /// Sends an encoded V2V or TEAM_MAP with this robot's session to all receivers, signed once if there is a key.
   void send(std::span<const std::uint8_t> bytes);
 
-  /// Passes the waiting datagrams with acceptable states of other robots to `take(std::span<const std::uint8_t>
-  /// bytes)`.
+  /// Passes the waiting datagrams with acceptable states and maps of other robots to `take(std::span<const
+  /// std::uint8_t> bytes)`. A map is acceptable from a robot whose state was accepted in the last two seconds.
   /// @param now [ns] of any clock that does not decrease
   template <class Take>
   void receive(std::int64_t now, Take&& take) {
@@ -115,20 +115,22 @@ class DirectV2v {
  private:
   /// Another robot of the world.
   struct Sender {
-    std::optional<std::uint32_t> address;     ///< from the table
-    std::optional<SignatureChecker> checker;  ///< with the key of the group or of the robot
-    std::uint32_t session = 0;                ///< of its last accepted state
-    std::uint32_t sequence = 0;               ///< the same
-    std::int64_t last = 0;                    ///< [ns] when it was accepted
-    std::uint32_t session_before = 0;         ///< the session that this one replaced
-    std::optional<std::int64_t> restarted;    ///< [ns] when it did
+    std::optional<std::uint32_t> address;       ///< from the table
+    std::optional<SignatureChecker> checker;    ///< with the key of the group or of the robot
+    std::uint32_t session = 0;                  ///< of its last accepted state
+    std::uint32_t sequence = 0;                 ///< the same
+    std::optional<std::uint32_t> map_sequence;  ///< of its last accepted TEAM_MAP in this session
+    std::int64_t last = 0;                      ///< [ns] when its last packet was accepted
+    std::optional<std::int64_t> last_state;     ///< [ns] when its last state was accepted
+    std::uint32_t session_before = 0;           ///< the session that this one replaced
+    std::optional<std::int64_t> restarted;      ///< [ns] when it did
   };
   bool accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now);
   PacketStatus check_sender(const Packet& packet, std::span<const std::uint8_t> bytes, const Endpoint& source);
   PacketStatus bind_sender(const Header& header, const Endpoint& source, std::int64_t now);
   bool has_restarted(const Header& header, const Endpoint& source, std::int64_t now) const;
   bool is_repeated(const Header& header, std::int64_t now) const;
-  bool is_far(const V2v& state) const;
+  bool is_far(const Packet& packet, std::int64_t now) const;
   bool is_over_rate(std::int64_t now);
   void begin_period(std::int64_t now);
   void note(PacketStatus status, std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now);

@@ -107,6 +107,7 @@ PacketStatus Inbox::check_id(const Header& header) const {
     case Type::state:
     case Type::values:
     case Type::drive:
+    case Type::team_map:
       break;
   }
   return PacketStatus::wrong_direction;

@@ -23,7 +23,8 @@ constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
                                  {Type::state, "STATE", kHeaderBytes + kStateBytes},
                                  {Type::values, "VALUES", 0},
                                  {Type::drive, "DRIVE", kHeaderBytes + kDriveBytes},
-                                 {Type::lane, "LANE", kHeaderBytes + kLaneBytes}};
+                                 {Type::lane, "LANE", kHeaderBytes + kLaneBytes},
+                                 {Type::team_map, "TEAM_MAP", 0}};
 
 }  // namespace
 

@@ -206,6 +206,12 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       packet.body = signals;
       return status;
     }
+    case Type::team_map: {
+      TeamMap map;
+      status = read_team_map(payload, map);
+      packet.body = map;
+      return status;
+    }
     case Type::object:
       return read_object(payload, reader, packet);
     case Type::refusal:
@@ -394,6 +400,13 @@ void encode(const Header& header, const V2i& signals, base::Bytes& out) {
            "V2I " + std::to_string(header.robot) + ": " + std::string(name(check(signals))));
   start(header, Type::v2i, out);
   put_v2i(signals, out);
+}
+
+void encode(const Header& header, const TeamMap& map, base::Bytes& out) {
+  SF_CHECK(check(map) == PacketStatus::accepted,
+           "TEAM_MAP of robot " + std::to_string(header.robot) + ": " + std::string(name(check(map))));
+  start(header, Type::team_map, out);
+  put_team_map(map, out);
 }
 
 void encode(const Header& header, const Object& object, base::Bytes& out) {

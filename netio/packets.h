@@ -20,6 +20,7 @@
 #include "base/state_quality.h"
 #include "netio/lockstep_packets.h"
 #include "netio/packet_status.h"
+#include "netio/team_map.h"
 #include "netio/v2i.h"
 
 namespace sf::netio {
@@ -44,8 +45,8 @@ inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [ra
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences do not overflow
 
 /// Types from 128 are states and requests sent to the farm. The farm forwards V2V and START, and also sends V2I and
-/// LANE. CHALLENGE, REFUSAL and types from 140 to 143 are answers of the farm. A type below 64 is a reading of the
-/// sensor type with this wire id; the same number plus 64 is its second form.
+/// LANE. Robots send V2V and TEAM_MAP to each other. CHALLENGE, REFUSAL and types from 140 to 143 are answers of the
+/// farm. A type below 64 is a reading of the sensor type with this wire id; the same number plus 64 is its second form.
 enum class Type : std::uint8_t {
   v2v = 128,
   tag = 129,
@@ -63,7 +64,8 @@ enum class Type : std::uint8_t {
   state = 141,
   values = 142,
   drive = 143,
-  lane = 144
+  lane = 144,
+  team_map = 145
 };
 
 /// Returns the wire id (below 64) of the sensor type whose readings, in either form, have type
@@ -191,7 +193,7 @@ struct Reading {
 struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading, Command, Step, Fetch,
-               State, Values, Refusal, Drive, Lane>
+               State, Values, Refusal, Drive, Lane, TeamMap>
       body;
   bool late = false;       ///< a state whose sequence is not newer than the last one of its sender
                            ///< (`InboxOptions::take_late`)
@@ -214,6 +216,7 @@ void encode(const Header& header, const Refusal& refusal, base::Bytes& out);
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out);
 void encode(const Header& header, const Drive& command, base::Bytes& out);
 void encode(const Header& header, const Lane& lane, base::Bytes& out);
+void encode(const Header& header, const TeamMap& map, base::Bytes& out);
 void encode(const Header& header, const Command& command, base::Bytes& out);
 void encode(const Header& header, const Step& step, base::Bytes& out);
 void encode(const Header& header, const Fetch& fetch, base::Bytes& out);

@@ -164,6 +164,26 @@ void add_body(const netio::V2i& signals, Fields& out) {
   add(out, "stop_point", stop_point);
   add(out, "stop_line", stop_line);
 }
+/// Adds the rows as three lists: of robot, session, pieces and later ones; of skipped and claimed cells; of bytes.
+void add_body(const netio::TeamMap& map, Fields& out) {
+  add(out, "left_m", map.left);
+  add(out, "top_m", map.top);
+  add(out, "cell_m", map.cell);
+  add(out, "word_columns", map.word_columns);
+  add(out, "word_rows", map.word_rows);
+  add(out, "piece", map.piece);
+  add(out, "flags", netio::flags_of(map));
+  std::vector<double> acks, claim;
+  for (std::size_t k = 0; k < netio::count_acks(map); ++k) {
+    const netio::MapAck ack = netio::ack_at(map, k);
+    for (const std::uint32_t number : {ack.robot, ack.session, ack.pieces, ack.later}) acks.push_back(number);
+  }
+  for (std::size_t k = 0; k < netio::count_runs(map); ++k)
+    for (const std::uint16_t number : {netio::run_at(map, k).skip, netio::run_at(map, k).take}) claim.push_back(number);
+  add(out, "acks", acks);
+  add(out, "claim", claim);
+  add(out, "bytes", map.bytes);
+}
 /// A long OBJECT has all fields: what it leaves as it is, is none.
 void add_body(const netio::Object& object, Fields& out) {
   add(out, "present", object.present);

@@ -47,7 +47,8 @@ enum {
   SF_REFUSAL,
   SF_NEIGHBOURS,
   SF_DRIVE = 143,
-  SF_LANE
+  SF_LANE,
+  SF_TEAM_MAP
 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
 enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
@@ -174,6 +175,7 @@ static const sf_type sf_types[] = {
     {142, "VALUES", 0, {"index", "datagrams", "values_type", "total", "first"}, {{"value", 1, 1}}},
     {143, "DRIVE", 0, {0}, {{"velocity", 3, 1}}},
     {144, "LANE", 0, {"segment", "lane", "use"}, {{0}}},
+    {145, "TEAM_MAP", 0, {"word_columns", "word_rows", "piece", "flags"}, {{0}}},
     {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
 
 typedef struct {
@@ -189,11 +191,13 @@ typedef struct {
   unsigned no_state;             // 1: no state has arrived yet; the robot is at its place in the world file
   float covariance[6];           // of that state, x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: unknown
   uint32_t words[5];             // the integers named in sf_types
-  double corner[3];              // OCCUPANCY: left, top, cell [m]
+  double corner[3];              // OCCUPANCY, TEAM_MAP: left, top, cell [m]
   unsigned count;                // number of values. NEIGHBOURS: number of V2V packets
   unsigned approaches;           // V2I: number of rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
   const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; valid as long as the datagram
+  const uint8_t* rows[3];        // TEAM_MAP: acknowledgements (4 u32 each), claim (2 u16 each), bytes; as `states`
+  unsigned lengths[3];           // TEAM_MAP: number of integers in each of them
   unsigned changes;              // OBJECT: sum of 2: shape, 4: colour (words[1], 0xAARRGGBB), 8: size (values, m)
   char shape[65];                // OBJECT: name of a shape, or "original"
   uint64_t tick;                 // lockstep
@@ -349,6 +353,30 @@ static const char* decode_v2i_row(const uint8_t* b, bool approach, double* v) {
   const bool placed = fabs(v[4]) <= 1e7 && fabs(v[5]) <= 1e7 && b[0] >= 1 && b[0] <= 254;
   return in_range(placed && (approach ? b[1] < 6 && (b[2] < 6 || b[2] == 255) && fabs(v[6]) <= 1e7 && fabs(v[7]) <= 1e6
                                       : fabs(v[6]) <= 1e6 && v[7] >= 0 && v[7] <= 1e7));
+}
+
+static const unsigned team_map_widths[3] = {4, 2, 1};  // bytes of the integers in sf_packet.rows
+
+static const char* decode_team_map(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size < 44) return "too short";
+  for (unsigned i = 0; i < 3; ++i) p->corner[i] = get_f64(b + 8 * i), p->words[i] = (uint32_t)get(b + 24 + 4 * i, 4);
+  const uint32_t flags = p->words[3] = (uint32_t)get(b + 42, 2), *const w = p->words;
+  p->lengths[0] = 4 * (unsigned)get(b + 38, 2), p->lengths[1] = 2 * (unsigned)get(b + 40, 2);
+  p->lengths[2] = (unsigned)get(b + 36, 2);
+  size_t at = 44;
+  for (unsigned i = 0; i < 3; at += (size_t)team_map_widths[i] * p->lengths[i], ++i) p->rows[i] = b + at;
+  const char* const sized = check_size(size, at);
+  if (sized) return sized;
+  if (check_numbers(p->corner, 3, HUGE_VAL)) return "not finite";
+  uint64_t end = 0;
+  for (unsigned i = 0; i < p->lengths[1]; ++i) end += get(p->rows[1] + 2 * i, 2);
+  bool good = fabs(p->corner[0]) <= 1e7 && fabs(p->corner[1]) <= 1e7 && p->corner[2] >= 1e-4 && p->corner[2] <= 1e3 &&
+              w[0] >= 1 && w[0] <= 4096 && w[1] >= 1 && w[1] <= 4096 && w[0] * w[1] <= 1u << 20 && flags < 8 &&
+              p->lengths[0] <= 4 * 12 && end <= UINT64_C(16) * w[0] * w[1] &&
+              ((flags & 2) || (p->lengths[1] == 0 && !(flags & 4))) &&
+              (p->lengths[2] > 0 || (w[2] == 0 && !(flags & 1)));
+  for (unsigned i = 0; good && i < p->lengths[0]; i += 4) good = get(p->rows[0] + 4 * i, 4) <= 65535;
+  return in_range(good);
 }
 
 static const char* decode_v2i(sf_packet* p, const uint8_t* b, size_t size) {
@@ -513,6 +541,7 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
                              : packet->type == SF_OCCUPANCY  ? decode_occupancy(packet, b, size)
                              : packet->type == SF_NEIGHBOURS ? decode_neighbours(packet, b, size)
                              : packet->type == SF_V2I        ? decode_v2i(packet, b, size)
+                             : packet->type == SF_TEAM_MAP   ? decode_team_map(packet, b, size)
                              : is_lockstep(packet->type)     ? decode_lockstep(packet, b, size)
                              : packet->type >= 128           ? decode_state(packet, type, b, size)
                                                              : decode_rows(packet, type, b, size);
@@ -599,7 +628,7 @@ size_t sf_encode_lockstep(const sf_packet* packet, uint8_t* bytes) {
 void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char* after) {
   static const char* const corner[] = {"left_m", "top_m", "cell_m"};
   const sf_type* const type = sf_find_type(p->type);
-  for (unsigned i = 0; p->type == SF_OCCUPANCY && i < 3; ++i)
+  for (unsigned i = 0; (p->type == SF_OCCUPANCY || p->type == SF_TEAM_MAP) && i < 3; ++i)
     fprintf(out, "%s%s = %.10g%s", before, corner[i], p->corner[i], after);
   if (is_lockstep(p->type)) fprintf(out, "%stick = %llu%s", before, (unsigned long long)p->tick, after);
   for (unsigned i = 0; type->words[i]; ++i) {
@@ -620,6 +649,13 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     for (unsigned i = 0; i < 4; ++i) fprintf(out, " %.10g", p->sensor_pose[i]);
     fprintf(out, "%s%serror = ", after, before);
     fprintf(out, isinf(p->error) ? "none" : "%.10g", p->error);
+    fputs(after, out);
+  }
+  static const char* const lists[] = {"acks", "claim", "bytes"};
+  for (unsigned i = 0; p->type == SF_TEAM_MAP && i < 3; ++i) {
+    fprintf(out, p->lengths[i] > 0 ? "%s%s =" : "%s%s = ", before, lists[i]);
+    for (unsigned k = 0; k < p->lengths[i]; ++k)
+      fprintf(out, " %lu", (unsigned long)get(p->rows[i] + team_map_widths[i] * k, team_map_widths[i]));
     fputs(after, out);
   }
   const unsigned approaches = p->type == SF_V2I ? 8 * p->approaches : p->count;

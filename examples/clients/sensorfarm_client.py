@@ -32,8 +32,8 @@ LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
             4: "refused: wrong address"}
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE, LANE = (
-    128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143, 144)
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE, LANE, TEAM_MAP = (
+    128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143, 144, 145)
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
@@ -79,7 +79,7 @@ SENSORS = {
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
               137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE",
-              144: "LANE"}
+              144: "LANE", 145: "TEAM_MAP"}
 SHAPED_OBJECT = "<2I3d64s"  # payload of an OBJECT that changes a shape
 SHAPE_NAME = re.compile(rb"[A-Za-z0-9_.-]{1,64}")
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
@@ -188,6 +188,24 @@ def decode_v2i(payload):
             "stop_line": flat(row[4:] for row in lines)}
 
 
+def decode_team_map(payload):
+    """A robot's part of its team's map. acks: robot, session, number of pieces and bits of later ones of each
+    acknowledgement; claim: cells
+    to skip and to take, of each run; bytes: a piece of measurements."""
+    names = ("left_m", "top_m", "cell_m", "word_columns", "word_rows", "piece", "flags")
+    require(len(payload) >= 44, "too short")
+    left, top, cell, columns, rows, piece, size, acks, runs, flags = struct.unpack_from("<3d3I4H", payload)
+    words = unpack("<%dI%dH%dB" % (4 * acks, 2 * runs, size), payload[44:])
+    robots, claim, data = words[:4 * acks:4], words[4 * acks:4 * acks + 2 * runs], words[4 * acks + 2 * runs:]
+    require(all(map(math.isfinite, (left, top, cell))), "not finite")
+    require_numbers((left, top), 1e7)
+    require(1e-4 <= cell <= 1e3 and 1 <= columns <= 4096 and 1 <= rows <= 4096 and columns * rows <= 2**20)
+    require(acks <= 12 and all(robot <= 65535 for robot in robots) and sum(claim) <= 16 * columns * rows)
+    require(flags < 8 and (flags & 2 or not claim and not flags & 4) and (data or piece == 0 and not flags & 1))
+    return {**dict(zip(names, (left, top, cell, columns, rows, piece, flags))), "acks": list(words[:4 * acks]),
+            "claim": list(claim), "bytes": list(data)}
+
+
 def decode_command(payload):
     require(len(payload) >= 16, "too short")
     tick, count = struct.unpack_from("<QI", payload)
@@ -245,6 +263,8 @@ def decode_shaped(robot, payload):
 def decode_state(type, robot, payload):
     if type == V2I:
         return decode_v2i(payload)
+    if type == TEAM_MAP:
+        return decode_team_map(payload)
     if type == NEIGHBOURS:
         require(len(payload) <= 9 * V2V_BYTES, "too long")
         require(len(payload) > 0 and len(payload) % V2V_BYTES == 0, "too short")

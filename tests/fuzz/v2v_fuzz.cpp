@@ -28,6 +28,7 @@ struct Radio {
   netio::PacketSigner signer{kGroup};
   std::int64_t now = 0;
   std::uint64_t sent = 0, not_admitted = 0;
+  bool has_state[kOfSeeds + 1] = {};
 
   explicit Radio(bool signs)
       : robot({.bind = {netio::kLoopback, 0},
@@ -51,14 +52,16 @@ struct Radio {
     robot.receive(now, [&](std::span<const std::uint8_t> one) { take(one); });
   }
 
-  /// States are those of other robots of the world, within radio range.
+  /// States are those of other robots of the world, within radio range. Maps follow a state.
   void take(std::span<const std::uint8_t> bytes) {
     netio::Packet packet;
     require(netio::decode(bytes, packet) == netio::PacketStatus::accepted);
-    const auto* state = std::get_if<netio::V2v>(&packet.body);
-    require(state != nullptr && std::hypot(state->X_WR.x, state->X_WR.y) <= kRadio);
     const std::uint32_t id = packet.header.robot;
     require(id == kOther || id == kOfSeeds);
+    if (std::holds_alternative<netio::TeamMap>(packet.body)) return require(has_state[id]);
+    const auto* state = std::get_if<netio::V2v>(&packet.body);
+    require(state != nullptr && std::hypot(state->X_WR.x, state->X_WR.y) <= kRadio);
+    has_state[id] = true;
     if (robot.admit(packet.header, now))
       require(robot.is_active(id, now));
     else

@@ -61,7 +61,7 @@ TEST(Allocation, NoneWhenReceivingOrSending) {
   std::vector<base::Bytes> packets = examples();
   const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
   for (base::Bytes& packet : packets) write_session_token(packet, {1, token});
-  packets.resize(packets.size() - 4);                                      // packets from the farm, like the challenge
+  packets.resize(packets.size() - 5);  // those from the farm, like the challenge, and TEAM_MAP
   const std::vector<base::Bytes> fixed(packets.end() - 2, packets.end());  // a light and an object
   packets.resize(packets.size() - 3);
   const base::Bytes leave = packets.back();  // after it the robot receives no packets

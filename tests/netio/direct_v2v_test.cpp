@@ -109,6 +109,50 @@ TEST_F(DirectV2vTest, RobotsBeyondRadioRangeAreIgnored) {
   EXPECT_EQ(feed(direct_state(2, 2, 10.001)), 1) << "the position moved";
 }
 
+base::Bytes direct_map(std::uint16_t robot, std::uint32_t sequence, std::uint32_t session = kSecondSession) {
+  base::Bytes out;
+  encode({.robot = robot, .sequence = sequence, .session = session}, TeamMap{.states_claim = true}, out);
+  return out;
+}
+
+/// Maps have a count of their own, and no position: their sender's last state is needed.
+TEST_F(DirectV2vTest, MapsAreAcceptedAfterAState) {
+  one = make({}, 10.0);
+  const auto take_map = [&](const base::Bytes& bytes) {
+    second.queue({kLoopback, one->port()}, bytes);
+    second.flush();
+    int maps = 0;
+    one->receive(now, [&](std::span<const std::uint8_t>) { ++maps; });
+    return maps;
+  };
+  EXPECT_EQ(take_map(direct_map(2, 0)), 0) << "no state yet";
+  EXPECT_EQ(feed(direct_state(2, 0)), 1);
+  EXPECT_EQ(take_map(direct_map(2, 0)), 1);
+  EXPECT_EQ(take_map(direct_map(2, 0)), 0) << "through the group, too";
+  EXPECT_EQ(one->counts().duplicates, 1u);
+  EXPECT_EQ(take_map(direct_map(2, 5)), 1);
+  EXPECT_EQ(take_map(direct_map(2, 4)), 0) << "overtaken";
+  EXPECT_EQ(count(PacketStatus::stale), 1u);
+  EXPECT_EQ(take_map(direct_map(2, 6, 0x3333)), 0) << "another session";
+  EXPECT_EQ(feed(direct_state(2, 1, 10.001)), 0) << "out of range";
+  now = 2 * kDirectSecond - 1;
+  EXPECT_EQ(take_map(direct_map(2, 7)), 1);
+  now = 2 * kDirectSecond;
+  EXPECT_EQ(take_map(direct_map(2, 8)), 0) << "two seconds without a state";
+  EXPECT_EQ(one->counts().far, 4u);
+  EXPECT_EQ(feed(direct_state(2, 2)), 1) << "maps do not count as states";
+}
+
+TEST_F(DirectV2vTest, MapsAreSigned) {
+  one = make({{PeerKind::group, 0, std::nullopt, kGroupKey}});
+  PacketSigner robot(kGroupKey, 1000);
+  EXPECT_EQ(feed(signed_with(robot, direct_state(2, 0))), 1);
+  EXPECT_EQ(feed(direct_map(2, 0)), 0);
+  EXPECT_EQ(count(PacketStatus::not_signed), 1u);
+  feed(signed_with(robot, direct_map(2, 0)));
+  EXPECT_EQ(count(PacketStatus::accepted), 2u);
+}
+
 TEST_F(DirectV2vTest, WithoutAPositionStatesOfAnyDistanceAreAccepted) {
   DirectV2v lost({.bind = {kLoopback, 0}, .radio = 1.0, .robot = 1, .others = {2}});
   second.queue({kLoopback, lost.port()}, direct_state(2, 0, 1e6));

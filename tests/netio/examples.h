@@ -109,6 +109,17 @@ inline base::Bytes lane_example() {
   return out;
 }
 
+/// An acknowledgement of robot 3, a claim of two rows of cells, and the last piece of measurements: cell 3725 is free.
+inline base::Bytes team_map_example() {
+  const std::uint8_t piece[] = {0x01, 0xb4, 0x74, 0x00, 0x00};
+  base::Bytes acks, claim, out;
+  put(MapAck{3, 0x55667788, 41, 6}, acks);
+  for (const ClaimRun& run : {ClaimRun{3725, 6}, ClaimRun{114, 6}}) put(run, claim);
+  const TeamMap map{-1.8, 1.8, 0.03, 30, 30, 5, true, true, false, acks, claim, piece};
+  encode({.robot = 7, .sequence = 12, .time = 6'500'000'000, .session = 0x11223344}, map, out);
+  return out;
+}
+
 /// Forwarded states of two other robots.
 inline base::Bytes neighbours_example() {
   base::Bytes first = v2v_example(), second, out;
@@ -121,17 +132,17 @@ inline base::Bytes neighbours_example() {
   return out;
 }
 
-/// States and requests that are sent to the farm.
+/// States and requests that are sent to the farm or to other robots.
 inline std::vector<base::Bytes> states() {
   return {v2v_example(),   tag_example(), subscribe_example(), start_example(),
-          leave_example(), v2i_example(), object_example()};
+          leave_example(), v2i_example(), object_example(),    team_map_example()};
 }
 
 /// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(), extended_example(),   v2v_example(),       tag_example(), subscribe_example(),
-          start_example(),   leave_example(),      challenge_example(), v2i_example(), object_example(),
-          refusal_example(), neighbours_example(), drive_example(),     lane_example()};
+  return {reading_example(), extended_example(),   v2v_example(),       tag_example(),  subscribe_example(),
+          start_example(),   leave_example(),      challenge_example(), v2i_example(),  object_example(),
+          refusal_example(), neighbours_example(), drive_example(),     lane_example(), team_map_example()};
 }
 
 inline base::Bytes command_example() {

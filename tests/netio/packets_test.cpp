@@ -44,6 +44,7 @@ TEST(Packets, BytesMatchTheDocumentation) {
   EXPECT_EQ(object_example(), documented("object"));
   EXPECT_EQ(shaped_object_example(), documented("shaped_object"));
   EXPECT_EQ(lane_example(), documented("lane"));
+  EXPECT_EQ(team_map_example(), documented("team_map"));
   EXPECT_EQ(neighbours_example(), documented("neighbours"));
   EXPECT_EQ(command_example(), documented("command"));
   EXPECT_EQ(step_example(), documented("step"));
@@ -292,7 +293,7 @@ TEST(Packets, TypesBelow128AreReadings) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // type 0 does not exist
     EXPECT_EQ(sensor_type_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 144;
+    const bool is_state = type >= 128 && type <= 145;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? PacketStatus::accepted : PacketStatus::unknown_type)
@@ -588,7 +589,7 @@ TEST(PacketsPage, NumbersMatchTheCode) {
       {"COMMAND", Type::command}, {"STEP", Type::step},     {"FETCH", Type::fetch},
       {"V2I", Type::v2i},         {"OBJECT", Type::object}, {"REFUSAL", Type::refusal},
       {"STATE", Type::state},     {"VALUES", Type::values}, {"NEIGHBOURS", Type::neighbours},
-      {"DRIVE", Type::drive},     {"LANE", Type::lane}};
+      {"DRIVE", Type::drive},     {"LANE", Type::lane},     {"TEAM_MAP", Type::team_map}};
   std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
   const std::string page((std::istreambuf_iterator<char>(file)), {});
   const std::string row = page.substr(page.find("| 5 | u8 | type |"), 500);
