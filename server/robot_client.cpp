@@ -92,6 +92,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
   remote_ = control::remote_of(*made_.controller);
   link_.set_follows_drive(remote_ != nullptr);
   add_own_state(options);
+  add_team();
 }
 
 /// A robot with cameras or encoders of its own does not know its true state, unless the setting `localize` is false.
@@ -111,6 +112,14 @@ void RobotClient::add_own_state(const RobotClientOptions& options) {
   if (wheels) track_ = own.sensors.wheels->track;
   if (!real_) simulated_sensors_.emplace(world_, sensor_set_, mover_, own.sensors, options.seed);
   own_.emplace(mover, mover_, own);
+}
+
+void RobotClient::add_team() {
+  sharing_ = dynamic_cast<control::SharesMap*>(made_.controller.get());
+  if (sharing_ == nullptr || !sharing_->shares_map()) return;
+  const netio::DirectV2v* const direct = link_.direct();
+  if (direct == nullptr) return log_.note_no_team(0);
+  exchange_.emplace(MapExchangeOptions{world_.movers[mover_].id, direct->options().session});
 }
 
 void RobotClient::receive(std::int64_t now) {
@@ -159,6 +168,7 @@ void RobotClient::step(std::int64_t now) {
   if (real_) real_->drive(command_, now);
   touched_ = false;
   send_state(now);
+  if (exchange_) send_maps(now);
   log_.note_link(link_, needs_farm(now), now);
   if (own_) log_.note_position(is_lost(), own_->port() > 0, now);
   if (real_) log_.note_real(real_->type().title, real_->problem(now), real_->counts().frames > 0, now);
@@ -187,6 +197,13 @@ void RobotClient::send_state(std::int64_t now) {
   if (is_lost()) return link_.send_request(now);
   link_.send_state(v2v_of(own_state(), made_.controller->intent()), now,
                    own_ ? own_->quality() : netio::StateQuality{});
+}
+
+/// Also while it does not drive: others need its acknowledgements.
+void RobotClient::send_maps(std::int64_t now) {
+  exchange_->publish(sharing_->shared_map());
+  exchange_->send(now, [&](const netio::TeamMap& map) { link_.send_map(map, now); });
+  log_.note_team(exchange_->counts(), now);
 }
 
 void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {
@@ -243,6 +260,7 @@ RobotClientStats RobotClient::stats() const {
   stats.pose = body_.state().X_WM;
   stats.error = error_;
   if (map_) stats.map = map_->counts();
+  if (exchange_) stats.team = exchange_->counts();
   if (real_) {
     stats.real = {std::string(real_->type().word), real_->counts(), real_->facts(), {}};
     for (const OwnReading& own : real_->readings())
@@ -276,6 +294,10 @@ void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
     if (!lanes_.take(*lane)) log_.note_unknown_lane(lane->segment, lane->lane, now);
     return;
   }
+  if (const auto* map = std::get_if<netio::TeamMap>(&packet.body)) {
+    if (exchange_) exchange_->receive(packet.header, *map, now);
+    return;
+  }
   const auto* state = std::get_if<netio::V2v>(&packet.body);
   if (state == nullptr) {
     started_ = true;
@@ -299,6 +321,7 @@ void RobotClient::decide(std::int64_t now) {
   control::ControllerInput input{now,      own_state(), readings_, body_.contact(),
                                  started_, others_,     signals_,  lanes_.network()};
   input.state.time = now;
+  if (exchange_) sharing_->receive_maps(exchange_->teammates(now));
   command_ = made_.controller->step(input);
   if (real_) set_outputs(made_.controller->outputs(), now);
   ++steps_;

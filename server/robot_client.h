@@ -19,6 +19,7 @@
 #include "sensors/sensor_set.h"
 #include "server/lane_service.h"
 #include "server/light_listener.h"
+#include "server/map_exchange.h"
 #include "server/own_map.h"
 #include "server/own_state.h"
 #include "server/real_robot.h"
@@ -95,9 +96,10 @@ struct RobotClientStats {
   double distance_m = 0.0;           ///< distance driven
   base::Pose pose;                   ///< at the end
   control::ErrorSummary error;
-  std::optional<OwnStateStats> own;    ///< nullopt: drives by its true state
-  std::optional<RealRobotStats> real;  ///< nullopt: simulated robot
-  std::optional<OwnMapCounts> map;     ///< nullopt: no map
+  std::optional<OwnStateStats> own;       ///< nullopt: drives by its true state
+  std::optional<RealRobotStats> real;     ///< nullopt: simulated robot
+  std::optional<OwnMapCounts> map;        ///< nullopt: no map
+  std::optional<MapExchangeCounts> team;  ///< nullopt: shares no map with a team
   bool listens_for_spat = false;
   LightCounts lights;
   std::uint64_t drives = 0;          ///< DRIVE packets of the farm that it followed
@@ -162,6 +164,8 @@ class RobotClient {
   void follow_real(std::int64_t now);
   void set_outputs(std::uint8_t bits, std::int64_t now);
   void draw_map(std::int64_t now);
+  void add_team();
+  void send_maps(std::int64_t now);
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
@@ -194,12 +198,14 @@ class RobotClient {
   std::optional<SimulatedSensors> simulated_sensors_;  ///< by which a simulated robot localizes itself
   control::LocalizationError position_errors_;
   std::optional<TruthReport> truth_;
-  std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, set in `run`
-  std::unique_ptr<RealRobot> real_;    ///< null: the body is a model
-  double track_ = 0.0;                 ///< [m] of the real robot's wheels, as estimated from
-  bool touched_ = false;               ///< the real robot had a contact since the last step
-  std::optional<OwnMap> map_;          ///< empty: no map
-  control::Remote* remote_ = nullptr;  ///< of `made_`; null: another controller
+  std::int64_t epoch_ = 0;                 ///< [ns] Unix time at time 0 of its clock, set in `run`
+  std::unique_ptr<RealRobot> real_;        ///< null: the body is a model
+  double track_ = 0.0;                     ///< [m] of the real robot's wheels, as estimated from
+  bool touched_ = false;                   ///< the real robot had a contact since the last step
+  std::optional<OwnMap> map_;              ///< empty: no map
+  control::SharesMap* sharing_ = nullptr;  ///< of `made_`; null: shares no map
+  std::optional<MapExchange> exchange_;    ///< of `sharing_`; empty: no V2V without the farm
+  control::Remote* remote_ = nullptr;      ///< of `made_`; null: another controller
   std::uint64_t drives_ = 0, drives_ignored_ = 0;
 };
 

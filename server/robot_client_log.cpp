@@ -87,6 +87,31 @@ void RobotClientLog::note_unknown_lane(std::uint32_t segment, std::uint32_t lane
              now);
 }
 
+void RobotClientLog::note_no_team(std::int64_t now) {
+  log_.write(fmt::format("{} explores alone, because robots of a team send their maps to each other directly; give the "
+                         "addresses of the others (--v2v-peers, --v2v-group)",
+                         robot_),
+             now);
+}
+
+void RobotClientLog::note_team(const MapExchangeCounts& counts, std::int64_t now) {
+  if (counts.foreign > team_.foreign && now >= next_foreign_) {
+    next_foreign_ = now + kTroubleEvery;
+    log_.write(fmt::format("the maps of robots {} and {} cover different areas, so they are not shared; expected the "
+                           "same `cell`, `map_left`, `map_top`, `map_width` and `map_height` for all robots of a team",
+                           id_, counts.last_foreign),
+               now);
+  }
+  if (counts.full > team_.full)
+    log_.write(fmt::format("the measurements of {} of the team exceed the limit; later ones are not used",
+                           counts.full == 1 ? "a robot" : "several robots"),
+               now);
+  if (counts.malformed > 0 && team_.malformed == 0)
+    log_.write("measurements of a robot of the team are malformed and dropped; do all robots run the same version?",
+               now);
+  team_ = counts;
+}
+
 void RobotClientLog::note_ignored_outputs(std::string_view title, std::int64_t now) {
   if (std::exchange(outputs_ignored_, true)) return;
   log_.write(fmt::format("a {} has no digital outputs; those that the controller sets are ignored", title), now);

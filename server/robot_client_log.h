@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "netio/rate_limited_log.h"
+#include "server/map_exchange.h"
 #include "server/robot_link.h"
 
 namespace sf::server {
@@ -27,6 +28,10 @@ class RobotClientLog {
   void note_unknown_lane(std::uint32_t segment, std::uint32_t lane, std::int64_t now);
   /// Logs that a real robot does not have the digital outputs that its controller sets, once.
   void note_ignored_outputs(std::string_view title, std::int64_t now);
+  /// Logs that the controller is to share its map, but there is no V2V without the farm.
+  void note_no_team(std::int64_t now);
+  /// Logs maps of another area, at most every ten seconds, and measurements that are not used.
+  void note_team(const MapExchangeCounts& counts, std::int64_t now);
   /// Logs that the robot's own position was lost or found.
   /// @param cameras it has cameras, and is lost until one sees it; else it is lost once its wheels' errors are too
   /// large
@@ -54,8 +59,10 @@ class RobotClientLog {
   bool stands_ = false;            ///< stopped for lack of readings
   std::optional<bool> lost_;       ///< as of the last step
   std::uint64_t stops_ = 0;
-  std::string real_problem_;    ///< last logged
-  std::int64_t next_lane_ = 0;  ///< [ns] time before which no unknown lane is logged
+  std::string real_problem_;       ///< last logged
+  std::int64_t next_lane_ = 0;     ///< [ns] time before which no unknown lane is logged
+  MapExchangeCounts team_;         ///< as last logged
+  std::int64_t next_foreign_ = 0;  ///< [ns] time before which no map of another area is logged
   bool outputs_ignored_ = false;
   std::int64_t next_drive_ = 0;  ///< [ns] time before which no ignored DRIVE is logged
 };

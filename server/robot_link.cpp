@@ -120,6 +120,12 @@ void RobotLink::send_state(const netio::V2v& state, std::int64_t now, const neti
   send(netio::Type::v2v, states_++, now);
 }
 
+void RobotLink::send_map(const netio::TeamMap& map, std::int64_t now) {
+  netio::encode({.robot = static_cast<std::uint16_t>(id_), .sequence = maps_, .time = now}, map, packet_);
+  out_.send({id_, stream_number(netio::Type::team_map, kDirect), maps_++}, now, kToPeers, packet_);
+  flush_due(now);
+}
+
 void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now) {
   out_.send({id_, stream_number(type, 0), sequence}, now, kToFarm, packet_);
   flush_due(now);
@@ -178,9 +184,10 @@ netio::MessageId RobotLink::reading_id(Stream& stream, std::span<const std::uint
 
 netio::MessageId RobotLink::packet_id(std::span<const std::uint8_t> bytes, std::uint32_t low) {
   netio::Packet packet;
-  if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.type == netio::Type::v2v)
-    return {id_, stream_number(netio::Type::v2v, low),
-            std::uint64_t{packet.header.robot} << 32 | packet.header.sequence};
+  const bool good = netio::decode(bytes, packet) == netio::PacketStatus::accepted;
+  const netio::Type type = packet.header.type;
+  if (good && (type == netio::Type::v2v || type == netio::Type::team_map))
+    return {id_, stream_number(type, low), std::uint64_t{packet.header.robot} << 32 | packet.header.sequence};
   return {id_, stream_number(netio::Type::start, kRelayed), other_packets_++};
 }
 
@@ -210,8 +217,10 @@ void RobotLink::take_packet(std::span<const std::uint8_t> bytes, std::int64_t no
 /// Decodes again, because the injected link may have flipped a bit.
 void RobotLink::take_direct(std::span<const std::uint8_t> bytes, std::int64_t now) {
   netio::Packet packet;
-  if (netio::decode(bytes, packet) != netio::PacketStatus::accepted || packet.header.type != netio::Type::v2v) return;
-  if (direct_->admit(packet.header, now)) handler_(packet, now);
+  if (netio::decode(bytes, packet) != netio::PacketStatus::accepted) return;
+  const bool is_map = packet.header.type == netio::Type::team_map;
+  if (!is_map && packet.header.type != netio::Type::v2v) return;
+  if (is_map ? direct_->is_active(packet.header.robot, now) : direct_->admit(packet.header, now)) handler_(packet, now);
 }
 
 /// Earlier requests were dropped. A new session means a new farm, with its own clock and sequences.

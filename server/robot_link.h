@@ -47,7 +47,7 @@ struct LinkCounts {
 /// Times [ns] are on the robot's own monotonic clock. The world and the sensor set must outlive it. Not thread-safe.
 class RobotLink {
  public:
-  /// Called with each state of another robot, relayed or direct, and each V2I, start signal and DRIVE.
+  /// Called with each state of another robot, relayed or direct, each TEAM_MAP, V2I, start signal and DRIVE.
   using PacketHandler = std::function<void(const netio::Packet&, std::int64_t now)>;
 
   /// @throws base::InputError if a port is in use or the farm's host is unknown
@@ -60,6 +60,8 @@ class RobotLink {
   void send_request(std::int64_t now);
   /// Sends its subscription when due, and a state. @param quality of an estimate
   void send_state(const netio::V2v& state, std::int64_t now, const netio::StateQuality& quality = {});
+  /// Sends a part of the own map to the other robots. @pre V2V without the farm
+  void send_map(const netio::TeamMap& map, std::int64_t now);
   /// Announces that it leaves, unless it has sent nothing. Sends this at once, with all packets still delayed in the
   /// injected link.
   void leave(std::int64_t now);
@@ -131,6 +133,7 @@ class RobotLink {
   netio::FarmClock clock_;
   PacketHandler handler_;
   std::uint32_t states_ = 0;    ///< number sent
+  std::uint32_t maps_ = 0;      ///< number of TEAM_MAP sent
   std::uint32_t requests_ = 0;  ///< number sent
   bool follows_drive_ = false;
   std::int64_t next_request_ = 0;    ///< [ns]

@@ -44,6 +44,7 @@ struct Settings {
   std::string accuracy = "exact";  ///< of the sensors
   std::string controller = "wander";
   bool stop_without_farm = false;
+  std::optional<world::World> world = {};  ///< in place of the room
 };
 
 inline world::World in_mode(world::World world, const std::string& accuracy) {
@@ -54,7 +55,8 @@ inline world::World in_mode(world::World world, const std::string& accuracy) {
 struct Fixture {
   explicit Fixture(const Settings& chosen = {})
       : settings(chosen),
-        world(in_mode(room(chosen.sensor_rate, chosen.latency, chosen.samples), chosen.accuracy)),
+        world(in_mode(chosen.world ? *chosen.world : room(chosen.sensor_rate, chosen.latency, chosen.samples),
+                      chosen.accuracy)),
         sensor_set(world) {
     // Reading ports have no option for "any free port". Concurrent tests start their search at different places and
     // reserve ports for four robots there, because another robot's ports are only bound later.
