@@ -61,8 +61,18 @@ void MapExchange::add_pieces(const control::MapChanges& changes) {
   }
 }
 
-bool MapExchange::is_present(const Teammate& teammate, std::int64_t now) const {
+bool MapExchange::is_present(const Teammate& teammate, std::int64_t now) {
   return now - teammate.last < netio::kSenderTimeout;
+}
+
+bool MapExchange::lacks_pieces(const Teammate& teammate, std::int64_t now) const {
+  return is_present(teammate, now) && !teammate.takes_no_more && teammate.acked < pieces_.size();
+}
+
+bool MapExchange::is_complete(std::int64_t now) const {
+  return std::ranges::none_of(teammates_, [&](const auto& each) {
+    return lacks_pieces(each.second, now) && now - each.second.progress < kPatience;
+  });
 }
 
 netio::TeamMap MapExchange::head() const {
@@ -130,8 +140,7 @@ void MapExchange::send_claim(std::int64_t now, const SendMap& send) {
 void MapExchange::send_pieces(std::int64_t now, const SendMap& send) {
   std::vector<const Teammate*> moving, stalled;
   for (auto& [id, teammate] : teammates_) {
-    if (!is_present(teammate, now) || teammate.takes_no_more) continue;
-    if (teammate.acked == pieces_.size()) {
+    if (!lacks_pieces(teammate, now)) {
       teammate.progress = now;
       continue;
     }

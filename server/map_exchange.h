@@ -54,7 +54,7 @@ class MapExchange {
   static constexpr std::size_t kMaxRuns = 250;              ///< of a claim
   static constexpr std::size_t kWindow = 32;                ///< pieces from the first that a teammate lacks
   static constexpr std::int64_t kAckTimeout = 500'000'000;  ///< [ns] after which a piece is sent again
-  static constexpr std::int64_t kBeat = 1'000'000'000;      ///< [ns] between packets while nothing changes
+  static constexpr std::int64_t kBeat = 500'000'000;        ///< [ns] between packets while nothing changes
   static constexpr std::int64_t kPatience = 5'000'000'000;  ///< [ns] without progress: others are served first
 
   explicit MapExchange(const MapExchangeOptions& options) : options_(options) {}
@@ -73,6 +73,9 @@ class MapExchange {
 
   /// The maps of the robots from which a packet arrived in the last two seconds, by id. Valid until the next call.
   std::span<const control::TeammateMap> teammates(std::int64_t now);
+
+  /// Returns whether all present teammates have all published measurements, except those that make no progress.
+  bool is_complete(std::int64_t now) const;
 
   const MapExchangeCounts& counts() const { return counts_; }
 
@@ -103,7 +106,8 @@ class MapExchange {
     control::SharedMap map;
     std::shared_ptr<const control::SharedMap> snapshot;  ///< of `map`; null: changed since
   };
-  bool is_present(const Teammate& teammate, std::int64_t now) const;
+  static bool is_present(const Teammate& teammate, std::int64_t now);
+  bool lacks_pieces(const Teammate& teammate, std::int64_t now) const;
   Teammate& teammate_of(const netio::Header& header, std::int64_t now);
   void take_acks(const netio::Header& header, const netio::TeamMap& map, std::int64_t now, Teammate& teammate) const;
   void take_piece(const netio::TeamMap& map, Teammate& teammate);

@@ -204,6 +204,7 @@ void RobotClient::send_maps(std::int64_t now) {
   exchange_->publish(sharing_->shared_map());
   exchange_->send(now, [&](const netio::TeamMap& map) { link_.send_map(map, now); });
   log_.note_team(exchange_->counts(), now);
+  owes_map_ = !exchange_->is_complete(now);
 }
 
 void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {

@@ -135,7 +135,8 @@ class RobotClient {
 
   double rate() const { return made_.rate; }        ///< [Hz] of steps
   bool on_scans() const { return made_.on_scans; }  ///< steps on each new scan, or at half its rate without scans
-  bool done() const { return started_ && made_.controller->done(); }
+  /// Returns whether the controller is done, and its team has its map.
+  bool done() const { return started_ && made_.controller->done() && !owes_map_; }
   const RobotLink& link() const { return link_; }
   const OwnState* own() const { return own_ ? &*own_ : nullptr; }  ///< null: drives by its true state
   const LightListener& lights() const { return lights_; }
@@ -204,6 +205,7 @@ class RobotClient {
   bool touched_ = false;                   ///< the real robot had a contact since the last step
   std::optional<OwnMap> map_;              ///< empty: no map
   control::SharesMap* sharing_ = nullptr;  ///< of `made_`; null: shares no map
+  bool owes_map_ = false;                  ///< a teammate lacks a part of the map, as of the last step
   std::optional<MapExchange> exchange_;    ///< of `sharing_`; empty: no V2V without the farm
   control::Remote* remote_ = nullptr;      ///< of `made_`; null: another controller
   std::uint64_t drives_ = 0, drives_ignored_ = 0;

@@ -165,7 +165,8 @@ TEST(MapExchange, AloneARobotSendsBeatsOnly) {
   Mapper& a = link.add(1);
   a.measure(1000);
   link.run(100);
-  EXPECT_EQ(a.exchange.counts().sent, 10u);
+  EXPECT_TRUE(a.exchange.is_complete(link.now));
+  EXPECT_EQ(a.exchange.counts().sent, 20u);
   EXPECT_EQ(a.exchange.counts().pieces, 0u);
 }
 
@@ -192,7 +193,9 @@ TEST(MapExchange, ARobotThatJoinsDoesNotHoldUpTheOthers) {
   link.run(5);
   EXPECT_TRUE(has_all(b, a, link.now));
   EXPECT_FALSE(has_all(c, a, link.now)) << "it still lacks most of 321 pieces";
+  EXPECT_FALSE(a.exchange.is_complete(link.now));
   link.run(80);
+  EXPECT_TRUE(a.exchange.is_complete(link.now));
   EXPECT_TRUE(has_all(c, a, link.now));
 }
 

@@ -133,6 +133,18 @@ TEST_F(RobotTeamTest, MapsAreCompleteOverALossyLink) {
   }
 }
 
+TEST_F(RobotTeamTest, ARobotThatIsDoneStaysUntilTheOtherHasItsMap) {
+  start(true, {0.03, 0.03}, 0.6);
+  int staying = 0;
+  for (int i = 0; i < 4000 && !robots[0]->done(); ++i) {
+    run(1);
+    staying += robots[0]->stats().done ? 0 : team_explorers().at(0)->done() ? 1 : 0;
+  }
+  ASSERT_TRUE(robots[0]->done());
+  EXPECT_GT(staying, 0);
+  EXPECT_EQ(robots[1]->stats().team->changes, team_explorers().at(0)->shared_map()->changes.size());
+}
+
 TEST_F(RobotTeamTest, WithoutADirectLinkRobotsExploreAlone) {
   start(false);
   run(100);
