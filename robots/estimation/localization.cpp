@@ -173,7 +173,7 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   // Encoders are not gated, since commands change the speeds at once. `!(a <= b)` rejects NaN as well.
   static const GateLimits kLimits = gate_limits(kGate);
   if (!encoder && !(surprise.squared <= kLimits[surprise.degrees])) return reject(m, state);
-  if (is_fix(m.kind) && predicted_.size() == 1 && options_.encoder) watch_slip(m, state);
+  if (options_.learn_slip && options_.encoder && is_fix(m.kind) && predicted_.size() == 1) watch_slip(m, state);
   for (Weighted& each : predicted_) each.state = correct(each.state, m);
   reduce(predicted_);
   state.hypotheses = predicted_;

@@ -43,6 +43,7 @@ struct LocalizationOptions {
   Gyro gyro;
   double gps_noise = 1.5;  ///< [m] > 0 standard deviation of a range
   bool sideways = false;   ///< the robot can drive sideways (omni)
+  bool learn_slip = true;  ///< slips that last change the encoders' scales
 };
 
 /// Covariance of a start pose known to 0.05 m and 0.02 rad.

@@ -36,11 +36,21 @@ MonitorThresholds default_thresholds() {
   return {.fast = {16.0, 11.0, 9.0, 16.0}, .slow = {44.0, 20.0, 20.0, 66.0}, .roughness = 14.0};
 }
 
+namespace {
+
+/// A slip that lasts is a fault of the encoder here.
+LocalizationOptions without_slips(LocalizationOptions options) {
+  options.learn_slip = false;
+  return options;
+}
+
+}  // namespace
+
 LocalizationMonitor::LocalizationMonitor(const LocalizationOptions& options, const MonitorOptions& monitor,
                                          bool has_gyro, bool has_gps)
-    : options_(options),
+    : options_(without_slips(options)),
       monitor_(monitor),
-      main_(options),
+      main_(options_),
       copies_{{{main_, main_}, {main_, main_}, {main_, main_}}},
       calibrations_{main_.calibration(), main_.calibration()} {
   at(MonitoredInput::encoder).wired = options.encoder.has_value();
