@@ -30,14 +30,6 @@ double squared(double v) { return v * v; }
 std::size_t row(MonitoredInput input) { return static_cast<std::size_t>(input); }
 double in_seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
-}  // namespace
-
-MonitorThresholds default_thresholds() {
-  return {.fast = {16.0, 11.0, 9.0, 16.0}, .slow = {44.0, 20.0, 20.0, 66.0}, .roughness = 14.0};
-}
-
-namespace {
-
 /// A slip that lasts is a fault of the encoder here.
 LocalizationOptions without_slips(LocalizationOptions options) {
   options.learn_slip = false;
@@ -45,6 +37,10 @@ LocalizationOptions without_slips(LocalizationOptions options) {
 }
 
 }  // namespace
+
+MonitorThresholds default_thresholds() {
+  return {.fast = {16.0, 11.0, 9.0, 16.0}, .slow = {44.0, 20.0, 20.0, 66.0}, .roughness = 14.0};
+}
 
 LocalizationMonitor::LocalizationMonitor(const LocalizationOptions& options, const MonitorOptions& monitor,
                                          bool has_gyro, bool has_gps)
