@@ -182,7 +182,7 @@ void add_body(const netio::TeamMap& map, Fields& out) {
     for (const std::uint16_t number : {netio::run_at(map, k).skip, netio::run_at(map, k).take}) claim.push_back(number);
   add(out, "acks", acks);
   add(out, "claim", claim);
-  add(out, "bytes", map.bytes);
+  add(out, "data", map.bytes);
 }
 /// A long OBJECT has all fields: what it leaves as it is, is none.
 void add_body(const netio::Object& object, Fields& out) {

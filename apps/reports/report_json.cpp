@@ -434,6 +434,10 @@ std::string robot_client_json(const server::RobotClientStats& f) {
                        {"packets", f.map->sent.sent},
                        {"failed", f.map->sent.failed},
                        {"dropped", f.map->sent.dropped}};
+  if (f.team)
+    json["team"] = {{"sent", f.team->sent},           {"pieces", f.team->pieces},     {"repeated", f.team->repeated},
+                    {"received", f.team->received},   {"changes", f.team->changes},   {"foreign", f.team->foreign},
+                    {"malformed", f.team->malformed}, {"beyond_limit", f.team->full}, {"cut_claims", f.team->cut}};
   if (f.real) json["real_robot"] = real_robot_json(*f.real);
   if (f.listens_for_spat) json["spat"] = spat_json(f.lights);
   json["lights"] = {{"packets", f.lights.packets}, {"states", f.lights.states}, {"silences", f.lights.silences}};

@@ -108,6 +108,15 @@ std::string robot_client_text(const server::RobotClientStats& f) {
     if (f.map->sent.failed + f.map->sent.dropped > 0)
       text += row("", "{} failed ({}), {} dropped", f.map->sent.failed, f.map->sent.first_failure, f.map->sent.dropped);
   }
+  if (f.team) {
+    text += row("team", "{} sent, {} of measurements ({} again); {} received, {} of measurements",
+                counted(f.team->sent, "packet"), f.team->pieces, f.team->repeated, f.team->received,
+                counted(f.team->changes, "set"));
+    if (f.team->foreign + f.team->malformed + f.team->full + f.team->cut > 0)
+      text +=
+          row("", "{} of another area, {} malformed, {} beyond the limit, {} cut", counted(f.team->foreign, "packet"),
+              counted(f.team->malformed, "set"), counted(f.team->full, "robot"), counted(f.team->cut, "claim"));
+  }
   if (f.real) text += real_robot_text(*f.real);
   if (f.listens_for_spat)
     text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.lights.messages, "message"),

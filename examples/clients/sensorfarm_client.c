@@ -651,7 +651,7 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     fprintf(out, isinf(p->error) ? "none" : "%.10g", p->error);
     fputs(after, out);
   }
-  static const char* const lists[] = {"acks", "claim", "bytes"};
+  static const char* const lists[] = {"acks", "claim", "data"};
   for (unsigned i = 0; p->type == SF_TEAM_MAP && i < 3; ++i) {
     fprintf(out, p->lengths[i] > 0 ? "%s%s =" : "%s%s = ", before, lists[i]);
     for (unsigned k = 0; k < p->lengths[i]; ++k)

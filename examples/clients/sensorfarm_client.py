@@ -191,7 +191,7 @@ def decode_v2i(payload):
 def decode_team_map(payload):
     """A robot's part of its team's map. acks: robot, session, number of pieces and bits of later ones of each
     acknowledgement; claim: cells
-    to skip and to take, of each run; bytes: a piece of measurements."""
+    to skip and to take, of each run; data: a piece of measurements."""
     names = ("left_m", "top_m", "cell_m", "word_columns", "word_rows", "piece", "flags")
     require(len(payload) >= 44, "too short")
     left, top, cell, columns, rows, piece, size, acks, runs, flags = struct.unpack_from("<3d3I4H", payload)
@@ -203,7 +203,7 @@ def decode_team_map(payload):
     require(acks <= 12 and all(robot <= 65535 for robot in robots) and sum(claim) <= 16 * columns * rows)
     require(flags < 8 and (flags & 2 or not claim and not flags & 4) and (data or piece == 0 and not flags & 1))
     return {**dict(zip(names, (left, top, cell, columns, rows, piece, flags))), "acks": list(words[:4 * acks]),
-            "claim": list(claim), "bytes": list(data)}
+            "claim": list(claim), "data": list(data)}
 
 
 def decode_command(payload):

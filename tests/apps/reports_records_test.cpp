@@ -113,6 +113,15 @@ server::RobotClientStats robot_stats() {
             .facts = {{"battery_V", 14.2}, {"wall", 0.0}},
             .readings = {{"bumper", 78}, {"cliff", 79}}};
   f.map = server::OwnMapCounts{81, 82, outbox(83)};
+  f.team = {.sent = 101,
+            .pieces = 102,
+            .repeated = 103,
+            .cut = 1,
+            .received = 104,
+            .changes = 105,
+            .malformed = 106,
+            .foreign = 107,
+            .full = 108};
   f.listens_for_spat = true;
   f.lights = {.states = 91, .messages = 92, .others = 93, .invalid = 94, .packets = 95, .refused = 96, .silences = 97};
   return f;
