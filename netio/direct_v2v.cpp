@@ -17,7 +17,7 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kDirectBatch = 64;
-constexpr std::size_t kDirectChannel = 0, kMapChannel = 1;
+constexpr std::size_t kDirectChannel = 0;
 constexpr std::int64_t kDirectPeriod = 100'000'000;       ///< [ns]
 constexpr std::uint64_t kDirectClockTrouble = 1'000'000;  ///< [us] lag from which a replayed packet is reported
 
@@ -215,9 +215,10 @@ PacketStatus DirectV2v::bind_sender(const Header& header, const Endpoint& source
     sender.session_before = sender.session;
     sender.restarted = now;
   }
-  const bool is_map = header.type == Type::team_map;
-  const PacketStatus status = senders_.admit(header.robot, is_map ? kMapChannel : kDirectChannel, header.sequence,
-                                             sender.checker ? Endpoint{} : source, now);
+  const bool is_map = header.type == Type::team_map;  // its receiver puts the pieces in order
+  const Endpoint from = sender.checker ? Endpoint{} : source;
+  const PacketStatus status = is_map ? senders_.renew(header.robot, from, now)
+                                     : senders_.admit(header.robot, kDirectChannel, header.sequence, from, now);
   if (status != PacketStatus::accepted) return status;
   sender.last = now;
   if (is_map) {
