@@ -20,6 +20,7 @@ constexpr int kMostRepeats = 2, kMostEncoderRepeats = 5;
 // Weights of the newest residual: turns come ten times as often as positions.
 constexpr std::array<double, kRelations> kFast{0.4, 0.6, 0.6, 0.6}, kSlow{0.03, 0.2, 0.2, 0.2};
 constexpr double kRoughWeight = 0.3, kRoughMemory = 0.95;
+constexpr double kLargest = 1e6;           // residual: one absurd reading is forgotten after a minute
 constexpr double kLeastMonitored = 1e-12;  // variance
 
 constexpr std::array kAll{MonitoredInput::encoder, MonitoredInput::gyro, MonitoredInput::gps};
@@ -28,6 +29,8 @@ constexpr std::array<MonitorRelation, kMonitoredInputs> kRest{kCourseRelation, k
 
 double squared(double v) { return v * v; }
 std::size_t row(MonitoredInput input) { return static_cast<std::size_t>(input); }
+/// As for the filters' measurements.
+bool is_plausible(double v) { return std::abs(v) <= 1e9; }
 double in_seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 /// A slip that lasts is a fault of the encoder here.
@@ -83,7 +86,7 @@ void LocalizationMonitor::add_pose(std::int64_t time, const base::Pose& X_WM, co
 void LocalizationMonitor::add_encoder(std::int64_t time, double left, double right) {
   const Input before = at(MonitoredInput::encoder);
   feed(MonitoredInput::encoder, [&](Localization& filter) { filter.add_encoder(time, left, right); });
-  note(MonitoredInput::encoder, time, {left, right}, std::isfinite(left + right));
+  note(MonitoredInput::encoder, time, {left, right}, is_plausible(left) && is_plausible(right));
   if (before.newest < 0 || time <= before.newest || !before.fixed) return;
   const double seconds = in_seconds(time - before.newest);
   const std::array<double, 2> rolled{left - before.values[0], right - before.values[1]};
@@ -94,18 +97,18 @@ void LocalizationMonitor::add_encoder(std::int64_t time, double left, double rig
 
 void LocalizationMonitor::add_gyro(std::int64_t time, double rate) {
   feed(MonitoredInput::gyro, [&](Localization& filter) { filter.add_gyro(time, rate); });
-  note(MonitoredInput::gyro, time, {rate, 0.0}, std::isfinite(rate));
+  note(MonitoredInput::gyro, time, {rate, 0.0}, is_plausible(rate));
   compare_turns();
 }
 
 void LocalizationMonitor::add_gps(std::int64_t time, double x, double y, double hdop) {
-  const bool fixed = std::isfinite(x + y + hdop);
+  const bool fixed = is_plausible(x) && is_plausible(y) && is_plausible(hdop);
   if (fixed) {
+    const double variance = std::max(0.5 * squared(options_.gps_noise * hdop), kLeastMonitored);
     for (Reckoning& each : reckonings_) {
       const auto squares = [&](const base::Pose& X) { return squared(x - X.x) + squared(y - X.y); };
-      each.evidence += (squares(each.by_encoder) - squares(each.by_gyro)) / squared(options_.gps_noise * hdop);
+      each.evidence += (squares(each.by_encoder) - squares(each.by_gyro)) / (2.0 * variance);
     }
-    const double variance = std::max(0.5 * squared(options_.gps_noise * hdop), kLeastMonitored);
     const bool faulty = at(MonitoredInput::gps).faulty;
     const auto& reckoned = faulty ? main_ : copies_[row(MonitoredInput::gps)][0];
     compare_position(kReckonedRelation, reckoned, time, {x, y}, variance);
@@ -123,6 +126,7 @@ namespace {
 /// @param residual of unit variance
 void add_residual(LocalizationMonitor::Statistic& of, std::array<double, 2> residual, double degrees, double fast,
                   double slow) {
+  for (double& each : residual) each = std::clamp(each, -kLargest, kLargest);
   of.fast += fast * ((squared(residual[0]) + squared(residual[1])) / degrees - of.fast);
   for (std::size_t k = 0; k < 2; ++k) of.mean[k] += slow * (residual[k] - of.mean[k]);
   of.slow = (squared(of.mean[0]) + squared(of.mean[1])) / degrees * (2.0 - slow) / slow;

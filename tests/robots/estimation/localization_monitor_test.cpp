@@ -165,5 +165,19 @@ TEST(LocalizationMonitor, ReportsAnAbsentInputAndWaitsForIt) {
   EXPECT_EQ(drive.monitor.state(encoder), InputState::good);
 }
 
+/// Absurd readings are faults as well, and their statistics are forgotten.
+TEST(LocalizationMonitor, RecoversFromAbsurdReadings) {
+  for (const double value : {1e9, -1e300, HUGE_VAL, 0.0}) {
+    MonitoredDrive drive(1);
+    drive.run(300.0, [&](Readings& r) {
+      if (r.time < kOnset + 1.0) r.rate = r.left = r.x = value;
+    });
+    for (const MonitoredInput input : {encoder, gyro, gps}) {
+      EXPECT_EQ(drive.monitor.state(input), InputState::good) << value;
+      EXPECT_LT(drive.monitor.residual(input), 1.0) << value;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sf::estimation
