@@ -178,7 +178,7 @@ class RobotClient {
   ReceivedLanes lanes_;
   RobotLink link_;
   control::ConfiguredController made_;
-  std::uint64_t needs_ = 0;  ///< control::Controller::needs, unless it stops without the farm
+  std::uint64_t needs_ = 0;            ///< control::Controller::needs, unless it stops without the farm
   std::vector<base::Intent> intents_;  ///< last received, per mover
   base::Twist command_;
   bool started_;
