@@ -24,10 +24,21 @@ double least(std::span<const double> ranges) {
 constexpr double kFront = M_PI / 6 + 1e-9;  // [rad] axes on the border belong to the front, as beams do
 constexpr double kSide = M_PI / 2 + 1e-9;   // [rad]
 
+double bearing_of(const sensors::ConeArray& sonar, std::size_t transducer) {
+  return base::wrap_angle(sonar.row.X_MS.yaw + sonar.X_SC[transducer].yaw);
+}
+
+bool looks_ahead(const Sonars& sonars) {
+  for (const sensors::ConeArray& sonar : sonars.all())
+    for (std::size_t i = 0; i < sonar.X_SC.size(); ++i)
+      if (std::abs(bearing_of(sonar, i)) <= kFront) return true;
+  return false;
+}
+
 void add_sonar(const sensors::ConeArray& sonar, std::span<const double> ranges, std::optional<Thirds>& thirds) {
   if (!thirds) thirds = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
   for (std::size_t i = 0; i < std::min(ranges.size(), sonar.X_SC.size()); ++i) {
-    const double bearing = base::wrap_angle(sonar.row.X_MS.yaw + sonar.X_SC[i].yaw);
+    const double bearing = bearing_of(sonar, i);
     if (!(std::abs(bearing) <= kSide)) continue;
     double& third = std::abs(bearing) <= kFront ? thirds->front : bearing > 0.0 ? thirds->left : thirds->right;
     if (ranges[i] < third) third = ranges[i];
@@ -81,9 +92,12 @@ namespace {
 std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
   Sonars sonars(context);
-  if (!sensors::has_laser(mover) && sonars.empty())
+  if (!sensors::has_laser(mover) && !looks_ahead(sonars))
     throw base::InputError(
-        fmt::format("controller 'avoid': '{}' has no laser and no sonar; give it one in the world file", mover.name));
+        fmt::format("controller 'avoid': '{}' has no laser, and no sonar within 30 degrees of its heading; give it one "
+                    "in the world "
+                    "file",
+                    mover.name));
   AvoidSettings avoid;
   avoid.speed = settings.number("speed", std::min(avoid.speed, mover.max_forward), 0.0, mover.max_forward);
   avoid.slow_speed = settings.number("slow_speed", std::min(avoid.slow_speed, avoid.speed), 0.0, mover.max_forward);

@@ -15,6 +15,7 @@ class Sonars {
   Sonars() = default;
   explicit Sonars(const ControllerContext& context);
   bool empty() const { return all_.empty(); }
+  const std::vector<sensors::ConeArray>& all() const { return all_; }
 
   struct Source {
     const sensors::ConeArray& sonar;  ///< valid as long as the Sonars

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -74,7 +75,7 @@ class OwnState {
   bool is_lost() const { return lost_; }
   const base::Report& state() const { return state_; }  ///< valid once the robot was not lost
   base::Pose pose_at(std::int64_t time) const { return trail_.at(time); }
-  double sigma() const { return sigma_; }  ///< [m] standard deviation of the position
+  double sigma() const { return sigma_; }  ///< [m] standard deviation of the position; infinite: never located
   /// Quality of `state`: the age of the last pose or position, and the covariance.
   const netio::StateQuality& quality() const { return quality_; }
   bool has_wheels() const { return sensors().wheels.has_value(); }
@@ -98,7 +99,7 @@ class OwnState {
   std::array<std::uint64_t, 4> clock_counts_{};
   std::uint64_t flooded_ = 0;
   bool lost_ = true;
-  double sigma_ = 0.0;
+  double sigma_ = std::numeric_limits<double>::infinity();
   netio::StateQuality quality_;
   base::Report state_;
   robots::PoseTrail trail_;  ///< of estimates, each made at its own time

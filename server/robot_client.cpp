@@ -98,7 +98,8 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
 /// A robot with cameras or encoders of its own does not know its true state, unless the setting `localize` is false.
 void RobotClient::add_own_state(const RobotClientOptions& options) {
   const world::Mover& mover = world_.movers[mover_];
-  OwnStateOptions own{.stop_after = base::nanoseconds(options.stop_after), .most_sigma = options.most_sigma};
+  OwnStateOptions own{.stop_after = base::nanoseconds(options.stop_after),
+                      .most_sigma = options.most_sigma.value_or(options.cameras ? 0.5 : HUGE_VAL)};
   if (options.cameras) {
     own.cameras = options.cameras;
     own.cameras->tag = tag_of(options, mover);

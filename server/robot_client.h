@@ -48,7 +48,9 @@ struct RobotClientOptions {
   std::uint32_t tag = 0;                ///< id of the tag carried below cameras; 0: same as the robot
   /// Cameras that see its tag, whose poses its state is estimated from. The tag is that of `tag`.
   std::optional<CameraOptions> cameras;
-  double most_sigma = 0.5;  ///< [m] > 0 standard deviation of its position at which it stops
+  /// [m] > 0 standard deviation of its position at which it stops; nullopt: 0.5 with cameras, which can find it again,
+  /// else none.
+  std::optional<double> most_sigma;
   /// Where to report its true state as V2V packets with its tag's id, 50 per second, stamped with Unix time; nullopt:
   /// nowhere. Replaces the light that cameras see.
   std::optional<netio::Endpoint> truth;
@@ -64,7 +66,7 @@ struct OwnStateStats {
   bool gps = false;
   OwnStateCounts counts;
   control::LocalizationError errors;    ///< of a simulated robot, at its steps that were not lost
-  double sigma = 0.0;                   ///< [m] standard deviation of the position, at the end
+  double sigma = 0.0;                   ///< [m] standard deviation of the position, at the end; infinite: never located
   estimation::Calibration calibration;  ///< at the end
 };
 

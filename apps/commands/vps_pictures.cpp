@@ -31,7 +31,11 @@ VpsPictures::VpsPictures(const VpsOptions& options, const vision::Testbed& testb
     : options_(options), testbed_(testbed) {
   if (!options.overlay.empty()) {
     refuse_inputs();
-    if (std::filesystem::path(options.overlay).extension() == ".avi")
+    const std::string extension = std::filesystem::path(options.overlay).extension();
+    for (const char* other : {".mp4", ".mkv", ".mov", ".webm", ".gif", ".png", ".jpg"})
+      if (extension == other)
+        throw base::InputError(fmt::format("--overlay {}: expected a folder or a video (*.avi)", options.overlay));
+    if (extension == ".avi")
       open_videos();
     else
       for (const vision::TestbedCamera& each : testbed.cameras)

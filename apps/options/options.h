@@ -330,11 +330,11 @@ struct RobotOptions : WorldOptions,
   std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights come from the farm
   std::uint16_t cameras = 0;  ///< port for TAG packets; 0: none
   estimation::ClockSource camera_clock = estimation::ClockSource::estimated;
-  std::uint32_t tag = 0;    ///< id of the tag that the robot carries; 0: the robot's id
-  double most_sigma = 0.5;  ///< [m] standard deviation of the estimated position at which the robot stops
-  std::string truth;        ///< "host:port" that its true state goes to; empty: none
-  std::string map;          ///< "host:port" that its own map is sent to; empty: none
-  std::string map_file;     ///< picture of its own map; empty: none
+  std::uint32_t tag = 0;             ///< id of the tag that the robot carries; 0: the robot's id
+  std::optional<double> most_sigma;  ///< [m] standard deviation of the estimated position at which the robot stops
+  std::string truth;                 ///< "host:port" that its true state goes to; empty: none
+  std::string map;                   ///< "host:port" that its own map is sent to; empty: none
+  std::string map_file;              ///< picture of its own map; empty: none
   std::optional<bridges::WebAddress> view;  ///< of the page with its own map; nullopt: none
   std::string serial;                       ///< device of a real robot; empty: none
   std::string player;                       ///< "host:port" of a Player server with a robot; empty: none

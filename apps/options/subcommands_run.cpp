@@ -132,6 +132,9 @@ void add_forget(CLI::App& app, ForgetOption& o) {
   app.add_option("--forget", o.forget,
                  "Silence after which a robot is no longer an obstacle [s], at least 2 (0: never)")
       ->check(in_seconds(0.0, 1e9))
+      ->check([](const std::string& text) {
+        return std::stod(text) == 0.0 || std::stod(text) >= 2.0 ? "" : text + " is below 2 (0: never)";
+      })
       ->type_name("S")
       ->capture_default_str();
 }
@@ -357,10 +360,10 @@ void add_cameras(CLI::App& app, RobotOptions& o) {
       ->type_name("ID")
       ->group(kGroup);
   app.add_option("--lost-beyond", o.most_sigma,
-                 "Standard deviation of the estimated position beyond which a robot with wheel encoders stops [m]")
+                 "Standard deviation of the estimated position beyond which a robot with wheel encoders stops [m] "
+                 "(default: 0.5 with --cameras, else none)")
       ->check(number(0.001, 1000.0))
       ->type_name("M")
-      ->capture_default_str()
       ->group(kGroup);
   app.add_option("--truth", o.truth,
                  "Send the true state to a renderer of camera images (`sensorfarm vps --robots PORT`); the clocks of "

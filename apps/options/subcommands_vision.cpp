@@ -51,6 +51,9 @@ void add_vps(CLI::App& app, Call& call) {
       "Virtual positioning system: detect tags in the images of overhead cameras and send a TAG packet for each");
   auto& o = add_command(*sub, call, vps, [sub] {
     refuse_bind_alone(*sub);
+    for (const char* drawn : {"--rendered", "--robots"})
+      if (sub->count("--input") > 0 && sub->count(drawn) > 0)
+        throw CLI::ValidationError("--input", fmt::format("cannot be used with {}, which renders the images", drawn));
     require_any(*sub, {"--seed"}, {"--rendered", "--robots"});
     require_any(*sub, {"--world"}, {"--overlay", "--view"});
   });

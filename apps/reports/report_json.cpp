@@ -379,7 +379,7 @@ Json constant_json(const estimation::Constant& constant) {
 
 /// Errors are known for simulated robots only.
 Json own_state_json(const server::OwnStateStats& own) {
-  Json json{{"sigma_m", own.sigma}};
+  Json json{{"sigma_m", finite_json(own.sigma)}};
   if (own.cameras) json.update({{"packets", own.counts.packets.total()}, {"by_reason", reasons(own.counts.packets)}});
   const control::LocalizationError& e = own.errors;
   if (e.steps > 0)

@@ -66,7 +66,8 @@ std::string own_state_text(const server::OwnStateStats& own) {
   if (e.steps > 0)
     text += row("position error", "RMS {:.1f} mm, largest {:.1f} mm and {:.2f} degrees", 1e3 * e.rms(), 1e3 * e.max,
                 e.yaw_max * 180.0 / M_PI);
-  text += row("  estimated", "{:.1f} mm (standard deviation, at the end)", 1e3 * own.sigma);
+  text += std::isfinite(own.sigma) ? row("  estimated", "{:.1f} mm (standard deviation, at the end)", 1e3 * own.sigma)
+                                   : row("  estimated", "never located");
   const estimation::Calibration& c = own.calibration;
   if (own.gyro)
     text += row("gyro", "bias {:.2f} ± {:.2f} degrees/s", c.gyro_bias.value * 180.0 / M_PI,
