@@ -19,9 +19,10 @@ constexpr double kLeastShare = 1e-6;
 constexpr std::size_t kCapacity = 576, kFirstCapacity = 8;
 constexpr double kFastest = 10.0;  // [m/s] encoders that differ from the prediction by more were reset, or are wrong
 
-constexpr double kLagShare = 0.02;  // of a fix in the mean innovation
-constexpr double kMostLag = 0.6;    // of a mean innovation by chance: six standard deviations
-constexpr int kLagFixes = 100;      // until the mean has its distribution
+constexpr double kLagShare = 0.02;                         // of a fix in the mean innovation
+constexpr double kMostLag = 0.6;                           // of a mean innovation by chance: six standard deviations
+constexpr int kLagFixes = 100;                             // until the mean has its distribution
+constexpr double kLeastForward = 0.02, kLeastTurn = 0.05;  // [m/s], [rad/s] of fixes that show slips
 
 double square(double v) { return v * v; }
 
@@ -184,11 +185,16 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   return Verdict::used;
 }
 
-void Localization::Lag::add(double innovation, double velocity) {
-  const double ahead = velocity < 0.0 ? -innovation : innovation;
-  mean += kLagShare * (ahead - mean);
-  square += kLagShare * (ahead * ahead - square);
-  ++count;
+/// The encoders show only afterwards whether the velocity changed before a fix, as commands do: such fixes are left
+/// out, since robots that start and stop would be behind their prediction in the mean.
+void Localization::Lag::add(double innovation, double velocity, double least) {
+  if (std::abs(velocity_before) > least && std::abs(velocity - velocity_before) < 0.2 * std::abs(velocity_before)) {
+    const double ahead = std::copysign(1.0, velocity_before) * innovation_before;
+    mean += kLagShare * (ahead - mean);
+    square += kLagShare * (ahead * ahead - square);
+    ++count;
+  }
+  innovation_before = innovation, velocity_before = velocity;
 }
 
 bool Localization::Lag::lasts() const { return count >= kLagFixes && mean * mean > kMostLag * kMostLag * square; }
@@ -198,8 +204,8 @@ bool Localization::Lag::lasts() const { return count >= kLagFixes && mean * mean
 void Localization::watch_slip(const WheeledMeasurement& m, State& state) {
   WheeledState& s = predicted_[0].state;
   const glm::dvec2 d{m.values[0] - s.mean[kX], m.values[1] - s.mean[kY]};
-  state.ahead.add(glm::dot(base::rotate(s.mean[kYaw], {1.0, 0.0}), d), s.mean[kForward]);
-  if (m.kind == Kind::pose) state.turned.add(base::wrap_angle(m.values[2] - s.mean[kYaw]), s.mean[kTurn]);
+  state.ahead.add(glm::dot(base::rotate(s.mean[kYaw], {1.0, 0.0}), d), s.mean[kForward], kLeastForward);
+  if (m.kind == Kind::pose) state.turned.add(base::wrap_angle(m.values[2] - s.mean[kYaw]), s.mean[kTurn], kLeastTurn);
   if (!state.ahead.lasts() && !state.turned.lasts()) return;
   for (const int k : {kLeftScale, kRightScale})
     s.covariance[k * (kWheeledComponents + 1)] += square(options_.encoder->scale_sigma);

@@ -108,7 +108,8 @@ class Localization {
   struct Lag {
     double mean = 0.0, square = 0.0;
     int count = 0;
-    void add(double innovation, double velocity);
+    double innovation_before = 0.0, velocity_before = 0.0;
+    void add(double innovation, double velocity, double least);
     bool lasts() const;
   };
   struct State {
