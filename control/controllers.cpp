@@ -71,8 +71,7 @@ ControllerConfig controller_of(const world::Mover& mover, const ControllerConfig
 
 std::vector<sensors::SensorSpec> ControllerContext::sensors_of(std::uint8_t sensor_type) const {
   std::optional<sensors::SensorSet> made;
-  const sensors::SensorSet& all = sensor_set != nullptr ? *sensor_set : made.emplace(world);
-  const auto specs = all.of(sensor_type, mover);
+  const auto specs = sensors_or(made).of(sensor_type, mover);
   return {specs.begin(), specs.end()};
 }
 

@@ -34,6 +34,10 @@ struct ControllerContext {
   const sensors::SensorSet* sensor_set = nullptr;   ///< sensors of the world; null: created when needed
   const ControllerType* type = nullptr;             ///< type of the controller; set by make_controller
 
+  /// Returns `sensor_set`, or one created in `made`.
+  const sensors::SensorSet& sensors_or(std::optional<sensors::SensorSet>& made) const {
+    return sensor_set != nullptr ? *sensor_set : made.emplace(world);
+  }
   /// Returns the robot's sensors of one type.
   std::vector<sensors::SensorSpec> sensors_of(std::uint8_t sensor_type) const;
 };

@@ -30,7 +30,7 @@ sensorfarm::Robot robot_of(const ControllerContext& context) {
                           mover.radius, mover.max_forward, mover.max_turn, {},
                           context.seed, context.world.file};
   std::optional<sensors::SensorSet> made;
-  const sensors::SensorSet& all = context.sensor_set != nullptr ? *context.sensor_set : made.emplace(context.world);
+  const sensors::SensorSet& all = context.sensors_or(made);
   for (const sensors::SensorSet::Group& group : all.groups())
     for (const sensors::SensorSpec& spec : all.of(group.type->id, context.mover))
       robot.sensors.push_back(sensors::public_info(*group.type, spec));

@@ -7,8 +7,7 @@ namespace sf::control {
 
 Sonars::Sonars(const ControllerContext& context) {
   std::optional<sensors::SensorSet> made;
-  const auto& set = context.sensor_set != nullptr ? *context.sensor_set : made.emplace(context.world);
-  const auto sonars = set.settings_of<sensors::ConeArray>(sensors::kSonar, context.mover);
+  const auto sonars = context.sensors_or(made).settings_of<sensors::ConeArray>(sensors::kSonar, context.mover);
   all_.assign(sonars.begin(), sonars.end());
 }
 

@@ -74,7 +74,7 @@ void add_fault(const MonitorCase& fault, const std::string& robot, std::vector<f
   to.push_back(own);
 }
 
-/// What a car's monitor states, and what it makes of it.
+/// The states that a car's monitor stated so far.
 struct MonitoredStates {
   std::array<InputState, estimation::kMonitoredInputs> last{};
   bool wrong = false;  ///< another input was stated to be faulty during the fault

@@ -63,11 +63,7 @@ constexpr DerivedPort kPorts[] = {
     {"encoder", kEncoderColumns}, {"gyro", kGyroColumns}, {"gps", kGpsColumns}, {"pose", kPoseColumns, 0, 4}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .make = make_localization};
 
-constexpr Column kColumns[] = {{"x_m"},   {"y_m"},         {"yaw_rad"}, {"valid", 1, true}, {"xx_m2"},
-                               {"xy_m2"}, {"x_yaw_m_rad"}, {"yy_m2"},   {"y_yaw_m_rad"},    {"yaw_yaw_rad2"}};
-constexpr PlainNumber kReal{.real = true};
-constexpr PlainNumber kNumbers[] = {{5e-3}, {5e-3}, {1e-6}, {1.0, 0.0, 1.0}, kReal, kReal, kReal, kReal, kReal, kReal};
-constexpr PlainForm kForm{kLocalization, "localization", kNumbers};
+constexpr PlainForm kForm{kLocalization, "localization", kPoseForms};
 
 }  // namespace
 
@@ -116,7 +112,7 @@ constinit const SensorType localization_type = plain<kForm>({
     .word = {"localization", kDerivedKeys, {}, true},
     .base_port = 64000,
     .list = "",
-    .columns = kColumns,
+    .columns = kPoseRow,
     .derived = &kDerived,
     .parse = [](const world::World& world) { return parse_derived(world, localization_type, 1, 20.0); },
     .make = no_backend,

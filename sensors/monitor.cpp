@@ -11,8 +11,6 @@ namespace sf::sensors {
 
 namespace {
 
-using estimation::MonitoredInput;
-
 class MonitorSensor final : public PoseSensor<estimation::LocalizationMonitor> {
  public:
   using PoseSensor::PoseSensor;
@@ -28,9 +26,8 @@ class MonitorSensor final : public PoseSensor<estimation::LocalizationMonitor> {
     double* extra = out.values.data() + 3;
     *extra++ = valid ? velocity.forward : NAN;
     *extra++ = valid ? velocity.turn : NAN;
-    constexpr std::array kInputs{MonitoredInput::encoder, MonitoredInput::gyro, MonitoredInput::gps};
-    for (const MonitoredInput input : kInputs) *extra++ = static_cast<double>(filter_.state(input));
-    for (const MonitoredInput input : kInputs) *extra++ = filter_.residual(input);
+    for (const auto input : estimation::kEachMonitoredInput) *extra++ = static_cast<double>(filter_.state(input));
+    for (const auto input : estimation::kEachMonitoredInput) *extra++ = filter_.residual(input);
   }
 };
 
@@ -59,27 +56,17 @@ constexpr DerivedPort kPorts[] = {{"encoder", kEncoderColumns}, {"gyro", kGyroCo
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .extra = 8, .make = make_monitor};
 
 constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "thresholds", "hold"};
-constexpr Column kColumns[] = {{"x_m"},
-                               {"y_m"},
-                               {"yaw_rad"},
-                               {"valid", 1, true},
-                               {"xx_m2"},
-                               {"xy_m2"},
-                               {"x_yaw_m_rad"},
-                               {"yy_m2"},
-                               {"y_yaw_m_rad"},
-                               {"yaw_yaw_rad2"},
-                               {"forward_m_s"},
-                               {"turn_rad_s"},
-                               {"encoder_state", 1, true},
-                               {"gyro_state", 1, true},
-                               {"gps_state", 1, true},
-                               {"encoder_residual"},
-                               {"gyro_residual"},
-                               {"gps_residual"}};
-constexpr PlainNumber kReal{.real = true}, kState{1.0, 0.0, 3.0};
-constexpr PlainNumber kNumbers[] = {{5e-3}, {5e-3}, {1e-6}, {1.0, 0.0, 1.0}, kReal,  kReal,  kReal, kReal, kReal,
-                                    kReal,  kReal,  kReal,  kState,          kState, kState, kReal, kReal, kReal};
+constexpr auto kColumns = joined(kPoseRow, std::array<Column, 8>{{{"forward_m_s"},
+                                                                  {"turn_rad_s"},
+                                                                  {"encoder_state", 1, true},
+                                                                  {"gyro_state", 1, true},
+                                                                  {"gps_state", 1, true},
+                                                                  {"encoder_residual"},
+                                                                  {"gyro_residual"},
+                                                                  {"gps_residual"}}});
+constexpr PlainNumber kState{1.0, 0.0, 3.0};
+constexpr auto kNumbers =
+    joined(kPoseForms, std::array<PlainNumber, 8>{kReal, kReal, kState, kState, kState, kReal, kReal, kReal});
 constexpr PlainForm kForm{kMonitor, "monitor", kNumbers};
 
 }  // namespace

@@ -7,9 +7,9 @@
 // estimation::MonitorThresholds in its order (fast, slow, roughness: nine numbers). `hold`: [s] time without a large
 // residual before a faulty input is used again.
 //
-// A reading is one row: pose, `valid` and covariance as of a localization; forward speed and yaw rate, which replace
-// those of a faulty encoder or gyro; and for encoder, gyro and gps each its state (0 good, 1 faulty, 2 absent, 3
-// suspected) and its residual as a share of the threshold. States and residuals are also stated where the pose is not
+// A reading is one row: pose, `valid` and covariance, as in a localization; forward speed and yaw rate, which replace
+// those of a faulty encoder or gyro; the states of encoder, gyro and gps (0 good, 1 faulty, 2 absent, 3 suspected); and
+// their residuals as shares of the thresholds. States and residuals are also stated where the pose is not
 // valid; speeds are NaN there.
 
 #include "robots/estimation/localization_monitor.h"

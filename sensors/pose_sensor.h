@@ -1,6 +1,7 @@
 #pragma once
-// What derived sensors with a robot's pose have in common: inputs, a known start, and the pose with its covariance.
+// Base class of derived sensors that state a robot's pose: their inputs, known start, columns and covariance.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "base/time.h"
 #include "sensors/derived/derived_type.h"
 #include "sensors/localization.h"
+#include "sensors/plain_packets.h"
 
 namespace sf::sensors {
 
@@ -16,6 +18,29 @@ namespace sf::sensors {
 enum PosePort : std::uint8_t { kEncoders, kGyros, kReceivers, kPoses };
 inline constexpr std::string_view kEncoderColumns[] = {"left_m", "right_m"}, kGyroColumns[] = {"rate_rad_s"},
                                   kGpsColumns[] = {"x_m", "y_m", "hdop"};
+
+/// Columns of a pose, `valid` and the covariance, and their forms in packets.
+inline constexpr std::array<Column, 10> kPoseRow{{{"x_m"},
+                                                  {"y_m"},
+                                                  {"yaw_rad"},
+                                                  {"valid", 1, true},
+                                                  {"xx_m2"},
+                                                  {"xy_m2"},
+                                                  {"x_yaw_m_rad"},
+                                                  {"yy_m2"},
+                                                  {"y_yaw_m_rad"},
+                                                  {"yaw_yaw_rad2"}}};
+inline constexpr PlainNumber kReal{.real = true};
+inline constexpr std::array<PlainNumber, kPoseRow.size()> kPoseForms{
+    {{5e-3}, {5e-3}, {1e-6}, {1.0, 0.0, 1.0}, kReal, kReal, kReal, kReal, kReal, kReal}};
+
+/// Returns the columns of a pose, or their forms, with further ones.
+template <class T, std::size_t N, std::size_t M>
+constexpr std::array<T, N + M> joined(const std::array<T, N>& pose, const std::array<T, M>& more) {
+  std::array<T, N + M> all{};
+  std::copy(more.begin(), more.end(), std::copy(pose.begin(), pose.end(), all.begin()));
+  return all;
+}
 
 /// Returns the inputs that are sensors of the robot.
 /// @throws base::InputError for sensors of other robots, except for poses

@@ -90,13 +90,13 @@ class MapExchange {
     std::optional<std::uint32_t> session_before;  ///< packets of it are late for two seconds
     std::int64_t started = 0;                     ///< [ns] arrival of the first packet of this session
     std::int64_t last = 0;                        ///< [ns] arrival of its last packet
-    // What it has of the own pieces.
+    // Own pieces that it has received.
     std::size_t acked = 0;                      ///< number, from the first
     std::uint32_t later = 0;                    ///< as in netio::MapAck
     std::optional<std::uint32_t> ack_sequence;  ///< of the packet with its last acknowledgement
     bool takes_no_more = false;
     std::int64_t progress = 0;  ///< [ns] when it last had all pieces, or acknowledged some
-    // What this robot has of its pieces.
+    // Its pieces that this robot has received.
     std::uint32_t pieces = 0;              ///< received in order
     std::map<std::uint32_t, Piece> early;  ///< received before earlier ones, at most kWindow
     std::size_t bytes = 0;                 ///< of all these

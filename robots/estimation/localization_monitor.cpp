@@ -23,7 +23,6 @@ constexpr double kRoughWeight = 0.3, kRoughMemory = 0.95;
 constexpr double kLargest = 1e6;           // residual: one absurd reading is forgotten after a minute
 constexpr double kLeastMonitored = 1e-12;  // variance
 
-constexpr std::array kAll{MonitoredInput::encoder, MonitoredInput::gyro, MonitoredInput::gps};
 /// The relation between the two other inputs.
 constexpr std::array<MonitorRelation, kMonitoredInputs> kRest{kCourseRelation, kWheelsRelation, kTurnRelation};
 
@@ -64,7 +63,7 @@ void LocalizationMonitor::feed(MonitoredInput input, const Add& add) {
   add(main_);
   // The copies are made again when all inputs are good.
   if (std::ranges::any_of(inputs_, &Input::faulty)) return;
-  for (const MonitoredInput without : kAll)
+  for (const MonitoredInput without : kEachMonitoredInput)
     if (without != input)
       for (Localization& copy : copies_[row(without)]) add(copy);
 }
@@ -229,10 +228,10 @@ InputState LocalizationMonitor::state(MonitoredInput input) const {
 
 void LocalizationMonitor::update(std::int64_t now) {
   now_ = now;
-  for (const MonitoredInput input : kAll)
+  for (const MonitoredInput input : kEachMonitoredInput)
     if (std::exchange(at(input).arrived, false))
       at(input).delayed = in_seconds(now - at(input).newest) > monitor_.latency[row(input)] + kLateness;
-  for (const MonitoredInput input : kAll)
+  for (const MonitoredInput input : kEachMonitoredInput)
     if (at(input).faulty) {
       if (!is_consistent(input)) at(input).wrong = now;
       const double hold = monitor_.hold * std::exp2(std::min(at(input).faults - 1, 6));
@@ -278,7 +277,7 @@ std::optional<MonitoredInput> LocalizationMonitor::isolated(std::int64_t now) co
   }
   if (!std::ranges::all_of(inputs_, &Input::wired)) return std::nullopt;
   // Without the faulty input the others agree, and without any other they do not.
-  std::array<MonitoredInput, kMonitoredInputs> order = kAll;
+  auto order = kEachMonitoredInput;
   const auto rest = [&](MonitoredInput input) { return ratio(kRest[row(input)]); };
   std::ranges::sort(order, {}, rest);
   if (rest(order[0]) < 0.5 && rest(order[1]) > 1.0) return order[0];
@@ -308,7 +307,7 @@ void LocalizationMonitor::exclude(MonitoredInput input, std::int64_t now) {
 
 bool LocalizationMonitor::is_consistent(MonitoredInput input) const {
   const Input& of = at(input);
-  const bool repeats = input == MonitoredInput::encoder ? false : of.repeats >= kMostRepeats;
+  const bool repeats = input != MonitoredInput::encoder && of.repeats >= kMostRepeats;
   if (is_late(input) || !of.fixed || repeats) return false;
   if (input == MonitoredInput::gps) return ratio(kReckonedRelation) < monitor_.lower;
   const bool turns = ratio(kTurnRelation) < monitor_.lower;
@@ -323,13 +322,13 @@ void LocalizationMonitor::hand_back(MonitoredInput input, std::int64_t now) {
 }
 
 void LocalizationMonitor::make_copies(std::int64_t now) {
-  for (const MonitoredInput without : kAll) {
+  for (const MonitoredInput without : kEachMonitoredInput) {
     copies_[row(without)] = {main_, main_};
     if (without == MonitoredInput::encoder)
       for (Localization& copy : copies_[row(without)]) copy.pause_encoder();
   }
-  calibrations_ = {main_.calibration(), main_.calibration()};
-  reckonings_ = {Reckoning(main_.predict(now)), Reckoning(main_.predict(now))};
+  calibrations_.fill(main_.calibration());
+  reckonings_.fill(Reckoning(main_.predict(now)));
   copied_ = now;
 }
 
@@ -337,7 +336,7 @@ void LocalizationMonitor::make_copies(std::int64_t now) {
 void LocalizationMonitor::refresh(std::int64_t now) {
   if (copied_ < 0) return make_copies(now);
   if (suspected_ || now - copied_ < kCopyAge) return;
-  for (const MonitoredInput without : kAll) {
+  for (const MonitoredInput without : kEachMonitoredInput) {
     auto& [older, newer] = copies_[row(without)];
     older = std::move(newer);
     newer = main_;

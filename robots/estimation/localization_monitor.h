@@ -34,7 +34,8 @@
 namespace sf::estimation {
 
 enum class MonitoredInput : std::uint8_t { encoder, gyro, gps };
-inline constexpr std::size_t kMonitoredInputs = 3;
+inline constexpr std::array kEachMonitoredInput{MonitoredInput::encoder, MonitoredInput::gyro, MonitoredInput::gps};
+inline constexpr std::size_t kMonitoredInputs = kEachMonitoredInput.size();
 
 enum class InputState : std::uint8_t {
   good,
@@ -53,7 +54,7 @@ struct MonitorThresholds {
   double roughness;  ///< mean difference between the squared changes of both yaw rates, normalised; below, neither
                      ///< counts as rougher
 };
-/// Those of docs/derived.md, fixed on runs without faults.
+/// Returns the thresholds that docs/derived.md derives from runs without faults.
 MonitorThresholds default_thresholds();
 
 struct MonitorOptions {
