@@ -77,13 +77,22 @@ struct RealRobotTest : testing::Test {
     control::add_controller(&recorder);
     control::add_controller(&own_recorder);
   }
-  std::unique_ptr<RobotClient> client(const RealRobotOptions& serial, std::string_view controller = recorder.name,
-                                      double stop_after = 0.0) {
+  RobotClientOptions options(const RealRobotOptions& serial, std::string_view controller, double stop_after) const {
     RobotClientOptions options{.stop_after = stop_after, .log_descriptor = f.log.descriptor()};
     options.link.farm = {netio::kLoopback, f.service->port()};
     options.controller.name = controller;
     options.real = serial;
-    return std::make_unique<RobotClient>(f.world, f.sensor_set, 1, f.layout, options);
+    return options;
+  }
+  std::unique_ptr<RobotClient> client(const RealRobotOptions& serial, std::string_view controller = recorder.name,
+                                      double stop_after = 0.0) {
+    return std::make_unique<RobotClient>(f.world, f.sensor_set, 1, f.layout, options(serial, controller, stop_after));
+  }
+  /// The fixture's layout with the ports of another sensor type.
+  StreamLayout layout_with(std::uint8_t type) const {
+    StreamLayout layout = f.layout;
+    layout.bases[type] = layout.bases.at(sensors::kLaser) + 2 * layout.stride;
+    return layout;
   }
   Fixture f;
 };
@@ -213,14 +222,9 @@ TEST_F(RealRobotTest, WandersByItsOwnBumperWithoutTheFarm) {
     world::World world = f.world;
     if (!laser) world.movers[1].sensors = {{.type = "bumper"}};
     const sensors::SensorSet sensor_set(world);
-    StreamLayout layout = f.layout;
-    layout.bases[sensors::kBumper] = layout.bases.at(sensors::kLaser) + 2 * layout.stride;
+    const StreamLayout layout = layout_with(sensors::kBumper);
     CreateSimulator create;
-    RobotClientOptions options{.stop_after = 0.5, .log_descriptor = f.log.descriptor()};
-    options.link.farm = {netio::kLoopback, f.service->port()};
-    options.controller.name = "wander";
-    options.real = RealRobotOptions{.device = create.device()};
-    RobotClient robot(world, sensor_set, 1, layout, options);
+    RobotClient robot(world, sensor_set, 1, layout, options({.device = create.device()}, "wander", 0.5));
     EXPECT_TRUE(create.streaming());
     std::int64_t now = 0;
     bool backed_off = false;
@@ -253,14 +257,10 @@ TEST_F(RealRobotTest, AvoidsByItsOwnSonarWithoutTheFarm) {
     world::World world = f.world;
     if (mounted) world.movers[1].sensors.push_back(front_sonar());
     const sensors::SensorSet sensor_set(world);
-    StreamLayout layout = f.layout;
-    layout.bases[sensors::kSonar] = layout.bases.at(sensors::kLaser) + 2 * layout.stride;
+    const StreamLayout layout = layout_with(sensors::kSonar);
     PioneerEmulator pioneer;
-    RobotClientOptions options{.stop_after = 0.5, .log_descriptor = f.log.descriptor()};
-    options.link.farm = {netio::kLoopback, f.service->port()};
-    options.controller.name = "avoid";
-    options.real = RealRobotOptions{.type = "pioneer", .device = pioneer.device()};
-    RobotClient robot(world, sensor_set, 1, layout, options);
+    RobotClient robot(world, sensor_set, 1, layout,
+                      options({.type = "pioneer", .device = pioneer.device()}, "avoid", 0.5));
     std::int64_t now = 0;
     const auto steps = [&](int count) {
       for (int k = 0; k < count; ++k) {
