@@ -23,7 +23,8 @@ enum class RandomStream : std::uint32_t {
   decision = 11,     ///< random decisions of controllers
   own_sensors = 12,  ///< users' own sensor types
   fiducials = 13,
-  faults = 14  ///< of sensors
+  faults = 14,  ///< of sensors
+  thermometers = 15
 };
 
 /// Identifies one draw by all five fields.

@@ -10,6 +10,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_library(SODIUM sodium REQUIRED)  # libsodium-dev
 find_library(ZSTD zstd REQUIRED)  # libzstd-dev
+find_library(MUPARSER muparser REQUIRED)  # libmuparser-dev
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
 # Without plug-ins, the program supports everything that needs no heavy library, and names the plug-in that a command

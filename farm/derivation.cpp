@@ -78,7 +78,8 @@ std::span<const base::ReadingBlock> Derivation::evaluate(std::int64_t now,
                                                          const sensors::DerivedSensors::Stage& stage) {
   due_.clear();
   for (const SensorPipeline& pipeline : pipelines_) due_.emplace_back(pipeline.due);
-  const auto derived = sensors_.evaluate(now, delivered, due_, states, stage, std::exchange(commands_, {}));
+  const auto derived = sensors_.evaluate(now, delivered, due_, states, stage, std::exchange(commands_, {}),
+                                         std::exchange(received_, {}));
   delivered_.assign(delivered.begin(), delivered.end());
   delivered_.insert(delivered_.end(), derived.begin(), derived.end());
   return delivered_;

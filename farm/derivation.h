@@ -40,6 +40,8 @@ class Derivation {
                                                const sensors::DerivedSensors::Stage& stage = {});
   /// Sets the inputs `command` of the next evaluation: per mover.
   void set_commands(std::span<const base::Twist> commands) { commands_ = commands; }
+  /// Sets the other inputs of the next evaluation that robots receive (sensors::is_received).
+  void set_received(std::span<const base::ReadingBlock> received) { received_ = received; }
   /// @param delivered readings delivered at `now`, including late ones of derived sensors
   /// @param faults apply to readings of derived sensors
   /// @param delivery holds readings of derived sensors with latency until they are delivered
@@ -56,6 +58,7 @@ class Derivation {
   std::vector<std::span<const sensors::DueSample>> due_;
   std::vector<base::ReadingBlock> delivered_;
   std::span<const base::Twist> commands_;
+  std::span<const base::ReadingBlock> received_;
 };
 
 }  // namespace sf::farm

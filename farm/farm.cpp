@@ -52,8 +52,9 @@ struct Farm::State {
   std::vector<std::vector<double>> marked;  ///< per thread: ranges as sent
   std::vector<SensorPipeline> pipelines;    ///< of all types except derived ones
   std::unique_ptr<Derivation> derivation;
-  std::span<const base::Twist> commands;  ///< for the next tick
-  bool demand_changed = true;             ///< subscriptions have changed since `update_demand`
+  std::span<const base::Twist> commands;         ///< for the next tick
+  std::span<const base::ReadingBlock> received;  ///< for the next tick
+  bool demand_changed = true;                    ///< subscriptions have changed since `update_demand`
   std::unique_ptr<gpu::Batch> batch;
   bool must_record = false;  ///< the batch is new
   Faults faults;
@@ -410,6 +411,7 @@ base::ThreadPool& Farm::thread_pool() { return s_->thread_pool; }
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   ++s_->stats.ticks;
   s_->derivation->set_commands(std::exchange(s_->commands, {}));
+  s_->derivation->set_received(std::exchange(s_->received, {}));
   s_->last_tick = now;
   s_->begin_tick(false);
   for (const base::Report& report : reports) s_->apply(report);
@@ -417,6 +419,17 @@ std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const
 }
 
 void Farm::set_commands(std::span<const base::Twist> commands) { s_->commands = commands; }
+void Farm::set_received(std::span<const base::ReadingBlock> readings) { s_->received = readings; }
+
+std::vector<std::uint32_t> Farm::receivers(std::uint8_t type) const {
+  std::vector<std::uint32_t> movers;
+  for (const sensors::DerivedNode& node : s_->derivation->sensors().nodes())
+    for (const sensors::WiredInput& input : node.inputs)
+      if (input.type == type) movers.push_back(input.mover);
+  std::ranges::sort(movers);
+  movers.erase(std::unique(movers.begin(), movers.end()), movers.end());
+  return movers;
+}
 
 std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }
 std::int64_t Farm::delivery_time(const base::ReadingBlock& reading) const {

@@ -126,6 +126,11 @@ class Farm {
   /// Sets the twists that movers executed until the next tick, per mover: inputs of derived sensors. They are read
   /// during that tick.
   void set_commands(std::span<const base::Twist> commands);
+  /// Sets readings of pseudo-types that movers received by the next tick, such as poses of cameras
+  /// (sensors::kCameraInput): inputs of derived sensors. They are read during that tick.
+  void set_received(std::span<const base::ReadingBlock> readings);
+  /// Returns the movers with an input of that pseudo-type, in order.
+  std::vector<std::uint32_t> receivers(std::uint8_t type) const;
 
   /// Returns when the next subscribed sensor is due [ns]: phase + k / rate to the nearest nanosecond. farm::kNever
   /// without subscribed sensors.

@@ -16,6 +16,7 @@
 #include "farm/schedule.h"
 #include "netio/packets.h"
 #include "robots/kinematics.h"
+#include "sensors/derived/wiring.h"
 #include "sensors/laser.h"
 #include "world/append_robot.h"
 #include "world/ground.h"
@@ -107,15 +108,21 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
     if (controls_[i].controller) models_.remove(i);
   make_room();
   warn_of_long_ways();
-  if (positioning_) warn_of_unused_poses();
+  if (positioning_) camera_inputs_.add(farm_, world_, *positioning_);
+  warn_of_positioning();
 }
 
-void Simulation::warn_of_unused_poses() {
+void Simulation::warn_of_positioning() {
+  if (!positioning_ && !farm_.receivers(sensors::kCameraInput).empty())
+    warnings_.push_back({world_.file, 0,
+                         "inputs 'camera' of derived sensors receive nothing: the run has no [positioning] "
+                         "(run --positioning FILE, or a scenario)"});
+  if (!positioning_ || !camera_inputs_.empty()) return;
   for (std::uint32_t m = 0; m < controls_.size(); ++m)
     if (controls_[m].positioning || !share_->owns(m)) return;
   warnings_.push_back({world_.file, 0,
                        "[positioning] measures poses of robots that localize themselves, but there are none; expected "
-                       "a robot with a controller and encoder( ... )"});
+                       "a robot with a controller and encoder( ... ), or a derived sensor with the input 'camera'"});
 }
 
 /// Warns about the first robot whose speed limits allow displacements longer than contact tests cover in a tick.
@@ -308,6 +315,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
   absent_.push_back(false);
   if (!share_->owns(row)) farm_.sharing().leave_to_others(row);
   farm_.subscribe(row, farm::kAllSensorTypes);
+  if (positioning_) camera_inputs_.add(farm_, world_, *positioning_);
   make_room();
   joined_.push_back({original, robot.name, world.movers[row].X_WM});
   return row;
@@ -349,6 +357,7 @@ std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
     for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
   }
   farm_.set_commands(executed_commands_);
+  if (!camera_inputs_.empty()) farm_.set_received(camera_inputs_.receive(time, fleet_.reports(), absent_));
   const auto delivered = farm_.tick(time, states);
   mark_faults();
   if (early == 0) return delivered;

@@ -30,6 +30,7 @@
 #include "record/run_info.h"
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
+#include "scenarios/camera_inputs.h"
 #include "scenarios/fleet_share.h"
 #include "scenarios/mailbox.h"
 #include "scenarios/positioning.h"
@@ -182,7 +183,7 @@ class Simulation {
 
  private:
   void warn_of_long_ways();
-  void warn_of_unused_poses();
+  void warn_of_positioning();
   struct RobotControl {
     std::unique_ptr<control::Controller> controller;  ///< null: the mover remains at rest
     control::SharesMap* sharing = nullptr;            ///< the controller; null: it does not share its map
@@ -264,6 +265,7 @@ class Simulation {
   std::shared_ptr<const void> earlier_readings_;  ///< valid until the next step
   std::vector<record::JoinedMover> joined_;
   std::optional<PositioningOptions> positioning_;
+  CameraInputs camera_inputs_;
   std::uint64_t seed_;
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]

@@ -17,7 +17,7 @@ namespace sf::sensors {
 namespace {
 
 constexpr double kDegrees = M_PI / 180.0;
-constexpr double kLongest = 1e4;  // [m] limit of range_max
+constexpr double kLongestEdgeRange = 1e4;  // [m] limit of range_max
 
 /// Returns the robot's axis nearest to the middle bearing of the beams. In a tie, the sides take precedence over front
 /// and back.
@@ -46,7 +46,7 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   raycast::ScanSettings& fan = edge.fan;
   fan.samples = whole(sensor, "samples", 61, 1, kMostEdgeSamples);
   fan.fov = angle(sensor, "fov", 30.0 * kDegrees, 0.0, 2.0 * M_PI);
-  fan.range_max = length(sensor, "range_max", 1.0, 1e-6, kLongest);
+  fan.range_max = length(sensor, "range_max", 1.0, 1e-6, kLongestEdgeRange);
   fan.range_min = length(sensor, "range_min", 0.0, 0.0, fan.range_max);
   edge.single = fan.samples <= 2;
   if (!edge.single && !(fan.fov > 0.0))

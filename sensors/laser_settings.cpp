@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kMostSamples = 1'000'000;
 constexpr std::uint32_t kMostTransducers = 1'000;
 constexpr double kTransducerHeight = 0.02;  // [m]
-constexpr double kLongest = 1e7;            // [m]
+constexpr double kLongestLaserRange = 1e7;  // [m]
 
 /// Reads `[min max]` or `[min max fov]`.
 void read_range(const world::Sensor& sensor, std::string_view key, std::size_t count, LaserSettings& laser) {
@@ -37,9 +37,10 @@ std::string_view present(const world::Sensor& sensor, std::initializer_list<std:
 void check(const world::Sensor& sensor, LaserSettings& laser) {
   constexpr double kTurn = 2.0 * M_PI;
   const std::string_view range = present(sensor, {"range_max", "range_min", "range", "view", "sview"});
-  if (!(laser.range_max > 0.0 && laser.range_max <= kLongest))
-    refuse(sensor, range,
-           fmt::format("a largest range of {:g} m; expected more than 0, to {:g} m", laser.range_max, kLongest));
+  if (!(laser.range_max > 0.0 && laser.range_max <= kLongestLaserRange))
+    refuse(
+        sensor, range,
+        fmt::format("a largest range of {:g} m; expected more than 0, to {:g} m", laser.range_max, kLongestLaserRange));
   if (!(laser.range_min >= 0.0 && laser.range_min <= laser.range_max))
     refuse(
         sensor, range,
@@ -145,7 +146,7 @@ raycast::ScanNoise scan_noise_of(const world::Sensor& sensor) {
   if (!(v[0] >= 0.0 && v[1] >= 0.0 && v[2] >= 0.0))
     refuse(sensor, "noise", "'noise' expects numbers that are not negative");
   const raycast::ScanNoise noise{sensor.metres_per_unit * v[0], v[1], sensor.radians_per_unit * v[2]};
-  if (!(noise.range_sigma <= kLongest && noise.range_proportional <= 1e3 && noise.angle_sigma <= 2.0 * M_PI))
+  if (!(noise.range_sigma <= kLongestLaserRange && noise.range_proportional <= 1e3 && noise.angle_sigma <= 2.0 * M_PI))
     refuse(sensor, "noise", "'noise' is out of range; expected [metres, metres per metre, angle]");
   return noise;
 }

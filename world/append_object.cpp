@@ -53,11 +53,12 @@ void require_movable(const World& world, std::uint32_t root) {
     throw base::InputError(world.file, 0,
                            fmt::format("'{}' is a part of '{}', which joins as a whole", name,
                                        world.movers[world.models[root].mover].name));
-  if (has(world.emitters) || has(world.lamps) || has(world.floor_holes) || has(world.lights))
-    throw base::InputError(world.file, 0,
-                           fmt::format("'{}' cannot join: infrared emitters, lamps, floor holes and lights within "
-                                       "models do not move",
-                                       name));
+  if (has(world.emitters) || has(world.lamps) || has(world.heat_sources) || has(world.floor_holes) || has(world.lights))
+    throw base::InputError(
+        world.file, 0,
+        fmt::format("'{}' cannot join: infrared emitters, lamps, heat sources, floor holes and lights within "
+                    "models do not move",
+                    name));
   if (!has(world.walls))
     throw base::InputError(world.file, 0, fmt::format("'{}' cannot join: it has no outline", name));
 }

@@ -20,7 +20,7 @@ struct JoiningTemplate {
 /// Returns the robot, object, light or other model with that name, or else the first robot or object whose type has
 /// that word.
 /// @throws base::InputError with the names of robots, objects and lights; for a part of a mover; and for a model that
-/// cannot move: one without an outline, or with an emitter, a lamp, a floor hole or a light of its own
+/// cannot move: one without an outline, or with an emitter, a lamp, a heat source, a floor hole or a light of its own
 JoiningTemplate joining_template(const World& world, const std::string& name);
 
 /// Returns the number of pieces of a copy's outline.

@@ -157,6 +157,7 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   retarget(world.lights, kept.model_rows);
   retarget(world.emitters, kept.model_rows);
   retarget(world.lamps, kept.model_rows);
+  retarget(world.heat_sources, kept.model_rows);
   world.fiducials = std::move(fiducials);
   retarget(world.floor_holes, kept.model_rows);
   world.models = std::move(models);

@@ -112,6 +112,11 @@ template <> inline constexpr auto kFields<Lamp> = std::make_tuple(
     field(&Lamp::intensity, Key{"lamp_intensity"}, Bounds{0.0, 1e9, true}),
     field(&Lamp::fov, Key{"lamp_fov", Unit::angle}, Bounds{0.0, 2.0 * M_PI, true}));
 
+template <> inline constexpr auto kFields<HeatSource> = std::make_tuple(
+    field(&HeatSource::model), field(&HeatSource::p),
+    field(&HeatSource::rise, Key{"heat"}, Bounds{-1e6, 1e6}),
+    field(&HeatSource::radius, Key{"heat_radius", Unit::length}, kAboveZero));
+
 template <> inline constexpr auto kFields<Fiducial> = std::make_tuple(
     field(&Fiducial::model), field(&Fiducial::X_BF), field(&Fiducial::id), field(&Fiducial::key),
     field(&Fiducial::type, Key{"fiducial_type"}));
@@ -142,7 +147,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 7
     field(&World::ramps), field(&World::marking_heights), field(&World::fiducials),
     // since version 8
-    field(&World::shapes));
+    field(&World::shapes),
+    // since version 9
+    field(&World::heat_sources), field(&World::temperature, Key{"temperature"}, Bounds{-273.15, 1e6}));
 
 // clang-format on
 

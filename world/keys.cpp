@@ -86,7 +86,11 @@ Words fields_of() {
 
 /// Returns the keys of every model, and `others`.
 std::vector<Words> model_and(std::initializer_list<Words> others) {
-  std::vector<Words> words{kModel, fields_of<Segment>(), fields_of<Emitter>(), fields_of<Lamp>(),
+  std::vector<Words> words{kModel,
+                           fields_of<Segment>(),
+                           fields_of<Emitter>(),
+                           fields_of<Lamp>(),
+                           fields_of<HeatSource>(),
                            fields_of<Fiducial>()};
   words.insert(words.end(), others);
   return words;

@@ -68,6 +68,7 @@ Extent extent_of(const World& world, Extent extent) {
   for (const Light& light : world.lights) include({light.X_WL.x, light.X_WL.y});
   for (const Emitter& emitter : world.emitters) include({emitter.X_WE.x, emitter.X_WE.y});
   for (const Lamp& lamp : world.lamps) include({lamp.X_WL.x, lamp.X_WL.y});
+  for (const HeatSource& source : world.heat_sources) include(source.p);
   for (const FloorHole& hole : world.floor_holes)
     for (const glm::dvec2& p : hole.outline) include(p);
   for (const Mover& mover : world.movers) {
@@ -85,8 +86,9 @@ constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, 
                                               &World::lane_markings, &World::magnet_cutoff, &World::accuracy);
 
 /// Worlds without these keep the hash that they had before the fields existed.
-constexpr auto kHashedIfSet = std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps,
-                                              &World::marking_heights, &World::fiducials, &World::shapes);
+constexpr auto kHashedIfSet =
+    std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights,
+                    &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -196,6 +198,7 @@ void translate(World& world, double dx, double dy) {
   for (Light& light : world.lights) move(light.X_WL);
   for (Emitter& emitter : world.emitters) move(emitter.X_WE);
   for (Lamp& lamp : world.lamps) move(lamp.X_WL);
+  for (HeatSource& source : world.heat_sources) move(source.p);
   for (Fiducial& fiducial : world.fiducials)
     if (world.models[fiducial.model].mover == kNone) move(fiducial.X_BF);
   for (FloorHole& hole : world.floor_holes)

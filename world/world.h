@@ -220,6 +220,14 @@ struct Lamp {
   double fov = 2.0 * M_PI;  ///< [rad] in (0, 2 pi], full angle of the beam in the plane, at all elevations
 };
 
+/// A source of heat or cold: raises the temperature around its middle (sensors/thermometer.h).
+struct HeatSource {
+  std::uint32_t model = 0;  ///< row in `World::models`
+  glm::dvec2 p;             ///< [m] world frame
+  double rise = 0.0;        ///< [K] at `p`
+  double radius = 1.0;      ///< [m] > 0: the rise there is exp(-1/2) of that at `p`
+};
+
 /// A hole in the floor, for cliff sensors.
 struct FloorHole {
   std::vector<glm::dvec2> outline;  ///< [m] world frame, closed, simple
@@ -300,11 +308,13 @@ struct World {
   std::vector<Light> lights;
   std::vector<Emitter> emitters;
   std::vector<Lamp> lamps;
+  std::vector<HeatSource> heat_sources;
   std::vector<Fiducial> fiducials;
   std::vector<Shape> shapes;  ///< at most kMostShapes
   /// By row of the mover; not in snapshots. The first change of a mover adds its entry.
   std::map<std::uint32_t, ChangedShape> changed_shapes;
   double ambient_light = 0.0;  ///< [lx] on every surface, without shadows
+  double temperature = 0.0;    ///< [degrees Celsius] far from all heat sources
   std::vector<FloorHole> floor_holes;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts

@@ -104,8 +104,8 @@ int draw_graph(const world::World& world, const ExplainOptions& options) {
     const auto [type, mover, number] = key;
     const auto [place, is_new] = box_of.try_emplace(key, boxes.size());
     const sensors::SensorType& form = sensors::input_type(type);
-    const sensors::SensorSpec spec =
-        type == sensors::kCommandInput ? sensors::SensorSpec{.name = "command"} : sensor_set.of(type, mover)[number];
+    const sensors::SensorSpec spec = sensors::is_received(type) ? sensors::SensorSpec{.name = std::string(form.name)}
+                                                                : sensor_set.of(type, mover)[number];
     if (is_new)
       boxes.push_back({fmt::format("{} '{}' of {}", form.name, spec.name, world.movers[mover].name),
                        fmt::format("{:g} Hz, {}", spec.rate, form.columns[0].name),

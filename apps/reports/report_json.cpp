@@ -231,6 +231,7 @@ std::string world_report_json(const world::World& world, const sensors::SensorSe
                    {"lights", world.lights.size()},
                    {"docks", docks},
                    {"lamps", world.lamps.size()},
+                   {"heat_sources", world.heat_sources.size()},
                    {"virtual_walls", world.emitters.size() - docks},
                    {"drops", world.floor_holes.size()},
                    {"paths", world.paths.size()},

@@ -75,6 +75,10 @@ SENSORS = {
                            ("yaw_yaw_rad2", None), ("forward_m_s", None), ("turn_rad_s", None), ("encoder_state", 1),
                            ("gyro_state", 1), ("gps_state", 1), ("encoder_residual", None), ("gyro_residual", None),
                            ("gps_residual", None)]),
+    41: ("location", 24000, [("x_m", 5e-3), ("y_m", 5e-3), ("valid", 1), ("xx_m2", None), ("xy_m2", None),
+                            ("yy_m2", None), ("source", 1), ("age_s", None)]),
+    42: ("thermometer", 22000, [("temperature_C", 1e-3)]),
+    43: ("aggregate", 18000, [("value", None), ("valid", 1), ("variance", None), ("source", 1), ("age_s", None)]),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",

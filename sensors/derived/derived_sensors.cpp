@@ -27,8 +27,6 @@ constexpr std::size_t kPiece = 16;  // sensors per piece of a parallel loop
 
 constexpr sensorfarm::Pose kUnknownPose{NAN, NAN, NAN, NAN};
 
-const SensorSpec kCommandSpec{.name = "command"};
-
 bool is_own_type(const SensorType& type) { return type.id >= kFirstOwnId && type.id <= kLastOwnId; }
 
 sensorfarm::DerivedSite public_site(const SensorSet& sensor_set, const DerivedNode& node,
@@ -37,9 +35,10 @@ sensorfarm::DerivedSite public_site(const SensorSet& sensor_set, const DerivedNo
   sensorfarm::DerivedSite site{
       {spec.name, spec.mover, spec.sensor, public_pose(spec.X_MS), node.settings->height}, start, {}};
   for (const WiredInput& input : node.inputs) {
-    const SensorSpec& of =
-        input.type == kCommandInput ? kCommandSpec : sensor_set.of(input.type, input.mover)[input.sensor];
-    site.inputs.push_back({input.port, input.mover, public_info(input_type(input.type), of)});
+    const SensorType& type = input_type(input.type);
+    const SensorSpec received{.name = std::string(type.name)};
+    const SensorSpec& of = is_received(input.type) ? received : sensor_set.of(input.type, input.mover)[input.sensor];
+    site.inputs.push_back({input.port, input.mover, public_info(type, of)});
   }
   return site;
 }
@@ -74,7 +73,7 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
       nodes_(wired_.size()),
       group_of_(64, -1),
       input_types_(64, nullptr) {
-  input_types_[kCommandInput] = &input_type(kCommandInput);
+  for (const std::uint8_t type : {kCommandInput, kCameraInput}) input_types_[type] = &input_type(type);
   const auto groups = sensor_set.groups();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     group_of_[groups[g].type->id] = static_cast<int>(g);
@@ -90,8 +89,8 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
     levels_[node.level].push_back(i);
     for (std::uint32_t k = 0; k < node.inputs.size(); ++k) {
       const WiredInput& input = node.inputs[k];
-      if (input.type == kCommandInput) command_listeners_.push_back({i, k});
-      if (input.type == kCommandInput) continue;
+      if (is_received(input.type)) received_listeners_.push_back({input.type, input.mover, {i, k}});
+      if (is_received(input.type)) continue;
       const auto g = static_cast<std::size_t>(group_of_[input.type]);
       listeners_[g][groups[g].first[input.mover] + input.sensor].push_back({i, k});
     }
@@ -117,7 +116,7 @@ void DerivedSensors::want_if(const Wanted& wanted) {
       nodes_[i].wanted = wanted(node) || needed_[own][node.row] != 0;
       if (!nodes_[i].wanted) continue;
       for (const WiredInput& input : node.inputs) {
-        if (input.type == kCommandInput) continue;
+        if (is_received(input.type)) continue;
         const auto g = static_cast<std::size_t>(group_of_[input.type]);
         needed_[g][groups[g].first[input.mover] + input.sensor] = 1;
       }
@@ -183,15 +182,21 @@ void DerivedSensors::call(std::size_t i, std::int64_t now) {
 }
 
 void DerivedSensors::take_commands(std::int64_t now, std::span<const base::Twist> commands) {
-  commands_.resize(command_listeners_.size());
-  for (std::size_t k = 0; k < command_listeners_.size(); ++k) {
-    const auto [i, input] = command_listeners_[k];
-    const std::uint32_t mover = wired_[i].inputs[input].mover;
+  commands_.resize(received_listeners_.size());
+  for (std::size_t k = 0; k < received_listeners_.size(); ++k) {
+    const auto& [type, mover, listener] = received_listeners_[k];
+    if (type != kCommandInput) continue;
     Command& command = commands_[k];
     command.values = {commands[mover].forward, commands[mover].left, commands[mover].turn};
     command.reading = {.mover = mover, .type = kCommandInput, .time = now, .values = command.values};
-    add_pending(i, {now, input, 0, &command.reading});
+    add_pending(listener.node, {now, listener.input, 0, &command.reading});
   }
+}
+
+void DerivedSensors::take_received(const base::ReadingBlock& reading) {
+  for (const auto& [type, mover, listener] : received_listeners_)
+    if (type == reading.type && mover == reading.mover)
+      add_pending(listener.node, {reading.time, listener.input, reading.sequence, &reading});
 }
 
 void DerivedSensors::add_pending(std::size_t i, const Pending& pending) {
@@ -251,11 +256,13 @@ std::span<const base::ReadingBlock> DerivedSensors::evaluate(std::int64_t now,
                                                              std::span<const base::ReadingBlock> delivered,
                                                              std::span<const std::span<const DueSample>> due,
                                                              std::span<const base::Report> states, const Stage& stage,
-                                                             std::span<const base::Twist> commands) {
+                                                             std::span<const base::Twist> commands,
+                                                             std::span<const base::ReadingBlock> received) {
   create_wanted(states);
   started_ = true;
   out_.clear();
   if (!commands.empty()) take_commands(now, commands);
+  for (const base::ReadingBlock& reading : received) take_received(reading);
   for (const base::ReadingBlock& reading : delivered) route(reading);
   std::size_t first = 0;  // node of the group's first row
   std::size_t group = 0;

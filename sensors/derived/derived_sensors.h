@@ -49,13 +49,15 @@ class DerivedSensors {
   /// @param delivered readings delivered at `now` [ns], in any order
   /// @param due per derived group of the sensor set, in order: its due sensors
   /// @param states per mover @param commands per mover: the twists executed since the last tick; empty: none
+  /// @param received readings of other pseudo-types (`is_received`)
   /// @return readings of the due sensors that are not lost, by type and row, except that latency is not applied; valid
   /// until the next call
   /// @throws base::InputError when a sensor throws an exception
   std::span<const base::ReadingBlock> evaluate(std::int64_t now, std::span<const base::ReadingBlock> delivered,
                                                std::span<const std::span<const DueSample>> due,
                                                std::span<const base::Report> states, const Stage& stage = {},
-                                               std::span<const base::Twist> commands = {});
+                                               std::span<const base::Twist> commands = {},
+                                               std::span<const base::ReadingBlock> received = {});
 
   /// Continues the sensors of `before`, a world with fewer movers in its first rows. `before` must not be used
   /// afterwards.
@@ -90,6 +92,7 @@ class DerivedSensors {
   void create_wanted(std::span<const base::Report> states);
   void route(const base::ReadingBlock& reading);
   void take_commands(std::int64_t now, std::span<const base::Twist> commands);
+  void take_received(const base::ReadingBlock& reading);
   void add_pending(std::size_t node, const Pending& pending);
   void process(std::size_t node, std::int64_t now);
   void call(std::size_t node, std::int64_t now);
@@ -107,8 +110,13 @@ class DerivedSensors {
     std::array<double, 3> values;
     base::ReadingBlock reading;
   };
-  std::vector<Listener> command_listeners_;
-  std::vector<Command> commands_;               ///< per command listener
+  struct ReceivedListener {
+    std::uint8_t type;  ///< a pseudo-type
+    std::uint32_t mover;
+    Listener listener;
+  };
+  std::vector<ReceivedListener> received_listeners_;
+  std::vector<Command> commands_;               ///< like `received_listeners_`
   std::vector<int> group_of_;                   ///< by wire id; -1: none
   std::vector<const SensorType*> input_types_;  ///< by wire id
   std::vector<std::size_t> due_nodes_;

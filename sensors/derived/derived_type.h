@@ -31,6 +31,7 @@ struct WiredInput {
   std::uint32_t mover = 0;
   std::uint8_t type = 0;  ///< wire id
   std::uint32_t sensor = 0;
+  std::uint32_t place = 0;  ///< row of the text in `inputs` that names it
   auto operator<=>(const WiredInput&) const = default;
 };
 

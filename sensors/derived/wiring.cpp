@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/suggest.h"
+#include "sensors/pose_sensor.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -17,7 +18,8 @@ namespace {
 constexpr std::size_t kMostLevels = 64;
 
 constexpr Column kCommandColumns[] = {{"forward_m_s"}, {"left_m_s"}, {"turn_rad_s"}};
-const SensorType kCommandType{.id = kCommandInput, .name = "command", .columns = kCommandColumns};
+constexpr SensorType kReceivedTypes[] = {{.id = kCommandInput, .name = "command", .columns = kCommandColumns},
+                                         {.id = kCameraInput, .name = "camera", .columns = kPoseRow}};
 
 std::vector<std::string> column_names(const SensorType& type) {
   std::vector<std::string> names;
@@ -49,7 +51,7 @@ class Wiring {
 
  private:
   void add_inputs(DerivedNode& node);
-  void add_input(DerivedNode& node, std::string_view text);
+  void add_input(DerivedNode& node, std::string_view text, std::uint32_t place);
   std::uint32_t port_of(const DerivedNode& node, const InputText& parts, const SensorType& type) const;
   const WiredGroup& group_of(const DerivedNode& node, std::string_view type) const;
   std::vector<std::uint32_t> movers_of(const DerivedNode& node, const InputText& parts) const;
@@ -102,7 +104,7 @@ std::uint32_t Wiring::port_of(const DerivedNode& node, const InputText& parts, c
   refuse_input(node, fmt::format("{} has {}; expected {}", type.name, fmt::join(column_names(type), ", "), expected));
 }
 
-void Wiring::add_input(DerivedNode& node, std::string_view text) {
+void Wiring::add_input(DerivedNode& node, std::string_view text, std::uint32_t place) {
   const InputText parts = read_input(text);
   const WiredGroup& group = group_of(node, parts.type);
   const std::uint32_t port = port_of(node, parts, *group.type);
@@ -111,7 +113,7 @@ void Wiring::add_input(DerivedNode& node, std::string_view text) {
   const std::size_t before = node.inputs.size();
   for (const std::uint32_t mover : movers_of(node, parts)) {
     const auto own = std::ranges::equal_range(group.rows, mover, {}, &SensorSpec::mover);
-    if (*parts.number < own.size()) node.inputs.push_back({port, mover, group.type->id, *parts.number});
+    if (*parts.number < own.size()) node.inputs.push_back({port, mover, group.type->id, *parts.number, place});
   }
   if (node.inputs.size() > before) return;
   refuse_input(node, fmt::format("there is no sensor '{}': sensors of one type are numbered per robot, from 0", text));
@@ -123,9 +125,9 @@ void Wiring::add_inputs(DerivedNode& node) {
   if (setting == nullptr || !setting->numbers.empty() || setting->text.empty())
     refuse_input(node, "expected inputs [\"type\" ...]: the sensors from which it is computed");
   std::string_view rest = setting->text;
-  while (!rest.empty()) {
+  for (std::uint32_t place = 0; !rest.empty(); ++place) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
-    add_input(node, rest.substr(0, end));
+    add_input(node, rest.substr(0, end), place);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   std::ranges::stable_sort(node.inputs, {}, &WiredInput::mover);  // robots that join come last
@@ -198,14 +200,17 @@ std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGr
   return Wiring(world, groups).nodes();
 }
 
-const SensorType& input_type(std::uint8_t id) { return id == kCommandInput ? kCommandType : *find_sensor_type(id); }
+const SensorType& input_type(std::uint8_t id) {
+  const auto received = std::ranges::find(kReceivedTypes, id, &SensorType::id);
+  return received != std::end(kReceivedTypes) ? *received : *find_sensor_type(id);
+}
 
 std::vector<DerivedNode> wire(const world::World& world, const SensorSet& sensor_set) {
   std::vector<WiredGroup> groups;
   for (const SensorSet::Group& group : sensor_set.groups()) groups.push_back({group.type, group.rows});
   std::vector<SensorSpec> robots(world.movers.size());
   for (std::uint32_t m = 0; m < robots.size(); ++m) robots[m].mover = m;
-  groups.push_back({&kCommandType, robots});
+  for (const SensorType& type : kReceivedTypes) groups.push_back({&type, robots});
   return wire(world, groups);
 }
 

@@ -12,9 +12,10 @@
 
 namespace sf::sensors {
 
-/// Wire id of the pseudo-type `command`, which only derived sensors read: the twist that a robot executed since the
-/// last tick, in runs.
-inline constexpr std::uint8_t kCommandInput = 63;
+// Wire ids of pseudo-types, which only derived sensors read, in runs.
+inline constexpr std::uint8_t kCommandInput = 63;  ///< `command`: the twist that a robot executed since the last tick
+inline constexpr std::uint8_t kCameraInput = 62;   ///< `camera`: poses that a robot received from overhead cameras
+constexpr bool is_received(std::uint8_t type) { return type == kCommandInput || type == kCameraInput; }
 /// Returns the type with that id, or the pseudo-type. @pre it exists
 const SensorType& input_type(std::uint8_t id);
 

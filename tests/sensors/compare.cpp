@@ -103,7 +103,7 @@ struct Compared {
 };
 
 /// Compares readings of several casters with the same truth.
-void compare(const world::World& world, std::span<const Pose> poses, std::span<Compared> all) {
+void compare_each(const world::World& world, std::span<const Pose> poses, std::span<Compared> all) {
   for (std::size_t k = 0; k < all[0].readings.size(); ++k) {
     const base::ReadingBlock& r = all[0].readings[k];
     const sensors::LaserSettings laser = sensors::lasers_of(world.movers[r.mover])[r.sensor];
@@ -145,7 +145,7 @@ std::vector<Pose> loaded_poses(const world::World& world) {
 
 Tally compare(const world::World& world, std::span<const Pose> poses, std::span<const base::ReadingBlock> readings) {
   Compared one[] = {{{}, readings}};
-  compare(world, poses, one);
+  compare_each(world, poses, one);
   return one[0].tally;
 }
 
@@ -191,7 +191,7 @@ Tally sweep(const world::World& world, const farm::FarmOptions& options) {
     if (!type->same_bytes && is_small(world))
       compared.push_back({type->name, runs.emplace_back(world, by).readings, 8.0 * 0x1p-53});
   }
-  compare(world, poses, compared);
+  compare_each(world, poses, compared);
   for (const Compared& each : compared) {
     EXPECT_EQ(each.tally.beyond_bound, 0u) << each.caster << ": " << text(each.tally);
     if (&each == compared.data()) continue;  // checked by the caller

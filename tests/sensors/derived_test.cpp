@@ -93,7 +93,8 @@ TEST(Derived, WiringIsCheckedWhenTheWorldIsLoaded) {
   expect_in("expected inputs [\"type\" ...]", refusal("derived( type \"tally\" inputs 3 )"));
   expect_in("expected inputs [\"type\" ...]", refusal("derived( type \"tally\" )") + refusal(inputs("[ ]")));
   expect_in(
-      "derived sensor type 'taly' is unknown; expected one of: tally, timer, localization, sideslip, model, monitor; "
+      "derived sensor type 'taly' is unknown; expected one of: tally, timer, localization, sideslip, model, monitor, "
+      "location, aggregate; "
       "did you "
       "mean "
       "'tally'?",

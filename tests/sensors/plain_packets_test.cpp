@@ -154,7 +154,10 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
               35,
               1,
               {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625, 0.25, -0.125, 0, 1, 0, 0.5,
-               2, 0.25}}};
+               2, 0.25}},
+             {"location", 41, 1, {1.5, -0.5, 1, 0.0625, -0.0078125, 0.25, -1, 0.125}},
+             {"thermometer", 42, 1, {21.5}},
+             {"aggregate", 43, 1, {21.5, 1, 0.25, 0, 0.0625}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;
@@ -202,7 +205,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 17u) << "plain readings";
+  EXPECT_EQ(rows, 20u) << "plain readings";
 }
 
 }  // namespace

@@ -132,7 +132,8 @@ std::string joint_lines(const RoadNetwork& roads) {
 std::string dump_of(const World& world) {
   World rest = world;  // only the fields of the world itself
   rest.models.clear(), rest.walls.clear(), rest.lane_markings.clear(), rest.magnets.clear(), rest.movers.clear();
-  rest.paths.clear(), rest.lights.clear(), rest.emitters.clear(), rest.lamps.clear(), rest.fiducials.clear();
+  rest.paths.clear(), rest.lights.clear(), rest.emitters.clear(), rest.lamps.clear(), rest.heat_sources.clear();
+  rest.fiducials.clear();
   rest.floor_holes.clear();
   rest.warnings.clear();
   rest.hash = 0, rest.road_files.clear(), rest.unmodelled.clear();
@@ -145,8 +146,8 @@ std::string dump_of(const World& world) {
   text += table("wall", world.walls) + table("marking", world.lane_markings) + table("magnet", world.magnets);
   for (const Mover& m : world.movers) text += mover_lines(m);
   return text + table("path", world.paths) + table("light", world.lights) + table("emitter", world.emitters) +
-         table("lamp", world.lamps) + table("fiducial", world.fiducials) + table("hole", world.floor_holes) +
-         table("warning", world.warnings);
+         table("lamp", world.lamps) + table("heat", world.heat_sources) + table("fiducial", world.fiducials) +
+         table("hole", world.floor_holes) + table("warning", world.warnings);
 }
 
 std::string dump_of(const RoadNetwork& roads) {

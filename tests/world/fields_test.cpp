@@ -35,6 +35,8 @@ const Example<Fiducial> kFiducials{KeyScope::model, "define mark model( fiducial
                                    [](World& w) -> Fiducial& { return w.fiducials.at(0); }};
 const Example<Lamp> kLamps{KeyScope::model, "define lamp model( lamp_intensity 1 ) lamp( ", " )",
                            [](World& w) -> Lamp& { return w.lamps.at(0); }};
+const Example<HeatSource> kHeat{KeyScope::model, "define stove model( heat 1 ) stove( ", " )",
+                                [](World& w) -> HeatSource& { return w.heat_sources.at(0); }};
 const Example<Light> kLights{KeyScope::light, "light( phases 1 phase[0] [\"red\" 1] ", " )",
                              [](World& w) -> Light& { return w.lights.at(0); }};
 const Example<Mover> kMovers{KeyScope::position, "position( ", " )", [](World& w) -> Mover& { return w.movers.at(0); }};
@@ -89,10 +91,11 @@ void for_each_key_of_all(Check check) {
   walk(kSegments);
   walk(kEmitters);
   walk(kLamps);
+  walk(kHeat);
   walk(kFiducials);
   walk(kLights);
   walk(kMovers);
-  EXPECT_GE(keys, 22) << "the walk found all tables";
+  EXPECT_GE(keys, 24) << "the walk found all tables";
 }
 
 TEST(Fields, EveryKeyIsKnownSuggestedAndRead) {

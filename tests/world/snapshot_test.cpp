@@ -27,6 +27,8 @@ void add_street(World& world) {
   world.fiducials.push_back({1, {1.0, 2.0, 0.5, 0.3}, 7, 1, Fiducial::Type::threat});
   world.lamps.push_back({1, {1.0, 2.0, 2.5, 0.3}, 80.0, 3.0});
   world.ambient_light = 20.0;
+  world.heat_sources.push_back({1, {1.0, 2.0}, -4.0, 0.5});
+  world.temperature = 21.0;
   world.floor_holes.push_back({{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, 1});
   world.road_files.push_back("some.rndf");
   Mover& mover = world.movers.at(0);
@@ -122,6 +124,7 @@ TEST(Snapshot, LinksPastTheEndAreRejected) {
         Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
         Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
         Link{&world.emitters[0].model, models, false}, Link{&world.lamps[0].model, models, false},
+        Link{&world.heat_sources[0].model, models, false},
         Link{&world.fiducials[0].model, models, false}, Link{&world.floor_holes[0].model, models, false}}) {
     EXPECT_FALSE(refused(*link.row, link.count - 1)) << "the last row";
     EXPECT_TRUE(refused(*link.row, link.count)) << "one past the end";
@@ -154,11 +157,13 @@ TEST(Snapshot, ChangedBytesAreRejectedOrHarmless) {
   }
 }
 
-/// Worlds without fiducials have the bytes of version 6, which ends before them. Those without the Earth's field, lamps
+/// Worlds without heat sources and temperature have the bytes of version 7, those without fiducials have the bytes of version 6, which ends before them. Those without the Earth's field, lamps
 /// and ambient light have the bytes of version 5.
 TEST(Snapshot, WorldsWithoutNewFieldsHaveTheVersionBefore) {
-  EXPECT_EQ(snapshot(street())[4], 7);
+  EXPECT_EQ(snapshot(street())[4], 9);
   World world = street();
+  world.heat_sources.clear(), world.temperature = 0.0;
+  EXPECT_EQ(snapshot(world)[4], 7);
   world.fiducials.clear();
   update_extent_and_hash(world);
   EXPECT_EQ(snapshot(world)[4], 6);
@@ -213,9 +218,9 @@ TEST(Hash, DependsOnWhateverReadingsDependOn) {
 TEST(Hash, DependsOnTheEarthsFieldAndLight) {
   const std::string text = "model( name \"m\" size [1 1 1] ) position( laser() )";
   const auto hash = read_world(text).hash;
-  for (const char* key : {"earth_field [0 0 1e-9] ", "earth_location [0 0] ", "ambient_light 1 "})
+  for (const char* key : {"earth_field [0 0 1e-9] ", "earth_location [0 0] ", "ambient_light 1 ", "temperature 1 "})
     EXPECT_NE(read_world(key + text).hash, hash) << key;
-  for (const char* key : {"earth_field [0 0 0] ", "earth_field [-0 0 0] ", "ambient_light 0 "})
+  for (const char* key : {"earth_field [0 0 0] ", "earth_field [-0 0 0] ", "ambient_light 0 ", "temperature 0 "})
     EXPECT_EQ(read_world(key + text).hash, hash) << key;
   EXPECT_NE(read_world("model( lamp_intensity 1 )").hash, read_world("model( lamp_intensity 2 )").hash);
   EXPECT_NE(read_world("model( lamp_intensity 1 )").hash, read_world("model( )").hash);

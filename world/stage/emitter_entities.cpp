@@ -14,8 +14,9 @@ namespace {
 constexpr Emitter kVirtualWall{.range = 2.4, .fov = 0.4, .halo = 0.45};  // [m], [rad], [m]
 constexpr Emitter kDock{.range = 1.8, .fov = 0.7, .halo = 0.6};
 
-constexpr std::size_t kMaxLamps = 1000;      // every light sensor reads every lamp
-constexpr std::size_t kMaxFiducials = 1000;  // every finder tests every fiducial
+constexpr std::size_t kMaxLamps = 1000;        // every light sensor reads every lamp
+constexpr std::size_t kMaxHeatSources = 1000;  // every thermometer reads every source
+constexpr std::size_t kMaxFiducials = 1000;    // every finder tests every fiducial
 constexpr double kMaxFiducialId = 65535.0;
 
 }  // namespace
@@ -55,6 +56,24 @@ void add_lamp(BuildState& b, const Entity& entity, const Model& model, const Siz
   lamp.X_WL = X_B;
   lamp.X_WL.z += 0.5 * size.z;
   b.world.lamps.push_back(lamp);
+}
+
+void add_heat_source(BuildState& b, const Entity& entity, const Model& model, const Pose& X_B) {
+  const StageContext& context = b.context;
+  const Property* radius = find(entity, "heat_radius");
+  const Property* property = find(entity, "heat");
+  if (property == nullptr) {
+    if (radius != nullptr) warn(b.context, radius->at, "'heat_radius' has no effect without 'heat'");
+    return;
+  }
+  if (model.mover != kNone) fail(context, property->at, "a heat source cannot move; expected it outside moving models");
+  if (b.world.heat_sources.size() >= kMaxHeatSources)
+    fail(context, property->at, fmt::format("more than {} heat sources; expected fewer, larger ones", kMaxHeatSources));
+  HeatSource source;
+  read_keys(context, entity, source);
+  source.model = static_cast<std::uint32_t>(b.world.models.size());
+  source.p = {X_B.x, X_B.y};
+  b.world.heat_sources.push_back(source);
 }
 
 void add_fiducial(BuildState& b, const Entity& entity, const Size& size, const Pose& X_B) {

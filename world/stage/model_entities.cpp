@@ -213,6 +213,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   add_magnet(b, entity, model, said.size, X_B);
   add_emitter(b, entity, model, said.size, X_B);
   add_lamp(b, entity, model, said.size, X_B);
+  add_heat_source(b, entity, model, X_B);
   add_fiducial(b, entity, said.size, X_B);
   if (said.kind == EntityKind::light) add_light(b, entity, model);
   if (said.sensor != nullptr) add_sensors(b, entity, model, *said.sensor, X_B, said.size.z, own.name_in_mover);
