@@ -33,7 +33,7 @@ constexpr Phase kPhases[] = {{10, 60, "camera, gps, odometry"},
                              {102, 120, "camera, odometry"},
                              {122, 140, "all"},
                              {142, 149, "gps, odometry"},
-                             {152, 160, "none"},
+                             {152, 160, "gyro only"},
                              {182, 200, "all"}};
 
 /// Results of one choice in one phase.
@@ -143,8 +143,9 @@ std::vector<std::string> run_location(const ExperimentContext& context) {
 }
 
 constexpr std::string_view kLocationReasons =
-    "NEES is the mean squared error in units of the stated covariance, divided by 2. It is below 1, because the robot "
-    "may have moved since a reading by as much as its largest speed allows.";
+    "NEES is the mean squared error in units of the stated covariance, divided by 2. It is below 1 where readings are "
+    "old, because the robot may have moved since then by as much as its largest speed allows. It is above 1 after two "
+    "minutes of dead reckoning, which is then too sure of itself.";
 
 }  // namespace
 
