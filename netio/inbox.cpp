@@ -17,6 +17,7 @@ constexpr std::size_t kSendBuffer = 1u << 20;  ///< [byte] for packets sent thro
 constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] period of the limits on requests from strangers
 constexpr std::size_t kStateChannel = 0;
 constexpr std::size_t kSubscribeChannel = 1;
+constexpr std::size_t kOwnReadingsChannel = 2;
 
 void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, const std::string& what) {
   for (const std::uint32_t id : ids) {
@@ -83,6 +84,7 @@ PacketStatus Inbox::check_id(const Header& header) const {
     case Type::leave:
       return robot_if(true);
     case Type::v2v:
+    case Type::own_readings:
       return robot_if(!lockstep_);
     case Type::command:
     case Type::step:
@@ -165,6 +167,7 @@ PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t n
     return robots_.leave(packet.header.robot, source, now);
   }
   if (packet.header.type == Type::v2v || packet.header.type == Type::subscribe) return admit_robot(packet, source, now);
+  if (packet.header.type == Type::own_readings) return admit_own_readings(packet, source, now);
   return admit_driver(packet, source, now);
 }
 
@@ -173,6 +176,14 @@ PacketStatus Inbox::admit_driver(const Packet& packet, const Endpoint& source, s
   const Header& header = packet.header;
   if (sessions_[*robots_.row(header.robot)] != header.session) return PacketStatus::stale;
   return robots_.renew(header.robot, source, now);
+}
+
+/// A robot that is not active has no virtual readings to which its own could belong.
+PacketStatus Inbox::admit_own_readings(const Packet& packet, const Endpoint& source, std::int64_t now) {
+  const Header& header = packet.header;
+  if (!robots_.is_active(header.robot, now) || sessions_[*robots_.row(header.robot)] != header.session)
+    return PacketStatus::stale;
+  return robots_.admit(header.robot, kOwnReadingsChannel, header.sequence, source, now);
 }
 
 PacketStatus Inbox::admit_robot(Packet& packet, const Endpoint& source, std::int64_t now) {

@@ -38,7 +38,8 @@ struct InboxOptions {
   std::vector<Peer> peers;                   ///< peers among these robots and tags, and START; each at most once
   bool take_late = false;                    ///< accept states that newer states of their sender overtook, marked by
                                              ///< `Packet::late`
-  bool lockstep = false;              ///< accept COMMAND, STEP and FETCH in place of V2V, TAG, START, V2I and OBJECT
+  bool lockstep = false;              ///< accept COMMAND, STEP and FETCH in place of V2V, OWN_READINGS, TAG, START, V2I
+                                      ///< and OBJECT
   std::vector<std::uint32_t> lights;  ///< ids of the world's intersections, distinct, each in [0, kMaxId]
 };
 
@@ -157,6 +158,7 @@ class Inbox {
   PacketStatus admit(Packet& packet, const Endpoint& source, std::int64_t now);
   static PacketStatus admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus admit_own_readings(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_light(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 

@@ -24,7 +24,8 @@ constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
                                  {Type::values, "VALUES", 0},
                                  {Type::drive, "DRIVE", kHeaderBytes + kDriveBytes},
                                  {Type::lane, "LANE", kHeaderBytes + kLaneBytes},
-                                 {Type::team_map, "TEAM_MAP", 0}};
+                                 {Type::team_map, "TEAM_MAP", 0},
+                                 {Type::own_readings, "OWN_READINGS", 0}};
 
 }  // namespace
 

@@ -212,6 +212,12 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       packet.body = map;
       return status;
     }
+    case Type::own_readings: {
+      OwnReadings readings;
+      status = read_own_readings(payload, readings);
+      packet.body = readings;
+      return status;
+    }
     case Type::object:
       return read_object(payload, reader, packet);
     case Type::refusal:
@@ -407,6 +413,13 @@ void encode(const Header& header, const TeamMap& map, base::Bytes& out) {
            "TEAM_MAP of robot " + std::to_string(header.robot) + ": " + std::string(name(check(map))));
   start(header, Type::team_map, out);
   put_team_map(map, out);
+}
+
+void encode(const Header& header, const OwnReadings& readings, base::Bytes& out) {
+  SF_CHECK(check(readings) == PacketStatus::accepted,
+           "OWN_READINGS of robot " + std::to_string(header.robot) + ": " + std::string(name(check(readings))));
+  start(header, Type::own_readings, out);
+  put_own_readings(readings, out);
 }
 
 void encode(const Header& header, const Object& object, base::Bytes& out) {

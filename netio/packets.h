@@ -19,6 +19,7 @@
 #include "base/shape_state.h"
 #include "base/state_quality.h"
 #include "netio/lockstep_packets.h"
+#include "netio/own_readings.h"
 #include "netio/packet_status.h"
 #include "netio/team_map.h"
 #include "netio/v2i.h"
@@ -44,9 +45,10 @@ inline constexpr double kMaxYaw = 1e6;                       ///< [rad] covers h
 inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences do not overflow
 
-/// Types from 128 are states and requests sent to the farm. The farm forwards V2V and START, and also sends V2I and
-/// LANE. Robots send V2V and TEAM_MAP to each other. CHALLENGE, REFUSAL and types from 140 to 143 are answers of the
-/// farm. A type below 64 is a reading of the sensor type with this wire id; the same number plus 64 is its second form.
+/// Types from 128 are states, requests and readings of robots' own sensors sent to the farm. The farm forwards V2V and
+/// START, and also sends V2I and LANE. Robots send V2V and TEAM_MAP to each other. CHALLENGE, REFUSAL and types from
+/// 140 to 143 are answers of the farm. A type below 64 is a reading of the sensor type with this wire id; the same
+/// number plus 64 is its second form.
 enum class Type : std::uint8_t {
   v2v = 128,
   tag = 129,
@@ -65,7 +67,8 @@ enum class Type : std::uint8_t {
   values = 142,
   drive = 143,
   lane = 144,
-  team_map = 145
+  team_map = 145,
+  own_readings = 146
 };
 
 /// Returns the wire id (below 64) of the sensor type whose readings, in either form, have type
@@ -193,7 +196,7 @@ struct Reading {
 struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading, Command, Step, Fetch,
-               State, Values, Refusal, Drive, Lane, TeamMap>
+               State, Values, Refusal, Drive, Lane, TeamMap, OwnReadings>
       body;
   bool late = false;       ///< a state whose sequence is not newer than the last one of its sender
                            ///< (`InboxOptions::take_late`)
@@ -217,6 +220,7 @@ void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out
 void encode(const Header& header, const Drive& command, base::Bytes& out);
 void encode(const Header& header, const Lane& lane, base::Bytes& out);
 void encode(const Header& header, const TeamMap& map, base::Bytes& out);
+void encode(const Header& header, const OwnReadings& readings, base::Bytes& out);
 void encode(const Header& header, const Command& command, base::Bytes& out);
 void encode(const Header& header, const Step& step, base::Bytes& out);
 void encode(const Header& header, const Fetch& fetch, base::Bytes& out);

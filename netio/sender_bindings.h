@@ -23,7 +23,7 @@ inline bool newer(std::uint32_t sequence, std::uint32_t than) { return static_ca
 /// type) has its own count.
 class SenderBindings {
  public:
-  static constexpr std::size_t kChannels = 2;
+  static constexpr std::size_t kChannels = 3;
 
   /// @param ids known ids, in any order
   /// @param take_late of all ids (`set_takes_late`)

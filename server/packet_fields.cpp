@@ -184,6 +184,15 @@ void add_body(const netio::TeamMap& map, Fields& out) {
   add(out, "claim", claim);
   add(out, "data", map.bytes);
 }
+void add_body(const netio::OwnReadings& readings, Fields& out) {
+  add(out, "readings_type", readings.type);
+  add(out, "total", readings.total);
+  add(out, "first", readings.first);
+  add(out, "fov_urad", readings.fov);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < readings.count; ++k) values.push_back(netio::value_of(readings, k));
+  add(out, "value", values);
+}
 /// A long OBJECT has all fields: what it leaves as it is, is none.
 void add_body(const netio::Object& object, Fields& out) {
   add(out, "present", object.present);

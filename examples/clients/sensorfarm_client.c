@@ -48,8 +48,10 @@ enum {
   SF_NEIGHBOURS,
   SF_DRIVE = 143,
   SF_LANE,
-  SF_TEAM_MAP
+  SF_TEAM_MAP,
+  SF_OWN_READINGS
 };
+enum { SF_OWN_LASER = 1, SF_OWN_SONAR = 4, SF_OWN_INFRARED, SF_OWN_BUMPER, SF_OWN_PART = 310 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
 enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
 enum { SF_MAX_COMMANDS = 38, SF_MAX_PART = 148, SF_MAX_DATAGRAM = 1400 };
@@ -194,6 +196,7 @@ static const sf_type sf_types[] = {
     {143, "DRIVE", 0, {0}, {{"velocity", 3, 1}}},
     {144, "LANE", 0, {"segment", "lane", "use"}, {{0}}},
     {145, "TEAM_MAP", 0, {"word_columns", "word_rows", "piece", "flags"}, {{0}}},
+    {146, "OWN_READINGS", 0, {"readings_type", "total", "first", "fov_urad"}, {{"value", 1, 1}}},
     {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
 
 typedef struct {
@@ -397,6 +400,33 @@ static const char* decode_team_map(sf_packet* p, const uint8_t* b, size_t size) 
   return in_range(good);
 }
 
+static const char* decode_own_readings(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size < 16) return "too short";
+  uint32_t* const w = p->words;  // type, total, first, field of view
+  w[0] = (uint32_t)get(b, 2);
+  for (unsigned i = 1; i < 4; ++i) w[i] = (uint32_t)get(b + 4 * i, 4);
+  const bool bumper = w[0] == SF_OWN_BUMPER;
+  const uint32_t count = (uint32_t)get(b + 2, 2);
+  const char* const sized = check_size(size, 16 + (size_t)4 * (bumper ? 1 : count));
+  if (sized) return sized;
+  const uint32_t most = w[0] == SF_OWN_LASER                              ? 1000000
+                        : w[0] == SF_OWN_SONAR || w[0] == SF_OWN_INFRARED ? 64
+                        : bumper                                          ? 32
+                                                                          : 0;
+  const bool good = w[1] >= 1 && w[1] <= most && w[2] < w[1] && w[2] % SF_OWN_PART == 0 &&
+                    count == (w[1] - w[2] < SF_OWN_PART ? w[1] - w[2] : SF_OWN_PART) &&
+                    w[3] <= (w[0] == SF_OWN_LASER ? 6283186 : 0) && (!bumper || get(b + 16, 4) >> count == 0);
+  if (!good) return "out of range";
+  for (p->count = 0; p->count < count; ++p->count) {
+    const uint64_t word = get(b + 16 + (bumper ? 0 : 4 * p->count), 4);
+    p->values[p->count] = bumper                ? (double)(word >> p->count & 1)
+                          : word == SF_NONE     ? NAN
+                          : word == SF_NONE - 1 ? INFINITY
+                                                : (double)word / 1e4;
+  }
+  return NULL;
+}
+
 static const char* decode_v2i(sf_packet* p, const uint8_t* b, size_t size) {
   if (size < 8) return "too short";
   p->approaches = (unsigned)get(b, 2);
@@ -555,14 +585,15 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   if (packet->type < 128 || packet->type == SF_V2V || packet->type == SF_TAG) decode_state_quality(packet, bytes);
   const char* const status = packet->type == SF_LASER || packet->type == SF_LASER_EXTENDED
                                  ? decode_laser(packet, b, size)
-                             : packet->type == SF_LANE_EDGE  ? decode_lane_edge(packet, b, size)
-                             : packet->type == SF_OCCUPANCY  ? decode_occupancy(packet, b, size)
-                             : packet->type == SF_NEIGHBOURS ? decode_neighbours(packet, b, size)
-                             : packet->type == SF_V2I        ? decode_v2i(packet, b, size)
-                             : packet->type == SF_TEAM_MAP   ? decode_team_map(packet, b, size)
-                             : is_lockstep(packet->type)     ? decode_lockstep(packet, b, size)
-                             : packet->type >= 128           ? decode_state(packet, type, b, size)
-                                                             : decode_rows(packet, type, b, size);
+                             : packet->type == SF_LANE_EDGE    ? decode_lane_edge(packet, b, size)
+                             : packet->type == SF_OCCUPANCY    ? decode_occupancy(packet, b, size)
+                             : packet->type == SF_NEIGHBOURS   ? decode_neighbours(packet, b, size)
+                             : packet->type == SF_V2I          ? decode_v2i(packet, b, size)
+                             : packet->type == SF_TEAM_MAP     ? decode_team_map(packet, b, size)
+                             : packet->type == SF_OWN_READINGS ? decode_own_readings(packet, b, size)
+                             : is_lockstep(packet->type)       ? decode_lockstep(packet, b, size)
+                             : packet->type >= 128             ? decode_state(packet, type, b, size)
+                                                               : decode_rows(packet, type, b, size);
   if (status) return status;
   return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
 }
@@ -640,6 +671,35 @@ size_t sf_encode_lockstep(const sf_packet* packet, uint8_t* bytes) {
   }
   static _Thread_local sf_packet back;
   return sf_decode(bytes, (size_t)(row - bytes), &back) == NULL ? (size_t)(row - bytes) : 0;
+}
+
+// Encodes an OWN_READINGS in the same way, of at most SF_MAX_DATAGRAM bytes: words are type, total, first and field of
+// view [urad], `count` values are ranges [m], INFINITY without an echo, NAN if not measured; of bumpers 0 or 1.
+size_t sf_encode_own_readings(const sf_packet* packet, uint8_t* bytes) {
+  const sf_packet head = {.type = SF_LEAVE,
+                          .robot = packet->robot,
+                          .sequence = packet->sequence,
+                          .time_ns = packet->time_ns,
+                          .session = packet->session,
+                          .token = packet->token};
+  if (packet->type != SF_OWN_READINGS || packet->count > SF_OWN_PART || sf_encode(&head, bytes) == 0) return 0;
+  bytes[5] = packet->type;
+  put(bytes + 8, 2, packet->sensor);
+  put(bytes + SF_HEADER, 2, packet->words[0]);
+  put(bytes + SF_HEADER + 2, 2, packet->count);
+  for (unsigned i = 1; i < 4; ++i) put(bytes + SF_HEADER + 4 * i, 4, packet->words[i]);
+  size_t size = SF_HEADER + 16;
+  uint64_t pressed = 0;
+  for (unsigned i = 0; i < packet->count; ++i) {
+    const double v = packet->values[i], units = floor(v * 1e4 + 0.5);
+    if (packet->words[0] == SF_OWN_BUMPER)
+      pressed |= (uint64_t)(v != 0) << i;
+    else
+      put(bytes + size, 4, isnan(v) ? SF_NONE : units < SF_NONE - 1 ? (uint64_t)units : SF_NONE - 1), size += 4;
+  }
+  if (packet->words[0] == SF_OWN_BUMPER) put(bytes + size, 4, pressed), size += 4;
+  static _Thread_local sf_packet back;
+  return sf_decode(bytes, size, &back) == NULL ? size : 0;
 }
 
 // Prints the names and values of a packet after its header, each as `before`, "range_m = 1 0.25 8" and `after`.

@@ -28,12 +28,12 @@ import struct
 import sys
 import time
 
-LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
+LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 4, 5, 6, 12, 65
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
             4: "refused: wrong address"}
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE, LANE, TEAM_MAP = (
-    128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143, 144, 145)
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE, LANE, TEAM_MAP, OWN_READINGS = (
+    128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143, 144, 145, 146)
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
@@ -83,7 +83,7 @@ SENSORS = {
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
               137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE",
-              144: "LANE", 145: "TEAM_MAP"}
+              144: "LANE", 145: "TEAM_MAP", 146: "OWN_READINGS"}
 SHAPED_OBJECT = "<2I3d64s"  # payload of an OBJECT that changes a shape
 SHAPE_NAME = re.compile(rb"[A-Za-z0-9_.-]{1,64}")
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
@@ -210,6 +210,22 @@ def decode_team_map(payload):
             "claim": list(claim), "data": list(data)}
 
 
+def decode_own_readings(payload):
+    """A part of a reading of a robot's own sensor. value: ranges [m], math.inf without an echo, None if not measured;
+    of bumpers 0 or 1."""
+    require(len(payload) >= 16, "too short")
+    type, count, total, first, fov = struct.unpack_from("<2H3I", payload)
+    words = unpack("<%dI" % (1 if type == BUMPER else count), payload[16:])
+    most = {LASER: 1000000, SONAR: 64, INFRARED: 64, BUMPER: 32}.get(type, 0)
+    require(1 <= total <= most and first < total and first % 310 == 0 and count == min(310, total - first))
+    require(fov <= (6283186 if type == LASER else 0) and (type != BUMPER or words[0] >> count == 0))
+    if type == BUMPER:
+        values = [words[0] >> k & 1 for k in range(count)]
+    else:
+        values = [None if word == NONE else math.inf if word == NONE - 1 else word / 1e4 for word in words]
+    return {"readings_type": type, "total": total, "first": first, "fov_urad": fov, "value": values}
+
+
 def decode_command(payload):
     require(len(payload) >= 16, "too short")
     tick, count = struct.unpack_from("<QI", payload)
@@ -269,6 +285,8 @@ def decode_state(type, robot, payload):
         return decode_v2i(payload)
     if type == TEAM_MAP:
         return decode_team_map(payload)
+    if type == OWN_READINGS:
+        return decode_own_readings(payload)
     if type == NEIGHBOURS:
         require(len(payload) <= 9 * V2V_BYTES, "too long")
         require(len(payload) > 0 and len(payload) % V2V_BYTES == 0, "too short")
@@ -342,10 +360,11 @@ def decode(data):
 
 
 def encode(type, payload=b"", robot=0, sequence=0, time_ns=0, session=0, token=0, age_us=0, stale=0,
-           covariance=(0.0,) * 6):
+           covariance=(0.0,) * 6, sensor=0):
     """Encodes a packet to the farm; START and LEAVE have no payload. V2V and TAG: `age_us` (at least 1) of an estimate
     and the covariance of its pose. Raises Malformed for numbers that the farm would drop."""
-    head = HEADER.pack(b"SFPK", 2, type, robot, 0, 0, sequence, time_ns, session, token, age_us, *covariance, 0, stale)
+    head = HEADER.pack(b"SFPK", 2, type, robot, sensor, 0, sequence, time_ns, session, token, age_us, *covariance, 0,
+                       stale)
     decode(head + payload)
     return head + payload
 
@@ -381,6 +400,19 @@ def encode_lane(segment, lane, use, **header):
 def encode_subscribe(types=0, **header):
     """types: bit k for sensor type k, bit 0 for states of others; 0: all sensor types."""
     return encode(SUBSCRIBE, struct.pack("<Q" if types >> 32 else "<I", types), **header)
+
+
+def encode_own_readings(readings_type, total, first, value, fov_urad=0, **header):
+    """A part of a reading of the robot's own sensor `sensor` of this type. value: up to 310 ranges [m] from number
+    `first` on, a multiple of 310, of `total`: math.inf without an echo, None if not measured; of bumpers 0 or 1.
+    fov_urad: of a laser, from its first beam to its last."""
+    if readings_type == BUMPER:
+        words = [sum(pressed << k for k, pressed in enumerate(value))]
+    else:
+        words = [NONE if v is None else min(NONE - 1, math.floor(v * 1e4 + 0.5)) if v < 429497 else NONE - 1
+                 for v in value]
+    head = struct.pack("<2H3I", readings_type, len(value), total, first, fov_urad)
+    return encode(OWN_READINGS, head + struct.pack("<%dI" % len(words), *words), **header)
 
 
 def encode_command(tick, robots, twists, **header):

@@ -1,6 +1,8 @@
 #pragma once
 // One valid packet of each type: the worked examples of docs/packets.md.
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/bytes.h"
@@ -120,6 +122,15 @@ inline base::Bytes team_map_example() {
   return out;
 }
 
+/// Three transducers: 1.2345 m, no echo, not measured.
+inline base::Bytes own_readings_example() {
+  base::Bytes words, out;
+  for (const double range : {1.2345, HUGE_VAL, std::numeric_limits<double>::quiet_NaN()}) put_own_range(range, words);
+  encode({.robot = 7, .sequence = 21, .time = 6'600'000'000, .session = 0x11223344, .token = 0x55667788},
+         OwnReadings{.type = kOwnSonar, .count = 3, .total = 3, .words = words}, out);
+  return out;
+}
+
 /// Forwarded states of two other robots.
 inline base::Bytes neighbours_example() {
   base::Bytes first = v2v_example(), second, out;
@@ -134,15 +145,16 @@ inline base::Bytes neighbours_example() {
 
 /// States and requests that are sent to the farm or to other robots.
 inline std::vector<base::Bytes> states() {
-  return {v2v_example(),   tag_example(), subscribe_example(), start_example(),
-          leave_example(), v2i_example(), object_example(),    team_map_example()};
+  return {v2v_example(), tag_example(),    subscribe_example(), start_example(),       leave_example(),
+          v2i_example(), object_example(), team_map_example(),  own_readings_example()};
 }
 
 /// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(), extended_example(),   v2v_example(),       tag_example(),  subscribe_example(),
-          start_example(),   leave_example(),      challenge_example(), v2i_example(),  object_example(),
-          refusal_example(), neighbours_example(), drive_example(),     lane_example(), team_map_example()};
+  return {reading_example(),   extended_example(), v2v_example(),      tag_example(),
+          subscribe_example(), start_example(),    leave_example(),    challenge_example(),
+          v2i_example(),       object_example(),   refusal_example(),  neighbours_example(),
+          drive_example(),     lane_example(),     team_map_example(), own_readings_example()};
 }
 
 inline base::Bytes command_example() {

@@ -66,6 +66,29 @@ struct InboxTest : testing::Test {
   }
 };
 
+// The rules are those of V2V, of whose session they must be.
+TEST_F(InboxTest, OwnReadingsBelongToAnActiveRobot) {
+  const auto own = [](std::uint16_t robot, std::uint32_t sequence) {
+    return patched(patched(own_readings_example(), 6, robot), 12, sequence);
+  };
+  EXPECT_EQ(send(own(9, 0)), PacketStatus::unknown_robot);
+  EXPECT_EQ(inbox.accept(own(7, 0), kSender, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(send(own(7, 0)), PacketStatus::stale) << "no V2V yet";
+  EXPECT_EQ(send(v2v(7, 5), 1), PacketStatus::accepted);
+  EXPECT_EQ(send(own(7, 3), 2), PacketStatus::accepted);
+  EXPECT_EQ(std::get<OwnReadings>(packet.body).total, 3u);
+  EXPECT_EQ(send(own(7, 3), 3), PacketStatus::stale) << "again";
+  EXPECT_EQ(send(own(7, 4), 4, kOtherSender), PacketStatus::wrong_source);
+  EXPECT_EQ(send(v2v(7, 6), 5), PacketStatus::accepted) << "they are counted separately";
+  base::Bytes other = own(7, 4);
+  write_session_token(other, {kSession + 1, inbox.token(kSender)});
+  EXPECT_EQ(inbox.accept(other, kSender, 6, packet), PacketStatus::stale) << "of another session";
+  EXPECT_EQ(send(own(7, 4), 1'999'000'000), PacketStatus::accepted);
+  EXPECT_TRUE(inbox.is_active(7, 3'500'000'000));
+  EXPECT_EQ(send(own(7, 5), 4'000'000'000), PacketStatus::stale) << "the robot is silent";
+  EXPECT_EQ(send(own(kKeyed, 0), 0), PacketStatus::not_signed);
+}
+
 TEST(Inbox, AcceptsOvertakenStatesOnRequest) {
   InboxOptions chosen = options();
   chosen.take_late = true;

@@ -45,6 +45,7 @@ TEST(Packets, BytesMatchTheDocumentation) {
   EXPECT_EQ(shaped_object_example(), documented("shaped_object"));
   EXPECT_EQ(lane_example(), documented("lane"));
   EXPECT_EQ(team_map_example(), documented("team_map"));
+  EXPECT_EQ(own_readings_example(), documented("own_readings"));
   EXPECT_EQ(neighbours_example(), documented("neighbours"));
   EXPECT_EQ(command_example(), documented("command"));
   EXPECT_EQ(step_example(), documented("step"));
@@ -293,7 +294,7 @@ TEST(Packets, TypesBelow128AreReadings) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // type 0 does not exist
     EXPECT_EQ(sensor_type_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 145;
+    const bool is_state = type >= 128 && type <= 146;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? PacketStatus::accepted : PacketStatus::unknown_type)
@@ -583,13 +584,25 @@ TEST(Packets, RejectsValuesAndCommandsBeyondTheirLimits) {
 
 /// The numbers of packet types and of refusals, as listed in docs/packets.md.
 TEST(PacketsPage, NumbersMatchTheCode) {
-  const std::pair<const char*, Type> types[] = {
-      {"V2V", Type::v2v},         {"TAG", Type::tag},       {"SUBSCRIBE", Type::subscribe},
-      {"START", Type::start},     {"LEAVE", Type::leave},   {"CHALLENGE", Type::challenge},
-      {"COMMAND", Type::command}, {"STEP", Type::step},     {"FETCH", Type::fetch},
-      {"V2I", Type::v2i},         {"OBJECT", Type::object}, {"REFUSAL", Type::refusal},
-      {"STATE", Type::state},     {"VALUES", Type::values}, {"NEIGHBOURS", Type::neighbours},
-      {"DRIVE", Type::drive},     {"LANE", Type::lane},     {"TEAM_MAP", Type::team_map}};
+  const std::pair<const char*, Type> types[] = {{"V2V", Type::v2v},
+                                                {"TAG", Type::tag},
+                                                {"SUBSCRIBE", Type::subscribe},
+                                                {"START", Type::start},
+                                                {"LEAVE", Type::leave},
+                                                {"CHALLENGE", Type::challenge},
+                                                {"COMMAND", Type::command},
+                                                {"STEP", Type::step},
+                                                {"FETCH", Type::fetch},
+                                                {"V2I", Type::v2i},
+                                                {"OBJECT", Type::object},
+                                                {"REFUSAL", Type::refusal},
+                                                {"STATE", Type::state},
+                                                {"VALUES", Type::values},
+                                                {"NEIGHBOURS", Type::neighbours},
+                                                {"DRIVE", Type::drive},
+                                                {"LANE", Type::lane},
+                                                {"TEAM_MAP", Type::team_map},
+                                                {"OWN_READINGS", Type::own_readings}};
   std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
   const std::string page((std::istreambuf_iterator<char>(file)), {});
   const std::string row = page.substr(page.find("| 5 | u8 | type |"), 500);

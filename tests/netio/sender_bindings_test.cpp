@@ -29,9 +29,9 @@ TEST_F(SenderBindingsTest, AcceptsOnlyItsIds) {
   EXPECT_FALSE(bindings.source(1));
 }
 
-TEST_F(SenderBindingsTest, HasTwoChannels) {
-  EXPECT_EQ(send(kAlice, 0, 0, 1), PacketStatus::accepted);
-  EXPECT_DEATH(send(kAlice, 0, 0, 2), "id 7, line 2");
+TEST_F(SenderBindingsTest, HasThreeChannels) {
+  EXPECT_EQ(send(kAlice, 0, 0, 2), PacketStatus::accepted);
+  EXPECT_DEATH(send(kAlice, 0, 0, 3), "id 7, line 3");
 }
 
 TEST_F(SenderBindingsTest, NoSenderIsActiveBeforeSending) {

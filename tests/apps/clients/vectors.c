@@ -50,6 +50,8 @@ static bool judge(const char* text, const uint8_t* bytes, size_t size) {
     same = sf_encode(&packet, again) == size && memcmp(again, bytes, size) == 0;
   if (same && !of_status && packet.type >= SF_COMMAND && packet.type <= SF_FETCH)
     same = sf_encode_lockstep(&packet, again) == size && memcmp(again, bytes, size) == 0;
+  if (same && !of_status && packet.type == SF_OWN_READINGS)
+    same = sf_encode_own_readings(&packet, again) == size && memcmp(again, bytes, size) == 0;
   return same;
 }
 

@@ -50,6 +50,8 @@ def encoded(packet):
     """Encodes a packet to the farm again."""
     header = {key: packet.pop(key) for key in ("robot", "sequence", "time_ns", "session", "token")}
     type = packet.pop("type")
+    if type == client.OWN_READINGS:
+        return client.encode_own_readings(**packet, **header)
     del packet["sensor"]
     make = {client.V2V: client.encode_v2v, client.TAG: client.encode_tag, client.SUBSCRIBE: client.encode_subscribe,
             client.OBJECT: client.encode_object,
@@ -66,7 +68,7 @@ def judge(lines, data):
         print("\n".join(text))
         return False
     sent = packet["type"] in (client.V2V, client.TAG, client.SUBSCRIBE, client.START, client.LEAVE, client.OBJECT,
-                              client.COMMAND, client.STEP, client.FETCH)
+                              client.COMMAND, client.STEP, client.FETCH, client.OWN_READINGS)
     return encoded(packet) == data if sent else True
 
 
