@@ -48,6 +48,7 @@ struct ReadingBlock {
   /// [unit of the first column] largest standard deviation of its noise; 0: no noise; infinite: unknown.
   double sigma = 0.0;
   std::span<const QualityFlag> quality;  ///< one per element; empty: no element has a flag
+  bool fused = false;                    ///< includes a reading of the robot's own sensor (server/reading_fusion.h)
   StateQuality state;  ///< quality of the mover's state at the measurement; not stated when the state is exact
 };
 

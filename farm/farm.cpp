@@ -58,6 +58,7 @@ struct Farm::State {
   std::unique_ptr<gpu::Batch> batch;
   bool must_record = false;  ///< the batch is new
   Faults faults;
+  Fuse fuse;
   Delivery delivery;
   std::unique_ptr<PoseChanges> pose_changes;  ///< of the current tick
   std::vector<base::Report> states;           ///< per mover, as sensed in this tick or sample; backends view it
@@ -118,8 +119,9 @@ struct Farm::State {
   void collect(SensorPipeline& pipeline, std::int64_t now, bool reuse);
   void clear_blocks();
   void append(SensorPipeline& pipeline);
-  /// @param reuse whether cached readings may be used @param faulty whether faults apply
-  void measure(std::int64_t now, bool reuse, bool faulty);
+  /// @param reuse whether cached readings may be used @param live a tick or sample: faults apply, and readings are
+  /// fused
+  void measure(std::int64_t now, bool reuse, bool live);
   void subscribe(std::uint32_t mover, base::SensorTypes types);
   void add_to_hash(std::int64_t now, std::span<const base::ReadingBlock> readings);
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
@@ -267,7 +269,7 @@ void Farm::State::submit() {
   ++stats.batches;
 }
 
-void Farm::State::measure(std::int64_t now, bool reuse, bool faulty) {
+void Farm::State::measure(std::int64_t now, bool reuse, bool live) {
   Stopwatch watch;
   for (SensorPipeline& pipeline : pipelines) {
     pipeline.split(reuse);
@@ -293,7 +295,9 @@ void Farm::State::measure(std::int64_t now, bool reuse, bool faulty) {
   watch.lap(stats.collect_s);
   if (exchange() != nullptr) exchange()->exchange(blocks);
   watch.lap(stats.exchange_s);
+  const bool faulty = live && !faults.empty();
   if (faulty) faults.apply(blocks, 0);
+  if (live && fuse) fuse(blocks);
   const std::size_t known = blocks.size();
   for (SensorPipeline& pipeline : pipelines) {
     if (!pipeline.derived()) continue;
@@ -365,7 +369,7 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
   }
   clear_blocks();
   faults.begin();
-  if (find_due(now) || exchange() != nullptr) measure(now, reuse_unchanged, !faults.empty());
+  if (find_due(now) || exchange() != nullptr) measure(now, reuse_unchanged, true);
   if (!qualities.empty())
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
@@ -404,6 +408,8 @@ void Farm::set_state_quality(std::uint32_t mover, const base::StateQuality& qual
 void Farm::subscribe_all() {
   for (std::uint32_t m = 0; m < s_->subscribed.size(); ++m) subscribe(m, kAllSensorTypes);
 }
+
+void Farm::fuse_with(Fuse fuse) { s_->fuse = std::move(fuse); }
 
 const sensors::SensorSet& Farm::sensor_set() const { return s_->sensor_set; }
 base::ThreadPool& Farm::thread_pool() { return s_->thread_pool; }

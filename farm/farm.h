@@ -15,6 +15,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -104,6 +105,12 @@ class Farm {
 
   /// Sets the state quality stamped on this mover's readings from now on; initially none.
   void set_state_quality(std::uint32_t mover, const base::StateQuality& quality);
+
+  /// Sets a function that may replace the values of readings, by memory that is valid until its next call. It gets the
+  /// readings of each tick and sample after noise and faults, and before maps, latency and derived sensors; not those
+  /// of `sense`.
+  using Fuse = std::function<void(std::span<base::ReadingBlock>)>;
+  void fuse_with(Fuse fuse);
 
   /// @pre FarmOptions::shared
   Sharing& sharing();

@@ -119,6 +119,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Repo
     for (std::size_t i = first; i < last; ++i) {
       base::ReadingBlock& block = blocks[i];
       block.time = now;
+      block.fused = false;
       block.sequence = static_cast<std::uint32_t>(due[i].sequence);
       block.X_WM = states[block.mover].X_WM;
       withdraw_bound(sigmas.empty() ? 0.0 : sigmas[due[i].row], block);

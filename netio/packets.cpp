@@ -16,7 +16,7 @@ constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] offset of session and t
 constexpr std::uint32_t kDockingBit = 1;
 constexpr std::uint32_t kPresentBit = 1, kShapeBit = 2, kColorBit = 4, kSizeBit = 8;
 constexpr std::uint32_t kReversedBit = 8;
-constexpr std::uint16_t kStaleBit = 1, kNoStateBit = 2;
+constexpr std::uint16_t kStaleBit = 1, kNoStateBit = 2, kFusedBit = 4;
 constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
 /// By number, from 1.
 constexpr std::array kRefusals{PacketStatus::not_signed, PacketStatus::wrong_signature, PacketStatus::replayed,
@@ -277,7 +277,9 @@ PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& 
   const auto flags = reader.get<std::uint16_t>();
   state.stale = (flags & kStaleBit) != 0;
   if ((flags & kNoStateBit) != 0) state.age = base::kNoStateYet;
-  const bool has_state = sensor_type_of(header.type) != 0 || header.type == Type::v2v || header.type == Type::tag;
+  const bool is_reading = sensor_type_of(header.type) != 0;
+  header.fused = is_reading && (flags & kFusedBit) != 0;
+  const bool has_state = is_reading || header.type == Type::v2v || header.type == Type::tag;
   if (state.stated && has_state) header.state = state;
   return PacketStatus::accepted;
 }
@@ -288,8 +290,11 @@ std::uint32_t age_word(std::int64_t age) {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(age / kAgeUnit + (age % kAgeUnit > 0 ? 1 : 0), 1, kMost));
 }
 
-std::uint16_t flags_of(const StateQuality& state) {
-  return static_cast<std::uint16_t>((state.stale ? kStaleBit : 0) | (state.age == base::kNoStateYet ? kNoStateBit : 0));
+std::uint16_t flags_of(const Header& header) {
+  const StateQuality& state = header.state;
+  const bool stale = state.stated && state.stale, none = state.stated && state.age == base::kNoStateYet;
+  return static_cast<std::uint16_t>((stale ? kStaleBit : 0) | (none ? kNoStateBit : 0) |
+                                    (header.fused ? kFusedBit : 0));
 }
 
 void start(Header header, Type type, base::Bytes& out) {
@@ -350,7 +355,7 @@ void put_header(const Header& header, base::ByteWriter& writer) {
   writer.put(state.stated ? age_word(state.age) : std::uint32_t{0});
   for (const float each : state.covariance) writer.put(state.stated ? each : 0.0f);
   writer.put(std::uint16_t{0});
-  writer.put(state.stated ? flags_of(state) : std::uint16_t{0});
+  writer.put(flags_of(header));
 }
 
 void write_session_token(std::span<std::uint8_t> packet, const SessionToken& session_token) {

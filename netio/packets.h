@@ -92,6 +92,7 @@ struct Header {
   std::uint32_t session = 0;   ///< of the sender: a random number drawn when it starts; 0: not stated
   std::uint32_t token = 0;     ///< to the farm: the token of its CHALLENGE; from the farm: the receiver's session
   StateQuality state;          ///< readings, V2V and TAG only
+  bool fused = false;          ///< readings: includes one of the robot's own sensor
 };
 
 /// Accuracy of a reading in 16 bits: mode in bits 0 to 3, `unsure` in bit 4, and in the upper bits k in [1, 2047] for a

@@ -34,6 +34,11 @@ constexpr PlainForm kForm{kInfrared, "infrared", kNumbers};
 
 }  // namespace
 
+double infrared_response(double range, const base::RangeLimits& limits) {
+  const double away = (range - limits.min) / (limits.max - limits.min);
+  return std::floor(kMostResponse * (1.0 - std::clamp(away, 0.0, 1.0)) + 0.5);
+}
+
 ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
   ConeArray array = read_cones(sensor, mover, number_of_type, {30.0 * kDegrees, 0.0, 0.05, 50.0});
   array.proportional = number(sensor, "noise", 0.0, 0.0, 1e3);

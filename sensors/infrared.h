@@ -23,6 +23,9 @@ inline constexpr std::uint32_t kInfraredColumns = 2;  ///< per element: range [m
 /// @throws base::InputError with file and line.
 ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type);
 
+/// Returns the response to a surface at `range` [m], without noise.
+double infrared_response(double range, const base::RangeLimits& limits);
+
 extern const SensorType infrared_type;
 
 }  // namespace sf::sensors

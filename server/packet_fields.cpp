@@ -54,6 +54,7 @@ void add_header(const netio::Header& header, Fields& out) {
     add(out, "unsure", accuracy.unsure);
     add(out, "bound", std::isinf(accuracy.bound) ? kNan : accuracy.bound);
   }
+  if (header.fused) add(out, "fused", header.fused);
   if (!is_reading && !header.state.stated) return;
   constexpr std::int64_t kMost = 0xFFFFFFFF;  // saturates: larger ages are stated as this
   add(out, "age_us", std::min(header.state.age / 1000, kMost));

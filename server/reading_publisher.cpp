@@ -70,6 +70,7 @@ std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put
   header.session = job.addressed.session_token.session;
   header.token = job.addressed.session_token.token;
   header.state = job.addressed.reading->state;
+  header.fused = reading.fused;
   const auto port = static_cast<std::uint16_t>(netio::port(layout_.ports(*job.type), header.robot, reading.sensor));
 
   std::uint32_t failed = 0;

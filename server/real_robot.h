@@ -19,6 +19,7 @@
 #include "netio/byte_line.h"
 #include "netio/endpoint.h"
 #include "sensors/odometer.h"
+#include "server/own_reading.h"
 
 namespace sf::server {
 
@@ -70,14 +71,6 @@ struct RealRobotCounts {
 struct RobotFact {
   std::string_view name;  ///< with its unit
   double value = 0.0;
-};
-
-/// Newest reading of one of the robot's own sensors, in the columns of the virtual sensor type.
-struct OwnReading {
-  std::uint8_t type = 0;       ///< wire id of the sensor type
-  std::uint32_t sequence = 0;  ///< number of the reading, from 0
-  std::int64_t time = 0;       ///< [ns] of its arrival
-  std::vector<double> values;
 };
 
 /// Times [ns] are on the robot's own monotonic clock. Not thread-safe. Derived classes stop the robot on destruction.

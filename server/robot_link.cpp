@@ -89,6 +89,7 @@ netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, c
   receiver.read = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload,
                                std::span<double> values) {
     part_is_stale_ = header.state.stated && header.state.stale;
+    part_is_fused_ = header.fused;
     decode_payload(streams_[i].source, wire, header, payload, values);
   };
   return receiver;
@@ -124,6 +125,31 @@ void RobotLink::send_map(const netio::TeamMap& map, std::int64_t now) {
   netio::encode({.robot = static_cast<std::uint16_t>(id_), .sequence = maps_, .time = now}, map, packet_);
   out_.send({id_, stream_number(netio::Type::team_map, kDirect), maps_++}, now, kToPeers, packet_);
   flush_due(now);
+}
+
+void RobotLink::send_own_reading(const OwnReading& own, std::int64_t now) {
+  const std::size_t width = sensors::element_width(*sensors::find_sensor_type(own.type));
+  netio::OwnReadings part{.type = own.type,
+                          .total = static_cast<std::uint32_t>(own.values.size() / width),
+                          .fov = static_cast<std::uint32_t>(std::lround(own.fov / netio::kOwnFovUnit))};
+  for (; part.first < part.total; part.first += netio::kOwnReadingsPart) {
+    part.count = static_cast<std::uint16_t>(std::min(netio::kOwnReadingsPart, part.total - part.first));
+    words_.clear();
+    std::uint32_t pressed = 0;
+    for (std::size_t k = 0; k < part.count; ++k) {
+      const double value = own.values[width * (part.first + k)];
+      if (own.type == netio::kOwnBumper)
+        pressed |= std::uint32_t{value > 0.0} << k;
+      else
+        netio::put_own_range(value < own.limit || std::isnan(value) ? value : HUGE_VAL, words_);
+    }
+    if (own.type == netio::kOwnBumper) base::ByteWriter(words_).put(pressed);
+    part.words = words_;
+    netio::encode(
+        {.robot = static_cast<std::uint16_t>(id_), .sensor = own.sensor, .sequence = own_readings_, .time = own.time},
+        part, packet_);
+    send(netio::Type::own_readings, own_readings_++, now);
+  }
 }
 
 void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now) {
@@ -200,6 +226,7 @@ void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::
   if (part_status != netio::PartStatus::complete) return;
   last_reading_ = now;
   ++streams_[tag].whole;
+  streams_[tag].fused = part_is_fused_;
   stale_ += part_is_stale_ ? 1 : 0;
   clock_.update(receiver_.newest(tag)->time, now);
 }
@@ -263,6 +290,7 @@ std::span<RobotLink::Newest> RobotLink::readings() {
     newest.block.sequence = whole->sequence;
     newest.block.time = clock_.to_own(whole->time);
     newest.block.values = whole->values;
+    newest.block.fused = streams_[i].fused;
     state_bound(netio::decode_accuracy(whole->accuracy), source.row->sigma, newest.block);
   }
   return newest_;

@@ -17,6 +17,7 @@
 #include "netio/receiver.h"
 #include "netio/v2v_socket.h"
 #include "sensors/sensor_set.h"
+#include "server/own_reading.h"
 #include "server/sensor_streams.h"
 #include "server/stream_layout.h"
 #include "world/world.h"
@@ -62,6 +63,8 @@ class RobotLink {
   void send_state(const netio::V2v& state, std::int64_t now, const netio::StateQuality& quality = {});
   /// Sends a part of the own map to the other robots. @pre V2V without the farm
   void send_map(const netio::TeamMap& map, std::int64_t now);
+  /// Sends a reading of one of the robot's own sensors to the farm, in as many packets as it takes.
+  void send_own_reading(const OwnReading& own, std::int64_t now);
   /// Announces that it leaves, unless it has sent nothing. Sends this at once, with all packets still delayed in the
   /// injected link.
   void leave(std::int64_t now);
@@ -104,6 +107,7 @@ class RobotLink {
     std::uint32_t sequence = 0;  ///< of the last reading received
     std::uint64_t piece = 0;     ///< its datagrams received before
     std::uint64_t whole = 0;     ///< complete readings
+    bool fused = false;          ///< the newest one includes a reading of the robot's own sensor
   };
   static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                         std::uint32_t mover);
@@ -132,17 +136,18 @@ class RobotLink {
   netio::DelayLine in_;  ///< tags are streams, plus one for all other packets, plus one for direct V2V
   netio::FarmClock clock_;
   PacketHandler handler_;
-  std::uint32_t states_ = 0;    ///< number sent
-  std::uint32_t maps_ = 0;      ///< number of TEAM_MAP sent
-  std::uint32_t requests_ = 0;  ///< number sent
+  std::uint32_t states_ = 0;        ///< number sent
+  std::uint32_t maps_ = 0;          ///< number of TEAM_MAP sent
+  std::uint32_t requests_ = 0;      ///< number sent
+  std::uint32_t own_readings_ = 0;  ///< number sent
   bool follows_drive_ = false;
   std::int64_t next_request_ = 0;    ///< [ns]
   std::uint64_t other_packets_ = 0;  ///< received packets that are not states
   std::optional<std::int64_t> last_answer_, last_reading_;
   std::vector<Newest> newest_;
-  base::Bytes packet_;
-  bool part_is_stale_ = false;  ///< of the last part
-  std::uint64_t stale_ = 0;     ///< readings
+  base::Bytes packet_, words_;
+  bool part_is_stale_ = false, part_is_fused_ = false;  ///< of the last part
+  std::uint64_t stale_ = 0;                             ///< readings
 };
 
 }  // namespace sf::server

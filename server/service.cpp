@@ -59,6 +59,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       drives_(world),
       publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set)),
                  options.mirror),
+      fusion_(world, sensor_set, {.max_age = options.own_age, .clock = options.receiver.filter.clock}),
       farm_(world, device,
             farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
       models_(world, own_models(world, options.receiver),
@@ -71,12 +72,18 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
   receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
     lights_.accept(header, signals, now);
   });
+  receiver_.set_own_readings_handler(
+      [this](const netio::Header& header, const netio::OwnReadings& own, std::uint32_t mover, std::int64_t now) {
+        fusion_.take(header, own, mover, now, receiver_.log());
+      });
+  farm_.fuse_with([this](std::span<base::ReadingBlock> readings) { fusion_.fuse(readings); });
   receiver_.set_lane_handler([this](const netio::Lane& lane) { lanes_.accept(lane); });
 }
 
 void Service::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock;
   receiver_.filter().set_epoch(base::unix_time());
+  fusion_.set_epoch(receiver_.filter().options().epoch);
   farm_.thread_pool().interrupt_on([&stop] { return stop.load(); });
   try {
     run_ticks(clock, stop, duration);
@@ -307,6 +314,7 @@ ServiceStats Service::stats() const {
   stats.relayed = receiver_.relayed();
   stats.lights = lights_.counts();
   stats.drives = drives_.counts();
+  stats.fusion = fusion_.counts();
   stats.answers = receiver_.answered();
   stats.lines_left_out = receiver_.log().left_out();
   stats.states = receiver_.filter().counts();

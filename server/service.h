@@ -24,6 +24,7 @@
 #include "server/lane_service.h"
 #include "server/light_service.h"
 #include "server/no_return_filter.h"
+#include "server/reading_fusion.h"
 #include "server/reading_publisher.h"
 #include "server/state_receiver.h"
 #include "server/stream_layout.h"
@@ -40,7 +41,8 @@ struct ServiceOptions {
   /// Lights of the world; their peers are those of `receiver`.
   std::optional<netio::Endpoint> spat;  ///< where to receive SPaT; nullopt: nowhere
   StaleLights stale_lights = StaleLights::dark;
-  std::optional<netio::Endpoint> mirror;  ///< receives a copy of each reading's packets; nullopt: none
+  std::int64_t own_age = FusionOptions{}.max_age;  ///< [ns] see FusionOptions::max_age
+  std::optional<netio::Endpoint> mirror;           ///< receives a copy of each reading's packets; nullopt: none
 };
 
 struct ServiceStats {
@@ -55,6 +57,7 @@ struct ServiceStats {
   netio::RelayCounts relayed;
   LightServiceCounts lights;
   DriveCounts drives;
+  FusionCounts fusion;
   netio::OutboxCounts answers;       ///< challenges and relayed datagrams
   std::uint64_t lines_left_out = 0;  ///< dropped from the log
   bool filtered = false;             ///< states were filtered: `states` and `clocks` are valid
@@ -100,6 +103,7 @@ class Service {
   std::uint16_t port() const { return receiver_.inbox().port(); }
   std::size_t robots() const { return receiver_.robots().size(); }
   StateReceiver& receiver() { return receiver_; }
+  const ReadingFusion& fusion() const { return fusion_; }
   const LightService& lights() const { return lights_; }
   const LaneService& lanes() const { return lanes_; }
   /// Takes users' commands for robots. Its packets are sent at each tick.
@@ -129,6 +133,7 @@ class Service {
   StateReceiver receiver_;
   DriveRelay drives_;
   ReadingPublisher publisher_;
+  ReadingFusion fusion_;
   farm::Farm farm_;
   control::ModelControllers models_;  ///< of the objects that no packets move
   std::vector<base::Sink*> sinks_;

@@ -83,6 +83,10 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
     if (lane_handler_) lane_handler_(*lane);
     return;
   }
+  if (const auto* own = std::get_if<netio::OwnReadings>(&packet.body)) {
+    if (own_readings_handler_) own_readings_handler_(packet.header, *own, names_.robots.at(packet.header.robot), now);
+    return;
+  }
   if (const auto* object = std::get_if<netio::Object>(&packet.body)) {
     const std::uint32_t row = names_.tags.at(packet.header.robot);
     heard_[row] = true;

@@ -52,6 +52,11 @@ class StateReceiver {
   using LaneHandler = std::function<void(const netio::Lane&)>;
   void set_lane_handler(LaneHandler handler) { lane_handler_ = std::move(handler); }
 
+  /// Sets the handler of accepted OWN_READINGS of the robot in row `mover`.
+  using OwnReadingsHandler =
+      std::function<void(const netio::Header&, const netio::OwnReadings&, std::uint32_t mover, std::int64_t now)>;
+  void set_own_readings_handler(OwnReadingsHandler handler) { own_readings_handler_ = std::move(handler); }
+
   /// Returns the changes of shapes that were requested since the last call, by row: the newest of each kind. Robots
   /// and tags that joined and left get their original shape.
   std::map<std::uint32_t, world::ShapeChange> take_shape_changes() { return std::exchange(shape_changes_, {}); }
@@ -132,6 +137,7 @@ class StateReceiver {
   std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
   LaneHandler lane_handler_;
+  OwnReadingsHandler own_readings_handler_;
   std::vector<bool> removed_;  ///< per mover, by OBJECT or `place`
   std::vector<bool> heard_;    ///< per mover: see is_moved_by_packets
   std::map<std::uint32_t, world::ShapeChange> shape_changes_;

@@ -209,6 +209,7 @@ typedef struct {
   double bound;                  // of the error, in the unit of the first column; NAN: not stated
   uint32_t age_us;               // of the robot's state used for the reading, of an estimate sent; 0: not stated
   unsigned stale;                // 1: that state is too old to act on
+  unsigned fused;                // readings: 1: includes one of the robot's own sensor
   unsigned no_state;             // 1: no state has arrived yet; the robot is at its place in the world file
   float covariance[6];           // of that state, x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: unknown
   uint32_t words[5];             // the integers named in sf_types
@@ -581,6 +582,7 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   const uint8_t* const b = bytes + SF_HEADER;
   size -= SF_HEADER + trailer;
   if (size > 1256) return "too long";
+  packet->fused = packet->type < 128 ? bytes[62] >> 2 & 1 : 0;
   if (has_accuracy(packet)) decode_accuracy(packet, bytes);
   if (packet->type < 128 || packet->type == SF_V2V || packet->type == SF_TAG) decode_state_quality(packet, bytes);
   const char* const status = packet->type == SF_LASER || packet->type == SF_LASER_EXTENDED
@@ -763,6 +765,7 @@ void sf_print(FILE* out, const sf_packet* p) {
   sf_print_body(out, p, "; ", "");
   if (has_accuracy(p)) fprintf(out, "; mode %u%s", p->mode, p->unsure ? ", not for every element" : "");
   if (has_accuracy(p) && !isnan(p->bound)) print_bound(out, p->bound);
+  if (p->fused) fprintf(out, "; fused");
   if (p->no_state)
     fprintf(out, "; no state of the robot has arrived yet");
   else if (p->age_us > 0)

@@ -339,6 +339,8 @@ def decode(data):
     if type < 128 or type == VALUES:
         bound = None if accuracy < 32 else 2.0**(((accuracy >> 5) - 1024) / 16)
         packet.update(mode=accuracy & 15, unsure=accuracy >> 4 & 1, bound=bound)
+    if type < 128 and flags & 4:
+        packet.update(fused=1)  # includes a reading of the robot's own sensor
     if type < 128 or type in (V2V, TAG) and age:
         known = all(map(math.isfinite, covariance)) and min(covariance[0], covariance[3], covariance[5]) >= 0
         packet.update(age_us=age, stale=flags & 1 if age else 0,

@@ -14,6 +14,7 @@ static void print_fields(FILE* out, const sf_packet* p, const char* prefix) {
     fprintf(out, "mode = %u\nunsure = %u\n", p->mode, p->unsure);
     fprintf(out, isnan(p->bound) ? "bound = none\n" : "bound = %.10g\n", p->bound);
   }
+  if (p->fused) fprintf(out, "fused = 1\n");
   if (p->type < 128 || p->age_us > 0) {
     fprintf(out, "age_us = %lu\nstale = %u\ncovariance =", (unsigned long)p->age_us, p->stale);
     for (unsigned i = 0; i < 6; ++i) fprintf(out, " %.10g", p->covariance[i]);
