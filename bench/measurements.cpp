@@ -19,7 +19,7 @@ namespace {
 constexpr int kRepeats = 21;
 
 /// Measures all due sensors even if the robots do not move.
-constexpr farm::FarmOptions kAnew{.reuse_unchanged = false};
+const farm::FarmOptions kAnew{.reuse_unchanged = false};
 
 /// Median cost of a tick in which every sensor is due.
 Cost tick_cost(farm::Farm& farm) {

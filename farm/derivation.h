@@ -19,6 +19,7 @@ class Derivation {
 
   bool empty() const { return pipelines_.empty(); }
   const sensors::DerivedSensors& sensors() const { return sensors_; }
+  std::span<SensorPipeline> pipelines() { return pipelines_; }
   /// Continues the sensors of the farm before a new mover. `before` must not be used afterwards.
   void go_on(Derivation& before, std::int64_t last_tick, std::int64_t last_call);
 

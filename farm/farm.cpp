@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "farm/derivation.h"
 #include "farm/faults.h"
 #include "farm/pose_changes.h"
+#include "farm/processor_budget.h"
 #include "farm/sensor_pipeline.h"
 #include "gpu/batch.h"
 #include "robots/fleet.h"
@@ -40,6 +42,12 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
+double process_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 }  // namespace
 
 struct Farm::State {
@@ -60,6 +68,8 @@ struct Farm::State {
   Faults faults;
   Fuse fuse;
   Delivery delivery;
+  std::optional<ProcessorBudget> budget;      ///< nullopt: no limit
+  std::vector<SensorPipeline*> budgeted;      ///< all, for `budget`
   std::unique_ptr<PoseChanges> pose_changes;  ///< of the current tick
   std::vector<base::Report> states;           ///< per mover, as sensed in this tick or sample; backends view it
   std::vector<base::Report> tick_states;      ///< of the last tick, while samples follow it
@@ -99,6 +109,10 @@ struct Farm::State {
     pose_changes = std::make_unique<PoseChanges>(world);
     if (options.shared) sharing.emplace(sensor_set, w.movers.size());
     if (options.shared) derivation->require_own_inputs(world);
+    if (options.processor_budget <= 0.0) return;
+    SF_CHECK(!options.shared, "a budget for a shared fleet");
+    if (!options.processor_clock) options.processor_clock = process_seconds;
+    budget.emplace(options.processor_budget, options.processor_budget * world.interval, derivation->sensors().nodes());
   }
 
   sensors::SensorContext context_of(std::span<const base::Report> sensed) {
@@ -114,6 +128,7 @@ struct Farm::State {
   std::span<const base::ReadingBlock> read(std::int64_t now);
   void update_demand();
   bool find_due(std::int64_t now);
+  void keep_budget(std::int64_t now);
   void prepare();
   void submit();
   void collect(SensorPipeline& pipeline, std::int64_t now, bool reuse);
@@ -175,6 +190,7 @@ std::shared_ptr<const void> Farm::State::add_mover() {
     pipeline.go_on(old == before->pipelines.end() ? nullptr : &*old, last_tick, last_call);
   }
   derivation->go_on(*before->derivation, last_tick, last_call);
+  if (budget) budget->set_derived(derivation->sensors().nodes());
   demand_changed = true;
   for (const SensorPipeline& pipeline : before->pipelines) earlier_work += pipeline.backend->stats();
   return before;
@@ -220,7 +236,16 @@ bool Farm::State::find_due(std::int64_t now) {
                                            : pipeline.derived() ? sharing->delivered_types()
                                                                 : sharing->measured_types());
   stats.missed += derivation->find_due(now, sharing ? sharing->delivered_types() : subscribed);
+  if (budget) keep_budget(now);
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
+}
+
+void Farm::State::keep_budget(std::int64_t now) {
+  budgeted.clear();
+  for (const std::span<SensorPipeline> each : {std::span(pipelines), derivation->pipelines()})
+    for (SensorPipeline& pipeline : each) budgeted.push_back(&pipeline);
+  budget->admit(now, budgeted);
+  stats.dropped += budget->dropped().size();
 }
 
 void Farm::State::begin_tick(bool is_sample) {
@@ -363,6 +388,7 @@ void Farm::State::subscribe(std::uint32_t mover, base::SensorTypes types) {
 
 std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
   last_call = now;
+  const double before = budget ? options.processor_clock() : 0.0;
   for (SensorPipeline& pipeline : pipelines) {
     pipeline.cache.invalidate(*pose_changes, states);
     pipeline.backend->accumulate(now, between);
@@ -378,6 +404,7 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
   add_to_hash(now, delivered);
   watch.lap(stats.collect_s);
   stats.readings += delivered.size();
+  if (budget) budget->spent(options.processor_clock() - before);
   return delivered;
 }
 
@@ -426,6 +453,10 @@ std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const
 
 void Farm::set_commands(std::span<const base::Twist> commands) { s_->commands = commands; }
 void Farm::set_received(std::span<const base::ReadingBlock> readings) { s_->received = readings; }
+
+std::span<const DroppedReading> Farm::dropped() const {
+  return s_->budget ? s_->budget->dropped() : std::span<const DroppedReading>();
+}
 
 std::vector<std::uint32_t> Farm::receivers(std::uint8_t type) const {
   std::vector<std::uint32_t> movers;

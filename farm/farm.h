@@ -23,6 +23,7 @@
 #include "base/bytes.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "farm/dropped_reading.h"
 #include "farm/fault.h"
 #include "farm/schedule.h"
 #include "farm/sharing.h"
@@ -46,8 +47,13 @@ struct FarmOptions {
                                ///< server::NoReturnFilter; readings are unchanged
   unsigned threads = 0;        ///< number of host threads; 0: all cores. Does not affect readings
   raycast::SceneOptions scene;
-  bool shared = false;        ///< shares the fleet with other processes, each of which senses a part of it; see
-                              ///< `Farm::sharing`
+  bool shared = false;  ///< shares the fleet with other processes, each of which senses a part of it; see
+                        ///< `Farm::sharing`
+  /// [s/s] processor time of readings per second of simulated time, as `processor_clock` [s] measures it (empty: that
+  /// of this process). 0: no limit. Beyond it, readings are dropped by priority (farm/processor_budget.h), so that
+  /// results depend on the clock. Not with `shared`.
+  double processor_budget = 0.0;
+  std::function<double()> processor_clock;
   std::vector<Fault> faults;  ///< of its sensors, in the order in which they act; not of `Farm::sense`
 };
 
@@ -57,6 +63,7 @@ struct FarmStats {
   std::uint64_t readings = 0;
   std::uint64_t missed = 0;    ///< subscribed readings that were not measured, because newer ones were due at the same
                                ///< tick
+  std::uint64_t dropped = 0;   ///< not measured because the budget was exhausted
   std::uint64_t reused = 0;    ///< cached readings that were delivered again
   std::uint64_t batches = 0;   ///< submitted to the device, excluding those of maps
   base::FaultCounts faults{};  ///< readings affected by faults
@@ -138,6 +145,9 @@ class Farm {
   void set_received(std::span<const base::ReadingBlock> readings);
   /// Returns the movers with an input of that pseudo-type, in order.
   std::vector<std::uint32_t> receivers(std::uint8_t type) const;
+
+  /// Returns the readings that the last tick or sample dropped because the budget was exhausted. Valid until the next.
+  std::span<const DroppedReading> dropped() const;
 
   /// Returns when the next subscribed sensor is due [ns]: phase + k / rate to the nearest nanosecond. farm::kNever
   /// without subscribed sensors.

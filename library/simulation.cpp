@@ -21,6 +21,7 @@
 #include "library/reading_table.h"
 #include "raycast/casters.h"
 #include "record/recorder.h"
+#include "scenarios/fault_tables.h"
 #include "scenarios/run_info.h"
 #include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
@@ -45,6 +46,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
     simulation.positioning = scenarios::parse_positioning("positioning", options.positioning);
     simulation.positioning->link.seed = options.seed;
   }
+  if (!options.faults.empty()) simulation.faults = scenarios::parse_faults("faults", options.faults);
   const bool none = options.controller == "none";
   simulation.actor.controller = library::controller_of(none ? "" : options.controller, options.settings);
   if (options.controller.empty())
@@ -123,7 +125,9 @@ Simulation::State::State(library::WorldSource from, const Options& given)
 void Simulation::State::prepare() {
   device = library::shared_device(options);
   world = library::load(source, options);
-  simulation.emplace(world, *device, simulation_options(world, options, ranks));
+  const scenarios::SimulationOptions given = simulation_options(world, options, ranks);
+  simulation.emplace(world, *device, given);
+  farm::check_faults(given.faults, world, simulation->farm().sensor_set());
   simulation->change_shapes_in(world);
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
@@ -166,7 +170,8 @@ record::RunInfo Simulation::State::run_info() const {
        .caster = raycast::describe_caster(device->info().software, raycast::caster_named(options.caster)),
        .noise = options.noise,
        .joined = simulation->joined(),
-       .too_near_min = options.too_near_min});
+       .too_near_min = options.too_near_min,
+       .faults = options.faults});
 }
 
 void Simulation::State::step(std::span<const Twist> given) {

@@ -110,6 +110,7 @@ PacketStatus Inbox::check_id(const Header& header) const {
     case Type::values:
     case Type::drive:
     case Type::team_map:
+    case Type::dropped:
       break;
   }
   return PacketStatus::wrong_direction;

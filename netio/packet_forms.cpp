@@ -25,7 +25,8 @@ constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
                                  {Type::drive, "DRIVE", kHeaderBytes + kDriveBytes},
                                  {Type::lane, "LANE", kHeaderBytes + kLaneBytes},
                                  {Type::team_map, "TEAM_MAP", 0},
-                                 {Type::own_readings, "OWN_READINGS", 0}};
+                                 {Type::own_readings, "OWN_READINGS", 0},
+                                 {Type::dropped, "DROPPED", kHeaderBytes + kDroppedBytes}};
 
 }  // namespace
 

@@ -163,6 +163,14 @@ PacketStatus read_drive(base::ByteReader& reader, Packet& packet) {
   return check(drive);
 }
 
+PacketStatus read_drops(base::ByteReader& reader, Packet& packet) {
+  Dropped dropped;
+  for (std::uint32_t* const number : {&dropped.type, &dropped.processor, &dropped.network})
+    *number = reader.get<std::uint32_t>();
+  packet.body = dropped;
+  return dropped.type >= 1 && dropped.type <= 63 ? PacketStatus::accepted : PacketStatus::out_of_range;
+}
+
 PacketStatus read_lane(base::ByteReader& reader, Packet& packet) {
   Lane lane;
   lane.segment = reader.get<std::uint32_t>();
@@ -212,6 +220,9 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       packet.body = map;
       return status;
     }
+    case Type::dropped:
+      status = check_size(payload.size(), kDroppedBytes);
+      return status == PacketStatus::accepted ? read_drops(reader, packet) : status;
     case Type::own_readings: {
       OwnReadings readings;
       status = read_own_readings(payload, readings);
@@ -425,6 +436,13 @@ void encode(const Header& header, const OwnReadings& readings, base::Bytes& out)
            "OWN_READINGS of robot " + std::to_string(header.robot) + ": " + std::string(name(check(readings))));
   start(header, Type::own_readings, out);
   put_own_readings(readings, out);
+}
+
+void encode(const Header& header, const Dropped& dropped, base::Bytes& out) {
+  SF_CHECK(dropped.type >= 1 && dropped.type <= 63, "type " + std::to_string(dropped.type) + " of dropped readings");
+  start(header, Type::dropped, out);
+  base::ByteWriter writer(out);
+  for (const std::uint32_t number : {dropped.type, dropped.processor, dropped.network}) writer.put(number);
 }
 
 void encode(const Header& header, const Object& object, base::Bytes& out) {

@@ -46,9 +46,9 @@ inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [ra
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences do not overflow
 
 /// Types from 128 are states, requests and readings of robots' own sensors sent to the farm. The farm forwards V2V and
-/// START, and also sends V2I and LANE. Robots send V2V and TEAM_MAP to each other. CHALLENGE, REFUSAL and types from
-/// 140 to 143 are answers of the farm. A type below 64 is a reading of the sensor type with this wire id; the same
-/// number plus 64 is its second form.
+/// START, and also sends V2I and LANE. Robots send V2V and TEAM_MAP to each other. CHALLENGE, REFUSAL, DROPPED and
+/// types from 140 to 143 are answers of the farm. A type below 64 is a reading of the sensor type with this wire id;
+/// the same number plus 64 is its second form.
 enum class Type : std::uint8_t {
   v2v = 128,
   tag = 129,
@@ -68,7 +68,8 @@ enum class Type : std::uint8_t {
   drive = 143,
   lane = 144,
   team_map = 145,
-  own_readings = 146
+  own_readings = 146,
+  dropped = 147
 };
 
 /// Returns the wire id (below 64) of the sensor type whose readings, in either form, have type
@@ -175,11 +176,20 @@ struct Lane {
 };
 inline constexpr std::uint32_t kMaxLaneRule = 4;
 
+/// From the farm to a robot: readings of one of its sensors (`Header::sensor`) that the farm dropped since it started,
+/// because a budget was exhausted. The header's time is that of the newest of them. Counts wrap to 0.
+struct Dropped {
+  std::uint32_t type = 0;       ///< wire id of the sensor type, in [1, 63]
+  std::uint32_t processor = 0;  ///< not measured: no processor time was left
+  std::uint32_t network = 0;    ///< measured and not sent: no bytes were left
+};
+
 inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                 ///< size of a complete V2V packet
 inline constexpr std::size_t kTagBytes = 104;                               ///< payload sizes
 inline constexpr std::size_t kObjectBytes = 4, kShapedObjectBytes = 96;     ///< without and with a change of shape
 inline constexpr std::size_t kSubscribeBytes = 4, kWideSubscribeBytes = 8;  ///< without and with types above 31
-inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes = 24, kLaneBytes = 12;
+inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes = 24, kLaneBytes = 12,
+                             kDroppedBytes = 12;
 inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V
 
@@ -197,7 +207,7 @@ struct Reading {
 struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading, Command, Step, Fetch,
-               State, Values, Refusal, Drive, Lane, TeamMap, OwnReadings>
+               State, Values, Refusal, Drive, Lane, TeamMap, OwnReadings, Dropped>
       body;
   bool late = false;       ///< a state whose sequence is not newer than the last one of its sender
                            ///< (`InboxOptions::take_late`)
@@ -222,6 +232,7 @@ void encode(const Header& header, const Drive& command, base::Bytes& out);
 void encode(const Header& header, const Lane& lane, base::Bytes& out);
 void encode(const Header& header, const TeamMap& map, base::Bytes& out);
 void encode(const Header& header, const OwnReadings& readings, base::Bytes& out);
+void encode(const Header& header, const Dropped& dropped, base::Bytes& out);
 void encode(const Header& header, const Command& command, base::Bytes& out);
 void encode(const Header& header, const Step& step, base::Bytes& out);
 void encode(const Header& header, const Fetch& fetch, base::Bytes& out);

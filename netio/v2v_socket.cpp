@@ -22,6 +22,7 @@ V2vSocket::V2vSocket(const V2vSocketOptions& options)
       lights_(options.lights),
       drives_(std::span(&options.robot, 1)),
       lanes_(std::span(&options.robot, 1)),
+      drops_(std::span(&options.robot, 1)),
       batch_(kV2vBatch) {
   if (!options.key) return;
   signer_.emplace(*options.key);
@@ -81,10 +82,13 @@ PacketStatus V2vSocket::check(const Packet& packet, std::int64_t now) {
     if (!lights_.row(id)) return PacketStatus::unknown_light;
     return lights_.admit(id, kV2vChannel, packet.header.sequence, options_.farm, now);
   }
-  const bool drive = std::holds_alternative<Drive>(packet.body);
-  if (drive || std::holds_alternative<Lane>(packet.body)) {
+  const bool drive = std::holds_alternative<Drive>(packet.body), dropped = std::holds_alternative<Dropped>(packet.body);
+  if (drive || dropped || std::holds_alternative<Lane>(packet.body)) {
     if (id != options_.robot) return PacketStatus::unknown_robot;
-    return (drive ? drives_ : lanes_).admit(id, kV2vChannel, packet.header.sequence, options_.farm, now);
+    return (drive     ? drives_
+            : dropped ? drops_
+                      : lanes_)
+        .admit(id, kV2vChannel, packet.header.sequence, options_.farm, now);
   }
   const bool start = std::holds_alternative<Start>(packet.body);
   if (!start && !std::holds_alternative<V2v>(packet.body)) return PacketStatus::wrong_direction;

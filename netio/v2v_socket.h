@@ -78,9 +78,9 @@ class V2vSocket {
   }
 
   /// Checks any bytes from the farm, received at `now` [ns]. Accepts V2V of other robots, V2I, and START, CHALLENGE,
-  /// DRIVE and LANE for this robot, and fills `packet`. Packets without this robot's session, or with a session of the
-  /// farm other than that of the last challenge, are wrong_source. Packets for other robots are unknown_robot, V2I of
-  /// other intersections are unknown_light, and old states are stale.
+  /// DRIVE, LANE and DROPPED for this robot, and fills `packet`. Packets without this robot's session, or with a
+  /// session of the farm other than that of the last challenge, are wrong_source. Packets for other robots are
+  /// unknown_robot, V2I of other intersections are unknown_light, and old states are stale.
   PacketStatus accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet);
 
   /// Returns whether a state of `robot` was accepted less than two seconds before `now`.
@@ -108,6 +108,7 @@ class V2vSocket {
   SenderBindings lights_;
   SenderBindings drives_;  ///< DRIVE for this robot, by its id
   SenderBindings lanes_;   ///< LANE for this robot, by its id
+  SenderBindings drops_;   ///< DROPPED for this robot, by its id
   std::uint32_t farm_session_ = 0;
   std::uint32_t token_ = 0;
   PacketCounts counts_;

@@ -113,6 +113,7 @@ Options options_of(Keywords& given) {
   py::object controller = py::str("");
   given.read("robots", options.robots), given.read("of", options.of), given.read("seed", options.seed);
   given.read("robot_from", options.robot_from), given.read("positioning", options.positioning);
+  given.read("faults", options.faults);
   given.read("threads", options.threads), given.read("noise", options.noise);
   given.read("accuracy", options.accuracy), given.read("device", options.device), given.read("caster", options.caster);
   given.read("require_vulkan", options.require_vulkan);
@@ -338,7 +339,7 @@ void add_simulation(py::module_& module) {
         "device='', caster='auto', "
         "require_vulkan=False, "
         "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
-        "compression='zstd', positioning='', writable=False (docs/python.md)")
+        "compression='zstd', positioning='', faults='', writable=False (docs/python.md)")
       .def_static(
           "from_text",
           [](Text text, Text name, const py::kwargs& options) {

@@ -182,10 +182,16 @@ std::string faults_text(std::span<const Fault> faults) {
   return text;
 }
 
+std::vector<farm::Fault> parse_faults(const std::string& file, std::string_view text) {
+  const TomlReader reader(file);
+  const TomlNode root = world::parse_toml(file, text);
+  reader.require_known(root, std::array<std::string_view, 1>{"fault"});
+  return read_faults(reader, root);
+}
+
 std::vector<farm::Fault> recorded_faults(const record::Recording& recording) {
   const std::string text(record::option_of(recording.info, record::kFaultsOption));
-  const std::string name = recording.file + ": faults";
-  return read_faults(TomlReader(name), world::parse_toml(name, text));
+  return parse_faults(recording.file + ": faults", text);
 }
 
 }  // namespace sf::scenarios

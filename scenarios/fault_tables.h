@@ -15,6 +15,9 @@ namespace sf::scenarios {
 /// Reads the [[fault]] tables of a file. @throws base::InputError with file and line
 std::vector<farm::Fault> read_faults(const world::TomlReader& reader, const world::TomlNode& root);
 
+/// Reads a file that contains [[fault]] tables only. @throws base::InputError with file and line
+std::vector<farm::Fault> parse_faults(const std::string& file, std::string_view text);
+
 /// Writes the faults as tables that read back as the same faults, for recordings.
 std::string faults_text(std::span<const farm::Fault> faults);
 

@@ -78,6 +78,9 @@ struct Options {
   /// Simulates a positioning system for robots that localize themselves: keys of a scenario's table [positioning], one
   /// per line, such as "rate = 10\nposition_sigma = 0.01" (docs/scenarios.md). Empty: none.
   std::string positioning;
+  /// Faults of sensors: [[fault]] tables of a scenario (docs/scenarios.md), such as
+  /// "[[fault]]\nrobot = '*'\nsensor = 'gyro'\nkind = 'stuck'\nfrom = 10". Empty: none. Not with `ranks`.
+  std::string faults;
 };
 
 /// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next

@@ -189,8 +189,17 @@ void Lasers::collect(std::span<base::ReadingBlock> out) {
 
 SensorSpec spec_of(const CastLaser& cast, std::uint32_t mover, std::uint32_t number) {
   const LaserSettings& laser = cast.laser;
-  SensorSpec row{mover,         number,        laser.name,      laser.X_MS, laser.rate, laser.phase,
-                 laser.latency, laser.samples, laser.range_max, 0,          0.0,        cast.mode};
+  SensorSpec row{.mover = mover,
+                 .sensor = number,
+                 .name = laser.name,
+                 .X_MS = laser.X_MS,
+                 .rate = laser.rate,
+                 .phase = laser.phase,
+                 .latency = laser.latency,
+                 .priority = laser.priority,
+                 .elements = laser.samples,
+                 .limit = laser.range_max,
+                 .mode = cast.mode};
   row.fov = laser.fov;
   row.range_min = laser.range_min;
   row.dependency_radius = row.reach = laser.range_max;

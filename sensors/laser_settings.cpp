@@ -72,6 +72,7 @@ LaserSettings read_laser(const world::Sensor& sensor, LaserSettings laser) {
   laser.rate = common.rate;
   laser.phase = common.phase;
   laser.latency = common.latency;
+  laser.priority = common.priority;
   laser.accuracy = accuracy_of(sensor);
   laser.color = sensor.color;
   return laser;

@@ -16,9 +16,10 @@ namespace sf::sensors {
 
 /// Settings of one laser.
 struct LaserSettings : raycast::ScanSettings {
-  double rate = 10.0;    ///< [Hz] > 0
-  double phase = 0.0;    ///< [s] time of the first reading
-  double latency = 0.0;  ///< [s] from measurement to delivery
+  double rate = 10.0;         ///< [Hz] > 0
+  double phase = 0.0;         ///< [s] time of the first reading
+  double latency = 0.0;       ///< [s] from measurement to delivery
+  std::uint8_t priority = 5;  ///< as SensorSpec::priority
   world::Accuracy accuracy;
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
 };

@@ -54,6 +54,7 @@ struct SensorSpec {
   double rate = 10.0;          ///< [Hz] > 0
   double phase = 0.0;          ///< [s] time of the first reading
   double latency = 0.0;        ///< [s] from measurement to delivery
+  std::uint8_t priority = 5;   ///< 0 to 9: with a budget (farm/processor_budget.h), larger ones are measured first
   std::uint32_t elements = 1;  ///< rows of a reading: beams of a laser, elements of an array, words of a map, else 1
   double limit = 0.0;          ///< largest value of an element, in the unit of its first column
   std::uint32_t across = 0;    ///< elements per row of an image; 0: the elements are not an image

@@ -122,6 +122,7 @@ SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::ui
   row.rate = rate_of(sensor, row.rate);
   row.phase = number(sensor, "phase", 0.0, 0.0, kMostSeconds);
   row.latency = number(sensor, "latency", 0.0, 0.0, kMostSeconds);
+  row.priority = static_cast<std::uint8_t>(whole(sensor, "priority", row.priority, 0, 9));
   return row;
 }
 

@@ -185,6 +185,11 @@ void add_body(const netio::TeamMap& map, Fields& out) {
   add(out, "claim", claim);
   add(out, "data", map.bytes);
 }
+void add_body(const netio::Dropped& dropped, Fields& out) {
+  add(out, "readings_type", dropped.type);
+  add(out, "processor", dropped.processor);
+  add(out, "network", dropped.network);
+}
 void add_body(const netio::OwnReadings& readings, Fields& out) {
   add(out, "readings_type", readings.type);
   add(out, "total", readings.total);

@@ -42,24 +42,68 @@ ReadingPublisher::ReadingPublisher(const world::World& world, const sensors::Sen
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
       streams_[group.type->id].push_back(
-          {0, layout_.sends(*group.type, row) ? group.type->parts(row, layout_.wire) : 0});
+          {.parts = layout_.sends(*group.type, row) ? group.type->parts(row, layout_.wire) : 0});
   for (Memory& memory : memory_) {
     memory.payload.reserve(netio::kMaxHeaderlessDatagram);
     memory.packet.reserve(netio::kMaxDatagram);
   }
 }
 
+ReadingPublisher::Stream& ReadingPublisher::stream_of(const base::ReadingBlock& reading) {
+  const std::vector<sensors::SensorSpec>& rows = sensor_set_.group(reading.type)->rows;
+  return streams_.at(reading.type)[static_cast<std::size_t>(&sensor_set_.row(reading) - rows.data())];
+}
+
 ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& addressed) {
-  const sensors::SensorSet::Group& group = *sensor_set_.group(addressed.reading->type);
-  const sensors::SensorSpec& row = sensor_set_.row(*addressed.reading);
-  Stream& stream = streams_.at(addressed.reading->type)[static_cast<std::size_t>(&row - group.rows.data())];
-  return {addressed, group.type, &row, &stream, stream.sent, 0, 0, true};
+  Stream& stream = stream_of(*addressed.reading);
+  return {addressed, sensor_set_.group(addressed.reading->type)->type, &sensor_set_.row(*addressed.reading), &stream,
+          stream.sent};
+}
+
+/// Returns the readings for which bytes are left, in their order.
+std::span<const AddressedReading> ReadingPublisher::admit(std::span<const AddressedReading> readings,
+                                                          std::int64_t now) {
+  dropped_.clear();
+  if (!bucket_) return readings;
+  bucket_->refill(now);
+  ++calls_;
+  order_.clear(), admitted_readings_.clear();
+  for (std::uint32_t i = 0; i < readings.size(); ++i)
+    if (stream_of(*readings[i].reading).parts > 0) order_.push_back(i);
+  std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) {
+    const base::ReadingBlock& reading = *readings[i].reading;
+    return std::pair(-int{sensor_set_.row(reading).priority}, stream_of(reading).last);
+  });
+  admitted_.assign(readings.size(), 0);
+  for (const std::uint32_t i : order_) {
+    Stream& stream = stream_of(*readings[i].reading);
+    admitted_[i] = !bucket_->empty();
+    if (admitted_[i] == 0) {
+      dropped_.push_back(readings[i].reading);
+      continue;
+    }
+    stream.last = calls_;
+    bucket_->spend(stream.bytes);
+  }
+  dropped_readings_ += dropped_.size();
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    if (admitted_[i] != 0) admitted_readings_.push_back(readings[i]);
+  return admitted_readings_;
+}
+
+/// Corrects what `admit` expected by what was sent.
+void ReadingPublisher::charge() {
+  if (!bucket_) return;
+  for (const Job& job : jobs_) {
+    bucket_->spend(static_cast<double>(job.bytes) - job.stream->bytes);
+    job.stream->bytes = job.bytes;
+  }
 }
 
 /// Calls `put` (datagram, endpoint, bytes) for each part.
 /// @return number of parts that could not be encoded
 template <class Put>
-std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put) const {
+std::uint32_t ReadingPublisher::encode(Job& job, Memory& memory, Put&& put) const {
   const base::ReadingBlock& reading = *job.addressed.reading;
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(world_.movers[reading.mover].id);
@@ -74,28 +118,33 @@ std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put
   const auto port = static_cast<std::uint16_t>(netio::port(layout_.ports(*job.type), header.robot, reading.sensor));
 
   std::uint32_t failed = 0;
+  job.bytes = 0;
+  const auto send = [&](std::uint32_t place, const netio::Endpoint& to, const base::Bytes& bytes) {
+    job.bytes += static_cast<std::uint32_t>(bytes.size());
+    put(place, to, bytes);
+  };
   for (std::uint32_t part = 0; part < job.stream->parts; ++part) {
     memory.payload.clear();
     const std::uint8_t type = job.type->encode(*job.row, reading, layout_.wire, part, memory.payload);
     if (type == 0) {
       ++failed;
     } else if (layout_.wire == sensors::WireFormat::thesis) {
-      put(part, netio::Endpoint{job.addressed.address, port}, memory.payload);
+      send(part, netio::Endpoint{job.addressed.address, port}, memory.payload);
     } else {
       netio::encode_reading(header, type, memory.payload, memory.packet);
       const netio::PacketSigner* signer = job.addressed.signer;
       if (signer != nullptr) netio::sign(memory.packet, signer->key(), job.counter + part);
-      put(part, netio::Endpoint{job.addressed.address, port}, memory.packet);
-      if (mirror_) put(job.stream->parts + part, *mirror_, memory.packet);
+      send(part, netio::Endpoint{job.addressed.address, port}, memory.packet);
+      if (mirror_) send(job.stream->parts + part, *mirror_, memory.packet);
     }
   }
   return failed;
 }
 
-void ReadingPublisher::queue(std::span<const AddressedReading> readings) {
+void ReadingPublisher::queue(std::span<const AddressedReading> readings, std::int64_t now) {
   std::size_t datagrams = 0;
   jobs_.clear();
-  for (const AddressedReading& addressed : readings) {
+  for (const AddressedReading& addressed : admit(readings, now)) {
     Job job = make_job(addressed);
     if (job.stream->parts == 0) continue;
     if (datagrams + datagrams_of(*job.stream) > outbox_.capacity()) {
@@ -131,6 +180,7 @@ void ReadingPublisher::encode_all() {
     for (auto job = jobs_.rbegin(); job != jobs_.rend(); ++job) --job->stream->sent;
     for (Job& job : jobs_) encode_and_queue(job);
   }
+  charge();
   jobs_.clear();
 }
 

@@ -296,6 +296,8 @@ void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
     if (!lanes_.take(*lane)) log_.note_unknown_lane(lane->segment, lane->lane, now);
     return;
   }
+  if (const auto* dropped = std::get_if<netio::Dropped>(&packet.body))
+    return log_.note_dropped(packet.header.sensor, *dropped, now);
   if (const auto* map = std::get_if<netio::TeamMap>(&packet.body)) {
     if (exchange_) exchange_->receive(packet.header, *map, now);
     return;

@@ -6,6 +6,7 @@
 
 #include "base/elapsed.h"
 #include "netio/signature_trouble_log.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::server {
 
@@ -75,6 +76,18 @@ void RobotClientLog::note_ignored_drive(const std::string& controller, std::int6
       fmt::format("the farm forwards commands of a Player client, which controller '{}' ignores; start the robot "
                   "with `--controller remote` to follow them",
                   controller),
+      now);
+}
+
+void RobotClientLog::note_dropped(std::uint32_t sensor, const netio::Dropped& dropped, std::int64_t now) {
+  if (now < next_dropped_) return;
+  next_dropped_ = now + kTroubleEvery;
+  const sensors::SensorType* const type = sensors::find_sensor_type(static_cast<std::uint8_t>(dropped.type));
+  log_.write(
+      fmt::format("the farm drops readings of {}:{}, whose priority is too low for its budget: so far {} for lack "
+                  "of processor time, {} for lack of bytes",
+                  type == nullptr ? fmt::format("type {}", dropped.type) : std::string(type->name), sensor,
+                  dropped.processor, dropped.network),
       now);
 }
 

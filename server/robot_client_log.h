@@ -26,6 +26,8 @@ class RobotClientLog {
   void note_ignored_drive(const std::string& controller, std::int64_t now);
   /// Logs that the farm changes a lane that the robot's world cannot change, at most every ten seconds.
   void note_unknown_lane(std::uint32_t segment, std::uint32_t lane, std::int64_t now);
+  /// Logs that the farm drops readings, at most every ten seconds.
+  void note_dropped(std::uint32_t sensor, const netio::Dropped& dropped, std::int64_t now);
   /// Logs that a real robot does not have the digital outputs that its controller sets, once.
   void note_ignored_outputs(std::string_view title, std::int64_t now);
   /// Logs that the controller is to share its map, but there is no V2V without the farm.
@@ -63,6 +65,7 @@ class RobotClientLog {
   std::int64_t next_lane_ = 0;     ///< [ns] time before which no unknown lane is logged
   MapExchangeCounts team_;         ///< as last logged
   std::int64_t next_foreign_ = 0;  ///< [ns] time before which no map of another area is logged
+  std::int64_t next_dropped_ = 0;  ///< [ns] time before which no dropped readings are logged
   bool outputs_ignored_ = false;
   std::int64_t next_drive_ = 0;  ///< [ns] time before which no ignored DRIVE is logged
 };

@@ -258,6 +258,12 @@ void RobotLink::handle_challenge(const netio::SessionToken& before) {
   clock_ = {};
 }
 
+std::uint64_t RobotLink::whole(std::uint8_t type, std::uint32_t sensor) const {
+  for (const Stream& stream : streams_)
+    if (stream.source.type->id == type && stream.source.row->sensor == sensor) return stream.whole;
+  return 0;
+}
+
 std::uint64_t RobotLink::scans() const {
   std::uint64_t scans = 0;
   for (const Stream& stream : streams_)

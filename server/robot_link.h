@@ -96,6 +96,8 @@ class RobotLink {
   const netio::SignatureTrouble& trouble() const { return v2v_socket_.trouble(); }
   /// Number of complete laser readings so far.
   std::uint64_t scans() const;
+  /// Returns the number of complete readings of one sensor.
+  std::uint64_t whole(std::uint8_t type, std::uint32_t sensor) const;
   bool listens() const { return !streams_.empty(); }  ///< whether it has any sensor
   const netio::Endpoint& farm() const { return farm_; }
   LinkCounts counts() const;

@@ -61,7 +61,10 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
                  options.mirror),
       fusion_(world, sensor_set, {.max_age = options.own_age, .clock = options.receiver.filter.clock}),
       farm_(world, device,
-            farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
+            farm::FarmOptions{.seed = options.seed,
+                              .true_poses = false,
+                              .no_return_inf = options.no_return_inf,
+                              .processor_budget = options.processor_budget / world.interval}),
       models_(world, own_models(world, options.receiver),
               {.seed = options.seed, .interval = interval_of(world, options)}),
       absent_(world.movers.size(), false),
@@ -69,6 +72,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       interval_(interval_of(world, options)),
       only_at_ticks_(options.rate > 0.0) {
   for (const std::uint32_t row : options.receiver.joining) models_.remove(row);
+  if (options.network_budget > 0.0) publisher_.limit(options.network_budget, options.network_budget * interval_);
   receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
     lights_.accept(header, signals, now);
   });
@@ -178,6 +182,7 @@ void Service::tick(std::int64_t now) {
   lanes_.update(now, receiver_.states(now), absent_, receiver_.log());
   lanes_.publish(now, receiver_);
   drives_.send(now, receiver_);
+  drop_notices_.publish(now, receiver_);
   receiver_.relay(now);
   call_models(now);
   ++ticks_;
@@ -210,8 +215,9 @@ void Service::publish_due(std::int64_t now, bool between) {
   const auto states = update_movers(now);
   const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
   address(readings);
-  publisher_.queue(addressed_readings_);
+  publisher_.queue(addressed_readings_, now);
   publisher_.flush();
+  note_dropped(now);
   addressed_readings_.clear();
   if (!sinks_.empty()) record(now, states, readings);
   shapes_.clear();
@@ -247,6 +253,17 @@ void Service::address(std::span<const base::ReadingBlock> readings) {
       addressed_readings_.push_back(
           {&reading, to->address, receiver_.inbox().session_token_for(id), receiver_.inbox().signer(id)});
   }
+}
+
+void Service::note_dropped(std::int64_t now) {
+  for (const farm::DroppedReading& reading : farm_.dropped()) {
+    const std::uint32_t id = world_.movers[reading.mover].id;
+    if (receiver_.inbox().is_subscribed(id, reading.type, now))
+      drop_notices_.add(id, reading.type, reading.sensor, DropNotices::Reason::processor, now);
+  }
+  for (const base::ReadingBlock* const reading : publisher_.dropped())
+    drop_notices_.add(world_.movers[reading->mover].id, reading->type, reading->sensor, DropNotices::Reason::network,
+                      reading->time);
 }
 
 void Service::record(std::int64_t now, std::span<const base::Report> states,

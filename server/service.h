@@ -21,6 +21,7 @@
 #include "gpu/device.h"
 #include "sensors/sensor_set.h"
 #include "server/drive_relay.h"
+#include "server/drop_notices.h"
 #include "server/lane_service.h"
 #include "server/light_service.h"
 #include "server/no_return_filter.h"
@@ -38,6 +39,9 @@ struct ServiceOptions {
   double rate = 0.0;
   std::uint64_t seed = 1;
   bool no_return_inf = false;
+  // Budgets, beyond which readings are dropped by priority (docs/robots.md#budgets); 0: no limit.
+  double processor_budget = 0.0;  ///< [s] processor time of readings per tick
+  double network_budget = 0.0;    ///< [byte/s] of readings' datagrams
   /// Lights of the world; their peers are those of `receiver`.
   std::optional<netio::Endpoint> spat;  ///< where to receive SPaT; nullopt: nowhere
   StaleLights stale_lights = StaleLights::dark;
@@ -120,6 +124,7 @@ class Service {
   void warn_of_missed(std::int64_t now);
   std::span<const base::Report> update_movers(std::int64_t now);
   void address(std::span<const base::ReadingBlock> readings);
+  void note_dropped(std::int64_t now);
   void record(std::int64_t now, std::span<const base::Report> states, std::span<const base::ReadingBlock> readings);
   void change_shapes(std::int64_t now);
   bool change_shape(std::uint32_t row, const world::ShapeChange& change, std::int64_t now);
@@ -133,6 +138,7 @@ class Service {
   StateReceiver receiver_;
   DriveRelay drives_;
   ReadingPublisher publisher_;
+  DropNotices drop_notices_;
   ReadingFusion fusion_;
   farm::Farm farm_;
   control::ModelControllers models_;  ///< of the objects that no packets move

@@ -51,6 +51,8 @@ std::string subject_of(const server::PacketDescription& packet) {
       return fmt::format("VALUES of sensor {} to robot {}", header.sensor, header.robot);
     case netio::Type::own_readings:
       return fmt::format("OWN_READINGS of sensor {} of robot {}", header.sensor, header.robot);
+    case netio::Type::dropped:
+      return fmt::format("DROPPED readings of sensor {} to robot {}", header.sensor, header.robot);
     case netio::Type::challenge:
     case netio::Type::neighbours:
     case netio::Type::state:

@@ -37,6 +37,7 @@
 #include "base/hash.h"
 #include "cluster/failure.h"
 #include "raycast/casters.h"
+#include "scenarios/fault_tables.h"
 #include "scenarios/operator.h"
 #include "scenarios/scenario_events.h"
 #include "scenarios/simulation.h"
@@ -66,6 +67,12 @@ std::optional<scenarios::PositioningOptions> positioning_of(const RunOptions& op
   return cameras;
 }
 
+/// @throws base::InputError for an invalid file
+std::vector<farm::Fault> faults_of(const RunOptions& options) {
+  if (options.fault_file.empty()) return {};
+  return scenarios::parse_faults(options.fault_file, base::read_text(options.fault_file));
+}
+
 /// @param scenario null: the options define the fleet
 scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options,
                                                 cluster::Ranks* ranks, const scenarios::Scenario* scenario) {
@@ -77,6 +84,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
     simulation.actor.controller = controller_config_of(options);
     simulation.actors = make_actors(world, options);
     simulation.positioning = positioning_of(options);
+    simulation.faults = faults_of(options);
   }
   simulation.threads = threads_of(options, ranks);
   simulation.no_return_inf = options.no_return_inf;
@@ -122,6 +130,10 @@ struct Ground {
         caster(raycast::describe_caster(device.info().software)) {
     warn_of_many_times(sensor_set);
     note_size();
+    if (options.fault_file.empty()) return;
+    const std::vector<farm::Fault> faults = faults_of(options);
+    farm::check_faults(faults, world, sensor_set);
+    options.faults = scenarios::faults_text(faults);
   }
 
   /// A world and its packet layout.
@@ -206,6 +218,7 @@ std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
   }
   if (options.positioning)
     text += "\npositioning " + (options.positioning->empty() ? "" : base::read_text(*options.positioning));
+  if (!options.fault_file.empty()) text += "\nfaults " + base::read_text(options.fault_file);
   if (is_scenario(options.world)) text += base::read_text(options.world);
   return base::hash_bytes(text.data(), text.size());
 }

@@ -45,6 +45,8 @@ std::optional<netio::Endpoint> mirror_of(const ServeOptions& options) {
 
 server::ServiceOptions service_options(const ServeOptions& options, const world::World& world) {
   server::ServiceOptions service{.rate = options.rate, .seed = options.seed, .no_return_inf = options.no_return_inf};
+  service.processor_budget = 1e-3 * options.processor_budget;
+  service.network_budget = options.network_budget;
   service.receiver = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
                       .radio = options.radio,
                       .forget = options.forget,

@@ -281,7 +281,8 @@ struct RunOptions : WorldOptions,
   std::optional<std::string> positioning;  ///< file with keys of [positioning]; empty: the default; nullopt: no cameras
   std::string map_file;                    ///< picture of the map that the robots build; empty: none
   std::optional<bridges::WebAddress> map_view;  ///< of the page with their maps; nullopt: none
-  std::string faults;  ///< the scenario's faults of sensors, as in its recording; not on the command line
+  std::string fault_file;                       ///< with [[fault]] tables; empty: none
+  std::string faults;  ///< of the scenario or that file, as in the recording; not on the command line
 };
 
 struct ServeOptions : WorldOptions,
@@ -309,7 +310,9 @@ struct ServeOptions : WorldOptions,
   std::uint32_t wait_for = 1;              ///< number of robots that must subscribe before the first tick
   std::uint16_t spat = 0;                  ///< port for SPaT; 0: none is received
   server::StaleLights stale_lights = server::StaleLights::dark;
-  std::string mirror;  ///< "host:port" of an observer of all readings; empty: none
+  double processor_budget = 0.0;  ///< [ms] per tick; 0: no limit
+  double network_budget = 0.0;    ///< [byte/s]; 0: no limit
+  std::string mirror;             ///< "host:port" of an observer of all readings; empty: none
 };
 
 struct RobotOptions : WorldOptions,

@@ -40,6 +40,7 @@ void refuse_options_of_worlds(const CLI::App& run) {
                                     {"--set", "settings"},
                                     {"--localize", "settings"},
                                     {"--positioning", "positioning"},
+                                    {"--faults", "[[fault]]"},
                                     {"--drive", "controller"}})
     if (run.count(option) > 0)
       throw CLI::ValidationError(option, fmt::format("applies to worlds; a scenario sets `{}`: change {}", key, world));
@@ -77,6 +78,9 @@ void add_run(CLI::App& app, Call& call) {
                   "(docs/scenarios.md; default: 10 poses/s, 5 mm, 0.01 rad)")
       ->expected(0, 1)
       ->type_name("[FILE]");
+  sub->add_option("--faults", o.fault_file, "Faults of sensors: a file with [[fault]] tables (docs/scenarios.md)")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
   add_no_return(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; unlimited with bridges)")
@@ -212,9 +216,10 @@ void refuse_with_lockstep(const CLI::App& sub) {
   for (const CLI::Option* option : sub.get_options()) {
     const std::string name = option->get_name();
     const bool of_ports = std::find(ports.begin(), ports.end(), name) != ports.end();
-    if (option->count() > 0 && (of_ports || name == "--spat" || name == "--stale-lights" || name == "--rate" ||
-                                name == "--radio" || name == "--forget" || name == "--mirror" ||
-                                option->get_group() == kStatesGroup || option->get_group() == kBridgeGroup))
+    if (option->count() > 0 &&
+        (of_ports || name == "--spat" || name == "--stale-lights" || name == "--rate" || name == "--radio" ||
+         name == "--forget" || name == "--mirror" || name == "--processor-budget" || name == "--network-budget" ||
+         option->get_group() == kStatesGroup || option->get_group() == kBridgeGroup))
       throw CLI::ValidationError(name, "cannot be used with --lockstep");
   }
 }
@@ -293,6 +298,17 @@ void add_serve(CLI::App& app, Call& call) {
                   "Address of an observer that receives a copy of every reading packet (`vps --readings`)")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
+  sub->add_option("--processor-budget", o.processor_budget,
+                  "Processor time for readings per tick [ms]; beyond it, readings of sensors with a low `priority` are "
+                  "dropped, and their robots notified (0: no limit)")
+      ->check(number(0.0, 1e6))
+      ->type_name("MS")
+      ->capture_default_str();
+  sub->add_option("--network-budget", o.network_budget,
+                  "Bytes of readings' packets per second, with the same consequence (0: no limit)")
+      ->check(number(0.0, 1e12))
+      ->type_name("BYTES")
+      ->capture_default_str();
   sub->add_option("--spat", o.spat,
                   "UDP port to receive SPaT of traffic lights on, which overrides the world's plans, as V2I at the "
                   "farm's port does")

@@ -263,6 +263,7 @@ std::string run_report_json(const RunReport& f) {
             {"readings", f.farm.readings},
             {"given_again", f.farm.reused},
             {"missed", f.farm.missed},
+            {"dropped", f.farm.dropped},
             {"batches", f.farm.batches},
             {"beams_in_doubt", f.farm.work.uncertain},
             {"cells_built", f.farm.work.cells_built},
@@ -289,9 +290,13 @@ std::string run_report_json(const RunReport& f) {
   if (f.control.robots > 0) json["control"] = control_json(f.control);
   if (f.strayed) json["outside_known_space"] = *f.strayed;
   if (f.sent)
-    json["packets"] = {{"sent", f.publisher.packets.sent},       {"bytes", f.publisher.packets.sent_bytes},
-                       {"failed", f.publisher.packets.failed},   {"dropped", f.publisher.packets.dropped},
-                       {"not_numbers", f.publisher.not_numbers}, {"first_failure", f.publisher.packets.first_failure}};
+    json["packets"] = {{"sent", f.publisher.packets.sent},
+                       {"bytes", f.publisher.packets.sent_bytes},
+                       {"failed", f.publisher.packets.failed},
+                       {"dropped", f.publisher.packets.dropped},
+                       {"not_numbers", f.publisher.not_numbers},
+                       {"readings_dropped", f.publisher.dropped},
+                       {"first_failure", f.publisher.packets.first_failure}};
   if (f.received) {
     json["received"] = reasons(f.inbox);
     json["socket_drops"] = f.socket_drops;

@@ -153,6 +153,8 @@ std::string work_text(const RunReport& f) {
   if (f.farm.missed > 0)
     text +=
         row("missed", "{}, besides {} readings: newer ones were due at the same tick", f.farm.missed, f.farm.readings);
+  if (f.farm.dropped > 0)
+    text += row("dropped", "{}, besides {} readings: no processor time was left", f.farm.dropped, f.farm.readings);
   if (work.host_scans > 0)
     text += row("cast on the host", "{} scans: too many surfaces around them for the device's lists", work.host_scans);
   std::string faults;
@@ -191,6 +193,7 @@ std::string packets_text(const server::PublisherCounts& publisher) {
   if (packets.failed + packets.dropped > 0)
     text +=
         row("packets not sent", "{} failed ({}), {} dropped", packets.failed, packets.first_failure, packets.dropped);
+  if (publisher.dropped > 0) text += row("readings not sent", "{}: no bytes were left", publisher.dropped);
   if (publisher.not_numbers > 0) text += row("packets not built", "{}: readings with NaN", publisher.not_numbers);
   return text;
 }

@@ -49,7 +49,8 @@ enum {
   SF_DRIVE = 143,
   SF_LANE,
   SF_TEAM_MAP,
-  SF_OWN_READINGS
+  SF_OWN_READINGS,
+  SF_DROPPED
 };
 enum { SF_OWN_LASER = 1, SF_OWN_SONAR = 4, SF_OWN_INFRARED, SF_OWN_BUMPER, SF_OWN_PART = 310 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
@@ -197,6 +198,7 @@ static const sf_type sf_types[] = {
     {144, "LANE", 0, {"segment", "lane", "use"}, {{0}}},
     {145, "TEAM_MAP", 0, {"word_columns", "word_rows", "piece", "flags"}, {{0}}},
     {146, "OWN_READINGS", 0, {"readings_type", "total", "first", "fov_urad"}, {{"value", 1, 1}}},
+    {147, "DROPPED", 0, {"readings_type", "processor", "network"}, {{0}}},
     {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
 
 typedef struct {
@@ -483,6 +485,7 @@ static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t
   if (p->type == SF_OBJECT) return in_range(p->words[0] <= 1 && p->robot > 0);
   if (p->type == SF_LANE) return in_range(p->words[2] < 16 && p->words[2] % 8 <= 4);
   if (p->type == SF_REFUSAL) return in_range(p->words[0] >= 1 && p->words[0] <= 4);
+  if (p->type == SF_DROPPED) return in_range(p->words[0] >= 1 && p->words[0] <= 63);
   return NULL;
 }
 
@@ -1051,7 +1054,7 @@ static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size
   const char* const forged = c->has_key ? sf_check_signature(window, bytes, size, c->key) : NULL;
   if (forged) return forged;
   if (p->type >= SF_V2V && p->type != SF_START && p->type != SF_CHALLENGE && p->type != SF_NEIGHBOURS &&
-      p->type != SF_V2I)
+      p->type != SF_V2I && p->type != SF_DROPPED)
     return "wrong direction";
   if (p->robot != c->robot && p->type != SF_V2I && (p->type != SF_START || p->robot != 65535)) return "unknown robot";
   if (p->type == SF_CHALLENGE) {
@@ -1064,8 +1067,8 @@ static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size
   return p->type == SF_START || is_newer(c, p) ? NULL : "stale";
 }
 
-// Waits at most `timeout` [s], then passes accepted readings, NEIGHBOURS, V2I and START to `handle`, at most 64 from
-// each port.
+// Waits at most `timeout` [s], then passes accepted readings, NEIGHBOURS, V2I, DROPPED and START to `handle`, at most
+// 64 from each port.
 void sf_receive(sf_client* c, double timeout, void (*handle)(const sf_packet*, void*), void* context) {
   if (poll(c->polled, c->sockets, timeout > 0 ? (int)ceil(1e3 * timeout) : 0) <= 0) return;
   for (unsigned i = 0; i < c->sockets; ++i)

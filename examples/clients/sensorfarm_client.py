@@ -32,15 +32,15 @@ LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, OCCUPANCY, LASER_EXTEND
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
             4: "refused: wrong address"}
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE, LANE, TEAM_MAP, OWN_READINGS = (
-    128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143, 144, 145, 146)
+(V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS, DRIVE, LANE, TEAM_MAP, OWN_READINGS,
+ DROPPED) = (128, 129, 130, 131, 132, 133, 137, 138, 139, 140, 143, 144, 145, 146, 147)
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
 HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
 HEADER = struct.Struct("<4sBBHHHIqIII6fHH")
 STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I",
-          OBJECT: "<I", REFUSAL: "<I", DRIVE: "<3d", LANE: "<3I"}  # payloads
+          OBJECT: "<I", REFUSAL: "<I", DRIVE: "<3d", LANE: "<3I", DROPPED: "<3I"}  # payloads
 
 # Sensor types: name, base of the ports, columns of a row with the unit of each number on the wire.
 SENSORS = {
@@ -83,7 +83,7 @@ SENSORS = {
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
               137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE",
-              144: "LANE", 145: "TEAM_MAP", 146: "OWN_READINGS"}
+              144: "LANE", 145: "TEAM_MAP", 146: "OWN_READINGS", 147: "DROPPED"}
 SHAPED_OBJECT = "<2I3d64s"  # payload of an OBJECT that changes a shape
 SHAPE_NAME = re.compile(rb"[A-Za-z0-9_.-]{1,64}")
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
@@ -316,6 +316,9 @@ def decode_state(type, robot, payload):
     if type == LANE:
         require(numbers[2] < 16 and numbers[2] % 8 <= 4)
         return dict(zip(("segment", "lane", "use"), numbers))
+    if type == DROPPED:
+        require(1 <= numbers[0] <= 63)
+        return dict(zip(("readings_type", "processor", "network"), numbers))
     require(type != OBJECT or numbers[0] <= 1 and robot > 0)
     require(type != REFUSAL or 1 <= numbers[0] <= 4)
     name = {SUBSCRIBE: "types", OBJECT: "present", REFUSAL: "reason"}.get(type, "challenge")
@@ -508,7 +511,7 @@ class Client:
             opened.close()
 
     def receive(self, timeout):
-        """Returns accepted readings, NEIGHBOURS, V2I and START that arrive within `timeout` [s]; bounded in number."""
+        """Returns accepted readings, NEIGHBOURS, V2I, DROPPED and START that arrive within `timeout` [s]; bounded in number."""
         packets = []
         for opened in select.select(self.sockets, [], [], max(0.0, timeout))[0]:
             for _ in range(64):
@@ -537,7 +540,7 @@ class Client:
                 self.newest.clear()  # another farm
             self.token, self.farm_session, self.next_request = packet["challenge"], packet["session"], 0.0
             return packet
-        require(packet["type"] < 128 or packet["type"] in (START, NEIGHBOURS, V2I), "wrong direction")
+        require(packet["type"] < 128 or packet["type"] in (START, NEIGHBOURS, V2I, DROPPED), "wrong direction")
         require(packet["type"] == V2I or packet["robot"] in (self.robot, EVERY_ROBOT), "unknown robot")
         require(packet["type"] == START or self._is_newer(packet), "stale")
         return packet

@@ -303,7 +303,7 @@ class Simulation:
                  seed: int = 1, threads: int = 0, noise: bool = True, accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
-                 ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", positioning: str = "",
+                 ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", positioning: str = "", faults: str = "",
                  writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), possibly one of the installed worlds. robots: clones of one robot
         (`of`; otherwise the first with sensors) at free poses; 0: the world's own robots. robot_from: "FILE:NAME", a
@@ -315,7 +315,7 @@ class Simulation:
         file, or else twists; "none": twists drive all. record: folder of a recording. too_near_min: record ranges of
         surfaces that are too near as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd
         or none (docs/recordings.md). positioning: of robots that localize themselves, by keys of a scenario's table
-        [positioning], one per line (docs/scenarios.md). ranks: processes of mpirun share the fleet; all make the same calls, and each has
+        [positioning], one per line (docs/scenarios.md). faults: of sensors, as [[fault]] tables of a scenario. ranks: processes of mpirun share the fleet; all make the same calls, and each has
         the readings of its own robots only and commands these (docs/cluster.md). Raises Error, DeviceError,
         TypeError."""
     @staticmethod

@@ -14,7 +14,7 @@ namespace sf::farm {
 inline constexpr std::uint32_t kBeams = 61;
 
 /// Runs lasers on the device's kernels, even on a software device.
-inline constexpr FarmOptions kOnDevice{.scene = {.caster = &raycast::device_caster}};
+inline const FarmOptions kOnDevice{.scene = {.caster = &raycast::device_caster}};
 
 /// `robots` robots among boxes, each with one laser at 10 Hz.
 inline world::World small_world(std::uint32_t robots, const raycast::ScanNoise& noise = {}) {

@@ -184,6 +184,22 @@ TEST(Library, CamerasPositionRobotsThatLocalizeThemselves) {
   expect_in("'start' is 'lost'; expected", refusal_of<Error>([&] { drive_with("start = \"lost\"", 1); }));
 }
 
+TEST(Library, SensorsFailAsStated) {
+  const std::string world = "position( name \"a\" size [0.3 0.3 0.1] gyro( noise 1 ) )\n";
+  const auto rates = [&](const std::string& faults) {
+    Simulation robot = Simulation::from_text(world, {.faults = faults});
+    std::vector<double> all;
+    for (int i = 0; i < 20; ++i) robot.step(), all.push_back(robot.readings("gyro").values[0]);
+    return all;
+  };
+  const auto healthy = rates(""), stuck = rates("[[fault]]\nrobot = '*'\nsensor = 'gyro'\nkind = 'stuck'\nfrom = 1");
+  EXPECT_EQ(healthy[8], stuck[8]);
+  EXPECT_NE(healthy[18], healthy[19]);
+  EXPECT_EQ(stuck[18], stuck[19]);
+  expect_in("faults:1: unknown key 'faults'", refusal_of<Error>([&] { rates("[[faults]]\nrobot = 'a'"); }));
+  expect_in("faults:2: ", refusal_of<Error>([&] { rates("[[fault]]\nrobot = 'b'\nsensor = 'gyro'\nkind = 'stuck'"); }));
+}
+
 TEST(Library, WithoutMpirunOneRankOwnsAll) {
   Simulation alone(kCave, {.robots = 5});
   Simulation shared(kCave, {.robots = 5, .ranks = true});

@@ -61,8 +61,8 @@ TEST(Allocation, NoneWhenReceivingOrSending) {
   std::vector<base::Bytes> packets = examples();
   const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
   for (base::Bytes& packet : packets) write_session_token(packet, {1, token});
-  const base::Bytes own_readings = packets.back();
-  packets.resize(packets.size() - 6);  // those from the farm, like the challenge, and TEAM_MAP
+  const base::Bytes own_readings = packets[packets.size() - 2];
+  packets.resize(packets.size() - 7);  // those from the farm, like the challenge, and TEAM_MAP
   const std::vector<base::Bytes> fixed(packets.end() - 2, packets.end());  // a light and an object
   packets.resize(packets.size() - 3);
   const base::Bytes leave = packets.back();  // after it the robot receives no packets

@@ -131,6 +131,14 @@ inline base::Bytes own_readings_example() {
   return out;
 }
 
+/// Readings of laser 1 that were not measured, and not sent.
+inline base::Bytes dropped_example() {
+  base::Bytes out;
+  encode({.robot = 7, .sensor = 1, .sequence = 2, .time = 6'700'000'000, .session = 0x11223344, .token = 0x55667788},
+         Dropped{1, 12, 3}, out);
+  return out;
+}
+
 /// Forwarded states of two other robots.
 inline base::Bytes neighbours_example() {
   base::Bytes first = v2v_example(), second, out;
@@ -151,10 +159,10 @@ inline std::vector<base::Bytes> states() {
 
 /// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(),   extended_example(), v2v_example(),      tag_example(),
-          subscribe_example(), start_example(),    leave_example(),    challenge_example(),
-          v2i_example(),       object_example(),   refusal_example(),  neighbours_example(),
-          drive_example(),     lane_example(),     team_map_example(), own_readings_example()};
+  return {reading_example(),      extended_example(),   v2v_example(),       tag_example(),  subscribe_example(),
+          start_example(),        leave_example(),      challenge_example(), v2i_example(),  object_example(),
+          refusal_example(),      neighbours_example(), drive_example(),     lane_example(), team_map_example(),
+          own_readings_example(), dropped_example()};
 }
 
 inline base::Bytes command_example() {

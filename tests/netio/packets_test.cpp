@@ -46,6 +46,7 @@ TEST(Packets, BytesMatchTheDocumentation) {
   EXPECT_EQ(lane_example(), documented("lane"));
   EXPECT_EQ(team_map_example(), documented("team_map"));
   EXPECT_EQ(own_readings_example(), documented("own_readings"));
+  EXPECT_EQ(dropped_example(), documented("dropped"));
   EXPECT_EQ(neighbours_example(), documented("neighbours"));
   EXPECT_EQ(command_example(), documented("command"));
   EXPECT_EQ(step_example(), documented("step"));
@@ -602,7 +603,8 @@ TEST(PacketsPage, NumbersMatchTheCode) {
                                                 {"DRIVE", Type::drive},
                                                 {"LANE", Type::lane},
                                                 {"TEAM_MAP", Type::team_map},
-                                                {"OWN_READINGS", Type::own_readings}};
+                                                {"OWN_READINGS", Type::own_readings},
+                                                {"DROPPED", Type::dropped}};
   std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
   const std::string page((std::istreambuf_iterator<char>(file)), {});
   const std::string row = page.substr(page.find("| 5 | u8 | type |"), 500);

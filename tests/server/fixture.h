@@ -45,6 +45,8 @@ struct Settings {
   std::string controller = "wander";
   bool stop_without_farm = false;
   std::optional<world::World> world = {};  ///< in place of the room
+  double processor_budget = 0.0;           ///< [s] per tick
+  double network_budget = 0.0;             ///< [byte/s]
 };
 
 inline world::World in_mode(world::World world, const std::string& accuracy) {
@@ -82,7 +84,9 @@ struct Fixture {
                                                                     .radio = settings.radio,
                                                                     .log_descriptor = log.descriptor(),
                                                                     .filter = settings.filter,
-                                                                    .peers = settings.peers}});
+                                                                    .peers = settings.peers},
+                                                       .processor_budget = settings.processor_budget,
+                                                       .network_budget = settings.network_budget});
   }
   /// Returns the client of a robot, with its key in the table of peers or with another.
   std::unique_ptr<RobotClient> make_client(std::uint32_t mover) {

@@ -1,0 +1,108 @@
+#include "farm/processor_budget.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <tuple>
+
+namespace sf::farm {
+
+namespace {
+
+constexpr double kLearning = 0.2;  // share of an error of the prediction that one call corrects
+
+}  // namespace
+
+ProcessorBudget::ProcessorBudget(double rate, double limit, std::span<const sensors::DerivedNode> derived)
+    : bucket_(rate, limit) {
+  set_derived(derived);
+}
+
+void ProcessorBudget::set_derived(std::span<const sensors::DerivedNode> derived) {
+  inputs_.clear(), input_priorities_.clear();
+  // Consumers come before their inputs, so that priorities pass through all levels.
+  std::vector<const sensors::DerivedNode*> nodes;
+  for (const sensors::DerivedNode& node : derived) nodes.push_back(&node);
+  std::ranges::stable_sort(nodes, std::greater(), &sensors::DerivedNode::level);
+  std::map<sensors::WiredInput, std::uint8_t> largest;
+  const auto key = [](const sensors::WiredInput& input) {
+    return sensors::WiredInput{0, input.mover, input.type, input.sensor};
+  };
+  for (const sensors::DerivedNode* node : nodes) {
+    std::uint8_t priority = node->spec.priority;
+    if (const auto own = largest.find({0, node->spec.mover, node->type->id, node->spec.sensor}); own != largest.end())
+      priority = std::max(priority, own->second);
+    for (const sensors::WiredInput& input : node->inputs) {
+      std::uint8_t& at = largest[key(input)];
+      at = std::max(at, priority);
+    }
+  }
+  for (const auto& [input, priority] : largest) inputs_.push_back(input), input_priorities_.push_back(priority);
+}
+
+std::uint8_t ProcessorBudget::priority_of(const SensorPipeline& pipeline, std::uint32_t row) const {
+  const sensors::SensorSpec& spec = pipeline.group->rows[row];
+  const sensors::WiredInput key{0, spec.mover, pipeline.group->type->id, spec.sensor};
+  const auto found = std::ranges::lower_bound(inputs_, key);
+  if (found == inputs_.end() || !(*found == key)) return spec.priority;
+  return std::max(spec.priority, input_priorities_[static_cast<std::size_t>(found - inputs_.begin())]);
+}
+
+std::vector<std::uint64_t>& ProcessorBudget::admitted_of(const SensorPipeline& pipeline) {
+  std::vector<std::uint64_t>& rows = admitted_[pipeline.group->type->id];
+  if (rows.size() < pipeline.group->rows.size()) rows.resize(pipeline.group->rows.size());
+  return rows;
+}
+
+void ProcessorBudget::admit(std::int64_t now, std::span<SensorPipeline* const> pipelines) {
+  bucket_.refill(now);
+  ++calls_;
+  elements_.fill(0.0), candidates_.clear(), dropped_.clear();
+  for (std::uint32_t p = 0; p < pipelines.size(); ++p) {
+    const SensorPipeline& pipeline = *pipelines[p];
+    const std::vector<std::uint64_t>& last = admitted_of(pipeline);
+    for (std::uint32_t d = 0; d < pipeline.due.size(); ++d) {
+      const std::uint32_t row = pipeline.due[d].row;
+      candidates_.push_back({priority_of(pipeline, row), last[row], p, d,
+                             costs_[pipeline.group->type->id] * pipeline.group->rows[row].elements});
+    }
+  }
+  std::ranges::stable_sort(candidates_, [](const Candidate& a, const Candidate& b) {
+    return std::tuple(b.priority, a.last) < std::tuple(a.priority, b.last);
+  });
+  for (Candidate& candidate : candidates_) {
+    if (bucket_.empty()) break;
+    candidate.admitted = true;
+    bucket_.spend(candidate.cost);
+  }
+  std::ranges::sort(candidates_, {}, [](const Candidate& c) { return std::tuple(c.pipeline, c.due); });
+  std::size_t next = 0;
+  for (SensorPipeline* const pipeline : pipelines) {
+    const std::uint8_t type = pipeline->group->type->id;
+    std::erase_if(pipeline->due, [&](const sensors::DueSample& due) {
+      const sensors::SensorSpec& spec = pipeline->group->rows[due.row];
+      if (candidates_[next++].admitted) {
+        elements_[type] += spec.elements;
+        admitted_[type][due.row] = calls_;
+        return false;
+      }
+      dropped_.push_back({spec.mover, type, spec.sensor});
+      return true;
+    });
+  }
+}
+
+/// One step of normalized least mean squares.
+void ProcessorBudget::spent(double seconds) {
+  double predicted = 0.0, squares = 0.0;
+  for (std::size_t type = 0; type < costs_.size(); ++type) {
+    predicted += costs_[type] * elements_[type];
+    squares += elements_[type] * elements_[type];
+  }
+  bucket_.spend(seconds - predicted);
+  if (squares == 0.0) return;
+  for (std::size_t type = 0; type < costs_.size(); ++type)
+    costs_[type] = std::max(0.0, costs_[type] + kLearning * (seconds - predicted) * elements_[type] / squares);
+}
+
+}  // namespace sf::farm

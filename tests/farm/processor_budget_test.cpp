@@ -1,0 +1,181 @@
+// Budgets of processor time: priorities, fairness among equals, learnt costs, and notices of everything dropped.
+
+#include "farm/processor_budget.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <map>
+
+#include "base/time.h"
+#include "farm/farm.h"
+#include "sensors/encoder.h"
+#include "sensors/gyro.h"
+#include "sensors/laser.h"
+#include "sensors/localization.h"
+#include "tests/device.h"
+#include "tests/refusal.h"
+#include "world/stage/build_world.h"
+
+namespace sf::farm {
+namespace {
+
+constexpr std::int64_t kTick = 100'000'000;  // [ns]
+
+world::World crowd(int robots, const std::string& sensors) {
+  std::string text = "define bot position( size [0.3 0.3 0.1] " + sensors + " )\n";
+  for (int k = 0; k < robots; ++k)
+    text += "bot( name \"r" + std::to_string(k) + "\" pose [" + std::to_string(2 * k) + " 0 0 0] )\n";
+  return world::build_world("crowd.world", text, {.sensors = sensors::world_file_words()});
+}
+
+using Counts = std::map<std::pair<std::uint32_t, std::uint8_t>, int>;  // by mover and type
+
+/// The due times of a world's sensors, each element of which costs `per_element` [s].
+struct Trial {
+  Trial(const world::World& w, double budget, double per_element)
+      : world(w),
+        sensor_set(world),
+        nodes(sensors::wire(world, sensor_set)),
+        states(world.movers.size()),
+        subscribed(world.movers.size(), kAllSensorTypes),
+        cost(per_element),
+        processor(budget, 1e-9 * kTick * budget, nodes) {
+    const sensors::SensorContext context{world, host_device(), pool, states, 1, true, true, {}};
+    for (const auto& group : sensor_set.groups()) pipelines.emplace_back(context, group, false);
+    for (SensorPipeline& pipeline : pipelines) all.push_back(&pipeline);
+  }
+  /// Returns how often each sensor was measured in some ticks.
+  Counts run(int ticks) {
+    Counts measured;
+    for (int k = 0; k < ticks; ++k, ++tick) {
+      for (SensorPipeline& pipeline : pipelines) pipeline.find_due(tick * kTick, subscribed);
+      processor.admit(tick * kTick, all);
+      double elements = 0.0;
+      for (const SensorPipeline& pipeline : pipelines)
+        for (const sensors::DueSample& due : pipeline.due) {
+          const sensors::SensorSpec& row = pipeline.group->rows[due.row];
+          ++measured[{row.mover, pipeline.group->type->id}];
+          elements += row.elements;
+        }
+      processor.spent(cost * elements);
+      dropped += processor.dropped().size();
+    }
+    return measured;
+  }
+  world::World world;
+  sensors::SensorSet sensor_set;
+  std::vector<sensors::DerivedNode> nodes;
+  base::ThreadPool pool{1};
+  std::vector<base::Report> states;
+  std::vector<base::SensorTypes> subscribed;
+  std::vector<SensorPipeline> pipelines;
+  std::vector<SensorPipeline*> all;
+  double cost;
+  ProcessorBudget processor;
+  std::int64_t tick = 0;
+  std::size_t dropped = 0;
+};
+
+TEST(TokenBucket, FillsToItsLimitAndOwesAtMostAsMuch) {
+  TokenBucket bucket(10.0, 2.0);
+  EXPECT_FALSE(bucket.empty()) << "full at first";
+  bucket.spend(2.0);
+  EXPECT_TRUE(bucket.empty());
+  bucket.spend(100.0);
+  bucket.refill(199'000'000);
+  EXPECT_TRUE(bucket.empty()) << "it owes 2, which take 0.2 s";
+  bucket.refill(201'000'000);
+  EXPECT_FALSE(bucket.empty());
+  bucket.refill(base::nanoseconds(1000.0));
+  bucket.spend(2.0);
+  EXPECT_TRUE(bucket.empty()) << "its limit";
+}
+
+constexpr double kPerElement = 1e-5;  // [s]
+
+/// Ten lasers and gyros, first with as much time as they need, then with half of it.
+TEST(ProcessorBudget, ALoadThatDoublesLeavesHighPrioritiesAlone) {
+  const std::string sensors = "laser( samples 100 rate 10 ) gyro( rate 10 priority 9 )";
+  const double full = 10.0 * 10.0 * 101.0 * kPerElement;  // [s] per second of run
+  Trial enough(crowd(10, sensors), 1.2 * full, kPerElement);
+  enough.run(100);
+  EXPECT_EQ(enough.dropped, 0u);
+
+  Trial half(crowd(10, sensors), 0.5 * full, kPerElement);
+  half.run(100);  // learns the costs
+  EXPECT_NEAR(half.processor.cost(sensors::kLaser), kPerElement, 0.1 * kPerElement);
+  half.dropped = 0;
+  const Counts measured = half.run(200);
+  std::size_t sum = 0;
+  for (std::uint32_t m = 0; m < 10; ++m) {
+    EXPECT_EQ(measured.at({m, sensors::kGyro}), 200) << "a high priority";
+    EXPECT_NEAR(measured.at({m, sensors::kLaser}), 100, 10) << "equals take turns";
+    sum += static_cast<std::size_t>(measured.at({m, sensors::kLaser}));
+  }
+  EXPECT_EQ(half.dropped, 2000 - sum) << "everything that is dropped is stated";
+}
+
+TEST(ProcessorBudget, InputsHaveThePriorityOfTheirConsumers) {
+  const std::string sensors =
+      "laser( samples 100 rate 10 priority 5 ) encoder( rate 10 priority 0 )\n"
+      "derived( type \"localization\" inputs [\"encoder\"] rate 10 priority 8 )";
+  Trial trial(crowd(4, sensors), 20.0 * 8.0 * kPerElement, kPerElement);  // encoders, localizations and as much again
+  trial.run(100);
+  const Counts measured = trial.run(100);
+  int lasers = 0;
+  for (std::uint32_t m = 0; m < 4; ++m) {
+    EXPECT_EQ(measured.at({m, sensors::kEncoder}), 100);
+    EXPECT_EQ(measured.at({m, sensors::kLocalization}), 100);
+    const auto laser = measured.find({m, sensors::kLaser});
+    lasers += laser == measured.end() ? 0 : laser->second;
+  }
+  EXPECT_NEAR(lasers, 8, 5) << "8 elements per tick pay for a laser of 100 in every twelfth";
+}
+
+/// The processor time that is used does not exceed the budget in the mean, whatever the load.
+RC_GTEST_PROP(ProcessorBudget, HoldsInTheMean, ()) {
+  const int robots = *rc::gen::inRange(1, 20), beams = *rc::gen::inRange(1, 300);
+  const double share = 0.01 * *rc::gen::inRange(5, 300);
+  const double full = 10.0 * robots * beams * kPerElement, budget = share * full;
+  Trial trial(crowd(robots, "laser( samples " + std::to_string(beams) + " rate 10 )"), budget, kPerElement);
+  trial.run(200);
+  int measured = 0;
+  for (const auto& [key, count] : trial.run(400)) measured += count;
+  const double used = measured * beams * kPerElement / 40.0;
+  RC_ASSERT(used <= std::min(full, budget) * 1.01 + beams * kPerElement / 40.0);
+  if (share > 1.1) RC_ASSERT(measured == 400 * robots);
+}
+
+/// Each call costs the same by this clock: twice the budget.
+TEST(ProcessorBudget, DroppedReadingsAreNeverDelivered) {
+  const world::World world = crowd(4, "gyro( rate 10 priority 9 ) laser( samples 10 rate 10 latency 0.2 )");
+  double clock = 0.0;
+  Farm farm(world, host_device(),
+            {.threads = 1, .processor_budget = 0.1, .processor_clock = [&clock] { return clock += 0.02; }});
+  farm.subscribe_all();
+  std::size_t lasers = 0, gyros = 0, dropped = 0;
+  for (std::int64_t tick = 0; tick < 200; ++tick) {
+    for (const base::ReadingBlock& reading : farm.tick(tick * kTick, {})) {
+      (reading.type == sensors::kLaser ? lasers : gyros) += 1;
+      EXPECT_EQ(reading.time, (tick - (reading.type == sensors::kLaser ? 2 : 0)) * kTick);
+    }
+    for (const DroppedReading& reading : farm.dropped()) dropped += reading.type == sensors::kLaser;
+  }
+  EXPECT_GT(dropped, 100u);
+  EXPECT_NEAR(static_cast<double>(lasers + dropped), 4 * 199, 5) << "each is delivered late or dropped";
+  EXPECT_EQ(farm.stats().dropped, 4 * 200 - gyros + dropped);
+}
+
+TEST(ProcessorBudget, PrioritiesAreZeroToNine) {
+  const auto refused = [](const std::string& priority) {
+    return refusal_of([&] { sensors::SensorSet(crowd(1, "laser( priority " + priority + " )")); });
+  };
+  EXPECT_EQ(refused("9"), "");
+  expect_in("'priority'", refused("10"));
+  expect_in("'priority'", refused("-1"));
+  expect_in("'priority'", refused("2.5"));
+}
+
+}  // namespace
+}  // namespace sf::farm
