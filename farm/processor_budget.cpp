@@ -9,7 +9,8 @@ namespace sf::farm {
 
 namespace {
 
-constexpr double kLearning = 0.2;  // share of an error of the prediction that one call corrects
+constexpr double kLearning = 0.2;      // share of an error of the prediction that one call corrects
+constexpr double kForgetting = 0.995;  // factor per call of costs of types of which nothing is admitted
 
 }  // namespace
 
@@ -71,7 +72,8 @@ void ProcessorBudget::admit(std::int64_t now, std::span<SensorPipeline* const> p
     return std::tuple(b.priority, a.last) < std::tuple(a.priority, b.last);
   });
   for (Candidate& candidate : candidates_) {
-    if (bucket_.empty()) break;
+    if (!bucket_.may_have(candidate.cost)) continue;  // it waits for nothing
+    if (!bucket_.has(candidate.cost)) break;
     candidate.admitted = true;
     bucket_.spend(candidate.cost);
   }
@@ -79,6 +81,7 @@ void ProcessorBudget::admit(std::int64_t now, std::span<SensorPipeline* const> p
   std::size_t next = 0;
   for (SensorPipeline* const pipeline : pipelines) {
     const std::uint8_t type = pipeline->group->type->id;
+    const bool had_due = !pipeline->due.empty();
     std::erase_if(pipeline->due, [&](const sensors::DueSample& due) {
       const sensors::SensorSpec& spec = pipeline->group->rows[due.row];
       if (candidates_[next++].admitted) {
@@ -89,6 +92,7 @@ void ProcessorBudget::admit(std::int64_t now, std::span<SensorPipeline* const> p
       dropped_.push_back({spec.mover, type, spec.sensor});
       return true;
     });
+    if (pipeline->due.empty() && had_due) costs_[type] *= kForgetting;
   }
 }
 

@@ -2,9 +2,11 @@
 // Limits the processor time of sensors: where it is exhausted, readings with the lowest priority are not measured.
 //
 // A budget is a bucket that fills at a constant rate, up to a limit. Readings that are due together are admitted by
-// priority, then in the order in which they were last admitted, while the bucket is not empty, so at most one reading
-// exceeds it. What a reading costs is learnt per sensor type and element from the time that each call took. A reading
-// that is not admitted is dropped: it is never measured later.
+// priority, then in the order in which they were last admitted, as long as the bucket has what they are expected to
+// cost: no reading is measured at the expense of one with a higher priority, now or later. What a reading costs is
+// learnt per sensor type and element from the time that each call took. The expected cost of types of which nothing is
+// admitted falls slowly, so that they are tried again. A reading that is not admitted is dropped: it is never measured
+// later.
 
 #include <array>
 #include <cstdint>

@@ -75,9 +75,11 @@ std::span<const AddressedReading> ReadingPublisher::admit(std::span<const Addres
     return std::pair(-int{sensor_set_.row(reading).priority}, stream_of(reading).last);
   });
   admitted_.assign(readings.size(), 0);
+  bool dropping = false;  // nothing is sent in place of a reading with a higher priority
   for (const std::uint32_t i : order_) {
     Stream& stream = stream_of(*readings[i].reading);
-    admitted_[i] = !bucket_->empty();
+    admitted_[i] = !dropping && bucket_->has(stream.bytes);
+    dropping = dropping || (admitted_[i] == 0 && bucket_->may_have(stream.bytes));
     if (admitted_[i] == 0) {
       dropped_.push_back(readings[i].reading);
       continue;

@@ -51,7 +51,7 @@ class ReadingPublisher {
   /// @param now [ns] does not decrease; needed for a limit only
   void queue(std::span<const AddressedReading> readings, std::int64_t now = 0);
   /// Limits the bytes of datagrams, copies included. Readings with the lowest priority that exceed the limit are
-  /// dropped, never delayed; at most one exceeds it. Equal ones take turns.
+  /// dropped, never delayed. Equal ones take turns.
   /// @param rate [byte/s] > 0 @param burst [byte] > 0
   void limit(double rate, double burst) { bucket_.emplace(rate, burst); }
   /// Returns the readings that the last call of `queue` dropped. Valid until the next.

@@ -72,7 +72,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       interval_(interval_of(world, options)),
       only_at_ticks_(options.rate > 0.0) {
   for (const std::uint32_t row : options.receiver.joining) models_.remove(row);
-  if (options.network_budget > 0.0) publisher_.limit(options.network_budget, options.network_budget * interval_);
+  if (options.network_budget > 0.0) publisher_.limit(options.network_budget, 2.0 * options.network_budget * interval_);
   receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
     lights_.accept(header, signals, now);
   });

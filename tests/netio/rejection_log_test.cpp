@@ -75,7 +75,7 @@ TEST(PacketForms, MatchTheDecoder) {
     EXPECT_EQ(status(form->bytes + 1), PacketStatus::too_long) << form->name;
     EXPECT_EQ(status(form->bytes - 1), PacketStatus::too_short) << form->name;
   }
-  EXPECT_EQ(forms, 19);
+  EXPECT_EQ(forms, 20);
 }
 
 // Every reason that no other log reports has its own text.
