@@ -295,7 +295,7 @@ TEST(Packets, TypesBelow128AreReadings) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // type 0 does not exist
     EXPECT_EQ(sensor_type_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 146;
+    const bool is_state = type >= 128 && type <= 147;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? PacketStatus::accepted : PacketStatus::unknown_type)
