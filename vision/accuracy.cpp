@@ -32,7 +32,7 @@ void AccuracyMeter::compare(const TrackedTag& tracked, std::size_t tag) {
   accuracy_.turn.add(tracked.turn - truth.turn);
 }
 
-void AccuracyMeter::add(double time, std::span<const TrackedTag> tracked) {
+void AccuracyMeter::add(double time, std::span<const TrackedTag> tracked, const std::set<std::uint32_t>* wanted) {
   std::size_t known = 0;
   for (std::size_t tag = 0; tag < fleet_.size(); ++tag) {
     const std::uint32_t id = fleet_.truth(tag, time).id;
@@ -43,6 +43,7 @@ void AccuracyMeter::add(double time, std::span<const TrackedTag> tracked) {
       ++known;
       continue;
     }
+    if (wanted != nullptr && wanted->count(id) == 0) continue;
     // No tag is reported in the first updates if `report_from` is above 1.
     const auto sees = [&](const TestbedCamera& each) { return fleet_.is_visible(each.camera, tag, time); };
     if (updates_ + 1 >= testbed_.report_from && std::any_of(testbed_.cameras.begin(), testbed_.cameras.end(), sees))

@@ -2,6 +2,7 @@
 // Errors of tracked tags relative to the ground truth of a rendered fleet.
 
 #include <cstdint>
+#include <set>
 #include <span>
 
 #include "vision/rendered_fleet.h"
@@ -34,7 +35,8 @@ class AccuracyMeter {
   /// @param testbed, fleet must outlive this
   AccuracyMeter(const Testbed& testbed, const RenderedFleet& fleet);
   /// @param time [s] at which the exposure of the images began
-  void add(double time, std::span<const TrackedTag> tracked);
+  /// @param wanted ids of the tags that the cameras are to find; null: all
+  void add(double time, std::span<const TrackedTag> tracked, const std::set<std::uint32_t>* wanted = nullptr);
   const Accuracy& accuracy() const { return accuracy_; }
 
  private:

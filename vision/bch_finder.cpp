@@ -74,10 +74,10 @@ std::optional<BchMatch> read_code(const Image& image, const QuadMap& map, int bo
 
 class BchFinder : public TagFinder {
  public:
-  bool find(const Image& image, std::vector<TagOutline>& found) override {
+  bool find(const Image& image, const Region& region, std::vector<TagOutline>& found) override {
     found.clear();
     read_.clear();
-    if (!squares_->find(image, outlines_)) return false;
+    if (!squares_->find(image, region, outlines_)) return false;
     for (const TagOutline& square : outlines_) {
       const auto& c = square.corners;
       if (!(std::abs(base::cross(c[1] - c[2], c[3] - c[2])) > 1.0)) continue;

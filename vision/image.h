@@ -25,4 +25,14 @@ struct Image {
   std::uint8_t* at(int u, int v) { return pixels.data() + (static_cast<std::size_t>(v) * width + u) * channels; }
 };
 
+/// A rectangle of pixels.
+struct Region {
+  int left = 0, top = 0;      ///< [px] of its first pixel
+  int width = 0, height = 0;  ///< [px]
+
+  std::int64_t area() const { return std::int64_t{width} * height; }
+};
+
+inline Region whole(const Image& image) { return {0, 0, image.width, image.height}; }
+
 }  // namespace sf::vision

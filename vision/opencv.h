@@ -29,10 +29,15 @@ struct TagOutline {
 /// Finds the tags of one dictionary. Images may differ in size. Not thread-safe.
 class TagFinder {
  public:
+  /// [px] A tag that is farther from the border of its region has the same outline as in a search of the whole image:
+  /// half of the largest threshold window, and the distance from the border that OpenCV requires.
+  static constexpr int kRegionMargin = 15;
+
   virtual ~TagFinder() = default;
-  /// Replaces the content of `found`. @param image grey
+  /// Replaces the content of `found` by the tags that are completely in `region`, with the sizes expected of the whole
+  /// image. @param image grey @param region within the image
   /// @return false if the image has no pixels or OpenCV fails on it; `found` is then empty
-  virtual bool find(const Image& image, std::vector<TagOutline>& found) = 0;
+  virtual bool find(const Image& image, const Region& region, std::vector<TagOutline>& found) = 0;
 };
 
 /// Greyscale images from a device, a video or a folder. Not thread-safe.
@@ -43,6 +48,11 @@ class ImageSource {
   /// @return false after the last image
   /// @throws base::InputError for an image of more than `kMaxImagePixels`, and if a device or a video fails
   virtual bool next(Image& out) = 0;
+  /// Skips the next image without decoding it, where the source can. @return as `next`
+  virtual bool skip() {
+    Image skipped;
+    return next(skipped);
+  }
   virtual bool is_live() const { return false; }
   /// Returns the number of images; 0 if unknown.
   virtual std::size_t size() const { return 0; }

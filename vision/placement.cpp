@@ -92,7 +92,7 @@ std::map<std::uint32_t, Seen> look(const Testbed& testbed, const Camera& camera,
                                          "with which it was calibrated",
                                          i + 1, image.width, image.height, camera.name, camera.intrinsics.width,
                                          camera.intrinsics.height));
-    finder->find(image, found);
+    finder->find(image, whole(image), found);
     for (const TagOutline& outline : found) {
       if (testbed.surveyed.count(outline.id) == 0) continue;
       const auto corners = corners_of(image, camera.intrinsics, outline, cells);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/thread_pool.h"
@@ -23,7 +26,15 @@ struct Positioning::State {
   std::vector<Sighting> all;
   std::vector<TrackedTag> tracked;
   Tracker tracker;
-  std::uint64_t repeated = 0;              ///< by the tracker
+  std::uint64_t repeated = 0;  ///< by the tracker
+  std::optional<Follower> follower;
+  std::vector<Search> searches;            ///< per camera, if there is a follower
+  std::vector<Search> next;                ///< of the next images
+  double time = 0.0;                       ///< [s] of the newest images
+  std::vector<double> times;               ///< [s] of the newest image of each camera
+  std::vector<std::uint8_t> absent;        ///< per camera: no new image
+  double period = 0.0;                     ///< [s] between the last two updates
+  std::vector<std::uint8_t> asleep;        ///< per camera
   std::map<std::uint32_t, double> warned;  ///< [s] time of the last warning of each id
 };
 
@@ -33,6 +44,12 @@ Positioning::Positioning(const Testbed& testbed, unsigned threads, bool live)
   state_->sightings.resize(testbed.cameras.size());
   state_->last.resize(testbed.cameras.size());
   state_->live = live;
+  state_->asleep.resize(testbed.cameras.size());
+  if (!testbed.follow) return;
+  state_->follower.emplace(testbed);
+  state_->times.resize(testbed.cameras.size());
+  state_->absent.resize(testbed.cameras.size());
+  state_->period = 1.0 / testbed.cameras[0].camera.rate;
 }
 
 Positioning::~Positioning() = default;
@@ -54,16 +71,20 @@ std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
   std::vector<std::uint8_t> skipped(frames.size(), 0);  // std::vector<bool> is not safe to share between threads
   for (std::size_t i = 0; i < frames.size(); ++i) {
     skipped[i] = frames[i].missing ? 1 : 0;
-    if (!s.live || frames[i].missing) continue;
+    if (!s.live || frames[i].missing || frames[i].unread) continue;
     const std::vector<std::uint8_t>& pixels = frames[i].image.pixels;
     skipped[i] = !pixels.empty() && pixels == s.last[i] ? 1 : 0;  // frozen
     s.frozen += skipped[i];
     s.last[i] = pixels;
   }
+  if (s.follower) plan(frames, skipped);
   s.pool.parallel_for(frames.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i)
       if (skipped[i] == 0) {
-        s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
+        if (s.follower)
+          s.detectors[i].detect(frames[i].image, frames[i].time, s.searches[i], s.follower->wanted(), s.sightings[i]);
+        else
+          s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
         s.is_new[i] = 1;
       } else {
         s.sightings[i].clear();
@@ -73,8 +94,48 @@ std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
   for (const auto& seen : s.sightings) s.all.insert(s.all.end(), seen.begin(), seen.end());
   s.tracker.update(s.all, s.tracked);
   s.repeated += s.tracker.repeated().size();
+  if (s.follower) observe();
   return s.tracked;
 }
+
+/// Plans the searches of the images, and skips those of cameras that sleep.
+void Positioning::plan(std::span<const Frame> frames, std::vector<std::uint8_t>& skipped) {
+  State& s = *state_;
+  const double before = s.time;
+  bool is_first = true;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].missing) continue;
+    s.times[i] = frames[i].time;
+    if (std::exchange(is_first, false)) s.time = frames[i].time;
+  }
+  if (s.time > before) s.period = s.time - before;
+  s.follower->begin(s.time);
+  s.follower->plan(s.times, s.tracker, s.searches);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    s.absent[i] = skipped[i];  // missing or frozen
+    if (skipped[i] != 0 || frames[i].unread) s.searches[i] = {};
+    if (skipped[i] != 0) continue;
+    s.follower->count(i, s.searches[i], !frames[i].unread);
+    skipped[i] = s.searches[i].is_needed() ? 0 : 1;
+  }
+}
+
+/// Lets the follower evaluate the tags, and determines which cameras sleep.
+void Positioning::observe() {
+  State& s = *state_;
+  s.follower->observe(s.time, s.searches, s.absent, s.sightings, s.tracker, s.tracked);
+  s.asleep.assign(s.times.size(), 1);
+  for (const double periods : {1.0, 2.0}) {
+    std::vector<double> times = s.times;
+    for (double& time : times) time = std::max(time, s.time) + periods * s.period;
+    s.follower->plan(times, s.tracker, s.next);
+    for (std::size_t i = 0; i < times.size(); ++i)
+      if (s.next[i].is_needed()) s.asleep[i] = 0;
+  }
+}
+
+Follower* Positioning::follower() { return state_->follower ? &*state_->follower : nullptr; }
+std::span<const std::uint8_t> Positioning::asleep() const { return state_->asleep; }
 
 std::span<const Sighting> Positioning::sightings(std::size_t camera) const { return state_->sightings[camera]; }
 
@@ -104,6 +165,7 @@ DetectionCounts Positioning::counts() const {
     sum.images += c.images;
     sum.unreadable += c.unreadable;
     sum.sightings += c.sightings;
+    sum.unwanted += c.unwanted;
     sum.unlisted += c.unlisted;
     sum.unfitted += c.unfitted;
     sum.misfitted += c.misfitted;
@@ -112,6 +174,9 @@ DetectionCounts Positioning::counts() const {
   sum.repeated += state_->repeated;
   sum.images += state_->frozen;
   sum.frozen = state_->frozen;
+  if (!state_->follower) return sum;
+  for (const CameraUse& use : state_->follower->counts().cameras) sum.asleep += use.asleep;
+  sum.images += sum.asleep;
   return sum;
 }
 

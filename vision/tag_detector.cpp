@@ -71,18 +71,41 @@ void TagDetector::keep_best_of_each(std::vector<Sighting>& sightings) {
   counts_.repeated += repeated_.size();
 }
 
-void TagDetector::detect(const Image& image, double time, std::vector<Sighting>& out) {
-  out.clear();
-  ++counts_.images;
-  if (!finder_->find(image, outlines_)) ++counts_.unreadable;
+bool TagDetector::search(const Image& image, const Region& region, double time, const std::set<std::uint32_t>* wanted,
+                         std::vector<Sighting>& out) {
+  const bool is_readable = finder_->find(image, region, outlines_);
   for (const TagOutline& outline : outlines_) {
     Sighting sighting;
+    if (wanted != nullptr && wanted->count(outline.id) == 0) {
+      ++counts_.unwanted;
+      continue;
+    }
     if (!measure(image, outline, sighting)) continue;
     sighting.time = time + middle_of_exposure(camera_, sighting.fit.row);
     out.push_back(sighting);
   }
+  return is_readable;
+}
+
+void TagDetector::finish(bool is_readable, std::vector<Sighting>& out) {
+  ++counts_.images;
+  if (!is_readable) ++counts_.unreadable;
   keep_best_of_each(out);
   counts_.sightings += out.size();
+}
+
+void TagDetector::detect(const Image& image, double time, std::vector<Sighting>& out) {
+  out.clear();
+  finish(search(image, whole(image), time, nullptr, out), out);
+}
+
+void TagDetector::detect(const Image& image, double time, const Search& parts, const std::set<std::uint32_t>& wanted,
+                         std::vector<Sighting>& out) {
+  out.clear();
+  bool is_readable = !parts.whole || search(image, whole(image), time, &wanted, out);
+  for (const Region& region : parts.regions)
+    is_readable = !image.pixels.empty() && search(image, region, time, &wanted, out) && is_readable;
+  finish(is_readable, out);
 }
 
 }  // namespace sf::vision

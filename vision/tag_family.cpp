@@ -33,8 +33,8 @@ Family family_of(const std::string& name) {
 class TurnedFinder : public TagFinder {
  public:
   explicit TurnedFinder(std::unique_ptr<TagFinder> finder) : finder_(std::move(finder)) {}
-  bool find(const Image& image, std::vector<TagOutline>& found) override {
-    const bool is_readable = finder_->find(image, found);
+  bool find(const Image& image, const Region& region, std::vector<TagOutline>& found) override {
+    const bool is_readable = finder_->find(image, region, found);
     for (TagOutline& outline : found)
       std::rotate(outline.corners.begin(), outline.corners.begin() + 2, outline.corners.end());
     return is_readable;

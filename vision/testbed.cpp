@@ -20,8 +20,9 @@ using world::TomlReader;
 constexpr double kMaxPosition = 1e4;  // [m]
 constexpr double kMaxPixels = 16384;
 constexpr double kDegree = M_PI / 180.0;
-constexpr std::array<std::string_view, 10> kKeys{"dictionary",  "tag_side",    "tag_height", "tag_fit", "address",
-                                                 "only_listed", "report_from", "camera",     "tag",     "survey"};
+constexpr std::array<std::string_view, 11> kKeys{"dictionary", "tag_side",    "tag_height",  "tag_fit",
+                                                 "address",    "only_listed", "report_from", "camera",
+                                                 "tag",        "survey",      "follow"};
 constexpr std::array<std::string_view, 11> kCameraKeys{"name",       "size",     "focal",       "center",
                                                        "distortion", "position", "orientation", "rate",
                                                        "exposure",   "readout",  "source"};
@@ -207,6 +208,7 @@ Testbed parse_testbed(const std::string& file, std::string_view text) {
       reader.fail(id, fmt::format("two [[tag]] sections have the id {}", number));
   }
   read_survey(reader, root, testbed.surveyed);
+  if (const TomlNode* table = reader.table(root, "follow")) testbed.follow = read_follow(reader, *table);
   return testbed;
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/pose.h"
 #include "vision/camera.h"
+#include "vision/follow.h"
 #include "vision/image.h"
 
 namespace sf::vision {
@@ -57,6 +58,8 @@ struct Testbed {
   std::uint32_t report_from = 1;                  ///< number of the sighting from which a tag is reported, >= 1
   std::vector<TestbedCamera> cameras;             ///< 1 to `kMaxCameras`, names distinct
   std::map<std::uint32_t, SurveyedTag> surveyed;  ///< by id, at most `kMaxSurveyed`
+
+  std::optional<FollowSettings> follow;  ///< nullopt: all cameras search for all tags
 
   const TagMount& mount(std::uint32_t id) const;
 };

@@ -106,6 +106,20 @@ void Tracker::advance(Track& track, const View& view) {
   }
 }
 
+std::optional<Tracker::Prediction> Tracker::predicted(std::uint32_t id, double time) const {
+  const auto found = tracks_.find(id);
+  if (found == tracks_.end()) return std::nullopt;
+  const Track& track = found->second;
+  const double age = std::max(0.0, time - track.time);
+  std::array<Axis, 2> axes{track.axes[0], track.axes[1]};
+  for (Axis& axis : axes) predict(axis, age, kAcceleration);
+  return Prediction{{axes[0].x, axes[1].x},
+                    {axes[0].v, axes[1].v},
+                    track.height,
+                    std::sqrt(std::max({0.0, axes[0].xx, axes[1].xx})),
+                    age};
+}
+
 void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag>& out) {
   out.clear();
   repeated_.clear();
@@ -136,7 +150,8 @@ void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag
       advance(found->second, *view);
       found->second.seen = std::min(found->second.seen + 1, report_from_);
     }
-    const Track& track = found->second;
+    Track& track = found->second;
+    track.height = view->fit->X_WT.z;
     if (track.seen < report_from_) continue;
     out.push_back({id,
                    view->time,

@@ -42,6 +42,17 @@ class Tracker {
   /// seen, sorted by id.
   void update(std::span<const Sighting> sightings, std::vector<TrackedTag>& out);
 
+  /// A tag's place expected at some time.
+  struct Prediction {
+    glm::dvec2 at;        ///< [m]
+    glm::dvec2 velocity;  ///< [m/s]
+    double height = 0.0;  ///< [m] of its last sighting
+    double sigma = 0.0;   ///< [m] standard deviation of x, and of y
+    double age = 0.0;     ///< [s] since its last sighting
+  };
+  /// @return nullopt for a tag that was never seen
+  std::optional<Prediction> predicted(std::uint32_t id, double time) const;
+
   /// Returns the number of rejected sightings: too far from the tag's last position, older than its last sighting, or
   /// at a second position at the same time.
   std::uint64_t refused() const { return refused_; }
@@ -59,6 +70,7 @@ class Tracker {
     double yaw = 0.0;          ///< [rad] last measured
     std::array<Axis, 3> axes;  ///< x, y, heading (not wrapped)
     std::uint32_t seen = 1;    ///< number of sightings, at most `report_from_`
+    double height = 0.0;       ///< [m] last measured or given
   };
   struct View {
     double time = 0.0, pixel = 0.0;

@@ -20,6 +20,7 @@ struct WatchedSource::Shared {
   std::mutex mutex;                     ///< of all below
   std::condition_variable changed;
   enum class State { idle, wanted, done, quit, left } state = State::idle;
+  bool skipped = false;  ///< the wanted image
   bool more = false;
   Image image;
   std::exception_ptr error;
@@ -47,11 +48,12 @@ void WatchedSource::read_images(const std::shared_ptr<Shared>& shared) {
   while (true) {
     s.changed.wait(lock, [&] { return s.state == State::wanted || s.state == State::quit; });
     if (s.state == State::quit) break;
+    const bool skipped = s.skipped;
     lock.unlock();
     bool more = false;
     std::exception_ptr error;
     try {
-      more = s.source->next(s.image);
+      more = skipped ? s.source->skip() : s.source->next(s.image);
     } catch (...) {
       error = std::current_exception();
     }
@@ -68,13 +70,16 @@ void WatchedSource::read_images(const std::shared_ptr<Shared>& shared) {
   s.changed.notify_all();
 }
 
-WatchedSource::Result WatchedSource::next(Image& out) {
+WatchedSource::Result WatchedSource::next(Image& out, bool skipped) {
   using State = Shared::State;
   constexpr std::chrono::milliseconds kSlice{50};
   Shared& s = *shared_;
   out.pixels.clear();
   std::unique_lock lock(s.mutex);
-  if (s.state == State::idle) s.state = State::wanted;
+  if (s.state == State::idle) {
+    s.state = State::wanted;
+    s.skipped = skipped;
+  }
   s.changed.notify_all();
   const Clock::time_point end = Clock::now() + (stalled_ ? std::min(limit_, kGlance) : limit_);
   while (s.state == State::wanted && !stop_ && Clock::now() < end)
@@ -87,7 +92,11 @@ WatchedSource::Result WatchedSource::next(Image& out) {
   stalled_ = false;
   if (s.error) std::rethrow_exception(std::exchange(s.error, nullptr));
   if (!s.more) return Result::ended;
-  std::swap(out, s.image);
+  if (s.skipped && !skipped) {  // the call under way began when no image was wanted
+    lock.unlock();
+    return next(out, false);
+  }
+  if (!s.skipped) std::swap(out, s.image);
   return Result::image;
 }
 

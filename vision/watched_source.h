@@ -29,8 +29,9 @@ class WatchedSource {
   WatchedSource& operator=(const WatchedSource&) = delete;
 
   /// @param out without pixels unless there is an image
+  /// @param skipped the image is skipped (ImageSource::skip), and `out` has no pixels
   /// @throws as ImageSource::next
-  Result next(Image& out);
+  Result next(Image& out, bool skipped = false);
   double rate() const { return rate_; }  ///< ImageSource::rate
 
  private:

@@ -57,6 +57,18 @@ class TrackFile {
   std::ofstream file_;
 };
 
+/// Reads the testbed, with the tags of `--follow`.
+vision::Testbed read_testbed(const VpsOptions& options) {
+  vision::Testbed testbed = vision::read_testbed(options.testbed);
+  if (options.follow == "off") {
+    testbed.follow.reset();
+  } else if (!options.follow.empty()) {
+    if (!testbed.follow) testbed.follow.emplace();
+    testbed.follow->tags = vision::read_tags(options.follow);
+  }
+  return testbed;
+}
+
 /// Detects and tracks, and adds times and tags to the report.
 std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frames, vision::Positioning& positioning,
                                             VpsReport& report) {
@@ -88,7 +100,7 @@ std::unique_ptr<CameraInputs> open(const VpsOptions& options, const vision::Test
 }  // namespace
 
 int vps(const VpsOptions& options) {
-  const vision::Testbed testbed = vision::read_testbed(options.testbed);
+  const vision::Testbed testbed = read_testbed(options);
   TagSender sender(testbed, options.send, peers_of(options, nullptr));
   std::optional<vision::RenderedFleet> fleet;
   std::optional<vision::AccuracyMeter> meter;
@@ -100,6 +112,7 @@ int vps(const VpsOptions& options) {
   const RobotInputs* robots = nullptr;
   const auto inputs = open(options, testbed, fleet ? &*fleet : nullptr, robots);
   vision::Positioning positioning(testbed, 0, inputs->is_live());
+  vision::Follower* const follower = positioning.follower();
   TrackFile track(options.track);
   VpsPictures pictures(options, testbed);
   install_stop_handlers();
@@ -109,15 +122,19 @@ int vps(const VpsOptions& options) {
   const std::uint64_t most = fleet && !limited ? kRenderedImages : options.images;
   const bool has_end = most > 0 || (!inputs->is_live() && (!fleet || options.duration > 0.0));
 
+  // Pictures show all images.
+  const bool may_skip = options.overlay.empty() && !options.view;
+  const auto asleep = [&] { return may_skip ? positioning.asleep() : std::span<const std::uint8_t>(); };
+
   VpsReport report;
-  report.cameras = testbed.cameras.size();
+  for (const vision::TestbedCamera& each : testbed.cameras) report.cameras.push_back(each.camera.name);
   report.orientation = vision::family_orientation(testbed.dictionary);
   std::vector<vision::Frame> frames;
   const std::int64_t epoch = base::unix_time();
   const Clock::time_point start = Clock::now();
   std::uint64_t n = 0;
   bool complete = false;
-  for (; !stop_requested() && (most == 0 || n < most) && inputs->next(frames);) {
+  for (; !stop_requested() && (most == 0 || n < most) && inputs->next(frames, asleep());) {
     complete = options.duration > 0.0 && frames[0].time >= options.duration;
     if (complete) break;
     if (real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
@@ -128,13 +145,18 @@ int vps(const VpsOptions& options) {
     }
     const auto tags = process(frames, positioning, report);
     for (const std::string& warning : positioning.warnings()) print_message(warning);
+    if (follower != nullptr)
+      for (const std::string& message : follower->messages()) print_message(message);
     sender.send(tags, epoch);
     track.write(tags);
     pictures.show(positioning, tags, frames, n, epoch + static_cast<std::int64_t>(1e9 * frames[0].time));
-    if (meter) meter->add(frames[0].time, tags);
+    if (meter) meter->add(frames[0].time, tags, follower != nullptr ? &follower->followed() : nullptr);
     ++n;
+    complete = follower != nullptr && follower->is_over();
+    if (complete) break;
   }
   report.counts = positioning.counts();
+  if (follower != nullptr) report.follow = follower->counts();
   report.refused = positioning.refused();
   if (meter) report.accuracy = meter->accuracy();
   if (sender.has_addresses()) report.sent = sender.counts();

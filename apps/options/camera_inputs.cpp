@@ -38,12 +38,14 @@ class OpenedInputs : public CameraInputs {
     }
   }
 
-  bool next(std::vector<vision::Frame>& frames) override {
+  bool next(std::vector<vision::Frame>& frames, std::span<const std::uint8_t> asleep) override {
     if (count_ == 0) start_ = now();
     frames.resize(inputs_.size());
     std::size_t ended = 0;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      const Result result = read(i, frames[i].image);
+      frames[i].unread = !asleep.empty() && asleep[i] != 0;
+      if (frames[i].unread) frames[i].image.pixels.clear();
+      const Result result = read(i, frames[i].image, frames[i].unread);
       if (result == Result::ended && (inputs_[i].file || ++ended == inputs_.size())) return false;
       frames[i].time = live_ ? now() - start_ : static_cast<double>(count_) / rate_;
       frames[i].missing = result != Result::image;
@@ -60,11 +62,12 @@ class OpenedInputs : public CameraInputs {
     Result last = Result::image;
   };
 
-  Result read(std::size_t i, vision::Image& image) {
+  Result read(std::size_t i, vision::Image& image, bool skipped) {
     Input& input = inputs_[i];
+    if (input.file && skipped) return input.file->skip() ? Result::image : Result::ended;
     if (input.file) return input.file->next(image) ? Result::image : Result::ended;
     if (input.last == Result::ended) return Result::ended;
-    const Result result = input.watched->next(image);
+    const Result result = input.watched->next(image, skipped);
     if (result != input.last && !stop_) report(testbed_.cameras[i].camera, result);
     return input.last = result;
   }
@@ -146,7 +149,7 @@ class RenderedInputs : public CameraInputs {
   RenderedInputs(const vision::Testbed& testbed, const vision::RenderedFleet& fleet, std::uint64_t seed)
       : fleet_(fleet), cameras_(testbed, seed) {}
 
-  bool next(std::vector<vision::Frame>& frames) override {
+  bool next(std::vector<vision::Frame>& frames, std::span<const std::uint8_t>) override {
     cameras_.render([&](double time) { return fleet_.scene_at(time); }, cameras_.count() / cameras_.rate(), frames);
     return true;
   }
@@ -162,7 +165,7 @@ class LiveRobotInputs : public RobotInputs {
                   const std::atomic<bool>& stop)
       : cameras_(testbed, seed), robots_(testbed), stop_(stop), socket_(netio::open_udp(listen)), batch_(64) {}
 
-  bool next(std::vector<vision::Frame>& frames) override {
+  bool next(std::vector<vision::Frame>& frames, std::span<const std::uint8_t>) override {
     if (cameras_.count() == 0) start_ = base::unix_time();
     due_ = std::max(due_, now());  // a late image delays the following ones, as in a slow camera
     for (double left = 0.0; (left = due_ - now()) > 0.0 && !stop_;) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,9 @@ class CameraInputs {
   virtual ~CameraInputs() = default;
   /// Reads the next image of each camera. A device or pipeline that sends none within a limit is reported, and its
   /// frames are missing until it continues. @return false if a file or all live sources have ended, or at a stop
-  virtual bool next(std::vector<vision::Frame>& frames) = 0;
+  /// @param asleep one per camera, or empty: if not 0, its image need not be read. Files and devices skip it then
+  /// without decoding, and their frame is `unread`
+  virtual bool next(std::vector<vision::Frame>& frames, std::span<const std::uint8_t> asleep = {}) = 0;
   virtual bool is_live() const { return false; }
 };
 

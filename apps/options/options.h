@@ -484,6 +484,7 @@ struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOpt
   std::uint16_t robots = 0;                                 ///< port for robots' true states; 0: no robots are rendered
   std::uint64_t images = 0;                                 ///< per camera; 0: all
   bool real_time = false;                                   ///< at the cameras' frame rate
+  std::string follow;                                       ///< ids of the tags to follow, or "off"; empty: the file's
   std::string send;                                         ///< "host:port" of tags without an address; empty: none
   std::string track;                                        ///< CSV file; empty: none
   std::string overlay;                                      ///< folder of pictures, or video; empty: none

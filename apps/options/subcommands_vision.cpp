@@ -8,6 +8,7 @@
 #include "apps/options/subcommands.h"
 #include "base/installation.h"
 #include "vision/camera.h"
+#include "vision/follow.h"
 
 namespace sf::apps {
 
@@ -57,12 +58,13 @@ void add_vps(CLI::App& app, Call& call) {
     require_any(*sub, {"--seed"}, {"--rendered", "--robots"});
     require_any(*sub, {"--world"}, {"--overlay", "--view"});
   });
-  add_examples(*sub, {"worlds/testbed.toml --rendered 30 --images 20",
-                      "lab.toml --input north=/dev/video0 --input south=/dev/video1 --send 192.168.1.5:9000",
-                      "lab.toml --input north=photographs --overlay out/pictures",
-                      "lab.toml --input north=\"gstreamer:v4l2src device=/dev/video0\" --view",
-                      "worlds/testbed.toml --robots 9200 --send 127.0.0.1:9100",
-                      "lab.toml --overlay out/pictures --world lab.world --readings 9300"});
+  add_examples(
+      *sub, {"worlds/testbed.toml --rendered 30 --images 20",
+             "lab.toml --input north=/dev/video0 --input south=/dev/video1 --send 192.168.1.5:9000",
+             "lab.toml --input north=photographs --overlay out/pictures", "worlds/testbed.toml --rendered 8 --follow 3",
+             "lab.toml --input north=\"gstreamer:v4l2src device=/dev/video0\" --view",
+             "worlds/testbed.toml --robots 9200 --send 127.0.0.1:9100",
+             "lab.toml --overlay out/pictures --world lab.world --readings 9300"});
   sub->add_option("testbed", o.testbed, "Testbed file: cameras and tags (docs/vps.md)")
       ->required()
       ->transform(base::installed_file)
@@ -88,6 +90,12 @@ void add_vps(CLI::App& app, Call& call) {
   add_until(*sub, o, "Stop after this long by the images' times [s] (0: at the end of the images, or at Ctrl-C)");
   sub->add_flag("--real-time", o.real_time,
                 "Process videos, folders and rendered images at the cameras' rate (--view does so, too)");
+  sub->add_option("--follow", o.follow,
+                  "Follow only the tags with these ids from camera to camera: cameras that cannot see them sleep, and "
+                  "the others search only where they can be (off: none; default: the file's [follow])")
+      ->check(readable([](const std::string& text) { return text == "off" || !vision::read_tags(text).empty(); },
+                       "1 to 256 ids from 0 to 65535, such as 7,9, or off"))
+      ->type_name("IDS");
   sub->add_option("--send", o.send, "Address for TAG packets of tags that have no address in the file")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");

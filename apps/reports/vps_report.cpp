@@ -42,14 +42,33 @@ std::string heights_text(const VpsReport& r) {
          text;
 }
 
+/// Returns a table of the tags that were followed and one of the cameras.
+std::string follow_text(const VpsReport& r) {
+  std::string text = row("following", "{}, {}", counted(r.follow->starts, "start"), counted(r.follow->stops, "stop"));
+  text +=
+      fmt::format("\n{:>10} {:>8} {:>8} {:>10} {:>14}\n", "followed", "seen", "unseen", "hand-overs", "longest gap s");
+  for (const auto& [id, use] : r.follow->tags)
+    text +=
+        fmt::format("{:>10} {:>8} {:>8} {:>10} {:>14.2f}\n", id, use.seen, use.unseen, use.hand_overs, use.longest_gap);
+  text += fmt::format("\n{:>16} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "camera", "images", "whole", "parts", "asleep",
+                      "unread", "pixels %");
+  for (std::size_t i = 0; i < r.cameras.size(); ++i) {
+    const vision::CameraUse& use = r.follow->cameras[i];
+    text += fmt::format("{:>16} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9.2f}\n", r.cameras[i], use.images(), use.whole,
+                        use.parts, use.asleep, use.unread, 100.0 * use.share());
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string vps_report_text(const VpsReport& r) {
   const auto images = static_cast<double>(r.counts.images);
-  std::string text = row("cameras", r.cameras) + row("images", r.counts.images);
+  std::string text = row("cameras", r.cameras.size()) + row("images", r.counts.images);
   if (r.counts.unreadable > 0) text += row("", "{} of them unreadable", r.counts.unreadable);
   if (r.counts.frozen > 0)
     text += row("", "{} of them identical to the previous one: a camera is frozen", r.counts.frozen);
+  if (r.counts.asleep > 0) text += row("", "{} of them not searched: their camera was asleep", r.counts.asleep);
   if (r.truth) {
     text += row("robots", "{} rendered, by {}", r.truth->robots, counted(r.truth->accepted, "packet"));
     if (r.truth->refused > 0)
@@ -59,6 +78,7 @@ std::string vps_report_text(const VpsReport& r) {
     text += row("processing", "{:.1f} images/s, {:.1f} ms of CPU time per image", images / r.processing_s,
                 1e3 * r.processing_cpu_s / images);
   text += row("sightings", "{}; {} tracked", r.counts.sightings, counted(r.tags.size(), "tag"));
+  if (r.counts.unwanted > 0) text += row("", "{} of tags that are not followed", r.counts.unwanted);
   if (r.counts.unlisted > 0) text += row("", "{} with ids that the file does not list", r.counts.unlisted);
   if (r.counts.unfitted > 0) text += row("", "{} rejected: fewer than three sides with an edge", r.counts.unfitted);
   if (r.counts.misfitted > 0)
@@ -74,6 +94,7 @@ std::string vps_report_text(const VpsReport& r) {
     if (!r.sent->first_failure.empty()) text += row("", r.sent->first_failure);
   }
   if (!r.orientation.empty()) text += row("tags", r.orientation);
+  if (r.follow) text += follow_text(r);
   if (r.tags.empty()) return text;
   text += fmt::format("\n{:>6} {:>9} {:>9} {:>9} {:>8} {:>10} {:>8}\n", "tag", "x m", "y m", "yaw deg", "m/s", "deg/s",
                       "states");
@@ -86,8 +107,30 @@ std::string vps_report_text(const VpsReport& r) {
 
 using Json = nlohmann::ordered_json;
 
+static Json follow_json(const VpsReport& r) {
+  Json json = {
+      {"starts", r.follow->starts}, {"stops", r.follow->stops}, {"tags", Json::array()}, {"cameras", Json::array()}};
+  for (const auto& [id, use] : r.follow->tags)
+    json["tags"].push_back({{"id", id},
+                            {"seen", use.seen},
+                            {"unseen", use.unseen},
+                            {"hand_overs", use.hand_overs},
+                            {"longest_gap_s", use.longest_gap}});
+  for (std::size_t i = 0; i < r.cameras.size(); ++i) {
+    const vision::CameraUse& use = r.follow->cameras[i];
+    json["cameras"].push_back({{"name", r.cameras[i]},
+                               {"images", use.images()},
+                               {"whole", use.whole},
+                               {"parts", use.parts},
+                               {"asleep", use.asleep},
+                               {"unread", use.unread},
+                               {"pixels_share", use.share()}});
+  }
+  return json;
+}
+
 std::string vps_report_json(const VpsReport& r) {
-  Json json = {{"cameras", r.cameras},
+  Json json = {{"cameras", r.cameras.size()},
                {"images", r.counts.images},
                {"unreadable", r.counts.unreadable},
                {"frozen", r.counts.frozen},
@@ -112,6 +155,8 @@ std::string vps_report_json(const VpsReport& r) {
                         {"missed", a.missed},
                         {"false", a.wrong}};
   }
+  if (r.follow) json["refused"]["not_followed"] = r.counts.unwanted;
+  if (r.follow) json["follow"] = follow_json(r);
   if (r.truth)
     json["truth"] = {{"robots", r.truth->robots}, {"accepted", r.truth->accepted}, {"refused", r.truth->refused}};
   if (r.sent)

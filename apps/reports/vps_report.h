@@ -4,16 +4,18 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/options/camera_inputs.h"
 #include "netio/outbox.h"
 #include "vision/accuracy.h"
+#include "vision/follower.h"
 
 namespace sf::apps {
 
 struct VpsReport {
-  std::size_t cameras = 0;
-  std::string orientation;  ///< of the tags, where libraries differ (vision/tag_family.h)
+  std::vector<std::string> cameras;  ///< names
+  std::string orientation;           ///< of the tags, where libraries differ (vision/tag_family.h)
   vision::DetectionCounts counts;
   std::uint64_t refused = 0;                         ///< by the tracker
   double processing_s = 0.0;                         ///< [s] of detection and tracking, on all cores
@@ -23,6 +25,7 @@ struct VpsReport {
   std::optional<vision::Accuracy> accuracy;          ///< for rendered images
   std::optional<netio::OutboxCounts> sent;
   std::uint64_t unaddressed = 0;
+  std::optional<vision::FollowCounts> follow;
   std::optional<TruthCounts> truth;  ///< for rendered robots
 };
 

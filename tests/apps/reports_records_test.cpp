@@ -128,20 +128,26 @@ server::RobotClientStats robot_stats() {
 }
 
 VpsReport vps_report() {
-  VpsReport r{.cameras = 2, .refused = 6, .processing_s = 0.5, .processing_cpu_s = 1.5};
+  VpsReport r{.cameras = {"west", "east"}, .refused = 6, .processing_s = 0.5, .processing_cpu_s = 1.5};
   r.orientation = "upright";
   r.counts = {.images = 10,
               .unreadable = 1,
               .sightings = 20,
+              .unwanted = 2,
               .unlisted = 3,
               .unfitted = 4,
               .misfitted = 5,
               .repeated = 8,
-              .frozen = 7};
+              .frozen = 7,
+              .asleep = 4};
   r.tags[3] = {3, 1.5, {1.0, -2.0, 0.1, 0.5}, {0.3, 0.4}, -0.25, 2, 0.012, 0.05, -0.1, 0.02};
   r.reported[3] = 18;
   r.accuracy =
       vision::Accuracy{{0.0004, 0.015, 4}, {0.01, 0.06, 4}, {0.04, 0.15, 4}, {0.09, 0.2, 1}, 8, 9, {0.0004, 0.012, 4}};
+  r.follow = vision::FollowCounts{.cameras = {{1, 2, 3, 2, 500, 1000}, {4, 5, 6, 0, 10, 1000}},
+                                  .tags = {{3, {11, 12, 13, 0.5}}},
+                                  .starts = 1,
+                                  .stops = 2};
   r.sent = outbox(17);
   r.unaddressed = 2;
   r.truth = TruthCounts{3, 44, 5};
@@ -189,7 +195,7 @@ TEST(ReportRecords, EmptyReportsHaveNoMembersOfServices) {
        {"shared", "dipoles", "control", "packets", "received", "socket_drops", "lights", "relayed", "states",
         "log_lines_left_out", "lockstep", "recording"}},
       {robot_client_json({}), {"positions", "own_map", "real_robot", "spat", "error", "localization", "direct_v2v"}},
-      {vps_report_json({}), {"accuracy", "truth", "packets"}}};
+      {vps_report_json({}), {"accuracy", "truth", "packets", "follow", "refused/not_followed"}}};
   for (const auto& [json, absent] : reports)
     for (const std::string& name : absent) EXPECT_FALSE(Json(json).has("/" + name)) << name;
 }

@@ -155,23 +155,29 @@ TEST(Vps, ReportsMeasuredHeightsAndTilts) {
             std::string::npos);
 }
 
-TEST(Vps, WarnsOfAnIdSeenTwice) {
-  const Folder folder;
-  const std::string testbed = folder.write("t.toml", kTestbed);
+/// Writes images of two tags at rest into the folder `p`.
+static void write_images(const Folder& folder, const std::string& testbed, std::array<std::uint32_t, 2> ids,
+                         int count) {
   vision::Scene scene;
-  for (const double x : {-0.3, 0.3}) {
+  for (const std::size_t i : {0, 1}) {
     vision::Patch tag;
     tag.shape = vision::Patch::Shape::tag;
-    tag.X_WP = {x, 0.0, 0.2, 0.0};
+    tag.X_WP = {i == 0 ? -0.3 : 0.3, 0.0, 0.2, 0.0};
     tag.size = {0.15, 0.15};
-    tag.pattern = vision::family_pattern("aruco_4x4_50", 1);
+    tag.pattern = vision::family_pattern("aruco_4x4_50", ids[i]);
     scene.patches.push_back(tag);
   }
   vision::Image image;
   vision::Renderer(vision::read_testbed(testbed).cameras[0].camera, vision::Imaging{}, 1).render(scene, 0.0, 0, image);
   const std::string pixels(image.pixels.begin(), image.pixels.end());
   std::filesystem::create_directory(folder.path("p"));
-  for (const char* name : {"p/0.pgm", "p/1.pgm"}) folder.write(name, "P5\n320 240\n255\n" + pixels);
+  for (int k = 0; k < count; ++k) folder.write(fmt::format("p/{}.pgm", k), "P5\n320 240\n255\n" + pixels);
+}
+
+TEST(Vps, WarnsOfAnIdSeenTwice) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  write_images(folder, testbed, {1, 1}, 2);
   const Outcome outcome = run_successfully({"vps", testbed, "--input", "a=" + folder.path("p")});
   EXPECT_NE(outcome.err.find("tag 1 is seen twice in one image of camera 'a', at ("), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find("seen twice"), outcome.err.rfind("seen twice")) << "once in ten seconds";
@@ -213,6 +219,62 @@ TEST(Vps, ReadsItsOwnPictures) {
   const std::string testbed = write_pictures(folder);
   const Outcome outcome = run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--json"});
   EXPECT_NE(outcome.out.find("\"images\": 3"), std::string::npos) << outcome.out << outcome.err;
+}
+
+/// The second camera sees another place, and nothing there: it sleeps from the third image on, and its files are not
+/// even read.
+TEST(Vps, FollowsATagAndLetsOtherCamerasSleep) {
+  const Folder folder;
+  write_images(folder, folder.write("t.toml", kTestbed), {1, 2}, 3);
+  std::filesystem::create_directory(folder.path("q"));
+  for (const char* name : {"q/0.pgm", "q/1.pgm", "q/2.pgm"})
+    folder.write(name, "P5\n320 240\n255\n" + std::string(320 * 240, 'x'));
+  std::string text = kTestbed;
+  text.insert(text.find("[[tag]]"),
+              "[[camera]]\nname = \"b\"\nsize = [320, 240]\nfocal = [400, 400]\nposition = [10, 0, 2.2]\n");
+  const std::string testbed = folder.write("two.toml", text + "[follow]\ntags = [2]\n");
+  const Words words{"vps", testbed, "--input", "a=" + folder.path("p"), "--input", "b=" + folder.path("q"), "--json"};
+  const auto with = [&](const std::string& follow) {
+    Words all = words;
+    if (!follow.empty()) all.insert(all.end(), {"--follow", follow});
+    return Json(run_successfully(all).out);
+  };
+  const Json file = with(""), one = with("1"), off = with("off");
+  EXPECT_EQ(file.number("/tags/0/id"), 2);
+  EXPECT_EQ(one.number("/tags/0/id"), 1);
+  EXPECT_FALSE(one.has("/tags/1"));
+  EXPECT_EQ(one.number("/follow/tags/0/seen"), 3);
+  EXPECT_EQ(one.number("/follow/cameras/0/asleep"), 0);
+  EXPECT_EQ(one.number("/follow/cameras/1/whole"), 1);
+  EXPECT_EQ(one.number("/follow/cameras/1/asleep"), 2);
+  EXPECT_EQ(one.number("/follow/cameras/1/unread"), 2);
+  EXPECT_EQ(one.number("/images"), 6);
+  EXPECT_FALSE(off.has("/follow"));
+  EXPECT_TRUE(off.has("/tags/1"));
+  for (const char* number : {"/tags/0/pose/0", "/tags/0/pose/2", "/tags/0/velocity/0"})
+    EXPECT_EQ(one.number(number), off.number(number)) << number;
+}
+
+TEST(Vps, RefusesTagsThatCannotBeFollowed) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  for (const char* ids : {"", "x", "1,", "70000"})
+    expect_refused({"vps", testbed, "--rendered", "1", "--follow", ids}, "expected 1 to 256 ids");
+  expect_refused({"vps", testbed, "--rendered", "1", "--follow", "50"}, "the ids 0 to 49");
+  const std::string empty = folder.write("empty.toml", std::string(kTestbed) + "[follow]\n");
+  expect_refused({"vps", empty, "--rendered", "1"}, "[follow] has no tags");
+}
+
+/// Ends with the time at which it stops, since no start can follow.
+TEST(Vps, EndsWhenFollowingStopsForGood) {
+  const Folder folder;
+  const std::string testbed = folder.write(
+      "t.toml", std::string(kTestbed) + "[follow]\ntags = [1]\nstart = \"at 0.1 s\"\nstop = \"at 0.3 s\"\n");
+  const Outcome outcome = run_successfully({"vps", testbed, "--rendered", "2", "--json"});
+  const Json report(outcome.out);
+  EXPECT_EQ(report.number("/follow/tags/0/seen"), 3);  // at 2/15, 3/15 and 4/15 s
+  EXPECT_EQ(report.number("/follow/cameras/0/images"), 6);
+  EXPECT_NE(outcome.err.find("following starts at 0.13 s"), std::string::npos) << outcome.err;
 }
 
 /// Boundary: 5 images, every second of which is drawn over: 0, 2 and 4.

@@ -93,7 +93,7 @@ TEST(TrackerRecord, MergesPredictsAndRejects) {
 TEST(DetectionRecord, FindsEdgesAndFitsASquare) {
   const View view;
   std::vector<TagOutline> outlines;
-  ASSERT_TRUE(make_family_finder(view.testbed.dictionary)->find(view.image, outlines));
+  ASSERT_TRUE(make_family_finder(view.testbed.dictionary)->find(view.image, whole(view.image), outlines));
   ASSERT_EQ(outlines.size(), 1u);
   for (glm::dvec2& corner : outlines[0].corners) corner = glm::dvec2{std::round(corner.x), std::round(corner.y)};
   std::vector<EdgePoint> edges;

@@ -55,6 +55,18 @@ TEST_F(Sources, FoldersAreReadInOrderWithoutSpecialFiles) {
   EXPECT_EQ(seen, (std::vector<int>{10, 20, 20}));
 }
 
+TEST_F(Sources, SkippedImagesAreLeftOut) {
+  for (int k = 0; k < 3; ++k) write_image(std::to_string(k) + ".png", static_cast<std::uint8_t>(10 * k));
+  const auto source = opencv().open_source(path(""), 0, 0, 0.0);
+  Image image;
+  EXPECT_TRUE(source->skip());
+  ASSERT_TRUE(source->next(image));
+  EXPECT_EQ(*image.at(1, 1), 10);
+  EXPECT_TRUE(source->skip());
+  EXPECT_FALSE(source->skip());
+  EXPECT_FALSE(source->next(image));
+}
+
 /// Motion JPEG as `--overlay` writes it: images in order, in grey, and the frame rate.
 TEST_F(Sources, VideosAreReadAsTheyWereWritten) {
   {
@@ -72,7 +84,8 @@ TEST_F(Sources, VideosAreReadAsTheyWereWritten) {
   }
   EXPECT_FALSE(source->is_live());
   EXPECT_NEAR(source->rate(), 12.0, 1e-6);
-  int count = 0;
+  EXPECT_TRUE(source->skip());
+  int count = 1;
   for (Image image; source->next(image); ++count) {
     ASSERT_EQ(image.width, 32);
     ASSERT_EQ(image.height, 16);

@@ -86,6 +86,26 @@ TEST_F(WatchedSourceTest, AStalledCameraReturnsAndContinuesWithItsNextImage) {
   camera->images.release();
 }
 
+TEST_F(WatchedSourceTest, SkipsImages) {
+  const auto source = watch(1h);
+  camera->images.release(2);
+  Image image{1, 1, 1, {9}};
+  EXPECT_EQ(source->next(image, true), Result::image);
+  EXPECT_TRUE(image.pixels.empty());
+  ASSERT_EQ(source->next(image), Result::image);
+  EXPECT_EQ(image.pixels, std::vector<std::uint8_t>{2});
+}
+
+/// The skipped image arrives late: the one that is wanted then is the next.
+TEST_F(WatchedSourceTest, AnImageWantedAfterASkippedOneIsRead) {
+  const auto source = watch(0ms);
+  Image image;
+  EXPECT_EQ(source->next(image, true), Result::stalled);
+  camera->images.release(2);
+  ASSERT_EQ(finally(*source, image), Result::image);
+  EXPECT_EQ(image.pixels, std::vector<std::uint8_t>{2});
+}
+
 TEST_F(WatchedSourceTest, AStopEndsTheWait) {
   const auto source = watch(1h);
   std::thread stopping([&] { stop = true; });

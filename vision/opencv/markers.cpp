@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/aruco.hpp>
 #include <utility>
 
@@ -56,10 +58,14 @@ class ArucoFinder : public TagFinder {
     settings_->minMarkerDistanceRate = 0.01;
   }
 
-  bool find(const Image& image, std::vector<TagOutline>& found) override {
+  bool find(const Image& image, const Region& region, std::vector<TagOutline>& found) override {
     found.clear();
     try {
-      cv::aruco::detectMarkers(wrap(image), dictionary_, corners_, ids_, settings_, squares_);
+      expect_sizes_of(image, region);
+      const cv::Mat all = wrap(image);
+      const bool is_whole = region.area() == whole(image).area();
+      cv::aruco::detectMarkers(is_whole ? all : all({region.left, region.top, region.width, region.height}),
+                               dictionary_, corners_, ids_, settings_, squares_);
     } catch (const cv::Exception&) {
       return false;
     }
@@ -67,13 +73,25 @@ class ArucoFinder : public TagFinder {
     const auto& corners = all ? squares_ : corners_;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       TagOutline outline{all ? 0 : static_cast<std::uint32_t>(ids_[i]), {}};
-      for (std::size_t k = 0; k < 4; ++k) outline.corners[k] = {corners[i][k].x, corners[i][k].y};
+      const glm::dvec2 corner(region.left, region.top);
+      for (std::size_t k = 0; k < 4; ++k) outline.corners[k] = corner + glm::dvec2(corners[i][k].x, corners[i][k].y);
       found.push_back(outline);
     }
     return true;
   }
 
  private:
+  /// OpenCV limits perimeters to shares of the searched image's longer side, rounded down to pixels.
+  void expect_sizes_of(const Image& image, const Region& region) {
+    const cv::aruco::DetectorParameters defaults;
+    const double image_side = std::max(image.width, image.height), side = std::max(region.width, region.height);
+    const auto rate = [&](double of_image) {
+      return side == image_side ? of_image : (std::floor(of_image * image_side) + 0.5) / side;
+    };
+    settings_->minMarkerPerimeterRate = rate(defaults.minMarkerPerimeterRate);
+    settings_->maxMarkerPerimeterRate = rate(defaults.maxMarkerPerimeterRate);
+  }
+
   cv::Ptr<cv::aruco::Dictionary> dictionary_;
   cv::Ptr<cv::aruco::DetectorParameters> settings_;
   std::vector<std::vector<cv::Point2f>> corners_, squares_;  // of tags, of dark quadrilaterals without a code

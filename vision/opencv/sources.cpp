@@ -42,6 +42,7 @@ class Files : public ImageSource {
     out = read_image(files_[at_++]);
     return true;
   }
+  bool skip() override { return at_ < files_.size() && ++at_; }
   std::size_t size() const override { return files_.size(); }
 
  private:
@@ -60,6 +61,11 @@ class Video : public ImageSource {
       if (more && frame_.channels() != 1) cv::cvtColor(frame_, grey_, cv::COLOR_BGR2GRAY);
     });
     if (more) copy(frame_.channels() == 1 ? frame_ : grey_, source_, out);
+    return more;
+  }
+  bool skip() override {
+    bool more = false;
+    attempt("reading of " + source_, [&] { more = capture_.grab(); });
     return more;
   }
   bool is_live() const override { return live_; }
