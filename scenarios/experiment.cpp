@@ -30,13 +30,15 @@ extern const ExperimentType lane_sensor_experiment;
 extern const ExperimentType monitor_experiment;
 extern const ExperimentType location_experiment;
 extern const ExperimentType budget_experiment;
+extern const ExperimentType follow_experiment;
 
 std::span<const ExperimentType* const> experiments() {
   static constexpr const ExperimentType* kKinds[] = {
-      &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,       &magnet_pi_experiment,
-      &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
-      &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment,       &mrclam_experiment,
-      &sideslip_experiment,    &lane_sensor_experiment,  &monitor_experiment,        &location_experiment,    &budget_experiment};
+      &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment, &magnet_pi_experiment,
+      &mapping_experiment,     &minimagic_experiment,    &simville_experiment, &simville_merge_experiment,
+      &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment, &mrclam_experiment,
+      &sideslip_experiment,    &lane_sensor_experiment,  &monitor_experiment,  &location_experiment,
+      &budget_experiment,      &follow_experiment};
   return kKinds;
 }
 

@@ -46,8 +46,8 @@ const std::map<std::string, Modules> kMayInclude{
     {"viz", {"farm", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"cluster", {"base"}},
     {"scenarios",
-     {"selftest", "cluster", "viz", "server", "bridges", "netio", "record", "farm", "control", "sensors", "raycast",
-      "maps", "robots/estimation", "robots", "world", "gpu", "base"}},
+     {"selftest", "cluster", "viz", "vision", "server", "bridges", "netio", "record", "farm", "control", "sensors",
+      "raycast", "maps", "robots/estimation", "robots", "world", "gpu", "base"}},
 };
 const Modules kMayIncludeAnything{"apps", "examples", "library", "bench", "tests"};
 
