@@ -161,7 +161,9 @@ void Follower::observe(double time, std::span<const Search> searches, std::span<
     Track& track = tracks_[id];
     observe_tag(id, time, sightings);
     const bool lost = is_lost(id, time, tracker);
-    track.searched = lost && (track.searched || all);
+    const bool was_searched = std::exchange(track.searched, lost && (track.searched || all));
+    if (track.searched && !was_searched && !track.seen)
+      say(time, fmt::format("tag {} is in no camera's image; searching all cameras in turn", id));
     turns = turns || track.searched;
     if (lost && !track.is_lost && track.seen)
       say(time, fmt::format("tag {} was last seen at {:.2f} s; searching all cameras in turn", id, *track.seen));

@@ -165,7 +165,8 @@ int vps(const VpsOptions& options) {
   print(options.json ? vps_report_json(report) : vps_report_text(report));
   complete = complete || (most > 0 && n >= most);
   if (stop_requested() && has_end && !complete) return interrupted_code();
-  return report.counts.sightings > 0 ? 0 : 1;
+  const bool found = report.follow ? !report.tags.empty() : report.counts.sightings > 0;
+  return found ? 0 : 1;
 }
 
 }  // namespace sf::apps

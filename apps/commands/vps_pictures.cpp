@@ -32,10 +32,13 @@ VpsPictures::VpsPictures(const VpsOptions& options, const vision::Testbed& testb
   if (!options.overlay.empty()) {
     refuse_inputs();
     const std::string extension = std::filesystem::path(options.overlay).extension();
-    for (const char* other : {".mp4", ".mkv", ".mov", ".webm", ".gif", ".png", ".jpg"})
-      if (extension == other)
-        throw base::InputError(fmt::format("--overlay {}: expected a folder or a video (*.avi)", options.overlay));
-    if (extension == ".avi")
+    std::error_code ignored;
+    const bool is_folder = extension.empty() || std::filesystem::is_directory(options.overlay, ignored);
+    if (!is_folder && extension != ".avi")
+      throw base::InputError(
+          fmt::format("--overlay {}: expected a folder or a video (*.avi); a folder with '{}' in its name must exist",
+                      options.overlay, extension));
+    if (!is_folder)
       open_videos();
     else
       for (const vision::TestbedCamera& each : testbed.cameras)

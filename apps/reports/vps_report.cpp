@@ -48,8 +48,8 @@ std::string follow_text(const VpsReport& r) {
   text +=
       fmt::format("\n{:>10} {:>8} {:>8} {:>10} {:>14}\n", "followed", "seen", "unseen", "hand-overs", "longest gap s");
   for (const auto& [id, use] : r.follow->tags)
-    text +=
-        fmt::format("{:>10} {:>8} {:>8} {:>10} {:>14.2f}\n", id, use.seen, use.unseen, use.hand_overs, use.longest_gap);
+    text += fmt::format("{:>10} {:>8} {:>8} {:>10} {:>14}\n", id, use.seen, use.unseen, use.hand_overs,
+                        use.seen > 0 ? fmt::format("{:.2f}", use.longest_gap) : "-");
   text += fmt::format("\n{:>16} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "camera", "images", "whole", "parts", "asleep",
                       "unread", "pixels %");
   for (std::size_t i = 0; i < r.cameras.size(); ++i) {

@@ -265,6 +265,15 @@ TEST(Vps, RefusesTagsThatCannotBeFollowed) {
   expect_refused({"vps", empty, "--rendered", "1"}, "[follow] has no tags");
 }
 
+TEST(Vps, SaysThatATagToFollowIsNotInView) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  const Outcome outcome = run_program({"vps", testbed, "--rendered", "2", "--images", "3", "--follow", "9"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("tag 9 is in no camera's image; searching all cameras in turn"), std::string::npos);
+  EXPECT_EQ(outcome.err.find("tag 9"), outcome.err.rfind("tag 9")) << "once";
+}
+
 /// Ends with the time at which it stops, since no start can follow.
 TEST(Vps, EndsWhenFollowingStopsForGood) {
   const Folder folder;
@@ -551,6 +560,8 @@ TEST(Vps, ReportsErrors) {
            {{testbed, "--rendered", "2", "--view", "192.0.2.1:0"}, "cannot listen on 192.0.2.1:0"},
            {{testbed, "--rendered", "2", "--send", "127.0.0.1"}, "'127.0.0.1' is not an address; expected HOST:PORT"},
            {{testbed, "--rendered", "2", "--overlay", folder.path("none/tags.avi")}, "cannot be written as a video"},
+           {{testbed, "--rendered", "2", "--overlay", folder.path("tags.webp")},
+            "expected a folder or a video (*.avi)"},
            {{testbed, "--rendered", "500"}, "500 tags do not fit"},
            {{large, "--rendered", "1"},
             "'size' of all cameras is 128 Mpx together; rendered images (--rendered, --robots) have at most "

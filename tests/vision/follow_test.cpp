@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -242,6 +243,26 @@ TEST(Follow, FollowedTagsHaveThePosesOfAFullSearch) {
   EXPECT_EQ(followed.counts().images, 72u);
   EXPECT_GE(followed.counts().asleep, 33u);
   EXPECT_GE(followed.counts().unwanted, 1u) << "the other tags are in the first images";
+}
+
+/// The measured height and tilt select the parts then.
+TEST(Follow, TagsWithMeasuredTiltsAreFollowedToo) {
+  const Testbed all = parse_testbed("t.toml", row_of_cameras(2, "dictionary = \"aruco_4x4_50\"\ntag_fit = \"tilt\"\n"));
+  Testbed following = all;
+  following.follow.emplace().tags = {3};
+  Stage stage(all, {{3, {0.3, 0.1, 0.4, 0.3}, {1.5, 0.0}, 0.4}, {1, {0.0, -0.3, 0.2, 0.0}, {}, 0.0}});
+  Positioning full(all, 1), followed(following, 1);
+  for (int i = 0; i < 8; ++i) {
+    const auto frames = stage.images(i / 15.0);
+    const auto some = followed.update(frames);
+    const auto tags = full.update(frames);
+    const auto expected = std::find_if(tags.begin(), tags.end(), [](const TrackedTag& tag) { return tag.id == 3; });
+    ASSERT_NE(expected, tags.end()) << i;
+    ASSERT_EQ(some.size(), 1u) << i;
+    EXPECT_TRUE(same_bits(some[0], *expected)) << i;
+    EXPECT_NEAR(some[0].X_WT.z, 0.4, 0.03);
+  }
+  EXPECT_LT(followed.follower()->counts().cameras[0].share(), 0.5);
 }
 
 /// Covered for longer than `search`: found again with the first search of its camera's turn.
