@@ -53,6 +53,10 @@ class ImageSource {
     Image skipped;
     return next(skipped);
   }
+  /// True if `reopen` may succeed after the source ended.
+  virtual bool can_reopen() const { return false; }
+  /// Opens the source again. @return false if that failed
+  virtual bool reopen() { return false; }
   virtual bool is_live() const { return false; }
   /// Returns the number of images; 0 if unknown.
   virtual std::size_t size() const { return 0; }

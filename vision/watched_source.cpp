@@ -17,7 +17,8 @@ using Clock = std::chrono::steady_clock;
 
 struct WatchedSource::Shared {
   std::unique_ptr<ImageSource> source;  ///< used by the thread only
-  std::mutex mutex;                     ///< of all below
+  std::chrono::milliseconds reopen_period;
+  std::mutex mutex;  ///< of all below
   std::condition_variable changed;
   enum class State { idle, wanted, done, quit, left } state = State::idle;
   bool skipped = false;  ///< the wanted image
@@ -27,9 +28,10 @@ struct WatchedSource::Shared {
 };
 
 WatchedSource::WatchedSource(std::unique_ptr<ImageSource> source, std::chrono::milliseconds limit,
-                             const std::atomic<bool>& stop)
+                             const std::atomic<bool>& stop, std::chrono::milliseconds reopen_period)
     : shared_(std::make_shared<Shared>()), limit_(limit), stop_(stop), rate_(source->rate()) {
   shared_->source = std::move(source);
+  shared_->reopen_period = reopen_period;
   // A thread inside a driver cannot be stopped.
   std::thread([shared = shared_] { read_images(shared); }).detach();
 }
@@ -39,6 +41,20 @@ WatchedSource::~WatchedSource() {
   shared_->state = Shared::State::quit;
   shared_->changed.notify_all();
   shared_->changed.wait_for(lock, limit_, [this] { return shared_->state == Shared::State::left; });
+}
+
+/// Reads or skips an image, if necessary after opening the source again.
+bool WatchedSource::read_one(Shared& s, bool skipped) {
+  while (!(skipped ? s.source->skip() : s.source->next(s.image))) {
+    if (!s.source->can_reopen()) return false;
+    do {
+      std::unique_lock lock(s.mutex);
+      const auto quits = [&s] { return s.state == Shared::State::quit; };
+      if (s.changed.wait_for(lock, s.reopen_period, quits)) return false;
+      lock.unlock();
+    } while (!s.source->reopen());
+  }
+  return true;
 }
 
 void WatchedSource::read_images(const std::shared_ptr<Shared>& shared) {
@@ -53,7 +69,7 @@ void WatchedSource::read_images(const std::shared_ptr<Shared>& shared) {
     bool more = false;
     std::exception_ptr error;
     try {
-      more = skipped ? s.source->skip() : s.source->next(s.image);
+      more = read_one(s, skipped);
     } catch (...) {
       error = std::current_exception();
     }

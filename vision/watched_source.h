@@ -10,7 +10,8 @@
 
 namespace sf::vision {
 
-/// Not thread-safe. Reads an image only when one is wanted, so none is skipped.
+/// Not thread-safe. Reads an image only when one is wanted, so none is skipped. A source that ended and can be reopened
+/// is opened again every `kReopenPeriod` until that succeeds; meanwhile it is stalled.
 class WatchedSource {
  public:
   enum class Result {
@@ -20,9 +21,11 @@ class WatchedSource {
   };
   /// How long `next` waits for a source that has stalled already, which may not delay other cameras.
   static constexpr std::chrono::milliseconds kGlance{5};
+  static constexpr std::chrono::milliseconds kReopenPeriod{1000};
 
   /// @param limit for one image  @param stop ends a wait within 50 ms; must outlive this
-  WatchedSource(std::unique_ptr<ImageSource> source, std::chrono::milliseconds limit, const std::atomic<bool>& stop);
+  WatchedSource(std::unique_ptr<ImageSource> source, std::chrono::milliseconds limit, const std::atomic<bool>& stop,
+                std::chrono::milliseconds reopen_period = kReopenPeriod);
   /// Waits up to `limit` for the call under way. A thread that is still blocked then is left behind with its source.
   ~WatchedSource();
   WatchedSource(const WatchedSource&) = delete;
@@ -37,6 +40,7 @@ class WatchedSource {
  private:
   struct Shared;
   static void read_images(const std::shared_ptr<Shared>& shared);
+  static bool read_one(Shared& shared, bool skipped);
 
   std::shared_ptr<Shared> shared_;  ///< with the thread
   std::chrono::milliseconds limit_;

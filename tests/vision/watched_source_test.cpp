@@ -22,6 +22,7 @@ struct Feed {
   std::counting_semaphore<> images{0};
   std::atomic<int> left{1000};  ///< images until the end
   std::atomic<bool> fails{false}, closed{false};
+  std::atomic<int> reopens{-1};  ///< attempts until it opens; negative: it cannot
 };
 
 class Blocking : public ImageSource {
@@ -37,6 +38,12 @@ class Blocking : public ImageSource {
   }
   bool is_live() const override { return true; }
   double rate() const override { return 12.0; }
+  bool can_reopen() const override { return camera_->reopens >= 0; }
+  /// Succeeds the last time.
+  bool reopen() override {
+    camera_->left = 1000;
+    return --camera_->reopens == 0;
+  }
 
  private:
   std::shared_ptr<Feed> camera_;
@@ -104,6 +111,32 @@ TEST_F(WatchedSourceTest, AnImageWantedAfterASkippedOneIsRead) {
   camera->images.release(2);
   ASSERT_EQ(finally(*source, image), Result::image);
   EXPECT_EQ(image.pixels, std::vector<std::uint8_t>{2});
+}
+
+TEST_F(WatchedSourceTest, ADeviceThatEndedIsOpenedAgain) {
+  camera->left = 1;
+  camera->reopens = 3;
+  camera->images.release(3);
+  WatchedSource source(std::make_unique<Blocking>(camera), 1h, stop, 0ms);
+  Image image;
+  ASSERT_EQ(source.next(image), Result::image);
+  ASSERT_EQ(source.next(image), Result::image);
+  EXPECT_EQ(image.pixels, std::vector<std::uint8_t>{2});
+  EXPECT_EQ(camera->reopens, 0);
+}
+
+/// A device that does not come back is a stalled one, and does not delay the end.
+TEST_F(WatchedSourceTest, ADeviceThatStaysAwayIsStalled) {
+  camera->left = 0;
+  camera->reopens = 1;
+  camera->images.release(1);
+  {
+    WatchedSource source(std::make_unique<Blocking>(camera), 1ms, stop, 1h);
+    Image image;
+    EXPECT_EQ(source.next(image), Result::stalled);
+  }
+  while (!camera->closed) std::this_thread::yield();
+  EXPECT_EQ(camera->reopens, 1);
 }
 
 TEST_F(WatchedSourceTest, AStopEndsTheWait) {

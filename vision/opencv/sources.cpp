@@ -8,6 +8,7 @@
 #include <charconv>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
@@ -52,8 +53,9 @@ class Files : public ImageSource {
 
 class Video : public ImageSource {
  public:
-  Video(cv::VideoCapture capture, std::string source, bool live)
-      : capture_(std::move(capture)), source_(std::move(source)), live_(live) {}
+  /// @param reopened opens the source again; empty: it cannot be
+  Video(cv::VideoCapture capture, std::string source, bool live, std::function<cv::VideoCapture()> reopened = {})
+      : capture_(std::move(capture)), source_(std::move(source)), live_(live), reopened_(std::move(reopened)) {}
   bool next(Image& out) override {
     bool more = false;
     attempt("reading of " + source_, [&] {
@@ -68,6 +70,12 @@ class Video : public ImageSource {
     attempt("reading of " + source_, [&] { more = capture_.grab(); });
     return more;
   }
+  bool can_reopen() const override { return reopened_ != nullptr; }
+  bool reopen() override {
+    capture_.release();
+    capture_ = reopened_();
+    return capture_.isOpened();
+  }
   bool is_live() const override { return live_; }
   double rate() const override {
     const double rate = capture_.get(cv::CAP_PROP_FPS);
@@ -78,6 +86,7 @@ class Video : public ImageSource {
   cv::VideoCapture capture_;
   std::string source_;
   bool live_;
+  std::function<cv::VideoCapture()> reopened_;
   cv::Mat frame_, grey_;
 };
 
@@ -192,15 +201,20 @@ std::unique_ptr<ImageSource> open_source(const std::string& source, int width, i
   if (!live && !fs::is_regular_file(source, error))
     throw base::InputError(source, 0, fmt::format("is a pipe, a socket or a block device; expected {}", kExpected));
   if (!live && is_image(source)) return std::make_unique<Files>(std::vector{source});
-  cv::VideoCapture capture = open_capture(source, live ? cv::CAP_V4L2 : cv::CAP_FFMPEG);
+  const auto open = [=] {
+    cv::VideoCapture capture = open_capture(source, live ? cv::CAP_V4L2 : cv::CAP_FFMPEG);
+    if (live && capture.isOpened()) request(capture, width, height, rate);
+    return capture;
+  };
+  cv::VideoCapture capture = open();
   if (!capture.isOpened())
     throw base::InputError(source, 0,
                            live ? "cannot be opened as a camera; expected a V4L2 device that no other program uses. "
                                   "Check that you may read "
                                   "it (group video)"
                                 : fmt::format("cannot be read as a video; expected {}", kExpected));
-  if (live) request(capture, width, height, rate);
-  return std::make_unique<Video>(std::move(capture), source, live);
+  if (!live) return std::make_unique<Video>(std::move(capture), source, false);
+  return std::make_unique<Video>(std::move(capture), source, true, open);
 }
 
 namespace {
