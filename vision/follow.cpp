@@ -44,7 +44,7 @@ bool parse_event(const std::string& text, FollowEvent& event) {
     event.kind = FollowEvent::Kind::time;
     return text.c_str()[length] == 0 && event.time >= 0.0 && event.time <= kMaxEventTime;
   }
-  if (std::sscanf(text.c_str(), " tag %ld %7[a-z]%n", &id, verb.data(), &length) != 2) return false;
+  if (std::sscanf(text.c_str(), " tag %5ld %7[a-z]%n", &id, verb.data(), &length) != 2) return false;
   const std::string_view word(verb.data());
   if (word != "enters" && word != "leaves") return false;
   event.kind = word == "enters" ? FollowEvent::Kind::enters : FollowEvent::Kind::leaves;
