@@ -21,10 +21,10 @@ namespace {
 using vision::Patch;
 using vision::TrueTag;
 
-constexpr double kSpacing = 2.0;                                 // [m] between cameras
-constexpr double kStart = -0.95;                                 // [m] x of the tag that crosses
-constexpr double kEnd = kSpacing * (kFollowCameras - 1) + 0.95;  // [m]
-constexpr double kBoardHeight = 1.0;                             // [m]
+constexpr double kFollowSpacing = 2.0;                                       // [m] between cameras
+constexpr double kFollowStart = -0.95;                                       // [m] x of the tag that crosses
+constexpr double kFollowEnd = kFollowSpacing * (kFollowCameras - 1) + 0.95;  // [m]
+constexpr double kBoardHeight = 1.0;                                         // [m]
 
 double cpu_now() {
   timespec now{};
@@ -37,7 +37,7 @@ double cpu_now() {
 TrueTag truth_of(std::uint32_t id, const FollowCase& setup, double time) {
   if (id == kFollowedTag) {
     constexpr double kWeave = 0.05, kWave = 2.0;  // [m], [rad/m]
-    const double x = kStart + setup.speed * time, slope = kWeave * kWave * std::cos(kWave * x);
+    const double x = kFollowStart + setup.speed * time, slope = kWeave * kWave * std::cos(kWave * x);
     const double yaw = std::atan(slope), bend = -kWeave * kWave * kWave * std::sin(kWave * x);
     return {id,
             {x, kWeave * std::sin(kWave * x), 0.2, yaw},
@@ -47,7 +47,7 @@ TrueTag truth_of(std::uint32_t id, const FollowCase& setup, double time) {
   const std::uint32_t place = id - 2;
   const double side = place % 2 == 0 ? 1.0 : -1.0, turn = 0.5 * side * (1.0 + 0.2 * place);
   const double angle = turn * time + place, radius = 0.1;
-  const glm::dvec2 center{kSpacing * (place / 2), 0.5 * side};
+  const glm::dvec2 center{kFollowSpacing * (place / 2), 0.5 * side};
   return {id,
           {center.x + radius * std::cos(angle), center.y + radius * std::sin(angle), 0.2, base::wrap_angle(angle)},
           radius * turn * glm::dvec2{-std::sin(angle), std::cos(angle)},
@@ -75,7 +75,7 @@ class FollowStage {
       vision::add_tag(scene, truth_of(id, setup_, middle), middle, testbed_.tag.side, patterns_[id - 1]);
     if (setup_.covered > 0.0) {
       Patch board;
-      board.X_WP = {1.5 * kSpacing, 0.0, kBoardHeight, 0.0};
+      board.X_WP = {1.5 * kFollowSpacing, 0.0, kBoardHeight, 0.0};
       board.size = {setup_.covered, 0.5};
       board.albedo = 0.3;
       scene.patches.push_back(board);
@@ -98,7 +98,8 @@ class FollowStage {
   std::uint32_t count_ = 0;
 };
 
-FollowMoment look(vision::Positioning& positioning, std::span<const vision::Frame> frames, const FollowCase& setup) {
+FollowMoment look_for_tag(vision::Positioning& positioning, std::span<const vision::Frame> frames,
+                          const FollowCase& setup) {
   FollowMoment moment;
   const double before = cpu_now();
   const auto tags = positioning.update(frames);
@@ -111,7 +112,7 @@ FollowMoment look(vision::Positioning& positioning, std::span<const vision::Fram
   return moment;
 }
 
-bool is_same(const vision::TrackedTag& a, const vision::TrackedTag& b) {
+bool is_same_state(const vision::TrackedTag& a, const vision::TrackedTag& b) {
   return a.time == b.time && a.X_WT.x == b.X_WT.x && a.X_WT.y == b.X_WT.y && a.X_WT.yaw == b.X_WT.yaw &&
          a.velocity == b.velocity && a.turn == b.turn && a.cameras == b.cameras;
 }
@@ -129,7 +130,7 @@ vision::Testbed follow_testbed() {
     text += fmt::format(
         "[[camera]]\nname = \"camera{}\"\nsize = [640, 512]\nfocal = [832, 832]\nposition = [{}, 0, 3.2]\n"
         "distortion = [-0.18, 0.06, 0.0005, -0.0004, 0]\nexposure = 0.005\nreadout = 0.015\n",
-        i + 1, kSpacing * static_cast<double>(i));
+        i + 1, kFollowSpacing * static_cast<double>(i));
   return vision::parse_testbed("follow.toml", text);
 }
 
@@ -147,7 +148,7 @@ FollowRun run_follow(const FollowCase& setup, std::uint64_t seed, const std::fun
   FollowStage stage(testbeds[0], setup, seed);
   FollowRun run;
   const double period = 1.0 / testbeds[0].cameras[0].camera.rate,
-               end = std::min((kEnd - kStart) / setup.speed, duration);
+               end = std::min((kFollowEnd - kFollowStart) / setup.speed, duration);
   const vision::FollowCounts& counts = systems[1].follower()->counts();
   for (std::size_t n = 0; static_cast<double>(n) * period < end; ++n) {
     const double time = static_cast<double>(n) * period;
@@ -158,7 +159,7 @@ FollowRun run_follow(const FollowCase& setup, std::uint64_t seed, const std::fun
     // The order changes, so that each method finds the images in the cache equally often.
     for (std::size_t k = 0; k < systems.size(); ++k) {
       const std::size_t method = (n + k) % systems.size();
-      run.moments[method].push_back(look(systems[method], frames, setup));
+      run.moments[method].push_back(look_for_tag(systems[method], frames, setup));
     }
     for (std::size_t i = 0; i < kFollowCameras; ++i) run.searches[i].push_back(search_of(before[i], counts.cameras[i]));
   }
@@ -178,7 +179,7 @@ FollowRow summarize(const FollowRun& run, FollowMethod method) {
     row.cpu_ms += 1e3 * moment.cpu / static_cast<double>(moments.size());
     row.missed += reference[n].tag && !moment.tag ? 1 : 0;
     if (!moment.tag) continue;
-    row.different += reference[n].tag && is_same(*moment.tag, *reference[n].tag) ? 0 : 1;
+    row.different += reference[n].tag && is_same_state(*moment.tag, *reference[n].tag) ? 0 : 1;
     ++row.seen;
     squares += moment.error * moment.error;
     row.most_mm = std::max(row.most_mm, 1e3 * moment.error);

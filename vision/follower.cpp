@@ -18,7 +18,7 @@ constexpr double kSigmas = 4.0;  // of the predicted position
 
 const std::set<std::uint32_t> kNoTags;
 
-double middle(const Camera& camera) { return 0.5 * (camera.exposure + camera.readout); }
+double shutter_middle(const Camera& camera) { return 0.5 * (camera.exposure + camera.readout); }
 
 TagPlace place_of_event(const FollowEvent& event, const TagMount& mount) {
   const bool is_flat = mount.fit == TagFreedom::plane;
@@ -124,7 +124,7 @@ bool Follower::is_lost(std::uint32_t id, double time, const Tracker& tracker) co
 TagPlace Follower::place_of(std::uint32_t id, const Tracker::Prediction& prediction, const Camera& camera) const {
   const TagMount& mount = testbed_.mount(id);
   // The rows of a rolling shutter are exposed earlier or later than the middle one.
-  const double blur = middle(camera) * glm::length(prediction.velocity);
+  const double blur = shutter_middle(camera) * glm::length(prediction.velocity);
   const double reach = std::min(kSigmas * prediction.sigma, settings_.speed * prediction.age) + blur + settings_.margin;
   const double error = mount.fit == TagFreedom::plane ? 0.0 : mount.side + reach;
   return {prediction.at, glm::dvec2{reach}, prediction.height, error};
@@ -134,7 +134,7 @@ void Follower::plan(std::span<const double> times, const Tracker& tracker, std::
   out.assign(testbed_.cameras.size(), {});
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Camera& camera = testbed_.cameras[i].camera;
-    const double time = times[i] + middle(camera);
+    const double time = times[i] + shutter_middle(camera);
     for (const std::uint32_t id : wanted_) {
       if (!is_lost(id, time, tracker)) {
         add_region(camera, place_of(id, *tracker.predicted(id, time), camera), testbed_.mount(id), cells_, out[i]);

@@ -29,9 +29,9 @@ std::string row_of_cameras(int count, const std::string& head = "dictionary = \"
 }
 
 /// Renders the images of tags that move straight.
-class Stage {
+class FollowStage {
  public:
-  Stage(const Testbed& testbed, std::vector<TrueTag> tags) : testbed_(testbed), tags_(std::move(tags)) {
+  FollowStage(const Testbed& testbed, std::vector<TrueTag> tags) : testbed_(testbed), tags_(std::move(tags)) {
     for (const TestbedCamera& each : testbed.cameras) renderers_.emplace_back(each.camera, Imaging{}, 1);
     for (const TrueTag& tag : tags_) patterns_.push_back(family_pattern(testbed.dictionary, tag.id));
     frames_.resize(renderers_.size());
@@ -62,7 +62,7 @@ class Stage {
   std::uint32_t count_ = 0;
 };
 
-bool same_bits(const TagFit& a, const TagFit& b) {
+bool has_same_bits(const TagFit& a, const TagFit& b) {
   const auto numbers = [](const TagFit& f) {
     return std::array{f.X_WT.x, f.X_WT.y,       f.X_WT.z, f.X_WT.yaw, f.side,       f.residual,
                       f.pixel,  f.height_sigma, f.row,    f.roll,     f.tilt_sigma, f.pitch};
@@ -71,19 +71,19 @@ bool same_bits(const TagFit& a, const TagFit& b) {
   return std::memcmp(x.data(), y.data(), sizeof(x)) == 0 && a.points == b.points;
 }
 
-bool same_bits(const TrackedTag& a, const TrackedTag& b) {
+bool has_same_bits(const TrackedTag& a, const TrackedTag& b) {
   return a.time == b.time && a.X_WT.x == b.X_WT.x && a.X_WT.y == b.X_WT.y && a.X_WT.z == b.X_WT.z &&
          a.X_WT.yaw == b.X_WT.yaw && a.velocity == b.velocity && a.turn == b.turn && a.cameras == b.cameras;
 }
 
-std::string error_of(const std::string& follow) {
+std::string follow_error(const std::string& follow) {
   return refusal_of([&] { parse_testbed("t.toml", row_of_cameras(1) + "[follow]\n" + follow); });
 }
 
 /// A follower that receives sightings without images.
-class Watch {
+class FollowWatch {
  public:
-  explicit Watch(const std::string& follow, int cameras = 2)
+  explicit FollowWatch(const std::string& follow, int cameras = 2)
       : testbed(parse_testbed("t.toml", row_of_cameras(cameras) + "[follow]\n" + follow)), follower(testbed) {}
 
   /// @param at x of tag `id`, seen by camera `camera` if its search includes it
@@ -141,20 +141,20 @@ TEST(Follow, ReadsItsSection) {
 }
 
 TEST(Follow, RefusesWrongValues) {
-  expect_in("unknown key 'tag'; did you mean 'tags'", error_of("tag = [7]"));
-  expect_in("expects a list of 1 to 256 ids", error_of("tags = []"));
-  expect_in("expects a list of 1 to 256 ids", error_of("tags = 7"));
-  expect_in("whole numbers from 0 to 65535", error_of("tags = [1.5]"));
-  expect_in("65535", error_of("tags = [65536]"));
-  expect_in("'margin'", error_of("margin = -1"));
-  expect_in("'speed'", error_of("speed = 6"));
-  expect_in("'search'", error_of("search = 0"));
+  expect_in("unknown key 'tag'; did you mean 'tags'", follow_error("tag = [7]"));
+  expect_in("expects a list of 1 to 256 ids", follow_error("tags = []"));
+  expect_in("expects a list of 1 to 256 ids", follow_error("tags = 7"));
+  expect_in("whole numbers from 0 to 65535", follow_error("tags = [1.5]"));
+  expect_in("65535", follow_error("tags = [65536]"));
+  expect_in("'margin'", follow_error("margin = -1"));
+  expect_in("'speed'", follow_error("speed = 6"));
+  expect_in("'search'", follow_error("search = 0"));
   for (const char* event :
        {"now", "at 5", "at -1 s", "at nan s", "at 5 s later", "tag 3 enters", "tag 3 enters [0 0 0 1]",
         "tag 3 enters [0 0 1 -1]", "tag 3 enters [0 0 1 1", "tag 3 enters [0 0 1 1] soon", "tag 3 enters [0 0 nan 1]",
         "tag -3 leaves [0 0 1 1]", "tag 70000 leaves [0 0 1 1]", "tag 3 likes [0 0 1 1]", "tag enters [0 0 1 1]"})
-    expect_in("expected \"tag 3 enters [x y width height]\"", error_of(fmt::format("start = \"{}\"", event)));
-  expect_in("'stop' is not later than 'start'", error_of("start = \"at 5 s\"\nstop = \"at 5 s\""));
+    expect_in("expected \"tag 3 enters [x y width height]\"", follow_error(fmt::format("start = \"{}\"", event)));
+  expect_in("'stop' is not later than 'start'", follow_error("start = \"at 5 s\"\nstop = \"at 5 s\""));
   const auto refusal = [](const std::string& head, const std::string& follow) {
     const Testbed testbed = parse_testbed("t.toml", row_of_cameras(1, head) + "[follow]\n" + follow);
     return refusal_of([&] { Positioning positioning(testbed, 1); });
@@ -184,7 +184,7 @@ TEST(Follow, TagsInRegionsAreThoseOfTheWholeImage) {
     std::vector<TrueTag> tags;
     for (std::uint32_t i = 0; i < 8; ++i)
       tags.push_back({i + 1, {-0.55 + 0.36 * (i % 4), i < 4 ? 0.3 : -0.25, 0.2, 0.9 * i}, {0.3, 0.2 * i}, 0.5});
-    Stage stage(testbed, tags);
+    FollowStage stage(testbed, tags);
     const Camera& camera = testbed.cameras[0].camera;
     const Frame& frame = stage.images(0.1)[0];
     const Region whole_image = vision::whole(frame.image);
@@ -201,7 +201,7 @@ TEST(Follow, TagsInRegionsAreThoseOfTheWholeImage) {
       part.detect(frame.image, frame.time, search, {sighting.id}, one);
       ASSERT_EQ(one.size(), 1u) << dictionary << " " << sighting.id;
       EXPECT_EQ(one[0].time, sighting.time);
-      EXPECT_TRUE(same_bits(one[0].fit, sighting.fit)) << dictionary << " " << sighting.id;
+      EXPECT_TRUE(has_same_bits(one[0].fit, sighting.fit)) << dictionary << " " << sighting.id;
     }
   }
 }
@@ -211,9 +211,9 @@ TEST(Follow, FollowedTagsHaveThePosesOfAFullSearch) {
   const Testbed all = parse_testbed("t.toml", row_of_cameras(3));
   Testbed following = all;
   following.follow.emplace().tags = {3};
-  Stage stage(all, {{3, {-0.4, 0.1, 0.2, 0.3}, {2.0, 0.0}, 0.4},
-                    {1, {0.0, -0.3, 0.2, 0.0}, {}, 0.0},
-                    {2, {1.3, 0.4, 0.2, 0.0}, {0.1, 0.0}, 0.0}});
+  FollowStage stage(all, {{3, {-0.4, 0.1, 0.2, 0.3}, {2.0, 0.0}, 0.4},
+                          {1, {0.0, -0.3, 0.2, 0.0}, {}, 0.0},
+                          {2, {1.3, 0.4, 0.2, 0.0}, {0.1, 0.0}, 0.0}});
   Positioning full(all, 1), followed(following, 1);
   int seen = 0, both = 0;
   for (int i = 0; i < 24; ++i) {
@@ -222,7 +222,7 @@ TEST(Follow, FollowedTagsHaveThePosesOfAFullSearch) {
     for (const TrackedTag& tag : full.update(frames)) {
       if (tag.id != 3) continue;
       ASSERT_EQ(some.size(), 1u) << i;
-      EXPECT_TRUE(same_bits(some[0], tag)) << i;
+      EXPECT_TRUE(has_same_bits(some[0], tag)) << i;
       ++seen;
       both += tag.cameras == 2 ? 1 : 0;
     }
@@ -250,7 +250,7 @@ TEST(Follow, TagsWithMeasuredTiltsAreFollowedToo) {
   const Testbed all = parse_testbed("t.toml", row_of_cameras(2, "dictionary = \"aruco_4x4_50\"\ntag_fit = \"tilt\"\n"));
   Testbed following = all;
   following.follow.emplace().tags = {3};
-  Stage stage(all, {{3, {0.3, 0.1, 0.4, 0.3}, {1.5, 0.0}, 0.4}, {1, {0.0, -0.3, 0.2, 0.0}, {}, 0.0}});
+  FollowStage stage(all, {{3, {0.3, 0.1, 0.4, 0.3}, {1.5, 0.0}, 0.4}, {1, {0.0, -0.3, 0.2, 0.0}, {}, 0.0}});
   Positioning full(all, 1), followed(following, 1);
   for (int i = 0; i < 8; ++i) {
     const auto frames = stage.images(i / 15.0);
@@ -259,7 +259,7 @@ TEST(Follow, TagsWithMeasuredTiltsAreFollowedToo) {
     const auto expected = std::find_if(tags.begin(), tags.end(), [](const TrackedTag& tag) { return tag.id == 3; });
     ASSERT_NE(expected, tags.end()) << i;
     ASSERT_EQ(some.size(), 1u) << i;
-    EXPECT_TRUE(same_bits(some[0], *expected)) << i;
+    EXPECT_TRUE(has_same_bits(some[0], *expected)) << i;
     EXPECT_NEAR(some[0].X_WT.z, 0.4, 0.03);
   }
   EXPECT_LT(followed.follower()->counts().cameras[0].share(), 0.5);
@@ -269,7 +269,7 @@ TEST(Follow, TagsWithMeasuredTiltsAreFollowedToo) {
 TEST(Follow, LostTagsAreSearchedInTurn) {
   Testbed testbed = parse_testbed("t.toml", row_of_cameras(3));
   testbed.follow.emplace().tags = {3};
-  Stage stage(testbed, {{3, {2.6, 0.1, 0.2, 0.3}, {}, 0.0}});
+  FollowStage stage(testbed, {{3, {2.6, 0.1, 0.2, 0.3}, {}, 0.0}});
   Positioning positioning(testbed, 1);
   std::size_t i = 0;
   std::vector<std::size_t> seen;
@@ -288,7 +288,7 @@ TEST(Follow, LostTagsAreSearchedInTurn) {
 }
 
 TEST(Follow, EventsStartAndStopIt) {
-  Watch watch("tags = [7]\nstart = \"tag 3 enters [0.9 -0.4 0.5 0.8]\"\nstop = \"tag 7 leaves [-1 -1 3 2]\"\n");
+  FollowWatch watch("tags = [7]\nstart = \"tag 3 enters [0.9 -0.4 0.5 0.8]\"\nstop = \"tag 7 leaves [-1 -1 3 2]\"\n");
   watch.step(3, 0.0, 0);
   EXPECT_EQ(watch.needed(), 1) << "only the camera that sees the rectangle searches, and only there";
   EXPECT_FALSE(watch.searches[1].whole);
@@ -313,7 +313,7 @@ TEST(Follow, EventsStartAndStopIt) {
 }
 
 TEST(Follow, ATimeStartsAndStopsItOnce) {
-  Watch watch("tags = [7]\nstart = \"at 0.15 s\"\nstop = \"at 0.35 s\"\n");
+  FollowWatch watch("tags = [7]\nstart = \"at 0.15 s\"\nstop = \"at 0.35 s\"\n");
   std::vector<int> needed;
   for (int i = 0; i < 6; ++i) {
     watch.step(7, -0.4, 0);
@@ -325,7 +325,7 @@ TEST(Follow, ATimeStartsAndStopsItOnce) {
 
 /// A stop at a time is final, also if following has not begun.
 TEST(Follow, ATimeEndsTheWaitForAStart) {
-  Watch watch("tags = [7]\nstart = \"tag 3 enters [0 -0.4 0.5 0.8]\"\nstop = \"at 0.15 s\"\n");
+  FollowWatch watch("tags = [7]\nstart = \"tag 3 enters [0 -0.4 0.5 0.8]\"\nstop = \"at 0.15 s\"\n");
   for (int i = 0; i < 2; ++i) watch.step(7, 0.0, 0);
   EXPECT_EQ(watch.needed(), 1);
   EXPECT_FALSE(watch.follower.is_over());
@@ -337,7 +337,7 @@ TEST(Follow, ATimeEndsTheWaitForAStart) {
 
 /// A camera without images does not keep the others awake.
 TEST(Follow, AbsentCamerasAreNotWaitedFor) {
-  Watch watch("tags = [7]\n", 3);
+  FollowWatch watch("tags = [7]\n", 3);
   watch.absent[1] = 1;
   std::vector<int> needed;
   for (int i = 0; i < 4; ++i) {
@@ -350,7 +350,7 @@ TEST(Follow, AbsentCamerasAreNotWaitedFor) {
 /// The same tag and rectangle start and stop it: each change needs a new entrance.
 TEST(Follow, ATagInsideDoesNotEnterAgain) {
   const std::string event = "\"tag 7 enters [0.9 -0.4 0.5 0.8]\"";
-  Watch watch("tags = [7]\nstart = " + event + "\nstop = " + event + "\n");
+  FollowWatch watch("tags = [7]\nstart = " + event + "\nstop = " + event + "\n");
   for (int i = 0; i < 4; ++i) watch.step(7, 1.1, 1);
   EXPECT_EQ(watch.follower.counts().starts, 1u);
   EXPECT_EQ(watch.follower.counts().stops, 0u);
@@ -360,7 +360,7 @@ TEST(Follow, ATagInsideDoesNotEnterAgain) {
 }
 
 TEST(Follow, SaysWhatHappensAtABoundedRate) {
-  Watch watch("tags = [7]\n");
+  FollowWatch watch("tags = [7]\n");
   std::size_t messages = 0;
   for (int i = 0; i < 100; ++i) {
     watch.step(7, 0.65, static_cast<std::size_t>(i / 2 % 2));
@@ -376,7 +376,7 @@ TEST(Follow, CamerasThatSleepNeedNotBeRead) {
   const Testbed all = parse_testbed("t.toml", row_of_cameras(3));
   Testbed following = all;
   following.follow.emplace().tags = {3};
-  Stage stage(all, {{3, {-0.4, 0.1, 0.2, 0.3}, {2.0, 0.0}, 0.4}});
+  FollowStage stage(all, {{3, {-0.4, 0.1, 0.2, 0.3}, {2.0, 0.0}, 0.4}});
   Positioning full(all, 1), followed(following, 1);
   std::uint64_t unread = 0;
   for (int i = 0; i < 24; ++i) {
@@ -391,7 +391,7 @@ TEST(Follow, CamerasThatSleepNeedNotBeRead) {
     const auto expected = full.update(images);
     const auto tags = followed.update(frames);
     ASSERT_EQ(tags.size(), 1u) << i;
-    EXPECT_TRUE(same_bits(tags[0], expected[0])) << i;
+    EXPECT_TRUE(has_same_bits(tags[0], expected[0])) << i;
   }
   EXPECT_GE(unread, 30u);
   std::uint64_t counted = 0;
