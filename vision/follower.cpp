@@ -20,6 +20,10 @@ const std::set<std::uint32_t> kNoTags;
 
 double shutter_middle(const Camera& camera) { return 0.5 * (camera.exposure + camera.readout); }
 
+bool is_due(const FollowEvent& event, double time) {
+  return event.kind == FollowEvent::Kind::time && time >= event.time;
+}
+
 TagPlace place_of_event(const FollowEvent& event, const TagMount& mount) {
   const bool is_flat = mount.fit == TagFreedom::plane;
   return {0.5 * (event.low + event.high), 0.5 * (event.high - event.low), mount.height,
@@ -104,13 +108,13 @@ void Follower::change(bool to_active, double time, const std::string& why, std::
   say(time, fmt::format("following {} at {:.2f} s{}", to_active ? "starts" : "stops", time, why));
 }
 
+bool Follower::starts_by(double time) const {
+  return counts_.starts == 0 && (settings_.start.kind == FollowEvent::Kind::none || is_due(settings_.start, time));
+}
+
 void Follower::begin(double time) {
-  const auto is_due = [&](const FollowEvent& event) {
-    return event.kind == FollowEvent::Kind::time && time >= event.time;
-  };
-  const bool starts = settings_.start.kind == FollowEvent::Kind::none || is_due(settings_.start);
-  if (counts_.starts == 0 && starts) change(true, time, "", {});
-  if (is_over_ || !is_due(settings_.stop)) return;
+  if (starts_by(time)) change(true, time, "", {});
+  if (is_over_ || !is_due(settings_.stop, time)) return;
   if (is_active_) change(false, time, "", {});
   is_over_ = true;
   wanted_.clear();

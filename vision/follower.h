@@ -62,6 +62,8 @@ class Follower {
                std::span<const std::vector<Sighting>> sightings, const Tracker& tracker,
                std::vector<TrackedTag>& tracked);
 
+  /// Returns whether following starts by itself until `time` [s].
+  bool starts_by(double time) const;
   /// Returns the tags to detect: those that are followed, and that of the event for which this waits.
   const std::set<std::uint32_t>& wanted() const { return wanted_; }
   /// Returns the tags that are followed now: none before the start and after the stop.

@@ -124,7 +124,7 @@ void Positioning::plan(std::span<const Frame> frames, std::vector<std::uint8_t>&
 void Positioning::observe() {
   State& s = *state_;
   s.follower->observe(s.time, s.searches, s.absent, s.sightings, s.tracker, s.tracked);
-  s.asleep.assign(s.times.size(), 1);
+  s.asleep.assign(s.times.size(), s.follower->starts_by(s.time + 2.0 * s.period) ? 0 : 1);
   for (const double periods : {1.0, 2.0}) {
     std::vector<double> times = s.times;
     for (double& time : times) time = std::max(time, s.time) + periods * s.period;

@@ -323,6 +323,23 @@ TEST(Follow, ATimeStartsAndStopsItOnce) {
   EXPECT_TRUE(watch.follower.is_over());
 }
 
+/// Images are read in time for a start at a time.
+TEST(Follow, CamerasWakeForAStart) {
+  Testbed testbed = parse_testbed("t.toml", row_of_cameras(1) + "[follow]\ntags = [3]\nstart = \"at 0.5 s\"\n");
+  testbed.cameras[0].camera.rate = 10.0;
+  FollowStage stage(testbed, {{3, {0.0, 0.1, 0.2, 0.3}, {}, 0.0}});
+  Positioning positioning(testbed, 1);
+  for (int i = 0; i < 7; ++i) {
+    const bool asleep = positioning.asleep()[0] != 0;
+    EXPECT_EQ(asleep, i > 0 && i < 4) << i;
+    std::vector<Frame> frames(1);
+    frames[0].time = 0.1 * i;
+    frames[0].unread = asleep;
+    if (!asleep) frames[0].image = stage.images(0.1 * i)[0].image;
+    EXPECT_EQ(positioning.update(frames).size(), i < 5 ? 0u : 1u) << i;
+  }
+}
+
 /// A stop at a time is final, also if following has not begun.
 TEST(Follow, ATimeEndsTheWaitForAStart) {
   FollowWatch watch("tags = [7]\nstart = \"tag 3 enters [0 -0.4 0.5 0.8]\"\nstop = \"at 0.15 s\"\n");
