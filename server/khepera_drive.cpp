@@ -88,7 +88,7 @@ bool KheperaDrive::accept(const robots::KheperaAnswer& answer, std::int64_t now)
         const double response = std::clamp(static_cast<double>(number), 0.0, sensors::kMostResponse);
         values.insert(values.end(), {kReach * (1.0 - response / sensors::kMostResponse), response});
       }
-      measured(sensors::kInfrared, std::move(values), now);
+      measured({.type = sensors::kInfrared, .time = now, .values = std::move(values), .limit = kReach});
       return true;
     }
     default: {

@@ -97,7 +97,7 @@ void PioneerDrive::take_sip(const robots::ArcosSip& sip, std::int64_t now) {
   measured(sensors::kBattery, {sip.volts, std::nan(""), std::nan(""), std::nan("")}, now);
   if (sip.sonar_count == 0) return;
   for (std::size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = std::min(sip.ranges[i].value_or(ranges_[i]), kNoEcho);
-  measured(sensors::kSonar, {ranges_.begin(), ranges_.end()}, now);
+  measured({.type = sensors::kSonar, .time = now, .values = {ranges_.begin(), ranges_.end()}, .limit = kNoEcho});
 }
 
 void PioneerDrive::run(std::int64_t now) {

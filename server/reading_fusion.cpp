@@ -24,7 +24,7 @@ bool is_known(double value) { return !std::isnan(value); }
 
 ReadingFusion::ReadingFusion(const world::World& world, const sensors::SensorSet& sensor_set,
                              const FusionOptions& options)
-    : world_(world), sensor_set_(sensor_set), options_(options) {}
+    : world_(world), sensor_set_(sensor_set), options_(options), walls_(world) {}
 
 std::string ReadingFusion::refusal_of(const netio::Header& header, const netio::OwnReadings& own,
                                       std::uint32_t mover) const {
@@ -70,6 +70,7 @@ void ReadingFusion::take(const netio::Header& header, const netio::OwnReadings& 
   if (arriving.elements < own.total) return;
   if (options_.clock.source == ClockSource::arrival) arriving.time = now;
   std::swap(sensor.newest, arriving);
+  sensor.mapped = false;
   arriving.elements = 0;
   ++counts_.taken;
 }
@@ -108,28 +109,51 @@ void ReadingFusion::fuse(std::span<base::ReadingBlock> readings) {
   if (senders_.empty()) return;
   for (base::ReadingBlock& reading : readings) {
     const auto found = sensors_.find({reading.mover, reading.type, reading.sensor});
-    if (found == sensors_.end() || found->second.newest.elements == 0) continue;
-    const Sender& sender = senders_.at(reading.mover);
-    const std::int64_t time = sender.clock.to_sender(arrival(reading.time));
-    if (std::abs(time - found->second.newest.time) > options_.max_age) {
-      ++counts_.too_old;
-    } else if (fuse(reading, found->second)) {
-      ++counts_.fused;
+    if (found != sensors_.end() && found->second.newest.elements > 0) {
+      fuse_own(reading, found->second);
+    } else if (reading.type == netio::kOwnLaser && !walls_.empty() && !senders_.contains(reading.mover)) {
+      fuse_walls(reading);
     }
   }
 }
 
-/// @return false if the own reading has no known value
-bool ReadingFusion::fuse(base::ReadingBlock& reading, Sensor& sensor) const {
-  if (std::none_of(sensor.newest.values.begin(), sensor.newest.values.end(), is_known)) return false;
+void ReadingFusion::fuse_own(base::ReadingBlock& reading, Sensor& sensor) {
+  const std::int64_t time = senders_.at(reading.mover).clock.to_sender(arrival(reading.time));
+  const std::int64_t age = time - sensor.newest.time;
+  if (std::abs(age) > options_.max_age) {
+    ++counts_.too_old;
+    return;
+  }
+  if (!fuse(reading, sensor, sensor.newest.values)) return;
+  const double seconds = std::max(0.0, 1e-9 * static_cast<double>(age));
+  ++counts_.fused;
+  counts_.age_s += seconds;
+  counts_.oldest_s = std::max(counts_.oldest_s, seconds);
+  // The pose is that of the virtual reading, so older scans of a robot that turns would show walls elsewhere.
+  if (reading.type != netio::kOwnLaser || std::abs(age) > kMostMapAge || std::exchange(sensor.mapped, true)) return;
+  walls_.add(sensor_set_.row(reading), reading.X_WS, sensor.newest.values);
+}
+
+void ReadingFusion::fuse_walls(base::ReadingBlock& reading) {
+  const sensors::SensorSpec& row = sensor_set_.row(reading);
+  seen_.assign(reading.values.size(), std::nan(""));
+  for (std::uint32_t i = 0; i < seen_.size(); ++i) {
+    const double range = walls_.cast(reading.X_WS, sensors::bearing_of(row, i), reading.values[i]);
+    if (range < reading.values[i]) seen_[i] = range;
+  }
+  if (fuse(reading, sensors_[{reading.mover, reading.type, reading.sensor}], seen_)) ++counts_.mapped;
+}
+
+/// @return false if no value of `own` is known
+bool ReadingFusion::fuse(base::ReadingBlock& reading, Sensor& sensor, std::span<const double> own) const {
+  if (std::none_of(own.begin(), own.end(), is_known)) return false;
   sensor.values.assign(reading.values.begin(), reading.values.end());
   sensor.hits.assign(reading.hits.begin(), reading.hits.end());
   sensor.quality.assign(reading.quality.begin(), reading.quality.end());
   if (is_bumper(reading.type)) {
-    for (std::size_t i = 0; i < sensor.values.size(); ++i)
-      sensor.values[i] = std::max(sensor.values[i], sensor.newest.values[i]);
+    for (std::size_t i = 0; i < sensor.values.size(); ++i) sensor.values[i] = std::max(sensor.values[i], own[i]);
   } else {
-    fuse_ranges(reading, sensor);
+    fuse_ranges(reading, sensor, own);
   }
   reading.values = sensor.values;
   reading.hits = sensor.hits;
@@ -139,17 +163,17 @@ bool ReadingFusion::fuse(base::ReadingBlock& reading, Sensor& sensor) const {
 }
 
 /// An own range beyond the virtual sensor's limit is no echo, and one below its minimum is too near.
-void ReadingFusion::fuse_ranges(base::ReadingBlock& reading, Sensor& sensor) const {
+void ReadingFusion::fuse_ranges(base::ReadingBlock& reading, Sensor& sensor, std::span<const double> own) const {
   const sensors::SensorSpec& row = sensor_set_.row(reading);
   const base::RangeLimits limits = sensors::limits_of(row);
-  const std::size_t width = sensor.values.size() / sensor.newest.values.size();
-  for (std::size_t i = 0; i < sensor.newest.values.size(); ++i) {
-    const double own = sensor.newest.values[i];
+  const std::size_t width = sensor.values.size() / own.size();
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const double nearer = own[i];
     double& range = sensor.values[width * i];
-    if (!(own < range) || base::echo_of(own, limits) == base::Echo::none) continue;
-    const bool too_near = base::echo_of(own, limits) == base::Echo::too_near;
-    if (too_near && sensor.quality.empty()) sensor.quality.assign(sensor.newest.values.size(), base::QualityFlag::none);
-    range = std::max(own, limits.min);
+    if (!(nearer < range) || base::echo_of(nearer, limits) == base::Echo::none) continue;
+    const bool too_near = base::echo_of(nearer, limits) == base::Echo::too_near;
+    if (too_near && sensor.quality.empty()) sensor.quality.assign(own.size(), base::QualityFlag::none);
+    range = std::max(nearer, limits.min);
     if (reading.type == sensors::kInfrared) sensor.values[width * i + 1] = sensors::infrared_response(range, limits);
     if (!sensor.hits.empty()) sensor.hits[i] = base::kNoHit;
     if (!sensor.quality.empty()) sensor.quality[i] = too_near ? base::QualityFlag::too_near : base::QualityFlag::none;

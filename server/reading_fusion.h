@@ -21,6 +21,7 @@
 #include "netio/rate_limited_log.h"
 #include "robots/estimation/sender_clock.h"
 #include "sensors/sensor_set.h"
+#include "server/real_walls.h"
 #include "world/world.h"
 
 namespace sf::server {
@@ -39,6 +40,9 @@ struct FusionCounts {
   std::uint64_t mistimed = 0;    ///< own readings that their sender's clock places in the future or too far in the past
   std::uint64_t fused = 0;       ///< readings of virtual sensors with an own one
   std::uint64_t too_old = 0;     ///< readings of virtual sensors without, since the newest own one was too old
+  std::uint64_t mapped = 0;      ///< readings of simulated robots with walls that real ones have shown
+  double age_s = 0.0;            ///< [s] sum of the ages of own readings over `fused`
+  double oldest_s = 0.0;         ///< [s] largest of them
 
   friend bool operator==(const FusionCounts&, const FusionCounts&) = default;
 };
@@ -47,8 +51,9 @@ struct FusionCounts {
 /// bounded by the sensors of the world. Not thread-safe.
 class ReadingFusion {
  public:
-  static constexpr std::uint32_t kMostRefused = 64;  ///< number from which on sensors share their line in the log
-  static constexpr double kFovTolerance = 1e-3;      ///< [rad] between the fields of view of both lasers
+  static constexpr std::int64_t kMostMapAge = 20'000'000;  ///< [ns] of an own scan that shows walls to other robots
+  static constexpr std::uint32_t kMostRefused = 64;        ///< number from which on sensors share their line in the log
+  static constexpr double kFovTolerance = 1e-3;            ///< [rad] between the fields of view of both lasers
 
   ReadingFusion(const world::World& world, const sensors::SensorSet& sensor_set, const FusionOptions& options);
 
@@ -75,8 +80,9 @@ class ReadingFusion {
     std::vector<double> values;  ///< per element, as netio::value_of
   };
   struct Sensor {
-    Whole arriving;  ///< the reading that arrives
-    Whole newest;    ///< the newest whole reading; without elements: none
+    Whole arriving;       ///< the reading that arrives
+    Whole newest;         ///< the newest whole reading; without elements: none
+    bool mapped = false;  ///< `newest` is in the map of walls
     // The fused reading.
     std::vector<double> values;
     std::vector<std::uint32_t> hits;
@@ -87,8 +93,10 @@ class ReadingFusion {
   bool begin(const netio::Header& header, Sensor& sensor, std::uint32_t mover, std::int64_t now);
   void forget(std::uint32_t mover);
   std::int64_t arrival(std::int64_t now) const;
-  bool fuse(base::ReadingBlock& reading, Sensor& sensor) const;
-  void fuse_ranges(base::ReadingBlock& reading, Sensor& sensor) const;
+  bool fuse(base::ReadingBlock& reading, Sensor& sensor, std::span<const double> own) const;
+  void fuse_ranges(base::ReadingBlock& reading, Sensor& sensor, std::span<const double> own) const;
+  void fuse_own(base::ReadingBlock& reading, Sensor& sensor);
+  void fuse_walls(base::ReadingBlock& reading);
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
@@ -97,6 +105,8 @@ class ReadingFusion {
   using Key = std::array<std::uint32_t, 3>;  ///< row of the robot, type, number
   std::map<Key, Sensor> sensors_;            ///< that exist
   std::map<Key, std::string> refusals_;      ///< the last one of each sensor, up to kMostRefused
+  RealWalls walls_;
+  std::vector<double> seen_;  ///< [m] per beam: the next real wall; NaN: none
   FusionCounts counts_;
 };
 

@@ -11,6 +11,7 @@
 #include "netio/serial_line.h"
 #include "netio/tcp.h"
 #include "server/create_drive.h"
+#include "server/emulated_drive.h"
 #include "server/khepera_drive.h"
 #include "server/pioneer_drive.h"
 #include "server/player_drive.h"
@@ -60,7 +61,23 @@ constexpr RealRobotType kTypes[] = {
      .most_bytes = 256u << 10,
      .restart = 10'000'000'000,
      .poll = 10'000'000,
-     .make = make<PlayerDrive>}};
+     .make = make<PlayerDrive>},
+    {.word = "emulated",
+     .title = "emulated robot",
+     .emulated = true,
+     .distance = 1e-4,
+     .poll = 10'000'000,
+     .make = make<EmulatedDrive>}};
+
+/// The line of a robot without one.
+class NoLine final : public netio::ByteLine {
+ public:
+  NoLine() : ByteLine({}, 0) {}
+
+ private:
+  std::optional<std::size_t> receive(std::span<std::uint8_t>) override { return 0; }
+  std::optional<std::size_t> send(std::span<const std::uint8_t> bytes) override { return bytes.size(); }
+};
 
 }  // namespace
 
@@ -91,6 +108,7 @@ RealRobot::RealRobot(const RealRobotType& type, const RealRobotOptions& options,
 }
 
 std::unique_ptr<netio::ByteLine> RealRobot::open(int wait_ms) const {
+  if (type_.emulated) return std::make_unique<NoLine>();
   if (type_.behind_server) return std::make_unique<netio::TcpLine>(options_.server, wait_ms);
   return std::make_unique<netio::SerialLine>(options_.device, options_.baud, type_.stop_bits);
 }
@@ -163,14 +181,15 @@ sensors::Rolled RealRobot::rolled(double track) const {
   return {way_ - 0.5 * track * turn_, way_ + 0.5 * track * turn_};
 }
 
-void RealRobot::measured(std::uint8_t type, std::vector<double> values, std::int64_t now) {
-  const auto found =
-      std::find_if(readings_.begin(), readings_.end(), [&](const OwnReading& own) { return own.type == type; });
-  if (found == readings_.end()) {
-    readings_.push_back({type, 0, now, std::move(values)});
-  } else {
-    *found = {type, found->sequence + 1, now, std::move(values)};
-  }
+void RealRobot::measured(OwnReading own) {
+  const auto found = std::find_if(readings_.begin(), readings_.end(), [&](const OwnReading& each) {
+    return each.type == own.type && each.sensor == own.sensor;
+  });
+  own.sequence = found == readings_.end() ? 0 : found->sequence + 1;
+  if (found == readings_.end())
+    readings_.push_back(std::move(own));
+  else
+    *found = std::move(own);
 }
 
 std::string RealRobot::problem(std::int64_t now) const {

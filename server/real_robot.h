@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -20,6 +21,7 @@
 #include "netio/endpoint.h"
 #include "sensors/odometer.h"
 #include "server/own_reading.h"
+#include "world/world.h"
 
 namespace sf::server {
 
@@ -27,9 +29,11 @@ class RealRobot;
 
 struct RealRobotOptions {
   std::string type = "create";  ///< word of a RealRobotType
-  std::string device;           ///< "/dev/ttyUSB0"; empty for a server
+  std::string device;           ///< "/dev/ttyUSB0"; empty for a server; the name of an emulated robot
   unsigned baud = 0;            ///< 0: the default of the type
   netio::Endpoint server;       ///< of a type that is behind a server
+  std::shared_ptr<const world::World> world = {};  ///< that an emulated robot drives in
+  std::uint64_t seed = 1;                          ///< of the noise of its sensors
 };
 
 /// Description of one type of real robots.
@@ -37,6 +41,7 @@ struct RealRobotType {
   std::string_view word;          ///< "create"
   std::string_view title;         ///< "Create"
   bool behind_server = false;     ///< on TCP, instead of a serial line
+  bool emulated = false;          ///< without a line: it drives in a world of its own
   unsigned baud = 57600;          ///< default
   int stop_bits = 1;              ///< 1 or 2
   double distance = 1e-3;         ///< [m] resolution of its odometry
@@ -142,7 +147,11 @@ class RealRobot {
     return counts;
   }
   void touch(bool contact) { touched_ = touched_.value_or(false) || contact; }
-  void measured(std::uint8_t type, std::vector<double> values, std::int64_t now);
+  /// Takes the newest reading of one of its own sensors. Sets its number.
+  void measured(OwnReading own);
+  void measured(std::uint8_t type, std::vector<double> values, std::int64_t now) {
+    measured({.type = type, .time = now, .values = std::move(values)});
+  }
 
   RealRobotCounts counts_;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -80,7 +81,8 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       log_(world.movers[mover].name, world.movers[mover].id, options.log_descriptor,
            patience_of(sensor_set, mover, options.stop_after)),
       controller_(options.controller.name),
-      utc_(options.utc ? options.utc : utc_now) {
+      utc_(options.utc ? options.utc : utc_now),
+      shares_readings_(options.shares_readings) {
   if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
   if (options.map) map_.emplace(world, sensor_set, mover, *options.map);
   if (options.real) real_ = make_real_robot(*options.real, world.movers[mover].X_WM, world.movers[mover].track);
@@ -144,7 +146,27 @@ void RobotClient::update_real(std::int64_t now) {
   const std::uint64_t odometry = real_->odometry();
   real_->update(now);
   touched_ = touched_ || real_->contact();
+  if (shares_readings_) send_own_readings(now);
   if (own_ && own_->has_wheels() && real_->odometry() > odometry) own_->add_wheels(now, real_->rolled(track_));
+}
+
+/// Sends those to which the world file gives a virtual sensor, once the farm has answered.
+void RobotClient::send_own_readings(std::int64_t now) {
+  if (!link_.last_answer()) return;
+  for (const OwnReading& own : real_->readings()) {
+    const auto rows = sensor_set_.of(own.type, mover_);
+    const bool fits = own.type == netio::kOwnLaser || own.type == netio::kOwnSonar || own.type == netio::kOwnInfrared ||
+                      own.type == netio::kOwnBumper;
+    if (!fits || own.sensor >= rows.size()) continue;
+    std::uint32_t& next = shared_[{own.type, own.sensor}];
+    if (std::exchange(next, own.sequence + 1) == own.sequence + 1) continue;
+    const sensors::SensorType& type = *sensors::find_sensor_type(own.type);
+    const std::size_t elements = own.values.size() / sensors::element_width(type);
+    if (elements == rows[own.sensor].elements)
+      link_.send_own_reading(own, now);
+    else
+      log_.note_unshared(type.name, elements, rows[own.sensor], now);
+  }
 }
 
 /// The body is where the robot estimates itself.
@@ -266,7 +288,7 @@ RobotClientStats RobotClient::stats() const {
   if (real_) {
     stats.real = {std::string(real_->type().word), real_->counts(), real_->facts(), {}};
     for (const OwnReading& own : real_->readings())
-      stats.real->readings[std::string(sensors::find_sensor_type(own.type)->name)] = own.sequence + 1;
+      stats.real->readings[std::string(sensors::find_sensor_type(own.type)->name)] += own.sequence + 1;
   }
   if (own_)
     stats.own = {own_->port() > 0,
@@ -352,15 +374,22 @@ void RobotClient::gather_readings(std::int64_t now) {
     block.X_WM = own_ ? own_->pose_at(block.time) : body_.pose_at(block.time);
     block.X_WS = base::compose(block.X_WM, newest.row->X_MS);
   }
-  if (real_) gather_own_readings();
+  if (real_) gather_own_readings(now);
 }
 
 /// Numbered after the virtual sensors of their types. Where they are mounted is unknown, so their pose is the robot's.
-void RobotClient::gather_own_readings() {
+/// Those that the farm has fused lately are in its readings.
+void RobotClient::gather_own_readings(std::int64_t now) {
+  const std::size_t virtual_ones = readings_.size();
   for (const OwnReading& own : real_->readings()) {
+    const auto returns = [&](const base::ReadingBlock& block) {
+      return block.fused && block.type == own.type && block.sensor == own.sensor && now - block.time < kOwnReadingValid;
+    };
+    if (std::any_of(readings_.begin(), readings_.begin() + static_cast<std::ptrdiff_t>(virtual_ones), returns))
+      continue;
     base::ReadingBlock& block = readings_.emplace_back();
     block.mover = mover_;
-    block.sensor = static_cast<std::uint32_t>(sensor_set_.of(own.type, mover_).size());
+    block.sensor = static_cast<std::uint32_t>(sensor_set_.of(own.type, mover_).size()) + own.sensor;
     block.type = own.type;
     block.sequence = own.sequence;
     block.time = own.time;

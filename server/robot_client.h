@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/contact_onset.h"
@@ -55,6 +56,7 @@ struct RobotClientOptions {
   /// nowhere. Replaces the light that cameras see.
   std::optional<netio::Endpoint> truth;
   std::optional<RealRobotOptions> real;  ///< robot that moves in place of the model; nullopt: none
+  bool shares_readings = true;           ///< sends the real robot's own readings to the farm, which fuses them
   std::optional<OwnMapOptions> map;      ///< where to send its own map; nullopt: no map
 };
 
@@ -140,6 +142,7 @@ class RobotClient {
   /// Returns whether the controller is done, and its team has its map.
   bool done() const { return started_ && made_.controller->done() && !owes_map_; }
   const RobotLink& link() const { return link_; }
+  const RealRobot* real() const { return real_.get(); }            ///< null: the body is a model
   const OwnState* own() const { return own_ ? &*own_ : nullptr; }  ///< null: drives by its true state
   const LightListener& lights() const { return lights_; }
   RobotClientStats stats() const;
@@ -157,7 +160,8 @@ class RobotClient {
   /// Own state as estimated by the robot.
   const base::Report& own_state() const { return own_ ? own_->state() : body_.state(); }
   void gather_readings(std::int64_t now);
-  void gather_own_readings();
+  void gather_own_readings(std::int64_t now);
+  void send_own_readings(std::int64_t now);
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
   /// Returns whether its state is unknown, or too uncertain to act on.
@@ -201,8 +205,11 @@ class RobotClient {
   std::optional<SimulatedSensors> simulated_sensors_;  ///< by which a simulated robot localizes itself
   control::LocalizationError position_errors_;
   std::optional<TruthReport> truth_;
-  std::int64_t epoch_ = 0;                 ///< [ns] Unix time at time 0 of its clock, set in `run`
-  std::unique_ptr<RealRobot> real_;        ///< null: the body is a model
+  std::int64_t epoch_ = 0;           ///< [ns] Unix time at time 0 of its clock, set in `run`
+  std::unique_ptr<RealRobot> real_;  ///< null: the body is a model
+  bool shares_readings_;
+  /// By type and number: own readings processed by `send_own_readings`.
+  std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint32_t> shared_;
   double track_ = 0.0;                     ///< [m] of the real robot's wheels, as estimated from
   bool touched_ = false;                   ///< the real robot had a contact since the last step
   std::optional<OwnMap> map_;              ///< empty: no map

@@ -91,6 +91,17 @@ void RobotClientLog::note_dropped(std::uint32_t sensor, const netio::Dropped& dr
       now);
 }
 
+void RobotClientLog::note_unshared(std::string_view type, std::size_t elements, const sensors::SensorSpec& row,
+                                   std::int64_t now) {
+  if (now < next_unshared_) return;
+  next_unshared_ = now + kTroubleEvery;
+  log_.write(
+      fmt::format("the real robot's {} has {} values, and '{}' in the world file {}: its readings are not sent to "
+                  "the farm; give both the same, or use `--keep-readings`",
+                  type, elements, row.name, row.elements),
+      now);
+}
+
 void RobotClientLog::note_unknown_lane(std::uint32_t segment, std::uint32_t lane, std::int64_t now) {
   if (now < next_lane_) return;
   next_lane_ = now + kTroubleEvery;

@@ -30,6 +30,9 @@ class RobotClientLog {
   void note_dropped(std::uint32_t sensor, const netio::Dropped& dropped, std::int64_t now);
   /// Logs that a real robot does not have the digital outputs that its controller sets, once.
   void note_ignored_outputs(std::string_view title, std::int64_t now);
+  /// Logs that a real robot's own readings are not sent to the farm, since they have other elements than the virtual
+  /// sensor `row`, at most every ten seconds.
+  void note_unshared(std::string_view type, std::size_t elements, const sensors::SensorSpec& row, std::int64_t now);
   /// Logs that the controller is to share its map, but there is no V2V without the farm.
   void note_no_team(std::int64_t now);
   /// Logs maps of another area, at most every ten seconds, and measurements that are not used.
@@ -61,11 +64,12 @@ class RobotClientLog {
   bool stands_ = false;            ///< stopped for lack of readings
   std::optional<bool> lost_;       ///< as of the last step
   std::uint64_t stops_ = 0;
-  std::string real_problem_;       ///< last logged
-  std::int64_t next_lane_ = 0;     ///< [ns] time before which no unknown lane is logged
-  MapExchangeCounts team_;         ///< as last logged
-  std::int64_t next_foreign_ = 0;  ///< [ns] time before which no map of another area is logged
-  std::int64_t next_dropped_ = 0;  ///< [ns] time before which no dropped readings are logged
+  std::string real_problem_;        ///< last logged
+  std::int64_t next_lane_ = 0;      ///< [ns] time before which no unknown lane is logged
+  std::int64_t next_unshared_ = 0;  ///< [ns] the same of own readings
+  MapExchangeCounts team_;          ///< as last logged
+  std::int64_t next_foreign_ = 0;   ///< [ns] time before which no map of another area is logged
+  std::int64_t next_dropped_ = 0;   ///< [ns] time before which no dropped readings are logged
   bool outputs_ignored_ = false;
   std::int64_t next_drive_ = 0;  ///< [ns] time before which no ignored DRIVE is logged
 };

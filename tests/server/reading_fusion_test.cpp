@@ -76,7 +76,7 @@ TEST(ReadingFusion, TheNearerEchoOfBothWorldsCounts) {
   EXPECT_EQ(fused.sigma, HUGE_VAL);
   EXPECT_TRUE(fused.quality.empty());
   EXPECT_EQ(lab.ranges[0], 2.0) << "the virtual reading is kept as it was";
-  EXPECT_EQ(lab.fusion.counts(), (FusionCounts{.taken = 1, .fused = 1}));
+  EXPECT_EQ(lab.fusion.counts(), (FusionCounts{.taken = 1, .fused = 1, .age_s = 0.049, .oldest_s = 0.049}));
 }
 
 // A wall of both worlds is seen once, and twice fused is fused.
@@ -117,7 +117,8 @@ TEST(ReadingFusion, NothingOldIsFused) {
   lab.send({1, 1, 1, 1, 1}, 5300 * kMs, 800 * kMs);
   EXPECT_FALSE(lab.fused(800 * kMs).fused);
   lab.send({1, 1, 1, 1, 1}, 5400 * kMs, 2000 * kMs);
-  EXPECT_EQ(lab.fusion.counts(), (FusionCounts{.taken = 2, .mistimed = 1, .fused = 1, .too_old = 2}));
+  EXPECT_EQ(lab.fusion.counts(),
+            (FusionCounts{.taken = 2, .mistimed = 1, .fused = 1, .too_old = 2, .age_s = 0.25, .oldest_s = 0.25}));
 }
 
 TEST(ReadingFusion, AReadingWithoutAKnownValueIsNotFused) {
@@ -212,7 +213,36 @@ TEST(ReadingFusion, LargeScansArriveInParts) {
   send(0, 3 * kMs, 0.5), send(310, 3 * kMs, 0.5);
   send(0, 4 * kMs, 0.4), send(310, 4 * kMs, 0.4), send(620, 4 * kMs, 0.4);
   EXPECT_EQ(fused(4 * kMs), std::vector(700, 0.4));
-  EXPECT_EQ(fusion.counts(), (FusionCounts{.taken = 2, .incomplete = 3, .fused = 3}));
+  EXPECT_EQ(fusion.counts(),
+            (FusionCounts{.taken = 2, .incomplete = 3, .fused = 3, .age_s = 0.001, .oldest_s = 0.001}));
+}
+
+/// A real robot at the origin, facing +x, shows walls to a simulated one 1 m behind it until it sees through them.
+TEST(ReadingFusion, RealWallsStandInTheWayOfSimulatedRobots) {
+  world::World world = room(10.0, 0.0, 3);
+  const sensors::SensorSet sensor_set(world);
+  ReadingFusion fusion(world, sensor_set, {});
+  netio::RateLimitedLog log(-1);
+  const auto fov = static_cast<std::uint32_t>(std::llround(1e6 * sensor_set.of(sensors::kLaser, 0)[0].fov));
+  const std::vector<double> ranges(3, 6.0);
+  const auto run = [&](std::int64_t time, std::int64_t age, double ahead) {
+    base::Bytes words;
+    for (const double range : {kUnknown, ahead, kUnknown}) netio::put_own_range(range, words);
+    fusion.take({.robot = 1, .time = time - age, .session = 1}, {netio::kOwnLaser, 3, 3, 0, fov, words}, 0, time, log);
+    std::vector<base::ReadingBlock> blocks(2, {.type = sensors::kLaser, .time = time, .values = ranges});
+    blocks[1].mover = 1;
+    blocks[1].X_WS = {-1.0, 0.0, 0.0, 0.0};
+    fusion.fuse(blocks);
+    EXPECT_EQ(list(blocks[0].values)[1], std::min(6.0, ahead)) << "of both worlds at once";
+    EXPECT_EQ(blocks[1].fused, blocks[1].values[1] < 6.0);
+    EXPECT_EQ(blocks[1].values[0], 6.0);
+    return blocks[1].values[1];
+  };
+  EXPECT_NEAR(run(0, 0, 2.0), 3.0, 1.001 * RealWalls::kCell);
+  EXPECT_NEAR(run(100 * kMs, 0, HUGE_VAL), 3.0, 1.001 * RealWalls::kCell) << "no echo shows nothing";
+  EXPECT_NEAR(run(200 * kMs, 21 * kMs, 1.0), 3.0, 1.001 * RealWalls::kCell) << "too old for a robot that may turn";
+  EXPECT_NEAR(run(300 * kMs, 0, 2.5), 3.5, 1.001 * RealWalls::kCell) << "seen through";
+  EXPECT_EQ(fusion.counts().mapped, 4u);
 }
 
 // The range of 0.02 m is 1023 x (1 - 0.4) of the response; a bumper is pressed if either is.
