@@ -55,6 +55,7 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   require_signable(service.receiver.peers, options.wire);
   if (options.spat > 0) service.spat = netio::Endpoint{service.receiver.bind.address, options.spat};
   service.stale_lights = options.stale_lights;
+  service.own_age = base::nanoseconds(options.own_age);
   service.mirror = mirror_of(options);
   server::StateFilterOptions& filter = service.receiver.filter;
   filter.mode = options.raw      ? server::FilterMode::off
@@ -141,6 +142,7 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
   facts.socket_drops = stats.socket_drops;
   facts.relayed = stats.relayed;
   facts.drives = stats.drives;
+  facts.fusion = stats.fusion;
   facts.lights = stats.lights;
   facts.filtered = stats.filtered;
   facts.states = stats.states;

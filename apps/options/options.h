@@ -312,6 +312,7 @@ struct ServeOptions : WorldOptions,
   server::StaleLights stale_lights = server::StaleLights::dark;
   double processor_budget = 0.0;  ///< [ms] per tick; 0: no limit
   double network_budget = 0.0;    ///< [byte/s]; 0: no limit
+  double own_age = 0.25;          ///< [s] of a real robot's own reading up to which it is fused
   std::string mirror;             ///< "host:port" of an observer of all readings; empty: none
 };
 
@@ -340,6 +341,8 @@ struct RobotOptions : WorldOptions,
   std::string map_file;              ///< picture of its own map; empty: none
   std::optional<bridges::WebAddress> view;  ///< of the page with its own map; nullopt: none
   std::string serial;                       ///< device of a real robot; empty: none
+  std::string real_world;                   ///< world file of an emulated real robot; empty: none
+  bool keep_readings = false;               ///< the real robot's own readings are not sent to the farm
   std::string player;                       ///< "host:port" of a Player server with a robot; empty: none
   std::string robot_type = "create";        ///< word of a server::RealRobotType
   unsigned baud = 0;                        ///< 0: the default of the type

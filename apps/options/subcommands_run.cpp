@@ -218,8 +218,8 @@ void refuse_with_lockstep(const CLI::App& sub) {
     const bool of_ports = std::find(ports.begin(), ports.end(), name) != ports.end();
     if (option->count() > 0 &&
         (of_ports || name == "--spat" || name == "--stale-lights" || name == "--rate" || name == "--radio" ||
-         name == "--forget" || name == "--mirror" || name == "--processor-budget" || name == "--network-budget" ||
-         option->get_group() == kStatesGroup || option->get_group() == kBridgeGroup))
+         name == "--forget" || name == "--mirror" || name == "--own-age" || name == "--processor-budget" ||
+         name == "--network-budget" || option->get_group() == kStatesGroup || option->get_group() == kBridgeGroup))
       throw CLI::ValidationError(name, "cannot be used with --lockstep");
   }
 }
@@ -294,6 +294,11 @@ void add_serve(CLI::App& app, Call& call) {
       ->excludes("--lockstep")
       ->type_name("NAME=FIRST-LAST");
   add_filter(*sub, o);
+  sub->add_option("--own-age", o.own_age,
+                  "Age up to which a reading of a real robot's own sensor is fused with those of the virtual one [s]")
+      ->check(in_seconds(0.001, 1e6))
+      ->type_name("S")
+      ->capture_default_str();
   sub->add_option("--mirror", o.mirror,
                   "Address of an observer that receives a copy of every reading packet (`vps --readings`)")
       ->check(not_empty("HOST:PORT"))
@@ -469,7 +474,7 @@ void add_robot(CLI::App& app, Call& call) {
                      ->type_name("DEVICE");
   std::vector<std::string> types;
   for (const server::RealRobotType& type : server::real_robot_types())
-    if (!type.behind_server) types.emplace_back(type.word);
+    if (!type.behind_server && !type.emulated) types.emplace_back(type.word);
   add_choice(
       *sub, "--robot-type", types, [&o](const std::string& word) { o.robot_type = word; },
       "Type of the real robot: iRobot Create or Create 2, Pioneer 3 (ARCOS), Khepera II")
@@ -485,6 +490,16 @@ void add_robot(CLI::App& app, Call& call) {
       ->check(not_empty("HOST:PORT"))
       ->excludes(serial)
       ->type_name("HOST:PORT");
+  sub->add_option(
+         "--real-world", o.real_world,
+         "World file of an emulated real robot, which replaces the simulated one: it drives among the walls of "
+         "this file, and its own laser, sonars, infrared and bumpers read these alone")
+      ->check(CLI::ExistingFile)
+      ->excludes("--serial")
+      ->excludes("--player")
+      ->type_name("FILE");
+  sub->add_flag("--keep-readings", o.keep_readings,
+                "Do not send a real robot's own readings to the farm, which fuses them with the virtual ones");
   add_direct_v2v(*sub, o);
   sub->add_flag("--wait-for-start", o.wait_for_start, "Wait for the start signal before driving (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");

@@ -24,6 +24,7 @@
 #include "server/drive_relay.h"
 #include "server/light_service.h"
 #include "server/lockstep.h"
+#include "server/reading_fusion.h"
 #include "server/reading_publisher.h"
 #include "server/state_filter.h"
 #include "world/world.h"
@@ -55,6 +56,7 @@ struct RunReport {
   std::uint64_t socket_drops = 0;  ///< datagrams dropped because the inbox's buffer was full
   netio::RelayCounts relayed;      ///< states of other robots and start signals, relayed to robots
   server::DriveCounts drives;      ///< commands of users of bridges, relayed to robots
+  server::FusionCounts fusion;     ///< of readings of real robots' own sensors
   server::LightServiceCounts lights;
   bool filtered = false;  ///< `states` and `clocks` are valid
   server::StateFilterCounts states;

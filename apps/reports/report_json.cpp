@@ -309,6 +309,17 @@ std::string run_report_json(const RunReport& f) {
     json["relayed"] = {{"states", f.relayed.states}, {"datagrams", f.relayed.datagrams},
                        {"waited", f.relayed.waited}, {"starts", f.relayed.starts},
                        {"drives", f.drives.sent},    {"dropped_drives", f.drives.dropped}};
+    json["own_readings"] = {
+        {"taken", f.fusion.taken},
+        {"incomplete", f.fusion.incomplete},
+        {"unfit", f.fusion.unfit},
+        {"overtaken", f.fusion.overtaken},
+        {"mistimed", f.fusion.mistimed},
+        {"fused", f.fusion.fused},
+        {"too_old", f.fusion.too_old},
+        {"mapped", f.fusion.mapped},
+        {"mean_age_s", f.fusion.fused > 0 ? f.fusion.age_s / static_cast<double>(f.fusion.fused) : 0.0},
+        {"oldest_s", f.fusion.oldest_s}};
     if (f.filtered) json["states"] = states_json(f);
     json["log_lines_left_out"] = f.lines_left_out;
   }

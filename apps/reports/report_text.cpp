@@ -271,6 +271,15 @@ std::string run_report_text(const RunReport& f) {
     text += row("  waited for", counted(f.relayed.waited, "time") + ": more robots request V2V than one tick serves");
   if (f.drives.sent + f.drives.dropped > 0)
     text += row("commands relayed", "{} DRIVE, {} dropped", f.drives.sent, f.drives.dropped);
+  const server::FusionCounts& own = f.fusion;
+  if (own.taken + own.incomplete + own.unfit + own.overtaken + own.mistimed > 0) {
+    text += row("own readings", "{} taken, {} incomplete, {} overtaken, {} out of time; {} of other sensors", own.taken,
+                own.incomplete, own.overtaken, own.mistimed, counted(own.unfit, "packet"));
+    if (own.mapped > 0) text += row("  real walls", "in {} of simulated robots", counted(own.mapped, "reading"));
+    text += row("  fused", "in {}, {:.0f} ms old in the mean, {:.0f} ms at most; too old for {}",
+                counted(own.fused, "reading"), own.fused > 0 ? 1e3 * own.age_s / static_cast<double>(own.fused) : 0.0,
+                1e3 * own.oldest_s, own.too_old);
+  }
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (!f.recording.empty())
     text += row("recording", "{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6);

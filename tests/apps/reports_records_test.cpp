@@ -43,6 +43,16 @@ void set_service(RunReport& f) {
   f.socket_drops = 31;
   f.relayed = {.states = 32, .datagrams = 33, .waited = 34, .starts = 35};
   f.drives = {.sent = 36, .dropped = 37};
+  f.fusion = {.taken = 38,
+              .incomplete = 39,
+              .unfit = 40,
+              .overtaken = 41,
+              .mistimed = 42,
+              .fused = 43,
+              .too_old = 44,
+              .mapped = 45,
+              .age_s = 4.3,
+              .oldest_s = 0.25};
   f.lights = {{.states = 41, .messages = 42, .others = 43, .invalid = 44, .packets = 45, .refused = 46, .silences = 47},
               48};
   for (std::size_t k = 0; k < f.states.states.size(); ++k) f.states.states[k] = 50 + k;
