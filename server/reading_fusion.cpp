@@ -129,9 +129,21 @@ void ReadingFusion::fuse_own(base::ReadingBlock& reading, Sensor& sensor) {
   ++counts_.fused;
   counts_.age_s += seconds;
   counts_.oldest_s = std::max(counts_.oldest_s, seconds);
-  // The pose is that of the virtual reading, so older scans of a robot that turns would show walls elsewhere.
-  if (reading.type != netio::kOwnLaser || std::abs(age) > kMostMapAge || std::exchange(sensor.mapped, true)) return;
-  walls_.add(sensor_set_.row(reading), reading.X_WS, sensor.newest.values);
+  if (reading.type == netio::kOwnLaser) map(reading, age, sensor);
+}
+
+/// Adds a scan at the pose of its own time, between the last two virtual readings. Others would show walls elsewhere
+/// where the robot turns.
+void ReadingFusion::map(const base::ReadingBlock& reading, std::int64_t age, Sensor& sensor) {
+  const base::Pose before = std::exchange(sensor.X_WS, reading.X_WS);
+  const std::int64_t from = std::exchange(sensor.at, reading.time), span = reading.time - from;
+  if (std::exchange(sensor.mapped, true) || from < 0 || span <= 0 || span > options_.max_age || age > span) return;
+  const double share = std::clamp(static_cast<double>(age) / static_cast<double>(span), 0.0, 1.0);
+  base::Pose X_WS = reading.X_WS;
+  X_WS.x += share * (before.x - X_WS.x);
+  X_WS.y += share * (before.y - X_WS.y);
+  X_WS.yaw += share * base::wrap_angle(before.yaw - X_WS.yaw);
+  walls_.add(sensor_set_.row(reading), X_WS, sensor.newest.values);
 }
 
 void ReadingFusion::fuse_walls(base::ReadingBlock& reading) {

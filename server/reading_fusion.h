@@ -51,9 +51,8 @@ struct FusionCounts {
 /// bounded by the sensors of the world. Not thread-safe.
 class ReadingFusion {
  public:
-  static constexpr std::int64_t kMostMapAge = 20'000'000;  ///< [ns] of an own scan that shows walls to other robots
-  static constexpr std::uint32_t kMostRefused = 64;        ///< number from which on sensors share their line in the log
-  static constexpr double kFovTolerance = 1e-3;            ///< [rad] between the fields of view of both lasers
+  static constexpr std::uint32_t kMostRefused = 64;  ///< number from which on sensors share their line in the log
+  static constexpr double kFovTolerance = 1e-3;      ///< [rad] between the fields of view of both lasers
 
   ReadingFusion(const world::World& world, const sensors::SensorSet& sensor_set, const FusionOptions& options);
 
@@ -80,9 +79,11 @@ class ReadingFusion {
     std::vector<double> values;  ///< per element, as netio::value_of
   };
   struct Sensor {
-    Whole arriving;       ///< the reading that arrives
-    Whole newest;         ///< the newest whole reading; without elements: none
-    bool mapped = false;  ///< `newest` is in the map of walls
+    Whole arriving;        ///< the reading that arrives
+    Whole newest;          ///< the newest whole reading; without elements: none
+    bool mapped = false;   ///< `newest` was offered to the map of walls
+    base::Pose X_WS;       ///< at the last virtual reading
+    std::int64_t at = -1;  ///< [ns] of that reading; -1: none
     // The fused reading.
     std::vector<double> values;
     std::vector<std::uint32_t> hits;
@@ -96,6 +97,7 @@ class ReadingFusion {
   bool fuse(base::ReadingBlock& reading, Sensor& sensor, std::span<const double> own) const;
   void fuse_ranges(base::ReadingBlock& reading, Sensor& sensor, std::span<const double> own) const;
   void fuse_own(base::ReadingBlock& reading, Sensor& sensor);
+  void map(const base::ReadingBlock& reading, std::int64_t age, Sensor& sensor);
   void fuse_walls(base::ReadingBlock& reading);
 
   const world::World& world_;

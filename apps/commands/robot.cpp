@@ -133,7 +133,8 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
     client.real = server::RealRobotOptions{"player", {}, 0, read_address(book, options.player, "--player")};
   client.shares_readings = !options.keep_readings;
   if (!options.real_world.empty()) {
-    auto real = std::make_shared<world::World>(world::load_world(options.real_world, {.sensors = sensors::world_file_words()}));
+    auto real =
+        std::make_shared<world::World>(world::load_world(options.real_world, {.sensors = sensors::world_file_words()}));
     print_warnings(options.real_world, real->warnings);
     client.real =
         server::RealRobotOptions{.type = "emulated", .device = mover.name, .world = real, .seed = options.seed};

@@ -225,11 +225,12 @@ TEST(ReadingFusion, RealWallsStandInTheWayOfSimulatedRobots) {
   netio::RateLimitedLog log(-1);
   const auto fov = static_cast<std::uint32_t>(std::llround(1e6 * sensor_set.of(sensors::kLaser, 0)[0].fov));
   const std::vector<double> ranges(3, 6.0);
-  const auto run = [&](std::int64_t time, std::int64_t age, double ahead) {
+  const auto run = [&](std::int64_t time, std::int64_t age, double ahead, double yaw = 0.0) {
     base::Bytes words;
     for (const double range : {kUnknown, ahead, kUnknown}) netio::put_own_range(range, words);
     fusion.take({.robot = 1, .time = time - age, .session = 1}, {netio::kOwnLaser, 3, 3, 0, fov, words}, 0, time, log);
     std::vector<base::ReadingBlock> blocks(2, {.type = sensors::kLaser, .time = time, .values = ranges});
+    blocks[0].X_WS.yaw = yaw;
     blocks[1].mover = 1;
     blocks[1].X_WS = {-1.0, 0.0, 0.0, 0.0};
     fusion.fuse(blocks);
@@ -238,11 +239,14 @@ TEST(ReadingFusion, RealWallsStandInTheWayOfSimulatedRobots) {
     EXPECT_EQ(blocks[1].values[0], 6.0);
     return blocks[1].values[1];
   };
-  EXPECT_NEAR(run(0, 0, 2.0), 3.0, 1.001 * RealWalls::kCell);
-  EXPECT_NEAR(run(100 * kMs, 0, HUGE_VAL), 3.0, 1.001 * RealWalls::kCell) << "no echo shows nothing";
-  EXPECT_NEAR(run(200 * kMs, 21 * kMs, 1.0), 3.0, 1.001 * RealWalls::kCell) << "too old for a robot that may turn";
-  EXPECT_NEAR(run(300 * kMs, 0, 2.5), 3.5, 1.001 * RealWalls::kCell) << "seen through";
-  EXPECT_EQ(fusion.counts().mapped, 4u);
+  constexpr double kNear = 1.001 * RealWalls::kCell;
+  EXPECT_EQ(run(0, 0, 2.0), 6.0) << "its pose is known from the second reading on";
+  EXPECT_NEAR(run(100 * kMs, 0, 2.0), 3.0, kNear);
+  EXPECT_NEAR(run(200 * kMs, 0, HUGE_VAL), 3.0, kNear) << "no echo shows nothing";
+  EXPECT_NEAR(run(300 * kMs, 100 * kMs - 1, 1.0, 1.5), 2.0, kNear) << "measured before it turned by 1.5 rad";
+  EXPECT_NEAR(run(400 * kMs, 0, 2.5), 3.5, kNear) << "seen through, after one echo";
+  EXPECT_NEAR(run(900 * kMs, 100 * kMs, 1.0), 3.5, kNear) << "too long since the last reading to know its pose";
+  EXPECT_EQ(fusion.counts().mapped, 5u);
 }
 
 // The range of 0.02 m is 1023 x (1 - 0.4) of the response; a bumper is pressed if either is.
