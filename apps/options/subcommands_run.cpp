@@ -494,7 +494,7 @@ void add_robot(CLI::App& app, Call& call) {
          "--real-world", o.real_world,
          "World file of an emulated real robot, which replaces the simulated one: it drives among the walls of "
          "this file, and its own laser, sonars, infrared and bumpers read these alone")
-      ->check(CLI::ExistingFile)
+      ->check(not_empty("a world file"))
       ->excludes("--serial")
       ->excludes("--player")
       ->type_name("FILE");
