@@ -28,6 +28,16 @@ void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, con
   }
 }
 
+/// Senders that prove their address, and receive packets at it.
+bool is_answered(PeerKind kind) {
+  return kind == PeerKind::robot || kind == PeerKind::light || kind == PeerKind::centre;
+}
+
+/// The ids of control centres that the peers permit: 0, or none.
+std::vector<std::uint32_t> centre_ids(std::span<const Peer> peers) {
+  return find(peers, PeerKind::centre, 0) != nullptr ? std::vector<std::uint32_t>{0} : std::vector<std::uint32_t>{};
+}
+
 }  // namespace
 
 Inbox::Inbox(const InboxOptions& options)
@@ -35,6 +45,7 @@ Inbox::Inbox(const InboxOptions& options)
       tags_(options.tags, options.take_late),
       objects_(options.tags),
       lights_(options.lights),
+      centres_(centre_ids(options.peers)),
       peers_(options.peers),
       types_(options.robots.size(), 0),
       follows_drive_(options.robots.size(), 0),
@@ -82,6 +93,7 @@ PacketStatus Inbox::check_id(const Header& header) const {
   switch (header.type) {
     case Type::subscribe:
     case Type::leave:
+      if (claim_of(header).kind == PeerKind::centre) return known(centres_.row(0).has_value());
       return robot_if(true);
     case Type::v2v:
     case Type::own_readings:
@@ -128,7 +140,7 @@ bool Inbox::is_proven(const Header& header, const Endpoint& source) const {
 PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
                                bool proven, std::int64_t now) {
   const Claim claim = claim_of(header);
-  const bool answered = claim.kind == PeerKind::robot || claim.kind == PeerKind::light;
+  const bool answered = is_answered(claim.kind);
   const bool bounded = peers_.has_key(claim) && !(proven && answered);
   if (bounded) begin_period(now);
   if (bounded && doubtful_signatures_ == kMaxDoubtfulSignatures) return PacketStatus::wrong_signature;
@@ -157,7 +169,9 @@ bool Inbox::is_notable(PacketStatus status, const Packet& packet) {
 }
 
 PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t now) {
-  if (claim_of(packet.header).kind == PeerKind::start) return PacketStatus::accepted;
+  const PeerKind kind = claim_of(packet.header).kind;
+  if (kind == PeerKind::start) return PacketStatus::accepted;
+  if (kind == PeerKind::centre) return admit_centre(packet, source, now);
   if (packet.header.type == Type::tag) return admit_state(tags_, packet, source, now);
   if (packet.header.type == Type::object)
     return objects_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
@@ -209,6 +223,13 @@ PacketStatus Inbox::admit_light(const Packet& packet, const Endpoint& source, st
   return status;
 }
 
+PacketStatus Inbox::admit_centre(const Packet& packet, const Endpoint& source, std::int64_t now) {
+  if (packet.header.type == Type::leave) return centres_.leave(0, source, now);
+  const PacketStatus status = centres_.admit(0, kSubscribeChannel, packet.header.sequence, source, now);
+  if (status == PacketStatus::accepted) centre_session_ = packet.header.session;
+  return status;
+}
+
 /// Marks a state that newer states of its bound sender overtook, if such states are accepted.
 PacketStatus Inbox::admit_state(SenderBindings& bindings, Packet& packet, const Endpoint& source, std::int64_t now) {
   const std::uint32_t id = packet.header.robot;
@@ -240,7 +261,7 @@ bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t no
 
 bool Inbox::refuse(const Packet& packet, PacketStatus reason, std::int64_t now, base::Bytes& out) {
   const PeerKind kind = claim_of(packet.header).kind;
-  if (packet.header.type == Type::leave || (kind != PeerKind::robot && kind != PeerKind::light)) return false;
+  if (packet.header.type == Type::leave || !is_answered(kind)) return false;
   begin_period(now);
   if (refusals_ == kMaxRefusals) return false;
   ++refusals_;
@@ -268,6 +289,10 @@ SessionToken Inbox::session_token_for(std::uint32_t robot) const {
 
 std::optional<Endpoint> Inbox::light_address(std::uint32_t light, std::int64_t now) const {
   return lights_.is_active(light, now) ? lights_.source(light) : std::nullopt;
+}
+
+std::optional<Endpoint> Inbox::centre_address(std::int64_t now) const {
+  return centres_.is_active(0, now) ? centres_.source(0) : std::nullopt;
 }
 
 SessionToken Inbox::light_session_token(std::uint32_t light) const {

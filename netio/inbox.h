@@ -135,6 +135,11 @@ class Inbox {
   /// Returns the address that sends the V2I of intersection `light`; nullopt if none was accepted in the last two
   /// seconds.
   std::optional<Endpoint> light_address(std::uint32_t light, std::int64_t now) const;
+  /// Returns the address of the control centre; nullopt if no SUBSCRIBE of a permitted one was accepted in the last two
+  /// seconds.
+  std::optional<Endpoint> centre_address(std::int64_t now) const;
+  SessionToken centre_session_token() const { return {session_, centre_session_}; }
+  PacketSigner* centre_signer() { return peers_.signer({PeerKind::centre, 0}); }
   /// The same as `session_token_for`, for packets to that sender.
   SessionToken light_session_token(std::uint32_t light) const;
 
@@ -160,17 +165,20 @@ class Inbox {
   PacketStatus admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_own_readings(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_light(const Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus admit_centre(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
   SenderBindings robots_;
   SenderBindings tags_;
   SenderBindings objects_;  ///< objects, bound by the id of their tag
   SenderBindings lights_;
+  SenderBindings centres_;  ///< id 0 if the peers contain a control centre; otherwise none
   PeerTable peers_;
   std::vector<base::SensorTypes> types_;       ///< per robot row: mask of its last SUBSCRIBE, 0 for all
   std::vector<std::uint8_t> follows_drive_;    ///< per robot row: by its last SUBSCRIBE
   std::vector<std::uint32_t> sessions_;        ///< per robot row: of its last packet
   std::vector<std::uint32_t> light_sessions_;  ///< the same per row of lights
+  std::uint32_t centre_session_ = 0;           ///< of the control centre's last packet
   std::uint32_t session_;
   bool lockstep_;
   AddressTokens tokens_;

@@ -85,8 +85,8 @@ struct Header {
   Type type = Type::v2v;
   std::uint16_t robot = 0;     ///< id of the robot that the reading or state belongs to; TAG, OBJECT: the tag's id;
                                ///< V2I: the intersection's
-  std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this type; SUBSCRIBE: kFollowsDrive or 0; 0 in
-                               ///< other requests and states
+  std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this type; SUBSCRIBE: kFollowsDrive, kCentre or
+                               ///< 0; 0 in other requests and states
   std::uint32_t sequence = 0;  ///< counter of messages of this type (and sensor), wraps to 0
   std::int64_t time = 0;       ///< [ns] in [0, kMaxTime]: time of measurement, not of sending
   std::uint16_t accuracy = 0;  ///< readings: accuracy word, see below; 0: not stated
@@ -132,6 +132,7 @@ struct Subscribe {
 };
 inline constexpr base::SensorTypes kNeighboursBit = 1;  ///< requests the states of other robots
 inline constexpr std::uint16_t kFollowsDrive = 1;       ///< `Header::sensor` of SUBSCRIBE: the robot follows DRIVE
+inline constexpr std::uint16_t kCentre = 2;             ///< the same, and of LEAVE: the sender is the control centre
 
 /// Start signal to the robot in the header, or to all with kBroadcastId.
 struct Start {};

@@ -12,6 +12,8 @@ const Peer* find(std::span<const Peer> peers, PeerKind kind, std::uint32_t id) {
 
 Claim claim_of(const Header& header) {
   if (header.type == Type::start || header.type == Type::lane) return {PeerKind::start, 0};
+  const bool asks = header.type == Type::subscribe || header.type == Type::leave;
+  if (asks && header.sensor == kCentre) return {PeerKind::centre, 0};
   if (header.type == Type::v2i) return {PeerKind::light, header.robot};
   const bool tag = header.type == Type::tag || header.type == Type::object;
   return {tag ? PeerKind::tag : PeerKind::robot, header.robot};

@@ -13,12 +13,13 @@
 
 namespace sf::netio {
 
-enum class PeerKind : std::uint8_t { robot, tag, start, light, group };
+enum class PeerKind : std::uint8_t { robot, tag, start, light, group, centre };
 
 struct Peer {
   PeerKind kind = PeerKind::robot;  ///< start: the sender of START and LANE; light: the sender of V2I and SPaT; group:
-                                    ///< all robots that send V2V to each other
-  std::uint32_t id = 0;             ///< id of the robot, tag or intersection; 0 for start and group
+                                    ///< all robots that send V2V to each other; centre: the control centre, which
+                                    ///< receives the V2V states of all robots
+  std::uint32_t id = 0;             ///< id of the robot, tag or intersection; 0 for start, group and centre
   std::optional<std::uint32_t> address;  ///< IPv4, host byte order; nullopt: any
   std::optional<SigningKey> key;         ///< nullopt: packets need no signature
 };

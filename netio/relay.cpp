@@ -15,6 +15,7 @@ Relay::Relay(std::span<const std::uint32_t> robots, const RelayOptions& options,
   for (const std::uint32_t id : lights) lights_.push_back({.id = id});
   updated_.reserve(robots.size());
   recipients_.reserve(robots.size());
+  centre_rows_.reserve(robots.size());
   states_.reserve(kMaxDatagram);
   packet_.reserve(kMaxDatagram);
   encode({}, Start{}, start_);
@@ -58,6 +59,7 @@ void Relay::forward(Inbox& inbox, std::int64_t now, Outbox& outbox) {
     send_states(inbox, now, outbox);
     send_to_lights(inbox, now, outbox);
   }
+  send_to_centre(inbox, now, outbox);
   for (Robot& robot : robots_)
     if (robot.age < std::numeric_limits<std::uint32_t>::max()) ++robot.age;
 }
@@ -132,6 +134,28 @@ void Relay::send_to_lights(Inbox& inbox, std::int64_t now, Outbox& outbox) {
     send_rows(rows, {light.id, *address, inbox.light_session_token(light.id), inbox.light_signer(light.id)}, light.sent,
               now, outbox);
   }
+}
+
+/// The control centre has a network of its own: it receives the new states of all robots, whatever the radio range, up
+/// to the budget of one tick.
+void Relay::send_to_centre(Inbox& inbox, std::int64_t now, Outbox& outbox) {
+  const std::optional<Endpoint> address = inbox.centre_address(now);
+  if (!address) return;
+  const auto robots = static_cast<std::uint32_t>(robots_.size());
+  centre_rows_.clear();
+  std::size_t missed = 0;
+  for (std::uint32_t k = 0; k < robots; ++k) {
+    const std::uint32_t row = (centre_turn_ + k) % robots;
+    if (robots_[row].age != 0) continue;
+    if (centre_rows_.size() < options_.budget)
+      centre_rows_.push_back(row);
+    else if (missed++ == 0)
+      centre_turn_ = row;
+  }
+  send_rows(centre_rows_, {kBroadcastId, *address, inbox.centre_session_token(), inbox.centre_signer()},
+            sent_to_centre_, now, outbox);
+  counts_.centre += centre_rows_.size();
+  counts_.missed += missed;
 }
 
 void Relay::send_rows(std::span<const std::uint32_t> rows, const Recipient& to, std::uint32_t& sent, std::int64_t now,

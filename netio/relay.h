@@ -1,7 +1,7 @@
 #pragma once
 // Forwards states and signals from the farm: the newest V2V states of nearby robots to subscribed robots and to senders
-// of V2I, and START to the robots that it names. Sends once per tick, several states per datagram, within a budget, so
-// that outgoing traffic does not grow with incoming traffic.
+// of V2I, those of all robots to a control centre, and START to the robots that it names. Sends once per tick, several
+// states per datagram, within a budget, so that outgoing traffic does not grow with incoming traffic.
 //
 //   relay.take(packet);                        // each packet that the inbox accepted
 //   relay.forward(inbox, now, outbox);         // each tick; then outbox.flush()
@@ -30,6 +30,8 @@ struct RelayCounts {
   std::uint64_t datagrams = 0;  ///< NEIGHBOURS packets that contain them
   std::uint64_t waited = 0;     ///< pairs of robot and tick in which a subscriber was passed over for lack of budget
   std::uint64_t starts = 0;     ///< START datagrams queued
+  std::uint64_t centre = 0;     ///< states queued for the control centre; part of `states`
+  std::uint64_t missed = 0;     ///< states that the control centre did not receive for lack of budget
 };
 
 /// Single-threaded. Allocates nothing after construction.
@@ -85,6 +87,7 @@ class Relay {
   void find_recipients(const Inbox& inbox, std::int64_t now);
   void send_states(Inbox& inbox, std::int64_t now, Outbox& outbox);
   void send_to_lights(Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void send_to_centre(Inbox& inbox, std::int64_t now, Outbox& outbox);
   void send_rows(std::span<const std::uint32_t> rows, const Recipient& to, std::uint32_t& sent, std::int64_t now,
                  Outbox& outbox);
   std::size_t send_others(Robot& to, std::size_t most, Inbox& inbox, std::int64_t now, Outbox& outbox);
@@ -95,9 +98,12 @@ class Relay {
   std::vector<NeighbourTree::Place> updated_;  ///< in one pass
   std::vector<std::uint32_t> recipients_;      ///< rows, in one pass
   NeighbourTree neighbour_tree_;
-  std::uint32_t turn_ = 0;      ///< row served first
-  bool start_pending_ = false;  ///< a START for all robots is pending
-  base::Bytes start_;           ///< START for all robots
+  std::uint32_t turn_ = 0;                  ///< row served first
+  std::uint32_t centre_turn_ = 0;           ///< row whose state the control centre receives first
+  std::uint32_t sent_to_centre_ = 0;        ///< NEIGHBOURS packets
+  std::vector<std::uint32_t> centre_rows_;  ///< in one pass
+  bool start_pending_ = false;              ///< a START for all robots is pending
+  base::Bytes start_;                       ///< START for all robots
   base::Bytes states_, packet_;
   RelayCounts counts_;
 };

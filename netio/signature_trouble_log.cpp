@@ -19,6 +19,8 @@ std::string peer_text(const Claim& claim, const std::string& name) {
       return fmt::format("tag {}{}", claim.id, in_brackets);
     case PeerKind::light:
       return fmt::format("intersection {}", claim.id);
+    case PeerKind::centre:
+      return "the control centre";
     case PeerKind::start:
     case PeerKind::group:  // claimed by no packet to the farm
       break;

@@ -18,9 +18,9 @@ extern const ExperimentType lane_edge_pi_experiment;
 extern const ExperimentType magnet_p_experiment;
 extern const ExperimentType magnet_pi_experiment;
 extern const ExperimentType mapping_experiment;
-extern const ExperimentType minimagic_experiment;
 extern const ExperimentType simville_experiment;
 extern const ExperimentType simville_merge_experiment;
+extern const ExperimentType minimagic_experiment;
 extern const ExperimentType sweeps_experiment;
 extern const ExperimentType late_states_experiment;
 extern const ExperimentType accuracy_experiment;
@@ -28,17 +28,18 @@ extern const ExperimentType mrclam_experiment;
 extern const ExperimentType sideslip_experiment;
 extern const ExperimentType lane_sensor_experiment;
 extern const ExperimentType monitor_experiment;
-extern const ExperimentType location_experiment;
-extern const ExperimentType budget_experiment;
+extern const ExperimentType links_experiment;
 extern const ExperimentType follow_experiment;
+extern const ExperimentType budget_experiment;
+extern const ExperimentType location_experiment;
 
 std::span<const ExperimentType* const> experiments() {
   static constexpr const ExperimentType* kKinds[] = {
-      &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment, &magnet_pi_experiment,
-      &mapping_experiment,     &minimagic_experiment,    &simville_experiment, &simville_merge_experiment,
-      &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment, &mrclam_experiment,
-      &sideslip_experiment,    &lane_sensor_experiment,  &monitor_experiment,  &location_experiment,
-      &budget_experiment,      &follow_experiment};
+      &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,       &magnet_pi_experiment,
+      &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
+      &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment,       &mrclam_experiment,
+      &sideslip_experiment,    &lane_sensor_experiment,  &monitor_experiment,        &links_experiment,
+      &follow_experiment,      &budget_experiment,       &location_experiment};
   return kKinds;
 }
 

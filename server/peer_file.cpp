@@ -25,8 +25,12 @@ using world::TomlNode;
 using world::TomlReader;
 
 constexpr std::array<std::string_view, 1> kKeys{"peer"};
-constexpr std::array<std::string_view, 7> kPeerKeys{"robot", "tag", "start", "light", "group", "address", "key"};
-constexpr std::array<std::string_view, 5> kKindKeys{"robot", "tag", "start", "light", "group"};
+constexpr std::array<std::string_view, 8> kPeerKeys{"robot", "tag",    "start",   "light",
+                                                    "group", "centre", "address", "key"};
+constexpr std::array<std::string_view, 6> kKindKeys{"robot", "tag", "start", "light", "group", "centre"};
+/// Kinds without an id, written as KEY = true.
+constexpr std::pair<std::string_view, PeerKind> kFlagKinds[] = {
+    {"start", PeerKind::start}, {"group", PeerKind::group}, {"centre", PeerKind::centre}};
 
 /// Returns the only key of `table` that names the sender of its packets.
 const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
@@ -38,7 +42,8 @@ const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
     found = node;
   }
   if (found == nullptr)
-    reader.fail(table, "a peer requires robot = ID, tag = ID, light = ID, start = true, or group = true");
+    reader.fail(table,
+                "a peer requires robot = ID, tag = ID, light = ID, start = true, centre = true, or group = true");
   return *found;
 }
 
@@ -56,9 +61,10 @@ void require_known(const TomlReader& reader, const TomlNode& node, const std::ma
 
 void read_identity(const TomlReader& reader, const TomlNode& table, const WireNames* names, Peer& peer) {
   const TomlNode& node = kind_node(reader, table);
-  if (node.key == "start" || node.key == "group") {
-    peer.kind = node.key == "start" ? PeerKind::start : PeerKind::group;
-    if (!reader.flag(table, node.key)) reader.fail(node, fmt::format("'{}' expects true", node.key));
+  for (const auto& [key, kind] : kFlagKinds) {
+    if (node.key != key) continue;
+    peer.kind = kind;
+    if (!reader.flag(table, key)) reader.fail(node, fmt::format("'{}' expects true", key));
     return;
   }
   if (node.key == "light") {

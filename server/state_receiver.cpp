@@ -256,6 +256,7 @@ std::string StateReceiver::sender_name(const netio::Header& header) const {
 std::string StateReceiver::sender_text(const netio::Header& header) const {
   const netio::Claim claim = netio::claim_of(header);
   if (claim.kind == netio::PeerKind::start) return "the sender of START";
+  if (claim.kind == netio::PeerKind::centre) return "the control centre";
   if (claim.kind == netio::PeerKind::light) return fmt::format("intersection {}", claim.id);
   return fmt::format("{} ({} {})", sender_name(header), claim.kind == netio::PeerKind::tag ? "tag" : "id", claim.id);
 }
@@ -264,6 +265,7 @@ std::string StateReceiver::sender_text(const netio::Header& header) const {
 std::optional<netio::Endpoint> StateReceiver::bound_address(const netio::Header& header, std::int64_t now) const {
   const netio::Claim claim = netio::claim_of(header);
   if (claim.kind == netio::PeerKind::light) return inbox_.light_address(claim.id, now);
+  if (claim.kind == netio::PeerKind::centre) return inbox_.centre_address(now);
   if (claim.kind == netio::PeerKind::robot) return inbox_.address(claim.id);
   return header.type == netio::Type::object ? inbox_.object_address(claim.id) : inbox_.tag_address(claim.id);
 }

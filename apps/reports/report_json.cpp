@@ -306,8 +306,8 @@ std::string run_report_json(const RunReport& f) {
                       {"spat", spat_json(heard)},
                       {"silences", heard.silences},
                       {"sent", f.lights.sent}};
-    json["relayed"] = {{"states", f.relayed.states}, {"datagrams", f.relayed.datagrams},
-                       {"waited", f.relayed.waited}, {"starts", f.relayed.starts},
+    json["relayed"] = {{"states", f.relayed.states}, {"datagrams", f.relayed.datagrams},  {"waited", f.relayed.waited},
+                       {"starts", f.relayed.starts}, {"centre", f.relayed.centre},        {"missed", f.relayed.missed},
                        {"drives", f.drives.sent},    {"dropped_drives", f.drives.dropped}};
     json["own_readings"] = {
         {"taken", f.fusion.taken},

@@ -267,6 +267,10 @@ std::string run_report_text(const RunReport& f) {
   if (f.relayed.states + f.relayed.starts > 0)
     text += row("packets relayed", "{} V2V in {}, {} START", f.relayed.states, counted(f.relayed.datagrams, "datagram"),
                 f.relayed.starts);
+  if (f.relayed.centre > 0)
+    text +=
+        row("  to the control centre", "{} V2V{}", f.relayed.centre,
+            f.relayed.missed > 0 ? fmt::format(", {} not sent: more than one tick's budget", f.relayed.missed) : "");
   if (f.relayed.waited > 0)
     text += row("  waited for", counted(f.relayed.waited, "time") + ": more robots request V2V than one tick serves");
   if (f.drives.sent + f.drives.dropped > 0)

@@ -79,6 +79,9 @@ SENSORS = {
                             ("yy_m2", None), ("source", 1), ("age_s", None)]),
     42: ("thermometer", 22000, [("temperature_C", 1e-3)]),
     43: ("aggregate", 18000, [("value", None), ("valid", 1), ("variance", None), ("source", 1), ("age_s", None)]),
+    36: ("loop", 8000, [("count", 1), ("occupancy", 1e-6), ("speed_m_s", 1e-4), ("vehicles", 1)]),
+    37: ("link-speed", 2000, [("speed_m_s", None), ("travel_time_s", None), ("valid", 1), ("speed_speed_m2_s2", None),
+                              ("speed_time_m", None), ("time_time_s2", None), ("age_s", None)]),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",

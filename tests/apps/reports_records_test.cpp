@@ -41,7 +41,7 @@ void set_service(RunReport& f) {
   f.publisher = {outbox(21), 5};
   fill(f.inbox, 1);
   f.socket_drops = 31;
-  f.relayed = {.states = 32, .datagrams = 33, .waited = 34, .starts = 35};
+  f.relayed = {.states = 32, .datagrams = 33, .waited = 34, .starts = 35, .centre = 301, .missed = 302};
   f.drives = {.sent = 36, .dropped = 37};
   f.fusion = {.taken = 38,
               .incomplete = 39,

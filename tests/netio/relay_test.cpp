@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <numeric>
+
 #include "netio/v2v_socket.h"
 #include "tests/netio/examples.h"
 #include "tests/units.h"
@@ -288,6 +291,125 @@ TEST_F(V2vSocketTest, SendsWithTheNewestToken) {
     EXPECT_EQ(packet.header.session, kRelayOwn);
     EXPECT_EQ(packet.header.token, token);
   }
+}
+
+/// A farm with a control centre, whose address the peers permit.
+struct CentreTest : testing::Test {
+  static constexpr Peer kPermitted{PeerKind::centre, 0, kLoopback, std::nullopt};
+  Inbox inbox{{.bind = {kLoopback, 0}, .robots = {3, 7, kMaxId}, .peers = {kPermitted}}};
+  Relay relay{std::vector<std::uint32_t>{3, 7, kMaxId}, {.range = 0.0, .budget = 4}};
+  Socket socket = open_udp({kLoopback, 0}, {});
+  Endpoint self{kLoopback, bound_endpoint(socket).port};
+  Outbox outbox{inbox.socket()};
+  std::uint32_t sequence = 0;
+
+  PacketStatus send(Type type, std::uint16_t sensor, std::uint32_t token, std::int64_t now = 0,
+                    std::uint32_t address = kLoopback) {
+    base::Bytes bytes;
+    const Header header{.robot = kBroadcastId, .sensor = sensor, .sequence = sequence++, .session = 5, .token = token};
+    type == Type::leave ? encode(header, Leave{}, bytes) : encode(header, Subscribe{kNeighboursBit}, bytes);
+    Packet packet;
+    return inbox.accept(bytes, {address, self.port}, now, packet);
+  }
+  void state(std::uint32_t id, double x) {
+    relay.take({.header = {.type = Type::v2v, .robot = static_cast<std::uint16_t>(id)}, .body = V2v{.X_WR = {x}}});
+  }
+  /// Returns the states that arrive, per datagram.
+  std::vector<std::vector<double>> tick(std::int64_t now = 0) {
+    relay.forward(inbox, now, outbox);
+    outbox.flush();
+    std::vector<std::vector<double>> all;
+    ReceiveBatch batch(8);
+    batch.drain(socket, 64, [&](std::span<const std::uint8_t> bytes, const Endpoint&) {
+      Packet packet;
+      EXPECT_EQ(decode(bytes, packet), PacketStatus::accepted);
+      EXPECT_EQ(packet.header.robot, kBroadcastId);
+      EXPECT_EQ(packet.header.token, 5u);
+      std::vector<double>& states = all.emplace_back();
+      const std::span<const std::uint8_t> rows = std::get<Neighbours>(packet.body).states;
+      for (std::size_t at = 0; at < rows.size(); at += kV2vBytes) {
+        Packet row;
+        EXPECT_EQ(decode(rows.subspan(at, kV2vBytes), row), PacketStatus::accepted);
+        states.push_back(std::get<V2v>(row.body).X_WR.x);
+      }
+    });
+    return all;
+  }
+};
+
+using Datagrams = std::vector<std::vector<double>>;
+
+TEST_F(CentreTest, ReceivesTheStatesOfAllRobotsBeyondTheRange) {
+  state(3, 1.0), state(7, 9e5);
+  EXPECT_EQ(tick(), Datagrams{}) << "it has not asked";
+  EXPECT_EQ(send(Type::subscribe, kCentre, 1), PacketStatus::unproven) << "without the token of its address";
+  EXPECT_EQ(tick(), Datagrams{});
+  ASSERT_EQ(send(Type::subscribe, kCentre, inbox.token(self)), PacketStatus::accepted);
+  state(3, 2.0), state(7, 9e5);
+  EXPECT_EQ(tick(), (Datagrams{{2.0, 9e5}}));
+  EXPECT_EQ(tick(), Datagrams{}) << "each state once";
+  EXPECT_EQ(relay.counts().centre, 2u);
+  state(7, 3.0);
+  EXPECT_EQ(tick(3 * kSecond), Datagrams{}) << "it fell silent";
+}
+
+TEST_F(CentreTest, OnlyThePermittedAddress) {
+  EXPECT_EQ(send(Type::subscribe, kCentre, inbox.token({kLoopback + 1, self.port}), 0, kLoopback + 1),
+            PacketStatus::wrong_source);
+  Inbox closed{{.bind = {kLoopback, 0}, .robots = {3}}};
+  base::Bytes bytes;
+  encode({.robot = kBroadcastId, .sensor = kCentre, .token = closed.token(self)}, Subscribe{}, bytes);
+  Packet packet;
+  EXPECT_EQ(closed.accept(bytes, self, 0, packet), PacketStatus::unknown_robot) << "without a permission";
+  EXPECT_FALSE(closed.centre_address(0));
+}
+
+TEST_F(CentreTest, LeavesAndIsNotTheRobotOfItsNumber) {
+  ASSERT_EQ(send(Type::subscribe, kCentre, inbox.token(self)), PacketStatus::accepted);
+  EXPECT_FALSE(inbox.is_active(kMaxId, 0));
+  EXPECT_TRUE(inbox.centre_address(0));
+  EXPECT_EQ(send(Type::leave, kCentre, inbox.token(self)), PacketStatus::accepted);
+  EXPECT_FALSE(inbox.centre_address(0));
+  EXPECT_EQ(send(Type::subscribe, 0, inbox.token(self)), PacketStatus::accepted) << "the robot";
+  EXPECT_TRUE(inbox.is_active(kMaxId, 0));
+  EXPECT_FALSE(inbox.centre_address(0));
+}
+
+/// More robots than a tick's budget take turns.
+TEST(Centre, StatesBeyondTheBudgetAreCountedAndTakeTurns) {
+  std::vector<std::uint32_t> ids(10);
+  std::iota(ids.begin(), ids.end(), 1u);
+  Inbox inbox{{.bind = {kLoopback, 0}, .robots = ids, .peers = {CentreTest::kPermitted}}};
+  Relay relay{ids, {.budget = 4}};
+  Outbox outbox{inbox.socket()};
+  const Socket socket = open_udp({kLoopback, 0}, {});
+  const Endpoint self{kLoopback, bound_endpoint(socket).port};
+  base::Bytes bytes;
+  Packet packet;
+  encode({.robot = kBroadcastId, .sensor = kCentre, .token = inbox.token(self)}, Subscribe{}, bytes);
+  ASSERT_EQ(inbox.accept(bytes, self, 0, packet), PacketStatus::accepted);
+  for (int tick = 0; tick < 5; ++tick) {
+    for (const std::uint32_t id : ids)
+      relay.take({.header = {.type = Type::v2v, .robot = static_cast<std::uint16_t>(id)}, .body = V2v{}});
+    relay.forward(inbox, 0, outbox);
+    outbox.flush();
+  }
+  EXPECT_EQ(relay.counts().centre, 20u);
+  EXPECT_EQ(relay.counts().missed, 30u);
+  std::map<std::uint32_t, int> received;
+  ReceiveBatch batch(8);
+  batch.drain(socket, 64, [&](std::span<const std::uint8_t> datagram, const Endpoint&) {
+    EXPECT_EQ(decode(datagram, packet), PacketStatus::accepted);
+    const base::Bytes rows(std::get<Neighbours>(packet.body).states.begin(),
+                           std::get<Neighbours>(packet.body).states.end());
+    for (std::size_t at = 0; at < rows.size(); at += kV2vBytes) {
+      Packet row;
+      EXPECT_EQ(decode(std::span(rows).subspan(at, kV2vBytes), row), PacketStatus::accepted);
+      ++received[row.header.robot];
+    }
+  });
+  ASSERT_EQ(received.size(), 10u);
+  for (const auto& [id, count] : received) EXPECT_EQ(count, 2) << id;
 }
 
 }  // namespace

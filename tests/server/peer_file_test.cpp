@@ -52,6 +52,15 @@ TEST(PeerFile, ReadsAddressesAndKeys) {
   EXPECT_EQ(peers[2].kind, PeerKind::start);
 }
 
+TEST(PeerFile, ReadsThePermissionOfTheControlCentre) {
+  const auto peers = parse("[[peer]]\ncentre = true\naddress = \"10.0.0.9\"\n");
+  ASSERT_EQ(peers.size(), 1u);
+  EXPECT_EQ(peers[0].kind, PeerKind::centre);
+  EXPECT_EQ(peers[0].address, 0x0A000009u);
+  EXPECT_NE(error_of("[[peer]]\ncentre = true").find("requires an address, a key"), std::string::npos);
+  EXPECT_NE(error_of("[[peer]]\ncentre = false").find("'centre' expects true"), std::string::npos);
+}
+
 TEST(PeerFile, ReadsTheKeyOfTheGroup) {
   const auto peers = parse(std::string("[[peer]]\ngroup = true\nkey = \"") + kKeyText + "\"\n");
   ASSERT_EQ(peers.size(), 1u);
@@ -68,7 +77,8 @@ TEST(PeerFile, ErrorsNameTheirLine) {
   expect("", "peers.toml", "has no peer");
   expect("peers = 1", "peers.toml:1", "unknown key 'peers'");
   expect("peer = 1", "peers.toml:1", "each under [[peer]]");
-  expect("[[peer]]\naddress = \"10.0.0.1\"", "peers.toml:1", "robot = ID, tag = ID, light = ID, start = true, or");
+  expect("[[peer]]\naddress = \"10.0.0.1\"", "peers.toml:1",
+         "robot = ID, tag = ID, light = ID, start = true, centre = true, or");
   expect("[[peer]]\nrobot = 1\ntag = 3", "peers.toml:3", "'robot' or 'tag', not both");
   expect("[[peer]]\nrobot = 1\nstart = true", "peers.toml:3", "not both");
   expect("[[peer]]\nrobot = 3", "peers.toml:2", "no robot with the id 3; it has 1, 2");
