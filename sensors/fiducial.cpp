@@ -119,23 +119,6 @@ void FiducialFinders::measure(const HostSample& sample) const {
   }
 }
 
-FiducialFinder read_finder(const world::Sensor& sensor) {
-  FiducialFinder s;
-  s.range_max = length(sensor, "range_max", s.range_max, 1e-3, 1e6);
-  s.range_min = length(sensor, "range_min", s.range_min, 0.0, s.range_max);
-  s.range_max_id = length(sensor, "range_max_id", std::min(s.range_max_id, s.range_max), 0.0, 1e6);
-  s.fov = angle(sensor, "fov", s.fov, 1e-6, 2.0 * M_PI);
-  s.key = whole(sensor, "fiducial_key", 0, 0, 65535);
-  const auto noise = tuple(sensor, "noise", 1, "[range bearing orientation]");
-  if (!noise) return s;
-  for (const double sigma : *noise)
-    if (!(sigma >= 0.0)) refuse(sensor, "noise", "'noise' is negative; expected standard deviations of 0 or more");
-  s.range_noise = (*noise)[0] * sensor.metres_per_unit;
-  if (noise->size() > 1) s.bearing_noise = (*noise)[1] * sensor.radians_per_unit;
-  if (noise->size() > 2) s.orientation_noise = (*noise)[2] * sensor.radians_per_unit;
-  return s;
-}
-
 ParsedSensors parse_finders(const world::World& world) {
   return parse_each(world, fiducial_type, [](const world::Sensor& sensor, SensorSpec& row) {
     const FiducialFinder s = read_finder(sensor);
@@ -153,6 +136,23 @@ constexpr PlainNumber kNumbers[] = {{1.0, 0.0, 65535.0}, {1.0, 0.0, 2.0}, {1e-3,
 constexpr PlainForm kForm{kFiducial, "fiducial", kNumbers};
 
 }  // namespace
+
+FiducialFinder read_finder(const world::Sensor& sensor) {
+  FiducialFinder s;
+  s.range_max = length(sensor, "range_max", s.range_max, 1e-3, 1e6);
+  s.range_min = length(sensor, "range_min", s.range_min, 0.0, s.range_max);
+  s.range_max_id = length(sensor, "range_max_id", std::min(s.range_max_id, s.range_max), 0.0, 1e6);
+  s.fov = angle(sensor, "fov", s.fov, 1e-6, 2.0 * M_PI);
+  s.key = whole(sensor, "fiducial_key", 0, 0, 65535);
+  const auto noise = tuple(sensor, "noise", 1, "[range bearing orientation]");
+  if (!noise) return s;
+  for (const double sigma : *noise)
+    if (!(sigma >= 0.0)) refuse(sensor, "noise", "'noise' is negative; expected standard deviations of 0 or more");
+  s.range_noise = (*noise)[0] * sensor.metres_per_unit;
+  if (noise->size() > 1) s.bearing_noise = (*noise)[1] * sensor.radians_per_unit;
+  if (noise->size() > 2) s.orientation_noise = (*noise)[2] * sensor.radians_per_unit;
+  return s;
+}
 
 constinit const SensorType fiducial_type = plain<kForm>({
     .word = {"fiducial", kKeys},

@@ -28,6 +28,9 @@ struct FiducialFinder {
   double bearing_noise = 0.0, orientation_noise = 0.0;  ///< [rad] standard deviations
 };
 
+/// @throws base::InputError for invalid settings
+FiducialFinder read_finder(const world::Sensor& sensor);
+
 extern const SensorType fiducial_type;
 
 }  // namespace sf::sensors

@@ -58,7 +58,6 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_localization(const DerivedContex
                                               localization_options(context.world.movers[context.spec.mover], sensors));
 }
 
-constexpr std::string_view kPoseColumns[] = {"x_m", "y_m", "yaw_rad"};
 constexpr DerivedPort kPorts[] = {
     {"encoder", kEncoderColumns}, {"gyro", kGyroColumns}, {"gps", kGpsColumns}, {"pose", kPoseColumns, 0, 4}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .make = make_localization};

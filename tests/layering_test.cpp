@@ -80,7 +80,7 @@ const std::vector<Heavy> kHeavy{{"CLI/", "apps", 8},
                                 {"muParser", "sensors"},
                                 {"yaml-cpp/", ""},
                                 {"toml++/", ""},
-                                {"Eigen/", "robots/estimation", 8},
+                                {"Eigen/", "robots/estimation", 9},
                                 {"unsupported/Eigen/", "robots/estimation"},
                                 {"embree", "bench"}};
 

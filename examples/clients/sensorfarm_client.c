@@ -68,7 +68,7 @@ typedef struct {
     const char* name;
     unsigned width;
     double unit;
-  } columns[19];  // a unit of 0: f32
+  } columns[21];  // a unit of 0: f32
 } sf_type;
 static const sf_type sf_types[] = {
     {1, "laser", 10000, {0}, {{"range_m", 1, 1e-3}}},
@@ -189,6 +189,31 @@ static const sf_type sf_types[] = {
       {"speed_time_m", 1, 0},
       {"time_time_s2", 1, 0},
       {"age_s", 1, 0}}},
+    {38,
+     "features",
+     26000,
+     {0},
+     {{"x_m", 1, 0.001},
+      {"y_m", 1, 0.001},
+      {"direction_rad", 1, 1e-6},
+      {"valid", 1, 1},
+      {"xx_m2", 1, 0},
+      {"xy_m2", 1, 0},
+      {"x_direction_m_rad", 1, 0},
+      {"yy_m2", 1, 0},
+      {"y_direction_m_rad", 1, 0},
+      {"direction_direction_rad2", 1, 0},
+      {"kind", 1, 1},
+      {"half_length_m", 1, 0.001},
+      {"id", 1, 1},
+      {"age_s", 1, 1e-6}}},
+    {39, "tracks", 28000, {0}, {{"x_m", 1, 0.005},     {"y_m", 1, 0.005},     {"vx_m_s", 1, 0},
+                                {"vy_m_s", 1, 0},      {"valid", 1, 1},       {"xx_m2", 1, 0},
+                                {"xy_m2", 1, 0},       {"x_vx_m2_s", 1, 0},   {"x_vy_m2_s", 1, 0},
+                                {"yy_m2", 1, 0},       {"y_vx_m2_s", 1, 0},   {"y_vy_m2_s", 1, 0},
+                                {"vx_vx_m2_s2", 1, 0}, {"vx_vy_m2_s2", 1, 0}, {"vy_vy_m2_s2", 1, 0},
+                                {"identity", 1, 1},    {"kind", 1, 1},        {"tag", 1, 1},
+                                {"ahead_m", 1, 0},     {"contact_s", 1, 0}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},

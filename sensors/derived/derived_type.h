@@ -61,6 +61,10 @@ constexpr std::uint32_t triangle(std::uint32_t quantities) { return quantities *
 /// Parses the derived sensors of `type`, each with `rows` rows.
 ParsedSensors parse_derived(const world::World& world, const SensorType& type, std::uint32_t rows, double rate);
 
+/// The same for a type whose setting `most` is the number of rows, in [1, `most`].
+ParsedSensors parse_derived_rows(const world::World& world, const SensorType& type, std::uint32_t rows,
+                                 std::uint32_t most, double rate);
+
 /// Returns null: derived sensors are evaluated by DerivedSensors.
 std::unique_ptr<SensorBackend> no_backend(const SensorContext& context, const ParsedSensors& sensors);
 

@@ -94,7 +94,7 @@ TEST(Derived, WiringIsCheckedWhenTheWorldIsLoaded) {
   expect_in("expected inputs [\"type\" ...]", refusal("derived( type \"tally\" )") + refusal(inputs("[ ]")));
   expect_in(
       "derived sensor type 'taly' is unknown; expected one of: tally, timer, localization, sideslip, model, monitor, "
-      "link-speed, location, aggregate; did you mean 'tally'?",
+      "link-speed, features, tracks, location, aggregate; did you mean 'tally'?",
       refusal("derived( type \"taly\" inputs [\"gyro\"] )"));
 }
 

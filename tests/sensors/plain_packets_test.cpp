@@ -159,7 +159,13 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"thermometer", 42, 1, {21.5}},
              {"aggregate", 43, 1, {21.5, 1, 0.25, 0, 0.0625}},
              {"loop", 36, 1, {12, 0.25, 0.5, 1}},
-             {"link-speed", 37, 2, {0.5, 40, 1, 0.0625, -5, 400, 2.5, kNaN, kNaN, 0, kNaN, kNaN, kNaN, kNaN}}};
+             {"link-speed", 37, 2, {0.5, 40, 1, 0.0625, -5, 400, 2.5, kNaN, kNaN, 0, kNaN, kNaN, kNaN, kNaN}},
+             {"features",
+              38,
+              1,
+              {1.5, -0.5, 0.5, 1, 0.0625, 0, -0.0078125, 0.0625, 0.00390625, 0.0009765625, 1, 0.75, 0, 0.05}},
+             {"tracks", 39, 1, {1.5, -0.5,      0.25,     -0.125, 1,        0.0625, 0, 0.0078125, 0,    0.0625,
+                                0,   0.0078125, 0.015625, 0,      0.015625, 7,      2, 3,         1.25, 4}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
     ASSERT_NE(type, nullptr) << example;
@@ -207,7 +213,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 22u) << "plain readings";
+  EXPECT_EQ(rows, 24u) << "plain readings";
 }
 
 }  // namespace

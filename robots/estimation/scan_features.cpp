@@ -1,0 +1,311 @@
+#include "robots/estimation/scan_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sf::estimation {
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLeastSigma = 1e-3;  // [m] of echoes without noise: rounding in packets, parts of a beam
+constexpr double kGrazing = 0.17;     // [rad] surfaces at smaller angles to the beams fall apart (Borges, Aldon)
+constexpr double kSigmas = 3.0;       // of splits and gaps
+constexpr double kJointSigmas = 6.0;  // length of a joint between two lines
+constexpr double kMostMisfit = 3.0;   // weighted squared residual per echo of a line
+constexpr double kBluntest = 2.6, kSharpest = 0.5;  // [rad] angles between the arms of a corner
+constexpr double kCornerGap = 0.2;                  // [m] from the end of an arm to the corner
+
+glm::dvec2 left_of(glm::dvec2 v) { return {-v.y, v.x}; }
+
+double square(double value) { return value * value; }
+
+/// Returns the upper triangle of a covariance of x, y with variances along and across a direction.
+std::array<double, 6> oriented(glm::dvec2 u, double along, double across) {
+  return {along * u.x * u.x + across * u.y * u.y,
+          (along - across) * u.x * u.y,
+          kUnknown,
+          along * u.y * u.y + across * u.x * u.x,
+          kUnknown,
+          kUnknown};
+}
+
+}  // namespace
+
+ScanFeatures::ScanFeatures(const base::Pose& X_MS, std::vector<double> bearings, const EchoNoise& noise,
+                           const FeatureOptions& options)
+    : X_MS_(X_MS), bearings_(std::move(bearings)), noise_(noise), options_(options) {
+  if (bearings_.size() < 2) return;
+  step_ = bearings_[1] - bearings_[0];
+  // The last beam of a full turn is the first one.
+  if (bearings_.back() - bearings_.front() > 2.0 * M_PI - 0.5 * step_) bearings_.pop_back();
+  is_round_ = bearings_.back() - bearings_.front() > 2.0 * M_PI - 1.5 * step_;
+}
+
+void ScanFeatures::place_echoes(std::span<const double> ranges) {
+  echoes_.clear();
+  for (std::uint32_t i = 0; i < bearings_.size(); ++i) {
+    const double range = ranges[i];
+    if (!(range > 0.0 && range < 1e6)) continue;
+    const glm::dvec2 sight = base::rotate(X_MS_.yaw + bearings_[i], {1.0, 0.0});
+    const double along = square(std::hypot(noise_.constant, noise_.proportional * range, kLeastSigma));
+    echoes_.push_back({glm::dvec2{X_MS_.x, X_MS_.y} + range * sight, sight, along,
+                       square(noise_.angle * range) + square(kLeastSigma), step_ * range, i});
+  }
+}
+
+/// Two neighbouring echoes are of one surface if it could be met at kGrazing.
+bool ScanFeatures::continues(const Echo& before, const Echo& after) const {
+  if (after.beam != before.beam + 1 && !(is_round_ && after.beam == 0 && before.beam + 1 == bearings_.size()))
+    return false;
+  const double grazing = std::sin(step_) / std::sin(std::max(kGrazing - step_, 0.5 * kGrazing));
+  const double range = before.spacing / step_;
+  return glm::length(after.p - before.p) <= range * grazing + kSigmas * std::sqrt(before.along + after.along);
+}
+
+std::span<const Feature> ScanFeatures::find(std::span<const double> ranges) {
+  place_echoes(ranges);
+  lines_.clear(), corners_.clear(), clusters_.clear();
+  // A group across the ends of a full turn begins after a gap or, without any, at the farthest echo: a corner.
+  if (is_round_ && echoes_.size() > 1 && continues(echoes_.back(), echoes_.front())) {
+    std::size_t start = 1;
+    while (start < echoes_.size() && continues(echoes_[start - 1], echoes_[start])) ++start;
+    if (start == echoes_.size())
+      start = static_cast<std::size_t>(std::ranges::max_element(echoes_, {}, &Echo::spacing) - echoes_.begin());
+    std::ranges::rotate(echoes_, echoes_.begin() + static_cast<std::ptrdiff_t>(start));
+  }
+  for (std::size_t first = 0; first < echoes_.size();) {
+    std::size_t last = first;
+    while (last + 1 < echoes_.size() && continues(echoes_[last], echoes_[last + 1])) ++last;
+    add_group(first, last);
+    first = last + 1;
+  }
+  found_ = lines_;
+  found_.insert(found_.end(), corners_.begin(), corners_.end());
+  found_.insert(found_.end(), clusters_.begin(), clusters_.end());
+  return found_;
+}
+
+void ScanFeatures::add_group(std::size_t first, std::size_t last) {
+  pieces_.clear();
+  split(first, last);
+  merge();
+  for (Line& piece : pieces_)
+    if (piece.is_line) trim(piece, piece.first > first, piece.last < last);
+  std::size_t rest = first;  // first echo after the last line
+  bool has_line = false;
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    const Line& piece = pieces_[k];
+    if (!piece.is_line) continue;
+    // Between lines, a few echoes are those of a corner.
+    if (piece.first > rest && piece.first - rest >= options_.least) add_cluster(rest, piece.first - 1);
+    add_line(piece);
+    has_line = true, rest = piece.last + 1;
+    for (std::size_t next = k + 1; next < pieces_.size() && next <= k + 2; ++next)
+      if (pieces_[next].is_line) {
+        add_corner(piece, pieces_[next]);
+        break;
+      }
+  }
+  if (rest <= last && (!has_line || last - rest + 1 >= options_.least)) add_cluster(rest, last);
+}
+
+/// Splits at the echo that is farthest from the chord, until all are within the noise.
+void ScanFeatures::split(std::size_t first, std::size_t last) {
+  open_.assign(1, {first, last});
+  while (!open_.empty()) {
+    const auto [from, to] = open_.back();
+    open_.pop_back();
+    const glm::dvec2 chord = echoes_[to].p - echoes_[from].p;
+    const double length = glm::length(chord);
+    std::size_t farthest = from;
+    double worst = 1.0;
+    for (std::size_t i = from + 1; i < to && length > 0.0; ++i) {
+      const Echo& echo = echoes_[i];
+      const glm::dvec2 normal = left_of(chord / length);
+      const double off = glm::dot(echo.p - echoes_[from].p, normal);
+      const double toward = glm::dot(normal, echo.sight);
+      const double variance = echo.along * toward * toward + echo.across * (1.0 - toward * toward);
+      // The chord's ends have the same noise.
+      const double share = std::abs(off) / (kSigmas * std::sqrt(2.0 * variance));
+      if (share > worst) worst = share, farthest = i;
+    }
+    if (farthest == from) {
+      pieces_.push_back(fit(from, to));
+      pieces_.back().is_line = straight(pieces_.back());
+    } else {
+      open_.push_back({farthest + 1, to});
+      open_.push_back({from, farthest});
+    }
+  }
+}
+
+/// Joins neighbours that fit one line: the split echo may have been an outlier.
+void ScanFeatures::merge() {
+  for (std::size_t k = 0; k + 1 < pieces_.size();) {
+    Line joined = fit(pieces_[k].first, pieces_[k + 1].last);
+    joined.is_line = straight(joined);
+    const bool longer = joined.last - joined.first + 1 > 2;
+    if (joined.is_line && longer) {
+      pieces_[k] = joined;
+      pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+      if (k > 0) --k;
+    } else {
+      ++k;
+    }
+  }
+}
+
+/// Leaves out the echoes near a joint, some of which may be those of the neighbour.
+void ScanFeatures::trim(Line& line, bool at_first, bool at_last) const {
+  const auto count = [&](std::size_t from, std::ptrdiff_t step) {
+    std::size_t n = 0;
+    const Echo& end = echoes_[from];
+    const double joint = kJointSigmas * std::sqrt(end.along + end.across);
+    while (n < line.last - line.first &&
+           glm::length(echoes_[from + static_cast<std::size_t>(step * static_cast<std::ptrdiff_t>(n))].p - end.p) <
+               joint)
+      ++n;
+    return n;
+  };
+  const std::size_t before = at_first ? count(line.first, 1) : 0, after = at_last ? count(line.last, -1) : 0;
+  if (line.last - line.first + 1 < before + after + options_.least) return;
+  Line inner = fit(line.first + before, line.last - after);
+  inner.first = line.first, inner.last = line.last, inner.is_line = true;
+  line = inner;
+}
+
+ScanFeatures::Line ScanFeatures::fit(std::size_t first, std::size_t last) const {
+  Line line{.first = first, .last = last};
+  const glm::dvec2 chord = echoes_[last].p - echoes_[first].p;
+  const double length = glm::length(chord);
+  line.along = length > 0.0 ? chord / length : left_of(echoes_[first].sight);
+  // The weights depend on the direction: twice.
+  for (int pass = 0; pass < 2; ++pass) {
+    const glm::dvec2 normal = left_of(line.along), origin = echoes_[first].p;
+    const auto weight_of = [&](const Echo& echo) {
+      const double toward = glm::dot(normal, echo.sight);
+      return 1.0 / (echo.along * toward * toward + echo.across * (1.0 - toward * toward));
+    };
+    double sum = 0.0;
+    glm::dvec2 mean;
+    for (std::size_t i = first; i <= last; ++i) {
+      const double weight = weight_of(echoes_[i]);
+      sum += weight, mean += weight * (echoes_[i].p - origin);
+    }
+    mean /= sum;
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (std::size_t i = first; i <= last; ++i) {
+      const glm::dvec2 d = echoes_[i].p - origin - mean;
+      const double weight = weight_of(echoes_[i]);
+      xx += weight * d.x * d.x, xy += weight * d.x * d.y, yy += weight * d.y * d.y;
+    }
+    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+    const glm::dvec2 axis{std::cos(angle), std::sin(angle)};
+    if (last > first) line.along = glm::dot(axis, chord) < 0.0 ? -axis : axis;
+    const glm::dvec2 across = left_of(line.along);
+    line.centre = origin + mean, line.weight = sum;
+    line.spread =
+        xx * line.along.x * line.along.x + 2.0 * xy * line.along.x * line.along.y + yy * line.along.y * line.along.y;
+    line.misfit = xx * across.x * across.x + 2.0 * xy * across.x * across.y + yy * across.y * across.y;
+  }
+  line.from = glm::dot(echoes_[first].p - line.centre, line.along);
+  line.to = glm::dot(echoes_[last].p - line.centre, line.along);
+  return line;
+}
+
+bool ScanFeatures::straight(const Line& line) const {
+  const auto count = static_cast<double>(line.last - line.first + 1);
+  return count >= options_.least && line.to - line.from >= options_.shortest && line.misfit <= kMostMisfit * count;
+}
+
+void ScanFeatures::add_line(const Line& line) {
+  const double middle = 0.5 * (line.from + line.to);
+  const Echo &first = echoes_[line.first], &last = echoes_[line.last];
+  const glm::dvec2 u = line.along, n = left_of(u);
+  const double turn = 1.0 / line.spread, across = 1.0 / line.weight + middle * middle * turn;
+  // Its ends are those of what is seen: between two beams.
+  const double along = (first.along + last.along + (square(first.spacing) + square(last.spacing)) / 12.0) / 4.0;
+  Feature feature{.kind = FeatureKind::line,
+                  .p = line.centre + middle * u,
+                  .direction = std::atan2(u.y, u.x),
+                  .half_length = 0.5 * (line.to - line.from),
+                  .covariance = oriented(u, along, across)};
+  if (feature.direction > 0.5 * M_PI) feature.direction -= M_PI;
+  if (feature.direction <= -0.5 * M_PI) feature.direction += M_PI;
+  feature.covariance[2] = middle * turn * n.x, feature.covariance[4] = middle * turn * n.y;
+  feature.covariance[5] = turn;
+  lines_.push_back(feature);
+}
+
+void ScanFeatures::add_corner(const Line& before, const Line& after) {
+  const glm::dvec2 n1 = left_of(before.along), n2 = left_of(after.along);
+  const double sine = base::cross(before.along, after.along);
+  const double angle = M_PI - std::acos(std::clamp(glm::dot(before.along, after.along), -1.0, 1.0));
+  if (angle < kSharpest || angle > kBluntest) return;
+  // n1 (p - c1) = 0 and n2 (p - c2) = 0.
+  const double d1 = glm::dot(n1, before.centre), d2 = glm::dot(n2, after.centre);
+  const auto solve = [&](double a, double b) {
+    return glm::dvec2{(a * n2.y - b * n1.y) / sine, (b * n1.x - a * n2.x) / sine};
+  };
+  const glm::dvec2 p = solve(d1, d2);
+  const double s1 = glm::dot(p - before.centre, before.along), s2 = glm::dot(p - after.centre, after.along);
+  if (std::abs(s1 - before.to) > kCornerGap || std::abs(s2 - after.from) > kCornerGap) return;
+  const double v1 = 1.0 / before.weight + s1 * s1 / before.spread, v2 = 1.0 / after.weight + s2 * s2 / after.spread;
+  const glm::dvec2 g1 = solve(1.0, 0.0), g2 = solve(0.0, 1.0);
+  const glm::dvec2 arms = after.along - before.along;
+  Feature feature{.kind = FeatureKind::corner, .p = p, .direction = std::atan2(arms.y, arms.x)};
+  // The direction is the mean of both lines' directions, up to a constant.
+  const glm::dvec2 mixed = 0.5 * (s1 / before.spread * g1 + s2 / after.spread * g2);
+  feature.covariance = {v1 * g1.x * g1.x + v2 * g2.x * g2.x,
+                        v1 * g1.x * g1.y + v2 * g2.x * g2.y,
+                        mixed.x,
+                        v1 * g1.y * g1.y + v2 * g2.y * g2.y,
+                        mixed.y,
+                        0.25 / before.spread + 0.25 / after.spread};
+  corners_.push_back(feature);
+}
+
+void ScanFeatures::add_cluster(std::size_t first, std::size_t last) {
+  const Echo &a = echoes_[first], &b = echoes_[last];
+  const double width = glm::length(b.p - a.p);
+  if (width > options_.widest) return;
+  const double along = 0.25 * (a.along + b.along);
+  const double across = 0.25 * (a.across + b.across) + (square(a.spacing) + square(b.spacing)) / 48.0;
+  Feature feature{.kind = FeatureKind::cluster,
+                  .p = 0.5 * (a.p + b.p),
+                  .direction = kUnknown,
+                  .half_length = 0.5 * (width + 0.5 * (a.spacing + b.spacing))};
+  feature.covariance = oriented(glm::normalize(a.sight + b.sight), along, across);
+  clusters_.push_back(feature);
+}
+
+Feature cone_echo(const base::Pose& X_MC, double range, double sigma, double fov) {
+  const glm::dvec2 axis = base::rotate(X_MC.yaw, {1.0, 0.0});
+  // Uniform on the arc, whose depth adds to the error along the axis.
+  const double half = std::min(0.5 * fov, 0.5 * M_PI);
+  const double depth = range * (1.0 - std::cos(half)), width = range * std::sin(half);
+  Feature feature{.kind = FeatureKind::cluster,
+                  .p = glm::dvec2{X_MC.x, X_MC.y} + (range - depth / 3.0) * axis,
+                  .direction = kUnknown};
+  feature.covariance = oriented(axis, square(std::max(sigma, kLeastSigma)) + square(depth) * 4.0 / 45.0,
+                                square(width) / 3.0 + square(kLeastSigma));
+  return feature;
+}
+
+Feature tag_at(const base::Pose& X_MS, double range, double bearing, double orientation,
+               const std::array<double, 3>& noise, std::uint32_t id) {
+  const glm::dvec2 sight = base::rotate(X_MS.yaw + bearing, {1.0, 0.0});
+  Feature feature{.kind = FeatureKind::tag,
+                  .p = glm::dvec2{X_MS.x, X_MS.y} + range * sight,
+                  .direction = base::wrap_angle(X_MS.yaw + orientation),
+                  .id = id};
+  feature.covariance =
+      oriented(sight, square(std::max(noise[0], kLeastSigma)), square(noise[1] * range) + square(kLeastSigma));
+  feature.covariance[2] = feature.covariance[4] = 0.0;
+  feature.covariance[5] = square(std::max(noise[2], kLeastSigma));
+  return feature;
+}
+
+}  // namespace sf::estimation

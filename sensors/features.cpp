@@ -1,0 +1,222 @@
+#include "sensors/features.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/echo.h"
+#include "sensors/fiducial.h"
+#include "sensors/infrared.h"
+#include "sensors/laser.h"
+#include "sensors/laser_settings.h"
+#include "sensors/plain_packets.h"
+#include "sensors/pose_sensor.h"
+#include "sensors/settings.h"
+#include "sensors/sonar.h"
+
+namespace sf::sensors {
+
+namespace {
+
+using estimation::Feature;
+using estimation::FeatureKind;
+
+/// Returns the range of a row, or NaN without a valid echo. @param width numbers of a row
+double echo_range(const sensorfarm::Reading& reading, std::size_t row, std::size_t width, base::RangeLimits limits) {
+  const double range = reading.values[row * width];
+  const bool near =
+      row < reading.flags.size() && reading.flags[row] == static_cast<std::uint8_t>(base::QualityFlag::too_near);
+  return !near && base::echo_of(range, limits) == base::Echo::valid ? range : NAN;
+}
+
+class LaserFeatures final : public FeatureSource {
+ public:
+  LaserFeatures(const LaserSettings& laser, const estimation::FeatureOptions& options)
+      : limits_{laser.range_min, laser.range_max}, finder_(laser.X_MS, bearings_of(laser), noise_of(laser), options) {}
+
+  std::span<const Feature> find(const sensorfarm::Reading& reading) override {
+    ranges_.resize(reading.values.size());
+    for (std::size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = echo_range(reading, i, 1, limits_);
+    return finder_.find(ranges_);
+  }
+
+ private:
+  static std::vector<double> bearings_of(const LaserSettings& laser) {
+    std::vector<double> bearings;
+    for (std::uint32_t i = 0; i < laser.samples; ++i) bearings.push_back(raycast::bearing_of(laser, i));
+    return bearings;
+  }
+  static estimation::EchoNoise noise_of(const LaserSettings& laser) {
+    return {laser.noise.range_sigma, laser.noise.range_proportional, laser.noise.angle_sigma};
+  }
+  base::RangeLimits limits_;
+  estimation::ScanFeatures finder_;
+  std::vector<double> ranges_;
+};
+
+class ConeFeatures final : public FeatureSource {
+ public:
+  ConeFeatures(ConeArray array, bool infrared) : array_(std::move(array)), infrared_(infrared) {}
+
+  std::span<const Feature> find(const sensorfarm::Reading& reading) override {
+    found_.clear();
+    for (std::size_t i = 0; i < array_.X_SC.size(); ++i) {
+      const double range =
+          echo_range(reading, i, infrared_ ? kInfraredColumns : 1, {array_.range_min, array_.range_max});
+      if (std::isfinite(range))
+        found_.push_back(
+            estimation::cone_echo(base::compose(array_.row.X_MS, array_.X_SC[i]), range, sigma(range), array_.fov));
+    }
+    return found_;
+  }
+
+ private:
+  /// As in sonar.cpp and infrared.cpp.
+  double sigma(double range) const {
+    if (!infrared_) return std::hypot(array_.sigma, array_.proportional * range);
+    const double span = array_.range_max - array_.range_min, away = (range - array_.range_min) / span;
+    return span * (1.0 - away) * array_.proportional * away;
+  }
+  ConeArray array_;
+  bool infrared_;
+  std::vector<Feature> found_;
+};
+
+class TagFeatures final : public FeatureSource {
+ public:
+  TagFeatures(const FiducialFinder& finder, const base::Pose& X_MS)
+      : X_MS_(X_MS), noise_{finder.range_noise, finder.bearing_noise, finder.orientation_noise} {}
+
+  std::span<const Feature> find(const sensorfarm::Reading& reading) override {
+    found_.clear();
+    for (std::size_t i = 0; i + kFiducialNumbers <= reading.values.size(); i += kFiducialNumbers) {
+      const auto v = reading.values.subspan(i, kFiducialNumbers);
+      if (!std::isfinite(v[2] + v[3] + v[4])) continue;
+      const double id = std::isfinite(v[0]) ? std::clamp(v[0], 0.0, 65535.0) : 0.0;
+      found_.push_back(estimation::tag_at(X_MS_, v[2], v[3], v[4], noise_, static_cast<std::uint32_t>(id)));
+    }
+    return found_;
+  }
+
+ private:
+  base::Pose X_MS_;
+  std::array<double, 3> noise_;
+  std::vector<Feature> found_;
+};
+
+class FeaturesSensor final : public sensorfarm::DerivedSensor {
+ public:
+  FeaturesSensor(std::unique_ptr<FeatureSource> source, const sensorfarm::Pose& X_RS)
+      : source_(std::move(source)), p_RS_{X_RS.x, X_RS.y} {}
+
+  void take(std::uint32_t, const sensorfarm::Reading& reading) override {
+    time_ = reading.time;
+    values_.assign(reading.values.begin(), reading.values.end());
+    flags_.assign(reading.flags.begin(), reading.flags.end());
+  }
+
+  void read(double time, sensorfarm::DerivedReading out) override {
+    std::ranges::fill(out.valid, std::uint8_t{0});
+    if (!std::isfinite(time_)) return;
+    sensorfarm::Reading newest;
+    newest.time = time_, newest.values = values_, newest.flags = flags_;
+    nearest_.clear();
+    for (const Feature& feature : source_->find(newest)) nearest_.push_back(&feature);
+    std::ranges::stable_sort(nearest_, {}, [&](const Feature* f) { return glm::length(f->p - p_RS_); });
+    for (std::size_t row = 0; row < std::min(nearest_.size(), out.valid.size()); ++row) write(*nearest_[row], row, out);
+    for (std::size_t row = 0; row < out.valid.size(); ++row)
+      if (out.valid[row] != 0) out.values[kNumbersOfRow * row + 6] = std::max(time - time_, 0.0);
+    time_ = NAN;
+  }
+
+ private:
+  static constexpr std::size_t kNumbersOfRow = 7;  // without `valid` and the covariance
+
+  static void write(const Feature& feature, std::size_t row, sensorfarm::DerivedReading& out) {
+    const auto values = out.values.subspan(kNumbersOfRow * row, kNumbersOfRow);
+    values[0] = feature.p.x, values[1] = feature.p.y, values[2] = feature.direction;
+    values[3] = static_cast<double>(feature.kind), values[4] = feature.half_length, values[5] = feature.id;
+    std::ranges::copy(feature.covariance, out.covariance.begin() + static_cast<std::ptrdiff_t>(6 * row));
+    out.valid[row] = 1;
+  }
+
+  std::unique_ptr<FeatureSource> source_;
+  glm::dvec2 p_RS_;
+  double time_ = NAN;  ///< of the newest input; NaN: none since the last reading
+  std::vector<double> values_;
+  std::vector<std::uint8_t> flags_;
+  std::vector<const Feature*> nearest_;
+};
+
+std::unique_ptr<sensorfarm::DerivedSensor> make_features(const DerivedContext& context) {
+  if (context.inputs.size() != 1 || context.inputs[0].mover != context.spec.mover)
+    refuse(context.settings, "inputs", "features are those of one laser, sonar, infrared or fiducial of its own robot");
+  const estimation::FeatureOptions defaults;
+  auto source = feature_source(context.world, context.inputs[0],
+                               {.shortest = length(context.settings, "shortest", defaults.shortest, 1e-3, 1e3),
+                                .widest = length(context.settings, "widest", defaults.widest, 1e-3, 1e3)});
+  if (source == nullptr)
+    refuse(context.settings, "inputs",
+           fmt::format("{} has no features; expected a laser, sonar, infrared or fiducial",
+                       context.site.inputs[0].sensor.type));
+  return std::make_unique<FeaturesSensor>(std::move(source), context.site.inputs[0].sensor.X_RS);
+}
+
+constexpr std::string_view kRangeColumns[] = {"range_m"},
+                           kTagColumns[] = {"id", "fiducial_type", "range_m", "bearing_rad", "orientation_rad"};
+constexpr DerivedPort kPorts[] = {{"ranges", kRangeColumns}, {"fiducial", kTagColumns}};
+constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .extra = 4, .make = make_features};
+
+constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most", "shortest", "widest"};
+constexpr Column kColumns[] = {{"x_m"},
+                               {"y_m"},
+                               {"direction_rad"},
+                               {"valid", 1, true},
+                               {"xx_m2"},
+                               {"xy_m2"},
+                               {"x_direction_m_rad"},
+                               {"yy_m2"},
+                               {"y_direction_m_rad"},
+                               {"direction_direction_rad2"},
+                               {"kind", 1, true},
+                               {"half_length_m"},
+                               {"id", 1, true},
+                               {"age_s"}};
+constexpr PlainNumber kNumbers[] = {
+    {1e-3}, {1e-3},          {1e-6},      {1.0, 0.0, 1.0},     kReal,      kReal, kReal, kReal, kReal,
+    kReal,  {1.0, 0.0, 4.0}, {1e-3, 0.0}, {1.0, 0.0, 65535.0}, {1e-6, 0.0}};
+static_assert(std::size(kColumns) == kFeatureNumbers && std::size(kNumbers) == kFeatureNumbers);
+static_assert(kMostFeatures * kFeatureNumbers <= kMaxPlainWords);
+constexpr PlainForm kForm{kFeatures, "features", kNumbers};
+
+}  // namespace
+
+std::unique_ptr<FeatureSource> feature_source(const world::World& world, const WiredInput& input,
+                                              const estimation::FeatureOptions& options) {
+  const world::Mover& mover = world.movers[input.mover];
+  if (input.type == kLaser) return std::make_unique<LaserFeatures>(lasers_of(mover)[input.sensor], options);
+  if (input.type != kSonar && input.type != kInfrared && input.type != kFiducial) return nullptr;
+  const world::Sensor& settings = input_settings(world, input);
+  if (input.type == kFiducial) {
+    base::Pose X_MS = common_spec(settings, input.mover, input.sensor).X_MS;
+    return std::make_unique<TagFeatures>(read_finder(settings), X_MS);
+  }
+  const bool infrared = input.type == kInfrared;
+  return std::make_unique<ConeFeatures>((infrared ? read_infrared : read_sonar)(settings, input.mover, input.sensor),
+                                        infrared);
+}
+
+constinit const SensorType features_type = plain<kForm>({
+    .word = {"features", kKeys, {}, true},
+    .base_port = 26000,
+    .list = "features",
+    .columns = kColumns,
+    .derived = &kDerived,
+    .parse =
+        [](const world::World& world) { return parse_derived_rows(world, features_type, 16, kMostFeatures, 10.0); },
+    .make = no_backend,
+});
+
+}  // namespace sf::sensors

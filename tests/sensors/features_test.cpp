@@ -1,0 +1,122 @@
+// The derived sensor `features`: rows of each kind of input, readings without inputs, and what is refused.
+
+#include "sensors/features.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/time.h"
+#include "farm/farm.h"
+#include "tests/device.h"
+#include "tests/refusal.h"
+#include "tests/sensors/host_trial.h"
+#include "world/stage/build_world.h"
+
+namespace sf::trial {
+namespace {
+
+world::World featured(const std::string& sensors, const std::string& derived) {
+  return world::build_world("featured.world",
+                            "define bot position( size [0.3 0.3 0.1] drive \"diff\" " + sensors +
+                                " derived( type \"features\" " + derived +
+                                " ) )\nbot( name \"r0\" pose [1 2 0 90] )\n"
+                                "model( name \"post\" pose [1 3 0 0] size [0.1 0.1 0.5] fiducial_return 7 )\n"
+                                "model( name \"wall\" pose [3 2 0 0] size [0.1 4 0.5] )\n",
+                            {.sensors = sensors::world_file_words()});
+}
+
+using Rows = std::vector<std::array<double, sensors::kFeatureNumbers>>;
+
+Rows rows_of(const base::ReadingBlock& block) {
+  Rows rows(block.values.size() / sensors::kFeatureNumbers);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    std::copy_n(block.values.begin() + static_cast<std::ptrdiff_t>(sensors::kFeatureNumbers * k),
+                sensors::kFeatureNumbers, rows[k].begin());
+  return rows;
+}
+
+/// Returns the readings of the first second at rest.
+std::vector<Rows> readings_of(const world::World& world) {
+  farm::Farm farm(world, host_device(), {.seed = 1, .threads = 1});
+  farm.subscribe(0, base::only(sensors::kFeatures));
+  std::vector<Rows> all;
+  for (int tick = 0; tick <= 10; ++tick) {
+    const base::Report report{0, 0, world.movers[0].X_WM, {}};
+    for (const base::ReadingBlock& block : farm.tick(base::nanoseconds(0.1 * tick), {&report, 1}))
+      if (block.type == sensors::kFeatures) all.push_back(rows_of(block));
+  }
+  return all;
+}
+
+const std::string kScanner = "laser( samples 361 fov 180 range_max 5 noise [0.005 0 0] )";
+
+TEST(Features, OfALaserAreAClusterAndALineInTheRobotsFrame) {
+  const auto all = readings_of(featured(kScanner, "inputs [\"laser\"] most 4"));
+  ASSERT_EQ(all.size(), 11u);
+  for (const Rows& rows : all) {
+    ASSERT_EQ(rows.size(), 4u);
+    const auto &post = rows[0], &wall = rows[1];
+    EXPECT_EQ(post[sensors::kFeatureKindAt], 3.0);
+    EXPECT_NEAR(post[0], 0.95, 0.03);
+    EXPECT_NEAR(post[1], 0.0, 0.03);
+    EXPECT_TRUE(std::isnan(post[2])) << "no direction";
+    EXPECT_EQ(post[3], 1.0);
+    EXPECT_GT(post[4], 0.0);
+    EXPECT_EQ(wall[sensors::kFeatureKindAt], 1.0);
+    EXPECT_NEAR(wall[1], -1.95, 0.03) << "to the right";
+    EXPECT_LT(std::abs(wall[2]), 0.05) << "along the robot's x";
+    EXPECT_EQ(wall[3], 1.0);
+    EXPECT_EQ(rows[3][3], 0.0) << "no more features";
+    EXPECT_TRUE(std::isnan(rows[3][0]));
+    EXPECT_EQ(rows[3][sensors::kFeatureKindAt], 0.0);
+  }
+}
+
+TEST(Features, OfConesStateTheirWidth) {
+  const auto all = readings_of(featured(
+      "sonar( scount 2 spose[0] [0.1 0 0] spose[1] [0 0 180] fov 20 range [0.1 4] rate 10 )", "inputs [\"sonar\"]"));
+  const auto& first = all.back()[0];
+  EXPECT_EQ(first[sensors::kFeatureKindAt], 3.0);
+  EXPECT_NEAR(first[0], 0.95, 0.03);
+  EXPECT_NEAR(std::sqrt(first[7]), 0.85 * std::sin(10.0 * M_PI / 180.0) / std::sqrt(3.0), 0.02);
+  EXPECT_EQ(all.back()[1][3], 0.0) << "nothing behind";
+  const auto near = readings_of(
+      featured("infrared( scount 1 spose[0] [0 0 0] fov 20 range [0 1] noise 0.01 rate 10 )", "inputs [\"infrared\"]"));
+  EXPECT_NEAR(near.back()[0][0], 0.95, 0.05);
+}
+
+TEST(Features, OfAFinderAreTags) {
+  const auto all = readings_of(featured("fiducial( range_max 5 noise [0.01 1 1] )", "inputs [\"fiducial\"]"));
+  const auto& tag = all.back()[0];
+  EXPECT_EQ(tag[sensors::kFeatureKindAt], 4.0);
+  EXPECT_NEAR(tag[0], 1.0, 0.05);
+  EXPECT_EQ(tag[sensors::kFeatureKindAt + 2], 7.0) << "id";
+}
+
+TEST(Features, AreNotRepeatedAndStateTheirAge) {
+  const auto all =
+      readings_of(featured("laser( samples 181 fov 180 range_max 5 rate 2 latency 0.1 )", "inputs [\"laser\"]"));
+  int valid = 0;
+  for (const Rows& rows : all)
+    if (rows[0][3] != 0.0) {
+      ++valid;
+      EXPECT_NEAR(rows[0][sensors::kFeatureKindAt + 3], 0.1, 1e-9);
+    }
+  EXPECT_EQ(valid, 2) << "measured at 0 and 0.5 s";
+}
+
+TEST(Features, RefusesWhatHasNone) {
+  const auto refusal = [](const std::string& more) {
+    return refusal_of([&] { const sensors::SensorSet all(featured(kScanner + " gyro( ) laneedge( )", more)); });
+  };
+  EXPECT_EQ(refusal("inputs [\"laser\"]"), "");
+  expect_in("expected ranges (range_m) or fiducial", refusal("inputs [\"gyro\"]"));
+  expect_in("it has 2 inputs 'ranges'", refusal("inputs [\"laser\" \"laser\"]"));
+  expect_in("'most'", refusal("inputs [\"laser\"] most 23"));
+  expect_in("'shortest'", refusal("inputs [\"laser\"] shortest 0"));
+  expect_in("'widest'", refusal("inputs [\"laser\"] widest -1"));
+}
+
+}  // namespace
+}  // namespace sf::trial

@@ -1,0 +1,112 @@
+// The derived sensor `tracks`: objects in the world frame from unlike sensors of two robots, decisions, and refusals.
+
+#include "sensors/tracks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "base/time.h"
+#include "farm/farm.h"
+#include "tests/device.h"
+#include "tests/refusal.h"
+#include "tests/sensors/host_trial.h"
+#include "world/stage/build_world.h"
+
+namespace sf::trial {
+namespace {
+
+using TrackRow = std::array<double, sensors::kTrackNumbers>;
+
+world::World tracked(const std::string& derived) {
+  return world::build_world(
+      "tracked.world",
+      "define bot position( size [0.3 0.3 0.2] drive \"diff\" encoder( per_count 0.001 slip 0.001 ) gyro( noise 0.1 )\n"
+      "laser( samples 361 fov 180 range_max 6 noise [0.01 0 0] )\n"
+      "sonar( scount 1 spose[0] [0.15 0 0] fov 20 range [0.1 5] rate 10 noise [0.02 0] )\n"
+      "derived( type \"localization\" inputs [\"encoder\" \"gyro\"] rate 20 )\n"
+      "derived( type \"features\" name \"scan\" inputs [\"laser\"] )\n"
+      "derived( type \"features\" name \"echo\" inputs [\"sonar\"] )\n" +
+          derived +
+          " )\nbot( name \"r0\" pose [0 0 0 0] )\nbot( name \"r1\" pose [3 -2 0 90] )\n"
+          "model( name \"post\" pose [3 0 0 0] size [0.1 0.1 0.5] )\n"
+          "define target position( size [0.2 0.2 0.5] drive \"omni\" )\ntarget( name \"t\" pose [2 2.3 0 0] )\n",
+      {.sensors = sensors::world_file_words()});
+}
+
+/// r0 drives at 0.2 m/s, r1 stands, t moves to the right of r0 at 0.4 m/s. Returns the valid rows after `seconds`.
+std::vector<TrackRow> rows_after(const world::World& world, double seconds) {
+  farm::Farm farm(world, host_device(), {.seed = 1, .threads = 1});
+  farm.subscribe(0, base::only(sensors::kTracks));
+  std::vector<TrackRow> rows;
+  for (int tick = 0; tick <= std::lround(10.0 * seconds); ++tick) {
+    const double t = 0.1 * tick;
+    const std::int64_t now = base::nanoseconds(t);
+    const base::Report reports[] = {{0, now, {0.2 * t, 0, 0, 0}, {0.2, 0, 0}},
+                                    {1, now, world.movers[1].X_WM, {}},
+                                    {2, now, {2.0, 2.3 - 0.4 * t, 0, 0}, {0, -0.4, 0}}};
+    for (const base::ReadingBlock& block : farm.tick(now, reports)) {
+      if (block.type != sensors::kTracks) continue;
+      rows.clear();
+      for (std::size_t at = 0; at < block.values.size(); at += sensors::kTrackNumbers) {
+        TrackRow row;
+        std::copy_n(block.values.begin() + static_cast<std::ptrdiff_t>(at), row.size(), row.begin());
+        if (row[sensors::kTrackValidAt] != 0.0) rows.push_back(row);
+      }
+    }
+  }
+  return rows;
+}
+
+const TrackRow* row_near(const std::vector<TrackRow>& rows, glm::dvec2 p, double within = 0.3) {
+  for (const TrackRow& row : rows)
+    if (std::hypot(row[0] - p.x, row[1] - p.y) < within && row[sensors::kTrackKindAt] != 3.0) return &row;
+  return nullptr;
+}
+
+const std::string kBoth =
+    "derived( type \"tracks\" inputs [\"*/features:0\" \"*/features:1\" \"*/localization\"] rate 10 )";
+
+TEST(Tracks, OfTwoRobotsAreObjectsAtRestAndMoving) {
+  const auto rows = rows_after(tracked(kBoth), 4.0);
+  const TrackRow* const post = row_near(rows, {2.95, 0.0});
+  const TrackRow* const target = row_near(rows, {2.0, 0.7});
+  ASSERT_NE(post, nullptr);
+  ASSERT_NE(target, nullptr);
+  EXPECT_EQ((*post)[sensors::kTrackKindAt], 1.0);
+  EXPECT_EQ((*target)[sensors::kTrackKindAt], 2.0);
+  EXPECT_NEAR((*target)[3], -0.4, 0.1);
+  EXPECT_NEAR((*target)[2], 0.0, 0.1);
+  EXPECT_NE((*post)[sensors::kTrackIdentityAt], (*target)[sensors::kTrackIdentityAt]);
+  EXPECT_NEAR((*post)[sensors::kTrackAheadAt], 2.15, 0.2) << "in the corridor of r0";
+  EXPECT_NEAR((*post)[sensors::kTrackContactAt], (2.15 - 0.15) / 0.2, 2.0);
+  EXPECT_TRUE(std::isnan((*target)[sensors::kTrackAheadAt]));
+  EXPECT_GT((*post)[sensors::kTrackCovarianceAt], 0.0);
+}
+
+TEST(Tracks, OfOneRobotFromOneSensor) {
+  const auto rows =
+      rows_after(tracked("derived( type \"tracks\" inputs [\"features:0\" \"localization\"] rate 10 most 2 )"), 4.0);
+  ASSERT_LE(rows.size(), 2u);
+  EXPECT_NE(row_near(rows, {2.0, 0.7}), nullptr) << "moving objects come first";
+}
+
+TEST(Tracks, RefusesFeaturesWithoutAPose) {
+  const auto refusal = [](const std::string& more) {
+    return refusal_of([&] { const sensors::SensorSet all(tracked("derived( type \"tracks\" " + more + " )")); });
+  };
+  EXPECT_EQ(refusal("inputs [\"features\" \"localization\"]"), "");
+  expect_in("expected 1 to", refusal("inputs [\"features\"]"));
+  expect_in("need one pose of 'r0'", refusal("inputs [\"features\" \"r1/localization\"]"));
+  expect_in("there are 2", refusal("inputs [\"features\" \"localization\" \"localization\"]"));
+  expect_in("there are 2 poses of 'r1'",
+            refusal("inputs [\"features\" \"localization\" \"r1/localization\" \"r1/localization\"]"));
+  expect_in("expected features", refusal("inputs [\"laser\" \"localization\"]"));
+  expect_in("'most'", refusal("inputs [\"features\" \"localization\"] most 16"));
+  expect_in("'keep'", refusal("inputs [\"features\" \"localization\"] keep 0"));
+  expect_in("'agility'", refusal("inputs [\"features\" \"localization\"] agility -1"));
+}
+
+}  // namespace
+}  // namespace sf::trial
