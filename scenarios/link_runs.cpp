@@ -25,7 +25,7 @@ namespace {
 constexpr double kRoad = 2000.0, kLinkLength = 500.0;  // [m]
 constexpr std::uint32_t kCorridorCars = 60;
 constexpr double kCorridorWarmUp = 300.0;                       // [s]
-constexpr double kSignals[] = {700.0, 1450.0};                  // [m] stop lines
+constexpr double kSignalPlaces[] = {700.0, 1450.0};             // [m] stop lines
 constexpr double kCycle = 90.0;                                 // [s]
 constexpr double kCarLength = 4.5, kHeadway = 1.4, kGap = 2.0;  // [m], [s], [m]
 constexpr double kAcceleration = 1.2, kBraking = 1.8;           // [m/s^2]
@@ -199,7 +199,7 @@ class CorridorTraffic {
         const double gap = tick.reports[ahead].X_WM.x - 0.5 * kCarLength - front;
         wanted = intelligent_driver(speed, free_speeds_[k], gap, commands_[ahead].forward);
       }
-      for (const double line : kSignals) {
+      for (const double line : kSignalPlaces) {
         const bool green = std::fmod(time, kCycle) < green_share(time) * kCycle;
         const double way = line - front;
         if (green || way < 0.0 || speed * speed > 2.0 * 3.0 * way) continue;  // or it cannot stop any more

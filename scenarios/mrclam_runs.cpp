@@ -17,8 +17,8 @@ using estimation::Estimate;
 using record::MrclamData;
 using record::MrclamRobot;
 
-constexpr estimation::PoseCovariance kStart{1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4};  // of the truth's poses
-constexpr std::int64_t kKeptApart = 1'000'000'000;                             // [ns]
+constexpr estimation::PoseCovariance kStartCovariance{1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4};  // of the truth's poses
+constexpr std::int64_t kKeptApart = 1'000'000'000;                                       // [ns]
 
 /// One run of the filter and the smoother: all robots of a team, or one robot alone.
 struct Job {
@@ -84,7 +84,7 @@ class Run {
       const auto& odometry = robot(input.robot).odometry[input.row];
       const bool counts = std::binary_search(times_[input.robot].begin(), times_[input.robot].end(), odometry.time);
       if (counts && all[input.robot].empty())
-        filter.add_pose(input.robot, odometry.time, *start_of(input.robot), kStart);
+        filter.add_pose(input.robot, odometry.time, *start_of(input.robot), kStartCovariance);
       filter.add_odometry(input.robot, odometry.time, odometry.forward, odometry.turn);
       if (counts) all[input.robot].push_back(filter.predict(input.robot, odometry.time).estimate);
     }
@@ -96,7 +96,7 @@ class Run {
     readings.speeds.resize(team_.robots);
     for (std::uint32_t r = 0; r < team_.robots; ++r) {
       if (const auto start = start_of(r))
-        readings.events.push_back(estimation::start_event(r, times_[r].front(), *start, kStart));
+        readings.events.push_back(estimation::start_event(r, times_[r].front(), *start, kStartCovariance));
       for (const auto& each : robot(r).odometry)
         readings.speeds[r].push_back(estimation::effective_speeds(team_.model, each.time, each.forward, each.turn));
       for (const auto& each : robot(r).sightings)

@@ -12,9 +12,9 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kUnit = 1e-8;      // [T] 1e-4 Gauss
-constexpr std::size_t kHeader = 4;  // [bytes]
-constexpr std::size_t kWord = 4;    // [bytes]
+constexpr double kUnit = 1e-8;            // [T] 1e-4 Gauss
+constexpr std::size_t kMagnetHeader = 4;  // [bytes]
+constexpr std::size_t kMagnetWord = 4;    // [bytes]
 
 using Word = std::int32_t;
 constexpr Word kLeast = std::numeric_limits<Word>::min();
@@ -25,7 +25,7 @@ Word to_word(double tesla) {
 }
 
 std::size_t words_of(WireFormat wire) { return wire == WireFormat::farm ? kMagnetometerColumns : 1; }
-std::size_t header_of(WireFormat wire) { return wire == WireFormat::farm ? kHeader : 0; }
+std::size_t header_of(WireFormat wire) { return wire == WireFormat::farm ? kMagnetHeader : 0; }
 
 /// A saturated word means "this or more".
 bool plausible(std::span<const std::uint8_t> payload, WireFormat wire, std::size_t words, double limit) {
@@ -70,7 +70,7 @@ PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::u
                                 WireFormat wire) {
   if (type != kMagnetometer) return {.fault = PayloadError::out_of_range};
   base::ByteReader reader(payload);
-  const std::size_t element = kWord * words_of(wire);
+  const std::size_t element = kMagnetWord * words_of(wire);
   const std::size_t body = payload.size() - std::min(payload.size(), header_of(wire));
   const std::size_t said =
       wire == WireFormat::farm ? reader.get<std::uint16_t>() : std::max<std::size_t>(1, body / element);
@@ -87,7 +87,7 @@ void read_magnetometer_payload(const SensorSpec&, std::span<const std::uint8_t> 
                                std::span<double> values) {
   base::ByteReader reader(payload.subspan(header_of(wire)));
   const std::size_t words = words_of(wire);
-  SF_CHECK(reader.left() / (kWord * words) * kMagnetometerColumns == values.size(),
+  SF_CHECK(reader.left() / (kMagnetWord * words) * kMagnetometerColumns == values.size(),
            std::to_string(payload.size()) + " bytes for " + std::to_string(values.size()) + " values");
   for (std::size_t e = 0; e < values.size() / kMagnetometerColumns; ++e)
     for (std::size_t k = 0; k < words; ++k) values[kMagnetometerColumns * e + k] = reader.get<Word>() * kUnit;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDefaultCell = 0.03;  // [m] same as in the thesis
 constexpr std::uint32_t kDefaultWords = 30;
 constexpr double kDefaultRate = 1.0;  // [Hz]
-constexpr double kFarthest = 1e7;     // [m]
+constexpr double kFarthestMap = 1e7;  // [m]
 constexpr double kMostOdds = 32767.0;
 
 std::uint32_t words_along(const world::Sensor& sensor, double count) {
@@ -52,7 +52,8 @@ maps::GridGeometry grid_of(const world::Sensor& sensor, const Pose& place) {
     geometry.top = -sensor.metres_per_unit * (*offset)[1];
   }
   if (!maps::is_valid(geometry))
-    refuse(sensor, "offset", fmt::format("a map more than {:g} m from the world's origin; change 'offset'", kFarthest));
+    refuse(sensor, "offset",
+           fmt::format("a map more than {:g} m from the world's origin; change 'offset'", kFarthestMap));
   return geometry;
 }
 

@@ -7,8 +7,8 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kPiece = 1.0;         // [m] smallest length of a ray whose box is searched in one step
-constexpr double kMostPieces = 256.0;  // largest number of pieces of a ray
+constexpr double kPieceOfLoop = 1.0;          // [m] smallest length of a ray whose box is searched in one step
+constexpr double kMostOutlinePieces = 256.0;  // largest number of pieces of a ray
 
 std::vector<world::Segment> seen_by_lasers(const world::World& world) {
   std::vector<world::Segment> walls;
@@ -69,7 +69,7 @@ void OwnSurroundings::meet_movers(Nearest& nearest) const {
 
 sensorfarm::Hit OwnSurroundings::cast(std::uint32_t self, const base::Pose& from, double range) const {
   Nearest nearest{self, from, {from.x, from.y}, {std::cos(from.yaw), std::sin(from.yaw)}, {range}};
-  const double piece = std::max(kPiece, range / kMostPieces);
+  const double piece = std::max(kPieceOfLoop, range / kMostOutlinePieces);
   for (double t = 0.0; t < nearest.best.range; t += piece)
     meet_walls(nearest, t, std::min(t + piece, nearest.best.range));
   meet_movers(nearest);

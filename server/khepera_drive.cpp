@@ -18,9 +18,9 @@ constexpr std::int64_t kAnswer = 150'000'000;  // [ns] for an answer: the longes
 constexpr std::int64_t kQuiet = 50'000'000;    // [ns] after which a cleared line is empty
 constexpr std::string_view kRound = "HNHNHNHO";
 constexpr std::size_t kSensors = 8;
-constexpr int kSlack = 40;        // [pulses per 10 ms] of motion beyond the commanded speed
-constexpr double kMargin = 30.0;  // [pulses]
-constexpr double kReach = 0.05;   // [m] as `infrared( )` of worlds/robots.inc
+constexpr int kSlack = 40;               // [pulses per 10 ms] of motion beyond the commanded speed
+constexpr double kMargin = 30.0;         // [pulses]
+constexpr double kInfraredReach = 0.05;  // [m] as `infrared( )` of worlds/robots.inc
 constexpr std::array<std::string_view, kSensors> kLight{"light_0", "light_1", "light_2", "light_3",
                                                         "light_4", "light_5", "light_6", "light_7"};
 
@@ -86,9 +86,9 @@ bool KheperaDrive::accept(const robots::KheperaAnswer& answer, std::int64_t now)
       std::vector<double> values;
       for (const std::int64_t number : n) {
         const double response = std::clamp(static_cast<double>(number), 0.0, sensors::kMostResponse);
-        values.insert(values.end(), {kReach * (1.0 - response / sensors::kMostResponse), response});
+        values.insert(values.end(), {kInfraredReach * (1.0 - response / sensors::kMostResponse), response});
       }
-      measured({.type = sensors::kInfrared, .time = now, .values = std::move(values), .limit = kReach});
+      measured({.type = sensors::kInfrared, .time = now, .values = std::move(values), .limit = kInfraredReach});
       return true;
     }
     default: {

@@ -16,7 +16,7 @@ constexpr double kWallSigmas = 3.0;           // of an echo's distance from a wa
 constexpr double kWallDepth = 0.05;           // [m] walls are uneven
 constexpr double kSame = 2.0;                 // squared normalised distance of two tracks of one object
 constexpr double kMoves = 6.0, kRests = 3.0;  // squared normalised speeds: 5 and 22 % of objects at rest
-constexpr double kSlowest = 0.03;             // [m/s]
+constexpr double kSlowestObject = 0.03;       // [m/s]
 constexpr double kTentative = 0.5;            // share of `keep` for tracks that are not confirmed
 constexpr double kFades = 5.0;                // [s] in which errors that repeat change
 
@@ -77,7 +77,7 @@ void decide_motion(ObjectTrack& track) {
   V << track.covariance(2, 2), track.covariance(2, 3), track.covariance(3, 2), track.covariance(3, 3);
   const Eigen::Vector2d v(track.v.x, track.v.y);
   const double squared = v.dot(V.inverse() * v);
-  track.moving = squared > (track.moving ? kRests : kMoves) && v.norm() > kSlowest;
+  track.moving = squared > (track.moving ? kRests : kMoves) && v.norm() > kSlowestObject;
 }
 
 bool may_be_one(const ObjectTrack& track, const Observation& observation) {

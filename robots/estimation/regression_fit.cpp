@@ -16,7 +16,8 @@ namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kLeastVariance = 1e-9;  // of scaled regressors, as a ridge: some are constant, or multiples of others
+constexpr double kLeastRegressorVariance =
+    1e-9;  // of scaled regressors, as a ridge: some are constant, or multiples of others
 
 /// Regressors, a row each, and the outputs that follow them.
 struct Design {
@@ -72,7 +73,7 @@ Eigen::VectorXd linear_weights(const Scaled& data, double decay) {
   const Eigen::Index n = data.X.cols();
   const double count = static_cast<double>(data.X.rows());
   Eigen::MatrixXd normal = data.X.transpose() * data.X / count;
-  normal.diagonal().array() += std::max(decay, kLeastVariance);
+  normal.diagonal().array() += std::max(decay, kLeastRegressorVariance);
   const Eigen::VectorXd right = data.X.transpose() * (data.y.array() - data.y.mean()).matrix() / count;
   Eigen::VectorXd weights(n + 1);
   weights.tail(n) = normal.llt().solve(right);
@@ -147,7 +148,7 @@ TrainingRange range_of(const Scaled& data, const Design& design) {
   }
   const Eigen::Index size = data.X.cols();
   Eigen::MatrixXd covariance = data.X.transpose() * data.X / static_cast<double>(data.X.rows());
-  covariance.diagonal().array() += kLeastVariance;
+  covariance.diagonal().array() += kLeastRegressorVariance;
   const Eigen::MatrixXd factor = covariance.llt().matrixL().solve(Eigen::MatrixXd::Identity(size, size));
   for (Eigen::Index i = 0; i < size; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) range.decorrelation.push_back(factor(i, j));

@@ -19,7 +19,7 @@ constexpr double kCornerGap = 0.2;                  // [m] from the end of an ar
 
 glm::dvec2 left_of(glm::dvec2 v) { return {-v.y, v.x}; }
 
-double square(double value) { return value * value; }
+double square_of(double value) { return value * value; }
 
 /// Returns the upper triangle of a covariance of x, y with variances along and across a direction.
 std::array<double, 6> oriented(glm::dvec2 u, double along, double across) {
@@ -49,9 +49,9 @@ void ScanFeatures::place_echoes(std::span<const double> ranges) {
     const double range = ranges[i];
     if (!(range > 0.0 && range < 1e6)) continue;
     const glm::dvec2 sight = base::rotate(X_MS_.yaw + bearings_[i], {1.0, 0.0});
-    const double along = square(std::hypot(noise_.constant, noise_.proportional * range, kLeastSigma));
+    const double along = square_of(std::hypot(noise_.constant, noise_.proportional * range, kLeastSigma));
     echoes_.push_back({glm::dvec2{X_MS_.x, X_MS_.y} + range * sight, sight, along,
-                       square(noise_.angle * range) + square(kLeastSigma), step_ * range, i});
+                       square_of(noise_.angle * range) + square_of(kLeastSigma), step_ * range, i});
   }
 }
 
@@ -226,7 +226,7 @@ void ScanFeatures::add_line(const Line& line) {
   const glm::dvec2 u = line.along, n = left_of(u);
   const double turn = 1.0 / line.spread, across = 1.0 / line.weight + middle * middle * turn;
   // Its ends are those of what is seen: between two beams.
-  const double along = (first.along + last.along + (square(first.spacing) + square(last.spacing)) / 12.0) / 4.0;
+  const double along = (first.along + last.along + (square_of(first.spacing) + square_of(last.spacing)) / 12.0) / 4.0;
   Feature feature{.kind = FeatureKind::line,
                   .p = line.centre + middle * u,
                   .direction = std::atan2(u.y, u.x),
@@ -272,7 +272,7 @@ void ScanFeatures::add_cluster(std::size_t first, std::size_t last) {
   const double width = glm::length(b.p - a.p);
   if (width > options_.widest) return;
   const double along = 0.25 * (a.along + b.along);
-  const double across = 0.25 * (a.across + b.across) + (square(a.spacing) + square(b.spacing)) / 48.0;
+  const double across = 0.25 * (a.across + b.across) + (square_of(a.spacing) + square_of(b.spacing)) / 48.0;
   Feature feature{.kind = FeatureKind::cluster,
                   .p = 0.5 * (a.p + b.p),
                   .direction = kUnknown,
@@ -289,8 +289,8 @@ Feature cone_echo(const base::Pose& X_MC, double range, double sigma, double fov
   Feature feature{.kind = FeatureKind::cluster,
                   .p = glm::dvec2{X_MC.x, X_MC.y} + (range - depth / 3.0) * axis,
                   .direction = kUnknown};
-  feature.covariance = oriented(axis, square(std::max(sigma, kLeastSigma)) + square(depth) * 4.0 / 45.0,
-                                square(width) / 3.0 + square(kLeastSigma));
+  feature.covariance = oriented(axis, square_of(std::max(sigma, kLeastSigma)) + square_of(depth) * 4.0 / 45.0,
+                                square_of(width) / 3.0 + square_of(kLeastSigma));
   return feature;
 }
 
@@ -302,9 +302,9 @@ Feature tag_at(const base::Pose& X_MS, double range, double bearing, double orie
                   .direction = base::wrap_angle(X_MS.yaw + orientation),
                   .id = id};
   feature.covariance =
-      oriented(sight, square(std::max(noise[0], kLeastSigma)), square(noise[1] * range) + square(kLeastSigma));
+      oriented(sight, square_of(std::max(noise[0], kLeastSigma)), square_of(noise[1] * range) + square_of(kLeastSigma));
   feature.covariance[2] = feature.covariance[4] = 0.0;
-  feature.covariance[5] = square(std::max(noise[2], kLeastSigma));
+  feature.covariance[5] = square_of(std::max(noise[2], kLeastSigma));
   return feature;
 }
 

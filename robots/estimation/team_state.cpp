@@ -31,7 +31,7 @@ Eigen::Map<Eigen::MatrixXd> covariance_of(TeamState& state) {
 }
 Eigen::Index first_of(std::uint32_t robot) { return kTeamComponents * static_cast<Eigen::Index>(robot); }
 
-double square(double v) { return v * v; }
+double squared_number(double v) { return v * v; }
 double seconds(std::int64_t from, std::int64_t to) { return 1e-9 * static_cast<double>(to - from); }
 
 /// Applies a motion to one robot's components.
@@ -65,16 +65,16 @@ void drive_evenly(const TeamModel& model, const Speeds& speeds, double dt, TeamM
   m(kTeamYaw) += turned;
   m(kTurnDrift) *= kept;
 
-  const double pivot = square(model.pivot) * angle + kRestRate * dt;
+  const double pivot = squared_number(model.pivot) * angle + kRestRate * dt;
   Eigen::Map<RobotMatrix> Q(all.noise.data()), derivative(all.derivative.data());
   Q = (F * Q * F.transpose()).eval();
-  Q.topLeftCorner<2, 2>() += (square(model.along) * distance + pivot) * along * along.transpose() +
-                             (square(model.across) * distance + pivot) * across * across.transpose();
+  Q.topLeftCorner<2, 2>() += (squared_number(model.along) * distance + pivot) * along * along.transpose() +
+                             (squared_number(model.across) * distance + pivot) * across * across.transpose();
   Q(kTeamYaw, kTeamYaw) +=
-      square(model.yaw_per_metre) * distance + square(model.yaw_per_radian) * angle + kRestRate * dt;
+      squared_number(model.yaw_per_metre) * distance + squared_number(model.yaw_per_radian) * angle + kRestRate * dt;
   for (const int k : {kSpeedScale, kTurnScale})
-    if (moves) Q(k, k) += square(model.scale_drift) * dt;
-  Q(kTurnDrift, kTurnDrift) += square(model.turn_drift[0]) * (1.0 - square(kept));
+    if (moves) Q(k, k) += squared_number(model.scale_drift) * dt;
+  Q(kTurnDrift, kTurnDrift) += squared_number(model.turn_drift[0]) * (1.0 - squared_number(kept));
   derivative = (F * derivative).eval();
 }
 
@@ -83,8 +83,8 @@ void change(const TeamModel& model, const Speeds& from, const Speeds& to, TeamMo
   const double c = std::cos(all.mean[kTeamYaw]), s = std::sin(all.mean[kTeamYaw]);
   Eigen::Map<RobotMatrix> Q(all.noise.data());
   const Eigen::Vector2d along(c, s);
-  Q.topLeftCorner<2, 2>() += square(model.jitter * (to.forward - from.forward)) * along * along.transpose();
-  Q(kTeamYaw, kTeamYaw) += square(model.jitter * (to.turn - from.turn));
+  Q.topLeftCorner<2, 2>() += squared_number(model.jitter * (to.forward - from.forward)) * along * along.transpose();
+  Q(kTeamYaw, kTeamYaw) += squared_number(model.jitter * (to.turn - from.turn));
 }
 
 /// Adds a stretch with the speeds held since `speeds.time`, or with unknown ones if that is too long ago.
@@ -143,9 +143,9 @@ const Speeds& speeds_at(std::span<const Speeds> speeds, std::int64_t time) {
 
 /// Variances of range and bearing.
 Eigen::Vector2d noise_of(const TeamModel& model, double range, double turn, double since_last) {
-  const Eigen::Vector2d noise(
-      square(model.range_noise) + square(model.range_noise_share * range),
-      square(model.bearing_noise) + square(model.target_size / range) + square(model.turn_blur * turn));
+  const Eigen::Vector2d noise(squared_number(model.range_noise) + squared_number(model.range_noise_share * range),
+                              squared_number(model.bearing_noise) + squared_number(model.target_size / range) +
+                                  squared_number(model.turn_blur * turn));
   if (since_last < 0.0 || model.repeat <= 0.0) return noise;
   const double gap = std::max(since_last, kShortestRepeat);
   return noise * (1.0 + model.repeat / gap * std::exp(-gap / model.repeat));
@@ -165,7 +165,7 @@ TeamResult sight(const Team& team, const TeamEvent& event, double turn, TeamStat
                                            mean_of(state)(at + kBearingOffset)));
   Eigen::Matrix2d slope;  // of range and bearing by the target's position
   slope.row(0) = (1.0 + model.range_scale) / range * d.transpose();
-  slope.row(1) = Eigen::RowVector2d(-d.y(), d.x()) / square(range);
+  slope.row(1) = Eigen::RowVector2d(-d.y(), d.x()) / squared_number(range);
   Eigen::Matrix<double, 2, kTeamComponents> H = Eigen::Matrix<double, 2, kTeamComponents>::Zero();
   H.leftCols<2>() = -slope;
   H(1, kTeamYaw) = -1.0;
@@ -209,10 +209,10 @@ void place(const Team& team, const TeamEvent& event, TeamState& state) {
   const auto& c = event.covariance;
   P.block<3, 3>(at, at) << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
   if (robot.time < 0) {
-    set(at + kSpeedScale, model.speed_scale[0], square(model.speed_scale[1]));
-    set(at + kTurnScale, model.turn_scale[0], square(model.turn_scale[1]));
-    set(at + kBearingOffset, 0.0, square(model.bearing_offset));
-    set(at + kTurnDrift, 0.0, square(model.turn_drift[0]));
+    set(at + kSpeedScale, model.speed_scale[0], squared_number(model.speed_scale[1]));
+    set(at + kTurnScale, model.turn_scale[0], squared_number(model.turn_scale[1]));
+    set(at + kBearingOffset, 0.0, squared_number(model.bearing_offset));
+    set(at + kTurnDrift, 0.0, squared_number(model.turn_drift[0]));
   }
   robot.time = event.time;
 }
@@ -295,8 +295,8 @@ Estimate estimate_after(const Team& team, const TeamState& state, std::uint32_t 
   Estimate estimate{.time = time, .X_WM = {m[kTeamX], m[kTeamY], 0.0, base::wrap_angle(m[kTeamYaw])}};
   Eigen::Map<Eigen::Matrix<double, kComponents, kComponents, Eigen::RowMajor>> full(estimate.covariance.data());
   full.topLeftCorner<3, 3>() = 0.5 * (P.topLeftCorner<3, 3>() + P.topLeftCorner<3, 3>().transpose());
-  full.diagonal().head<2>().array() += square(team.model.place_error);
-  full(kYaw, kYaw) += square(team.model.yaw_error) + kLeastYawVariance;
+  full.diagonal().head<2>().array() += squared_number(team.model.place_error);
+  full(kYaw, kYaw) += squared_number(team.model.yaw_error) + kLeastYawVariance;
   return estimate;
 }
 
