@@ -459,14 +459,14 @@ std::span<const DroppedReading> Farm::dropped() const {
   return s_->budget ? s_->budget->dropped() : std::span<const DroppedReading>();
 }
 
-std::vector<std::uint32_t> Farm::receivers(std::uint8_t type) const {
-  std::vector<std::uint32_t> movers;
+std::vector<Farm::ReceivedInput> Farm::received_inputs(std::uint8_t type) const {
+  std::vector<ReceivedInput> inputs;
   for (const sensors::DerivedNode& node : s_->derivation->sensors().nodes())
     for (const sensors::WiredInput& input : node.inputs)
-      if (input.type == type) movers.push_back(input.mover);
-  std::ranges::sort(movers);
-  movers.erase(std::unique(movers.begin(), movers.end()), movers.end());
-  return movers;
+      if (input.type == type) inputs.push_back({input.mover, node.spec.mover});
+  std::ranges::sort(inputs);
+  inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+  return inputs;
 }
 
 std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }

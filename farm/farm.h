@@ -143,8 +143,13 @@ class Farm {
   /// Sets readings of pseudo-types that movers received by the next tick, such as poses of cameras
   /// (sensors::kCameraInput): inputs of derived sensors. They are read during that tick.
   void set_received(std::span<const base::ReadingBlock> readings);
-  /// Returns the movers with an input of that pseudo-type, in order.
-  std::vector<std::uint32_t> receivers(std::uint8_t type) const;
+  /// Returns the inputs of that pseudo-type, in order, each once.
+  struct ReceivedInput {
+    std::uint32_t mover = 0;     ///< of which it is an input
+    std::uint32_t receiver = 0;  ///< that carries the derived sensor
+    auto operator<=>(const ReceivedInput&) const = default;
+  };
+  std::vector<ReceivedInput> received_inputs(std::uint8_t type) const;
 
   /// Returns the readings that the last tick or sample dropped because the budget was exhausted. Valid until the next.
   std::span<const DroppedReading> dropped() const;

@@ -7,7 +7,7 @@
 namespace sf::scenarios {
 
 void CameraInputs::add(const farm::Farm& farm, const world::World& world, const PositioningOptions& options) {
-  for (const std::uint32_t mover : farm.receivers(sensors::kCameraInput))
+  for (const auto& [mover, receiver] : farm.received_inputs(sensors::kCameraInput))
     if (std::ranges::find(robots_, mover, &Robot::mover) == robots_.end())
       robots_.push_back({mover, Positioning(options, world.movers[mover].id)});
 }

@@ -27,14 +27,9 @@ struct Phase {
   double from, until;  ///< [s] without the transitions before
   std::string_view available;
 };
-constexpr Phase kPhases[] = {{10, 60, "camera, gps, odometry"},
-                             {62, 80, "gps, odometry"},
-                             {82, 100, "odometry"},
-                             {102, 120, "camera, odometry"},
-                             {122, 140, "all"},
-                             {142, 149, "gps, odometry"},
-                             {152, 160, "gyro only"},
-                             {182, 200, "all"}};
+constexpr Phase kPhases[] = {{10, 60, "camera, gps, odometry"}, {62, 80, "gps, odometry"}, {82, 100, "odometry"},
+                             {102, 120, "camera, odometry"},    {122, 140, "all"},         {142, 149, "gps, odometry"},
+                             {152, 160, "gyro only"},           {182, 200, "all"}};
 
 /// Results of one choice in one phase.
 struct Located {

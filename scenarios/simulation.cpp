@@ -109,11 +109,12 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   make_room();
   warn_of_long_ways();
   if (positioning_) camera_inputs_.add(farm_, world_, *positioning_);
+  v2v_inputs_.add(farm_);
   warn_of_positioning();
 }
 
 void Simulation::warn_of_positioning() {
-  if (!positioning_ && !farm_.receivers(sensors::kCameraInput).empty())
+  if (!positioning_ && !farm_.received_inputs(sensors::kCameraInput).empty())
     warnings_.push_back({world_.file, 0,
                          "inputs 'camera' of derived sensors receive nothing: the run has no [positioning] "
                          "(run --positioning FILE, or a scenario)"});
@@ -316,6 +317,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
   if (!share_->owns(row)) farm_.sharing().leave_to_others(row);
   farm_.subscribe(row, farm::kAllSensorTypes);
   if (positioning_) camera_inputs_.add(farm_, world_, *positioning_);
+  v2v_inputs_.add(farm_);
   make_room();
   joined_.push_back({original, robot.name, world.movers[row].X_WM});
   return row;
@@ -357,13 +359,24 @@ std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
     for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
   }
   farm_.set_commands(executed_commands_);
-  if (!camera_inputs_.empty()) farm_.set_received(camera_inputs_.receive(time, fleet_.reports(), absent_));
+  receive_inputs(time);
   const auto delivered = farm_.tick(time, states);
   mark_faults();
   if (early == 0) return delivered;
   for (std::size_t i = 0; i < early; ++i) readings_.push_back(early_[i].block());
   readings_.insert(readings_.end(), delivered.begin(), delivered.end());
   return readings_;
+}
+
+/// Passes what robots received to derived sensors.
+void Simulation::receive_inputs(std::int64_t time) {
+  if (camera_inputs_.empty() && v2v_inputs_.empty()) return;
+  const auto poses = camera_inputs_.receive(time, fleet_.reports(), absent_);
+  received_.assign(poses.begin(), poses.end());
+  const auto current = [&](std::uint32_t mover) { return broadcast_of(fleet_.reports()[mover], time); };
+  const auto others = v2v_inputs_.receive(time, world_, v2v_ ? &*v2v_ : nullptr, current, fleet_.reports(), absent_);
+  received_.insert(received_.end(), others.begin(), others.end());
+  farm_.set_received(received_);
 }
 
 /// Calls the controllers of models with the states of the last tick.

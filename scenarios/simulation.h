@@ -35,6 +35,7 @@
 #include "scenarios/mailbox.h"
 #include "scenarios/positioning.h"
 #include "scenarios/state_link.h"
+#include "scenarios/v2v_inputs.h"
 #include "scenarios/v2v_link.h"
 #include "world/lights.h"
 #include "world/roads/lane_control.h"
@@ -204,6 +205,7 @@ class Simulation {
   void call_models();
   void move();
   std::span<const base::ReadingBlock> sense(std::int64_t time);
+  void receive_inputs(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
   bool index_by_mover(std::span<const base::ReadingBlock> readings);
   std::span<const base::Report> recorded_reports();
@@ -266,6 +268,8 @@ class Simulation {
   std::vector<record::JoinedMover> joined_;
   std::optional<PositioningOptions> positioning_;
   CameraInputs camera_inputs_;
+  V2vInputs v2v_inputs_;
+  std::vector<base::ReadingBlock> received_;  ///< of one tick: poses of cameras, states by V2V
   std::uint64_t seed_;
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]

@@ -34,20 +34,25 @@ void V2vLink::send(std::int64_t time, std::span<const Broadcast> broadcasts, con
   rounds_.push_back(std::move(round));
 }
 
-std::optional<Broadcast> V2vLink::receive(std::int64_t time, std::uint32_t sender, const Ids& ids) const {
+std::optional<V2vLink::Arrived> V2vLink::newest(std::int64_t time, std::uint32_t sender, const Ids& ids) const {
   const std::uint32_t stream = static_cast<std::uint32_t>(netio::Type::v2v) << 16 | ids.sender;
   for (auto round = rounds_.rbegin(); round != rounds_.rend() && round->time >= time - kept_; ++round) {
     if (sender >= round->messages.size()) return std::nullopt;
     const Message& message = round->messages[sender];
     if (!message.sent) continue;
     const auto delay = netio::sample_delay(options_.link, {ids.receiver, stream, round->sequence});
-    if (!delay || round->time + *delay > time) continue;
-    Broadcast received = message.broadcast;
-    received.state.time = round->time + *delay;
-    received.state = robots::extrapolate(received.state, time);
-    return received;
+    if (delay && round->time + *delay <= time) return Arrived{message.broadcast, round->time, round->time + *delay};
   }
   return std::nullopt;
+}
+
+std::optional<Broadcast> V2vLink::receive(std::int64_t time, std::uint32_t sender, const Ids& ids) const {
+  const std::optional<Arrived> newest_one = newest(time, sender, ids);
+  if (!newest_one) return std::nullopt;
+  Broadcast received = newest_one->broadcast;
+  received.state.time = newest_one->arrived;
+  received.state = robots::extrapolate(received.state, time);
+  return received;
 }
 
 }  // namespace sf::scenarios

@@ -47,6 +47,12 @@ class V2vLink {
   /// `send`; nullopt: none, or all are forgotten. Thread-safe with respect to itself.
   /// @param sender row of the mover
   std::optional<Broadcast> receive(std::int64_t time, std::uint32_t sender, const Ids& ids) const;
+  /// The same as it was sent, with the times of sending and arrival [ns].
+  struct Arrived {
+    const Broadcast& broadcast;  ///< valid until the next `send`
+    std::int64_t sent = 0, arrived = 0;
+  };
+  std::optional<Arrived> newest(std::int64_t time, std::uint32_t sender, const Ids& ids) const;
 
  private:
   struct Message {

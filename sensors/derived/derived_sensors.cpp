@@ -73,7 +73,7 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
       nodes_(wired_.size()),
       group_of_(64, -1),
       input_types_(64, nullptr) {
-  for (const std::uint8_t type : {kCommandInput, kCameraInput}) input_types_[type] = &input_type(type);
+  for (const std::uint8_t type : {kCommandInput, kCameraInput, kV2vInput}) input_types_[type] = &input_type(type);
   const auto groups = sensor_set.groups();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     group_of_[groups[g].type->id] = static_cast<int>(g);
@@ -195,7 +195,8 @@ void DerivedSensors::take_commands(std::int64_t now, std::span<const base::Twist
 
 void DerivedSensors::take_received(const base::ReadingBlock& reading) {
   for (const auto& [type, mover, listener] : received_listeners_)
-    if (type == reading.type && mover == reading.mover)
+    if (type == reading.type && mover == reading.mover &&
+        (type != kV2vInput || wired_[listener.node].spec.mover == reading.sensor))
       add_pending(listener.node, {reading.time, listener.input, reading.sequence, &reading});
 }
 

@@ -49,7 +49,7 @@ class DerivedSensors {
   /// @param delivered readings delivered at `now` [ns], in any order
   /// @param due per derived group of the sensor set, in order: its due sensors
   /// @param states per mover @param commands per mover: the twists executed since the last tick; empty: none
-  /// @param received readings of other pseudo-types (`is_received`)
+  /// @param received readings of other pseudo-types (`is_received`); `sensor` of a `v2v`: row of the receiving mover
   /// @return readings of the due sensors that are not lost, by type and row, except that latency is not applied; valid
   /// until the next call
   /// @throws base::InputError when a sensor throws an exception

@@ -18,8 +18,10 @@ namespace {
 constexpr std::size_t kMostLevels = 64;
 
 constexpr Column kCommandColumns[] = {{"forward_m_s"}, {"left_m_s"}, {"turn_rad_s"}};
+constexpr auto kV2vColumns = joined(kPoseRow, std::array<Column, 3>{{{"forward_m_s"}, {"left_m_s"}, {"turn_rad_s"}}});
 constexpr SensorType kReceivedTypes[] = {{.id = kCommandInput, .name = "command", .columns = kCommandColumns},
-                                         {.id = kCameraInput, .name = "camera", .columns = kPoseRow}};
+                                         {.id = kCameraInput, .name = "camera", .columns = kPoseRow},
+                                         {.id = kV2vInput, .name = "v2v", .columns = kV2vColumns}};
 
 std::vector<std::string> column_names(const SensorType& type) {
   std::vector<std::string> names;
@@ -110,6 +112,8 @@ void Wiring::add_input(DerivedNode& node, std::string_view text, std::uint32_t p
   const std::uint32_t port = port_of(node, parts, *group.type);
   if (!parts.number)
     refuse_input(node, fmt::format("'{}' is not an input: expected [port=][robot/]type[:number]", text));
+  if (group.type->id == kV2vInput && parts.robot.empty())
+    refuse_input(node, "'v2v' expects the robot whose states it receives: \"ROBOT/v2v\", or \"*/v2v\" for all others");
   const std::size_t before = node.inputs.size();
   for (const std::uint32_t mover : movers_of(node, parts)) {
     const auto own = std::ranges::equal_range(group.rows, mover, {}, &SensorSpec::mover);

@@ -15,7 +15,8 @@ namespace sf::sensors {
 // Wire ids of pseudo-types, which only derived sensors read, in runs.
 inline constexpr std::uint8_t kCommandInput = 63;  ///< `command`: the twist that a robot executed since the last tick
 inline constexpr std::uint8_t kCameraInput = 62;   ///< `camera`: poses that a robot received from overhead cameras
-constexpr bool is_received(std::uint8_t type) { return type == kCommandInput || type == kCameraInput; }
+inline constexpr std::uint8_t kV2vInput = 61;      ///< `v2v`: states of that robot, as the sensor's robot receives them
+constexpr bool is_received(std::uint8_t type) { return type >= kV2vInput; }
 /// Returns the type with that id, or the pseudo-type. @pre it exists
 const SensorType& input_type(std::uint8_t id);
 
