@@ -32,6 +32,7 @@ extern const ExperimentType links_experiment;
 extern const ExperimentType follow_experiment;
 extern const ExperimentType budget_experiment;
 extern const ExperimentType location_experiment;
+extern const ExperimentType tree_experiment;
 
 std::span<const ExperimentType* const> experiments() {
   static constexpr const ExperimentType* kKinds[] = {
@@ -39,7 +40,7 @@ std::span<const ExperimentType* const> experiments() {
       &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
       &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment,       &mrclam_experiment,
       &sideslip_experiment,    &lane_sensor_experiment,  &monitor_experiment,        &links_experiment,
-      &follow_experiment,      &budget_experiment,       &location_experiment};
+      &follow_experiment,      &budget_experiment,       &location_experiment,       &tree_experiment};
   return kKinds;
 }
 

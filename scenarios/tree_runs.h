@@ -1,0 +1,37 @@
+#pragma once
+// Runs of a car in SimVille with five unlike sensors, for the experiment `tree`: tracks of objects against the truth,
+// for each choice of sensors.
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/experiment.h"
+
+namespace sf::scenarios {
+
+/// The sensors of the car, in the order of its features.
+inline constexpr std::array<std::string_view, 5> kTreeSensors{"front laser", "back laser", "sonar", "infrared", "tags"};
+inline constexpr unsigned kAllTreeSensors = (1u << kTreeSensors.size()) - 1;
+
+/// Tracks from one choice of sensors, against the truth.
+struct TreeTracks {
+  unsigned sensors = 0;                                   ///< bit k: sensor k is on
+  std::size_t readings = 0;                               ///< of tracks
+  std::size_t targets = 0;                                ///< robots in sight, over all readings
+  std::size_t found = 0;                                  ///< of these, with a track
+  std::size_t right_motion = 0;                           ///< of the found, at rest or moving as decided
+  std::size_t switches = 0;                               ///< of the identity of a robot's track
+  std::size_t tracks = 0;                                 ///< of objects, over all readings
+  std::size_t false_tracks = 0;                           ///< of nothing: neither a robot nor a surface is near
+  std::size_t moving_walls = 0;                           ///< of surfaces, taken for moving objects
+  double position_squares = 0.0, velocity_squares = 0.0;  ///< [m^2], [m^2/s^2] errors of the found
+  double nees = 0.0;                                      ///< sum of the found: position error over its covariance
+
+  void add(const TreeTracks& other);
+};
+
+/// Runs the scenario once and returns the results of each choice of at least one sensor: row k has the sensors k + 1.
+std::vector<TreeTracks> run_tree(const ExperimentContext& context, std::uint64_t seed);
+
+}  // namespace sf::scenarios
