@@ -38,7 +38,7 @@ ControlReport control_report() {
 
 void set_service(RunReport& f) {
   f.sent = f.received = f.filtered = true;
-  f.publisher = {outbox(21), 5};
+  f.publisher = {.packets = outbox(21), .dropped = 9, .not_numbers = 5};
   fill(f.inbox, 1);
   f.socket_drops = 31;
   f.relayed = {.states = 32, .datagrams = 33, .waited = 34, .starts = 35, .centre = 301, .missed = 302};
