@@ -20,6 +20,7 @@
 #include "scenarios/recorded_states.h"
 #include "scenarios/run_info.h"
 #include "sensors/bumper.h"
+#include "sensors/derived/wiring.h"
 #include "sensors/laser.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_reference.h"
@@ -112,6 +113,14 @@ class Verifier {
     }
     if (earlier_world_) reference_shapes_.emplace(recording, *earlier_world_);
     farm_.subscribe_all();
+    for (std::size_t before = 1; before != from_received_.size();) {
+      before = from_received_.size();
+      for (const sensors::DerivedNode& node : sensors::wire(world_, farm_.sensor_set()))
+        for (const sensors::WiredInput& input : node.inputs)
+          if (input.type == sensors::kCameraInput || input.type == sensors::kV2vInput ||
+              from_received_.contains({input.type, input.mover, input.sensor}))
+            from_received_.insert({node.type->id, node.spec.mover, node.spec.sensor});
+    }
   }
 
   Verification run() {
@@ -155,6 +164,10 @@ class Verifier {
     if (marks_ != recording_.faults && !result_.interrupted && !recording_.truncated)
       result_.damage.push_back(fmt::format("{} marks of faulty readings, but {} when recomputed, or others",
                                            recording_.faults.size(), marks_.size()));
+    if (received_ > 0)
+      result_.skipped.push_back(fmt::format(
+          "{} readings computed from poses of cameras or states by V2V: what robots received is not recorded",
+          received_));
     if (faulty_scans_ > 0)
       result_.skipped.push_back(
           fmt::format("{} faulty scans in plain C++, which has no faults of sensors", faulty_scans_));
@@ -271,6 +284,10 @@ class Verifier {
     readings_.erase(at);
     if (reading.type == sensors::kBumper) {
       ++unfelt_;
+      return;
+    }
+    if (from_received_.contains({reading.type, reading.mover, reading.sensor})) {
+      ++received_;
       return;
     }
     near_[reading.mover] = near_[reading.mover] || (is_scan && has_near(reading));
@@ -429,7 +446,9 @@ class Verifier {
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;
-  std::uint64_t unfelt_ = 0, near_maps_ = 0, faulty_scans_ = 0;
+  std::uint64_t unfelt_ = 0, near_maps_ = 0, faulty_scans_ = 0, received_ = 0;
+  /// Type, mover and number of derived sensors that depend on what robots received.
+  std::set<std::tuple<std::uint8_t, std::uint32_t, std::uint32_t>> from_received_;
   std::vector<base::FaultMark> marks_;  ///< of all recomputed readings
   std::set<Name> faulty_;               ///< their readings
   Verification result_;

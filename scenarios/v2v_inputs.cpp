@@ -10,8 +10,7 @@ namespace sf::scenarios {
 
 void V2vInputs::add(const farm::Farm& farm) {
   for (const farm::Farm::ReceivedInput& input : farm.received_inputs(sensors::kV2vInput))
-    if (input.mover != input.receiver && std::ranges::find(links_, input, &Pair::of) == links_.end())
-      links_.push_back({input});
+    if (std::ranges::find(links_, input, &Pair::of) == links_.end()) links_.push_back({input});
 }
 
 std::span<const base::ReadingBlock> V2vInputs::receive(std::int64_t time, const world::World& world,

@@ -26,6 +26,7 @@ struct Source {
   std::size_t column = 0;
   std::size_t valid = kNone;     ///< column that states whether the row is valid
   std::size_t variance = kNone;  ///< column with its variance
+  double sigma = 0.0;            ///< standard deviation of a sensor that measures; 0: not stated
   static constexpr std::size_t kNone = SIZE_MAX;
 };
 
@@ -48,12 +49,9 @@ std::optional<estimation::Stated> value_of(const Source& source, const sensorfar
   const std::span<const double> v = reading.values;
   if (source.column >= v.size() || !std::isfinite(v[source.column])) return std::nullopt;
   if (source.valid != Source::kNone && v[source.valid] == 0.0) return std::nullopt;
-  double variance = noise * noise;
-  if (noise == 0.0 && source.variance != Source::kNone) variance = v[source.variance];
-  if (noise == 0.0 && source.variance == Source::kNone) {
-    const bool known = source.column == 0 && source.valid == Source::kNone && reading.sigma > 0.0;
-    variance = known && std::isfinite(reading.sigma) ? reading.sigma * reading.sigma : NAN;
-  }
+  const double sigma = noise > 0.0 ? noise : source.sigma;
+  const bool stated = noise == 0.0 && source.variance != Source::kNone;
+  const double variance = stated ? v[source.variance] : sigma > 0.0 ? sigma * sigma : NAN;
   return estimation::Stated{{v[source.column], 0.0}, {variance, 0.0, 1.0}};
 }
 
@@ -101,8 +99,10 @@ class QuantitySensor final : public AggregateSensor {
 
   void add_input(const sensorfarm::DerivedInput& input) override {
     const auto column = std::ranges::find(input.sensor.columns, quantity_) - input.sensor.columns.begin();
+    const double sigma = sources_.back().sigma;  // it is a sensor of the same kind
     sources_.push_back(
         source_of(input.sensor, static_cast<std::uint32_t>(sources_.size()), static_cast<std::size_t>(column)));
+    sources_.back().sigma = sigma;
     aggregation_.add_value();
   }
 
@@ -163,18 +163,12 @@ std::vector<Source> sources_called(const DerivedContext& context, const std::str
              fmt::format("'{}' has no column '{}'{}", input.sensor.type, quantity,
                          base::expected_one_of(quantity, known)));
     }
-    sources.push_back(source_of(input.sensor, static_cast<std::uint32_t>(sources.size()),
-                                static_cast<std::size_t>(found - columns.begin())));
+    const std::size_t row = sources.size();
+    sources.push_back(
+        source_of(input.sensor, static_cast<std::uint32_t>(row), static_cast<std::size_t>(found - columns.begin())));
+    if (sources.back().column == 0) sources.back().sigma = context.sigmas[row];
   }
   return sources;
-}
-
-/// Returns whether the first column of a sensor that measures has a stated noise.
-bool has_noise(const DerivedContext& context, std::size_t row) {
-  const WiredInput& input = context.inputs[row];
-  if (is_received(input.type) || find_sensor_type(input.type)->derived != nullptr) return false;
-  const world::Setting* const noise = find(input_settings(context.world, input), "noise");
-  return noise != nullptr && !noise->numbers.empty() && noise->numbers[0] > 0.0;
 }
 
 std::string input_name(const DerivedContext& context, std::size_t row) {
@@ -191,10 +185,15 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_expression(const DerivedContext&
   for (std::uint32_t i = 0; i < context.site.inputs.size(); ++i)
     for (std::size_t k = 0; k < context.site.inputs[i].sensor.columns.size(); ++k) {
       sources.push_back(source_of(context.site.inputs[i].sensor, i, k));
+      if (k == 0) sources.back().sigma = context.sigmas[i];
       names.push_back(input_name(context, i) + "." + expression_name(context.site.inputs[i].sensor.columns[k]));
     }
+  for (const std::string_view key : {kChooseKey, kDriftKey})
+    if (find(context.settings, key) != nullptr)
+      refuse(context.settings, key, fmt::format("'{}' is for a quantity; an expression uses all its inputs", key));
+  AggregationSettings settings = read_aggregation(context, 0.0);
   try {
-    return std::make_unique<ExpressionSensor>(context, read_aggregation(context, 0.0), std::move(sources),
+    return std::make_unique<ExpressionSensor>(context, std::move(settings), std::move(sources),
                                               Expression(text, std::move(names)));
   } catch (const base::InputError& error) {
     refuse(context.settings, "expression", fmt::format("the expression: {}", error.what()));
@@ -204,14 +203,16 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_expression(const DerivedContext&
 std::unique_ptr<sensorfarm::DerivedSensor> make_aggregate(const DerivedContext& context) {
   const world::Setting* const quantity = find(context.settings, "quantity");
   const world::Setting* const expression = find(context.settings, "expression");
-  if ((quantity == nullptr) == (expression == nullptr))
+  if (quantity != nullptr && expression != nullptr)
+    refuse(context.settings, "expression", "an aggregate has a quantity or an expression; expected one of them");
+  if (quantity == nullptr && expression == nullptr)
     refuse(context.settings, "quantity", "an aggregate expects quantity \"COLUMN\" or expression \"...\"");
   if (expression != nullptr) return make_expression(context, expression->text);
   const AggregationSettings settings = read_aggregation(context, 0.0);
   std::vector<Source> sources = sources_called(context, quantity->text);
   const auto states = std::make_unique<bool[]>(sources.size());
   for (std::size_t i = 0; i < sources.size(); ++i)
-    states[i] = sources[i].variance != Source::kNone || (sources[i].column == 0 && has_noise(context, i));
+    states[i] = sources[i].variance != Source::kNone || sources[i].sigma > 0.0;
   require_errors(context, settings, {states.get(), sources.size()});
   return std::make_unique<QuantitySensor>(context, settings, std::move(sources), quantity->text);
 }
@@ -222,7 +223,7 @@ constexpr DerivedForm kDerived{
 
 constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "quantity", "expression",
                                       kChooseKey,      kMaxAgeKey,      kDriftKey,  kNoiseKey};
-constexpr Column kColumns[] = {{"value"}, {"valid", 1, true}, {"variance"}, {"source", 1, true}, {"age_s"}};
+constexpr Column kColumns[] = {{"value"}, {"valid", 1, true}, {"variance"}, {"source"}, {"age_s"}};
 constexpr PlainNumber kNumbers[] = {kReal, {1.0, 0.0, 1.0}, kReal, {1.0, -1.0, 63.0}, kReal};
 constexpr PlainForm kForm{kAggregate, "aggregate", kNumbers};
 

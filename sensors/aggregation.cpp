@@ -22,6 +22,11 @@ double spread(const estimation::Stated& stated) { return stated.covariance[0] + 
 
 AggregationSettings read_aggregation(const DerivedContext& context, double drift) {
   const world::Sensor& from = context.settings;
+  for (std::size_t i = 0; i < context.inputs.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (const WiredInput& a = context.inputs[i], &b = context.inputs[k];
+          a.type == b.type && a.mover == b.mover && a.sensor == b.sensor)
+        refuse(from, "inputs", fmt::format("'{}' is listed twice", context.site.inputs[i].sensor.type));
   AggregationSettings settings;
   settings.choice = static_cast<Choice>(choice(from, kChooseKey, 0, kChoices));
   settings.max_age = number(from, kMaxAgeKey, settings.max_age, 1e-3, kMostAge);

@@ -40,7 +40,9 @@ Expression::Expression(const std::string& text, std::vector<std::string> names) 
     parser.DefineNameChars(kNameCharacters);
     for (std::size_t i = 0; i < parser_->names.size(); ++i) parser.DefineVar(parser_->names[i], &parser_->numbers[i]);
     parser.SetExpr(text);
-    parser.Eval();
+    int results = 0;
+    parser.Eval(results);
+    if (results != 1) throw base::InputError("has several values, separated by commas; expected one");
     for (const auto& [name, at] : parser.GetUsedVar()) {
       if (at == nullptr) refuse_name(name, parser_->names);
       used_.push_back(static_cast<std::size_t>(at - parser_->numbers.data()));

@@ -87,7 +87,8 @@ class LinkSpeedSensor final : public sensorfarm::DerivedSensor {
     const auto is_off = [&](const Source& source) { return is_loop(source) && !source.link; };
     const auto loops = std::ranges::count_if(sources_, is_loop);
     if (loops > 0 && std::ranges::count_if(sources_, is_off) == loops)
-      refuse(context.settings, "inputs", "none of these loops is on one of its links");
+      refuse(context.settings, "inputs",
+             "none of these loops is on one of its links, at its carrier's pose at the start");
   }
 
   void add_input(const sensorfarm::DerivedInput& input) override;

@@ -106,8 +106,8 @@ constexpr DerivedPort kPorts[] = {{"gps", kGpsColumns, 0, 8}, {"pose", kPoseColu
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 2, .covariance = true, .extra = 2, .make = make_location};
 
 constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], kChooseKey, kMaxAgeKey, kDriftKey, kNoiseKey};
-constexpr Column kColumns[] = {{"x_m"},   {"y_m"},   {"valid", 1, true},  {"xx_m2"},
-                               {"xy_m2"}, {"yy_m2"}, {"source", 1, true}, {"age_s"}};
+constexpr Column kColumns[] = {{"x_m"},   {"y_m"},   {"valid", 1, true}, {"xx_m2"},
+                               {"xy_m2"}, {"yy_m2"}, {"source"},         {"age_s"}};
 constexpr PlainNumber kNumbers[] = {{5e-3}, {5e-3}, {1.0, 0.0, 1.0}, kReal, kReal, kReal, {1.0, -1.0, 63.0}, kReal};
 constexpr PlainForm kForm{kLocation, "location", kNumbers};
 

@@ -3,7 +3,7 @@
 //
 // In a world file, inside a robot:
 //   derived( type "features" name "scan" inputs ["laser"] )
-//   derived( type "tracks"  inputs ["features:0" "features:1" "localization"]  rate 10  most 15  keep 1  agility 0.5 )
+//   derived( type "tracks"  inputs ["features:0" "features:1" "localization"]  rate 10  most 15  keep 1  agility 0.2 )
 // Inputs: any number of `features`, and one pose of each robot whose features they are: sensors whose columns begin
 // with x_m, y_m, yaw_rad. `most`: rows of a reading. `keep`: [s] a track ends after this time without an observation.
 // `agility`: [m/s^1.5] in time t an object's speed changes by agility sqrt(t). `radius`: [m] half the width of the

@@ -78,14 +78,15 @@ std::span<const AddressedReading> ReadingPublisher::admit(std::span<const Addres
   bool dropping = false;  // nothing is sent in place of a reading with a higher priority
   for (const std::uint32_t i : order_) {
     Stream& stream = stream_of(*readings[i].reading);
-    admitted_[i] = !dropping && bucket_->has(stream.bytes);
-    dropping = dropping || (admitted_[i] == 0 && bucket_->may_have(stream.bytes));
+    const double bytes = std::max<double>(stream.bytes, least_bytes(stream));
+    admitted_[i] = !dropping && bucket_->has(bytes);
+    dropping = dropping || (admitted_[i] == 0 && bucket_->may_have(bytes));
     if (admitted_[i] == 0) {
       dropped_.push_back(readings[i].reading);
       continue;
     }
     stream.last = calls_;
-    bucket_->spend(stream.bytes);
+    bucket_->spend(bytes);
   }
   dropped_readings_ += dropped_.size();
   for (std::size_t i = 0; i < readings.size(); ++i)
@@ -97,7 +98,7 @@ std::span<const AddressedReading> ReadingPublisher::admit(std::span<const Addres
 void ReadingPublisher::charge() {
   if (!bucket_) return;
   for (const Job& job : jobs_) {
-    bucket_->spend(static_cast<double>(job.bytes) - job.stream->bytes);
+    bucket_->spend(job.bytes - std::max<double>(job.stream->bytes, least_bytes(*job.stream)));
     job.stream->bytes = job.bytes;
   }
 }

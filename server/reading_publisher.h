@@ -88,6 +88,10 @@ class ReadingPublisher {
   void charge();
   /// Datagrams of a reading, copies included.
   std::size_t datagrams_of(const Stream& stream) const { return stream.parts * (mirror_ ? 2u : 1u); }
+  /// Bytes of a reading whose size is not known yet, at least.
+  double least_bytes(const Stream& stream) const {
+    return static_cast<double>(datagrams_of(stream) * netio::kHeaderBytes);
+  }
   void encode_all();
   void encode_and_queue(Job& job);
   template <class Put>

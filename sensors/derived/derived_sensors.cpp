@@ -47,9 +47,15 @@ sensorfarm::DerivedSite public_site(const SensorSet& sensor_set, const DerivedNo
 std::unique_ptr<sensorfarm::DerivedSensor> make_derived_sensor(const world::World& world, const SensorSet& sensor_set,
                                                                const DerivedNode& node, const sensorfarm::Pose& start) {
   const sensorfarm::DerivedSite site = public_site(sensor_set, node, start);
+  std::vector<double> sigmas;
+  for (const WiredInput& input : node.inputs) {
+    const bool measures = !is_received(input.type) && find_sensor_type(input.type)->derived == nullptr;
+    const double sigma = measures ? sensor_set.of(input.type, input.mover)[input.sensor].sigma : 0.0;
+    sigmas.push_back(std::isfinite(sigma) ? sigma : 0.0);
+  }
   const base::PluginCall under_way(derived_name(world, node));
   try {
-    auto sensor = node.type->derived->make({world, *node.settings, node.spec, node.inputs, site});
+    auto sensor = node.type->derived->make({world, *node.settings, node.spec, node.inputs, site, sigmas});
     if (sensor != nullptr) return sensor;
   } catch (const base::InputError&) {
     throw;  // an invalid setting

@@ -42,6 +42,8 @@ struct DerivedContext {
   const SensorSpec& spec;
   std::span<const WiredInput> inputs;
   const sensorfarm::DerivedSite& site;
+  /// Per input: SensorSpec::sigma of a sensor that measures, in the unit of its first column; 0: none, or not stated.
+  std::span<const double> sigmas;
 };
 
 /// The part of a SensorType that derived types have.

@@ -116,10 +116,13 @@ void Wiring::add_input(DerivedNode& node, std::string_view text, std::uint32_t p
     refuse_input(node, "'v2v' expects the robot whose states it receives: \"ROBOT/v2v\", or \"*/v2v\" for all others");
   const std::size_t before = node.inputs.size();
   for (const std::uint32_t mover : movers_of(node, parts)) {
+    if (group.type->id == kV2vInput && mover == node.spec.mover) continue;  // no robot receives itself
     const auto own = std::ranges::equal_range(group.rows, mover, {}, &SensorSpec::mover);
     if (*parts.number < own.size()) node.inputs.push_back({port, mover, group.type->id, *parts.number, place});
   }
   if (node.inputs.size() > before) return;
+  if (group.type->id == kV2vInput)
+    refuse_input(node, fmt::format("'{}': a robot receives no states of its own; expected another robot", text));
   refuse_input(node, fmt::format("there is no sensor '{}': sensors of one type are numbered per robot, from 0", text));
 }
 

@@ -197,7 +197,8 @@ TEST(Library, SensorsFailAsStated) {
   EXPECT_NE(healthy[18], healthy[19]);
   EXPECT_EQ(stuck[18], stuck[19]);
   expect_in("faults:1: unknown key 'faults'", refusal_of<Error>([&] { rates("[[faults]]\nrobot = 'a'"); }));
-  expect_in("faults:2: ", refusal_of<Error>([&] { rates("[[fault]]\nrobot = 'b'\nsensor = 'gyro'\nkind = 'stuck'"); }));
+  expect_in("faults:1: no robot is called 'b'",
+            refusal_of<Error>([&] { rates("[[fault]]\nrobot = 'b'\nsensor = 'gyro'\nkind = 'stuck'"); }));
 }
 
 TEST(Library, WithoutMpirunOneRankOwnsAll) {

@@ -27,6 +27,7 @@ world::World seen_world(const std::string& more = "") {
 /// The locations of a robot in 3 s, in which it drives.
 std::vector<std::vector<double>> locations(const world::World& world, SimulationOptions options, std::uint32_t mover,
                                            std::vector<base::Pose>* truth = nullptr) {
+  options.actor.controller.name = "";
   Simulation simulation(world, host_device(), std::move(options));
   std::vector<std::vector<double>> all;
   const std::vector<base::Twist> twists(world.movers.size(), {0.2, 0.0, 0.0});

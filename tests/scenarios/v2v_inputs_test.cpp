@@ -29,7 +29,8 @@ world::World watched_world(const std::string& input = "r1/v2v") {
 /// The centre's readings in 3 s, in which all robots drive along x at 0.2 m/s.
 std::vector<std::vector<double>> seen(const world::World& world, const std::optional<V2vLinkOptions>& v2v,
                                       unsigned threads = 1) {
-  Simulation simulation(world, host_device(), {.threads = threads, .v2v = v2v});
+  Simulation simulation(world, host_device(),
+                        {.threads = threads, .actor = {.controller = {.name = ""}, .link = {}}, .v2v = v2v});
   std::vector<std::vector<double>> all;
   const std::vector<base::Twist> twists(world.movers.size(), {0.2, 0.0, 0.0});
   for (int tick = 0; tick < 30; ++tick) {
@@ -75,11 +76,15 @@ TEST(V2vInputs, HaveTheRangeOfTheRadio) {
   EXPECT_EQ(seen(watched_world("*/v2v"), std::nullopt).back()[kValid], 1.0) << "r1";
 }
 
-TEST(V2vInputs, NameTheirRobot) {
-  expect_in("'v2v' expects the robot whose states it receives", refusal_of([] {
-              const world::World world = watched_world("v2v");
-              sensors::check_derived_sensors(world, sensors::SensorSet(world));
-            }));
+TEST(V2vInputs, NameAnotherRobot) {
+  const auto refused = [](const std::string& input) {
+    return refusal_of([&] {
+      const world::World world = watched_world(input);
+      sensors::check_derived_sensors(world, sensors::SensorSet(world));
+    });
+  };
+  expect_in("'v2v' expects the robot whose states it receives", refused("v2v"));
+  expect_in("a robot receives no states of its own", refused("centre/v2v"));
 }
 
 }  // namespace

@@ -97,15 +97,19 @@ TEST(Aggregate, ImpossibleSettingsAreRefused) {
   };
   const std::string input = "inputs [\"thermometer\"] ";
   expect_in("expects quantity \"COLUMN\" or expression", refused(input));
-  expect_in("expects quantity \"COLUMN\" or expression",
+  expect_in("has a quantity or an expression",
             refused(input + "quantity \"temperature_C\" expression \"thermometer.temperature_C\""));
   expect_in("did you mean 'temperature_C'?", refused(input + "quantity \"temperatur_C\""));
   expect_in("did you mean 'thermometer.temperature_C'?", refused(input + "expression \"thermometer.temperature_\""));
   expect_in("uses no input", refused(input + "expression \"1 + 1\""));
   expect_in("the expression", refused(input + "expression \"thermometer.temperature_C +\""));
   expect_in("the expression", refused(input + "expression \"\""));
-  expect_in("'bumper' (number 2) states none",
-            refused("quantity \"pressed\" choose \"best\" noise [1] inputs [\"bumper\" \"bumper\"]"));
+  expect_in("'bumper' (number 1) states none", refused("quantity \"pressed\" choose \"best\" inputs [\"bumper\"]"));
+  expect_in("'gps' (number 1) states none", refused("quantity \"x_m\" choose \"best\" inputs [\"gps\"]"));
+  expect_in("'thermometer' is listed twice",
+            refused("quantity \"temperature_C\" inputs [\"thermometer\" \"thermometer:0\"]"));
+  expect_in("separated by commas", refused(input + "expression \"1,8 * thermometer.temperature_C\""));
+  expect_in("'choose' is for a quantity", refused(input + "choose \"best\" expression \"thermometer.temperature_C\""));
 }
 
 }  // namespace

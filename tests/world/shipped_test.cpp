@@ -23,11 +23,28 @@ World shipped(const std::string& name) {
                                                "slip",  "scrub",  "bias",   "scale_error", "range",     "satellites"};
   static constexpr std::string_view kSeen[] = {"range_max", "range_max_id", "fov"};
   static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays"};
-  static constexpr SensorKeyword kWords[] = {
-      kLaserWords[0],    kLaserWords[1],    {"laneedge", kAny},   {"magnetometer", kAny}, {"occupancy", kShippedMap},
-      {"bumper", kFelt}, {"cliff", kFelt},  {"encoder", kFelt},   {"irreceiver", kFelt},  {"gyro", kFelt},
-      {"gps", kFelt},    {"sonar", kCones}, {"infrared", kCones}, {"lightsensor", kFelt}, {"battery", kFelt},
-      {"analog", kFelt}, {"ptz", kFelt},    {"fiducial", kSeen}};
+  static constexpr std::string_view kComputed[] = {"type", "inputs", "most", "agility"};
+  static constexpr SensorKeyword kWords[] = {kLaserWords[0],
+                                             kLaserWords[1],
+                                             {"laneedge", kAny},
+                                             {"magnetometer", kAny},
+                                             {"occupancy", kShippedMap},
+                                             {"bumper", kFelt},
+                                             {"cliff", kFelt},
+                                             {"encoder", kFelt},
+                                             {"irreceiver", kFelt},
+                                             {"gyro", kFelt},
+                                             {"gps", kFelt},
+                                             {"sonar", kCones},
+                                             {"infrared", kCones},
+                                             {"lightsensor", kFelt},
+                                             {"battery", kFelt},
+                                             {"analog", kFelt},
+                                             {"ptz", kFelt},
+                                             {"fiducial", kSeen},
+                                             {"localization", kComputed, {}, true},
+                                             {"features", kComputed, {}, true},
+                                             {"tracks", kComputed, {}, true}};
   LoadOptions options;
   options.sensors = kWords;
   return load_world(SF_SOURCE_DIR "/worlds/" + name, options);
