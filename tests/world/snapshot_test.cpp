@@ -124,8 +124,8 @@ TEST(Snapshot, LinksPastTheEndAreRejected) {
         Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
         Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
         Link{&world.emitters[0].model, models, false}, Link{&world.lamps[0].model, models, false},
-        Link{&world.heat_sources[0].model, models, false},
-        Link{&world.fiducials[0].model, models, false}, Link{&world.floor_holes[0].model, models, false}}) {
+        Link{&world.heat_sources[0].model, models, false}, Link{&world.fiducials[0].model, models, false},
+        Link{&world.floor_holes[0].model, models, false}}) {
     EXPECT_FALSE(refused(*link.row, link.count - 1)) << "the last row";
     EXPECT_TRUE(refused(*link.row, link.count)) << "one past the end";
     EXPECT_TRUE(refused(*link.row, link.count + 1));
@@ -157,8 +157,9 @@ TEST(Snapshot, ChangedBytesAreRejectedOrHarmless) {
   }
 }
 
-/// Worlds without heat sources and temperature have the bytes of version 7, those without fiducials have the bytes of version 6, which ends before them. Those without the Earth's field, lamps
-/// and ambient light have the bytes of version 5.
+/// Worlds without heat sources and temperature have the bytes of version 7, those without fiducials have the bytes of
+/// version 6, which ends before them. Those without the Earth's field, lamps and ambient light have the bytes of
+/// version 5.
 TEST(Snapshot, WorldsWithoutNewFieldsHaveTheVersionBefore) {
   EXPECT_EQ(snapshot(street())[4], 9);
   World world = street();
