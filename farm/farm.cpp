@@ -112,8 +112,8 @@ struct Farm::State {
     if (options.processor_budget <= 0.0) return;
     SF_CHECK(!options.shared, "a budget for a shared fleet");
     if (!options.processor_clock) options.processor_clock = process_seconds;
-    budget.emplace(options.processor_budget, 2.0 * options.processor_budget * world.interval,
-                   derivation->sensors().nodes());
+    const double tick = options.budget_tick > 0.0 ? options.budget_tick : world.interval;
+    budget.emplace(options.processor_budget / tick, 2.0 * options.processor_budget, derivation->sensors().nodes());
   }
 
   sensors::SensorContext context_of(std::span<const base::Report> sensed) {

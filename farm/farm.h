@@ -49,10 +49,11 @@ struct FarmOptions {
   raycast::SceneOptions scene;
   bool shared = false;  ///< shares the fleet with other processes, each of which senses a part of it; see
                         ///< `Farm::sharing`
-  /// [s/s] processor time of readings per second of simulated time, as `processor_clock` [s] measures it (empty: that
-  /// of this process). 0: no limit. Beyond it, readings are dropped by priority (farm/processor_budget.h), so that
-  /// results depend on the clock. Not with `shared`.
+  /// [s] processor time of readings per `budget_tick`, as `processor_clock` [s] measures it (empty: that of this
+  /// process). 0: no limit. Beyond it, readings are dropped by priority (farm/processor_budget.h), so that results
+  /// depend on the clock. Not with `shared`.
   double processor_budget = 0.0;
+  double budget_tick = 0.0;  ///< [s] 0: the world's interval
   std::function<double()> processor_clock;
   std::vector<Fault> faults;  ///< of its sensors, in the order in which they act; not of `Farm::sense`
 };

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
-#include <tuple>
 
 namespace sf::farm {
 
@@ -20,33 +18,23 @@ ProcessorBudget::ProcessorBudget(double rate, double limit, std::span<const sens
 }
 
 void ProcessorBudget::set_derived(std::span<const sensors::DerivedNode> derived) {
-  inputs_.clear(), input_priorities_.clear();
+  input_priorities_.clear();
   // Consumers come before their inputs, so that priorities pass through all levels.
   std::vector<const sensors::DerivedNode*> nodes;
   for (const sensors::DerivedNode& node : derived) nodes.push_back(&node);
   std::ranges::stable_sort(nodes, std::greater(), &sensors::DerivedNode::level);
-  std::map<sensors::WiredInput, std::uint8_t> largest;
-  const auto key = [](const sensors::WiredInput& input) {
-    return sensors::WiredInput{0, input.mover, input.type, input.sensor};
-  };
   for (const sensors::DerivedNode* node : nodes) {
-    std::uint8_t priority = node->spec.priority;
-    if (const auto own = largest.find({0, node->spec.mover, node->type->id, node->spec.sensor}); own != largest.end())
-      priority = std::max(priority, own->second);
+    const std::uint8_t priority = priority_of(node->type->id, node->spec);
     for (const sensors::WiredInput& input : node->inputs) {
-      std::uint8_t& at = largest[key(input)];
-      at = std::max(at, priority);
+      std::uint8_t& largest = input_priorities_[{input.type, input.mover, input.sensor}];
+      largest = std::max(largest, priority);
     }
   }
-  for (const auto& [input, priority] : largest) inputs_.push_back(input), input_priorities_.push_back(priority);
 }
 
-std::uint8_t ProcessorBudget::priority_of(const SensorPipeline& pipeline, std::uint32_t row) const {
-  const sensors::SensorSpec& spec = pipeline.group->rows[row];
-  const sensors::WiredInput key{0, spec.mover, pipeline.group->type->id, spec.sensor};
-  const auto found = std::ranges::lower_bound(inputs_, key);
-  if (found == inputs_.end() || !(*found == key)) return spec.priority;
-  return std::max(spec.priority, input_priorities_[static_cast<std::size_t>(found - inputs_.begin())]);
+std::uint8_t ProcessorBudget::priority_of(std::uint8_t type, const sensors::SensorSpec& spec) const {
+  const auto found = input_priorities_.find({type, spec.mover, spec.sensor});
+  return found == input_priorities_.end() ? spec.priority : std::max(spec.priority, found->second);
 }
 
 std::vector<std::uint64_t>& ProcessorBudget::admitted_of(const SensorPipeline& pipeline) {
@@ -64,8 +52,9 @@ void ProcessorBudget::admit(std::int64_t now, std::span<SensorPipeline* const> p
     const std::vector<std::uint64_t>& last = admitted_of(pipeline);
     for (std::uint32_t d = 0; d < pipeline.due.size(); ++d) {
       const std::uint32_t row = pipeline.due[d].row;
-      candidates_.push_back({priority_of(pipeline, row), last[row], p, d,
-                             costs_[pipeline.group->type->id] * pipeline.group->rows[row].elements});
+      const sensors::SensorSpec& spec = pipeline.group->rows[row];
+      const std::uint8_t type = pipeline.group->type->id;
+      candidates_.push_back({priority_of(type, spec), last[row], p, d, costs_[type] * spec.elements});
     }
   }
   std::ranges::stable_sort(candidates_, [](const Candidate& a, const Candidate& b) {

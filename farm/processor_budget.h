@@ -10,7 +10,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "farm/dropped_reading.h"
@@ -46,13 +48,13 @@ class ProcessorBudget {
     double cost = 0.0;           ///< [s]
     bool admitted = false;
   };
-  std::uint8_t priority_of(const SensorPipeline& pipeline, std::uint32_t row) const;
+  std::uint8_t priority_of(std::uint8_t type, const sensors::SensorSpec& spec) const;
   std::vector<std::uint64_t>& admitted_of(const SensorPipeline& pipeline);
 
   TokenBucket bucket_;
-  std::vector<sensors::WiredInput> inputs_;              ///< of derived sensors, in order
-  std::vector<std::uint8_t> input_priorities_;           ///< like `inputs_`: the largest of their consumers
-  std::array<double, 64> costs_{};                       ///< [s] per wire id and element
+  using Key = std::tuple<std::uint8_t, std::uint32_t, std::uint32_t>;  // wire id, mover, number
+  std::map<Key, std::uint8_t> input_priorities_;  ///< of inputs of derived sensors: the largest of their consumers
+  std::array<double, 64> costs_{};                ///< [s] per wire id and element
   std::array<std::vector<std::uint64_t>, 64> admitted_;  ///< per wire id and row: see Candidate::last
   std::array<double, 64> elements_{};                    ///< admitted in this call, per wire id
   std::vector<Candidate> candidates_;

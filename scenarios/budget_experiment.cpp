@@ -38,7 +38,7 @@ world::World crowd_of(const ExperimentContext& context) {
   return world;
 }
 
-/// @param budget [s/s] 0: none
+/// @param budget [s] per tick; 0: none
 std::array<BudgetPhase, 2> run_budget(const ExperimentContext& context, const world::World& world, double budget) {
   farm::Farm farm(world, context.device,
                   {.seed = context.options.seed, .threads = context.options.threads, .processor_budget = budget});
@@ -100,7 +100,7 @@ std::vector<std::string> run_budgets(const ExperimentContext& context) {
   const std::array<BudgetPhase, 2> free = run_budget(context, world, 0.0);
   const double per_tick = kReserve * free[0].seconds / static_cast<double>(free[0].ticks);  // [s]
   if (context.progress) context.progress(0.5, "with a budget");
-  const std::array<BudgetPhase, 2> kept = run_budget(context, world, per_tick / world.interval);
+  const std::array<BudgetPhase, 2> kept = run_budget(context, world, per_tick);
   const std::vector<std::string> files{in_folder(context, "results.csv"), in_folder(context, "report.md")};
   const std::string head =
       "| load | priority | due | delivered | mean time / budget | largest | oldest [s] |\n"

@@ -113,9 +113,10 @@ class Verifier {
     }
     if (earlier_world_) reference_shapes_.emplace(recording, *earlier_world_);
     farm_.subscribe_all();
+    const auto nodes = sensors::wire(world_, farm_.sensor_set());
     for (std::size_t before = 1; before != from_received_.size();) {
       before = from_received_.size();
-      for (const sensors::DerivedNode& node : sensors::wire(world_, farm_.sensor_set()))
+      for (const sensors::DerivedNode& node : nodes)
         for (const sensors::WiredInput& input : node.inputs)
           if (input.type == sensors::kCameraInput || input.type == sensors::kV2vInput ||
               from_received_.contains({input.type, input.mover, input.sensor}))

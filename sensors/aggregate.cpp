@@ -210,10 +210,8 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_aggregate(const DerivedContext& 
   if (expression != nullptr) return make_expression(context, expression->text);
   const AggregationSettings settings = read_aggregation(context, 0.0);
   std::vector<Source> sources = sources_called(context, quantity->text);
-  const auto states = std::make_unique<bool[]>(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i)
-    states[i] = sources[i].variance != Source::kNone || sources[i].sigma > 0.0;
-  require_errors(context, settings, {states.get(), sources.size()});
+  require_errors(context, settings,
+                 [&](std::size_t i) { return sources[i].variance != Source::kNone || sources[i].sigma > 0.0; });
   return std::make_unique<QuantitySensor>(context, settings, std::move(sources), quantity->text);
 }
 

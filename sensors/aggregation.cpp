@@ -49,10 +49,11 @@ std::vector<std::uint32_t> places_of(std::span<const WiredInput> inputs) {
   return places;
 }
 
-void require_errors(const DerivedContext& context, const AggregationSettings& settings, std::span<const bool> stated) {
+void require_errors(const DerivedContext& context, const AggregationSettings& settings,
+                    const std::function<bool(std::size_t)>& states) {
   if (settings.choice == Choice::first) return;
-  for (std::size_t i = 0; i < stated.size(); ++i)
-    if (!stated[i] && settings.noise[context.inputs[i].place] == 0.0)
+  for (std::size_t i = 0; i < context.inputs.size(); ++i)
+    if (!states(i) && settings.noise[context.inputs[i].place] == 0.0)
       refuse(
           context.settings, "inputs",
           fmt::format("choose \"{}\" needs the error of each input; '{}' (number {}) states none: give it in 'noise', "

@@ -11,6 +11,7 @@
 //   noise [2 0 1]  standard deviation of each input, in the order of `inputs`; 0: as it states itself
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -40,8 +41,9 @@ AggregationSettings read_aggregation(const DerivedContext& context, double drift
 /// Returns the place of each input.
 std::vector<std::uint32_t> places_of(std::span<const WiredInput> inputs);
 
-/// Refuses inputs without an error if all must have one. @param stated whether input k states its own error
-void require_errors(const DerivedContext& context, const AggregationSettings& settings, std::span<const bool> stated);
+/// Refuses inputs without an error if all must have one. @param states returns whether input k states its own error
+void require_errors(const DerivedContext& context, const AggregationSettings& settings,
+                    const std::function<bool(std::size_t input)>& states);
 
 /// The quantity at one time.
 struct Aggregate {

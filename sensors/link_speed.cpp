@@ -25,8 +25,9 @@ enum LinkPort : std::uint8_t { kLoops, kSatellites, kVehicles };
 
 constexpr double kLongestGap = 30.0;  // [s] between two reports of one vehicle
 constexpr double kStandsFrom = 0.95;  // occupancy of a loop on which a vehicle stands
-constexpr double kLeastMove = 0.05;   // [m] that shows a vehicle's direction, beside the error of its position
-constexpr double kPoseError = 0.05;   // [m] of a pose that states no covariance
+constexpr double kLeastMove =
+    0.05;  // [m] shortest move from which a vehicle's direction is derived, in addition to position noise
+constexpr double kPoseError = 0.05;  // [m] of a pose that states no covariance
 constexpr std::size_t kStatedPose = 8, kPoseValidAt = 3, kPoseXxAt = 4, kPoseYyAt = 7;
 
 /// One vehicle, at its newest report.

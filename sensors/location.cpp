@@ -94,10 +94,9 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_location(const DerivedContext& c
     if (input.mover != context.spec.mover)
       refuse(context.settings, "inputs", "the inputs of a location are sensors of its own robot");
   const AggregationSettings settings = read_aggregation(context, context.world.movers[context.spec.mover].max_forward);
-  const auto states = std::make_unique<bool[]>(context.inputs.size());
-  for (std::size_t i = 0; i < context.inputs.size(); ++i)
-    states[i] = context.inputs[i].port == kReceiver || states_covariance(context.site.inputs[i].sensor);
-  require_errors(context, settings, {states.get(), context.inputs.size()});
+  require_errors(context, settings, [&](std::size_t i) {
+    return context.inputs[i].port == kReceiver || states_covariance(context.site.inputs[i].sensor);
+  });
   return std::make_unique<LocationSensor>(context, settings);
 }
 

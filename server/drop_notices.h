@@ -20,7 +20,7 @@ class DropNotices {
   enum class Reason : std::uint8_t { processor, network };
   /// Counts a reading. @param robot id @param time [ns] of the reading
   void add(std::uint32_t robot, std::uint8_t type, std::uint32_t sensor, Reason reason, std::int64_t time);
-  /// Sends what is due to the robots that are active.
+  /// Sends the notices that are due to active robots.
   void publish(std::int64_t now, StateReceiver& receiver);
 
  private:

@@ -378,7 +378,7 @@ void RobotClient::gather_readings(std::int64_t now) {
 }
 
 /// Numbered after the virtual sensors of their types. Where they are mounted is unknown, so their pose is the robot's.
-/// Those that the farm has fused lately are in its readings.
+/// Leaves out sensors whose readings the farm has recently fused, since its readings contain them.
 void RobotClient::gather_own_readings(std::int64_t now) {
   const std::size_t virtual_ones = readings_.size();
   for (const OwnReading& own : real_->readings()) {

@@ -16,6 +16,14 @@ constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] of silence bef
 constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] of refused signatures before a message is logged
 constexpr std::int64_t kTroubleEvery = 10'000'000'000;  ///< [ns]
 
+/// Returns whether a line that is written at most every kTroubleEvery may be written, and notes that it is.
+/// @param next [ns] time before which it may not
+bool passes(std::int64_t& next, std::int64_t now) {
+  if (now < next) return false;
+  next = now + kTroubleEvery;
+  return true;
+}
+
 }  // namespace
 
 RobotClientLog::RobotClientLog(std::string robot, std::uint32_t id, int descriptor, std::int64_t reading_timeout)
@@ -70,8 +78,7 @@ void RobotClientLog::note_link(const RobotLink& link, bool needs_farm, std::int6
 }
 
 void RobotClientLog::note_ignored_drive(const std::string& controller, std::int64_t now) {
-  if (now < next_drive_) return;
-  next_drive_ = now + kTroubleEvery;
+  if (!passes(next_drive_, now)) return;
   log_.write(
       fmt::format("the farm forwards commands of a Player client, which controller '{}' ignores; start the robot "
                   "with `--controller remote` to follow them",
@@ -80,8 +87,7 @@ void RobotClientLog::note_ignored_drive(const std::string& controller, std::int6
 }
 
 void RobotClientLog::note_dropped(std::uint32_t sensor, const netio::Dropped& dropped, std::int64_t now) {
-  if (now < next_dropped_) return;
-  next_dropped_ = now + kTroubleEvery;
+  if (!passes(next_dropped_, now)) return;
   const sensors::SensorType* const type = sensors::find_sensor_type(static_cast<std::uint8_t>(dropped.type));
   log_.write(
       fmt::format("the farm drops readings of {}:{}, whose priority is too low for its budget: so far {} for lack "
@@ -93,8 +99,7 @@ void RobotClientLog::note_dropped(std::uint32_t sensor, const netio::Dropped& dr
 
 void RobotClientLog::note_unshared(std::string_view type, std::size_t elements, const sensors::SensorSpec& row,
                                    std::int64_t now) {
-  if (now < next_unshared_) return;
-  next_unshared_ = now + kTroubleEvery;
+  if (!passes(next_unshared_, now)) return;
   log_.write(
       fmt::format("the real robot's {} has {} values, and '{}' in the world file {}: its readings are not sent to "
                   "the farm; give both the same, or use `--keep-readings`",
@@ -103,8 +108,7 @@ void RobotClientLog::note_unshared(std::string_view type, std::size_t elements, 
 }
 
 void RobotClientLog::note_unknown_lane(std::uint32_t segment, std::uint32_t lane, std::int64_t now) {
-  if (now < next_lane_) return;
-  next_lane_ = now + kTroubleEvery;
+  if (!passes(next_lane_, now)) return;
   log_.write(fmt::format("the farm changes the use of lane {}.{}, which the robot's world lacks or cannot change; "
                          "expected the road network of the farm's world",
                          segment, lane),

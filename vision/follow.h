@@ -10,7 +10,7 @@
 
 namespace sf::vision {
 
-/// What starts or stops following, in the words of testbed files.
+/// An event that starts or stops following, as written in testbed files.
 struct FollowEvent {
   enum class Kind {
     none,    ///< "" : at once, as a start; never, as a stop

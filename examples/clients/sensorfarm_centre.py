@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A control centre: receives the V2V states of all robots of a farm, whatever the radio range, and prints them and the
-mean speeds of stretches of road. Standard library only, with sensorfarm_client.py beside it.
+mean speeds of stretches of road. Needs only the standard library and sensorfarm_client.py in the same folder.
 
     python3 sensorfarm_centre.py --farm 127.0.0.1:9000 --link north:0,7,11,7 --link south:11,0,0,0 --every 10
 

@@ -225,7 +225,7 @@ void ScanFeatures::add_line(const Line& line) {
   const Echo &first = echoes_[line.first], &last = echoes_[line.last];
   const glm::dvec2 u = line.along, n = left_of(u);
   const double turn = 1.0 / line.spread, across = 1.0 / line.weight + middle * middle * turn;
-  // Its ends are those of what is seen: between two beams.
+  // Its ends lie between the last beam that hits it and the next one.
   const double along = (first.along + last.along + (square_of(first.spacing) + square_of(last.spacing)) / 12.0) / 4.0;
   Feature feature{.kind = FeatureKind::line,
                   .p = line.centre + middle * u,

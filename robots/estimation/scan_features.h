@@ -4,7 +4,7 @@
 // Lines: groups of neighbouring echoes (breakpoints as in G. A. Borges, M.-J. Aldon, Line extraction in 2D range images
 // for mobile robotics, 2004) are split at the farthest echo, fitted by weighted total least squares (S. T. Pfister and
 // others, Weighted line fitting algorithms for mobile robot map building, 2003) and merged. Corners: where neighbouring
-// lines meet. Clusters: what is left of a group. Positions are in the frame of the sensor's robot.
+// lines meet. Clusters: the remaining echoes of a group. Positions are in the frame of the sensor's robot.
 
 #include <array>
 #include <cstdint>
@@ -36,7 +36,7 @@ struct EchoNoise {
 
 struct FeatureOptions {
   double shortest = 0.3;    ///< [m] > 0: shorter straight pieces are parts of clusters
-  double widest = 1.0;      ///< [m] > 0: what is not straight and wider than this is no cluster
+  double widest = 1.0;      ///< [m] > 0: largest width of a cluster; wider remains of a group are dropped
   std::uint32_t least = 5;  ///< >= 3 echoes on a line
 };
 

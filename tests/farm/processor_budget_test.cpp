@@ -165,7 +165,7 @@ TEST(ProcessorBudget, DroppedReadingsAreNeverDelivered) {
   const world::World world = crowd(4, "gyro( rate 10 priority 9 ) laser( samples 10 rate 10 latency 0.2 )");
   double clock = 0.0;
   Farm farm(world, device(),
-            {.threads = 1, .processor_budget = 0.1, .processor_clock = [&clock] { return clock += 0.02; }});
+            {.threads = 1, .processor_budget = 0.01, .processor_clock = [&clock] { return clock += 0.02; }});
   farm.subscribe_all();
   std::size_t lasers = 0, gyros = 0, dropped = 0;
   for (std::int64_t tick = 0; tick < 200; ++tick) {

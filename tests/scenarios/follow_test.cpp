@@ -29,7 +29,7 @@ TEST(FollowExperiment, FollowingGivesTheTrackOfAllCameras) {
   EXPECT_NEAR(summarize(run, FollowMethod::follow).asleep, 0.6, 1e-12) << "three of four cameras, from the second on";
 }
 
-/// What one method did not see, and what it saw elsewhere or at another speed, is counted.
+/// Counts missed sightings, and those with a different position or speed.
 TEST(FollowExperiment, CountsDifferences) {
   FollowRun run;
   run.times = {0.0, 0.1, 0.2, 0.3};

@@ -1,4 +1,4 @@
-// The derived sensor `features`: rows of each kind of input, readings without inputs, and what is refused.
+// The derived sensor `features`: rows of each kind of input, readings without inputs, and refused settings.
 
 #include "sensors/features.h"
 

@@ -1,4 +1,4 @@
-// Features of scans of a known room: what is found, and the consistency of their covariance over 100 seeds.
+// Features in scans of a known room: their positions, and the consistency of their covariance over 100 seeds.
 
 #include "robots/estimation/scan_features.h"
 
