@@ -14,7 +14,7 @@ namespace sf::world {
 
 namespace {
 
-struct Kind {
+struct ForeignKind {
   std::string_view mark;  ///< root element of an XML file, or first bytes of any other file
   std::string_view program;
   std::string_view how;
@@ -32,7 +32,7 @@ constexpr std::string_view kMujoco =
     "write each geom of type box, whose size is half of its sides, as model( size [x y z] pose [x y z yaw] )";
 
 // XML world files.
-constexpr auto kElements = std::to_array<Kind>({
+constexpr auto kElements = std::to_array<ForeignKind>({
     {"sdf", "Gazebo (SDFormat)", kGazebo},
     {"gazebo", "Gazebo (SDFormat)", kGazebo},
     {"gazebo:world", "Gazebo", kGazebo},
@@ -55,7 +55,7 @@ constexpr auto kElements = std::to_array<Kind>({
 });
 
 // Other files, by their first bytes.
-constexpr auto kBeginnings = std::to_array<Kind>({
+constexpr auto kBeginnings = std::to_array<ForeignKind>({
     {"#VRML_SIM", "Webots",
      "write each Box of its Solids as model( size [x y z] pose [x y z yaw] ), or save a map by "
      "map_saver after a drive and load its .yaml"},
@@ -111,7 +111,7 @@ std::string_view root_element(std::string_view text) {
 void refuse_xml(const std::string& file, std::string_view text) {
   const std::string_view root = root_element(text);
   if (root.empty()) return;
-  for (const Kind& kind : kElements)
+  for (const ForeignKind& kind : kElements)
     if (root == kind.mark) refuse_world_of(file, 0, kind.program, kind.how);
   throw base::InputError(file, 0,
                          fmt::format("is XML with the root <{}>, which belongs to no known simulator; expected a Stage "
@@ -200,7 +200,7 @@ void refuse_foreign(const std::string& file, std::string_view text) {
                            "as `image` in the .yaml of a ROS map");
   if (is_stl(text)) refuse_world_of(file, 0, "STL", kModels);
   skip_blanks(text);
-  for (const Kind& kind : kBeginnings)
+  for (const ForeignKind& kind : kBeginnings)
     if (text.starts_with(kind.mark)) refuse_world_of(file, 1, kind.program, kind.how);
   if (is_obj(text)) refuse_world_of(file, 0, "Wavefront OBJ", kModels);
   if (text.starts_with("%YAML") || text.starts_with("---")) refuse_yaml(file, text);

@@ -222,10 +222,9 @@ class PlacedRobots {
   std::vector<glm::dvec2> points_;
 };
 
-bool clear_of_tags(const World& world, glm::dvec2 p, double radius) {
-  return std::none_of(world.movers.begin(), world.movers.end(), [&](const Mover& mover) {
-    return mover.is_tag && length(glm::dvec2{mover.X_WM.x, mover.X_WM.y} - p) < radius + mover.radius;
-  });
+bool clear_of_tags(std::span<const Disc> tags, glm::dvec2 p, double radius) {
+  return std::none_of(tags.begin(), tags.end(),
+                      [&](const Disc& tag) { return length(tag.p - p) < radius + tag.radius; });
 }
 
 // Returns the floor plan or map: a picture whose area is at least half of the walls' extent. Null: none.
@@ -286,12 +285,36 @@ std::string PlaceCheck::start_problem(const Mover& robot) const {
                                      robot.X_WM.x, robot.X_WM.y, where);
 }
 
-std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed) {
-  const double radius = clear_radius(robot);
+std::vector<Disc> places_of_tags(std::span<const Mover> movers) {
+  std::vector<Disc> places;
+  for (const Mover& mover : movers)
+    if (mover.is_tag && !mover.absent) places.push_back({{mover.X_WM.x, mover.X_WM.y}, mover.radius});
+  return places;
+}
+
+struct FreeSpace::Area {
+  WallTree walls;
+  Region region;
+  std::string file, name;   // of the world, of the robot
+  double radius, clear, z;  // [m]
+};
+
+FreeSpace::FreeSpace(const World& world, const Mover& robot) {
   const std::vector<Segment> known = known_free(world);
-  const WallTree walls(walls_at_height(world, robot, known));
-  const Region region = reachable(known, walls, robot);
-  PlacedRobots crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * robot.radius + kPlaceMargin);
+  WallTree walls(walls_at_height(world, robot, known));
+  Region region = reachable(known, walls, robot);
+  area_ = std::make_unique<const Area>(Area{std::move(walls), std::move(region), world.file, robot.name, robot.radius,
+                                            clear_radius(robot), robot.X_WM.z});
+}
+
+FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
+FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
+FreeSpace::~FreeSpace() = default;
+
+std::vector<Pose> FreeSpace::poses(std::uint32_t count, std::uint64_t seed, std::span<const Disc> tags) const {
+  const Area& area = *area_;
+  const Region& region = area.region;
+  PlacedRobots crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * area.radius + kPlaceMargin);
   std::vector<Pose> poses;
   const auto draw = [&](std::uint32_t k) {
     for (std::uint32_t attempt = 0; attempt < kAttempts && !region.cells.empty(); ++attempt) {
@@ -301,20 +324,25 @@ std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32
       const glm::dvec2 centre =
           region.centre(region.cells[static_cast<std::size_t>(which * static_cast<double>(region.cells.size()))]);
       const glm::dvec2 p = centre + region.cell * glm::dvec2{x - 0.5, y - 0.5};
-      if (!clear_of_walls(walls, p, radius) || !clear_of_tags(world, p, radius) || !crowd.clear(p)) continue;
+      if (!clear_of_walls(area.walls, p, area.clear) || !clear_of_tags(tags, p, area.clear) || !crowd.clear(p))
+        continue;
       crowd.add(p);
-      poses.push_back({p.x, p.y, robot.X_WM.z, M_PI * (2.0 * turn - 1.0)});
+      poses.push_back({p.x, p.y, area.z, M_PI * (2.0 * turn - 1.0)});
       return true;
     }
     return false;
   };
   for (std::uint32_t k = 0; k < count; ++k) {
     if (draw(k)) continue;
-    throw base::InputError(world.file, 0,
+    throw base::InputError(area.file, 0,
                            "placed " + std::to_string(k) + " of " + std::to_string(count) + " robots like '" +
-                               robot.name + "': no free space is left; make the world larger or request fewer");
+                               area.name + "': no free space is left; make the world larger or request fewer");
   }
   return poses;
+}
+
+std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed) {
+  return FreeSpace(world, robot).poses(count, seed, places_of_tags(world.movers));
 }
 
 }  // namespace sf::world

@@ -7,6 +7,8 @@
 // doors are too narrow. If the robot's own pose is not free, the largest free region enclosed by walls is used.
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,11 +21,35 @@ namespace sf::world {
 /// [m] Smallest distance between a placed robot's circle and anything else.
 inline constexpr double kPlaceMargin = 0.05;
 
-/// Returns `count` poses for robots like `robot`, at its height, uniformly distributed over its region, with any yaw in
-/// (-pi, pi). Pose k depends on (seed, k), the world and poses 0..k-1, but not on `count`. Walls that neither stop
-/// robots nor are visible are ignored. The searched area contains the walls and 10 m around the robot, but at most 2000
-/// circle diameters along each axis.
-/// @throws base::InputError if there is not enough room
+struct Disc {
+  glm::dvec2 p;
+  double radius = 0.0;  ///< [m]
+};
+
+/// The region of one robot. Walls that neither stop robots nor are visible are ignored. The searched area contains the
+/// walls and 10 m around the robot, but at most 2000 circle diameters along each axis.
+class FreeSpace {
+ public:
+  FreeSpace(const World& world, const Mover& robot);
+  FreeSpace(FreeSpace&&) noexcept;
+  FreeSpace& operator=(FreeSpace&&) noexcept;
+  ~FreeSpace();
+
+  /// Returns `count` poses for robots like that one, at its height, uniformly distributed over its region, with any yaw
+  /// in (-pi, pi). Pose k depends on (seed, k), the world and poses 0..k-1, but not on `count`.
+  /// @param tags places that they avoid
+  /// @throws base::InputError if there is not enough room
+  std::vector<Pose> poses(std::uint32_t count, std::uint64_t seed, std::span<const Disc> tags) const;
+
+ private:
+  struct Area;
+  std::unique_ptr<const Area> area_;
+};
+
+/// Returns the circles of the tags among `movers` that are in the world.
+std::vector<Disc> places_of_tags(std::span<const Mover> movers);
+
+/// Returns FreeSpace(world, robot).poses(count, seed, places_of_tags(world.movers)).
 std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed);
 
 /// Returns the row of the robot to copy: the robot with that name; without a name, the first robot with sensors, or

@@ -21,7 +21,7 @@ constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_an
 
 constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "outlines", "boundary", "stack_children",
   "noblocks", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment", "magnetometer_return", "blocks",
-  "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose", "fiducial_return", "fiducial_key",
+  "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose", "fiducial_return", "fiducial_key", "random_pose", "random_present",
   // known, not modelled
   "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
   "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",

@@ -130,6 +130,13 @@ enum class ActuatorModel : std::uint8_t {
   player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m
 };
 
+/// How a seed chooses the start of a mover (world/random_starts.h).
+struct RandomStart {
+  glm::dvec3 spread{};    ///< [m], [m], [rad] >= 0: largest distance of x, y and yaw from the pose in the file
+  double presence = 1.0;  ///< probability in [0, 1] that it is in the world
+  bool any() const { return spread != glm::dvec3{} || presence < 1.0; }
+};
+
 /// A robot, or a linked object that follows packets.
 struct Mover {
   std::string name;           ///< the model's name
@@ -139,6 +146,8 @@ struct Mover {
   Pose X_WM;                  ///< pose at load
   Pose X_MB;                  ///< frame of its own outline (`origin`); not in snapshots, but recorded with changes
   Pose X_MT;                  ///< pose of the mounted tag; not in snapshots, since recorded runs do not use TAG packets
+  RandomStart random_start;   ///< not in snapshots
+  bool absent = false;        ///< it is not in the world at the start, where only robots always are; not in snapshots
   std::vector<Segment> body;  ///< outline in the mover's frame, z above the mover's origin; includes carried models
   double radius = 0.0;        ///< [m] radius of the circle about the origin that contains the body
   Drive drive = Drive::differential;
@@ -304,6 +313,8 @@ struct World {
   double magnet_cutoff = 0.0;    ///< [m] magnets beyond this horizontal distance are ignored; 0: none
   Accuracy accuracy;             ///< for sensors without their own word, if their type has the word
   std::vector<Mover> movers;
+  std::uint32_t copies =
+      1;  ///< > 0: the movers are those of so many worlds, in turn (world/copies.h); not in snapshots
   std::vector<Path> paths;
   std::vector<Light> lights;
   std::vector<Emitter> emitters;

@@ -8,6 +8,7 @@
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
 #include "world/outlines.h"
+#include "world/random_starts.h"
 
 namespace sf::apps {
 
@@ -16,6 +17,7 @@ world::World load_with_robots(const WorldOptions& options, const CloneOptions& c
   if (clones.robots > 0) use = scenarios::OwnRobot::for_copies;
   const std::string added = scenarios::lend_robot(world, options.robot_from, use, options.load);
   const bool copies = clones.robots > 0 || !added.empty();
+  world::draw_starts(world, clones.seed);
   if (copies) world::read_unread(world);  // free positions must avoid all walls
   if (!added.empty() && options.robot_from.empty())
     print_message(

@@ -170,8 +170,14 @@ Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const 
 // mover, whatever its type or name.
 bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
   const bool controlled = said.kind != EntityKind::position && names_model_controller(b, entity);
-  if (said.kind != EntityKind::position && !packet_id_of(said.name) && !controlled) return false;
+  const bool random = is_random(entity);
+  if (said.kind != EntityKind::position && !packet_id_of(said.name) && !controlled && !random) return false;
   if (parent.mover == kNone) return true;
+  if (random)
+    fail(b.context, entity.at,
+         fmt::format("'{}' is mounted on '{}', which moves it; expected 'random_pose' and 'random_present' in a model "
+                     "that stands free, or is on a static one",
+                     said.name, parent.name));
   if (controlled)
     fail(
         b.context, location_of(entity, "ctrl"),

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -23,7 +24,33 @@ std::optional<std::uint32_t> number_of(std::string_view digits) {
   return value;
 }
 
+/// Reads `random_pose` and `random_present`. @throws base::InputError for numbers out of range, and for a robot that
+/// may be missing
+RandomStart random_start_of(StageContext& context, const Entity& entity, bool is_tag) {
+  RandomStart start;
+  if (const auto spread = tuple(context, entity, "random_pose", 3, "[x y yaw]")) {
+    const SourceLocation at = find(entity, "random_pose")->at;
+    start.spread = {to_metres(context, at, (*spread)[0]), to_metres(context, at, (*spread)[1]),
+                    context.radians_per_unit * (*spread)[2]};
+    if (spread->size() > 3 || std::min({start.spread.x, start.spread.y, start.spread.z}) < 0.0 ||
+        !(start.spread.z <= 2.0 * M_PI))
+      fail(context, at, "'random_pose' expects [x y yaw]: the largest distances from 'pose', at least 0");
+  }
+  if (const Property* said = find(entity, "random_present")) {
+    start.presence = number(context, entity, "random_present", 1.0);
+    if (!(start.presence >= 0.0 && start.presence <= 1.0))
+      fail(context, said->at,
+           fmt::format("'random_present' is {:g}; expected a probability from 0 to 1", start.presence));
+    if (!is_tag) fail(context, said->at, "a robot cannot be missing; expected 'random_present' in another model");
+  }
+  return start;
+}
+
 }  // namespace
+
+bool is_random(const Entity& entity) {
+  return find(entity, "random_pose") != nullptr || find(entity, "random_present") != nullptr;
+}
 
 std::optional<PacketId> packet_id_of(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
@@ -60,6 +87,7 @@ std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model,
   if (is_tag && names_model_controller(b, entity)) mover.drive = Drive::omni;
   mover.max_forward = 1.0;  // Stage's default
   read_keys(b.context, entity, mover);
+  mover.random_start = random_start_of(b.context, entity, is_tag);
   b.world.movers.push_back(std::move(mover));
   b.numbers.push_back(packet_id ? std::optional(packet_id->number) : std::nullopt);
   b.locations.push_back(entity.at);

@@ -33,4 +33,7 @@ std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model,
 /// @throws base::InputError if two robots, or two tags, have the same id
 void number_movers(BuildState& b);
 
+/// Returns whether the model has a key of random starts.
+bool is_random(const Entity& entity);
+
 }  // namespace sf::world
