@@ -12,6 +12,7 @@
 #include "control/controller.h"
 #include "control/settings.h"
 #include "sensors/sensor_set.h"
+#include "world/copies.h"
 #include "world/roads/network.h"
 #include "world/world.h"
 
@@ -34,6 +35,8 @@ struct ControllerContext {
   const sensors::SensorSet* sensor_set = nullptr;   ///< sensors of the world; null: created when needed
   const ControllerType* type = nullptr;             ///< type of the controller; set by make_controller
 
+  /// Returns the row of the robot in its copy of the world: part of the keys of its random choices.
+  std::uint32_t row_in_copy() const { return world::CopyIndex(world).row_of(mover); }
   /// Returns `sensor_set`, or one created in `made`.
   const sensors::SensorSet& sensors_or(std::optional<sensors::SensorSet>& made) const {
     return sensor_set != nullptr ? *sensor_set : made.emplace(world);

@@ -26,8 +26,8 @@ static_assert(sensorfarm::kNone == base::kNoHit && sensorfarm::kNone == base::kN
 
 sensorfarm::Robot robot_of(const ControllerContext& context) {
   const world::Mover& mover = context.world.movers[context.mover];
-  sensorfarm::Robot robot{mover.name,   mover.id,          context.mover,  sensors::public_pose(mover.X_WM),
-                          mover.radius, mover.max_forward, mover.max_turn, {},
+  sensorfarm::Robot robot{mover.name,   mover.id,          context.row_in_copy(), sensors::public_pose(mover.X_WM),
+                          mover.radius, mover.max_forward, mover.max_turn,        {},
                           context.seed, context.world.file};
   std::optional<sensors::SensorSet> made;
   const sensors::SensorSet& all = context.sensors_or(made);

@@ -33,7 +33,8 @@ std::string find_file(const world::World& world, const std::string& file) {
 
 }  // namespace
 
-RouteGoals::RouteGoals(const ControllerContext& context) : tour_(true), seed_(context.seed), robot_(context.mover) {
+RouteGoals::RouteGoals(const ControllerContext& context)
+    : tour_(true), seed_(context.seed), robot_(context.row_in_copy()) {
   draw_from(*context.roads);
 }
 
@@ -43,7 +44,7 @@ void RouteGoals::draw_from(const world::RoadNetwork& roads) {
 }
 
 RouteGoals::RouteGoals(const ControllerContext& context, Settings& settings)
-    : seed_(context.seed), robot_(context.mover) {
+    : seed_(context.seed), robot_(context.row_in_copy()) {
   const world::RoadNetwork& roads = *context.roads;
   for (const double number : settings.numbers("checkpoints", {})) {
     const auto* checkpoint = find_checkpoint(roads, static_cast<int>(number));

@@ -150,7 +150,7 @@ void Route::search() {
 // Avoids a lane that stays full.
 void Route::reroute(const ControllerInput& input) {
   const std::uint32_t avoid = blocked_way_;
-  const std::int64_t patience = (20 + 2 * (site_.mover % 5)) * base::kSecond;
+  const std::int64_t patience = (20 + 2 * (site_.row_in_copy() % 5)) * base::kSecond;
   if (blocked_since_ < 0 || input.time - blocked_since_ < patience || !goals_) return;
   blocked_since_ = input.time;
   if (corridors_->way(plan_.legs[progress_.leg()].way).kind != Way::Kind::lane) return;
@@ -172,7 +172,7 @@ bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
 // Two robots that swap lanes could block each other forever. After a long standstill one of them returns to its lane.
 void Route::give_up_change(const ControllerInput& input) {
   if (std::abs(input.state.velocity.forward) > 0.005 || still_since_ < 0) still_since_ = input.time;
-  const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * base::kSecond;
+  const std::int64_t patience = (8 + 2 * (site_.row_in_copy() % 5)) * base::kSecond;
   if (input.time - still_since_ < patience || convoy_.merges) return;
   const std::uint32_t row = plan_.legs[progress_.leg()].way;
   if (!changes_lanes(*corridors_, row)) return;

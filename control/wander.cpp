@@ -152,8 +152,8 @@ namespace {
 std::unique_ptr<Controller> make_wander(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
   const double speed = settings.number("speed", 0.8 * mover.max_forward, 0.0, mover.max_forward);
-  return std::make_unique<Wander>(mover, context.sensors_of(sensors::kLaser), context.mover, context.seed, speed,
-                                  read_swept_area(context, settings));
+  return std::make_unique<Wander>(mover, context.sensors_of(sensors::kLaser), context.row_in_copy(), context.seed,
+                                  speed, read_swept_area(context, settings));
 }
 
 }  // namespace

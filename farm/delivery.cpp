@@ -8,8 +8,8 @@
 
 namespace sf::farm {
 
-Delivery::Delivery(const sensors::SensorSet& sensor_set, const Faults* faults)
-    : sensor_set_(sensor_set), faults_(faults) {
+Delivery::Delivery(const sensors::SensorSet& sensor_set, const Faults* faults, const raycast::Episodes& episodes)
+    : sensor_set_(sensor_set), faults_(faults), episodes_(episodes) {
   add_sensors();
 }
 
@@ -34,23 +34,36 @@ void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {
 bool Delivery::hold_if_late(const base::ReadingBlock& block) {
   const std::int64_t latency = any_ ? latency_of(block) : 0;
   if (latency == 0) return false;
-  hold(block, block.time + latency);
-  next_ = std::min(next_, block.time + latency);
+  hold(block, time_of(block));
+  next_ = std::min(next_, time_of(block));
   return true;
 }
 
-std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::span<const base::ReadingBlock> measured) {
+void Delivery::drop(std::uint32_t first, std::uint32_t end) {
+  for (Waiting* slot : last_delivered_) slot->used = false;
+  last_delivered_.clear();
+  next_ = kNever;
+  for (Waiting& waiting : waiting_) {
+    const std::uint32_t mover = waiting.used ? waiting.reading.block().mover : end;
+    if (mover >= first && mover < end) waiting.used = false;
+    if (waiting.used) next_ = std::min(next_, waiting.due);
+  }
+}
+
+std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::span<const base::ReadingBlock> measured,
+                                                      const CopyCalls& calls) {
   if (!any_) return measured;
   for (Waiting* slot : last_delivered_) slot->used = false;
   last_delivered_.clear();
   ready_.clear();
   delivered_.clear();
   for (const base::ReadingBlock& block : measured)
-    if (latency_of(block) > 0) hold(block, block.time + latency_of(block));
+    if (latency_of(block) > 0) hold(block, time_of(block));
   next_ = kNever;
   for (Waiting& w : waiting_) {
-    if (w.used && w.due <= now) ready_.push_back(&w);
-    if (w.used && w.due > now) next_ = std::min(next_, w.due);
+    const bool ready = w.used && w.due <= now && calls.has(w.reading.block().mover);
+    if (ready) ready_.push_back(&w);
+    if (w.used && !ready) next_ = std::min(next_, w.due);
   }
   std::sort(ready_.begin(), ready_.end(), [](const Waiting* p, const Waiting* q) {
     const base::ReadingBlock& a = p->reading.block();

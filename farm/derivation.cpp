@@ -11,7 +11,7 @@
 namespace sf::farm {
 
 Derivation::Derivation(const sensors::SensorContext& context, const sensors::SensorSet& sensor_set)
-    : sensor_set_(sensor_set), sensors_(context.world, sensor_set, context.thread_pool) {
+    : sensor_set_(sensor_set), sensors_(context.world, sensor_set, context.thread_pool, context.episodes) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     if (group.type->derived != nullptr) pipelines_.emplace_back(context, group);
   if (!empty()) delivered_.reserve(sensor_set.count());
@@ -24,6 +24,11 @@ void Derivation::go_on(Derivation& before, std::int64_t last_tick, std::int64_t 
     pipeline.go_on(old == before.pipelines_.end() ? nullptr : &*old, last_tick, last_call);
   }
   sensors_.take_over(before.sensors_);
+}
+
+void Derivation::restart(std::uint32_t first, std::uint32_t end) {
+  for (SensorPipeline& pipeline : pipelines_) pipeline.restart(first, end);
+  sensors_.restart(first, end);
 }
 
 void Derivation::require_own_inputs(const world::World& world) const {

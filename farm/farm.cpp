@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/thread_pool.h"
+#include "farm/copy_calls.h"
 #include "farm/delivery.h"
 #include "farm/derivation.h"
 #include "farm/faults.h"
@@ -55,6 +56,7 @@ struct Farm::State {
   gpu::Device& device;
   base::ThreadPool thread_pool;
   sensors::SensorSet sensor_set;
+  raycast::Episodes episodes;
   bool reuse_unchanged;
   bool no_return_inf;
   std::vector<std::vector<double>> marked;  ///< per thread: ranges as sent
@@ -82,7 +84,7 @@ struct Farm::State {
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
   sensors::SensorStats earlier_work;  ///< of replaced backends
-  std::uint64_t hash = 0;
+  CopyCalls calls;
   std::optional<Sharing> sharing;  ///< nullopt: this farm senses the whole fleet
   FarmOptions options;
   std::int64_t last_call = -1;  ///< [ns] of the last tick or sample; -1: none yet
@@ -93,14 +95,16 @@ struct Farm::State {
         device(d),
         thread_pool(given.threads),
         sensor_set(w),
+        episodes(w, given.seed),
         reuse_unchanged(given.reuse_unchanged),
         no_return_inf(given.no_return_inf),
         marked(thread_pool.threads()),
         faults(w, sensor_set, given.faults, given.seed, given.noise, thread_pool),
-        delivery(sensor_set, &faults),
+        delivery(sensor_set, &faults, episodes),
         states(robots::states_at_load(w)),
         subscribed(w.movers.size(), 0),
         gone(w.movers.size(), 0),
+        calls(episodes),
         options(given) {
     SF_CHECK(w.unread.empty(), "the walls of " + w.unread.front().file + " are not read");
     pipelines = make_pipelines(sensor_set, states);
@@ -117,7 +121,7 @@ struct Farm::State {
   }
 
   sensors::SensorContext context_of(std::span<const base::Report> sensed) {
-    return {world, device, thread_pool, sensed, options.seed, options.noise, options.true_poses, options.scene};
+    return {world, device, thread_pool, sensed, episodes, options.noise, options.true_poses, options.scene};
   }
   std::vector<SensorPipeline> make_pipelines(const sensors::SensorSet& of, std::span<const base::Report> sensed);
   std::shared_ptr<const void> add_mover();
@@ -125,8 +129,11 @@ struct Farm::State {
   ReadingExchange* exchange() const { return sharing ? sharing->exchange() : nullptr; }
   bool is_gone(std::uint32_t mover) const { return gone.at(mover) != 0 || (sharing && sharing->is_hidden(mover)); }
   void begin_tick(bool is_sample);
+  void find_calls();
   void apply(const base::Report& report);
   std::span<const base::ReadingBlock> read(std::int64_t now);
+  std::span<const base::ReadingBlock> read_accumulated(std::int64_t now);
+  std::span<const base::ReadingBlock> restart(std::span<const Restart> restarts, std::span<const base::Report> reports);
   void update_demand();
   bool find_due(std::int64_t now);
   void keep_budget(std::int64_t now);
@@ -230,6 +237,14 @@ void Farm::State::update_demand() {
     derivation->update_demand(subscribed, pipelines);
 }
 
+/// Finds the copies that take part in a sample: those with a due sensor.
+void Farm::State::find_calls() {
+  calls.begin(false);
+  for (const std::span<SensorPipeline> each : {std::span(pipelines), derivation->pipelines()})
+    for (const SensorPipeline& pipeline : each)
+      for (const sensors::DueSample& due : pipeline.due) calls.add(pipeline.movers[due.row]);
+}
+
 bool Farm::State::find_due(std::int64_t now) {
   update_demand();
   for (SensorPipeline& pipeline : pipelines)
@@ -238,6 +253,7 @@ bool Farm::State::find_due(std::int64_t now) {
                                                                 : sharing->measured_types());
   stats.missed += derivation->find_due(now, sharing ? sharing->delivered_types() : subscribed);
   if (budget) keep_budget(now);
+  if (world.copies > 1 && between) find_calls();
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
 }
 
@@ -252,6 +268,7 @@ void Farm::State::keep_budget(std::int64_t now) {
 void Farm::State::begin_tick(bool is_sample) {
   if (is_sample && !between) tick_states = states;
   between = is_sample;
+  calls.begin(true);
   pose_changes->begin();
   for (std::uint32_t m = 0; m < gone.size(); ++m) {
     base::Pose& X = states[m].X_WM;
@@ -369,7 +386,8 @@ void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlo
   hashes.resize(readings.size());
   thread_pool.parallel_for_each(readings.size(), 16, [&](std::size_t i, unsigned thread) {
     const base::ReadingBlock& r = readings[i];
-    const std::uint64_t head[] = {r.mover, r.type, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
+    const std::uint64_t head[] = {episodes.copies().row_of(r.mover), r.type, r.sensor, r.sequence,
+                                  static_cast<std::uint64_t>(r.time)};
     hashes[i] = base::hash_bytes(head, sizeof head);
     const std::span<const double> values = sent(r, thread);
     hashes[i] = base::hash_bytes(values.data(), values.size_bytes(), hashes[i]);
@@ -378,7 +396,7 @@ void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlo
   if (sharing)
     sharing->add_call(now, readings, hashes);
   else
-    hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
+    calls.chain(readings, hashes);
 }
 
 void Farm::State::subscribe(std::uint32_t mover, base::SensorTypes types) {
@@ -390,23 +408,54 @@ void Farm::State::subscribe(std::uint32_t mover, base::SensorTypes types) {
 std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
   last_call = now;
   const double before = budget ? options.processor_clock() : 0.0;
-  for (SensorPipeline& pipeline : pipelines) {
-    pipeline.cache.invalidate(*pose_changes, states);
-    pipeline.backend->accumulate(now, between);
-  }
+  for (SensorPipeline& pipeline : pipelines) pipeline.backend->accumulate(now, between);
+  const auto delivered = read_accumulated(now);
+  if (budget) budget->spent(options.processor_clock() - before);
+  return delivered;
+}
+
+std::span<const base::ReadingBlock> Farm::State::read_accumulated(std::int64_t now) {
+  for (SensorPipeline& pipeline : pipelines) pipeline.cache.invalidate(*pose_changes, states);
   clear_blocks();
   faults.begin();
   if (find_due(now) || exchange() != nullptr) measure(now, reuse_unchanged, true);
   if (!qualities.empty())
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
-  auto delivered = delivery.deliver(now, blocks);
+  auto delivered = delivery.deliver(now, blocks, calls);
   if (!derivation->empty()) delivered = derivation->derive(now, delivered, states, faults, delivery, subscribed);
   add_to_hash(now, delivered);
   watch.lap(stats.collect_s);
   stats.readings += delivered.size();
-  if (budget) budget->spent(options.processor_clock() - before);
   return delivered;
+}
+
+/// Sensors of the other copies are not due, since they were read at this time.
+std::span<const base::ReadingBlock> Farm::State::restart(std::span<const Restart> restarts,
+                                                         std::span<const base::Report> reports) {
+  SF_CHECK(last_tick >= 0 && !between && !sharing && !budget && faults.empty(), "a farm that cannot restart worlds");
+  begin_tick(false);
+  calls.begin(false);
+  for (const base::Report& report : reports) apply(report);
+  // As in the first tick of a world alone, nothing was commanded before.
+  std::vector<base::Twist> first_commands(derivation->empty() ? 0 : states.size(), base::Twist{NAN, NAN, NAN});
+  const auto movers = static_cast<std::uint32_t>(world.movers.size() / world.copies);
+  for (const Restart& restart : restarts) {
+    const std::uint32_t first = restart.copy * movers, end = first + movers;
+    episodes.begin(restart.copy, restart.seed, last_tick);
+    calls.restart(restart.copy);
+    calls.add(first);
+    delivery.drop(first, end);
+    for (SensorPipeline& pipeline : pipelines) {
+      pipeline.restart(first, end);
+      for (std::uint32_t m = first; m < end; ++m)
+        pipeline.for_rows_of(m, [&](std::uint32_t row) { pipeline.backend->restart(row, last_tick); });
+    }
+    derivation->restart(first, end);
+    for (std::uint32_t m = first; m < end && !derivation->empty(); ++m) first_commands[m] = {};
+  }
+  derivation->set_commands(first_commands);
+  return read_accumulated(last_tick);
 }
 
 Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& options)
@@ -439,6 +488,7 @@ void Farm::subscribe_all() {
 
 void Farm::fuse_with(Fuse fuse) { s_->fuse = std::move(fuse); }
 
+const raycast::Episodes& Farm::episodes() const { return s_->episodes; }
 const sensors::SensorSet& Farm::sensor_set() const { return s_->sensor_set; }
 base::ThreadPool& Farm::thread_pool() { return s_->thread_pool; }
 
@@ -450,6 +500,11 @@ std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const
   s_->begin_tick(false);
   for (const base::Report& report : reports) s_->apply(report);
   return s_->read(now);
+}
+
+std::span<const base::ReadingBlock> Farm::restart(std::span<const Restart> restarts,
+                                                  std::span<const base::Report> reports) {
+  return s_->restart(restarts, reports);
 }
 
 void Farm::set_commands(std::span<const base::Twist> commands) { s_->commands = commands; }
@@ -470,9 +525,7 @@ std::vector<Farm::ReceivedInput> Farm::received_inputs(std::uint8_t type) const 
 }
 
 std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }
-std::int64_t Farm::delivery_time(const base::ReadingBlock& reading) const {
-  return reading.time + s_->delivery.latency_of(reading);
-}
+std::int64_t Farm::delivery_time(const base::ReadingBlock& reading) const { return s_->delivery.time_of(reading); }
 std::span<const base::FaultMark> Farm::fault_marks() const { return s_->faults.marks(); }
 
 std::span<const base::ReadingBlock> Farm::sample(std::int64_t now, std::span<const base::Report> reports) {
@@ -516,7 +569,9 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint
   return *reading;
 }
 
-std::uint64_t Farm::hash() const { return s_->sharing ? s_->sharing->hash() : s_->hash; }
+std::uint64_t Farm::hash(std::uint32_t copy) const {
+  return s_->sharing ? s_->sharing->hash() : s_->calls.hash_of(copy);
+}
 Sharing& Farm::sharing() {
   SF_CHECK(s_->sharing.has_value(), "the farm is not shared");
   return *s_->sharing;

@@ -127,6 +127,7 @@ class Farm {
   void read_sensors(std::uint32_t mover, base::ByteReader& in);
 
   const sensors::SensorSet& sensor_set() const;
+  const raycast::Episodes& episodes() const;
   /// Returns the thread pool for the caller's own loops between two calls: threads of a second pool would compete with
   /// it for the cores.
   base::ThreadPool& thread_pool();
@@ -137,6 +138,17 @@ class Farm {
   /// @param now [ns] simulated time; does not decrease
   /// @return blocks that are valid until the next call of `tick`, `sample`, `sample_between` or `sense`
   std::span<const base::ReadingBlock> tick(std::int64_t now, std::span<const base::Report> reports);
+
+  /// Starts copies of the world anew, at the time of the last tick: their clocks are 0, their sensors and random
+  /// numbers are those of a world alone with the seed. Returns their readings of this first tick; those of the other
+  /// copies are unchanged. Not after a sample, and not with faults, a budget or a shared fleet.
+  /// @param reports of all movers of these copies, at that time
+  /// @throws base::InputError if a sensor of such a copy cannot start anew
+  struct Restart {
+    std::uint32_t copy = 0;
+    std::uint64_t seed = 0;
+  };
+  std::span<const base::ReadingBlock> restart(std::span<const Restart> restarts, std::span<const base::Report> reports);
 
   /// Sets the twists that movers executed until the next tick, per mover: inputs of derived sensors. They are read
   /// during that tick.
@@ -181,7 +193,8 @@ class Farm {
 
   /// Returns the hash of the values and hits of all readings delivered so far, call by call: a call without readings
   /// counts too. For a shared farm, the hash of the readings chained by `Sharing::add_hashes`.
-  std::uint64_t hash() const;
+  /// @param copy of the world: the hash of its readings alone, since its last restart
+  std::uint64_t hash(std::uint32_t copy = 0) const;
   FarmStats stats() const;
 
  private:

@@ -19,7 +19,8 @@ bool same(const base::Pose& p, const base::Pose& q) {
 
 }  // namespace
 
-PoseChanges::PoseChanges(const world::World& world) : world_(world), flags_(world.movers.size(), false) {
+PoseChanges::PoseChanges(const world::World& world)
+    : world_(world), copies_(world), flags_(world.movers.size(), false) {
   moved_.reserve(world.movers.size());
   places_.reserve(2 * world.movers.size());
   for (const world::Mover& mover : world.movers) largest_ = std::max(largest_, mover.radius);
@@ -41,17 +42,17 @@ void PoseChanges::add(std::uint32_t mover, const base::Pose& from, const base::P
   magnets_ = magnets_ || !who.magnets.empty();
   if (who.body.empty()) return;
   for (const base::Pose& X : {from, to})
-    if (!base::is_absent(X)) places_.push_back({X.x, X.y, who.radius});
+    if (!base::is_absent(X)) places_.push_back({X.x, X.y, who.radius, copies_.copy_of(mover)});
   sorted_ = false;
 }
 
-bool PoseChanges::within(glm::dvec2 p, double reach) {
-  if (!sorted_) std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
+bool PoseChanges::within(std::uint32_t mover, glm::dvec2 p, double reach) {
+  if (!sorted_) std::ranges::sort(places_, {}, &Place::order);
   sorted_ = true;
   const double most = reach + largest_;
-  auto at = std::lower_bound(places_.begin(), places_.end(), p.x - most,
-                             [](const Place& place, double x) { return place.x < x; });
-  for (; at != places_.end() && at->x <= p.x + most; ++at)
+  const std::uint32_t copy = copies_.copy_of(mover);
+  auto at = std::ranges::lower_bound(places_, std::pair(copy, p.x - most), {}, &Place::order);
+  for (; at != places_.end() && at->order() <= std::pair(copy, p.x + most); ++at)
     if (glm::length(glm::dvec2{at->x, at->y} - p) <= reach + at->radius) return true;
   return false;
 }

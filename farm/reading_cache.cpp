@@ -43,7 +43,8 @@ void ReadingCache::invalidate(PoseChanges& pose_changes, std::span<const base::R
     if (!carrier.unchanged) continue;
     const base::Pose& X = states[carrier.mover].X_WM;
     if (pose_changes.moved(carrier.mover) ||
-        (carrier.depends_on_magnets ? pose_changes.magnets() : pose_changes.within({X.x, X.y}, carrier.reach)))
+        (carrier.depends_on_magnets ? pose_changes.magnets()
+                                    : pose_changes.within(carrier.mover, {X.x, X.y}, carrier.reach)))
       invalidate_all(carrier);
   }
 }

@@ -9,6 +9,9 @@ namespace sf::farm {
 
 namespace {
 
+/// Returns start + time, or kNever. [ns]
+std::int64_t later(std::int64_t start, std::int64_t time) { return time < kNever - start ? start + time : kNever; }
+
 /// States no bound if no element has one, as for noisy readings.
 void withdraw_bound(double sigma, base::ReadingBlock& block) {
   if (sigma > 0.0 && block.sigma == 0.0) block.sigma = sigma;
@@ -21,11 +24,15 @@ void withdraw_bound(double sigma, base::ReadingBlock& block) {
 }  // namespace
 
 SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g, bool measures)
-    : group(&g), backend(measures ? g.type->make(context, g) : nullptr), cache(g.rows, context.noise) {
+    : group(&g),
+      backend(measures ? g.type->make(context, g) : nullptr),
+      cache(g.rows, context.noise),
+      episodes(context.episodes) {
   for (std::uint32_t i = 0; i < g.rows.size(); ++i) {
     const sensors::SensorSpec& row = g.rows[i];
-    if (timings.empty() || timings.back().rate != row.rate || timings.back().phase != row.phase)
-      timings.push_back({row.rate, row.phase, 0, due_time(0, row.rate, row.phase), i, i});
+    if (timings.empty() || timings.back().rate != row.rate || timings.back().phase != row.phase ||
+        !episodes.copies().meet(timings.back().mover, row.mover))
+      timings.push_back({row.rate, row.phase, 0, due_time(0, row.rate, row.phase), i, i, row.mover});
     timings.back().end = i + 1;
     movers.push_back(row.mover);
   }
@@ -51,17 +58,33 @@ void SensorPipeline::go_on(SensorPipeline* before, std::int64_t last_tick, std::
   if (!computed()) backend->take_over(*before->backend, rows);
 }
 
+void SensorPipeline::restart(std::uint32_t first, std::uint32_t end) {
+  for (Timing& timing : timings) {
+    if (timing.mover < first || timing.mover >= end) continue;
+    timing.started = 0;
+    timing.next = later(episodes.start_of(timing.mover), due_time(0, timing.rate, timing.phase));
+  }
+}
+
 std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const base::SensorTypes> subscribed) {
   due.clear();
   std::uint64_t missed = 0;
+  const Timing* known = nullptr;  // the last one that was due
+  Timing before{};
   for (Timing& timing : timings) {
     if (now < timing.next - 1) continue;
-    const std::uint64_t ready = readings_started(now, timing.rate, timing.phase);
+    const std::int64_t start = episodes.start_of(timing.mover);
+    const bool same = known != nullptr && before.rate == timing.rate && before.phase == timing.phase &&
+                      before.started == timing.started && before.next == timing.next &&
+                      episodes.start_of(before.mover) == start;
+    const std::uint64_t ready = same ? known->started : readings_started(now - start, timing.rate, timing.phase);
     const std::uint64_t should = std::max(ready, timing.started + (now >= timing.next));
     if (should <= timing.started) continue;
     const std::uint64_t skipped = should - timing.started - 1;
+    before = timing;
+    timing.next = same ? known->next : later(start, due_time(should, timing.rate, timing.phase));
     timing.started = should;
-    timing.next = due_time(should, timing.rate, timing.phase);
+    known = &timing;
     // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers are not
     // used.
     for (std::uint32_t row = timing.first; row < timing.end; ++row) {
@@ -118,7 +141,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Repo
   thread_pool.parallel_for(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       base::ReadingBlock& block = blocks[i];
-      block.time = now;
+      block.time = now - episodes.start_of(block.mover);
       block.fused = false;
       block.sequence = static_cast<std::uint32_t>(due[i].sequence);
       block.X_WM = states[block.mover].X_WM;

@@ -17,13 +17,15 @@ struct SensorPipeline {
   const sensors::SensorSet::Group* group = nullptr;
   std::unique_ptr<sensors::SensorBackend> backend;  ///< null: a derived type
   ReadingCache cache;
+  raycast::Episodes episodes;
   std::vector<double> sigmas;  ///< SensorSpec::sigma per row; empty: no sensor is noisy
-  /// The due times of consecutive sensors with the same rate and phase.
+  /// The due times of consecutive sensors of one copy of the world with the same rate and phase.
   struct Timing {
     double rate, phase;        ///< [Hz], [s]
     std::uint64_t started;     ///< readings of each sensor
     std::int64_t next;         ///< [ns] due time of the next reading
     std::uint32_t first, end;  ///< rows
+    std::uint32_t mover;       ///< the first
   };
   std::vector<Timing> timings;
   std::vector<std::uint32_t> movers;     ///< per row
@@ -53,6 +55,8 @@ struct SensorPipeline {
   /// @param before its backend must not be used afterwards, but its readings may; null: there was none
   /// @param last_tick, last_call [ns] of the farm's last tick, and of that or a later sample; -1: there was none
   void go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call);
+  /// Starts the sensors of a copy of the world anew, at the start of its episode. @param first, end its movers
+  void restart(std::uint32_t first, std::uint32_t end);
   bool derived() const { return group->type->derived_from != 0; }
   bool computed() const { return backend == nullptr; }
   bool is_wanted(std::uint32_t row, std::span<const base::SensorTypes> subscribed) const {

@@ -21,7 +21,7 @@ LaneTable make_lanes(gpu::Device& device, const CastPlan& plan) {
 
 CastUploads::CastUploads(const SensorContext& context, const CastPlan& plan)
     : plan_(plan),
-      seed_(context.seed),
+      episodes_(context.episodes),
       mid_bearings_(context.device, "middles of lanes", gpu::Role::upload, gpu::Texel::f32,
                     std::size_t{plan.beam_lanes} + 1),
       directions64_(context.device, "beams in 64 bits", gpu::Role::upload, gpu::Texel::u32x4,
@@ -51,7 +51,8 @@ std::span<const double> CastUploads::turn_beams(const DueSample& due, unsigned t
   std::vector<double>& angle_noise = angle_offsets_[thread];
   angle_noise.resize(row.plan.samples.size());
   draw_angle_noise(scanner.scan, row.plan,
-                   {seed_, base::RandomStream::angle_noise, scanner.mover, scanner.sensor, due.sequence}, angle_noise);
+                   episodes_.key(base::RandomStream::angle_noise, scanner.mover, scanner.sensor, due.sequence),
+                   angle_noise);
   write_beams(scanner.scan, row.plan, angle_noise, beam_tables(row.beams));
   return angle_noise;
 }

@@ -50,7 +50,7 @@ class CastUploads {
   void write_lanes(std::span<const DueSample> due, bool is_single, LaneTable& table);
 
   const CastPlan& plan_;
-  std::uint64_t seed_;
+  Episodes episodes_;
   gpu::Buffer mid_bearings_, directions64_;
   LaneTable exact_;
   std::optional<LaneTable> single_;

@@ -131,7 +131,7 @@ void Crowds::find_places(std::span<const Viewpoint> views, base::ThreadPool& thr
   if (size_ == 0.0) size_ = std::max(0.25 * movers_.smallest_inner(), movers_.largest_radius() / 64.0);
   place_of_view_.assign(views.size(), kNowhere);
   for (std::size_t i = 0; i < views.size(); ++i)
-    if (is_crowded({views[i].X_WS.x, views[i].X_WS.y})) place_of_view_[i] = place_of(views[i], kLarge);
+    if (is_crowded(views[i])) place_of_view_[i] = place_of(views[i], kLarge);
   collect_places(views);
   serves_.assign(places_.size(), 0);
   thread_pool.parallel_for(places_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
@@ -147,7 +147,7 @@ Crowds::Place Crowds::place_of(const Viewpoint& view, std::int32_t scale) const 
   const auto cell_of = [&](double at) {
     return std::llround(std::floor(std::clamp(at / (scale * size_), -4e15, 4e15)));
   };
-  return {view.X_WS.z, scale, cell_of(view.X_WS.x), cell_of(view.X_WS.y)};
+  return {view.X_WS.z, scale, cell_of(view.X_WS.x), cell_of(view.X_WS.y), movers_.grid().copies.copy_of(view.self)};
 }
 
 /// Lists the places of the views and computes the bounding box of the viewers in each.
@@ -172,25 +172,27 @@ Crowds::Disc Crowds::viewers_of(std::size_t place) const {
   const base::Box& box = boxes_[place];
   return {0.5 * (box.min + box.max),
           0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 + 1e-15 * (std::abs(box.max.x) + std::abs(box.max.y)),
-          places_[place].z};
+          places_[place].z, places_[place].copy};
 }
 
 /// Returns whether nearly all movers that contain the centre of a large cell's viewers also contain all of these
 /// viewers.
 bool Crowds::serves(const Disc& viewers, Scratch& s) const {
-  find_members({viewers.centre, 0.0, viewers.z}, s.members);
+  find_members({viewers.centre, 0.0, viewers.z, viewers.copy}, s.members);
   const std::size_t most = s.members.size();
   find_members(viewers, s.members);
   return s.members.size() >= kCrowd && s.members.size() + most / 16 >= most;
 }
 
-/// Returns whether enough movers for a crowd are near `p`.
-bool Crowds::is_crowded(glm::dvec2 p) const {
+/// Returns whether enough movers for a crowd are near the view.
+bool Crowds::is_crowded(const Viewpoint& view) const {
   const MoverGrid& grid = movers_.grid();
-  const glm::dvec2 at = p - grid.low;
+  const glm::dvec2 at = glm::dvec2{view.X_WS.x, view.X_WS.y} - grid.low;
+  const std::uint32_t copy = grid.copies.copy_of(view.self);
   const int left = grid.column_of(at.x - grid.largest_radius), right = grid.column_of(at.x + grid.largest_radius);
   std::uint32_t movers = 0;
-  for (int row = grid.row_of(at.y - grid.largest_radius); row <= grid.row_of(at.y + grid.largest_radius); ++row)
+  const int last = grid.row_of(at.y + grid.largest_radius, copy);
+  for (int row = grid.row_of(at.y - grid.largest_radius, copy); row <= last; ++row)
     movers += grid.begin_of(right + 1, row) - grid.begin_of(left, row);
   return movers > kCrowd;
 }
@@ -233,7 +235,7 @@ void Crowds::find_members(const Disc& viewers, std::vector<std::uint32_t>& membe
   const int left = grid.column_of(at.x - reach), right = grid.column_of(at.x + reach);
   const auto x = static_cast<float>(at.x), y = static_cast<float>(at.y);
   members.clear();
-  for (int row = grid.row_of(at.y - reach); row <= grid.row_of(at.y + reach); ++row)
+  for (int row = grid.row_of(at.y - reach, viewers.copy); row <= grid.row_of(at.y + reach, viewers.copy); ++row)
     for (std::uint32_t k = grid.begin_of(left, row); k < grid.begin_of(right + 1, row); ++k) {
       const float dx = grid.x[k] - x, dy = grid.y[k] - y, most = 1.0001f * grid.radius[k] + grid.error;
       if (dx * dx + dy * dy > most * most || grid.twin[k] != kNoMover) continue;

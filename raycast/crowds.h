@@ -58,19 +58,21 @@ class Crowds {
     double z;            ///< [m] height of the viewers
     std::int32_t scale;  ///< [size_] side: kLarge or 1; 0: no place
     std::int64_t x, y;
+    std::uint32_t copy;  ///< of the world
     auto operator<=>(const Place&) const = default;
   };
-  static constexpr Place kNowhere{0.0, 0, 0, 0};
+  static constexpr Place kNowhere{0.0, 0, 0, 0, 0};
   /// A disc that contains the viewers of a cell.
   struct Disc {
     glm::dvec2 centre;
-    double radius = 0.0;  ///< [m]
-    double z = 0.0;       ///< [m] height of the viewers
+    double radius = 0.0;     ///< [m]
+    double z = 0.0;          ///< [m] height of the viewers
+    std::uint32_t copy = 0;  ///< of the world
   };
   struct Lines;
   struct Scratch;
 
-  bool is_crowded(glm::dvec2 p) const;
+  bool is_crowded(const Viewpoint& view) const;
   Place place_of(const Viewpoint& view, std::int32_t scale) const;
   Disc viewers_of(std::size_t place) const;
   void collect_places(std::span<const Viewpoint> views);

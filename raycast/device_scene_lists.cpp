@@ -119,7 +119,8 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
   s.crowded = false;
   CrowdMeasure around_view, all;
   const int left = grid.column_of(from.x - reach), right = grid.column_of(from.x + reach);
-  for (int row = grid.row_of(from.y - reach); row <= grid.row_of(from.y + reach); ++row)
+  const std::uint32_t copy = grid.copies.copy_of(view.self);
+  for (int row = grid.row_of(from.y - reach, copy); row <= grid.row_of(from.y + reach, copy); ++row)
     for (std::uint32_t at = grid.begin_of(left, row); at < grid.begin_of(right + 1, row); ++at) {
       const float dx = grid.x[at] - x, dy = grid.y[at] - y, radius = 1.0001f * grid.radius[at] + tolerance;
       const float square = dx * dx + dy * dy, most = range + radius;

@@ -53,13 +53,14 @@ MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std
     grid_.largest_radius = std::max(grid_.largest_radius, mover.radius);
   }
   first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
+  grid_.copies = world::CopyIndex(world);
   const std::size_t movers = world.movers.size(), padded = movers + kBlock;
   headings_.resize(movers);
   cells_.resize(movers);
   twins_.resize(movers, kNoMover);
   grid_.mover.resize(padded), grid_.twin.resize(padded);
   grid_.x.resize(padded), grid_.y.resize(padded), grid_.radius.resize(padded), grid_.inner.resize(padded);
-  grid_.first.reserve(std::size_t{kMaxGridCells} * kMaxGridCells + 1);
+  grid_.first.reserve(grid_.copies.copies() * most_cells() * most_cells() + 1);
   next_.reserve(std::max(grid_.first.capacity(), movers));
 }
 

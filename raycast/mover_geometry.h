@@ -14,7 +14,8 @@ namespace sf::raycast {
 
 using base::Pose;
 
-inline constexpr int kMaxGridCells = 256;  ///< along each axis
+inline constexpr int kMaxGridCells = 256;  ///< along each axis, of a world without copies
+inline constexpr int kMinGridCells = 4;
 
 /// Outlines of all movers, without edges that are invisible to lasers.
 class MoverGeometry {
@@ -45,6 +46,7 @@ class MoverGeometry {
   OutlineTable::Outline outline_at(std::size_t mover, double z);
   void add_loops(std::size_t mover, std::span<const std::uint32_t> edges);
   bool is_present(std::size_t mover) const { return radii_[mover] > 0.0 && !base::is_absent(states_[mover].X_WM); }
+  std::size_t most_cells() const;
   void build_grid();
   void find_cells();
   void sort_into_cells();

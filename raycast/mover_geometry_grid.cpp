@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <tuple>
 
 #include "base/box.h"
@@ -22,6 +23,12 @@ std::array<std::uint64_t, 4> words_of(const Pose& X) {
 
 }  // namespace
 
+/// Returns the largest number of cells along each axis, per copy of the world.
+std::size_t MoverGeometry::most_cells() const {
+  const double each = kMaxGridCells / std::sqrt(grid_.copies.copies());
+  return static_cast<std::size_t>(std::max<double>(kMinGridCells, each));
+}
+
 void MoverGeometry::build_grid() {
   std::fill(twins_.begin(), twins_.end(), kNoMover);
   find_cells();
@@ -40,22 +47,25 @@ void MoverGeometry::find_cells() {
   const auto [low, high] = all;
   const double extent = std::max(high.x - low.x, high.y - low.y);
   grid_.low = low;
-  grid_.cell = std::max({4.0 * grid_.largest_radius, extent / (kMaxGridCells - 1), 1e-6});
+  grid_.cell = std::max({4.0 * grid_.largest_radius, extent / static_cast<double>(most_cells() - 1), 1e-6});
   grid_.columns = static_cast<int>((high.x - low.x) / grid_.cell) + 1;
   grid_.rows = static_cast<int>((high.y - low.y) / grid_.cell) + 1;
   // Covers the position of a mover and of a viewer, which may be outside of the grid by up to its range.
   grid_.error = static_cast<float>(0x1p-21 * (extent + grid_.cell));
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const Pose& X = states_[i].X_WM;
-    cells_[i] = !is_present(i) ? kNoCell
-                               : static_cast<std::uint32_t>((X.y - low.y) / grid_.cell) *
-                                         static_cast<std::uint32_t>(grid_.columns) +
-                                     static_cast<std::uint32_t>((X.x - low.x) / grid_.cell);
+    cells_[i] = !is_present(i)
+                    ? kNoCell
+                    : (grid_.copies.copy_of(static_cast<std::uint32_t>(i)) * static_cast<std::uint32_t>(grid_.rows) +
+                       static_cast<std::uint32_t>((X.y - low.y) / grid_.cell)) *
+                              static_cast<std::uint32_t>(grid_.columns) +
+                          static_cast<std::uint32_t>((X.x - low.x) / grid_.cell);
   }
 }
 
 void MoverGeometry::sort_into_cells() {
-  grid_.first.assign(static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows) + 1, 0);
+  grid_.first.assign(
+      grid_.copies.copies() * static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows) + 1, 0);
   for (const std::uint32_t cell : cells_)
     if (cell != kNoCell) ++grid_.first[cell + 1];
   for (std::size_t i = 1; i < grid_.first.size(); ++i) grid_.first[i] += grid_.first[i - 1];

@@ -67,7 +67,8 @@ void check_size(const CasterInputs& in) {
 
 }  // namespace
 
-ReferenceCaster::ReferenceCaster(const CasterInputs& in) : Caster(in), scratch_(in.context.thread_pool.threads()) {
+ReferenceCaster::ReferenceCaster(const CasterInputs& in)
+    : Caster(in), copies_(in.world), scratch_(in.context.thread_pool.threads()) {
   check_size(in);
   for (const world::Segment& wall : in.world.walls) add(wall, kNoMover);
   add_outlines(in.world);
@@ -126,7 +127,9 @@ void ReferenceCaster::find_visible(const Viewpoint& view, std::vector<Surface>& 
   visible.clear();
   for (std::size_t i = 0; i < local_.size(); ++i) {
     const std::uint32_t mover = movers_[i];
-    if (mover != kNoMover && (mover == view.self || base::is_absent(states_[mover].X_WM))) continue;
+    if (mover != kNoMover &&
+        (mover == view.self || base::is_absent(states_[mover].X_WM) || !copies_.meet(mover, view.self)))
+      continue;
     const double z = mover == kNoMover ? view.X_WS.z : view.X_WS.z - states_[mover].X_WM.z;
     if (local_[i].z_min <= z && z < local_[i].z_max) visible.push_back(surfaces_[i]);
   }

@@ -95,6 +95,7 @@ class ReferenceCaster : public Caster {
   void scan(const DueScans& due, std::size_t i, unsigned thread);
 
   std::vector<world::Segment> local_;  ///< walls in the world frame, then edges in the frames of their movers
+  world::CopyIndex copies_;
   std::vector<std::uint32_t> movers_;  ///< mover of each; kNoMover: a wall
   std::vector<Surface> surfaces_;      ///< the same in the world frame, in this tick
   std::vector<Scratch> scratch_;       ///< per thread

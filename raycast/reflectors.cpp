@@ -19,6 +19,7 @@ Reflectors reflectors_of(const world::World& world) {
     name(reflectors.world.walls.back(), 0);
   }
   reflectors.world.movers = world.movers;
+  reflectors.world.copies = world.copies;
   for (std::uint32_t m = 0; m < reflectors.world.movers.size(); ++m)
     for (world::Segment& s : reflectors.world.movers[m].body) name(s, m + 1);
   return reflectors;

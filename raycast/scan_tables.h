@@ -10,6 +10,7 @@
 
 #include "base/report.h"
 #include "raycast/intersect.h"
+#include "world/copies.h"
 
 namespace sf::raycast {
 
@@ -109,10 +110,11 @@ inline constexpr std::uint32_t kCrowd = 8;  ///< [movers] at one place; a larger
 /// several movers in a crowd are bit-identical, the grid contains only the first two: hits on coincident surfaces
 /// report the first one in the world's table, or the second one for scans by the first.
 struct MoverGrid {
-  glm::dvec2 low;      ///< [m] corner
-  double cell = 1.0;   ///< [m]
-  float error = 0.0f;  ///< [m] error of x and y
-  int columns = 1, rows = 1;
+  glm::dvec2 low;             ///< [m] corner
+  double cell = 1.0;          ///< [m]
+  float error = 0.0f;         ///< [m] error of x and y
+  int columns = 1, rows = 1;  ///< per copy of the world; the copies follow each other
+  world::CopyIndex copies;
   std::vector<std::uint32_t> first;  ///< first mover of each cell, and the end
   std::vector<std::uint32_t> mover;
   std::vector<std::uint32_t> twin;  ///< an earlier mover with the same outline; kNoMover: none
@@ -126,9 +128,11 @@ struct MoverGrid {
     return mover[at] == self || (twin[at] != kNoMover && twin[at] != self);
   }
 
-  /// Returns the cell of a coordinate relative to `low` [m], clamped to the grid.
+  /// Returns the cell of a coordinate relative to `low` [m], clamped to the grid of the copy.
   int column_of(double at) const { return static_cast<int>(std::clamp(std::floor(at / cell), 0.0, columns - 1.0)); }
-  int row_of(double at) const { return static_cast<int>(std::clamp(std::floor(at / cell), 0.0, rows - 1.0)); }
+  int row_of(double at, std::uint32_t copy) const {
+    return static_cast<int>(copy) * rows + static_cast<int>(std::clamp(std::floor(at / cell), 0.0, rows - 1.0));
+  }
   /// Returns the index of the first mover of a cell. The movers of the next column follow.
   std::uint32_t begin_of(int column, int row) const {
     return first[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];

@@ -7,6 +7,7 @@
 #include "base/report.h"
 #include "base/thread_pool.h"
 #include "gpu/device.h"
+#include "raycast/episodes.h"
 #include "raycast/scene_options.h"
 #include "world/world.h"
 
@@ -26,7 +27,7 @@ struct SensorContext {
   gpu::Device& device;
   base::ThreadPool& thread_pool;
   std::span<const base::Report> states;  ///< one per mover, used for sensing in this tick; refers to the farm's memory
-  std::uint64_t seed = 0;                ///< seed of all noise
+  Episodes episodes;                     ///< of all noise
   bool noise = true;                     ///< false disables noise regardless of the world file
   bool true_poses = true;                ///< true: reported poses are true (simulation); false: they are estimates
   SceneOptions scene;

@@ -58,12 +58,13 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
       footprints_(footprints_of(world)),
       walls_(stopping(world)),
       ground_(world.ramps),
+      copies_(world),
       reports_(states_at_load(world)),
       predicted_(reports_),
       rank_(ranks_of(world)),
       scratch_(thread_pool != nullptr ? thread_pool->threads() : 1) {
   make_room();
-  neighbours_.build(reports_, 1.0);
+  neighbours_.build(reports_, 1.0, copies_);
 }
 
 void Fleet::add_mover() {
@@ -77,6 +78,13 @@ void Fleet::add_mover() {
   predicted_ = reports_;
   rank_ = ranks_of(world_);
   make_room();
+}
+
+void Fleet::restart(std::uint32_t row) {
+  reports_[row] = {.mover = row, .time = reports_[row].time, .X_WM = world_.movers[row].X_WM, .velocity = {}};
+  predicted_[row] = reports_[row];
+  free_discs_[row] = {};
+  for (auto* flags : {&contacts_, &refused_, &struck_, &reported_}) (*flags)[row] = 0;
 }
 
 void Fleet::update_outline(std::uint32_t row) {
@@ -119,7 +127,7 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
   for_rows(commands.size(), [&](std::uint32_t row, Scratch& scratch) { start(row, commands[row], seconds, scratch); });
   farthest_ = 0.0;
   for (const Scratch& scratch : scratch_) farthest_ = std::max(farthest_, scratch.farthest);
-  neighbours_.build(reports_, 4.0 * (widest_ + farthest_) + 1e-3);
+  neighbours_.build(reports_, 4.0 * (widest_ + farthest_) + 1e-3, copies_);
 
   unfinished_.clear();
   for (std::uint32_t row = 0; row < reports_.size(); ++row)
@@ -194,7 +202,7 @@ std::span<const base::Report> Fleet::predict(std::int64_t time) {
 void Fleet::update_reported_contacts() {
   if (std::find(reported_.begin(), reported_.end(), 1) == reported_.end()) return;
   farthest_ = 0.0;
-  neighbours_.build(predicted_, 4.0 * widest_ + 1e-3);
+  neighbours_.build(predicted_, 4.0 * widest_ + 1e-3, copies_);
   for_rows(predicted_.size(), [&](std::uint32_t row, Scratch&) {
     if (absent_[row] != 0) contacts_[row] = 0;
     if (reported_[row] == 0 || absent_[row] != 0) return;

@@ -30,6 +30,7 @@
 #include "robots/contact_sectors.h"
 #include "robots/footprint.h"
 #include "robots/neighbour_grid.h"
+#include "world/copies.h"
 #include "world/ground.h"
 #include "world/wall_tree.h"
 #include "world/world.h"
@@ -81,6 +82,9 @@ class Fleet {
 
   /// Adds the world's new last mover: at rest at its load pose, at the time of the others.
   void add_mover();
+
+  /// Starts a mover anew: at rest at its load pose, which may have changed, at the time of the others.
+  void restart(std::uint32_t row);
 
   /// Call this after the outline of a mover has changed in the world (world::change_shape).
   void update_outline(std::uint32_t row);
@@ -207,6 +211,7 @@ class Fleet {
   std::vector<Footprint> footprints_;
   world::WallTree walls_;
   world::Ground ground_;
+  world::CopyIndex copies_;
   NeighbourGrid neighbours_;
   double widest_ = 0.0;    ///< [m] largest outline radius
   double farthest_ = 0.0;  ///< [m] largest distance of an origin from its position in `neighbours_`

@@ -49,9 +49,12 @@ bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports, doub
   const Pose& X_WM = reports[row].X_WM;
   const double reach = footprints_[row].radius + sweep + widest_ + farthest_;
   return !any_wall(row, X_WM, sweep, [&](const Segment&, double gap) { return gap <= sweep; }) &&
-         !neighbours_.any(origin(X_WM), reach, [&](std::uint32_t other) {
-           return other != row && absent_[other] == 0 && comes_near(row, X_WM, sweep, other, reports[other].X_WM);
-         });
+         !neighbours_.any(
+             origin(X_WM), reach,
+             [&](std::uint32_t other) {
+               return other != row && absent_[other] == 0 && comes_near(row, X_WM, sweep, other, reports[other].X_WM);
+             },
+             copies_.copy_of(row));
 }
 
 /// Returns whether a mover's circle that starts at `from` and travels up to `sweep` [m] can meet another mover's
@@ -336,15 +339,15 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
   };
   // Movers that overlap deeply come first: in a dense crowd they soon touch all sectors.
   for (const bool deeply : {true, false}) {
-    const bool done = neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
+    const auto touches = [&](std::uint32_t other) {
       const glm::dvec2 from_other = p - origin(reports[other].X_WM);
       const double apart = reach + footprints_[other].radius;
       if (other == row || absent_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
       const bool deep = surely_overlap(outline, footprints_[other], length(from_other), reports[other].X_WM.z - X_WM.z);
       const bool first = deep && length(from_other) < 0.5 * outline.inner;
       return first == deeply && meet(other, from_other, deep);
-    });
-    if (done) break;
+    };
+    if (neighbours_.any(p, reach + widest_ + farthest_, touches, copies_.copy_of(row))) break;
   }
   touch.away = 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};
   return touch;

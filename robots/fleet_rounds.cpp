@@ -117,12 +117,13 @@ void Fleet::find_near(std::uint32_t row, Scratch& scratch) const {
   scratch.yields = false;
   const double sweep = reach_of(row);
   const glm::dvec2 p{reports_[row].X_WM.x, reports_[row].X_WM.y};
-  neighbours_.any(p, footprints_[row].radius + sweep + widest_ + 2.0 * farthest_, [&](std::uint32_t other) {
+  const auto add = [&](std::uint32_t other) {
     if (other != row && absent_[other] == 0 &&
         comes_near(row, reports_[row].X_WM, sweep + travels_[other], other, reports_[other].X_WM))
       scratch.near.push_back(other);
     return false;
-  });
+  };
+  neighbours_.any(p, footprints_[row].radius + sweep + widest_ + 2.0 * farthest_, add, copies_.copy_of(row));
 }
 
 }  // namespace sf::robots

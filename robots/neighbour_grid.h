@@ -9,6 +9,7 @@
 
 #include "base/pose.h"
 #include "base/report.h"
+#include "world/copies.h"
 
 namespace sf::robots {
 
@@ -17,18 +18,21 @@ class NeighbourGrid {
  public:
   /// @param reports one per row; allocates only if there are more than in all earlier calls
   /// @param cell [m] > 0, about twice the reach of a query
-  void build(std::span<const base::Report> reports, double cell);
+  /// @param copies of the world, which the rows belong to
+  void build(std::span<const base::Report> reports, double cell, const world::CopyIndex& copies = {});
 
-  /// Returns true as soon as `predicate(row)` is true for a row whose cell, at the time of `build`, was within `reach`
-  /// [m] of `p`. Calls the predicate at most once per row, in an order that depends on the number of rows.
+  /// Returns true as soon as `predicate(row)` is true for a row of `copy` whose cell, at the time of `build`, was
+  /// within `reach` [m] of `p`. Calls the predicate at most once per row, in an order that depends on the number of
+  /// rows.
   template <class Predicate>
-  bool any(glm::dvec2 p, double reach, Predicate&& predicate) const {
+  bool any(glm::dvec2 p, double reach, Predicate&& predicate, std::uint32_t copy = 0) const {
     const std::int64_t x1 = cell_of(p.x + reach), y1 = cell_of(p.y + reach);
     for (std::int64_t y = cell_of(p.y - reach); y <= y1; ++y) {
       for (std::int64_t x = cell_of(p.x - reach); x <= x1; ++x) {
-        const std::size_t at = bucket(x, y);
+        const Cell cell{x, y, copy};
+        const std::size_t at = bucket(cell);
         for (std::uint32_t e = starts_[at]; e < starts_[at + 1]; ++e) {
-          if (cells_[e].x == x && cells_[e].y == y && predicate(rows_[e])) return true;
+          if (cells_[e] == cell && predicate(rows_[e])) return true;
         }
       }
     }
@@ -38,12 +42,14 @@ class NeighbourGrid {
  private:
   struct Cell {
     std::int64_t x, y;
+    std::uint32_t copy;
+    bool operator==(const Cell&) const = default;
   };
   std::int64_t cell_of(double v) const {
     constexpr double kFarthest = 4.0e15;  // keeps cell numbers exact integers for any reported position
     return static_cast<std::int64_t>(std::clamp(std::floor(v / cell_), -kFarthest, kFarthest));
   }
-  std::size_t bucket(std::int64_t x, std::int64_t y) const;
+  std::size_t bucket(const Cell& cell) const;
 
   double cell_ = 1.0;
   std::vector<std::uint32_t> starts_;  ///< per bucket, index into rows_; one extra entry at the end

@@ -53,6 +53,10 @@ class Batteries : public HostBackend {
   void read_state(std::uint32_t row, base::ByteReader& in) override {
     in.get_into(&charges_[row], sizeof charges_[row]);
   }
+  void restart(std::uint32_t row, std::int64_t now) override {
+    charges_[row] = {.charge = settings_[row].charge * settings_[row].capacity};
+    advance(row, now, charges_[row]);
+  }
 
  private:
   void measure(std::span<const HostSample> samples) const override;

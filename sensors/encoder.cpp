@@ -33,11 +33,21 @@ class Encoders : public HostBackend {
   void accumulate(std::int64_t now, bool between) override;
   void write_state(std::uint32_t row, base::ByteWriter& out) const override;
   void read_state(std::uint32_t row, base::ByteReader& in) override;
+  void restart(std::uint32_t row, std::int64_t now) override {
+    wheels_[row] = wheels_of(row);
+    tracks_[row] = {states()[rows()[row].mover].X_WM, now};
+  }
 
  private:
   void measure(std::span<const HostSample> samples) const override;
+  Wheels wheels_of(std::uint32_t row) const {
+    const SensorSpec& spec = rows()[row];
+    return {settings_[row], episodes().key(base::RandomStream::slip, spec.mover, spec.sensor), noise_};
+  }
   bool drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const;
 
+  const std::vector<Encoder>& settings_;  ///< per row
+  bool noise_;
   std::vector<Wheels> wheels_;  ///< per row, at the last tick
   std::vector<Wheels> ahead_;   ///< per row, in a sample between two ticks
   bool between_ = false;        ///< `ahead_` is current
@@ -55,11 +65,9 @@ ParsedSensors parse_encoders(const world::World& world) {
 }
 
 Encoders::Encoders(const SensorContext& context, const ParsedSensors& sensors)
-    : HostBackend(context, encoder_type, sensors) {
-  for (std::size_t i = 0; i < rows().size(); ++i) {
-    const Encoder& settings = sensors.settings_as<Encoder>()[i];
-    const base::RandomKey walk{context.seed, base::RandomStream::slip, rows()[i].mover, rows()[i].sensor};
-    wheels_.emplace_back(settings, walk, context.noise);
+    : HostBackend(context, encoder_type, sensors), settings_(sensors.settings_as<Encoder>()), noise_(context.noise) {
+  for (std::uint32_t i = 0; i < rows().size(); ++i) {
+    wheels_.push_back(wheels_of(i));
     tracks_.push_back({context.world.movers[rows()[i].mover].X_WM});
   }
 }

@@ -46,28 +46,37 @@ class FiducialFinders : public HostBackend {
     for (const HostSample& sample : samples) measure(sample);
   }
   void measure(const HostSample& sample) const;
-  Pose place_of(const Fiducial& fiducial) const;
+  Pose place_of(const Fiducial& fiducial, std::uint32_t finder) const;
+  std::uint32_t carrier_of(const Fiducial& fiducial, std::uint32_t finder) const;
   bool hidden(const Fiducial& fiducial, const Pose& X_WF, const HostSample& sample) const;
   bool hidden_by(std::uint32_t mover, const glm::dvec3& from, const glm::dvec3& to) const;
 
   const std::vector<FiducialFinder>& settings_;  ///< per row
   bool noise_;
+  world::CopyIndex copies_{world()};
   world::WallTree walls_;
 };
 
 // NaN if its mover is absent.
-Pose FiducialFinders::place_of(const Fiducial& fiducial) const {
-  const std::uint32_t mover = world().models[fiducial.model].mover;
+Pose FiducialFinders::place_of(const Fiducial& fiducial, std::uint32_t finder) const {
+  const std::uint32_t mover = carrier_of(fiducial, finder);
   if (mover == world::kNone) return fiducial.X_BF;
   return base::compose(states()[mover].X_WM, fiducial.X_BF);
+}
+
+/// Returns the mover that carries the fiducial in the finder's copy of the world.
+std::uint32_t FiducialFinders::carrier_of(const Fiducial& fiducial, std::uint32_t finder) const {
+  const std::uint32_t row = world().models[fiducial.model].mover;
+  return row == world::kNone ? row : copies_.in_copy_of(finder, row);
 }
 
 bool FiducialFinders::hidden(const Fiducial& fiducial, const Pose& X_WF, const HostSample& sample) const {
   const glm::dvec3 from{sample.X_WS.x, sample.X_WS.y, sample.X_WS.z}, to{X_WF.x, X_WF.y, X_WF.z};
   const auto hides = [&](const Segment& wall) { return wall.model != fiducial.model && crosses_sight(from, to, wall); };
   if (walls_.any(base::box_of({from.x, from.y}, {to.x, to.y}), hides)) return true;
-  const std::uint32_t own = rows()[sample.row].mover, carrier = world().models[fiducial.model].mover;
-  for (std::uint32_t m = 0; m < world().movers.size(); ++m)
+  const std::uint32_t own = rows()[sample.row].mover, carrier = carrier_of(fiducial, own);
+  const auto [first, end] = copies_.rows_with(own, static_cast<std::uint32_t>(world().movers.size()));
+  for (std::uint32_t m = first; m < end; ++m)
     if (m != own && m != carrier && hidden_by(m, from, to)) return true;
   return false;
 }
@@ -92,8 +101,8 @@ void FiducialFinders::measure(const HostSample& sample) const {
   seen.clear();
   for (std::uint32_t i = 0; i < world().fiducials.size(); ++i) {
     const Fiducial& fiducial = world().fiducials[i];
-    if (fiducial.key != s.key || world().models[fiducial.model].mover == row.mover) continue;
-    const Pose X_WF = place_of(fiducial);
+    if (fiducial.key != s.key || carrier_of(fiducial, row.mover) == row.mover) continue;
+    const Pose X_WF = place_of(fiducial, row.mover);
     const glm::dvec2 d{X_WF.x - sample.X_WS.x, X_WF.y - sample.X_WS.y};
     const double range = glm::length(d), bearing = base::wrap_angle(std::atan2(d.y, d.x) - sample.X_WS.yaw);
     if (!(range >= s.range_min && range <= s.range_max) || std::abs(bearing) > 0.5 * s.fov) continue;
@@ -107,7 +116,7 @@ void FiducialFinders::measure(const HostSample& sample) const {
   for (std::size_t k = 0; k < std::min<std::size_t>(seen.size(), row.elements); ++k) {
     const Detection& d = seen[k];
     const Fiducial& fiducial = world().fiducials[d.fiducial];
-    const base::RandomKey key{seed(), base::RandomStream::fiducials, row.mover, row.sensor, sample.sequence};
+    const base::RandomKey key = episodes().key(base::RandomStream::fiducials, row.mover, row.sensor, sample.sequence);
     const auto [n, m] = noise_ ? base::random_normal(key, 2 * d.fiducial) : std::array{0.0, 0.0};
     const double o = noise_ ? base::random_normal(key, 2 * d.fiducial + 1)[0] : 0.0;
     const auto out = sample.values.subspan(kFiducialNumbers * k, kFiducialNumbers);

@@ -45,7 +45,8 @@ void GpsReceivers::measure(std::span<const HostSample> samples) const {
   for (const HostSample& sample : samples) {
     const SensorSpec& row = rows()[sample.row];
     const auto reading = receivers_[sample.row].measure(
-        visibility_, {seed(), base::RandomStream::satellites, row.mover, row.sensor, sample.sequence}, sample.X_WS);
+        visibility_, episodes().key(base::RandomStream::satellites, row.mover, row.sensor, sample.sequence),
+        sample.X_WS);
     std::copy(reading.begin(), reading.end(), sample.values.begin());
   }
 }

@@ -18,9 +18,14 @@ class Gyros : public HostBackend {
  public:
   Gyros(const SensorContext& context, const ParsedSensors& sensors);
 
+  void restart(std::uint32_t row, std::int64_t /*now*/) override { gyros_[row] = gyro_of(row); }
+
  private:
   void measure(std::span<const HostSample> samples) const override;
+  GyroModel gyro_of(std::uint32_t row) const;
 
+  const std::vector<Gyro>& settings_;  ///< per row
+  bool noise_;
   std::vector<GyroModel> gyros_;  ///< per row
 };
 
@@ -34,11 +39,14 @@ ParsedSensors parse_gyros(const world::World& world) {
   });
 }
 
-Gyros::Gyros(const SensorContext& context, const ParsedSensors& sensors) : HostBackend(context, gyro_type, sensors) {
-  for (std::size_t i = 0; i < rows().size(); ++i)
-    gyros_.emplace_back(sensors.settings_as<Gyro>()[i],
-                        base::RandomKey{context.seed, base::RandomStream::gyro, rows()[i].mover, rows()[i].sensor},
-                        context.noise);
+Gyros::Gyros(const SensorContext& context, const ParsedSensors& sensors)
+    : HostBackend(context, gyro_type, sensors), settings_(sensors.settings_as<Gyro>()), noise_(context.noise) {
+  for (std::uint32_t i = 0; i < rows().size(); ++i) gyros_.push_back(gyro_of(i));
+}
+
+GyroModel Gyros::gyro_of(std::uint32_t row) const {
+  const SensorSpec& spec = rows()[row];
+  return {settings_[row], episodes().key(base::RandomStream::gyro, spec.mover, spec.sensor), noise_};
 }
 
 void Gyros::measure(std::span<const HostSample> samples) const {

@@ -16,7 +16,7 @@ HostBackend::HostBackend(const SensorContext& context, const SensorType& type, c
     : world_(context.world),
       thread_pool_(context.thread_pool),
       states_(context.states),
-      seed_(context.seed),
+      episodes_(context.episodes),
       type_(type.id),
       rows_(sensors.rows) {
   first_.push_back(0);

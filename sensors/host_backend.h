@@ -39,13 +39,13 @@ class HostBackend : public SensorBackend {
   std::span<const SensorSpec> rows() const { return rows_; }
   const world::World& world() const { return world_; }
   std::span<const base::Report> states() const { return states_; }
-  std::uint64_t seed() const { return seed_; }
+  const raycast::Episodes& episodes() const { return episodes_; }
 
  private:
   const world::World& world_;
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
-  std::uint64_t seed_;
+  raycast::Episodes episodes_;
   std::uint8_t type_;
   std::span<const SensorSpec> rows_;
   std::vector<std::size_t> first_;  ///< per row, plus one: index of its first value

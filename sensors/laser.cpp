@@ -64,7 +64,7 @@ class Lasers : public SensorBackend {
   void write(std::size_t i, base::ReadingBlock& block) const;
 
   base::ThreadPool& thread_pool_;
-  std::uint64_t seed_;
+  raycast::Episodes episodes_;
   bool noise_;
   double longest_;  ///< [m] longest surface
   raycast::RayCaster caster_;
@@ -78,7 +78,7 @@ class Lasers : public SensorBackend {
 
 Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
     : thread_pool_(context.thread_pool),
-      seed_(context.seed),
+      episodes_(context.episodes),
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
       caster_(context, context.world, scanners_of(sensors)),
@@ -132,12 +132,12 @@ void Lasers::shape(std::size_t i) {
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{caster_.lane(due.row)};
   const double* const ranges = caster_.ranges().host<double>().data() + first;
   const std::uint32_t* const hits = caster_.hits().host<std::uint32_t>().data() + first;
-  row.too_near =
-      finish_scan(cast, caster_.plan(due.row),
-                  {seed_, base::RandomStream::range_noise, row.mover, row.sensor, due.sequence}, noise_, {ranges, hits},
-                  {{values_.data() + row.first_sample, cast.laser.samples},
-                   {met_.data() + row.first_sample, cast.laser.samples},
-                   {quality_.data() + row.first_sample, cast.laser.samples}});
+  row.too_near = finish_scan(cast, caster_.plan(due.row),
+                             episodes_.key(base::RandomStream::range_noise, row.mover, row.sensor, due.sequence),
+                             noise_, {ranges, hits},
+                             {{values_.data() + row.first_sample, cast.laser.samples},
+                              {met_.data() + row.first_sample, cast.laser.samples},
+                              {quality_.data() + row.first_sample, cast.laser.samples}});
 }
 
 /// Sets the quality flags of a scan, unless they still are as set at construction. `shape` adds those that are too

@@ -47,6 +47,7 @@ class Loops : public HostBackend {
  public:
   Loops(const SensorContext& context, const ParsedSensors& sensors)
       : HostBackend(context, loop_type, sensors),
+        copies_(context.world),
         sizes_(sensors.settings_as<LoopSize>()),
         detectors_(rows().size()),
         last_readings_(rows().size()) {}
@@ -54,16 +55,22 @@ class Loops : public HostBackend {
   bool update_outlines(const world::World&) override { return true; }  // read at each tick
   void accumulate(std::int64_t now, bool between) override;
   void take_over(SensorBackend& before, std::uint32_t rows) override;
+  void restart(std::uint32_t row, std::int64_t now) override;
 
  private:
   void measure(std::span<const HostSample> samples) const override;
   void start(std::int64_t now);
   void advance(std::size_t row, Detector& detector);
+  /// Returns the movers in the loop's copy of the world.
+  std::pair<std::uint32_t, std::uint32_t> rows_with(std::size_t row) const {
+    return copies_.rows_with(rows()[row].mover, static_cast<std::uint32_t>(states().size()));
+  }
   bool may_cover(std::size_t row, std::uint32_t mover) const;
   bool covered(std::size_t row, std::uint32_t mover, std::int64_t time, base::Report* at = nullptr) const;
   bool trace(std::size_t row, std::uint32_t mover, bool on, Detector& detector);
   bool drove(std::uint32_t mover) const;
 
+  world::CopyIndex copies_;
   const std::vector<LoopSize>& sizes_;              ///< per row
   std::vector<Detector> detectors_;                 ///< per row, at the last tick
   std::vector<Detector> ahead_;                     ///< per row, in a sample between two ticks
@@ -79,11 +86,16 @@ class Loops : public HostBackend {
 void Loops::start(std::int64_t now) {
   ticked_ = now;
   before_.assign(states().begin(), states().end());
-  for (std::size_t row = 0; row < detectors_.size(); ++row) {
-    last_readings_[row].time = now;
-    for (std::uint32_t m = 0; m < states().size(); ++m)
-      if (covered(row, m, now)) detectors_[row].on.push_back(m);
-  }
+  for (std::uint32_t row = 0; row < detectors_.size(); ++row) restart(row, now);
+}
+
+void Loops::restart(std::uint32_t row, std::int64_t now) {
+  const auto [first, end] = rows_with(row);
+  std::copy_n(states().begin() + first, end - first, before_.begin() + first);
+  detectors_[row] = {};
+  last_readings_[row] = {.time = now};
+  for (std::uint32_t m = first; m < end; ++m)
+    if (covered(row, m, now)) detectors_[row].on.push_back(m);
 }
 
 void Loops::accumulate(std::int64_t now, bool between) {
@@ -179,17 +191,18 @@ void Loops::advance(std::size_t row, Detector& detector) {
   on_.clear();
   spans_.clear();
   std::size_t next = 0;  // in the movers on it before
-  for (std::uint32_t m = 0; m < states().size(); ++m) {
+  const auto [first, end] = rows_with(row);
+  for (std::uint32_t m = first; m < end; ++m) {
     const bool on = next < detector.on.size() && detector.on[next] == m;
     next += on;
     if ((on || may_cover(row, m)) && trace(row, m, on, detector)) on_.push_back(m);
   }
   detector.on.assign(on_.begin(), on_.end());
   std::ranges::sort(spans_, {}, [](const Span& span) { return std::pair(span.from, span.to); });
-  std::int64_t end = ticked_;
+  std::int64_t until = ticked_;
   for (const Span& span : spans_) {
-    detector.covered += std::max<std::int64_t>(0, span.to - std::max(span.from, end));
-    end = std::max(end, span.to);
+    detector.covered += std::max<std::int64_t>(0, span.to - std::max(span.from, until));
+    until = std::max(until, span.to);
   }
 }
 

@@ -98,7 +98,7 @@ class Magnetometers : public SensorBackend {
   const world::World& world_;
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
-  std::uint64_t seed_;
+  raycast::Episodes episodes_;
   bool noise_;
   bool on_device_;
   std::vector<Array> arrays_;
@@ -121,7 +121,7 @@ Magnetometers::Magnetometers(const SensorContext& context, const ParsedSensors& 
     : world_(context.world),
       thread_pool_(context.thread_pool),
       states_(context.states),
-      seed_(context.seed),
+      episodes_(context.episodes),
       noise_(context.noise),
       on_device_(!context.device.is_host()),
       arrays_(arrays_of(context.world, sensors)) {
@@ -219,7 +219,8 @@ void Magnetometers::read(std::size_t i) {
   const DueSample& due = due_[i];
   const Array& array = arrays_[due.row];
   const Magnetometer& m = array.settings;
-  const base::RandomKey draw{seed_, base::RandomStream::field_noise, array.row.mover, array.row.sensor, due.sequence};
+  const base::RandomKey draw =
+      episodes_.key(base::RandomStream::field_noise, array.row.mover, array.row.sensor, due.sequence);
   const MagneticField& field = waves_.at(array.row.mode).field;
   const glm::dvec2 facing = base::rotate(X_WS_[i].yaw, {1.0, 0.0});
   for (std::uint32_t e = 0; e < m.X_SE.size(); ++e) {

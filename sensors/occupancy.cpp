@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include "sensors/occupancy.h"
 
 #include <map>
 #include <utility>
 
+#include "base/error.h"
 #include "base/marked_values.h"
 #include "maps/map_packets.h"
 #include "raycast/casters.h"
@@ -28,6 +31,9 @@ class Occupancies : public SensorBackend {
   void collect(std::span<base::ReadingBlock> out) override;
   void take_over(SensorBackend& before, std::uint32_t rows) override {
     batch_.take_over(dynamic_cast<Occupancies&>(before).batch_, rows);
+  }
+  void restart(std::uint32_t row, std::int64_t /*now*/) override {
+    throw base::InputError(fmt::format("only a reset of all worlds clears the map '{}'", maps_[row].row.name));
   }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }  // it has its own batch

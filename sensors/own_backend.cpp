@@ -63,6 +63,11 @@ class OwnSensors final : public SensorBackend {
           fmt::format("{} has its own kernel ({}), which requires a Vulkan device; install a driver (Debian: "
                       "mesa-vulkan-drivers), or leave out --device host",
                       names_.front(), type.entry.kernel));
+    if (!type.spirv.empty() && context.world.copies > 1)
+      throw base::InputError(
+          fmt::format("{} has its own kernel ({}), which sees the robots of all worlds; expected a "
+                      "sensor without a kernel, or one world",
+                      names_.front(), type.entry.kernel));
     if (!type.spirv.empty()) kernel_ = std::make_unique<OwnKernel>(context, type, sensors_.size(), most);
     values_.resize(sensors_.size() * stride_);
   }
@@ -84,6 +89,9 @@ class OwnSensors final : public SensorBackend {
   void take_over(SensorBackend& before, std::uint32_t rows) override {
     for (std::uint32_t i = 0; i < rows; ++i)
       sensors_[i].sensor.swap(dynamic_cast<OwnSensors&>(before).sensors_[i].sensor);
+  }
+  void restart(std::uint32_t row, std::int64_t /*now*/) override {
+    throw base::InputError(names_[row] + " may have a state that only a reset of all worlds discards");
   }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return kernel_ != nullptr; }
@@ -127,10 +135,11 @@ void OwnSensors::measure(std::size_t i) {
     std::copy_n(kernel_->values(i).begin(), values.size(), values.begin());
   else
     std::fill(values.begin(), values.end(), 0.0);
-  const base::RandomKey key{context_.seed, base::RandomStream::own_sensors, own.spec.mover,
-                            own.spec.sensor | std::uint32_t{type_.entry.id} << 24, due.sequence};
+  const base::RandomKey key =
+      context_.episodes.key(base::RandomStream::own_sensors, own.spec.mover,
+                            own.spec.sensor | std::uint32_t{type_.entry.id} << 24, due.sequence);
   const SensorSurroundings around(surroundings_, key, context_.noise);
-  const double now = 1e-9 * static_cast<double>(now_);
+  const double now = 1e-9 * static_cast<double>(now_ - context_.episodes.start_of(own.spec.mover));
   const base::PluginCall under_way(names_[due.row], now);
   const auto fail = [&](const char* why) {
     const std::scoped_lock guard(failure_lock_);

@@ -36,11 +36,11 @@ struct OwnSurroundings::Nearest {
 };
 
 OwnSurroundings::OwnSurroundings(const raycast::SensorContext& context)
-    : world_(context.world), states_(context.states), walls_(seen_by_lasers(context.world)) {
+    : world_(context.world), copies_(context.world), states_(context.states), walls_(seen_by_lasers(context.world)) {
   for (const world::Mover& mover : world_.movers) largest_ = std::max(largest_, mover.radius);
 }
 
-void OwnSurroundings::place_movers() { grid_.build(states_, std::max(1.0, 2.0 * largest_)); }
+void OwnSurroundings::place_movers() { grid_.build(states_, std::max(1.0, 2.0 * largest_), copies_); }
 
 void OwnSurroundings::meet_walls(Nearest& nearest, double from, double to) const {
   base::Box box = base::box_of(nearest.at(from), nearest.at(to));
@@ -55,7 +55,7 @@ void OwnSurroundings::meet_walls(Nearest& nearest, double from, double to) const
 
 void OwnSurroundings::meet_movers(Nearest& nearest) const {
   const double reach = nearest.best.range + largest_;
-  grid_.any(nearest.origin, reach, [&](std::uint32_t row) {
+  const auto meet = [&](std::uint32_t row) {
     const world::Mover& mover = world_.movers[row];
     const base::Pose& X_WM = states_[row].X_WM;
     if (row == nearest.self || base::is_absent(X_WM)) return false;
@@ -64,7 +64,8 @@ void OwnSurroundings::meet_movers(Nearest& nearest) const {
       if (side.seen_by_laser && side.z_min <= height && height < side.z_max)
         nearest.meet(base::transform(X_WM, side.a), base::transform(X_WM, side.b), side.model);
     return false;
-  });
+  };
+  grid_.any(nearest.origin, reach, meet, copies_.copy_of(nearest.self));
 }
 
 sensorfarm::Hit OwnSurroundings::cast(std::uint32_t self, const base::Pose& from, double range) const {

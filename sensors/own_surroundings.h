@@ -31,6 +31,7 @@ class OwnSurroundings {
   void meet_movers(Nearest& nearest) const;
 
   const world::World& world_;
+  world::CopyIndex copies_;
   std::span<const base::Report> states_;
   world::WallTree walls_;  ///< walls that lasers detect
   robots::NeighbourGrid grid_;

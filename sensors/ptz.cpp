@@ -28,7 +28,12 @@ class PtzMounts : public HostBackend {
  private:
   void measure(std::span<const HostSample> samples) const override {
     for (const HostSample& sample : samples)
-      std::ranges::copy(position_of(settings_[sample.row], 1e-9 * static_cast<double>(now_)), sample.values.begin());
+      std::ranges::copy(position_of(settings_[sample.row], time_of(sample.row)), sample.values.begin());
+  }
+
+  /// [s] of the mover's clock
+  double time_of(std::uint32_t row) const {
+    return 1e-9 * static_cast<double>(now_ - episodes().start_of(rows()[row].mover));
   }
 
   const std::vector<Ptz>& settings_;  ///< per row

@@ -31,7 +31,7 @@ class Thermometers : public HostBackend {
   double error_of(const HostSample& sample) const {
     if (!noisy_) return 0.0;
     const SensorSpec& row = rows()[sample.row];
-    base::RandomKey draw{seed(), base::RandomStream::thermometers, row.mover, row.sensor};
+    base::RandomKey draw = episodes().key(base::RandomStream::thermometers, row.mover, row.sensor);
     const Thermometer& s = settings_[sample.row];
     double error = s.bias > 0.0 ? s.bias * base::random_normal(draw, kBiasDraw)[0] : 0.0;
     draw.c = sample.sequence;

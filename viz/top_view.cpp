@@ -91,7 +91,7 @@ Axes TopView::begin() const {
 }
 
 void TopView::draw_bodies(Axes& axes, std::span<const base::Pose> X_WM) const {
-  SF_CHECK(X_WM.size() == world_->movers.size(), "poses: expected one per mover");
+  SF_CHECK(X_WM.size() <= world_->movers.size(), "poses: expected at most one per mover");
   for (std::size_t i = 0; i < X_WM.size(); ++i)
     draw_body(axes, world_->movers[i], X_WM[i], body_color(*world_, world_->movers[i]));
 }

@@ -30,7 +30,7 @@ class TopView {
   TopView(const world::World& world, const TopViewOptions& options);
 
   /// Paints ground, walls and traffic lights, and the body of each mover.
-  /// @param X_WM one per mover, in the order of `World::movers`
+  /// @param X_WM one per mover, in the order of `World::movers`; fewer: of the first ones
   /// @param time [s] of the traffic lights
   PixelImage paint(std::span<const base::Pose> X_WM, double time) const;
 

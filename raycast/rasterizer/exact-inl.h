@@ -131,7 +131,9 @@ void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, 
   const double margin = grid.largest_radius * 1.001 + 2.0 * static_cast<double>(grid.error);
   const glm::dvec2 from{view.origin.x - grid.low.x, view.origin.y - grid.low.y}, to = from + best.range * d;
   const int x0 = grid.column_of(std::min(from.x, to.x) - margin), x1 = grid.column_of(std::max(from.x, to.x) + margin);
-  const int y0 = grid.row_of(std::min(from.y, to.y) - margin), y1 = grid.row_of(std::max(from.y, to.y) + margin);
+  const std::uint32_t copy = grid.copies.copy_of(scene.self);
+  const int y0 = grid.row_of(std::min(from.y, to.y) - margin, copy);
+  const int y1 = grid.row_of(std::max(from.y, to.y) + margin, copy);
   s.across.clear();
   for (int row = y0; row <= y1; ++row)
     find_movers_on_beam(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));

@@ -70,8 +70,9 @@ void find_movers_in_view(Scratch& s, const Projection& p, const ScanView& view, 
       static_cast<double>(s.horizon) * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
   const glm::dvec2 v{view.origin.x - grid.low.x, view.origin.y - grid.low.y};
   const int x0 = grid.column_of(v.x - reach), x1 = grid.column_of(v.x + reach);
+  const std::uint32_t copy = grid.copies.copy_of(scene.self);
   s.near.clear();
-  for (int row = grid.row_of(v.y - reach); row <= grid.row_of(v.y + reach); ++row)
+  for (int row = grid.row_of(v.y - reach, copy); row <= grid.row_of(v.y + reach, copy); ++row)
     find_movers_in_row(s, p, view, pattern, scene, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
 }
 

@@ -39,6 +39,7 @@ class Rangers : public SensorBackend {
   void add_copies(gpu::Batch& batch) override { cones_.add_copies(batch); }
   void collect(std::span<base::ReadingBlock> out) override;
   void write_state(std::uint32_t row, base::ByteWriter& out) const override;
+  void restart(std::uint32_t row, std::int64_t now) override;
   void read_state(std::uint32_t row, base::ByteReader& in) override;
   SensorStats stats() const override { return cones_.stats(); }
   bool on_device() const override { return cones_.on_device(); }
@@ -52,7 +53,7 @@ class Rangers : public SensorBackend {
 
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
-  std::uint64_t seed_;
+  raycast::Episodes episodes_;
   bool noise_;
   const std::vector<ConeArray>& arrays_;
   RangerType type_;
@@ -70,7 +71,7 @@ class Rangers : public SensorBackend {
 Rangers::Rangers(const SensorContext& context, const std::vector<ConeArray>& arrays, const RangerType& type)
     : thread_pool_(context.thread_pool),
       states_(context.states),
-      seed_(context.seed),
+      episodes_(context.episodes),
       noise_(context.noise),
       arrays_(arrays),
       type_(type),
@@ -112,7 +113,7 @@ void Rangers::write_reading(std::size_t i) {
   // Sonar and infrared share a stream and sensor numbers, so the type is part of the number. A draw keeps 24 bits of
   // it.
   const std::uint32_t name = (std::uint32_t{type_.id} << 16) | array.row.sensor;
-  const base::RandomKey draw{seed_, base::RandomStream::range_cone, array.row.mover, name, due.sequence};
+  const base::RandomKey draw = episodes_.key(base::RandomStream::range_cone, array.row.mover, name, due.sequence);
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
   for (std::size_t k = i > 0 ? cones_ends_[i - 1] : 0; k < cones_ends_[i]; ++k) {
     const std::uint32_t transducer = due_cones_[k].row - first_cones_[due.row];
@@ -142,6 +143,12 @@ void Rangers::read_state(std::uint32_t row, base::ByteReader& in) {
   last_[row] = in.get<std::uint64_t>();
   in.get_into(values_.data() + first_value(row), sizeof(double) * type_.columns * held(row));
   in.get_into(quality_.data() + first_cones_[row], sizeof(base::QualityFlag) * held(row));
+}
+
+void Rangers::restart(std::uint32_t row, std::int64_t /*now*/) {
+  last_[row] = kNever;
+  std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(first_value(row)), type_.columns * held(row), 0.0);
+  std::fill_n(quality_.begin() + first_cones_[row], held(row), base::QualityFlag::none);
 }
 
 void Rangers::collect(std::span<base::ReadingBlock> out) {

@@ -29,16 +29,17 @@ constexpr sensorfarm::Pose kUnknownPose{NAN, NAN, NAN, NAN};
 
 bool is_own_type(const SensorType& type) { return type.id >= kFirstOwnId && type.id <= kLastOwnId; }
 
-sensorfarm::DerivedSite public_site(const SensorSet& sensor_set, const DerivedNode& node,
+sensorfarm::DerivedSite public_site(const world::World& world, const SensorSet& sensor_set, const DerivedNode& node,
                                     const sensorfarm::Pose& start) {
   const SensorSpec& spec = node.spec;
+  const world::CopyIndex copies(world);
   sensorfarm::DerivedSite site{
-      {spec.name, spec.mover, spec.sensor, public_pose(spec.X_MS), node.settings->height}, start, {}};
+      {spec.name, copies.row_of(spec.mover), spec.sensor, public_pose(spec.X_MS), node.settings->height}, start, {}};
   for (const WiredInput& input : node.inputs) {
     const SensorType& type = input_type(input.type);
     const SensorSpec received{.name = std::string(type.name)};
     const SensorSpec& of = is_received(input.type) ? received : sensor_set.of(input.type, input.mover)[input.sensor];
-    site.inputs.push_back({input.port, input.mover, public_info(type, of)});
+    site.inputs.push_back({input.port, copies.row_of(input.mover), public_info(type, of)});
   }
   return site;
 }
@@ -46,7 +47,7 @@ sensorfarm::DerivedSite public_site(const SensorSet& sensor_set, const DerivedNo
 /// @throws base::InputError for invalid settings
 std::unique_ptr<sensorfarm::DerivedSensor> make_derived_sensor(const world::World& world, const SensorSet& sensor_set,
                                                                const DerivedNode& node, const sensorfarm::Pose& start) {
-  const sensorfarm::DerivedSite site = public_site(sensor_set, node, start);
+  const sensorfarm::DerivedSite site = public_site(world, sensor_set, node, start);
   std::vector<double> sigmas;
   for (const WiredInput& input : node.inputs) {
     const bool measures = !is_received(input.type) && find_sensor_type(input.type)->derived == nullptr;
@@ -71,10 +72,12 @@ void check_derived_sensors(const world::World& world, const SensorSet& sensor_se
   for (const DerivedNode& node : wire(world, sensor_set)) make_derived_sensor(world, sensor_set, node, kUnknownPose);
 }
 
-DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& sensor_set, base::ThreadPool& thread_pool)
+DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& sensor_set, base::ThreadPool& thread_pool,
+                               const raycast::Episodes& episodes)
     : world_(world),
       sensor_set_(sensor_set),
       thread_pool_(thread_pool),
+      episodes_(episodes),
       wired_(wire(world, sensor_set)),
       nodes_(wired_.size()),
       group_of_(64, -1),
@@ -147,7 +150,7 @@ void DerivedSensors::create_wanted(std::span<const base::Report> states) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (!nodes_[i].wanted || nodes_[i].sensor != nullptr) continue;
     const base::Pose& X_WM = states[wired_[i].spec.mover].X_WM;
-    const bool known = !started_ && !base::is_absent(X_WM);
+    const bool known = nodes_[i].starts && !base::is_absent(X_WM);
     nodes_[i].sensor = make_derived_sensor(world_, sensor_set_, wired_[i], known ? public_pose(X_WM) : kUnknownPose);
   }
 }
@@ -191,11 +194,12 @@ void DerivedSensors::take_commands(std::int64_t now, std::span<const base::Twist
   commands_.resize(received_listeners_.size());
   for (std::size_t k = 0; k < received_listeners_.size(); ++k) {
     const auto& [type, mover, listener] = received_listeners_[k];
-    if (type != kCommandInput) continue;
+    if (type != kCommandInput || std::isnan(commands[mover].forward)) continue;
     Command& command = commands_[k];
     command.values = {commands[mover].forward, commands[mover].left, commands[mover].turn};
-    command.reading = {.mover = mover, .type = kCommandInput, .time = now, .values = command.values};
-    add_pending(listener.node, {now, listener.input, 0, &command.reading});
+    const std::int64_t time = now - episodes_.start_of(mover);
+    command.reading = {.mover = mover, .type = kCommandInput, .time = time, .values = command.values};
+    add_pending(listener.node, {time, listener.input, 0, &command.reading});
   }
 }
 
@@ -213,8 +217,9 @@ void DerivedSensors::add_pending(std::size_t i, const Pending& pending) {
   if (!std::exchange(node.active, true)) active_[wired_[i].level].push_back(i);
 }
 
-void DerivedSensors::process(std::size_t i, std::int64_t now) {
+void DerivedSensors::process(std::size_t i, std::int64_t farm_time) {
   Node& node = nodes_[i];
+  const std::int64_t now = farm_time - episodes_.start_of(wired_[i].spec.mover);
   std::ranges::sort(node.pending, {}, &Pending::key);
   std::optional<base::PluginCall> under_way;
   if (is_own_type(*wired_[i].type)) under_way.emplace(node.name, 1e-9 * static_cast<double>(now));
@@ -246,7 +251,7 @@ void DerivedSensors::run_level(std::size_t level, std::int64_t now, std::span<co
                   .sensor = spec.sensor,
                   .type = wired_[i].type->id,
                   .sequence = node.sequence,
-                  .time = now,
+                  .time = now - episodes_.start_of(spec.mover),
                   .X_WM = X_WM,
                   .X_WS = base::compose(X_WM, spec.X_MS),
                   .values = node.values,
@@ -266,7 +271,8 @@ std::span<const base::ReadingBlock> DerivedSensors::evaluate(std::int64_t now,
                                                              std::span<const base::Twist> commands,
                                                              std::span<const base::ReadingBlock> received) {
   create_wanted(states);
-  started_ = true;
+  if (std::exchange(starting_, false))
+    for (Node& node : nodes_) node.starts = false;
   out_.clear();
   if (!commands.empty()) take_commands(now, commands);
   for (const base::ReadingBlock& reading : received) take_received(reading);
@@ -293,15 +299,24 @@ std::span<const base::ReadingBlock> DerivedSensors::evaluate(std::int64_t now,
   return out_;
 }
 
+void DerivedSensors::restart(std::uint32_t first, std::uint32_t end) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (wired_[i].spec.mover < first || wired_[i].spec.mover >= end) continue;
+    nodes_[i].sensor.reset();
+    nodes_[i].starts = starting_ = demand_changed_ = true;
+  }
+}
+
 void DerivedSensors::take_over(DerivedSensors& before) {
-  started_ = before.started_;
+  starting_ = before.starting_;
   std::map<std::tuple<std::uint8_t, std::uint32_t>, std::size_t> old;
   for (std::size_t i = 0; i < before.nodes_.size(); ++i) old[{before.wired_[i].type->id, before.wired_[i].row}] = i;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const auto found = old.find({wired_[i].type->id, wired_[i].row});
+    nodes_[i].starts = before.starting_;
     if (found == old.end() || before.nodes_[found->second].sensor == nullptr) continue;
     nodes_[i].sensor = std::move(before.nodes_[found->second].sensor);
-    const auto site = public_site(sensor_set_, wired_[i], kUnknownPose);
+    const auto site = public_site(world_, sensor_set_, wired_[i], kUnknownPose);
     for (std::size_t k = before.wired_[found->second].inputs.size(); k < site.inputs.size(); ++k)
       nodes_[i].sensor->add_input(site.inputs[k]);
   }

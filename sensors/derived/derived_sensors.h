@@ -28,7 +28,8 @@ namespace sf::sensors {
 class DerivedSensors {
  public:
   /// All arguments must outlive it.
-  DerivedSensors(const world::World& world, const SensorSet& sensor_set, base::ThreadPool& thread_pool);
+  DerivedSensors(const world::World& world, const SensorSet& sensor_set, base::ThreadPool& thread_pool,
+                 const raycast::Episodes& episodes = {});
 
   bool empty() const { return nodes_.empty(); }
   std::span<const DerivedNode> nodes() const { return wired_; }
@@ -48,7 +49,7 @@ class DerivedSensors {
 
   /// @param delivered readings delivered at `now` [ns], in any order
   /// @param due per derived group of the sensor set, in order: its due sensors
-  /// @param states per mover @param commands per mover: the twists executed since the last tick; empty: none
+  /// @param states per mover @param commands per mover: the twists executed since the last tick; NaN, or empty: none
   /// @param received readings of other pseudo-types (`is_received`); `sensor` of a `v2v`: row of the receiving mover
   /// @return readings of the due sensors that are not lost, by type and row, except that latency is not applied; valid
   /// until the next call
@@ -59,6 +60,8 @@ class DerivedSensors {
                                                std::span<const base::Twist> commands = {},
                                                std::span<const base::ReadingBlock> received = {});
 
+  /// Starts the sensors of movers [first, end) anew, with the next call of `evaluate`, from their poses then.
+  void restart(std::uint32_t first, std::uint32_t end);
   /// Continues the sensors of `before`, a world with fewer movers in its first rows. `before` must not be used
   /// afterwards.
   void take_over(DerivedSensors& before);
@@ -83,6 +86,7 @@ class DerivedSensors {
     bool is_lost = false;  ///< its last reading
     bool active = false;
     bool wanted = false;
+    bool starts = true;  ///< with the next call of `evaluate`, an episode
   };
   struct Listener {
     std::uint32_t node, input;
@@ -101,6 +105,7 @@ class DerivedSensors {
   const world::World& world_;
   const SensorSet& sensor_set_;
   base::ThreadPool& thread_pool_;
+  raycast::Episodes episodes_;
   std::vector<DerivedNode> wired_;
   std::vector<Node> nodes_;                                    ///< like `wired_`
   std::vector<std::vector<std::size_t>> levels_;               ///< nodes by level
@@ -124,7 +129,7 @@ class DerivedSensors {
   std::vector<base::ReadingBlock> blocks_;        ///< per node
   std::vector<base::ReadingBlock> out_;
   bool demand_changed_ = false;  ///< since `create_wanted`
-  bool started_ = false;         ///< `evaluate` was called
+  bool starting_ = true;         ///< some nodes start with the next call of `evaluate`
 };
 
 /// Wires and creates all derived sensors of a world once. @throws base::InputError for invalid wiring or settings

@@ -85,7 +85,9 @@ std::vector<std::uint32_t> Wiring::movers_of(const DerivedNode& node, const Inpu
   if (parts.robot.empty()) return {node.spec.mover};
   std::vector<std::uint32_t> found;
   std::vector<std::string_view> names;
-  for (std::uint32_t m = 0; m < world_.movers.size(); ++m) {
+  const auto [first, end] =
+      world::CopyIndex(world_).rows_with(node.spec.mover, static_cast<std::uint32_t>(world_.movers.size()));
+  for (std::uint32_t m = first; m < end; ++m) {
     if (parts.robot == "*" || world_.movers[m].name == parts.robot) found.push_back(m);
     names.push_back(world_.movers[m].name);
   }

@@ -72,7 +72,7 @@ EdgeFit::Plan EdgeFit::plan(const SensorContext& context, const std::vector<Lane
 EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains,
                  bool on_host)
     : thread_pool_(context.thread_pool),
-      seed_(context.seed),
+      episodes_(context.episodes),
       edges_(edges),
       sizes_(grains),
       on_host_(on_host),
@@ -178,8 +178,8 @@ void EdgeFit::draw_noise(const DueSample& due) {
   const EdgeRow& row = plan_.rows[due.row];
   if (row.noise_share == 0.0F) return;
   const SensorSpec& sensor = edges_[due.row].row;
-  const base::RandomKey draw{seed_, base::RandomStream::range_noise, sensor.mover, edge_noise_id(sensor.sensor),
-                             due.sequence};
+  const base::RandomKey draw =
+      episodes_.key(base::RandomStream::range_noise, sensor.mover, edge_noise_id(sensor.sensor), due.sequence);
   float* const out = normals_.host<float>().data() + SF_BEAMS_PER_LANE * std::size_t{row.noise};
   for (std::uint32_t k = 0; k < row.beams; ++k)
     out[plan_.beams[due.row].place(k)] = static_cast<float>(base::random_normal(draw, k)[0]);

@@ -77,7 +77,7 @@ class EdgeFit {
   void draw_noise(const DueSample& due);
 
   base::ThreadPool& thread_pool_;
-  std::uint64_t seed_;
+  raycast::Episodes episodes_;
   const std::vector<LaneEdge>& edges_;
   std::vector<double> sizes_;  ///< [m] pixel sizes
   bool on_host_;

@@ -96,6 +96,7 @@ FilteredScene filter_scene(const world::World& world, bool exact) {
 
 void take_movers(const world::World& world, FilteredScene& scene) {
   scene.world.movers = world.movers;
+  scene.world.copies = world.copies;
   for (world::Mover& mover : scene.world.movers)
     for (world::Segment& s : mover.body) s.model = SF_TAG_MOVER;
 }

@@ -26,7 +26,7 @@
 namespace sf::scenarios {
 namespace {
 
-world::World recorded_world() {
+world::World verified_world() {
   world::World world = scenes::boxes(20, 8.0, 3);
   sensors::LaserSettings laser = scenes::laser(61, M_PI, 4.0);
   laser.noise = {.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
@@ -37,7 +37,7 @@ world::World recorded_world() {
 }
 
 /// Two seconds of robots that wander or remain at rest.
-record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = recorded_world(),
+record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = verified_world(),
                            RunSettings settings = {}, bool wander = true, const raycast::CasterType* caster = nullptr) {
   const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
   sensors::set_accuracy(world, mode);
@@ -68,7 +68,7 @@ TEST(Verification, ASoundRunPasses) {
 
 /// The reference caster reproduces its own bytes. Plain C++ differs from them, within the bounds of both.
 TEST(Verification, RecordingsOfTheReferenceCasterPass) {
-  world::World world = recorded_world();
+  world::World world = verified_world();
   world.movers[0].sensors.push_back(trial::cones("sonar", trial::ring(4, 0.1)));
   const record::Recording recording = recorded(true, "exact", world, {}, true, &raycast::reference_caster);
   EXPECT_EQ(record::option_of(recording.info, "caster"), "reference, long double");
@@ -93,7 +93,7 @@ TEST(Verification, IgnoresTheCasterOfTheEnvironment) {
 
 /// Readings between ticks: their poses are recomputed bitwise from those of the ticks.
 TEST(Verification, ReadingsBetweenTicksPass) {
-  world::World world = recorded_world();
+  world::World world = verified_world();
   for (std::size_t m = 0; m < world.movers.size(); ++m) {
     scenes::edit_laser(world.movers[m])->rate = 13.0 + 12.0 * static_cast<double>(m);
     for (const char* type : {"encoder", "gyro"}) {
@@ -136,7 +136,7 @@ TEST(Verification, OtherModesPass) {
 
 /// Robots whose lasers and sonars have many surfaces below their minimum range.
 world::World near_world() {
-  world::World world = recorded_world();
+  world::World world = verified_world();
   for (world::Mover& mover : world.movers) {
     scenes::edit_laser(mover)->range_min = 1.4;  // 1.4F is less
     world::Sensor sonar;
