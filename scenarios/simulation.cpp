@@ -84,26 +84,27 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       estimates_(world.movers.size()),
       next_estimates_(world.movers.size()),
       others_(farm_.thread_pool().threads()),
+      own_signals_(others_.size()),
       signals_(world.lights.size()),
       light_states_(world.lights.size()),
       absent_(world.movers.size(), false),
       positioning_(options.positioning),
-      seed_(options.seed),
+      actor_(options.actor),
+      actors_(options.actors),
       start_at_(base::nanoseconds(options.start_at)),
       interval_(base::nanoseconds(world.interval)) {
-  SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
+  SF_CHECK(options.actors.empty() || options.actors.size() * world.copies == world.movers.size(),
            "actors: expected none or one per mover");
+  if (world.copies > 1) refuse_copies(options);
   if (options.states) states_.emplace(world, *options.states);
   if (options.v2v && share_->passed_on())
     throw base::InputError("[v2v] cannot be simulated with --tiles; expected ranks that share the whole world");
   if (options.v2v) v2v_.emplace(*options.v2v, world.movers.size());
   farm_.subscribe_all();
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m)
+    if (world.movers[m].absent) set_absent(m, true);
   share_->attach(world_, farm_);
-  const Actor none{.controller = {.name = ""}, .link = {}};
-  for (std::uint32_t i = 0; i < world.movers.size(); ++i)
-    use_control(make_control(i, !options.actors.empty()  ? options.actors[i]
-                                : world.movers[i].is_tag ? none
-                                                         : options.actor));
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i) use_control(make_control(i, actor_of(i)));
   for (std::uint32_t i = 0; i < controls_.size(); ++i)
     if (controls_[i].controller) models_.remove(i);
   make_room();
@@ -111,6 +112,28 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   if (positioning_) camera_inputs_.add(farm_, world_, *positioning_);
   v2v_inputs_.add(farm_);
   warn_of_positioning();
+}
+
+const Actor& Simulation::actor_of(std::uint32_t mover) const {
+  static const Actor none{.controller = {.name = ""}, .link = {}};
+  if (!actors_.empty()) return actors_[farm_.episodes().copies().row_of(mover)];
+  return world_.movers[mover].is_tag ? none : actor_;
+}
+
+/// @throws base::InputError for what several worlds cannot have
+void Simulation::refuse_copies(const SimulationOptions& options) const {
+  const auto is_late = [](const Actor& actor) { return !actor.link.perfect(); };
+  const char* what = options.ranks != nullptr                                            ? "ranks"
+                     : !options.faults.empty()                                           ? "faults of sensors"
+                     : options.states                                                    ? "delayed states of robots"
+                     : options.positioning                                               ? "cameras"
+                     : options.v2v || !farm_.received_inputs(sensors::kV2vInput).empty() ? "a V2V link"
+                     : is_late(options.actor) || std::ranges::any_of(options.actors, is_late) ? "delayed readings"
+                     : !control::controlled_models(world_).empty() ? "controllers of models that are not robots"
+                                                                   : nullptr;
+  if (what == nullptr) return;
+  throw base::InputError(world_.file, 0,
+                         fmt::format("several worlds in one simulation cannot have {}; expected one world", what));
 }
 
 void Simulation::warn_of_positioning() {
@@ -172,7 +195,8 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   const bool joins = mover >= absent_.size();  // its sensors are not in the farm yet
   std::optional<sensors::SensorSet> with_joining;
   const control::ControllerContext site{
-      world_, mover, seed_, roads(), &warnings, joins ? &with_joining.emplace(world_) : &farm_.sensor_set()};
+      world_,  mover,     farm_.episodes().seed_of(mover),
+      roads(), &warnings, joins ? &with_joining.emplace(world_) : &farm_.sensor_set()};
   control::ControllerConfig config = actor.controller;
   config.known_start = !positioning_ || positioning_->known_start;
   control::ConfiguredController made = control::make_controller(site, std::move(config));
@@ -218,6 +242,36 @@ base::TickRecord Simulation::step() {
                    {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
   return {tick_++, time,   recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_,
           faults_, shapes_};
+}
+
+base::TickRecord Simulation::restart(std::span<const farm::Farm::Restart> restarts) {
+  SF_CHECK(tick_ > 0, "worlds restart after the first step");
+  earlier_readings_.reset();
+  settle();
+  std::vector<base::Report> reports;
+  const auto movers = static_cast<std::uint32_t>(world_.movers.size()) / world_.copies;
+  for (const farm::Farm::Restart& restart : restarts)
+    for (std::uint32_t m = restart.copy * movers; m < (restart.copy + 1) * movers; ++m) {
+      fleet_.restart(m);
+      if (absent_[m] != world_.movers[m].absent) set_absent(m, world_.movers[m].absent);
+      reports.push_back(fleet_.reports()[m]);
+      commands_[m] = executed_commands_[m] = {};
+      intents_[m] = next_intents_[m] = {};
+      estimates_[m] = next_estimates_[m] = {};
+      if (!maps_.empty()) maps_[m] = next_maps_[m] = {};
+    }
+  readings_.clear();
+  const auto readings = farm_.restart(restarts, reports);
+  const std::int64_t time = static_cast<std::int64_t>(tick_ - 1) * interval_;
+  sort_by_mover(readings);
+  if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_, farm_.episodes().copies());
+  for (const base::Report& report : reports) {
+    controls_[report.mover] = make_control(report.mover, actor_of(report.mover));
+    try_to_decide(report.mover, time, 0);
+  }
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return {tick_ - 1, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_,
+          {},        {}};
 }
 
 std::span<const base::Report> Simulation::recorded_reports() {
@@ -268,6 +322,8 @@ void Simulation::take_shapes() {
 void Simulation::set_lane(const std::string& lane, const std::string& use) {
   if (share_->passed_on())
     throw base::InputError("the use of a lane cannot change with --tiles; expected ranks that share the whole world");
+  if (world_.copies > 1)
+    throw base::InputError("the use of a lane cannot change in several worlds; expected one world");
   if (!roads_) throw base::InputError(world_.file, 0, "has no road network; expected road( rndf \"...\" ) in it");
   const std::uint32_t row = lane_named(*roads_, lane);
   const world::LaneUse wanted = world::lane_use_of(use);
@@ -277,6 +333,7 @@ void Simulation::set_lane(const std::string& lane, const std::string& use) {
 
 void Simulation::check_joining(const world::World& world, const JoiningRobot& robot) const {
   SF_CHECK(&world == &whole_, "another world");
+  if (world.copies > 1) throw base::InputError("robots cannot join several worlds; expected one world");
   share_->check_may_join();
   const base::Pose& X = robot.X_WM;
   if (!(std::abs(X.x) <= netio::kMaxPosition && std::abs(X.y) <= netio::kMaxPosition && std::isfinite(X.yaw)))
@@ -458,7 +515,7 @@ void Simulation::decide(std::int64_t time) {
     light_states_[i] = world::status_of(signals_[i]);
   }
   if (lanes_) lanes_->update(time, recorded_reports());
-  if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
+  if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_, farm_.episodes().copies());
   if (v2v_) {
     broadcasts_.clear();
     for (const base::Report& report : fleet_.reports()) broadcasts_.push_back(broadcast_of(report, time));
@@ -500,14 +557,16 @@ void Simulation::try_to_decide(std::uint32_t mover, std::int64_t time, unsigned 
   }
 }
 
-void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thread) {
+void Simulation::decide_one(std::uint32_t mover, std::int64_t farm_time, unsigned thread) {
+  const std::int64_t start = farm_.episodes().start_of(mover), time = farm_time - start;
   RobotControl& robot = controls_[mover];
   robot.stepped = false;
   if (!robot.controller || robot.driven || absent_[mover]) return;
   const std::uint32_t first = first_[mover], count = first_[mover + 1] - first;
   std::span<const base::ReadingBlock> fresh = by_mover_.subspan(first, count);
   if (robot.mailbox) {
-    for (const base::ReadingBlock& reading : fresh) robot.mailbox->send(reading, std::min(time, leaves_at(reading)));
+    for (const base::ReadingBlock& reading : fresh)
+      robot.mailbox->send(reading, std::min(time, leaves_at(reading) - start));
   } else if (!readings_.empty()) {
     fresh = newest_of(std::span(sorted_).subspan(first, count));
   }
@@ -521,13 +580,25 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   if (robot.sharing != nullptr) exchange_maps(*robot.sharing, others);
   const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
   const auto poses = robot.positioning ? robot.positioning->receive(time) : std::span<const control::MeasuredPose>();
-  commands_[mover] = robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_,
-                                             others, signals_, lanes_ ? lanes_->network() : nullptr, poses});
+  base::Report state = fleet_.reports()[mover];
+  state.time -= start;
+  commands_[mover] = robot.controller->step({time, state, readings, contact, time >= start_at_, others,
+                                             start == 0 ? signals_ : own_signals(time, thread),
+                                             lanes_ ? lanes_->network() : nullptr, poses});
   next_intents_[mover] = robot.controller->intent();
   if (const control::OwnLocalization* own = control::localization_of(*robot.controller))
     next_estimates_[mover] = {own->state(), own->quality()};
   if (robot.sharing != nullptr) next_maps_[mover] = robot.sharing->shared_map();
   robot.stepped = true;
+}
+
+/// Returns the signals of a copy of the world by its own clock.
+std::span<const world::Signal> Simulation::own_signals(std::int64_t time, unsigned thread) {
+  std::vector<world::Signal>& signals = own_signals_[thread];
+  signals.clear();
+  for (const world::Light& light : world_.lights)
+    signals.push_back(world::signal_at(light, 1e-9 * static_cast<double>(time)));
+  return signals;
 }
 
 /// [ns] Returns the delivery time of a reading, possibly between two ticks.
@@ -573,23 +644,27 @@ void Simulation::find_others(std::uint32_t mover, std::int64_t time, std::vector
   const double v2v_range = controls_[mover].controller->v2v_range();
   if (v2v_range <= 0.0) return;
   const std::span<const base::Report> reports = fleet_.reports();
+  const world::CopyIndex& copies = farm_.episodes().copies();
   const auto add = [&](const base::Report& other) {
     const std::uint32_t id = world_.movers[other.mover].id;
     if (other.mover == mover || world_.movers[other.mover].is_tag || absent_[other.mover]) return;
     const auto received = v2v_ ? v2v_->receive(time, other.mover, {world_.movers[mover].id, id})
                                : std::optional(broadcast_of(other, time));
     if (received && received->quality.age != base::kNoStateYet)  // a lost robot broadcasts nothing
-      others.push_back({id, received->state, received->intent, received->quality});
+      others.push_back({id, received->state, received->intent, received->quality}),
+          others.back().state.time -= farm_.episodes().start_of(mover);
   };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
   if (const auto remote = share_->remote_neighbours(mover))
     for (const base::Report& other : *remote) add(other);
-  else
-    neighbours_.any(here, v2v_range, [&](std::uint32_t row) {
+  else {
+    const auto visit = [&](std::uint32_t row) {
       const base::Pose& X_WM = reports[row].X_WM;
       if (share_->knows(row) && glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) <= v2v_range) add(reports[row]);
       return false;
-    });
+    };
+    neighbours_.any(here, v2v_range, visit, copies.copy_of(mover));
+  }
   std::sort(others.begin(), others.end(),
             [](const control::Neighbour& p, const control::Neighbour& q) { return p.id < q.id; });
 }

@@ -62,8 +62,9 @@ struct SimulationOptions {
   std::uint64_t seed = 1;     ///< of noise and of the controllers' random choices
   unsigned threads = 0;       ///< on the host; 0: all. Does not affect results
   Actor actor;                ///< default of all robots
-  std::vector<Actor> actors;  ///< per mover by row, tags included; empty: `actor` for all robots, and tags at rest
-  double start_at = 0.0;      ///< [s] time of the start signal
+  std::vector<Actor> actors;  ///< per mover of a copy of the world by row, tags included; empty: `actor` for all
+                              ///< robots, and tags at rest
+  double start_at = 0.0;                   ///< [s] time of the start signal
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: the farm has the true states
   std::optional<PositioningOptions> positioning;  ///< of robots that localize themselves; nullopt: none
   std::optional<V2vLinkOptions> v2v;              ///< between robots; nullopt: V2V is current. Not with tiles
@@ -80,8 +81,9 @@ struct SimulationOptions {
 /// `world` and `device` must outlive it. One thread at a time. Ticks allocate nothing after warm-up.
 class Simulation {
  public:
-  /// @throws base::InputError for an unknown controller, invalid settings, a missing requirement of a controller, and
-  /// for faults and controllers of models with ranks
+  /// @throws base::InputError for an unknown controller, invalid settings, a missing requirement of a controller, for
+  /// faults and controllers of models with ranks, and for what copies of a world cannot have (world/copies.h): ranks,
+  /// faults, controllers of models, and robots with delayed states, cameras or V2V, delayed readings included
   Simulation(const world::World& world, gpu::Device& device, SimulationOptions options);
 
   /// Performs one tick of `world.interval`; the first tick measures at time 0 without motion. Returns the readings
@@ -92,6 +94,11 @@ class Simulation {
   /// Completes the last step's exchange with other ranks, which otherwise continues until the next step.
   /// @throws cluster::Failure on all ranks if a controller failed on one
   void settle();
+  /// Starts copies of the world anew (farm::Farm::restart), each with its seed, between two steps: movers at rest at
+  /// their `Mover::X_WM`, which the caller may have changed, with new controllers. Returns this first tick of theirs,
+  /// with the readings of these copies only. Nothing happens in the others. Spans are valid until the next call.
+  /// @throws base::InputError as the constructor, and if a sensor cannot start anew
+  base::TickRecord restart(std::span<const farm::Farm::Restart> restarts);
   /// Returns how this process shares the fleet with others, and the results of their exchange.
   FleetShare& share() { return *share_; }
   const FleetShare& share() const { return *share_; }
@@ -164,6 +171,8 @@ class Simulation {
   std::shared_ptr<const void> earlier_readings() const { return earlier_readings_; }
 
   const farm::Farm& farm() const { return farm_; }
+  /// Returns the thread pool for the caller's own loops between two steps.
+  base::ThreadPool& thread_pool() { return farm_.thread_pool(); }
   double move_seconds() const { return move_s_; }  ///< [s] wall time of controllers and motion
 
   /// Returns the mover's controller; null for movers without one, and for those of other ranks.
@@ -183,6 +192,8 @@ class Simulation {
   const std::vector<world::Warning>& warnings() const { return warnings_; }
 
  private:
+  void refuse_copies(const SimulationOptions& options) const;
+  const Actor& actor_of(std::uint32_t mover) const;
   void warn_of_long_ways();
   void warn_of_positioning();
   struct RobotControl {
@@ -212,6 +223,7 @@ class Simulation {
   void decide(std::int64_t time);
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
   void try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread);
+  std::span<const world::Signal> own_signals(std::int64_t time, unsigned thread);
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void begin();
@@ -250,6 +262,7 @@ class Simulation {
   std::vector<std::shared_ptr<const control::SharedMap>> maps_;       ///< as `intents_`; empty: no robot shares its map
   std::vector<std::shared_ptr<const control::SharedMap>> next_maps_;  ///< as `next_intents_`
   std::vector<std::vector<control::Neighbour>> others_;               ///< per thread
+  std::vector<std::vector<world::Signal>> own_signals_;               ///< per thread, of a copy with its own clock
   std::vector<world::Signal> signals_;
   std::vector<base::LightStatus> light_states_;  ///< per light, of the recorded tick
   std::vector<bool> absent_;                     ///< per mover
@@ -270,7 +283,8 @@ class Simulation {
   CameraInputs camera_inputs_;
   V2vInputs v2v_inputs_;
   std::vector<base::ReadingBlock> received_;  ///< of one tick: poses of cameras, states by V2V
-  std::uint64_t seed_;
+  Actor actor_;                               ///< default of all robots
+  std::vector<Actor> actors_;                 ///< as SimulationOptions::actors
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;
