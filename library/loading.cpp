@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -16,13 +17,30 @@
 #include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
+#include "world/random_starts.h"
 #include "world/stage/build_world.h"
 
 namespace sf::library {
 
 std::string found(const std::string& file) { return base::installed_file(file); }
 
-world::World load(const WorldSource& source, const sensorfarm::Options& options) {
+Starts::Starts(const world::World& world, std::optional<world::FreeSpace> space) : space_(std::move(space)) {
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+    X_WM_.push_back(world.movers[row].X_WM);
+    if (space_ && !world.movers[row].is_tag) clones_.push_back(row);
+  }
+}
+
+void Starts::place(world::World& world, std::uint32_t copy, std::uint64_t seed) const {
+  const std::size_t first = copy * X_WM_.size();
+  const std::span<world::Mover> movers = std::span(world.movers).subspan(first, X_WM_.size());
+  for (std::uint32_t row = 0; row < movers.size(); ++row) world::draw_start(movers[row], X_WM_[row], seed, row);
+  if (!space_) return;
+  const auto poses = space_->poses(static_cast<std::uint32_t>(clones_.size()), seed, world::places_of_tags(movers));
+  for (std::size_t i = 0; i < poses.size(); ++i) world.movers[first + clones_[i]].X_WM = poses[i];
+}
+
+LoadedWorld load(const WorldSource& source, const sensorfarm::Options& options) {
   world::LoadOptions load;
   load.accuracy = options.accuracy;
   load.sensors = sensors::world_file_words();
@@ -35,9 +53,17 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
   using scenarios::OwnRobot;
   const std::string lent = scenarios::lend_robot(
       world, options.robot_from, options.robots > 0 ? OwnRobot::for_copies : OwnRobot::needs_room, load);
-  if (options.robots > 0 || !lent.empty())
-    world::clone_robots(world, std::max(1u, options.robots), options.seed, lent.empty() ? options.of : lent);
-  return world;
+  std::optional<world::FreeSpace> space;
+  if (options.robots > 0 || !lent.empty()) {
+    const std::uint32_t original = world::robot_to_copy(world, lent.empty() ? options.of : lent);
+    space.emplace(world, world.movers[original]);
+    const std::vector<base::Pose> anywhere(std::max(1u, options.robots), world.movers[original].X_WM);
+    world::copy_robots(world, original, anywhere, {});
+  }
+  Starts starts(world, std::move(space));
+  world::copy_movers(world, options.copies);
+  for (std::uint32_t copy = 0; copy < world.copies; ++copy) starts.place(world, copy, options.seed + copy);
+  return {std::move(world), std::move(starts)};
 }
 
 std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options) {

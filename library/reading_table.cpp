@@ -84,6 +84,20 @@ void ReadingTable::copy(std::span<const base::ReadingBlock> readings) {
   view_.hits = hits_.empty() ? nullptr : hits_.data(), view_.hit_stride = view_.elements;
 }
 
+void ReadingTable::hold() {
+  if (view_.values == nullptr || view_.values == values_.data()) return;
+  const sensorfarm::Readings before = view_;
+  copy({});
+  const std::size_t length = view_.elements * view_.columns;
+  for (std::size_t row = 0; row < view_.sensors; ++row) {
+    std::copy_n(before.values + row * before.stride, length,
+                values_.begin() + static_cast<std::ptrdiff_t>(row * length));
+    if (!hits_.empty())
+      std::copy_n(before.hits + row * before.hit_stride, view_.elements,
+                  hits_.begin() + static_cast<std::ptrdiff_t>(row * view_.elements));
+  }
+}
+
 void ReadingTable::note(const base::ReadingBlock& reading) {
   const std::size_t row = row_of(reading);
   times_[row] = 1e-9 * static_cast<double>(reading.time);

@@ -21,6 +21,9 @@ class ReadingTable {
   /// Takes a tick's readings of this type, in order of delivery. Their memory must be valid until the next call.
   void take(std::span<const base::ReadingBlock> readings);
 
+  /// Keeps the rows that the next `take` does not have.
+  void hold();
+
   /// Continues with the rows of a table of the same type that had fewer sensors.
   void go_on(const ReadingTable& before);
 

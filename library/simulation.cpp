@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <tuple>
 
@@ -17,6 +18,7 @@
 #include "control/own_controllers.h"
 #include "library/errors.h"
 #include "library/loading.h"
+#include "library/observations.h"
 #include "library/ranks.h"
 #include "library/reading_table.h"
 #include "raycast/casters.h"
@@ -50,8 +52,8 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
   const bool none = options.controller == "none";
   simulation.actor.controller = library::controller_of(none ? "" : options.controller, options.settings);
   if (options.controller.empty())
-    for (const world::Mover& mover : world.movers)
-      simulation.actors.push_back({control::controller_of(mover, simulation.actor.controller), {}});
+    for (std::size_t row = 0; row < world.movers.size() / world.copies; ++row)
+      simulation.actors.push_back({control::controller_of(world.movers[row], simulation.actor.controller), {}});
   return simulation;
 }
 
@@ -82,6 +84,16 @@ struct Simulation::State {
   void step(std::span<const Twist> commands);
   void set(std::span<const Twist> given);
   void exchange(std::span<const Twist> given);
+  void restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
+               std::span<const Pose> starts);
+  void check_restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
+                     std::span<const Pose> starts) const;
+  /// [ns] Returns the farm's time at which a world started.
+  std::int64_t start_of(std::size_t k) const {
+    if (k >= world.copies) throw Error(fmt::format("there is no world {}; expected less than {}", k, world.copies));
+    return simulation->farm().episodes().start_of(static_cast<std::uint32_t>(k * robots.size()));
+  }
+  const std::string& name_of(std::size_t row) const { return robots[row % robots.size()].name; }
   void put(std::size_t row, const Pose& pose);
   std::size_t add(const NewRobot& robot);
   void add_tables(std::vector<library::ReadingTable>& before);
@@ -89,14 +101,21 @@ struct Simulation::State {
   void set_shape(std::size_t row, const ShapeChange& given);
   record::RunInfo run_info() const;
   void take(const base::TickRecord& tick);
+  library::ObservedStep observed(const Observations::State& by) const {
+    return {table(by.options.sensor).view(), poses, velocities};
+  }
+  void observe(std::span<const std::uint32_t> restarted);
   const library::ReadingTable& table(std::string_view type) const;
   const viz::TopView& top_view(const ImageOptions& wanted);
+  std::vector<base::Pose> poses_of(std::size_t k) const;
+  world::World now(std::size_t k) const;
 
   library::WorldSource source;
   Options options;
   cluster::Ranks* ranks;  ///< null: a single process
   std::shared_ptr<gpu::Device> device;
-  world::World world;
+  library::LoadedWorld loaded;
+  world::World& world = loaded.world;
   std::optional<scenarios::Simulation> simulation;
   std::vector<library::ReadingTable> tables;
   std::optional<record::Recorder> recorder;
@@ -112,8 +131,9 @@ struct Simulation::State {
   std::shared_ptr<Earlier> earlier = std::make_shared<Earlier>();  ///< for the next robot that joins
   std::vector<base::ReadingBlock> of_type;                         ///< scratch
   std::vector<std::pair<ImageOptions, viz::TopView>> top_views;    ///< of the last images, the newest at the end
+  std::vector<std::weak_ptr<Observations::State>> observers;
   std::uint64_t tick = 0;
-  double time = 0.0;
+  std::int64_t time = 0;  ///< [ns] of the farm
 };
 
 Simulation::State::State(library::WorldSource from, const Options& given)
@@ -124,14 +144,17 @@ Simulation::State::State(library::WorldSource from, const Options& given)
 
 void Simulation::State::prepare() {
   device = library::shared_device(options);
-  world = library::load(source, options);
+  if (options.copies > 1 && (ranks != nullptr || !options.record.empty()))
+    throw base::InputError(fmt::format("{} copies of a world cannot be {}; expected one", options.copies,
+                                       ranks != nullptr ? "shared by ranks" : "recorded"));
+  loaded = library::load(source, options);
   const scenarios::SimulationOptions given = simulation_options(world, options, ranks);
   simulation.emplace(world, *device, given);
   farm::check_faults(given.faults, world, simulation->farm().sensor_set());
   simulation->change_shapes_in(world);
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
-  for (std::uint32_t row = 0; row < world.movers.size(); ++row)
+  for (std::uint32_t row = 0; row < world.movers.size() / world.copies; ++row)
     robots.push_back(control::robot_of({world, row, options.seed, nullptr, nullptr, &sensor_set}));
   for (const world::Model& model : world.models) models.push_back(model.name);
   if (!device->notice().empty()) warnings.push_back(device->notice());
@@ -181,6 +204,7 @@ void Simulation::State::step(std::span<const Twist> given) {
     exchange(given);
   simulation->command(commands);
   take(simulation->step());
+  observe({});
   if (auto readings = simulation->earlier_readings()) {
     earlier->readings = std::move(readings);
     earlier = std::make_shared<Earlier>();
@@ -196,7 +220,7 @@ void Simulation::State::set(std::span<const Twist> given) {
     if (owned[i] == 0) continue;
     const Twist& twist = given[i];
     if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
-      throw base::InputError(fmt::format("the command of '{}' is ({}, {}, {}); expected finite numbers", robots[i].name,
+      throw base::InputError(fmt::format("the command of '{}' is ({}, {}, {}); expected finite numbers", name_of(i),
                                          twist.forward, twist.left, twist.turn));
     commands[i] = {twist.forward, twist.left, twist.turn};
   }
@@ -229,13 +253,53 @@ void Simulation::State::exchange(std::span<const Twist> given) {
   }
 }
 
+void Simulation::State::check_restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
+                                      std::span<const Pose> starts) const {
+  if (seeds.size() != worlds.size())
+    throw base::InputError(fmt::format("{} seeds for {} worlds; expected as many", seeds.size(), worlds.size()));
+  const std::size_t rows = worlds.size() * robots.size();
+  if (!starts.empty() && starts.size() != rows)
+    throw base::InputError(fmt::format("{} starts for {} rows; expected one per row, or none", starts.size(), rows));
+  for (const Pose& start : starts)
+    if (!std::isnan(start.x) && !std::isfinite(start.x + start.y + start.z + start.yaw))
+      throw base::InputError(
+          "a start is not finite; expected finite poses, or NaN for the start that the seed chooses");
+  std::vector<bool> taken(world.copies);
+  for (const std::uint32_t k : worlds) {
+    if (k >= world.copies)
+      throw base::InputError(fmt::format("there is no world {}; expected less than {}", k, world.copies));
+    if (taken[k]) throw base::InputError(fmt::format("world {} is given twice; expected each once", k));
+    taken[k] = true;
+  }
+}
+
+void Simulation::State::restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
+                                std::span<const Pose> starts) {
+  check_restart(worlds, seeds, starts);
+  std::vector<farm::Farm::Restart> restarts;
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    const std::size_t first = worlds[i] * robots.size();
+    restarts.push_back({worlds[i], seeds[i]});
+    loaded.starts.place(world, worlds[i], seeds[i]);
+    for (std::size_t row = 0; row < robots.size(); ++row) {
+      commands[first + row] = {};
+      const Pose start = starts.empty() ? Pose{NAN} : starts[i * robots.size() + row];
+      if (!std::isnan(start.x)) world.movers[first + row].X_WM = {start.x, start.y, start.z, start.yaw};
+    }
+  }
+  for (library::ReadingTable& table : tables) table.hold();
+  if (worlds.empty()) return;
+  take(simulation->restart(restarts));
+  observe(worlds);
+}
+
 void Simulation::State::put(std::size_t row, const Pose& pose) {
   if (row >= poses.size())
     throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
   if (!present[row])
-    throw base::InputError(fmt::format("'{}' was removed; add it again before placing it", robots[row].name));
+    throw base::InputError(fmt::format("'{}' was removed; add it again before placing it", name_of(row)));
   if (!std::isfinite(pose.x + pose.y + pose.z + pose.yaw))
-    throw base::InputError(fmt::format("the pose of '{}' is not finite", robots[row].name));
+    throw base::InputError(fmt::format("the pose of '{}' is not finite", name_of(row)));
   simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw});
   poses[row] = pose, velocities[row] = {};
 }
@@ -301,8 +365,20 @@ void Simulation::State::set_shape(std::size_t row, const ShapeChange& given) {
   simulation->set_shape(world, static_cast<std::uint32_t>(row), change);
 }
 
+/// Writes the observations of a step, or of the worlds that started anew.
+void Simulation::State::observe(std::span<const std::uint32_t> restarted) {
+  std::erase_if(observers, [](const auto& observer) { return observer.expired(); });
+  for (const auto& observer : observers) {
+    const auto state = observer.lock();
+    if (restarted.empty())
+      state->step(observed(*state), simulation->thread_pool());
+    else
+      state->restart(observed(*state), restarted);
+  }
+}
+
 void Simulation::State::take(const base::TickRecord& record) {
-  tick = record.tick, time = 1e-9 * static_cast<double>(record.time);
+  tick = record.tick, time = record.time;
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
     const base::Report& report = record.reports[i];
     poses[i] = {report.X_WM.x, report.X_WM.y, report.X_WM.z, report.X_WM.yaw};
@@ -323,6 +399,25 @@ void Simulation::State::take(const base::TickRecord& record) {
     const control::Controller* controller = simulation->controller(i);
     done[i] = owned[i] != 0 ? controller != nullptr && controller->done() : simulation->status(i).done;
   }
+}
+
+std::vector<base::Pose> Simulation::State::poses_of(std::size_t k) const {
+  start_of(k);
+  std::vector<base::Pose> X_WM;
+  for (const Pose& pose : std::span(poses).subspan(k * robots.size(), robots.size()))
+    X_WM.push_back({pose.x, pose.y, pose.z, pose.yaw});
+  return X_WM;
+}
+
+/// Returns one of the worlds with its movers at their present poses.
+world::World Simulation::State::now(std::size_t k) const {
+  const std::vector<base::Pose> X_WM = poses_of(k);
+  world::World shown = world;
+  shown.copies = 1;
+  shown.movers.resize(X_WM.size());
+  for (std::size_t i = 0; i < X_WM.size(); ++i) shown.movers[i].X_WM = X_WM[i];
+  std::erase_if(shown.movers, [](const world::Mover& mover) { return base::is_absent(mover.X_WM); });
+  return shown;
 }
 
 const library::ReadingTable& Simulation::State::table(std::string_view type) const {
@@ -374,14 +469,44 @@ void Simulation::step(std::span<const Twist> commands) {
 }
 
 void Simulation::reset() { reset(state_->options.seed); }
+void Simulation::reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
+                       std::span<const Pose> starts) {
+  library::translated([&] { state_->restart(worlds, seeds, starts); });
+}
 void Simulation::reset(std::uint64_t seed) {
+  if (copies() > 1) {
+    std::vector<std::uint32_t> worlds(copies());
+    std::iota(worlds.begin(), worlds.end(), 0u);
+    std::vector<std::uint64_t> seeds(copies());
+    std::iota(seeds.begin(), seeds.end(), seed);
+    return reset(worlds, seeds);
+  }
   // Views of the old run keep its memory. Its recording ends here, because the new one uses the same folder.
   finish_recording();
   state_->recorder.reset();
   state_ = library::translated([&] {
     Options options = state_->options;
     options.seed = seed;
-    return std::make_shared<State>(state_->source, options);
+    auto state = std::make_shared<State>(state_->source, options);
+    state->observers = std::move(state_->observers);
+    std::vector<std::uint32_t> all(state->world.copies);
+    std::iota(all.begin(), all.end(), 0u);
+    state->observe(all);
+    return state;
+  });
+}
+
+Observations Simulation::observe(const ObservationOptions& options) {
+  return library::translated([&] {
+    const std::uint8_t type = state_->table(options.sensor).type();
+    const auto groups = state_->simulation->farm().sensor_set().groups();
+    const auto group = std::ranges::find_if(groups, [&](const auto& each) { return each.type->id == type; });
+    auto made = std::make_shared<Observations::State>(options, state_->world, *group);
+    std::vector<std::uint32_t> all(state_->world.copies);
+    std::iota(all.begin(), all.end(), 0u);
+    made->restart(state_->observed(*made), all);
+    state_->observers.push_back(made);
+    return Observations(std::move(made));
   });
 }
 
@@ -410,6 +535,7 @@ void Simulation::put(std::size_t row, const Pose& pose) {
   library::translated([&] { state_->put(row, pose); });
 }
 
+std::size_t Simulation::copies() const { return state_->world.copies; }
 std::size_t Simulation::size() const { return state_->poses.size(); }
 const std::vector<Robot>& Simulation::robots() const { return state_->robots; }
 std::span<const Pose> Simulation::poses() const { return state_->poses; }
@@ -430,15 +556,21 @@ Readings Simulation::readings(std::string_view type) const {
 
 const std::vector<std::string>& Simulation::models() const { return state_->models; }
 double Simulation::interval() const { return state_->world.interval; }
-double Simulation::time() const { return state_->time; }
-std::uint64_t Simulation::tick() const { return state_->tick; }
+double Simulation::time(std::size_t world) const {
+  return 1e-9 * static_cast<double>(state_->time - state_->start_of(world));
+}
+std::uint64_t Simulation::tick(std::size_t world) const {
+  return state_->tick -
+         static_cast<std::uint64_t>(std::llround(1e-9 * static_cast<double>(state_->start_of(world)) / interval()));
+}
 unsigned Simulation::rank() const { return state_->ranks == nullptr ? 0 : state_->ranks->rank(); }
 unsigned Simulation::ranks() const { return state_->ranks == nullptr ? 1 : state_->ranks->size(); }
 std::span<const std::uint8_t> Simulation::owned() const { return state_->owned; }
 
-std::uint64_t Simulation::hash() const {
+std::uint64_t Simulation::hash(std::size_t world) const {
   if (rank() > 0) throw Error("only rank 0 has the hash of all ranks' readings");
-  return state_->simulation->farm().hash();
+  if (world >= copies()) throw Error(fmt::format("there is no world {}; expected less than {}", world, copies()));
+  return state_->simulation->farm().hash(static_cast<std::uint32_t>(world));
 }
 
 std::string Simulation::description() const {
@@ -455,21 +587,13 @@ void Simulation::finish_recording() {
   });
 }
 
-void Simulation::draw(const std::string& file) const {
-  world::World now = state_->world;
-  for (std::size_t i = 0; i < now.movers.size(); ++i) {
-    const Pose& pose = state_->poses[i];
-    now.movers[i].X_WM = {pose.x, pose.y, pose.z, pose.yaw};
-  }
-  std::erase_if(now.movers, [](const world::Mover& mover) { return base::is_absent(mover.X_WM); });
-  library::translated([&] { viz::draw_world(now, file); });
+void Simulation::draw(const std::string& file, std::size_t world) const {
+  library::translated([&] { viz::draw_world(state_->now(world), file); });
 }
 
-Image Simulation::image(const ImageOptions& options) const {
-  std::vector<base::Pose> X_WM;
-  for (const Pose& pose : state_->poses) X_WM.push_back({pose.x, pose.y, pose.z, pose.yaw});
+Image Simulation::image(const ImageOptions& options, std::size_t world) const {
   return library::translated([&] {
-    viz::PixelImage image = state_->top_view(options).paint(X_WM, state_->time);
+    viz::PixelImage image = state_->top_view(options).paint(state_->poses_of(world), time(world));
     return Image{image.width, image.height, std::move(image.rgb)};
   });
 }

@@ -26,9 +26,8 @@
 #include "sensorfarm/controller.h"
 #include "sensorfarm/derived.h"
 #include "sensorfarm/model.h"
+#include "sensorfarm/observations.h"
 #include "sensorfarm/sensor.h"
-
-#define SENSORFARM_API __attribute__((visibility("default")))
 
 namespace sensorfarm {
 
@@ -50,9 +49,13 @@ struct Options {
                              ///< robots
   std::string of;            ///< robot to clone; empty: the first robot with sensors
   std::uint64_t seed = 1;    ///< seed of poses, noise and controllers
-  unsigned threads = 0;      ///< 0: all cores. The results do not depend on it
-  bool noise = true;         ///< false: no noise, overriding the world file
-  std::string accuracy;      ///< accuracy mode of all sensors (docs/accuracy.md); empty: as set in the world file
+  /// Simulates that many worlds at once, which share walls and settings. World k has seed + k and gives the bytes of a
+  /// simulation of that world alone. All arrays have the rows of world 0, then those of world 1, and so on. Not with
+  /// `record`, `ranks`, `positioning` and `faults`.
+  std::uint32_t copies = 1;
+  unsigned threads = 0;  ///< 0: all cores. The results do not depend on it
+  bool noise = true;     ///< false: no noise, overriding the world file
+  std::string accuracy;  ///< accuracy mode of all sensors (docs/accuracy.md); empty: as set in the world file
   std::string device;  ///< row or part of the name of a Vulkan device, or "host" for none, with the same bytes; empty:
                        ///< the best device, or the host if none is usable (as `warnings` states)
   std::string caster = "auto";  ///< "auto" or a name of `sensorfarm run --caster` (docs/accuracy.md#casters), such as
@@ -158,9 +161,22 @@ class SENSORFARM_API Simulation {
   /// @throws Error for a wrong number of commands, numbers that are not finite, and a controller that fails
   void step();
   void step(std::span<const Twist> commands);
-  /// Restarts at time 0, optionally with another seed for poses of clones, noise and controllers.
+  /// Restarts at time 0, optionally with another seed for poses of clones, noise and controllers. Of several worlds,
+  /// world k gets that seed + k.
   void reset();
   void reset(std::uint64_t seed);
+  /// Starts some of several worlds anew, at time 0 of their own clocks; the others are unchanged, and no time passes
+  /// for them. Readings of the new start are available at once.
+  /// @param worlds numbers below `copies`, each once  @param seeds one per world, as Options::seed of that world alone
+  /// @param starts poses of all rows of these worlds in turn; empty, or with x NaN: that of a world alone with that
+  /// seed
+  /// @throws Error, with nothing changed, for other arguments, and if a world has a sensor that cannot start anew
+  void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
+             std::span<const Pose> starts = {});
+  /// Returns observations that this simulation writes from now on, as long as the handle exists; a `reset` of the whole
+  /// simulation keeps them. @throws Error for options out of range, an unknown type, and robots that have different
+  /// numbers of such sensors or different numbers of elements
+  Observations observe(const ObservationOptions& options = {});
   /// Adds a robot, at rest, between two steps. Its sensors are read from the next step on. All other rows, and the
   /// bytes of readings that do not see it, are unchanged. A removed robot returns to its row if its name is added
   /// again. Earlier views of tables are unchanged. Takes time proportional to the fleet (docs/own_controller.md). With
@@ -190,8 +206,9 @@ class SENSORFARM_API Simulation {
   /// Places a robot or tag, at rest, between two steps. Its sensors see the new place from the next step on.
   void put(std::size_t row, const Pose& pose);
 
+  std::size_t copies() const;                      ///< number of worlds
   std::size_t size() const;                        ///< number of rows: robots, and tags if the world contains any
-  const std::vector<Robot>& robots() const;        ///< per row
+  const std::vector<Robot>& robots() const;        ///< per row of a world
   std::span<const Pose> poses() const;             ///< per row, of the last tick
   std::span<const Twist> velocities() const;       ///< per row
   std::span<const std::uint8_t> contacts() const;  ///< per row: 1 if a wall or a robot stopped it
@@ -204,12 +221,13 @@ class SENSORFARM_API Simulation {
   Readings readings(std::string_view type) const;  ///< @throws Error for a type that the world does not contain
   const std::vector<std::string>& models() const;  ///< names, indexed by `hits`
 
-  double interval() const;          ///< [s] duration of a tick
-  double time() const;              ///< [s] simulated time of the last tick
-  std::uint64_t tick() const;       ///< number of the last tick, from 0
-  std::uint64_t hash() const;       ///< hash of all readings so far; equals the hash of `sensorfarm run`. @throws Error
-                                    ///< on ranks other than 0
-  std::string description() const;  ///< device and caster, in one line
+  double interval() const;                          ///< [s] duration of a tick
+  double time(std::size_t world = 0) const;         ///< [s] simulated time of the last tick, of one world
+  std::uint64_t tick(std::size_t world = 0) const;  ///< number of the last tick, from 0, of one world
+  /// Returns the hash of all readings so far, of one world since its start; equals that of `sensorfarm run`.
+  /// @throws Error on ranks other than 0, and for an unknown world
+  std::uint64_t hash(std::size_t world = 0) const;
+  std::string description() const;                   ///< device and caster, in one line
   const std::vector<std::string>& warnings() const;  ///< about the world file and the device
   unsigned rank() const;                             ///< rank of this process, in [0, ranks())
   unsigned ranks() const;                            ///< number of ranks that share the fleet; 1: only this process
@@ -219,11 +237,11 @@ class SENSORFARM_API Simulation {
   /// Draws walls, robots and tags at their present poses, and fields of view, to a PNG, SVG or PDF file, chosen by its
   /// suffix.
   /// @throws Error if it cannot be written, and without Cairo
-  void draw(const std::string& file) const;
+  void draw(const std::string& file, std::size_t world = 0) const;
   /// Returns the world from above at this time, north (+y) up, as pixels: ground, walls, traffic lights and the bodies
   /// of robots and tags, without texts and fields of view. The static layer is painted for the first image of a size
   /// and view, and cached for the last four combinations. @throws Error for options out of range, and without Cairo
-  Image image(const ImageOptions& options = {}) const;
+  Image image(const ImageOptions& options = {}, std::size_t world = 0) const;
   /// Keeps the memory of spans and readings alive beyond the simulation. Its content changes with the next step.
   std::shared_ptr<const void> memory() const;
 

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#define SENSORFARM_API __attribute__((visibility("default")))
+
 namespace sensorfarm {
 
 /// A planar pose with a height, in the world frame unless stated otherwise: x forward, y left, z up.
