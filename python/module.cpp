@@ -112,6 +112,7 @@ Options options_of(Keywords& given) {
   Options options;
   py::object controller = py::str("");
   given.read("robots", options.robots), given.read("of", options.of), given.read("seed", options.seed);
+  given.read("copies", options.copies);
   given.read("robot_from", options.robot_from), given.read("positioning", options.positioning);
   given.read("faults", options.faults);
   given.read("threads", options.threads), given.read("noise", options.noise);
@@ -243,8 +244,9 @@ std::size_t add_robot(PySimulation& s, Text name, Text like, const Pose& pose, c
   return in_farm(s, [&] { return s.farm.add_robot(robot); });
 }
 
-py::array image(const PySimulation& s, int width, int height, const std::optional<std::array<double, 4>>& view) {
-  auto* const made = new Image(in_farm(s, [&] { return s.farm.image({width, height, view}); }));
+py::array image(const PySimulation& s, int width, int height, const std::optional<std::array<double, 4>>& view,
+                std::size_t world) {
+  auto* const made = new Image(in_farm(s, [&] { return s.farm.image({width, height, view}, world); }));
   const py::capsule owner(made, [](void* image) { delete static_cast<Image*>(image); });
   return py::array_t<std::uint8_t>({made->height, made->width, 3}, made->rgb.data(), owner);
 }
@@ -252,6 +254,58 @@ py::array image(const PySimulation& s, int width, int height, const std::optiona
 void set_shape(PySimulation& s, std::size_t row, Text shape, Text color,
                const std::optional<std::array<double, 3>>& size) {
   in_farm(s, [&] { s.farm.set_shape(row, {shape, color, size}); });
+}
+
+/// Starts worlds anew. @param starts (worlds, robots, 4), or None
+void restart(PySimulation& s, const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds,
+             const py::object& starts) {
+  if (starts.is_none()) return in_farm(s, [&] { s.farm.reset(worlds, seeds); });
+  const Commands poses = Commands::ensure(starts);
+  const std::size_t rows = worlds.size() * s.farm.robots().size();
+  if (!poses || static_cast<std::size_t>(poses.size()) != 4 * rows)
+    throw py::value_error("starts have " +
+                          (poses ? "the shape " + std::string(py::str(poses.attr("shape")))
+                                 : std::string("elements that are not numbers")) +
+                          "; expected (" + std::to_string(worlds.size()) + ", " +
+                          std::to_string(s.farm.robots().size()) + ", 4): x, y, z [m], yaw [rad] per world and row");
+  static_assert(sizeof(Pose) == 4 * sizeof(double));
+  const auto* const first = reinterpret_cast<const Pose*>(poses.data());
+  in_farm(s, [&] { s.farm.reset(worlds, seeds, {first, rows}); });
+}
+
+/// Returns a view of an observation's memory. @param width 0: one number per agent
+template <class Value>
+py::array seen(const Observations& o, std::span<Value> data, std::size_t width, bool writable) {
+  std::vector<py::ssize_t> shape{count(o.agents())};
+  if (width > 0) shape.push_back(count(width));
+  auto* const kept = new Observations(o);
+  const py::capsule owner(kept, [](void* handle) { delete static_cast<Observations*>(handle); });
+  py::array array(py::dtype::of<std::remove_const_t<Value>>(), std::move(shape), data.data(), owner);
+  if (!writable) array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+void add_observations(py::module_& module) {
+  using O = Observations;
+  py::class_<O>(module, "Observations", "What a learner observes; written in place after each step and reset.")
+      .def_property_readonly(
+          "values", [](const O& o) { return seen(o, o.values(), o.columns(), false); },
+          "(agents, columns) float32 in [-1, 1].")
+      .def_property_readonly(
+          "rows", [](const O& o) { return seen(o, o.rows(), 0, false); }, "(agents,): row of the agent's robot.")
+      .def_property_readonly(
+          "goals", [](const O& o) { return seen(o, o.goals(), 2, true); },
+          "(agents, 2): x, y [m] of each goal; writable. NaN: none.")
+      .def_property_readonly(
+          "distances", [](const O& o) { return seen(o, o.distances(), 0, false); }, "(agents,) [m] to the goal.")
+      .def_property_readonly(
+          "progress", [](const O& o) { return seen(o, o.progress(), 0, false); },
+          "(agents,) [m]: how much nearer the goal came in the last step.")
+      .def_property_readonly(
+          "ages", [](const O& o) { return seen(o, o.ages(), 0, false); }, "(agents,): steps since the world's start.")
+      .def(
+          "update", [](O& o) { in_farm([&] { o.update(); }); }, "Writes values anew, for goals that have changed.")
+      .def("__len__", [](const O& o) { return o.agents(); });
 }
 
 void add_state(py::class_<PySimulation>& c) {
@@ -278,9 +332,11 @@ void add_state(py::class_<PySimulation>& c) {
       .def_property_readonly(
           "models", [](const PySimulation& s) { return s.farm.models(); }, "Names, by the numbers in hits().")
       .def_property_readonly(
+          "copies", [](const PySimulation& s) { return s.farm.copies(); }, "Number of worlds.")
+      .def_property_readonly(
           "interval", [](const PySimulation& s) { return s.farm.interval(); }, "[s] of a tick.")
       .def_property_readonly(
-          "time", [](const PySimulation& s) { return s.farm.time(); }, "[s] of the last tick.")
+          "time", [](const PySimulation& s) { return s.farm.time(); }, "[s] of the last tick, of world 0.")
       .def_property_readonly(
           "tick", [](const PySimulation& s) { return s.farm.tick(); }, "Number of the last tick, from 0.")
       .def_property_readonly(
@@ -335,7 +391,7 @@ void add_simulation(py::module_& module) {
           return made(options, [&](const Options& given) { return Simulation(world, given); });
         }),
         py::arg("world"),
-        "world: a file; options: robots=0, of='', robot_from='', seed=1, threads=0, noise=True, accuracy='', "
+        "world: a file; options: robots=0, of='', robot_from='', seed=1, copies=1, threads=0, noise=True, accuracy='', "
         "device='', caster='auto', "
         "require_vulkan=False, "
         "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
@@ -354,6 +410,25 @@ void add_simulation(py::module_& module) {
             in_farm(s, [&] { seed ? s.farm.reset(*seed) : s.farm.reset(); });
           },
           py::arg("seed") = py::none())
+      .def("restart", &restart, py::arg("worlds"), py::arg("seeds"), py::arg("starts") = py::none(),
+           "Starts some of several worlds anew. seeds: one per world; starts: (worlds, robots, 4) poses; None, and "
+           "where x "
+           "is NaN: those of the seeds.")
+      .def(
+          "observe",
+          [](PySimulation& s, Text sensor, std::uint32_t every, bool speeds, double goal_reach, std::uint32_t stack) {
+            return in_farm(s, [&] { return s.farm.observe({sensor, every, speeds, goal_reach, stack}); });
+          },
+          py::arg("sensor") = "laser", py::kw_only(), py::arg("every") = 1, py::arg("speeds") = true,
+          py::arg("goal_reach") = 0.0, py::arg("stack") = 1,
+          "Returns Observations that are written from now on: every k-th element of the readings over their limits, "
+          "speeds over theirs, the goal, and `stack` of these, the newest first.")
+      .def(
+          "hash_of", [](const PySimulation& s, std::size_t world) { return s.farm.hash(world); }, py::arg("world"),
+          "Hash of the readings of one of several worlds, since its start.")
+      .def(
+          "time_of", [](const PySimulation& s, std::size_t world) { return s.farm.time(world); }, py::arg("world"),
+          "[s] of the last tick, of one of several worlds.")
       .def(
           "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm(s, [&] { s.farm.put(row, pose); }); },
           py::arg("row"), py::arg("pose"), "Places a robot at (x, y, z [m], yaw [rad]), at rest.")
@@ -369,9 +444,12 @@ void add_simulation(py::module_& module) {
           "set_lane", [](PySimulation& s, Text lane, Text use) { in_farm(s, [&] { s.farm.set_lane(lane, use); }); },
           py::arg("lane"), py::arg("use"), "Requests the use of a lane: open, closed, reversed, turn, left or right.")
       .def(
-          "draw", [](const PySimulation& s, Text file) { in_farm(s, [&] { s.farm.draw(file); }); }, py::arg("file"),
+          "draw",
+          [](const PySimulation& s, Text file, std::size_t world) { in_farm(s, [&] { s.farm.draw(file, world); }); },
+          py::arg("file"), py::kw_only(), py::arg("world") = 0,
           "Writes a picture of the world at this time: PNG, SVG or PDF by its suffix.")
       .def("image", &image, py::arg("width") = 640, py::arg("height") = 480, py::arg("view") = py::none(),
+           py::kw_only(), py::arg("world") = 0,
            "(height, width, 3) uint8: the world from above at this time; shows at least view = (x_min, y_min, x_max, "
            "y_max) [m].")
       .def("finish_recording", [](PySimulation& s) { in_farm(s, [&] { s.farm.finish_recording(); }); });
@@ -385,6 +463,7 @@ PYBIND11_MODULE(_sensorfarm, module) {
   py::register_exception<DeviceError>(module, "DeviceError", module.attr("Error"));
   module.attr("NONE") = kNone;
   add_controller_types(module);
+  add_observations(module);
   add_simulation(module);
   module.def("_abort_ranks", &abort_ranks);
   module.def("add_model_controller", &add_model_class, py::arg("controller"), py::arg("name") = py::none());

@@ -65,8 +65,8 @@ def corridor(floors, sides=120):
 class Rounds(sensorfarm.gym.Task):
     """Reward: metres around the ring, the angle times the radius of the corridor's middle."""
 
-    def begin(self):
-        super().begin()
+    def begin(self, worlds=None):
+        super().begin(worlds)
         self._angles = self._now()
 
     def _now(self):
@@ -174,12 +174,12 @@ def main():
     env = sensorfarm.gym.VectorEnv(world, num_envs=None, max_steps=steps + 1, task=Rounds, seed=given.seed)
     began = time.time()
     policy, curve = train(env, given.generations, steps, given.seed)
-    print(f"trained in {time.time() - began:.0f} s ({time.process_time():.0f} s of all cores) on {env.simulations[0].description}")
+    print(f"trained in {time.time() - began:.0f} s ({time.process_time():.0f} s of all cores) on {env.simulation.description}")
     metres, free = episodes(env, numpy.tile(policy, (env.num_envs, 1)), steps)
     print(f"policy: {metres.mean():.2f} m in {given.seconds:g} s, {free.sum()} of {env.num_envs} starts without contact")
     numpy.save(os.path.join(given.out, "policy.npy"), policy)
     draw(curve, os.path.join(given.out, "learning_curve.svg"))
-    env.simulations[0].draw(os.path.join(given.out, "corridor.png"))
+    env.simulation.draw(os.path.join(given.out, "corridor.png"))
 
 
 if __name__ == "__main__":

@@ -16,12 +16,13 @@ import tempfile as _tempfile
 import numpy as _numpy
 
 from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot, Neighbour,
-                          Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, WorldObject, _abort_ranks,
-                          add_model_controller, load_plugin)
+                          Observations, Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, WorldObject,
+                          _abort_ranks, add_model_controller, load_plugin)
+from .worlds import Worlds
 
 __all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite", "NearRobot",
-           "Neighbour", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist", "WorldObject",
-           "add_model_controller", "load_plugin"]
+           "Neighbour", "Observations", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist",
+           "WorldObject", "Worlds", "add_model_controller", "load_plugin"]
 
 
 def _valid(self, type, without_noise=False):

@@ -295,12 +295,39 @@ class ModelController(Protocol):
     def __init__(self, model: ModelSite, settings: Settings) -> None: ...
     def tick(self, model: Model) -> None: ...
 
+class Observations:
+    """What a learner observes: rows of float32 in [-1, 1], one per agent, written in place after each step and restart
+    of their simulation."""
+    @property
+    def values(self) -> NDArray[np.float32]:
+        """(agents, columns): see Simulation.observe."""
+    @property
+    def rows(self) -> NDArray[np.uint32]:
+        """(agents,): row of the agent's robot."""
+    @property
+    def goals(self) -> NDArray[np.float64]:
+        """(agents, 2): x, y [m] of each goal; writable, effective from the next step, restart or update on. NaN:
+        none."""
+    @property
+    def distances(self) -> NDArray[np.float64]:
+        """(agents,) [m] to the goal; NaN without one."""
+    @property
+    def progress(self) -> NDArray[np.float64]:
+        """(agents,) [m]: how much nearer the goal came in the last step; 0 after a restart or a change of the goal."""
+    @property
+    def ages(self) -> NDArray[np.uint32]:
+        """(agents,): steps since the start of the agent's world."""
+    def update(self) -> None:
+        """Writes the observations anew, for goals that have changed."""
+    def __len__(self) -> int:
+        """Number of agents."""
+
 class Simulation:
     """A simulated fleet. Not thread-safe. Arrays are views without a copy, valid until the next step, put or reset:
     read them again after it, and copy the data that you keep. They are read-only unless `writable`."""
 
     def __init__(self, world: str, *, robots: int = 0, of: str = "", robot_from: str = "",
-                 seed: int = 1, threads: int = 0, noise: bool = True, accuracy: str = "", device: str = "", caster: str = "auto",
+                 seed: int = 1, copies: int = 1, threads: int = 0, noise: bool = True, accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
                  ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", positioning: str = "", faults: str = "",
@@ -308,7 +335,8 @@ class Simulation:
         """world: a world file or ROS map (.yaml), possibly one of the installed worlds. robots: clones of one robot
         (`of`; otherwise the first with sensors) at free poses; 0: the world's own robots. robot_from: "FILE:NAME", a
         robot of another world file, for a world without robots (a ROS map) or as the robot to clone. seed: of poses,
-        noise and controllers. threads: 0 for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row
+        noise and controllers. copies: that many worlds at once; world k has seed + k, its rows follow those of world
+        k - 1, and it gives the bytes of that world alone; not with record, ranks, positioning and faults. threads: 0 for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row
         or part of a device's name, or "host". require_vulkan: raise DeviceError instead of using the host if no device
         is usable. caster: auto, or a name of `sensorfarm run --caster`, such as host or reference (docs/accuracy.md).
         controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty: `ctrl` of the world
@@ -327,7 +355,22 @@ class Simulation:
         then sensors are read. None: the previous twists apply. Twists of rows with a controller are ignored. Other
         Python threads run meanwhile."""
     def reset(self, seed: int | None = None) -> None:
-        """Restarts at time 0. Arrays read before keep the old run."""
+        """Restarts at time 0. Arrays read before keep the old run. Of several worlds, world k gets seed + k."""
+    def restart(self, worlds: Sequence[int], seeds: Sequence[int], starts: ArrayLike | None = None) -> None:
+        """Starts some of several worlds anew, at time 0 of their own clocks; the others are unchanged, and no time
+        passes for them. Readings of the start are available at once. seeds: one per world. starts: (worlds, robots, 4)
+        poses; None, and where x is NaN: those of a world alone with that seed. Raises Error, with nothing changed."""
+    def observe(self, sensor: str = "laser", *, every: int = 1, speeds: bool = True, goal_reach: float = 0.0,
+                stack: int = 1) -> Observations:
+        """Returns observations of the robots with sensors of this type, which each step and restart writes from now on.
+        Columns: elements 0, every, 2 every, ... of the readings, over the sensors' limits (1 where there is no number);
+        with speeds, forward and turning speed over the robot's largest; with goal_reach [m] > 0, the distance of the
+        goal over it, and cosine and sine of its bearing; all of this for the last `stack` observations, the newest
+        first. Raises Error for options out of range."""
+    def hash_of(self, world: int) -> int:
+        """Hash of the readings of one of several worlds, since its start."""
+    def time_of(self, world: int) -> float:
+        """[s] of the last tick, of one of several worlds."""
     def add_robot(self, name: str, like: str, pose: Sequence[float], *, controller: str | type = "",
                   settings: Mapping[str, Any] = ...) -> int:
         """Adds a copy of the robot `like` (its name, or the word of its type) at (x, y, z, yaw), at rest. Its sensors
@@ -350,10 +393,10 @@ class Simulation:
         for 2 s; until then it is closed. A reset restores all lanes. Raises Error, with nothing changed."""
     def put(self, row: int, pose: Sequence[float]) -> None:
         """Places a robot at (x, y, z, yaw), at rest. Its sensors see the new place from the next step on."""
-    def draw(self, file: str) -> None:
-        """Writes a PNG of the world at this time."""
+    def draw(self, file: str, *, world: int = 0) -> None:
+        """Writes a PNG of the world, or of one of several, at this time."""
     def image(self, width: int = 640, height: int = 480,
-              view: tuple[float, float, float, float] | None = None) -> NDArray[np.uint8]:
+              view: tuple[float, float, float, float] | None = None, *, world: int = 0) -> NDArray[np.uint8]:
         """Returns a new array (height, width, 3) of red, green, blue: the world from above at this time, +y up, without
         texts and fields of view. view: (x_min, y_min, x_max, y_max) [m] that must be visible; None: the whole world.
         The first image of a size and view paints the static layer, which is cached for the last four combinations.
@@ -378,7 +421,11 @@ class Simulation:
     def present(self) -> NDArray[np.bool_]:
         """(robots,): False if remove_robot removed it from the world."""
     @property
-    def robots(self) -> list[Robot]: ...
+    def copies(self) -> int:
+        """Number of worlds."""
+    @property
+    def robots(self) -> list[Robot]:
+        """Of each row of a world, at the start."""
     @property
     def shapes(self) -> list[str]:
         """Names of the world's shapes, in the order of its file."""
@@ -445,3 +492,45 @@ def add_model_controller(controller: type[ModelController], name: str | None = N
 
 def load_plugin(file: str) -> None:
     """Loads controllers from a shared library or Python file, so that `controller` can name them. Raises Error."""
+
+class Worlds:
+    """Worlds with equally many robots, simulated at once; arrays have an axis of worlds. World k has seed + k, and
+    gives the bytes of a Simulation of that world alone. Arrays of one file are views, of several files copies."""
+    def __init__(self, world: str | Sequence[str], copies: int | Sequence[int] = 1, seed: int = 1,
+                 text: str | None = None, **options: Any) -> None:
+        """world: a world file, or several; text: the world's text, which `world` then names. copies: of each, or one
+        number per file. options: those of Simulation, except record, ranks, positioning and faults."""
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(worlds, robots, 4): x, y, z [m], yaw [rad]."""
+    @property
+    def velocities(self) -> NDArray[np.float64]:
+        """(worlds, robots, 3): forward, left [m/s], turn [rad/s]."""
+    @property
+    def contacts(self) -> NDArray[np.bool_]:
+        """(worlds, robots): a wall or a robot stopped it."""
+    @property
+    def done(self) -> NDArray[np.bool_]:
+        """(worlds, robots): its controller is done."""
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """(worlds,): [s] since the start of each."""
+    def readings(self, type: str) -> NDArray[np.float64]:
+        """(worlds, sensors, elements[, columns]): the newest readings, by world and robot."""
+    def observe(self, sensor: str = "laser", **options: Any) -> list[Observations]:
+        """Returns one Observations per world file (Simulation.observe)."""
+    def step(self, commands: ArrayLike | None = None) -> None:
+        """One tick of all worlds. commands: (worlds, robots, 3) of forward, left [m/s], turn [rad/s]; None:
+        unchanged."""
+    def reset(self, seed: int | None = None, mask: ArrayLike | None = None, seeds: ArrayLike | None = None,
+              starts: ArrayLike | None = None) -> None:
+        """Starts worlds anew; the others are unchanged, and no time passes for them. mask: bool (worlds,); None: all.
+        seed: world k gets seed + k; seeds: one per world of the mask instead; None: seeds that were not used before.
+        starts: (worlds of the mask, robots, 4) poses; None: those that the seed chooses."""
+    def hash(self, world: int) -> int:
+        """Returns the hash of a world's readings since its start."""
+    def image(self, world: int, width: int = 640, height: int = 480,
+              view: tuple[float, float, float, float] | None = None) -> NDArray[np.uint8]:
+        """Returns (height, width, 3): one world from above, as Simulation.image."""
+    def __len__(self) -> int:
+        """Number of worlds."""

@@ -85,9 +85,9 @@ class Environment:
         self.render_mode, self.render_size, self.render_view = mode, tuple(size), view
         self.metadata = {**self.metadata, "render_fps": max(1, round(1 / interval))}
 
-    def _frame(self, simulation):
+    def _frame(self, simulation, world=0):
         width, height = self.render_size
-        return simulation.image(width, height, self.render_view)
+        return simulation.image(width, height, self.render_view, world=world)
 
 
 def _made(kind, arguments, options):

@@ -99,6 +99,7 @@ class ParallelEnv(Environment, _Base):
         return answer
 
     def _by_agent(self, rows, kind=lambda row: row):
+        rows = numpy.array(rows)  # those of observations change with the next step
         return {agent: kind(rows[self._index[agent]]) for agent in self.agents}
 
     def _infos(self):

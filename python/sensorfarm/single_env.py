@@ -47,7 +47,7 @@ class Env(Environment, _Base):
             self._begin([self._next_seed() if seed is None else self._seed(seed)])
         self._fresh, self._age = False, 0
         self._keep(self._seeds)
-        return self.task.observe()[0], self._info()
+        return self.task.observe()[0].copy(), self._info()
 
     def _begin(self, seeds):
         self.simulation.reset(seeds[0])
@@ -63,7 +63,7 @@ class Env(Environment, _Base):
         self.task.step(actions)
         terminated = bool(self.task.terminated()[0])
         truncated = self._age >= self.max_steps and not terminated
-        return self.task.observe()[0], float(self.task.reward()[0]), terminated, truncated, self._info()
+        return self.task.observe()[0].copy(), float(self.task.reward()[0]), terminated, truncated, self._info()
 
     def _info(self):
         return {"pose": self.simulation.poses[self.task.rows[0]].copy()}

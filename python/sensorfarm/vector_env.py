@@ -23,10 +23,10 @@ class VectorEnv(Environment, _Base):
 
     An episode ends when `Task.terminated` returns True, or is truncated after `max_steps`. In the following step its
     action is ignored, its reward is 0 and its robot is placed at a free start (autoreset in the next step). Other
-    robots continue. With autoreset_mode="Disabled" you reset it (`reset_mask`) before the next step.
+    robots continue, except that one of several worlds whose robots have all ended is reset with a new seed. With autoreset_mode="Disabled" you reset it (`reset_mask`) before the next step.
 
     world: a world file, or a name for the world in `text`. num_envs: robots of all worlds together; None: the worlds'
-    own robots. worlds: number of simulations, with consecutive seeds. task: a subclass of Task. render_mode,
+    own robots. worlds: number of worlds, simulated at once, with consecutive seeds. task: a subclass of Task. render_mode,
     render_size, render_view: as for Env. Further options are those of Simulation.
     """
 
@@ -48,18 +48,14 @@ class VectorEnv(Environment, _Base):
         seed = self._seed(seed)
         self._make_task = lambda seed, **other: task(
             simulation(world, text, robots=robots, seed=seed, **{**options, **other}), sensor)
-        self.tasks = [self._make_task(seed + k) for k in range(worlds)]
-        self.simulations = [one.sim for one in self.tasks]
+        self.task = self._make_task(seed, copies=worlds)
+        self.simulation = self.task.sim
         self._twins = [None] * worlds  # see _sensed
-        sizes = [len(one) for one in self.tasks]
-        ends = numpy.cumsum(sizes)
-        self._shares = [slice(end - size, end) for end, size in zip(ends, sizes)]
-        self.num_envs, self.max_steps = int(ends[-1]), max_steps
-        self.single_observation_space = self.tasks[0].observation_space
-        self.single_action_space = self.tasks[0].action_space
+        self.num_envs, self.max_steps, self.worlds = len(self.task), max_steps, worlds
+        self.single_observation_space, self.single_action_space = self.task.observation_space, self.task.action_space
         self.observation_space = batched(self.single_observation_space, self.num_envs)
         self.action_space = batched(self.single_action_space, self.num_envs)
-        self._set_render(render_mode, render_size, render_view, self.simulations[0].interval)
+        self._set_render(render_mode, render_size, render_view, self.simulation.interval)
         self._autoreset = mode == "NextStep"
         self.metadata["autoreset_mode"] = _MODES[mode]
         self._fresh = True  # the simulations have not moved since they were created with `seed`
@@ -85,7 +81,7 @@ class VectorEnv(Environment, _Base):
         mask = self._mask_of((options or {}).get("reset_mask"))
         if mask is not None and not mask.all():
             return self._reset_some(mask, seed)
-        first = [share.start for share in self._shares]
+        first = range(0, self.num_envs, self.num_envs // self.worlds)
         if seed is None and not self._fresh:
             seed = self._next_seed()
         elif seed is not None:
@@ -112,27 +108,33 @@ class VectorEnv(Environment, _Base):
         return mask
 
     def _begin(self, seeds):
-        for k, seed in enumerate(seeds):
-            self._begin_world(k, seed)
         self._seeds = list(seeds)
+        self._begin_worlds(numpy.arange(self.worlds), self._seeds)
 
-    def _begin_world(self, k, seed):
-        self.simulations[k].reset(int(seed))
-        self.tasks[k].begin()
+    def _begin_worlds(self, worlds, seeds):
+        for k, seed in zip(worlds, seeds):
+            self._seeds[k] = int(seed)
+        if self.worlds == 1:
+            self.simulation.reset(self._seeds[0])
+        else:
+            self.simulation.restart(worlds, seeds)
+        self.task.begin(worlds)
 
     def _reset_some(self, mask, seed):
         observations = self._observations()
         own = [None if seed is None else seed + i if numpy.isscalar(seed) else seed[i] for i in range(self.num_envs)]
-        for k, (one, share) in enumerate(zip(self.tasks, self._shares)):
-            chosen = numpy.flatnonzero(mask[share])
-            if len(chosen) == len(one):
-                self._begin_world(k, self._known(own[share.start]))
-                observations[share] = one.observe()
-            elif len(chosen):
-                for agent in chosen:
-                    of_agent = own[share.start + agent]
-                    one.restart(agent, self.np_random if of_agent is None else numpy.random.default_rng(of_agent))
-                observations[share][chosen] = self._sensed(k)[chosen]
+        by_world = mask.reshape(self.worlds, -1)
+        whole = numpy.flatnonzero(by_world.all(axis=1))
+        if len(whole):
+            self._begin_worlds(whole, [self._known(own[k * by_world.shape[1]]) for k in whole])
+            begun = by_world.all(axis=1, keepdims=True).repeat(by_world.shape[1], axis=1).ravel()
+            observations[begun] = self._observations()[begun]
+        for k in numpy.flatnonzero(by_world.any(axis=1) & ~by_world.all(axis=1)):
+            chosen = k * by_world.shape[1] + numpy.flatnonzero(by_world[k])
+            for agent in chosen:
+                of_agent = own[agent]
+                self.task.restart(agent, self.np_random if of_agent is None else numpy.random.default_rng(of_agent))
+            observations[chosen] = self._sensed(k)[chosen - k * by_world.shape[1]]
         self._fresh = False
         self._ended[mask], self._ages[mask] = False, 0
         return observations, self._infos(mask)
@@ -142,7 +144,7 @@ class VectorEnv(Environment, _Base):
         twin, provides them: reading sensors takes simulated time, which must not pass in the first."""
         twin = self._twins[k] = self._twins[k] or self._make_task(self._seeds[k], record="")
         sim, placed = twin.sim, twin.sim.time
-        for row, pose in enumerate(self.simulations[k].poses):
+        for row, pose in enumerate(self.simulation.poses.reshape(self.worlds, -1, 4)[k]):
             sim.put(row, pose)
         while not (sim.times(twin.sensor) > placed).all():
             if sim.time > placed + _SECONDS:
@@ -161,24 +163,25 @@ class VectorEnv(Environment, _Base):
             raise ValueError(f"episodes of the sub-environments {numpy.flatnonzero(begins).tolist()} have ended; expected "
                              "reset(options={'reset_mask': ...}) of them first, as autoreset_mode is 'Disabled'")
         self._fresh = False
-        rewards = numpy.zeros(self.num_envs)
-        terminations = numpy.zeros(self.num_envs, bool)
-        for one, share in zip(self.tasks, self._shares):
-            for agent in numpy.flatnonzero(begins[share]):
-                one.restart(agent, self.np_random)
-            one.step(actions[share], begins[share])
-            rewards[share], terminations[share] = one.reward(), one.terminated()
-        rewards[begins], terminations[begins] = 0.0, False  # whatever the task returns for the way to the start
+        whole = begins.reshape(self.worlds, -1).all(axis=1) & (self.worlds > 1)
+        for agent in numpy.flatnonzero(begins & ~whole.repeat(self.num_envs // self.worlds)):
+            self.task.restart(agent, self.np_random)
+        self.task.step(actions, begins)
+        rewards, terminations = self.task.reward(), self.task.terminated()
+        if whole.any():
+            self._begin_worlds(numpy.flatnonzero(whole), self.np_random.integers(2 ** 31, size=whole.sum()))
+        if begins.any():  # whatever the task returns for the way to the start
+            rewards, terminations = numpy.where(begins, 0.0, rewards), terminations & ~begins
         self._ages = numpy.where(begins, 0, self._ages + 1)
         truncations = (self._ages >= self.max_steps) & ~terminations
         self._ended = terminations | truncations
         return self._observations(), rewards, terminations, truncations, self._infos()
 
     def _observations(self):
-        return numpy.concatenate([one.observe() for one in self.tasks])
+        return self.task.observe().copy()
 
     def _infos(self, mask=None):
-        poses = numpy.concatenate([one.sim.poses[one.rows] for one in self.tasks])
+        poses = self.simulation.poses[self.task.rows]
         return {"pose": poses, "_pose": numpy.ones(self.num_envs, bool) if mask is None else mask.copy()}
 
     def render(self):
@@ -186,9 +189,9 @@ class VectorEnv(Environment, _Base):
         world share an array. None without a render_mode."""
         if self.render_mode is None:
             return None
-        frames = [self._frame(sim) for sim in self.simulations]
-        return tuple(frame for frame, one in zip(frames, self.tasks) for _ in range(len(one)))
+        frames = [self._frame(self.simulation, k) for k in range(self.worlds)]
+        return tuple(frame for frame in frames for _ in range(self.num_envs // self.worlds))
 
     def close(self, **kwargs):
         """Frees the simulations; their arrays are unchanged."""
-        self.simulations, self.tasks, self._twins, self.closed = [], [], [], True
+        self.simulation, self.task, self._twins, self.closed = None, None, [], True

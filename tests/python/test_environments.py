@@ -109,7 +109,7 @@ class ResetOfSome(unittest.TestCase):
         numpy.testing.assert_array_equal(after[~mask], before[~mask])
         self.assertTrue((after[mask] != before[mask]).any(axis=1).all())
         numpy.testing.assert_array_equal(infos["_pose"], mask)
-        sim, same = env.simulations[0], plain.simulations[0]
+        sim, same = env.simulation, plain.simulation
         self.assertEqual(sim.time, same.time)
         numpy.testing.assert_array_equal(sim.poses[2:], same.poses[2:])
         numpy.testing.assert_array_equal(sim.velocities[2:], same.velocities[2:])
@@ -128,7 +128,7 @@ class ResetOfSome(unittest.TestCase):
         for row, pose in enumerate(infos["pose"]):
             sim.put(row, pose)
         sim.step(numpy.zeros((6, 3)))
-        expected = numpy.clip(sim.readings("laser") / env.tasks[0].limits, -1, 1).astype(numpy.float32)
+        expected = numpy.clip(sim.readings("laser") / env.task.limits, -1, 1).astype(numpy.float32)
         numpy.testing.assert_array_equal(after[mask, :-2], expected[mask])
         self.assertEqual(numpy.abs(after[mask, -2:]).max(), 0)
 
@@ -155,7 +155,7 @@ class ResetOfSome(unittest.TestCase):
         after, _ = env.reset(seed=7, options={"reset_mask": mask})
         numpy.testing.assert_array_equal(after[:3], vector(num_envs=3).reset(seed=7)[0])
         numpy.testing.assert_array_equal(after[3:], before[3:])
-        self.assertEqual([round(sim.time, 6) for sim in env.simulations], [0.0, 0.5])
+        self.assertEqual([round(env.simulation.time_of(k), 6) for k in range(2)], [0.0, 0.5])
 
     def test_a_full_mask_is_a_reset(self):
         env = vector()
@@ -173,7 +173,7 @@ class ResetOfSome(unittest.TestCase):
             env.step(numpy.tile([0.3, 0.1], (2, 1)))
         after, _ = env.reset(options={"reset_mask": numpy.array([True, False])})
         numpy.testing.assert_allclose(after[0], start[0], atol=0.2)
-        self.assertEqual(round(env.simulations[0].time, 6), 0.7)
+        self.assertEqual(round(env.simulation.time, 6), 0.7)
 
     def test_disabled_autoreset(self):
         env = vector(max_steps=2, autoreset_mode="Disabled")
@@ -245,7 +245,7 @@ class Copies(unittest.TestCase):
             env.reset()
             expected = go(env, 20) if make is vector else go(env, 7)
             for other in self.copies(env):
-                self.assertIs(type(other.tasks[0] if make is vector else other.task), Shifted)
+                self.assertIs(type(other.task), Shifted)
                 for step, known in zip(go(other, len(expected)), expected):
                     for one, same in zip(step, known):
                         numpy.testing.assert_array_equal(one, same)

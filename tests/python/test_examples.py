@@ -39,7 +39,7 @@ class Corridor(unittest.TestCase):
         env = sensorfarm.gym.VectorEnv("corridor.world", num_envs=None, task=corridor.Rounds,
                                        text=corridor.corridor(6))
         env.reset(seed=1)
-        sim = env.simulations[0]
+        sim = env.simulation
         self.assertEqual(len(set(sim.poses[:, 2])), 6)
         hits = set(sim.hits("laser").ravel().tolist()) - {sensorfarm.NONE}
         self.assertEqual({sim.models[hit] for hit in hits}, {"inner", "outer"})
@@ -54,7 +54,7 @@ class Documentation(unittest.TestCase):
         """The blocks of docs/python.md, and the one of the package's own description."""
         with open("docs/python.md") as page:
             blocks = re.findall(r"```python\n(.*?)```", page.read(), re.S)
-        self.assertEqual(len(blocks), 3)
+        self.assertEqual(len(blocks), 4)
         blocks.append(textwrap.dedent(sensorfarm.__doc__.split("\n\n", 1)[1]))
         for block in blocks:
             with contextlib.redirect_stdout(io.StringIO()):

@@ -65,7 +65,7 @@ class Vector(unittest.TestCase):
         env = vector(worlds=2)
         observations, _ = env.reset(seed=1)
         self.assertTrue((observations[:3] != observations[3:]).any())
-        self.assertEqual(len({sim.hash for sim in env.simulations}), 2)
+        self.assertEqual(len({env.simulation.hash_of(k) for k in range(2)}), 2)
         alone = vector(num_envs=3)
         numpy.testing.assert_array_equal(alone.reset(seed=2)[0], observations[3:])
 
@@ -121,7 +121,7 @@ class Vector(unittest.TestCase):
         """One of two robots occupies the other's start, so the other restarts at the first one's start."""
         env = vector(num_envs=2)
         env.reset(seed=1)
-        task, sim = env.tasks[0], env.simulations[0]
+        task, sim = env.task, env.simulation
         sim.put(1, task.starts[0])
         for _ in range(8):
             task.restart(0, env.np_random)

@@ -1,0 +1,133 @@
+"""Many worlds at once, as arrays with an axis of worlds."""
+
+import numpy
+
+from ._sensorfarm import Simulation
+
+
+class Worlds:
+    """Worlds with equally many robots, simulated at once.
+
+        worlds = sensorfarm.Worlds("rooms.world", copies=1000, robots=1)
+        while True:
+            commands = policy(worlds.readings("laser"))  # (worlds, robots, elements) -> (worlds, robots, 3)
+            worlds.step(commands)
+            worlds.reset(mask=worlds.contacts.any(axis=1))
+
+    World k has seed + k, and gives the bytes of a Simulation of that world alone with this seed. The copies of one
+    world file share its walls and settings; they do not see each other. Arrays of one file are views, as those of
+    Simulation; of several files, copies.
+
+    Rows are the `robots` that were asked for, or all of the file, with its objects; `parts` has one Simulation per
+    file, with all rows.
+
+    world: a world file, or several; text: the world's text, which `world` then names. copies: of each, or one number
+    per file. Further options are those of Simulation, except record, ranks, positioning and faults.
+    """
+
+    def __init__(self, world, copies=1, seed=1, text=None, **options):
+        files = [world] if isinstance(world, str) else list(world)
+        counts = [copies] * len(files) if numpy.isscalar(copies) else list(copies)
+        if not files or len(counts) != len(files) or (text is not None and len(files) > 1):
+            raise ValueError(f"{len(counts)} numbers of copies for {len(files)} worlds; expected as many, and a text only "
+                             "for one")
+        self._first = numpy.concatenate([[0], numpy.cumsum(counts)]).astype(int)
+        make = Simulation if text is None else lambda name, **given: Simulation.from_text(text, name, **given)
+        self.parts = [make(file, copies=count, seed=seed + int(first), **options)
+                      for file, count, first in zip(files, counts, self._first)]
+        self.seeds = numpy.arange(seed, seed + len(self))
+        rows = {options.get("robots") or len(part.robots) for part in self.parts}
+        if len(rows) != 1:
+            raise ValueError(f"the worlds have {' and '.join(map(str, sorted(rows)))} rows; expected equal numbers: set "
+                             "`robots`")
+        self.robots = self.parts[0].robots[:rows.pop()]
+        self.interval = self.parts[0].interval
+
+    def __len__(self):
+        return int(self._first[-1])
+
+    def _rows(self, arrays):
+        return self._by_world(arrays, len(self.robots))
+
+    def _by_world(self, arrays, kept=None):
+        shaped = [array.reshape(part.copies, -1, *array.shape[1:])[:, :kept] for array, part in zip(arrays, self.parts)]
+        return shaped[0] if len(shaped) == 1 else numpy.concatenate(shaped)
+
+    poses = property(lambda self: self._rows([part.poses for part in self.parts]),
+                     doc="(worlds, robots, 4): x, y, z [m], yaw [rad].")
+    velocities = property(lambda self: self._rows([part.velocities for part in self.parts]),
+                          doc="(worlds, robots, 3): forward, left [m/s], turn [rad/s].")
+    contacts = property(lambda self: self._rows([part.contacts for part in self.parts]),
+                        doc="(worlds, robots): stopped by a wall or a robot.")
+    done = property(lambda self: self._rows([part.done for part in self.parts]),
+                    doc="(worlds, robots): the controller is done.")
+
+    @property
+    def times(self):
+        """(worlds,): [s] since the start of each."""
+        return numpy.array([part.time_of(k) for part in self.parts for k in range(part.copies)])
+
+    def readings(self, type):
+        """Returns (worlds, sensors, elements[, columns]): the newest readings, by world and robot."""
+        return self._by_world([part.readings(type) for part in self.parts])
+
+    def observe(self, sensor="laser", **options):
+        """Returns one Observations per world file (Simulation.observe)."""
+        return [part.observe(sensor, **options) for part in self.parts]
+
+    def step(self, commands=None):
+        """One tick of all worlds. commands: (worlds, robots, 3): forward, left [m/s], turn [rad/s]; None: unchanged."""
+        if commands is None:
+            shares = [None] * len(self.parts)
+        else:
+            commands = numpy.asarray(commands, dtype=float)
+            if commands.shape != (len(self), len(self.robots), 3):
+                raise ValueError(f"commands have the shape {commands.shape}; expected ({len(self)}, {len(self.robots)}, 3)")
+            shares = [self._all_rows(part, commands[a:b], 0.0).reshape(-1, 3)
+                      for part, a, b in zip(self.parts, self._first, self._first[1:])]
+        for part, share in zip(self.parts, shares):
+            part.step(share)
+
+    def _all_rows(self, part, rows, other):
+        """Returns (worlds, rows of the part, n) with `rows` first, and then `other`."""
+        full = numpy.full((len(rows), len(part.robots), rows.shape[2]), other)
+        full[:, :rows.shape[1]] = rows
+        return full
+
+    def reset(self, seed=None, mask=None, seeds=None, starts=None):
+        """Starts worlds anew; the others are unchanged, and no time passes for them.
+
+        mask: bool (worlds,); None: all. seed: world k gets seed + k; seeds: one per world of the mask instead. None:
+        seeds as far from the last ones as there are worlds, so that none is used twice. starts: (worlds of the mask,
+        robots, 4) poses; None: those that the seed chooses.
+        """
+        chosen = numpy.arange(len(self)) if mask is None else numpy.flatnonzero(mask)
+        if mask is not None and numpy.shape(mask) != (len(self),):
+            raise ValueError(f"mask has the shape {numpy.shape(mask)}; expected ({len(self)},)")
+        if seeds is None:
+            seeds = self.seeds[chosen] + len(self) if seed is None else seed + chosen
+        seeds = numpy.asarray(seeds)
+        if seeds.shape != chosen.shape:
+            raise ValueError(f"seeds have the shape {seeds.shape}; expected one for each of {len(chosen)} worlds")
+        starts = None if starts is None else numpy.asarray(starts, dtype=float).reshape(len(chosen), -1, 4)
+        for part, a, b in zip(self.parts, self._first, self._first[1:]):
+            own = (chosen >= a) & (chosen < b)
+            if own.any():
+                part.restart(chosen[own] - a, seeds[own], None if starts is None else self._all_rows(part, starts[own], numpy.nan))
+        self.seeds[chosen] = seeds
+
+    def hash(self, world):
+        """Returns the hash of a world's readings since its start."""
+        part, k = self._part_of(world)
+        return part.hash_of(k)
+
+    def _part_of(self, world):
+        if not 0 <= world < len(self):
+            raise IndexError(f"there is no world {world}; expected less than {len(self)}")
+        number = int(numpy.searchsorted(self._first, world, side="right")) - 1
+        return self.parts[number], int(world - self._first[number])
+
+    def image(self, world, width=640, height=480, view=None):
+        """Returns (height, width, 3) uint8: one world from above."""
+        part, k = self._part_of(world)
+        return part.image(width, height, view, world=k)

@@ -1,0 +1,168 @@
+"""Many worlds at once (sensorfarm.Worlds)."""
+
+import os
+import tempfile
+import unittest
+
+import numpy
+import sensorfarm
+
+ROOM = """
+    interval_sim 100
+    define wall model( size [6 0.2 1] )
+    wall( pose [0 3 0 0] ) wall( pose [0 -3 0 0] ) wall( pose [3 0 0 90] ) wall( pose [-3 0 0 90] )
+    model( name "crate" size [0.5 0.8 1] pose [1 0 0 0] random_pose [0.5 2 90] )
+    model( name "post" size [0.2 0.2 1] pose [-1 0 0 0] random_present 0.5 )
+    position( name "bot" size [0.3 0.3 0.2] pose [-2 -2 0 0] drive "diff"
+      laser( samples 31 fov 180 range_max 5 rate 10 noise [0.01 0 0] ) gyro( noise 0.01 rate 4 latency 0.1 ) )"""
+
+
+def room(copies, seed=1, **options):
+    return sensorfarm.Worlds("room.world", copies, seed=seed, text=ROOM, **{"robots": 2, **options})
+
+
+def alone(seed, **options):
+    return sensorfarm.Simulation.from_text(ROOM, "room.world", seed=seed, **{"robots": 2, **options})
+
+
+def drive(worlds, steps):
+    """Commands that depend on the readings of each world alone."""
+    for _ in range(steps):
+        scans = worlds.readings("laser")
+        twists = numpy.zeros((*scans.shape[:-2], worlds.poses.shape[-2], 3))
+        twists[..., :scans.shape[-2], 0] = numpy.where(scans.min(axis=-1) < 0.6, 0.0, 0.3)
+        twists[..., :scans.shape[-2], 2] = numpy.where(scans.min(axis=-1) < 0.6, 0.8, 0.1)
+        worlds.step(twists)
+
+
+class Copies(unittest.TestCase):
+    def test_bytes_are_those_of_worlds_alone(self):
+        worlds = room(5, seed=3)
+        drive(worlds, 25)
+        for k in range(5):
+            one = alone(3 + k)
+            drive(one, 25)
+            self.assertEqual(worlds.hash(k), one.hash, k)
+            numpy.testing.assert_array_equal(worlds.poses[k], one.poses[:2])
+            numpy.testing.assert_array_equal(worlds.contacts[k], one.contacts[:2])
+
+    def test_worlds_differ_by_their_seeds(self):
+        worlds = room(40)
+        crates = worlds.parts[0].poses.reshape(40, -1, 4)[:, 2]
+        self.assertEqual(len({tuple(pose) for pose in crates}), 40)
+        self.assertTrue((numpy.abs(crates[:, 1]) <= 2).all() and (numpy.abs(crates[:, 0] - 1) <= 0.5).all())
+        present = worlds.parts[0].present.reshape(40, -1)
+        self.assertTrue(present[:, :3].all())
+        self.assertTrue(8 <= present[:, 3].sum() <= 32, "half of the posts are there")
+
+    def test_threads_change_nothing(self):
+        hashes = []
+        for threads in (1, 3):
+            worlds = room(9, threads=threads)
+            drive(worlds, 10)
+            hashes.append([worlds.hash(k) for k in range(9)])
+        self.assertEqual(*hashes)
+
+    def test_several_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            files = [os.path.join(folder, name) for name in ("a.world", "b.world")]
+            for file, end in zip(files, ("", "\nwall( pose [0 2 0 45] )")):
+                with open(file, "w") as out:
+                    out.write(ROOM + end)
+            worlds = sensorfarm.Worlds(files, copies=[2, 1], robots=3, seed=5)
+            one = sensorfarm.Simulation(files[1], robots=3, seed=7)
+            with self.assertRaisesRegex(ValueError, "1 numbers of copies for 2 worlds"):
+                sensorfarm.Worlds(files, copies=[2])
+        self.assertEqual((len(worlds), worlds.poses.shape, worlds.readings("laser").shape), (3, (3, 3, 4), (3, 3, 31)))
+        drive(worlds, 5), drive(one, 5)
+        self.assertEqual(worlds.hash(2), one.hash)
+        worlds.reset(mask=numpy.array([True, False, True]), seeds=[8, 9])
+        numpy.testing.assert_allclose(worlds.times, [0.0, 0.5, 0.0])
+        self.assertEqual(worlds.seeds.tolist(), [8, 6, 9])
+
+
+class Resets(unittest.TestCase):
+    def test_a_mask_restarts_only_its_worlds(self):
+        worlds = room(4)
+        drive(worlds, 7)
+        before, others = [worlds.hash(k) for k in range(4)], worlds.readings("laser")[[0, 2]].copy()
+        worlds.reset(mask=numpy.array([False, True, False, True]), seeds=[50, 60])
+        numpy.testing.assert_allclose(worlds.times, [0.7, 0.0, 0.7, 0.0])
+        self.assertEqual([worlds.hash(k) for k in (0, 2)], [before[0], before[2]])
+        numpy.testing.assert_array_equal(worlds.readings("laser")[[0, 2]], others)
+        for k, seed in ((1, 50), (3, 60)):
+            numpy.testing.assert_array_equal(worlds.readings("laser")[k], alone(seed).readings("laser"))
+        drive(worlds, 6)
+        for k, seed, steps in ((0, 1, 13), (1, 50, 6), (2, 3, 13), (3, 60, 6)):
+            one = alone(seed)
+            drive(one, steps)
+            self.assertEqual(worlds.hash(k), one.hash, k)
+
+    def test_given_starts(self):
+        worlds = room(3)
+        starts = numpy.array([[[-2, 1, 0, 0.5], [-2, -1, 0, -0.5]]])
+        worlds.reset(mask=numpy.arange(3) == 2, starts=starts)
+        numpy.testing.assert_array_equal(worlds.poses[2], starts[0])
+
+    def test_seeds_are_not_used_twice(self):
+        worlds = room(3)
+        worlds.reset()
+        worlds.reset(mask=numpy.arange(3) == 1)
+        self.assertEqual(worlds.seeds.tolist(), [4, 8, 6])
+
+    def test_faults(self):
+        worlds = room(3)
+        for wrong in (dict(mask=numpy.ones(2, bool)), dict(seeds=[1]), dict(starts=numpy.zeros((1, 4, 4)))):
+            with self.assertRaises(Exception):
+                worlds.reset(**wrong)
+        for arguments, message in ((([3], [1]), "no world 3; expected less than 3"), (([1, 1], [1, 2]), "given twice"),
+                                   (([0], []), "0 seeds for 1 worlds")):
+            with self.assertRaisesRegex(sensorfarm.Error, message):
+                worlds.parts[0].restart(*arguments)
+        with self.assertRaisesRegex(ValueError, r"shape \(3, 4\)"):
+            worlds.step(numpy.zeros((3, 4)))
+        with self.assertRaisesRegex(sensorfarm.Error, "cannot be recorded"):
+            room(2, record="out/never")
+
+
+class Observed(unittest.TestCase):
+    def test_columns(self):
+        worlds = room(3)
+        seen, = worlds.observe(every=10, goal_reach=8.0, stack=2)
+        self.assertEqual(seen.values.shape, (6, 2 * (4 + 2 + 3)))
+        seen.goals[:] = [[0.0, 0.0]]
+        first = seen.values.copy()
+        drive(worlds, 1)
+        scans = worlds.readings("laser").reshape(6, -1)[:, ::10]
+        numpy.testing.assert_allclose(seen.values[:, :4], scans / 5.0, atol=1e-6)
+        numpy.testing.assert_array_equal(seen.values[:, 9:], first[:, :9])
+        poses = worlds.parts[0].poses[seen.rows]
+        bearings = numpy.arctan2(-poses[:, 1], -poses[:, 0]) - poses[:, 3]
+        numpy.testing.assert_allclose(seen.values[:, 6], numpy.hypot(poses[:, 0], poses[:, 1]) / 8, atol=1e-6)
+        numpy.testing.assert_allclose(seen.values[:, 7:9], numpy.stack([numpy.cos(bearings), numpy.sin(bearings)], 1),
+                                      atol=1e-6)
+
+    def test_progress_and_ages(self):
+        worlds = room(2)
+        seen, = worlds.observe(goal_reach=5.0)
+        seen.goals[:] = [[0.0, 0.0]]
+        seen.update()
+        before = seen.distances.copy()
+        drive(worlds, 1)
+        numpy.testing.assert_allclose(seen.progress, before - seen.distances)
+        worlds.reset(mask=numpy.array([True, False]))
+        self.assertEqual(seen.ages.tolist(), [0, 0, 1, 1])
+        self.assertEqual(seen.progress[:2].tolist(), [0.0, 0.0])
+
+    def test_a_restart_fills_the_stack(self):
+        worlds = room(2)
+        seen, = worlds.observe(stack=3)
+        drive(worlds, 4)
+        worlds.reset(mask=numpy.array([False, True]))
+        stacked = seen.values[2:].reshape(2, 3, -1)
+        numpy.testing.assert_array_equal(stacked[:, 1], stacked[:, 0])
+        numpy.testing.assert_array_equal(stacked[:, 2], stacked[:, 0])
+
+
+if __name__ == "__main__":
+    unittest.main()
