@@ -1,5 +1,6 @@
 // Measures the seconds per step of libsensorfarm, in wall time and CPU time of all threads, for bench/python_step.py:
-// library_step WORLD ROBOTS STEPS. The first line of input starts the measurement; each further line repeats it.
+// library_step WORLD ROBOTS STEPS [WORLDS]. The first line of input starts the measurement; each further line repeats
+// it.
 
 #include <algorithm>
 #include <chrono>
@@ -13,10 +14,12 @@
 #include "sensorfarm/simulation.h"
 
 int main(int argc, char** argv) {
-  if (argc != 4) return std::fputs("usage: library_step WORLD ROBOTS STEPS\n", stderr), 2;
+  if (argc != 4 && argc != 5) return std::fputs("usage: library_step WORLD ROBOTS STEPS [WORLDS]\n", stderr), 2;
+  const std::uint32_t worlds = argc == 5 ? static_cast<std::uint32_t>(std::atol(argv[4])) : 1;
   const long steps = std::atol(argv[3]);
   try {
-    sensorfarm::Simulation simulation(argv[1], {.robots = static_cast<std::uint32_t>(std::atol(argv[2]))});
+    sensorfarm::Simulation simulation(
+        argv[1], {.robots = static_cast<std::uint32_t>(std::atol(argv[2])), .copies = worlds, .noise = worlds == 1});
     std::vector<sensorfarm::Twist> twists(simulation.size());
     const auto drive = [&] {
       const sensorfarm::Readings scans = simulation.readings("laser");

@@ -58,6 +58,47 @@ def overhead(program, world, robots, steps, rounds):
               f"{python.min() / cpp.min():.3f} of the least, {numpy.median(python / cpp):.3f} median of rounds")
 
 
+def resident():
+    """[bytes] of this process."""
+    with open("/proc/self/statm") as statm:
+        return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def many(program, world, worlds, robots, steps, rounds):
+    """Agent steps per second of many worlds, in Python and in C++, in turns. Checks the hash of one world."""
+    before, start = resident(), time.perf_counter()
+    all_worlds = sensorfarm.Worlds(world, worlds, robots=robots, noise=False)
+    made, memory = time.perf_counter() - start, resident() - before
+    other = subprocess.Popen([program, world, str(robots), str(steps), str(worlds)], stdin=subprocess.PIPE,
+                             stdout=subprocess.PIPE, text=True)
+    twists, agents, mine, theirs = numpy.zeros((worlds, robots, 3)), worlds * robots, [], []
+    for _ in range(rounds):
+        other.stdin.write("\n")
+        other.stdin.flush()
+        theirs.append(float(other.stdout.readline().split()[0]))
+        all_worlds.reset(seed=1)
+        spent = 0.0
+        for _ in range(steps):
+            near = all_worlds.readings("laser").min(axis=2) < 0.5
+            twists[..., 0], twists[..., 2] = numpy.where(near, 0, 0.3), numpy.where(near, 0.8, 0)
+            start = time.perf_counter()
+            all_worlds.step(twists)
+            spent += time.perf_counter() - start
+        mine.append(spent / steps)
+    other.stdin.close()
+    other.wait()
+    k = worlds - 1
+    alone = sensorfarm.Simulation(world, robots=robots, noise=False, seed=1 + k)
+    drive_alone = numpy.zeros((robots, 3))
+    for _ in range(steps):
+        drive(alone, drive_alone)
+        alone.step(drive_alone)
+    assert all_worlds.hash(k) == alone.hash, "a world differs from that world alone"
+    print(f"{worlds} worlds of {robots} robots: created in {made:.2f} s, {memory / worlds / 1024:.0f} KiB a world; "
+          f"{agents / min(mine):,.0f} agent steps/s from Python, {agents / min(theirs):,.0f} from C++; "
+          f"{1e9 * min(mine) / agents / BEAMS:.1f} ns a beam, with motion and contacts")
+
+
 def views(world):
     sim, least = sensorfarm.Simulation(world, robots=1000), float("inf")
     for _ in range(1000):
@@ -148,6 +189,8 @@ def main():
         for robots, steps in ((1000, 20), (50, 200)):
             overhead(given.program, world, robots, steps, given.rounds)
         views(world)
+        for worlds, robots in ((1, 1000), (50, 20), (1000, 1)):
+            many(given.program, world, worlds, robots, 50, given.rounds)
     for robots in (10, 100, 1000):
         beside_numpy(robots, max(2, 1000 // robots), 5 if robots < 1000 else 3)
 
