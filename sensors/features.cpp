@@ -73,11 +73,9 @@ class ConeFeatures final : public FeatureSource {
   }
 
  private:
-  /// As in sonar.cpp and infrared.cpp.
   double sigma(double range) const {
-    if (!infrared_) return std::hypot(array_.sigma, array_.proportional * range);
-    const double span = array_.range_max - array_.range_min, away = (range - array_.range_min) / span;
-    return span * (1.0 - away) * array_.proportional * away;
+    return infrared_ ? infrared_sigma(range, {array_.range_min, array_.range_max}, array_.proportional)
+                     : std::hypot(array_.sigma, array_.proportional * range);
   }
   ConeArray array_;
   bool infrared_;

@@ -39,6 +39,11 @@ double infrared_response(double range, const base::RangeLimits& limits) {
   return std::floor(kMostResponse * (1.0 - std::clamp(away, 0.0, 1.0)) + 0.5);
 }
 
+double infrared_sigma(double range, const base::RangeLimits& limits, double noise) {
+  const double span = limits.max - limits.min, away = std::clamp((range - limits.min) / span, 0.0, 1.0);
+  return span * (1.0 - away) * noise * away;
+}
+
 ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
   ConeArray array = read_cones(sensor, mover, number_of_type, {30.0 * kDegrees, 0.0, 0.05, 50.0});
   array.proportional = number(sensor, "noise", 0.0, 0.0, 1e3);

@@ -26,6 +26,9 @@ ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::u
 /// Returns the response to a surface at `range` [m], without noise.
 double infrared_response(double range, const base::RangeLimits& limits);
 
+/// Returns the standard deviation of a range [m]. @param noise relative, of the response
+double infrared_sigma(double range, const base::RangeLimits& limits, double noise);
+
 extern const SensorType infrared_type;
 
 }  // namespace sf::sensors

@@ -3,6 +3,7 @@
 #include "sensors/occupancy.h"
 
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -12,6 +13,7 @@
 #include "sensors/laser.h"
 #include "sensors/occupancy_batch.h"
 #include "sensors/occupancy_packets.h"
+#include "sensors/occupancy_sources.h"
 
 namespace sf::sensors {
 
@@ -30,7 +32,9 @@ class Occupancies : public SensorBackend {
   void observe(std::span<const base::ReadingBlock> readings) override;
   void collect(std::span<base::ReadingBlock> out) override;
   void take_over(SensorBackend& before, std::uint32_t rows) override {
-    batch_.take_over(dynamic_cast<Occupancies&>(before).batch_, rows);
+    auto& last = dynamic_cast<Occupancies&>(before);
+    if (last.batch_) batch_->take_over(*last.batch_, last.batch_rows_);
+    source_maps_.take_over(last.source_maps_, rows);
   }
   void restart(std::uint32_t row, std::int64_t /*now*/) override {
     throw base::InputError(fmt::format("only a reset of all worlds clears the map '{}'", maps_[row].row.name));
@@ -39,8 +43,15 @@ class Occupancies : public SensorBackend {
   bool on_device() const override { return false; }  // it has its own batch
 
  private:
+  std::span<const std::uint32_t> words_of(std::uint32_t row) const {
+    return maps_[row].sources.empty() ? batch_->words(in_batch_[row]) : source_maps_.words(row);
+  }
+
   const std::vector<Occupancy>& maps_;
-  MapBatch batch_;
+  std::vector<std::uint32_t> in_batch_;  ///< per map without sources: its row in the batch
+  std::uint32_t batch_rows_ = 0;
+  std::optional<MapBatch> batch_;  ///< empty: all maps have sources
+  SourceMaps source_maps_;
   std::uint32_t flags_;
   std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_laser_;  ///< from (mover, laser) to its maps
   std::vector<DueSample> due_;
@@ -51,12 +62,6 @@ class Occupancies : public SensorBackend {
   std::vector<double> values_;      ///< of all maps
 };
 
-std::vector<MapSettings> map_settings_of(const std::vector<Occupancy>& all) {
-  std::vector<MapSettings> map_settings;
-  for (const Occupancy& map : all) map_settings.push_back(map.settings);
-  return map_settings;
-}
-
 /// Follows the choice for rays, because a software device is slower at both.
 bool on_host(const SensorContext& context) {
   return !raycast::choose_caster(context.device.info().software, context.scene.caster).on_device;
@@ -64,14 +69,21 @@ bool on_host(const SensorContext& context) {
 
 Occupancies::Occupancies(const SensorContext& context, const ParsedSensors& sensors)
     : maps_(sensors.settings_as<Occupancy>()),
-      batch_(context.device, context.thread_pool, map_settings_of(maps_), on_host(context)),
+      source_maps_(context.world, maps_, context.thread_pool),
       flags_(context.true_poses ? maps::kTruePoses : 0) {
+  std::vector<MapSettings> in_batch;
   std::size_t values = 0;
   for (std::uint32_t i = 0; i < maps_.size(); ++i) {
-    of_laser_.emplace(std::pair{maps_[i].row.mover, maps_[i].laser}, i);
+    in_batch_.push_back(static_cast<std::uint32_t>(in_batch.size()));
+    if (maps_[i].sources.empty()) {
+      of_laser_.emplace(std::pair{maps_[i].row.mover, maps_[i].laser}, i);
+      in_batch.push_back(maps_[i].settings);
+    }
     first_.push_back(values);
     values += maps_[i].row.elements;
   }
+  batch_rows_ = static_cast<std::uint32_t>(in_batch.size());
+  if (!in_batch.empty()) batch_.emplace(context.device, context.thread_pool, std::move(in_batch), on_host(context));
   values_.resize(values);
   marked_.resize(maps_.size());
   scans_.reserve(maps_.size());
@@ -85,17 +97,19 @@ void Occupancies::observe(std::span<const base::ReadingBlock> readings) {
     if (r.type != kLaser) continue;
     const auto [first, last] = of_laser_.equal_range({r.mover, r.sensor});
     for (auto it = first; it != last; ++it)
-      scans_.push_back({it->second, r.X_WS, base::marked_values(r, marked_[it->second])});
+      scans_.push_back({in_batch_[it->second], r.X_WS, base::marked_values(r, marked_[it->second])});
   }
-  for (const DueSample& due : due_) wanted_.push_back(due.row);
-  batch_.update(scans_, wanted_);
+  for (const DueSample& due : due_)
+    if (maps_[due.row].sources.empty()) wanted_.push_back(in_batch_[due.row]);
+  if (batch_) batch_->update(scans_, wanted_);
+  source_maps_.observe(readings);
 }
 
 void Occupancies::collect(std::span<base::ReadingBlock> out) {
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const std::uint32_t row = due_[i].row;
     const Occupancy& map = maps_[row];
-    const std::span<const std::uint32_t> words = batch_.words(row);
+    const std::span<const std::uint32_t> words = words_of(row);
     const std::span<double> values = std::span(values_).subspan(first_[row], words.size());
     std::copy(words.begin(), words.end(), values.begin());
     base::ReadingBlock block;
@@ -116,7 +130,7 @@ ParsedSensors parse_occupancies(const world::World& world) {
   return {std::move(rows), std::move(maps)};
 }
 
-constexpr std::string_view kKeys[] = {"cell", "words", "offset", "laser", "log_odds"};
+constexpr std::string_view kKeys[] = {"cell", "words", "offset", "laser", "sources", "log_odds"};
 constexpr Column kColumns[] = {{"word", 1, true}};
 
 }  // namespace

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/suggest.h"
+#include "sensors/derived/wiring.h"
+#include "sensors/infrared.h"
 #include "sensors/laser.h"
 #include "sensors/occupancy.h"
 #include "sensors/settings.h"
+#include "sensors/sonar.h"
 
 namespace sf::sensors {
 
@@ -71,6 +75,76 @@ std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
                              static_cast<std::int32_t>(v[2])};
 }
 
+constexpr std::size_t kMostSources = 4096;
+constexpr const SensorType* kSourceTypes[] = {&laser_type, &sonar_type, &infrared_type};
+
+/// The sensors of one type in a world.
+struct SourceGroup {
+  const SensorType* type;
+  std::vector<SensorSpec> rows;
+};
+
+[[noreturn]] void refuse_source(const world::Sensor& sensor, std::string_view text, const std::string& why) {
+  refuse(sensor, "sources", fmt::format("source '{}': {}", text, why));
+}
+
+std::vector<std::uint32_t> source_movers(const world::Sensor& sensor, const world::World& world, std::uint32_t own,
+                                         const InputText& parts, std::string_view text) {
+  if (parts.robot.empty()) return {own};
+  std::vector<std::uint32_t> found;
+  std::vector<std::string_view> names;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    if (parts.robot == "*" || world.movers[m].name == parts.robot) found.push_back(m);
+    names.push_back(world.movers[m].name);
+  }
+  if (found.empty())
+    refuse_source(sensor, text,
+                  fmt::format("no robot is called '{}'{}", parts.robot, base::suggest(parts.robot, names)));
+  return found;
+}
+
+void add_source(const world::Sensor& sensor, const world::World& world, std::uint32_t own, std::string_view text,
+                std::span<const SourceGroup> groups, Occupancy& map) {
+  const InputText parts = read_input(text);
+  const auto group = std::ranges::find_if(groups, [&](const auto& g) { return is_called(*g.type, parts.type); });
+  if (group == groups.end() || !parts.port.empty() || !parts.number)
+    refuse_source(sensor, text, "expected \"[robot/]laser[:number]\", or a sonar or infrared");
+  const std::size_t before = map.sources.size();
+  for (const std::uint32_t m : source_movers(sensor, world, own, parts, text)) {
+    const auto rows = std::ranges::equal_range(group->rows, m, {}, &SensorSpec::mover);
+    if (*parts.number >= rows.size()) continue;
+    const SensorSpec& row = rows[*parts.number];
+    if (!(row.limit <= maps::kMaxRangeCells * map.settings.grid.cell))
+      refuse(sensor, "cell",
+             fmt::format("source '{}' has a range of {:g} m, which is more than {:g} cells of {:g} m; raise 'cell'",
+                         row.name, row.limit, maps::kMaxRangeCells, map.settings.grid.cell));
+    map.sources.push_back({group->type->id, m, *parts.number});
+  }
+  if (map.sources.size() == before)
+    refuse_source(sensor, text, "there is no such sensor; sensors of one type are numbered per robot, from 0");
+  if (map.sources.size() > kMostSources)
+    refuse_source(sensor, text, fmt::format("a map has at most {} sources", kMostSources));
+}
+
+void read_sources(const world::Sensor& sensor, const world::World& world, std::uint32_t own,
+                  std::span<const SourceGroup> groups, Occupancy& map) {
+  const world::Setting& setting = *find(sensor, "sources");
+  if (find(sensor, "laser") != nullptr) refuse(sensor, "laser", "a map has a 'laser' or 'sources'; remove one of them");
+  if (!setting.numbers.empty() || setting.text.empty())
+    refuse(sensor, "sources", "'sources' expects names of sensors, such as [\"laser\" \"sonar\" \"*/infrared\"]");
+  if (find(sensor, "log_odds") != nullptr && !map.settings.odds)
+    refuse(sensor, "log_odds", "a map from 'sources' always has log odds; expected 1 or [hit miss limit]");
+  if (!map.settings.odds) map.settings.odds.emplace();
+  for (std::string_view rest = setting.text; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    add_source(sensor, world, own, rest.substr(0, end), groups, map);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  std::ranges::sort(map.sources);
+  const auto twice = std::ranges::unique(map.sources);
+  map.sources.erase(twice.begin(), twice.end());
+}
+
 /// Returns the number of the laser that fills the map.
 std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover, std::span<const SensorSpec> lasers) {
   if (lasers.empty())
@@ -100,16 +174,22 @@ void fill_from(const world::Sensor& sensor, const SensorSpec& laser, MapSettings
                        laser.name, settings.range_max, maps::kMaxRangeCells, settings.grid.cell));
 }
 
-/// @param lasers of the mover
-Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number,
-                       std::span<const SensorSpec> lasers) {
+/// @param groups of kSourceTypes
+Occupancy occupancy_of(const world::Sensor& sensor, const world::World& world, std::uint32_t m, std::uint32_t number,
+                       std::span<const SourceGroup> groups) {
+  const world::Mover& mover = world.movers[m];
   Occupancy map;
   map.row = common_spec(sensor, m, number);
   map.row.rate = rate_of(sensor, kDefaultRate);
   map.settings.grid = grid_of(sensor, mover.X_WM);
   map.settings.odds = odds_of(sensor);
-  map.laser = laser_of(sensor, mover, lasers);
-  fill_from(sensor, lasers[map.laser], map.settings);
+  if (find(sensor, "sources") != nullptr) {
+    read_sources(sensor, world, m, groups, map);
+  } else {
+    const std::span<const SensorSpec> lasers = std::ranges::equal_range(groups[0].rows, m, {}, &SensorSpec::mover);
+    map.laser = laser_of(sensor, mover, lasers);
+    fill_from(sensor, lasers[map.laser], map.settings);
+  }
   map.row.elements = maps::words(map.settings.grid);
   map.row.limit = 4294967295.0;
   map.row.reach = 0.0;
@@ -122,11 +202,11 @@ Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, s
 
 std::vector<Occupancy> occupancies_of(const world::World& world) {
   std::vector<Occupancy> all;
-  std::vector<SensorSpec> lasers;  // of all movers
+  std::vector<SourceGroup> groups;
   for_each_of(world, occupancy_type.word.type, [&](const world::Sensor& sensor, std::uint32_t m, std::uint32_t number) {
-    if (all.empty()) lasers = laser_type.parse(world).rows;
-    const auto [first, last] = std::ranges::equal_range(lasers, m, {}, &SensorSpec::mover);
-    all.push_back(occupancy_of(sensor, world.movers[m], m, number, {first, last}));
+    if (all.empty())
+      for (const SensorType* type : kSourceTypes) groups.push_back({type, type->parse(world).rows});
+    all.push_back(occupancy_of(sensor, world, m, number, groups));
   });
   return all;
 }

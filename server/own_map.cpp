@@ -1,7 +1,10 @@
 #include "server/own_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "maps/map_packets.h"
@@ -58,12 +61,21 @@ sensors::Occupancy settings_of(const world::World& world, const sensors::SensorS
 OwnMap::OwnMap(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
                const OwnMapOptions& options)
     : settings_(settings_of(world, sensor_set, mover)),
-      X_ML_(sensor_set.of(sensors::kLaser, mover)[settings_.laser].X_MS),
+      X_ML_(settings_.sources.empty() ? sensor_set.of(sensors::kLaser, mover)[settings_.laser].X_MS : base::Pose{}),
       options_(options),
       robot_(static_cast<std::uint16_t>(world.movers[mover].id)),
       session_(netio::random_session()),
       map_({&settings_.settings, 1}, thread_pool_),
       words_(settings_.row.elements) {
+  if (!settings_.sources.empty()) {
+    for (const sensors::RangeSensor& source : settings_.sources)
+      if (source.mover != mover)
+        throw base::InputError(
+            fmt::format("map: '{}' of '{}' has sources of other robots, whose readings it does not "
+                        "receive; expected its own sensors",
+                        settings_.row.name, world.movers[mover].name));
+    source_maps_.emplace(world, std::span(&settings_, 1), thread_pool_);
+  }
   if (!options.receiver) return;
   outbox_.emplace(netio::OutboxOptions{.bind = netio::own_end_for(options.receiver->address)});
   const std::string problem = sensors::occupancy_wire_problem(settings_.row, options.wire);
@@ -71,13 +83,29 @@ OwnMap::OwnMap(const world::World& world, const sensors::SensorSet& sensor_set, 
 }
 
 void OwnMap::add(const base::ReadingBlock& reading, const base::Pose& X_WM) {
-  if (reading.type != sensors::kLaser || reading.sensor != settings_.laser) return;
-  if ((last_scan_ && reading.time <= *last_scan_) || reading.values.size() != settings_.settings.samples) return;
-  last_scan_ = reading.time;
+  if (!(source_maps_ ? add_to_sources(reading, X_WM) : add_scan(reading, X_WM))) return;
   X_WM_ = X_WM;
+  ++scans_;
+}
+
+bool OwnMap::add_scan(const base::ReadingBlock& reading, const base::Pose& X_WM) {
+  if (reading.type != sensors::kLaser || reading.sensor != settings_.laser) return false;
+  if ((last_scan_ && reading.time <= *last_scan_) || reading.values.size() != settings_.settings.samples) return false;
+  last_scan_ = reading.time;
   const sensors::MapScan scan{0, base::compose(X_WM, X_ML_), reading.values};
   map_.update({&scan, 1});
-  ++scans_;
+  return true;
+}
+
+bool OwnMap::add_to_sources(const base::ReadingBlock& reading, const base::Pose& X_WM) {
+  const sensors::RangeSensor source{reading.type, settings_.row.mover, reading.sensor};
+  if (!std::ranges::binary_search(settings_.sources, source)) return false;
+  const auto [last, is_first] = last_times_.try_emplace(source, reading.time);
+  if (!is_first && reading.time <= std::exchange(last->second, std::max(last->second, reading.time))) return false;
+  base::ReadingBlock placed = reading;
+  placed.mover = source.mover, placed.X_WM = X_WM;
+  source_maps_->observe({&placed, 1});
+  return true;
 }
 
 void OwnMap::send(std::int64_t now, bool true_poses) {
@@ -89,14 +117,14 @@ void OwnMap::send(std::int64_t now, bool true_poses) {
 }
 
 maps::OccupancyGrid OwnMap::grid() const {
-  const std::span<const std::uint32_t> words = map_.words(0);
+  const std::span<const std::uint32_t> words = map_words();
   maps::OccupancyGrid grid(settings_.settings.grid);
   std::copy(words.begin(), words.end(), grid.words.begin());
   return grid;
 }
 
 void OwnMap::send_parts(std::int64_t now, bool true_poses) {
-  const std::span<const std::uint32_t> words = map_.words(0);
+  const std::span<const std::uint32_t> words = map_words();
   std::copy(words.begin(), words.end(), words_.begin());
 
   const maps::GridGeometry& grid = settings_.settings.grid;
