@@ -1,4 +1,5 @@
-// Five unlike sensors of one car, of which each choice is switched on: tracks of objects against the truth.
+// Five unlike sensors of one car, of which each choice is switched on: tracks of objects and grids against
+// the truth.
 
 #include <fmt/format.h>
 
@@ -6,7 +7,8 @@
 #include <cmath>
 
 #include "scenarios/experiment.h"
-#include "scenarios/tree_runs.h"
+#include "scenarios/tree_grid_report.h"
+#include "viz/map_figure.h"
 #include "viz/series_figure.h"
 
 namespace sf::scenarios {
@@ -24,20 +26,13 @@ double tree_rms(double squares, std::size_t count) {
 }
 double missed(const TreeTracks& t) { return 1.0 - tree_share(t.found, t.targets); }
 
-std::string names_of(unsigned sensors) {
-  std::string text;
-  for (std::size_t k = 0; k < kTreeSensors.size(); ++k)
-    if ((sensors >> k & 1u) != 0) text += (text.empty() ? "" : ", ") + std::string(kTreeSensors[k]);
-  return text;
-}
-
 std::string tree_csv(const std::vector<TreeTracks>& all) {
   std::string text =
       "sensors,count,readings,targets,missed,position_rms_m,speed_rms_m_s,nees,motion_right,switches,objects,false,"
       "moving_walls\n";
   for (const TreeTracks& t : all)
     text +=
-        fmt::format("\"{}\",{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{},{}\n", names_of(t.sensors),
+        fmt::format("\"{}\",{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{},{}\n", tree_sensor_names(t.sensors),
                     std::popcount(t.sensors), t.readings, t.targets, missed(t), tree_rms(t.position_squares, t.found),
                     tree_rms(t.velocity_squares, t.found), t.nees / static_cast<double>(t.found),
                     tree_share(t.right_motion, t.found), t.switches, t.tracks, t.false_tracks, t.moving_walls);
@@ -52,8 +47,8 @@ std::string tree_row(const TreeTracks& t, const std::string& name) {
                      tree_share(t.false_tracks, t.readings), tree_share(t.moving_walls, t.readings));
 }
 
-std::string tree_report(const ExperimentContext& context, const std::vector<TreeTracks>& all) {
-  const auto row = [&](unsigned sensors, const std::string& name) { return tree_row(all[sensors - 1], name); };
+std::string tree_report(const ExperimentContext& context, const TreeRun& all) {
+  const auto row = [&](unsigned sensors, const std::string& name) { return tree_row(all.tracks[sensors - 1], name); };
   std::string text = fmt::format(
       "# Five sensors of one car\n\nSeeds {} to {}, {:g} s each, the first 10 s left out. Targets: robots within 3 m "
       "that no wall hides. Missed [%], RMS errors of position [m] and velocity [m/s] of the others, position NEES, "
@@ -67,9 +62,9 @@ std::string tree_report(const ExperimentContext& context, const std::vector<Tree
     text += row(kAllTreeSensors & ~(1u << k), fmt::format("without {}", kTreeSensors[k]));
   unsigned on = kAllTreeSensors;
   for (std::size_t k = 0; k + 1 < kFinestFirst.size(); ++k)
-    if (on &= ~(1u << kFinestFirst[k]); k > 0 && std::popcount(on) > 1) text += row(on, names_of(on));
+    if (on &= ~(1u << kFinestFirst[k]); k > 0 && std::popcount(on) > 1) text += row(on, tree_sensor_names(on));
   for (std::size_t k = 0; k < kTreeSensors.size(); ++k) text += row(1u << k, fmt::format("{} alone", kTreeSensors[k]));
-  return text + "\n" + std::string(context.type.reasons) + "\n";
+  return text + "\n" + std::string(context.type.reasons) + "\n\n" + tree_grid_report(all.grids);
 }
 
 viz::Series switched_off(const std::vector<TreeTracks>& all, const std::array<std::size_t, 5>& order,
@@ -105,21 +100,28 @@ void draw_tree(const std::vector<TreeTracks>& all, const std::string& path) {
 
 std::vector<std::string> run_tree_experiment(const ExperimentContext& context) {
   if (!reports(context)) return {};
-  std::vector<TreeTracks> all;
+  TreeRun all;
   for (std::uint32_t k = 0; k < context.options.trials; ++k) {
     if (context.progress)
       context.progress(k / static_cast<double>(context.options.trials), fmt::format("trial {}", k + 1));
-    const std::vector<TreeTracks> each = run_tree(context, context.options.seed + k);
-    if (all.empty())
-      all = each;
+    TreeRun run = run_tree(context, context.options.seed + k);
+    if (k == 0)
+      all = std::move(run);
     else
-      for (std::size_t row = 0; row < all.size(); ++row) all[row].add(each[row]);
+      all.add(run);
   }
-  const std::vector<std::string> files{in_folder(context, "results.csv"), in_folder(context, "report.md"),
-                                       in_folder(context, "tracks.png")};
-  write_text(files[0], tree_csv(all));
-  write_text(files[1], tree_report(context, all));
-  draw_tree(all, files[2]);
+  const std::vector<std::string> files{in_folder(context, "results.csv"),  in_folder(context, "grids.csv"),
+                                       in_folder(context, "report.md"),    in_folder(context, "tracks.png"),
+                                       in_folder(context, "grids.png"),    in_folder(context, "map.png"),
+                                       in_folder(context, "map-sonar.png")};
+  write_text(files[0], tree_csv(all.tracks));
+  write_text(files[1], tree_grid_csv(all.grids));
+  write_text(files[2], tree_report(context, all));
+  draw_tree(all.tracks, files[3]);
+  draw_tree_grids(all.grids, files[4]);
+  const std::string seed = fmt::format("seed {}, by the car's own poses", context.options.seed);
+  viz::draw_map(all.own_grids[0], {"Grid from two lasers, sonar and infrared", seed, {}}, files[5]);
+  viz::draw_map(all.own_grids[1], {"Grid from sonar alone", seed, {}}, files[6]);
   return files;
 }
 
@@ -133,7 +135,7 @@ extern const ExperimentType tree_experiment;
 
 constinit const ExperimentType tree_experiment{
     .name = "tree",
-    .summary = "five unlike sensors of a car, switched off one by one: tracks of objects against the truth",
+    .summary = "five unlike sensors of a car, switched off one by one: tracks and a grid against the truth",
     .reasons = kTreeReasons,
     .run = run_tree_experiment,
 };

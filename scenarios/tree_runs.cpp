@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/time.h"
 #include "scenarios/simulation.h"
 #include "sensors/illumination.h"
 #include "sensors/tracks.h"
@@ -22,6 +23,7 @@ constexpr double kAssigned = 0.4;     // [m] from a target to its track
 constexpr double kNearSurface = 0.3;  // [m]
 constexpr double kAtRest = 0.03;      // [m/s]
 constexpr double kEyeHeight = 0.02;   // [m]
+constexpr unsigned kSonarAlone = 4;
 
 using TreeRow = std::span<const double>;
 
@@ -104,6 +106,13 @@ void compare_tracks(TreeRobots& robots, const base::TickRecord& tick, const base
   }
 }
 
+/// Returns the car's map of all its range sensors.
+sensors::Occupancy map_of_probe(const world::World& world, std::uint32_t probe) {
+  for (sensors::Occupancy& map : sensors::occupancies_of(world))
+    if (map.row.mover == probe && !map.sources.empty()) return map;
+  throw base::InputError("the car 'probe' has no map with sources; expected worlds/simville/tree.world");
+}
+
 /// Adds tracks of each choice of sensors to the probe, after its own.
 void add_choices(world::Mover& probe) {
   const auto own =
@@ -132,7 +141,12 @@ void TreeTracks::add(const TreeTracks& other) {
   velocity_squares += other.velocity_squares, nees += other.nees;
 }
 
-std::vector<TreeTracks> run_tree(const ExperimentContext& context, std::uint64_t seed) {
+void TreeRun::add(const TreeRun& other) {
+  for (std::size_t row = 0; row < tracks.size(); ++row) tracks[row].add(other.tracks[row]);
+  for (std::size_t row = 0; row < grids.size(); ++row) grids[row].add(other.grids[row]);
+}
+
+TreeRun run_tree(const ExperimentContext& context, std::uint64_t seed) {
   Scenario scenario = context.scenario;
   scenario.seed = seed;
   world::World world = world_of(scenario);
@@ -146,19 +160,26 @@ std::vector<TreeTracks> run_tree(const ExperimentContext& context, std::uint64_t
   SimulationOptions options = simulation_of(scenario, world);
   options.threads = context.options.threads;
   Simulation simulation(world, context.device, std::move(options));
-  std::vector<TreeTracks> all;
-  for (unsigned sensors = 1; sensors <= kAllTreeSensors; ++sensors) all.push_back({.sensors = sensors});
+  TreeRun run;
+  for (unsigned sensors = 1; sensors <= kAllTreeSensors; ++sensors) run.tracks.push_back({.sensors = sensors});
+  TreeGrids grids(world, map_of_probe(world, robots.probe));
+  std::int64_t next_look = 0;
   for (double time = 0.0; time < scenario.duration - 1e-6;) {
     if (context.options.stop && context.options.stop()) throw Interrupted();
     const base::TickRecord tick = simulation.step();
     time = 1e-9 * static_cast<double>(tick.time);
     if (time < kTreeStart) continue;
+    grids.add(tick);
+    if (tick.time >= next_look) grids.look(tick), next_look = tick.time + base::kSecond;
+    if (!(time < scenario.duration - 1e-6)) run.grids = grids.compare(tick);
     for (const base::ReadingBlock& reading : tick.readings)
       if (reading.type == sensors::kTracks && reading.mover == robots.probe && reading.sensor > 0 &&
           reading.time == tick.time)
-        compare_tracks(robots, tick, reading, all[reading.sensor - 1]);
+        compare_tracks(robots, tick, reading, run.tracks[reading.sensor - 1]);
   }
-  return all;
+  run.own_grids = {maps::to_occupancy(grids.grid(kAllGridSensors, GridPose::own)),
+                   maps::to_occupancy(grids.grid(kSonarAlone, GridPose::own))};
+  return run;
 }
 
 }  // namespace sf::scenarios

@@ -1,12 +1,13 @@
 #pragma once
-// Runs of a car in SimVille with five unlike sensors, for the experiment `tree`: tracks of objects against the truth,
-// for each choice of sensors.
+// Runs of a car in SimVille with five unlike sensors, for the experiment `tree`: tracks of objects and occupancy grids
+// against the truth, for each choice of sensors.
 
 #include <array>
 #include <string_view>
 #include <vector>
 
 #include "scenarios/experiment.h"
+#include "scenarios/tree_grids.h"
 
 namespace sf::scenarios {
 
@@ -31,7 +32,15 @@ struct TreeTracks {
   void add(const TreeTracks& other);
 };
 
-/// Runs the scenario once and returns the results of each choice of at least one sensor: row k has the sensors k + 1.
-std::vector<TreeTracks> run_tree(const ExperimentContext& context, std::uint64_t seed);
+struct TreeRun {
+  std::vector<TreeTracks> tracks;              ///< of each choice of at least one sensor: row k has the sensors k + 1
+  std::vector<TreeGrid> grids;                 ///< TreeGrids::compare
+  std::vector<maps::OccupancyGrid> own_grids;  ///< by the car's own poses: of all sensors; of sonar alone
+
+  void add(const TreeRun& other);
+};
+
+/// Runs the scenario once.
+TreeRun run_tree(const ExperimentContext& context, std::uint64_t seed);
 
 }  // namespace sf::scenarios

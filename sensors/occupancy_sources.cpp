@@ -1,6 +1,7 @@
 #include "sensors/occupancy_sources.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "sensors/infrared.h"
@@ -31,7 +32,7 @@ void SourceMaps::add_readings(Map& map, maps::RangeEvidence& evidence) const {
   for (RangeSource& source : map.sources) {
     const auto found = std::ranges::lower_bound(readings_, source.sensor(), {}, range_sensor_of);
     if (found == readings_.end() || range_sensor_of(*found) != source.sensor()) continue;
-    source.add_to(map.grid, source.cones(**found, (*found)->X_WM), evidence);
+    source.add_to(std::array{&map.grid}, source.cones(**found, (*found)->X_WM), evidence);
   }
 }
 

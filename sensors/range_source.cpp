@@ -61,12 +61,12 @@ std::span<const maps::RangeCone> RangeSource::cones(const base::ReadingBlock& re
   return cones_;
 }
 
-void RangeSource::add_to(maps::LogOddsGrid& grid, std::span<const maps::RangeCone> cones,
+void RangeSource::add_to(std::span<maps::LogOddsGrid* const> grids, std::span<const maps::RangeCone> cones,
                          maps::RangeEvidence& evidence) const {
   const std::size_t together = sensor_.type == kLaser ? std::max<std::size_t>(cones.size(), 1) : 1;
   for (std::size_t first = 0; first < cones.size(); first += together) {
-    evidence.trace(grid.geometry, cones.subspan(first, together));
-    evidence.add_to(grid);
+    if (!grids.empty()) evidence.trace(grids[0]->geometry, cones.subspan(first, together));
+    for (maps::LogOddsGrid* grid : grids) evidence.add_to(*grid);
   }
 }
 

@@ -29,8 +29,9 @@ class RangeSource {
   /// Returns the beams of a scan, or the cones of the transducers that fired since the reading before, without elements
   /// that state nothing. Valid until the next call. @param X_WM pose of the robot at the measurement
   std::span<const maps::RangeCone> cones(const base::ReadingBlock& reading, const base::Pose& X_WM);
-  /// Adds a reading to a map: a scan as one measurement, each cone as its own.
-  void add_to(maps::LogOddsGrid& grid, std::span<const maps::RangeCone> cones, maps::RangeEvidence& evidence) const;
+  /// Adds a reading to maps of one geometry: a scan as one measurement, each cone as its own.
+  void add_to(std::span<maps::LogOddsGrid* const> grids, std::span<const maps::RangeCone> cones,
+              maps::RangeEvidence& evidence) const;
 
  private:
   struct Element {

@@ -13,7 +13,8 @@ TEST(TreeExperiment, MoreSensorsFindMoreObjects) {
   const ExperimentOptions options{.threads = 1};
   const Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/tree.toml");
   const ExperimentContext context{*find_experiment("tree"), scenario, options, device, {}};
-  const std::vector<TreeTracks> all = run_tree(context, 1);
+  const TreeRun run = run_tree(context, 1);
+  const std::vector<TreeTracks>& all = run.tracks;
   ASSERT_EQ(all.size(), kAllTreeSensors);
   const auto found = [&](unsigned sensors) { return all[sensors - 1].found; };
   EXPECT_EQ(all[kAllTreeSensors - 1].sensors, kAllTreeSensors);
@@ -26,7 +27,7 @@ TEST(TreeExperiment, MoreSensorsFindMoreObjects) {
     EXPECT_EQ(tracks.readings, all[0].readings);
     EXPECT_LE(tracks.found, tracks.targets);
   }
-  EXPECT_EQ(run_tree(context, 1)[0].position_squares, all[0].position_squares) << "deterministic";
+  EXPECT_EQ(run_tree(context, 1).tracks[0].position_squares, all[0].position_squares) << "deterministic";
 }
 
 TEST(TreeExperiment, NeedsItsCar) {
