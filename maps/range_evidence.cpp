@@ -7,7 +7,7 @@ namespace sf::maps {
 
 namespace {
 
-constexpr double kPrior = 0.1;         // probability that an unexplored cell of an arc is occupied
+constexpr double kPrior = 0.3;         // probability that an unexplored cell of an arc is occupied
 constexpr double kLeastWeight = 0.05;  // of a cell in an arc
 constexpr double kWidest = 1.4;        // [rad] half aperture up to which rows are clipped
 constexpr double kSigmas = 4.0;        // beyond the range

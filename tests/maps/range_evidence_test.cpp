@@ -151,7 +151,7 @@ void add_plainly(maps::LogOddsGrid& grid, const RangeCone& c) {
     const double w = c.has_echo ? weight * (normal_below((c.range - r + 0.5 * cell) / sigma) - beyond) : 0.0;
     (w >= 0.05 ? arc : before).push_back({i, std::min(w, 1.0), weight * beyond * c.seen});
   }
-  const auto p_of = [&](std::size_t i) { return 1.0 / (1.0 + 9.0 * std::exp(-grid.cells[i] / 100.0)); };
+  const auto p_of = [&](std::size_t i) { return 1.0 / (1.0 + 0.7 / 0.3 * std::exp(-grid.cells[i] / 100.0)); };
   std::vector<double> changes;
   for (const Weighed& one : arc) {
     double none = 1.0 - std::exp(-0.01 * grid.rule.hit);
@@ -190,7 +190,7 @@ TEST(RangeEvidence, MatchesTheRuleCellByCell) {
   }
   EXPECT_LE(most, 1u) << "weights are 32-bit numbers";
   EXPECT_LT(different, 200u);
-  EXPECT_GT(gained, 1000u);
+  EXPECT_GT(gained, 500u);
 }
 
 TEST(RangeEvidence, ConesOutsideTheMapChangeNothing) {

@@ -2,19 +2,27 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scenarios/tree_runs.h"
 #include "tests/refusal.h"
 
 namespace sf::scenarios {
 namespace {
 
-TEST(TreeExperiment, MoreSensorsFindMoreObjects) {
+TreeRun run_once() {
   gpu::Device device;
   const ExperimentOptions options{.threads = 1};
   const Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/tree.toml");
-  const ExperimentContext context{*find_experiment("tree"), scenario, options, device, {}};
-  const TreeRun run = run_tree(context, 1);
-  const std::vector<TreeTracks>& all = run.tracks;
+  return run_tree({*find_experiment("tree"), scenario, options, device, {}}, 1);
+}
+const TreeRun& first_run() {
+  static const TreeRun run = run_once();
+  return run;
+}
+
+TEST(TreeExperiment, MoreSensorsFindMoreObjects) {
+  const std::vector<TreeTracks>& all = first_run().tracks;
   ASSERT_EQ(all.size(), kAllTreeSensors);
   const auto found = [&](unsigned sensors) { return all[sensors - 1].found; };
   EXPECT_EQ(all[kAllTreeSensors - 1].sensors, kAllTreeSensors);
@@ -27,7 +35,29 @@ TEST(TreeExperiment, MoreSensorsFindMoreObjects) {
     EXPECT_EQ(tracks.readings, all[0].readings);
     EXPECT_LE(tracks.found, tracks.targets);
   }
-  EXPECT_EQ(run_tree(context, 1).tracks[0].position_squares, all[0].position_squares) << "deterministic";
+  EXPECT_EQ(run_once().tracks[0].position_squares, all[0].position_squares) << "deterministic";
+}
+
+TEST(TreeExperiment, MoreSensorsGiveABetterGrid) {
+  const std::vector<TreeGrid>& all = first_run().grids;
+  ASSERT_EQ(all.size(), 2 * kAllGridSensors);
+  const auto grid = [&](unsigned sensors, GridPose pose) {
+    const TreeGrid& of = all[static_cast<std::size_t>(pose) * kAllGridSensors + sensors - 1];
+    EXPECT_EQ(of.sensors, sensors);
+    EXPECT_EQ(of.cells, all[0].cells) << "the same truth";
+    return of;
+  };
+  const TreeGrid best = grid(kAllGridSensors, GridPose::exact);
+  EXPECT_GT(best.cells, 10'000u);
+  EXPECT_GT(best.surfaces, 500u);
+  EXPECT_GT(10 * best.found, 8 * best.surfaces);
+  EXPECT_GT(10 * best.right, 9 * best.occupied);
+  EXPECT_LT(100 * best.wrong, best.free);
+  for (std::size_t k = 0; k < kGridSensors; ++k) {
+    EXPECT_LT(best.log_loss, grid(kAllGridSensors & ~(1u << k), GridPose::exact).log_loss + 0.01 * best.log_loss) << k;
+    EXPECT_LT(grid(1u << k, GridPose::exact).log_loss, std::log(2.0) * static_cast<double>(best.cells)) << k;
+  }
+  EXPECT_LT(best.log_loss, grid(kAllGridSensors, GridPose::own).log_loss) << "the car's own poses blur the grid";
 }
 
 TEST(TreeExperiment, NeedsItsCar) {
