@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "base/echo.h"
+#include "sensors/cones/rangers.h"
 #include "sensors/fiducial.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
@@ -62,7 +64,9 @@ class ConeFeatures final : public FeatureSource {
 
   std::span<const Feature> find(const sensorfarm::Reading& reading) override {
     found_.clear();
-    for (std::size_t i = 0; i < array_.X_SC.size(); ++i) {
+    const std::uint64_t number = number_of(reading.time), last = std::exchange(last_, number);
+    for (std::uint32_t i = 0; i < array_.X_SC.size(); ++i) {
+      if (last != kNoReading && !has_fired(i, array_.turns, number, last)) continue;
       const double range =
           echo_range(reading, i, infrared_ ? kInfraredColumns : 1, {array_.range_min, array_.range_max});
       if (std::isfinite(range))
@@ -73,12 +77,19 @@ class ConeFeatures final : public FeatureSource {
   }
 
  private:
+  static constexpr std::uint64_t kNoReading = ~std::uint64_t{0};
+
+  /// Returns the sequence number of the reading at `time` [s].
+  std::uint64_t number_of(double time) const {
+    return static_cast<std::uint64_t>(std::max(std::llround((time - array_.row.phase) * array_.row.rate), 0ll));
+  }
   double sigma(double range) const {
     return infrared_ ? infrared_sigma(range, {array_.range_min, array_.range_max}, array_.proportional)
                      : std::hypot(array_.sigma, array_.proportional * range);
   }
   ConeArray array_;
   bool infrared_;
+  std::uint64_t last_ = kNoReading;  ///< number of the last reading
   std::vector<Feature> found_;
 };
 

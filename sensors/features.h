@@ -8,7 +8,8 @@
 //
 // A reading is `most` rows, the nearest feature to the sensor first: x and y in the frame of the robot, direction,
 // `valid`, their covariance, then kind (estimation::FeatureKind), half length, id of a tag, and age: the time since the
-// measurement. It has the features of the newest input reading since the last one; without any, no row is valid.
+// measurement. It has the features of the newest input reading since the last one; without any, no row is valid. Of
+// sonars that fire in turn, it has the echoes of the transducers that fired since the last one.
 
 #include "robots/estimation/scan_features.h"
 #include "sensors/derived/derived_type.h"

@@ -24,6 +24,8 @@ using estimation::Observation;
 
 enum TrackPort : std::uint8_t { kFeatureInputs, kPoseInputs };
 constexpr double kExtentShare = 0.5;      // standard deviation of an object's middle, as a share of its half width
+constexpr double kDepthShare = 0.4;       // of the half width, from the ends of what is seen to the middle
+constexpr double kLargestExtent = 0.5;    // [m] default
 constexpr double kLongestContact = 60.0;  // [s]
 constexpr std::int64_t kLatest = base::kSecond;
 constexpr double kFarthestFeature = 1e6;  // [m]
@@ -52,8 +54,8 @@ estimation::Spread turned(double yaw, double xx, double xy, double yy) {
 
 class TracksSensor final : public sensorfarm::DerivedSensor {
  public:
-  TracksSensor(const DerivedContext& context, const estimation::TrackOptions& options, double radius)
-      : robot_(context.spec.mover), radius_(radius), tracks_(options) {
+  TracksSensor(const DerivedContext& context, const estimation::TrackOptions& options, double radius, double extent)
+      : robot_(context.spec.mover), radius_(radius), extent_(extent), tracks_(options) {
     for (const sensorfarm::DerivedInput& input : context.site.inputs) add_input(input);
   }
 
@@ -86,7 +88,7 @@ class TracksSensor final : public sensorfarm::DerivedSensor {
   void decide(const ObjectTrack& object, std::int64_t now, double* ahead, double* contact) const;
 
   std::uint32_t robot_;
-  double radius_;
+  double radius_, extent_;
   std::vector<sensorfarm::DerivedInput> inputs_;
   std::map<std::uint32_t, PoseHistory> poses_;  ///< by robot
   std::vector<PendingFeatures> pending_;
@@ -100,8 +102,11 @@ Observation TracksSensor::observation_of(std::span<const double> row, const Stat
   seen.own = turned(pose.X_WM.yaw, row[4], row[5], row[7]);
   seen.repeated = spread_by(pose, seen.p);
   if (kind == FeatureKind::cluster) {
-    const double extent = kExtentShare * row[kFeatureKindAt + 1];
+    const double half_length = row[kFeatureKindAt + 1], distance = std::hypot(row[0], row[1]);
+    const double extent = kExtentShare * (half_length > 0.0 ? half_length : extent_);
     seen.repeated[0] += extent * extent, seen.repeated[2] += extent * extent;
+    const double behind = half_length > 0.0 ? kDepthShare * half_length : extent_;
+    if (distance > 0.0) seen.to_middle = base::rotate(pose.X_WM.yaw, glm::dvec2{row[0], row[1]} * (behind / distance));
   }
   seen.tag =
       kind == FeatureKind::tag ? static_cast<std::uint32_t>(std::clamp(row[kFeatureKindAt + 2], 0.0, 65535.0)) : 0;
@@ -127,7 +132,7 @@ void TracksSensor::add(const PendingFeatures& features) {
     walls.push_back({base::transform(pose->X_WM, {row[0], row[1]}), base::rotate(pose->X_WM.yaw, along),
                      row[kFeatureKindAt + 1], n.x * n.x * row[4] + 2.0 * n.x * n.y * row[5] + n.y * n.y * row[7]});
   }
-  if (!walls.empty()) tracks_.set_walls(features.input, features.time, std::move(walls));
+  tracks_.add_walls(features.time, walls);
   tracks_.add(features.time, observations_);
 }
 
@@ -203,13 +208,14 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_tracks(const DerivedContext& con
   options.keep = number(s, "keep", options.keep, 0.01, 3600.0);
   options.agility = length(s, "agility", options.agility, 1e-3, 1e3);
   const double own = std::clamp(context.world.movers[context.spec.mover].radius, 1e-3, 1e3);
-  return std::make_unique<TracksSensor>(context, options, length(s, "radius", own, 1e-3, 1e3));
+  return std::make_unique<TracksSensor>(context, options, length(s, "radius", own, 1e-3, 1e3),
+                                        length(s, "extent", std::min(own, kLargestExtent), 0.0, 1e3));
 }
 
 constexpr DerivedPort kPorts[] = {{"features", kFeatureColumns, 1, 4096}, {"pose", kPoseColumns, 1, 4096}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 4, .covariance = true, .extra = 5, .make = make_tracks};
 
-constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most", "keep", "agility", "radius"};
+constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most", "keep", "agility", "radius", "extent"};
 constexpr Column kColumns[] = {{"x_m"},
                                {"y_m"},
                                {"vx_m_s"},

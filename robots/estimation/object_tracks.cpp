@@ -11,7 +11,7 @@ namespace {
 using Matrix2 = Eigen::Matrix2d;
 using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
-constexpr double kWallTime = 1.0;             // [s] for which a wall is known
+constexpr double kWallTime = 5.0;             // [s] for which a wall is known
 constexpr double kWallSigmas = 3.0;           // of an echo's distance from a wall
 constexpr double kWallDepth = 0.05;           // [m] walls are uneven
 constexpr double kSame = 2.0;                 // squared normalised distance of two tracks of one object
@@ -53,8 +53,9 @@ void correct_track(ObjectTrack& track, const Observation& observation) {
   const Matrix2 repeated = matrix_of(observation.repeated);
   const Matrix4 P = read(track.own);
   const Matrix2 R = matrix_of(observation.own) + repeated;
+  const glm::dvec2 innovation = observation.p + observation.to_middle - track.p;
   const Eigen::Matrix<double, 4, 2> K = P.leftCols<2>() * (P.topLeftCorner<2, 2>() + R).inverse();
-  const Eigen::Vector4d change = K * Eigen::Vector2d(observation.p.x - track.p.x, observation.p.y - track.p.y);
+  const Eigen::Vector4d change = K * Eigen::Vector2d(innovation.x, innovation.y);
   track.p += glm::dvec2{change[0], change[1]}, track.v += glm::dvec2{change[2], change[3]};
   Matrix4 rest = Matrix4::Identity();
   rest.leftCols<2>() -= K;
@@ -68,7 +69,8 @@ void correct_track(ObjectTrack& track, const Observation& observation) {
 std::array<double, 2> distance_of(const ObjectTrack& track, const Observation& observation) {
   const Matrix2 S = matrix_of({track.covariance(0, 0), track.covariance(0, 1), track.covariance(1, 1)}) +
                     matrix_of(observation.own) + matrix_of(observation.repeated);
-  const Eigen::Vector2d d(observation.p.x - track.p.x, observation.p.y - track.p.y);
+  const glm::dvec2 away = observation.p + observation.to_middle - track.p;
+  const Eigen::Vector2d d(away.x, away.y);
   return {d.dot(S.inverse() * d), std::log(S.determinant())};
 }
 
@@ -86,9 +88,10 @@ bool may_be_one(const ObjectTrack& track, const Observation& observation) {
 
 }  // namespace
 
-void ObjectTracks::set_walls(std::uint32_t source, std::int64_t time, std::vector<SeenWall> walls) {
-  if (walls_.size() <= source) walls_.resize(source + 1);
-  walls_[source] = {time, std::move(walls)};
+void ObjectTracks::add_walls(std::int64_t time, std::span<const SeenWall> walls) {
+  while (!walls_.empty() && track_seconds(time - walls_.front().time) > kWallTime) walls_.pop_front();
+  for (const SeenWall& wall : walls) walls_.push_back({time, wall});
+  while (walls_.size() > kMostWalls) walls_.pop_front();
 }
 
 bool ObjectTracks::on_wall(std::int64_t time, const Observation& observation) const {
@@ -97,17 +100,14 @@ bool ObjectTracks::on_wall(std::int64_t time, const Observation& observation) co
     const Spread& s = observation.own;
     return u.x * u.x * s[0] + 2.0 * u.x * u.y * s[1] + u.y * u.y * s[2];
   };
-  for (const Walls& source : walls_) {
-    if (std::abs(track_seconds(time - source.time)) > kWallTime) continue;
-    for (const SeenWall& wall : source.walls) {
-      const glm::dvec2 d = observation.p - wall.middle, n{-wall.along.y, wall.along.x};
-      const double sigma = std::sqrt(variance(n) + wall.across + kWallDepth * kWallDepth);
-      if (std::abs(glm::dot(d, n)) < kWallSigmas * sigma &&
-          std::abs(glm::dot(d, wall.along)) < wall.half_length + std::sqrt(variance(wall.along)))
-        return true;
-    }
-  }
-  return false;
+  return std::ranges::any_of(walls_, [&](const TimedWall& seen) {
+    if (std::abs(track_seconds(time - seen.time)) > kWallTime) return false;
+    const SeenWall& wall = seen.wall;
+    const glm::dvec2 d = observation.p - wall.middle, n{-wall.along.y, wall.along.x};
+    const double sigma = std::sqrt(variance(n) + wall.across + kWallDepth * kWallDepth);
+    return std::abs(glm::dot(d, n)) < kWallSigmas * sigma &&
+           std::abs(glm::dot(d, wall.along)) < wall.half_length + std::sqrt(variance(wall.along));
+  });
 }
 
 void ObjectTracks::assign(std::span<const Observation> observations) {
@@ -150,7 +150,7 @@ void ObjectTracks::start(std::int64_t time, const Observation& observation) {
   }
   ObjectTrack track{.identity = next_identity_++,
                     .time = time,
-                    .p = observation.p,
+                    .p = observation.p + observation.to_middle,
                     .seen = time,
                     .hits = 1,
                     .corner = observation.corner,

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -25,7 +26,8 @@ using Spread = std::array<double, 3>;
 
 /// One observation of an object, in the world frame.
 struct Observation {
-  glm::dvec2 p;           ///< [m]
+  glm::dvec2 p;           ///< [m] what is seen: a surface, or a tag
+  glm::dvec2 to_middle;   ///< [m] from there to the middle of the object, as far as it is known
   Spread own{};           ///< of the sensor's error
   Spread repeated{};      ///< of the errors that repeat
   bool corner = false;    ///< corners are tracked apart from other objects
@@ -66,15 +68,15 @@ struct ObjectTrack {
 /// Not thread-safe. Work per reading is bounded by `kMostTracks`.
 class ObjectTracks {
  public:
-  static constexpr std::size_t kMostTracks = 128;
+  static constexpr std::size_t kMostTracks = 128, kMostWalls = 1024;
   static constexpr std::uint32_t kConfirmed = 3;  ///< readings that make a track an object
 
   explicit ObjectTracks(const TrackOptions& options) : options_(options) {}
 
   /// Adds all observations of one reading. Readings older than a track's state count as of the time of that state.
   void add(std::int64_t time, std::span<const Observation> observations);
-  /// Replaces the walls that a source sees. They are used for one second.
-  void set_walls(std::uint32_t source, std::int64_t time, std::vector<SeenWall> walls);
+  /// Adds the walls of one reading. They are used for `kWallTime`.
+  void add_walls(std::int64_t time, std::span<const SeenWall> walls);
   /// Ends tracks that have not been seen, and one of two that are the same object. Call it with ascending times.
   void end_old(std::int64_t time);
   /// Returns the objects at `time`, not before their states, by identity.
@@ -83,9 +85,9 @@ class ObjectTracks {
   std::uint64_t left_out() const { return left_out_; }
 
  private:
-  struct Walls {
+  struct TimedWall {
     std::int64_t time;
-    std::vector<SeenWall> walls;
+    SeenWall wall;
   };
   struct Pair {
     bool other_tag;  ///< not known to be the same
@@ -100,7 +102,7 @@ class ObjectTracks {
 
   TrackOptions options_;
   std::vector<ObjectTrack> tracks_;  ///< by identity
-  std::vector<Walls> walls_;         ///< by source
+  std::deque<TimedWall> walls_;      ///< at most kMostWalls, in the order of arrival
   std::uint32_t next_identity_ = 1;
   std::uint64_t left_out_ = 0;
   std::vector<Pair> pairs_;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/time.h"
@@ -84,6 +85,15 @@ TEST(Features, OfConesStateTheirWidth) {
   const auto near = readings_of(
       featured("infrared( scount 1 spose[0] [0 0 0] fov 20 range [0 1] noise 0.01 rate 10 )", "inputs [\"infrared\"]"));
   EXPECT_NEAR(near.back()[0][0], 0.95, 0.05);
+}
+
+TEST(Features, OfConesThatFireInTurnAreThoseOfTheLastReading) {
+  const auto all = readings_of(
+      featured("sonar( scount 4 spose[0] [0 0 0] spose[1] [0 0 2] spose[2] [0 0 -2] spose[3] [0 0 4] fov 20 "
+               "range [0.1 4] rate 10 )",
+               "inputs [\"sonar\"] most 4"));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    EXPECT_EQ(std::ranges::count_if(all[k], [](const auto& row) { return row[3] != 0.0; }), k == 0 ? 4 : 1) << k;
 }
 
 TEST(Features, OfAFinderAreTags) {

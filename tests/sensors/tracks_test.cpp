@@ -92,6 +92,20 @@ TEST(Tracks, OfOneRobotFromOneSensor) {
   EXPECT_NE(row_near(rows, {2.0, 0.7}), nullptr) << "moving objects come first";
 }
 
+TEST(Tracks, EchoesOfConesAreInFrontOfTheirObjects) {
+  const auto x_of = [](const std::string& extent) {
+    const auto rows =
+        rows_after(tracked("derived( type \"tracks\" inputs [\"features:1\" \"localization\"] " + extent + " )"), 4.0);
+    const TrackRow* const post = row_near(rows, {3.0, 0.0});
+    return post == nullptr ? std::pair(0.0, 0.0) : std::pair((*post)[0], (*post)[sensors::kTrackCovarianceAt]);
+  };
+  const auto [surface, least] = x_of("extent 0");
+  const auto [middle, more] = x_of("extent 0.2");
+  EXPECT_NEAR(middle - surface, 0.2, 0.02);
+  EXPECT_NEAR(more - least, 0.01, 0.005) << "the extent is known to its half";
+  EXPECT_NEAR(x_of("").first - surface, std::hypot(0.15, 0.15), 0.02) << "the default: as large as the robot";
+}
+
 TEST(Tracks, RefusesFeaturesWithoutAPose) {
   const auto refusal = [](const std::string& more) {
     return refusal_of([&] { const sensors::SensorSet all(tracked("derived( type \"tracks\" " + more + " )")); });
@@ -104,6 +118,7 @@ TEST(Tracks, RefusesFeaturesWithoutAPose) {
             refusal("inputs [\"features\" \"localization\" \"r1/localization\" \"r1/localization\"]"));
   expect_in("expected features", refusal("inputs [\"laser\" \"localization\"]"));
   expect_in("'most'", refusal("inputs [\"features\" \"localization\"] most 16"));
+  expect_in("'extent'", refusal("inputs [\"features\" \"localization\"] extent -1"));
   expect_in("'keep'", refusal("inputs [\"features\" \"localization\"] keep 0"));
   expect_in("'agility'", refusal("inputs [\"features\" \"localization\"] agility -1"));
 }

@@ -78,16 +78,34 @@ TEST(ObjectTracks, EchoesOnWallsAreNoObjects) {
   ObjectTracks tracks({});
   const Observation on[] = {{.p = {1.0, 0.02}, .own = {0.01, 0.0, 1e-4}}},
                     off[] = {{.p = {1.0, 3.0}, .own = kSmallError}};
+  const SeenWall wall{{0.0, 0.0}, {1.0, 0.0}, 2.0, 1e-4}, other{{0.0, 9.0}, {1.0, 0.0}, 2.0, 1e-4};
   for (int k = 0; k < 5; ++k) {
-    tracks.set_walls(0, track_time(k), {{{0.0, 0.0}, {1.0, 0.0}, 2.0, 1e-4}});
+    tracks.add_walls(track_time(k), {k < 3 ? &wall : &other, 1});
     tracks.add(track_time(k), on);
     tracks.add(track_time(k), off);
   }
   const auto objects = tracks.at(track_time(5));
   ASSERT_EQ(objects.size(), 1u);
   EXPECT_NEAR(objects[0].p.y, 3.0, 0.01);
-  for (int k = 20; k < 25; ++k) tracks.add(track_time(k), on);
-  EXPECT_EQ(tracks.at(track_time(25)).size(), 2u) << "the wall is no longer known";
+  for (int k = 40; k < 45; ++k) tracks.add(track_time(k), on);
+  EXPECT_EQ(tracks.at(track_time(45)).size(), 1u) << "walls are remembered when they are out of sight";
+  for (int k = 80; k < 85; ++k) tracks.add(track_time(k), on);
+  EXPECT_EQ(tracks.at(track_time(85)).size(), 2u) << "the wall is no longer known";
+}
+
+TEST(ObjectTracks, ObjectsAreBehindTheirSurface) {
+  ObjectTracks tracks({});
+  const SeenWall wall{{0.0, 2.3}, {1.0, 0.0}, 2.0, 1e-4};
+  const Observation seen[] = {{.p = {1.0, 2.0}, .to_middle = {0.0, 0.3}, .own = kSmallError}},
+                    on_wall[] = {{.p = {-1.0, 2.3}, .to_middle = {0.0, 0.3}, .own = kSmallError}};
+  for (int k = 0; k < 5; ++k) {
+    tracks.add_walls(track_time(k), {&wall, 1});
+    tracks.add(track_time(k), seen);
+    tracks.add(track_time(k), on_wall);
+  }
+  const auto objects = tracks.at(track_time(5));
+  ASSERT_EQ(objects.size(), 1u) << "the surface is compared with walls, not the middle";
+  EXPECT_NEAR(objects[0].p.y, 2.3, 1e-6);
 }
 
 TEST(ObjectTracks, AreBounded) {
