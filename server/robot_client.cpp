@@ -304,6 +304,7 @@ RobotClientStats RobotClient::stats() const {
   stats.drives = drives_;
   stats.drives_ignored = drives_ignored_;
   stats.stops = log_.stops();
+  stats.dropped = log_.dropped();
   stats.lines_left_out = log_.left_out() + (stats.link.direct ? stats.link.direct->lines_left_out : 0);
   return stats;
 }
@@ -318,8 +319,12 @@ void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
     if (!lanes_.take(*lane)) log_.note_unknown_lane(lane->segment, lane->lane, now);
     return;
   }
-  if (const auto* dropped = std::get_if<netio::Dropped>(&packet.body))
-    return log_.note_dropped(packet.header.sensor, *dropped, now);
+  if (const auto* dropped = std::get_if<netio::Dropped>(&packet.body)) {
+    const auto type = static_cast<std::uint8_t>(dropped->type);
+    if (packet.header.sensor < sensor_set_.of(type, mover_).size())
+      log_.note_dropped(packet.header.sensor, *dropped, now);
+    return;
+  }
   if (const auto* map = std::get_if<netio::TeamMap>(&packet.body)) {
     if (exchange_) exchange_->receive(packet.header, *map, now);
     return;

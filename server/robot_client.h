@@ -94,8 +94,9 @@ struct RobotClientStats {
   bool listens = true;      ///< it has sensors and therefore expects packets; false if its controller needs no readings
                             ///< and it received states of others directly
   LinkCounts link;
-  std::uint64_t contacts = 0;        ///< number of contacts that began
-  std::uint64_t stops = 0;           ///< number of stops for lack of readings or positions
+  std::uint64_t contacts = 0;  ///< number of contacts that began
+  std::uint64_t stops = 0;     ///< number of stops for lack of readings or positions
+  DroppedReadings dropped;
   std::uint64_t lines_left_out = 0;  ///< dropped from its log
   double distance_m = 0.0;           ///< distance driven
   base::Pose pose;                   ///< at the end

@@ -87,7 +87,12 @@ void RobotClientLog::note_ignored_drive(const std::string& controller, std::int6
 }
 
 void RobotClientLog::note_dropped(std::uint32_t sensor, const netio::Dropped& dropped, std::int64_t now) {
-  if (!passes(next_dropped_, now)) return;
+  auto& [last, next] = dropped_of_[{dropped.type, sensor}];
+  if (dropped.processor < last.processor || dropped.network < last.network) last = {};
+  dropped_.processor += dropped.processor - last.processor;
+  dropped_.network += dropped.network - last.network;
+  last = dropped;
+  if (!passes(next, now)) return;
   const sensors::SensorType* const type = sensors::find_sensor_type(static_cast<std::uint8_t>(dropped.type));
   log_.write(
       fmt::format("the farm drops readings of {}:{}, whose priority is too low for its budget: so far {} for lack "

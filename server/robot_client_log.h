@@ -2,6 +2,7 @@
 // Log of a robot's process: why the robot stops, and when it drives on.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,12 @@
 #include "server/robot_link.h"
 
 namespace sf::server {
+
+/// Readings of a robot that the farm dropped, because a budget was exhausted, of all sensors.
+struct DroppedReadings {
+  std::uint64_t processor = 0;  ///< for lack of processor time
+  std::uint64_t network = 0;    ///< for lack of bytes
+};
 
 /// Not thread-safe. Times [ns] are on the robot's own clock.
 class RobotClientLog {
@@ -26,7 +33,8 @@ class RobotClientLog {
   void note_ignored_drive(const std::string& controller, std::int64_t now);
   /// Logs that the farm changes a lane that the robot's world cannot change, at most every ten seconds.
   void note_unknown_lane(std::uint32_t segment, std::uint32_t lane, std::int64_t now);
-  /// Logs that the farm drops readings, at most every ten seconds.
+  /// Counts the readings that the farm dropped, and logs them, at most every ten seconds for each sensor.
+  /// @param sensor of the robot; the counts are those since the farm started, and fall when it starts again
   void note_dropped(std::uint32_t sensor, const netio::Dropped& dropped, std::int64_t now);
   /// Logs that a real robot does not have the digital outputs that its controller sets, once.
   void note_ignored_outputs(std::string_view title, std::int64_t now);
@@ -50,6 +58,7 @@ class RobotClientLog {
   bool readings_timed_out(const RobotLink& link, std::int64_t now) const;
   std::uint64_t stops() const { return stops_; }              ///< number of stops for lack of readings or positions
   std::uint64_t left_out() const { return log_.left_out(); }  ///< number of dropped lines
+  const DroppedReadings& dropped() const { return dropped_; }
 
  private:
   void note_signatures(const RobotLink& link, bool needs_farm, std::int64_t now);
@@ -69,7 +78,12 @@ class RobotClientLog {
   std::int64_t next_unshared_ = 0;  ///< [ns] the same of own readings
   MapExchangeCounts team_;          ///< as last logged
   std::int64_t next_foreign_ = 0;   ///< [ns] time before which no map of another area is logged
-  std::int64_t next_dropped_ = 0;   ///< [ns] time before which no dropped readings are logged
+  struct DroppedOfSensor {
+    netio::Dropped last;    ///< as last received
+    std::int64_t next = 0;  ///< [ns] time before which nothing is logged
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, DroppedOfSensor> dropped_of_;  ///< by type and number
+  DroppedReadings dropped_;
   bool outputs_ignored_ = false;
   std::int64_t next_drive_ = 0;  ///< [ns] time before which no ignored DRIVE is logged
 };

@@ -441,6 +441,7 @@ std::string robot_client_json(const server::RobotClientStats& f) {
             {"drives", {{"followed", f.drives}, {"ignored", f.drives_ignored}}},
             {"contacts", f.contacts},
             {"stops", f.stops},
+            {"dropped_by_farm", {{"processor", f.dropped.processor}, {"network", f.dropped.network}}},
             {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
   if (f.link.direct) json["direct_v2v"] = direct_v2v_json(*f.link.direct);

@@ -132,6 +132,9 @@ std::string robot_client_text(const server::RobotClientStats& f) {
     text += row("remote commands", "{} followed, {} ignored", f.drives, f.drives_ignored);
   text += row("contacts", "{} that began", f.contacts);
   if (f.stops > 0) text += row("stopped", counted(f.stops, "time") + " for lack of readings or positions");
+  if (f.dropped.processor + f.dropped.network > 0)
+    text += row("dropped by farm", "{} for lack of processor time, {} for lack of bytes",
+                counted(f.dropped.processor, "reading"), f.dropped.network);
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (f.error.steps > 0) text += row("control error", error_summary_text(f.error));
   return text;

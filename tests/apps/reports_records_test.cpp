@@ -100,8 +100,8 @@ scenarios::Verification verification(std::uint64_t different, double largest) {
 
 server::RobotClientStats robot_stats() {
   server::RobotClientStats f{.robot = "anna", .id = 7, .controller = "route", .farm = "127.0.0.1:9000", .wall_s = 2.5};
-  f.steps = 25, f.drives = 5, f.drives_ignored = 6, f.contacts = 2, f.stops = 3, f.lines_left_out = 4,
-  f.distance_m = 1.25, f.done = true;
+  f.steps = 25, f.drives = 5, f.drives_ignored = 6, f.contacts = 2, f.stops = 3, f.dropped = {8, 9},
+  f.lines_left_out = 4, f.distance_m = 1.25, f.done = true;
   f.started = false;
   f.pose = {1.0, -2.0, 0.0, 0.5};
   f.link.sent = outbox(51);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/refusal.h"
 #include "tests/server/fixture.h"
 
@@ -53,7 +55,25 @@ TEST(Budget, WithoutProcessorTimeReadingsAreDroppedAndStated) {
   const ServiceStats stats = f.service->stats();
   EXPECT_GE(stats.farm.dropped, 60u);
   EXPECT_EQ(stats.farm.dropped + stats.farm.readings, 78u) << "two per tick since the robot is known";
-  expect_in("for lack of processor time, 0 for lack of bytes", f.log.read_all());
+  const std::string log = f.log.read_all();
+  for (const char* sensor : {"laser:0", "laser:1"}) expect_in(std::string("drops readings of ") + sensor, log);
+  const DroppedReadings& told = f.client->stats().dropped;
+  EXPECT_LE(told.processor, stats.farm.dropped);
+  EXPECT_GE(told.processor, stats.farm.dropped - 8) << "notices are sent every 0.25 s";
+  EXPECT_EQ(told.network, 0u);
+}
+
+TEST(Budget, DroppedReadingsAreSummedOverSensorsAndStartsOfTheFarm) {
+  LogPipe log;
+  RobotClientLog client("r1", 1, log.descriptor(), 0);
+  client.note_dropped(0, {sensors::kLaser, 5, 2}, 0);
+  client.note_dropped(1, {sensors::kLaser, 1, 0}, 0);
+  client.note_dropped(0, {sensors::kLaser, 7, 2}, 1'000'000'000);
+  client.note_dropped(0, {sensors::kLaser, 3, 0}, 2'000'000'000);  // started again
+  EXPECT_EQ(client.dropped().processor, 11u);
+  EXPECT_EQ(client.dropped().network, 2u);
+  const std::string lines = log.read_all();
+  EXPECT_EQ(std::ranges::count(lines, '\n'), 2) << "one per sensor and ten seconds: " << lines;
 }
 
 }  // namespace
