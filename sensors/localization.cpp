@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.h"
+#include "sensors/fiducial.h"
 #include "sensors/plain_packets.h"
 #include "sensors/pose_sensor.h"
 #include "sensors/settings.h"
@@ -17,6 +19,34 @@ namespace {
 /// Columns of a derived sensor with a pose: x, y, yaw, `valid` and the covariance.
 constexpr std::size_t kValidAt = 3, kCovarianceAt = 4, kPoseNumbers = 10;
 
+/// A fiducial finder of the robot, and the fiducials that it detects and that stand still, by id.
+struct LandmarkFinder {
+  FiducialFinder settings;
+  std::map<std::uint32_t, glm::dvec2> landmarks;  ///< [m] world frame
+};
+
+/// @throws base::InputError if there is none, or if two have the same id
+LandmarkFinder landmark_finder(const DerivedContext& context, const WiredInput& input) {
+  if (input.mover != context.spec.mover)
+    refuse(context.settings, "inputs", "fiducial finders of a localization are those of its own robot");
+  LandmarkFinder finder{read_finder(input_settings(context.world, input)), {}};
+  const std::uint32_t key = finder.settings.key;
+  for (const world::Fiducial& fiducial : context.world.fiducials) {
+    if (fiducial.key != key || context.world.models[fiducial.model].mover != world::kNone) continue;
+    if (!finder.landmarks.emplace(fiducial.id, glm::dvec2{fiducial.X_BF.x, fiducial.X_BF.y}).second)
+      refuse(context.settings, "inputs",
+             fmt::format("two models that stand still have fiducial_return {} (fiducial_key {}); a localization needs "
+                         "different ones",
+                         fiducial.id, key));
+  }
+  if (finder.landmarks.empty())
+    refuse(context.settings, "inputs",
+           fmt::format("no model that stands still has a fiducial_return with fiducial_key {}; a localization takes "
+                       "those as landmarks",
+                       key));
+  return finder;
+}
+
 class LocalizationSensor final : public PoseSensor<estimation::Localization> {
  public:
   LocalizationSensor(const DerivedContext& context, const estimation::LocalizationOptions& options)
@@ -27,11 +57,15 @@ class LocalizationSensor final : public PoseSensor<estimation::Localization> {
     if (!(position > 0.0 && position <= 1e6 && yaw > 0.0 && yaw <= 10.0))
       refuse(context.settings, "noise", "'noise' expects two standard deviations above 0: [metres degrees]");
     covariance_ = {position * position, 0.0, 0.0, position * position, 0.0, yaw * yaw};
+    for (std::uint32_t i = 0; i < context.inputs.size(); ++i)
+      if (context.inputs[i].port == kFinders) finders_.emplace(i, landmark_finder(context, context.inputs[i]));
   }
 
   void take(std::uint32_t input, const sensorfarm::Reading& reading) override {
     PoseSensor::take(input, reading);
     if (inputs_[input].port == kPoses) take_pose(reading, inputs_[input].sensor.columns);
+    if (const auto finder = finders_.find(input); finder != finders_.end())
+      take_sightings(reading, finder->second, inputs_[input].sensor.X_RS);
   }
 
  private:
@@ -46,22 +80,45 @@ class LocalizationSensor final : public PoseSensor<estimation::Localization> {
     filter_.add_pose(base::nanoseconds(reading.time), {v[0], v[1], 0.0, v[2]}, covariance);
   }
 
-  std::array<double, 6> covariance_{};  ///< of a pose that states none
+  /// Fiducials that move, and those too far for their id, are left out.
+  void take_sightings(const sensorfarm::Reading& reading, const LandmarkFinder& finder, const sensorfarm::Pose& X_RS) {
+    for (std::size_t k = 0; k + kFiducialNumbers <= reading.values.size(); k += kFiducialNumbers) {
+      const double id = reading.values[k], range = reading.values[k + 2];
+      if (!(id > 0.0)) continue;
+      const auto landmark = finder.landmarks.find(static_cast<std::uint32_t>(id));
+      if (landmark == finder.landmarks.end()) continue;
+      const double direction = reading.values[k + 3] + X_RS.yaw, c = std::cos(direction), s = std::sin(direction);
+      const double along = std::max(finder.settings.range_noise, kLeastNoise);
+      const double across = range * std::max(finder.settings.bearing_noise, kLeastNoise) + kLeastNoise;
+      const double a = along * along, b = across * across;
+      filter_.add_sighting(base::nanoseconds(reading.time), landmark->second, {X_RS.x + range * c, X_RS.y + range * s},
+                           {a * c * c + b * s * s, (a - b) * c * s, a * s * s + b * c * c});
+    }
+  }
+
+  static constexpr double kLeastNoise = 1e-3;        ///< [m], [rad]
+  std::array<double, 6> covariance_{};               ///< of a pose that states none
+  std::map<std::uint32_t, LandmarkFinder> finders_;  ///< by input
 };
 
 std::unique_ptr<sensorfarm::DerivedSensor> make_localization(const DerivedContext& context) {
   const PositionSensors sensors = position_inputs(context);
-  const bool located = std::ranges::any_of(context.inputs, [](auto& input) { return input.port == kPoses; });
+  const bool located = std::ranges::any_of(context.inputs, [](auto& input) { return input.port >= kPoses; });
   if (!located && !sensors.wheels && !sensors.gps)
-    refuse(context.settings, "inputs", "a localization needs an encoder, a gps or a pose");
+    refuse(context.settings, "inputs", "a localization needs an encoder, a gps, a pose or a fiducial");
   return std::make_unique<LocalizationSensor>(context,
                                               localization_options(context.world.movers[context.spec.mover], sensors));
 }
 
-constexpr DerivedPort kPorts[] = {
-    {"encoder", kEncoderColumns}, {"gyro", kGyroColumns}, {"gps", kGpsColumns}, {"pose", kPoseColumns, 0, 4}};
+constexpr std::string_view kFinderColumns[] = {"id", "fiducial_type", "range_m", "bearing_rad"};
+constexpr DerivedPort kPorts[] = {{"encoder", kEncoderColumns},
+                                  {"gyro", kGyroColumns},
+                                  {"gps", kGpsColumns},
+                                  {"pose", kPoseColumns, 0, 4},
+                                  {"fiducial", kFinderColumns, 0, 4}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .make = make_localization};
 
+constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "noise"};
 constexpr PlainForm kForm{kLocalization, "localization", kPoseForms};
 
 }  // namespace
@@ -87,7 +144,7 @@ void PositionSensors::add(std::size_t kind, const world::Sensor& settings, const
 PositionSensors position_inputs(const DerivedContext& context) {
   PositionSensors sensors;
   for (const WiredInput& input : context.inputs) {
-    if (input.port == kPoses) continue;
+    if (input.port >= kPoses) continue;
     if (input.mover != context.spec.mover)
       refuse(context.settings, "inputs",
              fmt::format("encoders, gyros and receivers of a {} are those of its own robot", context.settings.type));
@@ -101,14 +158,14 @@ estimation::LocalizationOptions localization_options(const world::Mover& mover, 
   if (const auto& wheels = sensors.wheels)
     options.encoder = {
         .per_count = wheels->per_count, .angle_step = wheels->angle_step, .slip = wheels->slip, .track = wheels->track};
-  if (sensors.gyro) options.gyro = {sensors.gyro->noise, sensors.gyro->bias};
+  if (sensors.gyro) options.gyro = {sensors.gyro->noise, sensors.gyro->bias, sensors.gyro->scale_error};
   // Receivers without noise still have the error of their latency and of rounding.
   if (sensors.gps) options.gps_noise = std::max(sensors.gps->noise, 1e-3);
   return options;
 }
 
 constinit const SensorType localization_type = plain<kForm>({
-    .word = {"localization", kDerivedKeys, {}, true},
+    .word = {"localization", kKeys, {}, true},
     .base_port = 64000,
     .list = "",
     .columns = kPoseRow,

@@ -4,8 +4,9 @@
 // In a world file, inside a robot:
 //   derived( type "localization"  inputs ["encoder" "gyro" "gps"]  rate 20  noise [0.05 1.1] )
 // Inputs: at most one encoder, gyro and gps, with the errors that their settings state, and up to four sensors whose
-// columns begin with x_m, y_m, yaw_rad. `noise`: standard deviations of such a pose that states no covariance. It needs
-// an encoder, a gps or a pose.
+// columns begin with x_m, y_m, yaw_rad, and up to four fiducial finders, whose landmarks are the fiducials that stand
+// still. `noise`: standard deviations of such a pose that states no covariance. It needs an encoder, a gps, a pose or a
+// fiducial finder.
 //
 // A reading is one row: x, y and yaw of the robot's origin in the world frame, whether they are valid, and their
 // covariance. Not valid: before the first pose or position. A run that starts with the sensor gives it the start pose.

@@ -77,7 +77,9 @@ estimation::LocalizationMonitor monitor_of(const world::Mover& mover, const Posi
     if (sensors.periods[kind] > 0.0) monitor.period[kind] = sensors.periods[kind];
     monitor.latency[kind] = sensors.latencies[kind];
   }
-  return {localization_options(mover, sensors), monitor, sensors.gyro.has_value(), sensors.gps.has_value()};
+  estimation::LocalizationOptions options = localization_options(mover, sensors);
+  options.gyro.scale = 0.0;  // its thresholds include errors of the scale
+  return {options, monitor, sensors.gyro.has_value(), sensors.gps.has_value()};
 }
 
 constinit const SensorType monitor_type = plain<kForm>({

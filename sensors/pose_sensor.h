@@ -15,7 +15,7 @@
 namespace sf::sensors {
 
 /// Rows of the ports. Those of further ones follow.
-enum PosePort : std::uint8_t { kEncoders, kGyros, kReceivers, kPoses };
+enum PosePort : std::uint8_t { kEncoders, kGyros, kReceivers, kPoses, kFinders };
 inline constexpr std::string_view kEncoderColumns[] = {"left_m", "right_m"}, kGyroColumns[] = {"rate_rad_s"},
                                   kGpsColumns[] = {"x_m", "y_m", "hdop"}, kPoseColumns[] = {"x_m", "y_m", "yaw_rad"};
 

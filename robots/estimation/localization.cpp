@@ -26,6 +26,7 @@ constexpr double kLeastForward = 0.02, kLeastTurn = 0.05;  // [m/s], [rad/s] of 
 
 double square(double v) { return v * v; }
 
+/// Returns whether the kind can start a pose.
 bool is_fix(Kind kind) { return kind == Kind::pose || kind == Kind::position; }
 
 /// A state at rest at the origin, with the prior of all constants.
@@ -35,7 +36,7 @@ WheeledState prior_of(const LocalizationOptions& options, const WheeledModel& mo
   set_variance(state, kForward, square(unknown[1]));
   if (options.sideways) set_variance(state, kLeft, square(unknown[1]));
   set_variance(state, kTurn, square(unknown[2]));
-  for (const int k : {kLeftScale, kRightScale, kTrackScale}) state.mean[k] = 1.0;
+  for (const int k : {kLeftScale, kRightScale, kTrackScale, kGyroScale}) state.mean[k] = 1.0;
   if (options.encoder) {
     const double common = square(options.encoder->scale_sigma), half = square(0.5 * options.encoder->difference_sigma);
     for (const int k : {kLeftScale, kRightScale}) set_variance(state, k, common + half);
@@ -43,6 +44,7 @@ WheeledState prior_of(const LocalizationOptions& options, const WheeledModel& mo
     set_variance(state, kTrackScale, square(options.encoder->track_sigma));
   }
   set_variance(state, kGyroBias, square(options.gyro.bias));
+  set_variance(state, kGyroScale, square(options.gyro.scale));
   return state;
 }
 
@@ -149,6 +151,16 @@ Verdict Localization::add_pose(std::int64_t time, const base::Pose& X_WM, const 
   return take({time, Kind::pose, 0, {X_WM.x, X_WM.y, X_WM.yaw}, covariance, X_WM.z});
 }
 
+Verdict Localization::add_sighting(std::int64_t time, const glm::dvec2& landmark, const glm::dvec2& seen,
+                                   const std::array<double, 3>& covariance) {
+  const auto [xx, xy, yy] = covariance;
+  return take({.time = time,
+               .kind = Kind::sighting,
+               .values = {seen.x, seen.y, 0.0},
+               .covariance = {xx, xy, 0.0, yy, 0.0, 1.0},
+               .landmark = {landmark.x, landmark.y}});
+}
+
 Verdict Localization::take(WheeledMeasurement measurement) {
   if (!is_valid(measurement)) return window_.count(Verdict::invalid);
   measurement.sequence = sequence_++;
@@ -178,7 +190,7 @@ Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
   for (Weighted& each : predicted_) each.state = correct(each.state, m);
   reduce(predicted_);
   state.hypotheses = predicted_;
-  if (!is_fix(m.kind)) return Verdict::used;
+  if (!is_fix(m.kind) && m.kind != Kind::sighting) return Verdict::used;
   const auto& mean = heaviest(predicted_).state.mean;
   state.last_fix = m.time, state.fixed = {mean[kX], mean[kY]};
   state.rejected = 0;
@@ -296,7 +308,7 @@ Calibration Localization::calibration() const {
     return Constant{unit * s.mean[k], unit * std::sqrt(s.covariance[k * kWheeledComponents + k])};
   };
   return {constant(kLeftScale, 1.0), constant(kRightScale, 1.0), constant(kTrackScale, model_.track),
-          constant(kGyroBias, 1.0)};
+          constant(kGyroBias, 1.0), constant(kGyroScale, 1.0)};
 }
 
 }  // namespace sf::estimation

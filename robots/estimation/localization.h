@@ -1,5 +1,6 @@
 #pragma once
-// Localizes a robot with its own sensors: wheel encoders, a gyro, satellite positions, and poses from cameras.
+// Localizes a robot with its own sensors: wheel encoders, a gyro, satellite positions, poses from cameras, and
+// sightings of landmarks.
 //
 //   Localization localization({.encoder = Localization::Encoder{.track = 0.258, .slip = 0.005}});
 //   localization.add_pose(time, X_WM, covariance);    // a known start, or a camera's pose
@@ -38,6 +39,7 @@ struct LocalizationOptions {
   struct Gyro {
     double noise = 1.7e-3;  ///< [rad/s] >= 0 standard deviation of a reading
     double bias = 8.7e-3;   ///< [rad/s] >= 0 standard deviation of the constant offset
+    double scale = 0.0;     ///< [-] >= 0 standard deviation of the constant error of its scale
   };
   std::optional<Encoder> encoder;  ///< nullopt: no encoders
   Gyro gyro;
@@ -61,6 +63,7 @@ struct Calibration {
   Constant right_scale;  ///< [-]
   Constant track;        ///< [m] effective
   Constant gyro_bias;    ///< [rad/s]
+  Constant gyro_scale;   ///< [-] measured turn rate over the true one
 };
 
 /// Not thread-safe.
@@ -82,6 +85,11 @@ class Localization {
   /// @param covariance xx, xy, x yaw, yy, y yaw, yaw yaw [m^2, m rad, rad^2], positive definite
   Verdict add_pose(std::int64_t time, const base::Pose& X_WM, const std::array<double, 6>& covariance);
 
+  /// @param landmark [m] its position in the world frame @param seen [m] the same in the robot's frame, as measured
+  /// @param covariance xx, xy, yy [m^2] of `seen`, positive definite
+  Verdict add_sighting(std::int64_t time, const glm::dvec2& landmark, const glm::dvec2& seen,
+                       const std::array<double, 3>& covariance);
+
   static constexpr std::int64_t kWindow = 1'000'000'000;               ///< [ns]
   static constexpr std::int64_t kRelocated = 1'000'000'000;            ///< [ns]
   static constexpr std::int64_t kRelocatedPositions = 60'000'000'000;  ///< [ns]
@@ -92,7 +100,8 @@ class Localization {
   /// @pre paused for longer than `kWindow`, or no encoder reading is in the window
   void resume_encoder();
 
-  /// Returns the estimate at `time`. Its age is the time since the last used pose or position. Never stale.
+  /// Returns the estimate at `time`. Its age is the time since the last used pose, position or sighting. Never
+  /// stale.
   Prediction predict(std::int64_t time) const;
   /// Returns the newest estimates of the constants; the initial ones before the first pose.
   Calibration calibration() const;
@@ -113,7 +122,7 @@ class Localization {
     bool lasts() const;
   };
   struct State {
-    std::int64_t last_fix = 0;         ///< [ns] time of the last used pose or position
+    std::int64_t last_fix = 0;         ///< [ns] time of the last used pose, position or sighting
     glm::dvec2 fixed;                  ///< [m] position at that time
     int rejected = 0;                  ///< poses and positions rejected since then
     Lag ahead, turned;                 ///< of the fixes, in the directions of driving and turning

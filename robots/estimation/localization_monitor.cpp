@@ -140,7 +140,7 @@ void LocalizationMonitor::compare_turns() {
   if (gyro.newest != time || !gyro.fixed || seconds > 1.0) return;
   rolled_.time = -1;
   const LocalizationOptions::Encoder& encoder = *options_.encoder;
-  const auto& [left, right, track, bias] = calibrations_[0];
+  const auto& [left, right, track, bias, scale] = calibrations_[0];
   const double turn = (rolled[1] / right.value - rolled[0] / left.value) / (track.value * seconds);
   const double arm = squared(track.value * seconds);
   const double rounding = squared(encoder.per_count) / 6.0 + squared(track.value * encoder.angle_step) / 6.0;
@@ -173,7 +173,7 @@ void LocalizationMonitor::compare_roughness(double rate, double turn, double var
 /// Of a faulty encoder, with the speed of the filter without it.
 void LocalizationMonitor::compare_speed(std::int64_t time, double seconds, std::array<double, 2> rolled) {
   const Estimate estimate = main_.predict(time).estimate;
-  const auto& [left, right, track, bias] = calibrations_[0];
+  const auto& [left, right, track, bias, scale] = calibrations_[0];
   const double forward = 0.5 * (rolled[0] / left.value + rolled[1] / right.value) / seconds;
   const double variance = estimate.covariance[kForward * (kComponents + 1)] +
                           squared(options_.encoder->per_count / seconds) / 6.0 + squared(forward * left.sigma);

@@ -112,7 +112,7 @@ Matrix carried(const Matrix& F, const Matrix& P) {
 }
 
 /// First component and number of components, by kind of measurement.
-constexpr std::array<std::array<int, 2>, 4> kMeasured{{{kX, 3}, {kX, 2}, {kTurn, 1}, {kLeftRolled, 2}}};
+constexpr std::array<std::array<int, 2>, 5> kMeasured{{{kX, 3}, {kX, 2}, {kTurn, 1}, {kLeftRolled, 2}, {kX, 2}}};
 
 /// H, the measured values minus the predicted ones, and their noise.
 struct Residual {
@@ -121,6 +121,23 @@ struct Residual {
   ValuesMatrix noise;
 };
 
+/// The measured rate is scale * turn + bias.
+void predict_rate(const WheeledState& state, const WheeledMeasurement& m, Residual& all) {
+  all.H(0, kTurn) = state.mean[kGyroScale];
+  all.H(0, kGyroScale) = state.mean[kTurn];
+  all.H(0, kGyroBias) = 1.0;
+  all.difference(0) = m.values[0] - state.mean[kGyroScale] * state.mean[kTurn] - state.mean[kGyroBias];
+}
+
+/// A landmark is seen at R^T (landmark - position).
+void predict_sighting(const WheeledState& state, const WheeledMeasurement& m, Residual& all) {
+  const double c = std::cos(state.mean[kYaw]), s = std::sin(state.mean[kYaw]);
+  const Eigen::Vector2d d(m.landmark[0] - state.mean[kX], m.landmark[1] - state.mean[kY]);
+  const Eigen::Vector2d seen(c * d.x() + s * d.y(), c * d.y() - s * d.x());
+  all.H.leftCols<3>() << -c, -s, seen.y(), s, -c, -seen.x();
+  all.difference << m.values[0] - seen.x(), m.values[1] - seen.y();
+}
+
 Residual residual_of(const WheeledState& state, const WheeledMeasurement& m) {
   const auto [first, count] = kMeasured[static_cast<std::size_t>(m.kind)];
   Residual all{Rows::Zero(count, kSize), Values(count), ValuesMatrix(count, count)};
@@ -128,10 +145,11 @@ Residual residual_of(const WheeledState& state, const WheeledMeasurement& m) {
   const std::array<double, 9> full{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]};
   for (int i = 0; i < count; ++i) {
     all.H(i, first + i) = 1.0;
-    if (m.kind == WheeledMeasurement::Kind::gyro) all.H(i, kGyroBias) = 1.0;
-    all.difference(i) = m.values[i] - all.H.row(i).dot(mean_of(state));
+    all.difference(i) = m.values[i] - state.mean[first + i];
     for (int j = 0; j < count; ++j) all.noise(i, j) = full[3 * i + j];
   }
+  if (m.kind == WheeledMeasurement::Kind::gyro) predict_rate(state, m, all);
+  if (m.kind == WheeledMeasurement::Kind::sighting) predict_sighting(state, m, all);
   if (m.kind == WheeledMeasurement::Kind::pose) all.difference(kYaw) = base::wrap_angle(all.difference(kYaw));
   return all;
 }
@@ -143,7 +161,9 @@ bool is_valid(const WheeledMeasurement& m) {
   if (m.time < 0 || m.time > std::int64_t{1} << 62) return false;
   const auto [H, difference, noise] = residual_of(origin, m);
   const auto in_range = [](double v) { return v >= 1e-18 && v <= 1e18; };
-  return std::all_of(m.values.begin(), m.values.end(), [](double v) { return std::abs(v) <= 1e9; }) &&
+  const auto within = [](double v) { return std::abs(v) <= 1e9; };
+  return std::all_of(m.values.begin(), m.values.end(), within) &&
+         std::all_of(m.landmark.begin(), m.landmark.end(), within) &&
          std::all_of(noise.diagonal().begin(), noise.diagonal().end(), in_range) &&
          std::all_of(m.covariance.begin(), m.covariance.end(), [](double v) { return std::abs(v) <= 1e18; }) &&
          std::isfinite(m.z) && noise.llt().info() == Eigen::Success;

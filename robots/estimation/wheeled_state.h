@@ -1,6 +1,6 @@
 #pragma once
 // An extended Kalman filter of a robot with two driven wheels, whose state includes the constants of its own sensors:
-// the scales of both encoders, the track, and the gyro's bias. All functions are pure and do not allocate.
+// the scales of both encoders, the track, and the gyro's bias and scale. All functions are pure and do not allocate.
 //
 // The distances that the encoders count are part of the state, so each reading measures them absolutely: lost and late
 // readings lose no distance, and rounding does not accumulate.
@@ -24,6 +24,7 @@ enum WheeledComponent : std::uint8_t {
   kRightScale,                ///< [-]
   kTrackScale,                ///< [-] effective track over the nominal one
   kGyroBias,                  ///< [rad/s]
+  kGyroScale,                 ///< [-] measured turn rate, without the bias, over the true one
   kWheeledComponents
 };
 
@@ -53,7 +54,8 @@ struct WheeledMeasurement {
     pose,      ///< values: x, y [m], yaw [rad] in the world frame
     position,  ///< values: x, y [m] in the world frame
     gyro,      ///< value: rate [rad/s]
-    encoder    ///< values: left, right [m] rolled since the start
+    encoder,   ///< values: left, right [m] rolled since the start
+    sighting   ///< values: x, y [m] of `landmark` in the robot's frame
   };
   std::int64_t time = 0;  ///< [ns] in [0, 2^62]
   Kind kind = Kind::pose;
@@ -61,6 +63,7 @@ struct WheeledMeasurement {
   std::array<double, 3> values{};      ///< as stated by `kind`; the others are 0
   std::array<double, 6> covariance{};  ///< of the values: 11, 12, 13, 22, 23, 33
   double z = 0.0;                      ///< [m] of a pose
+  std::array<double, 2> landmark{};    ///< [m] world frame
 
   auto operator<=>(const WheeledMeasurement&) const = default;
 };

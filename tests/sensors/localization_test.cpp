@@ -18,11 +18,11 @@
 namespace sf::trial {
 namespace {
 
-world::World robot_with(const std::string& own) {
+world::World robot_with(const std::string& own, const std::string& others = "") {
   return world::build_world(
       "localized.world",
       "define bot position( size [0.3 0.3 0.1] drive \"diff\" encoder( per_count 0.001 slip 0.01 rate 20 )\n" + own +
-          " )\nbot( name \"r0\" pose [1 2 0 30] )\n",
+          " )\nbot( name \"r0\" pose [1 2 0 30] )\n" + others,
       {.sensors = sensors::world_file_words()});
 }
 
@@ -77,19 +77,57 @@ TEST(Localization, CovarianceIsConsistentOver100Seeds) {
   EXPECT_LT(mean, 1.166);
 }
 
+constexpr const char* kLandmarks =
+    "define mark model( size [0.1 0.1 0.4] fiducial_return 3 )\n"
+    "mark( pose [4 3 0 0] fiducial_return 1 ) mark( pose [-3 4 0 0] fiducial_return 2 ) mark( pose [1 7 0 0] )\n"
+    "position( name \"r1\" pose [0 6 0 0] size [0.3 0.3 0.4] fiducial_return 9 )\n";
+
+/// Landmarks replace satellites: 100 seeds of a minute, with a finder ahead of the robot's middle that looks back.
+TEST(Localization, LandmarksGiveAConsistentPose) {
+  const std::string encoders = "derived( type \"localization\" inputs [\"encoder\"] )";
+  const world::World world = robot_with(
+      "fiducial( pose [0.1 0.05 0 150] rate 2 noise [0.1 2 0] ) derived( type \"localization\" inputs "
+      "[\"encoder\" \"fiducial\"] )",
+      kLandmarks);
+  const std::uint64_t seeds = instrumented() ? 2 : 100;
+  double sum = 0.0, squares = 0.0, squares_without = 0.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    base::Pose truth;
+    const std::vector<double> without = reading_after_an_arc(robot_with(encoders), seed, 60.0, truth);
+    const std::vector<double> r = reading_after_an_arc(world, seed, 60.0, truth);
+    const glm::dvec3 e{r[0] - truth.x, r[1] - truth.y, base::wrap_angle(r[2] - truth.yaw)};
+    const glm::dmat3 P{{r[4], r[5], r[6]}, {r[5], r[7], r[8]}, {r[6], r[8], r[9]}};
+    sum += glm::dot(e, glm::inverse(P) * e);
+    squares += e.x * e.x + e.y * e.y;
+    squares_without += std::pow(without[0] - truth.x, 2) + std::pow(without[1] - truth.y, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(seeds)), 0.05) << "[m]";
+  EXPECT_GT(squares_without, 4.0 * squares);
+  if (instrumented()) return;
+  EXPECT_GT(sum / (3.0 * static_cast<double>(seeds)), 0.7);
+  EXPECT_LT(sum / (3.0 * static_cast<double>(seeds)), 1.3);
+}
+
 TEST(Localization, NeedsSomethingThatLocates) {
-  const auto refusal = [](const std::string& inputs) {
+  const auto refusal = [](const std::string& inputs, const std::string& others = "") {
     try {
-      const sensors::SensorSet all(robot_with("gyro( ) derived( type \"localization\" inputs " + inputs + " )"));
+      const sensors::SensorSet all(
+          robot_with("gyro( ) fiducial( ) derived( type \"localization\" inputs " + inputs + " )", others));
     } catch (const base::InputError& error) {
       return std::string(error.what());
     }
     return std::string("accepted");
   };
   EXPECT_EQ(refusal("[\"encoder\"]"), "accepted");
-  EXPECT_NE(refusal("[\"gyro\"]").find("needs an encoder, a gps or a pose"), std::string::npos)
+  EXPECT_NE(refusal("[\"gyro\"]").find("needs an encoder, a gps, a pose or a fiducial"), std::string::npos)
       << refusal("[\"gyro\"]");
   EXPECT_NE(refusal("[\"encoder\" \"encoder\"]").find("2 inputs 'encoder'"), std::string::npos);
+  EXPECT_EQ(refusal("[\"fiducial\"]", kLandmarks), "accepted");
+  EXPECT_NE(refusal("[\"fiducial\"]", std::string(kLandmarks) + "mark( pose [9 9 0 0] )")
+                .find("two models that stand still have fiducial_return 3"),
+            std::string::npos);
+  const std::string moving = "position( name \"r1\" pose [0 6 0 0] fiducial_return 9 )";
+  EXPECT_NE(refusal("[\"fiducial\"]", moving).find("no model that stands still"), std::string::npos);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct DrivenRobot {
   double slip = 0.005;                         ///< [m^(1/2)]
   double per_count = 1e-3;                     ///< [m]
   double gyro_bias = 0.0;                      ///< [rad/s]
+  double gyro_scale = 1.0;                     ///< [-]
   double camera_sigma = 0.005;                 ///< [m]
   double camera_yaw_sigma = 0.01;              ///< [rad]
   std::mt19937_64 random{1};
@@ -41,7 +42,9 @@ struct DrivenRobot {
 
   double counted(double rolled) const { return per_count * std::round(rolled / per_count); }
   Verdict add_encoder(Localization& to) const { return to.add_encoder(time, counted(left), counted(right)); }
-  Verdict add_gyro(Localization& to) { return to.add_gyro(time, velocity.turn + gyro_bias + normal(1.7e-3)); }
+  Verdict add_gyro(Localization& to) {
+    return to.add_gyro(time, gyro_scale * velocity.turn + gyro_bias + normal(1.7e-3));
+  }
 
   std::array<double, 6> camera_covariance() const {
     const double position = camera_sigma * camera_sigma;
