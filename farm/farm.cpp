@@ -514,6 +514,8 @@ std::span<const DroppedReading> Farm::dropped() const {
   return s_->budget ? s_->budget->dropped() : std::span<const DroppedReading>();
 }
 
+std::vector<std::string> Farm::never_valid() const { return s_->derivation->sensors().never_valid(); }
+
 std::vector<Farm::ReceivedInput> Farm::received_inputs(std::uint8_t type) const {
   std::vector<ReceivedInput> inputs;
   for (const sensors::DerivedNode& node : s_->derivation->sensors().nodes())

@@ -196,6 +196,8 @@ class Farm {
   /// @param copy of the world: the hash of its readings alone, since its last restart
   std::uint64_t hash(std::uint32_t copy = 0) const;
   FarmStats stats() const;
+  /// Returns a line for each derived sensor that was evaluated and never valid (DerivedSensors::never_valid).
+  std::vector<std::string> never_valid() const;
 
  private:
   struct State;

@@ -58,7 +58,12 @@ SensorText sensor_text(const TomlReader& reader, const TomlNode& table, std::spa
     if (std::ranges::find(own, item.key) != own.end()) continue;
     const auto is_usual = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '[' || c == ']'; };
     if (!std::ranges::all_of(item.key, is_usual)) reader.fail(item, "expected a property of a world file as the key");
-    sensor.properties.emplace_back(item.key, world_value(reader, item));
+    const bool numbered =
+        item.kind == TomlNode::Kind::list && !item.items.empty() &&
+        std::ranges::all_of(item.items, [](const TomlNode& in) { return in.kind == TomlNode::Kind::list; });
+    if (!numbered) sensor.properties.emplace_back(item.key, world_value(reader, item));
+    for (std::size_t k = 0; numbered && k < item.items.size(); ++k)  // link = [[...], [...]] is link[0], link[1]
+      sensor.properties.emplace_back(fmt::format("{}[{}]", item.key, k), world_value(reader, item.items[k]));
   }
   return sensor;
 }

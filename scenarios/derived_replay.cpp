@@ -81,6 +81,7 @@ class Replayer {
       result_.interrupted = options.progress && !options.progress(done);
       if (result_.interrupted) break;
     }
+    result_.never_valid = derivation_.sensors().never_valid();
     return std::move(result_);
   }
 

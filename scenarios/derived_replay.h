@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/tick_record.h"
 #include "record/recording.h"
@@ -37,7 +38,8 @@ struct DerivedReplay {
   std::uint64_t derived = 0;  ///< readings of derived sensors
   std::uint64_t equal = 0;    ///< of these, recorded ones: recomputed with the same bits
   std::uint64_t different = 0;
-  std::string first;  ///< place of the first difference
+  std::string first;                     ///< place of the first difference
+  std::vector<std::string> never_valid;  ///< DerivedSensors::never_valid
   bool interrupted = false;
 };
 

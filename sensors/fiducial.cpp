@@ -139,7 +139,8 @@ ParsedSensors parse_finders(const world::World& world) {
   });
 }
 
-constexpr std::string_view kKeys[] = {"range_min", "range_max", "range_max_id", "fov", "fiducial_key", "detections"};
+constexpr std::string_view kKeys[] = {"range_min",    "range_max",  "range_max_id", "fov",
+                                      "fiducial_key", "detections", "noise"};
 constexpr Column kColumns[] = {{"id"}, {"fiducial_type"}, {"range_m"}, {"bearing_rad"}, {"orientation_rad"}};
 constexpr PlainNumber kNumbers[] = {{1.0, 0.0, 65535.0}, {1.0, 0.0, 2.0}, {1e-3, 0.0}, {1e-6}, {1e-6}};
 constexpr PlainForm kForm{kFiducial, "fiducial", kNumbers};

@@ -51,7 +51,7 @@ void GpsReceivers::measure(std::span<const HostSample> samples) const {
   }
 }
 
-constexpr std::string_view kKeys[] = {"satellites"};
+constexpr std::string_view kKeys[] = {"satellites", "noise"};
 constexpr Column kColumns[] = {{"x_m"}, {"y_m"}, {"hdop"}, {"satellites", 1, true}};
 constexpr PlainNumber kNumbers[] = {{5e-3}, {5e-3}, {1e-3, 0.0}, {1.0, 0.0, kMostSatellites}};
 constexpr PlainForm kForm{kGps, "gps", kNumbers};

@@ -54,7 +54,7 @@ void Gyros::measure(std::span<const HostSample> samples) const {
     sample.values[0] = gyros_[sample.row].measure(states()[rows()[sample.row].mover].velocity.turn, sample.sequence);
 }
 
-constexpr std::string_view kKeys[] = {"bias", "scale_error", "range"};
+constexpr std::string_view kKeys[] = {"bias", "scale_error", "range", "noise"};
 constexpr Column kColumns[] = {{"rate_rad_s"}};
 constexpr PlainNumber kNumbers[] = {{1e-6}};
 constexpr PlainForm kForm{kGyro, "gyro", kNumbers};

@@ -27,7 +27,8 @@ void tell_response(const ConeArray& array, double range, bool met, double deviat
 
 constexpr RangerType kRanger{kInfrared, kInfraredColumns, {"infrared", infrared_comp_spv, false}, tell_response};
 
-constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "sview", "fov", "range", "rays"};
+constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "sview",
+                                      "fov",    "range",   "rays",     "noise"};
 constexpr Column kColumns[] = {{"range_m"}, {"value", 1, true}};
 constexpr PlainNumber kNumbers[] = {{1e-6, 0.0, 1e4, true}, {1.0, 0.0, kMostResponse}};
 constexpr PlainForm kForm{kInfrared, "infrared", kNumbers};

@@ -25,13 +25,14 @@ struct LaserSettings : raycast::ScanSettings {
 };
 
 /// Keys of a laser, in addition to the common ones.
-inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color",
+inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color", "noise",
+                                                  "resolution",
                                                   // Stage's older name of `resolution`, with the same meaning
                                                   "laser_sample_skip"};
-inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]", "spose3[]",
+inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]", "spose3[]", "noise", "resolution",
                                                    // accepted but not modelled
                                                    "ssize", "sraycount"};
-inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples"};
+inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples", "noise", "resolution"};
 inline constexpr world::SensorKeyword kLaserWord{"laser", kLaserKeys};
 inline constexpr world::SensorKeyword kRangerWord{"ranger", kRangerKeys, kBlockKeys};
 

@@ -295,7 +295,7 @@ ErrorBound bound_of_magnetometer(const world::World& world, const ParsedSensors&
   return bound;
 }
 
-constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssensitivity", "ssize", "sum"};
+constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssensitivity", "ssize", "sum", "noise"};
 constexpr Column kColumns[] = {{"field_T"}, {"vector_T", 3}};
 
 }  // namespace

@@ -159,8 +159,8 @@ constexpr DerivedPort kPorts[] = {{"gyro", kRateColumns},       {"speed", kSpeed
                                   {"command", kCommandColumns}, {"torque", kTorqueColumns}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .make = make_sideslip};
 
-constexpr std::string_view kKeys[] = {"type",  "inputs",    "observer", "mass",       "inertia",
-                                      "axles", "stiffness", "friction", "start_speed"};
+constexpr std::string_view kKeys[] = {"type",  "inputs",    "observer", "mass",        "inertia",
+                                      "axles", "stiffness", "friction", "start_speed", "noise"};
 constexpr Column kColumns[] = {{"sideslip_rad"},        {"front_force_n"},          {"rear_force_n"},
                                {"valid", 1, true},      {"sideslip_sideslip_rad2"}, {"sideslip_front_rad_n"},
                                {"sideslip_rear_rad_n"}, {"front_front_n2"},         {"front_rear_n2"},

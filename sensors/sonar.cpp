@@ -52,8 +52,8 @@ void tell_range(const ConeArray& array, double range, bool met, double deviate, 
 
 constexpr RangerType kRanger{kSonar, 1, {"sonar", sonar_comp_spv, true}, tell_range};
 
-constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize",  "sview",    "fov",
-                                      "range",  "rays",    "firing",   "arrays", "incidence"};
+constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize",  "sview",     "fov",
+                                      "range",  "rays",    "firing",   "arrays", "incidence", "noise"};
 constexpr Column kColumns[] = {{"range_m"}};
 constexpr PlainNumber kNumbers[] = {{1e-3, 0.0, kLongest, true}};
 constexpr PlainForm kForm{kSonar, "sonar", kNumbers};

@@ -52,7 +52,7 @@ ParsedSensors parse_thermometers(const world::World& world) {
   });
 }
 
-constexpr std::string_view kKeys[] = {"bias"};
+constexpr std::string_view kKeys[] = {"bias", "noise"};
 constexpr Column kColumns[] = {{"temperature_C"}};
 constexpr PlainNumber kNumbers[] = {{1e-3}};
 constexpr PlainForm kForm{kThermometer, "thermometer", kNumbers};

@@ -32,7 +32,7 @@ constexpr auto kPosition = std::to_array<std::string_view>({
   // known, not modelled
   "velocity", "localization", "localization_origin", "odom_error", "odom"});
 
-constexpr auto kSensing = std::to_array<std::string_view>({"noise", "resolution", "rate", "phase", "latency", "update_interval", "accuracy", "priority"});
+constexpr auto kSensing = std::to_array<std::string_view>({"rate", "phase", "latency", "update_interval", "accuracy", "priority"});
 
 constexpr auto kLight = std::to_array<std::string_view>({"lamps", "phases", "phase[]", "stop_lines"});
 

@@ -112,6 +112,7 @@ int derive(const DeriveOptions& options) {
   std::string text = derived_text(replay, source.recording) + row("recording", output.recording_text());
   for (const std::string& table : tables) text += row("table", table);
   print(text);
+  print_never_valid(replay.never_valid);
   return replay.different == 0 ? 0 : 1;
 }
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "apps/commands/commands.h"
+#include "apps/commands/output_file.h"
 #include "apps/options/open_device.h"
 #include "apps/processes/stop_signals.h"
 #include "apps/reports/progress_line.h"
@@ -32,16 +32,13 @@ void refuse_without_field(const world::World& world) {
         "or the world an 'earth_field'");
 }
 
-void write_csv(const std::string& path, const viz::FieldView& view, const viz::FieldSamples& samples) {
-  std::ofstream file(path, std::ios::trunc);
-  file << "along_m,x_m,y_m,z_m,field_gauss,x_gauss,y_gauss,z_gauss,magnitudes_gauss\n";
+std::string csv_of(const viz::FieldView& view, const viz::FieldSamples& samples) {
+  std::string text = "along_m,x_m,y_m,z_m,field_gauss,x_gauss,y_gauss,z_gauss,magnitudes_gauss\n";
   for (const viz::ProfilePoint& p : samples.profile)
-    file << fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", p.along, p.p.x, p.p.y,
+    text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", p.along, p.p.x, p.p.y,
                         view.height, std::hypot(p.field.x, p.field.y, p.field.z) / kGauss, p.field.x / kGauss,
                         p.field.y / kGauss, p.field.z / kGauss, p.field.magnitudes / kGauss);
-  file.close();
-  if (!file)
-    throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
+  return text;
 }
 
 }  // namespace
@@ -53,6 +50,7 @@ int field(const FieldOptions& options) {
   refuse_without_field(world);
   const viz::FieldView view = viz::field_view(world, {options.height, options.line, options.extent, options.page});
 
+  if (!options.csv.empty()) check_writable(options.csv);
   gpu::Device device = open_device(options);
   Progress progress("summing magnets");
   const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) {
@@ -63,7 +61,7 @@ int field(const FieldOptions& options) {
   viz::draw_field(world, view, samples, options.out, options.page);
   print_message("wrote {}", options.out);
   if (options.csv.empty()) return 0;
-  write_csv(options.csv, view, samples);
+  write_text(options.csv, csv_of(view, samples));
   print_message("wrote {}", options.csv);
   return 0;
 }

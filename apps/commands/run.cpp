@@ -494,6 +494,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   std::vector<world::Warning> warnings = ground->world.warnings;
   warnings.insert(warnings.end(), heard.begin(), heard.end());
   print(options.json ? with_warnings(run_report_json(facts), warnings) : run_report_text(facts));
+  print_never_valid(course->simulation.farm().never_valid());
   const netio::OutboxCounts& packets = facts.publisher.packets;
   // A run without a duration is complete when its user ends it.
   if (packets.failed == 0) return facts.interrupted && duration < kWithoutEnd ? interrupted_code() : 0;

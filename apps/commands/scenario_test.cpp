@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
 
 #include "apps/commands/commands.h"
+#include "apps/commands/output_file.h"
 #include "apps/commands/rank_run.h"
 #include "apps/options/open_device.h"
 #include "apps/processes/scenario_processes.h"
@@ -43,25 +42,6 @@ std::string scenario_result_text(const scenarios::ScenarioResult& result) {
         fmt::format("  {} {:<28} expected {:<14} got {}\n", o.met ? "pass" : "FAIL", o.what, o.expected, o.measured);
   if (result.outcomes.empty()) text += "  nothing expected; see [expect] in docs/scenarios.md\n";
   return text;
-}
-
-[[noreturn]] void refuse_junit(const std::string& path) {
-  throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
-}
-
-/// Checks before any run that the file can be written, without changing its content.
-void check_junit(const std::string& path) {
-  std::error_code error;
-  const bool there = std::filesystem::exists(path, error);
-  if (!std::ofstream(path, std::ios::binary | std::ios::app)) refuse_junit(path);
-  if (!there) std::filesystem::remove(path, error);
-}
-
-void write_junit(const std::string& path, const std::vector<scenarios::ScenarioResult>& results) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << scenarios::junit_of(results);
-  file.close();
-  if (!file) refuse_junit(path);
 }
 
 /// Returns the result of the first rank: times, which a scenario can limit, differ between ranks.
@@ -115,7 +95,7 @@ int test_here(const TestOptions& options, cluster::Ranks* ranks) {
   on_all(ranks, [&] {
     for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
     for (const scenarios::Scenario& scenario : all) print_warnings(scenario.world, scenarios::check_scenario(scenario));
-    if (!options.junit.empty() && reports) check_junit(options.junit);
+    if (!options.junit.empty() && reports) check_writable(options.junit);
     device.emplace(open_device(options));
   });
   std::vector<scenarios::ScenarioResult> results;
@@ -123,7 +103,7 @@ int test_here(const TestOptions& options, cluster::Ranks* ranks) {
   const bool fine = none_failed(results);
   if (!whole && reports) add_interrupted(options, results);
   on_all(ranks, [&] {
-    if (!options.junit.empty() && reports) write_junit(options.junit, results);
+    if (!options.junit.empty() && reports) write_text(options.junit, scenarios::junit_of(results));
   });
   if (!agreed(fine, ranks)) return 1;
   return whole ? 0 : interrupted_code();
@@ -134,7 +114,7 @@ int test_in_processes(const TestOptions& options) {
   const bool whole = run_in_own_processes(
       options,
       [&] {
-        if (!options.junit.empty()) check_junit(options.junit);
+        if (!options.junit.empty()) check_writable(options.junit);
       },
       [&](const scenarios::ScenarioResult& result) {
         results.push_back(result);
@@ -142,7 +122,7 @@ int test_in_processes(const TestOptions& options) {
       });
   const bool fine = none_failed(results);
   if (!whole) add_interrupted(options, results);
-  if (!options.junit.empty()) write_junit(options.junit, results);
+  if (!options.junit.empty()) write_text(options.junit, scenarios::junit_of(results));
   if (!fine) return 1;
   return whole ? 0 : interrupted_code();
 }

@@ -26,7 +26,7 @@ void check_source(const CLI::App& sub) {
   const scenarios::ExperimentSource source = type.source;
   const auto exclude = [&](std::initializer_list<const char*> options) {
     for (const char* option : options)
-      if (sub.count(option) > 0) throw CLI::ExcludesError(option, name);
+      if (sub.count(option) > 0) throw CLI::ValidationError(option, fmt::format("is not for the experiment {}", name));
   };
   if (source != scenarios::ExperimentSource::measurements)
     exclude({"--data"});

@@ -19,6 +19,13 @@ void print_warnings(const std::string& file, const std::vector<world::Warning>& 
                 lines);
 }
 
+void print_never_valid(std::span<const std::string> lines) {
+  constexpr std::size_t kFirst = 3;
+  for (const std::string& line : lines.first(std::min(lines.size(), kFirst)))
+    print_message("{}: its inputs had no values that it can use, or too old ones (docs/derived.md#types)", line);
+  if (lines.size() > kFirst) print_message("the same holds for {}", counted(lines.size() - kFirst, "more sensor"));
+}
+
 std::string warnings_text(std::span<const world::Warning> warnings) {
   std::string text;
   for (const world::Warning& w : warnings)

@@ -90,6 +90,9 @@ struct SelfTestReport {
 /// Prints the number of warnings and the first three of them on standard error. @param file for which `check` lists all
 /// warnings
 void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
+/// Prints the first three of these lines about derived sensors (sensors::DerivedSensors::never_valid), and the number
+/// of the others, on standard error.
+void print_never_valid(std::span<const std::string> lines);
 /// Returns one line "file:line: warning: message" per warning.
 std::string warnings_text(std::span<const world::Warning> warnings);
 /// Appends the list of all warnings to the JSON object.

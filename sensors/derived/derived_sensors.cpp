@@ -176,6 +176,8 @@ void DerivedSensors::call(std::size_t i, std::int64_t now) {
   std::ranges::fill(node.covariance, std::numeric_limits<double>::quiet_NaN());
   std::ranges::fill(node.valid, std::uint8_t{1});
   node.sensor->read(1e-9 * static_cast<double>(now), {node.quantities, node.covariance, node.valid});
+  ++node.readings;
+  node.was_valid |= std::ranges::any_of(node.valid, [](std::uint8_t valid) { return valid != 0; });
   const DerivedForm& form = *wired.type->derived;
   const std::size_t quantities = form.quantities;
   const std::size_t covariances = form.covariance ? triangle(form.quantities) : 0;
@@ -307,6 +309,15 @@ void DerivedSensors::restart(std::uint32_t first, std::uint32_t end) {
   }
 }
 
+std::vector<std::string> DerivedSensors::never_valid() const {
+  std::vector<std::string> lines;
+  for (const std::vector<std::size_t>& level : levels_)
+    for (const std::size_t i : level)
+      if (const Node& node = nodes_[i]; node.readings > 0 && !node.was_valid)
+        lines.push_back(fmt::format("none of the {} readings of {} was valid", node.readings, node.name));
+  return lines;
+}
+
 void DerivedSensors::take_over(DerivedSensors& before) {
   starting_ = before.starting_;
   std::map<std::tuple<std::uint8_t, std::uint32_t>, std::size_t> old;
@@ -316,6 +327,8 @@ void DerivedSensors::take_over(DerivedSensors& before) {
     nodes_[i].starts = before.starting_;
     if (found == old.end() || before.nodes_[found->second].sensor == nullptr) continue;
     nodes_[i].sensor = std::move(before.nodes_[found->second].sensor);
+    nodes_[i].readings = before.nodes_[found->second].readings;
+    nodes_[i].was_valid = before.nodes_[found->second].was_valid;
     const auto site = public_site(world_, sensor_set_, wired_[i], kUnknownPose);
     for (std::size_t k = before.wired_[found->second].inputs.size(); k < site.inputs.size(); ++k)
       nodes_[i].sensor->add_input(site.inputs[k]);

@@ -62,6 +62,9 @@ class DerivedSensors {
 
   /// Starts the sensors of movers [first, end) anew, with the next call of `evaluate`, from their poses then.
   void restart(std::uint32_t first, std::uint32_t end);
+  /// Returns "none of the 30 readings of gps 'a' of 'r0' was valid" for each sensor of which that is true, by level.
+  std::vector<std::string> never_valid() const;
+
   /// Continues the sensors of `before`, a world with fewer movers in its first rows. `before` must not be used
   /// afterwards.
   void take_over(DerivedSensors& before);
@@ -82,6 +85,8 @@ class DerivedSensors {
     std::vector<double> values;  ///< of the reading: the three above, row by row
     std::string failure;
     std::uint32_t sequence = 0;
+    std::uint64_t readings = 0;  ///< since the start
+    bool was_valid = false;      ///< one of their rows
     bool is_due = false;
     bool is_lost = false;  ///< its last reading
     bool active = false;

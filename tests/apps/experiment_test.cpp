@@ -26,7 +26,8 @@ TEST(Experiment, WrongUsageIsRejected) {
   expect_refused({"experiment", "mapping", "-o", "x", "--files", "/nowhere"}, "/nowhere/mapping.toml");
   expect_refused({"experiment", "mapping", "-o", "x", "--data", "d"}, "--data");
   expect_refused({"experiment", "mrclam", "-o", "x"}, "--data");
-  expect_refused({"experiment", "lane-sensor", "-o", "x", "--trials", "2"}, "--trials");
+  expect_refused({"experiment", "lane-sensor", "-o", "x", "--trials", "2"},
+                 "--trials: is not for the experiment lane-sensor");
   expect_refused({"experiment", "mrclam", "-o", "x", "--data", "d", "--trials", "2"}, "--trials");
   expect_refused({"experiment", "sideslip", "-o", "x", "--plant", "ideal"}, "--plant");
   expect_refused({"experiment", "sideslip", "-o", "x", "--data", "d"}, "--data");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <set>
 #include <sstream>
 
@@ -73,6 +74,7 @@ TEST(Field, RejectsInvalidArguments) {
   const Outcome outcome = run_program({"field", world, "--height", "1", "-o", png, "--csv", csv});
   EXPECT_EQ(outcome.code, 2);
   expect_in(csv, outcome.err);
+  EXPECT_FALSE(std::filesystem::exists(png)) << "nothing is written if a part cannot be";
 }
 
 TEST(Field, NeedsADevice) {

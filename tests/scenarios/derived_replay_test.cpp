@@ -125,6 +125,33 @@ TEST_F(DerivedReplayTest, RecordedSensorsAreRecomputedBitByBit) {
   EXPECT_GT(replay_derived(source, kept, {}).different, 10u) << "each input counts";
 }
 
+constexpr const char* kLinks =
+    "[[derived]]\nrobot = \"r0\"\ntype = \"link-speed\"\nname = \"speed\"\ninputs = [\"*/gps\"]\nrate = 1\nreach = 20\n"
+    "links = 2\n";
+
+TEST_F(DerivedReplayTest, ListsOfListsAreNumberedKeys) {
+  const record::Recording recording = run("without", "");
+  const auto speeds = [&](const std::string& links) { return derived(source_of(recording, file(kLinks + links))); };
+  const Derived numbered = speeds("\"link[0]\" = [-9, 0, 9, 0]\n\"link[1]\" = [9, -5, 9, 5]\n");
+  EXPECT_EQ(numbered.size(), 2u);
+  expect_same(speeds("link = [[-9, 0, 9, 0], [9, -5, 9, 5]]\n"), numbered);
+}
+
+TEST_F(DerivedReplayTest, SensorsThatWereNeverValidAreNamed) {
+  const auto lines = [&](const std::string& rate) {
+    const DerivedSource source = source_of(
+        run("run" + rate, ""),
+        file("[[derived]]\nrobot = \"r1\"\ntype = \"aggregate\"\nname = \"x\"\ninputs = [\"gps\"]\nquantity = \"x_m\"\n"
+             "rate = 10\nmax_age = " +
+             rate));
+    Kept kept;
+    return replay_derived(source, kept, {}).never_valid;
+  };
+  EXPECT_EQ(lines("0.2"), std::vector<std::string>());
+  EXPECT_EQ(lines("0.1"), std::vector<std::string>{"none of the 20 readings of aggregate 'x' of 'r1' was valid"})
+      << "satellite positions are 0.11 s late";
+}
+
 TEST_F(DerivedReplayTest, ThreadsAndRepetitionsDoNotChangeAByte) {
   const DerivedSource source = source_of(run("without", ""), file(kInFile));
   std::vector<std::string> bytes;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <fstream>
 
@@ -22,6 +23,7 @@
 #include "tests/sensors/laneedge_trial.h"
 #include "tests/sensors/magnet_scenes.h"
 #include "tests/sensors/scenes.h"
+#include "tests/world/read_world.h"
 
 namespace sf::trial {
 namespace {
@@ -238,6 +240,26 @@ world::World ready_made(const std::string& sensors) {
   const std::string file = testing::TempDir() + "ready_made.world";
   std::ofstream(file) << "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\ncreate( name \"one\" " << sensors << ")\n";
   return world::load_world(file, {.sensors = sensors::world_file_words()});
+}
+
+/// `noise` and `resolution` are known where they have an effect: each type that knows one refuses a text as its value.
+TEST(HostKinds, KeysWithoutEffectAreWarnedOf) {
+  std::size_t with = 0, without = 0;
+  for (const world::SensorKeyword& word : sensors::world_file_words())
+    for (const std::string key : {"noise", "resolution"}) {
+      if (word.derived) continue;
+      const std::string text = "position( ctrl \"none\" " + std::string(word.type) + "( " + key + " \"x\" scount 1 ) )";
+      const world::World world = world::build_world("a.world", text, {.sensors = sensors::world_file_words()});
+      const bool warned = world::warnings_of(world).find("unknown property '" + key + "'") != std::string::npos;
+      const bool knows = std::ranges::find(word.keys, key) != word.keys.end();
+      ++(knows ? with : without);
+      EXPECT_NE(warned, knows) << text << world::warnings_of(world);
+      if (knows) {
+        EXPECT_THROW(sensors::SensorSet{world}, base::InputError) << text;
+      }
+    }
+  EXPECT_GE(with, 10u);
+  EXPECT_GE(without, 20u);
 }
 
 TEST(HostKinds, PredefinedSensorsAreRead) {

@@ -10,6 +10,7 @@
 #include "robots/kinematics.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/host_trial.h"
+#include "tests/world/read_world.h"
 #include "world/stage/build_world.h"
 
 namespace sf::trial {
@@ -244,6 +245,18 @@ TEST(Loop, ReadingsAreTheSameForAnyNumberOfThreads) {
       traffic->tick(0.15 * k);
     }
   EXPECT_EQ(one.farm().hash(), three.farm().hash());
+}
+
+TEST(Loop, OneThatMovesWithARobotIsWarnedOf) {
+  const auto warnings = [](const std::string& carrier) {
+    return world::warnings_of(world::build_world("road.world", carrier, {.sensors = sensors::world_file_words()}));
+  };
+  EXPECT_EQ(
+      warnings("position( name \"post\" loop( ) )"),
+      "1: 'loop:0' moves with 'post', and link-speed takes it to stay where it starts; mount it on a robot at rest "
+      "(ctrl \"none\") or on an object (tag<N>)\n");
+  EXPECT_EQ(warnings("position( ctrl \"none\" loop( ) )"), "");
+  EXPECT_EQ(warnings("model( name \"tag5\" loop( ) )"), "");
 }
 
 TEST(Loop, InvalidSettingsAreRejected) {

@@ -8,9 +8,10 @@
 
 namespace sf::world {
 
-inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color"};
-inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]"};
-inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples"};
+inline constexpr std::string_view kLaserKeys[] = {"fov",         "samples", "range_min", "range_max",
+                                                  "laser_color", "noise",   "resolution"};
+inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]", "noise", "resolution"};
+inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples", "noise", "resolution"};
 inline constexpr SensorKeyword kLaserWords[] = {{"laser", kLaserKeys}, {"ranger", kRangerKeys, kBlockKeys}};
 inline const LoadOptions kWithLasers{.sensors = kLaserWords};
 

@@ -19,10 +19,11 @@ World shipped(const std::string& name) {
   static constexpr std::string_view kAny[] = {"fov",     "samples",      "range_max", "range_min",    "scount",
                                               "spose[]", "ssensitivity", "sum",       "perpendicular"};
   static constexpr std::string_view kShippedMap[] = {"cell", "words", "offset"};
-  static constexpr std::string_view kFelt[] = {"zones", "zone[]", "scount", "spose[]",     "per_count", "track",
-                                               "slip",  "scrub",  "bias",   "scale_error", "range",     "satellites"};
-  static constexpr std::string_view kSeen[] = {"range_max", "range_max_id", "fov"};
-  static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays"};
+  static constexpr std::string_view kFelt[] = {"zones", "zone[]",     "scount", "spose[]", "per_count",
+                                               "track", "slip",       "scrub",  "bias",    "scale_error",
+                                               "range", "satellites", "noise"};
+  static constexpr std::string_view kSeen[] = {"range_max", "range_max_id", "fov", "noise"};
+  static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays", "noise"};
   static constexpr std::string_view kComputed[] = {"type", "inputs", "most", "agility"};
   static constexpr SensorKeyword kWords[] = {kLaserWords[0],
                                              kLaserWords[1],

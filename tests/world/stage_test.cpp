@@ -536,6 +536,12 @@ World with_ctrl(const std::string& ctrl) {
                     }});
 }
 
+TEST(Stage, ACtrlWithoutAControllerIsWarnedOf) {
+  for (const char* empty : {"\"\"", "\"  \""})
+    EXPECT_EQ(warnings_of(with_ctrl(empty)),
+              "2: 'ctrl' names no controller and is ignored; write ctrl \"none\" for a robot that stays at rest\n");
+}
+
 TEST(Stage, CtrlNamesAControllerWithItsSettings) {
   using Settings = std::vector<std::pair<std::string, std::string>>;
   const World world = with_ctrl("\"route  park='a b' checkpoints=[1 2]\tspeed=0.3 empty=\"");

@@ -43,6 +43,8 @@ namespace {
 
 constexpr double kBlockHeight = 0.02;  // [m] height of a `sensor( )` block without a size
 constexpr double kMaxSamples = 1e7;
+/// Settings outside of `sensor( )` blocks that apply to each of them, besides those of all sensors.
+constexpr std::string_view kOfAllBlocks[] = {"noise", "resolution"};
 
 /// Maps settings with the same meaning to one key: `update_interval` sets the rate.
 std::string_view meaning_of(std::string_view key) { return key == "update_interval" ? "rate" : key; }
@@ -87,6 +89,13 @@ void add_sensors(BuildState& b, const Entity& entity, const Model& model, const 
          fmt::format("'{}' is not mounted on a robot: kept as a body that measures nothing", entity.word));
     return;
   }
+  const Mover& carrier = b.world.movers[model.mover];
+  const bool at_rest = carrier.is_tag ? carrier.controller.empty() : carrier.controller == "none";
+  if (word.type == "loop" && !at_rest)
+    warn(b.context, entity.at,
+         fmt::format("'{}' moves with '{}', and link-speed takes it to stay where it starts; mount it on a robot at "
+                     "rest (ctrl \"none\") or on an object (tag<N>)",
+                     name, carrier.name));
   auto& sensors = b.world.movers[model.mover].sensors;
   const std::size_t before = sensors.size();
   const auto add = [&](const Entity& from, const Pose& X_MS, double high, std::string_view color) -> Sensor& {
@@ -110,7 +119,7 @@ void add_sensors(BuildState& b, const Entity& entity, const Model& model, const 
     X_BS.z += size_of(b.context, block, {kBlockHeight, kBlockHeight, kBlockHeight}).z / 2.0;
     Sensor& sensor = add(block, compose(X_MB, X_BS), 0.0, "color");
     add_settings(b, block, word.block_keys, sensor);
-    add_settings(b, entity, {}, sensor);
+    add_settings(b, entity, kOfAllBlocks, sensor);
   }
   if (sensors.size() == before)
     warn(b.context, entity.at, fmt::format("'{}' measures nothing: no sensor( ) and no scount in it", entity.word));

@@ -86,7 +86,12 @@ void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model)
 void read_ctrl(BuildState& b, const Entity& entity, Mover& mover) {
   const Property* property = find(entity, "ctrl");
   const std::vector<std::string> words = words_of_ctrl(entity);
-  if (words.empty()) return;
+  if (words.empty()) {
+    if (property != nullptr)
+      warn(b.context, property->at,
+           "'ctrl' names no controller and is ignored; write ctrl \"none\" for a robot that stays at rest");
+    return;
+  }
   if (mover.is_tag && !names_model_controller(b, entity)) return warn_of_ctrl(b, entity, mover.name);
   if (property->values.size() > 1)
     warn(b.context, property->at, "'ctrl' expects one controller per model; only the first is used");
