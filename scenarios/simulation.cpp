@@ -36,9 +36,11 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm.scene.caster = options.caster;
   farm.shared = options.ranks != nullptr;
   farm.faults = options.faults;
-  if (farm.shared && !farm.faults.empty())
-    throw base::InputError(farm.faults[0].file, farm.faults[0].line,
-                           "faults of sensors cannot be simulated by several ranks; expected a run in one process");
+  const auto delay = std::ranges::find(farm.faults, base::FaultKind::delay, &farm::Fault::kind);
+  if (farm.shared && delay != farm.faults.end())
+    throw base::InputError(delay->file, delay->line,
+                           "a delay cannot be simulated by several ranks, which merge their readings in the order of "
+                           "the sensors' own latencies; expected a run in one process");
   return farm;
 }
 
@@ -430,8 +432,17 @@ void Simulation::receive_inputs(std::int64_t time) {
   if (camera_inputs_.empty() && v2v_inputs_.empty()) return;
   const auto poses = camera_inputs_.receive(time, fleet_.reports(), absent_);
   received_.assign(poses.begin(), poses.end());
-  const auto current = [&](std::uint32_t mover) { return broadcast_of(fleet_.reports()[mover], time); };
-  const auto others = v2v_inputs_.receive(time, world_, v2v_ ? &*v2v_ : nullptr, current, fleet_.reports(), absent_);
+  const auto newest = [&](std::uint32_t mover, std::uint32_t receiver) -> std::optional<farm::V2vInputs::Received> {
+    if (!v2v_) {
+      const Broadcast now = broadcast_of(fleet_.reports()[mover], time);
+      return farm::V2vInputs::Received{time, time, now.state, now.quality};
+    }
+    const auto arrived = v2v_->newest(time, mover, {world_.movers[receiver].id, world_.movers[mover].id});
+    if (!arrived) return std::nullopt;
+    return farm::V2vInputs::Received{arrived->sent, arrived->sent, arrived->broadcast.state,
+                                     arrived->broadcast.quality};
+  };
+  const auto others = v2v_inputs_.receive(world_, netio::kV2vRange, newest, fleet_.reports(), absent_);
   received_.insert(received_.end(), others.begin(), others.end());
   farm_.set_received(received_);
 }

@@ -26,6 +26,7 @@
 #include "control/shared_map.h"
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
+#include "farm/v2v_inputs.h"
 #include "netio/link_model.h"
 #include "record/run_info.h"
 #include "robots/fleet.h"
@@ -35,7 +36,6 @@
 #include "scenarios/mailbox.h"
 #include "scenarios/positioning.h"
 #include "scenarios/state_link.h"
-#include "scenarios/v2v_inputs.h"
 #include "scenarios/v2v_link.h"
 #include "world/lights.h"
 #include "world/roads/lane_control.h"
@@ -281,7 +281,7 @@ class Simulation {
   std::vector<record::JoinedMover> joined_;
   std::optional<PositioningOptions> positioning_;
   CameraInputs camera_inputs_;
-  V2vInputs v2v_inputs_;
+  farm::V2vInputs v2v_inputs_;
   std::vector<base::ReadingBlock> received_;  ///< of one tick: poses of cameras, states by V2V
   Actor actor_;                               ///< default of all robots
   std::vector<Actor> actors_;                 ///< as SimulationOptions::actors

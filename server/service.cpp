@@ -66,6 +66,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
                               .no_return_inf = options.no_return_inf,
                               .processor_budget = options.processor_budget,
                               .budget_tick = interval_of(world, options)}),
+      radio_(options.receiver.radio),
       models_(world, own_models(world, options.receiver),
               {.seed = options.seed, .interval = interval_of(world, options)}),
       absent_(world.movers.size(), false),
@@ -81,6 +82,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       [this](const netio::Header& header, const netio::OwnReadings& own, std::uint32_t mover, std::int64_t now) {
         fusion_.take(header, own, mover, now, receiver_.log());
       });
+  v2v_inputs_.add(farm_);
   farm_.fuse_with([this](std::span<base::ReadingBlock> readings) { fusion_.fuse(readings); });
   receiver_.set_lane_handler([this](const netio::Lane& lane) { lanes_.accept(lane); });
 }
@@ -214,6 +216,7 @@ void Service::publish_due(std::int64_t now, bool between) {
   lights_.update(now);
   receiver_.predict(now);
   const auto states = update_movers(now);
+  if (!between && !v2v_inputs_.empty()) receive_v2v(now, states);
   const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
   address(readings);
   publisher_.queue(addressed_readings_, now);
@@ -243,6 +246,16 @@ std::span<const base::Report> Service::update_movers(std::int64_t now) {
     farm_.set_absent(row, absent_[row]);
   }
   return receiver_.states(now);
+}
+
+/// Passes the states that robots sent since the last tick to derived sensors, predicted to `now`.
+void Service::receive_v2v(std::int64_t now, std::span<const base::Report> states) {
+  const auto newest = [&](std::uint32_t mover, std::uint32_t) -> std::optional<farm::V2vInputs::Received> {
+    const base::StateQuality quality = receiver_.quality(mover, now);
+    if (quality.age == base::kNoStateYet) return std::nullopt;
+    return farm::V2vInputs::Received{now - quality.age, now, states[mover], quality};
+  };
+  farm_.set_received(v2v_inputs_.receive(world_, radio_, newest, states, absent_));
 }
 
 void Service::address(std::span<const base::ReadingBlock> readings) {
@@ -335,6 +348,7 @@ ServiceStats Service::stats() const {
   stats.fusion = fusion_.counts();
   stats.answers = receiver_.answered();
   stats.lines_left_out = receiver_.log().left_out();
+  stats.never_valid = farm_.never_valid();
   stats.states = receiver_.filter().counts();
   stats.clocks = receiver_.filter().clocks();
   stats.filtered = receiver_.filter().used();

@@ -18,6 +18,7 @@
 #include "base/tick_record.h"
 #include "control/model_controllers.h"
 #include "farm/farm.h"
+#include "farm/v2v_inputs.h"
 #include "gpu/device.h"
 #include "sensors/sensor_set.h"
 #include "server/drive_relay.h"
@@ -62,9 +63,10 @@ struct ServiceStats {
   LightServiceCounts lights;
   DriveCounts drives;
   FusionCounts fusion;
-  netio::OutboxCounts answers;       ///< challenges and relayed datagrams
-  std::uint64_t lines_left_out = 0;  ///< dropped from the log
-  bool filtered = false;             ///< states were filtered: `states` and `clocks` are valid
+  netio::OutboxCounts answers;           ///< challenges and relayed datagrams
+  std::uint64_t lines_left_out = 0;      ///< dropped from the log
+  std::vector<std::string> never_valid;  ///< sensors::DerivedSensors::never_valid
+  bool filtered = false;                 ///< states were filtered: `states` and `clocks` are valid
   StateFilterCounts states;
   std::vector<SenderClockState> clocks;
   std::string recording_error;  ///< why the recording ended early; empty: it did not
@@ -123,6 +125,7 @@ class Service {
   void call_models(std::int64_t now);
   void warn_of_missed(std::int64_t now);
   std::span<const base::Report> update_movers(std::int64_t now);
+  void receive_v2v(std::int64_t now, std::span<const base::Report> states);
   void address(std::span<const base::ReadingBlock> readings);
   void note_dropped(std::int64_t now);
   void record(std::int64_t now, std::span<const base::Report> states, std::span<const base::ReadingBlock> readings);
@@ -141,6 +144,8 @@ class Service {
   DropNotices drop_notices_;
   ReadingFusion fusion_;
   farm::Farm farm_;
+  farm::V2vInputs v2v_inputs_;
+  double radio_;                      ///< [m] StateReceiverOptions::radio
   control::ModelControllers models_;  ///< of the objects that no packets move
   std::vector<base::Sink*> sinks_;
   std::vector<base::Report> states_;             ///< per mover, for one tick or sample

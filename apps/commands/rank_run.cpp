@@ -39,10 +39,13 @@ int run_shared(cluster::Ranks& ranks, const std::function<int(cluster::Ranks*)>&
 std::vector<std::uint64_t*> counts_of(RunReport& f) {
   sensors::SensorStats& work = f.farm.work;
   netio::OutboxCounts& packets = f.publisher.packets;
-  return {&f.farm.readings,     &f.farm.missed,    &f.farm.reused,          &f.farm.batches,  &work.rays,
-          &work.uncertain,      &work.cells_built, &work.dipoles,           &work.host_scans, &work.movers_in_range,
-          &work.movers_visible, &f.recorded_bytes, &packets.queued,         &packets.sent,    &packets.sent_bytes,
-          &packets.failed,      &packets.dropped,  &f.publisher.not_numbers};
+  std::vector<std::uint64_t*> counts{&f.farm.readings, &f.farm.missed,          &f.farm.reused,       &f.farm.batches,
+                                     &work.rays,       &work.uncertain,         &work.cells_built,    &work.dipoles,
+                                     &work.host_scans, &work.movers_in_range,   &work.movers_visible, &f.recorded_bytes,
+                                     &packets.queued,  &packets.sent,           &packets.sent_bytes,  &packets.failed,
+                                     &packets.dropped, &f.publisher.not_numbers};
+  for (std::uint64_t& affected : f.farm.faults) counts.push_back(&affected);
+  return counts;
 }
 
 std::vector<double*> seconds_of(RunReport& f) {

@@ -200,6 +200,7 @@ int serve(const ServeOptions& options) {
       facts.recording_error = service.stats().recording_error;
     }
     print(options.json ? with_warnings(run_report_json(facts), world.warnings) : run_report_text(facts));
+    print_never_valid(service.stats().never_valid);
     return facts.recording_error.empty() ? 0 : 1;
   } catch (const netio::PortInUse&) {
     throw port_in_use(chosen.receiver.bind);

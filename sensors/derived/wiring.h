@@ -12,7 +12,7 @@
 
 namespace sf::sensors {
 
-// Wire ids of pseudo-types, which only derived sensors read, in runs.
+// Wire ids of pseudo-types, which only derived sensors read: in runs, and kV2vInput in services too.
 inline constexpr std::uint8_t kCommandInput = 63;  ///< `command`: the twist that a robot executed since the last tick
 inline constexpr std::uint8_t kCameraInput = 62;   ///< `camera`: poses that a robot received from overhead cameras
 inline constexpr std::uint8_t kV2vInput = 61;      ///< `v2v`: states of that robot, as the sensor's robot receives them

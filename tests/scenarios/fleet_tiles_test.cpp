@@ -69,11 +69,12 @@ Course run(const world::World& world, gpu::Device& on, SimulationOptions options
 }
 
 /// Returns the first rank's course, which has all states, and the number of robots that all ranks have handed over.
-Course run_in_tiles(const world::World& world, unsigned ranks, SimulationOptions options, int ticks) {
+Course run_in_tiles(const world::World& world, unsigned ranks, SimulationOptions options, int ticks,
+                    bool tiles = true) {
   std::vector<Course> courses(ranks);
   std::vector<std::unique_ptr<gpu::Device>> devices;
   for (unsigned rank = 0; rank < ranks; ++rank) devices.push_back(std::make_unique<gpu::Device>());
-  options.tiles = true;
+  options.tiles = tiles;
   options.threads = 1;
   cluster::ThreadRanks(ranks).run([&](cluster::Ranks& one) {
     SimulationOptions own = options;
@@ -96,6 +97,34 @@ void expect_same(const world::World& world, const SimulationOptions& options, in
 }
 
 TEST(FleetTiles, MatchASingleProcessBitwise) { expect_same(town(30), {.seed = 3}, 150, {2, 3, 5}); }
+
+/// Faults act where a robot's readings are delivered, so ranks give the readings of one process, in tiles and in
+/// shares.
+TEST(FleetTiles, FaultsOfSensorsAreThose) {
+  using Kind = base::FaultKind;
+  SimulationOptions options{.seed = 3};
+  const auto fault = [&](Kind kind, const char* type, double amount, double from) {
+    options.faults.push_back(
+        {.kind = kind, .robot = "*", .type = type, .amount = amount, .from = from, .until = from + 3.0});
+  };
+  fault(Kind::bias, "encoder", 0.2, 1.0), fault(Kind::dropout, "encoder", 0.0, 5.0);
+  fault(Kind::noise, "gyro", 0.1, 1.0), fault(Kind::stuck, "gyro", 0.0, 5.0);
+  fault(Kind::scale, "laser", 1.2, 0.0), fault(Kind::quantization, "gps", 0.5, 2.0);
+  const world::World world = town(20);
+  expect_same(world, options, 100);
+  EXPECT_NE(run(world, device(), options, 100).hash, run(world, device(), {.seed = 3}, 100).hash);
+  EXPECT_EQ(run_in_tiles(world, 3, options, 100, false).hash, run(world, device(), options, 100).hash);
+}
+
+TEST(FleetTiles, DelaysAreRefused) {
+  SimulationOptions options{.faults = {{.kind = base::FaultKind::delay, .robot = "*", .type = "gyro", .amount = 0.1}}};
+  const world::World world = town(4);
+  cluster::ThreadRanks(1).run([&](cluster::Ranks& one) {
+    options.ranks = &one;
+    expect_in("a delay cannot be simulated by several ranks",
+              refusal_of([&] { Simulation(world, device(), options); }));
+  });
+}
 
 /// With a slow link, a robot decides by readings that it received in another tile.
 TEST(FleetTiles, MatchASingleProcessBitwiseWithASlowLink) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "sensors/accuracy.h"
+#include "sensors/aggregate.h"
 #include "sensors/bumper.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
@@ -67,6 +68,7 @@ struct Fixture {
     for (unsigned attempt = 0; client == nullptr && attempt < 1000; ++attempt) {
       layout.bases[sensors::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 32 % 20'000;
       layout.bases[sensors::kBumper] = layout.bases.at(sensors::kLaser) + 4;  // between those of lasers
+      layout.bases[sensors::kAggregate] = layout.bases.at(sensors::kLaser) + 5;
       try {
         const netio::Socket free = netio::open_udp({netio::kLoopback, reading_port(1)}),
                             other = netio::open_udp({netio::kLoopback, reading_port(2)});
