@@ -10,6 +10,7 @@
 #include "sensors/occupancy.h"
 #include "sensors/settings.h"
 #include "sensors/sonar.h"
+#include "world/copies.h"
 
 namespace sf::sensors {
 
@@ -93,7 +94,8 @@ std::vector<std::uint32_t> source_movers(const world::Sensor& sensor, const worl
   if (parts.robot.empty()) return {own};
   std::vector<std::uint32_t> found;
   std::vector<std::string_view> names;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+  const auto [first, end] = world::CopyIndex(world).rows_with(own, static_cast<std::uint32_t>(world.movers.size()));
+  for (std::uint32_t m = first; m < end; ++m) {
     if (parts.robot == "*" || world.movers[m].name == parts.robot) found.push_back(m);
     names.push_back(world.movers[m].name);
   }
