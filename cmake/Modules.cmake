@@ -73,7 +73,8 @@ if(SENSORFARM_CHECKED)
   add_library(checked INTERFACE)
   target_compile_options(checked INTERFACE -Og -g1 -w -UNDEBUG -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined
                                            -fno-sanitize=null,object-size -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-  target_link_options(checked INTERFACE -fsanitize=address,undefined -fno-lto)
+  # Millions of addresses in the sanitizers' tables would be relocated at each start (docs/developing.md).
+  target_link_options(checked INTERFACE -fsanitize=address,undefined -fno-lto -no-pie)
 endif()
 if(SENSORFARM_PCH)
   add_precompiled(common_headers HEADERS ${SENSORFARM_COMMON_HEADERS})
