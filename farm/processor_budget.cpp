@@ -60,12 +60,18 @@ void ProcessorBudget::admit(std::int64_t now, std::span<SensorPipeline* const> p
   std::ranges::stable_sort(candidates_, [](const Candidate& a, const Candidate& b) {
     return std::tuple(b.priority, a.last) < std::tuple(a.priority, b.last);
   });
+  const std::uint8_t highest = candidates_.empty() ? 0 : candidates_.front().priority;
+  bool enough = true;
+  highest_only_ = true;
   for (Candidate& candidate : candidates_) {
+    if (candidate.priority < highest) bucket_.settle();
     if (!bucket_.may_have(candidate.cost)) continue;  // it waits for nothing
-    if (!bucket_.has(candidate.cost)) break;
+    if (enough = bucket_.has(candidate.cost); !enough) break;
     candidate.admitted = true;
+    highest_only_ &= candidate.priority == highest;
     bucket_.spend(candidate.cost);
   }
+  if (enough) bucket_.settle();
   std::ranges::sort(candidates_, {}, [](const Candidate& c) { return std::tuple(c.pipeline, c.due); });
   std::size_t next = 0;
   for (SensorPipeline* const pipeline : pipelines) {
@@ -92,7 +98,7 @@ void ProcessorBudget::spent(double seconds) {
     predicted += costs_[type] * elements_[type];
     squares += elements_[type] * elements_[type];
   }
-  bucket_.spend(seconds - predicted);
+  bucket_.charge(seconds - predicted, (highest_only_ ? 1.0 : TokenBucket::kMostCharged) * bucket_.limit());
   if (squares == 0.0) return;
   for (std::size_t type = 0; type < costs_.size(); ++type)
     costs_[type] = std::max(0.0, costs_[type] + kLearning * (seconds - predicted) * elements_[type] / squares);

@@ -5,8 +5,9 @@
 // priority, then in the order in which they were last admitted, as long as the bucket has what they are expected to
 // cost: no reading is measured at the expense of one with a higher priority, now or later. What a reading costs is
 // learnt per sensor type and element from the time that each call took. The expected cost of types of which nothing is
-// admitted falls slowly, so that they are tried again. A reading that is not admitted is dropped: it is never measured
-// later.
+// admitted falls slowly, so that they are tried again. Time beyond what was expected is paid from what the highest
+// priority leaves, unless it alone takes too long. A reading that is not admitted is dropped:
+// it is never measured later.
 
 #include <array>
 #include <cstdint>
@@ -60,6 +61,7 @@ class ProcessorBudget {
   std::vector<Candidate> candidates_;
   std::vector<DroppedReading> dropped_;
   std::uint64_t calls_ = 0;
+  bool highest_only_ = true;  ///< this call admitted nothing but the highest priority
 };
 
 }  // namespace sf::farm

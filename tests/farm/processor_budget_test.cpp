@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <functional>
 #include <map>
 
 #include "base/time.h"
@@ -58,7 +59,8 @@ struct Trial {
           ++measured[{row.mover, pipeline.group->type->id}];
           elements += row.elements;
         }
-      processor.spent(cost * elements);
+      processor.spent(cost * elements * factor(tick));
+      used += cost * elements * factor(tick);
       dropped += processor.dropped().size();
     }
     return measured;
@@ -75,9 +77,11 @@ struct Trial {
   ProcessorBudget processor;
   std::int64_t tick = 0;
   std::size_t dropped = 0;
+  std::function<double(std::int64_t tick)> factor = [](std::int64_t) { return 1.0; };  ///< of the cost
+  double used = 0.0;                                                                   ///< [s]
 };
 
-TEST(TokenBucket, FillsToItsLimitAndOwesNothing) {
+TEST(TokenBucket, FillsToItsLimit) {
   TokenBucket bucket(10.0, 2.0);
   EXPECT_TRUE(bucket.has(2.0)) << "full at first";
   EXPECT_FALSE(bucket.has(2.1));
@@ -90,6 +94,27 @@ TEST(TokenBucket, FillsToItsLimitAndOwesNothing) {
   EXPECT_FALSE(bucket.has(2.1)) << "its limit";
   bucket.spend(-5.0);
   EXPECT_FALSE(bucket.has(2.1)) << "nor by giving back";
+}
+
+TEST(TokenBucket, WhatItLacksIsOwed) {
+  TokenBucket bucket(10.0, 2.0);
+  bucket.charge(3.0, 2.0);  // owes 1
+  bucket.refill(base::nanoseconds(0.15));
+  EXPECT_TRUE(bucket.has(1.5)) << "until it is settled";
+  bucket.settle();
+  EXPECT_TRUE(bucket.has(0.5));
+  EXPECT_FALSE(bucket.has(0.51));
+  bucket.charge(3.5, 2.0);  // owes 2 of 3
+  bucket.refill(base::nanoseconds(0.25));
+  EXPECT_TRUE(bucket.has(0.0));
+  EXPECT_FALSE(bucket.has(0.01)) << "the level was -1";
+  bucket.charge(1e9, 2.0);
+  bucket.refill(base::nanoseconds(10.24));
+  EXPECT_FALSE(bucket.has(0.0)) << "the level was that of 50 buckets";
+  bucket.refill(base::nanoseconds(10.45));
+  EXPECT_TRUE(bucket.has(2.0));
+  bucket.settle();
+  EXPECT_FALSE(bucket.has(0.01));
 }
 
 constexpr double kPerElement = 1e-5;  // [s]
@@ -114,6 +139,30 @@ TEST(ProcessorBudget, ALoadThatDoublesLeavesHighPrioritiesAlone) {
     sum += static_cast<std::size_t>(measured.at({m, sensors::kLaser}));
   }
   EXPECT_EQ(half.dropped, 2000 - sum) << "everything that is dropped is stated";
+}
+
+/// Every eighth tick takes 4.5 times as long, the others half as long: the mean is the same.
+TEST(ProcessorBudget, SlowTicksArePaidByLowPriorities) {
+  const double full = 10.0 * 10.0 * 101.0 * kPerElement;  // [s] per second of run
+  Trial trial(crowd(10, "laser( samples 100 rate 10 ) gyro( rate 10 priority 9 )"), 0.5 * full, kPerElement);
+  trial.factor = [](std::int64_t tick) { return tick % 8 == 0 ? 4.5 : 0.5; };
+  trial.run(200);
+  trial.used = 0.0;
+  const Counts measured = trial.run(400);
+  EXPECT_LE(trial.used / 40.0, 0.51 * full) << "charged to the next ticks";
+  EXPECT_GE(trial.used / 40.0, 0.4 * full);
+  for (std::uint32_t m = 0; m < 10; ++m) EXPECT_EQ(measured.at({m, sensors::kGyro}), 400);
+}
+
+/// Without lower priorities, all share the debt.
+TEST(ProcessorBudget, SlowTicksOfEqualsArePaidByAll) {
+  const double full = 10.0 * 10.0 * 100.0 * kPerElement;
+  Trial trial(crowd(10, "laser( samples 100 rate 10 )"), 0.5 * full, kPerElement);
+  trial.factor = [](std::int64_t tick) { return tick % 8 == 0 ? 4.5 : 0.5; };
+  trial.run(200);
+  trial.used = 0.0;
+  trial.run(400);
+  EXPECT_NEAR(trial.used / 40.0, 0.5 * full, 0.02 * full);
 }
 
 TEST(ProcessorBudget, InputsHaveThePriorityOfTheirConsumers) {
