@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/displacement.h"
 #include "robots/estimation/link_speed.h"
@@ -27,6 +29,7 @@ constexpr double kLongestGap = 30.0;  // [s] between two reports of one vehicle
 constexpr double kStandsFrom = 0.95;  // occupancy of a loop on which a vehicle stands
 constexpr double kLeastMove =
     0.05;  // [m] shortest move from which a vehicle's direction is derived, in addition to position noise
+constexpr double kDetour = 1.5;      // of a way across the end of a link, over the straight distance
 constexpr double kPoseError = 0.05;  // [m] of a pose that states no covariance
 constexpr std::size_t kStatedPose = 8, kPoseValidAt = 3, kPoseXxAt = 4, kPoseYyAt = 7;
 
@@ -37,8 +40,11 @@ struct Vehicle {
   std::optional<double> yaw;  ///< [rad]
   glm::dvec2 turned{};        ///< where `yaw` was found from positions
   std::optional<LinkPlace> place;
-  std::uint64_t interval = 0;  ///< of its travel in `Link::travels`
-  std::uint32_t link = 0, travel = 0;
+  std::uint64_t interval = 0;  ///< of its travels
+  struct OnLink {
+    std::uint32_t link, travel;  ///< rows, in `Link::travels`
+  };
+  std::vector<OnLink> travels = {};  ///< one per link
 };
 
 /// One input.
@@ -100,6 +106,7 @@ class LinkSpeedSensor final : public sensorfarm::DerivedSensor {
   void take_loop(Source& source, const sensorfarm::Reading& reading);
   void take_position(Source& source, double time, glm::dvec2 p, std::optional<double> yaw, double sigma);
   void add_travel(Vehicle& vehicle, std::uint32_t link, double metres, double seconds, double sigma);
+  void cross(Vehicle& vehicle, const LinkPlace& from, double straight, double seconds, double sigma);
   void update(double time);
 
   /// A link or route at the time of a reading.
@@ -174,21 +181,47 @@ void LinkSpeedSensor::take_position(Source& source, double time, glm::dvec2 p, s
   if (const glm::dvec2 d = p - vehicle.turned; !yaw && glm::length(d) > kLeastMove + 2.0 * sigma)
     vehicle.yaw = std::atan2(d.y, d.x), vehicle.turned = p;
   const std::optional<LinkPlace> before = jumped ? std::nullopt : vehicle.place;
+  const double straight = glm::distance(vehicle.p, p);
   vehicle.place = vehicle.yaw ? links_.find(p, vehicle.yaw) : std::nullopt;
   vehicle.time = time, vehicle.p = p;
-  if (!before || !vehicle.place || before->link != vehicle.place->link || seconds > kLongestGap) return;
+  if (!before || !vehicle.place || seconds > kLongestGap) return;
+  if (before->link != vehicle.place->link) return cross(vehicle, *before, straight, seconds, sigma);
   add_travel(vehicle, before->link, links_.driven(before->link, before->s, vehicle.place->s), seconds, sigma);
-  states_[before->link].newest = std::max(states_[before->link].newest, time);
+}
+
+/// Adds a way from one link to the next one, across the end, or back, as errors of the position of a vehicle at rest
+/// show it. Its time is divided as if it was driven evenly.
+/// @param from place at the last report @param straight [m] between both positions
+void LinkSpeedSensor::cross(Vehicle& vehicle, const LinkPlace& from, double straight, double seconds, double sigma) {
+  const LinkPlace& to = *vehicle.place;
+  const RoadLink &left = links_.links()[from.link], &entered = links_.links()[to.link];
+  /// [m] on the first link, between both, and on the second.
+  const auto way = [](const RoadLink& a, double s_a, const RoadLink& b, double s_b) {
+    return std::array{a.length() - s_a, glm::distance(a.points.back(), b.points.front()), s_b};
+  };
+  const auto sum = [](const std::array<double, 3>& parts) { return parts[0] + parts[1] + parts[2]; };
+  std::array<double, 3> parts = way(left, from.s, entered, to.s);
+  const std::array<double, 3> back = way(entered, to.s, left, from.s);
+  const double sign = sum(parts) <= sum(back) ? 1.0 : -1.0;
+  if (sign < 0.0) parts = {back[2], back[1], back[0]};
+  if (sum(parts) > kDetour * straight + left.reach + entered.reach) return;
+  const double pace = sum(parts) > 0.0 ? seconds / sum(parts) : 0.0;
+  add_travel(vehicle, from.link, sign * parts[0], parts[0] * pace, sigma);
+  add_travel(vehicle, to.link, sign * parts[2], parts[2] * pace, sigma);
 }
 
 void LinkSpeedSensor::add_travel(Vehicle& vehicle, std::uint32_t row, double metres, double seconds, double sigma) {
+  if (!(seconds > 0.0)) return;
+  states_[row].newest = std::max(states_[row].newest, vehicle.time);
   auto& travels = states_[row].travels;
-  if (vehicle.interval != interval_ || vehicle.link != row) {
-    vehicle.interval = interval_, vehicle.link = row, vehicle.travel = static_cast<std::uint32_t>(travels.size());
+  if (std::exchange(vehicle.interval, interval_) != interval_) vehicle.travels.clear();
+  auto own = std::ranges::find(vehicle.travels, row, &Vehicle::OnLink::link);
+  if (own == vehicle.travels.end()) {
+    own = vehicle.travels.insert(own, {row, static_cast<std::uint32_t>(travels.size())});
     travels.push_back({.variance = 2.0 * sigma * sigma});  // of the first and the last position
   }
-  travels[vehicle.travel].metres += metres;
-  travels[vehicle.travel].seconds += seconds;
+  travels[own->travel].metres += metres;
+  travels[own->travel].seconds += seconds;
 }
 
 void LinkSpeedSensor::update(double time) {

@@ -87,6 +87,16 @@ TEST(LinkSpeedSensor, StatesSpeedsAndTravelTimes) {
   }
 }
 
+/// Ways across the ends of links count: a vehicle that never reports twice from one link.
+TEST(LinkSpeedSensor, WaysAcrossTheEndOfALinkCount) {
+  const auto all = drive(probed("inputs [\"c0/gps\"] hold 100 rate 1 reach 0.5 spread 0.01 links 3\n"
+                                "link[0] [0 0 1 0] link[1] [1 0 1.9 0] link[2] [2.1 0 3.2 0]"),
+                         5.0, [](double t) {
+                           return std::pair{Pose{1.6 * t - 1.6, 0, 0, 0}, Pose{50, 50, 0, 0}};
+                         });
+  for (const LinkRow& row : all.back()) EXPECT_NEAR(row.speed, 1.6, 1e-6);
+}
+
 TEST(LinkSpeedSensor, ALinkWithoutReportsBecomesInvalid) {
   const auto all = drive(probed(std::string("inputs [\"*/gps\"] hold 5 route [0 1] ") + kTwoLinks), 20.0, [](double t) {
     const auto [a, b] = both(t);
