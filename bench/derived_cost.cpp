@@ -1,7 +1,7 @@
 // Processor time of derived sensors: localizations of many robots by encoder and gyro, in whole ticks, against the same
-// filter called in a plain loop without window, hypotheses and farm.
+// filter called in a plain loop without window, hypotheses and farm. Or monitors, by the same and a receiver.
 //
-//   build/release/derived_cost [ROBOTS]; default: 10000
+//   build/release/derived_cost [ROBOTS [localization|monitor]]; default: 10000 localization
 
 #include <fmt/format.h>
 
@@ -16,6 +16,7 @@
 #include "robots/estimation/wheeled_state.h"
 #include "robots/fleet.h"
 #include "sensors/encoder.h"
+#include "sensors/gps.h"
 #include "sensors/gyro.h"
 #include "sensors/localization.h"
 #include "world/stage/build_world.h"
@@ -28,16 +29,19 @@ constexpr int kTicks = 40;
 constexpr int kWarmUp = 40;  // windows of late readings are full
 constexpr std::int64_t kTick = base::kSecond / 20;
 
-world::World fleet(int robots) {
+world::World fleet(int robots, const std::string& type) {
+  const std::string gps = type == "monitor" ? "gps( noise 1.5 rate 1 )" : "";
   std::string text;
   for (int i = 0; i < robots; ++i)
     text += fmt::format("bot( name \"r{}\" pose [{} {} 0 {}] )\n", i, i % 100, i / 100, i % 360);
-  return world::build_world("fleet.world",
-                            "define bot position( size [0.3 0.3 0.1] drive \"diff\" encoder( per_count 0.001 slip 0.01 "
-                            "rate 20 )\ngyro( noise 0.2 bias 0.5 rate 20 )\nderived( type \"localization\" inputs "
-                            "[\"encoder\" \"gyro\"] rate 20 ) )\n" +
-                                text,
-                            {.sensors = sensors::world_file_words()});
+  return world::build_world(
+      "fleet.world",
+      fmt::format(
+          "define bot position( size [0.3 0.3 0.1] drive \"diff\" encoder( per_count 0.001 slip 0.01 rate 20 )\n"
+          "gyro( noise 0.2 bias 0.5 rate 20 ) {}\nderived( type \"{}\" inputs [\"encoder\" \"gyro\"{}] rate 20 ) "
+          ")\n{}",
+          gps, type, gps.empty() ? "" : " \"gps\"", text),
+      {.sensors = sensors::world_file_words()});
 }
 
 void drive(std::vector<base::Report>& reports) {
@@ -92,15 +96,17 @@ double plain_loop(std::size_t robots) {
 int main(int argc, char** argv) {
   using namespace sf;
   const int robots = argc > 1 ? std::atoi(argv[1]) : 10'000;
-  const world::World world = bench::fleet(robots);
+  const std::string type = argc > 2 ? argv[2] : "localization";
+  const world::World world = bench::fleet(robots, type);
   std::uint64_t hash = 0, again = 0, unused = 0;
-  const double inputs = bench::ticks(world, base::only(sensors::kEncoder) | base::only(sensors::kGyro), unused);
+  const double inputs = bench::ticks(
+      world, base::only(sensors::kEncoder) | base::only(sensors::kGyro) | base::only(sensors::kGps), unused);
   const double all = bench::ticks(world, farm::kAllSensorTypes, hash);
   bench::ticks(world, farm::kAllSensorTypes, again);
   const double count = 2.0 * robots * bench::kTicks;  // measurements: encoder and gyro
   const double plain = bench::plain_loop(static_cast<std::size_t>(robots));
-  fmt::print("{} localizations at 20 Hz, encoder and gyro at 20 Hz, {} ticks, hash {:016x}, {} when repeated\n", robots,
-             bench::kTicks, hash, hash == again ? "the same" : "another");
+  fmt::print("{} of type {} at 20 Hz, encoder and gyro at 20 Hz, {} ticks, hash {:016x}, {} when repeated\n", robots,
+             type, bench::kTicks, hash, hash == again ? "the same" : "another");
   fmt::print("per measurement: {:.2f} us of processor time in ticks, {:.2f} us in a plain loop, ratio {:.2f}\n",
              1e6 * (all - inputs) / count, 1e6 * plain / count, (all - inputs) / plain);
   return hash == again ? 0 : 1;

@@ -33,10 +33,12 @@ struct FalseAlarms {
   double hours = 0.0;
   int suspicions = 0, alarms = 0;
   std::array<double, kStatistics> largest{};
+  RunningMean healthy_nees, faulty_nees;
 
   void add(const MonitoredCar& car) {
     hours += car.healthy / 3600.0;
     suspicions += car.suspicions, alarms += car.alarms;
+    healthy_nees.add(car.healthy_nees), faulty_nees.add(car.faulty_nees);
     for (std::size_t k = 0; k < kStatistics; ++k) largest[k] = std::max(largest[k], car.largest[k]);
   }
 };
@@ -115,11 +117,14 @@ std::string monitor_report(const ExperimentContext& context, const FalseAlarms& 
       "# Faulty sensors of cars\n\nSeeds {} to {}, on which the thresholds were fixed, have no faults; seeds {} to {} "
       "have one healthy car each, and the other cars one fault each, from {:g} to {:g} s of {:g} s.\n\n{}\n"
       "False alarms, a sensor stated to be faulty: {} on the first seeds; {} on the others.\n\n"
-      "Suspicions that isolated nothing: {}; {}.\n\n",
+      "Suspicions that isolated nothing: {}; {}.\n\n"
+      "NEES of the pose per dimension, on the other seeds: {:.2f} without a fault ({} ticks), {:.2f} while the faulty "
+      "input alone is stated to be faulty ({} ticks).\n\n",
       first, first + kThresholdSeeds - 1, first + kThresholdSeeds, first + kThresholdSeeds + kFaultSeeds - 1,
       kFaultFrom, kFaultUntil, kMonitorEnd, threshold_rows(fixed, reported), rate_text(fixed.alarms, fixed.hours),
       rate_text(reported.alarms, reported.hours), rate_text(fixed.suspicions, fixed.hours),
-      rate_text(reported.suspicions, reported.hours));
+      rate_text(reported.suspicions, reported.hours), reported.healthy_nees.mean(), reported.healthy_nees.count,
+      reported.faulty_nees.mean(), reported.faulty_nees.count);
   text +=
       "| sensor | fault | size | cars | detected | median delay [s] | 95 % [s] | isolated | correctly | lane RMS "
       "without "

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "base/files.h"
 #include "base/time.h"
@@ -79,6 +81,24 @@ struct MonitoredStates {
   std::array<InputState, estimation::kMonitoredInputs> last{};
   bool wrong = false;  ///< another input was stated to be faulty during the fault
 };
+
+/// Returns the squared error of x, y and yaw in units of its covariance, divided by 3.
+double pose_nees(const estimation::Estimate& estimate, const base::Pose& truth) {
+  const auto& P = estimate.covariance;
+  const auto at = [&](int i, int k) { return P[i * estimation::kComponents + k]; };
+  const glm::dmat3 covariance{
+      {at(0, 0), at(0, 1), at(0, 2)}, {at(1, 0), at(1, 1), at(1, 2)}, {at(2, 0), at(2, 1), at(2, 2)}};
+  const glm::dvec3 e{estimate.X_WM.x - truth.x, estimate.X_WM.y - truth.y,
+                     base::wrap_angle(estimate.X_WM.yaw - truth.yaw)};
+  return glm::dot(e, glm::inverse(covariance) * e) / 3.0;
+}
+
+/// Returns whether the input, and no other, is stated to be faulty.
+bool isolates(const estimation::LocalizationMonitor& monitor, estimation::MonitoredInput faulty) {
+  return std::ranges::all_of(kMonitored, [&](estimation::MonitoredInput input) {
+    return (monitor.state(input) == InputState::faulty) == (input == faulty);
+  });
+}
 
 void note_healthy(const estimation::LocalizationMonitor& monitor, MonitoredStates& states, MonitoredCar& car) {
   bool suspected = false, faulty = false;
@@ -177,6 +197,10 @@ std::vector<MonitoredCar> run_monitored(const ExperimentContext& context, std::u
       MonitoredCar& car = cars[k];
       const control::OwnLocalization& own = *control::localization_of(*simulation.controller(rows[k]));
       if (const auto* monitor = own.monitor()) {
+        const bool healthy = !car.fault || time < kFaultFrom;
+        if (time >= kSettled && (healthy || (time < kFaultUntil && isolates(*monitor, kCases[*car.fault].input))))
+          (healthy ? car.healthy_nees : car.faulty_nees)
+              .add(pose_nees(monitor->predict(tick.time).estimate, tick.reports[rows[k]].X_WM));
         if (!car.fault || time < kFaultFrom)
           note_healthy(*monitor, states[k], car);
         else

@@ -13,8 +13,17 @@
 
 namespace sf::scenarios {
 
+inline constexpr double kSettled = 10.0;  // [s]
 // [s] The faults begin when the filters know the sensors' constants, and end early enough for hand-back.
 inline constexpr double kFaultFrom = 60.0, kFaultUntil = 90.0, kMonitorEnd = 120.0;
+
+struct RunningMean {
+  double sum = 0.0;
+  std::size_t count = 0;
+  void add(double value) { sum += value, ++count; }
+  void add(const RunningMean& other) { sum += other.sum, count += other.count; }
+  double mean() const { return sum / static_cast<double>(count); }  ///< NaN if empty
+};
 
 /// A fault of one sensor, possibly of two of its columns.
 struct MonitorCase {
@@ -43,6 +52,9 @@ struct MonitoredCar {
   double healthy = 0.0;               ///< [s] without a fault, before it
   int suspicions = 0, alarms = 0;     ///< false ones in that time: suspected or faulty; faulty
   std::array<double, 2 * estimation::kRelations + 1> largest{};  ///< statistics in that time, like the thresholds
+  /// NEES per dimension of the monitor's pose: from kSettled on without a fault, and while the faulty input, and no
+  /// other, is stated to be faulty.
+  RunningMean healthy_nees, faulty_nees;
 };
 
 /// Runs the scenario with these faults, one per car in the order of rows. @param monitored false: without the monitor,
