@@ -16,7 +16,7 @@ import struct
 import sys
 import time
 
-from sensorfarm_client import EVERY_ROBOT, NEIGHBOURS, SUBSCRIBE, Client, encode_subscribe
+from sensorfarm_client import EVERY_ROBOT, NEIGHBOURS, SUBSCRIBE, Client, encode_subscribe, read_key
 
 CENTRE = 2  # `sensor` in the header of SUBSCRIBE and LEAVE: the sender is the control centre
 LONGEST_GAP = 2.0  # [s] between two states of a robot
@@ -85,7 +85,7 @@ def link_of(text, reach):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--farm", default="127.0.0.1:9000", help="HOST:PORT of `sensorfarm serve`")
-    parser.add_argument("--key", help="64 hexadecimal digits, as in the farm's table of peers")
+    parser.add_argument("--key", type=read_key, metavar="FILE", help="64 hexadecimal digits: sign, and check signatures")
     parser.add_argument("--link", action="append", default=[], metavar="NAME:x,y,x,y,...", help="may be repeated")
     parser.add_argument("--reach", type=float, default=0.5, help="largest distance from a link [m] (0.5)")
     parser.add_argument("--every", type=float, default=1.0, help="time between prints [s] (1)")
@@ -93,7 +93,7 @@ def main():
     options = parser.parse_args()
     try:
         host, _, port = options.farm.rpartition(":")
-        centre = Centre((host, int(port)), bytes.fromhex(options.key) if options.key else None)
+        centre = Centre((host, int(port)), options.key)
         links = [link_of(text, options.reach) for text in options.link]
     except (ValueError, OSError) as error:
         sys.exit(f"sensorfarm_centre: {error}")

@@ -174,6 +174,39 @@ TEST(Clients, BothSignAndVerifySignatures) {
     EXPECT_FALSE(facts.has(std::string("/received/") + reason)) << reason;
 }
 
+/// A control centre with a key receives the states of a robot, whatever the radio range; with another key none.
+TEST(Clients, TheCentreSignsAndVerifiesSignatures) {
+  if (!have_python()) GTEST_SKIP() << kNoPython;
+  const Folder folder;
+  const std::string key = folder.write("key", std::string(64, 'a') + "\n"),
+                    other = folder.write("other", std::string(64, 'b') + "\n");
+  const std::string peers =
+      folder.write("peers.toml", "[[peer]]\ncentre = true\nkey = \"" + std::string(64, 'a') + "\"\n");
+  Service service(kRoom, {"--rate", "50", "--radio", "0", "--peers", peers});
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  Robot robot(1, service.port, service.laser_port(1));
+  ASSERT_TRUE(prove(robot));
+  const auto printed_by_centre = [&](const std::string& with_key, const std::string& expected) {
+    const std::string out = with_key + ".out";
+    Program centre({kClients + "/sensorfarm_centre.py", "--farm", "127.0.0.1:" + std::to_string(service.port), "--key",
+                    with_key, "--every", "0.1"},
+                   {}, out, "", "python3");
+    EXPECT_TRUE(until([&] {
+      robot.send_state({1.0, 0.5, 0.0, 0.0});
+      return read_file(out).find(expected) != std::string::npos || !centre.running();
+    }));
+    EXPECT_EQ(centre.stop().code, 0);
+    return read_file(out);
+  };
+  const std::string text = printed_by_centre(key, "robot 1 x 1.000 y 0.500 yaw 0.000 speed 0.000\n");
+  EXPECT_NE(text.find("robot 1 x 1.000"), std::string::npos) << text;
+  EXPECT_EQ(text.find("signature"), std::string::npos) << text;
+  const std::string refused = printed_by_centre(other, "wrong signature");
+  EXPECT_NE(refused.find("refused: wrong signature"), std::string::npos) << refused;
+  EXPECT_EQ(refused.find("robot 1"), std::string::npos) << refused;
+  EXPECT_GE(Json(service.program.stop().out).number("/received/wrong signature"), 1);
+}
+
 /// RFC 4231, lengths around a block, the example of docs/packets.md, and all cases of the test below.
 TEST(Clients, CSignsAsSpecified) {
   if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
