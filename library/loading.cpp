@@ -34,7 +34,7 @@ Starts::Starts(const world::World& world, std::optional<world::FreeSpace> space)
 void Starts::place(world::World& world, std::uint32_t copy, std::uint64_t seed) const {
   const std::size_t first = copy * X_WM_.size();
   const std::span<world::Mover> movers = std::span(world.movers).subspan(first, X_WM_.size());
-  for (std::uint32_t row = 0; row < movers.size(); ++row) world::draw_start(movers[row], X_WM_[row], seed, row);
+  world::draw_starts(movers, X_WM_, seed, !space_);
   if (!space_) return;
   const auto poses = space_->poses(static_cast<std::uint32_t>(clones_.size()), seed, world::places_of_tags(movers));
   for (std::size_t i = 0; i < poses.size(); ++i) world.movers[first + clones_[i]].X_WM = poses[i];
@@ -63,6 +63,7 @@ LoadedWorld load(const WorldSource& source, const sensorfarm::Options& options) 
   Starts starts(world, std::move(space));
   world::copy_movers(world, options.copies);
   for (std::uint32_t copy = 0; copy < world.copies; ++copy) starts.place(world, copy, options.seed + copy);
+  world::update_extent_and_hash(world);
   return {std::move(world), std::move(starts)};
 }
 

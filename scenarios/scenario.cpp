@@ -38,7 +38,7 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
         scenario.file, scenario.world_line,
         fmt::format("there is no world '{}'; expected a file, relative to this file's folder", scenario.world));
   world::World world = world::load_world(scenario.world, load);
-  world::draw_starts(world, scenario.seed);
+  world::draw_starts(world, scenario.seed, scenario.fleet.robots == 0);
   if (scenario.fleet.robots > 0) spawn_fleet(scenario, world);
   if (scenario.tick > 0.0) world.interval = scenario.tick;
   if (scenario.plant)

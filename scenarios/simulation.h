@@ -64,7 +64,7 @@ struct SimulationOptions {
   Actor actor;                ///< default of all robots
   std::vector<Actor> actors;  ///< per mover of a copy of the world by row, tags included; empty: `actor` for all
                               ///< robots, and tags at rest
-  double start_at = 0.0;                   ///< [s] time of the start signal
+  double start_at = 0.0;      ///< [s] time of the start signal
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: the farm has the true states
   std::optional<PositioningOptions> positioning;  ///< of robots that localize themselves; nullopt: none
   std::optional<V2vLinkOptions> v2v;              ///< between robots; nullopt: V2V is current. Not with tiles

@@ -17,7 +17,7 @@ world::World load_with_robots(const WorldOptions& options, const CloneOptions& c
   if (clones.robots > 0) use = scenarios::OwnRobot::for_copies;
   const std::string added = scenarios::lend_robot(world, options.robot_from, use, options.load);
   const bool copies = clones.robots > 0 || !added.empty();
-  world::draw_starts(world, clones.seed);
+  world::draw_starts(world, clones.seed, !copies);
   if (copies) world::read_unread(world);  // free positions must avoid all walls
   if (!added.empty() && options.robot_from.empty())
     print_message(
