@@ -105,6 +105,28 @@ TEST_F(MapTest, SendsTheMapOfItsScans) {
   EXPECT_EQ(map.counts().scans, 2u);
 }
 
+TEST_F(MapTest, HasTheSourcesOfItsWorld) {
+  world::World world = map_world({{"sources", {}, "laser", 0, ""}}, true);
+  OwnMap map = map_of(world);
+  const base::Pose X_WM{-1.0, 0.5, 0.0, 0.3};
+  map.add(scan(kSecond), X_WM);
+  map.add(scan(kSecond), X_WM);  // repeated
+  EXPECT_EQ(map.counts().scans, 1u);
+  const maps::OccupancyGrid grid = map.grid();
+  const base::Pose X_WS = base::compose(X_WM, map_laser().X_MS);
+  const auto at = [&](double range) {
+    return grid.at(maps::cell_at(grid.geometry, base::transform(X_WS, {range, 0.0})));
+  };
+  EXPECT_EQ(at(0.6), maps::Cell::free);
+  EXPECT_EQ(at(1.4), maps::Cell::unexplored);
+
+  world::Mover& other = scenes::add_create(world, {1.0, 0.5, 0.0, 0.3});
+  other.sensors.push_back(sensors::laser_sensor(map_laser()));
+  world.movers[0].sensors.back().settings[0].text = "*/laser";
+  world::update_extent_and_hash(world);
+  expect_in("has sources of other robots, whose readings it does not receive", refusal_of([&] { map_of(world); }));
+}
+
 TEST_F(MapTest, IsSentAtItsRate) {
   OwnMap map = map_of(map_world());
   map.add(scan(0), {});

@@ -18,7 +18,7 @@ namespace {
 World shipped(const std::string& name) {
   static constexpr std::string_view kAny[] = {"fov",     "samples",      "range_max", "range_min",    "scount",
                                               "spose[]", "ssensitivity", "sum",       "perpendicular"};
-  static constexpr std::string_view kShippedMap[] = {"cell", "words", "offset"};
+  static constexpr std::string_view kShippedMap[] = {"cell", "words", "offset", "sources"};
   static constexpr std::string_view kFelt[] = {"zones", "zone[]",     "scount", "spose[]", "per_count",
                                                "track", "slip",       "scrub",  "bias",    "scale_error",
                                                "range", "satellites", "noise"};
