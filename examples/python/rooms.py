@@ -4,10 +4,11 @@
     PYTHONPATH=build/release/python /usr/bin/python3 examples/python/rooms.py --out out/rooms
     sensorfarm run examples/python/rooms.world --robots 1 --controller examples/python/rooms.py:Drive --view
 
-Learning needs PyTorch (python3-torch of Debian is enough); testing and driving need only NumPy. In each world a robot
-drives to a goal, sees 36 ranges to 4 m, its speeds, and distance and bearing of the goal. An episode ends at the goal, at
-a contact or after 20 s; the next has another seed, and so other places of crates, partitions, robot and goal. The
-algorithm is that of Schulman et al., "Proximal Policy Optimization Algorithms" (2017), with generalised advantages.
+Learning needs PyTorch (python3-torch of Debian is enough); testing and driving need only NumPy. A robot in each
+world drives to a goal. It sees 36 ranges up to 4 m, its speeds, and the goal's distance and bearing. An episode ends at
+the goal, at a contact or after 20 s; the next one has another seed, and so other places of crates, partitions, robot and
+goal. The algorithm is that of Schulman et al., "Proximal Policy Optimization Algorithms" (2017), with generalised
+advantages.
 """
 
 import argparse
@@ -37,7 +38,7 @@ class Rooms:
         self._choose_goals(numpy.arange(copies))
 
     def _choose_goals(self, rooms):
-        """Chooses the first of 64 places that is 0.45 m clear of crates and 3 m from the start, or else the clearest."""
+        """Chooses the first of 64 places that is 0.45 m from all crates and 3 m from the start, or else the clearest."""
         part = self.worlds.parts[0]
         poses = part.poses.reshape(len(self.worlds), -1, 4)[rooms, :, :2]
         present = part.present.reshape(len(self.worlds), -1)[rooms, 1:]
@@ -50,13 +51,13 @@ class Rooms:
         self.seen.goals[rooms] = places[numpy.arange(len(rooms)), chosen]
         self.seen.update()
 
-    def step(self, actions):
+    def drive(self, actions):
         """Returns rewards, and which episodes ended at the goal, at a contact and by the limit of steps."""
         self.worlds.step(numpy.stack(twists(actions, *self._speeds), axis=-1)[:, None])
         arrived = self.seen.distances < ARRIVED
         contact = self.worlds.contacts[:, 0] & ~arrived
         late = (self.seen.ages >= LIMIT) & ~arrived & ~contact
-        return self.seen.progress + 3.0 * arrived - 3.0 * contact, arrived, contact, late
+        return self.seen.progress + 3.0 * arrived - 5.0 * contact, arrived, contact, late
 
     def restart(self, ended):
         if ended.any():
@@ -65,8 +66,8 @@ class Rooms:
 
 
 def twists(actions, max_forward, max_turn):
-    """Returns forward, left [m/s] and turn [rad/s] of actions (..., 2) in [-1, 1]: from standing to full speed, and from
-    right to left."""
+    """Returns forward, left [m/s] and turn [rad/s] of actions (..., 2) in [-1, 1]: standing to full speed, right to
+    left."""
     forward = max_forward * (1.0 + actions[..., 0]) / 2.0
     return forward, 0.0 * forward, max_turn * actions[..., 1]
 
@@ -81,25 +82,27 @@ def act(weights, seen):
 def straight(seen):
     """Returns the actions of the baseline, which turns to the goal and drives there."""
     bearing = numpy.arctan2(seen[..., -1], seen[..., -2])
-    return numpy.stack([2.0 * numpy.maximum(numpy.cos(bearing), 0.0) - 1.0, numpy.clip(2.0 * bearing, -1.0, 1.0)], axis=-1)
+    forward = 2.0 * numpy.maximum(numpy.cos(bearing), 0.0) - 1.0
+    return numpy.stack([forward, numpy.clip(2.0 * bearing, -1.0, 1.0)], axis=-1)
 
 
 class Drive:
     """The policy as a controller, which visits goals in turn. Settings: policy, a file; goals, x and y [m] of each."""
     rate = 10  # [Hz]
+    stops_on_bumper = False
 
     def __init__(self, robot, settings):
         self.limits = robot.max_forward, robot.max_turn
         self.range = robot.sensors[0].limit
         with numpy.load(settings.text("policy", "out/rooms/policy.npz")) as file:
             self.weights = dict(file)
-        self.goals = numpy.reshape(settings.numbers("goals", [3, 3, -3, 3, -3, -3, 3, -3]), (-1, 2))
+        self.goals = numpy.reshape(settings.numbers("goals", [3.3, 3.3, -3.3, -3.3, -3.3, 3.3, 3.3, -3.3]), (-1, 2))
         self.steps = 0
 
     def step(self, input):
         x, y = self.goals[0] - input.pose[:2]
         self.steps += 1
-        if numpy.hypot(x, y) < ARRIVED or self.steps > LIMIT:  # some goals may be in a crate
+        if numpy.hypot(x, y) < ARRIVED or self.steps > LIMIT:
             self.goals, self.steps = numpy.roll(self.goals, -1, axis=0), 0
             x, y = self.goals[0] - input.pose[:2]
         bearing = numpy.arctan2(y, x) - input.pose.yaw
@@ -113,7 +116,7 @@ def test(decide, rooms):
     """Drives one episode in each room. Returns how many ended at the goal, at a contact and by the limit of steps."""
     counts, open = numpy.zeros(3, int), numpy.ones(len(rooms.worlds), bool)
     while open.any():
-        _, *ends = rooms.step(decide(rooms.seen.values))
+        _, *ends = rooms.drive(decide(rooms.seen.values))
         counts += [(end & open).sum() for end in ends]
         open &= ~numpy.any(ends, axis=0)
     return counts
@@ -133,7 +136,7 @@ def import_torch():
         import torch
     except ImportError:
         raise SystemExit("Learning needs PyTorch: apt install python3-torch, and run /usr/bin/python3") from None
-    torch.set_num_threads(int(os.environ.get('NT','2')))
+    torch.set_num_threads(2)
     return torch
 
 
@@ -144,6 +147,7 @@ class Learner:
         torch.manual_seed(seed)
         self.torch, self.discount, self.trace, self.clip = torch, discount, trace, clip
         self.epochs, self.batches, self.rate = epochs, batches, rate
+        self.simulated = 0.0  # [s] spent in the simulation
         self.actor, self.critic = self._network(columns, 2, 0.01), self._network(columns, 1, 1.0)
         self.log_sigma = torch.nn.Parameter(torch.full((2,), -0.5))
         self.parameters = [*self.actor.parameters(), *self.critic.parameters(), self.log_sigma]
@@ -166,7 +170,7 @@ class Learner:
         return self.torch.distributions.Normal(self.actor(seen), self.log_sigma.exp())
 
     def collect(self, rooms, steps):
-        """Drives all rooms for some steps. Returns what was seen, done, expected and rewarded, and the episodes' ends."""
+        """Drives all rooms for some steps. Returns the columns of what happened, and how the episodes ended."""
         torch = self.torch
         made, ended_as = [], numpy.zeros(3, int)
         for _ in range(steps):
@@ -174,7 +178,7 @@ class Learner:
             density, value = self.densities(seen), self.critic(seen)[:, 0]
             action = density.sample()
             began = time.perf_counter()
-            reward, *ends = rooms.step(torch.tanh(action).numpy())
+            reward, *ends = rooms.drive(torch.tanh(action).numpy())
             self.simulated += time.perf_counter() - began
             late = numpy.flatnonzero(ends[2])
             if len(late):  # an episode that was cut off is worth what it could still have earned
@@ -224,48 +228,86 @@ class Learner:
         return ends
 
 
-def train(rooms, updates, steps, seed, say=print):
+def train(rooms, updates, steps, seed):
     """Returns the weights of the policy, and per update: agent steps, seconds, and shares of episodes that ended at the
-    goal, at a contact and by the limit of steps."""
+    goal, at a contact and by the limit of steps. Ctrl-C ends the training early."""
     learner, began, curve = Learner(import_torch(), rooms.seen.values.shape[1], seed), time.perf_counter(), []
-    learner.simulated = 0.0
     for update in range(updates):
-        ends = learner.update(rooms, steps, 1.0 - update / updates)
+        try:
+            ends = learner.update(rooms, steps, 1.0 - update / updates)
+        except KeyboardInterrupt:
+            if not curve:
+                raise
+            break
         seconds, agent_steps = time.perf_counter() - began, (update + 1) * steps * len(rooms.worlds)
         curve.append((agent_steps, seconds, *(ends / max(1, ends.sum()))))
-        say(f"update {update + 1:3}: {agent_steps / 1e6:5.2f} million steps, {seconds:4.0f} s, {ends.sum():5} episodes, "
-            f"{100 * curve[-1][2]:5.1f} % at the goal, {100 * curve[-1][3]:5.1f} % at a contact", flush=True)
-    say(f"{agent_steps / learner.simulated:.0f} agent steps per second of simulation, "
-        f"{agent_steps / (seconds - learner.simulated):.0f} of learning, {agent_steps / seconds:.0f} of both")
+        print(f"update {update + 1:3}: {agent_steps / 1e6:5.2f} million steps, {seconds:4.0f} s, {ends.sum():5} episodes: "
+              f"{100 * curve[-1][2]:5.1f} % at the goal, {100 * curve[-1][3]:5.1f} % at a contact", flush=True)
+    print(f"trained in {seconds:.0f} s ({time.process_time():.0f} s of all cores): agent steps per second "
+          f"{agent_steps / learner.simulated:.0f} of simulation, "
+          f"{agent_steps / (seconds - learner.simulated):.0f} of the rest, {agent_steps / seconds:.0f} of both")
     return learner.weights(), numpy.array(curve)
 
 
-def main():
+def draw(curve, file):
+    """Draws the learning curve as an SVG file: shares of the episodes of each update, over agent steps."""
+    width, height, margin, most = 720, 360, 56, curve[-1, 0] / 1e6
+    x, y = margin + (width - 2 * margin) * curve[:, 0] / 1e6 / most, height - margin - (height - 2 * margin) * curve[:, 2:]
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">',
+             f'<rect width="{width}" height="{height}" fill="white"/>',
+             f'<text x="{margin}" y="28" font-size="16">Ends of the episodes of each update, {curve[-1, 1]:.0f} s in all</text>',
+             f'<text x="{width / 2}" y="{height - 12}" text-anchor="middle">million steps of all robots</text>']
+    for k in range(5):
+        level, at = height - margin - (height - 2 * margin) * k / 4, margin + (width - 2 * margin) * k / 4
+        parts.append(f'<path d="M{margin} {level}H{width - margin}" stroke="#ddd"/>'
+                     f'<text x="{margin - 8}" y="{level + 4}" text-anchor="end">{25 * k} %</text>'
+                     f'<text x="{at}" y="{height - margin + 20}" text-anchor="middle">{most * k / 4:.3g}</text>')
+    for k, (name, color) in enumerate((("goal", "#0072b2"), ("contact", "#d55e00"), ("20 s", "#009e73"))):
+        points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y[:, k]))
+        parts.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="2"/>'
+                     f'<text x="{width - margin + 6}" y="{y[-1, k] + 4 + 12 * (k == 2):.1f}" fill="{color}">{name}</text>')
+    with open(file, "w") as out:
+        out.write("\n".join(parts) + "\n</svg>\n")
+
+
+def report(name, decide, copies):
+    ends = test(decide, Rooms(copies, UNSEEN))
+    low, high = wilson(ends[0], copies)
+    print(f"{name}: at the goal in {ends[0]} of {copies} unseen rooms (with 95 % confidence {100 * low:.1f} to "
+          f"{100 * high:.1f} %), {ends[1]} contacts, {ends[2]} late")
+
+
+def options():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--train", action="store_true", help="only train")
     parser.add_argument("--test", action="store_true", help="only test the policy of --out")
     parser.add_argument("--out", default="out/rooms", help="folder of the policy and its learning curve")
     parser.add_argument("--worlds", type=int, default=1000)
-    parser.add_argument("--updates", type=int, default=100)
+    parser.add_argument("--updates", type=int, default=250)
     parser.add_argument("--steps", type=int, default=32, help="of each world per update")
+    parser.add_argument("--rooms", type=int, default=1000, help="of the test")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
+    if min(given.worlds, given.updates, given.steps, given.rooms) < 1:
+        parser.error("expected at least one world, update, step and room")
+    return given
+
+
+def main():
+    given = options()
     os.makedirs(given.out, exist_ok=True)
     policy = os.path.join(given.out, "policy.npz")
     if given.train or not given.test:
         weights, curve = train(Rooms(given.worlds, given.seed), given.updates, given.steps, given.seed)
-        print(f"CPU {time.process_time():.0f} s")
         numpy.savez(policy, **weights)
         numpy.savetxt(os.path.join(given.out, "learning_curve.csv"), curve, "%.6g", ",",
                       header="agent_steps,seconds,at_goal,at_contact,late", comments="")
+        draw(curve, os.path.join(given.out, "learning_curve.svg"))
     if given.test or not given.train:
         with numpy.load(policy) as file:
             weights = dict(file)
-        for name, decide in (("policy", lambda seen: act(weights, seen)), ("straight to the goal", straight)):
-            ends = test(decide, Rooms(1000, UNSEEN))
-            low, high = wilson(ends[0], ends.sum())
-            print(f"{name}: {ends[0]} of {ends.sum()} unseen rooms to the goal ({100 * low:.1f} to {100 * high:.1f} %), "
-                  f"{ends[1]} contacts, {ends[2]} late")
+        report("policy", lambda seen: act(weights, seen), given.rooms)
+        report("straight to the goal", straight, given.rooms)
 
 
 if __name__ == "__main__":
