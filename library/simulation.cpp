@@ -358,6 +358,7 @@ void Simulation::State::remove(std::size_t row) {
 void Simulation::State::set_shape(std::size_t row, const ShapeChange& given) {
   if (row >= poses.size())
     throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
+  if (world.copies > 1) throw base::InputError("shapes cannot change in several worlds; expected one world");
   world::ShapeChange change;
   if (!given.shape.empty()) change.shape = given.shape;
   if (!given.color.empty()) change.color = world::color_named(given.color);

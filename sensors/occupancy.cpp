@@ -37,7 +37,8 @@ class Occupancies : public SensorBackend {
     source_maps_.take_over(last.source_maps_, rows);
   }
   void restart(std::uint32_t row, std::int64_t /*now*/) override {
-    throw base::InputError(fmt::format("only a reset of all worlds clears the map '{}'", maps_[row].row.name));
+    throw base::InputError(
+        fmt::format("the map '{}' cannot begin anew with its world; expected a new simulation", maps_[row].row.name));
   }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }  // it has its own batch

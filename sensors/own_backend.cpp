@@ -91,7 +91,8 @@ class OwnSensors final : public SensorBackend {
       sensors_[i].sensor.swap(dynamic_cast<OwnSensors&>(before).sensors_[i].sensor);
   }
   void restart(std::uint32_t row, std::int64_t /*now*/) override {
-    throw base::InputError(names_[row] + " may have a state that only a reset of all worlds discards");
+    throw base::InputError(names_[row] +
+                           " may have a state, and cannot begin anew with its world; expected a new simulation");
   }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return kernel_ != nullptr; }

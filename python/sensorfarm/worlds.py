@@ -107,6 +107,8 @@ class Worlds:
         if seeds is None:
             seeds = self.seeds[chosen] + len(self) if seed is None else seed + chosen
         seeds = numpy.asarray(seeds)
+        if seeds.size and (seeds.dtype.kind not in "iu" or seeds.min() < 0):
+            raise ValueError(f"seeds are {seeds}; expected whole numbers from 0 on")
         if seeds.shape != chosen.shape:
             raise ValueError(f"seeds have the shape {seeds.shape}; expected one for each of {len(chosen)} worlds")
         starts = None if starts is None else numpy.asarray(starts, dtype=float).reshape(len(chosen), -1, 4)

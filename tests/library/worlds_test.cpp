@@ -84,6 +84,7 @@ TEST(Worlds, Refusals) {
   EXPECT_NE(refused(one, std::span(seeds, 1), wrong), "");
   EXPECT_EQ(worlds.hash(1), before);
   EXPECT_NE(sf::refusal_of<Error>([&] { static_cast<void>(worlds.hash(2)); }), "");
+  sf::expect_in("expected one world", sf::refusal_of<Error>([&] { worlds.set_shape(0, {.color = "blue"}); }));
   for (const Options& options :
        {Options{.copies = 2, .record = "out/never"}, Options{.copies = 2, .positioning = "rate = 10"},
         Options{.copies = 2, .faults = "[[fault]]\nrobot = '*'\nsensor = 'laser'\nkind = 'stuck'"}})
@@ -96,7 +97,7 @@ TEST(Worlds, MapsRefuseToBeginAnewWithTheirName) {
   Simulation worlds = Simulation::from_text(text, {.copies = 2}, "map.world");
   const std::uint32_t one[] = {1};
   const std::uint64_t seed[] = {1};
-  sf::expect_in("clears the map", sf::refusal_of<Error>([&] { worlds.reset(one, seed); }));
+  sf::expect_in("the map 'map' cannot begin anew", sf::refusal_of<Error>([&] { worlds.reset(one, seed); }));
 }
 
 TEST(Observations, RefuseOptionsOutOfRange) {

@@ -119,6 +119,9 @@ class Resets(unittest.TestCase):
                                    (([0], []), "0 seeds for 1 worlds")):
             with self.assertRaisesRegex(sensorfarm.Error, message):
                 worlds.parts[0].restart(*arguments)
+        for wrong in (dict(seed=-5), dict(seeds=[0.5, 1, 2])):
+            with self.assertRaisesRegex(ValueError, "whole numbers from 0 on"):
+                worlds.reset(**wrong)
         with self.assertRaisesRegex(ValueError, r"shape \(3, 4\)"):
             worlds.step(numpy.zeros((3, 4)))
         with self.assertRaisesRegex(sensorfarm.Error, "cannot be recorded"):
