@@ -7,8 +7,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "sensors/occupancy.h"
-#include "sensors/settings.h"
 
 namespace sf::farm {
 
@@ -42,19 +40,6 @@ void Derivation::require_own_inputs(const world::World& world) const {
             fmt::format("{} has inputs of other robots, which several processes cannot share: run it "
                         "in one process",
                         sensors::derived_name(world, node)));
-  const auto maps = sensor_set_.settings_of<sensors::Occupancy>(sensors::kOccupancy);
-  sensors::for_each_of(
-      world, sensors::occupancy_type.word.type,
-      [&](const world::Sensor& map, std::uint32_t mover, std::uint32_t number) {
-        const auto of = std::ranges::find_if(
-            maps, [&](const sensors::Occupancy& each) { return each.row.mover == mover && each.row.sensor == number; });
-        if (std::ranges::any_of(of->sources, [&](const sensors::RangeSensor& source) { return source.mover != mover; }))
-          throw base::InputError(
-              map.file, map.line,
-              fmt::format("map '{}' of '{}' has sources of other robots, which several processes cannot "
-                          "share: run it in one process",
-                          map.name, world.movers[mover].name));
-      });
 }
 
 void Derivation::update_demand(std::span<const base::SensorTypes> subscribed, std::span<SensorPipeline> measured) {

@@ -23,6 +23,7 @@
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
 #include "sensors/laser_noise.h"
+#include "sensors/occupancy.h"
 
 namespace sf::farm {
 
@@ -112,7 +113,10 @@ struct Farm::State {
     batch = std::make_unique<gpu::Batch>(device);
     pose_changes = std::make_unique<PoseChanges>(world);
     if (options.shared) sharing.emplace(sensor_set, w.movers.size());
-    if (options.shared) derivation->require_own_inputs(world);
+    if (options.shared) {
+      derivation->require_own_inputs(world);
+      sensors::require_own_sources(world, sensor_set.settings_of<sensors::Occupancy>(sensors::kOccupancy));
+    }
     if (options.processor_budget <= 0.0) return;
     SF_CHECK(!options.shared, "a budget for a shared fleet");
     if (!options.processor_clock) options.processor_clock = process_seconds;

@@ -83,6 +83,12 @@ inline glm::dvec2 middle(const GridGeometry& geometry, CellAt at) {
           geometry.top - (static_cast<double>(at.row) + 0.5) * geometry.cell};
 }
 
+/// Returns the word of a cell, and the cell's place among its 16. Precondition: `contains(geometry, at)`.
+inline std::size_t word_of(const GridGeometry& geometry, CellAt at) {
+  return static_cast<std::size_t>(at.row / 4) * geometry.word_columns + static_cast<std::size_t>(at.column / 4);
+}
+inline unsigned place_of(CellAt at) { return static_cast<unsigned>(4 * (at.row % 4) + at.column % 4); }
+
 /// An occupancy grid.
 struct OccupancyGrid {
   GridGeometry geometry;
@@ -90,10 +96,8 @@ struct OccupancyGrid {
 
   explicit OccupancyGrid(const GridGeometry& p = {}) : geometry(p), words(std::size_t{p.word_columns} * p.word_rows) {}
 
-  std::size_t word_of(CellAt at) const {
-    return static_cast<std::size_t>(at.row / 4) * geometry.word_columns + static_cast<std::size_t>(at.column / 4);
-  }
-  static unsigned shift_of(CellAt at) { return static_cast<unsigned>(2 * (4 * (at.row % 4) + at.column % 4)); }
+  std::size_t word_of(CellAt at) const { return maps::word_of(geometry, at); }
+  static unsigned shift_of(CellAt at) { return 2 * place_of(at); }
 
   /// Precondition: `contains(geometry, at)`.
   Cell at(CellAt at) const { return static_cast<Cell>((words[word_of(at)] >> shift_of(at)) & 3u); }

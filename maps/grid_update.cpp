@@ -37,7 +37,7 @@ std::uint32_t weigh(const LogOddsUpdate& rule, const std::uint8_t* covered, std:
     const std::int32_t more = covered[i] == SF_CELL_OCCUPIED ? rule.hit : covered[i] == SF_CELL_FREE ? -rule.miss : 0;
     const std::int32_t sum = std::clamp(odds[i] + more, -rule.limit, rule.limit);
     odds[i] = static_cast<std::int16_t>(sum);
-    states[i] = static_cast<std::uint8_t>(sum > 0 ? SF_CELL_OCCUPIED : sum < 0 ? SF_CELL_FREE : SF_CELL_UNEXPLORED);
+    states[i] = state_of(sum);
   }
   return word_of(states);
 }

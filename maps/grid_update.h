@@ -35,6 +35,11 @@ struct LogOddsUpdate {
   bool operator==(const LogOddsUpdate&) const = default;
 };
 
+/// Returns the state of a cell by its log odds.
+inline std::uint8_t state_of(std::int32_t odds) {
+  return odds > 0 ? SF_CELL_OCCUPIED : odds < 0 ? SF_CELL_FREE : SF_CELL_UNEXPLORED;
+}
+
 /// A map of log odds per cell: word by word as in OccupancyGrid, and in bit order within a word. 0 means unknown.
 struct LogOddsGrid {
   GridGeometry geometry;

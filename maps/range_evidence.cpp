@@ -14,7 +14,7 @@ constexpr double kSigmas = 4.0;        // beyond the range
 constexpr double kFarthestCell = 1e9;  // [cells]
 
 std::uint32_t cell_index(const GridGeometry& geometry, std::int64_t column, std::int64_t row) {
-  return static_cast<std::uint32_t>(16 * (row / 4 * geometry.word_columns + column / 4) + 4 * (row % 4) + column % 4);
+  return static_cast<std::uint32_t>(16 * word_of(geometry, {column, row})) + place_of({column, row});
 }
 
 /// Probability that a normal deviate is below `x`.
@@ -142,7 +142,7 @@ void RangeEvidence::add_to(LogOddsGrid& grid) {
   for (const std::uint32_t cell : changed_) {
     const std::int32_t sum = std::clamp(grid.cells[cell] + changes_[cell], -grid.rule.limit, grid.rule.limit);
     grid.cells[cell] = static_cast<std::int16_t>(sum);
-    const std::uint32_t state = sum > 0 ? SF_CELL_OCCUPIED : sum < 0 ? SF_CELL_FREE : SF_CELL_UNEXPLORED;
+    const std::uint32_t state = state_of(sum);
     std::uint32_t& word = grid.words[cell / 16];
     word = (word & ~(3u << 2 * (cell % 16))) | state << 2 * (cell % 16);
     changes_[cell] = 0;

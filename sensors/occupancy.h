@@ -38,6 +38,10 @@ struct Occupancy {
 /// Returns all maps, by mover and in file order. @throws base::InputError with file and line
 std::vector<Occupancy> occupancies_of(const world::World& world);
 
+/// @param maps all of the world, by mover and in file order
+/// @throws base::InputError if a map has sources of other robots, whose readings other processes may have
+void require_own_sources(const world::World& world, std::span<const Occupancy> maps);
+
 extern const SensorType occupancy_type;
 
 }  // namespace sf::sensors

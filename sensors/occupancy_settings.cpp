@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/suggest.h"
+#include "base/error.h"
 #include "sensors/derived/wiring.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
 #include "sensors/occupancy.h"
 #include "sensors/settings.h"
 #include "sensors/sonar.h"
-#include "world/copies.h"
 
 namespace sf::sensors {
 
@@ -89,22 +88,6 @@ struct SourceGroup {
   refuse(sensor, "sources", fmt::format("source '{}': {}", text, why));
 }
 
-std::vector<std::uint32_t> source_movers(const world::Sensor& sensor, const world::World& world, std::uint32_t own,
-                                         const InputText& parts, std::string_view text) {
-  if (parts.robot.empty()) return {own};
-  std::vector<std::uint32_t> found;
-  std::vector<std::string_view> names;
-  const auto [first, end] = world::CopyIndex(world).rows_with(own, static_cast<std::uint32_t>(world.movers.size()));
-  for (std::uint32_t m = first; m < end; ++m) {
-    if (parts.robot == "*" || world.movers[m].name == parts.robot) found.push_back(m);
-    names.push_back(world.movers[m].name);
-  }
-  if (found.empty())
-    refuse_source(sensor, text,
-                  fmt::format("no robot is called '{}'{}", parts.robot, base::suggest(parts.robot, names)));
-  return found;
-}
-
 void add_source(const world::Sensor& sensor, const world::World& world, std::uint32_t own, std::string_view text,
                 std::span<const SourceGroup> groups, Occupancy& map) {
   const InputText parts = read_input(text);
@@ -112,7 +95,10 @@ void add_source(const world::Sensor& sensor, const world::World& world, std::uin
   if (group == groups.end() || !parts.port.empty() || !parts.number)
     refuse_source(sensor, text, "expected \"[robot/]laser[:number]\", or a sonar or infrared");
   const std::size_t before = map.sources.size();
-  for (const std::uint32_t m : source_movers(sensor, world, own, parts, text)) {
+  std::string why;
+  const std::vector<std::uint32_t> movers = movers_named(world, own, parts.robot, why);
+  if (movers.empty()) refuse_source(sensor, text, why);
+  for (const std::uint32_t m : movers) {
     const auto rows = std::ranges::equal_range(group->rows, m, {}, &SensorSpec::mover);
     if (*parts.number >= rows.size()) continue;
     const SensorSpec& row = rows[*parts.number];
@@ -211,6 +197,18 @@ std::vector<Occupancy> occupancies_of(const world::World& world) {
     all.push_back(occupancy_of(sensor, world, m, number, groups));
   });
   return all;
+}
+
+void require_own_sources(const world::World& world, std::span<const Occupancy> maps) {
+  auto map = maps.begin();
+  for_each_of(world, occupancy_type.word.type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t) {
+    const Occupancy& of = *map++;
+    if (std::ranges::any_of(of.sources, [&](const RangeSensor& source) { return source.mover != mover; }))
+      throw base::InputError(sensor.file, sensor.line,
+                             fmt::format("map '{}' of '{}' has sources of other robots, which several processes cannot "
+                                         "share: run it in one process",
+                                         sensor.name, world.movers[mover].name));
+  });
 }
 
 }  // namespace sf::sensors

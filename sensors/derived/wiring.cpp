@@ -82,17 +82,9 @@ const WiredGroup& Wiring::group_of(const DerivedNode& node, std::string_view typ
 }
 
 std::vector<std::uint32_t> Wiring::movers_of(const DerivedNode& node, const InputText& parts) const {
-  if (parts.robot.empty()) return {node.spec.mover};
-  std::vector<std::uint32_t> found;
-  std::vector<std::string_view> names;
-  const auto [first, end] =
-      world::CopyIndex(world_).rows_with(node.spec.mover, static_cast<std::uint32_t>(world_.movers.size()));
-  for (std::uint32_t m = first; m < end; ++m) {
-    if (parts.robot == "*" || world_.movers[m].name == parts.robot) found.push_back(m);
-    names.push_back(world_.movers[m].name);
-  }
-  if (found.empty())
-    refuse_input(node, fmt::format("no robot is called '{}'{}", parts.robot, base::suggest(parts.robot, names)));
+  std::string why;
+  const std::vector<std::uint32_t> found = movers_named(world_, node.spec.mover, parts.robot, why);
+  if (found.empty()) refuse_input(node, why);
   return found;
 }
 
@@ -203,6 +195,20 @@ InputText read_input(std::string_view text) {
 
 bool is_called(const SensorType& type, std::string_view word) {
   return word == type.name || word == type.word.type || word == type.other_word.type;
+}
+
+std::vector<std::uint32_t> movers_named(const world::World& world, std::uint32_t own, std::string_view robot,
+                                        std::string& why) {
+  if (robot.empty()) return {own};
+  std::vector<std::uint32_t> found;
+  std::vector<std::string_view> names;
+  const auto [first, end] = world::CopyIndex(world).rows_with(own, static_cast<std::uint32_t>(world.movers.size()));
+  for (std::uint32_t m = first; m < end; ++m) {
+    if (robot == "*" || world.movers[m].name == robot) found.push_back(m);
+    names.push_back(world.movers[m].name);
+  }
+  if (found.empty()) why = fmt::format("no robot is called '{}'{}", robot, base::suggest(robot, names));
+  return found;
 }
 
 std::vector<DerivedNode> wire(const world::World& world, std::span<const WiredGroup> groups) {

@@ -29,6 +29,11 @@ InputText read_input(std::string_view text);
 /// Returns whether inputs may call the type so: by its name or a word of world files.
 bool is_called(const SensorType& type, std::string_view word);
 
+/// Returns the rows of the robots that an input names, in the copy of the world of `own`: "" is `own`, "*" all.
+/// @param why out: if there is none, the reason with a suggestion
+std::vector<std::uint32_t> movers_named(const world::World& world, std::uint32_t own, std::string_view robot,
+                                        std::string& why);
+
 /// A derived sensor of a world.
 struct DerivedNode {
   const SensorType* type = nullptr;
