@@ -84,18 +84,19 @@ void ReadingTable::copy(std::span<const base::ReadingBlock> readings) {
   view_.hits = hits_.empty() ? nullptr : hits_.data(), view_.hit_stride = view_.elements;
 }
 
-void ReadingTable::hold() {
-  if (view_.values == nullptr || view_.values == values_.data()) return;
-  const sensorfarm::Readings before = view_;
+/// Copies the values and hits of a table with the first of these rows.
+void ReadingTable::copy_rows(const sensorfarm::Readings& from) {
   copy({});
-  const std::size_t length = view_.elements * view_.columns;
-  for (std::size_t row = 0; row < view_.sensors; ++row) {
-    std::copy_n(before.values + row * before.stride, length,
-                values_.begin() + static_cast<std::ptrdiff_t>(row * length));
-    if (!hits_.empty())
-      std::copy_n(before.hits + row * before.hit_stride, view_.elements,
-                  hits_.begin() + static_cast<std::ptrdiff_t>(row * view_.elements));
+  const std::size_t length = from.elements * from.columns;
+  for (std::size_t row = 0; row < from.sensors && from.values != nullptr; ++row) {
+    std::copy_n(from.values + row * from.stride, length, values_.begin() + row * view_.stride);
+    if (from.hits != nullptr)
+      std::copy_n(from.hits + row * from.hit_stride, from.elements, hits_.begin() + row * view_.hit_stride);
   }
+}
+
+void ReadingTable::hold() {
+  if (view_.values != nullptr && view_.values != values_.data()) copy_rows(sensorfarm::Readings(view_));
 }
 
 void ReadingTable::note(const base::ReadingBlock& reading) {
@@ -126,13 +127,9 @@ void ReadingTable::go_on(const ReadingTable& before) {
   take(times_, before.times_), take(bounds_, before.bounds_), take(fresh_, before.fresh_);
   take(bound_without_noise_, before.bound_without_noise_), take(sigma_, before.sigma_);
   take(flagged_, before.flagged_);
-  copy({});
-  for (std::size_t row = 0; row < old.sensors && old.values != nullptr; ++row) {
-    std::copy_n(old.values + row * old.stride, old.elements * old.columns, values_.begin() + row * view_.stride);
+  copy_rows(old);
+  for (std::size_t row = 0; row < old.sensors && old.values != nullptr; ++row)
     std::copy_n(before.flags_.begin() + row * old.elements, old.elements, flags_.begin() + row * view_.elements);
-    if (old.hits != nullptr)
-      std::copy_n(old.hits + row * old.hit_stride, old.elements, hits_.begin() + row * view_.hit_stride);
-  }
 }
 
 }  // namespace sf::library

@@ -35,6 +35,7 @@ class ReadingTable {
   bool is_one_table(std::span<const base::ReadingBlock> readings) const;
   void point_at(std::span<const base::ReadingBlock> readings);
   void copy(std::span<const base::ReadingBlock> readings);
+  void copy_rows(const sensorfarm::Readings& from);
   void note(const base::ReadingBlock& reading);
 
   const sensors::SensorSet::Group& group_;

@@ -520,11 +520,16 @@ bool Simulation::index_by_mover(std::span<const base::ReadingBlock> readings) {
   return in_order;
 }
 
+std::span<const world::Signal> Simulation::signals_at(std::int64_t time, std::vector<world::Signal>& signals) const {
+  signals.clear();
+  for (const world::Light& light : world_.lights)
+    signals.push_back(world::signal_at(light, 1e-9 * static_cast<double>(time)));
+  return signals;
+}
+
 void Simulation::decide(std::int64_t time) {
-  for (std::size_t i = 0; i < signals_.size(); ++i) {
-    signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
-    light_states_[i] = world::status_of(signals_[i]);
-  }
+  signals_at(time, signals_);
+  std::ranges::transform(signals_, light_states_.begin(), world::status_of);
   if (lanes_) lanes_->update(time, recorded_reports());
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_, farm_.episodes().copies());
   if (v2v_) {
@@ -594,22 +599,13 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t farm_time, unsigne
   base::Report state = fleet_.reports()[mover];
   state.time -= start;
   commands_[mover] = robot.controller->step({time, state, readings, contact, time >= start_at_, others,
-                                             start == 0 ? signals_ : own_signals(time, thread),
+                                             start == 0 ? signals_ : signals_at(time, own_signals_[thread]),
                                              lanes_ ? lanes_->network() : nullptr, poses});
   next_intents_[mover] = robot.controller->intent();
   if (const control::OwnLocalization* own = control::localization_of(*robot.controller))
     next_estimates_[mover] = {own->state(), own->quality()};
   if (robot.sharing != nullptr) next_maps_[mover] = robot.sharing->shared_map();
   robot.stepped = true;
-}
-
-/// Returns the signals of a copy of the world by its own clock.
-std::span<const world::Signal> Simulation::own_signals(std::int64_t time, unsigned thread) {
-  std::vector<world::Signal>& signals = own_signals_[thread];
-  signals.clear();
-  for (const world::Light& light : world_.lights)
-    signals.push_back(world::signal_at(light, 1e-9 * static_cast<double>(time)));
-  return signals;
 }
 
 /// [ns] Returns the delivery time of a reading, possibly between two ticks.

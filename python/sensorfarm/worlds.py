@@ -90,12 +90,14 @@ class Worlds:
 
     def _all_rows(self, part, rows, other):
         """Returns (worlds, rows of the part, n) with `rows` first, and then `other`."""
+        if rows.shape[1] == len(part.robots):
+            return rows
         full = numpy.full((len(rows), len(part.robots), rows.shape[2]), other)
         full[:, :rows.shape[1]] = rows
         return full
 
     def reset(self, seed=None, mask=None, seeds=None, starts=None):
-        """Starts worlds anew; the others are unchanged, and no time passes for them.
+        """Restarts worlds; the others are unchanged, and no time passes for them.
 
         mask: bool (worlds,); None: all. seed: world k gets seed + k; seeds: one per world of the mask instead. None:
         seeds as far from the last ones as there are worlds, so that none is used twice. starts: (worlds of the mask,
