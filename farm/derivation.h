@@ -23,9 +23,9 @@ class Derivation {
   /// Continues the sensors of the farm before a new mover. `before` must not be used afterwards.
   void go_on(Derivation& before, std::int64_t last_tick, std::int64_t last_call);
 
-  /// Starts the sensors of movers [first, end) anew, at the start of their episode.
+  /// Resets the sensors of movers [first, end) at the start of their episode.
   void restart(std::uint32_t first, std::uint32_t end);
-  /// @throws base::InputError if a sensor or a map has inputs of other robots, whose readings other processes may have
+  /// @throws base::InputError if a sensor has inputs of other robots, whose readings other processes may have
   void require_own_inputs(const world::World& world) const;
   /// Call this when subscriptions have changed. @param measured pipelines of the other types: gain the sensors that are
   /// needed as inputs. Empty: all inputs are subscribed

@@ -139,11 +139,11 @@ class Farm {
   /// @return blocks that are valid until the next call of `tick`, `sample`, `sample_between` or `sense`
   std::span<const base::ReadingBlock> tick(std::int64_t now, std::span<const base::Report> reports);
 
-  /// Starts copies of the world anew, at the time of the last tick: their clocks are 0, their sensors and random
-  /// numbers are those of a world alone with the seed. Returns their readings of this first tick; those of the other
+  /// Restarts copies of the world at the time of the last tick: their clocks are 0, their sensors and random numbers
+  /// are those of a world alone with the seed. Returns their readings of this first tick; those of the other
   /// copies are unchanged. Not after a sample, and not with faults, a budget or a shared fleet.
   /// @param reports of all movers of these copies, at that time
-  /// @throws base::InputError if a sensor of such a copy cannot start anew
+  /// @throws base::InputError if a sensor of such a copy cannot restart
   struct Restart {
     std::uint32_t copy = 0;
     std::uint64_t seed = 0;

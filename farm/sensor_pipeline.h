@@ -55,7 +55,7 @@ struct SensorPipeline {
   /// @param before its backend must not be used afterwards, but its readings may; null: there was none
   /// @param last_tick, last_call [ns] of the farm's last tick, and of that or a later sample; -1: there was none
   void go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call);
-  /// Starts the sensors of a copy of the world anew, at the start of its episode. @param first, end its movers
+  /// Restarts the due times of a copy of the world at the start of its episode. @param first, end its movers
   void restart(std::uint32_t first, std::uint32_t end);
   bool derived() const { return group->type->derived_from != 0; }
   bool computed() const { return backend == nullptr; }

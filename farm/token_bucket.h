@@ -19,7 +19,7 @@ class TokenBucket {
   bool has(double amount) const { return level_ >= amount; }
   /// Returns whether it can ever have that amount.
   bool may_have(double amount) const { return limit_ >= amount; }
-  /// Spends an amount of which the bucket need not have all: what it lacks is forgotten.
+  /// Spends an amount. If the bucket has less, it is empty afterwards, and the rest is forgotten.
   void spend(double amount) { level_ = std::clamp(level_ - amount, 0.0, limit_); }
   static constexpr double kMostCharged = 50.0;  ///< buckets
   /// Spends an amount that is known only now: what the bucket lacks is owed; beyond `most` the level becomes negative,
@@ -32,7 +32,7 @@ class TokenBucket {
     level_ = std::max(level_ + more, -kMostCharged * limit_);
   }
   double limit() const { return limit_; }
-  /// Pays what is owed as far as the level suffices.
+  /// Pays the debt from the level, as far as it goes.
   void settle() {
     const double paid = std::clamp(level_, 0.0, owed_);
     owed_ -= paid;

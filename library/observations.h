@@ -12,7 +12,7 @@
 
 namespace sf::library {
 
-/// What the rows of a simulation have in a step.
+/// The data of one step from which observations are computed.
 struct ObservedStep {
   sensorfarm::Readings readings;  ///< of the observed type
   std::span<const sensorfarm::Pose> poses;

@@ -366,7 +366,7 @@ void Simulation::State::set_shape(std::size_t row, const ShapeChange& given) {
   simulation->set_shape(world, static_cast<std::uint32_t>(row), change);
 }
 
-/// Writes the observations of a step, or of the worlds that started anew.
+/// Writes the observations of a step, or of the worlds that restarted.
 void Simulation::State::observe(std::span<const std::uint32_t> restarted) {
   std::erase_if(observers, [](const auto& observer) { return observer.expired(); });
   for (const auto& observer : observers) {

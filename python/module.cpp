@@ -256,7 +256,7 @@ void set_shape(PySimulation& s, std::size_t row, Text shape, Text color,
   in_farm(s, [&] { s.farm.set_shape(row, {shape, color, size}); });
 }
 
-/// Starts worlds anew. @param starts (worlds, robots, 4), or None
+/// Restarts worlds. @param starts (worlds, robots, 4), or None
 void restart(PySimulation& s, const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds,
              const py::object& starts) {
   if (starts.is_none()) return in_farm(s, [&] { s.farm.reset(worlds, seeds); });
@@ -304,7 +304,7 @@ void add_observations(py::module_& module) {
       .def_property_readonly(
           "ages", [](const O& o) { return seen(o, o.ages(), 0, false); }, "(agents,): steps since the world's start.")
       .def(
-          "update", [](O& o) { in_farm([&] { o.update(); }); }, "Writes values anew, for goals that have changed.")
+          "update", [](O& o) { in_farm([&] { o.update(); }); }, "Recomputes the values after goals have changed.")
       .def("__len__", [](const O& o) { return o.agents(); });
 }
 
@@ -411,7 +411,7 @@ void add_simulation(py::module_& module) {
           },
           py::arg("seed") = py::none())
       .def("restart", &restart, py::arg("worlds"), py::arg("seeds"), py::arg("starts") = py::none(),
-           "Starts some of several worlds anew. seeds: one per world; starts: (worlds, robots, 4) poses; None, and "
+           "Restarts some of several worlds. seeds: one per world; starts: (worlds, robots, 4) poses; None, and "
            "where x "
            "is NaN: those of the seeds.")
       .def(

@@ -83,7 +83,7 @@ class Fleet {
   /// Adds the world's new last mover: at rest at its load pose, at the time of the others.
   void add_mover();
 
-  /// Starts a mover anew: at rest at its load pose, which may have changed, at the time of the others.
+  /// Restarts a mover: at rest at its load pose, which may have changed, at the time of the others.
   void restart(std::uint32_t row);
 
   /// Call this after the outline of a mover has changed in the world (world::change_shape).

@@ -94,10 +94,10 @@ class Simulation {
   /// Completes the last step's exchange with other ranks, which otherwise continues until the next step.
   /// @throws cluster::Failure on all ranks if a controller failed on one
   void settle();
-  /// Starts copies of the world anew (farm::Farm::restart), each with its seed, between two steps: movers at rest at
+  /// Restarts copies of the world (farm::Farm::restart), each with its seed, between two steps: movers at rest at
   /// their `Mover::X_WM`, which the caller may have changed, with new controllers. Returns this first tick of theirs,
   /// with the readings of these copies only. Nothing happens in the others. Spans are valid until the next call.
-  /// @throws base::InputError as the constructor, and if a sensor cannot start anew
+  /// @throws base::InputError as the constructor, and if a sensor cannot restart
   base::TickRecord restart(std::span<const farm::Farm::Restart> restarts);
   /// Returns how this process shares the fleet with others, and the results of their exchange.
   FleetShare& share() { return *share_; }
@@ -223,7 +223,7 @@ class Simulation {
   void decide(std::int64_t time);
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
   void try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread);
-  std::span<const world::Signal> own_signals(std::int64_t time, unsigned thread);
+  std::span<const world::Signal> signals_at(std::int64_t time, std::vector<world::Signal>& signals) const;
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void begin();

@@ -42,7 +42,7 @@ class SENSORFARM_API Observations {
   std::span<const double> progress() const;     ///< [m] per agent: how much nearer its goal came in the last step; 0
                                                 ///< after a reset and after a change of the goal
   std::span<const std::uint32_t> ages() const;  ///< per agent: steps since the start of its world
-  /// Writes the observations anew, for goals that have changed since the last step or reset.
+  /// Recomputes the observations after goals have changed.
   void update();
 
   struct State;

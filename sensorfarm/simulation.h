@@ -165,12 +165,12 @@ class SENSORFARM_API Simulation {
   /// world k gets that seed + k.
   void reset();
   void reset(std::uint64_t seed);
-  /// Starts some of several worlds anew, at time 0 of their own clocks; the others are unchanged, and no time passes
+  /// Restarts some of several worlds, at time 0 of their own clocks; the others are unchanged, and no time passes
   /// for them. Readings of the new start are available at once.
   /// @param worlds numbers below `copies`, each once  @param seeds one per world, as Options::seed of that world alone
   /// @param starts poses of all rows of these worlds in turn; empty, or with x NaN: that of a world alone with that
   /// seed
-  /// @throws Error, with nothing changed, for other arguments, and if a world has a sensor that cannot start anew
+  /// @throws Error, with nothing changed, for other arguments, and if a world has a sensor that cannot restart
   void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
              std::span<const Pose> starts = {});
   /// Returns observations that this simulation writes from now on, as long as the handle exists; a `reset` of the whole

@@ -130,7 +130,7 @@ class SensorBackend {
   /// Continues the sensors of `before`, its first `rows` rows, using the state from `write_state` and any state that
   /// exists only in this process. `before` must not be used afterwards.
   virtual void take_over(SensorBackend& before, std::uint32_t rows);
-  /// Starts a sensor anew: its mover begins an episode at `now` [ns], the time of the last tick, at its pose in
+  /// Restarts a sensor: its mover begins an episode at `now` [ns], the time of the last tick, at its pose in
   /// `SensorContext::states`. Sensors without a state need not do anything.
   /// @throws base::InputError if the sensor cannot
   virtual void restart(std::uint32_t /*row*/, std::int64_t /*now*/) {}

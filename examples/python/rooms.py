@@ -181,7 +181,7 @@ class Learner:
             reward, *ends = rooms.drive(torch.tanh(action).numpy())
             self.simulated += time.perf_counter() - began
             late = numpy.flatnonzero(ends[2])
-            if len(late):  # an episode that was cut off is worth what it could still have earned
+            if len(late):  # bootstrap truncated episodes from the critic
                 reward[late] += self.discount * self.critic(torch.tensor(rooms.seen.values[late]))[:, 0].numpy()
             ended = numpy.any(ends, axis=0)
             ended_as += [end.sum() for end in ends]

@@ -318,7 +318,7 @@ class Observations:
     def ages(self) -> NDArray[np.uint32]:
         """(agents,): steps since the start of the agent's world."""
     def update(self) -> None:
-        """Writes the observations anew, for goals that have changed."""
+        """Recomputes the observations after goals have changed."""
     def __len__(self) -> int:
         """Number of agents."""
 
@@ -357,7 +357,7 @@ class Simulation:
     def reset(self, seed: int | None = None) -> None:
         """Restarts at time 0. Arrays read before keep the old run. Of several worlds, world k gets seed + k."""
     def restart(self, worlds: Sequence[int], seeds: Sequence[int], starts: ArrayLike | None = None) -> None:
-        """Starts some of several worlds anew, at time 0 of their own clocks; the others are unchanged, and no time
+        """Restarts some of several worlds, at time 0 of their own clocks; the others are unchanged, and no time
         passes for them. Readings of the start are available at once. seeds: one per world. starts: (worlds, robots, 4)
         poses; None, and where x is NaN: those of a world alone with that seed. Raises Error, with nothing changed."""
     def observe(self, sensor: str = "laser", *, every: int = 1, speeds: bool = True, goal_reach: float = 0.0,
@@ -524,7 +524,7 @@ class Worlds:
         unchanged."""
     def reset(self, seed: int | None = None, mask: ArrayLike | None = None, seeds: ArrayLike | None = None,
               starts: ArrayLike | None = None) -> None:
-        """Starts worlds anew; the others are unchanged, and no time passes for them. mask: bool (worlds,); None: all.
+        """Restarts worlds; the others are unchanged, and no time passes for them. mask: bool (worlds,); None: all.
         seed: world k gets seed + k; seeds: one per world of the mask instead; None: seeds that were not used before.
         starts: (worlds of the mask, robots, 4) poses; None: those that the seed chooses."""
     def hash(self, world: int) -> int:

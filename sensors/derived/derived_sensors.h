@@ -60,7 +60,7 @@ class DerivedSensors {
                                                std::span<const base::Twist> commands = {},
                                                std::span<const base::ReadingBlock> received = {});
 
-  /// Starts the sensors of movers [first, end) anew, with the next call of `evaluate`, from their poses then.
+  /// Resets the sensors of movers [first, end); the next call of `evaluate` creates them, at the poses of that call.
   void restart(std::uint32_t first, std::uint32_t end);
   /// Returns "none of the 30 readings of gps 'a' of 'r0' was valid" for each sensor of which that is true, by level.
   std::vector<std::string> never_valid() const;
