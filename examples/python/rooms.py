@@ -290,6 +290,8 @@ def options():
     given = parser.parse_args()
     if min(given.worlds, given.updates, given.steps, given.rooms) < 1:
         parser.error("expected at least one world, update, step and room")
+    if given.seed < 0:
+        parser.error(f"argument --seed: {given.seed} is negative; expected a whole number from 0 on")
     return given
 
 
