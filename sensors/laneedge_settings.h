@@ -19,7 +19,7 @@ struct LaneEdge {
 };
 
 /// Keys of a lane edge sensor, in addition to the common ones.
-inline constexpr std::string_view kLaneEdgeKeys[] = {"fov", "samples", "range_max", "range_min", "noise", "resolution",
+inline constexpr std::string_view kLaneEdgeKeys[] = {"fov", "samples", "range_max", "range_min", "noise",
                                                      "perpendicular",
                                                      // settings of the thesis' lasers, for drawing
                                                      "laser_color"};
