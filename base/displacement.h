@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/pose.h"
 
 namespace sf::base {
@@ -12,7 +13,7 @@ namespace sf::base {
 /// @param max_speed [m/s], may be infinite  @param seconds >= 0, time between the poses
 inline bool is_drivable(const Pose& from, const Pose& to, double max_speed, double seconds) {
   constexpr double kAlways = 0.5;  // [m]
-  return !(std::hypot(to.x - from.x, to.y - from.y) > kAlways + 2.0 * max_speed * seconds);
+  return !(hypot(to.x - from.x, to.y - from.y) > kAlways + 2.0 * max_speed * seconds);
 }
 
 }  // namespace sf::base

@@ -6,6 +6,8 @@
 #include <glm/ext/vector_double3.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/elementary.h"
+
 #ifndef GLM_FORCE_CTOR_INIT
 #error "GLM_FORCE_CTOR_INIT must be defined: vectors of this project start at zero"
 #endif
@@ -27,12 +29,17 @@ struct Twist {
   double turn = 0.0;     ///< [rad/s] counter-clockwise
 };
 
+/// Returns the unit vector of a heading [rad].
+inline glm::dvec2 direction(double yaw) {
+  const auto [s, c] = sin_cos(yaw);
+  return {c, s};
+}
+
 /// Returns z of the cross product: twice the area of the triangle (0, p, q), positive when q is to the left of p.
 inline double cross(glm::dvec2 p, glm::dvec2 q) { return p.x * q.y - p.y * q.x; }
 
 inline glm::dvec2 rotate(double yaw, glm::dvec2 p) {
-  const double c = std::cos(yaw);
-  const double s = std::sin(yaw);
+  const auto [s, c] = sin_cos(yaw);
   return {c * p.x - s * p.y, s * p.x + c * p.y};
 }
 
@@ -57,7 +64,7 @@ inline glm::dvec2 transform(const Pose& X_AB, glm::dvec2 p_B) {
 inline double wrap_angle(double angle) {
   if (std::abs(angle) <= M_PI) return angle;
   // Beyond 1e6 rad, the rounding error of 2 pi times the number of turns is too large.
-  return std::abs(angle) < 1e6 ? std::remainder(angle, 2.0 * M_PI) : std::atan2(std::sin(angle), std::cos(angle));
+  return std::abs(angle) < 1e6 ? std::remainder(angle, 2.0 * M_PI) : atan2(sin_cos(angle).sin, sin_cos(angle).cos);
 }
 
 }  // namespace sf::base

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::base {
 
 namespace {
@@ -34,9 +36,9 @@ std::array<double, 2> random_uniform(const RandomKey& draw, std::uint32_t index)
 
 std::array<double, 2> random_normal(const RandomKey& draw, std::uint32_t index) {
   const auto u = random_uniform(draw, index);
-  const double radius = std::sqrt(-2.0 * std::log(u[0]));
-  const double angle = 2.0 * M_PI * u[1];
-  return {radius * std::cos(angle), radius * std::sin(angle)};
+  const double radius = std::sqrt(-2.0 * log(u[0]));
+  const SinCos angle = sin_cos(2.0 * M_PI * u[1]);
+  return {radius * angle.cos, radius * angle.sin};
 }
 
 }  // namespace sf::base

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/elementary.h"
 #include "netio/packets.h"
 #include "record/ros_messages.h"
 
@@ -45,10 +46,10 @@ bool is_simple(std::string_view pattern) {
 
 /// (x, y, z, w) of a rotation about +z, of any non-zero length.
 std::optional<double> yaw_of(double x, double y, double z, double w) {
-  const double length = std::hypot(std::hypot(x, y), std::hypot(z, w));
+  const double length = base::hypot(base::hypot(x, y), base::hypot(z, w));
   constexpr double kSmall = 1e-3;
-  if (!(std::abs(length - 1.0) <= kSmall) || std::hypot(x, y) > kSmall) return std::nullopt;
-  return 2.0 * std::atan2(z, w);
+  if (!(std::abs(length - 1.0) <= kSmall) || base::hypot(x, y) > kSmall) return std::nullopt;
+  return 2.0 * base::atan2(z, w);
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ void put_entity_state(record::CdrWriter& cdr, std::int64_t time, const base::Rep
   record::put_header(cdr, time, "world");
   const base::Pose& X_WM = state.X_WM;
   const double half = 0.5 * X_WM.yaw;
-  for (const double value : {X_WM.x, X_WM.y, X_WM.z, 0.0, 0.0, std::sin(half), std::cos(half)}) cdr.put(value);
+  for (const double value : {X_WM.x, X_WM.y, X_WM.z, 0.0, 0.0, base::sin(half), base::cos(half)}) cdr.put(value);
   const glm::dvec2 v_W = base::rotate(X_WM.yaw, {state.velocity.forward, state.velocity.left});
   for (const double value : {v_W.x, v_W.y, 0.0, 0.0, 0.0, state.velocity.turn}) cdr.put(value);
   for (int i = 0; i < 6; ++i) cdr.put(0.0);  // accelerations are unknown

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "bridges/ros_entities.h"
 #include "world/append_robot.h"
@@ -32,7 +33,7 @@ void put_texts(CdrWriter& cdr, const std::vector<std::string>& texts) {
 }
 
 void put_pose_of_place(CdrWriter& cdr, const base::Pose& X) {
-  for (const double value : {X.x, X.y, X.z, 0.0, 0.0, std::sin(0.5 * X.yaw), std::cos(0.5 * X.yaw)}) cdr.put(value);
+  for (const double value : {X.x, X.y, X.z, 0.0, 0.0, base::sin(0.5 * X.yaw), base::cos(0.5 * X.yaw)}) cdr.put(value);
 }
 
 std::string described(const Scene& scene, std::uint32_t row) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::cluster {
 
 Tiles::Tiles(std::span<const glm::dvec2> points, std::span<const double> costs, unsigned count) {
@@ -55,8 +57,8 @@ unsigned Tiles::at(glm::dvec2 p) const {
 
 double Tiles::distance(unsigned tile, glm::dvec2 p) const {
   const base::Box& box = boxes_[tile];
-  return std::hypot(std::max({box.min.x - p.x, 0.0, p.x - box.max.x}),
-                    std::max({box.min.y - p.y, 0.0, p.y - box.max.y}));
+  return base::hypot(std::max({box.min.x - p.x, 0.0, p.x - box.max.x}),
+                     std::max({box.min.y - p.y, 0.0, p.y - box.max.y}));
 }
 
 }  // namespace sf::cluster

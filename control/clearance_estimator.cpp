@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/laser.h"
 
 namespace sf::control {
@@ -35,7 +36,7 @@ ClearanceEstimator::ClearanceEstimator(const world::Mover& mover, std::span<cons
       const double along = laser.elements > 1 ? static_cast<double>(i) / (laser.elements - 1) - 0.5 : 0.0;
       const double bearing = base::wrap_angle(laser.X_MS.yaw + along * laser.fov);
       if (std::abs(bearing) > kFarthestBearing) continue;
-      beams_.push_back({i, static_cast<float>(std::cos(bearing)), static_cast<float>(std::sin(bearing))});
+      beams_.push_back({i, static_cast<float>(base::cos(bearing)), static_cast<float>(base::sin(bearing))});
       if (std::abs(bearing) < 0.6) range_ = std::max(range_, laser.X_MS.x + laser.limit - front_);
     }
     view.end = static_cast<std::uint32_t>(beams_.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "control/route.h"
 
 namespace sf::control {
@@ -65,13 +66,14 @@ double opened_gap(const ConvoyState& convoy, const LaneCorridors& corridors, con
   if (!row) return 0.0;
   const Pose& a = road_users[0].X_WM;
   const Pose& b = road_users[*row].X_WM;
-  return std::hypot(a.x - b.x, a.y - b.y) < kNewcomerDistance ? 2.0 * corridors.body().radius + 0.3 : 0.0;
+  return base::hypot(a.x - b.x, a.y - b.y) < kNewcomerDistance ? 2.0 * corridors.body().radius + 0.3 : 0.0;
 }
 
 bool follower_lags(const std::vector<RoadUser>& road_users) {
   const Pose& here = road_users.front().X_WM;
   return std::any_of(road_users.begin() + 1, road_users.end(), [&](const RoadUser& other) {
-    return other.follows == road_users.front().id && std::hypot(other.X_WM.x - here.x, other.X_WM.y - here.y) > kBehind;
+    return other.follows == road_users.front().id &&
+           base::hypot(other.X_WM.x - here.x, other.X_WM.y - here.y) > kBehind;
   });
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "control/drive_to_point.h"
 #include "sensors/battery.h"
@@ -149,7 +150,7 @@ base::Twist Docking::follow_beams(const base::Pose& X_WM) {
     off += 2.0 * M_PI * side_;
   }
   const double speed = (light_ & kForceField) != 0 ? settings_.slow_speed : settings_.speed;
-  return {speed * std::max(std::cos(off), 0.0), 0.0, turn_to(off, {speed, settings_.turn})};
+  return {speed * std::max(base::cos(off), 0.0), 0.0, turn_to(off, {speed, settings_.turn})};
 }
 
 std::string Docking::stop_reason() const {
@@ -166,7 +167,7 @@ const world::Emitter& find_dock(const ControllerContext& context, Settings& sett
   for (const world::Emitter& emitter : context.world.emitters) {
     if (emitter.kind != world::Emitter::Kind::dock) continue;
     if (!name.empty() && context.world.models[emitter.model].name != name) continue;
-    const double far = std::hypot(emitter.X_WE.x - X_WM.x, emitter.X_WE.y - X_WM.y);
+    const double far = base::hypot(emitter.X_WE.x - X_WM.x, emitter.X_WE.y - X_WM.y);
     if (!(far < least)) continue;
     least = far;
     found = &emitter;

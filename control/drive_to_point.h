@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/pose.h"
 
 namespace sf::control {
@@ -22,7 +23,7 @@ inline double turn_to(double heading_error, const DriveLimits& pace) {
 
 inline base::Twist drive_to_point(const base::Pose& X_WM, glm::dvec2 p, const DriveLimits& pace) {
   const glm::dvec2 d{p.x - X_WM.x, p.y - X_WM.y};
-  const double off = base::wrap_angle(std::atan2(d.y, d.x) - X_WM.yaw);
+  const double off = base::wrap_angle(base::atan2(d.y, d.x) - X_WM.yaw);
   return {std::abs(off) <= pace.aim ? pace.speed : 0.0, 0.0, turn_to(off, pace)};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::control {
 
 namespace {
@@ -41,7 +43,7 @@ ExplorationMap::ExplorationMap(const maps::GridGeometry& geometry, double radius
   }
   for (double row = 0.0; row * cell_ < radius; ++row) {
     Node half = 0;
-    while (cell_ * std::hypot(half + 1.0, row) < radius) ++half;
+    while (cell_ * base::hypot(half + 1.0, row) < radius) ++half;
     half_rows_.push_back(half);
   }
   for (std::int64_t row = 0; row < maps::rows(geometry); ++row)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/marked_values.h"
 #include "control/drive_to_point.h"
 #include "sensors/laser.h"
@@ -268,7 +269,7 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
   }
   const glm::dvec2 rest = leg.end - origin(X_WM);
   const double far = glm::length(rest), sign = leg.backwards ? -1.0 : 1.0;
-  const double bearing = far < 0.02 ? leg.heading : std::atan2(sign * rest.y, sign * rest.x);
+  const double bearing = far < 0.02 ? leg.heading : base::atan2(sign * rest.y, sign * rest.x);
   const double off = base::wrap_angle(bearing - X_WM.yaw);
   if (std::abs(off) > pace.aim) return {0.0, 0.0, turn_to(off, pace)};
   const glm::dvec2 front = base::transform(X_WM, {sign * settings_.slow, 0.0});

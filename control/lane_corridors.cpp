@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "robots/footprint.h"
 
@@ -24,7 +25,7 @@ void sample(Way& way, const world::Curve& line, double step) {
   way.step = way.length / static_cast<double>(spans);
   for (std::size_t i = 0; i <= spans; ++i) way.points.push_back(point_at(line, static_cast<double>(i) * way.step));
   way.yaw.resize(spans + 1);
-  const auto direction = [](glm::dvec2 d) { return std::atan2(d.y, d.x); };
+  const auto direction = [](glm::dvec2 d) { return base::atan2(d.y, d.x); };
   for (std::size_t i = 0; i <= spans; ++i) {
     double yaw = i == 0       ? direction(line.tangents.front())
                  : i == spans ? direction(line.tangents.back())
@@ -32,7 +33,7 @@ void sample(Way& way, const world::Curve& line, double step) {
     if (i > 0) yaw = way.yaw[i - 1] + base::wrap_angle(yaw - way.yaw[i - 1]);
     way.yaw[i] = yaw;
   }
-  for (const double yaw : way.yaw) way.tangents.push_back({std::cos(yaw), std::sin(yaw)});
+  for (const double yaw : way.yaw) way.tangents.push_back(base::direction(yaw));
   way.curvature.resize(spans + 1);
   for (std::size_t i = 0; i <= spans; ++i) {
     const std::size_t a = i > 0 ? i - 1 : 0, b = std::min(i + 1, spans);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "control/lane_corridors.h"
 
 namespace sf::control {
@@ -48,7 +49,7 @@ void LaneCorridors::fill_grid() {
 
 RoadPositions LaneCorridors::positions(const Pose& X_WM, double reach) const {
   const glm::dvec2 p{X_WM.x, X_WM.y};
-  const glm::dvec2 facing{std::cos(X_WM.yaw), std::sin(X_WM.yaw)};
+  const glm::dvec2 facing = base::direction(X_WM.yaw);
   // The nearest sample of each way, nearest way first.
   struct Nearest {
     std::uint32_t way = 0, index = 0;

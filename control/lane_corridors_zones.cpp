@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "control/lane_corridors.h"
 
 namespace sf::control {
@@ -21,7 +22,7 @@ Pose LaneCorridors::parked(std::uint32_t row) const {
   const glm::dvec2 d = spot.end - spot.entry;
   const glm::dvec2 along = length(d) > 0.0 ? (1.0 / length(d)) * d : glm::dvec2{1.0, 0.0};
   const glm::dvec2 p = spot.end - body_.front * along;
-  return {p.x, p.y, 0.0, std::atan2(along.y, along.x)};
+  return {p.x, p.y, 0.0, base::atan2(along.y, along.x)};
 }
 
 // A way into a spot leads along the aisle to the place in front of it, turns in place, and continues straight in. A way
@@ -47,8 +48,7 @@ void LaneCorridors::add_zones() {
         const PointRef entry{PointRef::Kind::spot, spot, 0}, end{PointRef::Kind::spot, spot, 1};
         const Pose stand = parked(spot);
         const glm::dvec2 in{stand.x, stand.y};
-        const glm::dvec2 before =
-            roads_.spots[spot].entry - body_.radius * glm::dvec2{std::cos(stand.yaw), std::sin(stand.yaw)};
+        const glm::dvec2 before = roads_.spots[spot].entry - body_.radius * base::direction(stand.yaw);
         if (leads(here, false)) {
           const std::uint32_t way = aisle(zone.perimeter[i].p, before);
           add_edge(here, entry, way, 0.0, ways_[way].length, 0.0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "sensors/laneedge.h"
 
@@ -61,7 +62,7 @@ std::unique_ptr<Controller> make_lane_keeping(const ControllerContext& context, 
     settings.refuse("half_width",
                     "'lane-keeping' requires the lane's width, but the world has no path; expected a path( ... ) in "
                     "the world file, or the setting 'half_width' [m]");
-  lane.side = std::sin(sensor->X_MS.yaw) < 0.0 ? -1.0 : 1.0;
+  lane.side = base::sin(sensor->X_MS.yaw) < 0.0 ? -1.0 : 1.0;
   const std::string side = settings.choice("side", lane.side > 0.0 ? "left" : "right", {"left", "right"});
   lane.side = side == "left" ? 1.0 : -1.0;
   return std::make_unique<LaneKeeping>(lane, task);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "sensors/monitor.h"
 
@@ -47,7 +48,7 @@ PositionSensors position_sensors_of(const world::Mover& mover) {
 bool can_localize(const world::Mover& mover) { return first_sensor(mover, "encoder") != nullptr; }
 
 void LocalizationError::add(const base::Pose& estimated, const base::Pose& truth) {
-  const double distance = std::hypot(estimated.x - truth.x, estimated.y - truth.y);
+  const double distance = base::hypot(estimated.x - truth.x, estimated.y - truth.y);
   const double turned = base::wrap_angle(estimated.yaw - truth.yaw);
   add({1, distance * distance, turned * turned, distance, std::abs(turned)});
 }

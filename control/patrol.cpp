@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "control/drive_to_point.h"
 
@@ -13,7 +14,7 @@ Patrol::Patrol(PatrolSettings settings) : settings_(std::move(settings)) {
 }
 
 // V2V states contain no footprint, so robots are considered up to a metre beyond the stopping distance.
-double Patrol::v2v_range() const { return std::hypot(settings_.radius + settings_.keep, settings_.aside) + 1.0; }
+double Patrol::v2v_range() const { return base::hypot(settings_.radius + settings_.keep, settings_.aside) + 1.0; }
 
 base::Twist Patrol::step(const ControllerInput& input) {
   const base::Pose& X_WM = input.state.X_WM;

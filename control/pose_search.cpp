@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::control {
 
 namespace {
@@ -26,14 +28,14 @@ int around(int heading) { return (heading + kHeadings) % kHeadings; }
 
 std::uint32_t length_cost(int heading) {
   const auto& step = kSteps[static_cast<std::size_t>(heading)];
-  return static_cast<std::uint32_t>(std::lround(10.0 * std::hypot(step[0], step[1])));
+  return static_cast<std::uint32_t>(std::lround(10.0 * base::hypot(step[0], step[1])));
 }
 
 }  // namespace
 
 double heading_angle(int heading) {
   const auto& step = kSteps[static_cast<std::size_t>(heading)];
-  return std::atan2(step[1], step[0]);
+  return base::atan2(step[1], step[0]);
 }
 
 PoseSearch::PoseSearch(const ExplorationMap& map, const Footprint& body)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/random.h"
 
 namespace sf::control {
@@ -79,7 +80,7 @@ void RightOfWay::observe(const ControllerInput& input, std::uint32_t follows, bo
   const Pose& here = input.state.X_WM;
   for (const Neighbour& other : input.others) {
     const Pose& there = other.state.X_WM;
-    const bool near = std::hypot(there.x - here.x, there.y - here.y) <= kSensingRange;
+    const bool near = base::hypot(there.x - here.x, there.y - here.y) <= kSensingRange;
     const bool convoy = other.id == follows || other.intent.follows == own_id_;
     if (other.id == own_id_ || (!near && !convoy)) continue;
     add(other.id, other.state, other.intent.follows);

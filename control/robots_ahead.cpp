@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::control {
 
 OnRoute on_route(const LaneCorridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg) {
@@ -68,7 +70,7 @@ void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, do
         const double nearer = std::max(before - distance, 1e-9);
         free -= (points[i].s - points[i - 1].s) * std::clamp((points[i].within - distance) / nearer, 0.0, 1.0);
       }
-      const glm::dvec2 along{std::cos(points[i].yaw), std::sin(points[i].yaw)};
+      const glm::dvec2 along = base::direction(points[i].yaw);
       out.push_back({std::max(free, 0.0), dot(road_users[row].velocity, along), row});
       break;
     }
@@ -95,7 +97,7 @@ void Progress::update(const LaneCorridors& corridors, const RoutePlan& plan, glm
     for (double s = low; s < high; s += way.step) consider(s);
     consider(high);
     const double yaw = yaw_on(way, at);
-    const double foot = at + dot(p - point_on(way, at), {std::cos(yaw), std::sin(yaw)});
+    const double foot = at + dot(p - point_on(way, at), base::direction(yaw));
     if (foot < leg.to || leg_ + 1 >= plan.legs.size()) {
       s_ = leg.start + std::clamp(foot, leg.from, leg.to) - leg.from;
       // A cusp counts as reached within a tolerance.
@@ -111,11 +113,11 @@ void Progress::update(const LaneCorridors& corridors, const RoutePlan& plan, glm
 base::Twist steer(double speed, double offset, double heading, double curvature, double reach, double max_turn,
                   double turn_on_spot) {
   if (std::abs(heading) > turn_on_spot) return {0.0, 0.0, std::clamp(-2.0 * heading, -max_turn, max_turn)};
-  const double sine = std::abs(heading) > 1e-6 ? std::sin(heading) / heading : 1.0;
+  const double sine = std::abs(heading) > 1e-6 ? base::sin(heading) / heading : 1.0;
   const double along = std::max(1.0 - curvature * offset, 0.3);
   // Far from the line the robot returns at no more than 45 degrees.
   const double off = std::clamp(offset, -1.2 * reach, 1.2 * reach);
-  const double bend = curvature * std::cos(heading) / along - off * sine / (reach * reach) - 1.6 * heading / reach;
+  const double bend = curvature * base::cos(heading) / along - off * sine / (reach * reach) - 1.6 * heading / reach;
   const double v = std::abs(bend) * speed > max_turn ? max_turn / std::abs(bend) : speed;
   return {v, 0.0, v * bend};
 }

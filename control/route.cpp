@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 
 namespace sf::control {
@@ -81,7 +82,7 @@ base::Twist Route::drive(const ControllerInput& input, double speed) {
   const Way& way = corridors_->way(leg.way);
   const double at = leg.from + progress_.s() - leg.start;
   const double yaw = yaw_on(way, at);
-  offset_ = base::cross({std::cos(yaw), std::sin(yaw)}, glm::dvec2{X_WM.x, X_WM.y} - point_on(way, at));
+  offset_ = base::cross(base::direction(yaw), glm::dvec2{X_WM.x, X_WM.y} - point_on(way, at));
   const double heading = base::wrap_angle(X_WM.yaw + (way.backwards ? M_PI : 0.0) - yaw);
   // After a cusp the robot turns in place until it faces along its way.
   const bool kink = progress_.leg() > 0 && cusp_after(*corridors_, plan_, progress_.leg() - 1);

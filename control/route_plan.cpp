@@ -6,6 +6,7 @@
 #include <cmath>
 #include <queue>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/random.h"
 
@@ -124,7 +125,7 @@ std::optional<RoadPosition> locate_on_road(const LaneCorridors& corridors, const
 std::optional<std::uint32_t> spot_at(const LaneCorridors& corridors, const Pose& X_WM) {
   for (std::uint32_t spot = 0; spot < corridors.roads().spots.size(); ++spot) {
     const Pose at = corridors.parked(spot);
-    if (std::hypot(at.x - X_WM.x, at.y - X_WM.y) < 0.5 * corridors.body().radius) return spot;
+    if (base::hypot(at.x - X_WM.x, at.y - X_WM.y) < 0.5 * corridors.body().radius) return spot;
   }
   return std::nullopt;
 }
@@ -225,7 +226,7 @@ std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count
     for (double s = end; s <= length - end; s += 0.25 * apart) {
       const glm::dvec2 p = point_at(lane.centre, s);
       const glm::dvec2 d = point_at(lane.centre, s + 0.05 * apart) - point_at(lane.centre, s - 0.05 * apart);
-      open.push_back({p.x, p.y, height_at(lane, s), std::atan2(d.y, d.x)});
+      open.push_back({p.x, p.y, height_at(lane, s), base::atan2(d.y, d.x)});
     }
   }
   std::vector<Pose> poses;
@@ -235,7 +236,7 @@ std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count
     const auto at = static_cast<std::size_t>(u * static_cast<double>(open.size()));
     const Pose pose = open[std::min(at, open.size() - 1)];
     poses.push_back(pose);
-    std::erase_if(open, [&](const Pose& o) { return std::hypot(o.x - pose.x, o.y - pose.y) < apart; });
+    std::erase_if(open, [&](const Pose& o) { return base::hypot(o.x - pose.x, o.y - pose.y) < apart; });
   }
   if (poses.size() < count)
     throw base::InputError(

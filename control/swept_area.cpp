@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/time.h"
 #include "robots/kinematics.h"
 #include "robots/motion_limits.h"
@@ -52,7 +53,7 @@ void SweptArea::add_scan(const base::ReadingBlock& reading) {
   const double between = laser.fov / (laser.elements - 1);
   std::erase_if(echoes_, [&](const Echo& o) {
     const glm::dvec2 d = o.p - glm::dvec2{reading.X_WS.x, reading.X_WS.y};
-    const double beam = (base::wrap_angle(std::atan2(d.y, d.x) - reading.X_WS.yaw) + 0.5 * laser.fov) / between;
+    const double beam = (base::wrap_angle(base::atan2(d.y, d.x) - reading.X_WS.yaw) + 0.5 * laser.fov) / between;
     if (!(beam >= 0.0) || beam > laser.elements - 1 || o.time >= reading.time) return false;
     return reading.values[static_cast<std::size_t>(std::lround(beam))] > glm::length(d) + kApart;
   });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::control {
 
 namespace {
@@ -22,7 +24,7 @@ ViewpointPlanner::ViewpointPlanner(const ExplorationMap& map, const ScannerModel
     : map_(map), headings_(static_cast<std::size_t>(map.nodes())) {
   for (std::size_t i = 0; i < kRays; ++i) {
     const double bearing = 2.0 * M_PI * (static_cast<double>(i) + 0.5) / kRays;
-    Ray ray{std::cos(bearing), std::sin(bearing), 0};
+    Ray ray{base::cos(bearing), base::sin(bearing), 0};
     for (int k = 0; k < kHeadings; ++k) {
       const double off = base::wrap_angle(bearing + M_PI - heading_angle(k) - eye.X_MS.yaw);
       if (std::abs(off) <= 0.5 * eye.fov - kEdge) ray.headings = static_cast<std::uint16_t>(ray.headings | 1u << k);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/derived/wiring.h"
 
 namespace sf::farm {
@@ -20,7 +21,7 @@ std::span<const base::ReadingBlock> V2vInputs::receive(const world::World& world
     const auto [mover, receiver] = pair.of;
     if (absent[mover] || absent[receiver] || world.movers[mover].is_tag) continue;
     const base::Pose &there = states[mover].X_WM, &here = states[receiver].X_WM;
-    if (std::hypot(there.x - here.x, there.y - here.y) > range) continue;
+    if (base::hypot(there.x - here.x, there.y - here.y) > range) continue;
     const std::optional<Received> received = newest(mover, receiver);
     if (received && received->sent > pair.last) add_state(pair, *received);
   }

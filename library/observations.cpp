@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 
 namespace sensorfarm {
@@ -76,11 +77,11 @@ void Observations::State::write(std::size_t agent) {
   if (options.speeds) *out++ = in_unit(velocity.forward / who.forward), *out++ = in_unit(velocity.turn / who.turn);
   if (options.goal_reach <= 0.0) return;
   const Pose& X = now_.poses[rows[agent]];
-  const double bearing = std::atan2(who.goal_y - X.y, who.goal_x - X.x) - X.yaw;
+  const double bearing = base::atan2(who.goal_y - X.y, who.goal_x - X.x) - X.yaw;
   const bool known = !std::isnan(distances[agent]);
   *out++ = in_unit(distances[agent] / options.goal_reach);
-  *out++ = known ? static_cast<float>(std::cos(bearing)) : 0.0f;
-  *out++ = known ? static_cast<float>(std::sin(bearing)) : 0.0f;
+  *out++ = known ? static_cast<float>(base::cos(bearing)) : 0.0f;
+  *out++ = known ? static_cast<float>(base::sin(bearing)) : 0.0f;
   out[-3] = known ? out[-3] : 1.0f;
 }
 
@@ -91,7 +92,7 @@ void Observations::State::measure(std::size_t agent, bool moved) {
   const bool same = x == who.goal_x && y == who.goal_y;
   const Pose& X = now_.poses[rows[agent]];
   const double before = distances[agent];
-  distances[agent] = std::hypot(x - X.x, y - X.y);
+  distances[agent] = base::hypot(x - X.x, y - X.y);
   const double nearer = before - distances[agent];
   progress[agent] = moved && same && !std::isnan(nearer) ? nearer : 0.0;
   who.goal_x = x, who.goal_y = y;

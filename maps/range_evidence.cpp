@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::maps {
 
 namespace {
@@ -18,7 +20,7 @@ std::uint32_t cell_index(const GridGeometry& geometry, std::int64_t column, std:
 }
 
 /// Probability that a normal deviate is below `x`.
-double below(double x) { return 0.5 * std::erfc(-x * M_SQRT1_2); }
+double below(double x) { return 0.5 * base::erfc(-x * M_SQRT1_2); }
 
 }  // namespace
 
@@ -32,9 +34,9 @@ struct RangeEvidence::Cone {
 
   Cone(const GridGeometry& geometry, const RangeCone& c)
       : apex((c.X_WC.x - geometry.left) / geometry.cell, (geometry.top - c.X_WC.y) / geometry.cell),
-        axis(std::cos(c.X_WC.yaw), -std::sin(c.X_WC.yaw)),
+        axis(base::cos(c.X_WC.yaw), -base::sin(c.X_WC.yaw)),
         half(c.half),
-        slope(std::tan(std::min(c.half, kWidest))),
+        slope(base::tan(std::min(c.half, kWidest))),
         range(c.range / geometry.cell),
         sigma(std::max(c.sigma / geometry.cell, 1e-6)),
         seen(c.seen),
@@ -55,11 +57,11 @@ struct RangeEvidence::Cone {
 };
 
 void RangeEvidence::add_cell(std::uint32_t cell, const Cone& cone, double along, double across) {
-  const double r = std::hypot(along, across);
+  const double r = base::hypot(along, across);
   double weight = 1.0;
   if (cone.half > 0.0) {
     // Near the apex a cone is as wide as a cell.
-    const double share = std::abs(std::atan2(across, along)) / std::max(cone.half, 0.5 / std::max(r, 0.5));
+    const double share = std::abs(base::atan2(across, along)) / std::max(cone.half, 0.5 / std::max(r, 0.5));
     if (share >= 1.0) return;
     weight = 1.0 - share * share;
   } else if (along < 0.0) {
@@ -119,17 +121,17 @@ void RangeEvidence::note(std::uint32_t cell, std::int32_t change) {
 
 void RangeEvidence::weigh_arc(const LogOddsGrid& grid, const Arc& arc) {
   constexpr double kUnit = 100.0;
-  const double offset = std::log(kPrior / (1.0 - kPrior));
+  const double offset = base::log(kPrior / (1.0 - kPrior));
   const auto not_caused = [&](const Part& part) {
-    const double p = 1.0 / (1.0 + std::exp(-(static_cast<double>(grid.cells[part.cell]) / kUnit + offset)));
+    const double p = 1.0 / (1.0 + base::exp(-(static_cast<double>(grid.cells[part.cell]) / kUnit + offset)));
     return std::max(1.0 - static_cast<double>(part.weight) * p, 1e-9);
   };
   const std::span<const Part> parts = std::span(arc_parts_).subspan(arc.first, arc.end - arc.first);
-  double none = 1.0 - std::exp(-grid.rule.hit / kUnit);
+  double none = 1.0 - base::exp(-grid.rule.hit / kUnit);
   for (const Part& part : parts) none *= not_caused(part);
   for (const Part& part : parts) {
     const double without = std::min(none / not_caused(part), 1.0), w = part.weight;
-    const double gain = std::log((1.0 - (1.0 - w) * without) / (1.0 - without));
+    const double gain = base::log((1.0 - (1.0 - w) * without) / (1.0 - without));
     note(part.cell, static_cast<std::int32_t>(std::lround(kUnit * std::min(gain, 300.0))));
   }
 }

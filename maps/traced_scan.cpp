@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/bearing.h"
+#include "base/elementary.h"
 #include "base/error.h"
 
 namespace sf::maps {
@@ -24,7 +25,7 @@ std::vector<glm::dvec2> beam_directions(double fov, std::uint32_t samples) {
   std::vector<glm::dvec2> beams;
   for (std::uint32_t i = 0; i < samples; ++i) {
     const double bearing = base::bearing_of(fov, samples, i);
-    beams.push_back({std::cos(bearing), std::sin(bearing)});
+    beams.push_back(base::direction(bearing));
   }
   return beams;
 }
@@ -42,8 +43,7 @@ TracedScan trace_scan(const GridGeometry& geometry, const ScanView& scan, std::s
   TracedScan out;
   const base::Pose& X = scan.X_WS;
   const glm::dvec2 place{(X.x - geometry.left) / geometry.cell, (geometry.top - X.y) / geometry.cell};
-  const double c = std::cos(X.yaw);
-  const double s = std::sin(X.yaw);
+  const auto [s, c] = base::sin_cos(X.yaw);
   // The negated comparison also rejects NaN.
   if (!(std::abs(place.x) <= kFarthestCell && std::abs(place.y) <= kFarthestCell && std::abs(c + s) <= 2.0)) return out;
   out.sensor = cell_at(geometry, {X.x, X.y});

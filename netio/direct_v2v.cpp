@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "netio/posix.h"
 
@@ -235,7 +236,7 @@ PacketStatus DirectV2v::bind_sender(const Header& header, const Endpoint& source
 /// A map has no position: its sender is as far away as its last state says.
 bool DirectV2v::is_far(const Packet& packet, std::int64_t now) const {
   if (const auto* state = std::get_if<V2v>(&packet.body))
-    return p_ && std::hypot(state->X_WR.x - p_->x, state->X_WR.y - p_->y) > options_.radio;
+    return p_ && base::hypot(state->X_WR.x - p_->x, state->X_WR.y - p_->y) > options_.radio;
   const Sender& sender = details_[*senders_.row(packet.header.robot)];
   return packet.header.session != sender.session || !sender.last_state || now - *sender.last_state >= kSenderTimeout;
 }

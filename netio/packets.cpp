@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/elementary.h"
 #include "base/error.h"
 
 namespace sf::netio {
@@ -536,7 +537,7 @@ base::Report report(const Header& header, const V2v& state, std::uint32_t mover)
 
 base::Report report(const Header& header, const Tag& state, std::uint32_t mover, const base::Pose& X_MT) {
   const auto& [x, y, z, w] = state.orientation;
-  const double yaw = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) - X_MT.yaw;
+  const double yaw = base::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) - X_MT.yaw;
   const double turn = state.angular[2];
   const glm::dvec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});  // from the mover's origin to the tag, in the world frame
   const glm::dvec2 velocity = base::rotate(-yaw, {state.linear[0] + turn * arm.y, state.linear[1] - turn * arm.x});

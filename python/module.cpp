@@ -285,6 +285,14 @@ py::array seen(const Observations& o, std::span<Value> data, std::size_t width, 
   return array;
 }
 
+/// Returns a DLPack capsule, which keeps the memory as an array does. Of DLPack's options only `copy` matters on the
+/// host.
+py::object export_values(const Observations& o, const py::kwargs& options) {
+  py::object array = seen(o, o.values(), o.columns(), true);  // NumPy exports writable arrays only
+  if (options.contains("copy") && py::cast<bool>(options["copy"])) array = array.attr("copy")();
+  return array.attr("__dlpack__")();
+}
+
 void add_observations(py::module_& module) {
   using O = Observations;
   py::class_<O>(module, "Observations", "What a learner observes; written in place after each step and reset.")
@@ -305,6 +313,10 @@ void add_observations(py::module_& module) {
           "ages", [](const O& o) { return seen(o, o.ages(), 0, false); }, "(agents,): steps since the world's start.")
       .def(
           "update", [](O& o) { in_farm([&] { o.update(); }); }, "Recomputes the values after goals have changed.")
+      .def("__dlpack__", &export_values,
+           "`values` without a copy, for torch.from_dlpack(observations). Do not write to it.")
+      .def(
+          "__dlpack_device__", [](const O&) { return std::pair(1, 0); }, "The host.")
       .def("__len__", [](const O& o) { return o.agents(); });
 }
 

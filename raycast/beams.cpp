@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::raycast {
 
 BeamPlan plan_beams(const ScanSettings& scan, bool with_noise) {
@@ -39,8 +41,7 @@ void write_beams(const ScanSettings& scan, const BeamPlan& plan, const std::vect
       const double bearing = bearing_of(scan, plan.samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
       low = i == 0 ? bearing : std::min(low, bearing);
       high = i == 0 ? bearing : std::max(high, bearing);
-      const double c = std::cos(bearing);
-      const double s = std::sin(bearing);
+      const auto [s, c] = base::sin_cos(bearing);
       tables.directions64[8 * lane + 2 * i] = c;
       tables.directions64[8 * lane + 2 * i + 1] = s;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "world/wall_tree.h"
 
 namespace sf::raycast {
@@ -14,7 +15,7 @@ constexpr double kSlack = 1e-5;
 
 /// Returns an upper bound [rad] of the arc sine of v in [0, 1), except for rounding.
 double asin_bound(double v) {
-  if (v > 0.8) return std::asin(v);
+  if (v > 0.8) return base::asin(v);
   const double vv = v * v;
   return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "gpu/group_counts.h"
 
@@ -72,8 +73,8 @@ void ConeCaster::place_movers() {
   if (!incidence_) return;
   const auto table = headings_.host<float>();
   for (std::size_t m = 0; m < states_.size(); ++m) {
-    table[4 * (m + 1)] = static_cast<float>(std::cos(states_[m].X_WM.yaw));
-    table[4 * (m + 1) + 1] = static_cast<float>(std::sin(states_[m].X_WM.yaw));
+    table[4 * (m + 1)] = static_cast<float>(base::cos(states_[m].X_WM.yaw));
+    table[4 * (m + 1) + 1] = static_cast<float>(base::sin(states_[m].X_WM.yaw));
   }
 }
 

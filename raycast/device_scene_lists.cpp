@@ -9,6 +9,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "base/elementary.h"
 #include "raycast/device_scene_parts.h"
 
 namespace sf::raycast {
@@ -132,8 +133,8 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
         return;
       }
       const bool around = radius > 0.8f * distance;
-      const float half = around ? 4.0f : 1.0001f * std::asin(radius / distance) + 1e-5f;
-      const float bearing = std::atan2(dy, dx);
+      const float half = around ? 4.0f : 1.0001f * static_cast<float>(base::asin(radius / distance)) + 1e-5f;
+      const float bearing = static_cast<float>(base::atan2(dy, dx));
       const float turned = std::abs(bearing - yaw);
       if (std::min(turned, 6.2831853f - turned) > most_turned + half) continue;
       s.near.push_back({std::max(distance - radius, 0.0f) * 0.9999f, radius, grid.mover[at], bearing, half});

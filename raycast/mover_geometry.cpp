@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/elementary.h"
 #include "world/wall_tree.h"
 
 namespace sf::raycast {
@@ -124,7 +125,7 @@ void MoverGeometry::place(std::span<const base::Report> states, base::ThreadPool
   thread_pool.parallel_for(states_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const Pose& X = states_[i].X_WM;
-      headings_[i] = {std::cos(X.yaw), std::sin(X.yaw)};
+      headings_[i] = base::direction(X.yaw);
       for (std::uint32_t row = first_rows_[i] - walls_; row < first_rows_[i + 1] - walls_; ++row) {
         exact[row] = to_world(local_[row].a, local_[row].b, {X.x, X.y}, headings_[i]);
       }

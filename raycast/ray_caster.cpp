@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.h"
 #include "raycast/scan_tables.h"
 
 namespace sf::raycast {
@@ -43,7 +44,7 @@ void RayCaster::find_views(std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     const ScannerRow& row = plan_.rows[due_.samples[i].row];
     const Pose &X = states_[row.mover].X_WM, &X_MS = row.mount;
-    if (row.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
+    if (row.mover != mover) turn = base::direction(X.yaw);
     mover = row.mover;
     beams += row.plan.samples.size();
     const double yaw = X.yaw + X_MS.yaw;
@@ -51,7 +52,7 @@ void RayCaster::find_views(std::size_t first, std::size_t last) {
         row.config,
         mover,
         {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), X.z + X_MS.z, yaw},
-        yaw == X.yaw ? turn : glm::dvec2{std::cos(yaw), std::sin(yaw)}};
+        yaw == X.yaw ? turn : base::direction(yaw)};
   }
   rays_ += beams;
 }

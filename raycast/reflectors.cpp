@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::raycast {
 
 Reflectors reflectors_of(const world::World& world) {
@@ -9,7 +11,7 @@ Reflectors reflectors_of(const world::World& world) {
   const auto name = [&reflectors](world::Segment& s, std::uint32_t heading) {
     const double dx = s.b.x - s.a.x;
     const double dy = s.b.y - s.a.y;
-    const double length = std::hypot(dx, dy);
+    const double length = base::hypot(dx, dy);
     s.model = static_cast<std::uint32_t>(reflectors.rows.size());
     reflectors.rows.push_back({static_cast<float>(dx / length), static_cast<float>(dy / length), heading, 0});
   };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::raycast {
 
 namespace {
@@ -58,7 +60,7 @@ void ScanPattern::assign(std::span<const double> bearings, std::span<const doubl
   half_view = static_cast<float>(farthest + 1e-6);
   // Widened to cover rounding errors.
   const double edge = std::min(farthest + 1e-6, 0.5 * M_PI);
-  edge_cos = static_cast<float>(std::cos(edge)), edge_sin = static_cast<float>(std::sin(edge));
+  edge_cos = static_cast<float>(base::cos(edge)), edge_sin = static_cast<float>(base::sin(edge));
 }
 
 glm::dvec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i) {

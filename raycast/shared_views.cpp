@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/elementary.h"
+
 namespace sf::raycast {
 
 namespace {
@@ -38,13 +40,14 @@ SharedPattern merge(std::span<const Scanner> scanners, std::span<const BeamPlan*
   std::vector<double> bearings, directions;
   for (const Beam& beam : beams) {
     bearings.push_back(beam.bearing);
-    directions.insert(directions.end(), {std::cos(beam.bearing), std::sin(beam.bearing)});
+    const auto [s, c] = base::sin_cos(beam.bearing);
+    directions.insert(directions.end(), {c, s});
     pattern.sources.push_back(beam.source);
   }
   pattern.beams.assign(bearings, directions, bearings.front(), bearings.back());
   for (std::size_t b = 0; b < beams.size(); ++b) {
-    pattern.beams.cos64[b] = std::cos(beams[b].own_bearing);
-    pattern.beams.sin64[b] = std::sin(beams[b].own_bearing);
+    const auto [s, c] = base::sin_cos(beams[b].own_bearing);
+    pattern.beams.cos64[b] = c, pattern.beams.sin64[b] = s;
   }
   return pattern;
 }

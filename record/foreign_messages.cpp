@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 #include "record/schemas.h"
@@ -43,7 +44,7 @@ void get_odometry(CdrReader& cdr, ForeignMessage& into) {
   const auto P = get_numbers<36>(cdr);
   const auto twist = get_numbers<6>(cdr);
   get_numbers<36>(cdr);
-  const double yaw = std::atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz));
+  const double yaw = base::atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz));
   into.values = {x, y, yaw, 1.0};
   const bool stated = P[0] > 0.0 && P[7] > 0.0 && P[35] > 0.0;  // all zeros: unknown
   for (const std::size_t at : {0, 1, 5, 7, 11, 35}) into.values.push_back(stated ? P[at] : kUnknown);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/displacement.h"
+#include "base/elementary.h"
 
 namespace sf::record {
 
@@ -11,7 +12,7 @@ namespace {
 
 /// Returns the covariance of the state's error along the axes of a frame whose yaw in the world is `yaw`.
 std::array<double, 6> turned(const std::array<float, 6>& P, double yaw) {
-  const double c = std::cos(yaw), s = std::sin(yaw);
+  const auto [s, c] = base::sin_cos(yaw);
   const double xx = P[0], xy = P[1], xa = P[2], yy = P[3], ya = P[4];
   return {c * c * xx + 2 * c * s * xy + s * s * yy,
           c * s * (yy - xx) + (c * c - s * s) * xy,
@@ -68,7 +69,7 @@ bool Odometer::roll(const base::ReadingBlock& encoder) {
   const double right = encoder.values[1] - std::exchange(right_, encoder.values[1]);
   const double seconds = 1e-9 * static_cast<double>(encoder.time - std::max<std::int64_t>(0, state_.time));
   const double way = 0.5 * (left + right), turn = (right - left) / encoder_->track, half = 0.5 * turn;
-  const double chord = std::abs(half) < 1e-4 ? way : way * std::sin(half) / half;
+  const double chord = std::abs(half) < 1e-4 ? way : way * base::sin(half) / half;
 
   const double middle = state_.X_OM.yaw + half;
   propagate(left, right, middle);
@@ -85,7 +86,7 @@ bool Odometer::roll(const base::ReadingBlock& encoder) {
 /// Advances the errors by one step. @param middle [rad] heading at half the step
 void Odometer::propagate(double left, double right, double middle) {
   const double half = 0.5 * (right - left) / encoder_->track, way = 0.5 * (left + right);
-  const double chord = std::abs(half) < 1e-4 ? way : way * std::sin(half) / half;
+  const double chord = std::abs(half) < 1e-4 ? way : way * base::sin(half) / half;
   const Errors::Complex along = std::polar(1.0, middle);
   add_slip(left, right, chord, along);
   add_rounding(left, right, chord * along);
@@ -100,8 +101,8 @@ void Odometer::add_slip(double left, double right, double way, Errors::Complex a
   const double aa = slip2 * (std::abs(left) + std::abs(right)) / 4.0;
   const Complex an(0.0, slip2 * (std::abs(right) - std::abs(left)) / (2.0 * track));
   const Errors before = errors_;
-  const double e1 = std::exp(-0.5 * before.yaw), e2 = std::exp(-2.0 * before.yaw);  // of exp(ie), exp(2ie)
-  const double n1 = std::exp(-0.125 * nn), n2 = std::exp(-0.5 * nn), n3 = std::exp(-1.125 * nn);
+  const double e1 = base::exp(-0.5 * before.yaw), e2 = base::exp(-2.0 * before.yaw);  // of exp(ie), exp(2ie)
+  const double n1 = base::exp(-0.125 * nn), n2 = base::exp(-0.5 * nn), n3 = base::exp(-1.125 * nn);
   const Complex step = way * along, mean = n1 * along * (way + 0.5 * an);
   const Complex square = n2 * along * along * ((way + an) * (way + an) + aa);
   Errors& now = errors_;
@@ -140,7 +141,7 @@ void Odometer::state_covariance(double left, double right, double seconds) {
   const double walked[6] = {0.5 * (e.norm + e.square.real()), 0.5 * e.square.imag(), with_yaw.real(),
                             0.5 * (e.norm - e.square.real()), with_yaw.imag(),       e.yaw};
   for (std::size_t i = 0; i < stated.pose.size(); ++i) stated.pose[i] += walked[i];
-  add_along(stated.pose, std::cos(yaw), std::sin(yaw), 0.0, count2 / 24.0);
+  add_along(stated.pose, base::cos(yaw), base::sin(yaw), 0.0, count2 / 24.0);
   stated.pose[5] += count2 / (6.0 * track * track);
   if (seconds <= 0.0) return;
   const double dl = (count2 / 6.0 + slip2 * std::abs(left)) / (seconds * seconds);

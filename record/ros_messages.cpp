@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/time.h"
 #include "record/cdr.h"
@@ -36,7 +37,7 @@ std::string get_header(CdrReader& cdr, std::int64_t& time) {
 
 void put_pose(CdrWriter& cdr, const Pose& pose) {
   const double half = 0.5 * pose.yaw;
-  for (const double value : {pose.x, pose.y, pose.z, 0.0, 0.0, std::sin(half), std::cos(half)}) cdr.put(value);
+  for (const double value : {pose.x, pose.y, pose.z, 0.0, 0.0, base::sin(half), base::cos(half)}) cdr.put(value);
 }
 
 void put_zeros(CdrWriter& cdr, int count) {

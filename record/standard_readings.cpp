@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 #include "record/schemas.h"
@@ -40,8 +41,8 @@ struct Degrees {
 Degrees degrees_at(double east, double north) {
   constexpr double a = 6378137.0, b = 6356752.314245;  // [m] semi-axes of WGS84
   const double up = a * std::sqrt(std::max(0.0, 1.0 - (east / a) * (east / a) - (north / b) * (north / b)));
-  const double from_axis = std::hypot(up, east);
-  return {std::atan2(a * a * north, b * b * from_axis) * 180.0 / M_PI, std::atan2(east, up) * 180.0 / M_PI};
+  const double from_axis = base::hypot(up, east);
+  return {base::atan2(a * a * north, b * b * from_axis) * 180.0 / M_PI, base::atan2(east, up) * 180.0 / M_PI};
 }
 
 void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {

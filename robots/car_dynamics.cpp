@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/runge_kutta.h"
 
 namespace sf::robots {
@@ -28,14 +29,14 @@ struct Grip {
 Grip grip_of(const CarModel& m, const CarState& s, std::size_t wheel) {
   const PlaceOfWheel at = place_of(m, wheel);
   const double steer = at.front ? s[kCarSteer] : 0.0;
-  Grip grip{.cosine = std::cos(steer), .sine = std::sin(steer)};
+  Grip grip{.cosine = base::cos(steer), .sine = base::sin(steer)};
   const double vx = s[kCarForward] - s[kCarTurn] * at.y, vy = s[kCarLeft] + s[kCarTurn] * at.x;
   const double ahead = grip.cosine * vx + grip.sine * vy, aside = grip.cosine * vy - grip.sine * vx;
   const double rim = rim_speed(m, s, wheel);
   const double reference = std::max({std::abs(rim), std::abs(ahead), kSlipSpeed});
   const double along = (rim - ahead) / reference;
   const double across = -(at.front ? m.front_stiffness : m.rear_stiffness) * aside / reference;
-  const double slip = std::hypot(along, across);
+  const double slip = base::hypot(along, across);
   const double per_slip = slip < 1e-9 ? m.friction.slope() : m.friction.at(slip) / slip;
   grip.along = per_slip * along;
   grip.across = per_slip * across;
@@ -80,7 +81,7 @@ double wheel_torque(const CarModel& m, std::size_t wheel, double spin, double to
 
 double Friction::at(double slip) const {
   const double s = std::min(slip, 1.0);
-  return c1 * (1.0 - std::exp(-c2 * s)) - c3 * s;
+  return c1 * (1.0 - base::exp(-c2 * s)) - c3 * s;
 }
 
 double CarModel::resistance(double speed) const {
@@ -111,7 +112,7 @@ CarForces car_forces(const CarModel& m, const CarState& s) {
 
 CarState car_rate(const CarModel& m, const CarState& s, const CarCommand& command) {
   const CarForces forces = car_forces(m, s);
-  const double c = std::cos(s[kCarYaw]), n = std::sin(s[kCarYaw]);
+  const auto [n, c] = base::sin_cos(s[kCarYaw]);
   CarState rate{};
   rate[kCarX] = c * s[kCarForward] - n * s[kCarLeft];
   rate[kCarY] = n * s[kCarForward] + c * s[kCarLeft];
@@ -137,6 +138,6 @@ double rim_speed(const CarModel& model, const CarState& state, std::size_t wheel
   return model.wheel_radius * state[kCarSpin + wheel];
 }
 
-double sideslip(const CarState& state) { return std::atan2(state[kCarLeft], state[kCarForward]); }
+double sideslip(const CarState& state) { return base::atan2(state[kCarLeft], state[kCarForward]); }
 
 }  // namespace sf::robots

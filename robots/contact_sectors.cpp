@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/report.h"
 #include "world/wall_tree.h"
 
@@ -26,7 +27,7 @@ const std::array<glm::dvec2, kContactSectors + 1>& borders() {
     std::array<glm::dvec2, kContactSectors + 1> directions;
     for (std::uint32_t k = 0; k <= kContactSectors; ++k) {
       const double bearing = 2.0 * M_PI * (k % kContactSectors) / kContactSectors;
-      directions[k] = {std::cos(bearing), std::sin(bearing)};
+      directions[k] = base::direction(bearing);
     }
     return directions;
   }();
@@ -131,7 +132,7 @@ std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, 
   const glm::dvec2 p_MO = base::rotate(-X_WM.yaw, apart);
   const double turn = X_WO.yaw - X_WM.yaw, lift = X_WO.z - X_WM.z;
   const double reach = outline.radius + kContactDistance;
-  const double c = std::cos(turn), s = std::sin(turn);
+  const auto [s, c] = base::sin_cos(turn);
   const auto to_mover = [&](glm::dvec2 q) { return p_MO + glm::dvec2{c * q.x - s * q.y, s * q.x + c * q.y}; };
   std::uint32_t sectors = 0;
   for (const FootprintEdge& e : other.edges)
@@ -152,9 +153,9 @@ std::uint32_t sectors_to_test(const Footprint& outline, const base::Pose& X_WM, 
   if (d <= r) return ~known;
   // The part of the other's disc within reach ends at its tangents or where the two circles meet.
   const bool holds_tangents = d * d <= reach * reach + r * r;
-  const double half =
-      holds_tangents ? std::asin(r / d) : std::acos(std::min((d * d + reach * reach - r * r) / (2.0 * d * reach), 1.0));
-  const double bearing = std::atan2(apart.y, apart.x) - X_WM.yaw, per_radian = kContactSectors / (2.0 * M_PI);
+  const double half = holds_tangents ? base::asin(r / d)
+                                     : base::acos(std::min((d * d + reach * reach - r * r) / (2.0 * d * reach), 1.0));
+  const double bearing = base::atan2(apart.y, apart.x) - X_WM.yaw, per_radian = kContactSectors / (2.0 * M_PI);
   const auto first = static_cast<std::int64_t>(std::floor((bearing - half - 1e-6) * per_radian));
   const auto last = static_cast<std::int64_t>(std::floor((bearing + half + 1e-6) * per_radian));
   std::uint32_t sectors = 0;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
 
@@ -25,6 +26,13 @@ glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
 
 // Returns whether the mover is no closer to a touched surface than before. Rounding at 100 km is 1.5e-11.
 bool no_nearer(double after, double before) { return after >= before - 1e-10; }
+
+// Returns how many halvings of `whole` leave at most `part`.
+int halvings_to(double part, double whole) {
+  int count = 0;
+  for (; whole > part; whole *= 0.5) ++count;
+  return count;
+}
 
 glm::dvec2 unit(glm::dvec2 v) {
   const double size = length(v);
@@ -69,7 +77,7 @@ bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::u
 /// [m] Returns the largest travel of any point of the mover in the rest of the tick.
 double Fleet::sweep_of(std::uint32_t row) const {
   const Twist& v = progress_[row].velocity;
-  return (std::hypot(v.forward, v.left) + std::abs(v.turn) * footprints_[row].radius) * progress_[row].left;
+  return (base::hypot(v.forward, v.left) + std::abs(v.turn) * footprints_[row].radius) * progress_[row].left;
 }
 
 /// [m] Returns `sweep_of` plus the largest push-off.
@@ -122,7 +130,7 @@ Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scra
 bool Fleet::is_free(std::uint32_t row, const Progress& from, double seconds, std::span<const std::uint32_t> others,
                     std::span<const std::uint32_t> rivals) const {
   const Twist& v = from.velocity;
-  const double travel = std::hypot(v.forward, v.left) * seconds, turn = std::abs(v.turn) * seconds;
+  const double travel = base::hypot(v.forward, v.left) * seconds, turn = std::abs(v.turn) * seconds;
   const glm::dvec2 a = origin(from.X_WM), b = turn < 1.0 ? origin(advance(from.X_WM, v, seconds)) : a;
   const double circle = turn > 0.0 ? 2.0 * travel / turn : 0.0;  // [m] diameter
   const double bulge = 1e-6 + (turn < 1.0 ? 0.25 * turn * travel : std::min(travel, circle));
@@ -171,7 +179,7 @@ Fleet::Progress Fleet::advance_in_pieces(std::uint32_t row, double steps, bool l
       continue;
     } else {
       if ((tested += piece) > kMostTested) break;
-      const double travel = std::hypot(progress.velocity.forward, progress.velocity.left) * piece * dt;
+      const double travel = base::hypot(progress.velocity.forward, progress.velocity.left) * piece * dt;
       find_obstacles(row, progress.X_WM, travel + kMaxYield * (piece + kRounds), others, scratch);
       progress.left = piece * dt;
       progress = advance_in_steps(row, progress, piece, last, scratch);
@@ -230,7 +238,7 @@ double Fleet::advance_to_contact(std::uint32_t row, Progress& progress, double d
   const auto refused = [&](double part) {
     return stop_at(row, X_start, advance(X_start, progress.velocity, part * dt), last, scratch) != Stop::none;
   };
-  const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(footprints_[row].step / kGap))));
+  const int halvings = halvings_to(kGap, footprints_[row].step);
   double free = std::ldexp(1.0, -halvings), blocked = 1.0;
   if (refused(free)) return 0.0;
   for (int k = 0; k < halvings; ++k) {

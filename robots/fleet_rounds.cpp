@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/elementary.h"
 #include "robots/command_law.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
@@ -29,7 +30,7 @@ void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scrat
   reported_[row] = 0;
 
   const double rim = std::abs(v.turn) * outline.radius * seconds;
-  double travel = std::hypot(v.forward, v.left) * seconds;
+  double travel = base::hypot(v.forward, v.left) * seconds;
   // A turning mover may push itself off once per substep.
   if (v.turn != 0.0 && !outline.edges.empty())
     travel += kMaxYield * (std::ceil((travel + rim) / outline.step) + kRounds);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "world/wall_tree.h"
 
@@ -137,8 +138,7 @@ Footprint footprint_of(const world::Mover& mover) {
 
 PlacedFootprint place_footprint(const Footprint& outline, const base::Pose& X_WM, std::span<FootprintEdge> memory) {
   SF_CHECK(memory.size() >= outline.edges.size(), "room for " + std::to_string(memory.size()) + " edges");
-  const double c = std::cos(X_WM.yaw);
-  const double s = std::sin(X_WM.yaw);
+  const auto [s, c] = base::sin_cos(X_WM.yaw);
   const auto turn = [c, s](glm::dvec2 p) { return glm::dvec2{c * p.x - s * p.y, s * p.x + c * p.y}; };
   for (std::size_t i = 0; i < outline.edges.size(); ++i) {
     const FootprintEdge& e = outline.edges[i];

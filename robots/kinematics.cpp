@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::robots {
 
 namespace {
 
 // sin(x)/x. Below the threshold, the next term of the series is less than half an ulp.
-double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
+double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : base::sin(x) / x; }
 
 constexpr double kSame = 1e-7;  // [m], [rad] poses within this distance are equal except for rounding
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/kinematics.h"
 
 namespace sf::robots {
@@ -11,7 +12,7 @@ base::Twist limit_kinematics(const world::Mover& mover, const base::Twist& comma
   base::Twist v = finite(command);
   v.turn = std::clamp(v.turn, -mover.max_turn, mover.max_turn);
   if (mover.drive == world::Drive::omni) {
-    const double speed = std::hypot(v.forward, v.left);
+    const double speed = base::hypot(v.forward, v.left);
     if (speed > mover.max_forward) {
       v.forward *= mover.max_forward / speed;
       v.left *= mover.max_forward / speed;
@@ -21,7 +22,7 @@ base::Twist limit_kinematics(const world::Mover& mover, const base::Twist& comma
   v.left = 0.0;
   v.forward = std::clamp(v.forward, -mover.max_forward, mover.max_forward);
   if (mover.drive == world::Drive::car) {
-    const double sharpest = std::abs(v.forward) * std::tan(kMaxSteer) / mover.wheelbase;
+    const double sharpest = std::abs(v.forward) * base::tan(kMaxSteer) / mover.wheelbase;
     v.turn = std::clamp(v.turn, -sharpest, sharpest);
   }
   return v;

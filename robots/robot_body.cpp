@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/kinematics.h"
 
 namespace sf::robots {
@@ -65,7 +66,7 @@ void RobotBody::advance(const base::Twist& command, const base::Report* followed
     fleet_.apply({&report, 1});
   }
   const base::Pose after = state().X_WM;
-  distance_ += std::hypot(after.x - before.x, after.y - before.y);
+  distance_ += base::hypot(after.x - before.x, after.y - before.y);
   trail_.add(now, after);
 }
 

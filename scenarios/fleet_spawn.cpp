@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "control/route_plan.h"
 #include "robots/footprint.h"
@@ -54,7 +55,7 @@ std::uint32_t original_of(const Scenario& scenario, const world::World& world) {
 bool clear(const base::Pose& X_WM, double radius, const world::World& world, const std::vector<Stays>& stays) {
   return std::all_of(stays.begin(), stays.end(), [&](const Stays& s) {
     const double apart = radius + robots::footprint_of(world.movers[s.row]).radius + kBetween;
-    return std::hypot(X_WM.x - s.X_WM.x, X_WM.y - s.X_WM.y) >= apart;
+    return base::hypot(X_WM.x - s.X_WM.x, X_WM.y - s.X_WM.y) >= apart;
   });
 }
 

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "scenarios/rank_exchange.h"
 #include "world/free_space.h"
@@ -40,7 +41,7 @@ double reach_of(const world::World& world, const sensors::SensorSet& sensor_set)
       if (!std::isfinite(row.reach))
         throw base::InputError("--tiles: the readings of '" + row.name + "' of '" + world.movers[row.mover].name +
                                "' depend on the whole world; leave --tiles out");
-      reach = std::max(reach, row.reach + std::hypot(row.X_MS.x, row.X_MS.y));
+      reach = std::max(reach, row.reach + base::hypot(row.X_MS.x, row.X_MS.y));
     }
   // Samples between two ticks see movers during their motion.
   return reach + largest.radius + 4.0 * largest.way;

@@ -8,6 +8,7 @@
 #include <deque>
 #include <numeric>
 
+#include "base/elementary.h"
 #include "base/random.h"
 #include "vision/positioning.h"
 #include "vision/renderer.h"
@@ -37,10 +38,10 @@ double cpu_now() {
 TrueTag truth_of(std::uint32_t id, const FollowCase& setup, double time) {
   if (id == kFollowedTag) {
     constexpr double kWeave = 0.05, kWave = 2.0;  // [m], [rad/m]
-    const double x = kFollowStart + setup.speed * time, slope = kWeave * kWave * std::cos(kWave * x);
-    const double yaw = std::atan(slope), bend = -kWeave * kWave * kWave * std::sin(kWave * x);
+    const double x = kFollowStart + setup.speed * time, slope = kWeave * kWave * base::cos(kWave * x);
+    const double yaw = base::atan(slope), bend = -kWeave * kWave * kWave * base::sin(kWave * x);
     return {id,
-            {x, kWeave * std::sin(kWave * x), 0.2, yaw},
+            {x, kWeave * base::sin(kWave * x), 0.2, yaw},
             {setup.speed, setup.speed * slope},
             setup.speed * bend / (1.0 + slope * slope)};
   }
@@ -49,8 +50,8 @@ TrueTag truth_of(std::uint32_t id, const FollowCase& setup, double time) {
   const double angle = turn * time + place, radius = 0.1;
   const glm::dvec2 center{kFollowSpacing * (place / 2), 0.5 * side};
   return {id,
-          {center.x + radius * std::cos(angle), center.y + radius * std::sin(angle), 0.2, base::wrap_angle(angle)},
-          radius * turn * glm::dvec2{-std::sin(angle), std::cos(angle)},
+          {center.x + radius * base::cos(angle), center.y + radius * base::sin(angle), 0.2, base::wrap_angle(angle)},
+          radius * turn * glm::dvec2{-base::sin(angle), base::cos(angle)},
           turn};
 }
 
@@ -108,7 +109,7 @@ FollowMoment look_for_tag(vision::Positioning& positioning, std::span<const visi
   if (found == tags.end()) return moment;
   const TrueTag truth = truth_of(kFollowedTag, setup, found->time);
   moment.tag = *found;
-  moment.error = std::hypot(found->X_WT.x - truth.X_WT.x, found->X_WT.y - truth.X_WT.y);
+  moment.error = base::hypot(found->X_WT.x - truth.X_WT.x, found->X_WT.y - truth.X_WT.y);
   return moment;
 }
 

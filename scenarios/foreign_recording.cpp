@@ -11,6 +11,7 @@
 #include <memory>
 #include <set>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/time.h"
 #include "record/foreign_messages.h"
@@ -49,14 +50,14 @@ class LocalPlane {
   static std::array<double, 3> earth(double latitude, double longitude) {
     constexpr double a = 6378137.0, f = 1.0 / 298.257223563, e2 = f * (2.0 - f);
     const double lat = latitude * M_PI / 180.0, lon = longitude * M_PI / 180.0;
-    const double n = a / std::sqrt(1.0 - e2 * std::sin(lat) * std::sin(lat));
-    return {n * std::cos(lat) * std::cos(lon), n * std::cos(lat) * std::sin(lon), n * (1.0 - e2) * std::sin(lat)};
+    const double n = a / std::sqrt(1.0 - e2 * base::sin(lat) * base::sin(lat));
+    return {n * base::cos(lat) * base::cos(lon), n * base::cos(lat) * base::sin(lon), n * (1.0 - e2) * base::sin(lat)};
   }
   void touch(double latitude, double longitude) {
     is_set_ = true;
     origin_ = earth(latitude, longitude);
-    sin_lat_ = std::sin(latitude * M_PI / 180.0), cos_lat_ = std::cos(latitude * M_PI / 180.0);
-    sin_lon_ = std::sin(longitude * M_PI / 180.0), cos_lon_ = std::cos(longitude * M_PI / 180.0);
+    sin_lat_ = base::sin(latitude * M_PI / 180.0), cos_lat_ = base::cos(latitude * M_PI / 180.0);
+    sin_lon_ = base::sin(longitude * M_PI / 180.0), cos_lon_ = base::cos(longitude * M_PI / 180.0);
   }
   bool is_set_ = false;
   std::array<double, 3> origin_{};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "scenarios/statistics.h"
 
 namespace sf::scenarios {
@@ -16,7 +17,7 @@ constexpr std::size_t kMostSummed = 100'000;           // beyond this, the norma
 /// P(|t| < tan(angle) sqrt(freedom)): finite sums of Abramowitz and Stegun, "Handbook of Mathematical Functions",
 /// 26.7.3 and 26.7.4.
 double central_part(double angle, std::size_t freedom) {
-  const double cosine = std::cos(angle), square = cosine * cosine;
+  const double cosine = base::cos(angle), square = cosine * cosine;
   const bool odd = freedom % 2 == 1;
   double term = odd ? cosine : 1.0, sum = freedom > 1 ? term : 0.0;
   for (std::size_t k = odd ? 3 : 2; k + 2 <= freedom; k += 2) {
@@ -24,7 +25,7 @@ double central_part(double angle, std::size_t freedom) {
     term *= square * (n - 1.0) / n;
     sum += term;
   }
-  return odd ? 2.0 / M_PI * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
+  return odd ? 2.0 / M_PI * (angle + base::sin(angle) * sum) : base::sin(angle) * sum;
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ double student_quantile(std::size_t freedom) {
     const double middle = 0.5 * (low + high);
     (central_part(middle, freedom) < kConfidence ? low : high) = middle;
   }
-  return std::tan(0.5 * (low + high)) * std::sqrt(static_cast<double>(freedom));
+  return base::tan(0.5 * (low + high)) * std::sqrt(static_cast<double>(freedom));
 }
 
 Interval mean_interval(std::span<const double> values) {

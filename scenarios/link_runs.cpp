@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "base/elementary.h"
 #include "base/random.h"
 #include "base/time.h"
 #include "robots/estimation/link_speed.h"
@@ -37,7 +38,8 @@ double green_share(double time) { return time > 1200.0 && time < 2400.0 ? 0.4 : 
 double intelligent_driver(double speed, double free_speed, double gap, double ahead_speed) {
   const double wanted = kGap + std::max(0.0, speed * kHeadway + speed * (speed - ahead_speed) /
                                                                     (2.0 * std::sqrt(kAcceleration * kBraking)));
-  return kAcceleration * (1.0 - std::pow(speed / free_speed, 4) - std::pow(wanted / std::max(gap, 0.1), 2));
+  const double pace = speed / free_speed, squeeze = wanted / std::max(gap, 0.1);
+  return kAcceleration * (1.0 - pace * pace * pace * pace - squeeze * squeeze);
 }
 
 world::Setting numbers(const std::string& key, std::vector<double> values) {
@@ -93,7 +95,7 @@ std::size_t add_loops(world::World& world, std::uint32_t centre, const sensors::
     const auto k = static_cast<std::size_t>(std::ranges::upper_bound(link.s, middle) - link.s.begin());
     const glm::dvec2 a = link.points[k - 1], along = glm::normalize(link.points[k] - a);
     const glm::dvec2 p = a + (middle - link.s[k - 1]) * along;
-    const base::Pose X_WL{p.x, p.y, 0.0, std::atan2(along.y, along.x)};
+    const base::Pose X_WL{p.x, p.y, 0.0, base::atan2(along.y, along.x)};
     world::Sensor loop = sensor_of("loop", "loop " + link.name, {numbers("size", size), numbers("rate", {rate})});
     loop.X_MS = base::compose(base::inverse(world.movers[centre].X_WM), X_WL);
     world.movers[centre].sensors.push_back(std::move(loop));

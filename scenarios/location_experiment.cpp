@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/elementary.h"
 #include "scenarios/experiment.h"
 #include "scenarios/simulation.h"
 #include "sensors/location.h"
@@ -75,7 +76,7 @@ void note(const base::ReadingBlock& reading, LocatedTable& table) {
   const double x = v[0] - reading.X_WM.x, y = v[1] - reading.X_WM.y;
   const double xx = v[kCovarianceAt], xy = v[kCovarianceAt + 1], yy = v[kCovarianceAt + 2];
   located.squares += x * x + y * y;
-  located.largest = std::max(located.largest, std::hypot(x, y));
+  located.largest = std::max(located.largest, base::hypot(x, y));
   located.normalized += 0.5 * (yy * x * x - 2.0 * xy * x * y + xx * y * y) / (xx * yy - xy * xy);
   ++located.sources[v[kSourceAt] < 0.0 ? 3 : static_cast<std::size_t>(v[kSourceAt])];
 }

@@ -209,7 +209,8 @@ std::vector<MonitoredCar> run_monitored(const ExperimentContext& context, std::u
       if (time < kFaultFrom || time >= kFaultUntil || own.is_lost()) continue;
       const base::Report& truth = tick.reports[rows[k]];
       const base::Pose estimate = own.pose_at(tick.time);
-      car.error_squares += std::pow(estimate.x - truth.X_WM.x, 2) + std::pow(estimate.y - truth.X_WM.y, 2);
+      const glm::dvec2 off{estimate.x - truth.X_WM.x, estimate.y - truth.X_WM.y};
+      car.error_squares += dot(off, off);
       ++car.steps;
       if (std::abs(truth.velocity.forward) < kDriving) continue;
       const control::RoadPositions places = corridors.positions(truth.X_WM, kFarthestLane);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/elementary.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
 
@@ -83,7 +84,7 @@ void RunMetrics::update(const base::TickRecord& tick) {
       continue;
     }
     counts.contacts += before.contact.begins(tick.contacts[m] != 0);
-    const double way = std::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);
+    const double way = base::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);
     // Farther than it can drive: an event or `put` has placed it.
     const bool placed = way > 2.0 * world_.movers[m].max_forward * world_.interval;
     if (before.seen && !placed) {
@@ -121,7 +122,7 @@ void RunMetrics::update_red_lights(const base::TickRecord& tick, std::uint32_t m
     const glm::dvec2 now = ahead(X_WM);
     const glm::dvec2 then = ahead(before_[mover].X_WM);
     if (then.x >= kPassed || now.x < kPassed || std::abs(now.y) > line.half_width) continue;
-    if (std::cos(X_WM.yaw - line.X_WL.yaw) < 0.5) continue;
+    if (base::cos(X_WM.yaw - line.X_WL.yaw) < 0.5) continue;
     const world::Signal shown = world::signal_at(world_.lights[line.light], 1e-9 * static_cast<double>(tick.time));
     counts_[mover].red_lights_passed += shown.state == world::LightState::red;
   }

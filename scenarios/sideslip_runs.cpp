@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/random.h"
 #include "robots/car_dynamics.h"
 
@@ -28,7 +29,7 @@ double steering(Manoeuvre manoeuvre, double time) {
   if (t < 0.0) return 0.0;
   if (manoeuvre == Manoeuvre::step_steer) return 1.0;
   if (manoeuvre == Manoeuvre::lane_change && kSineRate * t >= 2.0 * M_PI) return 0.0;
-  return std::sin(kSineRate * t);
+  return base::sin(kSineRate * t);
 }
 
 SideslipMoment moment_of(const robots::CarModel& car, const robots::CarState& s, double time) {
@@ -161,13 +162,13 @@ SideslipRow evaluate(const SideslipRun& run, const robots::CarModel& car, Sidesl
     for (std::size_t k = 0; k < estimates.size(); ++k) {
       const SideslipMoment& truth = run.moments[k];
       if (truth.time < kManoeuvreStart) continue;
-      const double error = (estimates[k].sideslip - truth.sideslip) * 180.0 / M_PI;
+      const double slip = estimates[k].sideslip - truth.sideslip, error = slip * 180.0 / M_PI;
       const double front = estimates[k].force.front - truth.force.front;
       const double rear = estimates[k].force.rear - truth.force.rear;
       row.rms_deg += error * error;
       row.worst_deg = std::max(row.worst_deg, std::abs(error));
       row.front_rms_n += front * front, row.rear_rms_n += rear * rear;
-      row.nees += std::pow(estimates[k].sideslip - truth.sideslip, 2) / estimates[k].covariance[0];
+      row.nees += slip * slip / estimates[k].covariance[0];
       samples += 1.0;
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.h"
 #include "base/pose.h"
 
 namespace sf::scenarios {
@@ -55,7 +56,7 @@ Sight::Sight(std::vector<world::Segment> walls, const sensors::SensorSpec& laser
     : walls_(walls),
       laser_(laser),
       robots_(robots),
-      margin_(1 + maps::whole_below(1.0 + std::hypot(laser.X_MS.x, laser.X_MS.y) / robots.geometry.cell)),
+      margin_(1 + maps::whole_below(1.0 + base::hypot(laser.X_MS.x, laser.X_MS.y) / robots.geometry.cell)),
       box_(base::empty_box()) {
   const maps::GridGeometry& grid = robots.geometry;
   for (int h = 0; h < kHeadings; ++h) {
@@ -103,7 +104,7 @@ bool Sight::sees(CellAt robot, const Heading& heading, glm::dvec2 p) const {
   const glm::dvec2 origin = maps::middle(robots_.geometry, robot), eye = origin + heading.eye;
   const glm::dvec2 d = base::rotate(-heading.yaw, p - eye);
   const double far = glm::length(d);
-  if (far >= laser_.limit || std::abs(std::atan2(d.y, d.x)) > 0.5 * laser_.fov) return false;
+  if (far >= laser_.limit || std::abs(base::atan2(d.y, d.x)) > 0.5 * laser_.fov) return false;
   return is_clear(eye, p) && (heading.eye == glm::dvec2{} || is_clear(origin, eye));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
@@ -71,7 +72,7 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
     add(row, sensors::kGps, {.message = Message::fix, .sigma = gps.noise});
   });
   for_each_sensor<Gyro>(sensor_set, sensors::kGyro, [&](const auto& row, const Gyro& gyro) {
-    add(row, sensors::kGyro, {.message = Message::imu, .sigma = std::hypot(gyro.noise, gyro.bias)});
+    add(row, sensors::kGyro, {.message = Message::imu, .sigma = base::hypot(gyro.noise, gyro.bias)});
   });
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::scenarios {
 
 namespace {
@@ -9,13 +11,13 @@ namespace {
 constexpr double kApart = 0.01;           // [m] between stored poses
 constexpr std::size_t kRemembered = 400;  // number of stored poses
 
-double distance(const base::Pose& a, const base::Pose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double distance(const base::Pose& a, const base::Pose& b) { return base::hypot(a.x - b.x, a.y - b.y); }
 
 /// Returns the side of the contact: positive if most of it is on the left.
 double side_of(std::uint32_t contact_mask) {
   double side = 0.0;
   for (std::uint32_t k = 0; k < base::kContactSectors; ++k)
-    if ((contact_mask >> k & 1u) != 0) side += std::sin(2.0 * M_PI * (k + 0.5) / base::kContactSectors);
+    if ((contact_mask >> k & 1u) != 0) side += base::sin(2.0 * M_PI * (k + 0.5) / base::kContactSectors);
   return side > 0.0 ? 1.0 : -1.0;
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/hash.h"
@@ -38,7 +39,7 @@ struct Range {
   /// @param u in [0, 1]; whole numbers are equally likely for u in [0, 1).
   double at(double u) const {
     if (whole && !log) return std::min(from + std::floor(u * (to - from + 1.0)), to);
-    const double x = log ? from * std::pow(to / from, u) : from + u * (to - from);
+    const double x = log ? from * base::exp(u * base::log(to / from)) : from + u * (to - from);
     return std::clamp(whole ? std::round(x) : x, from, to);
   }
   /// Returns a point of a grid of `count` points that includes both ends.
@@ -46,7 +47,7 @@ struct Range {
   double point(std::uint64_t i, std::uint64_t count) const {
     if (i + 1 == count) return to;
     const double u = static_cast<double>(i) / static_cast<double>(count - 1);
-    const double x = log ? from * std::pow(to / from, u) : from + u * (to - from);
+    const double x = log ? from * base::exp(u * base::log(to / from)) : from + u * (to - from);
     return whole ? std::round(x) : std::stod(fmt::format("{:.12g}", x));  // 0.1, not 0.09999999999999999
   }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
@@ -106,7 +107,7 @@ std::vector<TreeGrids::Truth> TreeGrids::truth_now(const base::TickRecord& tick)
     const glm::dvec2 p = maps::middle(geometry_, at);
     for (const base::Report& report : tick.reports)
       if (report.mover != car_ &&
-          std::hypot(p.x - report.X_WM.x, p.y - report.X_WM.y) < world_.movers[report.mover].radius + kAround)
+          base::hypot(p.x - report.X_WM.x, p.y - report.X_WM.y) < world_.movers[report.mover].radius + kAround)
         truth[index_of(at)] = Truth::unseen;
   });
   return truth;
@@ -128,13 +129,13 @@ std::vector<TreeGrid> TreeGrids::compare(const base::TickRecord& tick) const {
       const maps::LogOddsGrid& of = grid(sensors, pose);
       std::vector<Truth> taken(truth.size());
       for_each_cell(geometry_, [&](maps::CellAt at) {
-        const double odds = odds_of(of, at), p = 1.0 / (1.0 + std::exp(-odds));
+        const double odds = odds_of(of, at), p = 1.0 / (1.0 + base::exp(-odds));
         const Truth is = truth[index_of(at)];
         taken[index_of(at)] = odds > 0.0 ? Truth::surface : Truth::unseen;
         if (is == Truth::unseen) return;
         ++sum.cells, sum.explored += odds != 0.0;
         const double right = is == Truth::surface ? p : 1.0 - p;
-        sum.log_loss -= std::log(right), sum.squares += (1.0 - right) * (1.0 - right);
+        sum.log_loss -= base::log(right), sum.squares += (1.0 - right) * (1.0 - right);
         sum.occupied += odds > 0.0, sum.exact += odds > 0.0 && is == Truth::surface;
         sum.right += odds > 0.0 && near_surface(truth, at);
         sum.free += odds < 0.0, sum.wrong += odds < 0.0 && is == Truth::surface;

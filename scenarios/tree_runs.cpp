@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/time.h"
 #include "scenarios/simulation.h"
@@ -42,7 +43,7 @@ struct TreeRobots {
 
 bool TreeRobots::in_sight(const base::TickRecord& tick, std::uint32_t target) const {
   const glm::dvec3 from = eye(tick.reports[probe]), to = eye(tick.reports[target]);
-  if (!(std::hypot(to.x - from.x, to.y - from.y) < kSight) || std::abs(to.z - from.z) > kEyeHeight) return false;
+  if (!(base::hypot(to.x - from.x, to.y - from.y) < kSight) || std::abs(to.z - from.z) > kEyeHeight) return false;
   return std::ranges::none_of(world.walls, [&](const world::Segment& wall) {
     return wall.seen_by_laser && sensors::crosses_sight(from, to, wall);
   });
@@ -54,7 +55,7 @@ bool TreeRobots::near_surface(glm::dvec2 p) const {
   });
 }
 
-double speed_of(const base::Report& report) { return std::hypot(report.velocity.forward, report.velocity.left); }
+double speed_of(const base::Report& report) { return base::hypot(report.velocity.forward, report.velocity.left); }
 
 /// Errors of the track of one target.
 void compare_track(TreeRow row, const base::Report& truth, TreeTracks& sum) {
@@ -79,7 +80,7 @@ void compare_tracks(TreeRobots& robots, const base::TickRecord& tick, const base
   sum.tracks += rows.size();
   const auto away = [&](TreeRow row, std::uint32_t target) {
     const base::Pose& X = tick.reports[target].X_WM;
-    return std::hypot(row[0] - X.x, row[1] - X.y);
+    return base::hypot(row[0] - X.x, row[1] - X.y);
   };
   std::vector<bool> used(rows.size());
   for (const std::uint32_t target : robots.targets) {

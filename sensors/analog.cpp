@@ -33,7 +33,7 @@ class AnalogInputs : public HostBackend {
 void AnalogInputs::measure(std::span<const HostSample> samples) const {
   for (const HostSample& sample : samples) {
     const Analog& a = settings_[sample.row];
-    const double steps = std::exp2(a.bits) - 1.0;
+    const double steps = std::ldexp(1.0, static_cast<int>(a.bits)) - 1.0;
     for (std::size_t i = 0; i < a.inputs.size(); ++i) {
       const AnalogInput& input = a.inputs[i];
       const double volts = input.source == AnalogInput::Source::light

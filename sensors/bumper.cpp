@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -62,7 +63,7 @@ std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
     const glm::dvec2 along = base::rotate(angle, {0.0, half});
     const auto bearing = [&](glm::dvec2 p) {
       const glm::dvec2 p_M = base::transform(sensor.X_MS, p);
-      return std::atan2(p_M.y, p_M.x);
+      return base::atan2(p_M.y, p_M.x);
     };
     double sweep = bearing(middle + along) - bearing(middle - along);
     if (sweep < 0.0) sweep += kTurn;

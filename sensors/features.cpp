@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/echo.h"
+#include "base/elementary.h"
 #include "sensors/cones/rangers.h"
 #include "sensors/fiducial.h"
 #include "sensors/infrared.h"
@@ -85,7 +86,7 @@ class ConeFeatures final : public FeatureSource {
   }
   double sigma(double range) const {
     return infrared_ ? infrared_sigma(range, {array_.range_min, array_.range_max}, array_.proportional)
-                     : std::hypot(array_.sigma, array_.proportional * range);
+                     : base::hypot(array_.sigma, array_.proportional * range);
   }
   ConeArray array_;
   bool infrared_;

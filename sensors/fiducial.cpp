@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/elementary.h"
 #include "base/random.h"
 #include "sensors/host_backend.h"
 #include "sensors/illumination.h"
@@ -104,7 +105,7 @@ void FiducialFinders::measure(const HostSample& sample) const {
     if (fiducial.key != s.key || carrier_of(fiducial, row.mover) == row.mover) continue;
     const Pose X_WF = place_of(fiducial, row.mover);
     const glm::dvec2 d{X_WF.x - sample.X_WS.x, X_WF.y - sample.X_WS.y};
-    const double range = glm::length(d), bearing = base::wrap_angle(std::atan2(d.y, d.x) - sample.X_WS.yaw);
+    const double range = glm::length(d), bearing = base::wrap_angle(base::atan2(d.y, d.x) - sample.X_WS.yaw);
     if (!(range >= s.range_min && range <= s.range_max) || std::abs(bearing) > 0.5 * s.fov) continue;
     if (hidden(fiducial, X_WF, sample)) continue;
     seen.push_back({i, range, bearing, base::wrap_angle(X_WF.yaw - sample.X_WS.yaw)});

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/elementary.h"
 #include "base/error.h"
 
 namespace sf::sensors {
@@ -52,7 +53,7 @@ std::vector<Satellite> constellation(std::uint32_t count) {
   const double golden = M_PI * (3.0 - std::sqrt(5.0));
   std::vector<Satellite> satellites;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const double up = std::sin(kLeastElevation) + (1.0 - std::sin(kLeastElevation)) * (i + 0.5) / count;
+    const double up = base::sin(kLeastElevation) + (1.0 - base::sin(kLeastElevation)) * (i + 0.5) / count;
     satellites.push_back({base::rotate(golden * i, {1.0, 0.0}), up / std::sqrt(1.0 - up * up)});
   }
   return satellites;

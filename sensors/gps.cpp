@@ -4,6 +4,7 @@
 #include <bit>
 #include <limits>
 
+#include "base/elementary.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -30,7 +31,7 @@ ParsedSensors parse_receivers(const world::World& world) {
     row.rate = rate_of(sensor, kGpsRate);
     row.X_MS.z += sensor.height;
     const double above = top - world.movers[row.mover].X_WM.z - row.X_MS.z;
-    row.reach = std::max(0.0, above / std::tan(kLeastElevation));
+    row.reach = std::max(0.0, above / base::tan(kLeastElevation));
     return gps;
   });
 }

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <vector>
 
+#include "base/elementary.h"
+
 namespace sf::sensors {
 
 namespace {
@@ -43,7 +45,7 @@ double illuminance_of(const Lamp& lamp, const glm::dvec3& p, glm::dvec2 normal) 
   const glm::dvec3 to{lamp.X_WL.x - p.x, lamp.X_WL.y - p.y, lamp.X_WL.z - p.z};
   const double distance = glm::length(to);
   if (distance > range_of(lamp)) return 0.0;
-  const double bearing = base::wrap_angle(std::atan2(-to.y, -to.x) - lamp.X_WL.yaw);
+  const double bearing = base::wrap_angle(base::atan2(-to.y, -to.x) - lamp.X_WL.yaw);
   if (lamp.fov < 2.0 * M_PI && std::abs(bearing) > 0.5 * lamp.fov) return 0.0;
   const double cosine = distance > 0.0 ? (normal.x * to.x + normal.y * to.y) / distance : 1.0;
   const double far = std::max(distance, kNearestLamp);

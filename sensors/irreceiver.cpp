@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/box_tree.h"
+#include "base/elementary.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "world/wall_tree.h"
@@ -97,7 +98,7 @@ std::uint32_t light_of(const Emitter& emitter, glm::dvec2 p) {
   const double distance = glm::length(from);
   const bool reached = distance <= emitter.range;
   const bool near = emitter.halo > 0.0 && distance <= emitter.halo;
-  const double bearing = std::atan2(from.y, from.x) - emitter.X_WE.yaw;
+  const double bearing = base::atan2(from.y, from.x) - emitter.X_WE.yaw;
   if (emitter.kind == Emitter::Kind::virtual_wall)
     return near || (reached && within(bearing, 0.0, emitter.fov)) ? 1 : 0;
   const double aside = 0.5 * (1.0 - kOverlap) * emitter.fov;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "raycast/ray_caster.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_noise.h"
@@ -206,7 +207,7 @@ SensorSpec spec_of(const CastLaser& cast, std::uint32_t mover, std::uint32_t num
   const raycast::ScanNoise& noise = laser.noise;
   row.sigma = noise.angle_sigma > 0.0  // a beam that turns may hit another surface
                   ? HUGE_VAL
-                  : std::hypot(noise.range_sigma, noise.range_proportional * laser.range_max);
+                  : base::hypot(noise.range_sigma, noise.range_proportional * laser.range_max);
   return row;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/elementary.h"
 #include "raycast/ray_caster.h"
 #include "sensors/accuracy.h"
 
@@ -28,7 +29,7 @@ CastLaser cast_laser(const world::World& world, const LaserSettings& laser) {
   cast.laser.resolution = std::min(laser.resolution * mode_settings.skip, std::max(1u, laser.samples - 1));
   const double step = laser.samples > 1 ? laser.fov / (laser.samples - 1) : 0.0;
   for (std::uint32_t k = 0; mode_settings.skip > 1 && k <= cast.laser.resolution; ++k)
-    cast.sines.push_back(std::sin(k * step));
+    cast.sines.push_back(base::sin(k * step));
   return cast;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::sensors {
 
 namespace {
@@ -25,7 +27,7 @@ Cast cast_beam(const CastLaser& shape, const base::RandomKey& draw, bool noisy, 
   const LaserSettings& laser = shape.laser;
   Cast beam{sample, std::max(range, laser.range_min), hit, range < laser.range_min};
   if (!noisy || hit == base::kNoHit) return beam;
-  const double sigma = std::hypot(laser.noise.range_sigma, laser.noise.range_proportional * beam.range);
+  const double sigma = base::hypot(laser.noise.range_sigma, laser.noise.range_proportional * beam.range);
   const double disturbed = beam.range + sigma * base::random_normal(draw, sample)[0];
   beam.range = std::clamp(disturbed, laser.range_min, laser.range_max);
   return beam;

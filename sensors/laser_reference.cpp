@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/laser.h"
 #include "sensors/laser_noise.h"
 
@@ -56,12 +57,12 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t num
 
   const std::vector<Seen> surfaces = in_sight(mover, scan.X_WS, l.range_max);
   const double least = cast_settings(l).range_min;
-  const glm::dvec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
+  const glm::dvec2 heading = base::direction(scan.X_WS.yaw);
   std::vector<double> ranges(SF_BEAMS_PER_LANE * std::size_t{plan.lanes()});
   std::vector<std::uint32_t> hits(ranges.size());
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
     const double bearing = bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
-    const glm::dvec2 beam{std::cos(bearing), std::sin(bearing)};
+    const glm::dvec2 beam = base::direction(bearing);
     const glm::dvec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
     raycast::ClosestHit nearest{l.range_max};
     std::uint32_t model = SF_NO_HIT;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/displacement.h"
+#include "base/elementary.h"
 #include "robots/estimation/link_speed.h"
 #include "sensors/derived/derived_type.h"
 #include "sensors/host_backend.h"
@@ -179,7 +180,7 @@ void LinkSpeedSensor::take_position(Source& source, double time, glm::dvec2 p, s
   if (!known || jumped) vehicle.turned = p, vehicle.yaw.reset();
   if (yaw) vehicle.yaw = yaw;
   if (const glm::dvec2 d = p - vehicle.turned; !yaw && glm::length(d) > kLeastMove + 2.0 * sigma)
-    vehicle.yaw = std::atan2(d.y, d.x), vehicle.turned = p;
+    vehicle.yaw = base::atan2(d.y, d.x), vehicle.turned = p;
   const std::optional<LinkPlace> before = jumped ? std::nullopt : vehicle.place;
   const double straight = glm::distance(vehicle.p, p);
   vehicle.place = vehicle.yaw ? links_.find(p, vehicle.yaw) : std::nullopt;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/displacement.h"
+#include "base/elementary.h"
 #include "robots/kinematics.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
@@ -123,13 +124,13 @@ bool Loops::may_cover(std::size_t row, std::uint32_t mover) const {
   const Pose &X_WM = states()[mover].X_WM, &X_WC = states()[carrier].X_WM;
   if (!(std::abs(X_WM.z - X_WC.z) <= kLevelHeight)) return false;  // also if one of them is absent
   const auto way = [&](std::uint32_t m) {
-    const double d = std::hypot(states()[m].X_WM.x - before_[m].X_WM.x, states()[m].X_WM.y - before_[m].X_WM.y);
+    const double d = base::hypot(states()[m].X_WM.x - before_[m].X_WM.x, states()[m].X_WM.y - before_[m].X_WM.y);
     return std::isnan(d) ? 0.0 : M_PI_2 * d;  // an arc of half a turn
   };
   const Pose& X_CL = rows()[row].X_MS;
-  const double reach = world().movers[mover].radius + 0.5 * std::hypot(sizes_[row].length, sizes_[row].width) +
-                       std::hypot(X_CL.x, X_CL.y);
-  return std::hypot(X_WM.x - X_WC.x, X_WM.y - X_WC.y) <= reach + way(mover) + way(carrier);
+  const double reach = world().movers[mover].radius + 0.5 * base::hypot(sizes_[row].length, sizes_[row].width) +
+                       base::hypot(X_CL.x, X_CL.y);
+  return base::hypot(X_WM.x - X_WC.x, X_WM.y - X_WC.y) <= reach + way(mover) + way(carrier);
 }
 
 /// @param time [ns] from the last tick to now  @param at if not null: the mover's state then
@@ -154,17 +155,17 @@ bool Loops::trace(std::size_t row, std::uint32_t mover, bool on, Detector& detec
   const auto enter = [&](std::int64_t time, const base::Report* at) {
     since = time;
     ++detector.count;
-    if (at != nullptr) detector.speeds += std::hypot(at->velocity.forward, at->velocity.left), ++detector.timed;
+    if (at != nullptr) detector.speeds += base::hypot(at->velocity.forward, at->velocity.left), ++detector.timed;
   };
   std::int64_t steps = 1;
   if (drove(mover)) {
     const auto moved = [&](std::uint32_t m, double radius) {
       const Pose &from = before_[m].X_WM, &to = states()[m].X_WM;
       const double turn = std::abs(base::wrap_angle(to.yaw - from.yaw));
-      const double d = M_PI_2 * std::hypot(to.x - from.x, to.y - from.y) + radius * turn;
+      const double d = M_PI_2 * base::hypot(to.x - from.x, to.y - from.y) + radius * turn;
       return std::isnan(d) ? 0.0 : d;
     };
-    const double reach = std::hypot(rows()[row].X_MS.x, rows()[row].X_MS.y);
+    const double reach = base::hypot(rows()[row].X_MS.x, rows()[row].X_MS.y);
     const double way = moved(mover, world().movers[mover].radius) + moved(rows()[row].mover, reach);
     const double step = 0.25 * std::min(sizes_[row].length, sizes_[row].width);
     steps = std::clamp<std::int64_t>(std::llround(std::ceil(std::min(way / step, 1e6))), 1, kMostTests);
@@ -253,7 +254,7 @@ constexpr PlainForm kForm{kLoop, "loop", kNumbers};
 bool covers(const LoopSize& size, const Pose& X_WL, const world::Mover& mover, const Pose& X_WM) {
   const Pose X_ML = base::compose(base::inverse(X_WM), X_WL), X_LM = base::inverse(X_ML);
   const double x = 0.5 * size.length, y = 0.5 * size.width;
-  if (mover.body.empty() || std::hypot(X_ML.x, X_ML.y) > mover.radius + std::hypot(x, y)) return false;
+  if (mover.body.empty() || base::hypot(X_ML.x, X_ML.y) > mover.radius + base::hypot(x, y)) return false;
   const glm::dvec2 corners[] = {base::transform(X_ML, {-x, -y}), base::transform(X_ML, {x, -y}),
                                 base::transform(X_ML, {x, y}), base::transform(X_ML, {-x, y})};
   for (const world::Segment& edge : mover.body) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::sensors {
 
 namespace {
@@ -17,7 +19,7 @@ Rolled roll(const base::Pose& before, const base::Pose& after, double track) {
   const double half = 0.5 * turn;
   const glm::dvec2 chord{after.x - before.x, after.y - before.y};
   const double along = glm::dot(chord, base::rotate(before.yaw + half, {1.0, 0.0}));
-  const double arc = along * (std::abs(half) < 1e-4 ? 1.0 + half * half / 6.0 : half / std::sin(half));
+  const double arc = along * (std::abs(half) < 1e-4 ? 1.0 + half * half / 6.0 : half / base::sin(half));
   return {arc - 0.5 * track * turn, arc + 0.5 * track * turn};
 }
 

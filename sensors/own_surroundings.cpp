@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::sensors {
 
 namespace {
@@ -69,7 +71,7 @@ void OwnSurroundings::meet_movers(Nearest& nearest) const {
 }
 
 sensorfarm::Hit OwnSurroundings::cast(std::uint32_t self, const base::Pose& from, double range) const {
-  Nearest nearest{self, from, {from.x, from.y}, {std::cos(from.yaw), std::sin(from.yaw)}, {range}};
+  Nearest nearest{self, from, {from.x, from.y}, base::direction(from.yaw), {range}};
   const double piece = std::max(kPieceOfLoop, range / kMostOutlinePieces);
   for (double t = 0.0; t < nearest.best.range; t += piece)
     meet_walls(nearest, t, std::min(t + piece, nearest.best.range));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/cones/rangers.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
@@ -35,13 +36,13 @@ RangeSource::RangeSource(const world::World& world, const RangeSensor& sensor) :
   limits_ = {array.range_min, array.range_max};
   constant_ = array.sigma, proportional_ = array.proportional, turns_ = array.turns;
   if (sensor.type == kInfrared) width_ = kInfraredColumns;
-  if (array.min_cosine > 0.0) seen_ = std::acos(array.min_cosine) / (0.5 * M_PI);
+  if (array.min_cosine > 0.0) seen_ = base::acos(array.min_cosine) / (0.5 * M_PI);
   for (const Pose& X_SC : array.X_SC) elements_.push_back({base::compose(array.row.X_MS, X_SC), 0.5 * array.fov});
 }
 
 double RangeSource::sigma_at(double range) const {
   return sensor_.type == kInfrared ? infrared_sigma(range, limits_, proportional_)
-                                   : std::hypot(constant_, proportional_ * range);
+                                   : base::hypot(constant_, proportional_ * range);
 }
 
 std::span<const maps::RangeCone> RangeSource::cones(const base::ReadingBlock& reading, const base::Pose& X_WM) {

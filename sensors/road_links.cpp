@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/suggest.h"
 #include "sensors/settings.h"
 #include "world/roads/roads.h"
@@ -98,7 +99,7 @@ std::optional<LinkPlace> RoadLinks::find(glm::dvec2 p, std::optional<double> yaw
     const RoadLink& link = links_[row];
     const glm::dvec2 a = link.points[k], along = link.points[k + 1] - a;
     const double length = glm::length(along);
-    if (yaw && dot(along, glm::dvec2(std::cos(*yaw), std::sin(*yaw))) < kLeastCosine * length) return false;
+    if (yaw && dot(along, base::direction(*yaw)) < kLeastCosine * length) return false;
     const double t = std::clamp(dot(p - a, along) / (length * length), 0.0, 1.0);
     const double distance = glm::distance(p, a + t * along);
     // Pieces come in the tree's order: ties go to the first.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/elementary.h"
 #include "base/time.h"
 #include "robots/car_dynamics.h"
 #include "robots/estimation/sideslip.h"
@@ -84,7 +85,7 @@ class SideslipSensor final : public sensorfarm::DerivedSensor {
         return add(time, SideslipKind::torque, v[0]);
       default:  // a command states the turn rate of a car without slip
         return add(time, SideslipKind::steer,
-                   std::atan2(model_.car.wheelbase() * v[2], std::max(std::abs(v[0]), 1e-3)));
+                   base::atan2(model_.car.wheelbase() * v[2], std::max(std::abs(v[0]), 1e-3)));
     }
   }
 

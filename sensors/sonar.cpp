@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/cones/rangers.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -36,7 +37,7 @@ void read_noise(const world::Sensor& sensor, ConeArray& array) {
   if (!values) return;
   array.sigma = sensor.metres_per_unit * (*values)[0];
   array.proportional = values->size() > 1 ? (*values)[1] : 0.0;
-  array.row.sigma = std::hypot(array.sigma, array.proportional * array.range_max);
+  array.row.sigma = base::hypot(array.sigma, array.proportional * array.range_max);
   if (array.sigma >= 0.0 && array.sigma <= kLongest && array.proportional >= 0.0 && array.proportional <= kMostShare)
     return;
   refuse(sensor, "noise",
@@ -46,7 +47,7 @@ void read_noise(const world::Sensor& sensor, ConeArray& array) {
 }
 
 void tell_range(const ConeArray& array, double range, bool met, double deviate, std::span<double> out) {
-  const double sigma = std::hypot(array.sigma, array.proportional * range);
+  const double sigma = base::hypot(array.sigma, array.proportional * range);
   out[0] = std::clamp(met ? range + sigma * deviate : range, array.range_min, array.range_max);
 }
 
@@ -64,7 +65,7 @@ ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint
   ConeArray array = read_cones(sensor, mover, number_of_type, {25.0 * kDegrees, 0.10, 4.0, 25.0});
   array.turns = read_turns(sensor, array.row.elements);
   const double incidence = angle(sensor, "incidence", 0.5 * M_PI, 1e-3 * kDegrees, 0.5 * M_PI);
-  array.min_cosine = incidence < 0.5 * M_PI * (1.0 - 1e-12) ? std::cos(incidence) : 0.0;
+  array.min_cosine = incidence < 0.5 * M_PI * (1.0 - 1e-12) ? base::cos(incidence) : 0.0;
   read_noise(sensor, array);
   return array;
 }

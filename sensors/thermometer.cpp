@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/random.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
@@ -46,7 +47,7 @@ class Thermometers : public HostBackend {
 ParsedSensors parse_thermometers(const world::World& world) {
   return parse_each(world, thermometer_type, [](const world::Sensor& sensor, SensorSpec& row) {
     const Thermometer s{number(sensor, "noise", 0.0, 0.0, kMostError), number(sensor, "bias", 0.0, 0.0, kMostError)};
-    row.sigma = std::hypot(s.noise, s.bias);
+    row.sigma = base::hypot(s.noise, s.bias);
     row.reach = 0.0;
     return s;
   });
@@ -63,7 +64,7 @@ double temperature_at(const world::World& world, const glm::dvec2& p) {
   double sum = world.temperature;
   for (const world::HeatSource& source : world.heat_sources) {
     const glm::dvec2 to = (p - source.p) / source.radius;
-    sum += source.rise * std::exp(-0.5 * glm::dot(to, to));
+    sum += source.rise * base::exp(-0.5 * glm::dot(to, to));
   }
   return sum;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/elementary.h"
 #include "base/time.h"
 #include "robots/estimation/object_tracks.h"
 #include "sensors/derived/pose_history.h"
@@ -47,7 +48,7 @@ estimation::Spread spread_by(const StatedPose& pose, glm::dvec2 p_WP) {
 
 /// Returns a covariance in the frame of a robot in that of the world.
 estimation::Spread turned(double yaw, double xx, double xy, double yy) {
-  const double c = std::cos(yaw), s = std::sin(yaw);
+  const auto [s, c] = base::sin_cos(yaw);
   return {c * c * xx - 2.0 * c * s * xy + s * s * yy, c * s * (xx - yy) + (c * c - s * s) * xy,
           s * s * xx + 2.0 * c * s * xy + c * c * yy};
 }
@@ -102,7 +103,7 @@ Observation TracksSensor::observation_of(std::span<const double> row, const Stat
   seen.own = turned(pose.X_WM.yaw, row[4], row[5], row[7]);
   seen.repeated = spread_by(pose, seen.p);
   if (kind == FeatureKind::cluster) {
-    const double half_length = row[kFeatureKindAt + 1], distance = std::hypot(row[0], row[1]);
+    const double half_length = row[kFeatureKindAt + 1], distance = base::hypot(row[0], row[1]);
     const double extent = kExtentShare * (half_length > 0.0 ? half_length : extent_);
     seen.repeated[0] += extent * extent, seen.repeated[2] += extent * extent;
     const double behind = half_length > 0.0 ? kDepthShare * half_length : extent_;

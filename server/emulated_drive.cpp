@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "netio/own_readings.h"
 
@@ -37,7 +38,7 @@ EmulatedDrive::EmulatedDrive(const RealRobotType& type, const RealRobotOptions& 
       farm_(*world_, device_, {.seed = options.seed, .threads = 1}),
       body_(*world_, mover_) {
   const base::Pose& X = world_->movers[mover_].X_WM;
-  if (std::hypot(X.x - X_WM.x, X.y - X_WM.y, base::wrap_angle(X.yaw - X_WM.yaw)) > kSamePlace)
+  if (base::hypot(base::hypot(X.x - X_WM.x, X.y - X_WM.y), base::wrap_angle(X.yaw - X_WM.yaw)) > kSamePlace)
     throw base::InputError(
         fmt::format("{}: '{}' starts at {} in the real world, and at {} in the farm's; expected the "
                     "same pose",
@@ -53,7 +54,7 @@ void EmulatedDrive::run(std::int64_t now) {
   body_.move(command_, now);
   const base::Pose& after = body_.state().X_WM;
   const double turn = base::wrap_angle(after.yaw - before.yaw), middle = before.yaw + 0.5 * turn;
-  advance((after.x - before.x) * std::cos(middle) + (after.y - before.y) * std::sin(middle), turn);
+  advance((after.x - before.x) * base::cos(middle) + (after.y - before.y) * base::sin(middle), turn);
   touch(body_.contact());
   if (farm_.next_due() <= now) measure(now);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/battery.h"
 #include "sensors/bumper.h"
 #include "sensors/sonar.h"
@@ -87,7 +88,7 @@ void PioneerDrive::take_sip(const robots::ArcosSip& sip, std::int64_t now) {
     const double x = name_.distance * difference(sip.x, sip_->x, robots::kArcosWrap);
     const double y = name_.distance * difference(sip.y, sip_->y, robots::kArcosWrap);
     const double middle = robots::kArcosAngle * sip_->heading + 0.5 * turn;
-    advance(x * std::cos(middle) + y * std::sin(middle), turn);
+    advance(x * base::cos(middle) + y * base::sin(middle), turn);
   }
   sip_ = sip;
   powered_ = powered_ || sip.motors;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "netio/endpoint.h"
 #include "sensors/battery.h"
 #include "sensors/bumper.h"
@@ -200,7 +201,7 @@ bool PlayerDrive::take_state(XdrReader& xdr, std::int64_t now) {
     const double x = X_OM.x - X_OM_->x, y = X_OM.y - X_OM_->y;
     const double turn = base::wrap_angle(X_OM.yaw - X_OM_->yaw);
     const double middle = X_OM_->yaw + 0.5 * turn;
-    if (std::hypot(x, y) <= kMostStep) advance(x * std::cos(middle) + y * std::sin(middle), turn);
+    if (base::hypot(x, y) <= kMostStep) advance(x * base::cos(middle) + y * base::sin(middle), turn);
   }
   X_OM_ = X_OM;
   stalled_ = stalled;

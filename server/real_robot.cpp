@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/suggest.h"
 #include "netio/serial_line.h"
@@ -169,8 +170,8 @@ bool RealRobot::write(std::span<const std::uint8_t> bytes) {
 
 void RealRobot::advance(double way, double turn) {
   const double middle = state_.X_WM.yaw + 0.5 * turn;
-  state_.X_WM.x += way * std::cos(middle);
-  state_.X_WM.y += way * std::sin(middle);
+  state_.X_WM.x += way * base::cos(middle);
+  state_.X_WM.y += way * base::sin(middle);
   state_.X_WM.yaw = base::wrap_angle(state_.X_WM.yaw + turn);
   way_ += way;
   turn_ += turn;

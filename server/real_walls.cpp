@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::server {
 
 RealWalls::RealWalls(const world::World& world) {
@@ -21,7 +23,7 @@ RealWalls::RealWalls(const world::World& world) {
 template <class Visit>
 void RealWalls::trace(const base::Pose& X_WS, double bearing, double range, Visit&& visit) const {
   const double place[] = {(X_WS.x - left_) / cell_, (X_WS.y - bottom_) / cell_};
-  const double way[] = {std::cos(X_WS.yaw + bearing), std::sin(X_WS.yaw + bearing)};
+  const glm::dvec2 way = base::direction(X_WS.yaw + bearing);
   const std::int64_t size[] = {columns_, rows_};
   std::int64_t at[2], step[2];
   double next[2], each[2];  // [m] to the next border, and between borders

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/elapsed.h"
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/time.h"
 #include "world/roads/roads.h"
@@ -413,7 +414,7 @@ void RobotClient::gather_others(std::int64_t now) {
     if (row == mover_ || !link_.is_active(id, now)) continue;
     base::Report state = body_.state(row);
     state.time = now;
-    if (std::hypot(state.X_WM.x - own.x, state.X_WM.y - own.y) <= radio) others_.push_back({id, state, intents_[row]});
+    if (base::hypot(state.X_WM.x - own.x, state.X_WM.y - own.y) <= radio) others_.push_back({id, state, intents_[row]});
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/pose.h"
 #include "server/signal_messages.h"
@@ -28,7 +29,7 @@ std::int32_t centimetres(double metres) { return static_cast<std::int32_t>(std::
 world::Geodetic geodetic_of(glm::dvec2 p, world::Geodetic origin) {
   constexpr double kMetresPerDegree = 111'320.0;
   const world::LocalPlane plane(origin);
-  const double east = kMetresPerDegree * std::max(1e-6, std::cos(origin.latitude * M_PI / 180.0));
+  const double east = kMetresPerDegree * std::max(1e-6, base::cos(origin.latitude * M_PI / 180.0));
   world::Geodetic at = origin;
   for (int i = 0; i < 5; ++i) {
     const glm::dvec2 rest = p - plane.east_north(at);

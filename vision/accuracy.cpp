@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/elementary.h"
+
 namespace sf::vision {
 
 void RmsError::add(double error) {
@@ -19,7 +21,7 @@ AccuracyMeter::AccuracyMeter(const Testbed& testbed, const RenderedFleet& fleet)
 
 void AccuracyMeter::compare(const TrackedTag& tracked, std::size_t tag) {
   const TrueTag truth = fleet_.truth(tag, tracked.time);
-  const double off = std::hypot(tracked.X_WT.x - truth.X_WT.x, tracked.X_WT.y - truth.X_WT.y);
+  const double off = base::hypot(tracked.X_WT.x - truth.X_WT.x, tracked.X_WT.y - truth.X_WT.y);
   if (off > kWrong) {
     ++accuracy_.wrong;
     return;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/elementary.h"
+
 namespace sf::vision {
 
 namespace {
@@ -69,7 +71,7 @@ bool is_invertible(const Intrinsics& intrinsics) {
     bool outside = false;
     for (int step = 0; step <= kSteps && !outside; ++step) {
       const double tangent = kMaxTangent * step / kSteps;
-      const glm::dvec2 n = tangent * glm::dvec2{std::cos(angle), std::sin(angle)};
+      const glm::dvec2 n = tangent * base::direction(angle);
       const Jacobian j = jacobian(intrinsics.distortion, n);
       if (!(j.xx > 0.0) || !(j.xx * j.yy - j.xy * j.xy > 0.0)) return false;
       const glm::dvec2 pixel = distort(intrinsics, n);

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/elementary.h"
+
 namespace sf::vision {
 
 base::Pose pose_at(const Patch& patch, double t) {
@@ -38,7 +40,7 @@ void MovingPatches::place(const Camera& camera, const Scene& scene, double middl
   patches_.clear();
   for (const Patch& patch : scene.patches) {
     const base::Pose X_WP = pose_at(patch, middle);
-    MovingPatch m{&patch, {X_WP.x, X_WP.y}, std::cos(X_WP.yaw), std::sin(X_WP.yaw), 0.5 * patch.size, 1.0};
+    MovingPatch m{&patch, {X_WP.x, X_WP.y}, base::cos(X_WP.yaw), base::sin(X_WP.yaw), 0.5 * patch.size, 1.0};
     if (patch.shape == Patch::Shape::tag) {
       m.cell = patch.size.x / patch.pattern.cells;
       m.half += glm::dvec2{patch.border * m.cell};

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/pose.h"
 #include "vision/tag_family.h"
@@ -36,8 +37,8 @@ Line fit_line(const std::vector<glm::dvec2>& points) {
     const glm::dvec2 d = p - mean;
     xx += d.x * d.x, xy += d.x * d.y, yy += d.y * d.y;
   }
-  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the line
-  const glm::dvec2 normal{-std::sin(angle), std::cos(angle)};
+  const double angle = 0.5 * base::atan2(2.0 * xy, xx - yy);  // of the line
+  const glm::dvec2 normal{-base::sin(angle), base::cos(angle)};
   return {normal, glm::dot(normal, mean)};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "vision/tag_family.h"
@@ -32,7 +33,7 @@ bool sees(const Camera& camera, glm::dvec3 p) {
 
 bool sees_disc(const Camera& camera, glm::dvec2 center, double radius, double height) {
   for (int k = 0; k < 16; ++k) {
-    const glm::dvec2 p = center + radius * glm::dvec2{std::cos(k * M_PI / 8.0), std::sin(k * M_PI / 8.0)};
+    const glm::dvec2 p = center + radius * base::direction(k * M_PI / 8.0);
     if (!sees(camera, {p.x, p.y, height})) return false;
   }
   return true;
@@ -61,7 +62,7 @@ std::vector<glm::dvec2> seen_grid(const Testbed& testbed, glm::dvec2 low, glm::d
 
 glm::dvec2 RenderedFleet::place(const Circle& circle, double time) {
   const double angle = circle.phase + circle.speed * time / circle.radius;
-  return circle.center + circle.radius * glm::dvec2{std::cos(angle), std::sin(angle)};
+  return circle.center + circle.radius * base::direction(angle);
 }
 
 RenderedFleet::RenderedFleet(const Testbed& testbed, const FleetOptions& options)
@@ -118,7 +119,7 @@ TrueTag RenderedFleet::truth(std::size_t tag, double time) const {
   const double turn = t.circle.speed / t.circle.radius;
   const double angle = t.circle.phase + turn * time;
   const glm::dvec2 p = place(t.circle, time);
-  const glm::dvec2 velocity = t.circle.speed * glm::dvec2{-std::sin(angle), std::cos(angle)};
+  const glm::dvec2 velocity = t.circle.speed * glm::dvec2{-base::sin(angle), base::cos(angle)};
   return {t.id, {p.x, p.y, testbed_.mount(t.id).height, base::wrap_angle(angle + t.yaw)}, velocity, turn};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/elementary.h"
 #include "base/hash.h"
 #include "base/random.h"
 #include "vision/moving_patches.h"
@@ -21,16 +22,17 @@ double wrap(double x) { return x - std::floor(x); }
 
 /// Returns the smooth unevenness of the floor, in [-1, 1].
 double unevenness(glm::dvec2 p) {
-  return 0.5 * std::sin(3.1 * p.x + 1.7 * std::sin(1.3 * p.y)) + 0.5 * std::sin(4.3 * p.y + 1.1 * std::sin(2.3 * p.x));
+  return 0.5 * base::sin(3.1 * p.x + 1.7 * base::sin(1.3 * p.y)) +
+         0.5 * base::sin(4.3 * p.y + 1.1 * base::sin(2.3 * p.x));
 }
 
 /// [1/(width of a step)] Returns a separable Gaussian of 7 taps.
 std::array<float, 7> gaussian(double sigma) {
   std::array<float, 7> taps{};
   double sum = 0.0;
-  for (int i = -3; i <= 3; ++i) sum += std::exp(-0.5 * i * i / (sigma * sigma));
+  for (int i = -3; i <= 3; ++i) sum += base::exp(-0.5 * i * i / (sigma * sigma));
   for (int i = -3; i <= 3; ++i)
-    taps[static_cast<std::size_t>(i + 3)] = static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma)) / sum);
+    taps[static_cast<std::size_t>(i + 3)] = static_cast<float>(base::exp(-0.5 * i * i / (sigma * sigma)) / sum);
   return taps;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/elementary.h"
 #include "vision/median.h"
 #include "vision/normal_equations.h"
 
@@ -33,7 +34,7 @@ struct Square {
 /// [m] Distance outward from the side of the square.
 double distance(const Square& square, const PlanePoint& point) {
   const double angle = square.yaw + kNormals[point.side];
-  return glm::dot(glm::dvec2{std::cos(angle), std::sin(angle)}, point.p - square.center) - square.half;
+  return glm::dot(base::direction(angle), point.p - square.center) - square.half;
 }
 
 /// Performs one Gauss-Newton step, in units of half the square's side so that all unknowns have similar magnitudes.
@@ -43,7 +44,7 @@ bool improve(Square& square, std::span<const PlanePoint> points) {
   for (const PlanePoint& point : points) {
     if (!point.used) continue;
     const double angle = square.yaw + kNormals[point.side];
-    const glm::dvec2 n{std::cos(angle), std::sin(angle)};
+    const glm::dvec2 n = base::direction(angle);
     const glm::dvec2 r = (point.p - square.center) / square.half;
     const std::array<double, 4> row{n.x, n.y, -base::cross(n, r), 1.0};
     const double error = glm::dot(n, r) - 1.0;
@@ -82,7 +83,7 @@ std::optional<Square> first_guess(std::span<const PlanePoint> points) {
   const bool upright = count[0] >= 3.0 && count[2] >= 3.0;
   const glm::dvec2 axis = upright ? mean[0] - mean[2] : mean[1] - mean[3];
   const glm::dvec2 center = 0.5 * (upright ? mean[0] + mean[2] : mean[1] + mean[3]);
-  const double yaw = std::atan2(axis.y, axis.x) - (upright ? M_PI / 2.0 : 0.0);
+  const double yaw = base::atan2(axis.y, axis.x) - (upright ? M_PI / 2.0 : 0.0);
   const double half = 0.5 * glm::length(axis);
   if (!(half > 0.0)) return std::nullopt;
   return Square{center, yaw, half};
@@ -137,7 +138,7 @@ TagFit at_measured_height(const Camera& camera, const TagFit& flat, double side)
   fit.residual *= scale;
   fit.pixel *= scale;
   const double noise = 2.0 * fit.residual / std::sqrt(std::max(1, fit.points));
-  fit.height_sigma = std::abs(depth) / side * std::hypot(noise, 2.0 * kEdgeBias * fit.pixel);
+  fit.height_sigma = std::abs(depth) / side * base::hypot(noise, 2.0 * kEdgeBias * fit.pixel);
   return fit;
 }
 

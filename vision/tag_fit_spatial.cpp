@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/elementary.h"
 #include "vision/median.h"
 #include "vision/normal_equations.h"
 #include "vision/tag_fit.h"
@@ -42,7 +43,7 @@ glm::dmat3 rotation(glm::dvec3 w) {
   const double angle = glm::length(w);
   if (angle < 1e-15) return glm::dmat3(1.0);
   const glm::dvec3 n = w / angle;
-  const double c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = base::sin_cos(angle);
   glm::dmat3 r(1.0);
   for (int i = 0; i < 3; ++i) {
     glm::dvec3 e;
@@ -156,13 +157,13 @@ SpaceFit mirrored(const SpaceFit& fit, glm::dvec3 view) {
   const glm::dvec3 axis = glm::cross(normal, other);
   const double sine = glm::length(axis);
   SpaceFit turned = fit;
-  if (sine > 1e-12) turned.axes = rotation(std::atan2(sine, glm::dot(normal, other)) / sine * axis) * fit.axes;
+  if (sine > 1e-12) turned.axes = rotation(base::atan2(sine, glm::dot(normal, other)) / sine * axis) * fit.axes;
   return turned;
 }
 
 /// [rad] Returns the angle between the normals of two tags.
 double angle_between(const SpaceFit& a, const SpaceFit& b) {
-  return std::atan2(glm::length(glm::cross(a.axes[2], b.axes[2])), glm::dot(a.axes[2], b.axes[2]));
+  return base::atan2(glm::length(glm::cross(a.axes[2], b.axes[2])), glm::dot(a.axes[2], b.axes[2]));
 }
 
 }  // namespace
@@ -201,13 +202,13 @@ std::optional<TagFit> fit_tag_in_space(const Camera& camera, std::span<const Edg
     sigma[i] = std::sqrt(variance * std::max(0.0, unit[i]));
   }
   const glm::dmat3& r = best.axes;
-  fit.X_WT = {best.center.x, best.center.y, best.center.z, std::atan2(r[0].y, r[0].x)};
-  fit.pitch = -std::asin(std::clamp(r[0].z, -1.0, 1.0));
-  fit.roll = std::atan2(r[1].z, r[2].z);
+  fit.X_WT = {best.center.x, best.center.y, best.center.z, base::atan2(r[0].y, r[0].x)};
+  fit.pitch = -base::asin(std::clamp(r[0].z, -1.0, 1.0));
+  fit.roll = base::atan2(r[1].z, r[2].z);
   fit.residual = 0.5 * side * std::sqrt(best.cost);
   fit.points = static_cast<int>(problem.size());
   const double depth = glm::length(camera.position - best.center);
-  fit.height_sigma = std::hypot(0.5 * side * sigma[2], 2.0 * kEdgeBias * fit.pixel * depth / side);
+  fit.height_sigma = base::hypot(0.5 * side * sigma[2], 2.0 * kEdgeBias * fit.pixel * depth / side);
   fit.tilt_sigma = std::max({sigma[3], sigma[4], between, kMinTiltSigma});
   return fit;
 }

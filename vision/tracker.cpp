@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::vision {
 
 namespace {
@@ -53,7 +55,7 @@ std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const 
   for (const Sighting& sighting : views) {
     const View view = view_of(sighting);
     const double dt = first.time - view.time;
-    const double apart = std::hypot(view.at[0] - first.at[0], view.at[1] - first.at[1]);
+    const double apart = base::hypot(view.at[0] - first.at[0], view.at[1] - first.at[1]);
     if (apart > 0.5 * kGate + kMaxSpeed * std::abs(dt)) {
       if (!is_repeated)
         repeated_.push_back(
@@ -79,7 +81,7 @@ std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const 
 
 bool Tracker::is_near(const Track& track, const View& view) {
   const double dt = view.time - track.time;
-  const double apart = std::hypot(view.at[0] - track.axes[0].x, view.at[1] - track.axes[1].x);
+  const double apart = base::hypot(view.at[0] - track.axes[0].x, view.at[1] - track.axes[1].x);
   return dt > 0.0 && apart <= kGate + kMaxSpeed * dt;
 }
 

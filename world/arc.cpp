@@ -1,5 +1,7 @@
 #include "world/arc.h"
 
+#include "base/elementary.h"
+
 namespace sf::world {
 
 namespace {
@@ -12,7 +14,7 @@ glm::dvec2 circle_centre(glm::dvec2 u, glm::dvec2 v) {
 
 /// Returns the angle [rad] from `p` to `q` in the given direction; negative for clockwise.
 double arc_turn(glm::dvec2 p, glm::dvec2 q, bool left) {
-  const double turn = std::atan2(base::cross(p, q), dot(p, q));
+  const double turn = base::atan2(base::cross(p, q), dot(p, q));
   if (left) return turn < 0.0 ? turn + 2.0 * M_PI : turn;
   return turn > 0.0 ? turn - 2.0 * M_PI : turn;
 }

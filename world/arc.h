@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/elementary.h"
 #include "base/pose.h"
 
 namespace sf::world {
@@ -16,7 +17,7 @@ inline constexpr double kArcError = 1e-6;  ///< [m] largest distance between an 
 /// @param radius in the unit of `error`, above zero
 inline double chord_count(double radius, double angle, double error) {
   // A chord of angle phi deviates by r (1 - cos(phi / 2)). The square root keeps precision when the quotient is small.
-  return std::max(1.0, std::ceil(angle / (4.0 * std::asin(std::sqrt(std::min(0.5, 0.5 * error / radius))))));
+  return std::max(1.0, std::ceil(angle / (4.0 * base::asin(std::sqrt(std::min(0.5, 0.5 * error / radius))))));
 }
 
 /// Appends the chords of the arc from `line.back()` through `middle` to `end`, both of which become corners. The arc is

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/elementary.h"
 #include "base/suggest.h"
 #include "world/fields.h"
 #include "world/fixed_programs.h"
@@ -201,7 +202,7 @@ double PlanReader::distance(const TomlNode& table, const std::vector<std::uint32
     return reader_.number(given->items[k - 1], "distances", 0.0, kMaxMetres, "metres");
   }
   const Pose &a = world_.lights[lights[k - 1]].X_WL, &b = world_.lights[lights[k]].X_WL;
-  return std::hypot(b.x - a.x, b.y - a.y);
+  return base::hypot(b.x - a.x, b.y - a.y);
 }
 
 /// Shifts programs so that each light of the wave turns green when a robot at the wave's speed arrives from the

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::world {
 
 namespace {
@@ -13,7 +15,7 @@ double project(const PathPiece& piece, glm::dvec2 p) {
   if (piece.curvature == 0.0) return q.x;
   const double radius = 1.0 / piece.curvature;
   const double side = piece.curvature > 0.0 ? 1.0 : -1.0;
-  const double angle = std::atan2(q.x, side * (radius - q.y));
+  const double angle = base::atan2(q.x, side * (radius - q.y));
   // A position behind the start of an arc is before the arc, not almost a full turn ahead. The limit is half of the
   // remaining turn.
   const double turn = piece.length * std::abs(piece.curvature);
@@ -26,9 +28,9 @@ double project(const PathPiece& piece, glm::dvec2 p) {
 Pose pose_at(const PathPiece& piece, double s) {
   if (piece.curvature == 0.0) return base::compose(piece.X_WP, {s, 0.0, 0.0, 0.0});
   const double angle = s * piece.curvature;
-  const double half = std::sin(0.5 * angle);
+  const double half = base::sin(0.5 * angle);
   return base::compose(piece.X_WP,
-                       {std::sin(angle) / piece.curvature, 2.0 * half * half / piece.curvature, 0.0, angle});
+                       {base::sin(angle) / piece.curvature, 2.0 * half * half / piece.curvature, 0.0, angle});
 }
 
 double length_of(const Path& path) {

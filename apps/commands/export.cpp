@@ -16,6 +16,7 @@
 #include "apps/reports/progress_line.h"
 #include "apps/reports/recording_csv.h"
 #include "apps/reports/text.h"
+#include "base/elementary.h"
 #include "base/error.h"
 #include "gpu/device.h"
 #include "scenarios/experiment.h"
@@ -34,7 +35,7 @@ std::vector<std::vector<viz::MotionSample>> motions_of(const RecordingPart& part
     if (part.chosen[m] == 0 || world.movers[m].is_tag) continue;
     for (const record::StateSample& s : part.recording.states[m])
       motions[m].push_back(
-          {1e-9 * static_cast<double>(s.time), s.X_WM, std::hypot(s.velocity.forward, s.velocity.left), s.contact});
+          {1e-9 * static_cast<double>(s.time), s.X_WM, base::hypot(s.velocity.forward, s.velocity.left), s.contact});
   }
   return motions;
 }

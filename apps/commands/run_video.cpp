@@ -17,6 +17,7 @@
 #include "apps/reports/text.h"
 #include "base/displacement.h"
 #include "base/echo.h"
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/time.h"
 #include "robots/kinematics.h"
@@ -81,7 +82,7 @@ void store(const base::TickRecord& tick, const std::vector<std::uint8_t>& hidden
 base::Pose pose_between(const base::Report& before, const base::Report& after, std::int64_t time) {
   const base::Pose &from = before.X_WM, &to = after.X_WM;
   if (time >= after.time) return to;
-  const auto speed = [](const base::Report& state) { return std::hypot(state.velocity.forward, state.velocity.left); };
+  const auto speed = [](const base::Report& state) { return base::hypot(state.velocity.forward, state.velocity.left); };
   const double seconds = 1e-9 * static_cast<double>(after.time - before.time);
   if (base::is_absent(from) || base::is_absent(to) ||
       !base::is_drivable(from, to, std::max(speed(before), speed(after)), seconds))

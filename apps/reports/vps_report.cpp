@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/reports/text.h"
+#include "base/elementary.h"
 
 namespace sf::apps {
 
@@ -100,7 +101,7 @@ std::string vps_report_text(const VpsReport& r) {
                       "states");
   for (const auto& [id, tag] : r.tags)
     text += fmt::format("{:>6} {:>9.4f} {:>9.4f} {:>9.2f} {:>8.3f} {:>10.2f} {:>8}\n", id, tag.X_WT.x, tag.X_WT.y,
-                        kDegrees * tag.X_WT.yaw, std::hypot(tag.velocity.x, tag.velocity.y), kDegrees * tag.turn,
+                        kDegrees * tag.X_WT.yaw, base::hypot(tag.velocity.x, tag.velocity.y), kDegrees * tag.turn,
                         r.reported.at(id));
   return text + heights_text(r);
 }

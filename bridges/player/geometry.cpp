@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <limits>
 
+#include "base/elementary.h"
 #include "base/report.h"
 #include "sensors/bumper.h"
 #include "sensors/infrared.h"
@@ -58,7 +59,7 @@ base::Bytes bumper_geometry(const std::vector<std::uint32_t>& switches, const wo
     const int count = std::popcount(sectors);
     const std::uint32_t starts = sectors & ~std::rotl(sectors, 1);
     const double middle = base::wrap_angle(kSector * (std::countr_zero(starts) % 32 + 0.5 * count));
-    put_pose({radius * std::cos(middle), radius * std::sin(middle), 0.0, middle}, xdr);
+    put_pose({radius * base::cos(middle), radius * base::sin(middle), 0.0, middle}, xdr);
     xdr.put_all({static_cast<float>(kSector * count * radius), static_cast<float>(radius)});
   }
   return out;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "sensors/fiducial.h"
 #include "sensors/infrared.h"
 #include "sensors/sensor_type.h"
@@ -91,7 +92,7 @@ void put_gps(const LastReading& reading, const base::Report& report, XdrWriter& 
   xdr.put(static_cast<std::uint32_t>(reading.time / 1'000'000'000));
   xdr.put(static_cast<std::uint32_t>(reading.time % 1'000'000'000 / 1000));
   xdr.put_all({whole(y / kNorth, 1e7), whole(x / kEast, 1e7), whole(reading.height, 1e3)});
-  xdr.put_all({glm::length(v), std::atan2(v.y, v.x)});
+  xdr.put_all({glm::length(v), base::atan2(v.y, v.x)});
   for (const double position : {x, y}) xdr.put(fix ? std::round(100.0 * position) : 0.0);
   xdr.put(fix ? 1u : 0u);
   xdr.put_all({whole(reading.values[3], 1.0), whole(reading.values[2], 10.0), 0});

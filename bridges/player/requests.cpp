@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/report.h"
 #include "bridges/player/wall_map.h"
 
@@ -190,7 +191,7 @@ void Requester::drive(std::uint32_t mover, position2d::Command command, const st
   const double speed = numbers[0], angle = numbers[1];
   if (command == Command::velocity) exchange_.drive(mover, base::Twist{numbers[0], numbers[1], numbers[2]});
   if (command == Command::car)
-    exchange_.drive(mover, base::Twist{speed, 0.0, car ? speed * std::tan(angle) / robot.wheelbase : angle});
+    exchange_.drive(mover, base::Twist{speed, 0.0, car ? speed * base::tan(angle) / robot.wheelbase : angle});
   if (command == Command::heading) exchange_.drive(mover, Goal{{0.0, 0.0, 0.0, angle}, speed, true});
   if (command != Command::position || car) return;  // cars cannot turn in place to a goal
   const double most = numbers[3] > 0.0 ? std::min(numbers[3], robot.max_forward) : robot.max_forward;

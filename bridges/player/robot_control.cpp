@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.h"
 #include "robots/kinematics.h"
 
 namespace sf::bridges::player {
@@ -45,9 +46,9 @@ base::Twist steer(const world::Mover& robot, const base::Pose& X_OM, const Goal&
   const glm::dvec2 way{goal.X_OG.x - X_OM.x, goal.X_OG.y - X_OM.y};
   const double left = glm::length(way);
   if (left < kReached) return {0.0, 0.0, turn_to(goal.X_OG.yaw)};
-  const double bearing = base::wrap_angle(std::atan2(way.y, way.x) - X_OM.yaw);
+  const double bearing = base::wrap_angle(base::atan2(way.y, way.x) - X_OM.yaw);
   const bool ahead = std::abs(bearing) < kAhead;
-  return {ahead ? std::min(goal.speed, kGain * left) * std::cos(bearing) : 0.0, 0.0, turn_to(X_OM.yaw + bearing)};
+  return {ahead ? std::min(goal.speed, kGain * left) * base::cos(bearing) : 0.0, 0.0, turn_to(X_OM.yaw + bearing)};
 }
 
 }  // namespace sf::bridges::player

@@ -321,6 +321,10 @@ class Observations:
         """Recomputes the observations after goals have changed."""
     def __len__(self) -> int:
         """Number of agents."""
+    def __dlpack__(self, **options: Any) -> Any:
+        """`values` without a copy, for torch.from_dlpack(observations). Do not write to it."""
+    def __dlpack_device__(self) -> tuple[int, int]:
+        """The host."""
 
 class Simulation:
     """A simulated fleet. Not thread-safe. Arrays are views without a copy, valid until the next step, put or reset:

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::estimation {
 
 // Q(k + 2, x) = Q(k, x) + (x/2)^(k/2) e^(-x/2) / Gamma(k/2 + 1), from Q(1, x) = erfc(sqrt(x/2)) and Q(2, x) = e^(-x/2):
@@ -10,12 +12,12 @@ double chi_square_tail(int degrees, double x) {
   if (x <= 0.0) return 1.0;
   const double half = 0.5 * x;
   int k = degrees % 2 == 1 ? 1 : 2;
-  double tail = k == 1 ? std::erfc(std::sqrt(half)) : std::exp(-half);
+  double tail = k == 1 ? base::erfc(std::sqrt(half)) : base::exp(-half);
   // Accumulates the logarithm, since a term may underflow where later terms do not.
-  double log_term = 0.5 * k * std::log(half) - half - std::log(k == 1 ? 0.5 * std::sqrt(M_PI) : 1.0);
+  double log_term = 0.5 * k * base::log(half) - half - base::log(k == 1 ? 0.5 * std::sqrt(M_PI) : 1.0);
   for (; k < degrees; k += 2) {
-    tail += std::exp(log_term);
-    log_term += std::log(half / (0.5 * k + 1.0));
+    tail += base::exp(log_term);
+    log_term += base::log(half / (0.5 * k + 1.0));
   }
   return tail;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::estimation {
 
 namespace {
@@ -39,7 +41,7 @@ void reduce(const MotionModel& model, const HypothesesLimits& limits, Hypotheses
       std::iter_swap(from, std::max_element(from, all.end(), lighter));
       const auto is_near = [&, yaw = from->estimate.X_WM.yaw, turn = from->estimate.velocity.turn](const auto& h) {
         const double by_turn = std::min(std::abs(half * (h.estimate.velocity.turn - turn)), M_PI);
-        return std::hypot(base::wrap_angle(h.estimate.X_WM.yaw - yaw), by_turn) < near;
+        return base::hypot(base::wrap_angle(h.estimate.X_WM.yaw - yaw), by_turn) < near;
       };
       const auto end = std::partition(from + 1, all.end(), is_near);
       all[count] = merged(model, {from, end});
@@ -140,12 +142,12 @@ void correct(const MotionModel& model, const Measurement& measurement, const Hyp
   double most = -HUGE_VAL;
   for (Hypothesis& h : all) {
     const Innovation surprise = innovation(h.estimate, measurement);
-    h.weight = std::log(h.weight) - 0.5 * (surprise.squared + surprise.log_determinant);
+    h.weight = base::log(h.weight) - 0.5 * (surprise.squared + surprise.log_determinant);
     if (!(h.weight > -HUGE_VAL)) h.weight = -HUGE_VAL;
     most = std::max(most, h.weight);
     h.estimate = correct(model, h.estimate, measurement);
   }
-  for (Hypothesis& h : all) h.weight = most > -HUGE_VAL ? std::exp(h.weight - most) : 1.0;
+  for (Hypothesis& h : all) h.weight = most > -HUGE_VAL ? base::exp(h.weight - most) : 1.0;
   reduce(model, limits, all);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::estimation {
 
 namespace {
@@ -44,7 +46,7 @@ Matrix6 to_difference(const MotionModel& model, const Estimate& e) {
   Matrix6 H = Matrix6::Identity();
   if (model.path == MotionModel::Path::arc) return H;
   const glm::dvec2 v = base::rotate(e.X_WM.yaw, {e.velocity.forward, e.velocity.left});
-  const double c = std::cos(e.X_WM.yaw), s = std::sin(e.X_WM.yaw);
+  const auto [s, c] = base::sin_cos(e.X_WM.yaw);
   H.block<2, 2>(kForward, kForward) << c, -s, s, c;
   H.block<2, 1>(kForward, kYaw) << -v.y, v.x;
   return H;
@@ -75,7 +77,7 @@ void split(const MotionModel& model, const Hypothesis& whole, double dt, double 
   const Vector6 Pa = P.col(kYaw) + 0.5 * dt * P.col(kTurn);
   const double variance = Pa(kYaw) + 0.5 * dt * Pa(kTurn);
   const double apart = 1.75 * narrow, rest = variance - narrow * narrow;
-  const auto density = [&](int k) { return std::exp(-0.5 * apart * apart * k * k / rest); };
+  const auto density = [&](int k) { return base::exp(-0.5 * apart * apart * k * k / rest); };
 
   // Wider headings are split again in the next step.
   const int most = static_cast<int>(std::clamp(2.5 * std::sqrt(rest) / apart, 1.0, 4.0));
@@ -131,8 +133,8 @@ void add_square_error(const Estimate& state, const Hypothesis& truth, Covariance
   // Yaw errors beyond half a turn wrap to the other side: uses the moments of the tail of a Gaussian.
   if (const double sigma = std::sqrt(P(kYaw, kYaw)); sigma > 0.0) {
     const double z = (M_PI - std::abs(d(kYaw))) / sigma;
-    const double beyond = 0.5 * std::erfc(z / std::sqrt(2.0));
-    const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * M_PI);
+    const double beyond = 0.5 * base::erfc(z / std::sqrt(2.0));
+    const double density = base::exp(-0.5 * z * z) / std::sqrt(2.0 * M_PI);
     const Vector6 less = -2.0 * M_PI * (std::copysign(beyond, d(kYaw)) * d + density / sigma * P.col(kYaw));
     S.row(kYaw) += less.transpose();
     S.col(kYaw) += less;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/estimation/planar_motion.h"
 
 namespace sf::estimation {
@@ -118,7 +119,7 @@ Innovation innovation(const Estimate& predicted, const Measurement& measurement)
   const MeasuredMatrix S = select_block(matrix(predicted.covariance) + noise(measurement), measured);
   const MeasuredVector y = select_rows(difference(measurement, predicted), measured);
   const Eigen::LLT<MeasuredMatrix> llt(S);
-  return {y.dot(llt.solve(y)), measured.count, 2.0 * llt.matrixLLT().diagonal().array().log().sum()};
+  return {y.dot(llt.solve(y)), measured.count, 2.0 * llt.matrixLLT().diagonal().unaryExpr(&base::log).sum()};
 }
 
 Estimate correct(const Estimate& predicted, const Measurement& measurement) {

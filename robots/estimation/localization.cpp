@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.h"
+
 namespace sf::estimation {
 
 namespace {
@@ -273,11 +275,11 @@ Innovation Localization::weigh(const WheeledMeasurement& m) {
   for (Weighted& each : predicted_) {
     const Innovation surprise = innovation(each.state, m);
     if (!(surprise.squared >= least.squared)) least = surprise;
-    each.weight = std::log(each.weight) - 0.5 * (surprise.squared + surprise.log_determinant);
+    each.weight = base::log(each.weight) - 0.5 * (surprise.squared + surprise.log_determinant);
     most = std::max(most, each.weight);
   }
   double sum = 0.0;
-  for (Weighted& each : predicted_) sum += each.weight = std::exp(each.weight - most);
+  for (Weighted& each : predicted_) sum += each.weight = base::exp(each.weight - most);
   for (Weighted& each : predicted_) each.weight /= sum;
   return least;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::estimation {
 
 namespace {
@@ -71,7 +73,7 @@ std::array<double, 2> distance_of(const ObjectTrack& track, const Observation& o
                     matrix_of(observation.own) + matrix_of(observation.repeated);
   const glm::dvec2 away = observation.p + observation.to_middle - track.p;
   const Eigen::Vector2d d(away.x, away.y);
-  return {d.dot(S.inverse() * d), std::log(S.determinant())};
+  return {d.dot(S.inverse() * d), base::log(S.determinant())};
 }
 
 void decide_motion(ObjectTrack& track) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/kinematics.h"
 
 namespace sf::estimation {
@@ -11,7 +12,7 @@ namespace {
 /// d/dx of sin(x)/x. Below the threshold, the next term of the series is below 1e-11.
 double sinc_slope(double x) {
   if (std::abs(x) < 1e-2) return x * (-1.0 / 3.0 + x * x / 30.0);
-  return (std::cos(x) - std::sin(x) / x) / x;
+  return (base::cos(x) - base::sin(x) / x) / x;
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ std::array<double, kComponents * kComponents> jacobian(MotionModel::Path path, c
   if (path == MotionModel::Path::arc) {
     // The chord R(yaw + h) v sinc(h) dt with h = turn dt / 2.
     const double h = 0.5 * turn * dt;
-    const double length = dt * (std::abs(h) < 1e-4 ? 1.0 - h * h / 6.0 : std::sin(h) / h);
+    const double length = dt * (std::abs(h) < 1e-4 ? 1.0 - h * h / 6.0 : base::sin(h) / h);
     const glm::dvec2 d = base::rotate(yaw + h, {length * forward, length * left});
     const double stretch = 0.5 * dt * dt * sinc_slope(h);
     set_column(kX, kYaw, perpendicular(d));

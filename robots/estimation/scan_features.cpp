@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.h"
+
 namespace sf::estimation {
 
 namespace {
@@ -49,7 +51,7 @@ void ScanFeatures::place_echoes(std::span<const double> ranges) {
     const double range = ranges[i];
     if (!(range > 0.0 && range < 1e6)) continue;
     const glm::dvec2 sight = base::rotate(X_MS_.yaw + bearings_[i], {1.0, 0.0});
-    const double along = square_of(std::hypot(noise_.constant, noise_.proportional * range, kLeastSigma));
+    const double along = square_of(base::hypot(base::hypot(noise_.constant, noise_.proportional * range), kLeastSigma));
     echoes_.push_back({glm::dvec2{X_MS_.x, X_MS_.y} + range * sight, sight, along,
                        square_of(noise_.angle * range) + square_of(kLeastSigma), step_ * range, i});
   }
@@ -59,7 +61,7 @@ void ScanFeatures::place_echoes(std::span<const double> ranges) {
 bool ScanFeatures::continues(const Echo& before, const Echo& after) const {
   if (after.beam != before.beam + 1 && !(is_round_ && after.beam == 0 && before.beam + 1 == bearings_.size()))
     return false;
-  const double grazing = std::sin(step_) / std::sin(std::max(kGrazing - step_, 0.5 * kGrazing));
+  const double grazing = base::sin(step_) / base::sin(std::max(kGrazing - step_, 0.5 * kGrazing));
   const double range = before.spacing / step_;
   return glm::length(after.p - before.p) <= range * grazing + kSigmas * std::sqrt(before.along + after.along);
 }
@@ -201,8 +203,8 @@ ScanFeatures::Line ScanFeatures::fit(std::size_t first, std::size_t last) const 
       const double weight = weight_of(echoes_[i]);
       xx += weight * d.x * d.x, xy += weight * d.x * d.y, yy += weight * d.y * d.y;
     }
-    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
-    const glm::dvec2 axis{std::cos(angle), std::sin(angle)};
+    const double angle = 0.5 * base::atan2(2.0 * xy, xx - yy);
+    const glm::dvec2 axis = base::direction(angle);
     if (last > first) line.along = glm::dot(axis, chord) < 0.0 ? -axis : axis;
     const glm::dvec2 across = left_of(line.along);
     line.centre = origin + mean, line.weight = sum;
@@ -229,7 +231,7 @@ void ScanFeatures::add_line(const Line& line) {
   const double along = (first.along + last.along + (square_of(first.spacing) + square_of(last.spacing)) / 12.0) / 4.0;
   Feature feature{.kind = FeatureKind::line,
                   .p = line.centre + middle * u,
-                  .direction = std::atan2(u.y, u.x),
+                  .direction = base::atan2(u.y, u.x),
                   .half_length = 0.5 * (line.to - line.from),
                   .covariance = oriented(u, along, across)};
   if (feature.direction > 0.5 * M_PI) feature.direction -= M_PI;
@@ -242,7 +244,7 @@ void ScanFeatures::add_line(const Line& line) {
 void ScanFeatures::add_corner(const Line& before, const Line& after) {
   const glm::dvec2 n1 = left_of(before.along), n2 = left_of(after.along);
   const double sine = base::cross(before.along, after.along);
-  const double angle = M_PI - std::acos(std::clamp(glm::dot(before.along, after.along), -1.0, 1.0));
+  const double angle = M_PI - base::acos(std::clamp(glm::dot(before.along, after.along), -1.0, 1.0));
   if (angle < kSharpest || angle > kBluntest) return;
   // n1 (p - c1) = 0 and n2 (p - c2) = 0.
   const double d1 = glm::dot(n1, before.centre), d2 = glm::dot(n2, after.centre);
@@ -255,7 +257,7 @@ void ScanFeatures::add_corner(const Line& before, const Line& after) {
   const double v1 = 1.0 / before.weight + s1 * s1 / before.spread, v2 = 1.0 / after.weight + s2 * s2 / after.spread;
   const glm::dvec2 g1 = solve(1.0, 0.0), g2 = solve(0.0, 1.0);
   const glm::dvec2 arms = after.along - before.along;
-  Feature feature{.kind = FeatureKind::corner, .p = p, .direction = std::atan2(arms.y, arms.x)};
+  Feature feature{.kind = FeatureKind::corner, .p = p, .direction = base::atan2(arms.y, arms.x)};
   // The direction is the mean of both lines' directions, up to a constant.
   const glm::dvec2 mixed = 0.5 * (s1 / before.spread * g1 + s2 / after.spread * g2);
   feature.covariance = {v1 * g1.x * g1.x + v2 * g2.x * g2.x,
@@ -285,7 +287,7 @@ Feature cone_echo(const base::Pose& X_MC, double range, double sigma, double fov
   const glm::dvec2 axis = base::rotate(X_MC.yaw, {1.0, 0.0});
   // Uniform on the arc, whose depth adds to the error along the axis.
   const double half = std::min(0.5 * fov, 0.5 * M_PI);
-  const double depth = range * (1.0 - std::cos(half)), width = range * std::sin(half);
+  const double depth = range * (1.0 - base::cos(half)), width = range * base::sin(half);
   Feature feature{.kind = FeatureKind::cluster,
                   .p = glm::dvec2{X_MC.x, X_MC.y} + (range - depth / 3.0) * axis,
                   .direction = kUnknown};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/elementary.h"
 #include "robots/runge_kutta.h"
 
 namespace sf::estimation {
@@ -178,7 +179,7 @@ SideslipEstimate estimate_of(const SideslipModel& model, const SideslipState& st
   const SingleTrack track = model.track();
   const auto quantities = [&](const SingleTrackState& s) {
     const AxleForces f = axle_forces(track, s, state.input);
-    return SingleTrackState{std::atan2(s[kTrackLeft], s[kTrackForward]), f.front, f.rear};
+    return SingleTrackState{base::atan2(s[kTrackLeft], s[kTrackForward]), f.front, f.rear};
   };
   const SingleTrackState values = quantities(state.mean);
   SideslipEstimate estimate{values[0], {values[1], values[2]}};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/car_dynamics.h"
 
 namespace sf::estimation {
@@ -16,7 +17,7 @@ using TrackMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 double tyre_force(const robots::Friction& friction, double stiffness, double load, double slip_angle, bool linear) {
   if (linear) return load * stiffness * friction.slope() * slip_angle;
-  const double slip = stiffness * std::tan(std::clamp(slip_angle, -1.5, 1.5));
+  const double slip = stiffness * base::tan(std::clamp(slip_angle, -1.5, 1.5));
   return std::copysign(load * friction.at(std::abs(slip)), slip);
 }
 
@@ -33,8 +34,8 @@ AxleForces axle_forces(const SingleTrack& model, const SingleTrackState& s, cons
   if (model.linear)
     return {force(car.front_stiffness, car.front_load(), in.steer - front),
             force(car.rear_stiffness, car.rear_load(), -rear)};
-  return {force(car.front_stiffness, car.front_load(), in.steer - std::atan(front)),
-          force(car.rear_stiffness, car.rear_load(), -std::atan(rear))};
+  return {force(car.front_stiffness, car.front_load(), in.steer - base::atan(front)),
+          force(car.rear_stiffness, car.rear_load(), -base::atan(rear))};
 }
 
 SingleTrackState rate(const SingleTrack& model, const SingleTrackState& s, const SingleTrackInput& in) {
@@ -43,7 +44,7 @@ SingleTrackState rate(const SingleTrack& model, const SingleTrackState& s, const
   if (model.linear)
     return {0.0, (f.front + f.rear) / car.mass - s[kTrackForward] * s[kTrackTurn],
             (car.front * f.front - car.rear * f.rear) / car.inertia};
-  const double c = std::cos(in.steer), n = std::sin(in.steer);
+  const auto [n, c] = base::sin_cos(in.steer);
   const double across = c * f.front + n * in.force;
   return {(c * in.force - n * f.front - car.resistance(s[kTrackForward])) / car.mass + s[kTrackTurn] * s[kTrackLeft],
           (across + f.rear) / car.mass - s[kTrackTurn] * s[kTrackForward],

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::estimation {
 
 namespace {
@@ -49,9 +51,9 @@ void drive_evenly(const TeamModel& model, const Speeds& speeds, double dt, TeamM
   Eigen::Map<RobotVector> m(all.mean.data());
   const double v = speeds.forward, w = speeds.turn, distance = std::abs(v) * dt, angle = std::abs(w) * dt;
   const bool moves = v != 0.0 || w != 0.0;
-  const double kept = moves ? std::exp(-dt / model.turn_drift[1]) : 1.0;
+  const double kept = moves ? base::exp(-dt / model.turn_drift[1]) : 1.0;
   const double step = m(kSpeedScale) * v * dt, turned = (m(kTurnScale) * w + (moves ? m(kTurnDrift) : 0.0)) * dt;
-  const double c = std::cos(m(kTeamYaw) + 0.5 * turned), s = std::sin(m(kTeamYaw) + 0.5 * turned);
+  const auto [s, c] = base::sin_cos(m(kTeamYaw) + 0.5 * turned);
 
   RobotMatrix F = RobotMatrix::Identity();
   const Eigen::Vector2d along(c, s), across(-s, c);
@@ -80,7 +82,7 @@ void drive_evenly(const TeamModel& model, const Speeds& speeds, double dt, TeamM
 
 /// Adds the error of the time at which the speeds changed.
 void change(const TeamModel& model, const Speeds& from, const Speeds& to, TeamMotion& all) {
-  const double c = std::cos(all.mean[kTeamYaw]), s = std::sin(all.mean[kTeamYaw]);
+  const auto [s, c] = base::sin_cos(all.mean[kTeamYaw]);
   Eigen::Map<RobotMatrix> Q(all.noise.data());
   const Eigen::Vector2d along(c, s);
   Q.topLeftCorner<2, 2>() += squared_number(model.jitter * (to.forward - from.forward)) * along * along.transpose();
@@ -130,7 +132,7 @@ void map_landmark(const Team& team, const TeamEvent& event, TeamState& state) {
   const auto robot = mean_of(state).segment<kTeamComponents>(first_of(event.robot));
   const double direction = robot(kTeamYaw) + event.values[1] - robot(kBearingOffset);
   mean_of(state).segment<2>(landmark_component(team, event.target - team.robots)) =
-      robot.head<2>() + event.values[0] * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+      robot.head<2>() + event.values[0] * Eigen::Vector2d(base::cos(direction), base::sin(direction));
   state.mapped[event.target - team.robots] = 1;
 }
 
@@ -148,7 +150,7 @@ Eigen::Vector2d noise_of(const TeamModel& model, double range, double turn, doub
                                   squared_number(model.turn_blur * turn));
   if (since_last < 0.0 || model.repeat <= 0.0) return noise;
   const double gap = std::max(since_last, kShortestRepeat);
-  return noise * (1.0 + model.repeat / gap * std::exp(-gap / model.repeat));
+  return noise * (1.0 + model.repeat / gap * base::exp(-gap / model.repeat));
 }
 
 TeamResult sight(const Team& team, const TeamEvent& event, double turn, TeamState& state) {
@@ -161,7 +163,7 @@ TeamResult sight(const Team& team, const TeamEvent& event, double turn, TeamStat
   if (!(range >= kNearest)) return {};
 
   const Eigen::Vector2d z(event.values[0] - (1.0 + model.range_scale) * range,
-                          base::wrap_angle(event.values[1] - std::atan2(d.y(), d.x()) + mean_of(state)(at + kTeamYaw) -
+                          base::wrap_angle(event.values[1] - base::atan2(d.y(), d.x()) + mean_of(state)(at + kTeamYaw) -
                                            mean_of(state)(at + kBearingOffset)));
   Eigen::Matrix2d slope;  // of range and bearing by the target's position
   slope.row(0) = (1.0 + model.range_scale) / range * d.transpose();

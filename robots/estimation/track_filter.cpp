@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/estimation/chi_square.h"
 
 namespace sf::estimation {
@@ -14,7 +15,7 @@ bool has_position(const Measurement& m) { return (m.components & kPositionBits) 
 double distance(const Measurement& m, const Estimate& e) {
   const bool x = (m.components & 1u << kX) != 0;
   const bool y = (m.components & 1u << kY) != 0;
-  return std::hypot(x ? m.X_WM.x - e.X_WM.x : 0.0, y ? m.X_WM.y - e.X_WM.y : 0.0);
+  return base::hypot(x ? m.X_WM.x - e.X_WM.x : 0.0, y ? m.X_WM.y - e.X_WM.y : 0.0);
 }
 
 /// Returns the motion model for a restarted track. Its prior on speeds is at least as wide as the speeds of the last

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "robots/estimation/planar_motion.h"
 
 namespace sf::estimation {
@@ -67,31 +68,32 @@ WheeledState move(const WheeledModel& model, const WheeledState& from, double dt
   return to;
 }
 
-/// Covariance added by accelerations, slips, skids and drifts over dt.
-Matrix process_noise(const WheeledModel& model, const WheeledState& from, double dt) {
-  const double seconds = std::abs(dt);
-  const Eigen::Vector3d density(model.motion.forward, model.motion.left, model.motion.turn);
+/// Covariance of the changes of speeds at once, per second: as if the speeds had been less certain at the start.
+Eigen::Vector3d speed_density(const WheeledModel& model) {
+  return {model.motion.forward, model.motion.left, model.motion.turn};
+}
+
+/// Covariance added by continuous changes of speeds over dt.
+Matrix acceleration_noise(const WheeledModel& model, const WheeledState& from, double dt) {
   Matrix Q = Matrix::Zero();
-  const auto accelerate = [&](double place, double weight) {
+  for (const auto& [place, weight] : kGaussLegendre) {
     const Matrix F = derivative(model, move(model, from, place * dt), (1.0 - place) * dt);
     const auto G = F.middleCols<3>(kForward);
-    Q += weight * seconds * G * density.asDiagonal() * G.transpose();
-  };
-  if (model.steps) accelerate(0.0, 1.0);
-  for (std::size_t k = 0; !model.steps && k < kGaussLegendre.size(); ++k)
-    accelerate(kGaussLegendre[k][0], kGaussLegendre[k][1]);
-  const std::array<double, 2> speeds = wheel_speeds(model, from);
-  const double skid = model.skid * model.skid * std::hypot(from.mean[kForward], from.mean[kLeft]);
-  const double drift = model.drift * model.drift;
-  const double slip = model.slip * model.slip;
-  Vector rates = Vector::Zero();
-  rates(kX) = rates(kY) = skid;
-  rates(kLeftRolled) = slip * std::abs(speeds[0]);
-  rates(kRightRolled) = slip * std::abs(speeds[1]);
-  rates(kLeftScale) = rates(kRightScale) = rates(kTrackScale) = drift;
-  rates(kGyroBias) = model.bias_drift * model.bias_drift;
-  Q.diagonal() += seconds * rates;
+    Q += weight * std::abs(dt) * G * speed_density(model).asDiagonal() * G.transpose();
+  }
   return Q;
+}
+
+/// Variances per second of slips, skids and drifts.
+Vector drift_density(const WheeledModel& model, const WheeledState& from) {
+  const std::array<double, 2> speeds = wheel_speeds(model, from);
+  Vector rates = Vector::Zero();
+  rates(kX) = rates(kY) = model.skid * model.skid * base::hypot(from.mean[kForward], from.mean[kLeft]);
+  rates(kLeftRolled) = model.slip * model.slip * std::abs(speeds[0]);
+  rates(kRightRolled) = model.slip * model.slip * std::abs(speeds[1]);
+  rates(kLeftScale) = rates(kRightScale) = rates(kTrackScale) = model.drift * model.drift;
+  rates(kGyroBias) = model.bias_drift * model.bias_drift;
+  return rates;
 }
 
 /// Returns F P F^T. Most rows of F are those of the identity, and the others have few numbers.
@@ -131,7 +133,7 @@ void predict_rate(const WheeledState& state, const WheeledMeasurement& m, Residu
 
 /// A landmark is seen at R^T (landmark - position).
 void predict_sighting(const WheeledState& state, const WheeledMeasurement& m, Residual& all) {
-  const double c = std::cos(state.mean[kYaw]), s = std::sin(state.mean[kYaw]);
+  const auto [s, c] = base::sin_cos(state.mean[kYaw]);
   const Eigen::Vector2d d(m.landmark[0] - state.mean[kX], m.landmark[1] - state.mean[kY]);
   const Eigen::Vector2d seen(c * d.x() + s * d.y(), c * d.y() - s * d.x());
   all.H.leftCols<3>() << -c, -s, seen.y(), s, -c, -seen.x();
@@ -174,7 +176,12 @@ WheeledState predict(const WheeledModel& model, const WheeledState& state, std::
   const double dt = 1e-9 * static_cast<double>(time - state.time);
   WheeledState later = move(model, state, dt);
   later.time = time;
-  store_symmetric(carried(derivative(model, state, dt), covariance_of(state)) + process_noise(model, state, dt), later);
+  Matrix P = covariance_of(state);
+  if (model.steps) P.diagonal().segment<3>(kForward) += std::abs(dt) * speed_density(model);
+  P = carried(derivative(model, state, dt), P);
+  if (!model.steps) P += acceleration_noise(model, state, dt);
+  P.diagonal() += std::abs(dt) * drift_density(model, state);
+  store_symmetric(P, later);
   return later;
 }
 
@@ -184,7 +191,7 @@ Innovation innovation(const WheeledState& predicted, const WheeledMeasurement& m
   const ValuesMatrix S = HP.lazyProduct(H.transpose()) + noise;
   const Eigen::LLT<ValuesMatrix> llt(S);
   return {difference.dot(llt.solve(difference)), static_cast<int>(difference.size()),
-          2.0 * llt.matrixLLT().diagonal().array().log().sum()};
+          2.0 * llt.matrixLLT().diagonal().unaryExpr(&base::log).sum()};
 }
 
 WheeledState correct(const WheeledState& predicted, const WheeledMeasurement& measurement) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "gpu/group_counts.h"
@@ -114,8 +115,8 @@ void EdgeFit::write_directions() {
       const std::uint32_t beam = std::min(beams.packed ? slot : slot / SF_BEAMS_PER_LANE, fan.samples - 1);
       const double bearing = bearing_of(fan, beam);
       const std::size_t at = 2 * (SF_BEAMS_PER_LANE * std::size_t{plan_.rows[i].directions} + slot);
-      table[at] = std::cos(bearing);
-      table[at + 1] = std::sin(bearing);
+      table[at] = base::cos(bearing);
+      table[at + 1] = base::sin(bearing);
     }
   }
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::sensors {
 
 namespace {
@@ -19,11 +21,11 @@ double gap(double low_a, double high_a, double low_b, double high_b) {
 }
 
 double least_distance(const Box& a, const Box& b) {
-  return std::hypot(gap(a.min.x, a.max.x, b.min.x, b.max.x), gap(a.min.y, a.max.y, b.min.y, b.max.y));
+  return base::hypot(gap(a.min.x, a.max.x, b.min.x, b.max.x), gap(a.min.y, a.max.y, b.min.y, b.max.y));
 }
 
 double greatest_distance(const Box& a, const Box& b) {
-  return std::hypot(std::max(a.max.x - b.min.x, b.max.x - a.min.x), std::max(a.max.y - b.min.y, b.max.y - a.min.y));
+  return base::hypot(std::max(a.max.x - b.min.x, b.max.x - a.min.x), std::max(a.max.y - b.min.y, b.max.y - a.min.y));
 }
 
 double side_of(const Box& box) { return std::max(box.max.x - box.min.x, box.max.y - box.min.y); }

@@ -7,6 +7,11 @@ import unittest
 import numpy
 import sensorfarm
 
+try:
+    import torch
+except ImportError:
+    torch = None
+
 ROOM = """
     interval_sim 100
     define wall model( size [6 0.2 1] )
@@ -165,6 +170,30 @@ class Observed(unittest.TestCase):
         stacked = seen.values[2:].reshape(2, 3, -1)
         numpy.testing.assert_array_equal(stacked[:, 1], stacked[:, 0])
         numpy.testing.assert_array_equal(stacked[:, 2], stacked[:, 0])
+
+    def test_shared_through_dlpack(self):
+        worlds = room(3)
+        seen, = worlds.observe()
+        shared = numpy.from_dlpack(seen)
+        self.assertTrue(numpy.shares_memory(shared, seen.values))
+        drive(worlds, 2)
+        numpy.testing.assert_array_equal(shared, seen.values, "written in place")
+        kept = seen.values.copy()
+        del worlds, seen
+        numpy.testing.assert_array_equal(shared, kept, "the array keeps the memory")
+
+    @unittest.skipIf(torch is None, "needs python3-torch")
+    def test_shared_with_torch(self):
+        worlds, twin = room(3), room(3)
+        seen, = worlds.observe()
+        shared = torch.from_dlpack(seen)
+        self.assertEqual(shared.data_ptr(), seen.values.ctypes.data)
+        commands = torch.zeros(3, 2, 3, dtype=torch.float64)
+        for step in range(3):
+            commands[..., 0] = 0.1 * step - 0.1 * shared[:, 0].double().reshape(3, 2)
+            worlds.step(commands)
+            twin.step(commands.numpy().copy())
+        self.assertEqual([worlds.hash(k) for k in range(3)], [twin.hash(k) for k in range(3)])
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 
 namespace sf::world {
@@ -19,7 +20,7 @@ glm::dvec2 unit(glm::dvec2 v) {
 }
 
 /// [rad] in [-pi, pi], counter-clockwise.
-double turn_between(glm::dvec2 a, glm::dvec2 b) { return std::atan2(base::cross(a, b), dot(a, b)); }
+double turn_between(glm::dvec2 a, glm::dvec2 b) { return base::atan2(base::cross(a, b), dot(a, b)); }
 
 double distance_to_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 d = b - a;
@@ -70,7 +71,7 @@ void flatten(Curve& curve, const Bezier& b, const Sampling& sampling, int depth)
 /// Returns a Hermite span with tangents of lengths `reach_a` and `reach_b` [m], before the factor that reproduces
 /// circles.
 Bezier span_of(glm::dvec2 a, glm::dvec2 tangent_a, double reach_a, glm::dvec2 b, glm::dvec2 tangent_b, double reach_b) {
-  const double c = std::cos(turn_between(tangent_a, tangent_b) / 4.0);
+  const double c = base::cos(turn_between(tangent_a, tangent_b) / 4.0);
   const double factor = 1.0 / (3.0 * c * c);
   return {a, a + factor * reach_a * tangent_a, b - factor * reach_b * tangent_b, b};
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::world {
 
 namespace {
@@ -14,19 +16,19 @@ constexpr double kDegree = M_PI / 180.0;
 
 LocalPlane::Earth LocalPlane::earth(Geodetic at) {
   const double e2 = kFlattening * (2.0 - kFlattening);
-  const double sin_lat = std::sin(at.latitude * kDegree);
-  const double cos_lat = std::cos(at.latitude * kDegree);
+  const double sin_lat = base::sin(at.latitude * kDegree);
+  const double cos_lat = base::cos(at.latitude * kDegree);
   const double normal = kRadius / std::sqrt(1.0 - e2 * sin_lat * sin_lat);
-  return {normal * cos_lat * std::cos(at.longitude * kDegree), normal * cos_lat * std::sin(at.longitude * kDegree),
+  return {normal * cos_lat * base::cos(at.longitude * kDegree), normal * cos_lat * base::sin(at.longitude * kDegree),
           normal * (1.0 - e2) * sin_lat};
 }
 
 LocalPlane::LocalPlane(Geodetic origin)
     : origin_(earth(origin)),
-      sin_lat_(std::sin(origin.latitude * kDegree)),
-      cos_lat_(std::cos(origin.latitude * kDegree)),
-      sin_lon_(std::sin(origin.longitude * kDegree)),
-      cos_lon_(std::cos(origin.longitude * kDegree)) {}
+      sin_lat_(base::sin(origin.latitude * kDegree)),
+      cos_lat_(base::cos(origin.latitude * kDegree)),
+      sin_lon_(base::sin(origin.longitude * kDegree)),
+      cos_lon_(base::cos(origin.longitude * kDegree)) {}
 
 glm::dvec2 LocalPlane::east_north(Geodetic at) const {
   const Earth p = earth(at);

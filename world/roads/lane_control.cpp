@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 
 namespace sf::world {
@@ -75,7 +76,7 @@ bool LaneControl::is_empty(std::uint32_t row, std::span<const base::Report> robo
     if (concerns(exit.from) || concerns(exit.to)) links.push_back(exit_curve(*network_, exit));
   return std::ranges::none_of(robots, [&](const base::Report& robot) {
     if (base::is_absent(robot.X_WM)) return false;
-    const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y}, facing{std::cos(robot.X_WM.yaw), std::sin(robot.X_WM.yaw)};
+    const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y}, facing = base::direction(robot.X_WM.yaw);
     const auto at_its_height = [&](double s, glm::dvec2) {
       return std::abs(robot.X_WM.z - height_at(lane, s)) < kApart * lane.width;
     };

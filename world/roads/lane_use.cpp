@@ -7,6 +7,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/suggest.h"
 
@@ -42,7 +43,7 @@ void reverse(RoadLane& lane) {
   std::ranges::reverse(lane.left_edge), std::ranges::reverse(lane.right_edge);
 }
 
-glm::dvec2 along(const LanePoint& point) { return {std::cos(point.yaw), std::sin(point.yaw)}; }
+glm::dvec2 along(const LanePoint& point) { return base::direction(point.yaw); }
 
 /// Builds the parts of a network around its reversed lanes.
 class Reversal {
@@ -160,7 +161,7 @@ std::optional<double> turn_of(const RoadNetwork& network, const RoadExit& exit) 
   const auto from = yaw_of(network, exit.from);
   if (!from) return std::nullopt;
   const glm::dvec2 d = position_of(network, exit.to) - position_of(network, exit.from);
-  const double to = yaw_of(network, exit.to).value_or(std::atan2(d.y, d.x));
+  const double to = yaw_of(network, exit.to).value_or(base::atan2(d.y, d.x));
   return base::wrap_angle(to - *from);
 }
 

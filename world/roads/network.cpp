@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace sf::world {
 
 std::optional<PointRef> find_point(const RoadNetwork& network, PointId id) {
@@ -38,7 +40,7 @@ std::optional<double> yaw_of(const RoadNetwork& network, PointRef at) {
   if (at.kind == PointRef::Kind::perimeter) return std::nullopt;
   if (at.kind == PointRef::Kind::spot) {
     const glm::dvec2 along = network.spots[at.row].end - network.spots[at.row].entry;
-    return std::atan2(along.y, along.x);
+    return base::atan2(along.y, along.x);
   }
   const RoadLane& lane = network.lanes[at.row];
   if (lane.centre.points.size() < 2) return std::nullopt;
@@ -56,7 +58,7 @@ Curve exit_curve(const RoadNetwork& network, const RoadExit& exit) {
   const glm::dvec2 straight = d > 0.0 ? (1.0 / d) * (b - a) : glm::dvec2{1.0, 0.0};
   const auto direction = [&](PointRef at) {
     const auto yaw = yaw_of(network, at);
-    return yaw ? glm::dvec2{std::cos(*yaw), std::sin(*yaw)} : straight;
+    return yaw ? base::direction(*yaw) : straight;
   };
   return connection(a, direction(exit.from), b, direction(exit.to), {network.tolerance, 0.0, 4096});
 }
@@ -90,7 +92,7 @@ Beside nearest_of(const RoadLane& lane, glm::dvec2 p) {
 
 bool may_cross(Boundary boundary) { return boundary == Boundary::broken_white || boundary == Boundary::none; }
 
-glm::dvec2 direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
+glm::dvec2 direction(double yaw) { return base::direction(yaw); }
 
 /// Returns nullopt if the lanes are not adjacent there, or if the marking forbids a change.
 std::optional<double> beside(const RoadLane& from, std::uint32_t index, const RoadLane& to) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "world/roads/lane_markings.h"
 #include "world/roads/network.h"
@@ -79,7 +80,7 @@ void trace_lane(Builder& b, RoadLane& lane, const RndfLane& from) {
     const std::size_t knot = lane.centre.knots[i];
     const glm::dvec2 tangent = lane.centre.tangents[knot];
     const auto own = b.sidecar.points.find(from.points[i].id);
-    lane.points.push_back({from.points[i].id, waypoints[i], lane.centre.s[knot], std::atan2(tangent.y, tangent.x),
+    lane.points.push_back({from.points[i].id, waypoints[i], lane.centre.s[knot], base::atan2(tangent.y, tangent.x),
                            own == b.sidecar.points.end() ? 0.0 : own->second.height});
   }
 }

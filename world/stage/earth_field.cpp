@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "world/roads/sidecar.h"
 
 namespace sf::world {
@@ -69,8 +70,8 @@ glm::dvec3 read_vector(BuildState& b, const Entity& root, const Property& proper
 
 glm::dvec3 dipole_field(double latitude, double longitude) {
   constexpr double g10 = -29404.8e-9, g11 = -1450.9e-9, h11 = 4652.5e-9;  // [T]
-  const double sin_lat = std::sin(kDegree * latitude), cos_lat = std::cos(kDegree * latitude);
-  const double sin_lon = std::sin(kDegree * longitude), cos_lon = std::cos(kDegree * longitude);
+  const double sin_lat = base::sin(kDegree * latitude), cos_lat = base::cos(kDegree * latitude);
+  const double sin_lon = base::sin(kDegree * longitude), cos_lon = base::cos(kDegree * longitude);
   const double across = g11 * cos_lon + h11 * sin_lon;
   return {g11 * sin_lon - h11 * cos_lon, across * sin_lat - g10 * cos_lat, 2.0 * (g10 * sin_lat + across * cos_lat)};
 }

@@ -47,7 +47,8 @@ double degrees_of_radians(double angle) {
   const std::size_t decimals = decimals_of(angle);
   const bool quarter = 4.0 * angle == std::floor(4.0 * angle);  // such as 1.75 degrees
   if (!(angle > 0.429 && angle < 6.3) || decimals < 2 || quarter) return 0.0;
-  const double digit = std::max(1e-6, std::pow(0.1, static_cast<double>(decimals)));
+  double digit = 1.0;  // the last one, at least 1e-6
+  for (std::size_t k = 0; k < std::min<std::size_t>(decimals, 6); ++k) digit *= 0.1;
   double degrees = multiple_of(15.0, angle, 0.01);
   for (const double step : {10.0, 25.0})
     if (degrees == 0.0) degrees = multiple_of(step, angle, digit);
