@@ -171,8 +171,7 @@ TEST(Determinism, SenseHasNoSideEffects) {
   EXPECT_EQ(asked.hash(), plain.hash());
 }
 
-/// A fixed scene has a fixed hash. Beams at multiples of 22.5 degrees, poses on a lattice, no noise: the hash depends
-/// only on the C library's sin and cos of multiples of pi/8 and of 1/4.
+/// A fixed scene has a fixed hash.
 TEST(Determinism, GoldenHash) {
   world::World world;
   scenes::add_room(world, {}, 12.0);
