@@ -37,24 +37,47 @@ Sum reduced(double x, double n) {
   return {sum, (high - sum) + low};
 }
 
-// Taylor's series for |r| <= pi/4, from the second term; the first left out is below 2^-60.
-double sin_series(Sum r) {
-  const double s = r.high * r.high, q = s * s;
-  const double a = -1.0 / 6.0 + s * (1.0 / 120.0), b = -1.0 / 5'040.0 + s * (1.0 / 362'880.0);
-  const double c = -1.0 / 39'916'800.0 + s * (1.0 / 6'227'020'800.0);
-  const double d = -1.0 / 1'307'674'368'000.0 + s * (1.0 / 355'687'428'096'000.0);
-  const double series = (a + q * b) + q * q * (c + q * d);
-  return r.high + (r.high * s * series + r.low * (1.0 - 0.5 * s));
+/// Returns a - b.
+Sum difference(const Sum& a, const Sum& b) {
+  const double high = a.high - b.high;
+  return {high, ((a.high - high) - b.high) + (a.low - b.low)};
 }
 
-double cos_series(Sum r) {
-  const double s = r.high * r.high, q = s * s;
-  const double a = 1.0 / 24.0 - s * (1.0 / 720.0), b = 1.0 / 40'320.0 - s * (1.0 / 3'628'800.0);
-  const double c = 1.0 / 479'001'600.0 - s * (1.0 / 87'178'291'200.0);
-  const double d = 1.0 / 20'922'789'888'000.0 - s * (1.0 / 6'402'373'705'728'000.0);
-  const double series = (a + q * b) + q * q * (c + q * d);
-  const double half = 0.5 * s, most = 1.0 - half;
-  return most + (((1.0 - most) - half) + (q * series - r.high * r.low));
+/// Returns c[0] + c[1] s + ... + c[7] s^7.
+double polynomial(const double (&c)[8], double s) {
+  const double q = s * s;
+  const double low = (c[0] + s * c[1]) + q * (c[2] + s * c[3]);
+  return low + q * q * ((c[4] + s * c[5]) + q * (c[6] + s * c[7]));
+}
+
+// Taylor's series for |r| <= pi/4 and tangents up to 1/8; the first terms left out are below 2^-58.
+constexpr double kSine[] = {-1.0 / 6.0,
+                            1.0 / 120.0,
+                            -1.0 / 5'040.0,
+                            1.0 / 362'880.0,
+                            -1.0 / 39'916'800.0,
+                            1.0 / 6'227'020'800.0,
+                            -1.0 / 1'307'674'368'000.0,
+                            1.0 / 355'687'428'096'000.0};
+constexpr double kCosine[] = {1.0 / 24.0,
+                              -1.0 / 720.0,
+                              1.0 / 40'320.0,
+                              -1.0 / 3'628'800.0,
+                              1.0 / 479'001'600.0,
+                              -1.0 / 87'178'291'200.0,
+                              1.0 / 20'922'789'888'000.0,
+                              -1.0 / 6'402'373'705'728'000.0};
+constexpr double kArc[] = {-1.0 / 3.0,  1.0 / 5.0,  -1.0 / 7.0,  1.0 / 9.0,
+                           -1.0 / 11.0, 1.0 / 13.0, -1.0 / 15.0, 1.0 / 17.0};
+
+double sin_series(const Sum& r) {
+  const double s = r.high * r.high;
+  return r.high + (r.high * s * polynomial(kSine, s) + r.low * (1.0 - 0.5 * s));
+}
+
+double cos_series(const Sum& r) {
+  const double s = r.high * r.high, half = 0.5 * s, most = 1.0 - half;
+  return most + (((1.0 - most) - half) + (s * s * polynomial(kCosine, s) - r.high * r.low));
 }
 
 /// The arcs whose tangents are 0, 1/4, 1/2, 3/4 and 1.
@@ -68,12 +91,9 @@ constexpr Sum kArcs[] = {{0.0, 0.0},
 Sum arc_of(double tangent) {
   const double k = nearest(4.0 * tangent);  // the difference below is exact
   const double t = k == 0.0 ? tangent : (4.0 * tangent - k) / (4.0 + k * tangent);
-  const double s = t * t, q = s * s;
-  const double a = -1.0 / 3.0 + s * (1.0 / 5.0), b = -1.0 / 7.0 + s * (1.0 / 9.0);
-  const double c = -1.0 / 11.0 + s * (1.0 / 13.0), d = -1.0 / 15.0 + s * (1.0 / 17.0);
-  const double series = (a + q * b) + q * q * (c + q * d);
+  const double s = t * t;
   const Sum& arc = kArcs[static_cast<int>(k)];
-  const double rest = t * s * series + arc.low;
+  const double rest = t * s * polynomial(kArc, s) + arc.low;
   const double high = arc.high + t;
   return {high, ((arc.high - high) + t) + rest};
 }
@@ -110,11 +130,8 @@ double atan2(double y, double x) {
   const double most = steep ? up : along, least = steep ? along : up;
   const double tangent = most == 0.0 ? 0.0 : least == most ? 1.0 : least / most;
   Sum arc = arc_of(tangent);
-  if (steep) arc = {kHalfPi - arc.high, ((kHalfPi - (kHalfPi - arc.high)) - arc.high) + (kHalfPiRest - arc.low)};
-  if (std::signbit(x)) {
-    const double turned = 2.0 * kHalfPi - arc.high;
-    arc = {turned, ((2.0 * kHalfPi - turned) - arc.high) + (2.0 * kHalfPiRest - arc.low)};
-  }
+  if (steep) arc = difference({kHalfPi, kHalfPiRest}, arc);
+  if (std::signbit(x)) arc = difference({2.0 * kHalfPi, 2.0 * kHalfPiRest}, arc);
   return std::copysign(arc.high + arc.low, y);
 }
 

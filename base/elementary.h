@@ -6,6 +6,8 @@
 // Infinity and NaN give NaN where the real function has no value. Errors are in units in the last place (ulp) and were
 // measured against Boost.Multiprecision (tests/base/elementary_test.cpp).
 
+#include <cmath>
+
 namespace sf::base {
 
 struct SinCos {
@@ -18,6 +20,9 @@ SinCos sin_cos(double angle);
 
 inline double sin(double angle) { return sin_cos(angle).sin; }
 inline double cos(double angle) { return sin_cos(angle).cos; }
+
+/// Returns sin(x)/x. Below the threshold, the next term of the series is less than half an ulp.
+inline double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : sin(x) / x; }
 
 /// Within 2.5 ulp up to 100 rad.
 inline double tan(double angle) {
@@ -46,5 +51,6 @@ double erfc(double x);
 
 /// Returns sqrt(x x + y y) within 1.1 ulp, unless a square overflows (1e154) or is below 1e-290.
 double hypot(double x, double y);
+inline double hypot(double x, double y, double z) { return hypot(hypot(x, y), z); }
 
 }  // namespace sf::base

@@ -63,8 +63,10 @@ inline glm::dvec2 transform(const Pose& X_AB, glm::dvec2 p_B) {
 /// Returns the same heading in [-pi, pi].
 inline double wrap_angle(double angle) {
   if (std::abs(angle) <= M_PI) return angle;
-  // Beyond 1e6 rad, the rounding error of 2 pi times the number of turns is too large.
-  return std::abs(angle) < 1e6 ? std::remainder(angle, 2.0 * M_PI) : atan2(sin_cos(angle).sin, sin_cos(angle).cos);
+  if (std::abs(angle) < 1e6) return std::remainder(angle, 2.0 * M_PI);
+  // The rounding error of 2 pi times the number of turns is too large.
+  const auto [s, c] = sin_cos(angle);
+  return atan2(s, c);
 }
 
 }  // namespace sf::base

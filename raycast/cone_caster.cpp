@@ -73,8 +73,8 @@ void ConeCaster::place_movers() {
   if (!incidence_) return;
   const auto table = headings_.host<float>();
   for (std::size_t m = 0; m < states_.size(); ++m) {
-    table[4 * (m + 1)] = static_cast<float>(base::cos(states_[m].X_WM.yaw));
-    table[4 * (m + 1) + 1] = static_cast<float>(base::sin(states_[m].X_WM.yaw));
+    const auto [s, c] = base::sin_cos(states_[m].X_WM.yaw);
+    table[4 * (m + 1)] = static_cast<float>(c), table[4 * (m + 1) + 1] = static_cast<float>(s);
   }
 }
 

@@ -28,8 +28,8 @@ struct Grip {
 
 Grip grip_of(const CarModel& m, const CarState& s, std::size_t wheel) {
   const PlaceOfWheel at = place_of(m, wheel);
-  const double steer = at.front ? s[kCarSteer] : 0.0;
-  Grip grip{.cosine = base::cos(steer), .sine = base::sin(steer)};
+  const base::SinCos steer = base::sin_cos(at.front ? s[kCarSteer] : 0.0);
+  Grip grip{.cosine = steer.cos, .sine = steer.sin};
   const double vx = s[kCarForward] - s[kCarTurn] * at.y, vy = s[kCarLeft] + s[kCarTurn] * at.x;
   const double ahead = grip.cosine * vx + grip.sine * vy, aside = grip.cosine * vy - grip.sine * vx;
   const double rim = rim_speed(m, s, wheel);

@@ -9,9 +9,6 @@ namespace sf::robots {
 
 namespace {
 
-// sin(x)/x. Below the threshold, the next term of the series is less than half an ulp.
-double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : base::sin(x) / x; }
-
 constexpr double kSame = 1e-7;  // [m], [rad] poses within this distance are equal except for rounding
 
 bool near(const base::Pose& p, const base::Pose& q) {
@@ -23,7 +20,7 @@ bool near(const base::Pose& p, const base::Pose& q) {
 base::Twist twist_between(const base::Pose& from, const base::Pose& to, double seconds) {
   const double turn = base::wrap_angle(to.yaw - from.yaw);
   const glm::dvec2 chord = base::rotate(-(from.yaw + 0.5 * turn), {to.x - from.x, to.y - from.y});
-  const double per = 1.0 / (sinc(0.5 * turn) * seconds);
+  const double per = 1.0 / (base::sinc(0.5 * turn) * seconds);
   return {per * chord.x, per * chord.y, turn / seconds};
 }
 
@@ -37,7 +34,7 @@ base::Twist finite(const base::Twist& twist) {
 base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double dt) {
   // The integral of R(yaw + w t) v over dt is R(yaw + w dt/2) v sinc(w dt/2) dt: the chord of the arc.
   const double half = 0.5 * velocity.turn * dt;
-  const double chord = sinc(half) * dt;
+  const double chord = base::sinc(half) * dt;
   const glm::dvec2 d = base::rotate(X_WM.yaw + half, {chord * velocity.forward, chord * velocity.left});
   return {X_WM.x + d.x, X_WM.y + d.y, X_WM.z, base::wrap_angle(X_WM.yaw + velocity.turn * dt)};
 }

@@ -88,7 +88,7 @@ class LocalizationSensor final : public PoseSensor<estimation::Localization> {
       if (!(id > 0.0)) continue;
       const auto landmark = finder.landmarks.find(static_cast<std::uint32_t>(id));
       if (landmark == finder.landmarks.end()) continue;
-      const double direction = reading.values[k + 3] + X_RS.yaw, c = base::cos(direction), s = base::sin(direction);
+      const auto [s, c] = base::sin_cos(reading.values[k + 3] + X_RS.yaw);
       const double along = std::max(finder.settings.range_noise, kLeastNoise);
       const double across = range * std::max(finder.settings.bearing_noise, kLeastNoise) + kLeastNoise;
       const double a = along * along, b = across * across;

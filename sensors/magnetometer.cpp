@@ -236,7 +236,7 @@ void Magnetometers::read(std::size_t i) {
       b = {b[0] + m.sigma * xy[0], b[1] + m.sigma * xy[1], b[2] + m.sigma * zf[0]};
       extra = m.sigma * zf[1];
     }
-    const double total = m.magnitudes ? sum.magnitudes + extra : base::hypot(base::hypot(b[0], b[1]), b[2]);
+    const double total = m.magnitudes ? sum.magnitudes + extra : base::hypot(b[0], b[1], b[2]);
     double* const out = values_.data() + array.values + kMagnetometerColumns * e;
     out[0] = std::clamp(total, m.least, m.most);
     for (std::size_t k = 0; k < 3; ++k) out[k + 1] = std::clamp(b[k], m.least, m.most);

@@ -38,7 +38,7 @@ EmulatedDrive::EmulatedDrive(const RealRobotType& type, const RealRobotOptions& 
       farm_(*world_, device_, {.seed = options.seed, .threads = 1}),
       body_(*world_, mover_) {
   const base::Pose& X = world_->movers[mover_].X_WM;
-  if (base::hypot(base::hypot(X.x - X_WM.x, X.y - X_WM.y), base::wrap_angle(X.yaw - X_WM.yaw)) > kSamePlace)
+  if (base::hypot(X.x - X_WM.x, X.y - X_WM.y, base::wrap_angle(X.yaw - X_WM.yaw)) > kSamePlace)
     throw base::InputError(
         fmt::format("{}: '{}' starts at {} in the real world, and at {} in the farm's; expected the "
                     "same pose",

@@ -37,8 +37,8 @@ std::string csv_of(const viz::FieldView& view, const viz::FieldSamples& samples)
   std::string text = "along_m,x_m,y_m,z_m,field_gauss,x_gauss,y_gauss,z_gauss,magnitudes_gauss\n";
   for (const viz::ProfilePoint& p : samples.profile)
     text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", p.along, p.p.x, p.p.y,
-                        view.height, base::hypot(base::hypot(p.field.x, p.field.y), p.field.z) / kGauss,
-                        p.field.x / kGauss, p.field.y / kGauss, p.field.z / kGauss, p.field.magnitudes / kGauss);
+                        view.height, base::hypot(p.field.x, p.field.y, p.field.z) / kGauss, p.field.x / kGauss,
+                        p.field.y / kGauss, p.field.z / kGauss, p.field.magnitudes / kGauss);
   return text;
 }
 

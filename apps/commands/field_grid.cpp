@@ -33,7 +33,7 @@ std::optional<viz::GridData> field_grid(const world::World& world, gpu::Device& 
       points.push_back({grid.x + (i + 0.5) * cell, grid.y + (j + 0.5) * cell, height});
   viz::DataArray magnitude{"magnitude", 1, {}}, field{"B", 3, {}}, in_plane{"in_plane", 3, {}};
   for (const sensors::FieldSum& b : sensors::sample_field(world, device, points)) {
-    magnitude.values.push_back(base::hypot(base::hypot(b.x, b.y), b.z));
+    magnitude.values.push_back(base::hypot(b.x, b.y, b.z));
     field.values.insert(field.values.end(), {b.x, b.y, b.z});
     in_plane.values.insert(in_plane.values.end(), {b.x, b.y, 0.0});
   }

@@ -234,7 +234,7 @@ void LocalizationMonitor::update(std::int64_t now) {
   for (const MonitoredInput input : kEachMonitoredInput)
     if (at(input).faulty) {
       if (!is_consistent(input)) at(input).wrong = now;
-      const double hold = monitor_.hold * std::ldexp(1.0, std::min(static_cast<int>(at(input).faults) - 1, 6));
+      const double hold = std::ldexp(monitor_.hold, std::min(static_cast<int>(at(input).faults) - 1, 6));
       if (in_seconds(now - at(input).wrong) > hold) hand_back(input, now);
       return;
     }

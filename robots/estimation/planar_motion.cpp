@@ -42,7 +42,7 @@ std::array<double, kComponents * kComponents> jacobian(MotionModel::Path path, c
   if (path == MotionModel::Path::arc) {
     // The chord R(yaw + h) v sinc(h) dt with h = turn dt / 2.
     const double h = 0.5 * turn * dt;
-    const double length = dt * (std::abs(h) < 1e-4 ? 1.0 - h * h / 6.0 : base::sin(h) / h);
+    const double length = dt * base::sinc(h);
     const glm::dvec2 d = base::rotate(yaw + h, {length * forward, length * left});
     const double stretch = 0.5 * dt * dt * sinc_slope(h);
     set_column(kX, kYaw, perpendicular(d));

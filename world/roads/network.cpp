@@ -92,13 +92,11 @@ Beside nearest_of(const RoadLane& lane, glm::dvec2 p) {
 
 bool may_cross(Boundary boundary) { return boundary == Boundary::broken_white || boundary == Boundary::none; }
 
-glm::dvec2 direction(double yaw) { return base::direction(yaw); }
-
 /// Returns nullopt if the lanes are not adjacent there, or if the marking forbids a change.
 std::optional<double> beside(const RoadLane& from, std::uint32_t index, const RoadLane& to) {
   const LanePoint& point = from.points[index];
   const Beside other = nearest_of(to, point.p);
-  const glm::dvec2 along = direction(point.yaw);
+  const glm::dvec2 along = base::direction(point.yaw);
   const glm::dvec2 across = other.p - point.p;
   const double width = 0.5 * (from.width + to.width);
   const double apart = length(across);
@@ -135,7 +133,7 @@ std::vector<Transition> lane_changes(const RoadNetwork& network, PointRef at) {
 Curve lane_change_curve(const RoadNetwork& network, PointRef from, PointRef to) {
   const LanePoint& a = network.lanes[from.row].points[from.index];
   const LanePoint& b = network.lanes[to.row].points[to.index];
-  return connection(a.p, direction(a.yaw), b.p, direction(b.yaw), {network.tolerance, 0.0, 4096});
+  return connection(a.p, base::direction(a.yaw), b.p, base::direction(b.yaw), {network.tolerance, 0.0, 4096});
 }
 
 }  // namespace sf::world
