@@ -327,8 +327,9 @@ TEST(ModelControllers, RanksAreRefused) {
   cluster::ThreadRanks(2).run([&](cluster::Ranks& rank) {
     SimulationOptions options = acting_options(world);
     options.ranks = &rank;
+    gpu::Device own{std::string(gpu::kHostDevice)};
     expect_in("controllers of models cannot run in several ranks; expected a run in one process",
-              refusal_of([&] { Simulation(world, host_device(), options); }));
+              refusal_of([&] { Simulation(world, own, options); }));
   });
 }
 
