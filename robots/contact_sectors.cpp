@@ -92,10 +92,25 @@ bool presses(const Footprint& outline, std::span<const FootprintEdge> edges, con
   return inside(outline.edges, 0.5 * (a + b), s.z_min, s.z_max);
 }
 
+/// The borders that a point is strictly on the left or on the right of, as bits. Border k is the right one of sector k.
+struct Sides {
+  explicit Sides(glm::dvec2 p) {
+    for (std::uint32_t k = 0; k < kContactSectors; ++k) {
+      const double side = base::cross(borders()[k], p);
+      left |= (side > 0.0 ? 1u : 0u) << k, right |= (side < 0.0 ? 1u : 0u) << k;
+    }
+  }
+  std::uint32_t left = 0, right = 0;
+};
+
 /// Returns the wanted sectors that the surface crosses.
 std::uint32_t sectors_crossed(const Surface& s, std::uint32_t wanted) {
+  static_assert(kContactSectors == 32, "a bit of std::uint32_t per border");
+  // A surface wholly on the outer side of one of a sector's borders does not cross it.
+  const Sides a(s.a), b(s.b);
+  const std::uint32_t outside = (a.right & b.right) | std::rotr(a.left & b.left, 1);
   std::uint32_t crossed = 0;
-  for (std::uint32_t left = wanted; left != 0; left &= left - 1) {
+  for (std::uint32_t left = wanted & ~outside; left != 0; left &= left - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
     const Part part = within_sector(s, k);
     if (part.from < part.to) crossed |= 1u << k;

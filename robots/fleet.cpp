@@ -77,6 +77,7 @@ void Fleet::add_mover() {
                       .velocity = {}});
   predicted_ = reports_;
   rank_ = ranks_of(world_);
+  disturbed_ = true;
   make_room();
 }
 
@@ -85,11 +86,13 @@ void Fleet::restart(std::uint32_t row) {
   predicted_[row] = reports_[row];
   free_discs_[row] = {};
   for (auto* flags : {&contacts_, &refused_, &struck_, &reported_}) (*flags)[row] = 0;
+  disturbed_ = true;
 }
 
 void Fleet::update_outline(std::uint32_t row) {
   footprints_.at(row) = footprint_of(world_.movers[row]);
   free_discs_[row] = {};
+  disturbed_ = true;
   make_room();
 }
 
@@ -108,7 +111,7 @@ void Fleet::make_room() {
   proposed_.resize(count);
   free_discs_.resize(count);
   for (auto* flags :
-       {&waiting_, &yielded_, &changed_, &continues_, &contacts_, &refused_, &struck_, &reported_, &absent_})
+       {&waiting_, &yielded_, &changed_, &moved_, &continues_, &contacts_, &refused_, &struck_, &reported_, &absent_})
     flags->resize(count);
   for (auto* rows : {&unfinished_, &round_rows_}) rows->reserve(count);
   for (Scratch& scratch : scratch_) {
@@ -146,19 +149,20 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
     refused_[row] = progress.refused || progress.left > 0.0;
     reports_[row].velocity = progress.left > 0.0 ? Twist{} : progress.velocity;
     reports_[row].time += dt;
-    if (!ground_.is_flat() && absent_[row] == 0)
-      reports_[row].X_WM.z = ground_.follow(starts_[row], {reports_[row].X_WM.x, reports_[row].X_WM.y});
+    contacts_[row] = absent_[row] == 0 && (refused_[row] != 0 || reports_[row].contact_mask != 0);
+    if (ground_.is_flat() || absent_[row] != 0) return;
+    const double z = ground_.follow(starts_[row], {reports_[row].X_WM.x, reports_[row].X_WM.y});
+    if (z != std::exchange(reports_[row].X_WM.z, z)) moved_[row] = 1;
   });
   update_contacts();
 }
 
-// Only movers with a refused step, movers in contact before, and movers that refused a step can be in contact. Tests
-// only these.
+// Only movers with a refused step, movers in contact before (both are set in `contacts_`), and movers that refused a
+// step can be in contact. Tests only these.
 void Fleet::update_contacts() {
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
-    contacts_[row] = absent_[row] == 0 && (refused_[row] != 0 || reports_[row].contact_mask != 0);
     const auto struck = refused_[row] != 0 ? std::span(struck_) : std::span<std::uint8_t>();
-    if (contacts_[row] != 0)
+    if (contacts_[row] != 0 && !keeps_contacts(row))
       reports_[row].contact_mask = body_contact(row, reports_[row].X_WM, reports_, struck).sectors;
   });
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
@@ -167,6 +171,7 @@ void Fleet::update_contacts() {
     struck_[row] = 0;
     contacts_[row] = absent_[row] == 0 && (refused_[row] != 0 || reports_[row].contact_mask != 0);
   });
+  disturbed_ = false;
 }
 
 std::uint64_t Fleet::steps_tested() const {
@@ -183,6 +188,7 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
     reports_[report.mover] = report;
     reported_[report.mover] = 1;
     refused_[report.mover] = 0;
+    disturbed_ = true;
     ++taken;
   }
   return taken;
@@ -191,6 +197,7 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
 void Fleet::set_moved(const base::Report& report, bool contact) {
   reports_[report.mover] = report;
   contacts_[report.mover] = contact ? 1 : 0;
+  disturbed_ = true;
 }
 
 std::span<const base::Report> Fleet::predict(std::int64_t time) {

@@ -78,7 +78,7 @@ class Fleet {
 
   /// Marks a mover as absent or present. Other movers do not collide with an absent mover, `move` does not move it, and
   /// it has no contacts.
-  void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0; }
+  void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0, disturbed_ = true; }
 
   /// Adds the world's new last mover: at rest at its load pose, at the time of the others.
   void add_mover();
@@ -201,6 +201,7 @@ class Fleet {
   /// @param struck if not empty: set to 1 for other movers that touch it
   BodyContact body_contact(std::uint32_t row, const base::Pose& X_WM, std::span<const base::Report> reports,
                            std::span<std::uint8_t> struck = {}) const;
+  bool keeps_contacts(std::uint32_t row) const;
   void update_contacts();
   void update_reported_contacts();
   template <class Body>
@@ -227,6 +228,7 @@ class Fleet {
   std::vector<std::uint8_t> waiting_;      ///< 1: its tick is not finished
   std::vector<std::uint8_t> yielded_;      ///< 1: yielded in this round
   std::vector<std::uint8_t> changed_;      ///< 1: it moved or yielded in this round
+  std::vector<std::uint8_t> moved_;        ///< 1: it moved in this tick
   std::vector<std::uint8_t> continues_;    ///< 1: takes part in the next round
   std::vector<std::uint32_t> unfinished_;  ///< rows whose tick is not finished
   std::vector<std::uint32_t> round_rows_;  ///< subset of `unfinished_`: rows in this round
@@ -236,6 +238,7 @@ class Fleet {
   std::vector<std::uint8_t> struck_;    ///< 1: it touches a mover with a refused step; 0 between calls
   std::vector<std::uint8_t> reported_;  ///< 1: set by a report since the last `move`
   std::vector<std::uint8_t> absent_;
+  bool disturbed_ = true;  ///< a mover changed since the last `move`, other than by it
 };
 
 template <class Body>

@@ -315,6 +315,21 @@ bool Fleet::leaves(std::uint32_t row, const Pose& from, glm::dvec2 to, const Seg
          no_nearer(world::distance(to, wall.a, wall.b), world::distance(now.origin, wall.a, wall.b));
 }
 
+/// Returns whether a mover surely touches the same sectors as after the last tick: it touched something then, and
+/// neither it nor a mover near it has moved. The movers that refused it a step must know of their contacts without it.
+bool Fleet::keeps_contacts(std::uint32_t row) const {
+  const base::Report& own = reports_[row];
+  if (disturbed_ || moved_[row] != 0 || own.contact_mask == 0) return false;
+  const double reach = footprints_[row].radius + kContactDistance;
+  const auto changes = [&](std::uint32_t other) {
+    if (other == row || absent_[other] != 0) return false;
+    const glm::dvec2 d = origin(reports_[other].X_WM) - origin(own.X_WM);
+    const double apart = reach + travels_[other] + footprints_[other].radius;
+    return dot(d, d) <= apart * apart && (moved_[other] != 0 || (refused_[row] != 0 && contacts_[other] == 0));
+  };
+  return !neighbours_.any(origin(own.X_WM), reach + widest_ + farthest_, changes, copies_.copy_of(row));
+}
+
 Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std::span<const base::Report> reports,
                                        std::span<std::uint8_t> struck) const {
   const Footprint& outline = footprints_[row];
@@ -328,6 +343,8 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
     touch.sectors |= sectors;
   };
   walls_.any(world::box_around(p, reach), [&](const Segment& wall) {
+    constexpr double kMargin = 1e-6;  // [m] for rounding
+    if (world::distance(p, wall.a, wall.b) > reach + kMargin) return false;
     const std::uint32_t sectors = contact_sectors(outline, X_WM, wall);
     if (sectors != 0) add(sectors, world::from_segment(p, wall.a, wall.b));
     return false;

@@ -15,7 +15,7 @@ namespace sf::robots {
 using base::Twist;
 
 void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scratch& scratch) {
-  waiting_[row] = 0;
+  waiting_[row] = moved_[row] = 0;
   if (absent_[row] != 0) {
     progress_[row] = proposed_[row] = {reports_[row].X_WM, {}, 0.0, false};
     return;
@@ -89,10 +89,12 @@ bool Fleet::moved(std::uint32_t row) const {
 
 void Fleet::commit(std::uint32_t row) {
   changed_[row] = yielded_[row] != 0 || moved(row) ? 1 : 0;
-  if (yielded_[row] != 0)
+  if (yielded_[row] != 0) {
     proposed_[row] = progress_[row];
-  else
+  } else {
+    moved_[row] |= changed_[row];
     progress_[row] = proposed_[row];
+  }
   reports_[row].X_WM = progress_[row].X_WM;
   waiting_[row] = progress_[row].left > 0.0 ? 1 : 0;
 }

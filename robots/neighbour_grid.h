@@ -2,7 +2,6 @@
 // Index of movers by position: a hashed grid of points, rebuilt each tick.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,7 +46,9 @@ class NeighbourGrid {
   };
   std::int64_t cell_of(double v) const {
     constexpr double kFarthest = 4.0e15;  // keeps cell numbers exact integers for any reported position
-    return static_cast<std::int64_t>(std::clamp(std::floor(v / cell_), -kFarthest, kFarthest));
+    const double at = std::clamp(v / cell_, -kFarthest, kFarthest);
+    const auto whole = static_cast<std::int64_t>(at);
+    return whole - (static_cast<double>(whole) > at ? 1 : 0);  // std::floor is a call without SSE4.1
   }
   std::size_t bucket(const Cell& cell) const;
 

@@ -60,6 +60,31 @@ std::vector<Twist> random_commands(std::size_t count, int tick) {
   return commands;
 }
 
+/// Drives the crowd into obstacles for 120 ticks, half of the time without turning, and returns the hash of all states.
+/// @param disturb computes all contacts anew in each tick, as after a change from outside
+std::uint64_t hash_of_contacts(const world::World& world, bool disturb) {
+  Fleet fleet(world);
+  std::uint64_t hash = 0;
+  for (int tick = 0; tick < 120; ++tick) {
+    std::vector<Twist> commands = random_commands(world.movers.size(), tick / 4);
+    for (std::size_t row = tick % 80 < 40 ? 0 : commands.size(); row < commands.size(); ++row) commands[row].turn = 0.0;
+    if (disturb) fleet.set_absent(0, false);
+    fleet.move(commands, kTick);
+    for (const Report& report : fleet.reports()) {
+      const double state[] = {report.X_WM.x, report.X_WM.y, report.X_WM.yaw, double(report.contact_mask)};
+      hash = base::hash_bytes(state, sizeof state, hash);
+    }
+    hash = base::hash_bytes(fleet.contacts().data(), fleet.contacts().size(), hash);
+  }
+  return hash;
+}
+
+// Movers that stay in contact keep their sectors as long as nothing near them moves.
+TEST(Crowd, KeptContactsEqualComputedOnes) {
+  const world::World world = crowd();
+  EXPECT_EQ(hash_of_contacts(world, false), hash_of_contacts(world, true));
+}
+
 // Signed areas in long double for all pairs, independent of the code under test.
 bool strictly_cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const auto side = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
