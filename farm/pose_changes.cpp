@@ -10,6 +10,10 @@ namespace sf::farm {
 
 namespace {
 
+/// Number of places searched before they are sorted. In a crowd one of them is usually within reach, so that no tick
+/// needs the order.
+constexpr std::ptrdiff_t kProbed = 256;
+
 /// Compares bitwise, since the sign of a zero may affect a reading.
 bool same(const base::Pose& p, const base::Pose& q) {
   using Bits = std::array<std::uint64_t, 4>;
@@ -47,13 +51,18 @@ void PoseChanges::add(std::uint32_t mover, const base::Pose& from, const base::P
 }
 
 bool PoseChanges::within(std::uint32_t mover, glm::dvec2 p, double reach) {
+  const std::uint32_t copy = copies_.copy_of(mover);
+  const auto is_within = [&](const Place& at) {
+    return at.copy == copy && glm::length(glm::dvec2{at.x, at.y} - p) <= reach + at.radius;
+  };
+  if (!sorted_ && std::any_of(places_.begin(), places_.begin() + std::min(kProbed, std::ssize(places_)), is_within))
+    return true;
   if (!sorted_) std::ranges::sort(places_, {}, &Place::order);
   sorted_ = true;
   const double most = reach + largest_;
-  const std::uint32_t copy = copies_.copy_of(mover);
   auto at = std::ranges::lower_bound(places_, std::pair(copy, p.x - most), {}, &Place::order);
   for (; at != places_.end() && at->order() <= std::pair(copy, p.x + most); ++at)
-    if (glm::length(glm::dvec2{at->x, at->y} - p) <= reach + at->radius) return true;
+    if (is_within(*at)) return true;
   return false;
 }
 

@@ -128,9 +128,11 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
   cells_.find(views, thread_pool_);
   if (movers_.segments() > 0) crowds_.find(views, thread_pool_);
   static const std::uint32_t most = most_blocks();
+  const std::size_t kept = std::min(kKeptPerView * views.size(), kMostKept);
+  blocks_.reserve(kept), bounds_.reserve(kept + kBlock);  // growing to this size copies no blocks
   const std::uint64_t evicted = cells_.cache().evicted();
   for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) grow();
-  if (cells_.cache().evicted() != evicted && blocks_.size() < std::min(kKeptPerView * views.size(), kMostKept)) grow();
+  if (cells_.cache().evicted() != evicted && blocks_.size() < kept) grow();
 }
 
 void HostScene::grow() {
