@@ -36,7 +36,7 @@ std::array<double, 2> random_uniform(const RandomKey& draw, std::uint32_t index)
 
 std::array<double, 2> random_normal(const RandomKey& draw, std::uint32_t index) {
   const auto u = random_uniform(draw, index);
-  const double radius = std::sqrt(-2.0 * log(u[0]));
+  const double radius = draw.sigma * std::sqrt(-2.0 * log(u[0]));
   const SinCos angle = sin_cos(2.0 * M_PI * u[1]);
   return {radius * angle.cos, radius * angle.sin};
 }

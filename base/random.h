@@ -27,13 +27,14 @@ enum class RandomStream : std::uint32_t {
   thermometers = 15
 };
 
-/// Identifies one draw by all five fields.
+/// Identifies one draw by its first five fields.
 struct RandomKey {
   std::uint64_t seed = 0;
   RandomStream stream = RandomStream::placement;
   std::uint32_t a = 0;  ///< e.g. robot
   std::uint32_t b = 0;  ///< e.g. sensor or attempt
   std::uint64_t c = 0;  ///< e.g. tick; the beam is passed as `index` below
+  double sigma = 1.0;   ///< standard deviation of normal numbers
 };
 
 /// Returns four independent 32-bit words for draw `draw`, element `index`.
@@ -42,7 +43,7 @@ std::array<std::uint32_t, 4> random_words(const RandomKey& draw, std::uint32_t i
 /// Returns two uniform numbers in (0, 1), never 0 and never 1.
 std::array<double, 2> random_uniform(const RandomKey& draw, std::uint32_t index);
 
-/// Returns two independent standard normal numbers (Box-Muller).
+/// Returns two independent normal numbers of mean 0 and standard deviation `RandomKey::sigma` (Box-Muller).
 std::array<double, 2> random_normal(const RandomKey& draw, std::uint32_t index);
 
 }  // namespace sf::base

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <span>
@@ -12,12 +13,12 @@
 
 #include "base/error.h"
 #include "base/installation.h"
+#include "base/shape_state.h"
 #include "control/own_controllers.h"
 #include "raycast/casters.h"
 #include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
-#include "world/random_starts.h"
 #include "world/stage/build_world.h"
 
 namespace sf::library {
@@ -25,19 +26,105 @@ namespace sf::library {
 std::string found(const std::string& file) { return base::installed_file(file); }
 
 Starts::Starts(const world::World& world, std::optional<world::FreeSpace> space) : space_(std::move(space)) {
-  for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
-    X_WM_.push_back(world.movers[row].X_WM);
+  originals_ = world::originals_of(world);
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row)
     if (space_ && !world.movers[row].is_tag) clones_.push_back(row);
-  }
 }
 
-void Starts::place(world::World& world, std::uint32_t copy, std::uint64_t seed) const {
-  const std::size_t first = copy * X_WM_.size();
-  const std::span<world::Mover> movers = std::span(world.movers).subspan(first, X_WM_.size());
-  world::draw_starts(movers, X_WM_, seed, !space_);
-  if (!space_) return;
-  const auto poses = space_->poses(static_cast<std::uint32_t>(clones_.size()), seed, world::places_of_tags(movers));
-  for (std::size_t i = 0; i < poses.size(); ++i) world.movers[first + clones_[i]].X_WM = poses[i];
+void Starts::place(world::World& world, std::uint32_t copy, std::uint64_t seed, const sensorfarm::WorldStarts& given,
+                   std::size_t first_given, std::vector<std::uint32_t>& resized) {
+  const auto first = static_cast<std::uint32_t>(copy * originals_.size());
+  const std::span<world::Mover> movers = std::span(world.movers).subspan(first, originals_.size());
+  world::draw_poses(world, first, originals_, seed, !space_);
+  world::draw_variations(world, first, originals_.size(), seed);
+  std::vector<glm::dvec3> sizes = world::draw_sizes(originals_, seed);
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    if (!given.sizes.empty() && !std::isnan(given.sizes[first_given + i][0])) {
+      const auto& [x, y, z] = given.sizes[first_given + i];
+      sizes[i] = {x, y, z};
+    }
+  for (std::size_t row = sizes_.size(); row < first + sizes.size(); ++row)
+    sizes_.push_back(originals_[row % originals_.size()].size);
+  for (std::uint32_t i = 0; i < sizes.size(); ++i)
+    if (std::exchange(sizes_[first + i], sizes[i]) != sizes[i]) {
+      world::set_size(world, first + i, originals_[i], sizes[i]);
+      resized.push_back(first + i);
+    }
+  if (space_) {
+    const auto poses = space_->poses(static_cast<std::uint32_t>(clones_.size()), seed, world::places_of_tags(movers));
+    for (std::size_t i = 0; i < poses.size(); ++i) world.movers[first + clones_[i]].X_WM = poses[i];
+  }
+  for (std::uint32_t i = 0; i < originals_.size(); ++i) place_given(world, first + i, given, first_given + i);
+}
+
+void Starts::check_row(const world::World& world, const sensorfarm::WorldStarts& given, std::size_t i) const {
+  const world::Mover& mover = originals_[i % originals_.size()].mover;
+  const auto refuse = [&](const std::string& what) {
+    throw base::InputError(fmt::format(fmt::runtime(what), mover.name));
+  };
+  const auto in_range = [&](std::span<const double> values, const char* what, double least, double most) {
+    if (values.empty() || std::isnan(values[i])) return;
+    if (mover.is_tag) refuse(fmt::format("'{{}}' is not a robot, and has no {}", what));
+    if (!(values[i] >= least && values[i] <= most))
+      refuse(
+          fmt::format("the {} of '{{}}' is {:g}; expected a number from {:g} to {:g}", what, values[i], least, most));
+  };
+  in_range(given.slip, "slip", 0.0, world::kMostSlip);
+  in_range(given.acceleration, "acceleration", world::kLeastAcceleration, 1.0);
+  in_range(given.noise, "noise", 0.0, 1.0);
+  if (!given.acceleration.empty() && given.acceleration[i] < 1.0 && mover.max_acceleration == HUGE_VAL &&
+      mover.max_turn_acceleration == HUGE_VAL)
+    refuse("'{}' has no acceleration_bounds, which 'acceleration' lowers; expected them in its world file");
+  if (!given.present.empty() && !std::isnan(given.present[i])) {
+    if (given.present[i] != 0.0 && given.present[i] != 1.0)
+      refuse(fmt::format("'present' of '{{}}' is {:g}; expected 0 or 1", given.present[i]));
+    if (!mover.is_tag && given.present[i] == 0.0) refuse("'{}' is a robot, and cannot be missing");
+  }
+  if (given.sizes.empty() || std::isnan(given.sizes[i][0])) return;
+  const auto& [x, y, z] = given.sizes[i];
+  if (!base::is_shape_length(x) || !base::is_shape_length(y) || !base::is_shape_length(z))
+    refuse(fmt::format("the size of '{{}}' is ({:g}, {:g}, {:g}); expected lengths above 0 and at most {:g} m", x, y, z,
+                       base::kMostShapeSize));
+  if (!mover.is_tag) refuse("the size of '{}' cannot change: it is a robot, whose controllers use that of the file");
+  if (mover.body.empty()) refuse("the size of '{}' cannot change: it has no outline");
+  const bool marked = std::ranges::find(world.fiducials, mover.model, &world::Fiducial::model) != world.fiducials.end();
+  if (!mover.magnets.empty() || marked)
+    refuse("the size of '{}' cannot change: its magnet, or its mark for fiducial finders, is at half of its height");
+}
+
+void Starts::check(const world::World& world, const sensorfarm::WorldStarts& given, std::size_t rows) const {
+  const auto check_size = [&](std::size_t size, const char* what) {
+    if (size != 0 && size != rows)
+      throw base::InputError(fmt::format("{} {} for {} rows; expected one per row, or none", size, what, rows));
+  };
+  check_size(given.poses.size(), "starts");
+  check_size(given.present.size(), "entries of 'present'");
+  check_size(given.sizes.size(), "sizes");
+  check_size(given.slip.size(), "slips");
+  check_size(given.acceleration.size(), "accelerations");
+  check_size(given.noise.size(), "entries of 'noise'");
+  for (const sensorfarm::Pose& start : given.poses)
+    if (!std::isnan(start.x) && !std::isfinite(start.x + start.y + start.z + start.yaw))
+      throw base::InputError(
+          "a start is not finite; expected finite poses, or NaN for the start that the seed chooses");
+  for (std::size_t i = 0; i < rows; ++i) check_row(world, given, i);
+}
+
+/// Replaces what the seed chose for a mover, except its size. @param i its entry in `given`
+void Starts::place_given(world::World& world, std::uint32_t row, const sensorfarm::WorldStarts& given, std::size_t i) {
+  const auto said = [&](std::span<const double> values) { return !values.empty() && !std::isnan(values[i]); };
+  world::Mover& mover = world.movers[row];
+  if (!given.poses.empty() && !std::isnan(given.poses[i].x)) {
+    const auto& [x, y, z, yaw] = given.poses[i];
+    mover.X_WM = {x, y, z, yaw};
+  }
+  if (said(given.present)) mover.absent = given.present[i] == 0.0;
+  if (!said(given.slip) && !said(given.acceleration) && !said(given.noise)) return;
+  world.variations.resize(world.movers.size());
+  world::Variation& variation = world.variations[row];
+  if (said(given.slip)) variation.slip = given.slip[i];
+  if (said(given.acceleration)) variation.acceleration = given.acceleration[i];
+  if (said(given.noise)) variation.noise = given.noise[i];
 }
 
 LoadedWorld load(const WorldSource& source, const sensorfarm::Options& options) {
@@ -62,7 +149,9 @@ LoadedWorld load(const WorldSource& source, const sensorfarm::Options& options) 
   }
   Starts starts(world, std::move(space));
   world::copy_movers(world, options.copies);
-  for (std::uint32_t copy = 0; copy < world.copies; ++copy) starts.place(world, copy, options.seed + copy);
+  std::vector<std::uint32_t> resized;
+  for (std::uint32_t copy = 0; copy < world.copies; ++copy)
+    starts.place(world, copy, options.seed + copy, {}, 0, resized);
   world::update_extent_and_hash(world);
   return {std::move(world), std::move(starts)};
 }

@@ -11,6 +11,7 @@
 #include "gpu/device.h"
 #include "sensorfarm/simulation.h"
 #include "world/free_space.h"
+#include "world/random_starts.h"
 #include "world/world.h"
 
 namespace sf::library {
@@ -24,18 +25,29 @@ struct WorldSource {
 /// Returns `file`, or the installed file with that relative path if `file` does not exist here.
 std::string found(const std::string& file);
 
-/// Where the robots of a world start: their places in the file, or free places that a seed chooses.
+/// How the movers of a world start: as in the file and as a seed chooses, or as the caller says.
 class Starts {
  public:
   Starts() = default;
   /// @param space of clones; nullopt: robots start as in the file
   Starts(const world::World& world, std::optional<world::FreeSpace> space);
 
-  /// Moves the robots of a copy of the world to their starts in a world alone with that seed.
-  void place(world::World& world, std::uint32_t copy, std::uint64_t seed) const;
+  /// Gives the movers of a copy of the world their starts, sizes and variations of a world alone with that seed, or
+  /// those that are given. @param given checked  @param first its entry of the copy's first row
+  /// @param resized out: appends the rows whose sizes changed
+  void place(world::World& world, std::uint32_t copy, std::uint64_t seed, const sensorfarm::WorldStarts& given,
+             std::size_t first, std::vector<std::uint32_t>& resized);
+
+  /// @param rows number of rows that restart, of whole worlds in turn
+  /// @throws base::InputError for what `place` cannot do
+  void check(const world::World& world, const sensorfarm::WorldStarts& given, std::size_t rows) const;
 
  private:
-  std::vector<base::Pose> X_WM_;  ///< of the movers of one copy, in the file
+  void check_row(const world::World& world, const sensorfarm::WorldStarts& given, std::size_t i) const;
+  static void place_given(world::World& world, std::uint32_t row, const sensorfarm::WorldStarts& given, std::size_t i);
+
+  std::vector<world::Original> originals_;  ///< the movers of one copy
+  std::vector<glm::dvec3> sizes_;           ///< [m] per mover of all copies placed so far
   std::vector<std::uint32_t> clones_;
   std::optional<world::FreeSpace> space_;
 };

@@ -21,6 +21,7 @@
 #include "library/observations.h"
 #include "library/ranks.h"
 #include "library/reading_table.h"
+#include "library/recorded_world.h"
 #include "raycast/casters.h"
 #include "record/recorder.h"
 #include "scenarios/fault_tables.h"
@@ -84,10 +85,9 @@ struct Simulation::State {
   void step(std::span<const Twist> commands);
   void set(std::span<const Twist> given);
   void exchange(std::span<const Twist> given);
-  void restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-               std::span<const Pose> starts);
+  void restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds, const WorldStarts& starts);
   void check_restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-                     std::span<const Pose> starts) const;
+                     const WorldStarts& starts) const;
   /// [ns] Returns the farm's time at which a world started.
   std::int64_t start_of(std::size_t k) const {
     if (k >= world.copies) throw Error(fmt::format("there is no world {}; expected less than {}", k, world.copies));
@@ -100,7 +100,7 @@ struct Simulation::State {
   void remove(std::size_t row);
   void set_shape(std::size_t row, const ShapeChange& given);
   record::RunInfo run_info() const;
-  void take(const base::TickRecord& tick);
+  void take(const base::TickRecord& tick, bool is_restart = false);
   library::ObservedStep observed(const Observations::State& by) const {
     return {table(by.options.sensor).view(), poses, velocities};
   }
@@ -118,6 +118,7 @@ struct Simulation::State {
   world::World& world = loaded.world;
   std::optional<scenarios::Simulation> simulation;
   std::vector<library::ReadingTable> tables;
+  std::optional<library::RecordedWorld> recorded;  ///< of several; nullopt: there is one
   std::optional<record::Recorder> recorder;
   std::vector<Robot> robots;
   std::vector<std::string> models;
@@ -128,6 +129,7 @@ struct Simulation::State {
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
   std::vector<std::uint8_t> contacts, done, owned, present;
+  std::vector<double> radii;
   std::shared_ptr<Earlier> earlier = std::make_shared<Earlier>();  ///< for the next robot that joins
   std::vector<base::ReadingBlock> of_type;                         ///< scratch
   std::vector<std::pair<ImageOptions, viz::TopView>> top_views;    ///< of the last images, the newest at the end
@@ -144,9 +146,8 @@ Simulation::State::State(library::WorldSource from, const Options& given)
 
 void Simulation::State::prepare() {
   device = library::shared_device(options);
-  if (options.copies > 1 && (ranks != nullptr || !options.record.empty()))
-    throw base::InputError(fmt::format("{} copies of a world cannot be {}; expected one", options.copies,
-                                       ranks != nullptr ? "shared by ranks" : "recorded"));
+  if (options.copies > 1 && ranks != nullptr)
+    throw base::InputError(fmt::format("{} copies of a world cannot be shared by ranks; expected one", options.copies));
   loaded = library::load(source, options);
   const scenarios::SimulationOptions given = simulation_options(world, options, ranks);
   simulation.emplace(world, *device, given);
@@ -170,6 +171,7 @@ void Simulation::State::prepare() {
   poses.resize(world.movers.size()), velocities.resize(poses.size());
   contacts.resize(poses.size()), done.resize(poses.size());
   present.assign(poses.size(), 1);
+  for (const world::Mover& mover : world.movers) radii.push_back(mover.radius);
   if (!options.record.empty()) record();
 }
 
@@ -181,14 +183,15 @@ void Simulation::State::record() {
   if (ranks != nullptr && options.record_readings) part = {ranks->rank(), ranks->size()};
   if (options.compression == "none") part.compression = record::Compression::none;
   if (ranks != nullptr && !options.record_readings && ranks->rank() > 0) return;
+  if (world.copies > 1 || options.record_world > 0) recorded.emplace(world, options.record_world);
   recorder.emplace(options.record, run_info(), part);
   for (const std::string& note : recorder->taken_names()) warnings.push_back("topics: " + note);
 }
 
 record::RunInfo Simulation::State::run_info() const {
   return scenarios::run_info(
-      world, simulation->farm().sensor_set(),
-      {.seed = options.seed,
+      recorded ? recorded->world() : world, recorded ? recorded->sensor_set() : simulation->farm().sensor_set(),
+      {.seed = options.seed + options.record_world,
        .record_readings = options.record_readings,
        .caster = raycast::describe_caster(device->info().software, raycast::caster_named(options.caster)),
        .noise = options.noise,
@@ -254,16 +257,10 @@ void Simulation::State::exchange(std::span<const Twist> given) {
 }
 
 void Simulation::State::check_restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-                                      std::span<const Pose> starts) const {
+                                      const WorldStarts& starts) const {
   if (seeds.size() != worlds.size())
     throw base::InputError(fmt::format("{} seeds for {} worlds; expected as many", seeds.size(), worlds.size()));
-  const std::size_t rows = worlds.size() * robots.size();
-  if (!starts.empty() && starts.size() != rows)
-    throw base::InputError(fmt::format("{} starts for {} rows; expected one per row, or none", starts.size(), rows));
-  for (const Pose& start : starts)
-    if (!std::isnan(start.x) && !std::isfinite(start.x + start.y + start.z + start.yaw))
-      throw base::InputError(
-          "a start is not finite; expected finite poses, or NaN for the start that the seed chooses");
+  loaded.starts.check(world, starts, worlds.size() * robots.size());
   std::vector<bool> taken(world.copies);
   for (const std::uint32_t k : worlds) {
     if (k >= world.copies)
@@ -274,22 +271,24 @@ void Simulation::State::check_restart(std::span<const std::uint32_t> worlds, std
 }
 
 void Simulation::State::restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-                                std::span<const Pose> starts) {
+                                const WorldStarts& starts) {
   check_restart(worlds, seeds, starts);
   std::vector<farm::Farm::Restart> restarts;
+  std::vector<std::uint32_t> resized;
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     const std::size_t first = worlds[i] * robots.size();
     restarts.push_back({worlds[i], seeds[i]});
-    loaded.starts.place(world, worlds[i], seeds[i]);
-    for (std::size_t row = 0; row < robots.size(); ++row) {
-      commands[first + row] = {};
-      const Pose start = starts.empty() ? Pose{NAN} : starts[i * robots.size() + row];
-      if (!std::isnan(start.x)) world.movers[first + row].X_WM = {start.x, start.y, start.z, start.yaw};
-    }
+    loaded.starts.place(world, worlds[i], seeds[i], starts, i * robots.size(), resized);
+    std::fill_n(commands.begin() + static_cast<std::ptrdiff_t>(first), robots.size(), base::Twist{});
   }
+  for (const std::uint32_t row : resized) radii[row] = world.movers[row].radius;
   for (library::ReadingTable& table : tables) table.hold();
   if (worlds.empty()) return;
-  take(simulation->restart(restarts));
+  if (recorder && std::ranges::find(worlds, options.record_world) != worlds.end()) {
+    recorder->finish();
+    recorder.reset();
+  }
+  take(simulation->restart(restarts, resized), true);
   observe(worlds);
 }
 
@@ -330,6 +329,7 @@ std::size_t Simulation::State::add(const NewRobot& robot) {
   for (const auto& [rows, before] : {std::pair{&contacts, &earlier->contacts}, {&done, &earlier->done}})
     add_row(*rows, std::uint8_t{0}, *before);
   add_row(present, std::uint8_t{1}, earlier->present);
+  radii.push_back(world.movers[row].radius);
   add_row(owned, static_cast<std::uint8_t>(simulation->share().owns(row)), earlier->owned);
   add_tables(earlier->tables);
   earlier->readings = simulation->earlier_readings();
@@ -364,6 +364,7 @@ void Simulation::State::set_shape(std::size_t row, const ShapeChange& given) {
   if (!given.color.empty()) change.color = world::color_named(given.color);
   if (const auto& size = given.size) change.size = glm::dvec3{(*size)[0], (*size)[1], (*size)[2]};
   simulation->set_shape(world, static_cast<std::uint32_t>(row), change);
+  radii[row] = world.movers[row].radius;
 }
 
 /// Writes the observations of a step, or of the worlds that restarted.
@@ -378,7 +379,7 @@ void Simulation::State::observe(std::span<const std::uint32_t> restarted) {
   }
 }
 
-void Simulation::State::take(const base::TickRecord& record) {
+void Simulation::State::take(const base::TickRecord& record, bool is_restart) {
   tick = record.tick, time = record.time;
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
     const base::Report& report = record.reports[i];
@@ -394,7 +395,7 @@ void Simulation::State::take(const base::TickRecord& record) {
     table.take(of_type);
   }
   if (recorder && ranks == nullptr && !record.shapes.empty()) recorder->add_movers(run_info());  // with new bodies
-  if (recorder) recorder->write(record);
+  if (recorder && !is_restart) recorder->write(recorded ? recorded->part_of(record) : record);
   simulation->settle();
   for (std::uint32_t i = 0; i < done.size(); ++i) {
     const control::Controller* controller = simulation->controller(i);
@@ -471,7 +472,7 @@ void Simulation::step(std::span<const Twist> commands) {
 
 void Simulation::reset() { reset(state_->options.seed); }
 void Simulation::reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-                       std::span<const Pose> starts) {
+                       const WorldStarts& starts) {
   library::translated([&] { state_->restart(worlds, seeds, starts); });
 }
 void Simulation::reset(std::uint64_t seed) {
@@ -541,6 +542,7 @@ std::size_t Simulation::size() const { return state_->poses.size(); }
 const std::vector<Robot>& Simulation::robots() const { return state_->robots; }
 std::span<const Pose> Simulation::poses() const { return state_->poses; }
 std::span<const Twist> Simulation::velocities() const { return state_->velocities; }
+std::span<const double> Simulation::radii() const { return state_->radii; }
 std::span<const std::uint8_t> Simulation::contacts() const { return state_->contacts; }
 std::span<const std::uint8_t> Simulation::done() const { return state_->done; }
 std::span<const std::uint8_t> Simulation::present() const { return state_->present; }

@@ -112,7 +112,7 @@ Options options_of(Keywords& given) {
   Options options;
   py::object controller = py::str("");
   given.read("robots", options.robots), given.read("of", options.of), given.read("seed", options.seed);
-  given.read("copies", options.copies);
+  given.read("copies", options.copies), given.read("record_world", options.record_world);
   given.read("robot_from", options.robot_from), given.read("positioning", options.positioning);
   given.read("faults", options.faults);
   given.read("threads", options.threads), given.read("noise", options.noise);
@@ -256,21 +256,39 @@ void set_shape(PySimulation& s, std::size_t row, Text shape, Text color,
   in_farm(s, [&] { s.farm.set_shape(row, {shape, color, size}); });
 }
 
-/// Restarts worlds. @param starts (worlds, robots, 4), or None
+/// Returns numbers per world and row; none for None. @param width of a row
+Commands rows_of(const PySimulation& s, const py::object& given, const char* name, std::size_t worlds,
+                 std::size_t width) {
+  if (given.is_none()) return {};
+  Commands rows = Commands::ensure(given);
+  const std::size_t robots = s.farm.robots().size();
+  if (rows && static_cast<std::size_t>(rows.size()) == worlds * robots * width) return rows;
+  throw py::value_error(
+      std::string(name) + " have " +
+      (rows ? "the shape " + std::string(py::str(rows.attr("shape"))) : std::string("elements that are not numbers")) +
+      "; expected (" + std::to_string(worlds) + ", " + std::to_string(robots) +
+      (width > 1 ? ", " + std::to_string(width) : "") + "), a row per world and row");
+}
+
+template <class Row>
+std::span<const Row> as_rows(const Commands& rows) {
+  return {reinterpret_cast<const Row*>(rows.data()),
+          static_cast<std::size_t>(rows.size()) * sizeof(double) / sizeof(Row)};
+}
+
 void restart(PySimulation& s, const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds,
-             const py::object& starts) {
-  if (starts.is_none()) return in_farm(s, [&] { s.farm.reset(worlds, seeds); });
-  const Commands poses = Commands::ensure(starts);
-  const std::size_t rows = worlds.size() * s.farm.robots().size();
-  if (!poses || static_cast<std::size_t>(poses.size()) != 4 * rows)
-    throw py::value_error("starts have " +
-                          (poses ? "the shape " + std::string(py::str(poses.attr("shape")))
-                                 : std::string("elements that are not numbers")) +
-                          "; expected (" + std::to_string(worlds.size()) + ", " +
-                          std::to_string(s.farm.robots().size()) + ", 4): x, y, z [m], yaw [rad] per world and row");
-  static_assert(sizeof(Pose) == 4 * sizeof(double));
-  const auto* const first = reinterpret_cast<const Pose*>(poses.data());
-  in_farm(s, [&] { s.farm.reset(worlds, seeds, {first, rows}); });
+             const py::object& starts, const py::object& present, const py::object& sizes, const py::object& slip,
+             const py::object& acceleration, const py::object& noise) {
+  static_assert(sizeof(Pose) == 4 * sizeof(double) && sizeof(std::array<double, 3>) == 3 * sizeof(double));
+  const auto rows = [&](const py::object& given, const char* name, std::size_t width) {
+    return rows_of(s, given, name, worlds.size(), width);
+  };
+  const Commands poses = rows(starts, "starts", 4), shown = rows(present, "entries of 'present'", 1),
+                 lengths = rows(sizes, "sizes", 3), slips = rows(slip, "slips", 1),
+                 factors = rows(acceleration, "accelerations", 1), noises = rows(noise, "entries of 'noise'", 1);
+  const WorldStarts given{as_rows<Pose>(poses),   as_rows<double>(shown),   as_rows<std::array<double, 3>>(lengths),
+                          as_rows<double>(slips), as_rows<double>(factors), as_rows<double>(noises)};
+  in_farm(s, [&] { s.farm.reset(worlds, seeds, given); });
 }
 
 /// Returns a view of an observation's memory. @param width 0: one number per agent
@@ -327,6 +345,12 @@ void add_state(py::class_<PySimulation>& c) {
       .def_property_readonly(
           "velocities", [](const PySimulation& s) { return rows(s, s.farm.velocities()); },
           "(robots, 3): forward, left [m/s], turn [rad/s].")
+      .def_property_readonly(
+          "radii",
+          [](const PySimulation& s) {
+            return py::array_t<double>(count(s.farm.radii().size()), s.farm.radii().data());
+          },
+          "(rows,) [m]: radius of the circle about its origin that contains the body; changes with its size.")
       .def_property_readonly(
           "contacts", [](const PySimulation& s) { return truth(s, s.farm.contacts()); },
           "(robots,): stopped by a wall or a robot.")
@@ -399,15 +423,16 @@ void add_readings(py::class_<PySimulation>& c) {
 void add_simulation(py::module_& module) {
   py::class_<PySimulation> c(module, "Simulation",
                              "A simulated fleet. Arrays are views, valid until the next step, put or reset.");
-  c.def(py::init([](Text world, const py::kwargs& options) {
-          return made(options, [&](const Options& given) { return Simulation(world, given); });
-        }),
-        py::arg("world"),
-        "world: a file; options: robots=0, of='', robot_from='', seed=1, copies=1, threads=0, noise=True, accuracy='', "
-        "device='', caster='auto', "
-        "require_vulkan=False, "
-        "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
-        "compression='zstd', positioning='', faults='', writable=False (docs/python.md)")
+  c.def(
+       py::init([](Text world, const py::kwargs& options) {
+         return made(options, [&](const Options& given) { return Simulation(world, given); });
+       }),
+       py::arg("world"),
+       "world: a file; options: robots=0, of='', robot_from='', seed=1, copies=1, threads=0, noise=True, accuracy='', "
+       "device='', caster='auto', "
+       "require_vulkan=False, "
+       "controller='', settings={}, record='', record_readings=False, record_world=0, ranks=False, too_near_min=False, "
+       "compression='zstd', positioning='', faults='', writable=False (docs/python.md)")
       .def_static(
           "from_text",
           [](Text text, Text name, const py::kwargs& options) {
@@ -422,10 +447,11 @@ void add_simulation(py::module_& module) {
             in_farm(s, [&] { seed ? s.farm.reset(*seed) : s.farm.reset(); });
           },
           py::arg("seed") = py::none())
-      .def("restart", &restart, py::arg("worlds"), py::arg("seeds"), py::arg("starts") = py::none(),
-           "Restarts some of several worlds. seeds: one per world; starts: (worlds, robots, 4) poses; None, and "
-           "where x "
-           "is NaN: those of the seeds.")
+      .def("restart", &restart, py::arg("worlds"), py::arg("seeds"), py::arg("starts") = py::none(), py::kw_only(),
+           py::arg("present") = py::none(), py::arg("sizes") = py::none(), py::arg("slip") = py::none(),
+           py::arg("acceleration") = py::none(), py::arg("noise") = py::none(),
+           "Restarts some of several worlds. seeds: one per world. starts: (worlds, rows, 4) poses; sizes: (worlds, "
+           "rows, 3) [m]; others: (worlds, rows). None, and NaN (in x): those of the seeds.")
       .def(
           "observe",
           [](PySimulation& s, Text sensor, std::uint32_t every, bool speeds, double goal_reach, std::uint32_t stack) {

@@ -16,8 +16,9 @@ class Episodes {
  public:
   /// @param seed of a world without copies
   Episodes(std::uint64_t seed = 0) : all_(std::make_shared<std::vector<Episode>>(1, Episode{seed, 0})) {}
-  /// @param seed of copy 0; copy k has seed + k
+  /// @param world must outlive all keys' users  @param seed of copy 0; copy k has seed + k
   Episodes(const world::World& world, std::uint64_t seed) : Episodes(seed) {
+    world_ = &world;
     copies_ = world::CopyIndex(world);
     while (all_->size() < copies_.copies()) all_->push_back({seed + all_->size(), 0});
   }
@@ -25,7 +26,8 @@ class Episodes {
   const world::CopyIndex& copies() const { return copies_; }
   /// Returns the key of a random number of a mover's sensor. @param b, c as in base::RandomKey
   base::RandomKey key(base::RandomStream stream, std::uint32_t mover, std::uint32_t b, std::uint64_t c = 0) const {
-    return {of(mover).seed, stream, copies_.row_of(mover), b, c};
+    const double sigma = world_ == nullptr ? 1.0 : world_->variation_of(mover).noise;
+    return {of(mover).seed, stream, copies_.row_of(mover), b, c, sigma};
   }
   /// [ns] Returns the farm's time at which the mover's clock was 0.
   std::int64_t start_of(std::uint32_t mover) const { return of(mover).start; }
@@ -41,6 +43,7 @@ class Episodes {
   };
   const Episode& of(std::uint32_t mover) const { return (*all_)[copies_.copy_of(mover)]; }
 
+  const world::World* world_ = nullptr;  ///< whose variations scale the noise; null: no variations
   world::CopyIndex copies_;
   std::shared_ptr<std::vector<Episode>> all_;
 };

@@ -72,9 +72,11 @@ void HostScene::add_outlines() {
 }
 
 void HostScene::update_outlines(const world::World& world) {
-  movers_ = MoverGeometry(world);
+  if (!movers_.update(world)) {
+    movers_ = MoverGeometry(world);
+    add_outlines();
+  }
   crowds_.update_outlines();
-  add_outlines();
 }
 
 void HostScene::place_movers(std::span<const base::Report> states) {

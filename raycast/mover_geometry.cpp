@@ -24,6 +24,10 @@ bool is_convex(std::span<const world::Segment> loop, double radius) {
   });
 }
 
+bool is_same(const world::Segment& p, const world::Segment& q) {
+  return p.a == q.a && p.b == q.b && p.z_min == q.z_min && p.z_max == q.z_max && p.solid_left == q.solid_left;
+}
+
 }  // namespace
 
 MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std::uint32_t>(world.walls.size())) {
@@ -54,6 +58,8 @@ MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std
     grid_.largest_radius = std::max(grid_.largest_radius, mover.radius);
   }
   first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
+  next_shape_ = static_cast<std::uint32_t>(of_shape.size());
+  most_slices_ = 3 * outlines_.slices.size() + 1'000;
   grid_.copies = world::CopyIndex(world);
   const std::size_t movers = world.movers.size(), padded = movers + kBlock;
   headings_.resize(movers);
@@ -65,6 +71,42 @@ MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std
   next_.reserve(std::max(grid_.first.capacity(), movers));
 }
 
+bool MoverGeometry::update(const world::World& world) {
+  scratch_.clear();
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::size_t row = first_rows_[m] - walls_;
+    const std::size_t end = end_of(m);
+    bool same = true;
+    for (const world::Segment& s : world.movers[m].body) {
+      if (!s.seen_by_laser) continue;
+      if (row == end || s.model != local_[row].model) return false;
+      same = same && is_same(s, local_[row++]);
+    }
+    if (row != end) return false;
+    if (!same) scratch_.push_back(m);
+  }
+  if (outlines_.slices.size() > most_slices_) return false;
+  for (const std::uint32_t m : scratch_) update_mover(m, world.movers[m]);
+  return true;
+}
+
+/// The old slices of its shape stay, without a use.
+void MoverGeometry::update_mover(std::uint32_t mover, const world::Mover& now) {
+  std::size_t row = first_rows_[mover] - walls_;
+  double& inner = inner_[mover] = now.radius;
+  for (const world::Segment& s : now.body) {
+    if (!s.seen_by_laser) continue;
+    local_[row++] = s;
+    inner = std::min(inner, world::distance({}, s.a, s.b));
+  }
+  radii_[mover] = now.radius;
+  grid_.largest_radius = std::max(grid_.largest_radius, now.radius);
+  shapes_[mover] = next_shape_++;
+  const auto slices = static_cast<std::uint32_t>(outlines_.slices.size());
+  add_slices(mover);
+  outlines_.of_mover[mover] = {slices, static_cast<std::uint32_t>(outlines_.slices.size()) - slices};
+}
+
 double MoverGeometry::smallest_inner() const {
   return inner_.empty() ? 0.0 : *std::min_element(inner_.begin(), inner_.end());
 }
@@ -72,7 +114,7 @@ double MoverGeometry::smallest_inner() const {
 /// Adds the slices of a new shape.
 void MoverGeometry::add_slices(std::size_t mover) {
   std::vector<double> breaks;
-  for (std::uint32_t row = first_rows_[mover] - walls_; row < local_.size(); ++row)
+  for (std::size_t row = first_rows_[mover] - walls_; row < end_of(mover); ++row)
     breaks.insert(breaks.end(), {local_[row].z_min, local_[row].z_max});
   std::sort(breaks.begin(), breaks.end());
   breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
@@ -89,7 +131,7 @@ OutlineTable::Outline MoverGeometry::outline_at(std::size_t mover, double z) {
   std::vector<std::uint32_t> edges;
   std::vector<SegmentBlock> outward, inward;
   std::uint32_t used_outward = 0, used_inward = 0;
-  for (std::uint32_t number = 0; first_rows_[mover] - walls_ + number < local_.size(); ++number) {
+  for (std::uint32_t number = 0; first_rows_[mover] - walls_ + number < end_of(mover); ++number) {
     const world::Segment& s = local_[first_rows_[mover] - walls_ + number];
     if (z < s.z_min || z >= s.z_max) continue;
     edges.push_back(number);

@@ -22,6 +22,11 @@ class MoverGeometry {
  public:
   explicit MoverGeometry(const world::World& world);
 
+  /// Takes the present outlines of the world's movers, in time in proportion to what changed, apart from a comparison.
+  /// @return false, with nothing changed, if a mover has another number of edges or too much has changed since the
+  /// construction: construct it again
+  bool update(const world::World& world);
+
   /// Moves every outline to its mover's pose. @param states one per mover; must stay valid until the next call
   /// @param exact out: `segments()` edges, ordered by mover
   void place(std::span<const base::Report> states, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
@@ -42,6 +47,10 @@ class MoverGeometry {
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
  private:
+  std::size_t end_of(std::size_t mover) const {
+    return mover + 1 < first_rows_.size() ? first_rows_[mover + 1] - walls_ : local_.size();
+  }
+  void update_mover(std::uint32_t mover, const world::Mover& now);
   void add_slices(std::size_t mover);
   OutlineTable::Outline outline_at(std::size_t mover, double z);
   void add_loops(std::size_t mover, std::span<const std::uint32_t> edges);
@@ -61,6 +70,9 @@ class MoverGeometry {
   std::vector<std::uint32_t> shapes_;  ///< equal for movers with equal outlines
   std::vector<std::uint32_t> twins_;   ///< per mover, same as MoverGrid::twin
   std::uint32_t walls_;
+  std::uint32_t next_shape_ = 0;        ///< > all of `shapes_`
+  std::size_t most_slices_ = 0;         ///< of `outlines_`, whose unused ones `update` leaves behind
+  std::vector<std::uint32_t> scratch_;  ///< movers that changed
   OutlineTable outlines_;
   std::span<const base::Report> states_;
   std::span<const ExactSegment> exact_;

@@ -89,9 +89,11 @@ void Fleet::restart(std::uint32_t row) {
   disturbed_ = true;
 }
 
-void Fleet::update_outline(std::uint32_t row) {
-  footprints_.at(row) = footprint_of(world_.movers[row]);
-  free_discs_[row] = {};
+void Fleet::update_outlines(std::span<const std::uint32_t> rows) {
+  for (const std::uint32_t row : rows) {
+    footprints_.at(row) = footprint_of(world_.movers[row]);
+    free_discs_[row] = {};
+  }
   disturbed_ = true;
   make_room();
 }

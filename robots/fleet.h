@@ -86,8 +86,9 @@ class Fleet {
   /// Restarts a mover: at rest at its load pose, which may have changed, at the time of the others.
   void restart(std::uint32_t row);
 
-  /// Call this after the outline of a mover has changed in the world (world::change_shape).
-  void update_outline(std::uint32_t row);
+  /// Call this after outlines of movers have changed in the world (world::change_shape).
+  void update_outlines(std::span<const std::uint32_t> rows);
+  void update_outline(std::uint32_t row) { update_outlines({&row, 1}); }
 
   /// Sets the state of a mover that another process computed with `move`.
   /// @param contact its entry in `contacts`

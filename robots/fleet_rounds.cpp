@@ -14,6 +14,12 @@ namespace sf::robots {
 
 using base::Twist;
 
+namespace {
+
+Twist times(const Twist& v, double factor) { return {factor * v.forward, factor * v.left, factor * v.turn}; }
+
+}  // namespace
+
 void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scratch& scratch) {
   waiting_[row] = moved_[row] = 0;
   if (absent_[row] != 0) {
@@ -24,7 +30,11 @@ void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scrat
   const world::Mover& mover = world_.movers[row];
   const Footprint& outline = footprints_[row];
   const Twist wanted = limit_kinematics(mover, apply_actuator_model(mover, command));
-  const Twist v = limit_acceleration(mover, reports_[row].velocity, wanted, seconds);
+  const world::Variation variation = world_.variation_of(row);
+  const double grip = 1.0 - variation.slip;
+  const Twist rolled =
+      limit_acceleration(mover, times(reports_[row].velocity, 1.0 / grip), wanted, variation.acceleration * seconds);
+  const Twist v = times(rolled, grip);
   progress_[row] = proposed_[row] = {reports_[row].X_WM, v, moves(v) ? seconds : 0.0, false};
   waiting_[row] = moves(v) ? 1 : 0;
   reported_[row] = 0;

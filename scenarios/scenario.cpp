@@ -40,6 +40,7 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
   world::World world = world::load_world(scenario.world, load);
   world::draw_starts(world, scenario.seed, scenario.fleet.robots == 0);
   if (scenario.fleet.robots > 0) spawn_fleet(scenario, world);
+  world::draw_variations(world, scenario.seed);
   if (scenario.tick > 0.0) world.interval = scenario.tick;
   if (scenario.plant)
     for (world::Mover& mover : world.movers)

@@ -246,10 +246,15 @@ base::TickRecord Simulation::step() {
           faults_, shapes_};
 }
 
-base::TickRecord Simulation::restart(std::span<const farm::Farm::Restart> restarts) {
+base::TickRecord Simulation::restart(std::span<const farm::Farm::Restart> restarts,
+                                     std::span<const std::uint32_t> resized) {
   SF_CHECK(tick_ > 0, "worlds restart after the first step");
   earlier_readings_.reset();
   settle();
+  if (!resized.empty()) {
+    fleet_.update_outlines(resized);
+    earlier_readings_ = farm_.update_outlines();
+  }
   std::vector<base::Report> reports;
   const auto movers = static_cast<std::uint32_t>(world_.movers.size()) / world_.copies;
   for (const farm::Farm::Restart& restart : restarts)

@@ -97,8 +97,9 @@ class Simulation {
   /// Restarts copies of the world (farm::Farm::restart), each with its seed, between two steps: movers at rest at
   /// their `Mover::X_WM`, which the caller may have changed, with new controllers. Returns this first tick of theirs,
   /// with the readings of these copies only. Nothing happens in the others. Spans are valid until the next call.
+  /// @param resized movers whose outlines the caller has changed (world::set_size)
   /// @throws base::InputError as the constructor, and if a sensor cannot restart
-  base::TickRecord restart(std::span<const farm::Farm::Restart> restarts);
+  base::TickRecord restart(std::span<const farm::Farm::Restart> restarts, std::span<const std::uint32_t> resized = {});
   /// Returns how this process shares the fleet with others, and the results of their exchange.
   FleetShare& share() { return *share_; }
   const FleetShare& share() const { return *share_; }

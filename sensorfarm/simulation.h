@@ -66,6 +66,9 @@ struct Options {
   std::vector<std::pair<std::string, std::string>> settings;  ///< settings of that controller
   std::string record;                                         ///< folder of a recording (run.mcap); empty: none
   bool record_readings = false;  ///< record readings too, not only the states from which they can be computed
+  /// Number of the world that is recorded, of several: as that of a simulation of it alone. The recording ends when
+  /// this world restarts.
+  std::uint32_t record_world = 0;
   /// Shares the fleet among processes started by mpirun (docs/cluster.md). Each process has the readings of its own
   /// robots only, and commands these; it has all other data of the whole fleet. All processes make the same calls with
   /// the same arguments, except commands.
@@ -127,6 +130,18 @@ struct ShapeChange {
   std::optional<std::array<double, 3>> size = {};  ///< [m] x, y, z in (0, 1000] each
 };
 
+/// How worlds start, where it is not what their seeds choose. Each span is empty, or has an entry per row of the given
+/// worlds in turn; NaN leaves the choice to the seed (or, without a random key, to the world file).
+struct WorldStarts {
+  std::span<const Pose> poses = {};                   ///< NaN in x
+  std::span<const double> present = {};               ///< 0 or 1; robots cannot be missing
+  std::span<const std::array<double, 3>> sizes = {};  ///< [m] x, y, z in (0, 1000] each, NaN in x; of objects with an
+                                                      ///< outline, but without a magnet or a mark for fiducial finders
+  std::span<const double> slip = {};          ///< in [0, 0.9]: part of its wheels' way that a robot does not advance
+  std::span<const double> acceleration = {};  ///< in [0.01, 1]: factor of a robot's acceleration_bounds
+  std::span<const double> noise = {};         ///< in [0, 1]: factor of all normally distributed errors of its sensors
+};
+
 /// Size and view of an image.
 struct ImageOptions {
   int width = 640, height = 480;  ///< [px] in [1, 4096]
@@ -168,11 +183,10 @@ class SENSORFARM_API Simulation {
   /// Restarts some of several worlds, at time 0 of their own clocks; the others are unchanged, and no time passes
   /// for them. Readings of the new start are available at once.
   /// @param worlds numbers below `copies`, each once  @param seeds one per world, as Options::seed of that world alone
-  /// @param starts poses of all rows of these worlds in turn; empty, or with x NaN: that of a world alone with that
-  /// seed
+  /// @param starts what seeds do not choose; without it, the worlds are those of simulations of each alone
   /// @throws Error, with nothing changed, for other arguments, and if a world has a sensor that cannot restart
   void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-             std::span<const Pose> starts = {});
+             const WorldStarts& starts = {});
   /// Returns observations that this simulation writes from now on, as long as the handle exists; a `reset` of the whole
   /// simulation keeps them. @throws Error for options out of range, an unknown type, and robots that have different
   /// numbers of such sensors or different numbers of elements
@@ -206,11 +220,14 @@ class SENSORFARM_API Simulation {
   /// Places a robot or tag, at rest, between two steps. Its sensors see the new place from the next step on.
   void put(std::size_t row, const Pose& pose);
 
-  std::size_t copies() const;                      ///< number of worlds
-  std::size_t size() const;                        ///< number of rows: robots, and tags if the world contains any
-  const std::vector<Robot>& robots() const;        ///< per row of a world
-  std::span<const Pose> poses() const;             ///< per row, of the last tick
-  std::span<const Twist> velocities() const;       ///< per row
+  std::size_t copies() const;                 ///< number of worlds
+  std::size_t size() const;                   ///< number of rows: robots, and tags if the world contains any
+  const std::vector<Robot>& robots() const;   ///< per row of a world
+  std::span<const Pose> poses() const;        ///< per row, of the last tick
+  std::span<const Twist> velocities() const;  ///< per row
+  /// [m] Per row: radius of the circle about its origin that contains its body, in its present size. Valid until
+  /// the next `add_robot`.
+  std::span<const double> radii() const;
   std::span<const std::uint8_t> contacts() const;  ///< per row: 1 if a wall or a robot stopped it
   std::span<const std::uint8_t> done() const;      ///< per row: 1 if its controller is done
   std::span<const std::uint8_t> present() const;   ///< per row: 0 if it is not in the world: removed, or

@@ -102,7 +102,7 @@ void Encoders::accumulate(std::int64_t now, bool between) {
       continue;
     }
     if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
-      (between ? ahead_ : wheels_)[i].roll(track.X_WM, X_WM);
+      (between ? ahead_ : wheels_)[i].roll(track.X_WM, X_WM, world().variation_of(mover).slip);
     }
     if (!between) track = {X_WM, now, true};
   }
@@ -146,8 +146,9 @@ constexpr PlainForm kForm{kEncoder, "encoder", kNumbers};
 
 }  // namespace
 
-void Wheels::roll(const base::Pose& before, const base::Pose& after) {
-  const Rolled step = sensors::roll(before, after, settings.track);
+void Wheels::roll(const base::Pose& before, const base::Pose& after, double slip) {
+  Rolled step = sensors::roll(before, after, settings.track);
+  if (slip != 0.0) step = {step.left / (1.0 - slip), step.right / (1.0 - slip)};
   rolled.left += step.left;
   rolled.right += step.right;
   left.advance(std::abs(step.left));

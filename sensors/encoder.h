@@ -36,15 +36,15 @@ struct Wheels {
   Wheels(const Encoder& encoder, const base::RandomKey& walk, bool noise)
       : settings(encoder), left(walk, 0, noise ? encoder.slip : 0.0), right(walk, 1, noise ? encoder.slip : 0.0) {}
 
-  /// Adds the motion between two poses.
-  void roll(const base::Pose& before, const base::Pose& after);
+  /// Adds the motion between two poses. @param slip world::Variation::slip
+  void roll(const base::Pose& before, const base::Pose& after, double slip = 0.0);
   /// Returns the distances in counts, with scale, slip and rounding.
   Rolled counts() const;
   /// Returns the distances [m] that the counts state.
   Rolled counted() const { return {counts().left * settings.per_count, counts().right * settings.per_count}; }
 
   Encoder settings;
-  Rolled rolled;  ///< [m] since the start, true
+  Rolled rolled;  ///< [m] since the start, true ways of the wheels
   Slippage left;
   Slippage right;
 };

@@ -37,8 +37,7 @@ class Occupancies : public SensorBackend {
     source_maps_.take_over(last.source_maps_, rows);
   }
   void restart(std::uint32_t row, std::int64_t /*now*/) override {
-    throw base::InputError(
-        fmt::format("the map '{}' cannot begin anew with its world; expected a new simulation", maps_[row].row.name));
+    maps_[row].sources.empty() ? batch_->restart(in_batch_[row]) : source_maps_.restart(world_, row);
   }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }  // it has its own batch
@@ -48,6 +47,7 @@ class Occupancies : public SensorBackend {
     return maps_[row].sources.empty() ? batch_->words(in_batch_[row]) : source_maps_.words(row);
   }
 
+  const world::World& world_;
   const std::vector<Occupancy>& maps_;
   std::vector<std::uint32_t> in_batch_;  ///< per map without sources: its row in the batch
   std::uint32_t batch_rows_ = 0;
@@ -69,7 +69,8 @@ bool on_host(const SensorContext& context) {
 }
 
 Occupancies::Occupancies(const SensorContext& context, const ParsedSensors& sensors)
-    : maps_(sensors.settings_as<Occupancy>()),
+    : world_(context.world),
+      maps_(sensors.settings_as<Occupancy>()),
       source_maps_(context.world, maps_, context.thread_pool),
       flags_(context.true_poses ? maps::kTruePoses : 0) {
   std::vector<MapSettings> in_batch;

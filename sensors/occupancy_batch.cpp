@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "gpu/group_counts.h"
@@ -188,6 +189,11 @@ void MapBatch::Tables::send() {
     if (odds) batch.upload(*odds, 0, odds->bytes());
     blank = false;
   }
+  for (const std::uint32_t map : std::exchange(restarted, {})) {
+    const std::size_t first = all[map].words, count = maps::words(all[map].settings.grid);
+    batch.upload(*words, 4 * first, 4 * count);
+    if (all[map].settings.odds) batch.upload(*odds, 16 * SF_ODDS_TEXELS * first, 16 * SF_ODDS_TEXELS * count);
+  }
   for (const std::uint32_t map : wanted)
     batch.download(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].settings.grid)});
 }
@@ -195,12 +201,22 @@ void MapBatch::Tables::send() {
 void MapBatch::Tables::update(std::span<const MapScan> some, std::span<const std::uint32_t> read) {
   scans.assign(some.begin(), some.end());
   wanted.assign(read.begin(), read.end());
-  if (scans.empty() && (wanted.empty() || unified)) return;
+  if (scans.empty() && restarted.empty() && (wanted.empty() || unified)) return;
   trace();
   assign_blocks();
   mark_hits();
   send();
   batch.run();
+}
+
+void MapBatch::Tables::restart(std::uint32_t map) {
+  const std::size_t first = all[map].words, count = maps::words(all[map].settings.grid);
+  const auto clear = [](gpu::Buffer& table, std::size_t begin, std::size_t size) {
+    std::ranges::fill(table.host<std::uint32_t>().subspan(begin, size), 0u);
+  };
+  clear(*words, first, count);
+  if (all[map].settings.odds) clear(*odds, 4 * SF_ODDS_TEXELS * first, 4 * SF_ODDS_TEXELS * count);
+  restarted.push_back(map);
 }
 
 /// The leading maps of both batches have the same places. The new tables are sent to the device with the first update.
@@ -248,6 +264,8 @@ void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint3
   else
     t_->update(scans, wanted);
 }
+
+void MapBatch::restart(std::uint32_t map) { host_ ? host_->restart(map) : t_->restart(map); }
 
 void MapBatch::take_over(MapBatch& before, std::uint32_t maps) {
   if (host_)

@@ -50,6 +50,9 @@ class MapBatch {
   /// Adds scans, at most one per map. @param wanted maps whose words will be read
   void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted);
 
+  /// Makes a map unexplored, from the next update on.
+  void restart(std::uint32_t map);
+
   /// Continues the first `maps` maps of another batch of the same device, which must not be used afterwards. Call it
   /// before the first update.
   void take_over(MapBatch& before, std::uint32_t maps);

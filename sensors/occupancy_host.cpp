@@ -7,13 +7,18 @@ namespace sf::sensors {
 HostMaps::HostMaps(std::span<const MapSettings> map_settings, base::ThreadPool& thread_pool)
     : thread_pool_(thread_pool), ends_(thread_pool.threads()) {
   for (const MapSettings& settings : map_settings) {
-    Map& map = maps_.emplace_back(
-        Map{settings, maps::beam_directions(settings.fov, settings.samples), maps::OccupancyGrid(), std::nullopt});
-    if (settings.odds)
-      map.odds.emplace(settings.grid, *settings.odds);
-    else
-      map.grid = maps::OccupancyGrid(settings.grid);
+    maps_.push_back(
+        {settings, maps::beam_directions(settings.fov, settings.samples), maps::OccupancyGrid(), std::nullopt});
+    restart(static_cast<std::uint32_t>(maps_.size() - 1));
   }
+}
+
+void HostMaps::restart(std::uint32_t map) {
+  const MapSettings& settings = maps_[map].settings;
+  if (settings.odds)
+    maps_[map].odds.emplace(settings.grid, *settings.odds);
+  else
+    maps_[map].grid = maps::OccupancyGrid(settings.grid);
 }
 
 void HostMaps::update(std::span<const MapScan> scans) {

@@ -18,6 +18,8 @@ class HostMaps {
 
   /// Adds scans, at most one per map.
   void update(std::span<const MapScan> scans);
+  /// Makes a map unexplored.
+  void restart(std::uint32_t map);
   /// Takes the first `maps` maps of `before`.
   void take_over(HostMaps& before, std::uint32_t maps);
   /// Returns the words of a map. Valid until the next update.

@@ -47,6 +47,12 @@ void SourceMaps::observe(std::span<const base::ReadingBlock> readings) {
   });
 }
 
+void SourceMaps::restart(const world::World& world, std::uint32_t map) {
+  Map& own = *maps_[map];
+  own.grid = {own.grid.geometry, own.grid.rule};
+  for (RangeSource& source : own.sources) source = RangeSource(world, source.sensor());
+}
+
 void SourceMaps::take_over(SourceMaps& before, std::uint32_t rows) {
   for (std::uint32_t i = 0; i < rows; ++i) {
     if (maps_[i] == nullptr) continue;

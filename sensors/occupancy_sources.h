@@ -21,6 +21,8 @@ class SourceMaps {
   void observe(std::span<const base::ReadingBlock> readings);
   /// Returns the words of a map. Valid until the next call of `observe`. @pre the map has sources
   std::span<const std::uint32_t> words(std::uint32_t map) const { return maps_[map]->grid.words; }
+  /// Makes a map unexplored. @pre the map has sources
+  void restart(const world::World& world, std::uint32_t map);
   /// Continues the first `rows` maps of `before`, which must not be used afterwards.
   void take_over(SourceMaps& before, std::uint32_t rows);
 

@@ -73,10 +73,12 @@ struct MapBatch::Tables {
   std::unique_ptr<gpu::Buffer> odds;
   std::vector<ScanWork> scan_works;  ///< per scan
   gpu::Batch batch;
-  bool blank = true;  ///< maps are not yet on the device
+  bool blank = true;                     ///< maps are not yet on the device
+  std::vector<std::uint32_t> restarted;  ///< maps that are unexplored here, and not yet on the device
 
   Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings);
   void update(std::span<const MapScan> some, std::span<const std::uint32_t> read);
+  void restart(std::uint32_t map);
   void take_over(Tables& before);
   void lay_out(std::vector<MapSettings> map_settings);
   void assign_layout();

@@ -23,22 +23,27 @@ namespace {
 /// View of the surroundings during one measurement.
 class SensorSurroundings final : public sensorfarm::Surroundings {
  public:
-  SensorSurroundings(const OwnSurroundings& surroundings, const base::RandomKey& key, bool noise)
-      : surroundings_(surroundings), key_(key), noise_(noise) {}
+  /// @param mover that carries the sensor, in whose world it is
+  SensorSurroundings(const OwnSurroundings& surroundings, std::uint32_t mover, const base::RandomKey& key, bool noise)
+      : surroundings_(surroundings),
+        states_(surroundings.states_with(mover)),
+        mover_(mover),
+        key_(key),
+        noise_(noise) {}
   sensorfarm::Hit cast(double x, double y, double z, double bearing, double range) const override {
-    return surroundings_.cast(key_.a, {x, y, z, bearing}, range);
+    return surroundings_.cast(mover_, {x, y, z, bearing}, range);
   }
-  std::size_t robots() const override { return surroundings_.states().size(); }
-  sensorfarm::Pose pose(std::size_t row) const override { return public_pose(surroundings_.states()[row].X_WM); }
-  sensorfarm::Twist velocity(std::size_t row) const override {
-    return public_twist(surroundings_.states()[row].velocity);
-  }
+  std::size_t robots() const override { return states_.size(); }
+  sensorfarm::Pose pose(std::size_t row) const override { return public_pose(states_[row].X_WM); }
+  sensorfarm::Twist velocity(std::size_t row) const override { return public_twist(states_[row].velocity); }
   std::array<double, 2> normal(std::uint32_t draw) const override {
     return noise_ ? base::random_normal(key_, draw) : std::array<double, 2>{};
   }
 
  private:
   const OwnSurroundings& surroundings_;
+  std::span<const base::Report> states_;
+  std::uint32_t mover_;
   base::RandomKey key_;
   bool noise_;
 };
@@ -46,6 +51,26 @@ class SensorSurroundings final : public sensorfarm::Surroundings {
 /// "sensor 'nose' (compass)", for messages.
 std::string own_sensor_name(const SensorSpec& spec, const OwnType& type) {
   return base::one_line(fmt::format("sensor '{}' ({})", spec.name, type.entry.name));
+}
+
+OwnSensor made_sensor(const world::World& world, const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number,
+                      const OwnType& type) {
+  OwnSensor own{common_spec(sensor, mover, number), nullptr};
+  own.spec.rate = rate_of(sensor, type.entry.rate);
+  own.spec.sigma = HUGE_VAL;  // the sensor may add noise
+  const base::PluginCall under_way(own_sensor_name(own.spec, type));
+  try {
+    own.sensor = type.entry.make(
+        {own.spec.name, world::CopyIndex(world).row_of(mover), number, public_pose(own.spec.X_MS), sensor.height},
+        PublicSensorSettings(sensor));
+  } catch (const base::InputError&) {
+    throw;  // an invalid setting
+  } catch (const std::exception& error) {
+    refuse(sensor, "", base::one_line(error.what()));
+  }
+  if (own.sensor == nullptr) refuse(sensor, "", fmt::format("sensor type '{}' returned none", type.entry.name));
+  own.spec.elements = std::clamp(own.sensor->elements(), 1u, 1u << 20);
+  return own;
 }
 
 class OwnSensors final : public SensorBackend {
@@ -90,9 +115,13 @@ class OwnSensors final : public SensorBackend {
     for (std::uint32_t i = 0; i < rows; ++i)
       sensors_[i].sensor.swap(dynamic_cast<OwnSensors&>(before).sensors_[i].sensor);
   }
+  /// A sensor may have a state, so another object takes its place.
   void restart(std::uint32_t row, std::int64_t /*now*/) override {
-    throw base::InputError(names_[row] +
-                           " may have a state, and cannot begin anew with its world; expected a new simulation");
+    const SensorSpec& spec = sensors_[row].spec;
+    std::uint32_t number = 0;
+    for (const world::Sensor& sensor : context_.world.movers[spec.mover].sensors)
+      if (sensor.type == type_.entry.name && number++ == spec.sensor)
+        sensors_[row] = made_sensor(context_.world, sensor, spec.mover, spec.sensor, type_);
   }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return kernel_ != nullptr; }
@@ -139,7 +168,7 @@ void OwnSensors::measure(std::size_t i) {
   const base::RandomKey key =
       context_.episodes.key(base::RandomStream::own_sensors, own.spec.mover,
                             own.spec.sensor | std::uint32_t{type_.entry.id} << 24, due.sequence);
-  const SensorSurroundings around(surroundings_, key, context_.noise);
+  const SensorSurroundings around(surroundings_, own.spec.mover, key, context_.noise);
   const double now = 1e-9 * static_cast<double>(now_ - context_.episodes.start_of(own.spec.mover));
   const base::PluginCall under_way(names_[due.row], now);
   const auto fail = [&](const char* why) {
@@ -173,21 +202,7 @@ void OwnSensors::collect(std::span<base::ReadingBlock> out) {
 std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& type) {
   std::vector<OwnSensor> found;
   for_each_of(world, type.entry.name, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-    OwnSensor own{common_spec(sensor, mover, number), nullptr};
-    own.spec.rate = rate_of(sensor, type.entry.rate);
-    own.spec.sigma = HUGE_VAL;  // the sensor may add noise
-    const base::PluginCall under_way(own_sensor_name(own.spec, type));
-    try {
-      own.sensor = type.entry.make({own.spec.name, mover, number, public_pose(own.spec.X_MS), sensor.height},
-                                   PublicSensorSettings(sensor));
-    } catch (const base::InputError&) {
-      throw;  // an invalid setting
-    } catch (const std::exception& error) {
-      refuse(sensor, "", base::one_line(error.what()));
-    }
-    if (own.sensor == nullptr) refuse(sensor, "", fmt::format("sensor type '{}' returned none", type.entry.name));
-    own.spec.elements = std::clamp(own.sensor->elements(), 1u, 1u << 20);
-    found.push_back(std::move(own));
+    found.push_back(made_sensor(world, sensor, mover, number, type));
   });
   return found;
 }

@@ -23,7 +23,11 @@ class OwnSurroundings {
   void place_movers();
   /// See sensorfarm::Surroundings::cast. @param self row of the robot that the ray ignores
   sensorfarm::Hit cast(std::uint32_t self, const base::Pose& from, double range) const;
-  std::span<const base::Report> states() const { return states_; }
+  /// Returns the states of the movers of the world of `mover`.
+  std::span<const base::Report> states_with(std::uint32_t mover) const {
+    const auto [first, end] = copies_.rows_with(mover, static_cast<std::uint32_t>(states_.size()));
+    return states_.subspan(first, end - first);
+  }
 
  private:
   struct Nearest;

@@ -131,6 +131,10 @@ template <> inline constexpr auto kFields<Shape> = std::make_tuple(
 template <> inline constexpr auto kFields<Warning> = std::make_tuple(
     path(&Warning::file), label(&Warning::line), label(&Warning::message));
 
+template <> inline constexpr auto kFields<Variation> = std::make_tuple(
+    field(&Variation::slip, Bounds{0.0, kMostSlip}), field(&Variation::acceleration, Bounds{0.0, 1.0, true}),
+    field(&Variation::noise, Bounds{0.0, 1.0}));
+
 template <> inline constexpr auto kFields<World> = std::make_tuple(
     label(&World::name, Key{"name"}), path(&World::file),
     field(&World::road_resolution, Key{"road_resolution", Unit::length}, kNotNegative),
@@ -149,7 +153,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 8
     field(&World::shapes),
     // since version 9
-    field(&World::heat_sources), field(&World::temperature, Key{"temperature"}, Bounds{-273.15, 1e6}));
+    field(&World::heat_sources), field(&World::temperature, Key{"temperature"}, Bounds{-273.15, 1e6}),
+    // since version 10
+    field(&World::variations));
 
 // clang-format on
 

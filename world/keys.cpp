@@ -21,14 +21,14 @@ constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_an
 
 constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "outlines", "boundary", "stack_children",
   "noblocks", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment", "magnetometer_return", "blocks",
-  "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose", "fiducial_return", "fiducial_key", "random_pose", "random_present",
+  "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose", "fiducial_return", "fiducial_key", "random_pose", "random_present", "random_size",
   // known, not modelled
   "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
   "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",
   "map_resolution", "say", "alwayson", "thread_safe", "joules", "kjoules", "joules_capacity", "watts", "give_watts",
   "take_watts", "trail_length", "trail_interval", "event_queue", "debug", "rebuild_displaylist", "block[].color"});
 
-constexpr auto kPosition = std::to_array<std::string_view>({
+constexpr auto kPosition = std::to_array<std::string_view>({"random_slip", "random_acceleration", "random_noise",
   // known, not modelled
   "velocity", "localization", "localization_origin", "odom_error", "odom"});
 

@@ -19,14 +19,12 @@ OriginalShape original_of(const World& world, std::uint32_t row) {
   const Model& model = world.models[mover.model];
   OriginalShape own{.color = model.color, .is_bitmap = model.is_bitmap, .pixel = model.pixel, .magnets = mover.magnets};
   own.surface.model = mover.model;
-  double top = 0.0;
   for (const Segment& side : mover.body) {
     if (side.model != mover.model) continue;
     if (own.outline.empty()) own.surface = side;
     own.outline.push_back(side);
-    top = std::max(top, side.z_max - mover.X_MB.z);
   }
-  own.size = {model.size.x, model.size.y, top};
+  own.size = size_of(world, mover);
   for (const Fiducial& fiducial : world.fiducials)
     if (fiducial.model == mover.model) own.fiducial_z = fiducial.X_BF.z;
   return own;
@@ -43,15 +41,23 @@ void stretch(std::vector<Segment>& outline, const glm::dvec3& from, const glm::d
   }
 }
 
+/// Returns an outline of the mover's frame, scaled about the origin of `X_MB`.
+std::vector<Segment> scaled(const std::vector<Segment>& outline, const Pose& X_MB, const Segment& surface,
+                            const glm::dvec3& from, const glm::dvec3& to) {
+  if (from == to) return outline;
+  std::vector<Segment> local, placed;
+  place_outline(outline, inverse(X_MB), surface, local);
+  stretch(local, from, to);
+  place_outline(local, X_MB, surface, placed);
+  return placed;
+}
+
 /// Returns the mover's own outline in its current shape, in the mover's frame.
 std::vector<Segment> outline_of(const World& world, const Mover& mover, const ChangedShape& now) {
   const OriginalShape& own = now.original;
-  const bool original = now.shape == kNone;
-  if (original && now.size == own.size) return own.outline;
-  std::vector<Segment> local, placed;
-  original ? place_outline(own.outline, inverse(mover.X_MB), own.surface, local)
-           : void(local = world.shapes[now.shape].outline);
-  stretch(local, original ? own.size : world.shapes[now.shape].size, now.size);
+  if (now.shape == kNone) return scaled(own.outline, mover.X_MB, own.surface, own.size, now.size);
+  std::vector<Segment> local = world.shapes[now.shape].outline, placed;
+  stretch(local, world.shapes[now.shape].size, now.size);
   place_outline(local, mover.X_MB, own.surface, placed);
   return placed;
 }
@@ -209,6 +215,23 @@ void restore_copy(World& world, std::uint32_t copy, const World& from, std::uint
   for (std::size_t i = 0; i < changed.magnets.size(); ++i)
     own.original.magnets[i].model = world.movers[copy].magnets[i].model;
   write_shape(world, copy, own);
+}
+
+glm::dvec3 size_of(const World& world, const Mover& mover) {
+  double top = 0.0;
+  for (const Segment& side : mover.body)
+    if (side.model == mover.model) top = std::max(top, side.z_max - mover.X_MB.z);
+  const glm::dvec2& size = world.models[mover.model].size;
+  return {size.x, size.y, top};
+}
+
+void resize(Mover& mover, const Mover& original, const glm::dvec3& from, const glm::dvec3& to) {
+  std::vector<Segment> own, carried;
+  for (const Segment& side : original.body) (side.model == original.model ? own : carried).push_back(side);
+  if (own.empty()) return;
+  mover.body = scaled(own, original.X_MB, own.front(), from, to);
+  mover.body.insert(mover.body.end(), carried.begin(), carried.end());
+  mover.radius = radius_of(mover);
 }
 
 void place_outline(std::span<const Segment> outline, const Pose& X, const Segment& surface,

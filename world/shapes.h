@@ -66,6 +66,13 @@ std::vector<base::ShapeState> restore_originals(World& world);
 /// @pre `copy` is a copy of that mover, also of its current shape
 void restore_copy(World& world, std::uint32_t copy, const World& from, std::uint32_t original);
 
+/// Gives `mover`, a copy of `original`, the original's own outline scaled from size `from` to size `to` [m], about its
+/// `origin`. What it carries keeps its place. Updates its radius; not for movers with magnets or fiducials.
+void resize(Mover& mover, const Mover& original, const glm::dvec3& from, const glm::dvec3& to);
+
+/// [m] Returns the size of the mover's own outline as loaded; z: from its foot to its top.
+glm::dvec3 size_of(const World& world, const Mover& mover);
+
 /// Appends `outline` at `X`, with the model and flags of `surface`. Leaves out sides that vanish by rounding.
 void place_outline(std::span<const Segment> outline, const Pose& X, const Segment& surface,
                    std::vector<Segment>& segments);

@@ -130,11 +130,28 @@ enum class ActuatorModel : std::uint8_t {
   player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m
 };
 
-/// How a seed chooses the start of a mover (world/random_starts.h).
+inline constexpr double kMostSlip = 0.9;
+inline constexpr double kLeastAcceleration = 0.01;
+
+/// How a seed chooses the start of a mover, and what it can do in a run (world/random_starts.h).
 struct RandomStart {
-  glm::dvec3 spread{};    ///< [m], [m], [rad] >= 0: largest distance of x, y and yaw from the pose in the file
-  double presence = 1.0;  ///< probability in [0, 1] that it is in the world
-  bool any() const { return spread != glm::dvec3{} || presence < 1.0; }
+  glm::dvec3 spread{};        ///< [m], [m], [rad] >= 0: largest distance of x, y and yaw from the pose in the file
+  double presence = 1.0;      ///< probability in [0, 1] that it is in the world
+  glm::dvec3 size_spread{};   ///< [m] >= 0: largest difference of its size from that in the file
+  double slip = 0.0;          ///< in [0, kMostSlip]: largest Variation::slip
+  double acceleration = 0.0;  ///< in [0, 1 - kLeastAcceleration]: largest 1 - Variation::acceleration
+  double noise = 0.0;         ///< in [0, 1]: largest 1 - Variation::noise
+  bool places() const { return spread != glm::dvec3{} || presence < 1.0; }
+  bool varies() const { return slip > 0.0 || acceleration > 0.0 || noise > 0.0; }
+  bool any() const { return places() || size_spread != glm::dvec3{} || varies(); }
+};
+
+/// How a robot of a run differs from its description.
+struct Variation {
+  double slip = 0.0;          ///< in [0, kMostSlip]: part of its wheels' way that it does not advance
+  double acceleration = 1.0;  ///< in [kLeastAcceleration, 1]: factor of its largest accelerations
+  double noise = 1.0;         ///< in [0, 1]: factor of all normally distributed errors of its sensors
+  bool operator==(const Variation&) const = default;
 };
 
 /// A robot, or a linked object that follows packets.
@@ -324,8 +341,9 @@ struct World {
   std::vector<Shape> shapes;  ///< at most kMostShapes
   /// By row of the mover; not in snapshots. The first change of a mover adds its entry.
   std::map<std::uint32_t, ChangedShape> changed_shapes;
-  double ambient_light = 0.0;  ///< [lx] on every surface, without shadows
-  double temperature = 0.0;    ///< [degrees Celsius] far from all heat sources
+  double ambient_light = 0.0;         ///< [lx] on every surface, without shadows
+  double temperature = 0.0;           ///< [degrees Celsius] far from all heat sources
+  std::vector<Variation> variations;  ///< of the first movers, by row; empty: none has one
   std::vector<FloorHole> floor_holes;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
@@ -333,6 +351,10 @@ struct World {
   Extent extent;
   std::vector<Warning> warnings;
   std::uint64_t hash = 0;  ///< of all data above that readings depend on; changes of shapes do not update it
+
+  Variation variation_of(std::uint32_t mover) const {
+    return mover < variations.size() ? variations[mover] : Variation{};
+  }
 };
 
 /// Options for loading.

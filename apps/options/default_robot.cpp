@@ -25,6 +25,7 @@ world::World load_with_robots(const WorldOptions& options, const CloneOptions& c
         "m; for another robot, give --robot-from FILE:NAME, or write a world that includes this file (docs/worlds.md)",
         options.world);
   if (copies) world::clone_robots(world, std::max(1u, clones.robots), clones.seed, added.empty() ? clones.of : added);
+  world::draw_variations(world, clones.seed);
   print_warnings(options.world, world.warnings);
   return world;
 }

@@ -333,7 +333,7 @@ class Simulation:
     def __init__(self, world: str, *, robots: int = 0, of: str = "", robot_from: str = "",
                  seed: int = 1, copies: int = 1, threads: int = 0, noise: bool = True, accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
-                 settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
+                 settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False, record_world: int = 0,
                  ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", positioning: str = "", faults: str = "",
                  writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), possibly one of the installed worlds. robots: clones of one robot
@@ -360,10 +360,13 @@ class Simulation:
         Python threads run meanwhile."""
     def reset(self, seed: int | None = None) -> None:
         """Restarts at time 0. Arrays read before keep the old run. Of several worlds, world k gets seed + k."""
-    def restart(self, worlds: Sequence[int], seeds: Sequence[int], starts: ArrayLike | None = None) -> None:
+    def restart(self, worlds: Sequence[int], seeds: Sequence[int], starts: ArrayLike | None = None, *,
+                present: ArrayLike | None = None, sizes: ArrayLike | None = None, slip: ArrayLike | None = None,
+                acceleration: ArrayLike | None = None, noise: ArrayLike | None = None) -> None:
         """Restarts some of several worlds, at time 0 of their own clocks; the others are unchanged, and no time
-        passes for them. Readings of the start are available at once. seeds: one per world. starts: (worlds, robots, 4)
-        poses; None, and where x is NaN: those of a world alone with that seed. Raises Error, with nothing changed."""
+        passes for them. Readings of the start are available at once. seeds: one per world. starts: (worlds, rows, 4)
+        poses; sizes: (worlds, rows, 3) [m]; present, slip, acceleration, noise: (worlds, rows), see Worlds.reset. None,
+        and where (x) is NaN: those of a world alone with that seed. Raises Error, with nothing changed."""
     def observe(self, sensor: str = "laser", *, every: int = 1, speeds: bool = True, goal_reach: float = 0.0,
                 stack: int = 1) -> Observations:
         """Returns observations of the robots with sensors of this type, which each step and restart writes from now on.
@@ -415,6 +418,9 @@ class Simulation:
     @property
     def velocities(self) -> NDArray[np.float64]:
         """(robots, 3): forward, left [m/s], turn [rad/s]."""
+    @property
+    def radii(self) -> NDArray[np.float64]:
+        """(rows,) [m]: radius of the circle about its origin that contains the body; changes with its size. A copy."""
     @property
     def contacts(self) -> NDArray[np.bool_]:
         """(robots,): True if a wall or a robot stopped it."""

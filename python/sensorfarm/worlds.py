@@ -5,6 +5,37 @@ import numpy
 from ._sensorfarm import Simulation
 
 
+_SHAPES = {"starts": (4,), "present": (), "sizes": (3,), "slip": (), "acceleration": (), "noise": ()}
+
+
+def _checked(what, given, worlds, robots):
+    """Returns the arrays of an argument of `reset` with a row per world."""
+    if given is None:
+        return None
+    shape = _SHAPES[what]
+    if not isinstance(given, dict):
+        given = numpy.asarray(given, dtype=float)
+        if given.shape[:1] != (worlds,) or given.ndim != 2 + len(shape) or given.shape[2:] != shape or given.shape[1] < robots:
+            raise ValueError(f"{what} has the shape {given.shape}; expected {(worlds, robots, *shape)}, or a dict by name")
+        return given
+    try:
+        return {name: numpy.broadcast_to(numpy.asarray(values, dtype=float), (worlds, *shape))
+                for name, values in given.items()}
+    except ValueError as error:
+        raise ValueError(f"{what} by name: {error}; expected the shape {(worlds, *shape)} for each name") from None
+
+
+def _row_of(part, name):
+    """Returns the row of a robot or object."""
+    names = [robot.name for robot in part.robots]
+    if name in names:
+        return names.index(name)
+    if name in part.models:
+        raise ValueError(f"'{name}' is static, so all worlds share it; expected a robot, or a model that a key such as "
+                         "random_present 1 makes an object of each world")
+    raise ValueError(f"there is no '{name}'; expected one of {', '.join(names)}")
+
+
 class Worlds:
     """Worlds with equally many robots, simulated at once.
 
@@ -22,7 +53,8 @@ class Worlds:
     file, with all rows.
 
     world: a world file, or several; text: the world's text, which `world` then names. copies: of each, or one number
-    per file. Further options are those of Simulation, except record, ranks, positioning and faults.
+    per file. Further options are those of Simulation, except ranks, positioning and faults. record: of one file, the
+    world record_world, as a Simulation of it alone would, until it restarts.
     """
 
     def __init__(self, world, copies=1, seed=1, text=None, **options):
@@ -31,6 +63,8 @@ class Worlds:
         if not files or len(counts) != len(files) or (text is not None and len(files) > 1):
             raise ValueError(f"{len(counts)} numbers of copies for {len(files)} worlds; expected as many, and a text only "
                              "for one")
+        if options.get("record") and len(files) > 1:
+            raise ValueError("worlds of several files cannot be recorded; expected one file")
         self._first = numpy.concatenate([[0], numpy.cumsum(counts)]).astype(int)
         make = Simulation if text is None else lambda name, **given: Simulation.from_text(text, name, **given)
         self.parts = [make(file, copies=count, seed=seed + int(first), **options)
@@ -89,19 +123,39 @@ class Worlds:
             part.step(share)
 
     def _all_rows(self, part, rows, other):
-        """Returns (worlds, rows of the part, n) with `rows` first, and then `other`."""
+        """Returns (worlds, rows of the part, ...) with `rows` first, and then `other`."""
         if rows.shape[1] == len(part.robots):
             return rows
-        full = numpy.full((len(rows), len(part.robots), rows.shape[2]), other)
+        full = numpy.full((len(rows), len(part.robots), *rows.shape[2:]), other)
         full[:, :rows.shape[1]] = rows
         return full
 
-    def reset(self, seed=None, mask=None, seeds=None, starts=None):
+    def _given(self, part, what, given, chosen):
+        """Returns (len(chosen), rows of the part, ...): what worlds start with instead of what the seed chooses; NaN
+        where that stays. chosen: their numbers among those that are restarted."""
+        if given is None:
+            return None
+        shape = _SHAPES[what]
+        if not isinstance(given, dict):
+            return self._all_rows(part, given[chosen], numpy.nan)
+        full = numpy.full((len(chosen), len(part.robots), *shape), numpy.nan)
+        for name, values in given.items():
+            full[:, _row_of(part, name)] = values[chosen]
+        return full
+
+    def reset(self, seed=None, mask=None, seeds=None, starts=None, present=None, sizes=None, slip=None,
+              acceleration=None, noise=None):
         """Restarts worlds; the others are unchanged, and no time passes for them.
 
         mask: bool (worlds,); None: all. seed: world k gets seed + k; seeds: one per world of the mask instead. None:
-        seeds as far from the last ones as there are worlds, so that none is used twice. starts: (worlds of the mask,
-        robots, 4) poses; None: those that the seed chooses.
+        seeds as far from the last ones as there are worlds, so that none is used twice.
+
+        What the seeds would choose, or the world file says, may be given: starts, poses (x, y, z [m], yaw [rad]);
+        present, 0 or 1, and sizes (x, y, z [m]) of objects; of robots slip, the part of its wheels' way that a robot
+        does not advance, in [0, 0.9], and the factors acceleration, of its acceleration_bounds, in [0.01, 1], and
+        noise, of all normally distributed errors of its sensors, in [0, 1]. Each is an array (worlds of the mask,
+        robots, numbers), or a dict of these without the axis of robots by the name of a robot or an object, such as
+        sizes={"crate": [0.5, 0.4, 1]}. NaN: the seed's choice.
         """
         chosen = numpy.arange(len(self)) if mask is None else numpy.flatnonzero(mask)
         if mask is not None and numpy.shape(mask) != (len(self),):
@@ -113,11 +167,17 @@ class Worlds:
             raise ValueError(f"seeds are {seeds}; expected whole numbers from 0 on")
         if seeds.shape != chosen.shape:
             raise ValueError(f"seeds have the shape {seeds.shape}; expected one for each of {len(chosen)} worlds")
-        starts = None if starts is None else numpy.asarray(starts, dtype=float).reshape(len(chosen), -1, 4)
+        given = {"starts": starts, "present": present, "sizes": sizes, "slip": slip, "acceleration": acceleration,
+                 "noise": noise}
+        given = {what: _checked(what, values, len(chosen), len(self.robots)) for what, values in given.items()}
+        shares = []
         for part, a, b in zip(self.parts, self._first, self._first[1:]):
-            own = (chosen >= a) & (chosen < b)
-            if own.any():
-                part.restart(chosen[own] - a, seeds[own], None if starts is None else self._all_rows(part, starts[own], numpy.nan))
+            own = numpy.flatnonzero((chosen >= a) & (chosen < b))
+            if len(own):
+                shares.append((part, chosen[own] - a, seeds[own],
+                               {what: self._given(part, what, values, own) for what, values in given.items()}))
+        for part, worlds, own_seeds, own in shares:
+            part.restart(worlds, own_seeds, own.pop("starts"), **own)
         self.seeds[chosen] = seeds
 
     def hash(self, world):

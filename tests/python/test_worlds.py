@@ -86,6 +86,61 @@ class Copies(unittest.TestCase):
         self.assertEqual(worlds.seeds.tolist(), [8, 6, 9])
 
 
+class Arrays(unittest.TestCase):
+    """What worlds start with by arrays instead of by their seeds."""
+
+    def test_objects_by_name(self):
+        worlds = room(4)
+        sizes = numpy.array([[0.6, 0.8, 1], [0.3, 0.4, 1]])
+        worlds.reset(mask=numpy.array([True, False, True, False]), seeds=[5, 6], sizes={"crate": sizes},
+                     present={"post": [0, 1]}, starts={"crate": [[1, 1, 0, 0], [1, -1, 0, 0]]})
+        part = worlds.parts[0]
+        numpy.testing.assert_allclose(part.radii.reshape(4, -1)[::2, 2], [0.5, 0.25])
+        self.assertEqual(part.present.reshape(4, -1)[::2, 3].tolist(), [False, True])
+        self.assertEqual(part.poses.reshape(4, -1, 4)[::2, 2, 1].tolist(), [1, -1])
+
+    def test_sizes_are_sensed(self):
+        worlds = room(2, robots=1)
+        starts = {"bot1": [0, 0, 0, 0], "crate": [1, 0, 0, 0]}
+        worlds.reset(seed=1, starts=starts, sizes={"crate": [[1, 1, 1], [0.5, 0.5, 1]]})
+        numpy.testing.assert_allclose(worlds.readings("laser")[:, 0, 15], [0.5, 0.75], atol=0.06)
+
+    def test_robots_by_arrays(self):
+        worlds = room(3)
+        slip = numpy.array([[0.0, 0.5], [numpy.nan, numpy.nan], [0.2, 0.0]])
+        worlds.reset(seed=1, slip=slip, noise=numpy.zeros((3, 2)))
+        worlds.step(numpy.tile([0.1, 0.0, 0.0], (3, 2, 1)))
+        numpy.testing.assert_allclose(worlds.velocities[..., 0], 0.1 * (1 - numpy.nan_to_num(slip)))
+
+    def test_refusals(self):
+        worlds = room(2)
+        before = [worlds.hash(k) for k in range(2)]
+        wall = next(name for name in worlds.parts[0].models if name not in {row.name for row in worlds.parts[0].robots})
+        for message, given in (("there is no 'box'; expected one of bot1, bot2, crate, post", {"sizes": {"box": [1, 1, 1]}}),
+                               ("is static, so all worlds share it", {"sizes": {wall: [1, 1, 1]}}),
+                               ("sizes by name", {"sizes": {"crate": [1, 1]}}),
+                               ("slip has the shape", {"slip": [0.1, 0.1]}),
+                               ("slip has the shape", {"slip": numpy.zeros((2, 1))}),
+                               ("the size of 'crate' is", {"sizes": {"crate": [-1, 1, 1]}}),
+                               ("the noise of 'bot2' is 2", {"noise": {"bot2": 2}})):
+            with self.assertRaisesRegex((ValueError, sensorfarm.Error), message):
+                worlds.reset(seed=3, **given)
+        self.assertEqual([worlds.hash(k) for k in range(2)], before)
+        self.assertEqual(worlds.seeds.tolist(), [1, 2])
+
+    def test_one_world_is_recorded(self):
+        with tempfile.TemporaryDirectory() as folder:
+            worlds = room(3, seed=4, record=os.path.join(folder, "run"), record_world=1)
+            drive(worlds, 5)
+            worlds.parts[0].finish_recording()
+            one = alone(5, record=os.path.join(folder, "one"))
+            drive(one, 5)
+            one.finish_recording()
+            files = [os.path.join(folder, name, "run.mcap") for name in ("run", "one")]
+            sizes = [os.path.getsize(file) for file in files]
+        self.assertEqual(*sizes)
+
+
 class Resets(unittest.TestCase):
     def test_a_mask_restarts_only_its_worlds(self):
         worlds = room(4)
@@ -129,8 +184,8 @@ class Resets(unittest.TestCase):
                 worlds.reset(**wrong)
         with self.assertRaisesRegex(ValueError, r"shape \(3, 4\)"):
             worlds.step(numpy.zeros((3, 4)))
-        with self.assertRaisesRegex(sensorfarm.Error, "cannot be recorded"):
-            room(2, record="out/never")
+        with self.assertRaisesRegex(sensorfarm.Error, "there is no world 2 to record"):
+            room(2, record="out/never", record_world=2)
 
 
 class Observed(unittest.TestCase):

@@ -6,6 +6,7 @@
 
 #include "tests/refusal.h"
 #include "world/random_starts.h"
+#include "world/shapes.h"
 #include "world/stage/build_world.h"
 
 namespace sf::world {
@@ -98,6 +99,70 @@ TEST(RandomStarts, DependOnSeedAndRow) {
   EXPECT_EQ(mover.X_WM.x, last);
 }
 
+TEST(RandomStarts, SizesAreUniformAboutThatOfTheFile) {
+  const RandomStart random{.size_spread = {0.5, 0.0, 0.25}};
+  glm::dvec3 least{1e9}, most{-1e9}, sum{};
+  constexpr int kRuns = 4'000;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    const glm::dvec3 size = draw_size(random, {1.0, 2.0, 0.5}, seed, 0);
+    least = glm::min(least, size), most = glm::max(most, size), sum += size;
+  }
+  EXPECT_GE(least.x, 0.5);
+  EXPECT_LE(most.x, 1.5);
+  EXPECT_GT(most.x - least.x, 0.995);
+  EXPECT_EQ(least.y, 2.0);
+  EXPECT_EQ(most.y, 2.0);
+  EXPECT_NEAR(sum.x / kRuns, 1.0, 5.0 * 0.5 / std::sqrt(3.0 * kRuns));  // five standard errors
+  EXPECT_NEAR(sum.z / kRuns, 0.5, 5.0 * 0.25 / std::sqrt(3.0 * kRuns));
+}
+
+TEST(RandomStarts, VariationsAreUniformUpToTheirKeys) {
+  const RandomStart random{.slip = 0.2, .acceleration = 0.5, .noise = 1.0};
+  Variation sum{0.0, 0.0, 0.0};
+  constexpr int kRuns = 4'000;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    const Variation v = draw_variation(random, seed, 1u << 31);
+    EXPECT_TRUE(v.slip >= 0.0 && v.slip <= 0.2 && v.acceleration >= 0.5 && v.acceleration <= 1.0 && v.noise >= 0.0 &&
+                v.noise <= 1.0);
+    sum = {sum.slip + v.slip, sum.acceleration + v.acceleration, sum.noise + v.noise};
+  }
+  const double error = 5.0 / std::sqrt(12.0 * kRuns);  // five standard errors of a unit interval
+  EXPECT_NEAR(sum.slip / kRuns, 0.1, 0.2 * error);
+  EXPECT_NEAR(sum.acceleration / kRuns, 0.75, 0.5 * error);
+  EXPECT_NEAR(sum.noise / kRuns, 0.5, error);
+}
+
+constexpr const char* kVaried =
+    "model( name \"crate\" size [0.4 0.6 1] random_size [0.2 0.3 0.5] model( name \"lid\" size [0.1 0.1 0.1] ) ) "
+    "position( name \"r\" random_slip 0.2 random_noise 0.5 ) position( name \"s\" )";
+
+TEST(RandomStarts, ASizeScalesTheModelsOwnOutline) {
+  World world = build_world("random.world", kVaried);
+  const Mover before = world.movers[0];
+  draw_starts(world, 3);
+  const Mover& crate = world.movers[0];
+  const glm::dvec3 size = size_of(world, crate);
+  EXPECT_NE(size.x, 0.4);
+  EXPECT_EQ(world.models[crate.model].size.x, size.x);
+  for (std::size_t i = 0; i < crate.body.size(); ++i) {
+    const bool own = crate.body[i].model == crate.model;
+    EXPECT_EQ(std::abs(crate.body[i].a.x), own ? size.x / 2.0 : std::abs(before.body[i].a.x)) << i;
+    if (!own) EXPECT_EQ(crate.body[i].z_max, before.body[i].z_max);
+  }
+  EXPECT_EQ(crate.radius, radius_of(crate));
+}
+
+TEST(RandomStarts, VariationsSurviveASnapshot) {
+  World world = build_world("random.world", kVaried);
+  const std::uint64_t plain = world.hash;
+  draw_variations(world, 3);
+  EXPECT_NE(world.hash, plain);
+  ASSERT_EQ(world.variations.size(), 3u);
+  EXPECT_EQ(world.variation_of(2), Variation{});  // without a key
+  EXPECT_GT(world.variation_of(1).slip, 0.0);
+  EXPECT_EQ(from_snapshot(snapshot(world)).variations, world.variations);
+}
+
 TEST(RandomStarts, AModelWithThemIsAnObjectWithTheNextNumber) {
   const World world = build_world("random.world",
                                   "model( name \"tag1\" ) model( name \"crate\" random_pose [1 2 45] ) "
@@ -122,6 +187,16 @@ TEST(RandomStarts, Refusals) {
             "random.world:1: a robot cannot be missing; expected 'random_present' in another model");
   EXPECT_NE(refused("position( name \"r\" model( name \"box\" random_pose [1 1 0] ) )").find("stands free"),
             std::string::npos);
+  EXPECT_EQ(refused("model( size [1 1 1] random_size [1 0 0] )"),
+            "random.world:1: 'random_size' is [1 0 0] m around a size of [1 1 1] m; expected less than it");
+  EXPECT_NE(refused("model( size [1 1 1] random_size [-0.1 0 0] )"), "");
+  expect_in("a robot, whose controllers", refused("position( random_size [0.1 0.1 0] )"));
+  expect_in("a magnet", refused("model( magnetic_moment 1 random_size [0.1 0.1 0] )"));
+  expect_in("a mark for fiducial finders", refused("model( fiducial_return 1 random_size [0.1 0.1 0] )"));
+  EXPECT_EQ(refused("position( random_slip 0.95 )"),
+            "random.world:1: 'random_slip' is 0.95; expected a number from 0 to 0.9");
+  EXPECT_NE(refused("position( random_noise -0.1 )"), "");
+  expect_in("which 'r' has none of", refused("position( name \"r\" random_acceleration 0.5 )"));
 }
 
 }  // namespace

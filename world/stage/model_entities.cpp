@@ -175,8 +175,8 @@ bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, co
   if (parent.mover == kNone) return true;
   if (random)
     fail(b.context, entity.at,
-         fmt::format("'{}' is mounted on '{}', which moves it; expected 'random_pose' and 'random_present' in a model "
-                     "that stands free, or is on a static one",
+         fmt::format("'{}' is mounted on '{}', which moves it; expected 'random_pose', 'random_present' and "
+                     "'random_size' in a model that stands free, or is on a static one",
                      said.name, parent.name));
   if (controlled)
     fail(
@@ -201,7 +201,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   const Pose X_MT = tag_pose_of(b.context, entity, moves && packet_id && packet_id->is_tag);
   if (moves) {
     const bool is_tag = packet_id ? packet_id->is_tag : said.kind != EntityKind::position;
-    model.mover = add_mover(b, entity, model, packet_id, is_tag);
+    model.mover = add_mover(b, entity, model, {said.size.x, said.size.y, said.size.z}, packet_id, is_tag);
     read_ctrl(b, entity, b.world.movers[model.mover]);
     b.world.movers[model.mover].X_MT = X_MT;
     own.X_MP = {};

@@ -24,10 +24,56 @@ std::optional<std::uint32_t> number_of(std::string_view digits) {
   return value;
 }
 
-/// Reads `random_pose` and `random_present`. @throws base::InputError for numbers out of range, and for a robot that
-/// may be missing
-RandomStart random_start_of(StageContext& context, const Entity& entity, bool is_tag) {
+/// Reads a part in [0, most] that a run loses at most.
+double random_part(StageContext& context, const Entity& entity, std::string_view key, double most) {
+  const Property* said = find(entity, key);
+  if (said == nullptr) return 0.0;
+  const double part = number(context, entity, key, 0.0);
+  if (!(part >= 0.0 && part <= most))
+    fail(context, said->at, fmt::format("'{}' is {:g}; expected a number from 0 to {:g}", key, part, most));
+  return part;
+}
+
+/// Reads `random_size`. @throws base::InputError also for models whose size other tables depend on
+glm::dvec3 random_size_of(StageContext& context, const Entity& entity, bool is_tag, const glm::dvec3& size) {
+  const auto spread = tuple(context, entity, "random_size", 3, "[x y z]");
+  if (!spread) return {};
+  const SourceLocation at = find(entity, "random_size")->at;
+  const glm::dvec3 most{to_metres(context, at, (*spread)[0]), to_metres(context, at, (*spread)[1]),
+                        to_metres(context, at, (*spread)[2])};
+  if (spread->size() > 3 || std::min({most.x, most.y, most.z}) < 0.0)
+    fail(context, at, "'random_size' expects [x y z]: the largest differences from 'size', at least 0");
+  if (!(most.x < size.x && most.y < size.y && (most.z < size.z || most.z == 0.0)))
+    fail(context, at,
+         fmt::format("'random_size' is [{:g} {:g} {:g}] m around a size of [{:g} {:g} {:g}] m; expected less than it",
+                     most.x, most.y, most.z, size.x, size.y, size.z));
+  const char* what = !is_tag                               ? "a robot, whose controllers use the size of the file"
+                     : find(entity, "outlines") != nullptr ? "a model with a file of outlines"
+                     : find(entity, "magnetic_moment") != nullptr || find(entity, "magneticmoment") != nullptr
+                         ? "a magnet, which is at half of its height"
+                     : find(entity, "fiducial_return") != nullptr
+                         ? "a mark for fiducial finders, which is at half of its height"
+                         : nullptr;
+  if (what != nullptr)
+    fail(context, at, fmt::format("'random_size' cannot be that of {}; expected it in another model", what));
+  return most;
+}
+
+/// Reads `random_pose`, `random_present`, `random_size` and, of robots, `random_slip`, `random_acceleration` and
+/// `random_noise`. @throws base::InputError for numbers out of range, and for a robot that may be missing
+RandomStart random_start_of(StageContext& context, const Entity& entity, const Mover& mover, const glm::dvec3& size) {
+  const bool is_tag = mover.is_tag;
   RandomStart start;
+  start.size_spread = random_size_of(context, entity, is_tag, size);
+  if (!is_tag) {
+    start.slip = random_part(context, entity, "random_slip", kMostSlip);
+    start.acceleration = random_part(context, entity, "random_acceleration", 1.0 - kLeastAcceleration);
+    start.noise = random_part(context, entity, "random_noise", 1.0);
+  }
+  if (start.acceleration > 0.0 && mover.max_acceleration == HUGE_VAL && mover.max_turn_acceleration == HUGE_VAL)
+    fail(context, find(entity, "random_acceleration")->at,
+         fmt::format("'random_acceleration' lowers acceleration_bounds, which '{}' has none of; expected these, too",
+                     mover.name));
   if (const auto spread = tuple(context, entity, "random_pose", 3, "[x y yaw]")) {
     const SourceLocation at = find(entity, "random_pose")->at;
     start.spread = {to_metres(context, at, (*spread)[0]), to_metres(context, at, (*spread)[1]),
@@ -49,7 +95,8 @@ RandomStart random_start_of(StageContext& context, const Entity& entity, bool is
 }  // namespace
 
 bool is_random(const Entity& entity) {
-  return find(entity, "random_pose") != nullptr || find(entity, "random_present") != nullptr;
+  return find(entity, "random_pose") != nullptr || find(entity, "random_present") != nullptr ||
+         find(entity, "random_size") != nullptr;
 }
 
 std::optional<PacketId> packet_id_of(std::string_view name) {
@@ -77,8 +124,8 @@ Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag) {
   return {};
 }
 
-std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, std::optional<PacketId> packet_id,
-                        bool is_tag) {
+std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, const glm::dvec3& size,
+                        std::optional<PacketId> packet_id, bool is_tag) {
   Mover mover;
   mover.name = model.name;
   mover.model = static_cast<std::uint32_t>(b.world.models.size());
@@ -87,7 +134,7 @@ std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model,
   if (is_tag && names_model_controller(b, entity)) mover.drive = Drive::omni;
   mover.max_forward = 1.0;  // Stage's default
   read_keys(b.context, entity, mover);
-  mover.random_start = random_start_of(b.context, entity, is_tag);
+  mover.random_start = random_start_of(b.context, entity, mover, size);
   b.world.movers.push_back(std::move(mover));
   b.numbers.push_back(packet_id ? std::optional(packet_id->number) : std::nullopt);
   b.locations.push_back(entity.at);

@@ -23,10 +23,10 @@ std::optional<PacketId> packet_id_of(std::string_view name);
 Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag);
 
 /// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
-/// @param is_tag it is an object, not a robot
+/// @param size [m] of the model  @param is_tag it is an object, not a robot
 /// @throws base::InputError for bounds, a drive, an actuator model or lengths out of range
-std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, std::optional<PacketId> packet_id,
-                        bool is_tag);
+std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, const glm::dvec3& size,
+                        std::optional<PacketId> packet_id, bool is_tag);
 
 /// Assigns the ids of movers: first the ids in names; then each other robot gets the smallest free id from 0, and each
 /// other object the smallest free id of a tag from 1, in file order.

@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+"""What learners gain by less accurate readings, and lose, on the states that a policy visits.
+
+    script/build release python_package
+    PYTHONPATH=build/release/python /usr/bin/python3 bench/accuracy_dial.py [--policy out/rooms/policy.npz]
+
+One simulation per accuracy, of the rooms of examples/python/rooms.py, with the same seeds and the same commands: those
+of the policy (default: straight to the goal) by exact readings. All therefore visit the same states, and their readings
+are compared with exact ones in double. The simulations take turns, so their rates are compared in one run. A reset of
+finished rooms is not timed.
+"""
+
+import argparse
+import os
+import sys
+import time
+
+import numpy
+import sensorfarm
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "python"))
+import rooms  # noqa: E402
+
+CHANGED = 1e-6  # [m] least difference that counts as a changed return
+CELL = 0.05  # [m] of the distance field
+
+
+class Variant:
+    """Rooms with an accuracy. `samples`: beams of the laser, for policies that are trained with fewer."""
+
+    def __init__(self, name, accuracy, copies, samples=None, laser=True):
+        with open(rooms.WORLD) as file:
+            text = file.read()
+        text = text if samples is None else text.replace("samples 36", f"samples {samples}")
+        text = text if laser else text.replace("laser(", "model( laser_return 0 obstacle_return 0 ) #")
+        self.name, self.seconds, self.laser = name, [], laser
+        self.worlds = sensorfarm.Worlds(rooms.WORLD, copies, robots=1, seed=1, text=text, accuracy=accuracy)
+
+    def step(self, commands):
+        wall, processor = time.perf_counter(), time.process_time()
+        self.worlds.step(commands)
+        self.seconds.append((time.perf_counter() - wall, time.process_time() - processor))
+
+    def ranges(self):
+        return self.worlds.readings("laser")[:, 0]
+
+
+class Errors:
+    """Differences [m] from exact ranges."""
+
+    def __init__(self):
+        self.squares, self.count, self.most, self.changed, self.flagged = 0.0, 0, 0.0, 0, 0
+
+    def add(self, ranges, exact):
+        error = numpy.abs(ranges - exact)
+        self.squares += float((error ** 2).sum())
+        self.count += error.size
+        self.most = max(self.most, float(error.max()))
+        self.changed += int((error > CHANGED).sum())
+
+    def row(self):
+        return f"{(self.squares / self.count) ** 0.5:9.2g} | {self.most:9.2g} | {100 * self.changed / self.count:8.3g} %"
+
+
+def corners_of(part, k):
+    """Returns the ends (walls, 2) of the walls of room k: its own, and those of the crates that are there."""
+    rows = len(part.robots)
+    segments = [[(-4, -4), (4, -4)], [(4, -4), (4, 4)], [(4, 4), (-4, 4)], [(-4, 4), (-4, -4)]]
+    for row in range(1, rows):
+        if not part.present[k * rows + row]:
+            continue
+        x, y, _, yaw = part.poses[k * rows + row]
+        width, depth = SIZES[part.robots[row].name]
+        turn = numpy.array([[numpy.cos(yaw), -numpy.sin(yaw)], [numpy.sin(yaw), numpy.cos(yaw)]])
+        box = [turn @ (sx * width / 2, sy * depth / 2) + (x, y) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        segments += [[box[i], box[(i + 1) % 4]] for i in range(4)]
+    return numpy.array(segments)
+
+
+def sizes_of_rooms():
+    """Returns the sizes [m] of the objects of rooms.world by name."""
+    sizes = {}
+    with open(rooms.WORLD) as file:
+        for line in file:
+            if 'name "crate' in line or 'name "partition' in line:
+                name = line.split('name "')[1].split('"')[0]
+                numbers = line.split("size [")[1].split("]")[0] if "size [" in line else "1.8 0.1 0.5"
+                sizes[name] = tuple(float(n) for n in numbers.split()[:2])
+    return sizes
+
+
+SIZES = sizes_of_rooms()
+
+
+def field_of(walls):
+    """Returns distances [m] to the nearest wall at the middles of cells, as a field in cells would have them."""
+    middles = -4 + CELL * (numpy.arange(int(8 / CELL)) + 0.5)
+    points = numpy.stack(numpy.meshgrid(middles, middles, indexing="ij"), axis=-1)[:, :, None]
+    a, along = walls[:, 0], walls[:, 1] - walls[:, 0]
+    part = numpy.clip(((points - a) * along).sum(-1) / (along ** 2).sum(-1), 0, 1)
+    return numpy.linalg.norm(points - a - part[..., None] * along, axis=-1).min(axis=2)
+
+
+def march(field, pose, bearings, reach):
+    """Returns ranges by sphere tracing in the field, and how often it was read per beam."""
+    directions = numpy.stack([numpy.cos(pose[3] + bearings), numpy.sin(pose[3] + bearings)], axis=1)
+    ranges, open_, reads = numpy.zeros(len(bearings)), numpy.ones(len(bearings), bool), 0
+    for _ in range(200):
+        cells = ((pose[:2] + ranges[:, None] * directions + 4) / CELL).astype(int).clip(0, len(field) - 1)
+        near = field[cells[:, 0], cells[:, 1]]
+        reads += open_.sum()
+        open_ &= near > CELL / 2
+        ranges = numpy.where(open_, ranges + near, ranges)
+        open_ &= ranges < reach
+        if not open_.any():
+            break
+    return numpy.minimum(ranges, reach), reads / len(bearings)
+
+
+def distance_field(exact, count, errors):
+    """Adds the errors of ranges from distance fields of some rooms. Returns reads per beam."""
+    part, rows = exact.worlds.parts[0], len(exact.worlds.parts[0].robots)
+    bearings, reads = numpy.array(part.robots[0].sensors[0].bearings), []
+    for k in range(count):
+        ranges, mean = march(field_of(corners_of(part, k)), part.poses[k * rows], bearings, 4.0)
+        errors.add(ranges, exact.ranges()[k])
+        reads.append(mean)
+    return numpy.mean(reads)
+
+
+def policy_of(file):
+    if file is None:
+        return rooms.straight
+    with numpy.load(file) as weights:
+        weights = dict(weights)
+    return lambda seen: rooms.act(weights, seen)
+
+
+def run(given):
+    driven = rooms.Rooms(given.worlds, 1)
+    decide, seen = policy_of(given.policy), driven.seen
+    variants = [Variant(name, name, given.worlds) for name in ("exact", "single", "skip2", "skip4", "skip8")]
+    variants += [Variant("18 beams", "exact", given.worlds, samples=18), Variant("none", "exact", given.worlds, laser=False)]
+    errors = {variant.name: Errors() for variant in variants}
+    errors["float32"], errors["field"], reads = Errors(), Errors(), []
+    limit = driven.worlds.robots[0].sensors[0].limit
+    for step in range(given.steps):
+        commands = numpy.stack(rooms.twists(decide(seen.values), *driven._speeds), axis=-1)[:, None]
+        order = numpy.random.default_rng(step).permutation(len(variants))
+        for i in order:
+            variants[i].step(commands)
+        driven.worlds.step(commands)
+        exact = variants[0].ranges()
+        assert (exact == driven.worlds.readings("laser")[:, 0]).all(), "the same commands, other readings"
+        for variant in variants[:5]:
+            errors[variant.name].add(variant.ranges(), exact)
+        errors["float32"].add(seen.values[:, :exact.shape[1]].astype(float) * limit, exact)
+        if step % 20 == 10:
+            reads.append(distance_field(variants[0], given.fields, errors["field"]))
+        ended = (seen.distances < rooms.ARRIVED) | driven.worlds.contacts[:, 0] | (seen.ages >= rooms.LIMIT)
+        if ended.any():
+            driven.restart(ended)
+            for variant in variants:
+                variant.worlds.reset(mask=ended, seeds=driven.worlds.seeds[ended])
+    return variants, errors, numpy.mean(reads)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--policy", help="file of rooms.py; default: straight to the goal")
+    parser.add_argument("--worlds", type=int, default=1000)
+    parser.add_argument("--steps", type=int, default=200)
+    parser.add_argument("--fields", type=int, default=20, help="rooms whose distance field is computed, every 20 steps")
+    given = parser.parse_args()
+    variants, errors, reads = run(given)
+    base = numpy.array(variants[0].seconds)
+    print(f"{variants[0].worlds.parts[0].description}; {given.worlds} rooms, {given.steps} steps, policy: "
+          f"{given.policy or 'straight to the goal'}")
+    print("readings   | RMS [m]   | most [m]  | changed    | agent steps/s | gain (wall), (processor): medians of steps")
+    for name in errors:
+        row = f"{name:10} | {errors[name].row() if errors[name].count else ' ' * 34}"
+        for variant in variants:
+            if variant.name == name:
+                own = numpy.array(variant.seconds)
+                wall, processor = numpy.median(base / own, axis=0)
+                row += f" | {given.worlds / numpy.median(own[:, 0]):13,.0f} | {wall:.2f}, {processor:.2f}"
+        print(row)
+    print(f"field: cells of {CELL} m, read {reads:.1f} times per beam")
+
+
+if __name__ == "__main__":
+    main()
