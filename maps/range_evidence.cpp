@@ -79,9 +79,12 @@ void RangeEvidence::add_cell(std::uint32_t cell, const Cone& cone, double along,
   if (free > 0.0) free_parts_.push_back({cell, static_cast<float>(free)});
 }
 
+/// The cell with the echo on the axis counts as if its middle were there: an oblique beam may miss the middles of all.
 void RangeEvidence::trace(const GridGeometry& geometry, const RangeCone& of) {
   const Cone cone(geometry, of);
   if (!(std::abs(cone.apex.x) < kFarthestCell && std::abs(cone.apex.y) < kFarthestCell)) return;
+  const glm::dvec2 echo = cone.apex + cone.range * cone.axis;
+  const CellAt at{whole_below(echo.x), whole_below(echo.y)};
   glm::dvec2 low{-cone.reach, -cone.reach}, high{cone.reach, cone.reach};
   if (cone.half == 0.0) {
     const glm::dvec2 end = cone.reach * cone.axis;
@@ -89,6 +92,7 @@ void RangeEvidence::trace(const GridGeometry& geometry, const RangeCone& of) {
     high = {std::max(0.0, end.x) + 1.0, std::max(0.0, end.y) + 1.0};
   }
   const auto first = static_cast<std::uint32_t>(arc_parts_.size());
+  if (cone.has_echo && contains(geometry, at)) add_cell(cell_index(geometry, at.column, at.row), cone, cone.range, 0.0);
   const std::int64_t row_end = std::min(rows(geometry), whole_below(cone.apex.y + high.y) + 1);
   for (std::int64_t row = std::max<std::int64_t>(0, whole_below(cone.apex.y + low.y)); row < row_end; ++row) {
     const double v = static_cast<double>(row) + 0.5 - cone.apex.y;
@@ -97,6 +101,7 @@ void RangeEvidence::trace(const GridGeometry& geometry, const RangeCone& of) {
     if (from > to) continue;
     const std::int64_t end = std::min(columns(geometry), whole_below(cone.apex.x + to) + 1);
     for (std::int64_t column = std::max<std::int64_t>(0, whole_below(cone.apex.x + from)); column < end; ++column) {
+      if (cone.has_echo && column == at.column && row == at.row) continue;
       const double u = static_cast<double>(column) + 0.5 - cone.apex.x;
       const double along = u * cone.axis.x + v * cone.axis.y, across = v * cone.axis.x - u * cone.axis.y;
       const bool inside = cone.half > kWidest || std::abs(across) <= 0.5 + cone.slope * std::max(along, 0.0);

@@ -3,7 +3,8 @@
 //
 // A cone with an echo says that at least one cell of its arc is occupied, and that those before it are free. A cell
 // belongs to the arc by its weight w: the share of the stated noise's distribution within the cell's depth, times
-// 1 - (angle from the axis / half aperture)^2. The rest is Bayes' rule for causes of which one suffices (a noisy OR; K.
+// 1 - (angle from the axis / half aperture)^2. The cell with the echo's point on the axis is weighed as if its middle
+// were that point. The rest is Bayes' rule for causes of which one suffices (a noisy OR; K.
 // Konolige, Improved occupancy grids for map building, 1997, argues for it): an echo without a cause in the arc has the
 // probability exp(-hit), and cell i gains
 //

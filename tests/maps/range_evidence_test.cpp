@@ -50,6 +50,18 @@ TEST(RangeEvidence, BeamMarksItsEndAndFreesTheCellsBefore) {
   EXPECT_EQ(grid.words, maps::to_occupancy(grid).words);
 }
 
+/// Between the middles of cells, an oblique beam may end without coming near to one.
+TEST(RangeEvidence, EchoMarksItsCellAtAnyBearing) {
+  for (const double half : {0.0, 0.02})
+    for (int k = 0; k < 2000; ++k) {
+      const double bearing = 0.0031416 * k, range = 0.1 + 0.0007 * k;
+      maps::LogOddsGrid grid = blank();
+      add(grid, {{.X_WC = {0.013, -0.008, 0.0, bearing}, .half = half, .range = range}});
+      const glm::dvec2 echo{0.013 + range * std::cos(bearing), -0.008 + range * std::sin(bearing)};
+      ASSERT_GT(odds_at(grid, echo), 0) << "half " << half << ", bearing " << bearing << ", range " << range;
+    }
+}
+
 TEST(RangeEvidence, ConeSharesItsEchoOverTheArc) {
   maps::LogOddsGrid narrow = blank(), wide = blank();
   add(narrow, {cone(0.12, 1.0)}), add(wide, {cone(0.3, 1.0)});
@@ -137,7 +149,9 @@ void add_plainly(maps::LogOddsGrid& grid, const RangeCone& c) {
     const glm::dvec2 p =
         maps::middle(kPlace, {static_cast<std::int64_t>(4 * (word % kPlace.word_columns) + within % 4),
                               static_cast<std::int64_t>(4 * (word / kPlace.word_columns) + within / 4)});
-    const glm::dvec2 q = base::transform(base::inverse(c.X_WC), p);
+    glm::dvec2 q = base::transform(base::inverse(c.X_WC), p);
+    const glm::dvec2 echo = base::transform(c.X_WC, glm::dvec2{c.range, 0.0});
+    if (c.has_echo && maps::middle(kPlace, maps::cell_at(kPlace, echo)) == p) q = {c.range, 0.0};
     const double r = std::hypot(q.x, q.y);
     if (r > c.range + cell + (c.has_echo ? 4.0 * sigma : 0.0)) continue;
     double weight = 1.0;
