@@ -147,7 +147,7 @@ TEST(RandomStarts, ASizeScalesTheModelsOwnOutline) {
   for (std::size_t i = 0; i < crate.body.size(); ++i) {
     const bool own = crate.body[i].model == crate.model;
     EXPECT_EQ(std::abs(crate.body[i].a.x), own ? size.x / 2.0 : std::abs(before.body[i].a.x)) << i;
-    if (!own) EXPECT_EQ(crate.body[i].z_max, before.body[i].z_max);
+    EXPECT_EQ(crate.body[i].z_max == before.body[i].z_max, !own) << i;
   }
   EXPECT_EQ(crate.radius, radius_of(crate));
 }
