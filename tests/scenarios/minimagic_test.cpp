@@ -67,8 +67,9 @@ void expect_all_located(const Trial& trial, const world::World& world) {
   EXPECT_EQ(found.size(), world.fiducials.size()) << "also the threats in the barracks";
 }
 
-/// Seeds 2 to 4 (of 1 to 10, seed 1 alone leaves a threat in the barracks unseen); in instrumented builds, the first
-/// half minute of one. One test, since each of several would run it.
+/// Seeds 2 to 4; in instrumented builds, the first half minute of one. One test, since each of several would run it.
+/// Exploration does not search for fiducials: where lasers have mapped a room through its door, beyond the 4 m in which
+/// finders read ids, it is not entered. 6 of seeds 1 to 46 leave a threat in the barracks unseen, seed 1 for 420 s too.
 TEST(MiniMagic, PioneersMapTheAreaAndLocateAllWithoutContact) {
   Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/minimagic.toml");
   if (instrumented()) scenario.duration = 30.0;
