@@ -18,6 +18,7 @@ class MonitorSensor final : public PoseSensor<estimation::LocalizationMonitor> {
   void read(double seconds, sensorfarm::DerivedReading out) override {
     const std::int64_t time = base::nanoseconds(seconds);
     begin(time);
+    flush();
     filter_.update(time);
     PoseSensor::read(seconds, out);
     const base::Twist& velocity = filter_.predict(time).estimate.velocity;

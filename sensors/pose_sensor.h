@@ -61,8 +61,9 @@ class PoseSensor : public sensorfarm::DerivedSensor {
     begin(time);
     const std::span<const double> v = reading.values;
     const sensorfarm::DerivedInput& from = inputs_[input];
-    if (from.port == kEncoders) filter_.add_encoder(time, v[0], v[1]);
+    if (from.port != kGyros || time > rolled_.time) flush();
     if (from.port == kGyros) filter_.add_gyro(time, v[0]);
+    if (from.port == kEncoders) rolled_ = {time, v[0], v[1]};
     if (from.port != kReceivers) return;
     // The antenna moves with the robot: its position uses the estimated heading.
     const double yaw = filter_.predict(time).estimate.X_WM.yaw;
@@ -75,6 +76,7 @@ class PoseSensor : public sensorfarm::DerivedSensor {
   void read(double seconds, sensorfarm::DerivedReading out) override {
     const std::int64_t time = base::nanoseconds(seconds);
     begin(time);
+    flush();
     const estimation::Prediction prediction = filter_.predict(time);
     out.valid[0] = prediction.status != estimation::Prediction::Status::none;
     if (out.valid[0] == 0) return;
@@ -93,10 +95,23 @@ class PoseSensor : public sensorfarm::DerivedSensor {
       filter_.add_pose(time, {start_.x, start_.y, start_.z, start_.yaw}, estimation::kKnownStart);
   }
 
+  /// Passes the encoder reading that waits to the filter.
+  void flush() {
+    if (rolled_.time >= 0) filter_.add_encoder(rolled_.time, rolled_.left, rolled_.right);
+    rolled_.time = -1;
+  }
+
   Filter filter_;
   std::vector<sensorfarm::DerivedInput> inputs_;
 
  private:
+  struct Rolled {
+    std::int64_t time = -1;  ///< [ns]; -1: none
+    double left = 0.0, right = 0.0;
+  };
+  /// The newest encoder reading waits for a gyro reading of the same time, which comes first in the filter's order:
+  /// else each would be applied again.
+  Rolled rolled_;
   sensorfarm::Pose start_;
   bool begun_ = false;
 };

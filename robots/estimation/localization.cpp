@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/elementary.h"
+#include "robots/estimation/landmark_pose.h"
 
 namespace sf::estimation {
 
@@ -17,9 +18,12 @@ constexpr double kGate = 1e-4;      // probability that a correct measurement is
 constexpr int kMostRejected = 5;    // in succession, of a robot that was not relocated
 constexpr int kStartHeadings = 36;  // of a start without a heading
 constexpr double kLeastShare = 1e-6;
+constexpr std::size_t kMostSightings = 4;  // of one time, until they start a pose
 // A window of one second with encoders and gyro at 250 Hz each, and poses.
 constexpr std::size_t kCapacity = 576, kFirstCapacity = 8;
 constexpr double kFastest = 10.0;  // [m/s] encoders that differ from the prediction by more were reset, or are wrong
+
+constexpr double kLeastChange = 32.0;  // of a turn rate, squared, in variances of the gyro's noise
 
 constexpr double kLagShare = 0.02;                         // of a fix in the mean innovation
 constexpr double kMostLag = 0.6;                           // of a mean innovation by chance: six standard deviations
@@ -102,6 +106,15 @@ void add_rounding(const LocalizationOptions::Encoder& encoder, glm::dvec2 fixed,
   at(kYaw, kYaw) = std::max(at(kYaw, kYaw), 2.0 * rounding / square(encoder.track));
 }
 
+/// Encoders measure the mean turn rate since their last reading, a gyro that of the moment. Where a command changed it
+/// in between, both differ by a share of the change that is unknown, and uniform if commands come at any time.
+WheeledMeasurement widened(const WheeledState& before, WheeledMeasurement m) {
+  const double change =
+      (m.values[0] - before.mean[kGyroBias]) / std::max(before.mean[kGyroScale], 0.5) - before.mean[kTurn];
+  if (square(change) > kLeastChange * m.covariance[0]) m.covariance[0] += square(change) / 3.0;
+  return m;
+}
+
 /// Returns whether encoders counted more since `before` [ns] than wheels can roll.
 bool was_reset(const WheeledState& predicted, const WheeledMeasurement& m, std::int64_t before) {
   const double seconds = 1e-9 * static_cast<double>(std::abs(m.time - before));
@@ -170,10 +183,13 @@ Verdict Localization::take(WheeledMeasurement measurement) {
 }
 
 /// A rejected measurement leaves the hypotheses unchanged.
-Verdict Localization::apply(const WheeledMeasurement& m, State& state) {
+Verdict Localization::apply(const WheeledMeasurement& reading, State& state) {
+  const bool turned = reading.kind == Kind::gyro && model_.steps && state.known();
+  const WheeledMeasurement m = turned ? widened(heaviest(state.hypotheses).state, reading) : reading;
   const bool encoder = m.kind == Kind::encoder;
   if (!state.known()) {
     if (encoder) state.counted_at = m.time, state.counted = {m.values[0], m.values[1]};
+    if (m.kind == Kind::sighting) return start_by_sightings(m, state);
     return is_fix(m.kind) ? start(m, state) : Verdict::no_track;
   }
   if (encoder && !state.rolled) start_encoders(m, state);
@@ -259,11 +275,24 @@ Verdict Localization::start(const WheeledMeasurement& m, State& state) const {
   return Verdict::started;
 }
 
+/// All sightings of one time so far have to agree. Those that start a pose do not correct it again.
+Verdict Localization::start_by_sightings(const WheeledMeasurement& m, State& state) const {
+  std::vector<WheeledMeasurement>& all = state.sightings;
+  if (!all.empty() && all.front().time != m.time) all.clear();
+  if (all.size() < kMostSightings) all.push_back(m);
+  std::optional<WheeledMeasurement> pose = pose_of(all);
+  if (!pose) return state.known() ? Verdict::outlier : Verdict::no_track;
+  if (state.known()) pose->z = state.hypotheses[0].state.z;
+  all.clear();
+  return start(*pose, state);
+}
+
 Verdict Localization::reject(const WheeledMeasurement& m, State& state) const {
-  if (!is_fix(m.kind)) return Verdict::outlier;
-  const std::int64_t patience = m.kind == Kind::pose ? kRelocated : kRelocatedPositions;
-  if (++state.rejected > kMostRejected && m.time - state.last_fix > patience) return start(m, state);
-  return Verdict::outlier;
+  const bool sighted = m.kind == Kind::sighting;
+  if (!is_fix(m.kind) && !sighted) return Verdict::outlier;
+  const std::int64_t patience = m.kind == Kind::position ? kRelocatedPositions : kRelocated;
+  if (++state.rejected <= kMostRejected || m.time - state.last_fix <= patience) return Verdict::outlier;
+  return sighted ? start_by_sightings(m, state) : start(m, state);
 }
 
 /// Weighs the predicted hypotheses by the likelihood of a measurement. Returns the least innovation: a measurement is

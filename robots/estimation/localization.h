@@ -11,7 +11,7 @@
 // Encoders and gyro carry the estimate where neither cameras nor satellites see the robot, with growing covariance.
 // Their constants (scales, track, bias) are estimated along with the pose. Poses and positions may be late and out of
 // order. A start without a heading, as from satellites alone, is estimated by several hypotheses until the robot's path
-// shows the heading.
+// shows the heading. Two landmarks that are seen at one time start a pose (landmark_pose.h).
 
 #include <cstdint>
 #include <optional>
@@ -72,8 +72,8 @@ class Localization {
   explicit Localization(const LocalizationOptions& options);
 
   // Each call adds one reading taken at `time` [ns], at most `kWindow` before the newest. Non-finite readings are
-  // ignored; outliers are counted and rejected. After kRelocated (poses) or kRelocatedPositions (positions) of nothing
-  // but rejected ones, the robot counts as relocated, and the next one restarts the pose.
+  // ignored; outliers are counted and rejected. After kRelocated (poses, sightings) or kRelocatedPositions (positions)
+  // of nothing but rejected ones, the robot counts as relocated, and the next one restarts the pose.
 
   /// @param left, right [m] rolled since the start
   Verdict add_encoder(std::int64_t time, double left, double right);
@@ -87,6 +87,7 @@ class Localization {
 
   /// @param landmark [m] its position in the world frame @param seen [m] the same in the robot's frame, as measured
   /// @param covariance xx, xy, yy [m^2] of `seen`, positive definite
+  /// @return no_track for sightings that do not determine a pose, alone or with the others of their time
   Verdict add_sighting(std::int64_t time, const glm::dvec2& landmark, const glm::dvec2& seen,
                        const std::array<double, 3>& covariance);
 
@@ -122,14 +123,15 @@ class Localization {
     bool lasts() const;
   };
   struct State {
-    std::int64_t last_fix = 0;         ///< [ns] time of the last used pose, position or sighting
-    glm::dvec2 fixed;                  ///< [m] position at that time
-    int rejected = 0;                  ///< poses and positions rejected since then
-    Lag ahead, turned;                 ///< of the fixes, in the directions of driving and turning
-    bool rolled = false;               ///< the encoders' distances are part of the hypotheses
-    std::int64_t counted_at = -1;      ///< [ns] of the last encoder reading before that; -1: none
-    std::array<double, 2> counted{};   ///< [m] its values
-    std::vector<Weighted> hypotheses;  ///< weights sum to 1; empty: no pose yet
+    std::int64_t last_fix = 0;                  ///< [ns] time of the last used pose, position or sighting
+    glm::dvec2 fixed;                           ///< [m] position at that time
+    int rejected = 0;                           ///< poses, positions and sightings rejected since then
+    Lag ahead, turned;                          ///< of the fixes, in the directions of driving and turning
+    bool rolled = false;                        ///< the encoders' distances are part of the hypotheses
+    std::int64_t counted_at = -1;               ///< [ns] of the last encoder reading before that; -1: none
+    std::array<double, 2> counted{};            ///< [m] its values
+    std::vector<WheeledMeasurement> sightings;  ///< of one time, which may start a pose
+    std::vector<Weighted> hypotheses;           ///< weights sum to 1; empty: no pose yet
 
     bool known() const { return !hypotheses.empty(); }
     std::int64_t time() const { return hypotheses[0].state.time; }
@@ -139,6 +141,7 @@ class Localization {
   Verdict take(WheeledMeasurement measurement);
   Verdict apply(const WheeledMeasurement& measurement, State& state);
   Verdict start(const WheeledMeasurement& measurement, State& state) const;
+  Verdict start_by_sightings(const WheeledMeasurement& measurement, State& state) const;
   Verdict reject(const WheeledMeasurement& measurement, State& state) const;
   void start_encoders(const WheeledMeasurement& measurement, State& state) const;
   Innovation weigh(const WheeledMeasurement& measurement);

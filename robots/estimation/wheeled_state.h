@@ -82,6 +82,7 @@ Innovation innovation(const WheeledState& predicted, const WheeledMeasurement& m
 WheeledState correct(const WheeledState& predicted, const WheeledMeasurement& measurement);
 
 /// Replaces the measured components and their covariance, and removes their correlation with all others.
+/// @pre a pose, a position or an encoder's reading
 void replace(WheeledState& state, const WheeledMeasurement& measurement);
 
 /// Sets the component's variance, and removes its correlation with all others.

@@ -168,6 +168,40 @@ TEST(Localization, LearnsTheScaleOfAGyro) {
   EXPECT_LT(localization.calibration().gyro_scale.sigma, 0.005);
 }
 
+/// Commands change the turn rate between two encoder readings, whose mean then differs from the gyro's reading.
+TEST(Localization, TurnsThatBeginBetweenReadingsKeepTheCovariance) {
+  constexpr double kDegree = M_PI / 180.0, kSpeed = 0.2, kTurnRate = 0.4;
+  constexpr std::int64_t kHalfTick = kTick / 2;
+  const LocalizationOptions options{.encoder = LocalizationOptions::Encoder{},
+                                    .gyro = {.noise = 0.1 * kDegree, .bias = 0.5 * kDegree, .scale = 0.01}};
+  double sum = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    DrivenRobot robot;
+    robot.random.seed(static_cast<std::uint64_t>(seed));
+    robot.gyro_bias = robot.normal(options.gyro.bias), robot.gyro_scale = 1.0 + robot.normal(options.gyro.scale);
+    Localization localization = started(options, {robot.normal(0.05), robot.normal(0.05), 0.0, robot.normal(0.02)});
+    int phase = 0, left = 1;  // half ticks until the next phase: straight, turn, straight, rest
+    base::Twist twist;
+    for (int k = 0; k < 2 * 1400; ++k) {
+      if (--left == 0) {
+        phase = (phase + 1) % 4;
+        twist = {phase == 3 ? 0.0 : kSpeed, 0.0, phase == 1 ? std::copysign(kTurnRate, robot.normal(1.0)) : 0.0};
+        left = phase == 1 ? 79 : phase == 3 ? 40 : 60 + static_cast<int>(40.0 * std::abs(robot.normal(1.0)));
+      }
+      robot.drive(twist, kHalfTick);
+      if (k % 2 == 0) continue;
+      robot.add_encoder(localization);
+      robot.add_gyro(localization);
+    }
+    const Estimate estimate = localization.predict(robot.time).estimate;
+    const double error = base::wrap_angle(estimate.X_WM.yaw - robot.X_WM.yaw);
+    sum += error * error / estimate.covariance[kYaw * (kComponents + 1)];
+  }
+  // Three standard deviations of the mean of chi-square variables; 2.5 if both rates are taken as one.
+  EXPECT_LT(sum / kSeeds, 1.0 + 3.0 * std::sqrt(2.0 / kSeeds));
+  EXPECT_GT(sum / kSeeds, 1.0 - (instrumented() ? 1.0 : 3.0) * std::sqrt(2.0 / kSeeds));
+}
+
 /// Three landmarks around, seen as points with an error along and across the ray.
 TEST(Localization, SightingsOfLandmarksMatchTheirCovariance) {
   constexpr std::array<glm::dvec2, 3> kLandmarks{{{3.0, 1.0}, {-1.0, 4.0}, {-2.0, -3.0}}};
