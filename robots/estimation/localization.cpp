@@ -200,7 +200,8 @@ Verdict Localization::apply(const WheeledMeasurement& reading, State& state) {
     state.hypotheses = predicted_;
     return Verdict::outlier;
   }
-  const Innovation surprise = weigh(m);
+  // Spikes of the gyro are not changes of the rate.
+  const Innovation surprise = weigh(reading);
   // Encoders are not gated, since commands change the speeds at once. `!(a <= b)` rejects NaN as well.
   static const GateLimits kLimits = gate_limits(kGate);
   if (!encoder && !(surprise.squared <= kLimits[surprise.degrees])) return reject(m, state);
