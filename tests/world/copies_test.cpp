@@ -190,9 +190,9 @@ TEST(RandomStarts, Refusals) {
   EXPECT_EQ(refused("model( size [1 1 1] random_size [1 0 0] )"),
             "random.world:1: 'random_size' is [1 0 0] m around a size of [1 1 1] m; expected less than it");
   EXPECT_NE(refused("model( size [1 1 1] random_size [-0.1 0 0] )"), "");
-  expect_in("a robot, whose controllers", refused("position( random_size [0.1 0.1 0] )"));
-  expect_in("a magnet", refused("model( magnetic_moment 1 random_size [0.1 0.1 0] )"));
-  expect_in("a mark for fiducial finders", refused("model( fiducial_return 1 random_size [0.1 0.1 0] )"));
+  expect_in("a robot, whose controllers", refused("position( random_size [0.05 0.05 0] )"));
+  expect_in("a magnet", refused("model( magnetic_moment 1 random_size [0.05 0.05 0] )"));
+  expect_in("a mark for fiducial finders", refused("model( fiducial_return 1 random_size [0.05 0.05 0] )"));
   EXPECT_EQ(refused("position( random_slip 0.95 )"),
             "random.world:1: 'random_slip' is 0.95; expected a number from 0 to 0.9");
   EXPECT_NE(refused("position( random_noise -0.1 )"), "");
