@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace sf::library {
 
@@ -58,6 +59,15 @@ bool ReadingTable::is_one_table(std::span<const base::ReadingBlock> readings) co
   return true;
 }
 
+/// Returns whether the view already shows these readings.
+bool ReadingTable::are_in_place(std::span<const base::ReadingBlock> readings) const {
+  return std::ranges::all_of(readings, [&](const base::ReadingBlock& reading) {
+    const std::size_t row = row_of(reading);
+    return reading.values.data() == view_.values + row * view_.stride &&
+           reading.hits.data() == view_.hits + row * view_.hit_stride;
+  });
+}
+
 void ReadingTable::point_at(std::span<const base::ReadingBlock> readings) {
   const bool several = readings.size() > 1;
   const std::size_t length = view_.elements * view_.columns;
@@ -96,7 +106,9 @@ void ReadingTable::copy_rows(const sensorfarm::Readings& from) {
 }
 
 void ReadingTable::hold() {
-  if (view_.values != nullptr && view_.values != values_.data()) copy_rows(sensorfarm::Readings(view_));
+  if (view_.values == nullptr || view_.values == values_.data()) return;
+  held_ = group_.type->is_scan;
+  if (!held_) copy_rows(sensorfarm::Readings(view_));
 }
 
 void ReadingTable::note(const base::ReadingBlock& reading) {
@@ -115,10 +127,11 @@ void ReadingTable::note(const base::ReadingBlock& reading) {
 void ReadingTable::take(std::span<const base::ReadingBlock> readings) {
   std::fill(fresh_.begin(), fresh_.end(), std::uint8_t{0});
   for (const base::ReadingBlock& reading : readings) note(reading);
-  if (is_one_table(readings))
-    point_at(readings);
-  else
-    copy(readings);
+  const bool held = std::exchange(held_, false);
+  if (is_one_table(readings)) return point_at(readings);
+  if (held && are_in_place(readings)) return;
+  if (held) copy_rows(sensorfarm::Readings(view_));
+  copy(readings);
 }
 
 void ReadingTable::go_on(const ReadingTable& before) {

@@ -21,7 +21,8 @@ class ReadingTable {
   /// Takes a tick's readings of this type, in order of delivery. Their memory must be valid until the next call.
   void take(std::span<const base::ReadingBlock> readings);
 
-  /// Keeps the rows that the next `take` does not have.
+  /// Keeps the rows that the next `take` does not have. Scans are copied only if that one has them elsewhere, since the
+  /// farm keeps a scan until its sensor's next one.
   void hold();
 
   /// Continues with the rows of a table of the same type that had fewer sensors.
@@ -32,6 +33,7 @@ class ReadingTable {
 
  private:
   std::size_t row_of(const base::ReadingBlock& reading) const;
+  bool are_in_place(std::span<const base::ReadingBlock> readings) const;
   bool is_one_table(std::span<const base::ReadingBlock> readings) const;
   void point_at(std::span<const base::ReadingBlock> readings);
   void copy(std::span<const base::ReadingBlock> readings);
@@ -39,7 +41,8 @@ class ReadingTable {
   void note(const base::ReadingBlock& reading);
 
   const sensors::SensorSet::Group& group_;
-  bool every_tick_;  ///< each sensor is read at every tick and at no other time
+  bool every_tick_;    ///< each sensor is read at every tick and at no other time
+  bool held_ = false;  ///< the view of the farm's scans stays for the rows that the next `take` does not have
   sensorfarm::Readings view_;
   std::vector<double> values_;
   std::vector<std::uint32_t> hits_;

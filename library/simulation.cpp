@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -100,7 +101,7 @@ struct Simulation::State {
   void remove(std::size_t row);
   void set_shape(std::size_t row, const ShapeChange& given);
   record::RunInfo run_info() const;
-  void take(const base::TickRecord& tick, bool is_restart = false);
+  void take(const base::TickRecord& tick, std::span<const std::uint32_t> restarted = {});
   library::ObservedStep observed(const Observations::State& by) const {
     return {table(by.options.sensor).view(), poses, velocities};
   }
@@ -288,7 +289,7 @@ void Simulation::State::restart(std::span<const std::uint32_t> worlds, std::span
     recorder->finish();
     recorder.reset();
   }
-  take(simulation->restart(restarts, resized), true);
+  take(simulation->restart(restarts, resized), worlds);
   observe(worlds);
 }
 
@@ -379,28 +380,36 @@ void Simulation::State::observe(std::span<const std::uint32_t> restarted) {
   }
 }
 
-void Simulation::State::take(const base::TickRecord& record, bool is_restart) {
+/// @param restarted the worlds that the record changes; empty: all
+void Simulation::State::take(const base::TickRecord& record, std::span<const std::uint32_t> restarted) {
+  const auto for_rows = [&](auto&& body) {
+    for (std::size_t i = 0; i < poses.size() && restarted.empty(); ++i) body(i);
+    for (const std::size_t k : restarted)
+      for (std::size_t i = k * robots.size(); i < (k + 1) * robots.size(); ++i) body(i);
+  };
   tick = record.tick, time = record.time;
-  for (std::size_t i = 0; i < record.reports.size(); ++i) {
+  for_rows([&](std::size_t i) {
     const base::Report& report = record.reports[i];
     poses[i] = {report.X_WM.x, report.X_WM.y, report.X_WM.z, report.X_WM.yaw};
     velocities[i] = {report.velocity.forward, report.velocity.left, report.velocity.turn};
     contacts[i] = record.contacts[i];
     present[i] = base::is_absent(report.X_WM) ? 0 : 1;
-  }
+  });
   for (library::ReadingTable& table : tables) {
+    const auto is_own = [&](const base::ReadingBlock& reading) { return reading.type == table.type(); };
+    const bool all = std::ranges::all_of(record.readings, is_own);
     of_type.clear();
-    for (const base::ReadingBlock& reading : record.readings)
-      if (reading.type == table.type()) of_type.push_back(reading);
-    table.take(of_type);
+    if (!all) std::ranges::copy_if(record.readings, std::back_inserter(of_type), is_own);
+    table.take(all ? record.readings : of_type);
   }
   if (recorder && ranks == nullptr && !record.shapes.empty()) recorder->add_movers(run_info());  // with new bodies
-  if (recorder && !is_restart) recorder->write(recorded ? recorded->part_of(record) : record);
+  if (recorder && restarted.empty()) recorder->write(recorded ? recorded->part_of(record) : record);
   simulation->settle();
-  for (std::uint32_t i = 0; i < done.size(); ++i) {
-    const control::Controller* controller = simulation->controller(i);
-    done[i] = owned[i] != 0 ? controller != nullptr && controller->done() : simulation->status(i).done;
-  }
+  for_rows([&](std::size_t i) {
+    const auto row = static_cast<std::uint32_t>(i);
+    const control::Controller* controller = simulation->controller(row);
+    done[i] = owned[i] != 0 ? controller != nullptr && controller->done() : simulation->status(row).done;
+  });
 }
 
 std::vector<base::Pose> Simulation::State::poses_of(std::size_t k) const {

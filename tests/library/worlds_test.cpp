@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "sensorfarm/simulation.h"
 #include "tests/refusal.h"
@@ -57,6 +58,36 @@ TEST(Worlds, AResetOfAllBeginsWithConsecutiveSeeds) {
   go(worlds, 4);
   EXPECT_EQ(worlds.hash(1), hash_alone(31, 4));
   EXPECT_DOUBLE_EQ(worlds.time(1), 0.4);
+}
+
+// The table of readings is the farm's own buffer: the rows of worlds that go on must survive in it, and be written
+// again by the next step.
+TEST(Worlds, ARestartKeepsTheReadingsOfOthers) {
+  Simulation worlds = room(3);
+  go(worlds, 5);
+  const auto scans = [&] {
+    std::vector<std::vector<double>> rows;
+    const Readings table = worlds.readings("laser");
+    for (std::size_t i = 0; i < table.sensors; ++i) rows.emplace_back(table.row(i).begin(), table.row(i).end());
+    return rows;
+  };
+  const auto before = scans();
+  const std::uint32_t one[] = {1};
+  const std::uint64_t seed[] = {9};
+  for (int again = 0; again < 2; ++again) worlds.reset(one, seed);
+  const auto after = scans(), start = [] {
+    Simulation alone = room(1, 9);
+    const Readings table = alone.readings("laser");
+    return std::vector<std::vector<double>>{{table.row(0).begin(), table.row(0).end()},
+                                            {table.row(1).begin(), table.row(1).end()}};
+  }();
+  EXPECT_EQ(after[0], before[0]);
+  EXPECT_EQ(after[2], start[0]);
+  EXPECT_EQ(after[3], start[1]);
+  EXPECT_EQ(after[5], before[5]);
+  EXPECT_NE(after[2], before[2]);
+  go(worlds, 1);
+  EXPECT_NE(scans()[5], before[5]);
 }
 
 TEST(Worlds, GivenStartsCountExceptNan) {
