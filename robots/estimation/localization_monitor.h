@@ -113,6 +113,8 @@ class LocalizationMonitor {
   template <class Add>
   void feed(MonitoredInput input, const Add& add);
   void note(MonitoredInput input, std::int64_t time, std::array<double, 2> values, bool fixed);
+  Localization& older_without(MonitoredInput input) { return copies_[static_cast<std::size_t>(input)][0]; }
+  void compare_with_gps(std::int64_t time, glm::dvec2 p, double hdop);
   void compare_turns();
   void compare_roughness(double rate, double turn, double variance);
   void compare_speed(std::int64_t time, double seconds, std::array<double, 2> rolled);

@@ -40,6 +40,9 @@ struct FeatureOptions {
   std::uint32_t least = 5;  ///< >= 3 echoes on a line
 };
 
+/// Returns the vector turned by a right angle to the left.
+inline glm::dvec2 left_of(glm::dvec2 v) { return {-v.y, v.x}; }
+
 /// Finds the features of scans with the same bearings. Keeps its memory between scans.
 class ScanFeatures {
  public:
