@@ -20,7 +20,7 @@ constexpr std::uint8_t kAlready = 101, kInvalidPose = 101, kSpawnFailed = 150, k
                        kUnsupportedElements = 106;
 
 // simulation_interfaces/msg/SimulationState
-constexpr std::uint8_t kStopped = 0, kPlaying = 1, kPaused = 2;
+constexpr std::uint8_t kStateStopped = 0, kStatePlaying = 1, kStatePaused = 2;
 
 // simulation_interfaces/srv/ResetSimulation: all; time and state; both, and spawned entities
 constexpr std::array<std::uint8_t, 4> kScopes = {0, 3, 7, 255};
@@ -89,7 +89,7 @@ struct RosServices::Handlers {
 
   static bool get_state(RosServices& of, Call call, CdrReader&, Requests&) {
     CdrWriter cdr = of.begin_answer(call);
-    cdr.put(of.stopped_ ? kStopped : of.state_.paused ? kPaused : kPlaying);
+    cdr.put(of.stopped_ ? kStateStopped : of.state_.paused ? kStatePaused : kStatePlaying);
     cdr.put(kOk);
     cdr.put("");
     return true;
@@ -374,12 +374,12 @@ struct RosServices::Handlers {
   static bool set_state(RosServices& of, Call call, CdrReader& request, Requests& requests) {
     const auto wanted = request.get<std::uint8_t>();
     if (!request.good()) return false;
-    if (wanted > kPaused)
+    if (wanted > kStatePaused)
       return of.add_result(call, kUnsupported, "expected stopped (0), playing (1) or paused (2)"), true;
-    const std::uint8_t present = of.stopped_ ? kStopped : of.state_.paused ? kPaused : kPlaying;
+    const std::uint8_t present = of.stopped_ ? kStateStopped : of.state_.paused ? kStatePaused : kStatePlaying;
     if (wanted == present) return of.add_result(call, kAlready), true;
-    if (wanted == kPaused && present == kStopped) return of.stopped_ = false, of.add_result(call, kOk), true;
-    if (wanted != kStopped) return pause(of, call, wanted == kPaused, requests);
+    if (wanted == kStatePaused && present == kStateStopped) return of.stopped_ = false, of.add_result(call, kOk), true;
+    if (wanted != kStateStopped) return pause(of, call, wanted == kStatePaused, requests);
     requests.paused = true;
     requests.reset = true;
     call.until = Until::reset;

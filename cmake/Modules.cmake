@@ -89,7 +89,7 @@ endif()
 # missing includes. OFF rebuilds less after a change.
 option(SENSORFARM_UNITY "Compile several sources at a time" ON)
 function(compile_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SENSORFARM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SENSORFARM_UNITY} UNITY_BUILD_BATCH_SIZE 16)
   # g++ mistakes types in a source's unnamed namespace for a header's in unity builds.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()

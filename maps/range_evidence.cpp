@@ -13,7 +13,7 @@ constexpr double kPrior = 0.3;         // probability that an unexplored cell of
 constexpr double kLeastWeight = 0.05;  // of a cell in an arc
 constexpr double kWidest = 1.4;        // [rad] half aperture up to which rows are clipped
 constexpr double kSigmas = 4.0;        // beyond the range
-constexpr double kFarthestCell = 1e9;  // [cells]
+constexpr double kFarthestApex = 1e9;  // [cells]
 
 std::uint32_t cell_index(const GridGeometry& geometry, std::int64_t column, std::int64_t row) {
   return static_cast<std::uint32_t>(16 * word_of(geometry, {column, row})) + place_of({column, row});
@@ -82,7 +82,7 @@ void RangeEvidence::add_cell(std::uint32_t cell, const Cone& cone, double along,
 /// The cell with the echo on the axis counts as if its middle were there: an oblique beam may miss the middles of all.
 void RangeEvidence::trace(const GridGeometry& geometry, const RangeCone& of) {
   const Cone cone(geometry, of);
-  if (!(std::abs(cone.apex.x) < kFarthestCell && std::abs(cone.apex.y) < kFarthestCell)) return;
+  if (!(std::abs(cone.apex.x) < kFarthestApex && std::abs(cone.apex.y) < kFarthestApex)) return;
   const glm::dvec2 echo = cone.apex + cone.range * cone.axis;
   const CellAt at{whole_below(echo.x), whole_below(echo.y)};
   glm::dvec2 low{-cone.reach, -cone.reach}, high{cone.reach, cone.reach};

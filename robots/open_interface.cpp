@@ -42,7 +42,7 @@ constexpr std::uint8_t id_in(std::uint8_t id, CreateOdometry odometry) {
   return id == kDistance ? kLeft : id == kAngle ? kRight : id;
 }
 
-std::int16_t whole_speed(double speed) { return static_cast<std::int16_t>(std::lround(speed)); }
+std::int16_t rounded_speed(double speed) { return static_cast<std::int16_t>(std::lround(speed)); }
 
 void put_speed(std::int16_t speed, base::Bytes& bytes) {
   const auto bits = static_cast<std::uint16_t>(speed);
@@ -58,7 +58,7 @@ CreateWheels create_wheels(const base::Twist& twist, double track) {
   const double fastest = std::max(std::abs(forward + turn), std::abs(forward - turn));
   if (!std::isfinite(fastest)) return {};
   const double scale = fastest > kCreateSpeed ? kCreateSpeed / fastest : 1.0;
-  return {whole_speed(scale * (forward + turn)), whole_speed(scale * (forward - turn))};
+  return {rounded_speed(scale * (forward + turn)), rounded_speed(scale * (forward - turn))};
 }
 
 base::Bytes create_start(CreateOdometry odometry) {

@@ -82,7 +82,7 @@ void through_the_sensor(Fixture& fixture, Checks& checks) {
   checks.near(read(fixture, marking_ahead({}, -0.025, 0.0), {}).distance, 0.075L, 1e-13, "on the paint");
 }
 
-void ranges(Fixture& fixture, Checks& checks) {
+void edge_ranges(Fixture& fixture, Checks& checks) {
   for (const double range : {1e-6, 1e-4, 1.0, 100.0, 1e4}) {
     world::World world;
     world.lane_markings.push_back({{{0.55 * range, -2.0 * range}, {0.55 * range, 2.0 * range}}, 0.1 * range});
@@ -151,7 +151,7 @@ constexpr Case kLaneEdgeCases[] = {
      "vertical, horizontal and tilted, 0 to 1e7 m away: four roundings of the paint's corners over cos^2", angles},
     {"edges", "through-the-sensor", "m", "an edge through the sensor: 0, within the touch of 1 nm", through_the_sensor},
     {"edges", "edge-ranges", "of range",
-     "range_max 1 um to 10 km: half of it, rounding of 64 bits; rejected by name beyond both ends", ranges},
+     "range_max 1 um to 10 km: half of it, rounding of 64 bits; rejected by name beyond both ends", edge_ranges},
     {"edges", "one-point", "m", "one point, or none, is not an edge; a single ray is its own reading", one_point},
     {"edges", "equal-points", "m", "points that coincide within 1e-7 are not an edge", equal_points},
     {"edges", "collinear-points", "m",

@@ -38,7 +38,7 @@ void few_and_many(Fixture& fixture, Checks& checks) {
   check_scans(fixture, checks, kCounts, 1);
 }
 
-void a_hundred_thousand(Fixture& fixture, Checks& checks) {
+void a_hundred_thousand_samples(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kCounts[] = {100'000};
   check_scans(fixture, checks, kCounts, 7);
 }
@@ -67,7 +67,7 @@ constexpr Case kScanCases[] = {
     {"fans", "samples-and-widths", "m", "1 to 1 001 samples in 0, 1e-6 to 360 degrees: every beam within rounding",
      few_and_many},
     {"fans", "a-hundred-thousand-samples", "m",
-     "100 000 samples in 0, 1e-6 to 360 degrees: every 7th beam within rounding", a_hundred_thousand},
+     "100 000 samples in 0, 1e-6 to 360 degrees: every 7th beam within rounding", a_hundred_thousand_samples},
     {"fans", "whole-turn", "m", "360 degrees: the first and the last beam coincide, within rounding", whole_turn},
     {"fans", "headings", "m",
      "headings to 1e6 rad, 0 of both signs and denormal, as rounded to double: within rounding", headings},

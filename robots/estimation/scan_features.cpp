@@ -11,8 +11,8 @@ namespace sf::estimation {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLeastSigma = 1e-3;  // [m] of echoes without noise: rounding in packets, parts of a beam
-constexpr double kGrazing = 0.17;     // [rad] surfaces at smaller angles to the beams fall apart (Borges, Aldon)
+constexpr double kLeastEchoSigma = 1e-3;  // [m] of echoes without noise: rounding in packets, parts of a beam
+constexpr double kGrazing = 0.17;         // [rad] surfaces at smaller angles to the beams fall apart (Borges, Aldon)
 constexpr double kGapSigmas = 3.0;
 constexpr double kBluntest = 2.6, kSharpest = 0.5;  // [rad] angles between the arms of a corner
 constexpr double kCornerGap = 0.2;                  // [m] from the end of an arm to the corner
@@ -47,9 +47,9 @@ void ScanFeatures::place_echoes(std::span<const double> ranges) {
     const double range = ranges[i];
     if (!(range > 0.0 && range < 1e6)) continue;
     const glm::dvec2 sight = base::rotate(X_MS_.yaw + bearings_[i], {1.0, 0.0});
-    const double along = square_of(base::hypot(noise_.constant, noise_.proportional * range, kLeastSigma));
+    const double along = square_of(base::hypot(noise_.constant, noise_.proportional * range, kLeastEchoSigma));
     echoes_.push_back({glm::dvec2{X_MS_.x, X_MS_.y} + range * sight, sight, along,
-                       square_of(noise_.angle * range) + square_of(kLeastSigma), step_ * range, i});
+                       square_of(noise_.angle * range) + square_of(kLeastEchoSigma), step_ * range, i});
   }
 }
 
@@ -178,8 +178,8 @@ Feature cone_echo(const base::Pose& X_MC, double range, double sigma, double fov
   Feature feature{.kind = FeatureKind::cluster,
                   .p = glm::dvec2{X_MC.x, X_MC.y} + (range - depth / 3.0) * axis,
                   .direction = kUnknown};
-  feature.covariance = oriented(axis, square_of(std::max(sigma, kLeastSigma)) + square_of(depth) * 4.0 / 45.0,
-                                square_of(width) / 3.0 + square_of(kLeastSigma));
+  feature.covariance = oriented(axis, square_of(std::max(sigma, kLeastEchoSigma)) + square_of(depth) * 4.0 / 45.0,
+                                square_of(width) / 3.0 + square_of(kLeastEchoSigma));
   return feature;
 }
 
@@ -190,10 +190,10 @@ Feature tag_at(const base::Pose& X_MS, double range, double bearing, double orie
                   .p = glm::dvec2{X_MS.x, X_MS.y} + range * sight,
                   .direction = base::wrap_angle(X_MS.yaw + orientation),
                   .id = id};
-  feature.covariance =
-      oriented(sight, square_of(std::max(noise[0], kLeastSigma)), square_of(noise[1] * range) + square_of(kLeastSigma));
+  feature.covariance = oriented(sight, square_of(std::max(noise[0], kLeastEchoSigma)),
+                                square_of(noise[1] * range) + square_of(kLeastEchoSigma));
   feature.covariance[2] = feature.covariance[4] = 0.0;
-  feature.covariance[5] = square_of(std::max(noise[2], kLeastSigma));
+  feature.covariance[5] = square_of(std::max(noise[2], kLeastEchoSigma));
   return feature;
 }
 

@@ -20,8 +20,8 @@ const std::vector<std::string> kCameras{"north", "south"};
 ImageViewOptions without_pause() { return {.address = {"127.0.0.1", 0}, .interval = 0.0}; }
 
 /// A client with subscriptions 101, 102, ... to channels: 0 and 1 are the cameras, 2 is /tags.
-struct Watcher : RawClient {
-  Watcher(const ImageView& view, std::initializer_list<int> channels) : RawClient(view.server().port()) {
+struct ImageWatcher : RawClient {
+  ImageWatcher(const ImageView& view, std::initializer_list<int> channels) : RawClient(view.server().port()) {
     upgrade(kWebSocketV1);
     int id = 101;
     for (const int channel : channels)
@@ -48,7 +48,7 @@ std::span<const std::uint8_t> message_of(const std::string& payload) {
 TEST(ImageView, SendsImagesAndTagsToTheirSubscribers) {
   ImageView view("lab", kCameras, without_pause());
   EXPECT_FALSE(view.wanted()) << "there are no clients";
-  Watcher both(view, {1, 2});
+  ImageWatcher both(view, {1, 2});
   EXPECT_NE(both.greeting.find("/south/image/compressed"), std::string::npos) << both.greeting;
   EXPECT_NE(both.greeting.find("sensor_msgs/msg/CompressedImage"), std::string::npos);
   EXPECT_EQ(wait_for_turn(view), std::vector<std::size_t>{1}) << "the other camera is not encoded";
@@ -75,7 +75,7 @@ TEST(ImageView, SendsImagesAndTagsToTheirSubscribers) {
 /// `stuck` reads nothing. Nothing waits for it: each image is published and read by `reader`.
 TEST(ImageView, AClientThatDoesNotReadLosesImages) {
   ImageView view("lab", kCameras, without_pause());
-  Watcher stuck(view, {0}), reader(view, {0});
+  ImageWatcher stuck(view, {0}), reader(view, {0});
   constexpr int kImages = 60;
   for (int k = 1; k <= kImages; ++k) {
     wait_for_turn(view);
@@ -96,7 +96,7 @@ TEST(ImageView, PausesBetweenUpdates) {
   ImageViewOptions options = without_pause();
   options.interval = 3600.0;
   ImageView view("lab", kCameras, options);
-  const Watcher watcher(view, {0, 1, 2});
+  const ImageWatcher watcher(view, {0, 1, 2});
   ASSERT_EQ(wait_for_turn(view), (std::vector<std::size_t>{0, 1}));
   view.publish(0, {}, {});
   EXPECT_FALSE(view.wanted());

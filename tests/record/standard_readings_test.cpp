@@ -15,16 +15,16 @@ namespace sf::record {
 namespace {
 
 using Message = StandardTopic::Message;
-constexpr std::int64_t kTime = 3'000'000'021;
+constexpr std::int64_t kMeasured = 3'000'000'021;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A message of the topic, after its header.
 struct Encoded {
   Encoded(const StandardTopic& topic, const std::vector<double>& values, const std::string& frame = "robot/x") {
-    encode_standard(topic, kTime, values, bytes);
+    encode_standard(topic, kMeasured, values, bytes);
     cdr = CdrReader(bytes);
     EXPECT_EQ(get_header(cdr, time), frame);
-    EXPECT_EQ(time, kTime);
+    EXPECT_EQ(time, kMeasured);
   }
   void skip(int numbers) {
     for (int i = 0; i < numbers; ++i) cdr.get<double>();

@@ -16,7 +16,7 @@ namespace sf::estimation {
 namespace {
 
 constexpr base::Pose kSeenFrom{0.5, -0.3, 0.0, 2.1};
-constexpr glm::dvec2 kFirst{3.0, 1.0}, kSecond{-1.0, 4.0}, kThird{-2.0, -3.0};
+constexpr glm::dvec2 kOne{3.0, 1.0}, kTwo{-1.0, 4.0}, kThree{-2.0, -3.0};
 constexpr double kSigma = 0.02;  // [m]
 
 /// A sighting from kSeenFrom, off by `error` in the robot's frame.
@@ -40,14 +40,14 @@ double distance(const Localization& of, std::int64_t time) {
 }
 
 TEST(LandmarkPose, ErrorsMatchTheStatedCovariance) {
-  constexpr int kRuns = 2000;
+  constexpr int kDraws = 2000;
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0.0, kSigma);
   for (const std::size_t count : {2, 3}) {
     double sum = 0.0;
-    for (int k = 0; k < kRuns; ++k) {
+    for (int k = 0; k < kDraws; ++k) {
       std::vector<WheeledMeasurement> seen;
-      for (const glm::dvec2& p : std::array{kFirst, kSecond, kThird})
+      for (const glm::dvec2& p : std::array{kOne, kTwo, kThree})
         if (seen.size() < count) seen.push_back(sighting(0, p, {normal(random), normal(random)}));
       const auto pose = pose_of(seen);
       ASSERT_TRUE(pose) << k;
@@ -59,26 +59,26 @@ TEST(LandmarkPose, ErrorsMatchTheStatedCovariance) {
       sum += glm::dot(error, glm::inverse(P) * error);
     }
     // Three standard deviations of a mean of chi-square variables with three degrees of freedom.
-    EXPECT_NEAR(sum / kRuns, 3.0, 3.0 * std::sqrt(6.0 / kRuns)) << count;
+    EXPECT_NEAR(sum / kDraws, 3.0, 3.0 * std::sqrt(6.0 / kDraws)) << count;
   }
 }
 
 TEST(LandmarkPose, RefusesWhatDoesNotDetermineAPose) {
   const auto refused = [](const std::vector<WheeledMeasurement>& seen) { return !pose_of(seen); };
   EXPECT_TRUE(refused({}));
-  EXPECT_TRUE(refused({sighting(0, kFirst)})) << "one landmark leaves a circle";
-  EXPECT_TRUE(refused({sighting(0, kFirst), sighting(0, kFirst)})) << "the same one twice, too";
-  EXPECT_TRUE(refused({sighting(0, kFirst), sighting(0, kFirst + glm::dvec2{0.1, 0.0})})) << "heading to 0.28 rad only";
-  EXPECT_FALSE(refused({sighting(0, kFirst), sighting(0, kFirst + glm::dvec2{0.4, 0.0})})) << "to 0.07 rad";
+  EXPECT_TRUE(refused({sighting(0, kOne)})) << "one landmark leaves a circle";
+  EXPECT_TRUE(refused({sighting(0, kOne), sighting(0, kOne)})) << "the same one twice, too";
+  EXPECT_TRUE(refused({sighting(0, kOne), sighting(0, kOne + glm::dvec2{0.1, 0.0})})) << "heading to 0.28 rad only";
+  EXPECT_FALSE(refused({sighting(0, kOne), sighting(0, kOne + glm::dvec2{0.4, 0.0})})) << "to 0.07 rad";
 }
 
 TEST(LandmarkPose, RefusesSightingsThatContradictEachOther) {
   const auto mistaken = [](double error) {
-    WheeledMeasurement second = sighting(0, kSecond);
-    const glm::dvec2 apart = kSecond - kFirst;
-    const glm::dvec2 wrong = kFirst + apart * (1.0 + error / glm::length(apart));
+    WheeledMeasurement second = sighting(0, kTwo);
+    const glm::dvec2 apart = kTwo - kOne;
+    const glm::dvec2 wrong = kOne + apart * (1.0 + error / glm::length(apart));
     second.landmark = {wrong.x, wrong.y};
-    return pose_of(std::array{sighting(0, kFirst), second});
+    return pose_of(std::array{sighting(0, kOne), second});
   };
   // The distance between both has a standard deviation of 0.028 m; the gate is at 3.9 of them.
   EXPECT_TRUE(mistaken(0.1));
@@ -88,21 +88,21 @@ TEST(LandmarkPose, RefusesSightingsThatContradictEachOther) {
 
 TEST(Localization, TwoLandmarksOfOneTimeStartAPose) {
   Localization localization({.encoder = LocalizationOptions::Encoder{}});
-  EXPECT_EQ(add(localization, sighting(0, kFirst)), Verdict::no_track);
-  EXPECT_EQ(add(localization, sighting(kTick, kSecond)), Verdict::no_track) << "the robot may have moved in between";
+  EXPECT_EQ(add(localization, sighting(0, kOne)), Verdict::no_track);
+  EXPECT_EQ(add(localization, sighting(kTick, kTwo)), Verdict::no_track) << "the robot may have moved in between";
   EXPECT_EQ(localization.predict(kTick).status, Prediction::Status::none);
-  EXPECT_EQ(add(localization, sighting(kTick, kThird)), Verdict::started);
+  EXPECT_EQ(add(localization, sighting(kTick, kThree)), Verdict::started);
   EXPECT_LT(distance(localization, kTick), 1e-9);
   const double variance = localization.predict(kTick).estimate.covariance[kYaw * (kComponents + 1)];
-  EXPECT_EQ(add(localization, sighting(kTick, kFirst)), Verdict::used) << "a third one corrects it";
+  EXPECT_EQ(add(localization, sighting(kTick, kOne)), Verdict::used) << "a third one corrects it";
   EXPECT_LT(localization.predict(kTick).estimate.covariance[kYaw * (kComponents + 1)], variance);
 }
 
 /// Both landmarks are taken for others at the same distance from each other, until each is recognised.
 TEST(Localization, LandmarksReplaceAWrongStart) {
   Localization localization({.encoder = LocalizationOptions::Encoder{}});
-  WheeledMeasurement first = sighting(0, kFirst), second = sighting(0, kSecond);
-  first.landmark = {10.0, 10.0}, second.landmark = {10.0, 10.0 + glm::length(kSecond - kFirst)};
+  WheeledMeasurement first = sighting(0, kOne), second = sighting(0, kTwo);
+  first.landmark = {10.0, 10.0}, second.landmark = {10.0, 10.0 + glm::length(kTwo - kOne)};
   add(localization, first);
   EXPECT_EQ(add(localization, second), Verdict::started);
   EXPECT_GT(distance(localization, 0), 5.0);
@@ -110,8 +110,8 @@ TEST(Localization, LandmarksReplaceAWrongStart) {
   for (int k = 1; k <= 20; ++k) {
     time = k * kTick;
     localization.add_encoder(time, 0.0, 0.0);
-    add(localization, sighting(time, kFirst));
-    if (add(localization, sighting(time, kSecond)) == Verdict::started) found = time;
+    add(localization, sighting(time, kOne));
+    if (add(localization, sighting(time, kTwo)) == Verdict::started) found = time;
   }
   EXPECT_GT(found, Localization::kRelocated);
   EXPECT_LT(distance(localization, time), 1e-3);

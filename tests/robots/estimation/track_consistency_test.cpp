@@ -18,7 +18,7 @@
 namespace sf::estimation::track_consistency {
 namespace {
 
-const int kRuns = instrumented() ? 20 : 300;
+const int kTrackRuns = instrumented() ? 20 : 300;
 constexpr std::uint8_t kAny = 0x80;  // other components at each time, drawn at random
 
 const MotionModel kDrive = differential_drive();
@@ -81,7 +81,7 @@ std::vector<Arrival> measure(const Case& c, reference::Truth truth, std::vector<
 Result simulate(const Case& c) {
   Result r{std::vector<double>(c.steps), {}};
   std::mt19937_64 random(20);
-  for (int run = 0; run < kRuns; ++run) {
+  for (int run = 0; run < kTrackRuns; ++run) {
     reference::Truth truth{{}, random, {}};
     const auto& [yaw, speed, turn] = c.model.unknown;
     const bool sideways = c.model.left > 0.0;
@@ -124,7 +124,8 @@ void expect_consistent(const Case& c) {
   Result r = simulate(c);
   EXPECT_EQ(r.used, 0);
   if (instrumented()) return;  // too few runs for the rest
-  const double low = chi_square_limit(kRuns * r.degrees, 0.995), high = chi_square_limit(kRuns * r.degrees, 0.005);
+  const double low = chi_square_limit(kTrackRuns * r.degrees, 0.995),
+               high = chi_square_limit(kTrackRuns * r.degrees, 0.005);
   const auto outside = std::count_if(r.sums.begin(), r.sums.end(), [&](double s) { return s < low || s > high; });
   EXPECT_LE(outside, c.steps * 3 / 20);
   EXPECT_NEAR(mean(r.errors) / r.degrees, 1.0, c.mean_off);
@@ -206,7 +207,7 @@ TEST(TrackConsistency, StaleStates) {
   for (const MotionModel& model : {kDrive, kBody, kOmni}) {
     std::vector<double> errors;
     int degrees = 0;
-    for (int run = 0; run < kRuns; ++run) {
+    for (int run = 0; run < kTrackRuns; ++run) {
       reference::Truth truth{{}, random, {}};
       truth.s[kYaw] = 2.0 * M_PI * static_cast<double>(random() >> 11) * 0x1p-53 - M_PI;
       truth.s[kForward] = truth.normal(0.25), truth.s[kTurn] = truth.normal(0.25);
@@ -221,7 +222,7 @@ TEST(TrackConsistency, StaleStates) {
         errors.push_back(reference::nees(seen.estimate, truth.s, degrees));
       }
     }
-    EXPECT_GE(errors.size(), 19u * static_cast<std::size_t>(kRuns));
+    EXPECT_GE(errors.size(), 19u * static_cast<std::size_t>(kTrackRuns));
     if (!instrumented()) {
       EXPECT_NEAR(mean(errors) / degrees, 1.0, 0.15);
     }
