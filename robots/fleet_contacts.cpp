@@ -196,29 +196,30 @@ Fleet::Progress Fleet::advance_in_pieces(std::uint32_t row, double steps, bool l
 Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, Progress progress, double steps, bool last,
                                         Scratch& scratch) const {
   const double dt = progress.left / steps;
+  double part = dt;  // [s] left of this step
   while (steps > 0.0 && !scratch.yields) {
     ++scratch.tested;
-    const Pose X_next = advance(progress.X_WM, progress.velocity, dt);
+    const Pose X_next = advance(progress.X_WM, progress.velocity, part);
     const Stop stop = stop_at(row, progress.X_WM, X_next, last, scratch);
     if (stop == Stop::none) {
       progress.X_WM = X_next;
-      steps -= 1.0;
+      steps -= 1.0, part = dt;
       continue;
     }
     if (stop == Stop::waiting) {
-      progress.left = steps * dt;
+      progress.left = steps * dt - (dt - part);
       return progress;
     }
     progress.refused = true;
     const bool in_place = progress.velocity.forward == 0.0 && progress.velocity.left == 0.0;
     if (in_place) {
-      if (turn_in_contact(row, progress, dt, last, scratch)) {
-        steps -= 1.0;
+      if (turn_in_contact(row, progress, part, last, scratch)) {
+        steps -= 1.0, part = dt;
         continue;
       }
     } else {
-      advance_to_contact(row, progress, dt, last, scratch);
-      // Retries the step as a turn in place.
+      part -= advance_to_contact(row, progress, part, last, scratch);
+      // The rest of the step is tried as a turn in place.
       if (progress.velocity.turn != 0.0 && world_.movers[row].drive != world::Drive::car) {
         progress.velocity = {0.0, 0.0, progress.velocity.turn};
         continue;

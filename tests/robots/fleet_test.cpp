@@ -114,6 +114,25 @@ TEST(Fleet, BlockedAheadStillTurnsWherePossible) {
   EXPECT_GT(r.contacts, 0);
 }
 
+/// Of a step that a wall ends, only the rest is a turn in place.
+TEST(Fleet, TurnsNoFartherThanCommandedInContact) {
+  for (const double at : {0.21, 0.2314, 0.25, 0.2999, 0.30}) {
+    world::World world = scenes::empty_world();
+    scenes::add_wall(world, {at, -1}, {at, 1});
+    scenes::add_create(world, {0, 0, 0, 0});
+    Fleet fleet(world);
+    const Twist command{0.5, 0, 0.5};
+    int contacts = 0;
+    for (int i = 0; i < 12; ++i) {
+      const double before = fleet.reports()[0].X_WM.yaw;
+      fleet.move({&command, 1}, kTick);
+      contacts += fleet.contacts()[0];
+      EXPECT_LE(fleet.reports()[0].X_WM.yaw - before, 0.5e-9 * kTick * (1.0 + 1e-12)) << at << ", tick " << i;
+    }
+    EXPECT_GT(contacts, 0) << at;
+  }
+}
+
 TEST(Fleet, SquareWedgedInASlotCannotTurn) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {-3, 0.21}, {3, 0.21});
