@@ -80,7 +80,7 @@ const std::vector<Heavy> kHeavy{{"CLI/", "apps", 8},
                                 {"muParser", "sensors"},
                                 {"yaml-cpp/", ""},
                                 {"toml++/", ""},
-                                {"Eigen/", "robots/estimation", 9},
+                                {"Eigen/", "robots/estimation", 10},
                                 {"unsupported/Eigen/", "robots/estimation"},
                                 {"embree", "bench"}};
 

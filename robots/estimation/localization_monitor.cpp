@@ -33,7 +33,7 @@ LocalizationOptions without_slips(LocalizationOptions options) {
 }  // namespace
 
 MonitorThresholds default_thresholds() {
-  return {.fast = {16.0, 11.0, 9.0, 16.0}, .slow = {44.0, 20.0, 20.0, 66.0}, .roughness = 14.0};
+  return {.fast = {13.0, 11.0, 8.0, 10.0}, .slow = {49.0, 18.0, 18.0, 32.0}, .roughness = 13.0};
 }
 
 LocalizationMonitor::LocalizationMonitor(const LocalizationOptions& options, const MonitorOptions& monitor,

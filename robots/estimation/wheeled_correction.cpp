@@ -6,21 +6,22 @@
 #include <type_traits>
 
 #include "base/elementary.h"
-#include "robots/estimation/wheeled_matrices.h"
+#include "robots/estimation/wheeled_state.h"
 
 namespace sf::estimation {
 
 namespace {
 
-using wheeled::covariance_of, wheeled::kSize, wheeled::Matrix, wheeled::store_symmetric, wheeled::Vector;
-
+using StateVector = Eigen::Matrix<double, kWheeledComponents, 1>;
+using StateRow = Eigen::Matrix<double, 1, kWheeledComponents>;
+using StateMatrix = Eigen::Matrix<double, kWheeledComponents, kWheeledComponents, Eigen::RowMajor>;
 // One row or column per measured value.
 template <int N>
 using Values = Eigen::Matrix<double, N, 1>;
 template <int N>
 using ValuesMatrix = Eigen::Matrix<double, N, N, Eigen::RowMajor>;
 template <int N>
-using Rows = Eigen::Matrix<double, N, kSize, Eigen::RowMajor>;
+using Rows = Eigen::Matrix<double, N, kWheeledComponents, Eigen::RowMajor>;
 
 /// First component and number of components, by kind of measurement.
 constexpr std::array<std::array<int, 2>, 5> kMeasured{{{kX, 3}, {kX, 2}, {kTurn, 1}, {kLeftRolled, 2}, {kX, 2}}};
@@ -99,8 +100,8 @@ auto with_residual(const WheeledState& state, const WheeledMeasurement& m, const
 /// H P.
 template <int N>
 Rows<N> measured_rows(const Residual<N>& residual, const WheeledState& state) {
-  const auto P = covariance_of(state);
-  return residual.times([&](int k) -> Eigen::Matrix<double, 1, kSize> { return P.row(k); });
+  const Eigen::Map<const StateMatrix> P(state.covariance.data());
+  return residual.times([&](int k) -> StateRow { return P.row(k); });
 }
 
 /// Covariance of the residual. @param HP H P
@@ -141,24 +142,24 @@ B solved(const ValuesMatrix<N>& L, B rows) {
 /// @param HP H P @param Kt K^T
 template <int N>
 void correct_covariance(const Residual<N>& residual, const Rows<N>& HP, const Rows<N>& Kt, WheeledState& state) {
-  Matrix P = covariance_of(state);
-  for (int a = 0; a < kSize; ++a) {
-    Eigen::Matrix<double, 1, kSize> gained = Kt(0, a) * HP.row(0);
+  StateMatrix P = Eigen::Map<const StateMatrix>(state.covariance.data());
+  for (int a = 0; a < kWheeledComponents; ++a) {
+    StateRow gained = Kt(0, a) * HP.row(0);
     for (int i = 1; i < N; ++i) gained += Kt(i, a) * HP.row(i);
     P.row(a) -= gained;
   }
-  const Rows<N> HPt = residual.times([&](int k) -> Eigen::Matrix<double, 1, kSize> { return P.col(k); });
+  const Rows<N> HPt = residual.times([&](int k) -> StateRow { return P.col(k); });
   Rows<N> RKt;
   for (int i = 0; i < N; ++i) {
     RKt.row(i) = residual.noise(i, 0) * Kt.row(0);
     for (int j = 1; j < N; ++j) RKt.row(i) += residual.noise(i, j) * Kt.row(j);
   }
-  for (int a = 0; a < kSize; ++a) {
-    Eigen::Matrix<double, 1, kSize> lost = HPt(0, a) * Kt.row(0), added = Kt(0, a) * RKt.row(0);
+  for (int a = 0; a < kWheeledComponents; ++a) {
+    StateRow lost = HPt(0, a) * Kt.row(0), added = Kt(0, a) * RKt.row(0);
     for (int i = 1; i < N; ++i) lost += HPt(i, a) * Kt.row(i), added += Kt(i, a) * RKt.row(i);
     P.row(a) = P.row(a) - lost + added;
   }
-  store_symmetric(P, state);
+  Eigen::Map<StateMatrix>(state.covariance.data()) = 0.5 * (P + P.transpose());
 }
 
 }  // namespace
@@ -191,7 +192,7 @@ WheeledState correct(const WheeledState& predicted, const WheeledMeasurement& me
   with_residual(predicted, measurement, [&]<int N>(const Residual<N>& residual) {
     const Rows<N> HP = measured_rows(residual, predicted);
     const Rows<N> Kt = solved(cholesky<N>(innovation_covariance(residual, HP)), HP);
-    Eigen::Map<Vector>(state.mean.data()) += Kt.transpose().lazyProduct(residual.difference);
+    Eigen::Map<StateVector>(state.mean.data()) += Kt.transpose().lazyProduct(residual.difference);
     correct_covariance(residual, HP, Kt, state);
   });
   state.mean[kYaw] = base::wrap_angle(state.mean[kYaw]);
@@ -206,7 +207,7 @@ void replace(WheeledState& state, const WheeledMeasurement& measurement) {
       state.mean[first + i] = measurement.values[i];
       set_variance(state, first + i, 0.0);
     }
-    Eigen::Map<Matrix>(state.covariance.data()).block<N, N>(first, first) = residual.noise;
+    Eigen::Map<StateMatrix>(state.covariance.data()).block<N, N>(first, first) = residual.noise;
   });
   if (measurement.kind == WheeledMeasurement::Kind::pose) state.z = measurement.z;
 }

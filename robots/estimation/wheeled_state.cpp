@@ -1,24 +1,29 @@
 #include "robots/estimation/wheeled_state.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "base/elementary.h"
 #include "robots/estimation/planar_motion.h"
-#include "robots/estimation/wheeled_matrices.h"
 
 namespace sf::estimation {
 
 namespace {
 
-using wheeled::covariance_of, wheeled::kSize, wheeled::Matrix, wheeled::store_symmetric, wheeled::Vector;
+constexpr int kSize = kWheeledComponents;
 
 constexpr int kMoved = kLeftScale;  // the components before are changed by motion, the others are constants
+using Vector = Eigen::Matrix<double, kSize, 1>;
+using Matrix = Eigen::Matrix<double, kSize, kSize, Eigen::RowMajor>;
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using MovedRows = Eigen::Matrix<double, kMoved, kSize, Eigen::RowMajor>;
 using MovedMatrix = Eigen::Matrix<double, kMoved, kMoved, Eigen::RowMajor>;
 
+Eigen::Map<const Matrix> covariance_of(const WheeledState& state) {
+  return Eigen::Map<const Matrix>(state.covariance.data());
+}
 Eigen::Map<const Vector> mean_of(const WheeledState& state) { return Eigen::Map<const Vector>(state.mean.data()); }
 
 Motion motion_of(const WheeledState& state) {
@@ -156,8 +161,9 @@ WheeledState merged(double weight_a, const WheeledState& a, double weight_b, con
   WheeledState state = a;
   Eigen::Map<Vector>(state.mean.data()) += share * d;
   state.mean[kYaw] = base::wrap_angle(state.mean[kYaw]);
-  store_symmetric(
-      (1.0 - share) * covariance_of(a) + share * covariance_of(b) + share * (1.0 - share) * d * d.transpose(), state);
+  const Matrix P =
+      (1.0 - share) * covariance_of(a) + share * covariance_of(b) + share * (1.0 - share) * d * d.transpose();
+  Eigen::Map<Matrix>(state.covariance.data()) = 0.5 * (P + P.transpose());
   return state;
 }
 

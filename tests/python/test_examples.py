@@ -51,14 +51,15 @@ class Corridor(unittest.TestCase):
 
 class Documentation(unittest.TestCase):
     def test_blocks_run(self):
-        """The blocks of docs/python.md, and the one of the package's own description."""
+        """The blocks of docs/python.md one after another, and the one of the package's own description."""
         with open("docs/python.md") as page:
             blocks = re.findall(r"```python\n(.*?)```", page.read(), re.S)
-        self.assertEqual(len(blocks), 4)
+        self.assertEqual(len(blocks), 5)
         blocks.append(textwrap.dedent(sensorfarm.__doc__.split("\n\n", 1)[1]))
+        names = {}
         for block in blocks:
             with contextlib.redirect_stdout(io.StringIO()):
-                exec(block, {})
+                exec(block, names)
 
 
 if __name__ == "__main__":
