@@ -7,6 +7,7 @@
 
 #include "base/elementary.h"
 #include "base/report.h"
+#include "robots/fleet_rules.h"
 #include "world/wall_tree.h"
 
 namespace sf::robots {
@@ -25,10 +26,7 @@ struct Surface {
 const std::array<glm::dvec2, kContactSectors + 1>& borders() {
   static const auto table = [] {
     std::array<glm::dvec2, kContactSectors + 1> directions;
-    for (std::uint32_t k = 0; k <= kContactSectors; ++k) {
-      const double bearing = 2.0 * M_PI * (k % kContactSectors) / kContactSectors;
-      directions[k] = base::direction(bearing);
-    }
+    for (std::uint32_t k = 0; k <= kContactSectors; ++k) directions[k] = contact_border(k);
     return directions;
   }();
   return table;

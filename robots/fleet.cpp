@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "base/error.h"
+#include "robots/fleet_rules.h"
 #include "robots/kinematics.h"
 
 namespace sf::robots {
@@ -28,19 +27,6 @@ std::vector<Segment> stopping(const world::World& world) {
   std::copy_if(world.walls.begin(), world.walls.end(), std::back_inserter(walls),
                [](const Segment& wall) { return wall.stops_robots; });
   return walls;
-}
-
-/// Returns the position of each row in the order of robots before tags, each in order of ids.
-std::vector<std::uint32_t> ranks_of(const world::World& world) {
-  std::vector<std::uint32_t> order(world.movers.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
-    const world::Mover &a = world.movers[p], &b = world.movers[q];
-    return std::tuple(a.is_tag, a.id, p) < std::tuple(b.is_tag, b.id, q);
-  });
-  std::vector<std::uint32_t> ranks(order.size());
-  for (std::uint32_t k = 0; k < order.size(); ++k) ranks[order[k]] = k;
-  return ranks;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "base/elementary.h"
 #include "robots/fleet.h"
+#include "robots/fleet_rules.h"
 #include "robots/kinematics.h"
 
 namespace sf::robots {
@@ -16,7 +17,6 @@ using base::Pose;
 using base::Twist;
 using world::Segment;
 
-constexpr double kGap = 4e-4;              // [m] largest gap between a stopped mover and the obstacle
 constexpr double kWhole = 0x1p40;          // fixed point: sums of integers do not depend on the order
 constexpr double kLongestTested = 1024.0;  // [steps] longer paths are tested in pieces
 constexpr double kPiece = 64.0;            // [steps] of a piece with obstacles near
@@ -26,13 +26,6 @@ glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
 
 // Returns whether the mover is no closer to a touched surface than before. Rounding at 100 km is 1.5e-11.
 bool no_nearer(double after, double before) { return after >= before - 1e-10; }
-
-// Returns how many halvings of `whole` leave at most `part`.
-int halvings_to(double part, double whole) {
-  int count = 0;
-  for (; whole > part; whole *= 0.5) ++count;
-  return count;
-}
 
 glm::dvec2 unit(glm::dvec2 v) {
   const double size = length(v);
@@ -239,7 +232,7 @@ double Fleet::advance_to_contact(std::uint32_t row, Progress& progress, double d
   const auto refused = [&](double part) {
     return stop_at(row, X_start, advance(X_start, progress.velocity, part * dt), last, scratch) != Stop::none;
   };
-  const int halvings = halvings_to(kGap, footprints_[row].step);
+  const int halvings = halvings_to_gap(footprints_[row].step);
   double free = std::ldexp(1.0, -halvings), blocked = 1.0;
   if (refused(free)) return 0.0;
   for (int k = 0; k < halvings; ++k) {

@@ -25,6 +25,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"gpu", {"base", "shaders"}},
     {"world", {"base"}},
     {"robots", {"world", "base"}},
+    {"robots/device", {"robots", "world", "gpu", "base", "shaders"}},
     {"robots/estimation", {"robots", "world", "base"}},
     {"maps", {"base"}},
     {"raycast", {"world", "gpu", "base", "shaders"}},
@@ -32,7 +33,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"sensorfarm", {}},
     {"python", {"sensorfarm"}},
     {"control", {"sensorfarm", "sensors", "maps", "robots/estimation", "robots", "world", "base"}},
-    {"shaders", {"raycast", "sensors", "maps", "base"}},
+    {"shaders", {"raycast", "robots/device", "sensors", "maps", "base"}},
     {"farm", {"sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"record", {"maps", "base"}},
     {"netio", {"base"}},
@@ -246,7 +247,7 @@ TEST(Layering, HeavyLibrariesAreInFewSources) {
 
 TEST(Layering, KernelsReadSharedHeadersOnly) {
   // A header that both compilers read says so with a guard, since GLSL has no `#pragma once`, and includes nothing.
-  static const std::regex kOurs("#\\s*include\\s*\"(shaders/)?((raycast|sensors|maps|base)/[^\"]+)\\.(h|glsl)\"");
+  static const std::regex kOurs("#\\s*include\\s*\"(shaders/)?((raycast|robots/device|sensors|maps|base)/[^\"]+)\\.(h|glsl)\"");
   for (const Source& source : read_sources()) {
     if (module_of(source.path) != "shaders") continue;
     for (std::sregex_iterator m(source.text.begin(), source.text.end(), kOurs), end; m != end; ++m) {

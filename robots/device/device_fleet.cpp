@@ -1,0 +1,240 @@
+#include "robots/device/device_fleet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/elementary.h"
+#include "base/error.h"
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
+#include "gpu/group_counts.h"
+#include "gpu/kernel.h"
+#include "robots/device/fleet_tables.h"
+#include "robots/fleet.h"
+#include "shaders/fleet_advance.comp.h"
+#include "shaders/fleet_commit.comp.h"
+#include "shaders/fleet_contacts.comp.h"
+#include "shaders/fleet_start.comp.h"
+#include "world/copies.h"
+
+namespace sf::robots {
+
+namespace {
+
+using gpu::Buffer;
+using gpu::Kernel;
+using gpu::Role;
+using gpu::Texel;
+
+constexpr double kMostSteps = 1'000.0;  // [substeps] robots::Fleet tests longer paths in pieces
+constexpr double kMostTurn = 1e5;       // [rad] shaders/lib/elementary64.glsl
+
+static_assert(Fleet::kRounds == SF_FLEET_ROUNDS);
+static_assert(SF_FLEET_DONE == 2 * SF_FLEET_ROUNDS + 2);
+
+/// Constants of the kernels. Mesa before 25.0 ends loops of software devices after 65 535 turns of all lanes of a
+/// subgroup, of at most 16 lanes.
+std::vector<std::uint32_t> constants_for(const gpu::Device& device) {
+  if (!device.info().software) return {1, 0};
+  return {16, 65'000};
+}
+
+/// @param texel_words 1 or 4
+template <class Record>
+Buffer table_of(gpu::Device& device, std::string_view name, Role role, const std::vector<Record>& records) {
+  Buffer table(device, name, role, sizeof(Record) == 4 ? Texel::u32 : Texel::u32x4,
+               records.size() * std::max<std::size_t>(sizeof(Record) / 16, 1));
+  std::ranges::copy(records, table.host<Record>().begin());
+  return table;
+}
+
+FleetPose pose_record(const base::Pose& X_WM) {
+  const auto [s, c] = base::sin_cos(X_WM.yaw);
+  return {X_WM.x, X_WM.y, X_WM.z, X_WM.yaw, s, c};
+}
+
+std::vector<FleetPose> load_poses(const world::World& world) {
+  std::vector<FleetPose> poses;
+  for (const world::Mover& mover : world.movers) poses.push_back(pose_record(mover.X_WM));
+  if (poses.empty()) poses.emplace_back();
+  return poses;
+}
+
+/// Returns the largest speed [m/s] of a mover's origin, with a margin for rounding.
+double fastest(const world::Mover& mover) { return 1.001 * mover.max_forward; }
+
+}  // namespace
+
+std::string DeviceFleet::refusal(const world::World& world, std::int64_t dt) {
+  if (!world.ramps.empty()) return "the world has roads above the floor, which kernels do not follow";
+  const std::size_t movers = world.movers.size() / std::max(world.copies, 1u);
+  if (movers > kMostMovers)
+    return fmt::format("the world has {} robots and tags; kernels move at most {} in one world", movers, kMostMovers);
+  const double seconds = 1e-9 * static_cast<double>(dt);
+  for (const world::Mover& mover : world.movers) {
+    const Footprint outline = footprint_of(mover);
+    const double turn = 1.001 * mover.max_turn * seconds;
+    if (!(std::abs(mover.X_WM.yaw) + turn < kMostTurn))
+      return fmt::format("'{}' may turn by {:.3g} rad per tick; kernels turn by less than {:.0e}", mover.name, turn,
+                         kMostTurn);
+    const double steps = (fastest(mover) * seconds + outline.radius * turn) / outline.step;
+    if (!(steps < kMostSteps))
+      return fmt::format("'{}' may move {:.0f} substeps of {:.3g} m per tick; kernels move less than {}", mover.name,
+                         steps, outline.step, kMostSteps);
+  }
+  return "";
+}
+
+struct DeviceFleet::Tables {
+  Tables(const world::World& world, gpu::Device& device)
+      : Tables(world, fleet_tables(world), std::max<std::size_t>(world.movers.size(), 1), device) {}
+  Tables(const world::World& world, const FleetTables& fixed, std::size_t rows, gpu::Device& device);
+
+  void record();
+  void bind(Kernel& kernel, std::span<const std::uint32_t> spirv);
+
+  Buffer tick, commands, drives, bodies, footprints, edges, walls, nodes, borders, absent;
+  Buffer poses, proposed_poses, motions, proposed_motions, shared_states, own_states, struck, counts;
+  Kernel start, advance, commit, contacts;
+  gpu::Batch batch, reading;
+};
+
+DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed, std::size_t rows, gpu::Device& device)
+    : tick(table_of(device, "tick", Role::upload, std::vector<FleetTick>(1))),
+      commands(table_of(device, "commands", Role::upload, std::vector<FleetCommand>(rows))),
+      drives(table_of(device, "drives", Role::upload, fixed.drives)),
+      bodies(table_of(device, "bodies", Role::upload, fixed.bodies)),
+      footprints(table_of(device, "footprints", Role::upload, fixed.footprints)),
+      edges(table_of(device, "edges", Role::upload, fixed.edges)),
+      walls(table_of(device, "walls", Role::upload, fixed.walls)),
+      nodes(table_of(device, "tree of walls", Role::upload, fixed.nodes)),
+      borders(table_of(device, "borders of contact sectors", Role::upload, fixed.borders)),
+      absent(table_of(device, "absent movers", Role::upload, std::vector<std::uint32_t>(rows))),
+      poses(table_of(device, "poses", Role::download, load_poses(world))),
+      proposed_poses(table_of(device, "proposed poses", Role::download, load_poses(world))),
+      motions(table_of(device, "motions", Role::download, std::vector<FleetMotion>(rows))),
+      proposed_motions(table_of(device, "proposed motions", Role::download, std::vector<FleetMotion>(rows))),
+      shared_states(table_of(device, "shared states", Role::download, std::vector<FleetShared>(rows))),
+      own_states(table_of(device, "own states", Role::download, std::vector<FleetOwn>(rows, {SF_FLEET_DONE, 0, 0, 0}))),
+      struck(table_of(device, "struck movers", Role::download, std::vector<std::uint32_t>(rows))),
+      counts(table_of(device, "group counts", Role::upload, std::vector<std::uint32_t>(4))),
+      start(device, "fleet start", fleet_start_comp_spv, constants_for(device)),
+      advance(device, "fleet advance", fleet_advance_comp_spv, constants_for(device)),
+      commit(device, "fleet commit", fleet_commit_comp_spv, constants_for(device)),
+      contacts(device, "fleet contacts", fleet_contacts_comp_spv, constants_for(device)),
+      batch(device),
+      reading(device) {
+  const auto movers = static_cast<std::uint32_t>(world.movers.size());
+  tick.host<FleetTick>()[0] = {
+      .movers = movers, .copy_movers = std::max(movers / std::max(world.copies, 1u), 1u), .nodes = fixed.node_count};
+  write_counts(gpu::groups_for(movers * std::size_t{constants_for(device)[0]}, start.group_size()), counts);
+  bind(start, fleet_start_comp_spv), bind(advance, fleet_advance_comp_spv);
+  bind(commit, fleet_commit_comp_spv), bind(contacts, fleet_contacts_comp_spv);
+  record();
+  for (const Buffer* table : {&commands, &drives, &bodies, &footprints, &edges, &walls, &nodes, &borders, &absent,
+                              &poses, &motions, &own_states, &struck, &counts})
+    batch.upload(*table, 0, table->bytes());
+}
+
+/// Binds the tables that the kernel uses.
+void DeviceFleet::Tables::bind(Kernel& kernel, std::span<const std::uint32_t> spirv) {
+  const std::vector<gpu::TableBinding> all{{"tick", &tick},
+                                           {"commands", &commands},
+                                           {"drives", &drives},
+                                           {"bodies", &bodies},
+                                           {"footprints", &footprints},
+                                           {"edges", &edges},
+                                           {"walls", &walls},
+                                           {"nodes", &nodes},
+                                           {"borders", &borders},
+                                           {"absent", &absent},
+                                           {"poses", &poses},
+                                           {"proposed_poses", &proposed_poses},
+                                           {"motions", &motions},
+                                           {"proposed_motions", &proposed_motions},
+                                           {"shared_states", &shared_states},
+                                           {"own_states", &own_states},
+                                           {"struck", &struck}};
+  std::vector<gpu::TableBinding> used;
+  for (const gpu::KernelTable& declared : gpu::interface_of(spirv).tables)
+    used.push_back(*std::ranges::find(all, declared.name, &gpu::TableBinding::name));
+  kernel.bind(used);
+}
+
+void DeviceFleet::Tables::record() {
+  batch.begin();
+  const auto dispatch = [&](const Kernel& kernel) {
+    batch.dispatch(kernel, counts, 0);
+    batch.barrier();
+  };
+  dispatch(start);
+  for (std::uint32_t round = 0; round < SF_FLEET_ROUNDS; ++round) {
+    dispatch(advance);
+    dispatch(advance);
+    dispatch(commit);
+  }
+  dispatch(contacts);
+  dispatch(contacts);
+  batch.end();
+  reading.begin();
+  reading.end();
+}
+
+DeviceFleet::DeviceFleet(const world::World& world, gpu::Device& device)
+    : reports_(states_at_load(world)), contacts_(reports_.size()) {
+  SF_CHECK(!device.is_host(), "a DeviceFleet on the host");
+  tables_ = std::make_unique<Tables>(world, device);
+}
+
+DeviceFleet::~DeviceFleet() = default;
+
+void DeviceFleet::set_commands(std::span<const base::Twist> commands) {
+  SF_CHECK(commands.size() == reports_.size(), std::to_string(commands.size()) + " commands");
+  Buffer& table = tables_->commands;
+  std::ranges::transform(commands, table.host<FleetCommand>().begin(), [](const base::Twist& v) {
+    return FleetCommand{v.forward, v.left, v.turn, 0.0};
+  });
+  tables_->batch.upload(table, 0, table.bytes());
+}
+
+void DeviceFleet::set_absent(std::uint32_t row, bool gone) {
+  Buffer& table = tables_->absent;
+  table.host<std::uint32_t>()[row] = gone ? 1 : 0;
+  tables_->batch.upload(table, row * sizeof(std::uint32_t), sizeof(std::uint32_t));
+}
+
+void DeviceFleet::move(std::int64_t dt) {
+  SF_CHECK(dt > 0, "dt " + std::to_string(dt));
+  tables_->tick.host<FleetTick>()[0].seconds = 1e-9 * static_cast<double>(dt);
+  tables_->batch.upload(tables_->tick, 0, tables_->tick.bytes());
+  tables_->batch.run();
+  for (base::Report& report : reports_) report.time += dt;
+}
+
+std::span<const base::Report> DeviceFleet::reports() {
+  Tables& t = *tables_;
+  for (const Buffer* table : {&t.poses, &t.motions, &t.own_states}) t.reading.download(*table, 0, table->bytes());
+  t.reading.run();
+  const auto poses = t.poses.host<FleetPose>();
+  const auto motions = t.motions.host<FleetMotion>();
+  const auto own = t.own_states.host<FleetOwn>();
+  for (std::size_t row = 0; row < reports_.size(); ++row) {
+    if (own[row].phase == SF_FLEET_FAILED)
+      throw base::DeviceError(
+          fmt::format("mover {} met more obstacles in a tick than this device can test; move this "
+                      "world on the host",
+                      row));
+    const FleetPose& p = poses[row];
+    const FleetMotion& m = motions[row];
+    reports_[row].X_WM = {p.x, p.y, p.z, p.yaw};
+    reports_[row].velocity = {m.forward, m.left, m.turn};
+    reports_[row].contact_mask = own[row].mask;
+    contacts_[row] = own[row].contact != 0 ? 1 : 0;
+  }
+  return reports_;
+}
+
+}  // namespace sf::robots

@@ -1,0 +1,93 @@
+// robots::Fleet in kernels: kinematics and neighbours. Needs the tables of a fleet.
+
+#include "shaders/lib/outlines.glsl"
+#include "shaders/lib/fleet_walls.glsl"
+
+dvec3 velocity_of(FleetMotion m) { return dvec3(m.forward, m.left, m.turn); }
+bool moves(dvec3 v) { return v.x != 0.0LF || v.y != 0.0LF || v.z != 0.0LF; }
+
+FleetPose advance(FleetPose X_WM, dvec3 v, double dt) {
+  precise double half_turn = 0.5LF * v.z * dt;
+  precise double chord = sinc64(half_turn) * dt;
+  precise double heading = X_WM.yaw + half_turn;
+  precise dvec2 along = dvec2(chord * v.x, chord * v.y);
+  const dvec2 middle = sin_cos64(heading);
+  const dvec2 d = turned(along, middle.x, middle.y);
+  precise double x = X_WM.x + d.x;
+  precise double y = X_WM.y + d.y;
+  precise double yaw = X_WM.yaw + v.z * dt;
+  const double wrapped = wrap_angle64(yaw);
+  const dvec2 end = sin_cos64(wrapped);
+  return FleetPose(x, y, X_WM.z, wrapped, end.x, end.y);
+}
+
+FleetFootprint footprint_at(int row) { return load_FleetFootprint(footprints, int(load_FleetBody(bodies, row).footprint)); }
+
+/// The rows of the mover's copy of the world: the first, and their number.
+ivec2 rows_with(int row) {
+  const int count = int(load_FleetTick(tick, 0).copy_movers);
+  return ivec2(row / count * count, count);
+}
+
+/// [m] Largest travel of any point of the mover in the rest of the tick.
+double sweep_of(FleetMotion m, double radius) {
+  const double speed = length64(dvec2(m.forward, m.left));
+  precise double sweep = (speed + abs(m.turn) * radius) * m.remaining;
+  return sweep;
+}
+
+/// [m] The same plus the largest push-off.
+double reach_of(FleetMotion m, double radius, double travel) {
+  precise double reach = travel + abs(m.turn) * radius * m.remaining;
+  return reach;
+}
+
+bool comes_near(FleetFootprint outline, FleetPose from, double sweep, FleetFootprint other, FleetPose X_WO) {
+  const dvec2 d = minus(origin_of(X_WO), origin_of(from));
+  precise double apart = outline.radius + sweep + other.radius;
+  precise double square = apart * apart;
+  return outline.count > 0u && other.count > 0u && dot64(d, d) <= square;
+}
+
+bool has_moved(int row) {
+  const FleetPose from = load_FleetPose(poses, row), to = load_FleetPose(proposed_poses, row);
+  return from.x != to.x || from.y != to.y || from.yaw != to.yaw;
+}
+
+/// The movers near a mover's path. A longer list is replaced by all rows that `is_near`.
+#define SF_NEAR 32
+struct Path {
+  FleetFootprint outline;
+  FleetPose from;
+  double reach;
+  int first, rows;  // of the copy
+};
+int near_rows[SF_NEAR];
+int near_count;
+
+bool is_near(Path path, int other) {
+  if (other == own_row || imageLoad(absent, other).x != 0u) return false;
+  precise double sweep = path.reach + load_FleetShared(shared_states, other).travel;
+  return comes_near(path.outline, path.from, sweep, footprint_at(other), load_FleetPose(poses, other));
+}
+
+Path find_near(FleetMotion motion) {
+  const FleetFootprint outline = footprint_at(own_row);
+  const double reach = reach_of(motion, outline.radius, load_FleetShared(shared_states, own_row).travel);
+  const ivec2 rows = rows_with(own_row);
+  const Path path = Path(outline, load_FleetPose(poses, own_row), reach, rows.x, rows.y);
+  near_count = 0;
+  for (int i = 0; may_turn(1u) && i < rows.y; ++i) {
+    const bool near = is_near(path, rows.x + i);
+    if (near && near_count < SF_NEAR) near_rows[near_count] = rows.x + i;
+    near_count += near ? 1 : 0;
+  }
+  return path;
+}
+
+int near_size(Path path) { return near_count <= SF_NEAR ? near_count : path.rows; }
+/// Returns a row, or -1.
+int near_at(Path path, int i) {
+  if (near_count <= SF_NEAR) return near_rows[i];
+  return is_near(path, path.first + i) ? path.first + i : -1;
+}

@@ -1,0 +1,47 @@
+// No kernel that moves a fleet lets the device fuse a product with a sum, which would change the last bit.
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <span>
+
+#include "shaders/fleet_advance.comp.h"
+#include "shaders/fleet_commit.comp.h"
+#include "shaders/fleet_contacts.comp.h"
+#include "shaders/fleet_start.comp.h"
+
+namespace sf {
+namespace {
+
+/// Number of sums, differences and products in a module, and of those that the device may fuse.
+struct Arithmetic {
+  std::size_t all = 0;
+  std::size_t fusible = 0;
+};
+
+Arithmetic arithmetic_of(std::span<const std::uint32_t> spirv) {
+  constexpr std::uint32_t kDecorate = 71, kNoContraction = 42;
+  const std::set<std::uint32_t> kOperations{129, 131, 133, 142, 148};  // FAdd, FSub, FMul, VectorTimesScalar, Dot
+  Arithmetic count;
+  std::set<std::uint32_t> exact;
+  for (std::size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
+    const std::uint32_t opcode = spirv[at] & 0xFFFFu;
+    if (opcode == kDecorate && spirv[at + 2] == kNoContraction) exact.insert(spirv[at + 1]);
+    if (kOperations.count(opcode) == 0) continue;
+    ++count.all;
+    if (exact.count(spirv[at + 2]) == 0) ++count.fusible;
+  }
+  return count;
+}
+
+TEST(Contraction, KernelsOfAFleetFuseNothing) {
+  const Arithmetic start = arithmetic_of(fleet_start_comp_spv), advance = arithmetic_of(fleet_advance_comp_spv),
+                   commit = arithmetic_of(fleet_commit_comp_spv), contacts = arithmetic_of(fleet_contacts_comp_spv);
+  EXPECT_GT(start.all, 30u);
+  EXPECT_GT(advance.all, 150u);
+  EXPECT_GT(contacts.all, 80u);
+  for (const Arithmetic& kernel : {start, advance, commit, contacts}) EXPECT_EQ(kernel.fusible, 0u);
+}
+
+}  // namespace
+}  // namespace sf
