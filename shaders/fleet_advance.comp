@@ -11,8 +11,10 @@ bool takes_part(Path path, uint round) {
   const FleetShared own = load_FleetShared(shared_states, own_row);
   if (round == 0u || round + 1u == SF_FLEET_ROUNDS) return own.waiting != 0u;
   bool stirs = own.changed != 0u;
-  for (int i = 0; may_turn(1u) && i < near_size(path) && !stirs && own.waiting != 0u; ++i) {
-    const int other = near_at(path, i);
+  NearWalk walk = near_movers(path);
+  int other = 0;
+  while (may_turn(4u) && other >= 0 && !stirs && own.waiting != 0u) {
+    other = next_near(path, walk);
     stirs = other >= 0 && load_FleetShared(shared_states, other).changed != 0u;
   }
   return own.waiting != 0u && stirs;
@@ -20,8 +22,10 @@ bool takes_part(Path path, uint round) {
 
 bool is_exposed(Path path) {
   bool exposed = false;
-  for (int i = 0; may_turn(1u) && i < near_size(path) && !exposed; ++i) {
-    const int other = near_at(path, i);
+  NearWalk walk = near_movers(path);
+  int other = 0;
+  while (may_turn(4u) && other >= 0 && !exposed) {
+    other = next_near(path, walk);
     exposed = other >= 0 && load_FleetShared(shared_states, other).waiting != 0u;
   }
   return exposed;
@@ -29,7 +33,12 @@ bool is_exposed(Path path) {
 
 bool has_rival(Path path) {
   bool found = false;
-  for (int i = 0; may_turn(1u) && i < near_size(path) && !found; ++i) found = is_rival(path, near_at(path, i));
+  NearWalk walk = near_movers(path);
+  int other = 0;
+  while (may_turn(4u) && other >= 0 && !found) {
+    other = next_near(path, walk);
+    found = is_rival(path, other);
+  }
   return found;
 }
 

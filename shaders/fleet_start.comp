@@ -71,6 +71,9 @@ double finite64(double x) { return is_finite(x) ? x : 0.0LF; }
 
 void main() {
   if (!begin_row()) return;
+  const FleetTick now_tick = load_FleetTick(tick, 0);
+  for (uint bucket = uint(own_row); bucket < now_tick.buckets; bucket += now_tick.movers)
+    imageStore(buckets, int(bucket), uvec4(0u));
   FleetOwn own = load_FleetOwn(own_states, own_row);
   if (own.phase == SF_FLEET_FAILED) return;
   own.phase = 0u;
@@ -86,7 +89,7 @@ void main() {
     return;
   }
 
-  const double seconds = load_FleetTick(tick, 0).seconds;
+  const double seconds = now_tick.seconds;
   const FleetDrive drive = load_FleetDrive(drives, own_row);
   const FleetBody body = load_FleetBody(bodies, own_row);
   const FleetCommand asked = load_FleetCommand(commands, own_row);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <set>
 
 #include "base/elementary.h"
 #include "base/error.h"
@@ -17,6 +19,7 @@
 #include "shaders/fleet_advance.comp.h"
 #include "shaders/fleet_commit.comp.h"
 #include "shaders/fleet_contacts.comp.h"
+#include "shaders/fleet_index.comp.h"
 #include "shaders/fleet_start.comp.h"
 #include "world/copies.h"
 
@@ -63,27 +66,27 @@ std::vector<FleetPose> load_poses(const world::World& world) {
   return poses;
 }
 
-/// Returns the largest speed [m/s] of a mover's origin, with a margin for rounding.
-double fastest(const world::Mover& mover) { return 1.001 * mover.max_forward; }
+/// Returns the different bounds of all movers.
+std::vector<MotionBound> motion_bounds(const world::World& world) {
+  std::set<MotionBound> bounds;
+  for (const world::Mover& mover : world.movers) bounds.insert(motion_bound(mover));
+  return {bounds.begin(), bounds.end()};
+}
 
 }  // namespace
 
 std::string DeviceFleet::refusal(const world::World& world, std::int64_t dt) {
   if (!world.ramps.empty()) return "the world has roads above the floor, which kernels do not follow";
-  const std::size_t movers = world.movers.size() / std::max(world.copies, 1u);
-  if (movers > kMostMovers)
-    return fmt::format("the world has {} robots and tags; kernels move at most {} in one world", movers, kMostMovers);
   const double seconds = 1e-9 * static_cast<double>(dt);
   for (const world::Mover& mover : world.movers) {
-    const Footprint outline = footprint_of(mover);
-    const double turn = 1.001 * mover.max_turn * seconds;
+    const MotionBound bound = motion_bound(mover);
+    const double turn = bound.turn * seconds, steps = bound.steps(seconds);
     if (!(std::abs(mover.X_WM.yaw) + turn < kMostTurn))
       return fmt::format("'{}' may turn by {:.3g} rad per tick; kernels turn by less than {:.0e}", mover.name, turn,
                          kMostTurn);
-    const double steps = (fastest(mover) * seconds + outline.radius * turn) / outline.step;
     if (!(steps < kMostSteps))
       return fmt::format("'{}' may move {:.0f} substeps of {:.3g} m per tick; kernels move less than {}", mover.name,
-                         steps, outline.step, kMostSteps);
+                         steps, bound.step, kMostSteps);
   }
   return "";
 }
@@ -97,9 +100,10 @@ struct DeviceFleet::Tables {
   void bind(Kernel& kernel, std::span<const std::uint32_t> spirv);
 
   Buffer tick, commands, drives, bodies, footprints, edges, walls, nodes, borders, absent;
-  Buffer poses, proposed_poses, motions, proposed_motions, shared_states, own_states, struck, counts;
-  Kernel start, advance, commit, contacts;
+  Buffer poses, proposed_poses, motions, proposed_motions, shared_states, own_states, struck, buckets, places, counts;
+  Kernel start, index, advance, commit, contacts;
   gpu::Batch batch, reading;
+  std::vector<MotionBound> bounds;
 };
 
 DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed, std::size_t rows, gpu::Device& device)
@@ -120,18 +124,26 @@ DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed,
       shared_states(table_of(device, "shared states", Role::download, std::vector<FleetShared>(rows))),
       own_states(table_of(device, "own states", Role::download, std::vector<FleetOwn>(rows, {SF_FLEET_DONE, 0, 0, 0}))),
       struck(table_of(device, "struck movers", Role::download, std::vector<std::uint32_t>(rows))),
+      buckets(table_of(device, "grid of movers", Role::download, std::vector<std::uint32_t>(std::bit_ceil(2 * rows)))),
+      places(table_of(device, "places in the grid", Role::download, std::vector<FleetPlace>(rows))),
       counts(table_of(device, "group counts", Role::upload, std::vector<std::uint32_t>(4))),
       start(device, "fleet start", fleet_start_comp_spv, constants_for(device)),
+      index(device, "fleet index", fleet_index_comp_spv, constants_for(device)),
       advance(device, "fleet advance", fleet_advance_comp_spv, constants_for(device)),
       commit(device, "fleet commit", fleet_commit_comp_spv, constants_for(device)),
       contacts(device, "fleet contacts", fleet_contacts_comp_spv, constants_for(device)),
       batch(device),
-      reading(device) {
+      reading(device),
+      bounds(motion_bounds(world)) {
   const auto movers = static_cast<std::uint32_t>(world.movers.size());
-  tick.host<FleetTick>()[0] = {
-      .movers = movers, .copy_movers = std::max(movers / std::max(world.copies, 1u), 1u), .nodes = fixed.node_count};
+  FleetTick& now = tick.host<FleetTick>()[0];
+  now.movers = movers;
+  now.copy_movers = std::max(movers / std::max(world.copies, 1u), 1u);
+  now.nodes = fixed.node_count;
+  now.buckets = static_cast<std::uint32_t>(buckets.texels());
+  for (const MotionBound& bound : bounds) now.widest = std::max(now.widest, bound.radius);
   write_counts(gpu::groups_for(movers * std::size_t{constants_for(device)[0]}, start.group_size()), counts);
-  bind(start, fleet_start_comp_spv), bind(advance, fleet_advance_comp_spv);
+  bind(start, fleet_start_comp_spv), bind(index, fleet_index_comp_spv), bind(advance, fleet_advance_comp_spv);
   bind(commit, fleet_commit_comp_spv), bind(contacts, fleet_contacts_comp_spv);
   record();
   for (const Buffer* table : {&commands, &drives, &bodies, &footprints, &edges, &walls, &nodes, &borders, &absent,
@@ -157,7 +169,9 @@ void DeviceFleet::Tables::bind(Kernel& kernel, std::span<const std::uint32_t> sp
                                            {"proposed_motions", &proposed_motions},
                                            {"shared_states", &shared_states},
                                            {"own_states", &own_states},
-                                           {"struck", &struck}};
+                                           {"struck", &struck},
+                                           {"buckets", &buckets},
+                                           {"places", &places}};
   std::vector<gpu::TableBinding> used;
   for (const gpu::KernelTable& declared : gpu::interface_of(spirv).tables)
     used.push_back(*std::ranges::find(all, declared.name, &gpu::TableBinding::name));
@@ -171,6 +185,7 @@ void DeviceFleet::Tables::record() {
     batch.barrier();
   };
   dispatch(start);
+  dispatch(index);
   for (std::uint32_t round = 0; round < SF_FLEET_ROUNDS; ++round) {
     dispatch(advance);
     dispatch(advance);
@@ -208,7 +223,14 @@ void DeviceFleet::set_absent(std::uint32_t row, bool gone) {
 
 void DeviceFleet::move(std::int64_t dt) {
   SF_CHECK(dt > 0, "dt " + std::to_string(dt));
-  tables_->tick.host<FleetTick>()[0].seconds = 1e-9 * static_cast<double>(dt);
+  FleetTick& now = tables_->tick.host<FleetTick>()[0];
+  now.seconds = 1e-9 * static_cast<double>(dt);
+  now.farthest = 0.0;
+  for (const MotionBound& bound : tables_->bounds) {
+    SF_CHECK(bound.steps(now.seconds) < kMostSteps, "dt " + std::to_string(dt));
+    now.farthest = std::max(now.farthest, bound.travel(now.seconds));
+  }
+  now.cell = 4.0 * (now.widest + now.farthest) + 1e-3;
   tables_->batch.upload(tables_->tick, 0, tables_->tick.bytes());
   tables_->batch.run();
   for (base::Report& report : reports_) report.time += dt;

@@ -17,9 +17,8 @@
 // (gpu/self_check_arithmetic.h), and keep signs of zeros.
 //
 // What a DeviceFleet lacks, and `refusal` names, is moved by robots::Fleet: roads above the floor, paths of more than a
-// thousand substeps per tick, turns of more than 1e5 rad, and more than kMostMovers movers in one copy of the world,
-// since each mover looks at all others of its copy. Reports from outside, changes of outlines and new movers need a
-// robots::Fleet as well.
+// thousand substeps per tick, and turns of more than 1e5 rad. Reports from outside, changes of outlines and new movers
+// need a robots::Fleet as well.
 
 #include <cstdint>
 #include <memory>
@@ -37,8 +36,6 @@ namespace sf::robots {
 /// Not thread-safe.
 class DeviceFleet {
  public:
-  static constexpr std::uint32_t kMostMovers = 4'096;  ///< in one copy of the world
-
   /// Returns why ticks of `dt` [ns] > 0 of this world need a robots::Fleet; "" if they do not.
   static std::string refusal(const world::World& world, std::int64_t dt);
 
@@ -53,7 +50,7 @@ class DeviceFleet {
   /// Sets the commands of all following ticks; 0 at first. @param commands one per mover; NaN and infinity count as 0
   void set_commands(std::span<const base::Twist> commands);
 
-  /// Simulates `dt` [ns] > 0, as Fleet::move.
+  /// Simulates `dt` [ns] > 0, as Fleet::move. @pre `refusal` is "" for this `dt`
   void move(std::int64_t dt);
 
   /// As Fleet::set_absent.

@@ -85,6 +85,11 @@ void keep_one(std::vector<Record>& records) {
 
 }  // namespace
 
+MotionBound motion_bound(const world::Mover& mover) {
+  const Footprint outline = footprint_of(mover);
+  return {1.001 * mover.max_forward, 1.001 * mover.max_turn, outline.radius, outline.step};
+}
+
 FleetTables fleet_tables(const world::World& world) {
   FleetTables tables;
   std::map<Numbers, std::uint32_t> known;

@@ -22,6 +22,21 @@ struct FleetTables {
   std::uint32_t node_count = 0;
 };
 
+/// Bounds of what a mover may do in a second, with a margin for rounding.
+struct MotionBound {
+  double speed;   ///< [m/s] of its origin
+  double turn;    ///< [rad/s]
+  double radius;  ///< [m] of its outline
+  double step;    ///< [m] Footprint::step
+
+  /// Returns a bound of the substeps of a tick.
+  double steps(double seconds) const { return (speed + radius * turn) * seconds / step; }
+  /// Returns a bound of the travel [m] of its origin, with a push-off per substep.
+  double travel(double seconds) const { return speed * seconds + 4e-3 * (steps(seconds) + 6.0); }
+  auto operator<=>(const MotionBound&) const = default;
+};
+MotionBound motion_bound(const world::Mover& mover);
+
 FleetTables fleet_tables(const world::World& world);
 
 }  // namespace sf::robots

@@ -25,11 +25,19 @@ namespace sf::robots {
 
 /// One tick.
 struct FleetTick {
-  double seconds;             ///< [s] > 0
+  double seconds, cell;       ///< [s] > 0, [m] > 0 of the grid of movers
+  double widest, farthest;    ///< [m] largest outline radius, and bound of all travels
   std::uint32_t movers;       ///< number of rows
   std::uint32_t copy_movers;  ///< rows per copy of the world
   std::uint32_t nodes;        ///< of the tree of walls
-  std::uint32_t spare_0, spare_1, spare_2;
+  std::uint32_t buckets;      ///< of the grid, a power of two
+};
+
+/// A mover in the grid, at its position at the start of the tick.
+struct FleetPlace {
+  std::int32_t x, y;   ///< cell
+  std::uint32_t copy;  ///< of the world
+  std::uint32_t next;  ///< 1 + the row of the next mover in the bucket; 0: none
 };
 
 /// A commanded twist.

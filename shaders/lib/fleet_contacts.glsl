@@ -167,11 +167,13 @@ BodyContact body_contact(FleetPose X_WM, bool strikes) {
   dvec2 sum_x = dvec2(0.0LF), sum_y = dvec2(0.0LF);
   // Walls first, then movers.
   const dvec4 box = box_around(p, reach);
-  const ivec2 rows = rows_with(own_row);
   WallWalk walk = WallWalk(0, 0, 0);
-  int other = rows.x;
+  const FleetTick now = load_FleetTick(tick, 0);
+  precise double mover_reach = reach + now.widest + now.farthest;
+  MoverWalk movers = movers_around(p, mover_reach);
   bool walks = true;
-  while (may_turn(18u) && (walks || other < rows.x + rows.y)) {
+  int other = 0;
+  while (may_turn(19u) && other >= 0) {
     uint touched = 0u;
     dvec2 away = dvec2(0.0LF);
     walks = walks && find_wall(walk, box);
@@ -180,7 +182,7 @@ BodyContact body_contact(FleetPose X_WM, bool strikes) {
       away = from_segment(p, dvec2(wall.ax, wall.ay), dvec2(wall.bx, wall.by));
       if (length64(away) <= wall_reach) touched = sectors_of_wall(outline, X_WM, wall);
       ++walk.at;
-    } else if (other < rows.x + rows.y) {
+    } else if ((other = next_mover(movers)) >= 0) {
       const FleetFootprint its = footprint_at(other);
       const FleetPose X_WO = load_FleetPose(poses, other);
       away = minus(p, origin_of(X_WO));
@@ -189,7 +191,6 @@ BodyContact body_contact(FleetPose X_WM, bool strikes) {
       if (other != own_row && imageLoad(absent, other).x == 0u && dot64(away, away) <= square)
         touched = sectors_of_mover(outline, X_WM, its, X_WO);
       if (touched != 0u && strikes) imageStore(struck, other, uvec4(1u));
-      ++other;
     }
     const dvec2 direction = unit64(away);
     if (touched != 0u) {

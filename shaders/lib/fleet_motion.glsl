@@ -2,6 +2,7 @@
 
 #include "shaders/lib/outlines.glsl"
 #include "shaders/lib/fleet_walls.glsl"
+#include "shaders/lib/fleet_grid.glsl"
 
 dvec3 velocity_of(FleetMotion m) { return dvec3(m.forward, m.left, m.turn); }
 bool moves(dvec3 v) { return v.x != 0.0LF || v.y != 0.0LF || v.z != 0.0LF; }
@@ -22,12 +23,6 @@ FleetPose advance(FleetPose X_WM, dvec3 v, double dt) {
 }
 
 FleetFootprint footprint_at(int row) { return load_FleetFootprint(footprints, int(load_FleetBody(bodies, row).footprint)); }
-
-/// The rows of the mover's copy of the world: the first, and their number.
-ivec2 rows_with(int row) {
-  const int count = int(load_FleetTick(tick, 0).copy_movers);
-  return ivec2(row / count * count, count);
-}
 
 /// [m] Largest travel of any point of the mover in the rest of the tick.
 double sweep_of(FleetMotion m, double radius) {
@@ -54,13 +49,12 @@ bool has_moved(int row) {
   return from.x != to.x || from.y != to.y || from.yaw != to.yaw;
 }
 
-/// The movers near a mover's path. A longer list is replaced by all rows that `is_near`.
+/// The movers near a mover's path, up to SF_NEAR of them. A longer list is replaced by all of the grid that `is_near`.
 #define SF_NEAR 32
 struct Path {
   FleetFootprint outline;
   FleetPose from;
   double reach;
-  int first, rows;  // of the copy
 };
 int near_rows[SF_NEAR];
 int near_count;
@@ -71,23 +65,43 @@ bool is_near(Path path, int other) {
   return comes_near(path.outline, path.from, sweep, footprint_at(other), load_FleetPose(poses, other));
 }
 
+MoverWalk movers_around_path(Path path) {
+  const FleetTick now = load_FleetTick(tick, 0);
+  precise double reach = path.outline.radius + path.reach + now.widest + 2.0LF * now.farthest;
+  return movers_around(origin_of(path.from), reach);
+}
+
 Path find_near(FleetMotion motion) {
   const FleetFootprint outline = footprint_at(own_row);
   const double reach = reach_of(motion, outline.radius, load_FleetShared(shared_states, own_row).travel);
-  const ivec2 rows = rows_with(own_row);
-  const Path path = Path(outline, load_FleetPose(poses, own_row), reach, rows.x, rows.y);
+  const Path path = Path(outline, load_FleetPose(poses, own_row), reach);
+  MoverWalk walk = movers_around_path(path);
   near_count = 0;
-  for (int i = 0; may_turn(1u) && i < rows.y; ++i) {
-    const bool near = is_near(path, rows.x + i);
-    if (near && near_count < SF_NEAR) near_rows[near_count] = rows.x + i;
+  int other = next_mover(walk);
+  while (may_turn(2u) && other >= 0) {
+    const bool near = is_near(path, other);
+    if (near && near_count < SF_NEAR) near_rows[near_count] = other;
     near_count += near ? 1 : 0;
+    other = next_mover(walk);
   }
   return path;
 }
 
-int near_size(Path path) { return near_count <= SF_NEAR ? near_count : path.rows; }
-/// Returns a row, or -1.
-int near_at(Path path, int i) {
-  if (near_count <= SF_NEAR) return near_rows[i];
-  return is_near(path, path.first + i) ? path.first + i : -1;
+/// Position among the near movers.
+struct NearWalk {
+  int at;
+  MoverWalk walk;
+};
+
+NearWalk near_movers(Path path) { return NearWalk(0, movers_around_path(path)); }
+
+/// Returns the next row; -1 at the end.
+int next_near(Path path, inout NearWalk near) {
+  if (near_count <= SF_NEAR) {
+    ++near.at;
+    return near.at <= near_count ? near_rows[near.at - 1] : -1;
+  }
+  int other = next_mover(near.walk);
+  while (may_turn(2u) && other >= 0 && !is_near(path, other)) other = next_mover(near.walk);
+  return other;
 }

@@ -73,12 +73,18 @@ bool meets_wall(Path path, Placed now, Placed next) {
 int stop_at(Path path, FleetPose from, FleetPose to, bool last, bool obstacles, bool rivals, inout bool yields) {
   const Placed now = place_footprint(path.outline, from), next = place_footprint(path.outline, to);
   int stop = obstacles && meets_wall(path, now, next) ? SF_STOP_REFUSED : SF_STOP_NONE;
-  const int size = near_size(path), rounds = rivals ? 2 * size : size;
   // Near movers at their places at the start of the round, then rivals at their proposed places.
-  for (int i = obstacles ? 0 : size; may_turn(13u) && i < rounds && stop != SF_STOP_REFUSED && !yields; ++i) {
-    const bool is_later = i >= size;
-    const int other = near_at(path, is_later ? i - size : i);
-    if (other < 0 || (is_later && (stop != SF_STOP_NONE || !is_rival(path, other)))) continue;
+  bool is_later = !obstacles, at_end = is_later && !rivals;
+  NearWalk walk = near_movers(path);
+  while (may_turn(16u) && !at_end && stop != SF_STOP_REFUSED && !yields) {
+    const int other = next_near(path, walk);
+    if (other < 0) {
+      at_end = is_later || !rivals || stop != SF_STOP_NONE;
+      is_later = true;
+      walk = near_movers(path);
+      continue;
+    }
+    if (is_later && !is_rival(path, other)) continue;
     FleetPose X_WO = load_FleetPose(poses, other);
     if (is_later) X_WO = load_FleetPose(proposed_poses, other);
     if (!is_stopped(path, now, next, other, X_WO)) continue;
@@ -91,8 +97,10 @@ int stop_at(Path path, FleetPose from, FleetPose to, bool last, bool obstacles, 
 /// Returns whether no obstacle is within `sweep` of the mover.
 bool is_path_free(Path path, double sweep) {
   bool free = true;
-  for (int i = 0; may_turn(1u) && i < near_size(path) && free; ++i) {
-    const int other = near_at(path, i);
+  NearWalk near = near_movers(path);
+  int other = 0;
+  while (may_turn(4u) && other >= 0 && free) {
+    other = next_near(path, near);
     if (other >= 0) free = !comes_near(path.outline, path.from, sweep, footprint_at(other), load_FleetPose(poses, other));
   }
   if (path.outline.count == 0u) return free;
@@ -143,7 +151,7 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
   dvec2 away = dvec2(0.0LF);
   double remaining = 0.0LF;
   bool yields = false;
-  while (may_turn(38u) && test != SF_TEST_END && !yields) {
+  while (may_turn(42u) && test != SF_TEST_END && !yields) {
     if (test == SF_TEST_FREE && !(k < steps)) test = SF_TEST_PROPOSED;
     if (test == SF_TEST_PUSH && attempt == 0) away = unit64(body_contact(X_WM, false).away);
     const bool can_push = away.x != 0.0LF || away.y != 0.0LF;

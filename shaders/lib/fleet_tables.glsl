@@ -25,6 +25,8 @@ layout(binding = 13, rgba32ui) uniform uimageBuffer proposed_motions;
 layout(binding = 14, rgba32ui) uniform uimageBuffer shared_states;  // FleetShared per row
 layout(binding = 15, rgba32ui) uniform uimageBuffer own_states;     // FleetOwn per row
 layout(binding = 16, r32ui) uniform uimageBuffer struck;            // 1: it touches a mover with a refused step
+layout(binding = 17, r32ui) uniform uimageBuffer buckets;           // 1 + the row of the first mover; 0: none
+layout(binding = 18, rgba32ui) uniform uimageBuffer places;         // FleetPlace per row
 
 #define SF_MAX_YIELD 4e-3LF  // Fleet::kMaxYield
 

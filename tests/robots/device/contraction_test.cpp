@@ -8,6 +8,7 @@
 #include "shaders/fleet_advance.comp.h"
 #include "shaders/fleet_commit.comp.h"
 #include "shaders/fleet_contacts.comp.h"
+#include "shaders/fleet_index.comp.h"
 #include "shaders/fleet_start.comp.h"
 
 namespace sf {
@@ -36,11 +37,12 @@ Arithmetic arithmetic_of(std::span<const std::uint32_t> spirv) {
 
 TEST(Contraction, KernelsOfAFleetFuseNothing) {
   const Arithmetic start = arithmetic_of(fleet_start_comp_spv), advance = arithmetic_of(fleet_advance_comp_spv),
-                   commit = arithmetic_of(fleet_commit_comp_spv), contacts = arithmetic_of(fleet_contacts_comp_spv);
+                   commit = arithmetic_of(fleet_commit_comp_spv), contacts = arithmetic_of(fleet_contacts_comp_spv),
+                   index = arithmetic_of(fleet_index_comp_spv);
   EXPECT_GT(start.all, 30u);
   EXPECT_GT(advance.all, 150u);
   EXPECT_GT(contacts.all, 80u);
-  for (const Arithmetic& kernel : {start, advance, commit, contacts}) EXPECT_EQ(kernel.fusible, 0u);
+  for (const Arithmetic& kernel : {start, index, advance, commit, contacts}) EXPECT_EQ(kernel.fusible, 0u);
 }
 
 }  // namespace
