@@ -221,6 +221,18 @@ void DeviceFleet::set_absent(std::uint32_t row, bool gone) {
   tables_->batch.upload(table, row * sizeof(std::uint32_t), sizeof(std::uint32_t));
 }
 
+void DeviceFleet::set_state(const base::Report& report, bool contact) {
+  const std::uint32_t row = report.mover;
+  const auto set = [&]<class Record>(Buffer& table, const Record& record) {
+    table.host<Record>()[row] = record;
+    tables_->batch.upload(table, row * sizeof record, sizeof record);
+  };
+  const base::Twist& v = report.velocity;
+  set(tables_->poses, pose_record(report.X_WM));
+  set(tables_->motions, FleetMotion{v.forward, v.left, v.turn, 0.0, 0, 0, 0, 0});
+  set(tables_->own_states, FleetOwn{SF_FLEET_DONE, contact ? 1u : 0u, report.contact_mask, SF_ROUND_OUT});
+}
+
 void DeviceFleet::move(std::int64_t dt) {
   SF_CHECK(dt > 0, "dt " + std::to_string(dt));
   FleetTick& now = tables_->tick.host<FleetTick>()[0];

@@ -56,6 +56,10 @@ class DeviceFleet {
   /// As Fleet::set_absent.
   void set_absent(std::uint32_t row, bool gone);
 
+  /// Sets the state of a mover, e.g. when its world restarts. @param report its time is ignored: movers share one
+  /// @param contact its entry in `contacts`
+  void set_state(const base::Report& report, bool contact = false);
+
   /// Reads back the states, one per mover in order of rows. Valid until the next call.
   /// @throws base::DeviceError if a mover met so many others that the device would have ended its loops early (lavapipe
   /// before Mesa 25.0): states are then lost, and the run must be repeated with a robots::Fleet

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "base/error.h"
@@ -63,7 +64,7 @@ std::string difference(const Report& host, const Report& device) {
 /// Two fleets of one world.
 class Pair {
  public:
-  explicit Pair(const World& world) : host_(world), device_(world, device()) {}
+  explicit Pair(const World& world, gpu::Device& on = device()) : host_(world), device_(world, on) {}
 
   /// Moves both by one tick. Returns false, with a failure, if they differ.
   bool move(std::span<const Twist> commands, std::int64_t dt = kTick) {
@@ -74,6 +75,8 @@ class Pair {
     return agree();
   }
   void set_absent(std::uint32_t row, bool gone) { host_.set_absent(row, gone), device_.set_absent(row, gone); }
+
+  void restart(std::uint32_t row) { host_.restart(row), device_.set_state(host_.reports()[row]); }
 
   const Fleet& host() const { return host_; }
   std::size_t touching() const { return touching_; }  ///< rows and ticks with contacts
@@ -198,6 +201,14 @@ TEST(DeviceFleet, CrowdInOneWorld) { EXPECT_GT(drive(crowd(1), 200), 300u); }
 
 TEST(DeviceFleet, CrowdsInManyWorlds) { EXPECT_GT(drive(crowd(5), 60, 7), 300u); }
 
+// Outlines that certainly overlap are left only by moving apart.
+TEST(DeviceFleet, RobotsThatStartInEachOther) {
+  World world = scenes::empty_world();
+  for (int i = 0; i < 5; ++i) scenes::add_create(world, {0.04 * i, 0.03 * (i % 2), 0, 1.3 * i});
+  scenes::add_square(world, {0.05, 0.02, 0, 0.2});
+  EXPECT_GT(drive(world, 100), 100u);
+}
+
 // Cells of the grid of movers, and walls in several leaves of the tree.
 TEST(DeviceFleet, CrowdInACave) {
   World world = scenes::empty_world();
@@ -225,6 +236,32 @@ TEST(DeviceFleet, MoversThatLeaveAndReturn) {
     drive(fleets, 5, k);
     if (k >= 2) fleets.set_absent(2 * (k - 2), false);
   }
+}
+
+TEST(DeviceFleet, MoversThatRestartAmongOthers) {
+  Pair fleets(crowd(2));
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    drive(fleets, 8, k);
+    for (std::uint32_t row = 0; row < 12; ++row) fleets.restart(row);  // one of the two worlds
+  }
+  EXPECT_GT(fleets.touching(), 100u);
+}
+
+// Tables are copied in both directions, and only in part.
+TEST(DeviceFleet, DeviceWithItsOwnMemory) {
+  const char* const set = std::getenv("SENSORFARM_STAGING");
+  const std::string before = set != nullptr ? set : "0";
+  setenv("SENSORFARM_STAGING", "1", 1);
+  gpu::Device staged;
+  setenv("SENSORFARM_STAGING", before.c_str(), 1);
+  ASSERT_FALSE(staged.unified());
+  Pair fleets(crowd(2), staged);
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    drive(fleets, 5, k);
+    fleets.set_absent(3 * k, true);
+    fleets.restart(5 + k);
+  }
+  EXPECT_GT(fleets.touching(), 50u);
 }
 
 // Far more edges than loops of lavapipe before Mesa 25.0 may visit. A result would be wrong without an error.
