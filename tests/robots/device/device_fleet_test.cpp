@@ -130,6 +130,15 @@ TEST(DeviceFleet, RobotWithoutABodyPassesThroughWalls) {
   drive(world, 40);
 }
 
+// A path of length 0 by rounding has one step, also next to obstacles.
+TEST(DeviceFleet, SmallestSpeedAtAWall) {
+  World world = scenes::boxed_world(0.5, 0.5);
+  scenes::add_square(world, {0.25, 0.25, 0, 0.1});
+  Pair fleets(world);
+  for (const Twist& v : {Twist{5e-324, 0, 0}, Twist{1, 0, 0}, Twist{5e-324, 0, 0}, Twist{0, 0, -5e-324}})
+    fleets.move({&v, 1});
+}
+
 TEST(DeviceFleet, CommandsThatAreNotFinite) {
   World world = scenes::empty_world();
   scenes::add_create(world, {});
