@@ -30,29 +30,12 @@ namespace {
 using gpu::Buffer;
 using gpu::Kernel;
 using gpu::Role;
-using gpu::Texel;
 
 constexpr double kMostSteps = 1'000.0;  // [substeps] robots::Fleet tests longer paths in pieces
 constexpr double kMostTurn = 1e5;       // [rad] shaders/lib/elementary64.glsl
 
 static_assert(Fleet::kRounds == SF_FLEET_ROUNDS);
 static_assert(SF_FLEET_DONE == 2 * SF_FLEET_ROUNDS + 2);
-
-/// Constants of the kernels. Mesa before 25.0 ends loops of software devices after 65 535 turns of all lanes of a
-/// subgroup, of at most 16 lanes.
-std::vector<std::uint32_t> constants_for(const gpu::Device& device) {
-  if (!device.info().software) return {1, 0};
-  return {16, 65'000};
-}
-
-/// @param texel_words 1 or 4
-template <class Record>
-Buffer table_of(gpu::Device& device, std::string_view name, Role role, const std::vector<Record>& records) {
-  Buffer table(device, name, role, sizeof(Record) == 4 ? Texel::u32 : Texel::u32x4,
-               records.size() * std::max<std::size_t>(sizeof(Record) / 16, 1));
-  std::ranges::copy(records, table.host<Record>().begin());
-  return table;
-}
 
 FleetPose pose_record(const base::Pose& X_WM) {
   const auto [s, c] = base::sin_cos(X_WM.yaw);
@@ -96,7 +79,7 @@ struct DeviceFleet::Tables {
       : Tables(world, fleet_tables(world), std::max<std::size_t>(world.movers.size(), 1), device) {}
   Tables(const world::World& world, const FleetTables& fixed, std::size_t rows, gpu::Device& device);
 
-  void record();
+  void record(const std::function<void(gpu::Batch&)>& more = {});
   void bind(Kernel& kernel, std::span<const std::uint32_t> spirv);
 
   Buffer tick, commands, drives, bodies, footprints, edges, walls, nodes, borders, absent;
@@ -113,8 +96,8 @@ DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed,
       bodies(table_of(device, "bodies", Role::upload, fixed.bodies)),
       footprints(table_of(device, "footprints", Role::upload, fixed.footprints)),
       edges(table_of(device, "edges", Role::upload, fixed.edges)),
-      walls(table_of(device, "walls", Role::upload, fixed.walls)),
-      nodes(table_of(device, "tree of walls", Role::upload, fixed.nodes)),
+      walls(table_of(device, "walls", Role::upload, fixed.walls.walls)),
+      nodes(table_of(device, "tree of walls", Role::upload, fixed.walls.nodes)),
       borders(table_of(device, "borders of contact sectors", Role::upload, fixed.borders)),
       absent(table_of(device, "absent movers", Role::upload, std::vector<std::uint32_t>(rows))),
       poses(table_of(device, "poses", Role::download, load_poses(world))),
@@ -127,11 +110,11 @@ DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed,
       buckets(table_of(device, "grid of movers", Role::download, std::vector<std::uint32_t>(std::bit_ceil(2 * rows)))),
       places(table_of(device, "places in the grid", Role::download, std::vector<FleetPlace>(rows))),
       counts(table_of(device, "group counts", Role::upload, std::vector<std::uint32_t>(4))),
-      start(device, "fleet start", fleet_start_comp_spv, constants_for(device)),
-      index(device, "fleet index", fleet_index_comp_spv, constants_for(device)),
-      advance(device, "fleet advance", fleet_advance_comp_spv, constants_for(device)),
-      commit(device, "fleet commit", fleet_commit_comp_spv, constants_for(device)),
-      contacts(device, "fleet contacts", fleet_contacts_comp_spv, constants_for(device)),
+      start(device, "fleet start", fleet_start_comp_spv, loop_constants(device)),
+      index(device, "fleet index", fleet_index_comp_spv, loop_constants(device)),
+      advance(device, "fleet advance", fleet_advance_comp_spv, loop_constants(device)),
+      commit(device, "fleet commit", fleet_commit_comp_spv, loop_constants(device)),
+      contacts(device, "fleet contacts", fleet_contacts_comp_spv, loop_constants(device)),
       batch(device),
       reading(device),
       bounds(motion_bounds(world)) {
@@ -139,10 +122,10 @@ DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed,
   FleetTick& now = tick.host<FleetTick>()[0];
   now.movers = movers;
   now.copy_movers = std::max(movers / std::max(world.copies, 1u), 1u);
-  now.nodes = fixed.node_count;
+  now.nodes = fixed.walls.count;
   now.buckets = static_cast<std::uint32_t>(buckets.texels());
   for (const MotionBound& bound : bounds) now.widest = std::max(now.widest, bound.radius);
-  write_counts(gpu::groups_for(movers * std::size_t{constants_for(device)[0]}, start.group_size()), counts);
+  write_counts(gpu::groups_for(movers * std::size_t{loop_constants(device)[0]}, start.group_size()), counts);
   bind(start, fleet_start_comp_spv), bind(index, fleet_index_comp_spv), bind(advance, fleet_advance_comp_spv);
   bind(commit, fleet_commit_comp_spv), bind(contacts, fleet_contacts_comp_spv);
   record();
@@ -178,7 +161,8 @@ void DeviceFleet::Tables::bind(Kernel& kernel, std::span<const std::uint32_t> sp
   kernel.bind(used);
 }
 
-void DeviceFleet::Tables::record() {
+/// @param more records kernels after the motion
+void DeviceFleet::Tables::record(const std::function<void(gpu::Batch&)>& more) {
   batch.begin();
   const auto dispatch = [&](const Kernel& kernel) {
     batch.dispatch(kernel, counts, 0);
@@ -193,6 +177,7 @@ void DeviceFleet::Tables::record() {
   }
   dispatch(contacts);
   dispatch(contacts);
+  if (more) more(batch);
   batch.end();
   reading.begin();
   reading.end();
@@ -205,6 +190,11 @@ DeviceFleet::DeviceFleet(const world::World& world, gpu::Device& device)
 }
 
 DeviceFleet::~DeviceFleet() = default;
+
+void DeviceFleet::then(const std::function<void(gpu::Batch&)>& record) { tables_->record(record); }
+
+const gpu::Buffer& DeviceFleet::poses() const { return tables_->poses; }
+const gpu::Buffer& DeviceFleet::absent() const { return tables_->absent; }
 
 void DeviceFleet::set_commands(std::span<const base::Twist> commands) {
   SF_CHECK(commands.size() == reports_.size(), std::to_string(commands.size()) + " commands");

@@ -21,6 +21,7 @@
 // need a robots::Fleet as well.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -28,6 +29,8 @@
 
 #include "base/pose.h"
 #include "base/report.h"
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
 #include "gpu/device.h"
 #include "world/world.h"
 
@@ -49,6 +52,13 @@ class DeviceFleet {
 
   /// Sets the commands of all following ticks; 0 at first. @param commands one per mover; NaN and infinity count as 0
   void set_commands(std::span<const base::Twist> commands);
+
+  /// Records more kernels after the motion, in the same submission, in place of earlier ones. `record` is called now;
+  /// its kernels and tables must outlive the last `move`.
+  void then(const std::function<void(gpu::Batch&)>& record);
+  /// Tables on the device: a FleetPose (robots/device/records.h) and a word, 1: absent, per mover.
+  const gpu::Buffer& poses() const;
+  const gpu::Buffer& absent() const;
 
   /// Simulates `dt` [ns] > 0, as Fleet::move. @pre `refusal` is "" for this `dt`
   void move(std::int64_t dt);

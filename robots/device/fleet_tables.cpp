@@ -2,7 +2,6 @@
 
 #include <map>
 
-#include "base/box_tree.h"
 #include "base/elementary.h"
 #include "base/report.h"
 #include "robots/fleet_rules.h"
@@ -62,22 +61,6 @@ std::uint32_t kind_of(world::Drive drive) {
   return drive == world::Drive::car ? SF_DRIVE_CAR : drive == world::Drive::omni ? SF_DRIVE_OMNI : SF_DRIVE_OTHER;
 }
 
-void add_walls(const world::World& world, FleetTables& tables) {
-  constexpr std::size_t kLeafWalls = 8;
-  std::vector<base::Box> boxes;
-  std::vector<const world::Segment*> stopping;
-  for (const world::Segment& wall : world.walls)
-    if (wall.stops_robots) stopping.push_back(&wall), boxes.push_back(base::box_of(wall.a, wall.b));
-  const base::BoxTree tree(boxes, kLeafWalls);
-  for (const std::uint32_t row : tree.order()) {
-    const world::Segment& w = *stopping[row];
-    tables.walls.push_back({w.a.x, w.a.y, w.b.x, w.b.y, w.z_min, w.z_max});
-  }
-  for (const base::BoxTree::Node& n : tree.nodes())
-    tables.nodes.push_back({n.box.min.x, n.box.min.y, n.box.max.x, n.box.max.y, n.end, n.first, n.count, 0});
-  tables.node_count = static_cast<std::uint32_t>(stopping.empty() ? 0 : tables.nodes.size());
-}
-
 template <class Record>
 void keep_one(std::vector<Record>& records) {
   if (records.empty()) records.emplace_back();
@@ -101,13 +84,12 @@ FleetTables fleet_tables(const world::World& world) {
     tables.bodies.push_back({footprint, ranks[row], kind_of(mover.drive),
                              mover.actuator_model == world::ActuatorModel::player_create ? 1u : 0u});
   }
-  add_walls(world, tables);
+  tables.walls = wall_tables(world.walls, [](const world::Segment& wall) { return wall.stops_robots; });
   for (std::uint32_t k = 0; k <= base::kContactSectors; ++k) {
     const glm::dvec2 border = contact_border(k);
     tables.borders.push_back({border.x, border.y});
   }
   keep_one(tables.drives), keep_one(tables.bodies), keep_one(tables.footprints), keep_one(tables.edges);
-  keep_one(tables.walls), keep_one(tables.nodes);
   return tables;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "robots/device/records.h"
+#include "robots/device/device_tables.h"
 #include "robots/footprint.h"
 #include "world/world.h"
 
@@ -16,10 +16,8 @@ struct FleetTables {
   std::vector<FleetBody> bodies;           ///< per mover
   std::vector<FleetFootprint> footprints;  ///< different ones
   std::vector<FleetEdge> edges;
-  std::vector<FleetWall> walls;  ///< that stop robots, in the order of the tree's leaves
-  std::vector<FleetNode> nodes;
+  WallTables walls;                  ///< that stop robots
   std::vector<FleetBorder> borders;  ///< between contact sectors; the last one is the first
-  std::uint32_t node_count = 0;
 };
 
 /// Bounds of what a mover may do in a second, with a margin for rounding.

@@ -4,10 +4,7 @@
 #include "shaders/robots/device/records.glsl"
 
 layout(local_size_x = 64) in;
-// Invocations per mover; the others do nothing. On devices that end loops early, a mover has a subgroup of its own.
-layout(constant_id = 0) const uint kSpread = 1u;
-// Turns of all loops per mover and kernel, after which its tick fails; 0: any number.
-layout(constant_id = 1) const uint kMostTurns = 0u;
+#include "shaders/lib/loop_turns.glsl"
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer tick;        // FleetTick
 layout(binding = 1, rgba32ui) uniform readonly uimageBuffer commands;    // FleetCommand per row
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer drives;      // FleetDrive per row
@@ -30,27 +27,13 @@ layout(binding = 18, rgba32ui) uniform uimageBuffer places;         // FleetPlac
 
 #define SF_MAX_YIELD 4e-3LF  // Fleet::kMaxYield
 
-int own_row;       // this invocation's mover
-uint turns_left;   // of loops
-bool has_failed;   // loops had too many turns
+int own_row;  // this invocation's mover
 
 /// Sets the invocation's row. Returns false if the invocation has no work.
 bool begin_row() {
-  const uint lane = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  const uint lane = begin_turns();
   own_row = int(lane / kSpread);
-  turns_left = kMostTurns;
-  has_failed = false;
   return lane % kSpread == 0u && uint(own_row) < load_FleetTick(tick, 0).movers;
-}
-
-/// Counts a turn of a loop, or its end. Returns false when the device would soon end loops by itself.
-/// @param cost 1 plus the loops inside it: devices that compute all lanes of a subgroup in step (lavapipe) run each of them
-/// once even if no lane needs it
-bool may_turn(uint cost) {
-  if (kMostTurns == 0u) return true;
-  has_failed = has_failed || turns_left < cost;
-  turns_left -= has_failed ? 0u : cost;
-  return !has_failed;
 }
 
 dvec2 origin_of(FleetPose X_WM) { return dvec2(X_WM.x, X_WM.y); }

@@ -1,4 +1,5 @@
-// No kernel that moves a fleet lets the device fuse a product with a sum, which would change the last bit.
+// No kernel that moves a fleet or casts from its poses lets the device fuse a product with a sum, which would change
+// the last bit.
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include "shaders/fleet_contacts.comp.h"
 #include "shaders/fleet_index.comp.h"
 #include "shaders/fleet_start.comp.h"
+#include "shaders/pose_scans.comp.h"
 
 namespace sf {
 namespace {
@@ -35,14 +37,14 @@ Arithmetic arithmetic_of(std::span<const std::uint32_t> spirv) {
   return count;
 }
 
-TEST(Contraction, KernelsOfAFleetFuseNothing) {
+TEST(Contraction, KernelsOfAFleetAndItsScansFuseNothing) {
   const Arithmetic start = arithmetic_of(fleet_start_comp_spv), advance = arithmetic_of(fleet_advance_comp_spv),
                    commit = arithmetic_of(fleet_commit_comp_spv), contacts = arithmetic_of(fleet_contacts_comp_spv),
-                   index = arithmetic_of(fleet_index_comp_spv);
+                   index = arithmetic_of(fleet_index_comp_spv), scans = arithmetic_of(pose_scans_comp_spv);
   EXPECT_GT(start.all, 30u);
   EXPECT_GT(advance.all, 150u);
   EXPECT_GT(contacts.all, 80u);
-  for (const Arithmetic& kernel : {start, index, advance, commit, contacts}) EXPECT_EQ(kernel.fusible, 0u);
+  for (const Arithmetic& kernel : {start, index, advance, commit, contacts, scans}) EXPECT_EQ(kernel.fusible, 0u);
 }
 
 }  // namespace

@@ -168,6 +168,19 @@ TEST(DeviceFleet, DrivesAndTheirLimits) {
   EXPECT_EQ(drive(world, 200), 0u);
 }
 
+// Speeds that round to zero from below, the sharpest turns of both signs, and radii beyond the limit.
+TEST(DeviceFleet, DriverOfTheCreate) {
+  World world = scenes::empty_world();
+  world::Mover& mover = scenes::add_create(world, {});
+  mover.actuator_model = world::ActuatorModel::player_create;
+  mover.track = 0.26;
+  Pair fleets(world);
+  for (const Twist& v :
+       {Twist{-3e-4, 0, 0}, Twist{-5e-4, 0, 0}, Twist{0, 0, -1e-3}, Twist{1e-3, 0, 5}, Twist{-1e-3, 0, 5},
+        Twist{1e-3, 0, -5}, Twist{0.2, 0, 1e-9}, Twist{-0.2, 0, 1e-300}, Twist{0.7, 0, 0.3}, Twist{2.5e-3, 0, 0.0}})
+    fleets.move({&v, 1});
+}
+
 // Yaws far beyond a turn, at which the remainder changes sign, and coordinates of 100 km.
 TEST(DeviceFleet, FarYawsAndPlaces) {
   World world = scenes::empty_world();
@@ -216,6 +229,14 @@ TEST(DeviceFleet, RobotsThatStartInEachOther) {
   for (int i = 0; i < 5; ++i) scenes::add_create(world, {0.04 * i, 0.03 * (i % 2), 0, 1.3 * i});
   scenes::add_square(world, {0.05, 0.02, 0, 0.2});
   EXPECT_GT(drive(world, 100), 100u);
+}
+
+// No edges meet, and the origins are far apart.
+TEST(DeviceFleet, RobotInsideALongRobot) {
+  World world = scenes::empty_world();
+  scenes::add_mover(world, {0, 0, 0, 0}, scenes::rectangle({}, 8.0, 1.2));
+  scenes::add_mover(world, {2.5, 0.1, 0, 0.4}, scenes::rectangle({}, 0.2, 0.2));
+  EXPECT_GT(drive(world, 100), 5u);
 }
 
 // Cells of the grid of movers, and walls in several leaves of the tree.

@@ -1,0 +1,34 @@
+#ifndef RAYCAST_POSE_SCANNER_RECORDS_H
+#define RAYCAST_POSE_SCANNER_RECORDS_H
+// Records of scans from poses on the device, shared by host and device (raycast/pose_scanner.h).
+
+#ifdef __cplusplus
+
+#include <cstdint>
+
+namespace sf::raycast {
+
+struct PoseScanCounts {
+  std::uint32_t beams;        ///< in all
+  std::uint32_t copy_movers;  ///< movers per copy of the world
+  std::uint32_t nodes;        ///< of the tree of walls
+  std::uint32_t spare;
+};
+
+struct PoseScanRow {
+  double x, y;  ///< [m] mount, in the mover's frame
+  double z, yaw;
+  double range_min, range_max;  ///< [m]
+  std::uint32_t mover, spare_0, spare_1, spare_2;
+};
+
+/// The edges of a mover's outline.
+struct PoseScanOutline {
+  double radius;               ///< [m]
+  std::uint32_t first, count;  ///< edges
+};
+
+}  // namespace sf::raycast
+
+#endif
+#endif
