@@ -33,14 +33,17 @@ void add_robot(world::World& world, const base::Pose& X_WM, const std::vector<se
 
 /// Returns four worlds of three robots among boxes.
 world::World crowded_worlds(std::vector<Scanner>& scanners) {
-  world::World world = scenes::boxes(40, 6.0, 4);
+  world::World world = scenes::boxes(12, 6.0, 4);
   sensors::LaserSettings front = scenes::laser(91, M_PI, 3.0), round = scenes::laser(64, 2.0 * M_PI, 20.0);
   front.X_MS = {0.1, -0.02, 0.05, 0.3};
-  front.range_min = 0.05;
+  front.range_min = 0.3;
   round.resolution = 3;
+  round.X_MS.z = 0.07;
   add_robot(world, {0.0, 0.0, 0.0, 0.4}, {front, round}, scanners);
   add_robot(world, {0.8, 0.1, 0.0, 2.0}, {round}, scanners);
   add_robot(world, {-0.7, 0.3, 0.02, -1.0}, {front}, scanners);
+  world.walls.push_back({.a = {-2, -1}, .b = {2, -0.8}, .z_max = 0.045});  // below all lasers at 0.05 m
+  world.walls.push_back({.a = {-2, 1.1}, .b = {2, 0.9}, .z_min = 0.06, .z_max = 1.0, .stops_robots = false});
   world::copy_movers(world, 4);
   const std::vector<Scanner> of_one = scanners;
   for (std::uint32_t copy = 1; copy < 4; ++copy)
@@ -71,35 +74,95 @@ std::size_t compare(const Scanner& scanner, std::span<const double> ranges, cons
   return echoes;
 }
 
+/// A fleet and its scans on the device, and the same on the host.
+class Twin {
+ public:
+  Twin(const world::World& world, std::vector<Scanner> scanners)
+      : scanners_(std::move(scanners)),
+        host_(world),
+        farm_(world, device(), {.noise = false, .threads = 1, .scene = {.caster = &host_caster}}),
+        fleet_(world, device()),
+        scanner_(world, scanners_, device(), fleet_.poses(), fleet_.absent()) {
+    farm_.subscribe_all();
+    fleet_.then([this](gpu::Batch& batch) { scanner_.record(batch); });
+  }
+
+  /// Moves and scans both for one tick, and compares all readings.
+  void tick(std::span<const base::Twist> commands) {
+    host_.move(commands, kTick);
+    fleet_.set_commands(commands);
+    fleet_.move(kTick);
+    scanner_.read();
+    for (const base::ReadingBlock& reading : farm_.tick(++ticks_ * kTick, host_.reports())) {
+      const auto own = std::ranges::find_if(
+          scanners_, [&](const Scanner& s) { return s.mover == reading.mover && s.sensor == reading.sensor; });
+      ASSERT_NE(own, scanners_.end());
+      echoes_ += compare(*own, scanner_.ranges(static_cast<std::size_t>(own - scanners_.begin())), reading);
+      ++readings_;
+    }
+  }
+  void remove(std::uint32_t mover) {
+    host_.set_absent(mover, true), fleet_.set_absent(mover, true), farm_.set_absent(mover, true);
+  }
+  std::size_t echoes() const { return echoes_; }
+  std::size_t readings() const { return readings_; }
+
+ private:
+  std::vector<Scanner> scanners_;
+  robots::Fleet host_;
+  farm::Farm farm_;
+  robots::DeviceFleet fleet_;
+  PoseScanner scanner_;
+  std::int64_t ticks_ = 0;
+  std::size_t echoes_ = 0, readings_ = 0;
+};
+
 TEST(PoseScanner, BytesOfTheFarmWhileRobotsMove) {
   std::vector<Scanner> scanners;
   const world::World world = crowded_worlds(scanners);
   ASSERT_EQ(PoseScanner::refusal(scanners), "");
   ASSERT_EQ(robots::DeviceFleet::refusal(world, kTick), "");
-  robots::Fleet host(world);
-  farm::Farm farm(world, device(), {.noise = false, .threads = 1, .scene = {.caster = &host_caster}});
-  farm.subscribe_all();
-  robots::DeviceFleet fleet(world, device());
-  PoseScanner scanner(world, scanners, device(), fleet.poses(), fleet.absent());
-  fleet.then([&](gpu::Batch& batch) { scanner.record(batch); });
-  std::size_t echoes = 0, compared = 0;
+  Twin twin(world, scanners);
   for (std::uint32_t tick = 0; tick < 40 && !HasFailure(); ++tick) {
-    if (tick == 20) host.set_absent(4, true), fleet.set_absent(4, true), farm.set_absent(4, true);
-    const auto commands = random_commands(world.movers.size(), tick);
-    host.move(commands, kTick);
-    fleet.set_commands(commands);
-    fleet.move(kTick);
-    scanner.read();
-    for (const base::ReadingBlock& reading : farm.tick((tick + 1) * kTick, host.reports())) {
-      const auto own = std::ranges::find_if(
-          scanners, [&](const Scanner& s) { return s.mover == reading.mover && s.sensor == reading.sensor; });
-      ASSERT_NE(own, scanners.end());
-      echoes += compare(*own, scanner.ranges(static_cast<std::size_t>(own - scanners.begin())), reading);
-      ++compared;
-    }
+    if (tick == 20) twin.remove(4);
+    twin.tick(random_commands(world.movers.size(), tick));
   }
-  EXPECT_GE(compared, 40 * scanners.size() - 40);
-  EXPECT_GT(echoes, 10'000u);
+  EXPECT_GE(twin.readings(), 40 * scanners.size() - 40);
+  EXPECT_GT(twin.echoes(), 10'000u);
+}
+
+// Robots above, below and at the height of a laser at 0.1 m.
+TEST(PoseScanner, RobotsOfOtherHeights) {
+  world::World world;
+  std::vector<Scanner> scanners;
+  const sensors::LaserSettings round = scenes::laser(60, 2.0 * M_PI, 3.0);
+  for (const double z : {0.0, 0.02, 0.1, 0.11, -0.2, -0.25}) {
+    const double bearing = static_cast<double>(world.movers.size());
+    add_robot(world, {std::cos(bearing), std::sin(bearing), z, bearing}, {round}, scanners);
+    for (world::Segment& edge : world.movers.back().body) edge.z_min = 0.0, edge.z_max = 0.08 + 0.25 * (z < -0.1);
+  }
+  Twin twin(world, scanners);
+  twin.tick(std::vector<base::Twist>(world.movers.size()));
+  EXPECT_EQ(twin.readings(), scanners.size());
+  EXPECT_GT(twin.echoes(), 10u);
+}
+
+// Beams that enter a surface within the contact distance read 0 or range_min, those that leave it pass.
+TEST(PoseScanner, SensorsOnAndNextToAWall) {
+  world::World world;
+  world.models.push_back({.name = "walls", .type = "model"});
+  std::vector<Scanner> scanners;
+  for (const double x : {0.0, 1e-10, -1e-10, 5e-10, -2e-9, 2e-9, 1e-3}) {
+    const double y = 3.0 * static_cast<double>(world.movers.size());
+    world.walls.push_back({.a = {0, y - 1}, .b = {0, y + 1}, .z_max = 1.0, .stops_robots = false});
+    sensors::LaserSettings laser = scenes::laser(36, 2.0 * M_PI, 3.0);
+    laser.X_MS = {};
+    add_robot(world, {x, y, 0, 0}, {laser}, scanners);
+  }
+  Twin twin(world, scanners);
+  twin.tick(std::vector<base::Twist>(world.movers.size()));
+  EXPECT_EQ(twin.readings(), scanners.size());
+  EXPECT_GT(twin.echoes(), 50u);
 }
 
 TEST(PoseScanner, WorldWithoutSurfacesOrScanners) {

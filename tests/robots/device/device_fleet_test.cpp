@@ -64,7 +64,8 @@ std::string difference(const Report& host, const Report& device) {
 /// Two fleets of one world.
 class Pair {
  public:
-  explicit Pair(const World& world, gpu::Device& on = device()) : host_(world), device_(world, on) {}
+  explicit Pair(World world, gpu::Device& on = device())
+      : world_(std::move(world)), host_(world_), device_(world_, on) {}
 
   /// Moves both by one tick. Returns false, with a failure, if they differ.
   bool move(std::span<const Twist> commands, std::int64_t dt = kTick) {
@@ -94,6 +95,7 @@ class Pair {
     return true;
   }
 
+  World world_;
   Fleet host_;
   DeviceFleet device_;
   std::uint32_t ticks_ = 0;
