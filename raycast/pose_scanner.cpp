@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "gpu/group_counts.h"
@@ -28,7 +29,8 @@ struct PoseScanner::Contents {
 
   PoseScanCounts counts{};
   std::vector<PoseScanRow> scans;
-  std::vector<std::uint32_t> firsts{0}, scan_rows;
+  std::vector<Noise> noises;
+  std::vector<std::uint32_t> firsts{0}, scan_rows, samples;
   std::vector<BeamDirection> directions;
   robots::WallTables walls;
   std::vector<PoseScanOutline> outlines;
@@ -41,7 +43,7 @@ PoseScanner::Contents::Contents(const world::World& world, std::span<const Scann
   for (const world::Mover& mover : world.movers) add_outline(mover);
   counts = {static_cast<std::uint32_t>(directions.size()),
             std::max(static_cast<std::uint32_t>(world.movers.size()) / std::max(world.copies, 1u), 1u), walls.count, 0};
-  if (scans.empty()) scans.emplace_back(), scan_rows.emplace_back(), directions.emplace_back();
+  if (scans.empty()) scans.emplace_back(), scan_rows.emplace_back(), samples.emplace_back(), directions.emplace_back();
   if (outlines.empty()) outlines.emplace_back();
   if (edges.empty()) edges.emplace_back();
 }
@@ -53,8 +55,11 @@ void PoseScanner::Contents::add_scan(const Scanner& scanner) {
     const glm::dvec2 d = base::direction(bearing_of(scan, sample));
     directions.push_back({d.x, d.y});
     scan_rows.push_back(static_cast<std::uint32_t>(scans.size()));
+    samples.push_back(sample);
   }
-  scans.push_back({mount.x, mount.y, mount.z, mount.yaw, scan.range_min, scan.range_max, scanner.mover, 0, 0, 0});
+  scans.push_back({mount.x, mount.y, mount.z, mount.yaw, scan.range_min, scan.range_max, scan.noise.range_sigma,
+                   scan.noise.range_proportional, scanner.mover, 0, 0, 0});
+  noises.push_back({scanner.mover, scanner.sensor});
   firsts.push_back(static_cast<std::uint32_t>(directions.size()));
 }
 
@@ -78,16 +83,20 @@ std::string PoseScanner::refusal(std::span<const Scanner> scanners) {
   return "";
 }
 
-PoseScanner::PoseScanner(const world::World& world, std::span<const Scanner> scanners, gpu::Device& device,
-                         const gpu::Buffer& poses, const gpu::Buffer& absent)
-    : PoseScanner(Contents(world, scanners), device, poses, absent) {}
+PoseScanner::PoseScanner(const world::World& world, std::span<const Scanner> scanners, const Episodes& episodes,
+                         gpu::Device& device, const gpu::Buffer& poses, const gpu::Buffer& absent)
+    : PoseScanner(Contents(world, scanners), episodes, device, poses, absent) {}
 
-PoseScanner::PoseScanner(const Contents& contents, gpu::Device& device, const gpu::Buffer& poses,
-                         const gpu::Buffer& absent)
-    : firsts_(contents.firsts),
+PoseScanner::PoseScanner(const Contents& contents, const Episodes& episodes, gpu::Device& device,
+                         const gpu::Buffer& poses, const gpu::Buffer& absent)
+    : episodes_(episodes),
+      noises_(contents.noises),
+      firsts_(contents.firsts),
       counts_(table_of(device, "counts of scans", Role::upload, std::vector{contents.counts})),
       scans_(table_of(device, "scans from poses", Role::upload, contents.scans)),
+      draws_(table_of(device, "draws of scans", Role::upload, std::vector<PoseScanDraw>(contents.scans.size()))),
       scan_rows_(table_of(device, "scans of beams", Role::upload, contents.scan_rows)),
+      samples_(table_of(device, "samples of beams", Role::upload, contents.samples)),
       directions_(table_of(device, "beams from poses", Role::upload, contents.directions)),
       walls_(table_of(device, "visible walls", Role::upload, contents.walls.walls)),
       nodes_(table_of(device, "tree of visible walls", Role::upload, contents.walls.nodes)),
@@ -104,7 +113,9 @@ PoseScanner::PoseScanner(const Contents& contents, gpu::Device& device, const gp
                 {"poses", &poses},
                 {"absent", &absent},
                 {"scans", &scans_},
+                {"draws", &draws_},
                 {"scan_rows", &scan_rows_},
+                {"samples", &samples_},
                 {"directions", &directions_},
                 {"walls", &walls_},
                 {"nodes", &nodes_},
@@ -115,12 +126,39 @@ PoseScanner::PoseScanner(const Contents& contents, gpu::Device& device, const gp
   gpu::write_counts(gpu::groups_for(invocations, kernel_.group_size()), groups_);
   reading_.begin();
   reading_.end();
+  for (std::size_t i = 0; i < noises_.size(); ++i) write_draw(i, 0);
+}
+
+/// Writes the key of a scanner's random numbers (base::random_words).
+void PoseScanner::write_draw(std::size_t scanner, std::uint32_t first) {
+  const auto [mover, sensor] = noises_[scanner];
+  const base::RandomKey key = episodes_.key(base::RandomStream::range_noise, mover, sensor);
+  draws_.host<PoseScanDraw>()[scanner] = {key.sigma,
+                                          static_cast<std::uint32_t>(key.seed),
+                                          static_cast<std::uint32_t>(key.seed >> 32),
+                                          key.a,
+                                          key.b << 8 | static_cast<std::uint32_t>(key.stream),
+                                          first,
+                                          0};
+  drawn_ = true;
+}
+
+void PoseScanner::prepare(gpu::Batch& batch) {
+  ++counts_.host<PoseScanCounts>()[0].ticks;
+  batch.upload(counts_, 0, counts_.bytes());
+  if (std::exchange(drawn_, false)) batch.upload(draws_, 0, draws_.bytes());
+}
+
+void PoseScanner::restart(std::uint32_t copy) {
+  const std::uint32_t now = counts_.host<PoseScanCounts>()[0].ticks;
+  for (std::size_t i = 0; i < noises_.size(); ++i)
+    if (episodes_.copies().copy_of(noises_[i].mover) == copy) write_draw(i, now);
 }
 
 void PoseScanner::record(gpu::Batch& batch) {
   batch.dispatch(kernel_, groups_, 0);
-  for (const gpu::Buffer* table :
-       {&counts_, &scans_, &scan_rows_, &directions_, &walls_, &nodes_, &outlines_, &edges_, &groups_})
+  for (const gpu::Buffer* table : {&counts_, &scans_, &draws_, &scan_rows_, &samples_, &directions_, &walls_, &nodes_,
+                                   &outlines_, &edges_, &groups_})
     batch.upload(*table, 0, table->bytes());
 }
 

@@ -2,14 +2,13 @@
 // Scans from poses that are on the device, such as those of robots::DeviceFleet: exact, and in the same submission as
 // the motion.
 //
-//   raycast::PoseScanner scanner(world, scanners, device, fleet.poses(), fleet.absent());
-//   fleet.then([&](gpu::Batch& batch) { scanner.record(batch); });
-//   fleet.move(dt);
-//   scanner.read(), scanner.ranges(0);
+//   raycast::PoseScanner scanner(world, scanners, raycast::Episodes(world, seed), device, fleet.poses(),
+//   fleet.absent()); fleet.then([&](gpu::Batch& batch) { scanner.record(batch); }, [&](gpu::Batch& batch) {
+//   scanner.prepare(batch); }); fleet.move(dt); scanner.read(), scanner.ranges(0);
 //
 // Each beam is an invocation that searches the tree of walls and all movers of its copy in 64 bits. Unlike
 // raycast::DeviceCaster it needs no lists, which the host builds around each pose. Ranges have the bytes of the other
-// casters. Suits many small worlds: its cost grows with the movers of a copy.
+// casters, and the noise of lasers. Suits many small worlds: its cost grows with the movers of a copy.
 
 #include <cstdint>
 #include <span>
@@ -20,6 +19,7 @@
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
 #include "raycast/cast_plan.h"
+#include "raycast/episodes.h"
 #include "world/world.h"
 
 namespace sf::raycast {
@@ -30,15 +30,20 @@ class PoseScanner {
   /// Returns why another caster is needed for a scanner; "" if none is: it turns beams at random, or has 32-bit ranges.
   static std::string refusal(std::span<const Scanner> scanners);
 
-  /// @param scanners not refused; their range noise is not added
+  /// @param scanners not refused  @param episodes of the world: seeds of the range noise, shared with this object
   /// @param poses one FleetPose (robots/device/records.h) per mover  @param absent one word per mover, 1: it is not
   /// seen, and its own ranges mean nothing. Both must outlive this object, as must `device`
   /// @throws base::DeviceError if a table exceeds a limit of the device
-  PoseScanner(const world::World& world, std::span<const Scanner> scanners, gpu::Device& device,
-              const gpu::Buffer& poses, const gpu::Buffer& absent);
+  PoseScanner(const world::World& world, std::span<const Scanner> scanners, const Episodes& episodes,
+              gpu::Device& device, const gpu::Buffer& poses, const gpu::Buffer& absent);
 
   /// Records the cast, and lists the copies of the tables.
   void record(gpu::Batch& batch);
+  /// Counts a scan. Call it before each submission.
+  void prepare(gpu::Batch& batch);
+  /// Begins a copy's new episode (Episodes::begin). The n-th scan of an episode draws the noise of reading n of a farm
+  /// that has measured reading 0 at its start.
+  void restart(std::uint32_t copy);
 
   /// Copies the ranges of the last cast to the host.
   /// @throws base::DeviceError if a beam passed so many surfaces that the device would have ended its loops early
@@ -51,10 +56,19 @@ class PoseScanner {
 
  private:
   struct Contents;
-  PoseScanner(const Contents& contents, gpu::Device& device, const gpu::Buffer& poses, const gpu::Buffer& absent);
+  PoseScanner(const Contents& contents, const Episodes& episodes, gpu::Device& device, const gpu::Buffer& poses,
+              const gpu::Buffer& absent);
+  void write_draw(std::size_t scanner, std::uint32_t first);
 
+  struct Noise {
+    std::uint32_t mover, sensor;
+  };
+  Episodes episodes_;
+  std::vector<Noise> noises_;          ///< per scanner
   std::vector<std::uint32_t> firsts_;  ///< first beam of each scanner, then the end
-  gpu::Buffer counts_, scans_, scan_rows_, directions_, walls_, nodes_, outlines_, edges_, ranges_, groups_;
+  bool drawn_ = false;                 ///< `draws_` changed since the last `prepare`
+  gpu::Buffer counts_, scans_, draws_, scan_rows_, samples_, directions_, walls_, nodes_, outlines_, edges_, ranges_,
+      groups_;
   gpu::Kernel kernel_;
   gpu::Batch reading_;
 };

@@ -10,6 +10,7 @@
 layout(local_size_x = 64) in;
 #include "shaders/lib/loop_turns.glsl"
 #include "shaders/lib/planar64.glsl"
+#include "shaders/lib/random64.glsl"
 
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer counts;      // PoseScanCounts
 layout(binding = 1, rgba32ui) uniform readonly uimageBuffer poses;       // FleetPose per mover
@@ -21,6 +22,8 @@ layout(binding = 6, rgba32ui) uniform readonly uimageBuffer walls;       // Flee
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer nodes;       // FleetNode, depth first
 layout(binding = 8, rgba32ui) uniform readonly uimageBuffer outlines;    // PoseScanOutline per mover
 layout(binding = 9, rgba32ui) uniform readonly uimageBuffer edges;       // FleetEdge
+layout(binding = 11, rgba32ui) uniform readonly uimageBuffer draws;      // PoseScanDraw of each scan
+layout(binding = 12, r32ui) uniform readonly uimageBuffer samples;       // number of each beam in its scan
 layout(binding = 10) writeonly buffer Ranges { double beam[]; } ranges;  // [m] of each beam; NaN: too many turns
 
 #define SF_MARGIN 1e-6LF  // [m] for rounding
@@ -100,11 +103,23 @@ void meet_movers(int own, double z, inout Cast beam) {
   }
 }
 
+/// Adds range noise, as sensors/laser_noise.cpp.
+double with_noise(double range, PoseScanRow scan, PoseScanDraw draw, uint sample_number) {
+  precise double growing = scan.range_proportional * range;
+  const double sigma = length64(dvec2(scan.range_sigma, growing));
+  const uint sequence = load_PoseScanCounts(counts, 0).ticks - draw.first;
+  const uvec4 counter = uvec4(sample_number, draw.a, draw.b, sequence);
+  const double normal = random_normal(counter, uvec2(draw.seed_low, draw.seed_high), draw.sigma);
+  precise double disturbed = range + sigma * normal;
+  return limited(disturbed, scan.range_min, scan.range_max);
+}
+
 void main() {
   const uint lane = begin_turns();
   const int at = int(lane / kSpread);
   if (lane % kSpread != 0u || uint(at) >= load_PoseScanCounts(counts, 0).beams) return;
-  const PoseScanRow scan = load_PoseScanRow(scans, int(imageLoad(scan_rows, at).x));
+  const int row = int(imageLoad(scan_rows, at).x);
+  const PoseScanRow scan = load_PoseScanRow(scans, row);
   const FleetPose X_WM = load_FleetPose(poses, int(scan.mover));
   const BeamDirection bearing = load_BeamDirection(directions, at);
   precise double z = X_WM.z + scan.z;
@@ -117,5 +132,8 @@ void main() {
   meet_walls(z, beam);
   meet_movers(int(scan.mover), z, beam);
   const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
-  ranges.beam[at] = has_failed ? nan : most(beam.range, scan.range_min);
+  double range = most(beam.range, scan.range_min);
+  if (beam.range < scan.range_max && (scan.range_sigma > 0.0LF || scan.range_proportional > 0.0LF))
+    range = with_noise(range, scan, load_PoseScanDraw(draws, row), imageLoad(samples, at).x);
+  ranges.beam[at] = has_failed ? nan : range;
 }

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "base/elementary.h"
 #include "base/error.h"
@@ -191,7 +192,10 @@ DeviceFleet::DeviceFleet(const world::World& world, gpu::Device& device)
 
 DeviceFleet::~DeviceFleet() = default;
 
-void DeviceFleet::then(const std::function<void(gpu::Batch&)>& record) { tables_->record(record); }
+void DeviceFleet::then(const std::function<void(gpu::Batch&)>& record, std::function<void(gpu::Batch&)> prepare) {
+  tables_->record(record);
+  prepare_ = std::move(prepare);
+}
 
 const gpu::Buffer& DeviceFleet::poses() const { return tables_->poses; }
 const gpu::Buffer& DeviceFleet::absent() const { return tables_->absent; }
@@ -234,6 +238,7 @@ void DeviceFleet::move(std::int64_t dt) {
   }
   now.cell = 4.0 * (now.widest + now.farthest) + 1e-3;
   tables_->batch.upload(tables_->tick, 0, tables_->tick.bytes());
+  if (prepare_) prepare_(tables_->batch);
   tables_->batch.run();
   for (base::Report& report : reports_) report.time += dt;
 }

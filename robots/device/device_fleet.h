@@ -53,9 +53,10 @@ class DeviceFleet {
   /// Sets the commands of all following ticks; 0 at first. @param commands one per mover; NaN and infinity count as 0
   void set_commands(std::span<const base::Twist> commands);
 
-  /// Records more kernels after the motion, in the same submission, in place of earlier ones. `record` is called now;
-  /// its kernels and tables must outlive the last `move`.
-  void then(const std::function<void(gpu::Batch&)>& record);
+  /// Records more kernels after the motion, in the same submission, in place of earlier ones. Kernels and tables must
+  /// outlive the last `move`.
+  /// @param record is called now  @param prepare is called before each submission and may list copies
+  void then(const std::function<void(gpu::Batch&)>& record, std::function<void(gpu::Batch&)> prepare = {});
   /// Tables on the device: a FleetPose (robots/device/records.h) and a word, 1: absent, per mover.
   const gpu::Buffer& poses() const;
   const gpu::Buffer& absent() const;
@@ -80,6 +81,7 @@ class DeviceFleet {
  private:
   struct Tables;
   std::unique_ptr<Tables> tables_;
+  std::function<void(gpu::Batch&)> prepare_;  ///< of `then`
   std::vector<base::Report> reports_;
   std::vector<std::uint8_t> contacts_;
 };

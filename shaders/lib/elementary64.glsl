@@ -88,3 +88,20 @@ double wrap_angle64(double angle) {
   const bool is_nearest = abs(rest) < SF_PI || (abs(rest) == SF_PI && !is_odd);
   return abs(angle) <= SF_PI ? angle : is_nearest ? rest : without_turns(angle, next);
 }
+
+/// Natural logarithm of a number from 2^-1022 on.
+double log64(double x) {
+  const uvec2 words = unpackDouble2x32(x);
+  const uint fraction = words.y & 0xFFFFFu;
+  const bool is_upper = fraction > 0x6a09eu || (fraction == 0x6a09eu && words.x > 0x667f3bcdu);  // than the root of 2
+  const double part = packDouble2x32(uvec2(words.x, fraction | (is_upper ? 1022u : 1023u) << 20));
+  const double n = double(int(words.y >> 20) - (is_upper ? 1022 : 1023));
+  precise double f = part - 1.0LF;
+  precise double t = f / (2.0LF + f), s = t * t, q = s * s;
+  precise double a = 1.0LF / 3.0LF + s * (1.0LF / 5.0LF), b = 1.0LF / 7.0LF + s * (1.0LF / 9.0LF);
+  precise double c = 1.0LF / 11.0LF + s * (1.0LF / 13.0LF), d = 1.0LF / 15.0LF + s * (1.0LF / 17.0LF);
+  precise double e = 1.0LF / 19.0LF + s * (1.0LF / 21.0LF);
+  precise double series = s * ((a + q * b) + q * q * ((c + q * d) + q * q * e));
+  precise double log_x = n * 0.6931471805598903LF + (f - (t * (f - 2.0LF * series) - n * 5.497923018708371e-14LF));
+  return log_x;
+}

@@ -19,6 +19,7 @@
 namespace sf::raycast {
 namespace {
 
+constexpr std::uint64_t kSeed = 0x987654321ull;
 constexpr std::int64_t kTick = 100'000'000;
 
 /// Adds a robot with several lasers, whose settings it appends.
@@ -32,12 +33,13 @@ void add_robot(world::World& world, const base::Pose& X_WM, const std::vector<se
 }
 
 /// Returns four worlds of three robots among boxes.
-world::World crowded_worlds(std::vector<Scanner>& scanners) {
+world::World crowded_worlds(std::vector<Scanner>& scanners, const ScanNoise& noise = {}) {
   world::World world = scenes::boxes(12, 6.0, 4);
   sensors::LaserSettings front = scenes::laser(91, M_PI, 3.0), round = scenes::laser(64, 2.0 * M_PI, 20.0);
   front.X_MS = {0.1, -0.02, 0.05, 0.3};
   front.range_min = 0.3;
   round.resolution = 3;
+  front.noise = round.noise = noise;
   round.X_MS.z = 0.07;
   add_robot(world, {0.0, 0.0, 0.0, 0.4}, {front, round}, scanners);
   add_robot(world, {0.8, 0.1, 0.0, 2.0}, {round}, scanners);
@@ -77,14 +79,15 @@ std::size_t compare(const Scanner& scanner, std::span<const double> ranges, cons
 /// A fleet and its scans on the device, and the same on the host.
 class Twin {
  public:
-  Twin(const world::World& world, std::vector<Scanner> scanners)
+  Twin(const world::World& world, std::vector<Scanner> scanners, bool noise = false)
       : scanners_(std::move(scanners)),
         host_(world),
-        farm_(world, device(), {.noise = false, .threads = 1, .scene = {.caster = &host_caster}}),
+        farm_(world, device(), {.seed = kSeed, .noise = noise, .threads = 1, .scene = {.caster = &host_caster}}),
         fleet_(world, device()),
-        scanner_(world, scanners_, device(), fleet_.poses(), fleet_.absent()) {
+        scanner_(world, scanners_, farm_.episodes(), device(), fleet_.poses(), fleet_.absent()) {
     farm_.subscribe_all();
-    fleet_.then([this](gpu::Batch& batch) { scanner_.record(batch); });
+    fleet_.then([this](gpu::Batch& batch) { scanner_.record(batch); },
+                [this](gpu::Batch& batch) { scanner_.prepare(batch); });
   }
 
   /// Moves and scans both for one tick, and compares all readings.
@@ -103,6 +106,16 @@ class Twin {
   }
   void remove(std::uint32_t mover) {
     host_.set_absent(mover, true), fleet_.set_absent(mover, true), farm_.set_absent(mover, true);
+  }
+  void restart(std::uint32_t copy, std::uint64_t seed) {
+    const auto movers = static_cast<std::uint32_t>(host_.reports().size() / 4);
+    for (std::uint32_t row = copy * movers; row < (copy + 1) * movers; ++row) {
+      host_.restart(row);
+      fleet_.set_state(host_.reports()[row]);
+    }
+    const farm::Farm::Restart restart{copy, seed};
+    farm_.restart({&restart, 1}, host_.reports().subspan(copy * movers, movers));
+    scanner_.restart(copy);
   }
   std::size_t echoes() const { return echoes_; }
   std::size_t readings() const { return readings_; }
@@ -129,6 +142,20 @@ TEST(PoseScanner, BytesOfTheFarmWhileRobotsMove) {
   }
   EXPECT_GE(twin.readings(), 40 * scanners.size() - 40);
   EXPECT_GT(twin.echoes(), 10'000u);
+}
+
+// Noise in proportion to the range, at both ends of it, and less in one of the worlds; one world restarts.
+TEST(PoseScanner, NoiseOfTheFarm) {
+  std::vector<Scanner> scanners;
+  world::World world = crowded_worlds(scanners, {.range_sigma = 0.4, .range_proportional = 0.3});
+  world.variations.resize(5);
+  world.variations[3].noise = 0.25;
+  Twin twin(world, scanners, true);
+  for (std::uint32_t tick = 0; tick < 12 && !HasFailure(); ++tick) {
+    if (tick == 6) twin.restart(2, 77);
+    twin.tick(random_commands(world.movers.size(), tick));
+  }
+  EXPECT_GT(twin.echoes(), 2'000u);
 }
 
 // Robots above, below and at the height of a laser at 0.1 m.
@@ -168,7 +195,7 @@ TEST(PoseScanner, SensorsOnAndNextToAWall) {
 TEST(PoseScanner, WorldWithoutSurfacesOrScanners) {
   world::World world;
   robots::DeviceFleet fleet(world, device());
-  PoseScanner scanner(world, {}, device(), fleet.poses(), fleet.absent());
+  PoseScanner scanner(world, {}, Episodes(), device(), fleet.poses(), fleet.absent());
   fleet.then([&](gpu::Batch& batch) { scanner.record(batch); });
   fleet.move(kTick);
   EXPECT_NO_THROW(scanner.read());
@@ -179,7 +206,7 @@ TEST(PoseScanner, OneRobotInNothingReadsTheEndOfItsRange) {
   std::vector<Scanner> scanners;
   add_robot(world, {}, {scenes::laser(5, M_PI, 3.0)}, scanners);
   robots::DeviceFleet fleet(world, device());
-  PoseScanner scanner(world, scanners, device(), fleet.poses(), fleet.absent());
+  PoseScanner scanner(world, scanners, Episodes(), device(), fleet.poses(), fleet.absent());
   fleet.then([&](gpu::Batch& batch) { scanner.record(batch); });
   fleet.move(kTick);
   scanner.read();

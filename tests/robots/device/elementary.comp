@@ -6,10 +6,10 @@
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer angles;   // a double per row, in the first two words
-layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // three texels per row: six results
+layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // four texels per row: eight results
 
 void store(int row, int texel, double first, double second) {
-  imageStore(results, 3 * row + texel, uvec4(unpackDouble2x32(first), unpackDouble2x32(second)));
+  imageStore(results, 4 * row + texel, uvec4(unpackDouble2x32(first), unpackDouble2x32(second)));
 }
 
 void main() {
@@ -19,4 +19,5 @@ void main() {
   store(row, 0, s.x, s.y);
   store(row, 1, sinc64(x), wrap_angle64(x));
   store(row, 2, nearest64(x), ceil64(abs(x)));
+  store(row, 3, log64(most(abs(x), 1e-300LF)), with_sign(1.0LF, x));
 }
