@@ -81,7 +81,7 @@ const std::vector<Heavy> kHeavy{{"CLI/", "apps", 8},
                                 {"muParser", "sensors"},
                                 {"yaml-cpp/", ""},
                                 {"toml++/", ""},
-                                {"Eigen/", "robots/estimation", 10},
+                                {"Eigen/", "robots/estimation", 11},
                                 {"unsupported/Eigen/", "robots/estimation"},
                                 {"embree", "bench"}};
 

@@ -139,6 +139,7 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
 
   double steps = all_steps;
   precise double dt = motion.remaining / steps;
+  double step_time = dt;          // [s] left of this step
   int test = yielding && was_free ? SF_TEST_FREE : SF_TEST_STEP;
   double k = 1.0LF;               // SF_TEST_FREE: place on the path
   bool turns = false;             // SF_TEST_PART: the step is a turn in place
@@ -159,8 +160,8 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
     // The tested pose.
     precise double fraction = k / steps;
     precise double free_time = fraction * motion.remaining;
-    precise double part_time = part * dt;
-    const double time = test == SF_TEST_STEP   ? dt
+    precise double part_time = part * step_time;
+    const double time = test == SF_TEST_STEP   ? step_time
                         : test == SF_TEST_PART ? part_time
                         : test == SF_TEST_PUSH ? push_time
                                                : free_time;
@@ -192,9 +193,12 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
         X_WM = to;
         precise double left = steps - 1.0LF;
         steps = left;
+        step_time = dt;
         if (!(steps > 0.0LF)) test = SF_TEST_END;
       } else if (stop == SF_STOP_WAITING) {
-        precise double left = steps * dt;
+        precise double whole = steps * dt;
+        precise double done = dt - step_time;
+        precise double left = whole - done;
         remaining = left;
         test = SF_TEST_END;
       } else {
@@ -203,7 +207,7 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
         parts = !turns;
         if (turns) {
           test = SF_TEST_PUSH;
-          push_time = dt;
+          push_time = step_time;
           is_second_push = false;
           attempt = 0;
         }
@@ -213,6 +217,7 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
         X_WM = to;
         precise double left = steps - 1.0LF;
         steps = left;
+        step_time = dt;
         test = steps > 0.0LF ? SF_TEST_STEP : SF_TEST_END;
       } else if (can_push && attempt < 2) {
         ++attempt;
@@ -237,12 +242,15 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
         if (is_done) X_WM = reached;
       }
       if (is_done && !turns) {
+        precise double done = free_part * step_time;
+        precise double left = step_time - done;
+        step_time = left;
         ends = v.z == 0.0LF || is_car;
         v = dvec3(0.0LF, 0.0LF, v.z);
         test = SF_TEST_STEP;
       } else if (is_done) {
-        precise double done = free_part * dt;
-        precise double left = dt - done;
+        precise double done = free_part * step_time;
+        precise double left = step_time - done;
         ends = !(done > 0.0LF);
         test = SF_TEST_PUSH;
         push_time = left;

@@ -55,7 +55,7 @@ TEST(MonitorExperiment, DrivesWithoutTheFaultySensor) {
     return std::accumulate(cars.begin(), cars.end(), 0.0,
                            [](double sum, const MonitoredCar& car) { return sum + car.error_squares; });
   };
-  EXPECT_LT(10.0 * errors(with), errors(without));
+  EXPECT_LT(2.0 * errors(with), errors(without));
 }
 
 TEST(MonitorSetting, IsForRobotsThatLocalizeThemselves) {
