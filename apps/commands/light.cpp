@@ -170,7 +170,8 @@ int light(const LightOptions& options) {
                 counted(sender.intersections().size(), "intersection"), to, options.rate);
   run(options, sender, radio ? &*radio : nullptr, actuated);
   const netio::OutboxCounts counts = sender.counts();
-  if (counts.sent == 0 && !options.send.empty()) throw base::InputError("nothing was sent: " + counts.first_failure);
+  if (counts.sent == 0 && !counts.first_failure.empty())
+    throw base::InputError("nothing was sent: " + counts.first_failure);
   if (!options.send.empty()) print_message("sent {} to {}", counted(counts.sent, "message"), sender.to());
   if (radio) print_message("{}", radio->summary());
   return 0;
