@@ -42,8 +42,9 @@ void Derivation::require_own_inputs(const world::World& world) const {
                         sensors::derived_name(world, node)));
 }
 
-void Derivation::update_demand(std::span<const base::SensorTypes> subscribed, std::span<SensorPipeline> measured) {
-  sensors_.want(subscribed);
+void Derivation::update_demand(std::span<const base::SensorTypes> subscribed, std::span<SensorPipeline> measured,
+                               std::span<const std::uint8_t> gone) {
+  sensors_.want(subscribed, gone);
   if (measured.empty()) return;
   for (const std::span<SensorPipeline> pipelines : {measured, std::span(pipelines_)})
     for (SensorPipeline& pipeline : pipelines)

@@ -28,8 +28,9 @@ class Derivation {
   /// @throws base::InputError if a sensor has inputs of other robots, whose readings other processes may have
   void require_own_inputs(const world::World& world) const;
   /// Call this when subscriptions have changed. @param measured pipelines of the other types: gain the sensors that are
-  /// needed as inputs. Empty: all inputs are subscribed
-  void update_demand(std::span<const base::SensorTypes> subscribed, std::span<SensorPipeline> measured);
+  /// needed as inputs. Empty: all inputs are subscribed  @param gone as for DerivedSensors::want
+  void update_demand(std::span<const base::SensorTypes> subscribed, std::span<SensorPipeline> measured,
+                     std::span<const std::uint8_t> gone = {});
   /// Makes one sensor due together with the sensors below it, instead of those whose time it is.
   void request(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, std::span<SensorPipeline> measured);
   /// See SensorPipeline.

@@ -238,7 +238,7 @@ void Farm::State::update_demand() {
   if (sharing)
     derivation->update_demand(sharing->delivered_types(), {});
   else
-    derivation->update_demand(subscribed, pipelines);
+    derivation->update_demand(subscribed, pipelines, gone);
 }
 
 /// Finds the copies that take part in a sample: those with a due sensor.
@@ -472,6 +472,7 @@ void Farm::subscribe(std::uint32_t mover, base::SensorTypes types) {
 }
 void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
+  s_->demand_changed = true;
   if (gone) s_->subscribe(mover, 0);
 }
 std::shared_ptr<const void> Farm::add_mover() {

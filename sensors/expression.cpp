@@ -22,6 +22,20 @@ constexpr std::size_t kMostCharacters = 4096;
   throw base::InputError(fmt::format("'{}' is unknown{}", name, base::expected_one_of(name, known)));
 }
 
+/// Returns whether a `=` is not part of a comparison.
+bool assigns(std::string_view text) {
+  const auto is_any = [&](std::size_t at, std::string_view of) {
+    return at < text.size() && of.find(text[at]) != std::string_view::npos;
+  };
+  for (std::size_t at = text.find('='); at != std::string_view::npos; at = text.find('=', at + 1)) {
+    if (is_any(at + 1, "="))
+      ++at;
+    else if (at == 0 || !is_any(at - 1, "<>!"))
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 struct Expression::Parser {
@@ -33,6 +47,7 @@ struct Expression::Parser {
 Expression::Expression(const std::string& text, std::vector<std::string> names) : parser_(std::make_unique<Parser>()) {
   if (text.size() > kMostCharacters)
     throw base::InputError(fmt::format("is longer than {} characters", kMostCharacters));
+  if (assigns(text)) throw base::InputError("assigns with '='; expected '==' to compare");
   parser_->names = std::move(names);
   parser_->numbers.resize(parser_->names.size());
   mu::Parser& parser = parser_->parser;
@@ -45,6 +60,8 @@ Expression::Expression(const std::string& text, std::vector<std::string> names) 
     if (results != 1) throw base::InputError("has several values, separated by commas; expected one");
     for (const auto& [name, at] : parser.GetUsedVar()) {
       if (at == nullptr) refuse_name(name, parser_->names);
+      if (std::ranges::count(parser_->names, name) > 1)
+        throw base::InputError(fmt::format("'{}' is the name of several inputs; rename a robot", name));
       used_.push_back(static_cast<std::size_t>(at - parser_->numbers.data()));
     }
   } catch (const mu::Parser::exception_type& error) {

@@ -28,8 +28,6 @@ struct LandmarkFinder {
 
 /// @throws base::InputError if there is none, or if two have the same id
 LandmarkFinder landmark_finder(const DerivedContext& context, const WiredInput& input) {
-  if (input.mover != context.spec.mover)
-    refuse(context.settings, "inputs", "fiducial finders of a localization are those of its own robot");
   LandmarkFinder finder{read_finder(input_settings(context.world, input)), {}};
   const std::uint32_t key = finder.settings.key;
   for (const world::Fiducial& fiducial : context.world.fiducials) {
@@ -145,10 +143,10 @@ void PositionSensors::add(std::size_t kind, const world::Sensor& settings, const
 PositionSensors position_inputs(const DerivedContext& context) {
   PositionSensors sensors;
   for (const WiredInput& input : context.inputs) {
-    if (input.port >= kPoses) continue;
     if (input.mover != context.spec.mover)
       refuse(context.settings, "inputs",
-             fmt::format("encoders, gyros and receivers of a {} are those of its own robot", context.settings.type));
+             fmt::format("the inputs of a {} are sensors of its own robot", context.settings.type));
+    if (input.port >= kPoses) continue;
     sensors.add(input.port, input_settings(context.world, input), context.world.movers[input.mover]);
   }
   return sensors;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 
 #include "apps/commands/commands.h"
 #include "apps/options/option_groups.h"
@@ -18,6 +19,12 @@ namespace sf::apps {
 
 namespace {
 
+/// Returns whether the option is set, and not by its environment variable, which is for all commands.
+bool is_typed(const CLI::Option& option) {
+  const char* environment = option.get_envname().empty() ? nullptr : std::getenv(option.get_envname().c_str());
+  return option.count() > 0 && (environment == nullptr || option.results().front() != environment);
+}
+
 /// Experiments on measurements need --data and have no trials; only those with a scenario have its options.
 void check_source(const CLI::App& sub) {
   if (sub.count("experiment") == 0) return;
@@ -26,7 +33,8 @@ void check_source(const CLI::App& sub) {
   const scenarios::ExperimentSource source = type.source;
   const auto exclude = [&](std::initializer_list<const char*> options) {
     for (const char* option : options)
-      if (sub.count(option) > 0) throw CLI::ValidationError(option, fmt::format("is not for the experiment {}", name));
+      if (is_typed(*sub.get_option(option)))
+        throw CLI::ValidationError(option, fmt::format("is not for the experiment {}", name));
   };
   if (source != scenarios::ExperimentSource::measurements)
     exclude({"--data"});

@@ -115,7 +115,7 @@ DerivedSensors::DerivedSensors(const world::World& world, const SensorSet& senso
 }
 
 template <class Wanted>
-void DerivedSensors::want_if(const Wanted& wanted) {
+void DerivedSensors::want_if(const Wanted& wanted, std::span<const std::uint8_t> gone) {
   const auto groups = sensor_set_.groups();
   for (std::size_t g = 0; g < groups.size(); ++g) needed_[g].assign(nodes_.empty() ? 0 : groups[g].rows.size(), 0);
   for (std::size_t level = levels_.size(); level-- > 0;)
@@ -125,7 +125,7 @@ void DerivedSensors::want_if(const Wanted& wanted) {
       nodes_[i].wanted = wanted(node) || needed_[own][node.row] != 0;
       if (!nodes_[i].wanted) continue;
       for (const WiredInput& input : node.inputs) {
-        if (is_received(input.type)) continue;
+        if (is_received(input.type) || (!gone.empty() && gone[input.mover] != 0)) continue;
         const auto g = static_cast<std::size_t>(group_of_[input.type]);
         needed_[g][groups[g].first[input.mover] + input.sensor] = 1;
       }
@@ -135,8 +135,9 @@ void DerivedSensors::want_if(const Wanted& wanted) {
   demand_changed_ = true;
 }
 
-void DerivedSensors::want(std::span<const base::SensorTypes> subscribed) {
-  want_if([&](const DerivedNode& node) { return (subscribed[node.spec.mover] & base::only(node.type->id)) != 0; });
+void DerivedSensors::want(std::span<const base::SensorTypes> subscribed, std::span<const std::uint8_t> gone) {
+  want_if([&](const DerivedNode& node) { return (subscribed[node.spec.mover] & base::only(node.type->id)) != 0; },
+          gone);
 }
 
 void DerivedSensors::want_only(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor) {

@@ -35,8 +35,9 @@ class DerivedSensors {
   std::span<const DerivedNode> nodes() const { return wired_; }
 
   /// Sets the sensors to evaluate: those subscribed and those that are inputs of others. A sensor that was not
-  /// evaluated before starts over, with the next call of `evaluate`. @param subscribed per mover
-  void want(std::span<const base::SensorTypes> subscribed);
+  /// evaluated before starts over, with the next call of `evaluate`. @param subscribed per mover  @param gone per
+  /// mover; 1: absent, so none of its sensors is an input. Empty: none is
+  void want(std::span<const base::SensorTypes> subscribed, std::span<const std::uint8_t> gone = {});
   /// Wants one sensor and its inputs, until the next call of `want`.
   void want_only(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor);
   /// Returns per sensor of group `group` of the sensor set whether it is an input of an evaluated sensor; empty: none.
@@ -97,7 +98,7 @@ class DerivedSensors {
     std::uint32_t node, input;
   };
   template <class Wanted>
-  void want_if(const Wanted& wanted);
+  void want_if(const Wanted& wanted, std::span<const std::uint8_t> gone = {});
   void create_wanted(std::span<const base::Report> states);
   void route(const base::ReadingBlock& reading);
   void take_commands(std::int64_t now, std::span<const base::Twist> commands);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <ranges>
 #include <tuple>
 
 #include "base/suggest.h"
@@ -33,6 +34,11 @@ bool accepts(const DerivedPort& port, const SensorType& type) {
   if (port.columns.size() > type.columns.size()) return false;
   return std::equal(port.columns.begin(), port.columns.end(), type.columns.begin(),
                     [](std::string_view wanted, const Column& column) { return wanted == column.name; });
+}
+
+/// Returns whether both are the same sensor at the same port.
+bool is_same(const WiredInput& one, const WiredInput& other) {
+  return one.port == other.port && one.mover == other.mover && one.type == other.type && one.sensor == other.sensor;
 }
 
 class Wiring {
@@ -90,6 +96,9 @@ std::vector<std::uint32_t> Wiring::movers_of(const DerivedNode& node, const Inpu
 
 std::uint32_t Wiring::port_of(const DerivedNode& node, const InputText& parts, const SensorType& type) const {
   const auto& ports = node.type->derived->ports;
+  const auto names = std::views::transform(ports, &DerivedPort::name);
+  if (!parts.port.empty() && std::ranges::find(names, parts.port) == names.end())
+    refuse_input(node, fmt::format("there is no port '{}'; expected one of {}", parts.port, fmt::join(names, ", ")));
   std::string expected;
   for (std::uint32_t k = 0; k < ports.size(); ++k) {
     const bool named = parts.port.empty() || parts.port == ports[k].name;
@@ -112,7 +121,12 @@ void Wiring::add_input(DerivedNode& node, std::string_view text, std::uint32_t p
   for (const std::uint32_t mover : movers_of(node, parts)) {
     if (group.type->id == kV2vInput && mover == node.spec.mover) continue;  // no robot receives itself
     const auto own = std::ranges::equal_range(group.rows, mover, {}, &SensorSpec::mover);
-    if (*parts.number < own.size()) node.inputs.push_back({port, mover, group.type->id, *parts.number, place});
+    if (*parts.number >= own.size()) continue;
+    const WiredInput input{port, mover, group.type->id, *parts.number, place};
+    if (parts.robot != "*" &&
+        std::ranges::any_of(node.inputs, [&](const WiredInput& other) { return is_same(input, other); }))
+      refuse_input(node, fmt::format("'{}' is listed twice", text));
+    node.inputs.push_back(input);
   }
   if (node.inputs.size() > before) return;
   if (group.type->id == kV2vInput)

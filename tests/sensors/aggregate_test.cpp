@@ -101,6 +101,8 @@ TEST(Aggregate, ImpossibleSettingsAreRefused) {
             refused(input + "quantity \"temperature_C\" expression \"thermometer.temperature_C\""));
   expect_in("did you mean 'temperature_C'?", refused(input + "quantity \"temperatur_C\""));
   expect_in("did you mean 'thermometer.temperature_C'?", refused(input + "expression \"thermometer.temperature_\""));
+  expect_in("expected '==' to compare", refused(input + "expression \"thermometer.temperature_C = 3\""));
+  EXPECT_EQ(refused(input + "expression \"thermometer.temperature_C == 3 || thermometer.temperature_C >= 4\""), "");
   expect_in("uses no input", refused(input + "expression \"1 + 1\""));
   expect_in("the expression", refused(input + "expression \"thermometer.temperature_C +\""));
   expect_in("the expression", refused(input + "expression \"\""));

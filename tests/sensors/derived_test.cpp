@@ -90,6 +90,8 @@ TEST(Derived, WiringIsCheckedWhenTheWorldIsLoaded) {
   expect_in("no robot is called 'r2'", refusal(inputs("[\"r2/gyro\"]")));
   expect_in("there is no sensor 'gyro:1'", refusal(inputs("[\"gyro:1\"]")));
   expect_in("'gyro:x' is not an input", refusal(inputs("[\"gyro:x\"]")));
+  expect_in("there is no port 'speed'; expected one of", refusal(inputs("[\"speed=gyro\"]")));
+  expect_in("'r0/gyro' is listed twice", refusal(inputs("[\"gyro\" \"r0/gyro\"]")));
   expect_in("expected inputs [\"type\" ...]", refusal("derived( type \"tally\" inputs 3 )"));
   expect_in("expected inputs [\"type\" ...]", refusal("derived( type \"tally\" )") + refusal(inputs("[ ]")));
   expect_in(
@@ -165,6 +167,26 @@ TEST(Derived, OnlySubscribedSensorsAndTheirInputsAreComputed) {
   EXPECT_EQ(farm.next_due(), kSecond / 20) << "the other robot's encoder";
   farm.subscribe(0, base::only(kGyro));
   EXPECT_EQ(farm.next_due(), kSecond / 10) << "the inputs stop with their only consumer";
+}
+
+/// As for all sensors of a robot that is not there.
+TEST(Derived, SensorsOfAbsentRobotsAreNoInputs) {
+  const world::World world = robot_of("derived( type \"tally\" inputs [\"r1/encoder\"] )");
+  farm::Farm farm(world, host_device(), {.threads = 1});
+  farm.subscribe_all();
+  const auto reports = robots::states_at_load(world);
+  const auto count = [&](int tick) {
+    for (const base::ReadingBlock& reading : farm.tick(tick * kSecond / 10, reports))
+      if (reading.type == kTally) return reading.values[1];
+    return -1.0;
+  };
+  EXPECT_EQ(count(0), 1.0);
+  EXPECT_EQ(count(1), 3.0) << "at 20 Hz";
+  farm.set_absent(1, true);
+  EXPECT_EQ(count(2), 3.0);
+  EXPECT_EQ(count(3), 3.0);
+  farm.set_absent(1, false);
+  EXPECT_GT(count(4), 3.0) << "it is back";
 }
 
 TEST(Derived, StartOverWhenSubscribedAgain) {

@@ -121,7 +121,12 @@ TEST(Localization, NeedsSomethingThatLocates) {
   EXPECT_EQ(refusal("[\"encoder\"]"), "accepted");
   EXPECT_NE(refusal("[\"gyro\"]").find("needs an encoder, a gps, a pose or a fiducial"), std::string::npos)
       << refusal("[\"gyro\"]");
-  EXPECT_NE(refusal("[\"encoder\" \"encoder\"]").find("2 inputs 'encoder'"), std::string::npos);
+  EXPECT_NE(refusal("[\"encoder\" \"encoder\"]").find("'encoder' is listed twice"), std::string::npos);
+  const char* const kOther =
+      "position( name \"other\" encoder( ) derived( type \"localization\" inputs [\"encoder\"] ) )";
+  EXPECT_NE(refusal("[\"encoder\" \"other/localization\"]", kOther).find("are sensors of its own robot"),
+            std::string::npos)
+      << "it would be taken for the robot's own pose";
   EXPECT_EQ(refusal("[\"fiducial\"]", kLandmarks), "accepted");
   EXPECT_NE(refusal("[\"fiducial\"]", std::string(kLandmarks) + "mark( pose [9 9 0 0] )")
                 .find("two models that stand still have fiducial_return 3"),
