@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstdlib>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -79,12 +80,12 @@ std::size_t compare(const Scanner& scanner, std::span<const double> ranges, cons
 /// A fleet and its scans on the device, and the same on the host.
 class Twin {
  public:
-  Twin(const world::World& world, std::vector<Scanner> scanners, bool noise = false)
+  Twin(const world::World& world, std::vector<Scanner> scanners, bool noise = false, gpu::Device& on = device())
       : scanners_(std::move(scanners)),
         host_(world),
-        farm_(world, device(), {.seed = kSeed, .noise = noise, .threads = 1, .scene = {.caster = &host_caster}}),
-        fleet_(world, device()),
-        scanner_(world, scanners_, farm_.episodes(), device(), fleet_.poses(), fleet_.absent()) {
+        farm_(world, on, {.seed = kSeed, .noise = noise, .threads = 1, .scene = {.caster = &host_caster}}),
+        fleet_(world, on),
+        scanner_(world, scanners_, farm_.episodes(), on, fleet_.poses(), fleet_.absent()) {
     farm_.subscribe_all();
     fleet_.then([this](gpu::Batch& batch) { scanner_.record(batch); },
                 [this](gpu::Batch& batch) { scanner_.prepare(batch); });
@@ -144,18 +145,26 @@ TEST(PoseScanner, BytesOfTheFarmWhileRobotsMove) {
   EXPECT_GT(twin.echoes(), 10'000u);
 }
 
-// Noise in proportion to the range, at both ends of it, and less in one of the worlds; one world restarts.
+// Noise in proportion to the range, at both ends of it, and less in one of the worlds; one world restarts. The device
+// has memory of its own.
 TEST(PoseScanner, NoiseOfTheFarm) {
   std::vector<Scanner> scanners;
   world::World world = crowded_worlds(scanners, {.range_sigma = 0.4, .range_proportional = 0.3});
   world.variations.resize(5);
   world.variations[3].noise = 0.25;
-  Twin twin(world, scanners, true);
+  setenv("SENSORFARM_STAGING", "1", 1);
+  setenv("SENSORFARM_VALIDATE", "1", 1);
+  gpu::Device own;
+  unsetenv("SENSORFARM_VALIDATE");
+  unsetenv("SENSORFARM_STAGING");
+  const bool validated = own.validation_messages().find("not installed") == std::string::npos;
+  Twin twin(world, scanners, true, own);
   for (std::uint32_t tick = 0; tick < 12 && !HasFailure(); ++tick) {
     if (tick == 6) twin.restart(2, 77);
     twin.tick(random_commands(world.movers.size(), tick));
   }
   EXPECT_GT(twin.echoes(), 2'000u);
+  EXPECT_EQ(validated ? own.validation_messages() : "", "");
 }
 
 // Robots above, below and at the height of a laser at 0.1 m.

@@ -279,14 +279,17 @@ TEST(DeviceFleet, MoversThatRestartAmongOthers) {
   EXPECT_GT(fleets.touching(), 100u);
 }
 
-// Tables are copied in both directions, and only in part.
+// Tables are copied in both directions, and only in part. The validation layer has no objection, where it is installed.
 TEST(DeviceFleet, DeviceWithItsOwnMemory) {
   const char* const set = std::getenv("SENSORFARM_STAGING");
   const std::string before = set != nullptr ? set : "0";
   setenv("SENSORFARM_STAGING", "1", 1);
+  setenv("SENSORFARM_VALIDATE", "1", 1);
   gpu::Device staged;
+  unsetenv("SENSORFARM_VALIDATE");
   setenv("SENSORFARM_STAGING", before.c_str(), 1);
   ASSERT_FALSE(staged.unified());
+  const bool validated = staged.validation_messages().find("not installed") == std::string::npos;
   Pair fleets(crowd(2), staged);
   for (std::uint32_t k = 0; k < 4; ++k) {
     drive(fleets, 5, k);
@@ -294,6 +297,7 @@ TEST(DeviceFleet, DeviceWithItsOwnMemory) {
     fleets.restart(5 + k);
   }
   EXPECT_GT(fleets.touching(), 50u);
+  EXPECT_EQ(validated ? staged.validation_messages() : "", "");
 }
 
 // Far more edges than loops of lavapipe before Mesa 25.0 may visit. A result would be wrong without an error.
