@@ -156,6 +156,19 @@ LoadedWorld load(const WorldSource& source, const sensorfarm::Options& options) 
   return {std::move(world), std::move(starts)};
 }
 
+void check_restart(const world::World& world, std::span<const std::uint32_t> worlds,
+                   std::span<const std::uint64_t> seeds) {
+  if (seeds.size() != worlds.size())
+    throw base::InputError(fmt::format("{} seeds for {} worlds; expected as many", seeds.size(), worlds.size()));
+  std::vector<bool> taken(world.copies);
+  for (const std::uint32_t k : worlds) {
+    if (k >= world.copies)
+      throw base::InputError(fmt::format("there is no world {}; expected less than {}", k, world.copies));
+    if (taken[k]) throw base::InputError(fmt::format("world {} is given twice; expected each once", k));
+    taken[k] = true;
+  }
+}
+
 std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options) {
   static std::mutex lock;
   // A forked process inherits its parent's devices without their threads, so it opens its own devices.

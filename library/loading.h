@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +61,10 @@ struct LoadedWorld {
 /// Loads the world, adds a default robot to a world without one, clones robots and copies the world.
 /// @throws base::InputError
 LoadedWorld load(const WorldSource& source, const sensorfarm::Options& options);
+
+/// @throws base::InputError unless `worlds` are numbers of copies, each once, and there are as many seeds
+void check_restart(const world::World& world, std::span<const std::uint32_t> worlds,
+                   std::span<const std::uint64_t> seeds);
 
 /// Returns the open device that `options` select, shared by all callers as long as one of them holds it.
 /// @throws base::DeviceError

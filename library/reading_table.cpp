@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+}  // namespace
+
 bool at_every_tick(const sensors::SensorSpec& row, double interval) {
   return std::abs(row.rate * interval - 1.0) < 1e-9 && row.phase == 0.0 && row.latency == 0.0;
 }
-
-}  // namespace
 
 ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interval) : group_(group) {
   const std::vector<sensors::SensorSpec>& rows = group.rows;

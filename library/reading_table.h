@@ -11,6 +11,9 @@
 
 namespace sf::library {
 
+/// Returns whether a sensor is read at every tick and at no other time. @param interval [s] of a tick
+bool at_every_tick(const sensors::SensorSpec& row, double interval);
+
 /// If all sensors of the type are read at every tick and at no other time, and the farm's buffer contains them row by
 /// row, the table is that buffer; otherwise readings are copied.
 class ReadingTable {

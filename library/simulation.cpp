@@ -87,8 +87,6 @@ struct Simulation::State {
   void set(std::span<const Twist> given);
   void exchange(std::span<const Twist> given);
   void restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds, const WorldStarts& starts);
-  void check_restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-                     const WorldStarts& starts) const;
   /// [ns] Returns the farm's time at which a world started.
   std::int64_t start_of(std::size_t k) const {
     if (k >= world.copies) throw Error(fmt::format("there is no world {}; expected less than {}", k, world.copies));
@@ -257,23 +255,10 @@ void Simulation::State::exchange(std::span<const Twist> given) {
   }
 }
 
-void Simulation::State::check_restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
-                                      const WorldStarts& starts) const {
-  if (seeds.size() != worlds.size())
-    throw base::InputError(fmt::format("{} seeds for {} worlds; expected as many", seeds.size(), worlds.size()));
-  loaded.starts.check(world, starts, worlds.size() * robots.size());
-  std::vector<bool> taken(world.copies);
-  for (const std::uint32_t k : worlds) {
-    if (k >= world.copies)
-      throw base::InputError(fmt::format("there is no world {}; expected less than {}", k, world.copies));
-    if (taken[k]) throw base::InputError(fmt::format("world {} is given twice; expected each once", k));
-    taken[k] = true;
-  }
-}
-
 void Simulation::State::restart(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
                                 const WorldStarts& starts) {
-  check_restart(worlds, seeds, starts);
+  library::check_restart(world, worlds, seeds);
+  loaded.starts.check(world, starts, worlds.size() * robots.size());
   std::vector<farm::Farm::Restart> restarts;
   std::vector<std::uint32_t> resized;
   for (std::size_t i = 0; i < worlds.size(); ++i) {

@@ -143,8 +143,8 @@ void PoseScanner::write_draw(std::size_t scanner, std::uint32_t first) {
   drawn_ = true;
 }
 
-void PoseScanner::prepare(gpu::Batch& batch) {
-  ++counts_.host<PoseScanCounts>()[0].ticks;
+void PoseScanner::prepare(gpu::Batch& batch, bool again) {
+  if (!again) ++counts_.host<PoseScanCounts>()[0].ticks;
   batch.upload(counts_, 0, counts_.bytes());
   if (std::exchange(drawn_, false)) batch.upload(draws_, 0, draws_.bytes());
 }

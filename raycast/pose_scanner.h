@@ -40,9 +40,10 @@ class PoseScanner {
   /// Records the cast, and lists the copies of the tables.
   void record(gpu::Batch& batch);
   /// Counts a scan. Call it before each submission.
-  void prepare(gpu::Batch& batch);
+  /// @param again draws the noise of the last scan instead
+  void prepare(gpu::Batch& batch, bool again = false);
   /// Begins a copy's new episode (Episodes::begin). The n-th scan of an episode draws the noise of reading n of a farm
-  /// that has measured reading 0 at its start.
+  /// that has measured reading 0 at its start; a scan `again` before the first draws that of reading 0.
   void restart(std::uint32_t copy);
 
   /// Copies the ranges of the last cast to the host.

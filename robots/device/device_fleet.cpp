@@ -82,12 +82,20 @@ struct DeviceFleet::Tables {
 
   void record(const std::function<void(gpu::Batch&)>& more = {});
   void bind(Kernel& kernel, std::span<const std::uint32_t> spirv);
+  /// Copies a part of a table before the next submission of any batch.
+  void upload(const Buffer& table, std::size_t offset, std::size_t size) { changes.push_back({&table, offset, size}); }
+  void run(gpu::Batch& submission);
 
   Buffer tick, commands, drives, bodies, footprints, edges, walls, nodes, borders, absent;
   Buffer poses, proposed_poses, motions, proposed_motions, shared_states, own_states, struck, buckets, places, counts;
   Kernel start, index, advance, commit, contacts;
-  gpu::Batch batch, reading;
+  gpu::Batch moving, staying, reading;
   std::vector<MotionBound> bounds;
+  struct Change {
+    const Buffer* table;
+    std::size_t offset, size;
+  };
+  std::vector<Change> changes;
 };
 
 DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed, std::size_t rows, gpu::Device& device)
@@ -116,7 +124,8 @@ DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed,
       advance(device, "fleet advance", fleet_advance_comp_spv, loop_constants(device)),
       commit(device, "fleet commit", fleet_commit_comp_spv, loop_constants(device)),
       contacts(device, "fleet contacts", fleet_contacts_comp_spv, loop_constants(device)),
-      batch(device),
+      moving(device),
+      staying(device),
       reading(device),
       bounds(motion_bounds(world)) {
   const auto movers = static_cast<std::uint32_t>(world.movers.size());
@@ -132,7 +141,7 @@ DeviceFleet::Tables::Tables(const world::World& world, const FleetTables& fixed,
   record();
   for (const Buffer* table : {&commands, &drives, &bodies, &footprints, &edges, &walls, &nodes, &borders, &absent,
                               &poses, &motions, &own_states, &struck, &counts})
-    batch.upload(*table, 0, table->bytes());
+    upload(*table, 0, table->bytes());
 }
 
 /// Binds the tables that the kernel uses.
@@ -164,10 +173,10 @@ void DeviceFleet::Tables::bind(Kernel& kernel, std::span<const std::uint32_t> sp
 
 /// @param more records kernels after the motion
 void DeviceFleet::Tables::record(const std::function<void(gpu::Batch&)>& more) {
-  batch.begin();
+  moving.begin();
   const auto dispatch = [&](const Kernel& kernel) {
-    batch.dispatch(kernel, counts, 0);
-    batch.barrier();
+    moving.dispatch(kernel, counts, 0);
+    moving.barrier();
   };
   dispatch(start);
   dispatch(index);
@@ -178,10 +187,19 @@ void DeviceFleet::Tables::record(const std::function<void(gpu::Batch&)>& more) {
   }
   dispatch(contacts);
   dispatch(contacts);
-  if (more) more(batch);
-  batch.end();
+  if (more) more(moving);
+  moving.end();
+  staying.begin();
+  if (more) more(staying);
+  staying.end();
   reading.begin();
   reading.end();
+}
+
+void DeviceFleet::Tables::run(gpu::Batch& submission) {
+  for (const auto& [table, offset, size] : changes) submission.upload(*table, offset, size);
+  changes.clear();
+  submission.run();
 }
 
 DeviceFleet::DeviceFleet(const world::World& world, gpu::Device& device)
@@ -206,20 +224,20 @@ void DeviceFleet::set_commands(std::span<const base::Twist> commands) {
   std::ranges::transform(commands, table.host<FleetCommand>().begin(), [](const base::Twist& v) {
     return FleetCommand{v.forward, v.left, v.turn, 0.0};
   });
-  tables_->batch.upload(table, 0, table.bytes());
+  tables_->upload(table, 0, table.bytes());
 }
 
 void DeviceFleet::set_absent(std::uint32_t row, bool gone) {
   Buffer& table = tables_->absent;
   table.host<std::uint32_t>()[row] = gone ? 1 : 0;
-  tables_->batch.upload(table, row * sizeof(std::uint32_t), sizeof(std::uint32_t));
+  tables_->upload(table, row * sizeof(std::uint32_t), sizeof(std::uint32_t));
 }
 
 void DeviceFleet::set_state(const base::Report& report, bool contact) {
   const std::uint32_t row = report.mover;
   const auto set = [&]<class Record>(Buffer& table, const Record& record) {
     table.host<Record>()[row] = record;
-    tables_->batch.upload(table, row * sizeof record, sizeof record);
+    tables_->upload(table, row * sizeof record, sizeof record);
   };
   const base::Twist& v = report.velocity;
   set(tables_->poses, pose_record(report.X_WM));
@@ -237,10 +255,15 @@ void DeviceFleet::move(std::int64_t dt) {
     now.farthest = std::max(now.farthest, bound.travel(now.seconds));
   }
   now.cell = 4.0 * (now.widest + now.farthest) + 1e-3;
-  tables_->batch.upload(tables_->tick, 0, tables_->tick.bytes());
-  if (prepare_) prepare_(tables_->batch);
-  tables_->batch.run();
+  tables_->upload(tables_->tick, 0, tables_->tick.bytes());
+  if (prepare_) prepare_(tables_->moving);
+  tables_->run(tables_->moving);
   for (base::Report& report : reports_) report.time += dt;
+}
+
+void DeviceFleet::stay() {
+  if (prepare_) prepare_(tables_->staying);
+  tables_->run(tables_->staying);
 }
 
 std::span<const base::Report> DeviceFleet::reports() {

@@ -54,8 +54,8 @@ class DeviceFleet {
   void set_commands(std::span<const base::Twist> commands);
 
   /// Records more kernels after the motion, in the same submission, in place of earlier ones. Kernels and tables must
-  /// outlive the last `move`.
-  /// @param record is called now  @param prepare is called before each submission and may list copies
+  /// outlive the last `move` or `stay`.
+  /// @param record is called now, for each of them  @param prepare is called before each submission and may list copies
   void then(const std::function<void(gpu::Batch&)>& record, std::function<void(gpu::Batch&)> prepare = {});
   /// Tables on the device: a FleetPose (robots/device/records.h) and a word, 1: absent, per mover.
   const gpu::Buffer& poses() const;
@@ -63,6 +63,8 @@ class DeviceFleet {
 
   /// Simulates `dt` [ns] > 0, as Fleet::move. @pre `refusal` is "" for this `dt`
   void move(std::int64_t dt);
+  /// Runs the kernels of `then` alone, at the present states.
+  void stay();
 
   /// As Fleet::set_absent.
   void set_absent(std::uint32_t row, bool gone);

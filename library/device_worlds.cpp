@@ -1,0 +1,255 @@
+#include "sensorfarm/device_worlds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "base/time.h"
+#include "control/model_controllers.h"
+#include "control/own_controller.h"
+#include "library/errors.h"
+#include "library/loading.h"
+#include "library/reading_table.h"
+#include "raycast/pose_scanner.h"
+#include "robots/device/device_fleet.h"
+#include "sensors/laser.h"
+#include "sensors/laser_modes.h"
+#include "sensors/sensor_set.h"
+
+namespace sensorfarm {
+
+using namespace sf;
+
+namespace {
+
+std::string refused_option(const Options& options) {
+  const std::pair<bool, const char*> refused[] = {
+      {!options.record.empty(), "record"},
+      {options.ranks, "ranks"},
+      {!options.positioning.empty(), "positioning"},
+      {!options.faults.empty(), "faults"},
+      {options.caster != "auto", "caster"},
+      {!options.controller.empty() && options.controller != "none", "controller"}};
+  const auto* const found = std::ranges::find(refused, true, &std::pair<bool, const char*>::first);
+  return found == std::end(refused) ? "" : fmt::format("the option '{}'", found->second);
+}
+
+std::string refused_mover(const world::Mover& mover, bool uses_controllers) {
+  if (uses_controllers && !control::controller_of(mover, {}).name.empty())
+    return fmt::format("the controller '{}' of '{}' (the option controller \"none\" leaves it out)", mover.controller,
+                       mover.name);
+  if (mover.random_start.size_spread != glm::dvec3{}) return fmt::format("the random size of '{}'", mover.name);
+  if (mover.random_start.slip > 0.0 || mover.random_start.acceleration > 0.0)
+    return fmt::format("the random slip or acceleration of '{}'", mover.name);
+  return "";
+}
+
+std::string refused_sensor(const world::World& world, const sensors::SensorSet& sensor_set) {
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    if (group.type->id != sensors::kLaser) return fmt::format("sensors of type '{}'", group.type->name);
+  const sensors::SensorSet::Group* const lasers = sensor_set.group(sensors::kLaser);
+  if (lasers == nullptr) return "robots without a laser";
+  const auto& settings = sensor_set.settings_of<sensors::CastLaser>(sensors::kLaser);
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const sensors::SensorSpec& laser = lasers->rows[i];
+    if (laser.elements != lasers->rows.front().elements) return "lasers of different numbers of samples";
+    if (settings[i].laser.resolution > 1) return fmt::format("samples of '{}' between its beams", laser.name);
+    if (!library::at_every_tick(laser, world.interval))
+      return fmt::format(
+          "'{}' with a rate of {:g} Hz, phase of {:g} s and latency of {:g} s (expected {:g} Hz, 0 and 0)", laser.name,
+          laser.rate, laser.phase, laser.latency, 1.0 / world.interval);
+  }
+  return "";
+}
+
+/// Returns what worlds on a device do not support; "" if it is nothing.
+std::string refusal(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
+  if (!control::controlled_models(world).empty()) return "controllers of models that are not robots";
+  for (const world::Mover& mover : world.movers)
+    if (std::string what = refused_mover(mover, options.controller.empty()); !what.empty()) return what;
+  return refused_sensor(world, sensor_set);
+}
+
+std::vector<raycast::Scanner> scanners_of(const sensors::SensorSet& sensor_set, bool noise) {
+  std::vector<raycast::Scanner> scanners;
+  for (const sensors::CastLaser& cast : sensor_set.settings_of<sensors::CastLaser>(sensors::kLaser)) {
+    const sensors::SensorSpec& row = sensor_set.group(sensors::kLaser)->rows[scanners.size()];
+    scanners.push_back({cast.laser, row.mover, row.sensor, cast.single});
+    if (!noise) scanners.back().scan.noise = {};
+  }
+  return scanners;
+}
+
+/// @param why "": not refused
+void check(const std::string& file, const std::string& why) {
+  if (!why.empty())
+    throw base::InputError(fmt::format("{}: {}; use Simulation with copies (in Python: Worlds)", file, why));
+}
+
+/// @param what "": nothing
+void check_support(const std::string& file, const std::string& what) {
+  check(file, what.empty() ? "" : "worlds on a device do not support " + what);
+}
+
+}  // namespace
+
+struct DeviceWorlds::State {
+  State(const library::WorldSource& source, const Options& options);
+  void step(std::span<const Twist> given);
+  void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds);
+  void restart(std::uint32_t copy, std::uint64_t seed);
+  void scan_starts();
+  void read_states();
+  void read_ranges();
+
+  std::shared_ptr<gpu::Device> device;
+  library::LoadedWorld loaded;
+  world::World& world = loaded.world;
+  std::optional<sensors::SensorSet> sensor_set;
+  std::optional<raycast::Episodes> episodes;
+  std::optional<robots::DeviceFleet> fleet;
+  std::optional<raycast::PoseScanner> scanner;
+  std::int64_t interval = 0;  ///< [ns]
+  std::vector<Robot> robots;
+  std::vector<base::Twist> commands;
+  std::vector<Pose> poses;
+  std::vector<Twist> velocities;
+  std::vector<std::uint32_t> carriers;  ///< per laser
+  Readings readings;
+  bool starting = true;  ///< worlds have restarted since the last scan
+  bool states_read = false, ranges_read = false;
+};
+
+DeviceWorlds::State::State(const library::WorldSource& source, const Options& options) {
+  check_support(source.file, refused_option(options));
+  Options wanted = options;
+  wanted.require_vulkan = true;
+  device = library::shared_device(wanted);
+  loaded = library::load(source, options);
+  sensor_set.emplace(world);
+  check_support(source.file, refusal(world, *sensor_set, options));
+  interval = base::nanoseconds(world.interval);
+  const std::vector<raycast::Scanner> scanners = scanners_of(*sensor_set, options.noise);
+  check(source.file, robots::DeviceFleet::refusal(world, interval));
+  check(source.file, raycast::PoseScanner::refusal(scanners));
+  episodes.emplace(world, options.seed);
+  fleet.emplace(world, *device);
+  scanner.emplace(world, scanners, *episodes, *device, fleet->poses(), fleet->absent());
+  fleet->then([this](gpu::Batch& batch) { scanner->record(batch); },
+              [this](gpu::Batch& batch) { scanner->prepare(batch, starting); });
+  for (std::uint32_t row = 0; row < world.movers.size() / world.copies; ++row)
+    robots.push_back(control::robot_of({world, row, options.seed, nullptr, nullptr, &*sensor_set}));
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row)
+    if (world.movers[row].absent) fleet->set_absent(row, true);
+  commands.resize(world.movers.size()), poses.resize(commands.size()), velocities.resize(commands.size());
+  for (const raycast::Scanner& each : scanners) carriers.push_back(each.mover);
+  const sensors::SensorSet::Group& lasers = *sensor_set->group(sensors::kLaser);
+  readings.type = lasers.type->name, readings.robots = carriers, readings.sensors = carriers.size();
+  readings.elements = readings.stride = lasers.rows.front().elements;
+}
+
+void DeviceWorlds::State::step(std::span<const Twist> given) {
+  if (!given.empty() && given.size() != commands.size())
+    throw base::InputError(fmt::format("{} commands for {} rows; expected one per row", given.size(), commands.size()));
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (!std::isfinite(given[i].forward) || !std::isfinite(given[i].left) || !std::isfinite(given[i].turn))
+      throw base::InputError(fmt::format("the command of row {} is ({}, {}, {}); expected finite numbers", i,
+                                         given[i].forward, given[i].left, given[i].turn));
+  for (std::size_t i = 0; i < given.size(); ++i) commands[i] = {given[i].forward, given[i].left, given[i].turn};
+  starting = states_read = ranges_read = false;
+  fleet->set_commands(commands);
+  fleet->move(interval);
+}
+
+void DeviceWorlds::State::reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds) {
+  library::check_restart(world, worlds, seeds);
+  for (std::size_t i = 0; i < worlds.size(); ++i) restart(worlds[i], seeds[i]);
+  if (!worlds.empty()) starting = true, states_read = ranges_read = false;
+}
+
+void DeviceWorlds::State::restart(std::uint32_t copy, std::uint64_t seed) {
+  std::vector<std::uint32_t> resized;
+  loaded.starts.place(world, copy, seed, {}, 0, resized);
+  const auto rows = static_cast<std::uint32_t>(robots.size());
+  for (std::uint32_t row = copy * rows; row < (copy + 1) * rows; ++row) {
+    commands[row] = {};
+    fleet->set_state({.mover = row, .X_WM = world.movers[row].X_WM, .velocity = {}});
+    fleet->set_absent(row, world.movers[row].absent);
+  }
+  episodes->begin(copy, seed, 0);
+  scanner->restart(copy);
+}
+
+/// Scans once at the starts of worlds. All others repeat their last scan, to the same bytes.
+void DeviceWorlds::State::scan_starts() {
+  if (starting) fleet->stay();
+  starting = false;
+}
+
+void DeviceWorlds::State::read_states() {
+  scan_starts();
+  if (states_read) return;
+  for (const base::Report& report : fleet->reports()) {
+    const base::Pose& X = world.movers[report.mover].absent ? base::kAbsent : report.X_WM;
+    poses[report.mover] = {X.x, X.y, X.z, X.yaw};
+    velocities[report.mover] = {report.velocity.forward, report.velocity.left, report.velocity.turn};
+  }
+  states_read = true;
+}
+
+void DeviceWorlds::State::read_ranges() {
+  scan_starts();
+  if (!ranges_read) scanner->read();
+  readings.values = scanner->ranges(0).data();
+  ranges_read = true;
+}
+
+DeviceWorlds::DeviceWorlds(const std::string& world, const Options& options)
+    : state_(library::translated([&] {
+        return std::make_shared<State>(library::WorldSource{library::found(world), ""}, options);
+      })) {}
+
+DeviceWorlds::DeviceWorlds(std::shared_ptr<State> state) : state_(std::move(state)) {}
+DeviceWorlds::DeviceWorlds(DeviceWorlds&&) noexcept = default;
+DeviceWorlds& DeviceWorlds::operator=(DeviceWorlds&&) noexcept = default;
+DeviceWorlds::~DeviceWorlds() = default;
+
+DeviceWorlds DeviceWorlds::from_text(const std::string& text, const Options& options, const std::string& name) {
+  return library::translated([&] {
+    return DeviceWorlds(std::make_shared<State>(library::WorldSource{name, text}, options));
+  });
+}
+
+void DeviceWorlds::step(std::span<const Twist> commands) {
+  library::translated([&] { state_->step(commands); });
+}
+void DeviceWorlds::reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds) {
+  library::translated([&] { state_->reset(worlds, seeds); });
+}
+
+std::size_t DeviceWorlds::copies() const { return state_->world.copies; }
+std::size_t DeviceWorlds::size() const { return state_->commands.size(); }
+const std::vector<Robot>& DeviceWorlds::robots() const { return state_->robots; }
+double DeviceWorlds::interval() const { return state_->world.interval; }
+
+std::span<const Pose> DeviceWorlds::poses() const {
+  library::translated([&] { state_->read_states(); });
+  return state_->poses;
+}
+std::span<const Twist> DeviceWorlds::velocities() const {
+  library::translated([&] { state_->read_states(); });
+  return state_->velocities;
+}
+std::span<const std::uint8_t> DeviceWorlds::contacts() const {
+  library::translated([&] { state_->read_states(); });
+  return state_->fleet->contacts();
+}
+Readings DeviceWorlds::readings() const {
+  library::translated([&] { state_->read_ranges(); });
+  return state_->readings;
+}
+
+}  // namespace sensorfarm

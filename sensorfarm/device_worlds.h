@@ -1,0 +1,63 @@
+#pragma once
+// Many worlds that stay on a Vulkan device: a tick is one submission, and nothing is copied back until it is asked for.
+//
+//   sensorfarm::DeviceWorlds worlds("rooms.world", {.robots = 1, .copies = 1000});
+//   worlds.step(commands);                          // one per row
+//   const sensorfarm::Readings scans = worlds.readings();  // copies the ranges of all worlds to the host
+//
+// For robots that commands drive and that have lasers. Everything else is refused, and simulated by Simulation with
+// copies, to the same bytes.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sensorfarm/simulation.h"
+
+namespace sensorfarm {
+
+/// World k has seed + k, and the bytes of a Simulation of that world alone with this seed. Time 0 is simulated at
+/// construction. Call from one thread at a time, as Simulation. All arrays are as those of a Simulation, and valid
+/// until the next step or reset; the first call after one of these copies them from the device.
+class SENSORFARM_API DeviceWorlds {
+ public:
+  /// @param world as for Simulation  @param options `robots`, `of`, `robot_from`, `seed`, `copies`, `noise`, `accuracy`
+  /// and `device`; "none" for `controller`
+  /// @throws Error for what a device cannot simulate; DeviceError without a Vulkan device, or if a table exceeds it
+  explicit DeviceWorlds(const std::string& world, const Options& options = {});
+  static DeviceWorlds from_text(const std::string& text, const Options& options = {},
+                                const std::string& name = "given.world");
+  DeviceWorlds(DeviceWorlds&&) noexcept;
+  DeviceWorlds& operator=(DeviceWorlds&&) noexcept;
+  ~DeviceWorlds();
+
+  /// Advances all worlds by one tick, then reads the lasers. @param commands one per row; none: the previous ones
+  /// @throws Error for a wrong number of commands and numbers that are not finite
+  void step(std::span<const Twist> commands = {});
+  /// Restarts some worlds at time 0, as Simulation::reset. Reading them before the next step reads all lasers again.
+  /// @param worlds numbers below `copies`, each once  @param seeds one per world
+  /// @throws Error, with nothing changed, for other arguments
+  void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds);
+
+  std::size_t copies() const;                ///< number of worlds
+  std::size_t size() const;                  ///< number of rows, of all worlds
+  const std::vector<Robot>& robots() const;  ///< per row of a world
+  double interval() const;                   ///< [s] duration of a tick
+
+  std::span<const Pose> poses() const;             ///< per row; NaN if it is not in the world
+  std::span<const Twist> velocities() const;       ///< per row
+  std::span<const std::uint8_t> contacts() const;  ///< per row: 1 if a wall or a robot stopped it
+  /// The lasers' ranges: `type` to `robots` of the table; the rest is empty.
+  /// @throws DeviceError, as the three above, if the device ends long loops early (lavapipe before Mesa 25.0)
+  Readings readings() const;
+
+ private:
+  struct State;
+  explicit DeviceWorlds(std::shared_ptr<State> state);
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace sensorfarm

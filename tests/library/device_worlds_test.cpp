@@ -1,0 +1,150 @@
+// Worlds on a device have the bytes of those of Simulation.
+
+#include "sensorfarm/device_worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sensorfarm/simulation.h"
+#include "tests/refusal.h"
+
+namespace sensorfarm {
+namespace {
+
+constexpr std::uint32_t kCopies = 3;
+
+/// Returns a small room with a crate that may be missing. @param robot further keys of the robot
+std::string room(const std::string& laser = "noise [0.01 0.02 0]", const std::string& robot = "",
+                 const std::string& crate = "") {
+  return "define wall model( size [3 0.2 1] )"
+         "wall( pose [0 1.5 0 0] ) wall( pose [0 -1.5 0 0] ) wall( pose [1.5 0 0 90] ) wall( pose [-1.5 0 0 90] )"
+         "model( name \"crate\" size [0.5 0.8 1] pose [0.5 0 0 0] random_pose [0.3 0.3 90] random_present 0.6 " +
+         crate +
+         ")"
+         "position( name \"bot\" size [0.3 0.3 0.2] pose [-1 -1 0 0] drive \"diff\" random_noise 0.5 " +
+         robot + " laser( samples 31 fov 180 range_max 2.5 range_min 0.3 " + laser + " ) )";
+}
+
+template <class Row>
+void expect_bytes(std::span<const Row> device, std::span<const Row> host, const std::string& what) {
+  ASSERT_EQ(device.size(), host.size()) << what;
+  EXPECT_EQ(std::memcmp(device.data(), host.data(), host.size_bytes()), 0) << what;
+}
+
+/// The same worlds on a device and by Simulation.
+class Twin {
+ public:
+  explicit Twin(std::uint32_t robots) : Twin(Options{.robots = robots, .seed = 5, .copies = kCopies}) {}
+  explicit Twin(const Options& options)
+      : device_(DeviceWorlds::from_text(room(), options)), host_(Simulation::from_text(room(), options)) {}
+
+  void step() {
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    std::vector<Twist> commands(host_.size());
+    for (Twist& command : commands) command = {0.3 + any(random_), 0.0, 2.0 * any(random_)};
+    device_.step(commands), host_.step(commands);
+  }
+  void reset(const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds) {
+    device_.reset(worlds, seeds), host_.reset(worlds, seeds);
+  }
+  void compare(const std::string& when) {
+    const Readings own = device_.readings(), expected = host_.readings("laser");
+    ASSERT_EQ(own.sensors, expected.sensors);
+    ASSERT_EQ(own.elements, expected.elements);
+    expect_bytes(own.robots, expected.robots, when);
+    for (std::size_t i = 0; i < own.sensors; ++i) {
+      expect_bytes(own.row(i), expected.row(i), "readings of laser " + std::to_string(i) + when);
+      for (const double range : own.row(i)) echoes_ += range < 2.5;
+    }
+    expect_bytes(device_.poses(), host_.poses(), "poses" + when);
+    expect_bytes(device_.velocities(), host_.velocities(), "velocities" + when);
+    expect_bytes(device_.contacts(), host_.contacts(), "contacts" + when);
+    for (const std::uint8_t contact : device_.contacts()) contacts_ += contact;
+  }
+  std::size_t echoes() const { return echoes_; }
+  std::size_t contacts() const { return contacts_; }
+
+ private:
+  DeviceWorlds device_;
+  Simulation host_;
+  std::mt19937_64 random_{1};
+  std::size_t echoes_ = 0, contacts_ = 0;
+};
+
+/// Compares 100 ticks with restarts: two without a reading between them, then a step before any reading.
+void compare_hundred_ticks(std::uint32_t robots) {
+  Twin twin(robots);
+  twin.compare(" at the start");
+  for (int tick = 1; tick <= 100 && !testing::Test::HasFatalFailure(); ++tick) {
+    twin.step();
+    if (tick > 40 && tick < 50) continue;  // nothing is read
+    if (tick != 70) twin.compare(" in tick " + std::to_string(tick));
+    if (tick == 30) twin.reset({1}, {77}), twin.reset({2, 1}, {8, 9}), twin.compare(" at a restart");
+    if (tick == 60 || tick == 70) twin.reset({0}, {static_cast<std::uint64_t>(tick)});
+  }
+  EXPECT_GT(twin.echoes(), 1'000u);
+  EXPECT_GT(twin.contacts(), 20u);
+}
+
+TEST(DeviceWorlds, BytesOfSimulationForOneRobotPerWorld) { compare_hundred_ticks(1); }
+TEST(DeviceWorlds, BytesOfSimulationForSeveralRobotsPerWorld) { compare_hundred_ticks(3); }
+
+TEST(DeviceWorlds, WithoutNoiseAndOneWorld) {
+  Twin twin({.noise = false});
+  for (int tick = 0; tick < 3; ++tick) twin.step(), twin.compare(" without noise");
+}
+
+std::string refused(const std::string& world, const Options& options = {}) {
+  return sf::refusal_of<Error>([&] { DeviceWorlds::from_text(world, options); });
+}
+
+TEST(DeviceWorlds, RefusesWhatOnlySimulationHas) {
+  const std::string end = "; use Simulation with copies (in Python: Worlds)";
+  const auto expect = [&](const std::string& what, const std::string& message) {
+    sf::expect_in(what, message);
+    sf::expect_in(end, message);
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  };
+  EXPECT_EQ(refused(room()), "");
+  expect("do not support the option 'faults'", refused(room(), {.faults = "[[fault]]"}));
+  expect("the option 'record'", refused(room(), {.record = "run"}));
+  expect("the option 'controller'", refused(room(), {.controller = "wander"}));
+  expect("the controller 'wander' of 'bot'", refused(room("", "ctrl \"wander\"")));
+  EXPECT_EQ(refused(room("", "ctrl \"wander\""), {.controller = "none"}), "");
+  expect("sensors of type 'gyro'", refused(room("", "gyro()")));
+  expect("angular noise", refused(room("noise [0 0 0.1]")));
+  expect("between its beams", refused(room("resolution 2")));
+  expect("between its beams", refused(room(), {.accuracy = "skip2"}));
+  expect("measures in 32 bits", refused(room(), {.accuracy = "single"}));
+  expect("rate of 5 Hz", refused(room("rate 5")));
+  expect("phase of 0.02 s", refused(room("phase 0.02")));
+  expect("the random slip or acceleration of 'bot'", refused(room("", "random_slip 0.2")));
+  expect("the random size of 'crate'", refused(room("", "", "random_size [0.1 0.1 0]")));
+}
+
+TEST(DeviceWorlds, RefusesTheHost) {
+  const auto message = sf::refusal_of<DeviceError>([] { DeviceWorlds::from_text(room(), {.device = "host"}); });
+  sf::expect_in("a Vulkan device is required", message);
+}
+
+TEST(DeviceWorlds, RefusesBadCallsAndGoesOn) {
+  DeviceWorlds worlds = DeviceWorlds::from_text(room(), {.copies = 2});
+  const auto step = [&](std::vector<Twist> commands) { return sf::refusal_of<Error>([&] { worlds.step(commands); }); };
+  const auto reset = [&](std::vector<std::uint32_t> which, std::vector<std::uint64_t> seeds) {
+    return sf::refusal_of<Error>([&] { worlds.reset(which, seeds); });
+  };
+  EXPECT_EQ(step(std::vector<Twist>(2)), "2 commands for 4 rows; expected one per row");
+  sf::expect_in("expected finite numbers", step(std::vector<Twist>(4, {NAN, 0.0, 0.0})));
+  sf::expect_in("there is no world 2", reset({2}, {1}));
+  sf::expect_in("given twice", reset({1, 1}, {1, 2}));
+  sf::expect_in("1 seeds for 2 worlds", reset({0, 1}, {1}));
+  EXPECT_EQ(step({}), "");
+}
+
+}  // namespace
+}  // namespace sensorfarm
