@@ -12,9 +12,11 @@
 #include "control/own_controller.h"
 #include "library/errors.h"
 #include "library/loading.h"
+#include "library/observations.h"
 #include "library/reading_table.h"
 #include "raycast/pose_scanner.h"
 #include "robots/device/device_fleet.h"
+#include "robots/device/device_observer.h"
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 #include "sensors/sensor_set.h"
@@ -104,6 +106,11 @@ struct DeviceWorlds::State {
   void scan_starts();
   void read_states();
   void read_ranges();
+  void record();
+  void changed();
+  void observe(const ObservationOptions& options);
+  void set_goals(std::span<const double> goals);
+  void read_observations();
 
   std::shared_ptr<gpu::Device> device;
   library::LoadedWorld loaded;
@@ -112,7 +119,9 @@ struct DeviceWorlds::State {
   std::optional<raycast::Episodes> episodes;
   std::optional<robots::DeviceFleet> fleet;
   std::optional<raycast::PoseScanner> scanner;
-  std::int64_t interval = 0;  ///< [ns]
+  std::unique_ptr<robots::DeviceObserver> observer;  ///< null: nothing is observed
+  std::optional<Observations::State> observed;       ///< its agents
+  std::int64_t interval = 0;                         ///< [ns]
   std::vector<Robot> robots;
   std::vector<base::Twist> commands;
   std::vector<Pose> poses;
@@ -120,7 +129,7 @@ struct DeviceWorlds::State {
   std::vector<std::uint32_t> carriers;  ///< per laser
   Readings readings;
   bool starting = true;  ///< worlds have restarted since the last scan
-  bool states_read = false, ranges_read = false;
+  bool states_read = false, ranges_read = false, observations_read = false;
 };
 
 DeviceWorlds::State::State(const library::WorldSource& source, const Options& options) {
@@ -138,8 +147,7 @@ DeviceWorlds::State::State(const library::WorldSource& source, const Options& op
   episodes.emplace(world, options.seed);
   fleet.emplace(world, *device);
   scanner.emplace(world, scanners, *episodes, *device, fleet->poses(), fleet->absent());
-  fleet->then([this](gpu::Batch& batch) { scanner->record(batch); },
-              [this](gpu::Batch& batch) { scanner->prepare(batch, starting); });
+  record();
   for (std::uint32_t row = 0; row < world.movers.size() / world.copies; ++row)
     robots.push_back(control::robot_of({world, row, options.seed, nullptr, nullptr, &*sensor_set}));
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
@@ -151,6 +159,26 @@ DeviceWorlds::State::State(const library::WorldSource& source, const Options& op
   readings.elements = readings.stride = lasers.rows.front().elements;
 }
 
+/// Records what follows the motion.
+void DeviceWorlds::State::record() {
+  fleet->then(
+      [this](gpu::Batch& batch) {
+        scanner->record(batch);
+        if (observer) observer->record(batch);
+      },
+      [this](gpu::Batch& batch) {
+        scanner->prepare(batch, starting);
+        if (observer) observer->prepare(batch, starting);
+      });
+  changed();
+}
+
+/// Worlds, goals or what is observed have changed since the last submission.
+void DeviceWorlds::State::changed() {
+  starting = true;
+  states_read = ranges_read = observations_read = false;
+}
+
 void DeviceWorlds::State::step(std::span<const Twist> given) {
   if (!given.empty() && given.size() != commands.size())
     throw base::InputError(fmt::format("{} commands for {} rows; expected one per row", given.size(), commands.size()));
@@ -159,7 +187,8 @@ void DeviceWorlds::State::step(std::span<const Twist> given) {
       throw base::InputError(fmt::format("the command of row {} is ({}, {}, {}); expected finite numbers", i,
                                          given[i].forward, given[i].left, given[i].turn));
   for (std::size_t i = 0; i < given.size(); ++i) commands[i] = {given[i].forward, given[i].left, given[i].turn};
-  starting = states_read = ranges_read = false;
+  if (observer) scan_starts();  // measures the distances at the starts
+  starting = states_read = ranges_read = observations_read = false;
   fleet->set_commands(commands);
   fleet->move(interval);
 }
@@ -167,7 +196,7 @@ void DeviceWorlds::State::step(std::span<const Twist> given) {
 void DeviceWorlds::State::reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds) {
   library::check_restart(world, worlds, seeds);
   for (std::size_t i = 0; i < worlds.size(); ++i) restart(worlds[i], seeds[i]);
-  if (!worlds.empty()) starting = true, states_read = ranges_read = false;
+  if (!worlds.empty()) changed();
 }
 
 void DeviceWorlds::State::restart(std::uint32_t copy, std::uint64_t seed) {
@@ -181,6 +210,9 @@ void DeviceWorlds::State::restart(std::uint32_t copy, std::uint64_t seed) {
   }
   episodes->begin(copy, seed, 0);
   scanner->restart(copy);
+  if (!observer) return;
+  const std::size_t agents = observed->rows.size() / world.copies;
+  observer->restart(copy * agents, (copy + 1) * agents);
 }
 
 /// Scans once at the starts of worlds. All others repeat their last scan, to the same bytes.
@@ -205,6 +237,48 @@ void DeviceWorlds::State::read_ranges() {
   if (!ranges_read) scanner->read();
   readings.values = scanner->ranges(0).data();
   ranges_read = true;
+}
+
+void DeviceWorlds::State::observe(const ObservationOptions& options) {
+  if (options.stack > 1)
+    throw base::InputError(
+        fmt::format("stack is {}; worlds on a device observe 1: keep earlier observations yourself", options.stack));
+  if (options.sensor != readings.type)
+    throw base::InputError(
+        fmt::format("{} has no sensor of type '{}'; expected '{}'", world.file, options.sensor, readings.type));
+  const sensors::SensorSet::Group& lasers = *sensor_set->group(sensors::kLaser);
+  Observations::State checked(options, world, lasers);
+  robots::DeviceObserver::Settings settings{.agents = {},
+                                            .sensors = {},
+                                            .beams = lasers.rows.front().elements,
+                                            .every = options.every,
+                                            .speeds = options.speeds,
+                                            .goal_reach = options.goal_reach};
+  for (std::size_t i = 0; i < checked.agents.size(); ++i)
+    settings.agents.push_back({checked.agents[i].forward, checked.agents[i].turn, checked.rows[i], 0, 0, 0});
+  for (const double limit : checked.limits) settings.sensors.push_back({limit, 0.0});
+  auto made = std::make_unique<robots::DeviceObserver>(settings, *device, *fleet, scanner->table());
+  observer.swap(made);
+  observed.emplace(std::move(checked));
+  record();
+}
+
+void DeviceWorlds::State::set_goals(std::span<const double> goals) {
+  if (!observer) throw base::InputError("goals of agents that are not observed; call observe first");
+  if (goals.size() != observed->goals.size())
+    throw base::InputError(fmt::format("{} numbers for the goals of {} agents; expected two for each", goals.size(),
+                                       observed->rows.size()));
+  if (std::ranges::any_of(goals, [](double x) { return std::isinf(x); }))
+    throw base::InputError("a goal is infinite; expected finite numbers, or NaN for none");
+  observer->set_goals(goals);
+  changed();
+}
+
+void DeviceWorlds::State::read_observations() {
+  if (!observer) throw base::InputError("nothing is observed; call observe first");
+  scan_starts();
+  if (!observations_read) observer->read();
+  observations_read = true;
 }
 
 DeviceWorlds::DeviceWorlds(const std::string& world, const Options& options)
@@ -250,6 +324,27 @@ std::span<const std::uint8_t> DeviceWorlds::contacts() const {
 Readings DeviceWorlds::readings() const {
   library::translated([&] { state_->read_ranges(); });
   return state_->readings;
+}
+
+void DeviceWorlds::observe(const ObservationOptions& options) {
+  library::translated([&] { state_->observe(options); });
+}
+void DeviceWorlds::set_goals(std::span<const double> goals) {
+  library::translated([&] { state_->set_goals(goals); });
+}
+std::size_t DeviceWorlds::agents() const { return state_->observed ? state_->observed->rows.size() : 0; }
+std::size_t DeviceWorlds::columns() const { return state_->observed ? state_->observed->newest : 0; }
+std::span<const float> DeviceWorlds::observations() const {
+  library::translated([&] { state_->read_observations(); });
+  return state_->observer->values();
+}
+std::span<const double> DeviceWorlds::distances() const {
+  library::translated([&] { state_->read_observations(); });
+  return state_->observer->distances();
+}
+std::span<const double> DeviceWorlds::progress() const {
+  library::translated([&] { state_->read_observations(); });
+  return state_->observer->progress();
 }
 
 }  // namespace sensorfarm

@@ -44,15 +44,15 @@ Observations::State::State(const ObservationOptions& given, const world::World& 
     if (specs[i].elements != specs.front().elements)
       throw base::InputError(fmt::format("sensors of type '{}' have {} and {} elements; expected equal numbers",
                                          group.type->name, specs.front().elements, specs[i].elements));
-    limits_.push_back(specs[i].limit > 0.0 ? specs[i].limit : 1.0);
+    limits.push_back(specs[i].limit > 0.0 ? specs[i].limit : 1.0);
     if (!rows.empty() && rows.back() == specs[i].mover) continue;
     const world::Mover& mover = world.movers[specs[i].mover];
     rows.push_back(specs[i].mover);
-    agents_.push_back({i, speed_limit(mover.max_forward), speed_limit(mover.max_turn), NAN, NAN});
+    agents.push_back({i, speed_limit(mover.max_forward), speed_limit(mover.max_turn), NAN, NAN});
   }
   sensors_ = specs.size() / rows.size();
-  for (std::size_t k = 0; k < agents_.size(); ++k)
-    if (agents_[k].sensor != k * sensors_ || specs.size() % rows.size() != 0)
+  for (std::size_t k = 0; k < agents.size(); ++k)
+    if (agents[k].sensor != k * sensors_ || specs.size() % rows.size() != 0)
       throw base::InputError(
           fmt::format("robots have different numbers of sensors of type '{}'; expected the same", group.type->name));
   newest = sensors_ * elements_ + (options.speeds ? 2 : 0) + (options.goal_reach > 0.0 ? 3 : 0);
@@ -65,12 +65,12 @@ Observations::State::State(const ObservationOptions& given, const world::World& 
 
 /// Writes the newest observation of an agent. Readings of several columns: the first.
 void Observations::State::write(std::size_t agent) {
-  const Agent& who = agents_[agent];
+  const Agent& who = agents[agent];
   float* out = values.data() + agent * columns();
   const std::size_t step = options.every * now_.readings.columns;
   for (std::uint32_t sensor = who.sensor; sensor < who.sensor + sensors_; ++sensor) {
     const double* const from = now_.readings.values + sensor * now_.readings.stride;
-    const double limit = limits_[sensor];
+    const double limit = limits[sensor];
     for (std::size_t i = 0; i < elements_; ++i) *out++ = in_unit(from[i * step] / limit);
   }
   const Twist& velocity = now_.velocities[rows[agent]];
@@ -87,7 +87,7 @@ void Observations::State::write(std::size_t agent) {
 
 /// Computes the distance of the agent's goal. @param moved whether progress counts since the last call
 void Observations::State::measure(std::size_t agent, bool moved) {
-  Agent& who = agents_[agent];
+  Agent& who = agents[agent];
   const double x = goals[2 * agent], y = goals[2 * agent + 1];
   const bool same = x == who.goal_x && y == who.goal_y;
   const Pose& X = now_.poses[rows[agent]];
@@ -122,9 +122,9 @@ void Observations::State::step(const library::ObservedStep& now, base::ThreadPoo
 
 void Observations::State::restart(const library::ObservedStep& now, std::span<const std::uint32_t> worlds) {
   now_ = now;
-  const std::size_t agents = rows.size() / worlds_;
+  const std::size_t of_world = rows.size() / worlds_;
   for (const std::uint32_t world : worlds)
-    for (std::size_t agent = world * agents; agent < (world + 1) * agents; ++agent) {
+    for (std::size_t agent = world * of_world; agent < (world + 1) * of_world; ++agent) {
       ages[agent] = 0;
       measure(agent, false);
       write(agent);

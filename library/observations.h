@@ -35,18 +35,20 @@ struct Observations::State {
   void update();
 
   ObservationOptions options;
-  std::size_t newest = 0;  ///< columns of one observation
+  struct Agent {
+    std::uint32_t sensor;   ///< its first row of readings
+    double forward, turn;   ///< largest speeds
+    double goal_x, goal_y;  ///< of `distances`
+  };
+  std::vector<Agent> agents;
+  std::vector<double> limits;  ///< per row of readings
+  std::size_t newest = 0;      ///< columns of one observation
   std::vector<std::uint32_t> rows;
   std::vector<float> values;
   std::vector<double> goals, distances, progress;
   std::vector<std::uint32_t> ages;
 
  private:
-  struct Agent {
-    std::uint32_t sensor;   ///< its first row of readings
-    double forward, turn;   ///< largest speeds
-    double goal_x, goal_y;  ///< of `distances`
-  };
   std::size_t columns() const { return newest * options.stack; }
   void write(std::size_t agent);
   void measure(std::size_t agent, bool moved);
@@ -54,10 +56,8 @@ struct Observations::State {
   void fill(std::size_t agent);
 
   std::uint32_t worlds_;
-  std::size_t sensors_ = 0;     ///< per agent
-  std::size_t elements_ = 0;    ///< of a reading, as observed
-  std::vector<double> limits_;  ///< per row of readings
-  std::vector<Agent> agents_;
+  std::size_t sensors_ = 0;   ///< per agent
+  std::size_t elements_ = 0;  ///< of a reading, as observed
   sf::library::ObservedStep now_;
 };
 

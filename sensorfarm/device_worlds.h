@@ -54,6 +54,18 @@ class SENSORFARM_API DeviceWorlds {
   /// @throws DeviceError, as the three above, if the device ends long loops early (lavapipe before Mesa 25.0)
   Readings readings() const;
 
+  /// From now on each submission also computes what learners observe, as Simulation::observe, and what rewards need. A
+  /// later call replaces it. @throws Error as Simulation::observe, and for a stack of several observations
+  void observe(const ObservationOptions& options = {});
+  /// Sets x and y [m] of the goal of each agent, as Observations::goals and `update`. NaN: none.
+  /// @pre `observe`  @throws Error for a wrong number of goals and numbers that are infinite
+  void set_goals(std::span<const double> goals);
+  std::size_t agents() const;                   ///< robots with a laser, by row; 0 before `observe`
+  std::size_t columns() const;                  ///< of an observation
+  std::span<const float> observations() const;  ///< agents() * columns(), agent by agent
+  std::span<const double> distances() const;    ///< [m] per agent, as Observations::distances
+  std::span<const double> progress() const;     ///< [m] per agent, as Observations::progress
+
  private:
   struct State;
   explicit DeviceWorlds(std::shared_ptr<State> state);

@@ -216,6 +216,8 @@ void DeviceFleet::then(const std::function<void(gpu::Batch&)>& record, std::func
 }
 
 const gpu::Buffer& DeviceFleet::poses() const { return tables_->poses; }
+const gpu::Buffer& DeviceFleet::motions() const { return tables_->motions; }
+const gpu::Buffer& DeviceFleet::own_states() const { return tables_->own_states; }
 const gpu::Buffer& DeviceFleet::absent() const { return tables_->absent; }
 
 void DeviceFleet::set_commands(std::span<const base::Twist> commands) {

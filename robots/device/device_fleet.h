@@ -57,8 +57,11 @@ class DeviceFleet {
   /// outlive the last `move` or `stay`.
   /// @param record is called now, for each of them  @param prepare is called before each submission and may list copies
   void then(const std::function<void(gpu::Batch&)>& record, std::function<void(gpu::Batch&)> prepare = {});
-  /// Tables on the device: a FleetPose (robots/device/records.h) and a word, 1: absent, per mover.
+  /// Tables on the device, per mover: a FleetPose, FleetMotion and FleetOwn (robots/device/records.h), and a word, 1:
+  /// absent.
   const gpu::Buffer& poses() const;
+  const gpu::Buffer& motions() const;
+  const gpu::Buffer& own_states() const;
   const gpu::Buffer& absent() const;
 
   /// Simulates `dt` [ns] > 0, as Fleet::move. @pre `refusal` is "" for this `dt`

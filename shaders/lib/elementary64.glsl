@@ -65,6 +65,39 @@ dvec2 sin_cos64(double angle) {
   return dvec2(quadrant >= 2 ? -turned.x : turned.x, quadrant == 1 || quadrant == 2 ? -turned.y : turned.y);
 }
 
+/// Returns a - b of unevaluated sums.
+dvec2 sum_difference(dvec2 a, dvec2 b) {
+  precise double high = a.x - b.x;
+  precise double low = ((a.x - high) - b.x) + (a.y - b.y);
+  return dvec2(high, low);
+}
+
+/// base::atan2 of finite numbers.
+double arc_tangent64(double y, double x) {
+  const dvec2 arcs[5] = dvec2[5](dvec2(0.0LF, 0.0LF), dvec2(0.24497866312686414LF, 1.0698755618734451e-17LF), dvec2(0.4636476090008061LF, 2.2698777452961687e-17LF), dvec2(0.6435011087932844LF, 1.5834785051444286e-17LF), dvec2(0.7853981633974483LF, 3.061616997868383e-17LF));
+  const double up = abs(y), along = abs(x);
+  const bool steep = up > along;
+  const double larger = steep ? up : along, smaller = steep ? along : up;
+  precise double quotient = smaller / larger;
+  const double tangent = larger == 0.0LF ? 0.0LF : smaller == larger ? 1.0LF : quotient;
+  precise double quarters = 4.0LF * tangent;
+  const double k = nearest64(quarters);
+  precise double beyond = (quarters - k) / (4.0LF + k * tangent);
+  const double t = k == 0.0LF ? tangent : beyond;
+  precise double s = t * t;
+  const dvec2 arc = arcs[int(k)];
+  const double series = polynomial64(s, -1.0LF / 3.0LF, 1.0LF / 5.0LF, -1.0LF / 7.0LF, 1.0LF / 9.0LF, -1.0LF / 11.0LF,
+                                     1.0LF / 13.0LF, -1.0LF / 15.0LF, 1.0LF / 17.0LF);
+  precise double rest = t * s * series + arc.y;
+  precise double high = arc.x + t;
+  precise double low = ((arc.x - high) + t) + rest;
+  dvec2 found = dvec2(high, low);
+  if (steep) found = sum_difference(dvec2(1.5707963267948966LF, 6.123233995736766e-17LF), found);
+  if (is_negative(x)) found = sum_difference(dvec2(3.141592653589793LF, 1.2246467991473532e-16LF), found);
+  precise double angle = found.x + found.y;
+  return with_sign(angle, y);
+}
+
 double sinc64(double x) {
   precise double series = 1.0LF - x * x / 6.0LF;
   precise double ratio = sin_cos64(x).x / x;

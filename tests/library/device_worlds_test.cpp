@@ -17,6 +17,7 @@ namespace sensorfarm {
 namespace {
 
 constexpr std::uint32_t kCopies = 3;
+const ObservationOptions kSeen{.every = 4, .goal_reach = 2.0};
 
 /// Returns a small room with a crate that may be missing. @param robot further keys of the robot
 std::string room(const std::string& laser = "noise [0.01 0.02 0]", const std::string& robot = "",
@@ -41,7 +42,11 @@ class Twin {
  public:
   explicit Twin(std::uint32_t robots) : Twin(Options{.robots = robots, .seed = 5, .copies = kCopies}) {}
   explicit Twin(const Options& options)
-      : device_(DeviceWorlds::from_text(room(), options)), host_(Simulation::from_text(room(), options)) {}
+      : device_(DeviceWorlds::from_text(room(), options)),
+        host_(Simulation::from_text(room(), options)),
+        seen_(host_.observe(kSeen)) {
+    device_.observe(kSeen);
+  }
 
   void step() {
     std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -52,6 +57,14 @@ class Twin {
   void reset(const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds) {
     device_.reset(worlds, seeds), host_.reset(worlds, seeds);
   }
+  /// New goals for all agents, but none for the first.
+  void set_goals() {
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    for (double& goal : seen_.goals()) goal = any(random_);
+    seen_.goals()[0] = NAN;
+    device_.set_goals(seen_.goals());
+    seen_.update();
+  }
   void compare(const std::string& when) {
     const Readings own = device_.readings(), expected = host_.readings("laser");
     ASSERT_EQ(own.sensors, expected.sensors);
@@ -61,6 +74,13 @@ class Twin {
       expect_bytes(own.row(i), expected.row(i), "readings of laser " + std::to_string(i) + when);
       for (const double range : own.row(i)) echoes_ += range < 2.5;
     }
+    expect_bytes(device_.observations(), seen_.values(), "observations" + when);
+    for (std::size_t i = 0; i < seen_.agents(); ++i) {
+      const double own_distance = device_.distances()[i], distance = seen_.distances()[i];
+      EXPECT_TRUE(own_distance == distance || (std::isnan(own_distance) && std::isnan(distance))) << when;
+      EXPECT_EQ(device_.progress()[i], seen_.progress()[i]) << "agent " << i << when;
+      if (seen_.progress()[i] != 0.0) ++progressed_;
+    }
     expect_bytes(device_.poses(), host_.poses(), "poses" + when);
     expect_bytes(device_.velocities(), host_.velocities(), "velocities" + when);
     expect_bytes(device_.contacts(), host_.contacts(), "contacts" + when);
@@ -68,12 +88,14 @@ class Twin {
   }
   std::size_t echoes() const { return echoes_; }
   std::size_t contacts() const { return contacts_; }
+  std::size_t progressed() const { return progressed_; }
 
  private:
   DeviceWorlds device_;
   Simulation host_;
+  Observations seen_;
   std::mt19937_64 random_{1};
-  std::size_t echoes_ = 0, contacts_ = 0;
+  std::size_t echoes_ = 0, contacts_ = 0, progressed_ = 0;
 };
 
 /// Compares 100 ticks with restarts: two without a reading between them, then a step before any reading.
@@ -83,12 +105,14 @@ void compare_hundred_ticks(std::uint32_t robots) {
   for (int tick = 1; tick <= 100 && !testing::Test::HasFatalFailure(); ++tick) {
     twin.step();
     if (tick > 40 && tick < 50) continue;  // nothing is read
+    if (tick % 25 == 5) twin.set_goals();
     if (tick != 70) twin.compare(" in tick " + std::to_string(tick));
     if (tick == 30) twin.reset({1}, {77}), twin.reset({2, 1}, {8, 9}), twin.compare(" at a restart");
     if (tick == 60 || tick == 70) twin.reset({0}, {static_cast<std::uint64_t>(tick)});
   }
   EXPECT_GT(twin.echoes(), 1'000u);
   EXPECT_GT(twin.contacts(), 20u);
+  EXPECT_GT(twin.progressed(), 100u);
 }
 
 TEST(DeviceWorlds, BytesOfSimulationForOneRobotPerWorld) { compare_hundred_ticks(1); }
@@ -143,6 +167,21 @@ TEST(DeviceWorlds, RefusesBadCallsAndGoesOn) {
   sf::expect_in("there is no world 2", reset({2}, {1}));
   sf::expect_in("given twice", reset({1, 1}, {1, 2}));
   sf::expect_in("1 seeds for 2 worlds", reset({0, 1}, {1}));
+  const auto observe = [&](const ObservationOptions& options) {
+    return sf::refusal_of<Error>([&] { worlds.observe(options); });
+  };
+  const auto set_goals = [&](std::vector<double> goals) {
+    return sf::refusal_of<Error>([&] { worlds.set_goals(goals); });
+  };
+  sf::expect_in("call observe first", set_goals({}));
+  sf::expect_in("call observe first", sf::refusal_of<Error>([&] { worlds.observations(); }));
+  sf::expect_in("stack is 2", observe({.stack = 2}));
+  sf::expect_in("expected 'laser'", observe({.sensor = "sonar"}));
+  sf::expect_in("every is 0", observe({.every = 0}));
+  EXPECT_EQ(observe({}), "");
+  sf::expect_in("2 numbers for the goals of 2 agents", set_goals({1.0, 2.0}));
+  sf::expect_in("infinite", set_goals({1.0, 2.0, 3.0, HUGE_VAL}));
+  EXPECT_EQ(worlds.columns(), 33u);
   EXPECT_EQ(step({}), "");
 }
 

@@ -11,6 +11,7 @@
 #include "shaders/fleet_contacts.comp.h"
 #include "shaders/fleet_index.comp.h"
 #include "shaders/fleet_start.comp.h"
+#include "shaders/observe.comp.h"
 #include "shaders/pose_scans.comp.h"
 
 namespace sf {
@@ -40,11 +41,13 @@ Arithmetic arithmetic_of(std::span<const std::uint32_t> spirv) {
 TEST(Contraction, KernelsOfAFleetAndItsScansFuseNothing) {
   const Arithmetic start = arithmetic_of(fleet_start_comp_spv), advance = arithmetic_of(fleet_advance_comp_spv),
                    commit = arithmetic_of(fleet_commit_comp_spv), contacts = arithmetic_of(fleet_contacts_comp_spv),
-                   index = arithmetic_of(fleet_index_comp_spv), scans = arithmetic_of(pose_scans_comp_spv);
+                   index = arithmetic_of(fleet_index_comp_spv), scans = arithmetic_of(pose_scans_comp_spv),
+                   observe = arithmetic_of(observe_comp_spv);
   EXPECT_GT(start.all, 30u);
   EXPECT_GT(advance.all, 150u);
   EXPECT_GT(contacts.all, 80u);
-  for (const Arithmetic& kernel : {start, index, advance, commit, contacts, scans}) EXPECT_EQ(kernel.fusible, 0u);
+  for (const Arithmetic& kernel : {start, index, advance, commit, contacts, scans, observe})
+    EXPECT_EQ(kernel.fusible, 0u);
 }
 
 }  // namespace

@@ -6,10 +6,10 @@
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer angles;   // a double per row, in the first two words
-layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // four texels per row: eight results
+layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // five texels per row: ten results
 
 void store(int row, int texel, double first, double second) {
-  imageStore(results, 4 * row + texel, uvec4(unpackDouble2x32(first), unpackDouble2x32(second)));
+  imageStore(results, 5 * row + texel, uvec4(unpackDouble2x32(first), unpackDouble2x32(second)));
 }
 
 void main() {
@@ -20,4 +20,5 @@ void main() {
   store(row, 1, sinc64(x), wrap_angle64(x));
   store(row, 2, nearest64(x), ceil64(abs(x)));
   store(row, 3, log64(most(abs(x), 1e-300LF)), with_sign(1.0LF, x));
+  store(row, 4, arc_tangent64(x, 0.7LF), arc_tangent64(-0.3LF, x));
 }

@@ -21,9 +21,10 @@
 namespace sf {
 namespace {
 
-constexpr std::array kNames{"sin", "cos", "sinc", "wrap_angle", "rint", "ceil", "log", "copysign"};
+constexpr std::array kNames{"sin",  "cos", "sinc",     "wrap_angle", "rint",
+                            "ceil", "log", "copysign", "atan2 up",   "atan2 along"};
 
-std::array<double, 8> expected_of(double x) {
+std::array<double, 10> expected_of(double x) {
   const auto [s, c] = base::sin_cos(x);
   return {s,
           c,
@@ -32,7 +33,9 @@ std::array<double, 8> expected_of(double x) {
           std::rint(x) + 0.0,
           std::ceil(std::abs(x)),
           base::log(std::max(std::abs(x), 1e-300)),
-          std::copysign(1.0, x)};
+          std::copysign(1.0, x),
+          base::atan2(x, 0.7),
+          base::atan2(-0.3, x)};
 }
 
 /// Returns angles at and next to multiples of pi/2, around the threshold of sinc, and random ones, of both signs.
@@ -57,7 +60,7 @@ TEST(ElementaryKernel, BytesOfTheHost) {
   gpu::Kernel kernel(device(), "elementary", elementary_comp_spv);
   xs.resize(kernel.padded(xs.size()), 1.0);
   gpu::Buffer in(device(), "angles", Role::upload, Texel::u32x4, xs.size());
-  gpu::Buffer out(device(), "results", Role::download, Texel::u32x4, 4 * xs.size());
+  gpu::Buffer out(device(), "results", Role::download, Texel::u32x4, 5 * xs.size());
   gpu::Buffer counts(device(), "counts", Role::upload, Texel::u32, 4);
   for (std::size_t i = 0; i < xs.size(); ++i) in.host<double>()[2 * i] = xs[i];
   counts.host<std::uint32_t>()[0] = static_cast<std::uint32_t>(xs.size() / kernel.group_size());
@@ -74,8 +77,8 @@ TEST(ElementaryKernel, BytesOfTheHost) {
   for (std::size_t i = 0; i < xs.size(); ++i) {
     const auto expected = expected_of(xs[i]);
     for (std::size_t k = 0; k < expected.size(); ++k)
-      ASSERT_EQ(std::bit_cast<std::uint64_t>(expected[k]), std::bit_cast<std::uint64_t>(found[8 * i + k]))
-          << kNames[k] << " of " << xs[i] << " is " << expected[k] << ", not " << found[8 * i + k];
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(expected[k]), std::bit_cast<std::uint64_t>(found[expected.size() * i + k]))
+          << kNames[k] << " of " << xs[i] << " is " << expected[k] << ", not " << found[expected.size() * i + k];
   }
 }
 
