@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <map>
@@ -9,6 +10,7 @@
 
 #include "python/controllers.h"
 #include "python/types.h"
+#include "sensorfarm/device_worlds.h"
 #include "sensorfarm/simulation.h"
 
 namespace sensorfarm::python {
@@ -61,9 +63,22 @@ struct PySimulation {
   pid_t process = getpid();
 };
 
+/// Worlds on a device; arrays are copies.
+struct PyDeviceWorlds {
+  explicit PyDeviceWorlds(DeviceWorlds made) : farm(std::move(made)) {}
+  PyDeviceWorlds(PyDeviceWorlds&&) noexcept = default;
+  /// As for simulations.
+  ~PyDeviceWorlds() {
+    if (process != getpid()) new DeviceWorlds(std::move(farm));
+  }
+
+  DeviceWorlds farm;
+  pid_t process = getpid();
+};
+
 /// Calls this simulation without the GIL.
-template <class Call>
-auto in_farm(const PySimulation& s, Call&& call) {
+template <class Owner, class Call>
+auto in_farm(const Owner& s, Call&& call) {
   if (s.process != getpid())
     throw Error("this simulation was created before the process was forked; expected one that this process created");
   return in_farm(call);
@@ -257,8 +272,8 @@ void set_shape(PySimulation& s, std::size_t row, Text shape, Text color,
 }
 
 /// Returns numbers per world and row; none for None. @param width of a row
-Commands rows_of(const PySimulation& s, const py::object& given, const char* name, std::size_t worlds,
-                 std::size_t width) {
+template <class Owner>
+Commands rows_of(const Owner& s, const py::object& given, const char* name, std::size_t worlds, std::size_t width) {
   if (given.is_none()) return {};
   Commands rows = Commands::ensure(given);
   const std::size_t robots = s.farm.robots().size();
@@ -494,6 +509,63 @@ void add_simulation(py::module_& module) {
   add_state(c), add_readings(c);
 }
 
+/// Returns a copy with an axis of worlds. @param width numbers of an entry; 0: the entries are numbers
+template <class Value, class Row>
+py::array by_world(const PyDeviceWorlds& s, std::span<const Row> (DeviceWorlds::*read)() const, std::size_t width) {
+  const std::span<const Row> data = in_farm(s, [&] { return (s.farm.*read)(); });
+  const std::size_t entries = data.size_bytes() / sizeof(Value) / std::max<std::size_t>(width, 1);
+  std::vector<py::ssize_t> shape{count(s.farm.copies()), count(entries / s.farm.copies())};
+  if (width > 0) shape.push_back(count(width));
+  return py::array(py::dtype::of<Value>(), std::move(shape), data.data());
+}
+
+py::array ranges_by_world(const PyDeviceWorlds& s) {
+  const Readings r = in_farm(s, [&] { return s.farm.readings(); });
+  const std::size_t worlds = s.farm.copies();
+  return py::array(py::dtype::of<double>(), {count(worlds), count(r.sensors / worlds), count(r.elements)}, r.values);
+}
+
+PyDeviceWorlds made_on_device(Text world, const std::optional<std::string>& text, const py::kwargs& keywords) {
+  Keywords given(keywords);
+  const Options options = options_of(given);
+  given.finish();
+  return in_farm([&] {
+    return PyDeviceWorlds(text ? DeviceWorlds::from_text(*text, options, world) : DeviceWorlds(world, options));
+  });
+}
+
+/// The base of sensorfarm.DeviceWorlds (sensorfarm/worlds.py).
+void add_device_worlds(py::module_& module) {
+  using W = PyDeviceWorlds;
+  py::class_<W>(module, "_DeviceWorlds")
+      .def(py::init(&made_on_device), py::arg("world"), py::arg("text") = py::none())
+      .def_property_readonly("rows", [](const W& s) { return s.farm.robots(); })
+      .def_property_readonly("interval", [](const W& s) { return s.farm.interval(); })
+      .def("step",
+           [](W& s, const py::object& given) {
+             const Commands commands = rows_of(s, given, "commands", s.farm.copies(), 3);
+             in_farm(s, [&] { s.farm.step(as_rows<Twist>(commands)); });
+           })
+      .def("reset", [](W& s, const std::vector<std::uint32_t>& worlds,
+                       const std::vector<std::uint64_t>& seeds) { in_farm(s, [&] { s.farm.reset(worlds, seeds); }); })
+      .def("poses", [](const W& s) { return by_world<double>(s, &DeviceWorlds::poses, 4); })
+      .def("velocities", [](const W& s) { return by_world<double>(s, &DeviceWorlds::velocities, 3); })
+      .def("contacts", [](const W& s) { return by_world<bool>(s, &DeviceWorlds::contacts, 0); })
+      .def("readings", &ranges_by_world)
+      .def(
+          "observe",
+          [](W& s, Text sensor, std::uint32_t every, bool speeds, double goal_reach, std::uint32_t stack) {
+            in_farm(s, [&] { s.farm.observe({sensor, every, speeds, goal_reach, stack}); });
+          },
+          py::arg("sensor") = "laser", py::kw_only(), py::arg("every") = 1, py::arg("speeds") = true,
+          py::arg("goal_reach") = 0.0, py::arg("stack") = 1)
+      .def("set_goals",
+           [](W& s, const Commands& goals) { in_farm(s, [&] { s.farm.set_goals(as_rows<double>(goals)); }); })
+      .def("observations", [](const W& s) { return by_world<float>(s, &DeviceWorlds::observations, s.farm.columns()); })
+      .def("distances", [](const W& s) { return by_world<double>(s, &DeviceWorlds::distances, 0); })
+      .def("progress", [](const W& s) { return by_world<double>(s, &DeviceWorlds::progress, 0); });
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_sensorfarm, module) {
@@ -503,6 +575,7 @@ PYBIND11_MODULE(_sensorfarm, module) {
   add_controller_types(module);
   add_observations(module);
   add_simulation(module);
+  add_device_worlds(module);
   module.def("_abort_ranks", &abort_ranks);
   module.def("add_model_controller", &add_model_class, py::arg("controller"), py::arg("name") = py::none());
   module.def(

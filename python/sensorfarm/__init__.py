@@ -18,9 +18,9 @@ import numpy as _numpy
 from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot, Neighbour,
                           Observations, Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, WorldObject,
                           _abort_ranks, add_model_controller, load_plugin)
-from .worlds import Worlds
+from .worlds import DeviceWorlds, Worlds
 
-__all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite", "NearRobot",
+__all__ = ["NONE", "DeviceError", "DeviceWorlds", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite", "NearRobot",
            "Neighbour", "Observations", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist",
            "WorldObject", "Worlds", "add_model_controller", "load_plugin"]
 

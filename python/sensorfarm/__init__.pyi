@@ -503,6 +503,44 @@ def add_model_controller(controller: type[ModelController], name: str | None = N
 def load_plugin(file: str) -> None:
     """Loads controllers from a shared library or Python file, so that `controller` can name them. Raises Error."""
 
+class DeviceWorlds:
+    """Worlds that stay on a Vulkan device: a step is one submission, and nothing is copied back until it is asked for.
+    For robots with lasers that commands drive; all else is refused. Arrays are copies, as those of Worlds."""
+    def __init__(self, world: str, copies: int = 1, seed: int = 1, text: str | None = None, **options: Any) -> None:
+        """options: robots, of, robot_from, noise, accuracy, device and controller="none", as those of Simulation."""
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(worlds, robots, 4): x, y, z [m], yaw [rad]."""
+    @property
+    def velocities(self) -> NDArray[np.float64]:
+        """(worlds, robots, 3): forward, left [m/s], turn [rad/s]."""
+    @property
+    def contacts(self) -> NDArray[np.bool_]:
+        """(worlds, robots): a wall or a robot stopped it."""
+    @property
+    def readings(self) -> NDArray[np.float64]:
+        """(worlds, lasers, beams): the newest ranges [m]."""
+    def observe(self, *, sensor: str = "laser", every: int = 1, speeds: bool = True, goal_reach: float = 0.0) -> None:
+        """From now on each step also computes `observations`."""
+    @property
+    def observations(self) -> NDArray[np.float32]:
+        """(worlds, agents, columns) in [-1, 1], as Observations.values."""
+    @property
+    def distances(self) -> NDArray[np.float64]:
+        """(worlds, agents) [m] to the goal."""
+    @property
+    def progress(self) -> NDArray[np.float64]:
+        """(worlds, agents) [m]: how much nearer the goal came in the last step."""
+    def set_goals(self, goals: ArrayLike) -> None:
+        """goals: (worlds, agents, 2) of x, y [m]; NaN: none."""
+    def step(self, commands: ArrayLike | None = None) -> None:
+        """One tick of all worlds. commands: (worlds, robots, 3) of forward, left [m/s], turn [rad/s]; None:
+        unchanged."""
+    def reset(self, seed: int | None = None, mask: ArrayLike | None = None, seeds: ArrayLike | None = None) -> None:
+        """Restarts worlds, as Worlds.reset."""
+    def __len__(self) -> int:
+        """Number of worlds."""
+
 class Worlds:
     """Worlds with equally many robots, simulated at once; arrays have an axis of worlds. World k has seed + k, and
     gives the bytes of a Simulation of that world alone. Arrays of one file are views, of several files copies."""

@@ -2,7 +2,7 @@
 
 import numpy
 
-from ._sensorfarm import Simulation
+from ._sensorfarm import Simulation, _DeviceWorlds
 
 
 _SHAPES = {"starts": (4,), "present": (), "sizes": (3,), "slip": (), "acceleration": (), "noise": ()}
@@ -34,6 +34,22 @@ def _row_of(part, name):
         raise ValueError(f"'{name}' is static, so all worlds share it; expected a robot, or a model that a key such as "
                          "random_present 1 makes an object of each world")
     raise ValueError(f"there is no '{name}'; expected one of {', '.join(names)}")
+
+
+def _chosen(last, seed, mask, seeds):
+    """Returns the numbers of the worlds that restart, and their seeds. last: the present seeds of all."""
+    count = len(last)
+    chosen = numpy.arange(count) if mask is None else numpy.flatnonzero(mask)
+    if mask is not None and numpy.shape(mask) != (count,):
+        raise ValueError(f"mask has the shape {numpy.shape(mask)}; expected ({count},)")
+    if seeds is None:
+        seeds = last[chosen] + count if seed is None else seed + chosen
+    seeds = numpy.asarray(seeds)
+    if seeds.size and (seeds.dtype.kind not in "iu" or seeds.min() < 0):
+        raise ValueError(f"seeds are {seeds}; expected whole numbers from 0 on")
+    if seeds.shape != chosen.shape:
+        raise ValueError(f"seeds have the shape {seeds.shape}; expected one for each of {len(chosen)} worlds")
+    return chosen, seeds
 
 
 class Worlds:
@@ -157,16 +173,7 @@ class Worlds:
         robots, numbers), or a dict of these without the axis of robots by the name of a robot or an object, such as
         sizes={"crate": [0.5, 0.4, 1]}. NaN: the seed's choice.
         """
-        chosen = numpy.arange(len(self)) if mask is None else numpy.flatnonzero(mask)
-        if mask is not None and numpy.shape(mask) != (len(self),):
-            raise ValueError(f"mask has the shape {numpy.shape(mask)}; expected ({len(self)},)")
-        if seeds is None:
-            seeds = self.seeds[chosen] + len(self) if seed is None else seed + chosen
-        seeds = numpy.asarray(seeds)
-        if seeds.size and (seeds.dtype.kind not in "iu" or seeds.min() < 0):
-            raise ValueError(f"seeds are {seeds}; expected whole numbers from 0 on")
-        if seeds.shape != chosen.shape:
-            raise ValueError(f"seeds have the shape {seeds.shape}; expected one for each of {len(chosen)} worlds")
+        chosen, seeds = _chosen(self.seeds, seed, mask, seeds)
         given = {"starts": starts, "present": present, "sizes": sizes, "slip": slip, "acceleration": acceleration,
                  "noise": noise}
         given = {what: _checked(what, values, len(chosen), len(self.robots)) for what, values in given.items()}
@@ -195,3 +202,63 @@ class Worlds:
         """Returns (height, width, 3) uint8: one world from above."""
         part, k = self._part_of(world)
         return part.image(width, height, view, world=k)
+
+
+class DeviceWorlds:
+    """Worlds that stay on a Vulkan device: a step is one submission, and nothing is copied back until it is asked for.
+
+        worlds = sensorfarm.DeviceWorlds("rooms.world", copies=1000, robots=1)
+        worlds.observe(every=4, goal_reach=10.0)
+        worlds.set_goals(goals)                          # (worlds, agents, 2)
+        while True:
+            worlds.step(policy(worlds.observations))     # (worlds, agents, columns) -> (worlds, robots, 3)
+            worlds.reset(mask=worlds.contacts.any(axis=1))
+
+    For robots with lasers that commands drive; all else is refused, and simulated by Worlds, to the same bytes. Arrays
+    are copies, with rows as those of Worlds. World k has seed + k.
+
+    options: robots, of, robot_from, noise, accuracy, device and controller="none", as those of Simulation.
+    """
+
+    def __init__(self, world, copies=1, seed=1, text=None, **options):
+        self._farm = _DeviceWorlds(world, text, copies=copies, seed=seed, **options)
+        self._all = len(self._farm.rows)
+        self.robots = self._farm.rows[:options.get("robots") or self._all]
+        self.interval = self._farm.interval
+        self.seeds = numpy.arange(seed, seed + copies)
+
+    def __len__(self):
+        return len(self.seeds)
+
+    poses = property(lambda self: self._farm.poses()[:, :len(self.robots)], doc=Worlds.poses.__doc__)
+    velocities = property(lambda self: self._farm.velocities()[:, :len(self.robots)], doc=Worlds.velocities.__doc__)
+    contacts = property(lambda self: self._farm.contacts()[:, :len(self.robots)], doc=Worlds.contacts.__doc__)
+    readings = property(lambda self: self._farm.readings(), doc="(worlds, lasers, beams): the newest ranges [m].")
+
+    def observe(self, **options):
+        """From now on each step also computes `observations`, with the options of Simulation.observe but `stack`."""
+        self._farm.observe(**options)
+
+    observations = property(lambda self: self._farm.observations(), doc="(worlds, agents, columns) float32 in [-1, 1].")
+    distances = property(lambda self: self._farm.distances(), doc="(worlds, agents) [m] to the goal.")
+    progress = property(lambda self: self._farm.progress(),
+                        doc="(worlds, agents) [m]: how much nearer the goal came in the last step.")
+
+    def set_goals(self, goals):
+        """goals: (worlds, agents, 2) of x, y [m]; NaN: none."""
+        self._farm.set_goals(goals)
+
+    def step(self, commands=None):
+        """One tick of all worlds. commands: (worlds, robots, 3): forward, left [m/s], turn [rad/s]; None: unchanged."""
+        if commands is not None:
+            commands = numpy.asarray(commands, dtype=float)
+            if commands.shape != (len(self), len(self.robots), 3):
+                raise ValueError(f"commands have the shape {commands.shape}; expected ({len(self)}, {len(self.robots)}, 3)")
+            commands = numpy.pad(commands, ((0, 0), (0, self._all - len(self.robots)), (0, 0)))
+        self._farm.step(commands)
+
+    def reset(self, seed=None, mask=None, seeds=None):
+        """Restarts worlds, as Worlds.reset; the others are unchanged. Reading them before the next step scans again."""
+        chosen, seeds = _chosen(self.seeds, seed, mask, seeds)
+        self._farm.reset(chosen, seeds)
+        self.seeds[chosen] = seeds

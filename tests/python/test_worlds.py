@@ -251,5 +251,51 @@ class Observed(unittest.TestCase):
         self.assertEqual([worlds.hash(k) for k in range(3)], [twin.hash(k) for k in range(3)])
 
 
+class OnADevice(unittest.TestCase):
+    """The bytes are compared with those of simulations in tests/library/device_worlds_test.cpp."""
+    TEXT = ROOM.replace("gyro( noise 0.01 rate 4 latency 0.1 )", "")
+
+    def both(self, **options):
+        options = {"copies": 3, "seed": 4, "text": self.TEXT, "robots": 2, **options}
+        return sensorfarm.DeviceWorlds("room.world", **options), sensorfarm.Worlds("room.world", **options)
+
+    def test_equals_worlds(self):
+        device, host = self.both()
+        device.observe(every=5, goal_reach=4.0)
+        seen, = host.observe(every=5, goal_reach=4.0)
+        goals = numpy.linspace(-2, 2, 12).reshape(3, 2, 2)
+        device.set_goals(goals)
+        seen.goals[:] = goals.reshape(-1, 2)
+        seen.update()
+        mask = numpy.array([False, True, False])
+        for step in range(8):
+            if step == 4:
+                device.reset(mask=mask), host.reset(mask=mask)
+            commands = numpy.full((3, 2, 3), [0.4, 0.0, 0.2 * step])
+            device.step(commands), host.step(commands)
+        self.assertEqual(device.observations.shape[:2], (3, 2))
+        for own, other in ((device.poses, host.poses), (device.velocities, host.velocities),
+                           (device.contacts, host.contacts), (device.readings, host.readings("laser")),
+                           (device.observations, seen.values.reshape(3, 2, -1)), (device.seeds, host.seeds),
+                           (device.progress, seen.progress.reshape(3, 2)),
+                           (device.distances, seen.distances.reshape(3, 2))):
+            self.assertEqual(own.dtype, other.dtype)
+            numpy.testing.assert_array_equal(own, other)
+        self.assertTrue((device.progress != 0).any())
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(sensorfarm.Error, "sensors of type 'gyro'; use Simulation with copies .in Python: Worlds"):
+            self.both(text=ROOM)
+        with self.assertRaisesRegex(sensorfarm.DeviceError, "a Vulkan device is required"):
+            self.both(device="host")
+        device = self.both()[0]
+        with self.assertRaisesRegex(ValueError, r"commands have the shape \(2, 3\); expected \(3, 2, 3\)"):
+            device.step(numpy.zeros((2, 3)))
+        with self.assertRaisesRegex(ValueError, "mask has the shape"):
+            device.reset(mask=[True])
+        with self.assertRaisesRegex(sensorfarm.Error, "call observe first"):
+            device.observations
+
+
 if __name__ == "__main__":
     unittest.main()
