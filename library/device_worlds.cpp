@@ -8,12 +8,11 @@
 
 #include "base/error.h"
 #include "base/time.h"
-#include "control/model_controllers.h"
 #include "control/own_controller.h"
+#include "library/device_support.h"
 #include "library/errors.h"
 #include "library/loading.h"
 #include "library/observations.h"
-#include "library/reading_table.h"
 #include "raycast/pose_scanner.h"
 #include "robots/device/device_fleet.h"
 #include "robots/device/device_observer.h"
@@ -26,54 +25,6 @@ namespace sensorfarm {
 using namespace sf;
 
 namespace {
-
-std::string refused_option(const Options& options) {
-  const std::pair<bool, const char*> refused[] = {
-      {!options.record.empty(), "record"},
-      {options.ranks, "ranks"},
-      {!options.positioning.empty(), "positioning"},
-      {!options.faults.empty(), "faults"},
-      {options.caster != "auto", "caster"},
-      {!options.controller.empty() && options.controller != "none", "controller"}};
-  const auto* const found = std::ranges::find(refused, true, &std::pair<bool, const char*>::first);
-  return found == std::end(refused) ? "" : fmt::format("the option '{}'", found->second);
-}
-
-std::string refused_mover(const world::Mover& mover, bool uses_controllers) {
-  if (uses_controllers && !control::controller_of(mover, {}).name.empty())
-    return fmt::format("the controller '{}' of '{}' (the option controller \"none\" leaves it out)", mover.controller,
-                       mover.name);
-  if (mover.random_start.size_spread != glm::dvec3{}) return fmt::format("the random size of '{}'", mover.name);
-  if (mover.random_start.slip > 0.0 || mover.random_start.acceleration > 0.0)
-    return fmt::format("the random slip or acceleration of '{}'", mover.name);
-  return "";
-}
-
-std::string refused_sensor(const world::World& world, const sensors::SensorSet& sensor_set) {
-  for (const sensors::SensorSet::Group& group : sensor_set.groups())
-    if (group.type->id != sensors::kLaser) return fmt::format("sensors of type '{}'", group.type->name);
-  const sensors::SensorSet::Group* const lasers = sensor_set.group(sensors::kLaser);
-  if (lasers == nullptr) return "robots without a laser";
-  const auto& settings = sensor_set.settings_of<sensors::CastLaser>(sensors::kLaser);
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    const sensors::SensorSpec& laser = lasers->rows[i];
-    if (laser.elements != lasers->rows.front().elements) return "lasers of different numbers of samples";
-    if (settings[i].laser.resolution > 1) return fmt::format("samples of '{}' between its beams", laser.name);
-    if (!library::at_every_tick(laser, world.interval))
-      return fmt::format(
-          "'{}' with a rate of {:g} Hz, phase of {:g} s and latency of {:g} s (expected {:g} Hz, 0 and 0)", laser.name,
-          laser.rate, laser.phase, laser.latency, 1.0 / world.interval);
-  }
-  return "";
-}
-
-/// Returns what worlds on a device do not support; "" if it is nothing.
-std::string refusal(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
-  if (!control::controlled_models(world).empty()) return "controllers of models that are not robots";
-  for (const world::Mover& mover : world.movers)
-    if (std::string what = refused_mover(mover, options.controller.empty()); !what.empty()) return what;
-  return refused_sensor(world, sensor_set);
-}
 
 std::vector<raycast::Scanner> scanners_of(const sensors::SensorSet& sensor_set, bool noise) {
   std::vector<raycast::Scanner> scanners;
@@ -133,13 +84,13 @@ struct DeviceWorlds::State {
 };
 
 DeviceWorlds::State::State(const library::WorldSource& source, const Options& options) {
-  check_support(source.file, refused_option(options));
+  check_support(source.file, library::unsupported_option(options));
   Options wanted = options;
   wanted.require_vulkan = true;
   device = library::shared_device(wanted);
   loaded = library::load(source, options);
   sensor_set.emplace(world);
-  check_support(source.file, refusal(world, *sensor_set, options));
+  check_support(source.file, library::unsupported(world, *sensor_set, options));
   interval = base::nanoseconds(world.interval);
   const std::vector<raycast::Scanner> scanners = scanners_of(*sensor_set, options.noise);
   check(source.file, robots::DeviceFleet::refusal(world, interval));
