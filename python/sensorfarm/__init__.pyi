@@ -7,6 +7,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+_ByRow = ArrayLike | Mapping[str, ArrayLike] | None
+"""An array, or arrays by name."""
+
 NONE: int
 """No model: the beam met nothing within its range."""
 
@@ -571,10 +574,13 @@ class Worlds:
         """One tick of all worlds. commands: (worlds, robots, 3) of forward, left [m/s], turn [rad/s]; None:
         unchanged."""
     def reset(self, seed: int | None = None, mask: ArrayLike | None = None, seeds: ArrayLike | None = None,
-              starts: ArrayLike | None = None) -> None:
+              starts: _ByRow = None, present: _ByRow = None, sizes: _ByRow = None, slip: _ByRow = None,
+              acceleration: _ByRow = None, noise: _ByRow = None) -> None:
         """Restarts worlds; the others are unchanged, and no time passes for them. mask: bool (worlds,); None: all.
         seed: world k gets seed + k; seeds: one per world of the mask instead; None: seeds that were not used before.
-        starts: (worlds of the mask, robots, 4) poses; None: those that the seed chooses."""
+        The others, of the worlds of the mask, for the first robots or for rows by name: starts (worlds, robots, 4),
+        present (worlds, robots), sizes (worlds, robots, 3), slip, acceleration and noise (worlds, robots); NaN and None:
+        what the seed chooses."""
     def hash(self, world: int) -> int:
         """Returns the hash of a world's readings since its start."""
     def image(self, world: int, width: int = 640, height: int = 480,
