@@ -520,8 +520,7 @@ class DeviceWorlds:
     @property
     def contacts(self) -> NDArray[np.bool_]:
         """(worlds, robots): a wall or a robot stopped it."""
-    @property
-    def readings(self) -> NDArray[np.float64]:
+    def readings(self, type: str = "laser") -> NDArray[np.float64]:
         """(worlds, lasers, beams): the newest ranges [m]."""
     def observe(self, *, sensor: str = "laser", every: int = 1, speeds: bool = True, goal_reach: float = 0.0) -> None:
         """From now on each step also computes `observations`."""

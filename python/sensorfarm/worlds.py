@@ -233,7 +233,12 @@ class DeviceWorlds:
     poses = property(lambda self: self._farm.poses()[:, :len(self.robots)], doc=Worlds.poses.__doc__)
     velocities = property(lambda self: self._farm.velocities()[:, :len(self.robots)], doc=Worlds.velocities.__doc__)
     contacts = property(lambda self: self._farm.contacts()[:, :len(self.robots)], doc=Worlds.contacts.__doc__)
-    readings = property(lambda self: self._farm.readings(), doc="(worlds, lasers, beams): the newest ranges [m].")
+
+    def readings(self, type="laser"):
+        """Returns (worlds, lasers, beams): the newest ranges [m]."""
+        if type != "laser":
+            raise ValueError(f"there are no readings of type '{type}'; expected 'laser'")
+        return self._farm.readings()
 
     def observe(self, **options):
         """From now on each step also computes `observations`, with the options of Simulation.observe but `stack`."""

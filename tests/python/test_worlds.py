@@ -275,7 +275,7 @@ class OnADevice(unittest.TestCase):
             device.step(commands), host.step(commands)
         self.assertEqual(device.observations.shape[:2], (3, 2))
         for own, other in ((device.poses, host.poses), (device.velocities, host.velocities),
-                           (device.contacts, host.contacts), (device.readings, host.readings("laser")),
+                           (device.contacts, host.contacts), (device.readings("laser"), host.readings("laser")),
                            (device.observations, seen.values.reshape(3, 2, -1)), (device.seeds, host.seeds),
                            (device.progress, seen.progress.reshape(3, 2)),
                            (device.distances, seen.distances.reshape(3, 2))):

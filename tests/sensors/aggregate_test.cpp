@@ -108,7 +108,7 @@ TEST(Aggregate, ImpossibleSettingsAreRefused) {
   expect_in("the expression", refused(input + "expression \"\""));
   expect_in("'bumper' (number 1) states none", refused("quantity \"pressed\" choose \"best\" inputs [\"bumper\"]"));
   expect_in("'gps' (number 1) states none", refused("quantity \"x_m\" choose \"best\" inputs [\"gps\"]"));
-  expect_in("'thermometer' is listed twice",
+  expect_in("'thermometer:0' is listed twice",
             refused("quantity \"temperature_C\" inputs [\"thermometer\" \"thermometer:0\"]"));
   expect_in("separated by commas", refused(input + "expression \"1,8 * thermometer.temperature_C\""));
   expect_in("'choose' is for a quantity", refused(input + "choose \"best\" expression \"thermometer.temperature_C\""));

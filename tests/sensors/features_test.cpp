@@ -122,7 +122,7 @@ TEST(Features, RefusesWhatHasNone) {
   };
   EXPECT_EQ(refusal("inputs [\"laser\"]"), "");
   expect_in("expected ranges (range_m) or fiducial", refusal("inputs [\"gyro\"]"));
-  expect_in("it has 2 inputs 'ranges'", refusal("inputs [\"laser\" \"laser\"]"));
+  expect_in("'laser' is listed twice", refusal("inputs [\"laser\" \"laser\"]"));
   expect_in("'most'", refusal("inputs [\"laser\"] most 23"));
   expect_in("'shortest'", refusal("inputs [\"laser\"] shortest 0"));
   expect_in("'widest'", refusal("inputs [\"laser\"] widest -1"));

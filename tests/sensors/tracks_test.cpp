@@ -113,8 +113,8 @@ TEST(Tracks, RefusesFeaturesWithoutAPose) {
   EXPECT_EQ(refusal("inputs [\"features\" \"localization\"]"), "");
   expect_in("expected 1 to", refusal("inputs [\"features\"]"));
   expect_in("need one pose of 'r0'", refusal("inputs [\"features\" \"r1/localization\"]"));
-  expect_in("there are 2", refusal("inputs [\"features\" \"localization\" \"localization\"]"));
-  expect_in("there are 2 poses of 'r1'",
+  expect_in("'localization' is listed twice", refusal("inputs [\"features\" \"localization\" \"localization\"]"));
+  expect_in("'r1/localization' is listed twice",
             refusal("inputs [\"features\" \"localization\" \"r1/localization\" \"r1/localization\"]"));
   expect_in("expected features", refusal("inputs [\"laser\" \"localization\"]"));
   expect_in("'most'", refusal("inputs [\"features\" \"localization\"] most 16"));
