@@ -506,11 +506,8 @@ def add_model_controller(controller: type[ModelController], name: str | None = N
 def load_plugin(file: str) -> None:
     """Loads controllers from a shared library or Python file, so that `controller` can name them. Raises Error."""
 
-class DeviceWorlds:
-    """Worlds that stay on a Vulkan device: a step is one submission, and nothing is copied back until it is asked for.
-    For robots with lasers that commands drive; all else is refused. Arrays are copies, as those of Worlds."""
-    def __init__(self, world: str, copies: int = 1, seed: int = 1, text: str | None = None, **options: Any) -> None:
-        """options: robots, of, robot_from, noise, accuracy, device and controller="none", as those of Simulation."""
+class _WorldStates:
+    """States of the robots of many worlds."""
     @property
     def poses(self) -> NDArray[np.float64]:
         """(worlds, robots, 4): x, y, z [m], yaw [rad]."""
@@ -520,6 +517,12 @@ class DeviceWorlds:
     @property
     def contacts(self) -> NDArray[np.bool_]:
         """(worlds, robots): a wall or a robot stopped it."""
+
+class DeviceWorlds(_WorldStates):
+    """Worlds that stay on a Vulkan device: a step is one submission, and nothing is copied back until it is asked for.
+    For robots with lasers that commands drive; all else is refused. Arrays are copies, as those of Worlds."""
+    def __init__(self, world: str, copies: int = 1, seed: int = 1, text: str | None = None, **options: Any) -> None:
+        """options: robots, of, robot_from, noise, accuracy, device and controller="none", as those of Simulation."""
     def readings(self, type: str = "laser") -> NDArray[np.float64]:
         """(worlds, lasers, beams): the newest ranges [m]."""
     def observe(self, *, sensor: str = "laser", every: int = 1, speeds: bool = True, goal_reach: float = 0.0) -> None:
@@ -543,22 +546,13 @@ class DeviceWorlds:
     def __len__(self) -> int:
         """Number of worlds."""
 
-class Worlds:
+class Worlds(_WorldStates):
     """Worlds with equally many robots, simulated at once; arrays have an axis of worlds. World k has seed + k, and
     gives the bytes of a Simulation of that world alone. Arrays of one file are views, of several files copies."""
     def __init__(self, world: str | Sequence[str], copies: int | Sequence[int] = 1, seed: int = 1,
                  text: str | None = None, **options: Any) -> None:
         """world: a world file, or several; text: the world's text, which `world` then names. copies: of each, or one
-        number per file. options: those of Simulation, except record, ranks, positioning and faults."""
-    @property
-    def poses(self) -> NDArray[np.float64]:
-        """(worlds, robots, 4): x, y, z [m], yaw [rad]."""
-    @property
-    def velocities(self) -> NDArray[np.float64]:
-        """(worlds, robots, 3): forward, left [m/s], turn [rad/s]."""
-    @property
-    def contacts(self) -> NDArray[np.bool_]:
-        """(worlds, robots): a wall or a robot stopped it."""
+        number per file. options: those of Simulation, except ranks, positioning and faults; record: of one file."""
     @property
     def done(self) -> NDArray[np.bool_]:
         """(worlds, robots): its controller is done."""

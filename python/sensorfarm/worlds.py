@@ -25,6 +25,13 @@ def _checked(what, given, worlds, robots):
         raise ValueError(f"{what} by name: {error}; expected the shape {(worlds, *shape)} for each name") from None
 
 
+def _checked_commands(commands, worlds, robots):
+    commands = numpy.asarray(commands, dtype=float)
+    if commands.shape != (worlds, robots, 3):
+        raise ValueError(f"commands have the shape {commands.shape}; expected ({worlds}, {robots}, 3)")
+    return commands
+
+
 def _row_of(part, name):
     """Returns the row of a robot or object."""
     names = [robot.name for robot in part.robots]
@@ -130,9 +137,7 @@ class Worlds:
         if commands is None:
             shares = [None] * len(self.parts)
         else:
-            commands = numpy.asarray(commands, dtype=float)
-            if commands.shape != (len(self), len(self.robots), 3):
-                raise ValueError(f"commands have the shape {commands.shape}; expected ({len(self)}, {len(self.robots)}, 3)")
+            commands = _checked_commands(commands, len(self), len(self.robots))
             shares = [self._all_rows(part, commands[a:b], 0.0).reshape(-1, 3)
                       for part, a, b in zip(self.parts, self._first, self._first[1:])]
         for part, share in zip(self.parts, shares):
@@ -256,9 +261,7 @@ class DeviceWorlds:
     def step(self, commands=None):
         """One tick of all worlds. commands: (worlds, robots, 3): forward, left [m/s], turn [rad/s]; None: unchanged."""
         if commands is not None:
-            commands = numpy.asarray(commands, dtype=float)
-            if commands.shape != (len(self), len(self.robots), 3):
-                raise ValueError(f"commands have the shape {commands.shape}; expected ({len(self)}, {len(self.robots)}, 3)")
+            commands = _checked_commands(commands, len(self), len(self.robots))
             commands = numpy.pad(commands, ((0, 0), (0, self._all - len(self.robots)), (0, 0)))
         self._farm.step(commands)
 
