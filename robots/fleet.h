@@ -123,8 +123,6 @@ class Fleet {
   std::span<const std::uint8_t> contacts() const { return contacts_; }
 
  private:
-  static constexpr double kMaxYield = 4e-3;  ///< [m] largest push-off of a turning body per substep
-
   /// Progress of a mover in this tick.
   struct Progress {
     base::Pose X_WM;

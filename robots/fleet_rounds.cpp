@@ -7,6 +7,7 @@
 #include "base/elementary.h"
 #include "robots/command_law.h"
 #include "robots/fleet.h"
+#include "robots/fleet_rules.h"
 #include "robots/kinematics.h"
 #include "robots/motion_limits.h"
 

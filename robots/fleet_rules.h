@@ -9,6 +9,8 @@
 
 namespace sf::robots {
 
+inline constexpr double kMaxYield = 4e-3;  ///< [m] largest push-off of a turning body per substep
+
 /// Returns the position of each row in the order of robots before tags, each in order of ids.
 std::vector<std::uint32_t> ranks_of(const world::World& world);
 

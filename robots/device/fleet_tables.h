@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robots/device/device_tables.h"
+#include "robots/fleet_rules.h"
 #include "robots/footprint.h"
 #include "world/world.h"
 
@@ -30,7 +31,7 @@ struct MotionBound {
   /// Returns a bound of the substeps of a tick.
   double steps(double seconds) const { return (speed + radius * turn) * seconds / step; }
   /// Returns a bound of the travel [m] of its origin, with a push-off per substep.
-  double travel(double seconds) const { return speed * seconds + 4e-3 * (steps(seconds) + 6.0); }
+  double travel(double seconds) const { return speed * seconds + kMaxYield * (steps(seconds) + 6.0); }
   auto operator<=>(const MotionBound&) const = default;
 };
 MotionBound motion_bound(const world::Mover& mover);

@@ -5,7 +5,7 @@
 #define SF_STOP_WAITING 1
 #define SF_STOP_REFUSED 2
 
-// What the next tested pose is.
+// The pose that is tested next:
 #define SF_TEST_STEP 0      // the end of a substep
 #define SF_TEST_PART 1      // a part of a refused substep
 #define SF_TEST_PUSH 2      // a turn with a push-off
@@ -180,7 +180,7 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
     int stop = SF_STOP_REFUSED;
     if (test != SF_TEST_PUSH || can_push) stop = stop_at(path, from, to, last, !rivals_only, yielding, yields);
 
-    // What follows.
+    // Chooses the next test.
     bool ends = false;  // the mover stops here
     bool parts = false;  // bisects the step
     if (test == SF_TEST_PROPOSED) {
@@ -188,14 +188,14 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
     } else if (test == SF_TEST_FREE) {
       precise double next = k + 1.0LF;
       k = next;
+    } else if (stop == SF_STOP_NONE && test != SF_TEST_PART) {  // a substep is done
+      X_WM = to;
+      precise double left = steps - 1.0LF;
+      steps = left;
+      step_time = dt;
+      test = steps > 0.0LF ? SF_TEST_STEP : SF_TEST_END;
     } else if (test == SF_TEST_STEP) {
-      if (stop == SF_STOP_NONE) {
-        X_WM = to;
-        precise double left = steps - 1.0LF;
-        steps = left;
-        step_time = dt;
-        if (!(steps > 0.0LF)) test = SF_TEST_END;
-      } else if (stop == SF_STOP_WAITING) {
+      if (stop == SF_STOP_WAITING) {
         precise double whole = steps * dt;
         precise double done = dt - step_time;
         precise double left = whole - done;
@@ -213,13 +213,7 @@ bool advance_mover(Path path, bool last, bool yielding, bool was_free, inout Fle
         }
       }
     } else if (test == SF_TEST_PUSH) {
-      if (stop == SF_STOP_NONE) {
-        X_WM = to;
-        precise double left = steps - 1.0LF;
-        steps = left;
-        step_time = dt;
-        test = steps > 0.0LF ? SF_TEST_STEP : SF_TEST_END;
-      } else if (can_push && attempt < 2) {
+      if (can_push && attempt < 2) {
         ++attempt;
       } else {
         ends = is_second_push;

@@ -25,7 +25,7 @@ layout(binding = 16, r32ui) uniform uimageBuffer struck;            // 1: it tou
 layout(binding = 17, r32ui) uniform uimageBuffer buckets;           // 1 + the row of the first mover; 0: none
 layout(binding = 18, rgba32ui) uniform uimageBuffer places;         // FleetPlace per row
 
-#define SF_MAX_YIELD 4e-3LF  // Fleet::kMaxYield
+#define SF_MAX_YIELD 4e-3LF  // robots::kMaxYield
 
 int own_row;  // this invocation's mover
 
