@@ -1,6 +1,6 @@
 #pragma once
-// What worlds on a device (sensorfarm/device_worlds.h) do not support, besides what robots::DeviceFleet and
-// raycast::PoseScanner refuse.
+// Names the sensors, worlds and options that DeviceWorlds (sensorfarm/device_worlds.h) does not support.
+// robots::DeviceFleet and raycast::PoseScanner refuse further ones.
 
 #include <string>
 

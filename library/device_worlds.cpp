@@ -124,7 +124,7 @@ void DeviceWorlds::State::record() {
   changed();
 }
 
-/// Worlds, goals or what is observed have changed since the last submission.
+/// Marks all results as out of date: worlds have restarted, or goals or the observed quantities have changed.
 void DeviceWorlds::State::changed() {
   starting = true;
   states_read = ranges_read = observations_read = false;

@@ -34,7 +34,7 @@ class Starts {
   Starts(const world::World& world, std::optional<world::FreeSpace> space);
 
   /// Gives the movers of a copy of the world their starts, sizes and variations of a world alone with that seed, or
-  /// those that are given. @param given checked  @param first its entry of the copy's first row
+  /// the given ones. @param given valid (`check`)  @param first entry in `given` of the copy's first row
   /// @param resized out: appends the rows whose sizes changed
   void place(world::World& world, std::uint32_t copy, std::uint64_t seed, const sensorfarm::WorldStarts& given,
              std::size_t first, std::vector<std::uint32_t>& resized);

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Fleet::update_contacts, dispatched twice: the contacts of movers with a refused step or with contacts before, then
-// those of movers that refused a step.
+// Fleet::update_contacts, dispatched twice: first for movers whose step was refused or that had contacts before, then
+// for the movers that refused a step.
 
 #include "shaders/lib/fleet_tables.glsl"
 #include "shaders/lib/fleet_contacts.glsl"

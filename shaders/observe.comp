@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// What learners observe, from states and ranges on the device (robots/device/device_observer.h): the operations of
+// Computes observations from states and ranges (robots/device/device_observer.h), with the operations of
 // library/observations.cpp. An agent has an invocation per observed beam, and one for the rest.
 
 #include "shaders/robots/device/records.glsl"

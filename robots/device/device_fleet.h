@@ -16,9 +16,9 @@
 // round sums, products, quotients and roots as IEEE 754 does, which the self-check ensures
 // (gpu/self_check_arithmetic.h), and keep signs of zeros.
 //
-// What a DeviceFleet lacks, and `refusal` names, is moved by robots::Fleet: roads above the floor, paths of more than a
-// thousand substeps per tick, and turns of more than 1e5 rad. Reports from outside, changes of outlines and new movers
-// need a robots::Fleet as well.
+// robots::Fleet moves the worlds that `refusal` names: those with roads above the floor, paths of more than a thousand
+// substeps per tick, or turns of more than 1e5 rad. Reports from outside, changes of outlines and new movers need it as
+// well.
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
 #pragma once
-// What learners observe, computed on the device after the motion and the scans, in the same submission:
-// sensorfarm::Observations without a stack, to the same bytes.
+// Computes learners' observations on the device, in the submission of the motion and the scans. The bytes are those of
+// sensorfarm::Observations without a stack.
 
 #include <cstdint>
 #include <span>

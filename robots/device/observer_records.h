@@ -30,7 +30,7 @@ struct ObservedGoal {
   double x, y;
 };
 
-/// What is known of an agent and its goal.
+/// An agent's goal, and its distance from it.
 struct ObservedMeasure {
   double x, y;                ///< the goal
   double distance, progress;  ///< [m] NaN without a goal, and 0

@@ -55,7 +55,7 @@ struct FleetDrive {
   double acceleration, spare;  ///< [-] factor of the accelerations
 };
 
-/// What other movers need to know of a mover.
+/// Constants of a mover that kernels of other movers read, too.
 struct FleetBody {
   std::uint32_t footprint;  ///< row
   std::uint32_t rank;       ///< place in the order of ids, robots before tags

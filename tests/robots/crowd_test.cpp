@@ -61,7 +61,7 @@ std::vector<Twist> random_commands(std::size_t count, int tick) {
 }
 
 /// Drives the crowd into obstacles for 120 ticks, half of the time without turning, and returns the hash of all states.
-/// @param disturb computes all contacts anew in each tick, as after a change from outside
+/// @param disturb recomputes all contacts in each tick, as after a change from outside
 std::uint64_t hash_of_contacts(const world::World& world, bool disturb) {
   Fleet fleet(world);
   std::uint64_t hash = 0;
