@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/elementary.h"
+#include "base/pose.h"
 
 namespace sf::vision {
 
