@@ -1,0 +1,191 @@
+#include "scene/beam_pattern.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+#include "base/elementary.h"
+
+namespace sf::scene {
+
+namespace {
+
+/// Smallest cosine between a box's axis and its beams: wider groups are split.
+constexpr double kLeastCosine = 0.6;
+
+struct DirectionBox {
+  glm::dvec3 c, U, V, axis;
+  std::array<glm::dvec3, 4> plane;
+  double longest = 0.0;
+};
+
+class Grouping {
+ public:
+  Grouping(std::span<const glm::dvec3> directions, std::uint32_t row)
+      : directions_(directions), along_row_(row >= kWidth) {
+    order_.resize(directions.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    for (const glm::dvec3& d : directions)
+      angles_.push_back({base::atan2(d.y, d.x), base::atan2(d.z, base::hypot(d.x, d.y))});
+  }
+  BeamPattern make();
+
+ private:
+  using Range = std::pair<std::size_t, std::size_t>;
+  void split(Range range, std::uint32_t size, double tall, std::vector<Range>& out);
+  std::size_t bisect(Range range, std::uint32_t size, double tall);
+  bool narrow(Range range, double cosine) const;
+  glm::dvec3 mean(Range range) const;
+  DirectionBox box_of(Range range) const;
+  void write_tile(std::span<const Range> vectors, BeamTile& tile) const;
+
+  std::span<const glm::dvec3> directions_;
+  bool along_row_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::array<double, 2>> angles_;  ///< [rad] azimuth and elevation
+};
+
+glm::dvec3 Grouping::mean(Range range) const {
+  glm::dvec3 sum{};
+  for (std::size_t i = range.first; i < range.second; ++i) sum += directions_[order_[i]];
+  return glm::length(sum) > 0.0 ? glm::normalize(sum) : glm::dvec3{1.0, 0.0, 0.0};
+}
+
+bool Grouping::narrow(Range range, double cosine) const {
+  const glm::dvec3 axis = mean(range);
+  return std::all_of(order_.begin() + range.first, order_.begin() + range.second,
+                     [&](std::uint32_t i) { return glm::dot(directions_[i], axis) >= cosine; });
+}
+
+/// Appends groups of at most `size` beams that are narrow enough for a box.
+/// @param tall weight of their height against their width
+void Grouping::split(Range range, std::uint32_t size, double tall, std::vector<Range>& out) {
+  const std::size_t count = range.second - range.first;
+  if (count <= size && narrow(range, kLeastCosine)) return out.push_back(range);
+  const std::size_t middle = bisect(range, count > size ? size : 1, tall);
+  split({range.first, middle}, size, tall, out);
+  split({middle, range.second}, size, tall, out);
+}
+
+/// Sorts a group by its longer side. @return where to cut it, a multiple of `size` after its start
+std::size_t Grouping::bisect(Range range, std::uint32_t size, double tall) {
+  // Far from the poles by azimuth and elevation, so that rings stay together; else in the tangent plane.
+  const glm::dvec3 axis = mean(range);
+  const bool polar = std::any_of(order_.begin() + range.first, order_.begin() + range.second,
+                                 [&](std::uint32_t i) { return std::abs(angles_[i][1]) > 1.4; });
+  const bool tangent = polar && narrow(range, 0.9);
+  const glm::dvec3 aside =
+      std::abs(axis.z) < 0.99 ? glm::normalize(glm::cross({0.0, 0.0, 1.0}, axis)) : glm::dvec3{1, 0, 0};
+  const glm::dvec3 up = glm::cross(axis, aside);
+  const auto key = [&](std::uint32_t i, int side) {
+    return tangent ? glm::dot(directions_[i], side == 0 ? aside : up) : angles_[i][side];
+  };
+  std::array<double, 2> extent{};
+  for (int side = 0; side < 2; ++side) {
+    const auto less = [&](std::uint32_t i, std::uint32_t j) { return key(i, side) < key(j, side); };
+    const auto [low, high] = std::minmax_element(order_.begin() + range.first, order_.begin() + range.second, less);
+    extent[side] = key(*high, side) - key(*low, side);
+  }
+  const int side = tall * extent[1] > extent[0] ? 1 : 0;
+  const auto rounded = [&](std::uint32_t i) { return std::lround(1e6 * key(i, side)); };  // rings despite rounding
+  std::stable_sort(order_.begin() + range.first, order_.begin() + range.second,
+                   [&](std::uint32_t i, std::uint32_t j) { return rounded(i) < rounded(j); });
+  const std::size_t units = (range.second - range.first + size - 1) / size;
+  return range.first + units / 2 * size;
+}
+
+/// Returns the smaller of two boxes: one side along the beams' first and last, or horizontal.
+DirectionBox Grouping::box_of(Range range) const {
+  const glm::dvec3 axis = mean(range);
+  const glm::dvec3 level =
+      glm::normalize(glm::cross(std::abs(axis.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0}, axis));
+  glm::dvec3 along = directions_[order_[range.second - 1]] - directions_[order_[range.first]];
+  along -= axis * glm::dot(along, axis);
+  DirectionBox best;
+  double least = HUGE_VAL;
+  for (const glm::dvec3& side : {glm::length(along) > 1e-6 ? glm::normalize(along) : level, level}) {
+    const std::array<glm::dvec3, 2> sides{side, glm::cross(axis, side)};
+    std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    for (std::size_t i = range.first; i < range.second; ++i) {
+      const glm::dvec3 d = directions_[order_[i]] / glm::dot(directions_[order_[i]], axis);
+      for (int k = 0; k < 2; ++k)
+        low[k] = std::min(low[k], glm::dot(d, sides[k])), high[k] = std::max(high[k], glm::dot(d, sides[k]));
+    }
+    for (int k = 0; k < 2; ++k) {  // room for the rounding of rotated beams and boxes
+      const double room = 3e-6 * (1.0 + high[k] - low[k]);
+      low[k] -= room, high[k] += room;
+    }
+    const double area = (high[0] - low[0]) * (high[1] - low[1]);
+    if (area >= least) continue;
+    least = area;
+    best.axis = axis;
+    best.c = axis + sides[0] * (0.5 * (low[0] + high[0])) + sides[1] * (0.5 * (low[1] + high[1]));
+    best.U = sides[0] * (0.5 * (high[0] - low[0])), best.V = sides[1] * (0.5 * (high[1] - low[1]));
+  }
+  const std::array<glm::dvec3, 4> corners{best.c - best.U - best.V, best.c + best.U - best.V, best.c + best.U + best.V,
+                                          best.c - best.U + best.V};
+  for (int k = 0; k < 4; ++k) {
+    best.plane[k] = glm::normalize(glm::cross(corners[k], corners[(k + 1) % 4]));
+    if (glm::dot(best.plane[k], axis) < 0.0) best.plane[k] = -best.plane[k];
+    best.longest = std::max(best.longest, glm::length(corners[k]));
+  }
+  return best;
+}
+
+template <std::uint32_t count>
+void write_box(const DirectionBox& box, DirectionBoxes<count>& out, std::uint32_t i) {
+  const auto put = [i](glm::dvec3 v, float(*to)[count]) {
+    for (int axis = 0; axis < 3; ++axis) to[axis][i] = static_cast<float>(v[axis]);
+  };
+  put(box.c, out.box), put(box.U, out.box + 3), put(box.V, out.box + 6);
+  for (int k = 0; k < 4; ++k) put(box.plane[k], out.plane + 3 * k);
+  put(box.axis, out.axis);
+}
+
+void Grouping::write_tile(std::span<const Range> vectors, BeamTile& tile) const {
+  const DirectionBox all = box_of({vectors.front().first, vectors.back().second});
+  write_box(all, tile.tile, 0);
+  tile.longest = static_cast<float>(all.longest * 1.000001);
+  tile.consecutive = true;
+  for (std::uint32_t v = 0; v < kTileVectors; ++v) {
+    const Range range = vectors[std::min<std::size_t>(v, vectors.size() - 1)];
+    const DirectionBox box = box_of(range);
+    write_box(box, tile.vectors, v);
+    tile.longest = std::max(tile.longest, static_cast<float>(box.longest * 1.000001));
+    if (range.second - range.first < kWidth) tile.consecutive = false;
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      const std::uint32_t at = kWidth * v + i, beam = order_[std::min(range.first + i, range.second - 1)];
+      const glm::dvec3 d = directions_[beam];
+      tile.dx[at] = d.x, tile.dy[at] = d.y, tile.dz[at] = d.z;
+      tile.x[at] = static_cast<float>(d.x), tile.y[at] = static_cast<float>(d.y), tile.z[at] = static_cast<float>(d.z);
+      tile.place[at] = beam;
+      if (i > 0 && beam != tile.place[at - 1] + 1) tile.consecutive = false;
+    }
+  }
+}
+
+BeamPattern Grouping::make() {
+  std::vector<Range> groups;
+  split({0, order_.size()}, kTileBeams, along_row_ ? 1.0 : 1.0, groups);
+  BeamPattern pattern;
+  pattern.beams = static_cast<std::uint32_t>(order_.size());
+  for (const Range& group : groups) {
+    std::vector<Range> vectors;
+    split(group, kWidth, along_row_ ? 16.0 : 1.0, vectors);
+    for (const Range& vector : vectors) std::sort(order_.begin() + vector.first, order_.begin() + vector.second);
+    for (std::size_t first = 0; first < vectors.size(); first += kTileVectors)
+      write_tile(std::span(vectors).subspan(first, std::min<std::size_t>(kTileVectors, vectors.size() - first)),
+                 pattern.tiles.emplace_back());
+  }
+  return pattern;
+}
+
+}  // namespace
+
+BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row) {
+  return Grouping(directions, row).make();
+}
+
+}  // namespace sf::scene

@@ -1,0 +1,47 @@
+#pragma once
+// Beams of a sensor, grouped for the rasterizer. A pattern is built once per sensor type and shared by its sensors.
+
+#include <cstdint>
+#include <glm/ext/vector_double3.hpp>
+#include <span>
+#include <vector>
+
+#include "scene/surface_tree.h"
+
+namespace sf::scene {
+
+inline constexpr std::uint32_t kTileVectors = 32;  ///< a multiple of 16
+inline constexpr std::uint32_t kTileBeams = kTileVectors * kWidth;
+
+/// Boxes of directions, each a parallelogram in the plane that touches the unit sphere at its axis, which contains the
+/// beams' intersections with this plane. Directions inside are c + a U + b V, |a| and |b| <= 1; beams are those scaled
+/// by at most 1. Side k: the half space plane[k] . d >= 0. In structure-of-arrays layout, coordinate by coordinate.
+template <std::uint32_t count>
+struct DirectionBoxes {
+  alignas(64) float box[9][count];     ///< c, U, V
+  alignas(64) float plane[12][count];  ///< unit normals of the four sides
+  alignas(64) float axis[3][count];    ///< unit vectors
+};
+
+/// Beams that are cast together, in vectors of 16. Vectors and tiles that are not full repeat their last beam.
+struct alignas(64) BeamTile {
+  alignas(64) float x[kTileBeams], y[kTileBeams], z[kTileBeams];      ///< unit vectors in the sensor's frame
+  alignas(64) double dx[kTileBeams], dy[kTileBeams], dz[kTileBeams];  ///< the same in double
+  alignas(64) std::uint32_t place[kTileBeams];                        ///< index of the beam in the scan
+  DirectionBoxes<kTileVectors> vectors;                               ///< boxes of the vectors
+  DirectionBoxes<1> tile;                                             ///< box of all
+  float longest = 1.0f;      ///< largest norm of a direction in any of the boxes
+  bool consecutive = false;  ///< the beams of each vector follow each other in the scan
+};
+
+struct BeamPattern {
+  std::uint32_t beams = 0;
+  std::vector<BeamTile> tiles;
+};
+
+/// @param directions unit vectors to rounding, in the sensor's frame, in the order of the scan; 1 to 2^24
+/// @param row the beams of a vector should be neighbours in the scan if `row` of them follow each other at one
+///            elevation (a lidar's ring); 0: vectors should be square
+BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row);
+
+}  // namespace sf::scene

@@ -1,0 +1,137 @@
+#include "scene/decision.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
+
+namespace sf::scene {
+
+namespace {
+
+constexpr double kSideError = 0x1p-48;
+
+constexpr double kHeightError = 0x1p-48;
+
+/// One edge of a face: its corners in the order of their coordinates.
+struct Edge {
+  glm::dvec3 a, b;       ///< [m] in the mesh's frame
+  double side = 0.0;     ///< of the beam, positive on the side of the face
+  bool certain = false;  ///< the sign of `side` is certain
+  bool left = false;     ///< seen from the sensor, the face is to the left of a -> b
+};
+
+/// A face that possibly covers the beam.
+struct Cover {
+  std::uint32_t face = 0;
+  double range = 0.0;  ///< [m]
+  bool grazing = false;
+  std::array<Edge, 4> edges;
+  std::uint32_t edge_count = 0;
+
+  std::span<Edge> sides() { return std::span(edges).first(edge_count); }
+  std::span<const Edge> sides() const { return std::span(edges).first(edge_count); }
+};
+
+bool before(glm::dvec3 a, glm::dvec3 b) {
+  if (a.x != b.x) return a.x < b.x;
+  if (a.y != b.y) return a.y < b.y;
+  return a.z < b.z;
+}
+
+/// Returns the face's sides of the beam, positive inside if it is seen from its front.
+/// @param d in the mesh's frame
+Cover cover_of(const SceneMesh& mesh, std::uint32_t row, glm::dvec3 d) {
+  const Face& face = mesh.tree->mesh.faces[row];
+  Cover cover{.edge_count = corners_of(face)};
+  for (std::uint32_t k = 0; k < cover.edge_count; ++k) {
+    Edge& edge = cover.edges[k];
+    edge.a = mesh.tree->mesh.vertices[face[k]];
+    edge.b = mesh.tree->mesh.vertices[face[(k + 1) % cover.edge_count]];
+    const bool swap = before(edge.b, edge.a);
+    if (swap) std::swap(edge.a, edge.b);
+    const glm::dvec3 a = edge.a - mesh.X_FS.p, b = edge.b - mesh.X_FS.p, n = glm::cross(a, b);
+    const double side = glm::dot(d, n);
+    edge.side = swap ? -side : side;
+    edge.left = !swap;
+    edge.certain = std::abs(side) > kSideError * (glm::length(a) * glm::length(b));
+  }
+  return cover;
+}
+
+void turn_around(Cover& cover) {
+  for (Edge& edge : cover.sides()) edge.side = -edge.side, edge.left = !edge.left;
+}
+
+bool possible(const Cover& cover) {
+  return std::ranges::none_of(cover.sides(), [](const Edge& e) { return e.certain && e.side < 0.0; });
+}
+
+/// Returns true if another face possibly covers the beam from the other side of an edge.
+bool shared(const Edge& edge, const Cover& owner, std::span<const Cover> covers) {
+  return std::ranges::any_of(covers, [&](const Cover& other) {
+    return other.face != owner.face && std::ranges::any_of(other.sides(), [&](const Edge& e) {
+             return e.a == edge.a && e.b == edge.b && e.left != edge.left;
+           });
+  });
+}
+
+bool certain(const Cover& cover, std::span<const Cover> covers) {
+  return std::ranges::all_of(cover.sides(), [&](const Edge& e) { return e.certain || shared(e, cover, covers); });
+}
+
+}  // namespace
+
+const SceneMesh& mesh_of(std::span<const SceneMesh> meshes, std::uint32_t face) {
+  if (meshes.size() == 1) return meshes.front();
+  const auto after = std::upper_bound(meshes.begin(), meshes.end(), face,
+                                      [](std::uint32_t f, const SceneMesh& mesh) { return f < mesh.first_face; });
+  return *(after - 1);
+}
+
+SeenPlane seen_plane(const SceneMesh& mesh, std::uint32_t face) {
+  const Plane& plane = mesh.tree->planes[face - mesh.first_face];
+  const glm::dmat3& R = mesh.X_FS.R;
+  return {{glm::dot(R[0], plane.normal), glm::dot(R[1], plane.normal), glm::dot(R[2], plane.normal)},
+          glm::dot(plane.normal, plane.point - mesh.X_FS.p),
+          mesh.least_sine};
+}
+
+Decision decide(std::span<const SceneMesh> meshes, std::span<const DrawnFace> drawn, std::uint32_t vector,
+                glm::dvec3 direction, Decision nearest) {
+  thread_local std::vector<Cover> covers;  // keeps its memory
+  covers.clear();
+  bool edge_on = false;
+  for (const DrawnFace& candidate : drawn) {
+    if ((candidate.vectors & vector) == 0) continue;
+    const SceneMesh& mesh = mesh_of(meshes, candidate.face);
+    const SeenPlane plane = seen_plane(mesh, candidate.face);
+    const double sine = sine_of(plane, direction), range = plane.height / sine;
+    const std::uint32_t row = candidate.face - mesh.first_face;
+    const double least_height = kHeightError * glm::length(mesh.tree->planes[row].point - mesh.X_FS.p);
+    const bool flat = std::abs(plane.height) <= least_height;
+    if (!flat && !(range > 0.0 && range <= nearest.range * (1.0 + 1e-9))) continue;
+    Cover cover = cover_of(mesh, row, mesh.X_FS.R * direction);
+    if (plane.height < 0.0) turn_around(cover);
+    if (flat) {
+      edge_on = edge_on || possible(cover);
+      turn_around(cover);
+      edge_on = edge_on || possible(cover);
+      continue;
+    }
+    if (!possible(cover)) continue;
+    cover.face = candidate.face, cover.range = range, cover.grazing = std::abs(sine) < plane.least_sine;
+    covers.push_back(cover);
+    if (range < nearest.range && certain(cover, {})) nearest.range = range, nearest.face = candidate.face;
+  }
+  for (const Cover& cover : covers) {
+    const bool nearer = cover.range < nearest.range || (cover.range == nearest.range && cover.face <= nearest.face);
+    if (nearer) nearest = {cover.range, cover.face, cover.grazing || !certain(cover, covers)};
+  }
+  nearest.flagged = nearest.flagged || edge_on;
+  return nearest;
+}
+
+}  // namespace sf::scene

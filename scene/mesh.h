@@ -1,0 +1,29 @@
+#pragma once
+// Surfaces of a rigid body, or of the static world, as convex polygons.
+
+#include <array>
+#include <cstdint>
+#include <glm/ext/vector_double3.hpp>
+#include <span>
+#include <vector>
+
+namespace sf::scene {
+
+/// Corners of a flat, convex face, in order around it; each a row in `Mesh::vertices`. A triangle repeats its last
+/// corner. Visible from both sides.
+using Face = std::array<std::uint32_t, 4>;
+
+inline std::uint32_t corners_of(const Face& face) { return face[2] == face[3] ? 3 : 4; }
+
+/// Invariant: the distance of a face's corners from its plane is below 1e-13 of its size plus 4 roundings of its
+/// coordinates; no face has an area of 0.
+struct Mesh {
+  std::vector<glm::dvec3> vertices;   ///< [m] in the body's frame, finite
+  std::vector<Face> faces;            ///< fewer than 2^31
+  std::vector<std::uint32_t> owners;  ///< per face: row in `world::World::models`
+
+  /// Appends a face with new vertices. @param corners three or four
+  void add(std::span<const glm::dvec3> corners, std::uint32_t owner);
+};
+
+}  // namespace sf::scene

@@ -1,0 +1,208 @@
+#include "scene/rasterizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#include "scene/rasterizer/scratch.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "scene/rasterizer.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h: the code that is compiled per instruction set.
+#include "scene/rasterizer/ranges-inl.h"
+#include "scene/rasterizer/traverse-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sf::scene::HWY_NAMESPACE {
+
+/// One scan.
+class Scan {
+ public:
+  Scan(Scratch& s, const RigidTransform& X_WS, double range_max, const SceneView& scene, const ScanOutput& out)
+      : s_(s), range_max_(range_max), floor_(scene.floor), out_(out) {
+    const glm::dmat3 R_SW = glm::transpose(X_WS.R);
+    floor_plane_ = {-R_SW[2], X_WS.p.z, 0x1p-53 * 32.0 * range_max / kRangeError};
+  }
+  bool cast(const BeamTile& tile);
+
+ private:
+  void begin(const BeamTile& tile);
+  void draw_floor(const BeamTile& tile);
+  bool may_see(const BeamTile& tile, const SceneMesh& mesh) const;
+  void evaluate_vector(const BeamTile& tile, std::uint32_t vector);
+  void decide_uncertain(const BeamTile& tile, std::uint32_t vector);
+  void write(const BeamTile& tile, std::uint32_t vector);
+  const SeenPlane& plane_of(std::uint32_t face) {
+    if (face == kFloorFace) return floor_plane_;
+    if (face != last_face_) last_face_ = face, last_plane_ = seen_plane(mesh_of(s_.meshes, face), face);
+    return last_plane_;
+  }
+
+  Scratch& s_;
+  double range_max_;
+  bool floor_;
+  SeenPlane floor_plane_;
+  const ScanOutput& out_;
+  bool flagged_ = false;
+  std::uint32_t last_face_ = kNoFace;
+  SeenPlane last_plane_;  ///< of `last_face_`
+
+  // One vector's results.
+  alignas(64) double ranges_[kWidth];
+  std::uint32_t grazing_ = 0;  ///< bit mask
+};
+
+void Scan::begin(const BeamTile& tile) {
+  const auto inverse = static_cast<float>(1.0 / range_max_);
+  const Floats low = all(inverse * (1.0f - 1e-6f)), high = all(inverse * (1.0f + 1e-6f));
+  for (std::uint32_t i = 0; i < kTileBeams; i += kWidth) {
+    store(low, s_.low + i), store(high, s_.high + i), store(all(0.0f), s_.others + i);
+    store(all(kNoFace), s_.face + i);
+  }
+  for (std::uint32_t g = 0; g < kTileVectors; g += kWidth) store(low, s_.farthest + g);
+  s_.drawn.clear();
+  if (floor_) draw_floor(tile);
+}
+
+/// Errors as in rasterizer.h, without a rotation.
+void Scan::draw_floor(const BeamTile& tile) {
+  const auto inverse = static_cast<float>(1.0 / floor_plane_.height);
+  const bool edge_on = !(std::abs(inverse) < kUnbounded);
+  LeafView& view = s_.leaf;
+  for (int axis = 0; axis < 3; ++axis)
+    view.inverse[axis][0] = edge_on ? 0.0f : static_cast<float>(floor_plane_.normal[axis]) * inverse;
+  view.above[0] = view.below[0] = 1.0f;
+  view.slack[0] = edge_on ? kUnbounded : 17.0f * kRounding * std::abs(inverse);
+  for (std::uint32_t v = 0; v < kTileVectors; ++v) {
+    const std::uint32_t i = kWidth * v;
+    Beams beams{load(tile.x + i),  load(tile.y + i),    load(tile.z + i), load(s_.low + i),
+                load(s_.high + i), load(s_.others + i), load(s_.face + i)};
+    draw<true>(view, 0, 1.0f, kFloorFace, beams);
+    store_beams(s_, v, beams);
+  }
+}
+
+/// Returns false if the tile surely sees nothing of a mesh.
+bool Scan::may_see(const BeamTile& tile, const SceneMesh& mesh) const {
+  const glm::dvec3 centre = glm::transpose(mesh.X_FS.R) * (mesh.tree->centre - mesh.X_FS.p);
+  const double reach = mesh.tree->radius + 1e-6 * (mesh.tree->radius + glm::length(centre));
+  const auto along = [&](const float(*n)[1]) { return n[0][0] * centre.x + n[1][0] * centre.y + n[2][0] * centre.z; };
+  for (int k = 0; k < 4; ++k)
+    if (along(tile.tile.plane + 3 * k) < -reach) return false;
+  return along(tile.tile.axis) - reach <= static_cast<double>(depth_limit(farthest_of(s_)));
+}
+
+void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
+  const std::uint32_t first = kWidth * vector, face = s_.face[first];
+  const Words faces = load(s_.face + first);
+  bool one = true;
+  for (std::size_t p = 0; p < kParts; ++p) one = one && hn::AllTrue(kU, faces.part[p] == hn::Set(kU, face));
+  grazing_ = 0;
+  if (one && face == kNoFace)
+    std::fill_n(ranges_, kWidth, range_max_);
+  else if (one)
+    grazing_ = evaluate_one(tile, first, range_max_, plane_of(face), ranges_);
+  else
+    grazing_ = evaluate_several(
+        tile, first, range_max_, s_.face + first, [&](std::uint32_t f) -> const SeenPlane& { return plane_of(f); },
+        ranges_);
+}
+
+void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
+  const std::uint32_t first = kWidth * vector;
+  std::uint32_t rest = bits_of(at_least(load(s_.others + first), load(s_.low + first)));
+  for (; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    const glm::dvec3 d{tile.dx[first + i], tile.dy[first + i], tile.dz[first + i]};
+    Decision nearest{range_max_, kNoFace, false};
+    if (floor_) {
+      const double sine = sine_of(floor_plane_, d), range = floor_plane_.height / sine;
+      if (range > 0.0 && range < range_max_) nearest = {range, kFloorFace, std::abs(sine) < floor_plane_.least_sine};
+      if (floor_plane_.height == 0.0) nearest.flagged = sine > -floor_plane_.least_sine;  // at the sensor itself
+    }
+    nearest = decide(s_.meshes, s_.drawn, 1u << vector, d, nearest);
+    ranges_[i] = nearest.range;
+    s_.face[first + i] = nearest.face;
+    grazing_ = (grazing_ & ~(1u << i)) | std::uint32_t{nearest.flagged} << i;
+    ++s_.counts.uncertain;
+  }
+}
+
+void Scan::write(const BeamTile& tile, std::uint32_t vector) {
+  const std::uint32_t first = kWidth * vector;
+  const std::uint32_t* const place = tile.place + first;
+  if (tile.consecutive) {
+    std::memcpy(&out_.ranges[place[0]], ranges_, sizeof ranges_);
+    std::memcpy(&out_.faces[place[0]], s_.face + first, kWidth * sizeof *s_.face);
+  } else {
+    for (std::uint32_t i = 0; i < kWidth; ++i)
+      out_.ranges[place[i]] = ranges_[i], out_.faces[place[i]] = s_.face[first + i];
+  }
+  flagged_ = flagged_ || grazing_ != 0;
+  for (; grazing_ != 0; grazing_ &= grazing_ - 1)
+    out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;
+}
+
+bool Scan::cast(const BeamTile& tile) {
+  begin(tile);
+  for (const SceneMesh& mesh : s_.meshes) {
+    if (!may_see(tile, mesh)) continue;
+    aim(s_, tile, mesh);
+    draw_mesh(s_, tile, mesh);
+  }
+  for (std::uint32_t v = 0; v < kTileVectors; ++v) {
+    evaluate_vector(tile, v);
+    decide_uncertain(tile, v);
+    write(tile, v);
+  }
+  s_.counts.beams += kTileBeams;
+  return flagged_;
+}
+
+bool scan_pattern(Scratch& s, const RigidTransform& X_WS, const BeamPattern& pattern, double range_max,
+                  const SceneView& scene, const ScanOutput& out) {
+  Scan scan(s, X_WS, range_max, scene, out);
+  bool flagged = false;
+  for (const BeamTile& tile : pattern.tiles) flagged = scan.cast(tile);
+  return flagged;
+}
+
+}  // namespace sf::scene::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sf::scene {
+
+HWY_EXPORT(scan_pattern);
+
+Rasterizer::Rasterizer() : scratch_(std::make_unique<Scratch>()) {}
+Rasterizer::~Rasterizer() = default;
+Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
+
+const ScanCounts& Rasterizer::counts() const { return scratch_->counts; }
+
+bool Rasterizer::scan(const RigidTransform& X_WS, const BeamPattern& pattern, double range_max, const SceneView& scene,
+                      const ScanOutput& out) {
+  Scratch& s = *scratch_;
+  s.meshes.clear();
+  std::uint32_t first = 0;
+  for (const Instance& instance : scene.instances) {
+    const SurfaceTree& tree = *instance.tree;
+    if (!tree.empty()) {
+      SceneMesh mesh{&tree, X_WS, first, 0.0};
+      if (!instance.at_origin) mesh.X_FS = base::compose(base::inverse(instance.X_WI), X_WS);
+      const double sizes = 32.0 * (range_max + tree.longest_edge + tree.radius);
+      mesh.least_sine = 0x1p-53 * sizes / kRangeError;
+      const double distance = glm::length(mesh.X_FS.p - tree.centre) - tree.radius;
+      if (distance <= range_max) s.meshes.push_back(mesh);
+    }
+    first += static_cast<std::uint32_t>(tree.mesh.faces.size());
+  }
+  return HWY_DYNAMIC_DISPATCH(scan_pattern)(s, X_WS, pattern, range_max, scene, out);
+}
+
+}  // namespace sf::scene
+#endif

@@ -1,0 +1,64 @@
+// Sixteen faces as seen from the sensor: edges and inverse ranges as linear functions of the direction, with error
+// bounds (rasterizer.h). Compiled once per instruction set (hwy/foreach_target.h).
+
+#if defined(SF_SCENE_LEAF_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SF_SCENE_LEAF_INL_H
+#undef SF_SCENE_LEAF_INL_H
+#else
+#define SF_SCENE_LEAF_INL_H
+#endif
+
+#include "scene/rasterizer/aim-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sf::scene::HWY_NAMESPACE {
+
+constexpr float kRounding = 1.0f / (1 << 24);
+constexpr float kUnbounded = 1e30f;
+
+/// Faces of a leaf, one bit each.
+struct LeafFaces {
+  std::uint32_t open = 0;     ///< seen at an angle
+  std::uint32_t edge_on = 0;  ///< may be anywhere
+};
+
+HWY_INLINE LeafFaces view_leaf(Scratch& s, const TreeLeaf& leaf, const SceneMesh& mesh) {
+  LeafView& view = s.leaf;
+  view.face = leaf.face;
+  const glm::dvec3 p = mesh.X_FS.p - glm::dvec3{leaf.centre[0], leaf.centre[1], leaf.centre[2]};
+  const float reach = (static_cast<float>(glm::length(p)) + leaf.radius) * 1.00001f;
+  const Floats px = all(static_cast<float>(p.x)), py = all(static_cast<float>(p.y)), pz = all(static_cast<float>(p.z));
+  Floats x[4], y[4], z[4];
+  for (int k = 0; k < 4; ++k) x[k] = load(leaf.corner[k][0]) - px;
+  for (int k = 0; k < 4; ++k) y[k] = load(leaf.corner[k][1]) - py;
+  for (int k = 0; k < 4; ++k) z[k] = load(leaf.corner[k][2]) - pz;
+  const Floats nx = load(leaf.normal[0]), ny = load(leaf.normal[1]), nz = load(leaf.normal[2]);
+  const Floats h = dot(nx, ny, nz, x[0], y[0], z[0]);
+  Floats square = all(0.0f);
+  for (int k = 0; k < 4; ++k) {
+    const int next = (k + 1) % 4;
+    const auto along = [&](int axis) { return load(leaf.corner[next][axis]) - load(leaf.corner[k][axis]); };
+    const Floats ex = along(0), ey = along(1), ez = along(2);
+    const Floats a = turned(mulsub(y[k], ez, z[k] * ey), h), b = turned(mulsub(z[k], ex, x[k] * ez), h),
+                 c = turned(mulsub(x[k], ey, y[k] * ex), h);
+    store(a, view.edge[3 * k]), store(b, view.edge[3 * k + 1]), store(c, view.edge[3 * k + 2]);
+    square = larger(square, dot(a, b, c, a, b, c));
+  }
+  store(muladd(all(kRounding * reach), load(leaf.extent), root(square) * all(14.001f * kRounding)), view.edge_error);
+  const Floats inverse = all(1.0f) / h, size = absolute(inverse);
+  const Floats relative = all(6.0f * kRounding * reach) * size;
+  const Mask open = greater(all(0.25f), relative);
+  store(select_or_zero(open, nx * inverse), view.inverse[0]);
+  store(select_or_zero(open, ny * inverse), view.inverse[1]);
+  store(select_or_zero(open, nz * inverse), view.inverse[2]);
+  store(select(open, size * all(17.0f * kRounding), all(kUnbounded)), view.slack);
+  const Floats part = select_or_zero(open, relative * all(1.4f));
+  store(all(1.0f) + part, view.above), store(all(1.0f) - part, view.below);
+  const std::uint32_t used = (1u << leaf.count) - 1, opened = bits_of(open) & used;
+  return {opened, used & ~opened};
+}
+
+}  // namespace sf::scene::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,149 @@
+// Walks a mesh's tree from near to far and draws the leaves that the tile may see. Compiled once per instruction set
+// (hwy/foreach_target.h).
+
+#if defined(SF_SCENE_TRAVERSE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SF_SCENE_TRAVERSE_INL_H
+#undef SF_SCENE_TRAVERSE_INL_H
+#else
+#define SF_SCENE_TRAVERSE_INL_H
+#endif
+
+#include <bit>
+
+#include "scene/rasterizer/draw-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sf::scene::HWY_NAMESPACE {
+
+/// Returns the vectors that may see a child's box, nearer than what they certainly hit.
+HWY_INLINE std::uint32_t vectors_that_see(const Scratch& s, const TreeNode& node, std::uint32_t child) {
+  float middle[3], half[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    middle[axis] = 0.5f * (node.bound[axis][child] + node.bound[axis + 3][child]);
+    half[axis] = 0.5f * (node.bound[axis + 3][child] - node.bound[axis][child]);
+  }
+  const Floats mx = all(middle[0]), my = all(middle[1]), mz = all(middle[2]);
+  const Floats hx = all(half[0]), hy = all(half[1]), hz = all(half[2]);
+  std::uint32_t seen = 0;
+  for (std::uint32_t g = 0; g < kTileVectors; g += kWidth) {
+    Floats a[3];
+    const auto load_row = [&](const float(*rows)[kTileVectors]) {
+      for (int i = 0; i < 3; ++i) a[i] = load(rows[i] + g);
+    };
+    const auto centre = [&] { return dot(a[0], a[1], a[2], mx, my, mz); };
+    const auto radius = [&] { return dot(absolute(a[0]), absolute(a[1]), absolute(a[2]), hx, hy, hz); };
+    load_row(s.vectors.axis);
+    const Floats depth = centre() - radius() - load(s.axis_offset + g);
+    Mask see = at_least(all(1.0001f), depth * load(s.farthest + g));
+    for (int k = 0; k < 4; ++k) {
+      load_row(s.vectors.plane + 3 * k);
+      see = both(see, at_least(centre() + radius(), load(s.side_offset[k] + g)));
+    }
+    seen |= bits_of(see) << g;
+  }
+  return seen;
+}
+
+/// The corner of each box that lies farthest along a direction, or its opposite, as rows of TreeNode::bound.
+struct FarCorner {
+  int row[3];
+  FarCorner(const float (*n)[1], bool opposite) {
+    for (int axis = 0; axis < 3; ++axis) row[axis] = ((n[axis][0] >= 0.0f) != opposite ? 3 : 0) + axis;
+  }
+  HWY_INLINE Floats along(const float (*n)[1], const TreeNode& node) const {
+    return dot(all(n[0][0]), all(n[1][0]), all(n[2][0]), load(node.bound[row[0]]), load(node.bound[row[1]]),
+               load(node.bound[row[2]]));
+  }
+};
+
+struct TileCorners {
+  FarCorner side[4];
+  FarCorner near;
+  explicit TileCorners(const DirectionBoxes<1>& box)
+      : side{{box.plane, false}, {box.plane + 3, false}, {box.plane + 6, false}, {box.plane + 9, false}},
+        near(box.axis, true) {}
+};
+
+/// Pushes the children of a node that the tile may see, the nearest last.
+/// @param limit [m] depth beyond which nothing is visible
+HWY_INLINE void push_children(Scratch& s, const TileCorners& corners, const TreeNode& node, std::int32_t row,
+                              float limit) {
+  Mask see = at_least(corners.side[0].along(s.tile.plane, node), all(s.tile_side_offset[0]));
+  for (int k = 1; k < 4; ++k)
+    see = both(see, at_least(corners.side[k].along(s.tile.plane + 3 * k, node), all(s.tile_side_offset[k])));
+  const Floats depth = corners.near.along(s.tile.axis, node) - all(s.tile_axis_offset);
+  see = both(see, at_least(all(limit), depth));
+  alignas(64) float depths[kWidth];
+  store(larger(depth, all(0.0f)), depths);
+  const std::size_t first = s.stack.size();
+  for (std::uint32_t rest = bits_of(see); rest != 0; rest &= rest - 1) {
+    const auto k = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    if (node.bound[0][k] > node.bound[3][k]) continue;  // unused
+    const std::uint64_t entry =
+        std::uint64_t{std::bit_cast<std::uint32_t>(depths[k])} << 32 | (static_cast<std::uint32_t>(row) * kWidth + k);
+    s.stack.push_back(entry);
+    std::size_t at = s.stack.size() - 1;
+    for (; at > first && s.stack[at - 1] < entry; --at) s.stack[at] = s.stack[at - 1];
+    s.stack[at] = entry;
+  }
+}
+
+/// Returns the inverse range [1/m] below which no beam of the tile can hit a nearer surface.
+HWY_INLINE float farthest_of(const Scratch& s) {
+  Floats v = load(s.farthest);
+  for (std::uint32_t g = kWidth; g < kTileVectors; g += kWidth) v = smaller(v, load(s.farthest + g));
+  return least(v);
+}
+/// Returns the same as a depth [m].
+HWY_INLINE float depth_limit(float farthest) { return 1.0001f / farthest; }
+
+HWY_INLINE void prefetch(const void* from, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
+}
+
+/// Draws a mesh. The beams and boxes of `s` are in its frame.
+HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
+  const SurfaceTree& tree = *mesh.tree;
+  constexpr std::uint32_t kAll = 0xFFFFFFFFu;
+  static_assert(kTileVectors == 32);
+  float farthest = farthest_of(s);
+  const auto draw_one = [&](std::int32_t child, std::uint32_t vectors) {
+    const LeafFaces faces = view_leaf(s, tree.leaves[~child], mesh);
+    if ((faces.open | faces.edge_on) != 0) draw_leaf(s, tile, faces, mesh.first_face, vectors, farthest);
+  };
+  if (tree.root < 0) return draw_one(tree.root, kAll);
+  const TileCorners corners(s.tile);
+  float limit = depth_limit(farthest);
+  s.stack.clear();
+  push_children(s, corners, tree.nodes[tree.root], tree.root, limit);
+  while (!s.stack.empty()) {
+    const std::uint64_t entry = s.stack.back();
+    s.stack.pop_back();
+    if (std::bit_cast<float>(static_cast<std::uint32_t>(entry >> 32)) > limit) continue;
+    const auto place = static_cast<std::uint32_t>(entry);
+    const TreeNode& node = tree.nodes[place / kWidth];
+    const std::int32_t child = node.child[place % kWidth];
+    const std::uint32_t vectors = vectors_that_see(s, node, place % kWidth);
+    if (vectors == 0) continue;
+    if (child >= 0) {
+      push_children(s, corners, tree.nodes[child], child, limit);
+      if (!s.stack.empty()) {
+        const auto next = static_cast<std::uint32_t>(s.stack.back());
+        const std::int32_t ahead = tree.nodes[next / kWidth].child[next % kWidth];
+        if (ahead >= 0)
+          prefetch(&tree.nodes[ahead], sizeof(TreeNode));
+        else
+          prefetch(&tree.leaves[~ahead], sizeof(TreeLeaf));
+      }
+    } else {
+      draw_one(child, vectors);
+      farthest = farthest_of(s);
+      limit = depth_limit(farthest);
+    }
+  }
+}
+
+}  // namespace sf::scene::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

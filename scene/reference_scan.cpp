@@ -1,0 +1,65 @@
+#include "scene/reference_scan.h"
+
+#include <array>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace sf::scene {
+
+namespace {
+
+using Real = long double;
+using Vector = glm::vec<3, Real>;
+
+struct Ray {
+  Vector origin, direction;
+};
+
+Vector rotate(const glm::dmat3& R, Vector v) { return Vector(R[0]) * v.x + Vector(R[1]) * v.y + Vector(R[2]) * v.z; }
+
+/// Range to the triangle by Moeller and Trumbore (1997), or infinity.
+Real triangle_range(const Ray& ray, const Vector& a, const Vector& b, const Vector& c) {
+  const Vector ab = b - a, ac = c - a, p = glm::cross(ray.direction, ac), from = ray.origin - a;
+  const Real determinant = glm::dot(ab, p);
+  if (determinant == 0.0L) return HUGE_VALL;
+  const Real u = glm::dot(from, p) / determinant;
+  const Vector q = glm::cross(from, ab);
+  const Real v = glm::dot(ray.direction, q) / determinant;
+  if (u < 0.0L || v < 0.0L || u + v > 1.0L) return HUGE_VALL;
+  const Real range = glm::dot(ac, q) / determinant;
+  return range > 0.0L ? range : HUGE_VALL;
+}
+
+Real face_range(const Ray& ray, const Mesh& mesh, const Face& face) {
+  std::array<Vector, 4> p;
+  for (int k = 0; k < 4; ++k) p[k] = Vector(mesh.vertices[face[k]]);
+  const Real range = triangle_range(ray, p[0], p[1], p[2]);
+  return corners_of(face) == 3 ? range : std::min(range, triangle_range(ray, p[0], p[2], p[3]));
+}
+
+}  // namespace
+
+ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, double range_max,
+                            const SceneView& scene) {
+  const Ray ray_W{Vector(X_WS.p), rotate(X_WS.R, Vector(direction))};
+  ReferenceHit hit{range_max, kNoFace};
+  if (scene.floor && ray_W.direction.z != 0.0L) {
+    const Real range = -ray_W.origin.z / ray_W.direction.z;
+    if (range > 0.0L && range < hit.range) hit = {range, kFloorFace};
+  }
+  std::uint32_t first = 0;
+  for (const Instance& instance : scene.instances) {
+    const glm::dmat3 R_IW = glm::transpose(instance.X_WI.R);
+    const Ray ray{rotate(R_IW, ray_W.origin - Vector(instance.X_WI.p)), rotate(R_IW, ray_W.direction)};
+    const Mesh& mesh = instance.tree->mesh;
+    for (const Face& face : mesh.faces) {
+      const Real range = face_range(ray, mesh, face);
+      if (range < hit.range) hit = {range, first + static_cast<std::uint32_t>(&face - mesh.faces.data())};
+    }
+    first += static_cast<std::uint32_t>(mesh.faces.size());
+  }
+  return hit;
+}
+
+}  // namespace sf::scene

@@ -1,0 +1,19 @@
+#pragma once
+// Every beam against every face in `long double`, by another method than the rasterizer: for tests and `verify`.
+
+#include <cstdint>
+#include <glm/ext/vector_double3.hpp>
+
+#include "scene/rasterizer.h"
+
+namespace sf::scene {
+
+struct ReferenceHit {
+  long double range = 0.0L;      ///< [m] range_max where nothing is nearer
+  std::uint32_t face = kNoFace;  ///< as ScanOutput::faces
+};
+
+/// @param direction in the sensor's frame; need not be a unit vector to rounding, ranges are along it
+ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, double range_max, const SceneView& scene);
+
+}  // namespace sf::scene

@@ -1,0 +1,104 @@
+#include "scene/solids.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
+
+#include "base/pose.h"
+#include "scene/trapezoids.h"
+
+namespace sf::scene {
+
+namespace {
+
+using world::Segment;
+
+/// One closed outline.
+struct Loop {
+  std::span<const Segment> segments;
+  double area = 0.0;  ///< [m^2] positive: around a solid; negative: around a hole in one
+  glm::dvec2 low{HUGE_VAL}, high{-HUGE_VAL};
+
+  bool contains(glm::dvec2 p) const {
+    if (!(p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y)) return false;
+    bool inside = false;
+    for (const Segment& s : segments)
+      if ((s.a.y > p.y) != (s.b.y > p.y) && p.x < s.a.x + (s.b.x - s.a.x) * ((p.y - s.a.y) / (s.b.y - s.a.y)))
+        inside = !inside;
+    return inside;
+  }
+};
+
+bool one_solid(const Segment& s, const Segment& t) {
+  return s.model == t.model && s.z_min == t.z_min && s.z_max == t.z_max && s.solid_left == t.solid_left;
+}
+
+Loop loop_of(std::span<const Segment> segments) {
+  Loop loop{segments};
+  const glm::dvec2 origin = segments.front().a;
+  for (const Segment& s : segments) {
+    loop.area += 0.5 * base::cross(s.a - origin, s.b - origin);
+    loop.low = glm::min(loop.low, s.a), loop.high = glm::max(loop.high, s.a);
+  }
+  return loop;
+}
+
+/// Returns the closed outlines of solids. Others have no inside.
+std::vector<Loop> loops_of(std::span<const Segment> segments) {
+  std::vector<Loop> loops;
+  for (std::size_t first = 0; first < segments.size();) {
+    std::size_t end = first + 1;
+    while (end < segments.size() && segments[end - 1].b == segments[end].a &&
+           segments[end - 1].b != segments[first].a && one_solid(segments[first], segments[end]))
+      ++end;
+    if (segments[first].solid_left && segments[end - 1].b == segments[first].a)
+      loops.push_back(loop_of(segments.subspan(first, end - first)));
+    first = end;
+  }
+  return loops;
+}
+
+/// Appends the top and bottom of the solid inside an outline, without its holes.
+void add_caps(const Loop& outer, std::span<const Loop> loops, Mesh& mesh) {
+  const Segment& solid = outer.segments.front();
+  std::vector<RegionEdge> edges;
+  const auto add = [&](const Loop& loop) {
+    for (const Segment& s : loop.segments) edges.push_back({s.a, s.b});
+  };
+  add(outer);
+  for (const Loop& hole : loops)
+    if (hole.area < 0.0 && one_solid(hole.segments.front(), solid) && outer.contains(hole.segments.front().a))
+      add(hole);
+  for (const Trapezoid& piece : trapezoids_of(edges)) {
+    std::vector<glm::dvec2> corners(piece.begin(), piece.end());
+    const auto same = std::unique(corners.begin(), corners.end());
+    corners.erase(same, corners.end());
+    if (corners.back() == corners.front()) corners.pop_back();
+    if (corners.size() < 3) continue;
+    for (const double z : {solid.z_min, solid.z_max}) {
+      std::vector<glm::dvec3> flat;
+      for (const glm::dvec2& c : corners) flat.emplace_back(c, z);
+      mesh.add(flat, solid.model);
+    }
+  }
+}
+
+}  // namespace
+
+Mesh mesh_of(std::span<const Segment> segments) {
+  std::vector<Segment> seen;
+  for (const Segment& s : segments)
+    if (s.seen_by_laser && s.z_min < s.z_max) seen.push_back(s);
+  Mesh mesh;
+  for (const Segment& s : seen) {
+    const std::array<glm::dvec3, 4> side{glm::dvec3{s.a, s.z_min}, {s.b, s.z_min}, {s.b, s.z_max}, {s.a, s.z_max}};
+    mesh.add(side, s.model);
+  }
+  const std::vector<Loop> loops = loops_of(seen);
+  for (const Loop& loop : loops)
+    if (loop.area > 0.0) add_caps(loop, loops, mesh);
+  return mesh;
+}
+
+}  // namespace sf::scene

@@ -1,0 +1,17 @@
+#pragma once
+// Surfaces of a 2.5-D world: its outlines, from their lower to their upper heights, as prisms.
+
+#include <cstdint>
+#include <span>
+
+#include "scene/mesh.h"
+#include "world/world.h"
+
+namespace sf::scene {
+
+/// Returns the sides of all segments that lasers see, and for those of closed outlines of a solid
+/// (Segment::solid_left) its top and bottom. Segments without a height (z_min >= z_max) have no surface.
+/// @param segments in the order of the outlines, each outline closed by its last segment
+Mesh mesh_of(std::span<const world::Segment> segments);
+
+}  // namespace sf::scene

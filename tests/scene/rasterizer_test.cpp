@@ -1,0 +1,236 @@
+// Spatial scans against every face in `long double`, and at the cases where 32 or 64 bits cannot decide.
+
+#include "scene/rasterizer.h"
+
+#include <gtest/gtest.h>
+
+#include <hwy/highway.h>
+#include <rapidcheck/gtest.h>
+#include <algorithm>
+
+#include "scene/reference_scan.h"
+#include "tests/scene/meshes.h"
+
+namespace sf::scene {
+namespace {
+
+using base::QualityFlag;
+
+Instance still(const SurfaceTree& tree) { return {&tree, {}, true}; }
+
+/// Compares a scan with the reference. @return the number of flagged beams
+std::size_t expect_bound(const SpatialScan& scan, const RigidTransform& X_WS, const std::vector<glm::dvec3>& beams,
+                         double range_max, const SceneView& scene) {
+  std::size_t flagged = 0, wrong = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (scan.quality[i] != QualityFlag::none) {
+      ++flagged;
+      continue;
+    }
+    const ReferenceHit hit = reference_scan(X_WS, beams[i], range_max, scene);
+    const double error = static_cast<double>(std::abs(scan.ranges[i] - hit.range));
+    if (error <= kRangeError) continue;
+    if (++wrong < 4)
+      ADD_FAILURE() << "beam " << i << ": " << scan.ranges[i] << ", expected " << static_cast<double>(hit.range);
+  }
+  EXPECT_EQ(wrong, 0u);
+  return flagged;
+}
+
+struct Posed {
+  RigidTransform X_WS;
+  explicit Posed(std::uint64_t seed, double spread = 0.0) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    X_WS.R = base::rotation_of(M_PI * unit(random), 0.5 * M_PI * unit(random), M_PI * unit(random));
+    X_WS.p = spread * glm::dvec3{unit(random), unit(random), unit(random)};
+  }
+};
+
+/// Faces of all sizes in all directions, at any pose: every range is within its bound, and few beams graze.
+TEST(SpatialRasterizer, AgreesWithTheReference) {
+  std::size_t flagged = 0, beams_cast = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const SurfaceTree tree = build_tree(seed % 2 ? soup(400, 20.0, seed) : hills(20, seed));
+    const Instance instance = still(tree);
+    const auto beams = rings(16, 64, -0.7, 0.7);
+    const RigidTransform X_WS = Posed(seed, 3.0).X_WS;
+    const SceneView scene{{&instance, 1}, seed % 3 == 0};
+    flagged += expect_bound(cast(X_WS, beams, 30.0, scene, 64), X_WS, beams, 30.0, scene);
+    beams_cast += beams.size();
+  }
+  EXPECT_LT(flagged, beams_cast / 1000);
+}
+
+/// Properties of random scenes: bounds, and bytes that do not depend on how beams are grouped.
+RC_GTEST_PROP(SpatialRasterizer, AnyScene, ()) {
+  const auto seed = *rc::gen::inRange<std::uint64_t>(0, 1u << 30);
+  const SurfaceTree tree = build_tree(soup(*rc::gen::inRange(1, 80), *rc::gen::element(0.5, 5.0, 50.0), seed));
+  const Instance instance = still(tree);
+  const SceneView scene{{&instance, 1}, *rc::gen::arbitrary<bool>()};
+  const RigidTransform X_WS = Posed(seed + 1, 4.0).X_WS;
+  const auto beams = rings(*rc::gen::inRange(1u, 9u), *rc::gen::inRange(1u, 40u), -1.5, 1.5);
+  const SpatialScan scan = cast(X_WS, beams, 40.0, scene);
+  expect_bound(scan, X_WS, beams, 40.0, scene);
+  SpatialScan by_rows = cast(X_WS, beams, 40.0, scene, 64);
+  by_rows.uncertain = scan.uncertain;
+  RC_ASSERT(scan == by_rows);
+}
+
+/// No beam passes through a closed surface where faces meet: at vertices, along edges.
+TEST(SpatialRasterizer, IsWatertight) {
+  for (const glm::dvec3& at : {glm::dvec3{}, glm::dvec3{0.3, -0.2, 0.1}, glm::dvec3{1e7, -1e7, 10.0}}) {
+    Mesh mesh = sphere(at, 5.0, 12, 17);
+    const glm::dvec3 viewer = at + glm::dvec3{0.4, 0.3, -0.2};
+    std::vector<glm::dvec3> beams;
+    for (const glm::dvec3& vertex : mesh.vertices) beams.push_back(glm::normalize(vertex - viewer));
+    for (const Face& face : mesh.faces)
+      for (std::uint32_t k = 0; k < 3; ++k)
+        for (const double part : {0.25, 0.5, 0.9})
+          beams.push_back(
+              glm::normalize(glm::mix(mesh.vertices[face[k]], mesh.vertices[face[(k + 1) % 3]], part) - viewer));
+    const SurfaceTree tree = build_tree(mesh);
+    const Instance instance = still(tree);
+    const SpatialScan scan = cast({glm::dmat3(1.0), viewer}, beams, 20.0, {{&instance, 1}, false});
+    EXPECT_EQ(std::ranges::count(scan.faces, kNoFace), 0);
+    EXPECT_GT(scan.uncertain, beams.size() / 2);
+    EXPECT_EQ(std::ranges::count(scan.quality, QualityFlag::grazing), 0) << "edges are shared";
+  }
+}
+
+/// A beam along the outline of a body may pass or not: it is flagged, and its neighbours 1e-9 rad aside are not.
+TEST(SpatialRasterizer, FlagsOutlines) {
+  Mesh mesh;
+  add_box(mesh, {5.0, -1.0, -1.0}, {6.0, 1.0, 1.0});
+  const SurfaceTree tree = build_tree(mesh);
+  const Instance instance = still(tree);
+  std::vector<glm::dvec3> beams;
+  for (const double aside : {0.0, -5e-9, 5e-9}) beams.push_back(glm::normalize(glm::dvec3{5.0, 1.0 + aside, 0.3}));
+  const SpatialScan scan = cast({}, beams, 20.0, {{&instance, 1}, false});
+  EXPECT_EQ(scan.quality[0], QualityFlag::grazing);
+  EXPECT_EQ(scan.quality[1], QualityFlag::none);
+  EXPECT_EQ(scan.quality[2], QualityFlag::none);
+  EXPECT_NEAR(scan.ranges[1], glm::length(glm::dvec3{5.0, 1.0, 0.3}), 1e-7);
+  EXPECT_EQ(scan.ranges[2], 20.0);
+}
+
+/// The rounding of coordinates does not grow with the distance from the origin, only that of the stored values.
+TEST(SpatialRasterizer, IsAsAccurateFarFromTheOrigin) {
+  for (const double far : {1e4, 1e7, 1e9}) {
+    Mesh mesh = soup(200, 20.0, 5);
+    move(mesh, {far, -far, 0.1 * far});
+    const SurfaceTree tree = build_tree(mesh);
+    const Instance instance = still(tree);
+    const SceneView scene{{&instance, 1}, false};
+    RigidTransform X_WS = Posed(9, 2.0).X_WS;
+    X_WS.p += glm::dvec3{far, -far, 0.1 * far};
+    const auto beams = rings(16, 64, -0.7, 0.7);
+    const SpatialScan scan = cast(X_WS, beams, 40.0, scene);
+    EXPECT_LT(expect_bound(scan, X_WS, beams, 40.0, scene), beams.size() / 100);
+    EXPECT_GT(std::ranges::count_if(scan.ranges, [](double r) { return r < 40.0; }), 100);
+  }
+}
+
+/// Sensors in the planes of faces, looking along the axes: every beam that is not flagged is right.
+TEST(SpatialRasterizer, InThePlanesOfFaces) {
+  Mesh mesh;
+  for (int x = -3; x <= 3; ++x)
+    for (int y = -3; y <= 3; ++y)
+      if (x != 0 || y != 0)
+        add_box(mesh, {4.0 * x - 1.0, 4.0 * y - 1.0, 0.0}, {4.0 * x + 1.0, 4.0 * y + 1.0, 1.0 + std::abs(x + y) % 2});
+  const SurfaceTree tree = build_tree(mesh);
+  const Instance instance = still(tree);
+  const SceneView scene{{&instance, 1}, false};
+  const auto beams = rings(9, 360, -0.2, 0.2);
+  for (const glm::dvec3& at : {glm::dvec3{1.0, 1.0, 0.5}, glm::dvec3{0.0, 0.0, 1.0}, glm::dvec3{3.0, -2.0, 2.0}}) {
+    const RigidTransform X_WS{glm::dmat3(1.0), at};
+    EXPECT_LT(expect_bound(cast(X_WS, beams, 30.0, scene), X_WS, beams, 30.0, scene), beams.size() / 3);
+  }
+}
+
+/// Inside a face's plane only beams that may touch it are flagged; the sensor on a face reads what is behind.
+TEST(SpatialRasterizer, OnAFace) {
+  Mesh mesh;
+  mesh.add(std::array<glm::dvec3, 3>{glm::dvec3{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, 0);
+  const SurfaceTree tree = build_tree(mesh);
+  const Instance instance = still(tree);
+  const SpatialScan scan = cast({}, {{0, 0, -1}, {1, 0, 0}}, 10.0, {{&instance, 1}, false});
+  EXPECT_EQ(scan.quality, (std::vector{QualityFlag::grazing, QualityFlag::grazing}));
+}
+
+/// Patterns that do not fill a vector, that surround the sensor, or point at the poles.
+TEST(SpatialRasterizer, AnyPattern) {
+  const SurfaceTree tree = build_tree(sphere({0.1, 0.2, 0.3}, 4.0, 30, 40));
+  const Instance instance = still(tree);
+  const SceneView scene{{&instance, 1}, true};
+  for (const auto& beams : {rings(1, 1, 0.0, 0.0), rings(1, 3, 0.1, 0.1), rings(1, 16, 0.0, 0.0),
+                            rings(17, 1, -1.57, 1.57), rings(32, 33, -1.5707, 1.5707), rings(3, 100, 1.4, 1.57),
+                            std::vector<glm::dvec3>(40, {0, 0, -1}), rings(1, 2000, 0.2, 0.2)}) {
+    const RigidTransform X_WS = Posed(beams.size(), 0.5).X_WS;
+    expect_bound(cast(X_WS, beams, 30.0, scene), X_WS, beams, 30.0, scene);
+  }
+}
+
+/// Moved and rotated bodies, near to far and in any order; a body far away has no effect.
+TEST(SpatialRasterizer, Instances) {
+  Mesh box;
+  add_box(box, {-0.5, -0.3, 0.0}, {0.5, 0.3, 1.2});
+  const SurfaceTree body = build_tree(box), walls = build_tree(soup(60, 15.0, 3)), none = build_tree({});
+  std::vector<Instance> instances{still(walls), still(none)};
+  for (int i = 0; i < 40; ++i) {
+    RigidTransform X = Posed(100 + i, 8.0).X_WS;
+    if (i == 7) X.p = {1e6, 0.0, 0.0};
+    instances.push_back({&body, X, false});
+  }
+  const auto beams = rings(32, 128, -0.6, 0.6);
+  const RigidTransform X_WS = Posed(4, 1.0).X_WS;
+  const SpatialScan scan = cast(X_WS, beams, 25.0, {instances, true});
+  EXPECT_LT(expect_bound(scan, X_WS, beams, 25.0, {instances, true}), beams.size() / 500);
+  std::ranges::reverse(instances);
+  EXPECT_EQ(cast(X_WS, beams, 25.0, {instances, true}).ranges, scan.ranges);
+}
+
+/// Range of a plane: height over the sine of the depression. A sensor in the plane knows only what is above.
+TEST(SpatialRasterizer, Floor) {
+  const auto beams = rings(3, 8, -0.9, 0.9);
+  const SpatialScan above = cast({glm::dmat3(1.0), {3.0, 4.0, 1.5}}, beams, 50.0, {{}, true});
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const double expected = beams[i].z < -1.5 / 50.0 ? -1.5 / beams[i].z : 50.0;
+    EXPECT_NEAR(above.ranges[i], expected, kRangeError);
+    EXPECT_EQ(above.faces[i], expected < 50.0 ? kFloorFace : kNoFace);
+  }
+  const SpatialScan below = cast({glm::dmat3(1.0), {3.0, 4.0, -1.5}}, beams, 50.0, {{}, true});
+  EXPECT_NEAR(below.ranges.back(), 1.5 / beams.back().z, kRangeError) << "seen from below";
+  const SpatialScan on = cast({glm::dmat3(1.0), {3.0, 4.0, 0.0}}, beams, 50.0, {{}, true});
+  EXPECT_EQ(std::ranges::count(on.quality, QualityFlag::grazing), 16);
+}
+
+/// Bytes do not depend on the machine's vectors.
+TEST(SpatialRasterizer, EqualOnAllInstructionSets) {
+  const SurfaceTree tree = build_tree(soup(500, 10.0, 8));
+  const Instance instance = still(tree);
+  const auto beams = rings(20, 100, -0.7, 0.7);
+  const RigidTransform X_WS = Posed(5).X_WS;
+  const auto scan_with = [&](std::int64_t targets) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().DeInit();  // reselected by the next call
+    SpatialScan scan = cast(X_WS, beams, 30.0, {{&instance, 1}, true});
+    scan.uncertain = 0;  // bounds depend on fused products
+    return scan;
+  };
+  const SpatialScan best = scan_with(0);
+  const std::int64_t all = hwy::SupportedTargets();
+  for (std::int64_t left = all; left != 0; left &= left - 1) EXPECT_EQ(scan_with(left & -left), best);
+  scan_with(0);
+}
+
+/// 32 bits settle nearly all beams, or the scan would be slow.
+TEST(SpatialRasterizer, CertifiesNearlyAllBeams) {
+  const SurfaceTree tree = build_tree(hills(40, 2));
+  const Instance instance = still(tree);
+  const auto beams = rings(64, 256, -0.4, 0.1);
+  EXPECT_LT(cast({}, beams, 30.0, {{&instance, 1}, false}).uncertain, beams.size() / 100);
+}
+
+}  // namespace
+}  // namespace sf::scene
