@@ -22,6 +22,12 @@ struct Pose {
   double yaw = 0.0;  ///< [rad] counter-clockwise, any value
 };
 
+/// Rotation of a body against its planar pose: Rz(yaw) Ry(pitch) Rx(roll) is its orientation.
+struct Tilt {
+  double roll = 0.0;   ///< [rad] positive: the left side is higher
+  double pitch = 0.0;  ///< [rad] positive: the front is lower
+};
+
 /// Velocity in the body frame.
 struct Twist {
   double forward = 0.0;  ///< [m/s] along the robot's x

@@ -24,7 +24,8 @@ enum class RandomStream : std::uint32_t {
   own_sensors = 12,  ///< users' own sensor types
   fiducials = 13,
   faults = 14,  ///< of sensors
-  thermometers = 15
+  thermometers = 15,
+  spatial_range = 16  ///< of lidars
 };
 
 /// Identifies one draw by its first five fields.

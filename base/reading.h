@@ -12,6 +12,8 @@ namespace sf::base {
 
 /// Hit value of a beam without an echo in range.
 inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
+/// Hit value of a beam of a spatial scan that meets the floor.
+inline constexpr std::uint32_t kFloorHit = 0xFFFFFFFEu;
 
 /// The reason why an element's error may exceed the error bound of its reading.
 enum class QualityFlag : std::uint8_t {
@@ -29,16 +31,17 @@ constexpr SensorTypes only(std::uint8_t type) { return SensorTypes{1} << type; }
 
 /// One reading of one sensor. The spans are valid until the next tick of the farm that returned them.
 struct ReadingBlock {
-  std::uint32_t mover = 0;         ///< row in `world::World::movers`
-  std::uint32_t sensor = 0;        ///< 0-based among the mover's sensors of this type
-  std::uint8_t type = 0;           ///< wire id of the sensor type
-  std::uint32_t sequence = 0;      ///< number of this sensor's reading, from 0
-  std::int64_t time = 0;           ///< [ns] simulated time of the measurement (not of its delivery)
-  Pose X_WM;                       ///< the mover's pose at the measurement
-  Pose X_WS;                       ///< the sensor's pose at the measurement
-  std::span<const double> values;  ///< element by element; within each, in the order of the sensor type's columns
-  std::span<const std::uint32_t>
-      hits;  ///< for scans computed in this process: row of the model that each beam hit, or kNoHit; otherwise empty
+  std::uint32_t mover = 0;              ///< row in `world::World::movers`
+  std::uint32_t sensor = 0;             ///< 0-based among the mover's sensors of this type
+  std::uint8_t type = 0;                ///< wire id of the sensor type
+  std::uint32_t sequence = 0;           ///< number of this sensor's reading, from 0
+  std::int64_t time = 0;                ///< [ns] simulated time of the measurement (not of its delivery)
+  Pose X_WM;                            ///< the mover's pose at the measurement
+  Tilt tilt;                            ///< of the mover at the measurement
+  Pose X_WS;                            ///< the sensor's pose at the measurement, without tilt
+  std::span<const double> values;       ///< element by element; within each, in the order of the sensor type's columns
+  std::span<const std::uint32_t> hits;  ///< for scans computed in this process: row of the model that each beam hit,
+                                        ///< kFloorHit or kNoHit; otherwise empty
   std::uint32_t flags = 0;  ///< bits defined by the header of the sensor type
   std::uint8_t mode = 0;    ///< accuracy mode of the measurement: row in the sensor type's modes
   /// [unit of the first column] largest error of that column in `values`, for elements without a quality flag

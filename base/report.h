@@ -14,6 +14,7 @@ struct Report {
   std::int64_t time = 0;           ///< [ns] simulated time (or the sender's clock) at which the state was valid
   Pose X_WM;                       ///< the mover's frame in the world; finite, or kAbsent
   Twist velocity;                  ///< in the mover's frame; zero if unknown
+  Tilt tilt;                       ///< of the mover, for its spatial sensors; finite
   std::uint32_t contact_mask = 0;  ///< bit k: the body is touched in sector k, see kContactSectors
 };
 

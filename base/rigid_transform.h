@@ -25,8 +25,8 @@ inline glm::dmat3 rotation_of(double roll, double pitch, double yaw) {
           {cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr}};
 }
 
-inline RigidTransform transform_of(const Pose& X_AB) {
-  return {rotation_of(0.0, 0.0, X_AB.yaw), {X_AB.x, X_AB.y, X_AB.z}};
+inline RigidTransform transform_of(const Pose& X_AB, const Tilt& tilt = {}) {
+  return {rotation_of(tilt.roll, tilt.pitch, X_AB.yaw), {X_AB.x, X_AB.y, X_AB.z}};
 }
 
 /// Returns X_AC from X_AB and X_BC.

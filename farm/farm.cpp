@@ -558,16 +558,19 @@ std::int64_t Farm::next_due() const {
   return soonest;
 }
 
-base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM) {
+base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM,
+                               const base::Tilt& tilt) {
   State& s = *s_;
   s.clear_blocks();
   s.derivation->request(mover, type, sensor, s.pipelines);
   s.demand_changed = true;
   const base::Pose stands = std::exchange(s.states[mover].X_WM, X_WM);
+  const base::Tilt leans = std::exchange(s.states[mover].tilt, tilt);
   s.measure(0, false, false);
   std::span<const base::ReadingBlock> readings = s.blocks;
   if (!s.derivation->empty()) readings = s.derivation->evaluate(0, s.blocks, s.states);
   s.states[mover].X_WM = stands;
+  s.states[mover].tilt = leans;
   const auto reading = std::ranges::find_if(readings, [&](const base::ReadingBlock& block) {
     return block.mover == mover && block.type == type && block.sensor == sensor;
   });

@@ -185,11 +185,12 @@ class Farm {
   /// @param next one report per mover, at the time of the next tick
   std::span<const base::ReadingBlock> sample_between(std::int64_t now, std::span<const base::Report> next);
 
-  /// Computes one sensor immediately, due or not, as if its mover were at `X_WM`, with the noise of its first reading.
-  /// Sonars start a new firing cycle with it, and maps include its beams: in a farm that ticks, later readings of both
-  /// differ.
+  /// Computes one sensor immediately, due or not, as if its mover were at `X_WM` with `tilt`, with the noise of its
+  /// first reading. Sonars start a new firing cycle with it, and maps include its beams: in a farm that ticks, later
+  /// readings of both differ.
   /// @param type wire id
-  base::ReadingBlock sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM);
+  base::ReadingBlock sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM,
+                           const base::Tilt& tilt = {});
 
   /// Returns the hash of the values and hits of all readings delivered so far, call by call: a call without readings
   /// counts too. For a shared farm, the hash of the readings chained by `Sharing::add_hashes`.

@@ -145,6 +145,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Repo
       block.fused = false;
       block.sequence = static_cast<std::uint32_t>(due[i].sequence);
       block.X_WM = states[block.mover].X_WM;
+      block.tilt = states[block.mover].tilt;
       withdraw_bound(sigmas.empty() ? 0.0 : sigmas[due[i].row], block);
     }
   });

@@ -155,7 +155,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 9
     field(&World::heat_sources), field(&World::temperature, Key{"temperature"}, Bounds{-273.15, 1e6}),
     // since version 10
-    field(&World::variations));
+    field(&World::variations),
+    // since version 11
+    field(&World::floor_unseen));
 
 // clang-format on
 

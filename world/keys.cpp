@@ -14,7 +14,7 @@ using Words = std::span<const std::string_view>;
 
 // clang-format off
 // Keys with their own readers. world/fields.h has all others.
-constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "earth_field", "earth_location", "old_shapes", "stage_noise", "stage_obstacles",
+constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "earth_field", "earth_location", "floor_return", "old_shapes", "stage_noise", "stage_obstacles",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});

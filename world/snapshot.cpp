@@ -11,9 +11,10 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 10;
+constexpr std::uint16_t kVersion = 11;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
+constexpr std::size_t kSinceVersion11 = least_bytes<bool>();
 constexpr std::size_t kSinceVersion10 = least_bytes<std::vector<Variation>>();
 constexpr std::size_t kSinceVersion9 = least_bytes<std::vector<HeatSource>>() + sizeof(double);
 constexpr std::size_t kSinceVersion8 = least_bytes<std::vector<Shape>>();
@@ -22,6 +23,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
+  if (world.floor_unseen) return 11;
   if (!world.variations.empty()) return 10;
   if (!world.heat_sources.empty() || world.temperature != 0.0) return 9;
   if (!world.shapes.empty()) return 8;
@@ -32,7 +34,8 @@ std::uint16_t version_of(const World& world) {
 /// Returns the size of the fields that a version lacks, where they are zero.
 std::size_t missing_bytes(std::uint16_t version) {
   return (version < 6 ? kSinceVersion6 : 0) + (version < 7 ? kSinceVersion7 : 0) + (version < 8 ? kSinceVersion8 : 0) +
-         (version < 9 ? kSinceVersion9 : 0) + (version < 10 ? kSinceVersion10 : 0);
+         (version < 9 ? kSinceVersion9 : 0) + (version < 10 ? kSinceVersion10 : 0) +
+         (version < 11 ? kSinceVersion11 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }

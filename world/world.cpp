@@ -88,7 +88,8 @@ constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, 
 /// Worlds without these keep the hash that they had before the fields existed.
 constexpr auto kHashedIfSet =
     std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights,
-                    &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature, &World::variations);
+                    &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature, &World::variations,
+                    &World::floor_unseen);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {

@@ -345,6 +345,7 @@ struct World {
   double temperature = 0.0;           ///< [degrees Celsius] far from all heat sources
   std::vector<Variation> variations;  ///< of the first movers, by row; empty: none has one
   std::vector<FloorHole> floor_holes;
+  bool floor_unseen = false;              ///< spatial scans see no floor at z = 0 (`floor_return 0`)
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)

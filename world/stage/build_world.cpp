@@ -129,6 +129,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   read_units(b.context, document.root);
   b.context.obstacles = stage_rule(b.context, document.root, "stage_obstacles", options.stage_obstacles);
   b.context.noise = stage_rule(b.context, document.root, "stage_noise", options.stage_noise);
+  b.world.floor_unseen = !flag(b.context, document.root, "floor_return", true);
   b.context.old_shapes = flag(b.context, document.root, "old_shapes", false);
   check_keys(b.context, document.root, KeyScope::world);
   b.world.file = file;
