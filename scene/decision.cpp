@@ -96,7 +96,8 @@ SeenPlane seen_plane(const SceneMesh& mesh, std::uint32_t face) {
   const glm::dmat3& R = mesh.X_FS.R;
   return {{glm::dot(R[0], plane.normal), glm::dot(R[1], plane.normal), glm::dot(R[2], plane.normal)},
           glm::dot(plane.normal, plane.point - mesh.X_FS.p),
-          mesh.least_sine};
+          mesh.least_sine,
+          mesh.tree->mesh.owners[face - mesh.first_face]};
 }
 
 Decision decide(std::span<const SceneMesh> meshes, std::span<const DrawnFace> drawn, std::uint32_t vector,

@@ -28,6 +28,7 @@ struct SeenPlane {
   glm::dvec3 normal{};      ///< unit vector
   double height = 0.0;      ///< [m]
   double least_sine = 0.0;  ///< as SceneMesh::least_sine
+  std::uint32_t owner = 0;  ///< as Mesh::owners
 };
 
 /// Returns the mesh of a face. @param face less than the number of faces of all meshes
@@ -47,7 +48,7 @@ struct DrawnFace {
 
 struct Decision {
   double range = 0.0;      ///< [m]
-  std::uint32_t face = 0;  ///< as ScanOutput::faces
+  std::uint32_t face = 0;  ///< among those of all meshes, kFloorFace or kNoFace
   bool flagged = false;
 };
 

@@ -24,7 +24,7 @@ class Scan {
   Scan(Scratch& s, const RigidTransform& X_WS, double range_max, const SceneView& scene, const ScanOutput& out)
       : s_(s), range_max_(range_max), floor_(scene.floor), out_(out) {
     const glm::dmat3 R_SW = glm::transpose(X_WS.R);
-    floor_plane_ = {-R_SW[2], X_WS.p.z, 0x1p-53 * 32.0 * range_max / kRangeError};
+    floor_plane_ = {-R_SW[2], X_WS.p.z, 0x1p-53 * 32.0 * range_max / kRangeError, base::kFloorHit};
   }
   bool cast(const BeamTile& tile);
 
@@ -52,6 +52,7 @@ class Scan {
 
   // One vector's results.
   alignas(64) double ranges_[kWidth];
+  alignas(64) std::uint32_t hits_[kWidth];
   std::uint32_t grazing_ = 0;  ///< bit mask
 };
 
@@ -101,14 +102,18 @@ void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
   bool one = true;
   for (std::size_t p = 0; p < kParts; ++p) one = one && hn::AllTrue(kU, faces.part[p] == hn::Set(kU, face));
   grazing_ = 0;
-  if (one && face == kNoFace)
-    std::fill_n(ranges_, kWidth, range_max_);
-  else if (one)
-    grazing_ = evaluate_one(tile, first, range_max_, plane_of(face), ranges_);
-  else
+  if (one) {
+    const std::uint32_t owner = face == kNoFace ? base::kNoHit : plane_of(face).owner;
+    store(all(owner), hits_);
+    if (face == kNoFace)
+      std::fill_n(ranges_, kWidth, range_max_);
+    else
+      grazing_ = evaluate_one(tile, first, range_max_, plane_of(face), ranges_);
+  } else {
     grazing_ = evaluate_several(
         tile, first, range_max_, s_.face + first, [&](std::uint32_t f) -> const SeenPlane& { return plane_of(f); },
-        ranges_);
+        ranges_, hits_);
+  }
 }
 
 void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
@@ -125,7 +130,7 @@ void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
     }
     nearest = decide(s_.meshes, s_.drawn, 1u << vector, d, nearest);
     ranges_[i] = nearest.range;
-    s_.face[first + i] = nearest.face;
+    hits_[i] = nearest.face == kNoFace ? base::kNoHit : plane_of(nearest.face).owner;
     grazing_ = (grazing_ & ~(1u << i)) | std::uint32_t{nearest.flagged} << i;
     ++s_.counts.uncertain;
   }
@@ -136,10 +141,9 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
   const std::uint32_t* const place = tile.place + first;
   if (tile.consecutive) {
     std::memcpy(&out_.ranges[place[0]], ranges_, sizeof ranges_);
-    std::memcpy(&out_.faces[place[0]], s_.face + first, kWidth * sizeof *s_.face);
+    std::memcpy(&out_.hits[place[0]], hits_, sizeof hits_);
   } else {
-    for (std::uint32_t i = 0; i < kWidth; ++i)
-      out_.ranges[place[i]] = ranges_[i], out_.faces[place[i]] = s_.face[first + i];
+    for (std::uint32_t i = 0; i < kWidth; ++i) out_.ranges[place[i]] = ranges_[i], out_.hits[place[i]] = hits_[i];
   }
   flagged_ = flagged_ || grazing_ != 0;
   for (; grazing_ != 0; grazing_ &= grazing_ - 1)
@@ -162,11 +166,11 @@ bool Scan::cast(const BeamTile& tile) {
   return flagged_;
 }
 
-bool scan_pattern(Scratch& s, const RigidTransform& X_WS, const BeamPattern& pattern, double range_max,
-                  const SceneView& scene, const ScanOutput& out) {
+bool scan_tiles(Scratch& s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
+                const SceneView& scene, const ScanOutput& out) {
   Scan scan(s, X_WS, range_max, scene, out);
   bool flagged = false;
-  for (const BeamTile& tile : pattern.tiles) flagged = scan.cast(tile);
+  for (const BeamTile& tile : tiles) flagged = scan.cast(tile);
   return flagged;
 }
 
@@ -176,7 +180,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sf::scene {
 
-HWY_EXPORT(scan_pattern);
+HWY_EXPORT(scan_tiles);
 
 Rasterizer::Rasterizer() : scratch_(std::make_unique<Scratch>()) {}
 Rasterizer::~Rasterizer() = default;
@@ -184,8 +188,8 @@ Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
 
 const ScanCounts& Rasterizer::counts() const { return scratch_->counts; }
 
-bool Rasterizer::scan(const RigidTransform& X_WS, const BeamPattern& pattern, double range_max, const SceneView& scene,
-                      const ScanOutput& out) {
+bool Rasterizer::scan(const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
+                      const SceneView& scene, const ScanOutput& out) {
   Scratch& s = *scratch_;
   s.meshes.clear();
   std::uint32_t first = 0;
@@ -201,7 +205,7 @@ bool Rasterizer::scan(const RigidTransform& X_WS, const BeamPattern& pattern, do
     }
     first += static_cast<std::uint32_t>(tree.mesh.faces.size());
   }
-  return HWY_DYNAMIC_DISPATCH(scan_pattern)(s, X_WS, pattern, range_max, scene, out);
+  return HWY_DYNAMIC_DISPATCH(scan_tiles)(s, X_WS, tiles, range_max, scene, out);
 }
 
 }  // namespace sf::scene

@@ -32,9 +32,8 @@ namespace sf::scene {
 
 using base::RigidTransform;
 
-/// Faces of a scan that are none of a mesh's.
-inline constexpr std::uint32_t kNoFace = 0xFFFFFFFFu;     ///< nothing within range
-inline constexpr std::uint32_t kFloorFace = 0xFFFFFFFEu;  ///< the plane z = 0 of the world
+/// Faces of a scan that are none of a mesh's: nothing within range, and the plane z = 0 of the world.
+inline constexpr std::uint32_t kNoFace = base::kNoHit, kFloorFace = base::kFloorHit;
 
 /// A mesh in the world. The tree must outlive the scans.
 struct Instance {
@@ -52,7 +51,7 @@ struct SceneView {
 /// Results of one scan, beam by beam in the order of the scan.
 struct ScanOutput {
   std::span<double> ranges;              ///< [m] in [0, range_max]; range_max where nothing is nearer
-  std::span<std::uint32_t> faces;        ///< row among the faces of all instances in order, kFloorFace, or kNoFace
+  std::span<std::uint32_t> hits;         ///< owner of the face (Mesh::owners), base::kFloorHit, or base::kNoHit
   std::span<base::QualityFlag> quality;  ///< `grazing` where the error may exceed the bound. Only these are written
 };
 
@@ -71,10 +70,11 @@ class Rasterizer {
   ~Rasterizer();
   Rasterizer(Rasterizer&&) noexcept;
 
+  /// Casts the beams of some tiles of a pattern. Ranges and flags do not depend on the order of instances, nor results
+  /// on the division into tiles or the machine's instruction set.
   /// @param X_WS the sensor's pose  @param range_max [m] > 0
-  /// Results do not depend on the order of instances, except for rows of faces, nor on the machine's instruction set.
-  /// @return true if any beam has a flag
-  bool scan(const RigidTransform& X_WS, const BeamPattern& pattern, double range_max, const SceneView& scene,
+  /// @return true if any of these beams has a flag
+  bool scan(const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max, const SceneView& scene,
             const ScanOutput& out);
   const ScanCounts& counts() const;
 

@@ -37,6 +37,8 @@ class HostBackend : public SensorBackend {
   virtual void measure(std::span<const HostSample> samples) const = 0;
 
   std::span<const SensorSpec> rows() const { return rows_; }
+  /// Returns the due readings, since `prepare`.
+  std::span<const HostSample> samples() const { return samples_; }
   const world::World& world() const { return world_; }
   std::span<const base::Report> states() const { return states_; }
   const raycast::Episodes& episodes() const { return episodes_; }

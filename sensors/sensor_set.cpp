@@ -44,6 +44,11 @@ const SensorSpec& SensorSet::row(const base::ReadingBlock& reading) const {
   return rows[reading.sensor];
 }
 
+SpatialBeams SensorSet::beams(const base::ReadingBlock& reading) const {
+  const Group& found = *group(reading.type);
+  return found.type->beams(found, found.first[reading.mover] + reading.sensor);
+}
+
 std::size_t SensorSet::count() const {
   std::size_t sum = 0;
   for (const Group& group : groups_) sum += group.rows.size();

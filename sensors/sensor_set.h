@@ -44,6 +44,8 @@ class SensorSet {
   }
   /// Returns the spec of the sensor that produced a reading.
   const SensorSpec& row(const base::ReadingBlock& reading) const;
+  /// Returns the geometry of a reading that is a spatial scan (SensorType::beams).
+  SpatialBeams beams(const base::ReadingBlock& reading) const;
   std::size_t count() const;                        ///< number of sensors of all types
   std::size_t count_of(std::uint32_t mover) const;  ///< number of a mover's sensors of all types
 

@@ -20,6 +20,7 @@
 #include "base/echo.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "base/rigid_transform.h"
 #include "base/thread_pool.h"
 #include "gpu/batch.h"
 #include "gpu/device.h"
@@ -92,6 +93,12 @@ inline base::RangeLimits limits_of(const SensorSpec& sensor) { return {sensor.ra
 inline double bearing_of(const SensorSpec& sensor, std::uint32_t i) {
   return base::bearing_of(sensor.fov, sensor.elements, i);
 }
+
+/// Geometry of a spatial scan. The spans live as long as its ParsedSensors.
+struct SpatialBeams {
+  base::RigidTransform X_MS;               ///< sensor in the mover's frame
+  std::span<const glm::dvec3> directions;  ///< unit vectors in the sensor's frame, one per beam
+};
 
 /// All sensors of one type, computed as a batch. `SensorContext::states` holds the states of movers. Not thread-safe.
 class SensorBackend {
@@ -176,6 +183,9 @@ struct SensorType {
   std::span<const Column> columns;
   bool is_scan = false;  ///< a reading is a planar scan: elements are beams, and the only column is their range [m].
                          ///< Recorded as a ROS LaserScan, printed with bearings
+  /// Returns the beams of a type whose readings are spatial scans: elements are beams, and the first column is their
+  /// range [m]. Null for all others.
+  SpatialBeams (*beams)(const ParsedSensors& sensors, std::size_t row) = nullptr;
   std::uint8_t derived_from = 0;  ///< id of the type whose readings this type is computed from: `observe` is called,
                                   ///< and `collect` runs after theirs; 0: none
 

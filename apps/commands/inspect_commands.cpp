@@ -145,14 +145,18 @@ int sense(const SenseOptions& options) {
   const std::uint32_t mover = find_robot(world, sensor_set, options);
   const Chosen chosen = require_sensor(world, sensor_set, options, mover);
   base::Pose X_WM = world.movers[mover].X_WM;
-  if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
+  const base::Tilt tilt = options.pose ? options.pose->tilt : base::Tilt{};
+  if (options.pose) {
+    const base::Pose& X = options.pose->X;
+    X_WM = {X.x, X.y, options.pose->has_height ? X.z : X_WM.z, X.yaw};
+  }
   if (options.pose) warn_of_pose(world, world.movers[mover], X_WM);
 
   gpu::Device device = open_device(options);
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  base::ReadingBlock reading = farm.sense(mover, chosen.type->id, chosen.sensor, X_WM);
+  base::ReadingBlock reading = farm.sense(mover, chosen.type->id, chosen.sensor, X_WM, tilt);
   std::vector<double> values(reading.values.begin(), reading.values.end());
   if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   if (!options.json && !options.too_near_min) base::mark_too_near(reading.quality, values);

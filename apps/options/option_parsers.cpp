@@ -161,6 +161,14 @@ std::optional<base::Pose> read_pose(const std::string& text) {
   return base::Pose{(*v)[0], (*v)[1], 0.0, (*v)[2] * M_PI / 180.0};
 }
 
+std::optional<TiltedPose> read_tilted_pose(const std::string& text) {
+  if (const auto planar = read_pose(text)) return TiltedPose{.X = *planar};
+  const auto v = read_coordinates(text, 6);
+  if (!v) return std::nullopt;
+  constexpr double kDegree = M_PI / 180.0;
+  return TiltedPose{{(*v)[0], (*v)[1], (*v)[2], (*v)[5] * kDegree}, {(*v)[3] * kDegree, (*v)[4] * kDegree}, true};
+}
+
 std::optional<std::array<double, 3>> read_lengths(const std::string& text) {
   const auto v = read_coordinates(text, 3);
   return v && std::ranges::all_of(*v, base::is_shape_length) ? std::optional(std::array{(*v)[0], (*v)[1], (*v)[2]})

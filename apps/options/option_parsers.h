@@ -54,6 +54,8 @@ Validator readable(Read read, const char* expected) {
 std::optional<std::pair<std::string, std::string>> read_setting(const std::string& text);
 /// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7.
 std::optional<base::Pose> read_pose(const std::string& text);
+/// Reads the same, or "X,Y,Z,ROLL_DEG,PITCH_DEG,YAW_DEG".
+std::optional<TiltedPose> read_tilted_pose(const std::string& text);
 /// "X,Y,Z" [m], each a length of a shape (base::is_shape_length).
 std::optional<std::array<double, 3>> read_lengths(const std::string& text);
 /// "X0,Y0,X1,Y1" [m], each within 1e7; two distinct points.

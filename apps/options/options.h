@@ -29,6 +29,13 @@
 
 namespace sf::apps {
 
+/// A pose given as three numbers, or as six.
+struct TiltedPose {
+  base::Pose X;
+  base::Tilt tilt;
+  bool has_height = false;  ///< six numbers
+};
+
 struct JsonOption {
   bool json = false;
 };
@@ -200,7 +207,7 @@ struct FieldOptions : WorldOptions, DeviceOption, PageOption {
 };
 
 struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
-  std::optional<base::Pose> pose;  ///< of the robot
+  std::optional<TiltedPose> pose;  ///< of the robot
   std::string robot;               ///< empty: the first robot that has a sensor
   std::uint8_t type = 0;           ///< of the sensor; 0: the robot's first type
   std::uint32_t sensor = 0;        ///< index among the robot's sensors of that type

@@ -86,9 +86,10 @@ void add_sense(CLI::App& app, Call& call) {
   add_device(*sub, o);
   add_no_return(*sub, o);
   sub->add_option_function<std::string>(
-         "--pose", [&o](const std::string& text) { o.pose = read_pose(text); },
-         "Pose of the robot [m, degrees] (default: its pose in the world)")
-      ->check(readable(read_pose, "X,Y,YAW_DEG such as 1.5,-2,90"))
+         "--pose", [&o](const std::string& text) { o.pose = read_tilted_pose(text); },
+         "Pose of the robot's origin on the ground [m, degrees], also as X,Y,Z,ROLL,PITCH,YAW (default: its pose in "
+         "the world)")
+      ->check(readable(read_tilted_pose, "X,Y,YAW_DEG such as 1.5,-2,90 or X,Y,Z,ROLL_DEG,PITCH_DEG,YAW_DEG"))
       ->type_name("X,Y,YAW_DEG");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first with a sensor)")->type_name("NAME");
   add_robot_from(*sub, o);

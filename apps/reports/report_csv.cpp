@@ -6,6 +6,7 @@
 
 #include "apps/reports/csv_text.h"
 #include "apps/reports/report.h"
+#include "base/elementary.h"
 
 namespace sf::apps {
 
@@ -20,14 +21,28 @@ std::string missing_or(double value, const sensors::Column& column) {
 /// `distance_m,points`; a vector has the columns `vector_T_x,vector_T_y,vector_T_z`. Scans also have bearings and
 /// models.
 std::string csv_heading(const sensors::SensorType& type) {
-  std::string text = type.is_scan ? "bearing_rad" : "";
+  std::string text = type.is_scan ? "bearing_rad" : type.beams != nullptr ? "azimuth_rad,elevation_rad" : "";
   for (const sensors::Column& column : type.columns)
     for (std::uint32_t k = 0; k < column.width; ++k) {
       if (!text.empty()) text += ',';
       text += column.name;
       if (column.width > 1) text += column.width <= 3 ? fmt::format("_{}", "xyz"[k]) : fmt::format("_{}", k);
     }
-  return text + (type.is_scan ? ",hit\n" : "\n");
+  return text + (type.is_scan || type.beams != nullptr ? ",hit\n" : "\n");
+}
+
+/// Returns the bearing of a beam, or its azimuth and elevation; empty for other elements.
+std::string direction_csv(const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading, std::uint32_t i) {
+  const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
+  if (type.is_scan) return fmt::format("{:.12f}", bearing_of(sensor_set.row(reading), i));
+  if (type.beams == nullptr) return "";
+  const glm::dvec3 d = sensor_set.beams(reading).directions[i];
+  return fmt::format("{:.12f},{:.12f}", base::atan2(d.y, d.x), base::atan2(d.z, base::hypot(d.x, d.y)));
+}
+
+std::string hit_csv(const world::World& world, std::uint32_t hit) {
+  if (hit == base::kNoHit) return "";
+  return hit == base::kFloorHit ? "floor" : csv_field(world.models[hit].name);
 }
 
 }  // namespace
@@ -50,14 +65,14 @@ std::string reading_csv(const world::World& world, const sensors::SensorSet& sen
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
   std::string text = csv_heading(type);
   const std::size_t width = element_width(type);
+  const bool directed = type.is_scan || type.beams != nullptr;
   for (std::uint32_t i = 0; (i + 1) * width <= reading.values.size(); ++i) {
-    std::string line = type.is_scan ? fmt::format("{:.12f}", bearing_of(sensor_set.row(reading), i)) : "";
+    std::string line = direction_csv(sensor_set, reading, i);
     std::size_t at = i * width;
     for (const sensors::Column& column : type.columns)
       for (std::uint32_t k = 0; k < column.width; ++k, ++at)
-        line += (type.is_scan || at > i * width ? "," : "") + missing_or(reading.values[at], column);
-    if (type.is_scan)
-      line += "," + (reading.hits[i] == base::kNoHit ? "" : csv_field(world.models[reading.hits[i]].name));
+        line += (directed || at > i * width ? "," : "") + missing_or(reading.values[at], column);
+    if (directed) line += "," + hit_csv(world, reading.hits[i]);
     text += line + "\n";
   }
   return text;

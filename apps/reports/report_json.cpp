@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
 #include "apps/reports/robot_report.h"
+#include "base/elementary.h"
 #include "base/hash.h"
+#include "base/rigid_transform.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser.h"
 #include "sensors/magnetic_field/truncation.h"
@@ -86,19 +89,36 @@ std::string_view word_of(base::QualityFlag quality) {
   return kWords[static_cast<std::size_t>(quality)];
 }
 
-/// Returns the columns of one element, by name. Beams also have their bearing and the model that they hit.
+Json hit_json(const world::World& world, std::uint32_t hit) {
+  if (hit == base::kNoHit) return {};
+  return hit == base::kFloorHit ? Json("floor") : Json(world.models[hit].name);
+}
+
+/// Returns the position and orientation of a spatial sensor, a unit quaternion [w x y z], in the world.
+Json spatial_pose_json(const base::ReadingBlock& reading, const sensors::SpatialBeams& beams) {
+  const auto X_WS = base::compose(base::transform_of(reading.X_WM, reading.tilt), beams.X_MS);
+  const glm::dquat q = glm::quat_cast(X_WS.R);
+  return {{"sensor_position", {X_WS.p.x, X_WS.p.y, X_WS.p.z}}, {"sensor_orientation", {q.w, q.x, q.y, q.z}}};
+}
+
+/// Returns the columns of one element, by name. Beams also have their direction and the model that they hit.
 Json element_json(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
                   std::uint32_t i) {
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
   Json json = Json::object();
   if (type.is_scan) json["bearing_rad"] = bearing_of(sensor_set.row(reading), i);
+  if (type.beams != nullptr) {
+    const glm::dvec3 d = sensor_set.beams(reading).directions[i];
+    json["azimuth_rad"] = base::atan2(d.y, d.x);
+    json["elevation_rad"] = base::atan2(d.z, base::hypot(d.x, d.y));
+  }
   std::size_t at = i * element_width(type);
   for (const sensors::Column& column : type.columns) {
     Json numbers = Json::array();
     for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(reading.values[at++], column.whole));
     json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
   }
-  if (type.is_scan) json["hit"] = reading.hits[i] == base::kNoHit ? Json() : Json(world.models[reading.hits[i]].name);
+  if (type.is_scan || type.beams != nullptr) json["hit"] = hit_json(world, reading.hits[i]);
   if (!type.list.empty() && !reading.quality.empty() && reading.quality[i] != base::QualityFlag::none)
     json["unsure"] = word_of(reading.quality[i]);
   return json;
@@ -374,6 +394,7 @@ std::string reading_json(const world::World& world, const sensors::SensorSet& se
     head["bound"] = sigma > 0.0 ? Json() : finite_json(reading.bound);
     if (sigma > 0.0) head.update(noise_json(reading.bound_without_noise, sigma));
   }
+  if (type.beams != nullptr) head.update(spatial_pose_json(reading, sensor_set.beams(reading)));
   if (type.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
   if (type.list.empty()) {
     head.update(element_json(world, sensor_set, reading, 0));

@@ -59,12 +59,15 @@ HWY_INLINE std::uint32_t evaluate_one(const BeamTile& tile, std::uint32_t first,
 /// Ranges of sixteen beams that meet several faces.
 template <class PlaneOf>
 HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t first, double range_max,
-                                          const std::uint32_t* faces, const PlaneOf& plane_of, double* out) {
+                                          const std::uint32_t* faces, const PlaneOf& plane_of, double* out,
+                                          std::uint32_t* hits) {
   BeamPlanes rows;
   SeenPlane plane;
   for (std::uint32_t i = 0; i < kWidth; ++i) {
     const bool none = faces[i] == kNoFace;
-    if (i == 0 || faces[i] != faces[i - 1]) plane = none ? SeenPlane{.height = range_max} : plane_of(faces[i]);
+    if (i == 0 || faces[i] != faces[i - 1])
+      plane = none ? SeenPlane{.height = range_max, .owner = base::kNoHit} : plane_of(faces[i]);
+    hits[i] = plane.owner;
     rows.x[i] = plane.normal.x, rows.y[i] = plane.normal.y, rows.z[i] = plane.normal.z;
     rows.height[i] = plane.height, rows.extra[i] = none ? 1.0 : 0.0, rows.least_sine[i] = plane.least_sine;
   }

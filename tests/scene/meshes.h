@@ -99,7 +99,7 @@ inline void move(Mesh& mesh, glm::dvec3 by) {
 
 struct SpatialScan {
   std::vector<double> ranges;
-  std::vector<std::uint32_t> faces;
+  std::vector<std::uint32_t> hits;
   std::vector<base::QualityFlag> quality;
   std::uint64_t uncertain = 0;
   bool operator==(const SpatialScan&) const = default;
@@ -112,7 +112,7 @@ inline SpatialScan cast(const RigidTransform& X_WS, const std::vector<glm::dvec3
                   std::vector<base::QualityFlag>(beams.size())};
   Rasterizer rasterizer;
   const bool flagged =
-      rasterizer.scan(X_WS, make_pattern(beams, row), range_max, scene, {out.ranges, out.faces, out.quality});
+      rasterizer.scan(X_WS, make_pattern(beams, row).tiles, range_max, scene, {out.ranges, out.hits, out.quality});
   const bool found = std::ranges::any_of(out.quality, [](auto flag) { return flag != base::QualityFlag::none; });
   EXPECT_EQ(flagged, found);
   out.uncertain = rasterizer.counts().uncertain;

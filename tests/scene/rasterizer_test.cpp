@@ -92,7 +92,7 @@ TEST(SpatialRasterizer, IsWatertight) {
     const SurfaceTree tree = build_tree(mesh);
     const Instance instance = still(tree);
     const SpatialScan scan = cast({glm::dmat3(1.0), viewer}, beams, 20.0, {{&instance, 1}, false});
-    EXPECT_EQ(std::ranges::count(scan.faces, kNoFace), 0);
+    EXPECT_EQ(std::ranges::count(scan.hits, kNoFace), 0);
     EXPECT_GT(scan.uncertain, beams.size() / 2);
     EXPECT_EQ(std::ranges::count(scan.quality, QualityFlag::grazing), 0) << "edges are shared";
   }
@@ -197,7 +197,7 @@ TEST(SpatialRasterizer, Floor) {
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double expected = beams[i].z < -1.5 / 50.0 ? -1.5 / beams[i].z : 50.0;
     EXPECT_NEAR(above.ranges[i], expected, kRangeError);
-    EXPECT_EQ(above.faces[i], expected < 50.0 ? kFloorFace : kNoFace);
+    EXPECT_EQ(above.hits[i], expected < 50.0 ? kFloorFace : kNoFace);
   }
   const SpatialScan below = cast({glm::dmat3(1.0), {3.0, 4.0, -1.5}}, beams, 50.0, {{}, true});
   EXPECT_NEAR(below.ranges.back(), 1.5 / beams.back().z, kRangeError) << "seen from below";

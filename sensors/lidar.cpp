@@ -1,0 +1,255 @@
+#include "sensors/lidar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/elementary.h"
+#include "base/random.h"
+#include "scene/rasterizer.h"
+#include "scene/solids.h"
+#include "sensors/host_backend.h"
+#include "sensors/laser.h"
+#include "sensors/laser_packets.h"
+#include "sensors/lidar_beams.h"
+#include "sensors/settings.h"
+#include "world/copies.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::size_t kTilesPerJob = 16;
+constexpr std::size_t kMostBeamsInAll = 100'000'000;
+
+/// Part of a scan, the work of one thread.
+struct Job {
+  std::size_t sample = 0;
+  std::size_t first_tile = 0, end_tile = 0;
+};
+
+class Lidars : public HostBackend {
+ public:
+  Lidars(const SensorContext& context, const ParsedSensors& sensors);
+
+  void place_movers() override;
+  bool update_outlines(const world::World& world) override;
+  bool prepare(std::span<const DueSample> due) override;
+  void collect(std::span<base::ReadingBlock> out) override;
+  SensorStats stats() const override;
+
+ private:
+  void measure(std::span<const HostSample>) const override {}
+  void list_instances(std::size_t sample);
+  void cast(const Job& job, unsigned thread);
+  void finish(std::size_t sample);
+  std::size_t first_beam(std::size_t sample) const { return first_beam_[samples()[sample].row]; }
+
+  base::ThreadPool& thread_pool_;
+  const std::vector<LidarSettings>& settings_;
+  bool noise_;
+  scene::SurfaceTree walls_;
+  std::vector<scene::SurfaceTree> bodies_;  ///< per mover
+  std::vector<base::RigidTransform> X_WM_;  ///< per mover
+  std::vector<std::size_t> first_beam_;     ///< per row, plus one
+  std::vector<std::uint32_t> hits_;         ///< of all beams
+  std::vector<base::QualityFlag> quality_;
+  std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
+  std::vector<base::RigidTransform> X_WS_;      ///< per due sample
+  std::vector<std::vector<scene::Instance>> instances_;
+  std::vector<Job> jobs_;
+  std::uint64_t rays_ = 0;
+};
+
+std::vector<scene::SurfaceTree> bodies_of(const world::World& world) {
+  std::vector<scene::SurfaceTree> bodies;
+  for (const world::Mover& mover : world.movers) bodies.push_back(scene::build_tree(scene::mesh_of(mover.body)));
+  return bodies;
+}
+
+Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
+    : HostBackend(context, lidar_type, sensors),
+      thread_pool_(context.thread_pool),
+      settings_(sensors.settings_as<LidarSettings>()),
+      noise_(context.noise),
+      walls_(scene::build_tree(scene::mesh_of(context.world.walls))),
+      bodies_(bodies_of(context.world)),
+      X_WM_(bodies_.size()),
+      rasterizers_(context.thread_pool.threads()) {
+  first_beam_.push_back(0);
+  for (const SensorSpec& row : rows()) first_beam_.push_back(first_beam_.back() + row.elements);
+  hits_.resize(first_beam_.back());
+  quality_.resize(first_beam_.back());
+}
+
+void Lidars::place_movers() {
+  for (std::size_t m = 0; m < bodies_.size(); ++m) X_WM_[m] = base::transform_of(states()[m].X_WM, states()[m].tilt);
+}
+
+bool Lidars::update_outlines(const world::World& world) {
+  bodies_ = bodies_of(world);
+  return true;
+}
+
+bool Lidars::prepare(std::span<const DueSample> due) {
+  const bool again = HostBackend::prepare(due);
+  jobs_.clear();
+  X_WS_.resize(due.size());
+  instances_.resize(std::max(instances_.size(), due.size()));
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    const LidarSettings& s = settings_[due[i].row];
+    X_WS_[i] = base::compose(X_WM_[rows()[due[i].row].mover], s.X_MS);
+    list_instances(i);
+    const std::size_t tiles = s.beams->pattern.tiles.size();
+    for (std::size_t first = 0; first < tiles; first += kTilesPerJob)
+      jobs_.push_back({i, first, std::min(tiles, first + kTilesPerJob)});
+  }
+  return again;
+}
+
+/// Lists what a lidar may see: the walls, and the movers within its range.
+void Lidars::list_instances(std::size_t sample) {
+  const SensorSpec& row = rows()[samples()[sample].row];
+  auto& instances = instances_[sample];
+  instances.assign(1, {&walls_, {}, true});
+  const auto [first, end] = world::CopyIndex(world()).rows_with(row.mover, static_cast<std::uint32_t>(bodies_.size()));
+  for (std::uint32_t m = first; m < end; ++m) {
+    const scene::SurfaceTree& body = bodies_[m];
+    if (m == row.mover || body.empty()) continue;
+    const double reach = row.limit + body.radius + glm::length(body.centre);
+    if (!(glm::distance(X_WM_[m].p, X_WS_[sample].p) <= reach)) continue;  // also if absent
+    instances.push_back({&body, X_WM_[m], false});
+  }
+}
+
+void Lidars::cast(const Job& job, unsigned thread) {
+  const HostSample& sample = samples()[job.sample];
+  const LidarSettings& s = settings_[sample.row];
+  const std::size_t first = first_beam(job.sample), beams = rows()[sample.row].elements;
+  const auto tiles = std::span(s.beams->pattern.tiles).subspan(job.first_tile, job.end_tile - job.first_tile);
+  const scene::ScanOutput out{sample.values, std::span(hits_).subspan(first, beams),
+                              std::span(quality_).subspan(first, beams)};
+  rasterizers_[thread].scan(X_WS_[job.sample], tiles, s.range_max, {instances_[job.sample], !world().floor_unseen},
+                            out);
+}
+
+/// Adds noise to hits, and flags surfaces nearer than the smallest range.
+void Lidars::finish(std::size_t i) {
+  const HostSample& sample = samples()[i];
+  const LidarSettings& s = settings_[sample.row];
+  const SensorSpec& row = rows()[sample.row];
+  const bool noisy = noise_ && row.sigma > 0.0;
+  if (!noisy && s.range_min == 0.0) return;
+  const base::RandomKey key = episodes().key(base::RandomStream::spatial_range, row.mover, row.sensor, sample.sequence);
+  const std::size_t first = first_beam(i);
+  for (std::size_t k = 0; k < sample.values.size(); ++k) {
+    double& range = sample.values[k];
+    std::uint32_t& hit = hits_[first + k];
+    if (hit == base::kNoHit) continue;
+    if (range < s.range_min) quality_[first + k] = base::QualityFlag::too_near;
+    range = std::max(range, s.range_min);
+    if (!noisy) continue;
+    const double sigma = base::hypot(s.range_sigma, s.range_proportional * range);
+    const auto pair = base::random_normal(key, static_cast<std::uint32_t>(k / 2));
+    range = std::clamp(range + sigma * pair[k % 2], s.range_min, s.range_max);
+    if (!(range < s.range_max)) hit = base::kNoHit;
+  }
+}
+
+void Lidars::collect(std::span<base::ReadingBlock> out) {
+  for (std::size_t i = 0; i < samples().size(); ++i)
+    std::fill_n(quality_.begin() + static_cast<std::ptrdiff_t>(first_beam(i)), samples()[i].values.size(),
+                base::QualityFlag::none);
+  thread_pool_.parallel_for_each(jobs_.size(), 1, [&](std::size_t i, unsigned thread) { cast(jobs_[i], thread); });
+  thread_pool_.parallel_for_each(samples().size(), 1, [&](std::size_t i, unsigned) { finish(i); });
+  HostBackend::collect(out);
+  for (std::size_t i = 0; i < samples().size(); ++i) {
+    const std::size_t first = first_beam(i), beams = samples()[i].values.size();
+    rays_ += beams;
+    const auto quality = std::span(quality_).subspan(first, beams);
+    out[i].hits = std::span(hits_).subspan(first, beams);
+    const auto is_flagged = [](base::QualityFlag flag) { return flag != base::QualityFlag::none; };
+    if (std::ranges::any_of(quality, is_flagged)) out[i].quality = quality;
+    out[i].bound = out[i].bound_without_noise = scene::kRangeError;
+  }
+}
+
+SensorStats Lidars::stats() const {
+  SensorStats sum{.rays = rays_};
+  for (const scene::Rasterizer& rasterizer : rasterizers_) sum.uncertain += rasterizer.counts().uncertain;
+  return sum;
+}
+
+ParsedSensors parse_lidars(const world::World& world) {
+  LidarReader reader;
+  std::size_t beams = 0;
+  return parse_each(world, lidar_type, [&](const world::Sensor& sensor, SensorSpec& row) {
+    LidarSettings s = reader.read(sensor);
+    row.elements = static_cast<std::uint32_t>(s.beams->directions.size());
+    beams += row.elements;
+    if (beams > kMostBeamsInAll)
+      refuse(
+          sensor, "columns",
+          fmt::format("the world's lidars have more than {} beams in all; give fewer 'columns', 'channels', or robots",
+                      kMostBeamsInAll));
+    row.X_MS = {s.X_MS.p.x, s.X_MS.p.y, s.X_MS.p.z, base::atan2(s.X_MS.R[0].y, s.X_MS.R[0].x)};
+    row.limit = row.dependency_radius = row.reach = s.range_max;
+    row.range_min = s.range_min;
+    row.sigma = base::hypot(s.range_sigma, s.range_proportional * s.range_max);
+    return s;
+  });
+}
+
+SpatialBeams beams_of_lidar(const ParsedSensors& sensors, std::size_t row) {
+  const LidarSettings& s = sensors.settings_as<LidarSettings>()[row];
+  return {s.X_MS, s.beams->directions};
+}
+
+ErrorBound bound_of_lidar(const world::World&, const ParsedSensors&, std::size_t) { return {scene::kRangeError, ""}; }
+
+// Payloads are those of lasers, with this type's id.
+
+std::uint8_t laser_form(std::uint8_t type) { return static_cast<std::uint8_t>(type - kLidar + kLaser); }
+
+std::uint8_t encode(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire, std::uint32_t part,
+                    base::Bytes& out) {
+  const std::uint8_t type = encode_laser(sensor, reading, wire, part, out);
+  return type == 0 ? 0 : static_cast<std::uint8_t>(type - kLaser + kLidar);
+}
+
+PayloadPart decode(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                   WireFormat wire) {
+  return decode_laser(sensor, payload, laser_form(type), wire);
+}
+
+void read_payload(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
+                  std::span<double> values) {
+  fill_laser(sensor, payload, laser_form(type), wire, values);
+}
+
+constexpr Column kColumns[] = {{"range_m", 1, false, 9}};
+
+}  // namespace
+
+constinit const SensorType lidar_type{
+    .id = kLidar,
+    .name = "lidar",
+    .word = {"lidar", kLidarKeys},
+    .base_port = 14000,
+    .list = "beams",
+    .columns = kColumns,
+    .beams = beams_of_lidar,
+    .bound = bound_of_lidar,
+    .parse = parse_lidars,
+    .make = make_backend<Lidars>,
+    .wire_problem = laser_wire_problem,
+    .parts = laser_parts,
+    .encode = encode,
+    .wire_error = laser_wire_error,
+    .decode = decode,
+    .read = read_payload,
+};
+
+}  // namespace sf::sensors

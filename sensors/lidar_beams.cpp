@@ -1,0 +1,210 @@
+#include "sensors/lidar_beams.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/elementary.h"
+#include "base/suggest.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// A real device, by its manufacturer's data sheet.
+struct Preset {
+  std::string_view name;
+  std::uint32_t channels, columns;
+  double low, high;  ///< [degrees] elevations of the first and the last channel
+  double fov;        ///< [degrees]
+  double range;      ///< [m]
+  double sigma;      ///< [m] of the range
+};
+
+// Velodyne 63-9243 Rev. E: 16 channels from -15 to 15 degrees, 0.2 degrees at 10 Hz, 100 m, typically 3 cm.
+// Velodyne 97-0038 Rev. N: 32 channels from -30.67 to 10.67 degrees, 0.16 degrees at 10 Hz, 100 m, 2 cm.
+// Ouster OS1 Rev. 6: 64 channels over 45 degrees, 1024 columns at 10 Hz, 120 m, 0.7 to 5 cm.
+// Livox Mid-40: a circle of 38.4 degrees, 100 000 points/s, 260 m, 2 cm at 20 m.
+constexpr Preset kPresets[] = {{"VLP-16", 16, 1800, -15.0, 15.0, 360.0, 100.0, 0.03},
+                               {"HDL-32E", 32, 2250, -30.67, 10.67, 360.0, 100.0, 0.02},
+                               {"OS1-64", 64, 1024, -22.5, 22.5, 360.0, 120.0, 0.03},
+                               {"Mid-40", 1, 10000, 0.0, 0.0, 38.4, 260.0, 0.02}};
+constexpr const Preset& kRosette = kPresets[3];
+
+/// What follows from the settings: channel by channel, and column by column.
+struct Layout {
+  std::vector<double> elevations;  ///< [rad] per channel
+  std::vector<double> offsets;     ///< [rad] of the azimuths, per channel
+  std::uint32_t columns = 0;
+  double fov = 0.0;      ///< [rad] in (0, 2 pi]
+  bool rosette = false;  ///< a circle of diameter `fov` instead of rings
+
+  std::vector<double> description() const {
+    std::vector<double> all{static_cast<double>(columns), fov, rosette ? 1.0 : 0.0};
+    all.insert(all.end(), elevations.begin(), elevations.end());
+    all.insert(all.end(), offsets.begin(), offsets.end());
+    return all;
+  }
+};
+
+const Preset* preset_of(const world::Sensor& sensor) {
+  const world::Setting* setting = find(sensor, "preset");
+  if (setting == nullptr) return nullptr;
+  std::vector<std::string_view> names;
+  for (const Preset& preset : kPresets) {
+    if (setting->text == preset.name) return &preset;
+    names.push_back(preset.name);
+  }
+  refuse(sensor, "preset",
+         fmt::format("there is no preset \"{}\"; expected {}{}", setting->text, fmt::join(names, ", "),
+                     base::suggest(setting->text, names)));
+}
+
+std::optional<std::vector<double>> angles(const world::Sensor& sensor, std::string_view key, std::size_t least,
+                                          const std::string& meaning, double most) {
+  auto values = tuple(sensor, key, least, meaning);
+  if (!values) return values;
+  for (double& value : *values) {
+    value *= sensor.radians_per_unit;
+    if (!(std::abs(value) <= most * (1.0 + 1e-12)))
+      refuse(sensor, key,
+             fmt::format("'{}' has an angle of {:g} degrees; expected {:g} to {:g}{}", key, value / kDegree,
+                         -most / kDegree, most / kDegree, hint_of_radians(sensor, value)));
+  }
+  return values;
+}
+
+/// Reads `elevations`, or spreads `channels` over `fov_v`.
+std::vector<double> elevations_of(const world::Sensor& sensor, const Preset* preset) {
+  if (auto table = angles(sensor, "elevations", 1, "one elevation per channel", M_PI / 2)) {
+    if (find(sensor, "channels") != nullptr || find(sensor, "fov_v") != nullptr)
+      refuse(sensor, "elevations", "'elevations' has one number per channel; leave out 'channels' and 'fov_v'");
+    if (table->size() > kMostChannels)
+      refuse(sensor, "elevations", fmt::format("{} channels; expected at most {}", table->size(), kMostChannels));
+    return *table;
+  }
+  const std::uint32_t channels = whole(sensor, "channels", preset != nullptr ? preset->channels : 16, 1, kMostChannels);
+  const auto ends = angles(sensor, "fov_v", 2, "[lowest highest] of the channels' elevations", M_PI / 2);
+  const double low = ends ? (*ends)[0] : kDegree * (preset != nullptr ? preset->low : -15.0);
+  const double high = ends ? (*ends)[1] : kDegree * (preset != nullptr ? preset->high : 15.0);
+  std::vector<double> elevations;
+  for (std::uint32_t i = 0; i < channels; ++i)
+    elevations.push_back(channels == 1 ? 0.5 * (low + high) : low + (high - low) * i / (channels - 1));
+  return elevations;
+}
+
+Layout layout_of(const world::Sensor& sensor) {
+  const Preset* const preset = preset_of(sensor);
+  Layout layout;
+  layout.rosette = preset == &kRosette;
+  layout.elevations = elevations_of(sensor, preset);
+  layout.columns = whole(sensor, "columns", preset != nullptr ? preset->columns : 1800, 1, kMostLidarBeams);
+  layout.fov = std::min(
+      angle(sensor, "fov", kDegree * (preset != nullptr ? preset->fov : 360.0), 1e-9, 2.0 * M_PI * (1.0 + 1e-12)),
+      2.0 * M_PI);
+  const auto offsets = angles(sensor, "azimuth_offsets", 1, "one angle per channel", M_PI);
+  layout.offsets = offsets ? *offsets : std::vector<double>(layout.elevations.size());
+  if (layout.offsets.size() != layout.elevations.size())
+    refuse(sensor, "azimuth_offsets",
+           fmt::format("{} offsets of {} channels; expected one per channel", layout.offsets.size(),
+                       layout.elevations.size()));
+  const std::size_t beams = layout.elevations.size() * layout.columns;
+  if (beams > kMostLidarBeams)
+    refuse(sensor, "columns",
+           fmt::format("{} channels of {} columns are {} beams; expected at most {}", layout.elevations.size(),
+                       layout.columns, beams, kMostLidarBeams));
+  return layout;
+}
+
+glm::dvec3 direction_of(double azimuth, double elevation) {
+  const auto [sa, ca] = base::sin_cos(azimuth);
+  const auto [se, ce] = base::sin_cos(elevation);
+  return {ce * ca, ce * sa, se};
+}
+
+/// Azimuth of a column. A full turn begins behind the sensor and has no beam twice; narrower fields include both ends.
+double azimuth_of(const Layout& layout, std::uint32_t column) {
+  const bool full = layout.fov >= 2.0 * M_PI;
+  if (layout.columns == 1) return full ? -M_PI : 0.0;
+  return layout.fov * (static_cast<double>(column) / (full ? layout.columns : layout.columns - 1) - 0.5);
+}
+
+/// Beams through two prisms that turn against each other, at rates of 7 294 and -4 664 turns per 1000 s and beam.
+std::vector<glm::dvec3> rosette(const Layout& layout) {
+  std::vector<glm::dvec3> directions;
+  for (std::uint32_t i = 0; i < layout.columns; ++i) {
+    const auto [s1, c1] = base::sin_cos(7.294e-3 * i);
+    const auto [s2, c2] = base::sin_cos(-4.664e-3 * i);
+    directions.push_back(direction_of(0.25 * layout.fov * (c1 + c2), 0.25 * layout.fov * (s1 + s2)));
+  }
+  return directions;
+}
+
+std::vector<glm::dvec3> rings_of(const Layout& layout) {
+  std::vector<glm::dvec3> directions;
+  for (std::size_t channel = 0; channel < layout.elevations.size(); ++channel)
+    for (std::uint32_t column = 0; column < layout.columns; ++column)
+      directions.push_back(
+          direction_of(azimuth_of(layout, column) + layout.offsets[channel], layout.elevations[channel]));
+  return directions;
+}
+
+base::RigidTransform mount_of(const world::Sensor& sensor) {
+  base::RigidTransform X_MB = base::transform_of(sensor.X_MS);
+  if (const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]")) {
+    const auto& v = *pose;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!(std::abs(v[k] * sensor.metres_per_unit) <= 1e6)) refuse(sensor, "pose6", "'pose6' is more than 1e6 m away");
+    const double unit = sensor.radians_per_unit;
+    X_MB = base::compose(X_MB, {base::rotation_of(unit * v[3], unit * v[4], unit * v[5]),
+                                sensor.metres_per_unit * glm::dvec3{v[0], v[1], v[2]}});
+  }
+  return base::compose(X_MB, {glm::dmat3(1.0), {0.0, 0.0, 0.5 * sensor.height}});
+}
+
+}  // namespace
+
+std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor) {
+  const Layout layout = layout_of(sensor);
+  const std::vector<double> description = layout.description();
+  const auto same = [&](const auto& known) { return known.first == description; };
+  const auto known = std::ranges::find_if(known_, same);
+  if (known != known_.end()) return known->second;
+  auto beams = std::make_shared<LidarBeams>();
+  beams->directions = layout.rosette ? rosette(layout) : rings_of(layout);
+  beams->channels = static_cast<std::uint32_t>(layout.elevations.size());
+  beams->pattern = scene::make_pattern(beams->directions, layout.rosette ? 0 : layout.columns);
+  return known_.emplace_back(description, std::move(beams)).second;
+}
+
+LidarSettings LidarReader::read(const world::Sensor& sensor) {
+  const Preset* const preset = preset_of(sensor);
+  LidarSettings s;
+  s.X_MS = mount_of(sensor);
+  if (preset != nullptr) s.range_max = preset->range, s.range_sigma = preset->sigma;
+  if (const auto range = tuple(sensor, "range", 2, "[min max]"))
+    s.range_min = sensor.metres_per_unit * (*range)[0], s.range_max = sensor.metres_per_unit * (*range)[1];
+  s.range_min = length(sensor, "range_min", s.range_min, -HUGE_VAL, HUGE_VAL);
+  s.range_max = length(sensor, "range_max", s.range_max, -HUGE_VAL, HUGE_VAL);
+  const std::string_view key = find(sensor, "range_max") != nullptr ? "range_max" : "range";
+  if (!(s.range_max > 0.0 && s.range_max <= kLongestLidarRange && s.range_min >= 0.0 && s.range_min <= s.range_max))
+    refuse(sensor, key,
+           fmt::format("a range from {:g} to {:g} m; expected 0 or more, to more than that and at most {:g} m",
+                       s.range_min, s.range_max, kLongestLidarRange));
+  if (const auto noise = tuple(sensor, "noise", 1, "[constant proportional], standard deviations")) {
+    s.range_sigma = (*noise)[0] * sensor.metres_per_unit;
+    s.range_proportional = noise->size() > 1 ? (*noise)[1] : 0.0;
+    if (!(s.range_sigma >= 0.0 && s.range_proportional >= 0.0))
+      refuse(sensor, "noise", "'noise' is negative; expected standard deviations of 0 or more");
+  }
+  s.beams = beams_of(sensor);
+  return s;
+}
+
+}  // namespace sf::sensors
