@@ -2,7 +2,9 @@
 // Description of a run. Together with the world and the states, it suffices to recompute all scans.
 
 #include <cstdint>
+#include <glm/ext/vector_double3.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,7 +36,7 @@ struct SensorTypeInfo {
 
 /// An element of a sensor whose readings are also published as standard ROS messages, for viewers and drivers.
 struct StandardTopic {
-  enum class Message : std::uint8_t { range, magnetic_field, fix, imu, map };
+  enum class Message : std::uint8_t { range, magnetic_field, fix, imu, map, points };
   Message message = Message::range;
   std::uint32_t element = 0;  ///< index in the reading
   std::string topic;          ///< set by `name_frames`, like `frame`
@@ -48,6 +50,10 @@ struct StandardTopic {
   double range_max = 0.0;  ///< [m]
 
   maps::GridGeometry grid;  ///< for maps
+
+  // For points, of which an element is the whole reading:
+  std::shared_ptr<const std::vector<glm::dvec3>> directions;  ///< unit vectors of the beams in frame `frame`
+  std::uint32_t rings = 1;                                    ///< rows of the cloud, of equal length
 
   /// Standard deviation of a turn rate [rad/s], or of a fix [m] at an HDOP of 1; 0: not stated.
   double sigma = 0.0;

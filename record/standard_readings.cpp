@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/echo.h"
 #include "base/elementary.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
@@ -99,6 +100,35 @@ void put_map(CdrWriter& cdr, const StandardTopic& topic, std::int64_t time, std:
     }
 }
 
+/// Organized cloud: one row per ring, with the fields of drivers. A beam without an echo in the limits is NaN.
+void put_points(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  constexpr std::uint8_t kUint16 = 4, kFloat32 = 7;  // PointField's datatypes
+  struct Field {
+    const char* name;
+    std::uint32_t offset;
+    std::uint8_t type;
+  };
+  constexpr Field kPointFields[] = {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"ring", 12, kUint16}};
+  constexpr std::uint32_t kPointBytes = 16;
+  const auto count = static_cast<std::uint32_t>(values.size()), columns = count / topic.rings;
+  cdr.put(topic.rings), cdr.put(columns);
+  cdr.put_count(std::size(kPointFields));
+  for (const Field& field : kPointFields) {
+    cdr.put(std::string_view(field.name));
+    cdr.put(field.offset), cdr.put(field.type), cdr.put(std::uint32_t{1});
+  }
+  cdr.put(std::uint8_t{0});  // little-endian
+  cdr.put(kPointBytes), cdr.put(kPointBytes * columns);
+  cdr.put_count(std::size_t{kPointBytes} * count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool echo = base::echo_of(values[i], {topic.range_min, topic.range_max}) == base::Echo::valid;
+    const glm::dvec3 p = (echo ? values[i] : std::nan("")) * (*topic.directions)[i];
+    cdr.put(static_cast<float>(p.x)), cdr.put(static_cast<float>(p.y)), cdr.put(static_cast<float>(p.z));
+    cdr.put(static_cast<std::uint16_t>(i / columns)), cdr.put(std::uint16_t{0});
+  }
+  cdr.put(std::uint8_t{0});  // is_dense: points may be NaN
+}
+
 }  // namespace
 
 std::string_view type_of(Message message) {
@@ -113,6 +143,8 @@ std::string_view type_of(Message message) {
       return kImu;
     case Message::map:
       return kOccupancyGrid;
+    case Message::points:
+      return kPointCloud;
   }
   return {};
 }
@@ -131,6 +163,8 @@ void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<co
       return put_imu(cdr, topic, values);
     case Message::map:
       return put_map(cdr, topic, time, values);
+    case Message::points:
+      return put_points(cdr, topic, values);
   }
 }
 

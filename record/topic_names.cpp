@@ -71,6 +71,8 @@ const char* word_of(StandardTopic::Message message) {
       return "imu";
     case StandardTopic::Message::map:
       return "map";
+    case StandardTopic::Message::points:
+      return "points";
   }
   return "";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "base/elementary.h"
@@ -9,6 +10,8 @@
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
 #include "sensors/infrared.h"
+#include "sensors/lidar.h"
+#include "sensors/lidar_beams.h"
 #include "sensors/magnetometer.h"
 #include "sensors/occupancy.h"
 #include "sensors/sonar.h"
@@ -48,6 +51,18 @@ void for_each_sensor(const sensors::SensorSet& sensor_set, std::uint8_t type, Bo
   for (std::size_t i = 0; i < settings.size(); ++i) body(sensor_set.group(type)->rows[i], settings[i]);
 }
 
+/// The cloud's frame has the heading of the lidar, and its position, but is level.
+StandardTopic points_of(const sensors::SensorSpec& row, const sensors::LidarSettings& lidar) {
+  const glm::dmat3 R_LS = glm::transpose(base::transform_of(row.X_MS).R) * lidar.X_MS.R;
+  auto directions = std::make_shared<std::vector<glm::dvec3>>();
+  for (const glm::dvec3& d : lidar.beams->directions) directions->push_back(R_LS * d);
+  return {.message = Message::points,
+          .range_min = lidar.range_min,
+          .range_max = lidar.range_max,
+          .directions = std::move(directions),
+          .rings = lidar.beams->channels};
+}
+
 }  // namespace
 
 void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
@@ -67,6 +82,9 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
   });
   for_each_sensor<Occupancy>(sensor_set, sensors::kOccupancy, [&](const auto& row, const Occupancy& map) {
     add(row, sensors::kOccupancy, {.message = Message::map, .grid = map.settings.grid});
+  });
+  for_each_sensor<sensors::LidarSettings>(sensor_set, sensors::kLidar, [&](const auto& row, const auto& lidar) {
+    add(row, sensors::kLidar, points_of(row, lidar));
   });
   for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {
     add(row, sensors::kGps, {.message = Message::fix, .sigma = gps.noise});

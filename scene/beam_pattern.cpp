@@ -24,7 +24,7 @@ struct DirectionBox {
 class Grouping {
  public:
   Grouping(std::span<const glm::dvec3> directions, std::uint32_t row)
-      : directions_(directions), along_row_(row >= kWidth) {
+      : directions_(directions), row_(row), along_row_(row >= kWidth) {
     order_.resize(directions.size());
     std::iota(order_.begin(), order_.end(), 0u);
     for (const glm::dvec3& d : directions)
@@ -37,11 +37,13 @@ class Grouping {
   void split(Range range, std::uint32_t size, double tall, std::vector<Range>& out);
   std::size_t bisect(Range range, std::uint32_t size, double tall);
   bool narrow(Range range, double cosine) const;
+  double tile_weight() const;
   glm::dvec3 mean(Range range) const;
   DirectionBox box_of(Range range) const;
   void write_tile(std::span<const Range> vectors, BeamTile& tile) const;
 
   std::span<const glm::dvec3> directions_;
+  std::uint32_t row_;
   bool along_row_;
   std::vector<std::uint32_t> order_;
   std::vector<std::array<double, 2>> angles_;  ///< [rad] azimuth and elevation
@@ -57,6 +59,18 @@ bool Grouping::narrow(Range range, double cosine) const {
   const glm::dvec3 axis = mean(range);
   return std::all_of(order_.begin() + range.first, order_.begin() + range.second,
                      [&](std::uint32_t i) { return glm::dot(directions_[i], axis) >= cosine; });
+}
+
+/// Returns the weight of a tile's height against its width: tiles of sparse rings are wide (measured on 16 x 1 800).
+double Grouping::tile_weight() const {
+  const std::size_t rings = along_row_ ? directions_.size() / row_ : 1;
+  if (rings < 2) return 1.0;
+  const auto extent = [&](int side) {
+    const auto [low, high] = std::ranges::minmax(angles_, {}, [side](const auto& a) { return a[side]; });
+    return high[side] - low[side];
+  };
+  const double ring = extent(1) / static_cast<double>(rings - 1), column = extent(0) / row_;
+  return std::clamp(0.5 * ring / column, 1.0, 8.0);
 }
 
 /// Appends groups of at most `size` beams that are narrow enough for a box.
@@ -168,7 +182,7 @@ void Grouping::write_tile(std::span<const Range> vectors, BeamTile& tile) const 
 
 BeamPattern Grouping::make() {
   std::vector<Range> groups;
-  split({0, order_.size()}, kTileBeams, along_row_ ? 1.0 : 1.0, groups);
+  split({0, order_.size()}, kTileBeams, tile_weight(), groups);
   BeamPattern pattern;
   pattern.beams = static_cast<std::uint32_t>(order_.size());
   for (const Range& group : groups) {

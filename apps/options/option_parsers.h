@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/options/tilted_pose.h"
 #include "base/pose.h"
 #include "viz/paths.h"
 #include "world/world.h"

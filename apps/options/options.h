@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/options/tilted_pose.h"
 #include "base/pose.h"
 #include "bridges/web_access.h"
 #include "netio/packets.h"
@@ -28,13 +29,6 @@
 #include "world/world.h"
 
 namespace sf::apps {
-
-/// A pose given as three numbers, or as six.
-struct TiltedPose {
-  base::Pose X;
-  base::Tilt tilt;
-  bool has_height = false;  ///< six numbers
-};
 
 struct JsonOption {
   bool json = false;

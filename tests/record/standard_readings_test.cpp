@@ -152,5 +152,41 @@ TEST(StandardReadings, MapIsFlippedVertically) {
   EXPECT_TRUE(message.cdr.good());
 }
 
+/// An organized cloud, one row per ring. Points without an echo in [min, max) are NaN.
+TEST(StandardReadings, PointsAreRangesAlongDirections) {
+  const std::vector<glm::dvec3> directions{{1, 0, 0}, {0, 1, 0}, {0.6, 0, 0.8}, {0, 0, -1}};
+  StandardTopic topic{.message = Message::points, .range_min = 0.5, .range_max = 8.0};
+  topic.directions = std::make_shared<const std::vector<glm::dvec3>>(directions);
+  topic.rings = 2;
+  Encoded message = of(topic, {2.0, 8.0, 5.0, -HUGE_VAL});
+  CdrReader& cdr = message.cdr;
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 2u) << "height";
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 2u) << "width";
+  ASSERT_EQ(cdr.get_count(1), 4u);
+  for (const auto& [name, offset, type] : {std::tuple{"x", 0u, 7}, {"y", 4u, 7}, {"z", 8u, 7}, {"ring", 12u, 4}}) {
+    EXPECT_EQ(cdr.get_string(), name);
+    EXPECT_EQ(cdr.get<std::uint32_t>(), offset);
+    EXPECT_EQ(cdr.get<std::uint8_t>(), type);
+    EXPECT_EQ(cdr.get<std::uint32_t>(), 1u);
+  }
+  EXPECT_EQ(cdr.get<std::uint8_t>(), 0) << "little-endian";
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 16u);
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 32u);
+  ASSERT_EQ(cdr.get_count(1), 64u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const float x = cdr.get<float>(), y = cdr.get<float>(), z = cdr.get<float>();
+    if (i % 2 == 1) {
+      EXPECT_TRUE(std::isnan(x) && std::isnan(y) && std::isnan(z));
+    } else {
+      EXPECT_EQ(x, i == 0 ? 2.0F : 3.0F);
+      EXPECT_EQ(z, i == 0 ? 0.0F : 4.0F);
+    }
+    EXPECT_EQ(cdr.get<std::uint16_t>(), i / 2) << "ring";
+    cdr.get<std::uint16_t>();
+  }
+  EXPECT_EQ(cdr.get<std::uint8_t>(), 0) << "not dense";
+  EXPECT_TRUE(cdr.good());
+}
+
 }  // namespace
 }  // namespace sf::record

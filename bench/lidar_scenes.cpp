@@ -1,0 +1,154 @@
+#include "bench/lidar_scenes.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <random>
+#include <stdexcept>
+
+namespace sf::bench {
+
+namespace {
+
+using glm::dvec3;
+using scene::Mesh;
+
+using Random = std::mt19937_64;
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+void add_quad(Mesh& mesh, dvec3 a, dvec3 b, dvec3 c, dvec3 d) { mesh.add(std::array{a, b, c, d}, 0); }
+
+/// The sides and the top of a box on the ground, or all six sides.
+void add_box(Mesh& mesh, dvec3 low, dvec3 high, bool bottom) {
+  const auto at = [&](int x, int y, int z) {
+    return dvec3{x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z};
+  };
+  add_quad(mesh, at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1));
+  add_quad(mesh, at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1));
+  add_quad(mesh, at(1, 1, 0), at(0, 1, 0), at(0, 1, 1), at(1, 1, 1));
+  add_quad(mesh, at(0, 1, 0), at(0, 0, 0), at(0, 0, 1), at(0, 1, 1));
+  add_quad(mesh, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
+  if (bottom) add_quad(mesh, at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0));
+}
+
+/// A closed grid of triangles. @param at (row, column) -> vertex; both wrap or end at `rows`
+template <class At>
+void add_grid(Mesh& mesh, std::uint32_t rows, std::uint32_t columns, bool closed, const At& at) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const std::uint32_t height = closed ? rows : rows + 1, width = closed ? columns : columns + 1;
+  for (std::uint32_t r = 0; r < height; ++r)
+    for (std::uint32_t c = 0; c < width; ++c) mesh.vertices.push_back(at(r, c));
+  const auto vertex = [&](std::uint32_t r, std::uint32_t c) { return first + r % height * width + c % width; };
+  for (std::uint32_t r = 0; r < rows; ++r)
+    for (std::uint32_t c = 0; c < columns; ++c) {
+      const std::uint32_t a = vertex(r, c), b = vertex(r, c + 1), d = vertex(r + 1, c), e = vertex(r + 1, c + 1);
+      mesh.faces.push_back({a, b, e, e}), mesh.faces.push_back({a, e, d, d});
+      mesh.owners.push_back(0), mesh.owners.push_back(0);
+    }
+}
+
+dvec3 on_circle(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
+
+LidarScene city(int blocks, int poses, Random& random) {
+  LidarScene out;
+  for (int i = 0; i < blocks; ++i)
+    for (int j = 0; j < blocks; ++j) {
+      const dvec3 corner{10.0 * i, 10.0 * j, 0.0};
+      add_box(out.mesh, corner, corner + dvec3{6.0, 6.0, uniform(random, 3.0, 20.0)}, false);
+      add_quad(out.mesh, corner, corner + dvec3{10, 0, 0}, corner + dvec3{10, 10, 0}, corner + dvec3{0, 10, 0});
+    }
+  for (int k = 0; k < poses; ++k) {
+    dvec3 p{10.0 * std::floor(uniform(random, 0, blocks)) + uniform(random, 6.5, 9.5),
+            uniform(random, 0, 10.0 * blocks), uniform(random, 0.5, 1.8)};
+    if (k % 2) std::swap(p.x, p.y);
+    out.poses.push_back({{}, p});
+  }
+  return out;
+}
+
+LidarScene room(int poses, Random& random) {
+  LidarScene out;
+  add_box(out.mesh, {0, 0, 0}, {20, 15, 4}, true);
+  for (int k = 0; k < 12; ++k) {
+    const dvec3 c{uniform(random, 1, 19), uniform(random, 1, 14), uniform(random, 0.4, 3.0)};
+    const double radius = uniform(random, 0.3, 0.8);
+    add_grid(out.mesh, 24, 48, true, [&](std::uint32_t r, std::uint32_t col) {  // a torus
+      const double u = 2.0 * M_PI * r / 24, v = 2.0 * M_PI * col / 48;
+      return c + radius * (1.0 + 0.4 * std::cos(u)) * on_circle(v) + dvec3{0, 0, 0.4 * radius * std::sin(u)};
+    });
+    add_grid(out.mesh, 12, 48, false, [&](std::uint32_t r, std::uint32_t col) {  // a lamp: an open ball
+      const double u = M_PI * (r / 12.0 * 0.98 + 0.01);
+      return dvec3{20.0 - c.x, 15.0 - c.y, c.z} +
+             0.5 * radius * (std::sin(u) * on_circle(2.0 * M_PI * col / 48) + dvec3{0, 0, std::cos(u)});
+    });
+  }
+  for (int k = 0; k < 40; ++k) {  // chairs
+    const dvec3 p{uniform(random, 0.5, 19), uniform(random, 0.5, 14), 0.0};
+    for (int leg = 0; leg < 4; ++leg)
+      add_box(out.mesh, p + dvec3{0.4 * (leg % 2), 0.4 * (leg / 2), 0},
+              p + dvec3{0.4 * (leg % 2) + 0.04, 0.4 * (leg / 2) + 0.04, 0.45}, true);
+    add_box(out.mesh, p + dvec3{0, 0, 0.45}, p + dvec3{0.44, 0.44, 0.5}, true);
+    add_box(out.mesh, p + dvec3{0, 0, 0.5}, p + dvec3{0.04, 0.44, 0.95}, true);
+  }
+  for (int k = 0; k < poses; ++k)
+    out.poses.push_back({{}, {uniform(random, 0.5, 19.5), uniform(random, 0.5, 14.5), uniform(random, 0.3, 1.8)}});
+  return out;
+}
+
+LidarScene terrain(int poses, Random& random) {
+  LidarScene out;
+  const auto height = [](double x, double y) {
+    return 6.0 * std::sin(0.05 * x) * std::cos(0.04 * y) + 1.5 * std::sin(0.21 * x + 0.3) * std::sin(0.17 * y) +
+           0.2 * std::sin(1.3 * x) * std::sin(1.1 * y);
+  };
+  add_grid(out.mesh, 512, 512, false, [&](std::uint32_t r, std::uint32_t c) {
+    const double x = 0.5 * c, y = 0.5 * r;
+    return dvec3{x, y, height(x, y)};
+  });
+  for (int k = 0; k < poses; ++k) {
+    const double x = uniform(random, 50, 206), y = uniform(random, 50, 206);
+    out.poses.push_back({{}, {x, y, height(x, y) + uniform(random, 0.9, 2.0)}});
+  }
+  return out;
+}
+
+}  // namespace
+
+LidarScene lidar_scene(const std::string& name, int poses) {
+  Random random(7);
+  int blocks = 0;
+  LidarScene out = std::sscanf(name.c_str(), "city%d", &blocks) == 1 ? city(blocks, poses, random)
+                   : name == "room"                                  ? room(poses, random)
+                   : name == "terrain"                               ? terrain(poses, random)
+                                                                     : LidarScene{};
+  if (out.poses.empty()) throw std::invalid_argument("no scene " + name + "; expected cityN, room or terrain");
+  for (base::RigidTransform& X : out.poses)
+    X.R = base::rotation_of(uniform(random, -0.05, 0.05), uniform(random, -0.05, 0.05), uniform(random, -M_PI, M_PI));
+  return out;
+}
+
+std::vector<dvec3> lidar_beams(const std::string& name, std::uint32_t& row) {
+  std::uint32_t a = 0, b = 0;
+  std::vector<dvec3> beams;
+  if (std::sscanf(name.c_str(), "lidar%ux%u", &a, &b) == 2) {
+    row = b;
+    const double fov = (a <= 16 ? 30.0 : 45.0) * M_PI / 180.0;
+    for (std::uint32_t r = 0; r < a; ++r)
+      for (std::uint32_t c = 0; c < b; ++c) {
+        const double e = fov * ((r + 0.5) / a - 0.5);
+        beams.push_back(std::cos(e) * on_circle(2.0 * M_PI * (c + 0.5) / b - M_PI) + dvec3{0, 0, std::sin(e)});
+      }
+  } else if (std::sscanf(name.c_str(), "camera%ux%u", &a, &b) == 2) {
+    row = 0;
+    for (std::uint32_t r = 0; r < b; ++r)
+      for (std::uint32_t c = 0; c < a; ++c)
+        beams.push_back(glm::normalize(dvec3{0.5 * a, 0.5 * a - c - 0.5, 0.5 * b - r - 0.5}));
+  }
+  if (beams.empty()) throw std::invalid_argument("no sensor " + name + "; expected lidarRxC or cameraWxH");
+  return beams;
+}
+
+}  // namespace sf::bench

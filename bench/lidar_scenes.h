@@ -1,0 +1,26 @@
+#pragma once
+// Scenes and patterns of the lidar benchmark.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/rigid_transform.h"
+#include "scene/mesh.h"
+
+namespace sf::bench {
+
+struct LidarScene {
+  scene::Mesh mesh;
+  std::vector<base::RigidTransform> poses;  ///< of the sensor
+};
+
+/// @param name `cityN` (N x N houses of 6 m on squares of 10 m), `room` (furniture of 42 000 triangles in 20 m x 15 m),
+/// or `terrain` (524 000 triangles in 256 m x 256 m)
+LidarScene lidar_scene(const std::string& name, int poses);
+
+/// @param name `lidarRxC` (R rings of C columns over 45 degrees, up to 16 rings 30 degrees) or `cameraWxH` (90 degrees)
+/// @param row out: length of a ring; 0: none
+std::vector<glm::dvec3> lidar_beams(const std::string& name, std::uint32_t& row);
+
+}  // namespace sf::bench

@@ -1,0 +1,27 @@
+#pragma once
+// Embree as a peer of spatial scans. Empty where Embree is missing.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/lidar_scenes.h"
+
+namespace sf::bench {
+
+/// One way of casting all beams of a sensor.
+class SpatialCaster {
+ public:
+  virtual ~SpatialCaster() = default;
+  virtual std::string name() const = 0;
+  /// Casts from one pose. @param ranges out: [m] in the order of the beams
+  virtual void cast(const base::RigidTransform& X_WS, std::span<double> ranges) = 0;
+};
+
+/// Returns Embree's variants: packets of 1, 8 and 16 rays, fast and robust. Their scenes are relative to the mesh's
+/// middle; quads are Embree's quads.
+std::vector<std::unique_ptr<SpatialCaster>> embree_casters(const scene::Mesh& mesh,
+                                                           const std::vector<glm::dvec3>& beams, double range_max);
+
+}  // namespace sf::bench
