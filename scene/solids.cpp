@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "base/box_tree.h"
 #include "base/pose.h"
 #include "scene/trapezoids.h"
 
@@ -44,32 +45,68 @@ Loop loop_of(std::span<const Segment> segments) {
   return loop;
 }
 
+/// Returns the end of the outline that begins at `first`. Holes may be listed backward, each segment ending where the
+/// previous one starts. @param closed out: the outline ends where it begins
+std::size_t end_of_outline(std::span<const Segment> segments, std::size_t first, bool& closed) {
+  std::size_t end = first + 1;
+  const Segment& one = segments[first];
+  if (end == segments.size() || !one_solid(one, segments[end])) return end;
+  const bool forward = segments[end].a == one.b;
+  const auto start_of = [&](const Segment& s) { return forward ? s.a : s.b; };
+  const auto end_of = [&](const Segment& s) { return forward ? s.b : s.a; };
+  const glm::dvec2 start = start_of(one);
+  while (end < segments.size() && end_of(segments[end - 1]) != start &&
+         start_of(segments[end]) == end_of(segments[end - 1]) && one_solid(one, segments[end]))
+    ++end;
+  closed = end_of(segments[end - 1]) == start;
+  return end;
+}
+
 /// Returns the closed outlines of solids. Others have no inside.
 std::vector<Loop> loops_of(std::span<const Segment> segments) {
   std::vector<Loop> loops;
   for (std::size_t first = 0; first < segments.size();) {
-    std::size_t end = first + 1;
-    while (end < segments.size() && segments[end - 1].b == segments[end].a &&
-           segments[end - 1].b != segments[first].a && one_solid(segments[first], segments[end]))
-      ++end;
-    if (segments[first].solid_left && segments[end - 1].b == segments[first].a)
-      loops.push_back(loop_of(segments.subspan(first, end - first)));
+    bool closed = false;
+    const std::size_t end = end_of_outline(segments, first, closed);
+    if (segments[first].solid_left && closed) loops.push_back(loop_of(segments.subspan(first, end - first)));
     first = end;
   }
   return loops;
 }
 
+/// Outlines of holes, by place.
+class Holes {
+ public:
+  explicit Holes(std::span<const Loop> loops) {
+    std::vector<base::Box> boxes;
+    for (const Loop& loop : loops)
+      if (loop.area < 0.0) holes_.push_back(&loop), boxes.push_back({loop.low, loop.high});
+    tree_ = base::BoxTree(boxes);
+  }
+  /// Calls `take` with each hole in a solid.
+  template <class Take>
+  void for_each_in(const Loop& outer, const Take& take) const {
+    tree_.any({outer.low, outer.high}, [&](std::uint32_t i) {
+      const Segment& edge = holes_[i]->segments.front();
+      if (one_solid(edge, outer.segments.front()) && outer.contains(edge.a)) take(*holes_[i]);
+      return false;
+    });
+  }
+
+ private:
+  std::vector<const Loop*> holes_;
+  base::BoxTree tree_;
+};
+
 /// Appends the top and bottom of the solid inside an outline, without its holes.
-void add_caps(const Loop& outer, std::span<const Loop> loops, Mesh& mesh) {
+void add_caps(const Loop& outer, const Holes& holes, bool on_floor, Mesh& mesh) {
   const Segment& solid = outer.segments.front();
   std::vector<RegionEdge> edges;
   const auto add = [&](const Loop& loop) {
     for (const Segment& s : loop.segments) edges.push_back({s.a, s.b});
   };
   add(outer);
-  for (const Loop& hole : loops)
-    if (hole.area < 0.0 && one_solid(hole.segments.front(), solid) && outer.contains(hole.segments.front().a))
-      add(hole);
+  holes.for_each_in(outer, add);
   for (const Trapezoid& piece : trapezoids_of(edges)) {
     std::vector<glm::dvec2> corners(piece.begin(), piece.end());
     const auto same = std::unique(corners.begin(), corners.end());
@@ -77,6 +114,7 @@ void add_caps(const Loop& outer, std::span<const Loop> loops, Mesh& mesh) {
     if (corners.back() == corners.front()) corners.pop_back();
     if (corners.size() < 3) continue;
     for (const double z : {solid.z_min, solid.z_max}) {
+      if (on_floor && z == 0.0) continue;
       std::vector<glm::dvec3> flat;
       for (const glm::dvec2& c : corners) flat.emplace_back(c, z);
       mesh.add(flat, solid.model);
@@ -86,7 +124,7 @@ void add_caps(const Loop& outer, std::span<const Loop> loops, Mesh& mesh) {
 
 }  // namespace
 
-Mesh mesh_of(std::span<const Segment> segments) {
+Mesh mesh_of(std::span<const Segment> segments, bool on_floor) {
   std::vector<Segment> seen;
   for (const Segment& s : segments)
     if (s.seen_by_laser && s.z_min < s.z_max) seen.push_back(s);
@@ -96,8 +134,9 @@ Mesh mesh_of(std::span<const Segment> segments) {
     mesh.add(side, s.model);
   }
   const std::vector<Loop> loops = loops_of(seen);
+  const Holes holes(loops);
   for (const Loop& loop : loops)
-    if (loop.area > 0.0) add_caps(loop, loops, mesh);
+    if (loop.area > 0.0) add_caps(loop, holes, on_floor, mesh);
   return mesh;
 }
 

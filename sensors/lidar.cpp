@@ -74,7 +74,7 @@ Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
       thread_pool_(context.thread_pool),
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
-      walls_(scene::build_tree(scene::mesh_of(context.world.walls))),
+      walls_(scene::build_tree(scene::mesh_of(context.world.walls, !context.world.floor_unseen))),
       bodies_(bodies_of(context.world)),
       X_WM_(bodies_.size()),
       rasterizers_(context.thread_pool.threads()) {

@@ -72,6 +72,12 @@ TEST(Trapezoids, KeepCorners) {
 /// A block has four sides, a top and a bottom.
 TEST(Solids, Block) { EXPECT_EQ(mesh_of(square(-1, 1, 0, 2)).faces.size(), 6u); }
 
+/// On the floor it has no bottom; above it, it has.
+TEST(Solids, OnTheFloor) {
+  EXPECT_EQ(mesh_of(square(-1, 1, 0, 2), true).faces.size(), 5u);
+  EXPECT_EQ(mesh_of(square(-1, 1, 0.5, 2), true).faces.size(), 6u);
+}
+
 /// A thin outline, and one that does not close, have sides only. Segments without a height have no surface.
 TEST(Solids, OnlySolidsHaveTops) {
   auto thin = square(-1, 1, 0, 2);
@@ -88,19 +94,21 @@ TEST(Solids, OnlySolidsHaveTops) {
 
 /// From above, a beam hits the top, or passes through a hole in it to the floor.
 TEST(Solids, TopsHaveHoles) {
-  auto segments = square(-2, 2, 0, 1);
-  auto hole = square(-1, 1, 0, 1);
-  for (auto& s : hole) std::swap(s.a, s.b);
-  std::ranges::reverse(hole);
-  segments.insert(segments.end(), hole.begin(), hole.end());
-  const SurfaceTree tree = build_tree(mesh_of(segments));
-  const Instance instance{&tree, {}, true};
-  const auto down = [&](double x) {
-    return cast({glm::dmat3(1.0), {x, 0.5, 5.0}}, {{0, 0, -1}}, 10.0, {{&instance, 1}, true}).ranges[0];
-  };
-  EXPECT_NEAR(down(1.5), 4.0, kRangeError);
-  EXPECT_NEAR(down(0.5), 5.0, kRangeError);
-  EXPECT_NEAR(down(2.5), 5.0, kRangeError);
+  for (const bool backward : {false, true}) {
+    auto segments = square(-2, 2, 0, 1);
+    auto hole = square(-1, 1, 0, 1);
+    for (auto& s : hole) std::swap(s.a, s.b);
+    if (backward) std::ranges::reverse(hole);
+    segments.insert(segments.end(), hole.begin(), hole.end());
+    const SurfaceTree tree = build_tree(mesh_of(segments));
+    const Instance instance{&tree, {}, true};
+    const auto down = [&](double x) {
+      return cast({glm::dmat3(1.0), {x, 0.5, 5.0}}, {{0, 0, -1}}, 10.0, {{&instance, 1}, true}).ranges[0];
+    };
+    EXPECT_NEAR(down(1.5), 4.0, kRangeError);
+    EXPECT_NEAR(down(0.5), 5.0, kRangeError);
+    EXPECT_NEAR(down(2.5), 5.0, kRangeError);
+  }
 }
 
 /// Outlines of one model at other heights have tops of their own.
