@@ -21,6 +21,8 @@ struct SceneMesh {
   base::RigidTransform X_FS;     ///< the sensor in the mesh's frame
   std::uint32_t first_face = 0;  ///< number of its first face among those of all meshes
   double least_sine = 0.0;       ///< beams at smaller angles to a face, as sine, have a flag
+  glm::dvec3 centre{};           ///< [m] middle of the mesh in the sensor's frame
+  double reach = 0.0;            ///< [m] radius of a sphere around it that contains the mesh, with room for rounding
 };
 
 /// Plane of a face in the sensor's frame. Beam d meets it at range height / (normal . d).

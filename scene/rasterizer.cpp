@@ -88,8 +88,8 @@ void Scan::draw_floor(const BeamTile& tile) {
 
 /// Returns false if the tile surely sees nothing of a mesh.
 bool Scan::may_see(const BeamTile& tile, const SceneMesh& mesh) const {
-  const glm::dvec3 centre = glm::transpose(mesh.X_FS.R) * (mesh.tree->centre - mesh.X_FS.p);
-  const double reach = mesh.tree->radius + 1e-6 * (mesh.tree->radius + glm::length(centre));
+  const glm::dvec3 centre = mesh.centre;
+  const double reach = mesh.reach;
   const auto along = [&](const float(*n)[1]) { return n[0][0] * centre.x + n[1][0] * centre.y + n[2][0] * centre.z; };
   for (int k = 0; k < 4; ++k)
     if (along(tile.tile.plane + 3 * k) < -reach) return false;
@@ -196,12 +196,14 @@ bool Rasterizer::scan(const RigidTransform& X_WS, std::span<const BeamTile> tile
   for (const Instance& instance : scene.instances) {
     const SurfaceTree& tree = *instance.tree;
     if (!tree.empty()) {
-      SceneMesh mesh{&tree, X_WS, first, 0.0};
+      SceneMesh mesh{.tree = &tree, .X_FS = X_WS, .first_face = first};
       if (!instance.at_origin) mesh.X_FS = base::compose(base::inverse(instance.X_WI), X_WS);
       const double sizes = 32.0 * (range_max + tree.longest_edge + tree.radius);
       mesh.least_sine = 0x1p-53 * sizes / kRangeError;
-      const double distance = glm::length(mesh.X_FS.p - tree.centre) - tree.radius;
-      if (distance <= range_max) s.meshes.push_back(mesh);
+      mesh.centre = glm::transpose(mesh.X_FS.R) * (tree.centre - mesh.X_FS.p);
+      const double distance = glm::length(mesh.centre);
+      mesh.reach = tree.radius + 1e-6 * (tree.radius + distance);
+      if (distance - mesh.reach <= range_max) s.meshes.push_back(mesh);
     }
     first += static_cast<std::uint32_t>(tree.mesh.faces.size());
   }

@@ -43,10 +43,10 @@ Real face_range(const Ray& ray, const Mesh& mesh, const Face& face) {
 ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, double range_max,
                             const SceneView& scene) {
   const Ray ray_W{Vector(X_WS.p), rotate(X_WS.R, Vector(direction))};
-  ReferenceHit hit{range_max, kNoFace};
+  ReferenceHit hit{.range = range_max};
   if (scene.floor && ray_W.direction.z != 0.0L) {
     const Real range = -ray_W.origin.z / ray_W.direction.z;
-    if (range > 0.0L && range < hit.range) hit = {range, kFloorFace};
+    if (range > 0.0L && range < hit.range) hit = {range, base::kFloorHit, kFloorFace};
   }
   std::uint32_t first = 0;
   for (const Instance& instance : scene.instances) {
@@ -55,7 +55,9 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
     const Mesh& mesh = instance.tree->mesh;
     for (const Face& face : mesh.faces) {
       const Real range = face_range(ray, mesh, face);
-      if (range < hit.range) hit = {range, first + static_cast<std::uint32_t>(&face - mesh.faces.data())};
+      if (!(range < hit.range)) continue;
+      const auto row = static_cast<std::uint32_t>(&face - mesh.faces.data());
+      hit = {range, mesh.owners[row], first + row};
     }
     first += static_cast<std::uint32_t>(mesh.faces.size());
   }

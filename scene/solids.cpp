@@ -31,8 +31,9 @@ struct Loop {
   }
 };
 
-bool one_solid(const Segment& s, const Segment& t) {
-  return s.model == t.model && s.z_min == t.z_min && s.z_max == t.z_max && s.solid_left == t.solid_left;
+bool one_height(const Segment& s, const Segment& t) { return s.z_min == t.z_min && s.z_max == t.z_max; }
+bool one_outline(const Segment& s, const Segment& t) {
+  return s.model == t.model && one_height(s, t) && s.solid_left == t.solid_left;
 }
 
 Loop loop_of(std::span<const Segment> segments) {
@@ -50,13 +51,13 @@ Loop loop_of(std::span<const Segment> segments) {
 std::size_t end_of_outline(std::span<const Segment> segments, std::size_t first, bool& closed) {
   std::size_t end = first + 1;
   const Segment& one = segments[first];
-  if (end == segments.size() || !one_solid(one, segments[end])) return end;
+  if (end == segments.size() || !one_outline(one, segments[end])) return end;
   const bool forward = segments[end].a == one.b;
   const auto start_of = [&](const Segment& s) { return forward ? s.a : s.b; };
   const auto end_of = [&](const Segment& s) { return forward ? s.b : s.a; };
   const glm::dvec2 start = start_of(one);
   while (end < segments.size() && end_of(segments[end - 1]) != start &&
-         start_of(segments[end]) == end_of(segments[end - 1]) && one_solid(one, segments[end]))
+         start_of(segments[end]) == end_of(segments[end - 1]) && one_outline(one, segments[end]))
     ++end;
   closed = end_of(segments[end - 1]) == start;
   return end;
@@ -83,12 +84,12 @@ class Holes {
       if (loop.area < 0.0) holes_.push_back(&loop), boxes.push_back({loop.low, loop.high});
     tree_ = base::BoxTree(boxes);
   }
-  /// Calls `take` with each hole in a solid.
+  /// Calls `take` with each hole in a solid; clockwise outlines are holes, whatever their model.
   template <class Take>
   void for_each_in(const Loop& outer, const Take& take) const {
     tree_.any({outer.low, outer.high}, [&](std::uint32_t i) {
       const Segment& edge = holes_[i]->segments.front();
-      if (one_solid(edge, outer.segments.front()) && outer.contains(edge.a)) take(*holes_[i]);
+      if (one_height(edge, outer.segments.front()) && outer.contains(edge.a)) take(*holes_[i]);
       return false;
     });
   }

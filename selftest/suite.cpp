@@ -11,7 +11,7 @@ std::span<const Case> cases() {
   static const std::vector<Case> all = [] {
     std::vector<Case> cases;
     for (const auto group : {world_size_cases, beam_cases, segment_cases, scan_cases, fleet_cases, magnet_cases,
-                             lane_edge_cases, accuracy_mode_cases, device_cases}) {
+                             lane_edge_cases, lidar_cases, accuracy_mode_cases, device_cases}) {
       const std::span<const Case> more = group();
       cases.insert(cases.end(), more.begin(), more.end());
     }

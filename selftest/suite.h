@@ -32,6 +32,7 @@ std::span<const Case> scan_cases();           ///< numbers of samples, fields of
 std::span<const Case> fleet_cases();          ///< no robots, all at one place, a hundred thousand
 std::span<const Case> magnet_cases();         ///< distances, moments, cancellation
 std::span<const Case> lane_edge_cases();      ///< lane edges at every angle, and points that do not form an edge
+std::span<const Case> lidar_cases();          ///< far away, in the planes of faces, large and small faces
 std::span<const Case> accuracy_mode_cases();  ///< errors within the stated bounds, flags elsewhere
 std::span<const Case>
 device_cases();  ///< this device, also after a year, and 32-bit arithmetic compared with plain C++

@@ -8,7 +8,9 @@
 
 #include "base/elementary.h"
 #include "base/random.h"
+#include "raycast/casters.h"
 #include "scene/rasterizer.h"
+#include "scene/reference_scan.h"
 #include "scene/solids.h"
 #include "sensors/host_backend.h"
 #include "sensors/laser.h"
@@ -44,12 +46,15 @@ class Lidars : public HostBackend {
   void measure(std::span<const HostSample>) const override {}
   void list_instances(std::size_t sample);
   void cast(const Job& job, unsigned thread);
+  void cast_reference(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const LidarSettings& s,
+                      std::span<const scene::Instance> instances, const scene::ScanOutput& out) const;
   void finish(std::size_t sample);
   std::size_t first_beam(std::size_t sample) const { return first_beam_[samples()[sample].row]; }
 
   base::ThreadPool& thread_pool_;
   const std::vector<LidarSettings>& settings_;
   bool noise_;
+  bool reference_;  ///< casts every beam against every face in `long double`
   scene::SurfaceTree walls_;
   std::vector<scene::SurfaceTree> bodies_;  ///< per mover
   std::vector<base::RigidTransform> X_WM_;  ///< per mover
@@ -74,6 +79,7 @@ Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
       thread_pool_(context.thread_pool),
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
+      reference_(!raycast::choose_caster(context.device.info().software, context.scene.caster).same_bytes),
       walls_(scene::build_tree(scene::mesh_of(context.world.walls, !context.world.floor_unseen))),
       bodies_(bodies_of(context.world)),
       X_WM_(bodies_.size()),
@@ -131,8 +137,21 @@ void Lidars::cast(const Job& job, unsigned thread) {
   const auto tiles = std::span(s.beams->pattern.tiles).subspan(job.first_tile, job.end_tile - job.first_tile);
   const scene::ScanOutput out{sample.values, std::span(hits_).subspan(first, beams),
                               std::span(quality_).subspan(first, beams)};
+  if (reference_) return cast_reference(X_WS_[job.sample], tiles, s, instances_[job.sample], out);
   rasterizers_[thread].scan(X_WS_[job.sample], tiles, s.range_max, {instances_[job.sample], !world().floor_unseen},
                             out);
+}
+
+void Lidars::cast_reference(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles,
+                            const LidarSettings& s, std::span<const scene::Instance> instances,
+                            const scene::ScanOutput& out) const {
+  for (const scene::BeamTile& tile : tiles)
+    for (const std::uint32_t i : tile.place) {
+      const auto hit =
+          scene::reference_scan(X_WS, s.beams->directions[i], s.range_max, {instances, !world().floor_unseen});
+      out.ranges[i] = static_cast<double>(hit.range);
+      out.hits[i] = hit.owner;
+    }
 }
 
 /// Adds noise to hits, and flags surfaces nearer than the smallest range.

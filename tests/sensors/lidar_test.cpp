@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "raycast/casters.h"
 #include "scene/reference_scan.h"
 #include "scene/solids.h"
 #include "sensors/lidar_beams.h"
@@ -91,6 +92,18 @@ TEST(Lidar, ReadsTheNearestSurface) {
     EXPECT_GT(std::ranges::count(reading.hits, base::kFloorHit), 100);
   }
   EXPECT_EQ(sense(world, world.movers[0].X_WM, {}, 1).values, sense(world, world.movers[0].X_WM, {}, 7).values);
+}
+
+/// The reference caster reads the same to rounding.
+TEST(Lidar, ReferenceCaster) {
+  const world::World world = scene_with("channels 6 fov_v [-40 30] columns 40 range [0 20]");
+  farm::FarmOptions options{.noise = false, .threads = 2};
+  options.scene.caster = raycast::caster_named("reference");
+  farm::Farm farm(world, host_device(), options);
+  const base::ReadingBlock reading = farm.sense(0, sensors::kLidar, 0, world.movers[0].X_WM);
+  const Sensed exact = sense(world, world.movers[0].X_WM);
+  EXPECT_TRUE(std::ranges::equal(reading.hits, exact.hits));
+  for (std::size_t i = 0; i < exact.values.size(); ++i) EXPECT_NEAR(reading.values[i], exact.values[i], exact.bound);
 }
 
 /// Values worked out by hand: the sensor is 0.85 m above the floor, at half of its model's height.
