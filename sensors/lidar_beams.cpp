@@ -162,6 +162,8 @@ base::RigidTransform mount_of(const world::Sensor& sensor) {
     for (std::size_t k = 0; k < 3; ++k)
       if (!(std::abs(v[k] * sensor.metres_per_unit) <= 1e6)) refuse(sensor, "pose6", "'pose6' is more than 1e6 m away");
     const double unit = sensor.radians_per_unit;
+    for (std::size_t k = 3; k < 6; ++k)
+      if (!(std::abs(v[k] * unit) <= 1e6)) refuse(sensor, "pose6", "an angle of 'pose6' is more than 1e6 radians");
     X_MB = base::compose(X_MB, {base::rotation_of(unit * v[3], unit * v[4], unit * v[5]),
                                 sensor.metres_per_unit * glm::dvec3{v[0], v[1], v[2]}});
   }

@@ -84,7 +84,7 @@ TEST(Sense, EveryBeamOfAFanFollowsTheCosine) {
 }
 
 /// In a world without surfaces, where every value of some types is at least the sensor's `limit`.
-TEST(Sense, NoReturnAppliesOnlyToLasers) {
+TEST(Sense, NoReturnAppliesOnlyToScans) {
   const Folder folder;
   std::string robot = "position( name \"scout\"\n";
   for (const sensors::SensorType* type : sensors::built_in_sensor_types())
@@ -96,7 +96,7 @@ TEST(Sense, NoReturnAppliesOnlyToLasers) {
     const Words infinite = with(words, {"--no-return", "inf"});
     const Outcome plain = run_program(words), marked = run_program(infinite);
     EXPECT_EQ(plain.code, 0) << plain.err;
-    EXPECT_EQ(marked.out != plain.out, type->is_scan) << type->name << "\n" << marked.out;
+    EXPECT_EQ(marked.out != plain.out, type->is_scan || type->beams != nullptr) << type->name;
   }
 }
 

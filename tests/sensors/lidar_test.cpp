@@ -258,6 +258,8 @@ TEST(Lidar, ImpossibleSettingsAreRefused) {
   expect_in("at most 100000 m", refused("range [0 1e6]"));
   expect_in("'noise' is negative", refused("noise -1"));
   expect_in("'pose6' expects [x y z roll pitch yaw]", refused("pose6 [1 2 3]"));
+  expect_in("'pose6' is more than 1e6 m away", refused("pose6 [1e7 0 0 0 0 0]"));
+  expect_in("an angle of 'pose6'", refused("pose6 [0 0 0 1e300 0 0]"));
 }
 
 }  // namespace
