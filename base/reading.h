@@ -42,8 +42,8 @@ struct ReadingBlock {
   std::span<const double> values;       ///< element by element; within each, in the order of the sensor type's columns
   std::span<const std::uint32_t> hits;  ///< for scans computed in this process: row of the model that each beam hit,
                                         ///< kFloorHit or kNoHit; otherwise empty
-  std::uint32_t flags = 0;  ///< bits defined by the header of the sensor type
-  std::uint8_t mode = 0;    ///< accuracy mode of the measurement: row in the sensor type's modes
+  std::uint32_t flags = 0;              ///< bits defined by the header of the sensor type
+  std::uint8_t mode = 0;                ///< accuracy mode of the measurement: row in the sensor type's modes
   /// [unit of the first column] largest error of that column in `values`, for elements without a quality flag
   /// (sensors/accuracy.h). Infinite when no bound is stated: for noisy readings, and when no element has a bound.
   double bound = std::numeric_limits<double>::infinity();

@@ -1,6 +1,9 @@
 #pragma once
 // Meshes and beams for tests of spatial scans.
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
