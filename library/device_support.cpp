@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "control/controllers.h"
@@ -14,6 +15,8 @@
 namespace sf::library {
 
 namespace {
+
+constexpr double kMostYaw = 1e4;  // [rad] a tenth of what kernels reduce (robots/device/device_fleet.h)
 
 std::string refused_mover(const world::Mover& mover, bool uses_controllers) {
   if (uses_controllers && !control::controller_of(mover, {}).name.empty())
@@ -63,6 +66,18 @@ std::string unsupported(const world::World& world, const sensors::SensorSet& sen
   for (const world::Mover& mover : world.movers)
     if (std::string what = refused_mover(mover, options.controller.empty()); !what.empty()) return what;
   return refused_sensor(world, sensor_set);
+}
+
+std::string unsupported(const sensorfarm::WorldStarts& starts) {
+  const auto given = [](std::span<const double> values) {
+    return std::ranges::any_of(values, [](double value) { return !std::isnan(value); });
+  };
+  if (std::ranges::any_of(starts.sizes, [](const auto& size) { return !std::isnan(size[0]); }))
+    return "starts with sizes";
+  if (given(starts.slip) || given(starts.acceleration)) return "starts with slip or acceleration";
+  if (std::ranges::any_of(starts.poses, [](const auto& X) { return std::abs(X.yaw) > kMostYaw; }))
+    return fmt::format("starts with a yaw beyond {:g} rad", kMostYaw);
+  return "";
 }
 
 }  // namespace sf::library

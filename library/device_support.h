@@ -14,5 +14,6 @@ namespace sf::library {
 std::string unsupported_option(const sensorfarm::Options& options);
 std::string unsupported(const world::World& world, const sensors::SensorSet& sensor_set,
                         const sensorfarm::Options& options);
+std::string unsupported(const sensorfarm::WorldStarts& starts);
 
 }  // namespace sf::library

@@ -142,7 +142,7 @@ void Observations::State::update() {
 
 Observations::Observations(std::shared_ptr<State> state) : state_(std::move(state)) {}
 std::size_t Observations::agents() const { return state_->rows.size(); }
-std::size_t Observations::columns() const { return state_->newest * state_->options.stack; }
+std::size_t Observations::columns() const { return state_->columns(); }
 std::span<const float> Observations::values() const { return state_->values; }
 std::span<const std::uint32_t> Observations::rows() const { return state_->rows; }
 std::span<double> Observations::goals() const { return state_->goals; }

@@ -34,6 +34,8 @@ struct Observations::State {
   /// Writes the newest observations again.
   void update();
 
+  std::size_t columns() const { return newest * options.stack; }  ///< of a row
+
   ObservationOptions options;
   struct Agent {
     std::uint32_t sensor;   ///< its first row of readings
@@ -49,7 +51,6 @@ struct Observations::State {
   std::vector<std::uint32_t> ages;
 
  private:
-  std::size_t columns() const { return newest * options.stack; }
   void write(std::size_t agent);
   void measure(std::size_t agent, bool moved);
   void shift(std::size_t agent);

@@ -291,7 +291,8 @@ std::span<const Row> as_rows(const Commands& rows) {
           static_cast<std::size_t>(rows.size()) * sizeof(double) / sizeof(Row)};
 }
 
-void restart(PySimulation& s, const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds,
+template <class Owner>
+void restart(Owner& s, const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds,
              const py::object& starts, const py::object& present, const py::object& sizes, const py::object& slip,
              const py::object& acceleration, const py::object& noise) {
   static_assert(sizeof(Pose) == 4 * sizeof(double) && sizeof(std::array<double, 3>) == 3 * sizeof(double));
@@ -462,8 +463,8 @@ void add_simulation(py::module_& module) {
             in_farm(s, [&] { seed ? s.farm.reset(*seed) : s.farm.reset(); });
           },
           py::arg("seed") = py::none())
-      .def("restart", &restart, py::arg("worlds"), py::arg("seeds"), py::arg("starts") = py::none(), py::kw_only(),
-           py::arg("present") = py::none(), py::arg("sizes") = py::none(), py::arg("slip") = py::none(),
+      .def("restart", &restart<PySimulation>, py::arg("worlds"), py::arg("seeds"), py::arg("starts") = py::none(),
+           py::kw_only(), py::arg("present") = py::none(), py::arg("sizes") = py::none(), py::arg("slip") = py::none(),
            py::arg("acceleration") = py::none(), py::arg("noise") = py::none(),
            "Restarts some of several worlds. seeds: one per world. starts: (worlds, rows, 4) poses; sizes: (worlds, "
            "rows, 3) [m]; others: (worlds, rows). None, and NaN (in x): those of the seeds.")
@@ -539,15 +540,15 @@ void add_device_worlds(py::module_& module) {
   using W = PyDeviceWorlds;
   py::class_<W>(module, "_DeviceWorlds")
       .def(py::init(&made_on_device), py::arg("world"), py::arg("text") = py::none())
-      .def_property_readonly("rows", [](const W& s) { return s.farm.robots(); })
+      .def_property_readonly("robots", [](const W& s) { return s.farm.robots(); })
       .def_property_readonly("interval", [](const W& s) { return s.farm.interval(); })
       .def("step",
            [](W& s, const py::object& given) {
              const Commands commands = rows_of(s, given, "commands", s.farm.copies(), 3);
              in_farm(s, [&] { s.farm.step(as_rows<Twist>(commands)); });
            })
-      .def("reset", [](W& s, const std::vector<std::uint32_t>& worlds,
-                       const std::vector<std::uint64_t>& seeds) { in_farm(s, [&] { s.farm.reset(worlds, seeds); }); })
+      .def("restart", &restart<W>, py::arg("worlds"), py::arg("seeds"), py::arg("starts"), py::kw_only(),
+           py::arg("present"), py::arg("sizes"), py::arg("slip"), py::arg("acceleration"), py::arg("noise"))
       .def("poses", [](const W& s) { return by_world<double>(s, &DeviceWorlds::poses, 4); })
       .def("velocities", [](const W& s) { return by_world<double>(s, &DeviceWorlds::velocities, 3); })
       .def("contacts", [](const W& s) { return by_world<bool>(s, &DeviceWorlds::contacts, 0); })

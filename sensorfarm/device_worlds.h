@@ -38,9 +38,11 @@ class SENSORFARM_API DeviceWorlds {
   /// @throws Error for a wrong number of commands and numbers that are not finite
   void step(std::span<const Twist> commands = {});
   /// Restarts some worlds at time 0, as Simulation::reset. Reading them before the next step reads all lasers again.
-  /// @param worlds numbers below `copies`, each once  @param seeds one per world
+  /// @param worlds numbers below `copies`, each once  @param seeds one per world  @param starts as there, without
+  /// sizes, slip and acceleration; |yaw| up to 1e4 rad
   /// @throws Error, with nothing changed, for other arguments
-  void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds);
+  void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds,
+             const WorldStarts& starts = {});
 
   std::size_t copies() const;                ///< number of worlds
   std::size_t size() const;                  ///< number of rows, of all worlds
@@ -55,13 +57,13 @@ class SENSORFARM_API DeviceWorlds {
   Readings readings() const;
 
   /// From now on each submission also computes what learners observe, as Simulation::observe, and what rewards need. A
-  /// later call replaces it. @throws Error as Simulation::observe, and for a stack of several observations
+  /// later call replaces it. @throws Error as Simulation::observe
   void observe(const ObservationOptions& options = {});
   /// Sets x and y [m] of the goal of each agent, as Observations::goals and `update`. NaN: none.
   /// @pre `observe`  @throws Error for a wrong number of goals and numbers that are infinite
   void set_goals(std::span<const double> goals);
   std::size_t agents() const;                   ///< robots with a laser, by row; 0 before `observe`
-  std::size_t columns() const;                  ///< of an observation
+  std::size_t columns() const;                  ///< of a row of observations
   std::span<const float> observations() const;  ///< agents() * columns(), agent by agent
   std::span<const double> distances() const;    ///< [m] per agent, as Observations::distances
   std::span<const double> progress() const;     ///< [m] per agent, as Observations::progress

@@ -13,13 +13,13 @@ layout(binding = 0, rgba32ui) uniform readonly uimageBuffer tick;        // Obse
 layout(binding = 1, rgba32ui) uniform readonly uimageBuffer agents;      // ObservedAgent
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer sensors;     // ObservedSensor, agent by agent
 layout(binding = 3, rgba32ui) uniform readonly uimageBuffer goals;       // ObservedGoal per agent
-layout(binding = 4, r32ui) uniform readonly uimageBuffer fresh;          // 1: its episode or goal is new, per agent
+layout(binding = 4, r32ui) uniform readonly uimageBuffer fresh;          // per agent, 1: its goal is new; 2: its episode
 layout(binding = 5, rgba32ui) uniform readonly uimageBuffer poses;       // FleetPose per mover
 layout(binding = 6, rgba32ui) uniform readonly uimageBuffer motions;     // FleetMotion per mover
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer own_states;  // FleetOwn per mover
 layout(binding = 8, rgba32ui) uniform uimageBuffer measures;             // ObservedMeasure per agent
 layout(binding = 9) readonly buffer Ranges { double beam[]; } ranges;    // [m]
-layout(binding = 10) writeonly buffer Values { float column[]; } values;  // NaN: the device failed
+layout(binding = 10) buffer Values { float column[]; } values;           // NaN: the device failed
 
 float in_unit(double value) { return value >= -1.0LF && value <= 1.0LF ? float(value) : value < 0.0LF ? -1.0 : 1.0; }
 
@@ -49,34 +49,50 @@ void observe_goal(uint at, ObservedMeasure goal, FleetPose X, double reach) {
   values.column[at + 2u] = known ? float(s.x) : 0.0;
 }
 
-void main() {
-  const ObserveTick now = load_ObserveTick(tick, 0);
-  const uint beams = now.sensors * now.elements;
-  const uint agent = gl_GlobalInvocationID.x / (beams + 1u), column = gl_GlobalInvocationID.x % (beams + 1u);
-  if (agent >= now.agents) return;
-  uint at = agent * now.columns + column;
-  const float nan = uintBitsToFloat(0x7fc00000u);
-  if (column < beams) {
-    const uint sensor = agent * now.sensors + column / now.elements;
-    const double range = ranges.beam[sensor * now.beams + column % now.elements * now.every];
-    const float part = ratio_in_unit(range, load_ObservedSensor(sensors, int(sensor)).limit);
-    values.column[at] = is_finite(range) ? part : nan;
-    return;
-  }
-  const ObservedAgent who = load_ObservedAgent(agents, int(agent));
+void observe_beam(uint at, uint agent, uint column, ObserveTick now) {
+  const uint sensor = agent * now.sensors + column / now.elements;
+  const double range = ranges.beam[sensor * now.beams + column % now.elements * now.every];
+  const float part = ratio_in_unit(range, load_ObservedSensor(sensors, int(sensor)).limit);
+  values.column[at] = is_finite(range) ? part : uintBitsToFloat(0x7fc00000u);
+}
+
+/// Speeds and the goal. @param fresh_goal whether the goal or the episode is new
+void observe_rest(uint at, int agent, ObserveTick now, bool fresh_goal) {
+  const ObservedAgent who = load_ObservedAgent(agents, agent);
   const FleetPose X = load_FleetPose(poses, int(who.mover));
   const FleetMotion v = load_FleetMotion(motions, int(who.mover));
-  const bool failed = load_FleetOwn(own_states, int(who.mover)).phase == SF_FLEET_FAILED;
-  ObservedMeasure known = load_ObservedMeasure(measures, int(agent));
-  const ObservedGoal goal = load_ObservedGoal(goals, int(agent));
-  if (now.again == 0u || imageLoad(fresh, int(agent)).x != 0u)
+  ObservedMeasure known = load_ObservedMeasure(measures, agent);
+  const ObservedGoal goal = load_ObservedGoal(goals, agent);
+  if (now.again == 0u || fresh_goal)
     known = measure(known, dvec2(goal.x, goal.y), dvec2(X.x, X.y), now.again == 0u);
-  if (failed) known.progress = double(nan);
-  store_ObservedMeasure(measures, int(agent), known);
+  if (load_FleetOwn(own_states, int(who.mover)).phase == SF_FLEET_FAILED)
+    known.progress = double(uintBitsToFloat(0x7fc00000u));
+  store_ObservedMeasure(measures, agent, known);
   if (now.speeds != 0u) {
     values.column[at] = ratio_in_unit(v.forward, who.forward);
     values.column[at + 1u] = ratio_in_unit(v.turn, who.turn);
     at += 2u;
   }
   if (now.reach > 0.0LF) observe_goal(at, known, X, now.reach);
+}
+
+/// Moves `count` columns of a stack on to older places before a step, or fills the stack with those of a start.
+void stack_columns(uint at, uint count, uint columns, uint stack, bool fill) {
+  for (uint k = stack - 1u; k > 0u; --k)
+    for (uint i = at; i < at + count; ++i) values.column[i + k * columns] = values.column[fill ? i : i + (k - 1u) * columns];
+}
+
+void main() {
+  const ObserveTick now = load_ObserveTick(tick, 0);
+  const uint beams = now.sensors * now.elements;
+  const uint agent = gl_GlobalInvocationID.x / (beams + 1u), column = gl_GlobalInvocationID.x % (beams + 1u);
+  if (agent >= now.agents) return;
+  const uint first = agent * now.columns * now.stack + column, count = column < beams ? 1u : now.columns - beams;
+  const uint news = now.again == 0u ? 0u : imageLoad(fresh, int(agent)).x;
+  if (now.again == 0u) stack_columns(first, count, now.columns, now.stack, false);
+  if (column < beams)
+    observe_beam(first, agent, column, now);
+  else
+    observe_rest(first, int(agent), now, news != 0u);
+  if ((news & 2u) != 0u) stack_columns(first, count, now.columns, now.stack, true);
 }

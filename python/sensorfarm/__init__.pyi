@@ -525,8 +525,9 @@ class DeviceWorlds(_WorldStates):
         """options: robots, of, robot_from, noise, accuracy, device and controller="none", as those of Simulation."""
     def readings(self, type: str = "laser") -> NDArray[np.float64]:
         """(worlds, lasers, beams): the newest ranges [m]."""
-    def observe(self, *, sensor: str = "laser", every: int = 1, speeds: bool = True, goal_reach: float = 0.0) -> None:
-        """From now on each step also computes `observations`."""
+    def observe(self, *, sensor: str = "laser", every: int = 1, speeds: bool = True, goal_reach: float = 0.0,
+                stack: int = 1) -> None:
+        """From now on each step also computes `observations`, as Simulation.observe."""
     @property
     def observations(self) -> NDArray[np.float32]:
         """(worlds, agents, columns) in [-1, 1], as Observations.values."""
@@ -541,8 +542,9 @@ class DeviceWorlds(_WorldStates):
     def step(self, commands: ArrayLike | None = None) -> None:
         """One tick of all worlds. commands: (worlds, robots, 3) of forward, left [m/s], turn [rad/s]; None:
         unchanged."""
-    def reset(self, seed: int | None = None, mask: ArrayLike | None = None, seeds: ArrayLike | None = None) -> None:
-        """Restarts worlds, as Worlds.reset."""
+    def reset(self, seed: int | None = None, mask: ArrayLike | None = None, seeds: ArrayLike | None = None,
+              starts: _ByRow = None, present: _ByRow = None, noise: _ByRow = None) -> None:
+        """Restarts worlds, as Worlds.reset, but without sizes, slip and acceleration."""
     def __len__(self) -> int:
         """Number of worlds."""
 

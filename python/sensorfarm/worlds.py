@@ -25,6 +25,10 @@ def _checked(what, given, worlds, robots):
         raise ValueError(f"{what} by name: {error}; expected the shape {(worlds, *shape)} for each name") from None
 
 
+def _all_checked(worlds, robots, **given):
+    return {what: _checked(what, values, worlds, robots) for what, values in given.items()}
+
+
 def _checked_commands(commands, worlds, robots):
     commands = numpy.asarray(commands, dtype=float)
     if commands.shape != (worlds, robots, 3):
@@ -37,7 +41,7 @@ def _row_of(part, name):
     names = [robot.name for robot in part.robots]
     if name in names:
         return names.index(name)
-    if name in part.models:
+    if name in getattr(part, "models", ()):
         raise ValueError(f"'{name}' is static, so all worlds share it; expected a robot, or a model that a key such as "
                          "random_present 1 makes an object of each world")
     raise ValueError(f"there is no '{name}'; expected one of {', '.join(names)}")
@@ -57,6 +61,29 @@ def _chosen(last, seed, mask, seeds):
     if seeds.shape != chosen.shape:
         raise ValueError(f"seeds have the shape {seeds.shape}; expected one for each of {len(chosen)} worlds")
     return chosen, seeds
+
+
+def _all_rows(part, rows, other):
+    """Returns (worlds, rows of the part, ...) with `rows` first, and then `other`."""
+    if rows.shape[1] == len(part.robots):
+        return rows
+    full = numpy.full((len(rows), len(part.robots), *rows.shape[2:]), other)
+    full[:, :rows.shape[1]] = rows
+    return full
+
+
+def _given(part, what, given, chosen):
+    """Returns (len(chosen), rows of the part, ...): what worlds start with instead of what the seed chooses; NaN
+    where that stays. chosen: their numbers among those that are restarted."""
+    if given is None:
+        return None
+    shape = _SHAPES[what]
+    if not isinstance(given, dict):
+        return _all_rows(part, given[chosen], numpy.nan)
+    full = numpy.full((len(chosen), len(part.robots), *shape), numpy.nan)
+    for name, values in given.items():
+        full[:, _row_of(part, name)] = values[chosen]
+    return full
 
 
 class Worlds:
@@ -138,31 +165,10 @@ class Worlds:
             shares = [None] * len(self.parts)
         else:
             commands = _checked_commands(commands, len(self), len(self.robots))
-            shares = [self._all_rows(part, commands[a:b], 0.0).reshape(-1, 3)
+            shares = [_all_rows(part, commands[a:b], 0.0).reshape(-1, 3)
                       for part, a, b in zip(self.parts, self._first, self._first[1:])]
         for part, share in zip(self.parts, shares):
             part.step(share)
-
-    def _all_rows(self, part, rows, other):
-        """Returns (worlds, rows of the part, ...) with `rows` first, and then `other`."""
-        if rows.shape[1] == len(part.robots):
-            return rows
-        full = numpy.full((len(rows), len(part.robots), *rows.shape[2:]), other)
-        full[:, :rows.shape[1]] = rows
-        return full
-
-    def _given(self, part, what, given, chosen):
-        """Returns (len(chosen), rows of the part, ...): what worlds start with instead of what the seed chooses; NaN
-        where that stays. chosen: their numbers among those that are restarted."""
-        if given is None:
-            return None
-        shape = _SHAPES[what]
-        if not isinstance(given, dict):
-            return self._all_rows(part, given[chosen], numpy.nan)
-        full = numpy.full((len(chosen), len(part.robots), *shape), numpy.nan)
-        for name, values in given.items():
-            full[:, _row_of(part, name)] = values[chosen]
-        return full
 
     def reset(self, seed=None, mask=None, seeds=None, starts=None, present=None, sizes=None, slip=None,
               acceleration=None, noise=None):
@@ -179,15 +185,14 @@ class Worlds:
         sizes={"crate": [0.5, 0.4, 1]}. NaN: the seed's choice.
         """
         chosen, seeds = _chosen(self.seeds, seed, mask, seeds)
-        given = {"starts": starts, "present": present, "sizes": sizes, "slip": slip, "acceleration": acceleration,
-                 "noise": noise}
-        given = {what: _checked(what, values, len(chosen), len(self.robots)) for what, values in given.items()}
+        given = _all_checked(len(chosen), len(self.robots), starts=starts, present=present, sizes=sizes, slip=slip,
+                             acceleration=acceleration, noise=noise)
         shares = []
         for part, a, b in zip(self.parts, self._first, self._first[1:]):
             own = numpy.flatnonzero((chosen >= a) & (chosen < b))
             if len(own):
                 shares.append((part, chosen[own] - a, seeds[own],
-                               {what: self._given(part, what, values, own) for what, values in given.items()}))
+                               {what: _given(part, what, values, own) for what, values in given.items()}))
         for part, worlds, own_seeds, own in shares:
             part.restart(worlds, own_seeds, own.pop("starts"), **own)
         self.seeds[chosen] = seeds
@@ -227,8 +232,8 @@ class DeviceWorlds:
 
     def __init__(self, world, copies=1, seed=1, text=None, **options):
         self._farm = _DeviceWorlds(world, text, copies=copies, seed=seed, **options)
-        self._all = len(self._farm.rows)
-        self.robots = self._farm.rows[:options.get("robots") or self._all]
+        self._all = len(self._farm.robots)
+        self.robots = self._farm.robots[:options.get("robots") or self._all]
         self.interval = self._farm.interval
         self.seeds = numpy.arange(seed, seed + copies)
 
@@ -246,7 +251,7 @@ class DeviceWorlds:
         return self._farm.readings()
 
     def observe(self, **options):
-        """From now on each step also computes `observations`, with the options of Simulation.observe but `stack`."""
+        """From now on each step also computes `observations`, with the options of Simulation.observe."""
         self._farm.observe(**options)
 
     observations = property(lambda self: self._farm.observations(), doc="(worlds, agents, columns) float32 in [-1, 1].")
@@ -265,8 +270,11 @@ class DeviceWorlds:
             commands = numpy.pad(commands, ((0, 0), (0, self._all - len(self.robots)), (0, 0)))
         self._farm.step(commands)
 
-    def reset(self, seed=None, mask=None, seeds=None):
-        """Restarts worlds, as Worlds.reset; the others are unchanged. Reading them before the next step scans again."""
+    def reset(self, seed=None, mask=None, seeds=None, starts=None, present=None, noise=None):
+        """Restarts worlds, as Worlds.reset; the others are unchanged. Reading them before the next step scans again.
+        Sizes, slip and acceleration cannot be given."""
         chosen, seeds = _chosen(self.seeds, seed, mask, seeds)
-        self._farm.reset(chosen, seeds)
+        given = _all_checked(len(chosen), len(self.robots), starts=starts, present=present, noise=noise)
+        given = {what: _given(self._farm, what, values, numpy.arange(len(chosen))) for what, values in given.items()}
+        self._farm.restart(chosen, seeds, given.pop("starts"), **given, sizes=None, slip=None, acceleration=None)
         self.seeds[chosen] = seeds

@@ -25,12 +25,16 @@ ObserveTick observe_tick(const DeviceObserver::Settings& settings) {
                    .speeds = settings.speeds ? 1u : 0u,
                    .again = 0,
                    .reach = settings.goal_reach,
-                   .spare = 0.0};
+                   .stack = settings.stack,
+                   .spare = 0};
   tick.columns = tick.sensors * tick.elements + (settings.speeds ? 2 : 0) + (settings.goal_reach > 0.0 ? 3 : 0);
   return tick;
 }
 
-std::size_t count_of(const ObserveTick& tick) { return std::size_t{tick.agents} * tick.columns; }
+std::size_t count_of(const ObserveTick& tick) { return std::size_t{tick.agents} * tick.columns * tick.stack; }
+
+// Bits of `fresh`.
+constexpr std::uint32_t kNewGoal = 1, kNewEpisode = 2;
 
 }  // namespace
 
@@ -43,7 +47,8 @@ DeviceObserver::DeviceObserver(const Settings& settings, gpu::Device& device, co
       agents_(table_of(device, "agents", Role::upload, settings.agents)),
       sensors_(table_of(device, "sensors of agents", Role::upload, settings.sensors)),
       goals_(table_of(device, "goals", Role::upload, std::vector(distances_.size(), ObservedGoal{NAN, NAN}))),
-      fresh_(table_of(device, "new episodes", Role::upload, std::vector<std::uint32_t>(distances_.size(), 1))),
+      fresh_(
+          table_of(device, "new episodes", Role::upload, std::vector<std::uint32_t>(distances_.size(), kNewEpisode))),
       measures_(table_of(device, "measures", Role::download, std::vector<ObservedMeasure>(distances_.size()))),
       values_(device, "observations", Role::download, gpu::Texel::u32, value_count_),
       groups_(table_of(device, "groups of agents", Role::upload, std::vector<std::uint32_t>(4))),
@@ -79,7 +84,7 @@ void DeviceObserver::record(gpu::Batch& batch) {
 
 void DeviceObserver::prepare(gpu::Batch& batch, bool again) {
   tick_.host<ObserveTick>()[0].again = again ? 1 : 0;
-  if (!again) std::ranges::fill(fresh_.host<std::uint32_t>(), 0u);
+  if (!again) std::ranges::fill(fresh_.host<std::uint32_t>(), 0u);  // agents move
   for (const gpu::Buffer* table : {&tick_, &goals_, &fresh_})
     if (again || table == &tick_) batch.upload(*table, 0, table->bytes());
 }
@@ -87,11 +92,11 @@ void DeviceObserver::prepare(gpu::Batch& batch, bool again) {
 void DeviceObserver::set_goals(std::span<const double> goals) {
   SF_CHECK(goals.size() == 2 * distances_.size(), std::to_string(goals.size()) + " numbers");
   std::ranges::copy(goals, goals_.host<double>().begin());
-  restart(0, distances_.size());
+  for (std::uint32_t& fresh : fresh_.host<std::uint32_t>()) fresh |= kNewGoal;
 }
 
 void DeviceObserver::restart(std::size_t first, std::size_t end) {
-  std::ranges::fill(fresh_.host<std::uint32_t>().subspan(first, end - first), 1u);
+  std::ranges::fill(fresh_.host<std::uint32_t>().subspan(first, end - first), kNewEpisode);
 }
 
 void DeviceObserver::read() {

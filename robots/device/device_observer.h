@@ -1,6 +1,6 @@
 #pragma once
 // Computes learners' observations on the device, in the submission of the motion and the scans. The bytes are those of
-// sensorfarm::Observations without a stack.
+// sensorfarm::Observations.
 
 #include <cstdint>
 #include <span>
@@ -24,6 +24,7 @@ class DeviceObserver {
     std::uint32_t every = 1;              ///< > 0: beams 0, `every`, 2 `every`, ... are observed
     bool speeds = true;
     double goal_reach = 0.0;  ///< [m] 0: goals are measured, but not observed
+    std::uint32_t stack = 1;  ///< > 0: observations of a row, the newest first
   };
 
   /// @param fleet moves the agents  @param ranges [m] of all sensors, as raycast::PoseScanner::table; NaN: failed. Both
@@ -35,7 +36,8 @@ class DeviceObserver {
   void record(gpu::Batch& batch);
   /// Call it before each submission. @param again nothing moves in it: only agents that have restarted are measured
   void prepare(gpu::Batch& batch, bool again);
-  /// Sets x and y [m] of all goals; NaN: none. Agents restart. @param goals two per agent, NaN or finite
+  /// Sets x and y [m] of all goals; NaN: none. The next submission must be `again`. @param goals two per agent, NaN or
+  /// finite
   void set_goals(std::span<const double> goals);
   /// The agents from `first` to before `end` have been placed; the next submission must be `again`.
   void restart(std::size_t first, std::size_t end);

@@ -11,9 +11,10 @@ namespace sf::robots {
 struct ObserveTick {
   std::uint32_t agents, sensors;  ///< number, and sensors of each
   std::uint32_t beams, elements;  ///< of a sensor: in its table, and observed
-  std::uint32_t every, columns;   ///< step between observed beams, and columns of an observation
+  std::uint32_t every, columns;   ///< step between observed beams, and columns of one observation
   std::uint32_t speeds, again;    ///< 1: speeds are observed; 1: nothing has moved since the last observation
-  double reach, spare;            ///< [m] > 0: goals are observed
+  double reach;                   ///< [m] > 0: goals are observed
+  std::uint32_t stack, spare;     ///< observations that a row has
 };
 
 struct ObservedAgent {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -40,12 +41,13 @@ void expect_bytes(std::span<const Row> device, std::span<const Row> host, const 
 /// The same worlds on a device and by Simulation.
 class Twin {
  public:
-  explicit Twin(std::uint32_t robots) : Twin(Options{.robots = robots, .seed = 5, .copies = kCopies}) {}
-  explicit Twin(const Options& options)
+  explicit Twin(std::uint32_t robots, const ObservationOptions& seen = kSeen)
+      : Twin(Options{.robots = robots, .seed = 5, .copies = kCopies}, seen) {}
+  explicit Twin(const Options& options, const ObservationOptions& seen = kSeen)
       : device_(DeviceWorlds::from_text(room(), options)),
         host_(Simulation::from_text(room(), options)),
-        seen_(host_.observe(kSeen)) {
-    device_.observe(kSeen);
+        seen_(host_.observe(seen)) {
+    device_.observe(seen);
   }
 
   void step() {
@@ -54,8 +56,9 @@ class Twin {
     for (Twist& command : commands) command = {0.3 + any(random_), 0.0, 2.0 * any(random_)};
     device_.step(commands), host_.step(commands);
   }
-  void reset(const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds) {
-    device_.reset(worlds, seeds), host_.reset(worlds, seeds);
+  void reset(const std::vector<std::uint32_t>& worlds, const std::vector<std::uint64_t>& seeds,
+             const WorldStarts& starts = {}) {
+    device_.reset(worlds, seeds, starts), host_.reset(worlds, seeds, starts);
   }
   /// New goals for all agents, but none for the first.
   void set_goals() {
@@ -99,8 +102,8 @@ class Twin {
 };
 
 /// Compares 100 ticks with restarts: two without a reading between them, then a step before any reading.
-void compare_hundred_ticks(std::uint32_t robots) {
-  Twin twin(robots);
+void compare_hundred_ticks(std::uint32_t robots, const ObservationOptions& seen = kSeen) {
+  Twin twin(robots, seen);
   twin.compare(" at the start");
   for (int tick = 1; tick <= 100 && !testing::Test::HasFatalFailure(); ++tick) {
     twin.step();
@@ -117,6 +120,28 @@ void compare_hundred_ticks(std::uint32_t robots) {
 
 TEST(DeviceWorlds, BytesOfSimulationForOneRobotPerWorld) { compare_hundred_ticks(1); }
 TEST(DeviceWorlds, BytesOfSimulationForSeveralRobotsPerWorld) { compare_hundred_ticks(3); }
+
+// Steps without a reading must shift the stack, restarts fill it, and new goals change its newest observation alone.
+TEST(DeviceWorlds, BytesOfSimulationForStacks) {
+  compare_hundred_ticks(2, {.every = 4, .goal_reach = 2.0, .stack = 3});
+  compare_hundred_ticks(1, {.every = 31, .speeds = false, .stack = 2});  // a beam alone
+}
+
+// A crate and a robot of three are given, one absent; NaN leaves the others to the seed. Noise is that of the start.
+TEST(DeviceWorlds, BytesOfSimulationForGivenStarts) {
+  Twin twin(2);
+  const double none = NAN;
+  const Pose any{none, 0.0, 0.0, 0.0};
+  const std::vector<Pose> poses{{-0.8, 0.7, 0.0, 2.0}, any, {0.9, 0.9, 0.1, 0.3}, any, {0.1, -1.0, 0.0, -7.0}, any};
+  const std::vector<double> present{none, none, 1.0, none, none, 0.0}, noise{0.0, none, none, 1.0, 0.25, none};
+  twin.step();
+  twin.reset({2, 0}, {7, 8}, {.poses = poses, .present = present, .noise = noise});
+  for (int tick = 0; tick < 10 && !HasFatalFailure(); ++tick) {
+    twin.compare(" after given starts, tick " + std::to_string(tick));
+    twin.step();
+  }
+  EXPECT_GT(twin.echoes(), 100u);
+}
 
 TEST(DeviceWorlds, WithoutNoiseAndOneWorld) {
   Twin twin({.noise = false});
@@ -167,6 +192,19 @@ TEST(DeviceWorlds, RefusesBadCallsAndGoesOn) {
   sf::expect_in("there is no world 2", reset({2}, {1}));
   sf::expect_in("given twice", reset({1, 1}, {1, 2}));
   sf::expect_in("1 seeds for 2 worlds", reset({0, 1}, {1}));
+  const std::vector<Pose> before(worlds.poses().begin(), worlds.poses().end());
+  const auto given = [&](const WorldStarts& starts) {
+    return sf::refusal_of<Error>([&] { worlds.reset(std::vector{0u}, std::vector<std::uint64_t>{3}, starts); });
+  };
+  const std::vector<Pose> far{{0.0, 0.0, 0.0, 1.1e4}, {NAN, 0.0, 0.0, 0.0}}, short_{{NAN, 0.0, 0.0, 0.0}};
+  const std::vector<std::array<double, 3>> sizes{{0.5, 0.5, 0.5}, {NAN, 0.0, 0.0}};
+  const std::vector<double> slip{NAN, 0.1}, missing{NAN, 0.0};
+  sf::expect_in("do not support starts with a yaw beyond 10000 rad; use Simulation", given({.poses = far}));
+  sf::expect_in("do not support starts with sizes", given({.sizes = sizes}));
+  sf::expect_in("do not support starts with slip or acceleration", given({.slip = slip}));
+  sf::expect_in("1 starts for 2 rows", given({.poses = short_}));
+  sf::expect_in("is a robot, and cannot be missing", given({.present = missing}));
+  expect_bytes(worlds.poses(), std::span<const Pose>(before), "poses after refused resets");
   const auto observe = [&](const ObservationOptions& options) {
     return sf::refusal_of<Error>([&] { worlds.observe(options); });
   };
@@ -175,7 +213,7 @@ TEST(DeviceWorlds, RefusesBadCallsAndGoesOn) {
   };
   sf::expect_in("call observe first", set_goals({}));
   sf::expect_in("call observe first", sf::refusal_of<Error>([&] { worlds.observations(); }));
-  sf::expect_in("stack is 2", observe({.stack = 2}));
+  sf::expect_in("stack is 0", observe({.stack = 0}));
   sf::expect_in("expected 'laser'", observe({.sensor = "sonar"}));
   sf::expect_in("every is 0", observe({.every = 0}));
   EXPECT_EQ(observe({}), "");

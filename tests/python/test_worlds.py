@@ -261,8 +261,8 @@ class OnADevice(unittest.TestCase):
 
     def test_equals_worlds(self):
         device, host = self.both()
-        device.observe(every=5, goal_reach=4.0)
-        seen, = host.observe(every=5, goal_reach=4.0)
+        device.observe(every=5, goal_reach=4.0, stack=3)
+        seen, = host.observe(every=5, goal_reach=4.0, stack=3)
         goals = numpy.linspace(-2, 2, 12).reshape(3, 2, 2)
         device.set_goals(goals)
         seen.goals[:] = goals.reshape(-1, 2)
@@ -270,7 +270,8 @@ class OnADevice(unittest.TestCase):
         mask = numpy.array([False, True, False])
         for step in range(8):
             if step == 4:
-                device.reset(mask=mask), host.reset(mask=mask)
+                given = {"starts": [[[0.5, 0.4, 0.0, 1.0], [numpy.nan] * 4]], "noise": {"bot1": [0.5]}}
+                device.reset(mask=mask, **given), host.reset(mask=mask, **given)
             commands = numpy.full((3, 2, 3), [0.4, 0.0, 0.2 * step])
             device.step(commands), host.step(commands)
         self.assertEqual(device.observations.shape[:2], (3, 2))
