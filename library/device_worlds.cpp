@@ -32,7 +32,7 @@ void DeviceWorlds::reset(std::span<const std::uint32_t> worlds, std::span<const 
 }
 
 std::size_t DeviceWorlds::copies() const { return state_->world.copies; }
-std::size_t DeviceWorlds::size() const { return state_->commands.size(); }
+std::size_t DeviceWorlds::size() const { return state_->poses.size(); }
 const std::vector<Robot>& DeviceWorlds::robots() const { return state_->robots; }
 double DeviceWorlds::interval() const { return state_->world.interval; }
 
@@ -72,6 +72,13 @@ std::span<const double> DeviceWorlds::distances() const {
 std::span<const double> DeviceWorlds::progress() const {
   library::translated([&] { state_->read_observations(); });
   return state_->observer->progress();
+}
+
+DeviceArray DeviceWorlds::array(DeviceTable table) {
+  return library::translated([&] { return state_->array(table); });
+}
+void DeviceWorlds::update() {
+  library::translated([&] { state_->update(); });
 }
 
 }  // namespace sensorfarm

@@ -8,6 +8,7 @@
 #include "base/time.h"
 #include "control/own_controller.h"
 #include "library/device_support.h"
+#include "robots/device/records.h"
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 
@@ -60,7 +61,7 @@ DeviceWorlds::State::State(const library::WorldSource& source, const Options& op
     robots.push_back(control::robot_of({world, row, options.seed, nullptr, nullptr, &*sensor_set}));
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
     if (world.movers[row].absent) fleet->set_absent(row, true);
-  commands.resize(world.movers.size()), poses.resize(commands.size()), velocities.resize(commands.size());
+  poses.resize(world.movers.size()), velocities.resize(poses.size());
   for (const raycast::Scanner& each : scanners) carriers.push_back(each.mover);
   const sensors::SensorSet::Group& lasers = *sensor_set->group(sensors::kLaser);
   readings.type = lasers.type->name, readings.robots = carriers, readings.sensors = carriers.size();
@@ -88,16 +89,16 @@ void DeviceWorlds::State::changed() {
 }
 
 void DeviceWorlds::State::step(std::span<const Twist> given) {
-  if (!given.empty() && given.size() != commands.size())
-    throw base::InputError(fmt::format("{} commands for {} rows; expected one per row", given.size(), commands.size()));
+  if (!given.empty() && given.size() != poses.size())
+    throw base::InputError(fmt::format("{} commands for {} rows; expected one per row", given.size(), poses.size()));
   for (std::size_t i = 0; i < given.size(); ++i)
     if (!std::isfinite(given[i].forward) || !std::isfinite(given[i].left) || !std::isfinite(given[i].turn))
       throw base::InputError(fmt::format("the command of row {} is ({}, {}, {}); expected finite numbers", i,
                                          given[i].forward, given[i].left, given[i].turn));
-  for (std::size_t i = 0; i < given.size(); ++i) commands[i] = {given[i].forward, given[i].left, given[i].turn};
+  const auto commands = fleet->commands().host<robots::FleetCommand>();
+  for (std::size_t i = 0; i < given.size(); ++i) commands[i] = {given[i].forward, given[i].left, given[i].turn, 0.0};
   if (observer) scan_starts();  // measures the distances at the starts
   starting = states_read = ranges_read = observations_read = false;
-  fleet->set_commands(commands);
   fleet->move(interval);
 }
 
@@ -119,7 +120,7 @@ void DeviceWorlds::State::reset(std::span<const std::uint32_t> worlds, std::span
 void DeviceWorlds::State::restart(std::uint32_t copy) {
   const auto rows = static_cast<std::uint32_t>(robots.size());
   for (std::uint32_t row = copy * rows; row < (copy + 1) * rows; ++row) {
-    commands[row] = {};
+    fleet->commands().host<robots::FleetCommand>()[row] = {};
     fleet->set_state({.mover = row, .X_WM = world.movers[row].X_WM, .velocity = {}});
     fleet->set_absent(row, world.movers[row].absent);
   }

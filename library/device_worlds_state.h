@@ -17,7 +17,7 @@
 namespace sensorfarm {
 
 /// Not thread-safe. Throws sf::base::InputError and sf::base::DeviceError.
-struct DeviceWorlds::State {
+struct DeviceWorlds::State : std::enable_shared_from_this<State> {
   State(const sf::library::WorldSource& source, const Options& options);
   void step(std::span<const Twist> given);
   void reset(std::span<const std::uint32_t> worlds, std::span<const std::uint64_t> seeds, const WorldStarts& starts);
@@ -30,6 +30,8 @@ struct DeviceWorlds::State {
   void observe(const ObservationOptions& options);
   void set_goals(std::span<const double> goals);
   void read_observations();
+  DeviceArray array(DeviceTable table);
+  void update();
 
   std::shared_ptr<sf::gpu::Device> device;
   sf::library::LoadedWorld loaded;
@@ -38,11 +40,10 @@ struct DeviceWorlds::State {
   std::optional<sf::raycast::Episodes> episodes;
   std::optional<sf::robots::DeviceFleet> fleet;
   std::optional<sf::raycast::PoseScanner> scanner;
-  std::unique_ptr<sf::robots::DeviceObserver> observer;  ///< null: nothing is observed
+  std::shared_ptr<sf::robots::DeviceObserver> observer;  ///< null: nothing is observed
   std::optional<Observations::State> observed;           ///< its agents
   std::int64_t interval = 0;                             ///< [ns]
   std::vector<Robot> robots;
-  std::vector<sf::base::Twist> commands;
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
   std::vector<std::uint32_t> carriers;  ///< per laser

@@ -321,8 +321,7 @@ py::array seen(const Observations& o, std::span<Value> data, std::size_t width, 
 
 /// Returns a DLPack capsule, which keeps the memory as an array does. Of DLPack's options only `copy` matters on the
 /// host.
-py::object export_values(const Observations& o, const py::kwargs& options) {
-  py::object array = seen(o, o.values(), o.columns(), true);  // NumPy exports writable arrays only
+py::object exported(py::object array, const py::kwargs& options) {
   if (options.contains("copy") && py::cast<bool>(options["copy"])) array = array.attr("copy")();
   return array.attr("__dlpack__")();
 }
@@ -347,8 +346,12 @@ void add_observations(py::module_& module) {
           "ages", [](const O& o) { return seen(o, o.ages(), 0, false); }, "(agents,): steps since the world's start.")
       .def(
           "update", [](O& o) { in_farm([&] { o.update(); }); }, "Recomputes the values after goals have changed.")
-      .def("__dlpack__", &export_values,
-           "`values` without a copy, for torch.from_dlpack(observations). Do not write to it.")
+      .def(
+          "__dlpack__",
+          [](const O& o, const py::kwargs& options) {
+            return exported(seen(o, o.values(), o.columns(), true), options);  // NumPy exports writable arrays only
+          },
+          "`values` without a copy, for torch.from_dlpack(observations). Do not write to it.")
       .def(
           "__dlpack_device__", [](const O&) { return std::pair(1, 0); }, "The host.")
       .def("__len__", [](const O& o) { return o.agents(); });
@@ -526,6 +529,48 @@ py::array ranges_by_world(const PyDeviceWorlds& s) {
   return py::array(py::dtype::of<double>(), {count(worlds), count(r.sensors / worlds), count(r.elements)}, r.values);
 }
 
+/// Memory of worlds on a device, with an axis of worlds.
+struct PyDeviceArray {
+  py::array array;
+  bool copied;
+};
+
+/// @param rows of a world, the first ones; 0: all
+PyDeviceArray shared_by_world(PyDeviceWorlds& s, DeviceTable table, std::size_t rows) {
+  auto* const kept = new DeviceArray(in_farm(s, [&] { return s.farm.array(table); }));
+  static const pid_t process = getpid();  // a forked one keeps the memory, as for simulations
+  const py::capsule owner(kept, [](void* memory) {
+    if (process == getpid()) delete static_cast<DeviceArray*>(memory);
+  });
+  const py::dtype type = kept->single ? py::dtype::of<float>() : py::dtype::of<double>();
+  const std::size_t of_world = kept->rows / s.farm.copies();
+  const py::ssize_t step = count(kept->stride) * type.itemsize();
+  std::vector<py::ssize_t> shape{count(s.farm.copies()), count(rows > 0 ? rows : of_world)};
+  std::vector<py::ssize_t> strides{count(of_world) * step, step};
+  const bool numbers = table == DeviceTable::distances || table == DeviceTable::progress;
+  if (!numbers) shape.push_back(count(kept->columns)), strides.push_back(type.itemsize());
+  return {py::array(type, std::move(shape), std::move(strides), kept->data, owner), kept->copied};
+}
+
+void add_device_arrays(py::module_& module) {
+  using A = PyDeviceArray;
+  py::class_<A>(module, "DeviceArray", "Memory of DeviceWorlds, for torch.from_dlpack and numpy.from_dlpack.")
+      .def_property_readonly(
+          "array", [](const A& a) { return a.array; }, "The same memory as an array of NumPy.")
+      .def_property_readonly(
+          "copied", [](const A& a) { return a.copied; }, "It is the host's copy of the device's memory.")
+      .def(
+          "__dlpack__", [](const A& a, const py::kwargs& options) { return exported(a.array, options); },
+          "The memory, which it keeps.")
+      .def(
+          "__dlpack_device__", [](const A&) { return std::pair(1, 0); }, "The host.");
+  py::enum_<DeviceTable>(module, "_DeviceTable")
+      .value("observations", DeviceTable::observations)
+      .value("commands", DeviceTable::commands)
+      .value("distances", DeviceTable::distances)
+      .value("progress", DeviceTable::progress);
+}
+
 PyDeviceWorlds made_on_device(Text world, const std::optional<std::string>& text, const py::kwargs& keywords) {
   Keywords given(keywords);
   const Options options = options_of(given);
@@ -563,6 +608,8 @@ void add_device_worlds(py::module_& module) {
       .def("set_goals",
            [](W& s, const Commands& goals) { in_farm(s, [&] { s.farm.set_goals(as_rows<double>(goals)); }); })
       .def("observations", [](const W& s) { return by_world<float>(s, &DeviceWorlds::observations, s.farm.columns()); })
+      .def("shared", &shared_by_world)
+      .def("update", [](W& s) { in_farm(s, [&] { s.farm.update(); }); })
       .def("distances", [](const W& s) { return by_world<double>(s, &DeviceWorlds::distances, 0); })
       .def("progress", [](const W& s) { return by_world<double>(s, &DeviceWorlds::progress, 0); });
 }
@@ -576,6 +623,7 @@ PYBIND11_MODULE(_sensorfarm, module) {
   add_controller_types(module);
   add_observations(module);
   add_simulation(module);
+  add_device_arrays(module);
   add_device_worlds(module);
   module.def("_abort_ranks", &abort_ranks);
   module.def("add_model_controller", &add_model_class, py::arg("controller"), py::arg("name") = py::none());

@@ -19,6 +19,18 @@
 
 namespace sensorfarm {
 
+/// What is shared: rows of agents, or commands (forward, left [m/s], turn [rad/s]) of all rows.
+enum class DeviceTable { observations, commands, distances, progress };
+
+/// Memory of worlds on a device: number k of row i is at i * stride + k.
+struct DeviceArray {
+  void* data = nullptr;  ///< 64-bit floats
+  bool single = false;   ///< 32-bit floats instead
+  std::size_t rows = 0, columns = 0, stride = 0;
+  bool copied = false;  ///< the memory is the host's: a step or `update` copies between it and the device's
+  std::shared_ptr<const void> memory = nullptr;  ///< keeps the memory, and the worlds with it
+};
+
 /// World k has seed + k, and the bytes of a Simulation of that world alone with this seed. Time 0 is simulated at
 /// construction. Call from one thread at a time, as Simulation. All arrays are as those of a Simulation, and valid
 /// until the next step or reset; the first call after one of these copies them from the device.
@@ -67,6 +79,14 @@ class SENSORFARM_API DeviceWorlds {
   std::span<const float> observations() const;  ///< agents() * columns(), agent by agent
   std::span<const double> distances() const;    ///< [m] per agent, as Observations::distances
   std::span<const double> progress() const;     ///< [m] per agent, as Observations::progress
+
+  /// Returns memory that steps use, without a copy where host and device share it, e.g. on lavapipe. Commands may be
+  /// written between calls; step() executes them, and numbers that are not finite count as 0. The others are results,
+  /// up to date after `update`, until the next step, reset or set_goals; `observe` leaves them behind.
+  /// @throws Error before `observe`, except for commands
+  DeviceArray array(DeviceTable table);
+  /// Brings all arrays up to date. @throws DeviceError as `readings`
+  void update();
 
  private:
   struct State;

@@ -15,13 +15,13 @@ import tempfile as _tempfile
 
 import numpy as _numpy
 
-from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot, Neighbour,
-                          Observations, Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, WorldObject,
+from ._sensorfarm import (NONE, DeviceArray, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot,
+                          Neighbour, Observations, Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, WorldObject,
                           _abort_ranks, add_model_controller, load_plugin)
 from .worlds import DeviceWorlds, Worlds
 
-__all__ = ["NONE", "DeviceError", "DeviceWorlds", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite", "NearRobot",
-           "Neighbour", "Observations", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist",
+__all__ = ["NONE", "DeviceArray", "DeviceError", "DeviceWorlds", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite",
+           "NearRobot", "Neighbour", "Observations", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist",
            "WorldObject", "Worlds", "add_model_controller", "load_plugin"]
 
 

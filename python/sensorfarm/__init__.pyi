@@ -518,6 +518,19 @@ class _WorldStates:
     def contacts(self) -> NDArray[np.bool_]:
         """(worlds, robots): a wall or a robot stopped it."""
 
+class DeviceArray:
+    """Memory of DeviceWorlds (DeviceWorlds.shared), for torch.from_dlpack and numpy.from_dlpack."""
+    @property
+    def array(self) -> NDArray[Any]:
+        """The same memory as an array of NumPy."""
+    @property
+    def copied(self) -> bool:
+        """It is the host's copy of the device's memory."""
+    def __dlpack__(self, **options: Any) -> Any:
+        """The memory, which it keeps."""
+    def __dlpack_device__(self) -> tuple[int, int]:
+        """The host."""
+
 class DeviceWorlds(_WorldStates):
     """Worlds that stay on a Vulkan device: a step is one submission, and nothing is copied back until it is asked for.
     For robots with lasers that commands drive; all else is refused. Arrays are copies, as those of Worlds."""
@@ -537,6 +550,11 @@ class DeviceWorlds(_WorldStates):
     @property
     def progress(self) -> NDArray[np.float64]:
         """(worlds, agents) [m]: how much nearer the goal came in the last step."""
+    def shared(self, what: str) -> DeviceArray:
+        """Returns memory that all steps use, without a copy where host and device share it. what: "observations",
+        "distances" or "progress", up to date after `update`; "commands", which step() executes."""
+    def update(self) -> None:
+        """Brings shared memory up to date after steps, resets and new goals."""
     def set_goals(self, goals: ArrayLike) -> None:
         """goals: (worlds, agents, 2) of x, y [m]; NaN: none."""
     def step(self, commands: ArrayLike | None = None) -> None:

@@ -2,7 +2,7 @@
 
 import numpy
 
-from ._sensorfarm import Simulation, _DeviceWorlds
+from ._sensorfarm import Simulation, _DeviceTable, _DeviceWorlds
 
 
 _SHAPES = {"starts": (4,), "present": (), "sizes": (3,), "slip": (), "acceleration": (), "noise": ()}
@@ -262,6 +262,23 @@ class DeviceWorlds:
     def set_goals(self, goals):
         """goals: (worlds, agents, 2) of x, y [m]; NaN: none."""
         self._farm.set_goals(goals)
+
+    def shared(self, what):
+        """Returns memory that all steps use as a DeviceArray, for torch.from_dlpack(worlds.shared("observations")).
+
+        what: "observations", "distances" or "progress", as the properties: up to date after `update`, until the next
+        step; a later `observe` leaves them behind. "commands": (worlds, robots, 3), which step() without an argument
+        executes; numbers that are not finite count as 0. Without a copy where host and device share their memory
+        (lavapipe, integrated GPUs); elsewhere (`copied`) a step copies commands to the device, `update` results back.
+        """
+        tables = _DeviceTable.__members__
+        if what not in tables:
+            raise ValueError(f"'{what}' is not shared; expected one of {', '.join(tables)}")
+        return self._farm.shared(tables[what], len(self.robots) if what == "commands" else 0)
+
+    def update(self):
+        """Brings shared memory up to date after steps, resets and new goals."""
+        self._farm.update()
 
     def step(self, commands=None):
         """One tick of all worlds. commands: (worlds, robots, 3): forward, left [m/s], turn [rad/s]; None: unchanged."""

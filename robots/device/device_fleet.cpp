@@ -215,6 +215,7 @@ void DeviceFleet::then(const std::function<void(gpu::Batch&)>& record, std::func
   prepare_ = std::move(prepare);
 }
 
+gpu::Buffer& DeviceFleet::commands() { return tables_->commands; }
 const gpu::Buffer& DeviceFleet::poses() const { return tables_->poses; }
 const gpu::Buffer& DeviceFleet::motions() const { return tables_->motions; }
 const gpu::Buffer& DeviceFleet::own_states() const { return tables_->own_states; }
@@ -226,7 +227,6 @@ void DeviceFleet::set_commands(std::span<const base::Twist> commands) {
   std::ranges::transform(commands, table.host<FleetCommand>().begin(), [](const base::Twist& v) {
     return FleetCommand{v.forward, v.left, v.turn, 0.0};
   });
-  tables_->upload(table, 0, table.bytes());
 }
 
 void DeviceFleet::set_absent(std::uint32_t row, bool gone) {
@@ -257,7 +257,7 @@ void DeviceFleet::move(std::int64_t dt) {
     now.farthest = std::max(now.farthest, bound.travel(now.seconds));
   }
   now.cell = 4.0 * (now.widest + now.farthest) + 1e-3;
-  tables_->upload(tables_->tick, 0, tables_->tick.bytes());
+  for (const Buffer* table : {&tables_->tick, &tables_->commands}) tables_->upload(*table, 0, table->bytes());
   if (prepare_) prepare_(tables_->moving);
   tables_->run(tables_->moving);
   for (base::Report& report : reports_) report.time += dt;

@@ -50,6 +50,11 @@ class DeviceObserver {
   std::span<const double> distances() const { return distances_; }
   std::span<const double> progress() const { return progress_; }
 
+  /// The tables: the rows of `values`, and an ObservedMeasure per agent. Submissions write them; their host views are
+  /// up to date after `read` or, on a unified device, after each submission.
+  gpu::Buffer& table() { return values_; }
+  gpu::Buffer& measures() { return measures_; }
+
  private:
   std::size_t value_count_;
   std::vector<double> distances_, progress_;

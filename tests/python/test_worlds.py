@@ -284,6 +284,53 @@ class OnADevice(unittest.TestCase):
             numpy.testing.assert_array_equal(own, other)
         self.assertTrue((device.progress != 0).any())
 
+    def test_shared_memory(self):
+        """Kernels write what NumPy sees: the address stays the same over steps and a reset."""
+        device = self.both()[0]
+        device.observe(goal_reach=4.0, stack=2)
+        device.set_goals(numpy.ones((3, 2, 2)))
+        results = {name: device.shared(name) for name in ("observations", "distances", "progress")}
+        self.assertEqual(results["observations"].__dlpack_device__(), (1, 0))
+        arrays = {name: numpy.from_dlpack(shared) for name, shared in results.items()}
+        for step in range(3):
+            device.step(numpy.full((3, 2, 3), [0.3, 0.0, 0.1 * step]))
+            before = {name: array.copy() for name, array in arrays.items()}
+            if step == 2:
+                device.reset(mask=[True, False, True])
+            device.update()
+            if step < 2 and not results["observations"].copied:  # the kernels write this memory: no copy was needed
+                for name, array in arrays.items():
+                    numpy.testing.assert_array_equal(before[name], array, name)
+            for name, array in arrays.items():
+                self.assertTrue(numpy.shares_memory(array, results[name].array))
+                self.assertTrue(numpy.shares_memory(array, device.shared(name).array))
+                numpy.testing.assert_array_equal(array, getattr(device, name), name)
+        self.assertTrue((arrays["progress"][1] != 0).any())
+        kept = arrays["observations"].copy()
+        del device, results
+        numpy.testing.assert_array_equal(arrays["observations"], kept, "the array keeps the memory")
+
+    def test_shared_commands(self):
+        """What a consumer writes moves the robots, as the same commands given; NaN counts as 0."""
+        device, host = self.both()
+        commands = device.shared("commands")
+        written = numpy.asarray(commands.array) if torch is None else torch.from_dlpack(commands)
+        written[:] = 0.0
+        written[..., 0] = 0.4
+        written[1, 0, 2] = 0.5
+        written[2, 1, 0] = numpy.nan
+        given = numpy.array(commands.array)
+        self.assertEqual((given[0, 0, 0], given[1, 0, 2]), (0.4, 0.5))
+        given[2, 1, 0] = 0.0
+        for _ in range(2):
+            device.step(), host.step(given)
+        numpy.testing.assert_array_equal(device.poses, host.poses)
+        device.step(2 * given), host.step(2 * given)
+        self.assertEqual(float(written[1, 0, 2]), 1.0, "given commands are written to the same memory")
+        device.reset(mask=[False, True, False])
+        self.assertEqual(float(written[1, 0, 2]), 0.0, "worlds start without commands")
+        self.assertEqual(float(written[0, 0, 0]), 0.8)
+
     def test_refusals(self):
         with self.assertRaisesRegex(sensorfarm.Error, "sensors of type 'gyro'; use Simulation with copies .in Python: Worlds"):
             self.both(text=ROOM)
@@ -296,6 +343,10 @@ class OnADevice(unittest.TestCase):
             device.reset(mask=[True])
         with self.assertRaisesRegex(sensorfarm.Error, "call observe first"):
             device.observations
+        with self.assertRaisesRegex(sensorfarm.Error, "call observe first"):
+            device.shared("progress")
+        with self.assertRaisesRegex(ValueError, "'poses' is not shared; expected one of observations, commands"):
+            device.shared("poses")
 
 
 if __name__ == "__main__":
