@@ -9,6 +9,9 @@ of the policy (default: straight to the goal) by exact readings. All therefore v
 are compared with exact ones in double. The simulations take turns, so their rates are compared in one run. A reset of
 finished rooms is not timed. `half`: half as many beams, for a policy trained with them. `none`: no laser, the bound for
 anything that makes readings cheaper. `field`: ranges traced in a distance field, which the farm does not have.
+
+With --rooms, the policy then drives by each kind of readings, in the same unseen rooms. `double`: observations in 64
+bits, as NumPy computes them; the modes observe in 32. `half` reads between the beams of a laser with 18.
 """
 
 import argparse
@@ -23,6 +26,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import rooms  # noqa: E402
 
 CHANGED = 1e-6  # [m] least difference that counts as a changed return
+MODES = ("exact", "single", "skip2", "skip4", "skip8")
 CELL = 0.05  # [m] of the distance field
 
 
@@ -101,31 +105,34 @@ def field_of(walls):
     return numpy.linalg.norm(points - a - part[..., None] * along, axis=-1).min(axis=2)
 
 
-def march(field, pose, bearings, reach):
-    """Returns ranges by sphere tracing in the field, and how often it was read per beam."""
-    directions = numpy.stack([numpy.cos(pose[3] + bearings), numpy.sin(pose[3] + bearings)], axis=1)
-    ranges, open_, reads = numpy.zeros(len(bearings)), numpy.ones(len(bearings), bool), 0
+def march(fields, poses, bearings, reach):
+    """Returns ranges (rooms, beams) by sphere tracing in the fields (rooms, cells, cells), and reads per beam."""
+    yaws = (poses[:, 3:] + bearings).ravel()
+    directions = numpy.stack([numpy.cos(yaws), numpy.sin(yaws)], axis=1)
+    origins, room = numpy.repeat(poses[:, :2], len(bearings), axis=0) + 4, numpy.repeat(numpy.arange(len(poses)), len(bearings))
+    ranges, going, reads = numpy.zeros(len(yaws)), numpy.arange(len(yaws)), 0
     for _ in range(200):
-        cells = ((pose[:2] + ranges[:, None] * directions + 4) / CELL).astype(int).clip(0, len(field) - 1)
-        near = field[cells[:, 0], cells[:, 1]]
-        reads += open_.sum()
-        open_ &= near > CELL / 2
-        ranges = numpy.where(open_, ranges + near, ranges)
-        open_ &= ranges < reach
-        if not open_.any():
+        cells = ((origins[going] + ranges[going, None] * directions[going]) / CELL).astype(int).clip(0, fields.shape[1] - 1)
+        near = fields[room[going], cells[:, 0], cells[:, 1]]
+        reads += len(going)
+        going, near = going[near > CELL / 2], near[near > CELL / 2]
+        ranges[going] += near
+        going = going[ranges[going] < reach]
+        if not len(going):
             break
-    return numpy.minimum(ranges, reach), reads / len(bearings)
+    return numpy.minimum(ranges, reach).reshape(len(poses), -1), reads / len(yaws)
 
 
-def distance_field(exact, count, errors):
-    """Adds the errors of ranges from distance fields of some rooms. Returns reads per beam."""
-    part, rows = exact.worlds.parts[0], len(exact.worlds.parts[0].robots)
-    bearings, reads = numpy.array(part.robots[0].sensors[0].bearings), []
-    for k in range(count):
-        ranges, mean = march(field_of(corners_of(part, k)), part.poses[k * rows], bearings, 4.0)
-        errors.add(ranges, exact.ranges()[k])
-        reads.append(mean)
-    return numpy.mean(reads)
+class Fields:
+    """Distance fields of the first rooms as they are now."""
+
+    def __init__(self, worlds, count):
+        self.part, self.count = worlds.parts[0], count
+        self.bearings = numpy.array(worlds.robots[0].sensors[0].bearings)
+        self.fields = numpy.stack([field_of(corners_of(self.part, k)).astype(numpy.float32) for k in range(count)])
+
+    def ranges(self):
+        return march(self.fields, self.part.poses[::len(self.part.robots)][:self.count], self.bearings, 4.0)
 
 
 def policy_of(file):
@@ -136,11 +143,65 @@ def policy_of(file):
     return lambda seen: rooms.act(weights, seen)
 
 
+def in_double(driven, ranges=None, bearings=None):
+    """Returns the observations in double. ranges [m]: those of a laser with other bearings, read between its beams."""
+    worlds, seen = driven.worlds, driven.seen
+    robot, pose, velocity = worlds.robots[0], worlds.poses[:, 0], worlds.velocities[:, 0]
+    ranges = worlds.readings("laser")[:, 0] if ranges is None else ranges
+    if bearings is not None:
+        ranges = numpy.array([numpy.interp(robot.sensors[0].bearings, bearings, row) for row in ranges])
+    away = seen.goals - pose[:, :2]
+    bearing = numpy.arctan2(away[:, 1], away[:, 0]) - pose[:, 3]
+    rest = [velocity[:, 0] / robot.max_forward, velocity[:, 2] / robot.max_turn,
+            numpy.hypot(away[:, 0], away[:, 1]) / rooms.REACH, numpy.cos(bearing), numpy.sin(bearing)]
+    return numpy.clip(numpy.column_stack([ranges / robot.sensors[0].limit, *rest]), -1, 1)
+
+
+def drive(name, decide, count):
+    """Drives an episode in each of `count` unseen rooms by one kind of readings. Returns how they ended."""
+    driven = rooms.Rooms(count, rooms.UNSEEN, accuracy=name if name in MODES else "exact")
+    if name == "double":
+        return rooms.test(lambda _: decide(in_double(driven)), driven)
+    if name == "field":
+        fields = Fields(driven.worlds, count)
+        return rooms.test(lambda _: decide(in_double(driven, fields.ranges()[0])), driven)
+    if name == "half":
+        bearings = numpy.array(driven.worlds.robots[0].sensors[0].bearings)
+        kept = numpy.linspace(bearings[0], bearings[-1], len(bearings) // 2)
+        with open(rooms.WORLD) as file:
+            text = file.read().replace("samples 36", "samples 18")
+        seer = rooms.Rooms(count, rooms.UNSEEN, text=text)
+        assert numpy.allclose(seer.worlds.robots[0].sensors[0].bearings, kept)
+
+        def step(_):
+            return decide(in_double(driven, seer.worlds.readings("laser")[:, 0], kept))
+        return test_beside(step, driven, seer)
+    return rooms.test(decide, driven)
+
+
+def test_beside(decide, driven, seer):
+    """rooms.test, with rooms of another laser that do the same."""
+    step = driven.worlds.step
+
+    def both(commands):
+        step(commands), seer.worlds.step(commands)
+    driven.worlds.step = both
+    return rooms.test(decide, driven)
+
+
+def closed_loop(decide, count):
+    print(f"ends of an episode in each of {count} unseen rooms, with the limits of 95 % confidence (Wilson)")
+    for name in ("double", *MODES, "half", "field"):
+        ends = drive(name, decide, count)
+        low, high = rooms.wilson(ends[0], count)
+        print(f"{name:10} | {100 * ends[0] / count:5.1f} % at the goal ({100 * low:.1f} to {100 * high:.1f} %) | "
+              f"{100 * ends[1] / count:5.1f} % contact | {100 * ends[2] / count:5.1f} % late", flush=True)
+
+
 def run(given):
     driven = rooms.Rooms(given.worlds, 1)
     decide, seen = policy_of(given.policy), driven.seen
-    modes = ("exact", "single", "skip2", "skip4", "skip8")
-    variants = [Variant(name, name, given.worlds, given.beams) for name in modes]
+    variants = [Variant(name, name, given.worlds, given.beams) for name in MODES]
     variants += [Variant("half", "exact", given.worlds, given.beams // 2),
                  Variant("none", "exact", given.worlds, given.beams, laser=False)]
     errors = {variant.name: Errors() for variant in variants}
@@ -154,11 +215,13 @@ def run(given):
         driven.worlds.step(commands)
         exact, own = variants[0].ranges(), driven.worlds.readings("laser")[:, 0]
         assert (exact[:, [0, -1]] == own[:, [0, -1]]).all(), "the same commands, other readings"
-        for variant in variants[:len(modes)]:
+        for variant in variants[:len(MODES)]:
             errors[variant.name].add(variant.ranges(), exact)
         errors["float32"].add(seen.values[:, :own.shape[1]].astype(float) * limit, own)
         if step % 20 == 10:
-            reads.append(distance_field(variants[0], given.fields, errors["field"]))
+            ranges, mean = Fields(variants[0].worlds, given.fields).ranges()
+            errors["field"].add(ranges, exact[:given.fields])
+            reads.append(mean)
         ended = (seen.distances < rooms.ARRIVED) | driven.worlds.contacts[:, 0] | (seen.ages >= rooms.LIMIT)
         if ended.any():
             driven.restart(ended)
@@ -174,6 +237,7 @@ def main():
     parser.add_argument("--beams", type=int, default=36, help="of each laser")
     parser.add_argument("--steps", type=int, default=200)
     parser.add_argument("--fields", type=int, default=20, help="rooms whose distance field is computed, every 20 steps")
+    parser.add_argument("--rooms", type=int, default=0, help="of the closed loop: one episode in each, per accuracy")
     given = parser.parse_args()
     variants, errors, reads = run(given)
     base = numpy.array(variants[0].seconds)
@@ -189,6 +253,8 @@ def main():
                 row += f" | {given.worlds / numpy.median(own[:, 0]):13,.0f} | {wall:.2f}, {processor:.2f}"
         print(row)
     print(f"field: cells of {CELL} m, read {reads:.1f} times per beam")
+    if given.rooms > 0:
+        closed_loop(policy_of(given.policy), given.rooms)
 
 
 if __name__ == "__main__":

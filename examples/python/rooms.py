@@ -29,9 +29,9 @@ UNSEEN = 1_000_000_000  # first seed of the rooms of the test
 class Rooms:
     """A number of rooms, each with a robot and its goal. `seen.values` has the observations (rooms, columns)."""
 
-    def __init__(self, copies, seed):
+    def __init__(self, copies, seed, **options):
         import sensorfarm
-        self.worlds = sensorfarm.Worlds(WORLD, copies=copies, robots=1, seed=seed)
+        self.worlds = sensorfarm.Worlds(WORLD, copies=copies, robots=1, seed=seed, **options)
         self.seen, = self.worlds.observe(goal_reach=REACH)
         robot = self.worlds.robots[0]
         self._speeds = robot.max_forward, robot.max_turn
