@@ -98,12 +98,14 @@ void Fleet::make_room() {
   progress_.resize(count);
   proposed_.resize(count);
   free_discs_.resize(count);
+  nearby_.resize(count);
   for (auto* flags :
        {&waiting_, &yielded_, &changed_, &moved_, &continues_, &contacts_, &refused_, &struck_, &reported_, &absent_})
     flags->resize(count);
   for (auto* rows : {&unfinished_, &round_rows_}) rows->reserve(count);
   for (Scratch& scratch : scratch_) {
-    for (auto* memory : {&scratch.next, &scratch.now, &scratch.other}) memory->resize(edges);
+    scratch.next.resize(edges), scratch.now.edges.resize(edges), scratch.now.row = world::kNone;
+    for (Placed& other : scratch.others) other.edges.resize(edges), other.row = world::kNone;
     for (auto* rows : {&scratch.near, &scratch.all_near, &scratch.priority_movers}) rows->reserve(count);
     scratch.walls.reserve(1'000);
   }
@@ -201,6 +203,7 @@ void Fleet::update_reported_contacts() {
   for_rows(predicted_.size(), [&](std::uint32_t row, Scratch&) {
     if (absent_[row] != 0) contacts_[row] = 0;
     if (reported_[row] == 0 || absent_[row] != 0) return;
+    nearby_[row] = {};
     base::Report& report = predicted_[row];
     if (!clear(row, predicted_, kContactDistance))
       report.contact_mask |= body_contact(row, report.X_WM, predicted_).sectors;

@@ -20,6 +20,8 @@
 // overlaps another that it did not overlap before. A mover's result depends only on the movers near it (within kRounds
 // times the paths of both), not on rows, threads or the rest of the fleet.
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -144,12 +146,27 @@ class Fleet {
     glm::dvec2 centre;
     double radius = 0.0;  ///< [m]
   };
+  /// The other movers whose discs may come within kContactDistance of a mover's in this tick. Searching the grid once
+  /// per tick instead of in every round makes crowds cheaper.
+  struct Nearby {
+    static constexpr std::uint32_t kMost = 15;
+    std::uint32_t count = world::kNone;  ///< more than kMost: they are not listed
+    std::array<std::uint32_t, kMost> rows{};
+  };
+  /// A footprint at the pose at which it was last tested. Movers that wait or stand in a crowd are tested many times.
+  struct Placed {
+    std::uint32_t row = world::kNone;
+    base::Pose X_WM;
+    std::vector<FootprintEdge> edges;
+  };
   /// Buffers of one thread.
   struct Scratch {
-    std::vector<FootprintEdge> next, now, other;  ///< for place_footprint
-    std::vector<std::uint32_t> near;              ///< movers near this mover's path or a piece of it
-    std::vector<std::uint32_t> all_near;          ///< movers near the whole path
-    std::vector<const world::Segment*> walls;     ///< walls near the whole path
+    std::vector<FootprintEdge> next;  ///< for place_footprint
+    Placed now;
+    std::array<Placed, 16> others;             ///< by the last bits of their rows
+    std::vector<std::uint32_t> near;           ///< movers near this mover's path or a piece of it
+    std::vector<std::uint32_t> all_near;       ///< movers near the whole path
+    std::vector<const world::Segment*> walls;  ///< walls near the whole path
     std::vector<std::uint32_t>
         priority_movers;       ///< subset: movers with a smaller id and a different place after this round
     std::uint64_t tested = 0;  ///< [steps] as `steps_tested`
@@ -169,6 +186,9 @@ class Fleet {
   void commit(std::uint32_t row);
   void find_free_disc(std::uint32_t row);
   bool is_in_free_disc(std::uint32_t row) const;
+  void list_nearby(std::uint32_t row);
+  template <class Visit>
+  bool any_nearby(std::uint32_t row, glm::dvec2 p, double reach, Visit&& visit) const;
   void find_near(std::uint32_t row, Scratch& scratch) const;
   bool moved(std::uint32_t row) const;
 
@@ -190,6 +210,7 @@ class Fleet {
 
   // Obstacles on a mover's path from one pose to another.
   Stop stop_at(std::uint32_t row, const base::Pose& from, const base::Pose& to, bool last, Scratch& scratch) const;
+  PlacedFootprint place_again(std::uint32_t row, const base::Pose& X_WM, Placed& memory) const;
   bool meets_priority_mover(std::uint32_t row, const base::Pose& from, const PlacedFootprint& next,
                             Scratch& scratch) const;
   bool is_stopped(std::uint32_t row, const base::Pose& from, const PlacedFootprint& next, std::uint32_t other,
@@ -224,6 +245,7 @@ class Fleet {
       progress_;  ///< at the start of the round; `reports_` has the poses that other movers test against
   std::vector<Progress> proposed_;
   std::vector<FreeDisc> free_discs_;
+  std::vector<Nearby> nearby_;
   std::vector<std::uint8_t> waiting_;      ///< 1: its tick is not finished
   std::vector<std::uint8_t> yielded_;      ///< 1: yielded in this round
   std::vector<std::uint8_t> changed_;      ///< 1: it moved or yielded in this round
@@ -239,6 +261,15 @@ class Fleet {
   std::vector<std::uint8_t> absent_;
   bool disturbed_ = true;  ///< a mover changed since the last `move`, other than by it
 };
+
+/// Returns true as soon as `visit(other)` is true for a mover within about `reach` [m] of `p`, a place that the mover
+/// `row` may reach in this tick.
+template <class Visit>
+bool Fleet::any_nearby(std::uint32_t row, glm::dvec2 p, double reach, Visit&& visit) const {
+  const Nearby& listed = nearby_[row];
+  if (listed.count <= Nearby::kMost) return std::any_of(&listed.rows[0], &listed.rows[0] + listed.count, visit);
+  return neighbours_.any(p, reach, visit, copies_.copy_of(row));
+}
 
 template <class Body>
 void Fleet::for_rows(std::size_t count, Body&& body) {

@@ -280,6 +280,16 @@ Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, 
   return stop;
 }
 
+/// Returns `place_footprint`, whose result the memory may still hold.
+PlacedFootprint Fleet::place_again(std::uint32_t row, const Pose& X_WM, Placed& memory) const {
+  const Footprint& outline = footprints_[row];
+  const Pose& X = memory.X_WM;
+  if (memory.row == row && X.x == X_WM.x && X.y == X_WM.y && X.z == X_WM.z && X.yaw == X_WM.yaw)
+    return {origin(X_WM), outline.radius, std::span(memory.edges).first(outline.edges.size())};
+  memory.row = row, memory.X_WM = X_WM;
+  return place_footprint(outline, X_WM, memory.edges);
+}
+
 /// Tests priority movers on a path without other obstacles.
 bool Fleet::meets_priority_mover(std::uint32_t row, const Pose& from, const PlacedFootprint& next,
                                  Scratch& scratch) const {
@@ -296,15 +306,15 @@ bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const PlacedFootprin
   const double after = length(next.origin - origin(X_WO)), before = length(origin(from) - origin(X_WO));
   const bool nearer = !no_nearer(after, before);
   if (surely_overlap(footprints_[row], footprints_[other], nearer ? after : before, X_WO.z - from.z)) return nearer;
-  const PlacedFootprint placed = place_footprint(footprints_[other], X_WO, scratch.other);
+  const PlacedFootprint placed = place_again(other, X_WO, scratch.others[other % scratch.others.size()]);
   if (!touches(next, placed)) return false;
-  const PlacedFootprint now = place_footprint(footprints_[row], from, scratch.now);
+  const PlacedFootprint now = place_again(row, from, scratch.now);
   return nearer || !touches(now, placed);
 }
 
 /// Returns whether the mover already touches the wall and its origin gets no closer to it.
 bool Fleet::leaves(std::uint32_t row, const Pose& from, glm::dvec2 to, const Segment& wall, Scratch& scratch) const {
-  const PlacedFootprint now = place_footprint(footprints_[row], from, scratch.now);
+  const PlacedFootprint now = place_again(row, from, scratch.now);
   return touches(now, wall) &&
          no_nearer(world::distance(to, wall.a, wall.b), world::distance(now.origin, wall.a, wall.b));
 }
@@ -321,7 +331,7 @@ bool Fleet::keeps_contacts(std::uint32_t row) const {
     const double apart = reach + travels_[other] + footprints_[other].radius;
     return dot(d, d) <= apart * apart && (moved_[other] != 0 || (refused_[row] != 0 && contacts_[other] == 0));
   };
-  return !neighbours_.any(origin(own.X_WM), reach + widest_ + farthest_, changes, copies_.copy_of(row));
+  return !any_nearby(row, origin(own.X_WM), reach + widest_ + farthest_, changes);
 }
 
 Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std::span<const base::Report> reports,
@@ -366,7 +376,7 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
       const bool first = deep && length(from_other) < 0.5 * outline.inner;
       return first == deeply && meet(other, from_other, deep);
     };
-    if (neighbours_.any(p, reach + widest_ + farthest_, touches, copies_.copy_of(row))) break;
+    if (any_nearby(row, p, reach + widest_ + farthest_, touches)) break;
   }
   touch.away = 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};
   return touch;

@@ -23,6 +23,7 @@ Twist times(const Twist& v, double factor) { return {factor * v.forward, factor 
 
 void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scratch& scratch) {
   waiting_[row] = moved_[row] = 0;
+  nearby_[row].count = world::kNone;
   if (absent_[row] != 0) {
     progress_[row] = proposed_[row] = {reports_[row].X_WM, {}, 0.0, false};
     return;
@@ -58,6 +59,7 @@ void Fleet::run_round(bool last) {
 }
 
 void Fleet::propose(std::uint32_t row, bool last, Scratch& scratch) {
+  if (nearby_[row].count == world::kNone) list_nearby(row);
   find_near(row, scratch);
   find_free_disc(row);
   proposed_[row] = advance_mover(row, last, scratch);
@@ -125,6 +127,25 @@ void Fleet::find_next() {
     if (continues_[row] != 0) round_rows_.push_back(row);
 }
 
+/// Called before the first round.
+void Fleet::list_nearby(std::uint32_t row) {
+  constexpr double kMargin = 1e-6;  // [m] for rounding
+  Nearby& listed = nearby_[row];
+  listed.count = 0;
+  if (footprints_[row].edges.empty()) return;
+  const base::Pose& X_WM = reports_[row].X_WM;
+  const double sweep = reach_of(row) + travels_[row] + kContactDistance + kMargin;
+  const auto add = [&](std::uint32_t other) {
+    if (other == row || absent_[other] != 0 ||
+        !comes_near(row, X_WM, sweep + 2.0 * travels_[other], other, reports_[other].X_WM))
+      return false;
+    if (listed.count < Nearby::kMost) listed.rows[listed.count] = other;
+    return ++listed.count > Nearby::kMost;
+  };
+  neighbours_.any({X_WM.x, X_WM.y}, footprints_[row].radius + sweep + widest_ + 2.0 * farthest_, add,
+                  copies_.copy_of(row));
+}
+
 void Fleet::find_near(std::uint32_t row, Scratch& scratch) const {
   scratch.near.clear();
   scratch.priority_movers.clear();
@@ -137,7 +158,7 @@ void Fleet::find_near(std::uint32_t row, Scratch& scratch) const {
       scratch.near.push_back(other);
     return false;
   };
-  neighbours_.any(p, footprints_[row].radius + sweep + widest_ + 2.0 * farthest_, add, copies_.copy_of(row));
+  any_nearby(row, p, footprints_[row].radius + sweep + widest_ + 2.0 * farthest_, add);
 }
 
 }  // namespace sf::robots
