@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/thread_pool.h"
@@ -15,6 +17,22 @@
 #include "raycast/view_cells.h"
 
 namespace sf::raycast {
+
+/// Allocates elements without initializing them.
+template <class T>
+struct UninitializedAllocator : std::allocator<T> {
+  template <class Other>
+  struct rebind {
+    using other = UninitializedAllocator<Other>;
+  };
+  template <class Element, class... From>
+  void construct(Element* at, From&&... from) {
+    if constexpr (sizeof...(From) == 0)
+      ::new (static_cast<void*>(at)) Element;
+    else
+      std::construct_at(at, std::forward<From>(from)...);
+  }
+};
 
 /// Not thread-safe, except for `scan`. `world` may be destroyed after construction.
 class HostScene {
@@ -59,9 +77,9 @@ class HostScene {
   std::vector<ExactSegment> exact_;  ///< walls, then movers
   std::vector<std::uint32_t> models_;
   ViewCells cells_;
-  std::vector<Cell> lists_;           ///< per slot
-  std::vector<SegmentBlock> blocks_;  ///< of all cells
-  std::vector<BlockBounds> bounds_;   ///< of each block, padded by kBlock
+  std::vector<Cell> lists_;                                                 ///< per slot
+  std::vector<SegmentBlock, UninitializedAllocator<SegmentBlock>> blocks_;  ///< of all cells
+  std::vector<BlockBounds> bounds_;                                         ///< of each block, padded by kBlock
   std::vector<Viewpoint> views_;
   std::vector<std::unique_ptr<Thread>> threads_;
 };
