@@ -267,7 +267,9 @@ bool Fleet::push_off(std::uint32_t row, Progress& progress, double dt, bool last
 }
 
 Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, bool last, Scratch& scratch) const {
-  const PlacedFootprint next = place_footprint(footprints_[row], to, scratch.next);
+  const PlacedFootprint next = to.yaw == from.yaw && to.z == from.z
+                                   ? place_again(row, to, scratch.now)
+                                   : place_footprint(footprints_[row], to, scratch.next);
   for (const Segment* wall : scratch.walls)
     if (touches(next, *wall) && !leaves(row, from, next.origin, *wall, scratch)) return Stop::refused;
   Stop stop = Stop::none;
@@ -284,7 +286,7 @@ Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, 
 PlacedFootprint Fleet::place_again(std::uint32_t row, const Pose& X_WM, Placed& memory) const {
   const Footprint& outline = footprints_[row];
   const Pose& X = memory.X_WM;
-  if (memory.row == row && X.x == X_WM.x && X.y == X_WM.y && X.z == X_WM.z && X.yaw == X_WM.yaw)
+  if (memory.row == row && X.z == X_WM.z && X.yaw == X_WM.yaw)  // edges are relative to the origin
     return {origin(X_WM), outline.radius, std::span(memory.edges).first(outline.edges.size())};
   memory.row = row, memory.X_WM = X_WM;
   return place_footprint(outline, X_WM, memory.edges);

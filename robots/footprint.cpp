@@ -67,7 +67,8 @@ bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
     double most = 0.0;
     for (const FootprintEdge& e : edges) {
       const glm::dvec2 n{e.b.y - e.a.y, e.a.x - e.b.x};
-      const double facing = dot(n, towards) * std::abs(dot(n, towards)) / dot(n, n);
+      if (!(dot(n, towards) > 0.0)) continue;
+      const double facing = dot(n, towards) * dot(n, towards) / dot(n, n);
       if (facing > most) most = facing, best = n;
     }
     return best;
