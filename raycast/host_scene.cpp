@@ -150,8 +150,8 @@ void HostScene::prefetch(std::size_t i) const {
   if (cells_.slot(i + 1) != CellCache::kNone) __builtin_prefetch(&lists_[cells_.slot(i + 1)]);
   if (cells_.slot(i) == CellCache::kNone) return;
   const std::uint32_t first = lists_[cells_.slot(i)].first;
-  __builtin_prefetch(&bounds_[first]);
-  raycast::prefetch(&blocks_[first], sizeof(SegmentBlock));
+  raycast::prefetch(&bounds_[first], kBlock * sizeof(BlockBounds));
+  raycast::prefetch(&blocks_[first], 2 * sizeof(SegmentBlock));
 }
 
 void HostScene::add_crowd(const CrowdCell& crowd, std::size_t beams, Thread& t, glm::dvec2 origin,
