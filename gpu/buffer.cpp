@@ -27,11 +27,16 @@ VkFormat format_of(Texel texel) {
 
 /// Allocates in the first memory type of `wishes` that the device supports.
 Storage allocate(const Device::Vk& vk, VkDeviceSize size, VkBufferUsageFlags usage,
-                 std::initializer_list<VkMemoryPropertyFlags> wishes) {
+                 std::initializer_list<VkMemoryPropertyFlags> wishes, bool exported = false) {
   Storage storage;
+  storage.exported = exported;
+  VkExternalMemoryBufferCreateInfo external{VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO};
+  VkExportMemoryAllocateInfo exporting{VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO};
+  external.handleTypes = exporting.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
   VkBufferCreateInfo create{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   create.size = size;
   create.usage = usage;
+  create.pNext = exported ? &external : nullptr;
   check_vk(vkCreateBuffer(vk.device, &create, nullptr, &storage.buffer), "vkCreateBuffer");
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(vk.device, storage.buffer, &needs);
@@ -39,7 +44,8 @@ Storage allocate(const Device::Vk& vk, VkDeviceSize size, VkBufferUsageFlags usa
   for (const VkMemoryPropertyFlags wish : wishes)
     if (type < 0) type = vk.memory_type(needs.memoryTypeBits, wish);
   VkMemoryAllocateInfo allocation{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-  allocation.allocationSize = needs.size;
+  allocation.allocationSize = storage.size = needs.size;
+  allocation.pNext = exported ? &exporting : nullptr;
   allocation.memoryTypeIndex = static_cast<std::uint32_t>(type < 0 ? 0 : type);
   if (type < 0 || vkAllocateMemory(vk.device, &allocation, nullptr, &storage.memory) != VK_SUCCESS) {
     vkDestroyBuffer(vk.device, storage.buffer, nullptr);
@@ -72,7 +78,7 @@ void make_storage(Buffer::Vk& vk, const Device& device, VkDeviceSize size) {
   if (device.unified()) {
     vk.table = allocate(*vk.device, size, table, {kCached | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT});
   } else {
-    vk.table = allocate(*vk.device, size, table, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
+    vk.table = allocate(*vk.device, size, table, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0}, vk.device->exporting);
     // Cached, because the host also reads tables that grow.
     vk.staging = allocate(*vk.device, size, staging, {kCached, kHost});
   }

@@ -10,6 +10,8 @@ namespace sf::gpu {
 struct Storage {
   VkBuffer buffer = VK_NULL_HANDLE;
   VkDeviceMemory memory = VK_NULL_HANDLE;
+  VkDeviceSize size = 0;  ///< [bytes] of the memory
+  bool exported = false;  ///< the memory has a file descriptor (gpu/shared_memory.h)
 };
 
 struct Buffer::Vk {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/suggest.h"
@@ -49,6 +51,34 @@ std::string no_device_message(const Instance& instance, const DeviceCandidates& 
   return line + " select another with --device or SENSORFARM_DEVICE, or install a driver" + limits_text() + suggestion;
 }
 
+/// Returns true if the device can export the memory of tables as file descriptors.
+bool can_export(VkPhysicalDevice physical) {
+  VkPhysicalDeviceExternalBufferInfo table{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_BUFFER_INFO};
+  table.usage = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  table.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+  VkExternalBufferProperties properties{VK_STRUCTURE_TYPE_EXTERNAL_BUFFER_PROPERTIES};
+  vkGetPhysicalDeviceExternalBufferProperties(physical, &table, &properties);
+  const VkExternalMemoryFeatureFlags features = properties.externalMemoryProperties.externalMemoryFeatures;
+  if (!(features & VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT) ||
+      (features & VK_EXTERNAL_MEMORY_FEATURE_DEDICATED_ONLY_BIT))
+    return false;
+  std::uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> all(count);
+  vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, all.data());
+  return std::ranges::any_of(all, [](const VkExtensionProperties& extension) {
+    return std::string_view(extension.extensionName) == VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME;
+  });
+}
+
+void get_uuid(Device::Vk& vk) {
+  VkPhysicalDeviceIDProperties id{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  properties.pNext = &id;
+  vkGetPhysicalDeviceProperties2(vk.physical, &properties);
+  std::ranges::copy(id.deviceUUID, vk.uuid);
+}
+
 /// Opens the device `vk.physical`. @return "" or the reason for the failure
 std::string open(Device::Vk& vk) {
   vkGetPhysicalDeviceProperties(vk.physical, &vk.properties);
@@ -66,11 +96,18 @@ std::string open(Device::Vk& vk) {
   create.queueCreateInfoCount = 1;
   create.pQueueCreateInfos = &queue;
   create.pEnabledFeatures = &features;
+  const char* const fd = VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME;
+  create.ppEnabledExtensionNames = &fd;
+  create.enabledExtensionCount = can_export(vk.physical) ? 1 : 0;
   if (const VkResult result = vkCreateDevice(vk.physical, &create, nullptr, &vk.device); result != VK_SUCCESS) {
     vk.device = VK_NULL_HANDLE;
     return "could not be opened (vkCreateDevice gave " + std::to_string(result) + ")";
   }
   vkGetDeviceQueue(vk.device, vk.family, 0, &vk.queue);
+  vk.memory_fd = create.enabledExtensionCount == 0
+                     ? nullptr
+                     : reinterpret_cast<PFN_vkGetMemoryFdKHR>(vkGetDeviceProcAddr(vk.device, "vkGetMemoryFdKHR"));
+  get_uuid(vk);
   vk.as_gpu = is_set("SENSORFARM_STAGING");
   vk.unified = !vk.as_gpu &&
                vk.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |

@@ -43,6 +43,9 @@ struct Device::Vk {
   bool as_gpu = false;  ///< SENSORFARM_STAGING was set at construction
   bool unified = false;
   bool rounds32 = false;
+  PFN_vkGetMemoryFdKHR memory_fd = nullptr;  ///< null: memory is not exported
+  bool exporting = false;                    ///< new tables are exported
+  std::uint8_t uuid[VK_UUID_SIZE]{};
   DeviceInfo info;
   std::string notice;  ///< Device::notice
   std::string owner;

@@ -17,12 +17,13 @@ namespace sf::gpu {
               each(vkCreateDescriptorSetLayout) each(vkCreateDevice) each(vkCreateFence) each(vkCreateInstance) each(  \
                   vkCreatePipelineLayout) each(vkCreateShaderModule) each(vkDestroyBuffer) each(vkDestroyBufferView)   \
                   each(vkDestroyCommandPool) each(vkDestroyDescriptorPool) each(vkDestroyDescriptorSetLayout)          \
-                      each(vkDestroyDevice) each(vkDestroyFence) each(vkDestroyInstance) each(vkDestroyPipeline)       \
-                          each(vkDestroyPipelineLayout) each(vkDestroyShaderModule) each(vkDeviceWaitIdle)             \
-                              each(vkEndCommandBuffer) each(vkEnumerateInstanceLayerProperties) each(                  \
-                                  vkEnumeratePhysicalDevices) each(vkFreeMemory) each(vkGetBufferMemoryRequirements)   \
-                                  each(vkGetDeviceQueue) each(vkGetInstanceProcAddr) each(vkGetPhysicalDeviceFeatures) \
-                                      each(vkGetPhysicalDeviceFormatProperties)                                        \
+                      each(vkDestroyDevice) each(vkDestroyFence) each(vkDestroyInstance) each(vkDestroyPipeline) each( \
+                          vkDestroyPipelineLayout) each(vkDestroyShaderModule) each(vkDeviceWaitIdle)                  \
+                          each(vkEndCommandBuffer) each(vkEnumerateDeviceExtensionProperties) each(                    \
+                              vkEnumerateInstanceLayerProperties) each(vkEnumeratePhysicalDevices) each(vkFreeMemory)  \
+                              each(vkGetBufferMemoryRequirements) each(vkGetDeviceProcAddr) each(vkGetDeviceQueue)     \
+                                  each(vkGetInstanceProcAddr) each(vkGetPhysicalDeviceExternalBufferProperties)        \
+                                      each(vkGetPhysicalDeviceFeatures) each(vkGetPhysicalDeviceFormatProperties)      \
                                           each(vkGetPhysicalDeviceMemoryProperties)                                    \
                                               each(vkGetPhysicalDeviceProperties) each(vkGetPhysicalDeviceProperties2) \
                                                   each(vkGetPhysicalDeviceQueueFamilyProperties) each(vkMapMemory)     \

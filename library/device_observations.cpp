@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "base/error.h"
+#include "gpu/shared_memory.h"
 #include "library/device_worlds_state.h"
 #include "robots/device/records.h"
 #include "sensors/laser.h"
@@ -30,6 +32,7 @@ void DeviceWorlds::State::observe(const ObservationOptions& options) {
   for (std::size_t i = 0; i < checked.agents.size(); ++i)
     settings.agents.push_back({checked.agents[i].forward, checked.agents[i].turn, checked.rows[i], 0, 0, 0});
   for (const double limit : checked.limits) settings.sensors.push_back({limit, 0.0});
+  const gpu::ExportScope shared(*device);
   auto made = std::make_shared<robots::DeviceObserver>(settings, *device, *fleet, scanner->table());
   observer.swap(made);
   checked.values = {};  // they are on the device
@@ -55,31 +58,41 @@ void DeviceWorlds::State::read_observations() {
   observations_read = true;
 }
 
-/// Keeps a table's memory as long as somebody uses it: `observe` replaces the observer.
+namespace {
+
+/// A table's memory as long as somebody uses it: `observe` replaces the observer.
+struct Kept {
+  std::shared_ptr<void> worlds, observer;
+  std::shared_ptr<gpu::CudaMemory> cuda;
+};
+
+}  // namespace
+
+/// Submits what is listed for the device's memory now, so that no later submission overwrites what consumers write.
+void DeviceWorlds::State::flush() {
+  changed();
+  scan_starts();
+}
+
 DeviceArray DeviceWorlds::State::array(DeviceTable table) {
-  if (table != DeviceTable::commands && !observer) throw base::InputError("nothing is observed; call observe first");
-  constexpr std::size_t kCommand = sizeof(robots::FleetCommand) / sizeof(double);
-  constexpr std::size_t kMeasure = sizeof(robots::ObservedMeasure) / sizeof(double);
-  const auto doubles = [](gpu::Buffer& buffer, std::size_t column) { return buffer.host<double>().data() + column; };
-  DeviceArray made{.copied = !device->unified()};
-  made.memory = std::make_shared<std::pair<std::shared_ptr<State>, std::shared_ptr<robots::DeviceObserver>>>(
-      shared_from_this(), observer);
-  made.rows = observed && table != DeviceTable::commands ? observed->rows.size() : poses.size();
-  made.columns = made.stride = 1;
-  switch (table) {
-    case DeviceTable::observations:
-      made.columns = made.stride = observed->columns(), made.single = true;
-      made.data = observer->table().host<float>().data();
-      break;
-    case DeviceTable::commands:
-      made.columns = 3, made.stride = kCommand, made.data = doubles(fleet->commands(), 0);
-      break;
-    case DeviceTable::distances:
-      made.stride = kMeasure, made.data = doubles(observer->measures(), 2);
-      break;
-    case DeviceTable::progress:
-      made.stride = kMeasure, made.data = doubles(observer->measures(), 3);
-  }
+  const bool commanded = table == DeviceTable::commands;
+  if (!commanded && !observer) throw base::InputError("nothing is observed; call observe first");
+  DeviceArray made;
+  made.single = table == DeviceTable::observations;
+  made.rows = commanded ? poses.size() : observed->rows.size();
+  made.columns = commanded ? 3 : made.single ? observed->columns() : 1;
+  made.stride = (commanded ? sizeof(robots::FleetCommand) : sizeof(robots::ObservedMeasure)) / sizeof(double);
+  if (made.single) made.stride = made.columns;
+  gpu::Buffer& from = commanded ? fleet->commands() : made.single ? observer->table() : observer->measures();
+  const auto cuda = gpu::CudaMemory::of(from);
+  auto* const first = cuda ? static_cast<std::byte*>(cuda->data()) : from.host<std::byte>().data();
+  made.data = first + (table == DeviceTable::distances  ? offsetof(robots::ObservedMeasure, distance)
+                       : table == DeviceTable::progress ? offsetof(robots::ObservedMeasure, progress)
+                                                        : 0);
+  made.cuda = cuda ? cuda->device() : -1;
+  made.copied = !cuda && !device->unified();
+  made.memory = std::make_shared<Kept>(Kept{shared_from_this(), observer, cuda});
+  if (commanded && cuda && !commands_there) commands_there = true, flush();
   return made;
 }
 

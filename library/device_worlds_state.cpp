@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/time.h"
 #include "control/own_controller.h"
+#include "gpu/shared_memory.h"
 #include "library/device_support.h"
 #include "robots/device/records.h"
 #include "sensors/laser.h"
@@ -54,6 +55,7 @@ DeviceWorlds::State::State(const library::WorldSource& source, const Options& op
   check(source.file, robots::DeviceFleet::refusal(world, interval));
   check(source.file, raycast::PoseScanner::refusal(scanners));
   episodes.emplace(world, options.seed);
+  const gpu::ExportScope shared(*device);
   fleet.emplace(world, *device);
   scanner.emplace(world, scanners, *episodes, *device, fleet->poses(), fleet->absent());
   record();
@@ -99,6 +101,7 @@ void DeviceWorlds::State::step(std::span<const Twist> given) {
   for (std::size_t i = 0; i < given.size(); ++i) commands[i] = {given[i].forward, given[i].left, given[i].turn, 0.0};
   if (observer) scan_starts();  // measures the distances at the starts
   starting = states_read = ranges_read = observations_read = false;
+  if (!given.empty() || !commands_there) fleet->upload_commands(0, commands.size());
   fleet->move(interval);
 }
 
@@ -113,7 +116,7 @@ void DeviceWorlds::State::reset(std::span<const std::uint32_t> worlds, std::span
     episodes->begin(worlds[i], seeds[i], 0);
     restart(worlds[i]);
   }
-  if (!worlds.empty()) changed();
+  if (!worlds.empty()) commands_there ? flush() : changed();
 }
 
 /// Takes the starts of a copy that has been placed.
@@ -121,6 +124,7 @@ void DeviceWorlds::State::restart(std::uint32_t copy) {
   const auto rows = static_cast<std::uint32_t>(robots.size());
   for (std::uint32_t row = copy * rows; row < (copy + 1) * rows; ++row) {
     fleet->commands().host<robots::FleetCommand>()[row] = {};
+    if (commands_there) fleet->upload_commands(row, 1);
     fleet->set_state({.mover = row, .X_WM = world.movers[row].X_WM, .velocity = {}});
     fleet->set_absent(row, world.movers[row].absent);
   }

@@ -32,6 +32,7 @@ struct DeviceWorlds::State : std::enable_shared_from_this<State> {
   void read_observations();
   DeviceArray array(DeviceTable table);
   void update();
+  void flush();
 
   std::shared_ptr<sf::gpu::Device> device;
   sf::library::LoadedWorld loaded;
@@ -48,7 +49,8 @@ struct DeviceWorlds::State : std::enable_shared_from_this<State> {
   std::vector<Twist> velocities;
   std::vector<std::uint32_t> carriers;  ///< per laser
   Readings readings;
-  bool starting = true;  ///< worlds have restarted since the last scan
+  bool commands_there = false;  ///< consumers write commands to the device's memory, by CUDA
+  bool starting = true;         ///< worlds have restarted since the last scan
   bool states_read = false, ranges_read = false, observations_read = false;
 };
 

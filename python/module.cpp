@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "python/controllers.h"
+#include "python/dlpack.h"
 #include "python/types.h"
 #include "sensorfarm/device_worlds.h"
 #include "sensorfarm/simulation.h"
@@ -531,39 +532,53 @@ py::array ranges_by_world(const PyDeviceWorlds& s) {
 
 /// Memory of worlds on a device, with an axis of worlds.
 struct PyDeviceArray {
-  py::array array;
-  bool copied;
+  DeviceArray memory;
+  std::vector<std::int64_t> shape, strides;  ///< [elements]
+
+  std::size_t bytes() const { return memory.single ? sizeof(float) : sizeof(double); }
+  /// None for CUDA's memory.
+  py::object array() const {
+    if (memory.cuda >= 0) return py::none();
+    auto* const kept = new std::shared_ptr<const void>(memory.memory);
+    static const pid_t process = getpid();  // a forked one keeps the memory, as for simulations
+    const py::capsule owner(kept, [](void* held) {
+      if (process == getpid()) delete static_cast<std::shared_ptr<const void>*>(held);
+    });
+    std::vector<py::ssize_t> steps;
+    for (const std::int64_t stride : strides) steps.push_back(stride * count(bytes()));
+    return py::array(memory.single ? py::dtype::of<float>() : py::dtype::of<double>(),
+                     std::vector<py::ssize_t>(shape.begin(), shape.end()), steps, memory.data, owner);
+  }
+  py::object exported_to(const py::kwargs& options) const {
+    if (memory.cuda < 0) return exported(array(), options);
+    if (options.contains("copy") && py::cast<bool>(py::bool_(options["copy"])))
+      throw py::buffer_error("memory of CUDA is shared without a copy; expected copy=False");
+    return cuda_capsule(memory.data, memory.cuda, static_cast<int>(8 * bytes()), shape, strides, memory.memory);
+  }
 };
 
 /// @param rows of a world, the first ones; 0: all
 PyDeviceArray shared_by_world(PyDeviceWorlds& s, DeviceTable table, std::size_t rows) {
-  auto* const kept = new DeviceArray(in_farm(s, [&] { return s.farm.array(table); }));
-  static const pid_t process = getpid();  // a forked one keeps the memory, as for simulations
-  const py::capsule owner(kept, [](void* memory) {
-    if (process == getpid()) delete static_cast<DeviceArray*>(memory);
-  });
-  const py::dtype type = kept->single ? py::dtype::of<float>() : py::dtype::of<double>();
-  const std::size_t of_world = kept->rows / s.farm.copies();
-  const py::ssize_t step = count(kept->stride) * type.itemsize();
-  std::vector<py::ssize_t> shape{count(s.farm.copies()), count(rows > 0 ? rows : of_world)};
-  std::vector<py::ssize_t> strides{count(of_world) * step, step};
-  const bool numbers = table == DeviceTable::distances || table == DeviceTable::progress;
-  if (!numbers) shape.push_back(count(kept->columns)), strides.push_back(type.itemsize());
-  return {py::array(type, std::move(shape), std::move(strides), kept->data, owner), kept->copied};
+  PyDeviceArray made{in_farm(s, [&] { return s.farm.array(table); }), {}, {}};
+  const std::size_t of_world = made.memory.rows / s.farm.copies();
+  made.shape = {count(s.farm.copies()), count(rows > 0 ? rows : of_world)};
+  made.strides = {count(of_world * made.memory.stride), count(made.memory.stride)};
+  if (table == DeviceTable::observations || table == DeviceTable::commands)
+    made.shape.push_back(count(made.memory.columns)), made.strides.push_back(1);
+  return made;
 }
 
 void add_device_arrays(py::module_& module) {
   using A = PyDeviceArray;
   py::class_<A>(module, "DeviceArray", "Memory of DeviceWorlds, for torch.from_dlpack and numpy.from_dlpack.")
+      .def_property_readonly("array", &A::array, "The same memory as an array of NumPy; None for memory of CUDA.")
       .def_property_readonly(
-          "array", [](const A& a) { return a.array; }, "The same memory as an array of NumPy.")
-      .def_property_readonly(
-          "copied", [](const A& a) { return a.copied; }, "It is the host's copy of the device's memory.")
+          "copied", [](const A& a) { return a.memory.copied; }, "It is the host's copy of the device's memory.")
+      .def("__dlpack__", &A::exported_to, "The memory, which it keeps.")
       .def(
-          "__dlpack__", [](const A& a, const py::kwargs& options) { return exported(a.array, options); },
-          "The memory, which it keeps.")
-      .def(
-          "__dlpack_device__", [](const A&) { return std::pair(1, 0); }, "The host.");
+          "__dlpack_device__",
+          [](const A& a) { return a.memory.cuda < 0 ? std::pair(kDlHost, 0) : std::pair(kDlCuda, a.memory.cuda); },
+          "The host, or a device of CUDA.");
   py::enum_<DeviceTable>(module, "_DeviceTable")
       .value("observations", DeviceTable::observations)
       .value("commands", DeviceTable::commands)

@@ -27,6 +27,7 @@ struct DeviceArray {
   void* data = nullptr;  ///< 64-bit floats
   bool single = false;   ///< 32-bit floats instead
   std::size_t rows = 0, columns = 0, stride = 0;
+  int cuda = -1;        ///< from 0 on: `data` is an address of CUDA, on its device of this number
   bool copied = false;  ///< the memory is the host's: a step or `update` copies between it and the device's
   std::shared_ptr<const void> memory = nullptr;  ///< keeps the memory, and the worlds with it
 };
@@ -82,7 +83,9 @@ class SENSORFARM_API DeviceWorlds {
 
   /// Returns memory that steps use, without a copy where host and device share it, e.g. on lavapipe. Commands may be
   /// written between calls; step() executes them, and numbers that are not finite count as 0. The others are results,
-  /// up to date after `update`, until the next step, reset or set_goals; `observe` leaves them behind.
+  /// up to date after `update`, until the next step, reset or set_goals; `observe` leaves them behind. With libcuda and
+  /// a GPU that exports its memory, it is that memory: synchronize CUDA before each call that follows writes. This has
+  /// not run on hardware. Elsewhere it is the host's copy.
   /// @throws Error before `observe`, except for commands
   DeviceArray array(DeviceTable table);
   /// Brings all arrays up to date. @throws DeviceError as `readings`

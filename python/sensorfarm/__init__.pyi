@@ -521,15 +521,15 @@ class _WorldStates:
 class DeviceArray:
     """Memory of DeviceWorlds (DeviceWorlds.shared), for torch.from_dlpack and numpy.from_dlpack."""
     @property
-    def array(self) -> NDArray[Any]:
-        """The same memory as an array of NumPy."""
+    def array(self) -> NDArray[Any] | None:
+        """The same memory as an array of NumPy; None for memory of CUDA."""
     @property
     def copied(self) -> bool:
         """It is the host's copy of the device's memory."""
     def __dlpack__(self, **options: Any) -> Any:
         """The memory, which it keeps."""
     def __dlpack_device__(self) -> tuple[int, int]:
-        """The host."""
+        """The host, or a device of CUDA."""
 
 class DeviceWorlds(_WorldStates):
     """Worlds that stay on a Vulkan device: a step is one submission, and nothing is copied back until it is asked for.

@@ -269,7 +269,8 @@ class DeviceWorlds:
         what: "observations", "distances" or "progress", as the properties: up to date after `update`, until the next
         step; a later `observe` leaves them behind. "commands": (worlds, robots, 3), which step() without an argument
         executes; numbers that are not finite count as 0. Without a copy where host and device share their memory
-        (lavapipe, integrated GPUs); elsewhere (`copied`) a step copies commands to the device, `update` results back.
+        (lavapipe, integrated GPUs), and as memory of CUDA where libcuda knows the device (not run on hardware:
+        docs/python.md); elsewhere (`copied`) a step copies commands to the device, `update` results back.
         """
         tables = _DeviceTable.__members__
         if what not in tables:

@@ -227,6 +227,11 @@ void DeviceFleet::set_commands(std::span<const base::Twist> commands) {
   std::ranges::transform(commands, table.host<FleetCommand>().begin(), [](const base::Twist& v) {
     return FleetCommand{v.forward, v.left, v.turn, 0.0};
   });
+  upload_commands(0, commands.size());
+}
+
+void DeviceFleet::upload_commands(std::size_t first, std::size_t count) {
+  tables_->upload(tables_->commands, first * sizeof(FleetCommand), count * sizeof(FleetCommand));
 }
 
 void DeviceFleet::set_absent(std::uint32_t row, bool gone) {
@@ -257,7 +262,7 @@ void DeviceFleet::move(std::int64_t dt) {
     now.farthest = std::max(now.farthest, bound.travel(now.seconds));
   }
   now.cell = 4.0 * (now.widest + now.farthest) + 1e-3;
-  for (const Buffer* table : {&tables_->tick, &tables_->commands}) tables_->upload(*table, 0, table->bytes());
+  tables_->upload(tables_->tick, 0, tables_->tick.bytes());
   if (prepare_) prepare_(tables_->moving);
   tables_->run(tables_->moving);
   for (base::Report& report : reports_) report.time += dt;

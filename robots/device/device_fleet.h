@@ -57,8 +57,10 @@ class DeviceFleet {
   /// outlive the last `move` or `stay`.
   /// @param record is called now, for each of them  @param prepare is called before each submission and may list copies
   void then(const std::function<void(gpu::Batch&)>& record, std::function<void(gpu::Batch&)> prepare = {});
-  /// Table of commands, a FleetCommand (robots/device/records.h) per mover: the next `move` uploads its host view.
+  /// Table of commands, a FleetCommand (robots/device/records.h) per mover.
   gpu::Buffer& commands();
+  /// The next `move` uploads the host's commands of `count` movers.
+  void upload_commands(std::size_t first, std::size_t count);
   /// Tables on the device, per mover: a FleetPose, FleetMotion and FleetOwn (robots/device/records.h), and a word, 1:
   /// absent.
   const gpu::Buffer& poses() const;
