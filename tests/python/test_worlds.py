@@ -1,6 +1,10 @@
 """Many worlds at once (sensorfarm.Worlds)."""
 
+import ctypes
 import os
+import struct
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -20,6 +24,28 @@ ROOM = """
     model( name "post" size [0.2 0.2 1] pose [-1 0 0 0] random_present 0.5 )
     position( name "bot" size [0.3 0.3 0.2] pose [-2 -2 0 0] drive "diff"
       laser( samples 31 fov 180 range_max 5 rate 10 noise [0.01 0 0] ) gyro( noise 0.01 rate 4 latency 0.1 ) )"""
+
+
+FAKE_CUDA = os.path.join(os.path.dirname(os.path.abspath(os.environ.get("SENSORFARM_PROGRAM", "."))), "tests/libfake_cuda.so")
+
+
+def uuid_of_the_device():
+    """Returns the UUID of Vulkan's first device in hexadecimal digits, or None."""
+    try:
+        vulkan = ctypes.CDLL("libvulkan.so.1")
+    except OSError:
+        return None
+    application = ctypes.create_string_buffer(struct.pack("<I4xQQI4xQII", 0, 0, 0, 0, 0, 0, (1 << 22) | (2 << 12)))  # Vulkan 1.2
+    create = ctypes.create_string_buffer(struct.pack("<I4xQI4xQI4xQI4xQ", 1, 0, 0, ctypes.addressof(application), 0, 0, 0, 0))
+    instance, devices, count = ctypes.c_void_p(), (ctypes.c_void_p * 1)(), ctypes.c_uint32(1)
+    if vulkan.vkCreateInstance(create, None, ctypes.byref(instance)) != 0:
+        return None
+    vulkan.vkEnumeratePhysicalDevices(instance, ctypes.byref(count), devices)
+    identity = ctypes.create_string_buffer(struct.pack("<I4xQ", 1000071004, 0) + bytes(64))  # VkPhysicalDeviceIDProperties
+    properties = ctypes.create_string_buffer(struct.pack("<I4xQ", 1000059001, ctypes.addressof(identity)) + bytes(2000))
+    if count.value:
+        vulkan.vkGetPhysicalDeviceProperties2(ctypes.c_void_p(devices[0]), properties)
+    return identity.raw[16:32].hex() if count.value else None
 
 
 def room(copies, seed=1, **options):
@@ -309,6 +335,34 @@ class OnADevice(unittest.TestCase):
         kept = arrays["observations"].copy()
         del device, results
         numpy.testing.assert_array_equal(arrays["observations"], kept, "the array keeps the memory")
+
+    @unittest.skipUnless(os.path.exists(FAKE_CUDA), "needs the library fake_cuda of the C++ tests")
+    def test_shared_with_cuda(self):
+        """Capsules of CUDA's memory, by a libcuda of the tests, in a process that treats the device as a GPU."""
+        if (uuid := uuid_of_the_device()) is None:
+            self.skipTest("needs a Vulkan loader")
+        program = f"""
+import ctypes, struct, sensorfarm
+worlds = sensorfarm.DeviceWorlds("room.world", copies=3, robots=2, text={self.TEXT!r})
+pointer = ctypes.pythonapi.PyCapsule_GetPointer
+pointer.restype, pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
+shared = worlds.shared("commands")
+if shared.__dlpack_device__() == (1, 0):  # no VK_KHR_external_memory_fd
+    assert shared.copied and shared.array is not None
+    raise SystemExit
+capsule = shared.__dlpack__(stream=1)
+fields = struct.unpack("<QiiiBBHQQQ", ctypes.string_at(pointer(capsule, b"dltensor"), 48))
+assert fields[1:7] == (2, 0, 3, 2, 64, 1), fields
+assert [list((ctypes.c_int64 * 3).from_address(field)) for field in fields[7:9]] == [[3, 2, 3], [16, 4, 1]]
+assert shared.__dlpack_device__() == (2, 0) and shared.array is None and not shared.copied
+held = ctypes.CDLL({FAKE_CUDA!r}).fake_cuda_held
+del shared, worlds
+assert held() > 0, "the capsule keeps the memory"
+del capsule
+assert held() == 0, held()
+"""
+        environment = {**os.environ, "SENSORFARM_LIBCUDA": FAKE_CUDA, "FAKE_CUDA_UUID": uuid, "SENSORFARM_STAGING": "1"}
+        subprocess.run([sys.executable, "-c", program], env=environment, check=True)
 
     def test_shared_commands(self):
         """What a consumer writes moves the robots, as the same commands given; NaN counts as 0."""
