@@ -11,13 +11,13 @@ namespace sf::gpu {
 
 namespace {
 
-/// Returns CUDA's device with this UUID, or -1.
-int cuda_device_of(const CudaFunctions& cuda, const std::uint8_t (&uuid)[VK_UUID_SIZE]) {
-  int count = 0, device = -1;
+/// Returns the number of CUDA's device with this UUID, or -1. @param handle out: its CUdevice
+int cuda_device_of(const CudaFunctions& cuda, const std::uint8_t (&uuid)[VK_UUID_SIZE], int& handle) {
+  int count = 0;
   if (cuda.count(&count) != 0) return -1;
   for (int number = 0; number < count; ++number) {
     CudaUuid own{};
-    if (cuda.get(&device, number) == 0 && cuda.uuid(&own, device) == 0 && std::ranges::equal(own, uuid)) return device;
+    if (cuda.get(&handle, number) == 0 && cuda.uuid(&own, handle) == 0 && std::ranges::equal(own, uuid)) return number;
   }
   return -1;
 }
@@ -43,9 +43,9 @@ std::shared_ptr<CudaMemory> CudaMemory::of(const Buffer& table) {
   const CudaFunctions* const cuda = vk.table.exported ? open_cuda() : nullptr;
   if (cuda == nullptr) return nullptr;
   std::shared_ptr<CudaMemory> made(new CudaMemory);
-  made->device_ = cuda_device_of(*cuda, vk.device->uuid);
+  made->device_ = cuda_device_of(*cuda, vk.device->uuid, made->cu_device_);
   void* context = nullptr;
-  if (made->device_ < 0 || cuda->retain(&context, made->device_) != 0) return nullptr;
+  if (made->device_ < 0 || cuda->retain(&context, made->cu_device_) != 0) return nullptr;
   made->retained_ = true;
   if (cuda->push(context) != 0) return nullptr;
   CudaHandle handle;
@@ -68,14 +68,15 @@ CudaMemory::~CudaMemory() {
   if (!retained_) return;
   const CudaFunctions& cuda = *open_cuda();
   void* context = nullptr;
-  if (cuda.retain(&context, device_) == 0) {
-    cuda.push(context);
-    if (data_ != nullptr) cuda.unmap(reinterpret_cast<std::uint64_t>(data_));
-    if (handle_ != nullptr) cuda.destroy(handle_);
-    cuda.pop(&context);
-    cuda.release(device_);
+  if (cuda.retain(&context, cu_device_) == 0) {
+    if (cuda.push(context) == 0) {  // fails once CUDA has ended, at the exit of the process
+      if (data_ != nullptr) cuda.unmap(reinterpret_cast<std::uint64_t>(data_));
+      if (handle_ != nullptr) cuda.destroy(handle_);
+      cuda.pop(&context);
+    }
+    cuda.release(cu_device_);
   }
-  cuda.release(device_);
+  cuda.release(cu_device_);
 }
 
 }  // namespace sf::gpu

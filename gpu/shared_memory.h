@@ -39,11 +39,11 @@ class CudaMemory {
   CudaMemory& operator=(const CudaMemory&) = delete;
 
   void* data() const { return data_; }    ///< address in CUDA's primary context of `device`
-  int device() const { return device_; }  ///< CUDA's number
+  int device() const { return device_; }  ///< CUDA's number, not its CUdevice
 
  private:
   CudaMemory() = default;
-  int device_ = -1;
+  int device_ = -1, cu_device_ = -1;
   void* data_ = nullptr;
   void* handle_ = nullptr;  ///< CUexternalMemory
   bool retained_ = false;   ///< the primary context

@@ -198,7 +198,8 @@ bool Rasterizer::scan(const RigidTransform& X_WS, std::span<const BeamTile> tile
     if (!tree.empty()) {
       SceneMesh mesh{.tree = &tree, .X_FS = X_WS, .first_face = first};
       if (!instance.at_origin) mesh.X_FS = base::compose(base::inverse(instance.X_WI), X_WS);
-      const double sizes = 32.0 * (range_max + tree.longest_edge + tree.radius);
+      const double moved = instance.at_origin ? 0.0 : tree.radius;
+      const double sizes = 32.0 * (range_max + tree.longest_edge + moved);
       mesh.least_sine = 0x1p-53 * sizes / kRangeError;
       mesh.centre = glm::transpose(mesh.X_FS.R) * (tree.centre - mesh.X_FS.p);
       const double distance = glm::length(mesh.centre);
