@@ -300,8 +300,8 @@ TEST(Library, RejectsBadInputWithoutChanges) {
   expect_in("1 commands for 2 robots", refusal_of<Error>([&] { simulation.step(std::span(commands).first(1)); }));
   commands[1].turn = INFINITY;
   expect_in("expected finite numbers", refusal_of<Error>([&] { simulation.step(commands); }));
-  expect_in("has no sensor of type 'lidar'; expected one of: laser",
-            refusal_of<Error>([&] { simulation.readings("lidar"); }));
+  expect_in("has no sensor of type 'radar'; expected one of: laser",
+            refusal_of<Error>([&] { simulation.readings("radar"); }));
   EXPECT_EQ(simulation.hash(), hash);
   EXPECT_EQ(simulation.tick(), 1u);
 }
