@@ -26,7 +26,15 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { SF_LASER = 1, SF_LANE_EDGE = 2, SF_MAGNETOMETER = 3, SF_OCCUPANCY = 12, SF_LASER_EXTENDED = 65 };
+enum {
+  SF_LASER = 1,
+  SF_LANE_EDGE = 2,
+  SF_MAGNETOMETER = 3,
+  SF_OCCUPANCY = 12,
+  SF_LASER_EXTENDED = 65,
+  SF_LIDAR = 44,
+  SF_LIDAR_EXTENDED = 108
+};
 enum {
   SF_HEADER = 64,
   SF_V2V_BYTES = 132,
@@ -177,6 +185,7 @@ static const sf_type sf_types[] = {
      18000,
      {0},
      {{"value", 1, 0}, {"valid", 1, 1}, {"variance", 1, 0}, {"source", 1, 1}, {"age_s", 1, 0}}},
+    {44, "lidar", 14000, {0}, {{"range_m", 1, 1e-3}}},
     {36, "loop", 8000, {0}, {{"count", 1, 1}, {"occupancy", 1, 1e-6}, {"speed_m_s", 1, 1e-4}, {"vehicles", 1, 1}}},
     {37,
      "link-speed",
@@ -215,6 +224,7 @@ static const sf_type sf_types[] = {
                                 {"identity", 1, 1},    {"kind", 1, 1},        {"tag", 1, 1},
                                 {"ahead_m", 1, 0},     {"contact_s", 1, 0}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
+    {108, "lidar", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},
     {130, "SUBSCRIBE", 0, {"types"}, {{0}}},
@@ -310,7 +320,7 @@ static const char* check_numbers(const double* values, unsigned count, double li
 static const char* in_range(bool fine) { return fine ? NULL : "out of range"; }
 
 static const char* decode_laser(sf_packet* p, const uint8_t* b, size_t size) {
-  const bool extended = p->type == SF_LASER_EXTENDED;
+  const bool extended = p->type == SF_LASER_EXTENDED || p->type == SF_LIDAR_EXTENDED;
   const unsigned head = extended ? 16 : 2, word = extended ? 4 : 2;
   if (size < head) return "too short";
   p->count = (unsigned)get(b + (extended ? 12 : 0), 2);
@@ -625,17 +635,19 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   packet->fused = packet->type < 128 ? bytes[62] >> 2 & 1 : 0;
   if (has_accuracy(packet)) decode_accuracy(packet, bytes);
   if (packet->type < 128 || packet->type == SF_V2V || packet->type == SF_TAG) decode_state_quality(packet, bytes);
-  const char* const status = packet->type == SF_LASER || packet->type == SF_LASER_EXTENDED
-                                 ? decode_laser(packet, b, size)
-                             : packet->type == SF_LANE_EDGE    ? decode_lane_edge(packet, b, size)
-                             : packet->type == SF_OCCUPANCY    ? decode_occupancy(packet, b, size)
-                             : packet->type == SF_NEIGHBOURS   ? decode_neighbours(packet, b, size)
-                             : packet->type == SF_V2I          ? decode_v2i(packet, b, size)
-                             : packet->type == SF_TEAM_MAP     ? decode_team_map(packet, b, size)
-                             : packet->type == SF_OWN_READINGS ? decode_own_readings(packet, b, size)
-                             : is_lockstep(packet->type)       ? decode_lockstep(packet, b, size)
-                             : packet->type >= 128             ? decode_state(packet, type, b, size)
-                                                               : decode_rows(packet, type, b, size);
+  const uint8_t laser = packet->type;  // or a lidar
+  const char* const status =
+      laser == SF_LASER || laser == SF_LASER_EXTENDED || laser == SF_LIDAR || laser == SF_LIDAR_EXTENDED
+          ? decode_laser(packet, b, size)
+      : packet->type == SF_LANE_EDGE    ? decode_lane_edge(packet, b, size)
+      : packet->type == SF_OCCUPANCY    ? decode_occupancy(packet, b, size)
+      : packet->type == SF_NEIGHBOURS   ? decode_neighbours(packet, b, size)
+      : packet->type == SF_V2I          ? decode_v2i(packet, b, size)
+      : packet->type == SF_TEAM_MAP     ? decode_team_map(packet, b, size)
+      : packet->type == SF_OWN_READINGS ? decode_own_readings(packet, b, size)
+      : is_lockstep(packet->type)       ? decode_lockstep(packet, b, size)
+      : packet->type >= 128             ? decode_state(packet, type, b, size)
+                                        : decode_rows(packet, type, b, size);
   if (status) return status;
   return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
 }
@@ -1065,7 +1077,8 @@ static bool is_newer(sf_client* c, const sf_packet* p) {
   for (at = 0; at < 64 && (c->newest[at].stream != stream || c->newest[at].when == 0); ++at)
     if (c->newest[at].when < c->newest[oldest].when) oldest = at;
   const uint32_t ahead = at < 64 ? p->sequence - c->newest[at].sequence : 1;
-  const bool repeated = ahead == 0 && (p->type == SF_LASER_EXTENDED || p->type == SF_OCCUPANCY);
+  const bool repeated =
+      ahead == 0 && (p->type == SF_LASER_EXTENDED || p->type == SF_LIDAR_EXTENDED || p->type == SF_OCCUPANCY);
   if (at < 64 && now_s() - c->newest[at].when <= 2.0 && !repeated && (ahead == 0 || ahead >= 1u << 31)) return false;
   at = at < 64 ? at : oldest;
   c->newest[at].stream = stream;

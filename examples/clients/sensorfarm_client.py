@@ -29,6 +29,7 @@ import sys
 import time
 
 LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 4, 5, 6, 12, 65
+LIDAR, LIDAR_EXTENDED = 44, 108
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
             4: "refused: wrong address"}
@@ -78,6 +79,7 @@ SENSORS = {
     41: ("location", 24000, [("x_m", 5e-3), ("y_m", 5e-3), ("valid", 1), ("xx_m2", None), ("xy_m2", None),
                             ("yy_m2", None), ("source", 1), ("age_s", None)]),
     42: ("thermometer", 22000, [("temperature_C", 1e-3)]),
+    44: ("lidar", 14000, [("range_m", 1e-3)]),
     43: ("aggregate", 18000, [("value", None), ("valid", 1), ("variance", None), ("source", 1), ("age_s", None)]),
     36: ("loop", 8000, [("count", 1), ("occupancy", 1e-6), ("speed_m_s", 1e-4), ("vehicles", 1)]),
     37: ("link-speed", 2000, [("speed_m_s", None), ("travel_time_s", None), ("valid", 1), ("speed_speed_m2_s2", None),
@@ -92,7 +94,7 @@ SENSORS = {
                            ("vx_vy_m2_s2", None), ("vy_vy_m2_s2", None), ("identity", 1), ("kind", 1), ("tag", 1),
                            ("ahead_m", None), ("contact_s", None)]),
 }
-TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
+TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 108: "lidar", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
               137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE",
               144: "LANE", 145: "TEAM_MAP", 146: "OWN_READINGS", 147: "DROPPED"}
@@ -364,8 +366,8 @@ def decode(data):
         packet.update(decode_lockstep(type, payload))
     elif type >= 128:
         packet.update(decode_state(type, robot, payload))
-    elif type in (LASER, LASER_EXTENDED):
-        packet.update(decode_laser(type == LASER_EXTENDED, payload))
+    elif type in (LASER, LASER_EXTENDED, LIDAR, LIDAR_EXTENDED):
+        packet.update(decode_laser(type in (LASER_EXTENDED, LIDAR_EXTENDED), payload))
     elif type == LANE_EDGE:
         packet.update(decode_lane_edge(payload))
     elif type == OCCUPANCY:
