@@ -34,10 +34,10 @@ inline RigidTransform compose(const RigidTransform& X_AB, const RigidTransform& 
   return {X_AB.R * X_BC.R, X_AB.R * X_BC.p + X_AB.p};
 }
 
-/// Returns X_BA from X_AB.
-inline RigidTransform inverse(const RigidTransform& X_AB) {
+/// Returns X_BC from X_AB and X_AC, with errors that depend on the distance of B and C, not on that from A.
+inline RigidTransform relative(const RigidTransform& X_AB, const RigidTransform& X_AC) {
   const glm::dmat3 R_BA = glm::transpose(X_AB.R);
-  return {R_BA, -(R_BA * X_AB.p)};
+  return {R_BA * X_AC.R, R_BA * (X_AC.p - X_AB.p)};
 }
 
 /// Returns point `p_B` expressed in A.

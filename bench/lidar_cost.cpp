@@ -35,7 +35,7 @@ class FarmCaster : public SpatialCaster {
         quality_(beams.size()) {}
   std::string name() const override { return "farm"; }
   void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
-    rasterizer_.scan(X_WS, pattern_.tiles, kRange, {{&instance_, 1}, false}, {ranges, hits_, quality_});
+    rasterizer_.scan(X_WS, pattern_, kRange, {{&instance_, 1}, false}, {ranges, hits_, quality_});
   }
   double uncertain() const {
     return static_cast<double>(rasterizer_.counts().uncertain) / static_cast<double>(rasterizer_.counts().beams);

@@ -1,4 +1,4 @@
-// What worlds on a device observe.
+// Observations of worlds on a device.
 
 #include <fmt/format.h>
 
@@ -68,7 +68,7 @@ struct Kept {
 
 }  // namespace
 
-/// Submits what is listed for the device's memory now, so that no later submission overwrites what consumers write.
+/// Submits pending changes of the device's memory, so that no later submission overwrites values that consumers write.
 void DeviceWorlds::State::flush() {
   changed();
   scan_starts();

@@ -16,7 +16,7 @@ namespace sf::library {
 
 namespace {
 
-constexpr double kMostYaw = 1e4;  // [rad] a tenth of what kernels reduce (robots/device/device_fleet.h)
+constexpr double kMostYaw = 1e4;  // [rad] a tenth of the largest angle of kernels (robots/device/device_fleet.h)
 
 std::string refused_mover(const world::Mover& mover, bool uses_controllers) {
   if (uses_controllers && !control::controller_of(mover, {}).name.empty())

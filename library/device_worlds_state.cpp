@@ -70,7 +70,7 @@ DeviceWorlds::State::State(const library::WorldSource& source, const Options& op
   readings.elements = readings.stride = lasers.rows.front().elements;
 }
 
-/// Records what follows the motion.
+/// Records the scans and observations that follow the motion.
 void DeviceWorlds::State::record() {
   fleet->then(
       [this](gpu::Batch& batch) {

@@ -23,12 +23,13 @@ struct DlTensor {
 
 constexpr std::int32_t kDlHost = 1, kDlCuda = 2;  // kDLCPU, kDLCUDA
 
-/// DLManagedTensor, with what it owns.
+/// DLManagedTensor
 struct DlManaged {
   DlTensor tensor;
   void* context;
   void (*deleter)(DlManaged*);
 };
+/// Owns its shape and strides, and keeps its memory alive.
 struct DlOwned : DlManaged {
   std::vector<std::int64_t> shape, strides;
   std::shared_ptr<const void> memory;

@@ -153,7 +153,7 @@ class Fleet {
     std::uint32_t count = world::kNone;  ///< more than kMost: they are not listed
     std::array<std::uint32_t, kMost> rows{};
   };
-  /// A footprint at the pose at which it was last tested. Movers that wait or stand in a crowd are tested many times.
+  /// The footprint of a mover at its last tested pose, kept because movers in a crowd are tested many times.
   struct Placed {
     std::uint32_t row = world::kNone;
     base::Pose X_WM;

@@ -51,17 +51,30 @@ void for_each_sensor(const sensors::SensorSet& sensor_set, std::uint8_t type, Bo
   for (std::size_t i = 0; i < settings.size(); ++i) body(sensor_set.group(type)->rows[i], settings[i]);
 }
 
-/// The cloud's frame has the heading of the lidar, and its position, but is level.
-StandardTopic points_of(const sensors::SensorSpec& row, const sensors::LidarSettings& lidar) {
-  const glm::dmat3 R_LS = glm::transpose(base::transform_of(row.X_MS).R) * lidar.X_MS.R;
-  auto directions = std::make_shared<std::vector<glm::dvec3>>();
-  for (const glm::dvec3& d : lidar.beams->directions) directions->push_back(R_LS * d);
-  return {.message = Message::points,
-          .range_min = lidar.range_min,
-          .range_max = lidar.range_max,
-          .directions = std::move(directions),
-          .rings = lidar.beams->channels};
-}
+/// Directions of the beams of lidars in the frames of their clouds, which have the lidar's position and heading but are
+/// level. Lidars with equal beams and mounts share them.
+class CloudDirections {
+ public:
+  std::shared_ptr<const std::vector<glm::dvec3>> of(const sensors::SensorSpec& row,
+                                                    const sensors::LidarSettings& lidar) {
+    const glm::dmat3 R_LS = glm::transpose(base::transform_of(row.X_MS).R) * lidar.X_MS.R;
+    const auto known = std::ranges::find_if(
+        known_, [&](const Known& each) { return each.beams == lidar.beams.get() && each.R_LS == R_LS; });
+    if (known != known_.end()) return known->directions;
+    auto directions = std::make_shared<std::vector<glm::dvec3>>();
+    for (const glm::dvec3& d : lidar.beams->directions) directions->push_back(R_LS * d);
+    known_.push_back({lidar.beams.get(), R_LS, std::move(directions)});
+    return known_.back().directions;
+  }
+
+ private:
+  struct Known {
+    const sensors::LidarBeams* beams = nullptr;
+    glm::dmat3 R_LS;
+    std::shared_ptr<const std::vector<glm::dvec3>> directions;
+  };
+  std::vector<Known> known_;
+};
 
 }  // namespace
 
@@ -83,8 +96,14 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
   for_each_sensor<Occupancy>(sensor_set, sensors::kOccupancy, [&](const auto& row, const Occupancy& map) {
     add(row, sensors::kOccupancy, {.message = Message::map, .grid = map.settings.grid});
   });
+  CloudDirections clouds;
   for_each_sensor<sensors::LidarSettings>(sensor_set, sensors::kLidar, [&](const auto& row, const auto& lidar) {
-    add(row, sensors::kLidar, points_of(row, lidar));
+    add(row, sensors::kLidar,
+        {.message = Message::points,
+         .range_min = lidar.range_min,
+         .range_max = lidar.range_max,
+         .directions = clouds.of(row, lidar),
+         .rings = lidar.beams->channels});
   });
   for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {
     add(row, sensors::kGps, {.message = Message::fix, .sigma = gps.noise});

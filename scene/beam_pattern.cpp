@@ -23,8 +23,7 @@ struct DirectionBox {
 
 class Grouping {
  public:
-  Grouping(std::span<const glm::dvec3> directions, std::uint32_t row)
-      : directions_(directions), row_(row), along_row_(row >= kWidth) {
+  Grouping(std::span<const glm::dvec3> directions, std::uint32_t row) : directions_(directions), row_(row) {
     order_.resize(directions.size());
     std::iota(order_.begin(), order_.end(), 0u);
     for (const glm::dvec3& d : directions)
@@ -44,7 +43,7 @@ class Grouping {
 
   std::span<const glm::dvec3> directions_;
   std::uint32_t row_;
-  bool along_row_;
+  bool along_row() const { return row_ >= kWidth; }
   std::vector<std::uint32_t> order_;
   std::vector<std::array<double, 2>> angles_;  ///< [rad] azimuth and elevation
 };
@@ -63,7 +62,7 @@ bool Grouping::narrow(Range range, double cosine) const {
 
 /// Returns the weight of a tile's height against its width: tiles of sparse rings are wide (measured on 16 x 1 800).
 double Grouping::tile_weight() const {
-  const std::size_t rings = along_row_ ? directions_.size() / row_ : 1;
+  const std::size_t rings = along_row() ? directions_.size() / row_ : 1;
   if (rings < 2) return 1.0;
   const auto extent = [&](int side) {
     const auto [low, high] = std::ranges::minmax(angles_, {}, [side](const auto& a) { return a[side]; });
@@ -184,14 +183,13 @@ BeamPattern Grouping::make() {
   std::vector<Range> groups;
   split({0, order_.size()}, kTileBeams, tile_weight(), groups);
   BeamPattern pattern;
-  pattern.beams = static_cast<std::uint32_t>(order_.size());
   for (const Range& group : groups) {
     std::vector<Range> vectors;
-    split(group, kWidth, along_row_ ? 16.0 : 1.0, vectors);
+    split(group, kWidth, along_row() ? 16.0 : 1.0, vectors);
     for (const Range& vector : vectors) std::sort(order_.begin() + vector.first, order_.begin() + vector.second);
     for (std::size_t first = 0; first < vectors.size(); first += kTileVectors)
       write_tile(std::span(vectors).subspan(first, std::min<std::size_t>(kTileVectors, vectors.size() - first)),
-                 pattern.tiles.emplace_back());
+                 pattern.emplace_back());
   }
   return pattern;
 }

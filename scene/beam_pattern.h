@@ -34,10 +34,7 @@ struct alignas(64) BeamTile {
   bool consecutive = false;  ///< the beams of each vector follow each other in the scan
 };
 
-struct BeamPattern {
-  std::uint32_t beams = 0;
-  std::vector<BeamTile> tiles;
-};
+using BeamPattern = std::vector<BeamTile>;
 
 /// @param directions unit vectors to rounding, in the sensor's frame, in the order of the scan; 1 to 2^24
 /// @param row the beams of a vector should be neighbours in the scan if `row` of them follow each other at one

@@ -84,7 +84,7 @@ bool certain(const Cover& cover, std::span<const Cover> covers) {
 
 }  // namespace
 
-const SceneMesh& mesh_of(std::span<const SceneMesh> meshes, std::uint32_t face) {
+const SceneMesh& mesh_with(std::span<const SceneMesh> meshes, std::uint32_t face) {
   if (meshes.size() == 1) return meshes.front();
   const auto after = std::upper_bound(meshes.begin(), meshes.end(), face,
                                       [](std::uint32_t f, const SceneMesh& mesh) { return f < mesh.first_face; });
@@ -107,7 +107,7 @@ Decision decide(std::span<const SceneMesh> meshes, std::span<const DrawnFace> dr
   bool edge_on = false;
   for (const DrawnFace& candidate : drawn) {
     if ((candidate.vectors & vector) == 0) continue;
-    const SceneMesh& mesh = mesh_of(meshes, candidate.face);
+    const SceneMesh& mesh = mesh_with(meshes, candidate.face);
     const SeenPlane plane = seen_plane(mesh, candidate.face);
     const double sine = sine_of(plane, direction), range = plane.height / sine;
     const std::uint32_t row = candidate.face - mesh.first_face;

@@ -33,8 +33,8 @@ struct SeenPlane {
   std::uint32_t owner = 0;  ///< as Mesh::owners
 };
 
-/// Returns the mesh of a face. @param face less than the number of faces of all meshes
-const SceneMesh& mesh_of(std::span<const SceneMesh> meshes, std::uint32_t face);
+/// Returns the mesh with a face. @param face less than the number of faces of all meshes
+const SceneMesh& mesh_with(std::span<const SceneMesh> meshes, std::uint32_t face);
 SeenPlane seen_plane(const SceneMesh& mesh, std::uint32_t face);
 
 /// Returns normal . d, in the order of operations that all evaluations of a range share.

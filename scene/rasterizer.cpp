@@ -37,7 +37,7 @@ class Scan {
   void write(const BeamTile& tile, std::uint32_t vector);
   const SeenPlane& plane_of(std::uint32_t face) {
     if (face == kFloorFace) return floor_plane_;
-    if (face != last_face_) last_face_ = face, last_plane_ = seen_plane(mesh_of(s_.meshes, face), face);
+    if (face != last_face_) last_face_ = face, last_plane_ = seen_plane(mesh_with(s_.meshes, face), face);
     return last_plane_;
   }
 
@@ -78,9 +78,7 @@ void Scan::draw_floor(const BeamTile& tile) {
   view.above[0] = view.below[0] = 1.0f;
   view.slack[0] = edge_on ? kUnbounded : 17.0f * kRounding * std::abs(inverse);
   for (std::uint32_t v = 0; v < kTileVectors; ++v) {
-    const std::uint32_t i = kWidth * v;
-    Beams beams{load(tile.x + i),  load(tile.y + i),    load(tile.z + i), load(s_.low + i),
-                load(s_.high + i), load(s_.others + i), load(s_.face + i)};
+    Beams beams = load_beams(tile, s_, v);
     draw<true>(view, 0, 1.0f, kFloorFace, beams);
     store_beams(s_, v, beams);
   }
@@ -88,12 +86,12 @@ void Scan::draw_floor(const BeamTile& tile) {
 
 /// Returns false if the tile surely sees nothing of a mesh.
 bool Scan::may_see(const BeamTile& tile, const SceneMesh& mesh) const {
-  const glm::dvec3 centre = mesh.centre;
-  const double reach = mesh.reach;
-  const auto along = [&](const float(*n)[1]) { return n[0][0] * centre.x + n[1][0] * centre.y + n[2][0] * centre.z; };
+  const auto along = [&](const float(*n)[1]) {
+    return n[0][0] * mesh.centre.x + n[1][0] * mesh.centre.y + n[2][0] * mesh.centre.z;
+  };
   for (int k = 0; k < 4; ++k)
-    if (along(tile.tile.plane + 3 * k) < -reach) return false;
-  return along(tile.tile.axis) - reach <= static_cast<double>(depth_limit(farthest_of(s_)));
+    if (along(tile.tile.plane + 3 * k) < -mesh.reach) return false;
+  return along(tile.tile.axis) - mesh.reach <= static_cast<double>(depth_limit(farthest_of(s_)));
 }
 
 void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
@@ -197,7 +195,7 @@ bool Rasterizer::scan(const RigidTransform& X_WS, std::span<const BeamTile> tile
     const SurfaceTree& tree = *instance.tree;
     if (!tree.empty()) {
       SceneMesh mesh{.tree = &tree, .X_FS = X_WS, .first_face = first};
-      if (!instance.at_origin) mesh.X_FS = base::compose(base::inverse(instance.X_WI), X_WS);
+      if (!instance.at_origin) mesh.X_FS = base::relative(instance.X_WI, X_WS);
       const double moved = instance.at_origin ? 0.0 : tree.radius;
       const double sizes = 32.0 * (range_max + tree.longest_edge + moved);
       mesh.least_sine = 0x1p-53 * sizes / kRangeError;

@@ -46,9 +46,8 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
   ReferenceHit hit{.range = range_max};
   if (scene.floor && ray_W.direction.z != 0.0L) {
     const Real range = -ray_W.origin.z / ray_W.direction.z;
-    if (range > 0.0L && range < hit.range) hit = {range, base::kFloorHit, kFloorFace};
+    if (range > 0.0L && range < hit.range) hit = {range, base::kFloorHit};
   }
-  std::uint32_t first = 0;
   for (const Instance& instance : scene.instances) {
     const glm::dmat3 R_IW = glm::transpose(instance.X_WI.R);
     const Ray ray{rotate(R_IW, ray_W.origin - Vector(instance.X_WI.p)), rotate(R_IW, ray_W.direction)};
@@ -56,10 +55,8 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
     for (const Face& face : mesh.faces) {
       const Real range = face_range(ray, mesh, face);
       if (!(range < hit.range)) continue;
-      const auto row = static_cast<std::uint32_t>(&face - mesh.faces.data());
-      hit = {range, mesh.owners[row], first + row};
+      hit = {range, mesh.owners[static_cast<std::size_t>(&face - mesh.faces.data())]};
     }
-    first += static_cast<std::uint32_t>(mesh.faces.size());
   }
   return hit;
 }

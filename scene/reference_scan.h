@@ -11,7 +11,6 @@ namespace sf::scene {
 struct ReferenceHit {
   long double range = 0.0L;            ///< [m] range_max where nothing is nearer
   std::uint32_t owner = base::kNoHit;  ///< as ScanOutput::hits
-  std::uint32_t face = kNoFace;        ///< row among those of all instances in order, kFloorFace or kNoFace
 };
 
 /// @param direction in the sensor's frame; need not be a unit vector to rounding, ranges are along it

@@ -84,7 +84,7 @@ class Holes {
       if (loop.area < 0.0) holes_.push_back(&loop), boxes.push_back({loop.low, loop.high});
     tree_ = base::BoxTree(boxes);
   }
-  /// Calls `take` with each hole in a solid; clockwise outlines are holes, whatever their model.
+  /// Calls `take` with each hole in a solid. Clockwise outlines of any model are holes.
   template <class Take>
   void for_each_in(const Loop& outer, const Take& take) const {
     tree_.any({outer.low, outer.high}, [&](std::uint32_t i) {

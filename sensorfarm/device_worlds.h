@@ -19,7 +19,7 @@
 
 namespace sensorfarm {
 
-/// What is shared: rows of agents, or commands (forward, left [m/s], turn [rad/s]) of all rows.
+/// A table on the device: values of agents, or the commands (forward, left [m/s], turn [rad/s]) of all rows.
 enum class DeviceTable { observations, commands, distances, progress };
 
 /// Memory of worlds on a device: number k of row i is at i * stride + k.

@@ -36,10 +36,14 @@ bool HostBackend::prepare(std::span<const DueSample> due) {
   return !std::exchange(recorded_, true);
 }
 
-void HostBackend::collect(std::span<base::ReadingBlock> out) {
+void HostBackend::measure_all() {
   thread_pool_.parallel_for(samples_.size(), kPiece, [this](std::size_t first, std::size_t last, unsigned) {
     measure(std::span<const HostSample>(samples_).subspan(first, last - first));
   });
+}
+
+void HostBackend::collect(std::span<base::ReadingBlock> out) {
+  measure_all();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const HostSample& sample = samples_[i];
     const SensorSpec& row = rows_[sample.row];

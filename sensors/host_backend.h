@@ -33,12 +33,17 @@ class HostBackend : public SensorBackend {
  protected:
   HostBackend(const SensorContext& context, const SensorType& type, const ParsedSensors& sensors);
 
+  /// Fills in all due readings. The default calls `measure` on all pool threads.
+  virtual void measure_all();
   /// Fills in readings. Several pool threads call it concurrently, each reading exactly once.
-  virtual void measure(std::span<const HostSample> samples) const = 0;
+  virtual void measure(std::span<const HostSample> /*samples*/) const {}
 
   std::span<const SensorSpec> rows() const { return rows_; }
   /// Returns the due readings, since `prepare`.
   std::span<const HostSample> samples() const { return samples_; }
+  /// Returns the index of a sensor's first value among those of all rows; for the number of rows, their count.
+  std::size_t first_value(std::size_t row) const { return first_[row]; }
+  base::ThreadPool& thread_pool() const { return thread_pool_; }
   const world::World& world() const { return world_; }
   std::span<const base::Report> states() const { return states_; }
   const raycast::Episodes& episodes() const { return episodes_; }

@@ -43,22 +43,24 @@ class Lidars : public HostBackend {
   SensorStats stats() const override;
 
  private:
-  void measure(std::span<const HostSample>) const override {}
+  void measure_all() override;
   void list_instances(std::size_t sample);
   void cast(const Job& job, unsigned thread);
   void cast_reference(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const LidarSettings& s,
                       std::span<const scene::Instance> instances, const scene::ScanOutput& out) const;
   void finish(std::size_t sample);
-  std::size_t first_beam(std::size_t sample) const { return first_beam_[samples()[sample].row]; }
+  /// A sample's part of a table with one entry per beam of all lidars.
+  template <class Value>
+  std::span<Value> beams_of(std::vector<Value>& table, std::size_t sample) const {
+    return std::span(table).subspan(first_value(samples()[sample].row), samples()[sample].values.size());
+  }
 
-  base::ThreadPool& thread_pool_;
   const std::vector<LidarSettings>& settings_;
   bool noise_;
   bool reference_;  ///< casts every beam against every face in `long double`
   scene::SurfaceTree walls_;
   std::vector<scene::SurfaceTree> bodies_;  ///< per mover
   std::vector<base::RigidTransform> X_WM_;  ///< per mover
-  std::vector<std::size_t> first_beam_;     ///< per row, plus one
   std::vector<std::uint32_t> hits_;         ///< of all beams
   std::vector<base::QualityFlag> quality_;
   std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
@@ -76,7 +78,6 @@ std::vector<scene::SurfaceTree> bodies_of(const world::World& world) {
 
 Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
     : HostBackend(context, lidar_type, sensors),
-      thread_pool_(context.thread_pool),
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
       reference_(!raycast::choose_caster(context.device.info().software, context.scene.caster).same_bytes),
@@ -84,10 +85,8 @@ Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
       bodies_(bodies_of(context.world)),
       X_WM_(bodies_.size()),
       rasterizers_(context.thread_pool.threads()) {
-  first_beam_.push_back(0);
-  for (const SensorSpec& row : rows()) first_beam_.push_back(first_beam_.back() + row.elements);
-  hits_.resize(first_beam_.back());
-  quality_.resize(first_beam_.back());
+  hits_.resize(first_value(rows().size()));
+  quality_.resize(hits_.size());
 }
 
 void Lidars::place_movers() {
@@ -104,18 +103,19 @@ bool Lidars::prepare(std::span<const DueSample> due) {
   jobs_.clear();
   X_WS_.resize(due.size());
   instances_.resize(std::max(instances_.size(), due.size()));
+  const bool whole = due.size() >= 8 * rasterizers_.size();  // enough work for all threads without dividing scans
   for (std::size_t i = 0; i < due.size(); ++i) {
     const LidarSettings& s = settings_[due[i].row];
     X_WS_[i] = base::compose(X_WM_[rows()[due[i].row].mover], s.X_MS);
     list_instances(i);
-    const std::size_t tiles = s.beams->pattern.tiles.size();
-    for (std::size_t first = 0; first < tiles; first += kTilesPerJob)
-      jobs_.push_back({i, first, std::min(tiles, first + kTilesPerJob)});
+    const std::size_t tiles = s.beams->pattern.size(), size = whole ? tiles : kTilesPerJob;
+    for (std::size_t first = 0; first < tiles; first += size)
+      jobs_.push_back({i, first, std::min(tiles, first + size)});
   }
   return again;
 }
 
-/// Lists what a lidar may see: the walls, and the movers within its range.
+/// Lists the walls, and the movers within a lidar's range.
 void Lidars::list_instances(std::size_t sample) {
   const SensorSpec& row = rows()[samples()[sample].row];
   auto& instances = instances_[sample];
@@ -133,10 +133,8 @@ void Lidars::list_instances(std::size_t sample) {
 void Lidars::cast(const Job& job, unsigned thread) {
   const HostSample& sample = samples()[job.sample];
   const LidarSettings& s = settings_[sample.row];
-  const std::size_t first = first_beam(job.sample), beams = rows()[sample.row].elements;
-  const auto tiles = std::span(s.beams->pattern.tiles).subspan(job.first_tile, job.end_tile - job.first_tile);
-  const scene::ScanOutput out{sample.values, std::span(hits_).subspan(first, beams),
-                              std::span(quality_).subspan(first, beams)};
+  const auto tiles = std::span(s.beams->pattern).subspan(job.first_tile, job.end_tile - job.first_tile);
+  const scene::ScanOutput out{sample.values, beams_of(hits_, job.sample), beams_of(quality_, job.sample)};
   if (reference_) return cast_reference(X_WS_[job.sample], tiles, s, instances_[job.sample], out);
   rasterizers_[thread].scan(X_WS_[job.sample], tiles, s.range_max, {instances_[job.sample], !world().floor_unseen},
                             out);
@@ -162,33 +160,33 @@ void Lidars::finish(std::size_t i) {
   const bool noisy = noise_ && row.sigma > 0.0;
   if (!noisy && s.range_min == 0.0) return;
   const base::RandomKey key = episodes().key(base::RandomStream::spatial_range, row.mover, row.sensor, sample.sequence);
-  const std::size_t first = first_beam(i);
+  const auto hits = beams_of(hits_, i);
+  const auto quality = beams_of(quality_, i);
   for (std::size_t k = 0; k < sample.values.size(); ++k) {
     double& range = sample.values[k];
-    std::uint32_t& hit = hits_[first + k];
-    if (hit == base::kNoHit) continue;
-    if (range < s.range_min) quality_[first + k] = base::QualityFlag::too_near;
+    if (hits[k] == base::kNoHit) continue;
+    if (range < s.range_min) quality[k] = base::QualityFlag::too_near;
     range = std::max(range, s.range_min);
     if (!noisy) continue;
     const double sigma = base::hypot(s.range_sigma, s.range_proportional * range);
     const auto pair = base::random_normal(key, static_cast<std::uint32_t>(k / 2));
     range = std::clamp(range + sigma * pair[k % 2], s.range_min, s.range_max);
-    if (!(range < s.range_max)) hit = base::kNoHit;
+    if (!(range < s.range_max)) hits[k] = base::kNoHit;
   }
 }
 
+void Lidars::measure_all() {
+  for (std::size_t i = 0; i < samples().size(); ++i) std::ranges::fill(beams_of(quality_, i), base::QualityFlag::none);
+  thread_pool().parallel_for_each(jobs_.size(), 1, [&](std::size_t i, unsigned thread) { cast(jobs_[i], thread); });
+  thread_pool().parallel_for_each(samples().size(), 1, [&](std::size_t i, unsigned) { finish(i); });
+}
+
 void Lidars::collect(std::span<base::ReadingBlock> out) {
-  for (std::size_t i = 0; i < samples().size(); ++i)
-    std::fill_n(quality_.begin() + static_cast<std::ptrdiff_t>(first_beam(i)), samples()[i].values.size(),
-                base::QualityFlag::none);
-  thread_pool_.parallel_for_each(jobs_.size(), 1, [&](std::size_t i, unsigned thread) { cast(jobs_[i], thread); });
-  thread_pool_.parallel_for_each(samples().size(), 1, [&](std::size_t i, unsigned) { finish(i); });
   HostBackend::collect(out);
   for (std::size_t i = 0; i < samples().size(); ++i) {
-    const std::size_t first = first_beam(i), beams = samples()[i].values.size();
-    rays_ += beams;
-    const auto quality = std::span(quality_).subspan(first, beams);
-    out[i].hits = std::span(hits_).subspan(first, beams);
+    const auto quality = beams_of(quality_, i);
+    rays_ += quality.size();
+    out[i].hits = beams_of(hits_, i);
     const auto is_flagged = [](base::QualityFlag flag) { return flag != base::QualityFlag::none; };
     if (std::ranges::any_of(quality, is_flagged)) out[i].quality = quality;
     out[i].bound = out[i].bound_without_noise = scene::kRangeError;

@@ -37,7 +37,7 @@ constexpr Preset kPresets[] = {{"VLP-16", 16, 1800, -15.0, 15.0, 360.0, 100.0, 0
                                {"Mid-40", 1, 10000, 0.0, 0.0, 38.4, 260.0, 0.02}};
 constexpr const Preset& kRosette = kPresets[3];
 
-/// What follows from the settings: channel by channel, and column by column.
+/// Rings and columns of a pattern, from the settings.
 struct Layout {
   std::vector<double> elevations;  ///< [rad] per channel
   std::vector<double> offsets;     ///< [rad] of the azimuths, per channel

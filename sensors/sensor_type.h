@@ -7,6 +7,7 @@
 // (raycast/ray_caster.h).
 
 #include <any>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -99,6 +100,11 @@ struct SpatialBeams {
   base::RigidTransform X_MS;               ///< sensor in the mover's frame
   std::span<const glm::dvec3> directions;  ///< unit vectors in the sensor's frame, one per beam
 };
+
+/// Returns the azimuth and the elevation [rad] of a beam's direction.
+inline std::array<double, 2> angles_of(glm::dvec3 direction) {
+  return {base::atan2(direction.y, direction.x), base::atan2(direction.z, base::hypot(direction.x, direction.y))};
+}
 
 /// All sensors of one type, computed as a batch. `SensorContext::states` holds the states of movers. Not thread-safe.
 class SensorBackend {

@@ -118,6 +118,9 @@ std::string stream_summary_json(const netio::StreamSummary& summary);
 std::string reading_json(const world::World& world, const sensors::SensorSet& sensor_set,
                          const base::ReadingBlock& reading);
 
+/// Returns the name of the model that a beam hits, "floor", or "" for no hit. @param hit as base::ReadingBlock::hits
+std::string hit_name(const world::World& world, std::uint32_t hit);
+
 std::string device_list_text(const gpu::DeviceList& list);
 std::string world_report_text(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string run_report_text(const RunReport& facts);

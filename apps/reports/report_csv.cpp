@@ -36,16 +36,16 @@ std::string direction_csv(const sensors::SensorSet& sensor_set, const base::Read
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
   if (type.is_scan) return fmt::format("{:.12f}", bearing_of(sensor_set.row(reading), i));
   if (type.beams == nullptr) return "";
-  const glm::dvec3 d = sensor_set.beams(reading).directions[i];
-  return fmt::format("{:.12f},{:.12f}", base::atan2(d.y, d.x), base::atan2(d.z, base::hypot(d.x, d.y)));
-}
-
-std::string hit_csv(const world::World& world, std::uint32_t hit) {
-  if (hit == base::kNoHit) return "";
-  return hit == base::kFloorHit ? "floor" : csv_field(world.models[hit].name);
+  const auto [azimuth, elevation] = sensors::angles_of(sensor_set.beams(reading).directions[i]);
+  return fmt::format("{:.12f},{:.12f}", azimuth, elevation);
 }
 
 }  // namespace
+
+std::string hit_name(const world::World& world, std::uint32_t hit) {
+  if (hit == base::kNoHit) return "";
+  return hit == base::kFloorHit ? "floor" : world.models[hit].name;
+}
 
 std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
@@ -72,7 +72,7 @@ std::string reading_csv(const world::World& world, const sensors::SensorSet& sen
     for (const sensors::Column& column : type.columns)
       for (std::uint32_t k = 0; k < column.width; ++k, ++at)
         line += (directed || at > i * width ? "," : "") + missing_or(reading.values[at], column);
-    if (directed) line += "," + hit_csv(world, reading.hits[i]);
+    if (directed) line += "," + csv_field(hit_name(world, reading.hits[i]));
     text += line + "\n";
   }
   return text;

@@ -89,11 +89,6 @@ std::string_view word_of(base::QualityFlag quality) {
   return kWords[static_cast<std::size_t>(quality)];
 }
 
-Json hit_json(const world::World& world, std::uint32_t hit) {
-  if (hit == base::kNoHit) return {};
-  return hit == base::kFloorHit ? Json("floor") : Json(world.models[hit].name);
-}
-
 /// Returns the position and orientation of a spatial sensor, a unit quaternion [w x y z], in the world.
 Json spatial_pose_json(const base::ReadingBlock& reading, const sensors::SpatialBeams& beams) {
   const auto X_WS = base::compose(base::transform_of(reading.X_WM, reading.tilt), beams.X_MS);
@@ -108,9 +103,9 @@ Json element_json(const world::World& world, const sensors::SensorSet& sensor_se
   Json json = Json::object();
   if (type.is_scan) json["bearing_rad"] = bearing_of(sensor_set.row(reading), i);
   if (type.beams != nullptr) {
-    const glm::dvec3 d = sensor_set.beams(reading).directions[i];
-    json["azimuth_rad"] = base::atan2(d.y, d.x);
-    json["elevation_rad"] = base::atan2(d.z, base::hypot(d.x, d.y));
+    const auto [azimuth, elevation] = sensors::angles_of(sensor_set.beams(reading).directions[i]);
+    json["azimuth_rad"] = azimuth;
+    json["elevation_rad"] = elevation;
   }
   std::size_t at = i * element_width(type);
   for (const sensors::Column& column : type.columns) {
@@ -118,7 +113,8 @@ Json element_json(const world::World& world, const sensors::SensorSet& sensor_se
     for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(reading.values[at++], column.whole));
     json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
   }
-  if (type.is_scan || type.beams != nullptr) json["hit"] = hit_json(world, reading.hits[i]);
+  if (type.is_scan || type.beams != nullptr)
+    json["hit"] = reading.hits[i] == base::kNoHit ? Json() : Json(hit_name(world, reading.hits[i]));
   if (!type.list.empty() && !reading.quality.empty() && reading.quality[i] != base::QualityFlag::none)
     json["unsure"] = word_of(reading.quality[i]);
   return json;

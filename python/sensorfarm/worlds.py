@@ -73,8 +73,8 @@ def _all_rows(part, rows, other):
 
 
 def _given(part, what, given, chosen):
-    """Returns (len(chosen), rows of the part, ...): what worlds start with instead of what the seed chooses; NaN
-    where that stays. chosen: their numbers among those that are restarted."""
+    """Returns starts of worlds as an array (len(chosen), rows of the part, ...); NaN: the seed chooses.
+    chosen: indices of the worlds among those that are restarted."""
     if given is None:
         return None
     shape = _SHAPES[what]

@@ -18,11 +18,14 @@ struct Beams {
   Words face;
 };
 
-HWY_INLINE Beams load_beams(const Scratch& s, std::uint32_t vector) {
+/// @param from has the directions x, y and z of the beams: `s`, or the tile itself in the sensor's frame
+template <class Directions>
+HWY_INLINE Beams load_beams(const Directions& from, const Scratch& s, std::uint32_t vector) {
   const std::uint32_t i = kWidth * vector;
-  return {load(s.x + i),    load(s.y + i),      load(s.z + i),   load(s.low + i),
+  return {load(from.x + i), load(from.y + i),   load(from.z + i), load(s.low + i),
           load(s.high + i), load(s.others + i), load(s.face + i)};
 }
+HWY_INLINE Beams load_beams(const Scratch& s, std::uint32_t vector) { return load_beams(s, s, vector); }
 
 HWY_INLINE void store_beams(Scratch& s, std::uint32_t vector, const Beams& b) {
   const std::uint32_t i = kWidth * vector;

@@ -1,5 +1,5 @@
 #pragma once
-// Working memory of the rasterizer: one tile of beams, and what was drawn there.
+// Working memory of the rasterizer: one tile of beams, and the faces drawn into it.
 
 #include <cstdint>
 #include <vector>

@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::scene::HWY_NAMESPACE {
 
-/// Returns the vectors that may see a child's box, nearer than what they certainly hit.
+/// Returns the vectors that may see a child's box in front of their certain hits.
 HWY_INLINE std::uint32_t vectors_that_see(const Scratch& s, const TreeNode& node, std::uint32_t child) {
   float middle[3], half[3];
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// Vectors of sixteen floats, whatever the machine's width. Compiled once per instruction set (hwy/foreach_target.h).
+// Vectors of sixteen floats on machines of any vector width. Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_SCENE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_SCENE_VECTORS_INL_H
@@ -32,105 +32,47 @@ struct Mask {
   hn::Mask<decltype(kF)> part[kParts];
 };
 
-HWY_INLINE Floats load(const float* from) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::Load(kF, from + p * kLanes);
-  return out;
-}
-HWY_INLINE Words load(const std::uint32_t* from) {
-  Words out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::Load(kU, from + p * kLanes);
-  return out;
-}
-HWY_INLINE Floats all(float value) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::Set(kF, value);
-  return out;
-}
-HWY_INLINE Words all(std::uint32_t value) {
-  Words out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::Set(kU, value);
-  return out;
-}
+/// Defines a function of vectors by its result in part `p`.
+#define SF_BY_PARTS(Result, name, parameters, result)                \
+  HWY_INLINE Result name parameters {                                \
+    Result out;                                                      \
+    for (std::size_t p = 0; p < kParts; ++p) out.part[p] = (result); \
+    return out;                                                      \
+  }
+SF_BY_PARTS(Floats, load, (const float* from), hn::Load(kF, from + p * kLanes))
+SF_BY_PARTS(Words, load, (const std::uint32_t* from), hn::Load(kU, from + p * kLanes))
+SF_BY_PARTS(Floats, all, (float value), hn::Set(kF, value))
+SF_BY_PARTS(Words, all, (std::uint32_t value), hn::Set(kU, value))
+SF_BY_PARTS(Floats, operator+, (const Floats& a, const Floats& b), hn::Add(a.part[p], b.part[p]))
+SF_BY_PARTS(Floats, operator-, (const Floats& a, const Floats& b), hn::Sub(a.part[p], b.part[p]))
+SF_BY_PARTS(Floats, operator*, (const Floats& a, const Floats& b), hn::Mul(a.part[p], b.part[p]))
+SF_BY_PARTS(Floats, operator/, (const Floats& a, const Floats& b), hn::Div(a.part[p], b.part[p]))
+SF_BY_PARTS(Floats, larger, (const Floats& a, const Floats& b), hn::Max(a.part[p], b.part[p]))
+SF_BY_PARTS(Floats, smaller, (const Floats& a, const Floats& b), hn::Min(a.part[p], b.part[p]))
+SF_BY_PARTS(Floats, absolute, (const Floats& a), hn::Abs(a.part[p]))
+SF_BY_PARTS(Floats, root, (const Floats& a), hn::Sqrt(a.part[p]))
+/// a b + c and a b - c, rounded once or twice.
+SF_BY_PARTS(Floats, muladd, (const Floats& a, const Floats& b, const Floats& c),
+            hn::MulAdd(a.part[p], b.part[p], c.part[p]))
+SF_BY_PARTS(Floats, mulsub, (const Floats& a, const Floats& b, const Floats& c),
+            hn::MulSub(a.part[p], b.part[p], c.part[p]))
+/// a with the sign changed where b is negative.
+SF_BY_PARTS(Floats, turned, (const Floats& a, const Floats& b), hn::Xor(a.part[p], hn::And(b.part[p], hn::SignBit(kF))))
+SF_BY_PARTS(Mask, greater, (const Floats& a, const Floats& b), a.part[p] > b.part[p])
+SF_BY_PARTS(Mask, at_least, (const Floats& a, const Floats& b), a.part[p] >= b.part[p])
+SF_BY_PARTS(Mask, both, (const Mask& a, const Mask& b), hn::And(a.part[p], b.part[p]))
+SF_BY_PARTS(Floats, select, (const Mask& m, const Floats& yes, const Floats& no),
+            hn::IfThenElse(m.part[p], yes.part[p], no.part[p]))
+SF_BY_PARTS(Words, select, (const Mask& m, const Words& yes, const Words& no),
+            hn::IfThenElse(hn::RebindMask(kU, m.part[p]), yes.part[p], no.part[p]))
+SF_BY_PARTS(Floats, select_or_zero, (const Mask& m, const Floats& yes), hn::IfThenElseZero(m.part[p], yes.part[p]))
+#undef SF_BY_PARTS
+
 HWY_INLINE void store(const Floats& v, float* to) {
   for (std::size_t p = 0; p < kParts; ++p) hn::Store(v.part[p], kF, to + p * kLanes);
 }
 HWY_INLINE void store(const Words& v, std::uint32_t* to) {
   for (std::size_t p = 0; p < kParts; ++p) hn::Store(v.part[p], kU, to + p * kLanes);
-}
-
-#define SF_BINARY(name, function)                                                          \
-  HWY_INLINE Floats name(const Floats& a, const Floats& b) {                               \
-    Floats out;                                                                            \
-    for (std::size_t p = 0; p < kParts; ++p) out.part[p] = function(a.part[p], b.part[p]); \
-    return out;                                                                            \
-  }
-SF_BINARY(operator+, hn::Add)
-SF_BINARY(operator-, hn::Sub)
-SF_BINARY(operator*, hn::Mul)
-SF_BINARY(operator/, hn::Div)
-SF_BINARY(larger, hn::Max)
-SF_BINARY(smaller, hn::Min)
-#undef SF_BINARY
-
-HWY_INLINE Floats absolute(const Floats& a) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::Abs(a.part[p]);
-  return out;
-}
-HWY_INLINE Floats root(const Floats& a) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::Sqrt(a.part[p]);
-  return out;
-}
-/// a b + c, rounded once or twice.
-HWY_INLINE Floats muladd(const Floats& a, const Floats& b, const Floats& c) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::MulAdd(a.part[p], b.part[p], c.part[p]);
-  return out;
-}
-/// a b - c
-HWY_INLINE Floats mulsub(const Floats& a, const Floats& b, const Floats& c) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::MulSub(a.part[p], b.part[p], c.part[p]);
-  return out;
-}
-/// a with the sign changed where b is negative.
-HWY_INLINE Floats turned(const Floats& a, const Floats& b) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::Xor(a.part[p], hn::And(b.part[p], hn::SignBit(kF)));
-  return out;
-}
-HWY_INLINE Mask greater(const Floats& a, const Floats& b) {
-  Mask out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = a.part[p] > b.part[p];
-  return out;
-}
-HWY_INLINE Mask at_least(const Floats& a, const Floats& b) {
-  Mask out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = a.part[p] >= b.part[p];
-  return out;
-}
-HWY_INLINE Mask both(const Mask& a, const Mask& b) {
-  Mask out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::And(a.part[p], b.part[p]);
-  return out;
-}
-HWY_INLINE Floats select(const Mask& m, const Floats& yes, const Floats& no) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::IfThenElse(m.part[p], yes.part[p], no.part[p]);
-  return out;
-}
-HWY_INLINE Words select(const Mask& m, const Words& yes, const Words& no) {
-  Words out;
-  for (std::size_t p = 0; p < kParts; ++p)
-    out.part[p] = hn::IfThenElse(hn::RebindMask(kU, m.part[p]), yes.part[p], no.part[p]);
-  return out;
-}
-HWY_INLINE Floats select_or_zero(const Mask& m, const Floats& yes) {
-  Floats out;
-  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::IfThenElseZero(m.part[p], yes.part[p]);
-  return out;
 }
 HWY_INLINE std::uint32_t bits_of(const Mask& m) {
   std::uint32_t out = 0;

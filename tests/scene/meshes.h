@@ -115,7 +115,7 @@ inline SpatialScan cast(const RigidTransform& X_WS, const std::vector<glm::dvec3
                   std::vector<base::QualityFlag>(beams.size())};
   Rasterizer rasterizer;
   const bool flagged =
-      rasterizer.scan(X_WS, make_pattern(beams, row).tiles, range_max, scene, {out.ranges, out.hits, out.quality});
+      rasterizer.scan(X_WS, make_pattern(beams, row), range_max, scene, {out.ranges, out.hits, out.quality});
   const bool found = std::ranges::any_of(out.quality, [](auto flag) { return flag != base::QualityFlag::none; });
   EXPECT_EQ(flagged, found);
   out.uncertain = rasterizer.counts().uncertain;

@@ -131,6 +131,26 @@ TEST(SpatialRasterizer, IsAsAccurateFarFromTheOrigin) {
   }
 }
 
+/// Nor does it for moved bodies: their distance from the sensor is computed before it is rotated.
+TEST(SpatialRasterizer, MovedBodiesFarFromTheOrigin) {
+  const glm::dvec3 far{1e7, -1e7, 1e6};
+  Mesh box;
+  add_box(box, {-0.5, -0.3, 0.0}, {0.5, 0.3, 1.2});
+  const SurfaceTree body = build_tree(box);
+  std::vector<Instance> instances;
+  for (int i = 0; i < 40; ++i) {
+    RigidTransform X = Posed(200 + i, 8.0).X_WS;
+    X.p += far;
+    instances.push_back({&body, X, false});
+  }
+  RigidTransform X_WS = Posed(6, 1.0).X_WS;
+  X_WS.p += far;
+  const auto beams = rings(32, 256, -0.9, 0.9);
+  const SpatialScan scan = cast(X_WS, beams, 25.0, {instances, false});
+  EXPECT_LT(expect_bound(scan, X_WS, beams, 25.0, {instances, false}), beams.size() / 500);
+  EXPECT_GT(std::ranges::count_if(scan.ranges, [](double r) { return r < 25.0; }), 500);
+}
+
 /// Sensors in the planes of faces, looking along the axes: every beam that is not flagged is right.
 TEST(SpatialRasterizer, InThePlanesOfFaces) {
   Mesh mesh;
@@ -148,7 +168,7 @@ TEST(SpatialRasterizer, InThePlanesOfFaces) {
   }
 }
 
-/// Inside a face's plane only beams that may touch it are flagged; the sensor on a face reads what is behind.
+/// A sensor on a face flags every beam, since any of them may touch the face.
 TEST(SpatialRasterizer, OnAFace) {
   Mesh mesh;
   mesh.add(std::array<glm::dvec3, 3>{glm::dvec3{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, 0);
@@ -190,7 +210,8 @@ TEST(SpatialRasterizer, Instances) {
   EXPECT_EQ(cast(X_WS, beams, 25.0, {instances, true}).ranges, scan.ranges);
 }
 
-/// Range of a plane: height over the sine of the depression. A sensor in the plane knows only what is above.
+/// The range of a plane is the height divided by the sine of the depression. A sensor in the plane flags all beams but
+/// those that point up.
 TEST(SpatialRasterizer, Floor) {
   const auto beams = rings(3, 8, -0.9, 0.9);
   const SpatialScan above = cast({glm::dmat3(1.0), {3.0, 4.0, 1.5}}, beams, 50.0, {{}, true});

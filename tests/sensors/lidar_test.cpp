@@ -35,7 +35,7 @@ world::World scene_with(const std::string& lidar, const std::string& before = ""
                   " ) )\nrobot( name \"r2\" pose [2 2 0 30] )\nrobot( name \"r3\" pose [2 -1 0.4 -70] )\n");
 }
 
-/// One reading with what it refers to.
+/// One reading, with the pose and the directions of its beams.
 struct Sensed {
   std::vector<double> values;
   std::vector<std::uint32_t> hits;
@@ -238,7 +238,7 @@ TEST(Lidar, Packets) {
   for (std::size_t i = 0; i < received.size(); ++i) EXPECT_NEAR(received[i], r.values[i], error);
 }
 
-/// Each refusal names the setting, what was expected, and its line.
+/// Each refusal names the setting, the expected values, and the line.
 TEST(Lidar, ImpossibleSettingsAreRefused) {
   const auto refused = [](const std::string& lidar) {
     return refusal_of([&] {
