@@ -84,12 +84,14 @@ if(SENSORFARM_PCH)
   endif()
 endif()
 
-# Modules, their instrumented copies and tests are compiled in groups of eight sources, in a third of the time. This
+# Modules, their instrumented copies and tests are compiled in groups of sixteen sources, in a third of the time. This
 # requires distinct file-local names within a module. `script/tidy sources` compiles each source alone, which reveals
 # missing includes. OFF rebuilds less after a change.
 option(SENSORFARM_UNITY "Compile several sources at a time" ON)
 function(compile_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SENSORFARM_UNITY} UNITY_BUILD_BATCH_SIZE 16)
+  set(batch 16 ${ARGN})
+  list(GET batch -1 batch)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SENSORFARM_UNITY} UNITY_BUILD_BATCH_SIZE ${batch})
   # g++ mistakes types in a source's unnamed namespace for a header's in unity builds.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
@@ -107,12 +109,13 @@ function(add_odr_target)
                     DEPENDS ${objects} COMMAND_EXPAND_LISTS VERBATIM COMMENT "Comparing types across sources")
 endfunction()
 
-# add_module(NAME [HOT] [FOLDER folder] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
-# FOLDER: folder of the sources, default NAME; a folder below another module's belongs to this module only. SOURCES:
-# files generated at configure time, in addition to the folder's. PLUGINS: the source FOLDER/<name>.cpp or the folder
-# FOLDER/<name>/ becomes sensorfarm_<name>.so in the program's folder, which is loaded at first use.
+# add_module(NAME [HOT] [FOLDER folder] [UNIT sources] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
+# FOLDER: folder of the sources, default NAME; a folder below another module's belongs to this module only. UNIT: sources
+# per unit, default 16. SOURCES: files generated at configure time, in addition to the folder's. PLUGINS: the source
+# FOLDER/<name>.cpp or the folder FOLDER/<name>/ becomes sensorfarm_<name>.so in the program's folder, which is loaded at
+# first use.
 function(add_module name)
-  cmake_parse_arguments(MODULE "HOT" "FOLDER" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
+  cmake_parse_arguments(MODULE "HOT" "FOLDER;UNIT" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
   if(NOT MODULE_FOLDER)
     set(MODULE_FOLDER ${name})
   endif()
@@ -141,7 +144,7 @@ function(add_module name)
   else()
     precompiled(${name} common_headers)
   endif()
-  compile_together(${name})
+  compile_together(${name} ${MODULE_UNIT})
   foreach(plugin ${MODULE_PLUGINS})
     if(SENSORFARM_BUILD_PLUGINS)
       add_dependencies(${name} sensorfarm_${plugin})
@@ -152,7 +155,7 @@ function(add_module name)
     target_link_libraries(${name}_checked PRIVATE project_options Threads::Threads ${MODULE_PUBLIC} ${MODULE_PRIVATE} checked)
     precompiled(${name}_checked common_headers_checked)
     compare_types(${name}_checked)
-    compile_together(${name}_checked)
+    compile_together(${name}_checked ${MODULE_UNIT})
     set_property(GLOBAL PROPERTY SENSORFARM_BELOW_${name} ${MODULE_PUBLIC} ${MODULE_PRIVATE})
   endif()
 endfunction()
