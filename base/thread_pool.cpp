@@ -19,7 +19,7 @@ namespace sf::base {
 
 namespace {
 
-constexpr int kTurnsAwake = 4000;  ///< about 60 us
+constexpr int kTurnsAwake = 12000;  ///< about 180 us, which covers the serial parts of a tick of 1 000 robots
 
 /// [ns] time when this thread last checked for a stop or began a loop.
 thread_local std::int64_t looked_at = 0;
