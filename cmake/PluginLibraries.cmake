@@ -23,6 +23,10 @@ endforeach()
 find_path(GDAL_INCLUDE gdal.h PATH_SUFFIXES gdal REQUIRED)  # libgdal-dev
 find_library(GDAL gdal REQUIRED)
 
+# tinygltf without its CMake package, which names a static library that Debian does not have.
+find_path(TINYGLTF_INCLUDE tiny_gltf.h REQUIRED)  # libtinygltf-dev
+find_library(TINYGLTF tinygltf REQUIRED)
+
 # Cyclone DDS without its CMake package, which requires OpenSSL's headers (cyclonedds-dev).
 find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
 find_library(CYCLONEDDS ddsc REQUIRED)
@@ -46,6 +50,8 @@ function(link_plugins)
   add_dependencies(world sensorfarm_pictures)  # loaded by world/picture.cpp
   target_include_directories(sensorfarm_gdal SYSTEM PRIVATE ${GDAL_INCLUDE})
   target_link_libraries(sensorfarm_gdal PRIVATE fmt::fmt ${GDAL})
+  target_include_directories(sensorfarm_gltf SYSTEM PRIVATE ${TINYGLTF_INCLUDE})
+  target_link_libraries(sensorfarm_gltf PRIVATE fmt::fmt ${TINYGLTF})
   target_include_directories(sensorfarm_dds SYSTEM PRIVATE ${CYCLONEDDS_INCLUDE})
   target_compile_definitions(sensorfarm_dds PRIVATE DDS_NDEBUG)  # as in the library's build
   target_link_libraries(sensorfarm_dds PRIVATE fmt::fmt ${CYCLONEDDS})

@@ -23,6 +23,7 @@ struct SceneMesh {
   double least_sine = 0.0;       ///< beams at smaller angles to a face, as sine, have a flag
   glm::dvec3 centre{};           ///< [m] middle of the mesh in the sensor's frame
   double reach = 0.0;            ///< [m] radius of a sphere around it that contains the mesh, with room for rounding
+  std::uint32_t owner = 0;       ///< as Instance::owner
 };
 
 /// Plane of a face in the sensor's frame. Beam d meets it at range height / (normal . d).

@@ -20,7 +20,7 @@ inline std::uint32_t corners_of(const Face& face) { return face[2] == face[3] ? 
 struct Mesh {
   std::vector<glm::dvec3> vertices;   ///< [m] in the body's frame, finite
   std::vector<Face> faces;            ///< fewer than 2^31
-  std::vector<std::uint32_t> owners;  ///< per face: row in `world::World::models`
+  std::vector<std::uint32_t> owners;  ///< per face: row in `world::World::models`; empty: Instance::owner
 
   /// Appends a face with new vertices. @param corners three or four
   void add(std::span<const glm::dvec3> corners, std::uint32_t owner);

@@ -194,7 +194,7 @@ bool Rasterizer::scan(const RigidTransform& X_WS, std::span<const BeamTile> tile
   for (const Instance& instance : scene.instances) {
     const SurfaceTree& tree = *instance.tree;
     if (!tree.empty()) {
-      SceneMesh mesh{.tree = &tree, .X_FS = X_WS, .first_face = first};
+      SceneMesh mesh{.tree = &tree, .X_FS = X_WS, .first_face = first, .owner = instance.owner};
       if (!instance.at_origin) mesh.X_FS = base::relative(instance.X_WI, X_WS);
       const double moved = instance.at_origin ? 0.0 : tree.radius;
       const double sizes = 32.0 * (range_max + tree.longest_edge + moved);
@@ -202,9 +202,10 @@ bool Rasterizer::scan(const RigidTransform& X_WS, std::span<const BeamTile> tile
       mesh.centre = glm::transpose(mesh.X_FS.R) * (tree.centre - mesh.X_FS.p);
       const double distance = glm::length(mesh.centre);
       mesh.reach = tree.radius + 1e-6 * (tree.radius + distance);
-      if (distance - mesh.reach <= range_max) s.meshes.push_back(mesh);
+      if (!(distance - mesh.reach <= range_max)) continue;
+      s.meshes.push_back(mesh);
+      first += static_cast<std::uint32_t>(tree.mesh.faces.size());
     }
-    first += static_cast<std::uint32_t>(tree.mesh.faces.size());
   }
   return HWY_DYNAMIC_DISPATCH(scan_tiles)(s, X_WS, tiles, range_max, scene, out);
 }

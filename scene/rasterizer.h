@@ -39,7 +39,8 @@ inline constexpr std::uint32_t kNoFace = base::kNoHit, kFloorFace = base::kFloor
 struct Instance {
   const SurfaceTree* tree = nullptr;
   RigidTransform X_WI;
-  bool at_origin = false;  ///< X_WI is the identity
+  bool at_origin = false;              ///< X_WI is the identity
+  std::uint32_t owner = base::kNoHit;  ///< of all faces, for a mesh without `Mesh::owners`
 };
 
 /// Scene of one scan.

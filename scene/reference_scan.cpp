@@ -55,7 +55,8 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
     for (const Face& face : mesh.faces) {
       const Real range = face_range(ray, mesh, face);
       if (!(range < hit.range)) continue;
-      hit = {range, mesh.owners[static_cast<std::size_t>(&face - mesh.faces.data())]};
+      hit = {range,
+             mesh.owners.empty() ? instance.owner : mesh.owners[static_cast<std::size_t>(&face - mesh.faces.data())]};
     }
   }
   return hit;

@@ -141,4 +141,13 @@ Mesh mesh_of(std::span<const Segment> segments, bool on_floor) {
   return mesh;
 }
 
+Mesh mesh_of(const world::Mesh& triangles) {
+  Mesh mesh{triangles.vertices, {}, {}};
+  const std::vector<std::uint32_t>& corners = triangles.corners;
+  mesh.faces.reserve(corners.size() / 3);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    mesh.faces.push_back({corners[i], corners[i + 1], corners[i + 2], corners[i + 2]});
+  return mesh;
+}
+
 }  // namespace sf::scene

@@ -15,4 +15,7 @@ namespace sf::scene {
 /// @param on_floor leaves out horizontal faces at z = 0, which coincide with the floor
 Mesh mesh_of(std::span<const world::Segment> segments, bool on_floor = false);
 
+/// Returns the triangles of a file's mesh, without owners.
+Mesh mesh_of(const world::Mesh& triangles);
+
 }  // namespace sf::scene

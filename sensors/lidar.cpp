@@ -11,13 +11,12 @@
 #include "raycast/casters.h"
 #include "scene/rasterizer.h"
 #include "scene/reference_scan.h"
-#include "scene/solids.h"
 #include "sensors/host_backend.h"
 #include "sensors/laser.h"
 #include "sensors/laser_packets.h"
 #include "sensors/lidar_beams.h"
 #include "sensors/settings.h"
-#include "world/copies.h"
+#include "sensors/spatial_scene.h"
 
 namespace sf::sensors {
 
@@ -44,7 +43,6 @@ class Lidars : public HostBackend {
 
  private:
   void measure_all() override;
-  void list_instances(std::size_t sample);
   void cast(const Job& job, unsigned thread);
   void cast_reference(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const LidarSettings& s,
                       std::span<const scene::Instance> instances, const scene::ScanOutput& out) const;
@@ -58,10 +56,8 @@ class Lidars : public HostBackend {
   const std::vector<LidarSettings>& settings_;
   bool noise_;
   bool reference_;  ///< casts every beam against every face in `long double`
-  scene::SurfaceTree walls_;
-  std::vector<scene::SurfaceTree> bodies_;  ///< per mover
-  std::vector<base::RigidTransform> X_WM_;  ///< per mover
-  std::vector<std::uint32_t> hits_;         ///< of all beams
+  SpatialScene scene_;
+  std::vector<std::uint32_t> hits_;  ///< of all beams
   std::vector<base::QualityFlag> quality_;
   std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
   std::vector<base::RigidTransform> X_WS_;      ///< per due sample
@@ -70,31 +66,21 @@ class Lidars : public HostBackend {
   std::uint64_t rays_ = 0;
 };
 
-std::vector<scene::SurfaceTree> bodies_of(const world::World& world) {
-  std::vector<scene::SurfaceTree> bodies;
-  for (const world::Mover& mover : world.movers) bodies.push_back(scene::build_tree(scene::mesh_of(mover.body)));
-  return bodies;
-}
-
 Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
     : HostBackend(context, lidar_type, sensors),
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
       reference_(!raycast::choose_caster(context.device.info().software, context.scene.caster).same_bytes),
-      walls_(scene::build_tree(scene::mesh_of(context.world.walls, !context.world.floor_unseen))),
-      bodies_(bodies_of(context.world)),
-      X_WM_(bodies_.size()),
+      scene_(context.world),
       rasterizers_(context.thread_pool.threads()) {
   hits_.resize(first_value(rows().size()));
   quality_.resize(hits_.size());
 }
 
-void Lidars::place_movers() {
-  for (std::size_t m = 0; m < bodies_.size(); ++m) X_WM_[m] = base::transform_of(states()[m].X_WM, states()[m].tilt);
-}
+void Lidars::place_movers() { scene_.place(states()); }
 
 bool Lidars::update_outlines(const world::World& world) {
-  bodies_ = bodies_of(world);
+  scene_.update_movers(world);
   return true;
 }
 
@@ -106,28 +92,13 @@ bool Lidars::prepare(std::span<const DueSample> due) {
   const bool whole = due.size() >= 8 * rasterizers_.size();  // enough work for all threads without dividing scans
   for (std::size_t i = 0; i < due.size(); ++i) {
     const LidarSettings& s = settings_[due[i].row];
-    X_WS_[i] = base::compose(X_WM_[rows()[due[i].row].mover], s.X_MS);
-    list_instances(i);
+    X_WS_[i] = base::compose(scene_.X_WM(rows()[due[i].row].mover), s.X_MS);
+    scene_.list(rows()[due[i].row].mover, X_WS_[i].p, s.range_max, instances_[i]);
     const std::size_t tiles = s.beams->pattern.size(), size = whole ? tiles : kTilesPerJob;
     for (std::size_t first = 0; first < tiles; first += size)
       jobs_.push_back({i, first, std::min(tiles, first + size)});
   }
   return again;
-}
-
-/// Lists the walls, and the movers within a lidar's range.
-void Lidars::list_instances(std::size_t sample) {
-  const SensorSpec& row = rows()[samples()[sample].row];
-  auto& instances = instances_[sample];
-  instances.assign(1, {&walls_, {}, true});
-  const auto [first, end] = world::CopyIndex(world()).rows_with(row.mover, static_cast<std::uint32_t>(bodies_.size()));
-  for (std::uint32_t m = first; m < end; ++m) {
-    const scene::SurfaceTree& body = bodies_[m];
-    if (m == row.mover || body.empty()) continue;
-    const double reach = row.limit + body.radius + glm::length(body.centre);
-    if (!(glm::distance(X_WM_[m].p, X_WS_[sample].p) <= reach)) continue;  // also if absent
-    instances.push_back({&body, X_WM_[m], false});
-  }
 }
 
 void Lidars::cast(const Job& job, unsigned thread) {

@@ -92,6 +92,12 @@ World as_mover(const World& world, std::uint32_t root) {
     fiducial.X_BF = compose(X_MW, fiducial.X_BF);
     part.fiducials.push_back(fiducial);
   }
+  part.meshes = world.meshes;
+  for (MeshModel row : world.mesh_models) {
+    if (!inside[row.model]) continue;
+    row.X_BF = compose(X_MW, row.X_BF);
+    part.mesh_models.push_back(row);
+  }
   part.movers.push_back(std::move(mover));
   return part;
 }

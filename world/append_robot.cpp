@@ -123,14 +123,15 @@ std::string free_model_name(const World& world, std::string name) {
 
 }  // namespace
 
-std::vector<Fiducial> fiducials_on(const World& world, std::uint32_t mover, std::span<const std::uint32_t> rows) {
-  std::vector<Fiducial> fiducials;
-  for (Fiducial fiducial : world.fiducials) {
-    if (world.models[fiducial.model].mover != mover) continue;
-    fiducial.model = rows[fiducial.model];
-    if (fiducial.model != kNone) fiducials.push_back(fiducial);
-  }
-  return fiducials;
+/// Returns the row of a mesh of another world, which is appended unless it is there.
+std::uint32_t mesh_row(World& world, const Mesh& mesh) {
+  const auto same = [&](const Mesh& other) {
+    return other.file == mesh.file && other.vertices == mesh.vertices && other.corners == mesh.corners;
+  };
+  const auto found = std::ranges::find_if(world.meshes, same);
+  const auto row = static_cast<std::uint32_t>(found - world.meshes.begin());
+  if (row == world.meshes.size()) world.meshes.push_back(mesh);
+  return row;
 }
 
 /// Appends a copy with all models that it carries. Does not update extent and hash.
@@ -147,7 +148,11 @@ void append_copy(World& world, const World& from, std::uint32_t original, const 
   copy.model = rows[copy.model];
   for (Segment& side : copy.body) side.model = rows[side.model];
   for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];
-  const std::vector<Fiducial> fiducials = fiducials_on(from, original, rows);
+  const std::vector<Fiducial> fiducials = rows_on(from.fiducials, from, original, rows);
+  for (MeshModel row : rows_on(from.mesh_models, from, original, rows)) {
+    if (&from != &world) row.mesh = mesh_row(world, from.meshes[row.mesh]);
+    world.mesh_models.push_back(row);
+  }
   world.movers.push_back(std::move(copy));
   world.fiducials.insert(world.fiducials.end(), fiducials.begin(), fiducials.end());
   restore_copy(world, static_cast<std::uint32_t>(world.movers.size() - 1), from, original);

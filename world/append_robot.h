@@ -62,8 +62,19 @@ Pose moved_with(const Pose& X_before, const Pose& X_after, const Pose& X_WM);
 /// Returns whether both rows have the same type, body, drive and sensors.
 bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b);
 
-/// Returns the fiducials that the mover carries (kNone: the static ones), on their new models.
+/// Returns the rows of a table, such as `world.fiducials`, that the mover carries (kNone: the static ones), on their
+/// new models.
 /// @param rows new rows of models by old row; kNone: removed
-std::vector<Fiducial> fiducials_on(const World& world, std::uint32_t mover, std::span<const std::uint32_t> rows);
+template <class Row>
+std::vector<Row> rows_on(const std::vector<Row>& table, const World& world, std::uint32_t mover,
+                         std::span<const std::uint32_t> rows) {
+  std::vector<Row> found;
+  for (Row row : table) {
+    if (world.models[row.model].mover != mover) continue;
+    row.model = rows[row.model];
+    if (row.model != kNone) found.push_back(row);
+  }
+  return found;
+}
 
 }  // namespace sf::world

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <string>
 #include <string_view>
@@ -62,10 +64,22 @@ void retarget(std::vector<Row>& table, const std::vector<std::uint32_t>& rows) {
   for (Row& row : table) row.model = rows[row.model];
 }
 
+/// Models, and tables of what they carry.
+struct Carried {
+  std::vector<Model> models;
+  std::vector<Fiducial> fiducials;
+  std::vector<MeshModel> meshes;
+
+  void add(const World& world, std::uint32_t mover, std::span<const std::uint32_t> rows) {
+    std::ranges::copy(rows_on(world.fiducials, world, mover, rows), std::back_inserter(fiducials));
+    std::ranges::copy(rows_on(world.mesh_models, world, mover, rows), std::back_inserter(meshes));
+  }
+};
+
 // Returns a copy of the robot in row `original` of the world's movers, with id `id`, for row `mover`. Appends its
-// models to `models` and its fiducials to `fiducials`.
+// models, fiducials and meshes to `carried`.
 Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std::uint32_t mover, const Pose& X_WM,
-              const Kept& kept, std::vector<Model>& models, std::vector<Fiducial>& fiducials) {
+              const Kept& kept, Carried& carried) {
   Mover copy = world.movers[original];
   const std::string before = world.models[copy.model].name;
   std::string after = stem(before) + std::to_string(id);
@@ -74,15 +88,15 @@ Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std:
   std::vector<std::uint32_t> rows = kept.model_rows;
   for (std::size_t row = 0; row < world.models.size(); ++row) {
     if (world.models[row].mover != original) continue;
-    rows[row] = static_cast<std::uint32_t>(models.size());
+    rows[row] = static_cast<std::uint32_t>(carried.models.size());
     Model model = world.models[row];
     model.name = model.name.starts_with(before) ? after + model.name.substr(before.size()) : after + "." + model.name;
     model.X_WM = moved_with(copy.X_WM, X_WM, model.X_WM);
     model.parent = renamed(rows, model.parent);
     model.mover = mover;
-    models.push_back(std::move(model));
+    carried.models.push_back(std::move(model));
   }
-  for (const Fiducial& fiducial : fiducials_on(world, original, rows)) fiducials.push_back(fiducial);
+  carried.add(world, original, rows);
   copy.name = after;
   copy.id = id;
   copy.X_WM = X_WM;
@@ -133,11 +147,11 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
                  std::span<const std::uint32_t> robots) {
   SF_CHECK(original < world.movers.size(), "a copy of a robot that does not exist");
   const Kept kept = keep(world, robots, poses.size());
-  std::vector<Model> models = kept.models;
+  Carried carried{kept.models, {}, {}};
   std::vector<Mover> movers;
-  std::vector<Fiducial> fiducials = fiducials_on(world, kNone, kept.model_rows);
-  for (std::uint32_t row = 0; row < (world.fiducials.empty() ? 0 : world.movers.size()); ++row)
-    for (const Fiducial& fiducial : fiducials_on(world, row, kept.model_rows)) fiducials.push_back(fiducial);
+  carried.add(world, kNone, kept.model_rows);
+  const bool any = !world.fiducials.empty() || !world.mesh_models.empty();
+  for (std::uint32_t row = 0; row < (any ? world.movers.size() : 0); ++row) carried.add(world, row, kept.model_rows);
   std::set<std::uint32_t> taken;
   for (const std::uint32_t row : robots) {
     movers.push_back(kept_one(world.movers[row], kept));
@@ -147,8 +161,7 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   for (const Pose& pose : poses) {
     do ++id;
     while (taken.contains(id));
-    movers.push_back(
-        copy_of(world, original, id, static_cast<std::uint32_t>(movers.size()), pose, kept, models, fiducials));
+    movers.push_back(copy_of(world, original, id, static_cast<std::uint32_t>(movers.size()), pose, kept, carried));
   }
   for (const Mover& tag : world.movers)
     if (tag.is_tag) movers.push_back(kept_one(tag, kept));
@@ -158,9 +171,10 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   retarget(world.emitters, kept.model_rows);
   retarget(world.lamps, kept.model_rows);
   retarget(world.heat_sources, kept.model_rows);
-  world.fiducials = std::move(fiducials);
+  world.fiducials = std::move(carried.fiducials);
+  world.mesh_models = std::move(carried.meshes);
   retarget(world.floor_holes, kept.model_rows);
-  world.models = std::move(models);
+  world.models = std::move(carried.models);
   world.movers = std::move(movers);
   world.changed_shapes.clear();
   update_extent_and_hash(world);

@@ -128,6 +128,12 @@ template <> inline constexpr auto kFields<Shape> = std::make_tuple(
     label(&Shape::name), field(&Shape::size), label(&Shape::color), field(&Shape::is_bitmap), field(&Shape::pixel),
     field(&Shape::outline));
 
+template <> inline constexpr auto kFields<Mesh> = std::make_tuple(
+    path(&Mesh::file), field(&Mesh::vertices), field(&Mesh::corners));
+
+template <> inline constexpr auto kFields<MeshModel> = std::make_tuple(
+    field(&MeshModel::mesh), field(&MeshModel::model), field(&MeshModel::X_BF));
+
 template <> inline constexpr auto kFields<Warning> = std::make_tuple(
     path(&Warning::file), label(&Warning::line), label(&Warning::message));
 
@@ -157,7 +163,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 10
     field(&World::variations),
     // since version 11
-    field(&World::floor_unseen));
+    field(&World::floor_unseen),
+    // since version 12
+    field(&World::meshes), field(&World::mesh_models));
 
 // clang-format on
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "world/meshes/triangles.h"
 #include "world/serialization.h"
 #include "world/shapes.h"
 
@@ -11,9 +12,10 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 11;
+constexpr std::uint16_t kVersion = 12;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
+constexpr std::size_t kSinceVersion12 = least_bytes<std::vector<Mesh>>() + least_bytes<std::vector<MeshModel>>();
 constexpr std::size_t kSinceVersion11 = least_bytes<bool>();
 constexpr std::size_t kSinceVersion10 = least_bytes<std::vector<Variation>>();
 constexpr std::size_t kSinceVersion9 = least_bytes<std::vector<HeatSource>>() + sizeof(double);
@@ -23,6 +25,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
+  if (!world.meshes.empty() || !world.mesh_models.empty()) return 12;
   if (world.floor_unseen) return 11;
   if (!world.variations.empty()) return 10;
   if (!world.heat_sources.empty() || world.temperature != 0.0) return 9;
@@ -35,7 +38,7 @@ std::uint16_t version_of(const World& world) {
 std::size_t missing_bytes(std::uint16_t version) {
   return (version < 6 ? kSinceVersion6 : 0) + (version < 7 ? kSinceVersion7 : 0) + (version < 8 ? kSinceVersion8 : 0) +
          (version < 9 ? kSinceVersion9 : 0) + (version < 10 ? kSinceVersion10 : 0) +
-         (version < 11 ? kSinceVersion11 : 0);
+         (version < 11 ? kSinceVersion11 : 0) + (version < 12 ? kSinceVersion12 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
@@ -59,6 +62,8 @@ void check_links(const World& world) {
   good &= std::all_of(world.heat_sources.begin(), world.heat_sources.end(), known);
   good &= std::all_of(world.fiducials.begin(), world.fiducials.end(), known);
   good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
+  good &= std::all_of(world.mesh_models.begin(), world.mesh_models.end(), known);
+  for (const MeshModel& row : world.mesh_models) good &= row.mesh < world.meshes.size();
   if (!good) refuse("a row refers to a row that does not exist");
 }
 
@@ -72,6 +77,10 @@ void check_rows(const World& world) {
     good &=
         shape.outline.size() <= kMostShapeSides && shape.size.x >= 0.0 && shape.size.y >= 0.0 && shape.size.z >= 0.0;
   for (const FloorHole& hole : world.floor_holes) good &= hole.outline.size() >= 3;
+  for (const Mesh& mesh : world.meshes) {
+    good &= mesh.corners.size() % 3 == 0 && mesh.corners.size() / 3 <= kMostTriangles;
+    for (const std::uint32_t corner : mesh.corners) good &= corner < mesh.vertices.size();
+  }
   good &= world.marking_heights.size() <= world.lane_markings.size();
   if (!good) refuse("a row breaks the rules of its table");
 }

@@ -89,7 +89,7 @@ constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, 
 constexpr auto kHashedIfSet =
     std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights,
                     &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature, &World::variations,
-                    &World::floor_unseen);
+                    &World::floor_unseen, &World::meshes, &World::mesh_models);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -202,6 +202,8 @@ void translate(World& world, double dx, double dy) {
   for (HeatSource& source : world.heat_sources) move(source.p);
   for (Fiducial& fiducial : world.fiducials)
     if (world.models[fiducial.model].mover == kNone) move(fiducial.X_BF);
+  for (MeshModel& row : world.mesh_models)
+    if (world.models[row.model].mover == kNone) move(row.X_BF);
   for (FloorHole& hole : world.floor_holes)
     for (glm::dvec2& p : hole.outline) move(p);
   for (Model& model : world.models) move(model.X_WM);

@@ -290,6 +290,20 @@ struct ChangedShape {
   OriginalShape original;
 };
 
+/// The triangles of a file (`mesh "FILE"` of a model), for spatial sensors.
+struct Mesh {
+  std::string file;                    ///< as opened
+  std::vector<glm::dvec3> vertices;    ///< [m] in the frame of a model's body
+  std::vector<std::uint32_t> corners;  ///< three rows of `vertices` per triangle, each with an area above 0
+};
+
+/// A model that spatial sensors see as a mesh. Planar sensors and contacts use its outline.
+struct MeshModel {
+  std::uint32_t mesh = 0;   ///< row in `World::meshes`
+  std::uint32_t model = 0;  ///< row in `World::models`
+  Pose X_BF;                ///< frame of its body in its mover's frame, or in the world if no mover carries it
+};
+
 /// A user message about a problem that did not stop the load.
 struct Warning {
   std::string file;
@@ -345,7 +359,9 @@ struct World {
   double temperature = 0.0;           ///< [degrees Celsius] far from all heat sources
   std::vector<Variation> variations;  ///< of the first movers, by row; empty: none has one
   std::vector<FloorHole> floor_holes;
-  bool floor_unseen = false;              ///< spatial scans see no floor at z = 0 (`floor_return 0`)
+  bool floor_unseen = false;  ///< spatial scans see no floor at z = 0 (`floor_return 0`)
+  std::vector<Mesh> meshes;
+  std::vector<MeshModel> mesh_models;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)

@@ -1,6 +1,7 @@
 #pragma once
 // A world under construction from its file's tree.
 
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "world/keys.h"
+#include "world/meshes/triangles.h"
 #include "world/stage/model_shape.h"
 #include "world/stage/properties.h"
 
@@ -27,11 +29,17 @@ struct Parent {
   const SensorKeyword* sensor = nullptr;         ///< the parent's sensor type; null: no sensor
 };
 
+/// A mesh as a model shows it: its file, and numbers of its rotation, scale and box.
+using MeshKey = std::pair<std::string, std::array<double, 10>>;
+
 struct BuildState {
   const LoadOptions& options;
   StageContext context;
   World world;
   BitmapCache bitmaps;
+  std::map<std::string, Triangles> triangles;                   ///< of files of meshes
+  std::map<MeshKey, std::uint32_t> mesh_rows;                   ///< in `World::meshes`
+  std::map<std::uint32_t, std::vector<Segment>> mesh_outlines;  ///< per row of `World::meshes`, from above
   std::set<std::string> names;
   std::map<std::string, int> copies;                  ///< last number used for models with the same name
   std::set<std::string> warned_types;                 ///< types already warned about

@@ -6,6 +6,7 @@
 
 #include "base/suggest.h"
 #include "world/keys.h"
+#include "world/meshes/mesh_file.h"
 #include "world/shapes.h"
 #include "world/stage/attached_devices.h"
 #include "world/stage/ctrl.h"
@@ -13,6 +14,7 @@
 #include "world/stage/entity_color.h"
 #include "world/stage/floor_entities.h"
 #include "world/stage/light_entities.h"
+#include "world/stage/mesh_entities.h"
 #include "world/stage/mover_entities.h"
 #include "world/stage/outline_entities.h"
 #include "world/stage/read_keys.h"
@@ -117,6 +119,7 @@ struct ModelProperties {
   std::string name;                       ///< as written, or generated
   Pose X_PB;                              ///< default: on top of the parent
   Size size;
+  std::optional<std::uint32_t> mesh;  ///< row in `World::meshes`
 };
 
 ModelProperties read_model_properties(BuildState& b, const Entity& entity, Parent& parent) {
@@ -126,6 +129,7 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
   said.X_PB = pose(b.context, entity, "pose");
   said.X_PB.z += parent.lift;
   said.size = size_of(b.context, entity, default_size(entity));
+  said.mesh = mesh_of(b, entity, said.size);
 
   // A laser named like a lane edge sensor measures the edge of the lane instead of ranges.
   const bool is_lane_edge = entity.type == "laser" && (said.name == "laneedge" || said.name == "/laneedge");
@@ -142,11 +146,22 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
   return said;
 }
 
+std::vector<Segment> outline_of_mesh(BuildState& b, const Entity& entity, std::uint32_t mesh) {
+  const auto [found, is_new] = b.mesh_outlines.try_emplace(mesh);
+  if (is_new) found->second = outline_from_above(b.world.meshes[mesh].vertices);
+  const std::vector<Segment>& outline = found->second;
+  charge(b.context, entity.at, b.context.usage.segments, static_cast<double>(outline.size()), kMaxSegments, "segments",
+         "leave out models, or give them a 'block'");
+  return outline;
+}
+
 std::vector<Segment> shape_of_model(BuildState& b, const Entity& entity, const ModelProperties& said) {
   const bool is_light = said.kind == EntityKind::light;
   const bool is_box = !is_light && !has_no_body(entity.type) && (said.sensor == nullptr || entity.type == "laser") &&
-                      find(entity, "outlines") == nullptr;
+                      find(entity, "outlines") == nullptr && !said.mesh;
   std::vector<Segment> shape = shape_of(b.context, b.bitmaps, entity, said.size, is_box);
+  if (said.mesh && shape.empty() && !flag(b.context, entity, "noblocks", false))
+    return outline_of_mesh(b, entity, *said.mesh);
   if (is_light && shape.empty() && !flag(b.context, entity, "noblocks", false))
     return light_shape(said.size, number(b.context, entity, "lamps", 3.0) == 1.0);
   return shape;
@@ -214,6 +229,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   const std::vector<Segment> shape = shape_of_model(b, entity, said);
   is_floor_hole(b.context, entity) ? add_floor_holes(b, entity, model, shape, X_B)
                                    : add_body(b, entity, model, shape, X_B);
+  if (said.mesh) add_mesh(b, *said.mesh, surface_of(b, entity, model), X_B);
   if (find(entity, "outlines") != nullptr)
     add_outlines(b, entity, model, surface_of(b, entity, model), said.size.z, X_B);
   add_magnet(b, entity, model, said.size, X_B);

@@ -15,8 +15,7 @@ namespace {
 
 constexpr std::uint32_t kMaxPoints = 2'000;
 constexpr double kMaxCornerPairs = 1e8;  // over all blocks; the self-intersection check of a polygon is quadratic
-constexpr double kMaxSegments = 2e6;
-constexpr double kBoundary = 0.01;  // [m] thickness of the walls added by `boundary 1`
+constexpr double kBoundary = 0.01;       // [m] thickness of the walls added by `boundary 1`
 
 struct Block {
   std::vector<glm::dvec2> points;

@@ -8,6 +8,8 @@
 
 namespace sf::world {
 
+inline constexpr double kMaxSegments = 2e6;  ///< of one world file
+
 /// Returns segments in the body frame: centred in x and y, z from 0 to size.z. `Segment::model` and the flags keep
 /// their defaults.
 /// @param is_box whether a model without blocks, bitmap and boundary is a box

@@ -18,6 +18,7 @@ struct ResourceUsage {
   double models = 0.0;
   double name_bytes = 0.0;
   double segments = 0.0;
+  double triangles = 0.0;     ///< of meshes
   double corner_pairs = 0.0;  ///< pairs of corners compared in the checks of blocks' outlines
   double paint_points = 0.0;
   double samples = 0.0;

@@ -1,0 +1,101 @@
+#include "sensors/spatial_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "scene/solids.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::uint64_t kMostFaces = std::uint64_t{1} << 31;
+
+/// Rows in `World::models` that are seen as a mesh.
+std::vector<std::uint8_t> models_with_mesh(const world::World& world) {
+  std::vector<std::uint8_t> with(world.models.size(), 0);
+  for (const world::MeshModel& row : world.mesh_models) with[row.model] = 1;
+  return with;
+}
+
+bool has_other_shape(const world::World& world, std::uint32_t mover) {
+  const auto found = world.changed_shapes.find(mover);
+  return found != world.changed_shapes.end() &&
+         (found->second.shape != world::kNone || found->second.size != found->second.original.size);
+}
+
+std::vector<world::Segment> without(std::span<const world::Segment> segments, const std::vector<std::uint8_t>& models) {
+  std::vector<world::Segment> rest;
+  std::ranges::copy_if(segments, std::back_inserter(rest), [&](const auto& s) { return models[s.model] == 0; });
+  return rest;
+}
+
+void require_numbers(const world::World& world) {
+  std::uint64_t faces = 0;
+  for (const world::MeshModel& row : world.mesh_models)
+    faces +=
+        world.meshes[row.mesh].corners.size() / 3 * (world.models[row.model].mover == world::kNone ? 1 : world.copies);
+  if (faces >= kMostFaces)
+    throw base::InputError(
+        world.file, 0,
+        fmt::format("has {} triangles of meshes in all their places; expected fewer than {}: simplify "
+                    "the meshes, or place fewer",
+                    faces, kMostFaces));
+}
+
+}  // namespace
+
+SpatialScene::SpatialScene(const world::World& world)
+    : copies_(world), carried_(world.movers.size() / world.copies), X_WM_(world.movers.size()) {
+  require_numbers(world);
+  walls_ = scene::build_tree(scene::mesh_of(without(world.walls, models_with_mesh(world)), !world.floor_unseen));
+  for (const world::Mesh& mesh : world.meshes) meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
+  for (const world::MeshModel& row : world.mesh_models) {
+    const std::uint32_t mover = world.models[row.model].mover;
+    const bool own = mover != world::kNone && world.movers[mover].model == row.model;
+    (mover == world::kNone ? fixed_ : carried_[mover])
+        .push_back({row.mesh, base::transform_of(row.X_BF), row.model, own});
+  }
+  update_movers(world);
+}
+
+void SpatialScene::update_movers(const world::World& world) {
+  bodies_.clear();
+  changed_.assign(world.movers.size(), 0);
+  std::vector<std::uint8_t> with_mesh = models_with_mesh(world);
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    const world::Mover& mover = world.movers[m];
+    changed_[m] = has_other_shape(world, m);
+    const std::uint8_t own = std::exchange(with_mesh[mover.model], changed_[m] ? 0 : with_mesh[mover.model]);
+    bodies_.push_back(scene::build_tree(scene::mesh_of(without(mover.body, with_mesh))));
+    with_mesh[mover.model] = own;
+  }
+}
+
+void SpatialScene::place(std::span<const base::Report> states) {
+  for (std::size_t m = 0; m < X_WM_.size(); ++m) X_WM_[m] = base::transform_of(states[m].X_WM, states[m].tilt);
+}
+
+/// Absent movers, which are nowhere, are beyond every range.
+void SpatialScene::add(const scene::SurfaceTree& tree, const base::RigidTransform& X_WI, std::uint32_t owner,
+                       glm::dvec3 p, double range, std::vector<scene::Instance>& out) const {
+  if (tree.empty() || !(glm::distance(X_WI.p, p) <= range + tree.radius + glm::length(tree.centre))) return;
+  out.push_back({&tree, X_WI, false, owner});
+}
+
+void SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const {
+  out.assign(1, {&walls_, {}, true});
+  for (const Part& part : fixed_) add(meshes_[part.mesh], part.X_BF, part.model, p, range, out);
+  const auto [first, end] = copies_.rows_with(mover, static_cast<std::uint32_t>(bodies_.size()));
+  for (std::uint32_t m = first; m < end; ++m) {
+    if (m == mover) continue;
+    add(bodies_[m], X_WM_[m], base::kNoHit, p, range, out);
+    for (const Part& part : carried_[copies_.row_of(m)])
+      if (!part.own || changed_[m] == 0)
+        add(meshes_[part.mesh], base::compose(X_WM_[m], part.X_BF), part.model, p, range, out);
+  }
+}
+
+}  // namespace sf::sensors

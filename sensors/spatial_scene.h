@@ -1,0 +1,51 @@
+#pragma once
+// Surfaces that spatial sensors see: walls and movers as solids, and meshes in place of models that have one.
+
+#include <span>
+#include <vector>
+
+#include "base/report.h"
+#include "base/rigid_transform.h"
+#include "scene/rasterizer.h"
+#include "world/copies.h"
+#include "world/world.h"
+
+namespace sf::sensors {
+
+class SpatialScene {
+ public:
+  /// @throws base::InputError for more triangles than their numbers can tell apart, over all places of all meshes
+  explicit SpatialScene(const world::World& world);
+
+  /// Builds the bodies of all movers again. Meshes stay; one whose mover has another shape or size is not seen.
+  void update_movers(const world::World& world);
+  /// @param states per mover
+  void place(std::span<const base::Report> states);
+  const base::RigidTransform& X_WM(std::uint32_t mover) const { return X_WM_[mover]; }
+
+  /// Sets `out` to the walls, and to all other surfaces of the world of `mover` within `range` [m] of `p`, except its
+  /// own. They are valid until the movers are updated or placed.
+  void list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const;
+
+ private:
+  /// A mesh of a model.
+  struct Part {
+    std::uint32_t mesh = 0;     ///< row in `meshes_`
+    base::RigidTransform X_BF;  ///< in the world, or in its mover's frame
+    std::uint32_t model = 0;
+    bool own = false;  ///< of the mover's own model, whose shape may change
+  };
+  void add(const scene::SurfaceTree& tree, const base::RigidTransform& X_WI, std::uint32_t owner, glm::dvec3 p,
+           double range, std::vector<scene::Instance>& out) const;
+
+  world::CopyIndex copies_;
+  scene::SurfaceTree walls_;
+  std::vector<scene::SurfaceTree> meshes_;
+  std::vector<Part> fixed_;
+  std::vector<std::vector<Part>> carried_;  ///< per mover of one world
+  std::vector<scene::SurfaceTree> bodies_;  ///< per mover
+  std::vector<std::uint8_t> changed_;       ///< per mover: its own model has another shape or size than in the file
+  std::vector<base::RigidTransform> X_WM_;  ///< per mover
+};
+
+}  // namespace sf::sensors

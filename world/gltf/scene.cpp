@@ -1,0 +1,229 @@
+// The glTF plug-in: returns the triangles of a file's scene.
+
+#include <fmt/format.h>
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
+#include <tiny_gltf.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x4.hpp>
+#include <limits>
+
+#include "base/error.h"
+#include "world/meshes/triangles.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr int kMostDepth = 100;  ///< of nodes within nodes
+constexpr std::uint64_t kMostNodes = 1'000'000;
+constexpr std::size_t kMostBuffer = std::size_t{4} << 30;  ///< [bytes] of one file
+
+/// Only regular files are read: a buffer may name any path.
+tinygltf::FsCallbacks regular_files() {
+  tinygltf::FsCallbacks files{};
+  files.FileExists = [](const std::string& path, void*) { return std::filesystem::is_regular_file(path); };
+  files.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  files.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
+    std::error_code failure;
+    const auto size = std::filesystem::file_size(path, failure);
+    std::ifstream in(path, std::ios::binary);
+    if (failure || size > kMostBuffer || !in) return *error += "cannot read " + path, false;
+    out->resize(size);
+    in.read(reinterpret_cast<char*>(out->data()), static_cast<std::streamsize>(size));
+    return static_cast<std::uintmax_t>(in.gcount()) == size;
+  };
+  files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+    return false;
+  };
+  return files;
+}
+
+class SceneReader {
+ public:
+  SceneReader(std::string file, Triangles& out) : file_(std::move(file)), out_(out) {}
+  void read(std::string_view bytes);
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw base::InputError(file_, 0, message); }
+  void load(std::string_view bytes);
+  void refuse_compression() const;
+  void add_node(int row, const glm::dmat4& X_parent, int depth);
+  void add_mesh(int row, const glm::dmat4& X);
+  void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& X);
+  void add_triangles(int mode, std::span<const std::uint64_t> rows, std::uint64_t first);
+  /// Returns the bytes of an accessor's element, after checks that all of them are in their buffer.
+  const unsigned char* data_of(const tinygltf::Accessor& accessor, std::size_t& stride) const;
+  std::vector<std::uint64_t> rows_of(const tinygltf::Primitive& primitive, std::uint64_t vertices) const;
+  template <class Rows>
+  auto& checked(Rows& rows, int row, const char* what) const {
+    if (row < 0 || static_cast<std::size_t>(row) >= rows.size())
+      fail(fmt::format("refers to {} {}, which does not exist", what, row));
+    return rows[static_cast<std::size_t>(row)];
+  }
+
+  std::string file_;
+  Triangles& out_;
+  tinygltf::Model model_;
+  std::uint64_t nodes_ = 0;
+};
+
+void SceneReader::load(std::string_view bytes) {
+  if (bytes.size() > std::numeric_limits<unsigned>::max()) fail("is larger than 4 GiB");
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks(regular_files());
+  loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
+                           void*) { return true; },
+                        nullptr);
+  std::string error, warning, folder = std::filesystem::path(file_).parent_path().string();
+  if (folder.empty()) folder = ".";
+  const auto size = static_cast<unsigned>(bytes.size());
+  const bool good =
+      bytes.starts_with("glTF")
+          ? loader.LoadBinaryFromMemory(&model_, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()),
+                                        size, folder)
+          : loader.LoadASCIIFromString(&model_, &error, &warning, bytes.data(), size, folder);
+  while (!error.empty() && (error.back() == '\n' || error.back() == ' ')) error.pop_back();
+  if (!good) fail(fmt::format("is no readable glTF 2.0 file: {}", error.empty() ? "no reason is given" : error));
+}
+
+void SceneReader::refuse_compression() const {
+  for (const std::string& name : model_.extensionsRequired)
+    if (name.find("compression") != std::string::npos || name == "KHR_mesh_quantization")
+      fail(fmt::format("requires {}; expected a file without compression: export it again", name));
+}
+
+const unsigned char* SceneReader::data_of(const tinygltf::Accessor& accessor, std::size_t& stride) const {
+  if (accessor.sparse.isSparse || accessor.bufferView < 0)
+    fail("has a sparse accessor; expected positions in a buffer");
+  const tinygltf::BufferView& view = checked(model_.bufferViews, accessor.bufferView, "buffer view");
+  const std::vector<unsigned char>& data = checked(model_.buffers, view.buffer, "buffer").data;
+  const int step = accessor.ByteStride(view);
+  const auto size =
+      static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)) *
+                               tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+  stride = static_cast<std::size_t>(step);
+  const std::size_t offset = view.byteOffset + accessor.byteOffset;
+  const bool fits = step > 0 && offset >= view.byteOffset && offset <= data.size() && accessor.count > 0 && size > 0 &&
+                    size <= data.size() - offset && (accessor.count - 1) <= (data.size() - offset - size) / stride;
+  if (!fits)
+    fail(fmt::format("has an accessor of {} elements beyond the {} bytes of its buffer", accessor.count, data.size()));
+  return data.data() + offset;
+}
+
+/// Returns the vertices of a primitive's triangles in order.
+std::vector<std::uint64_t> SceneReader::rows_of(const tinygltf::Primitive& primitive, std::uint64_t vertices) const {
+  std::vector<std::uint64_t> rows;
+  if (primitive.indices < 0) {
+    for (std::uint64_t i = 0; i < vertices; ++i) rows.push_back(i);
+    return rows;
+  }
+  const tinygltf::Accessor& accessor = checked(model_.accessors, primitive.indices, "accessor");
+  std::size_t stride = 0;
+  const unsigned char* data = data_of(accessor, stride);
+  for (std::size_t i = 0; i < accessor.count; ++i, data += stride) {
+    std::uint32_t row = 0;
+    switch (accessor.componentType) {
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        row = *data;
+        break;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
+        std::uint16_t v;
+        std::memcpy(&v, data, sizeof v);
+        row = v;
+        break;
+      }
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        std::memcpy(&row, data, sizeof row);
+        break;
+      default:
+        fail("has indices that are no unsigned integers");
+    }
+    if (row >= vertices) fail(fmt::format("has a triangle with vertex {} of {}", row, vertices));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void SceneReader::add_triangles(int mode, std::span<const std::uint64_t> rows, std::uint64_t first) {
+  const std::size_t step = mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
+  for (std::size_t i = 0; i + 2 < rows.size(); i += step) {
+    const std::size_t start = mode == TINYGLTF_MODE_TRIANGLE_FAN ? 0 : i;
+    for (const std::uint64_t row : {rows[start], rows[i + 1], rows[i + 2]})
+      out_.corners.push_back(static_cast<std::uint32_t>(first + row));
+  }
+  if (out_.corners.size() / 3 > kMostTriangles)
+    fail(fmt::format("has more than {} triangles; expected at most that: simplify it", kMostTriangles));
+}
+
+void SceneReader::add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& X) {
+  const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+  const auto position = primitive.attributes.find("POSITION");
+  if (mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) return;  // points and lines
+  const tinygltf::Accessor& accessor = checked(model_.accessors, position->second, "accessor");
+  if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT || accessor.type != TINYGLTF_TYPE_VEC3)
+    fail("has positions that are no vectors of three floats");
+  std::size_t stride = 0;
+  const unsigned char* data = data_of(accessor, stride);
+  const std::uint64_t first = out_.vertices.size();
+  if (first + accessor.count > 3 * kMostTriangles) fail("has too many vertices: simplify it");
+  for (std::size_t i = 0; i < accessor.count; ++i, data += stride) {
+    float p[3];
+    std::memcpy(p, data, sizeof p);
+    const glm::dvec4 q = X * glm::dvec4(p[0], p[1], p[2], 1.0);
+    out_.vertices.emplace_back(q.x, -q.z, q.y);  // y is up in glTF
+  }
+  add_triangles(mode, rows_of(primitive, accessor.count), first);
+}
+
+void SceneReader::add_mesh(int row, const glm::dmat4& X) {
+  for (const tinygltf::Primitive& primitive : checked(model_.meshes, row, "mesh").primitives)
+    add_primitive(primitive, X);
+}
+
+glm::dmat4 transform_of(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
+  glm::dmat4 X(1.0);
+  if (node.rotation.size() == 4)
+    X = glm::mat4_cast(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
+  if (node.scale.size() == 3)
+    for (int k = 0; k < 3; ++k) X[k] *= node.scale[static_cast<std::size_t>(k)];
+  if (node.translation.size() == 3) X[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
+  return X;
+}
+
+void SceneReader::add_node(int row, const glm::dmat4& X_parent, int depth) {
+  if (depth > kMostDepth || ++nodes_ > kMostNodes)
+    fail(fmt::format("has nodes within nodes without end, or more than {}", kMostNodes));
+  const tinygltf::Node& node = checked(model_.nodes, row, "node");
+  const glm::dmat4 X = X_parent * transform_of(node);
+  if (node.mesh >= 0) add_mesh(node.mesh, X);
+  for (const int child : node.children) add_node(child, X, depth + 1);
+}
+
+void SceneReader::read(std::string_view bytes) {
+  load(bytes);
+  refuse_compression();
+  if (model_.scenes.empty()) {
+    for (std::size_t row = 0; row < model_.meshes.size(); ++row) add_mesh(static_cast<int>(row), glm::dmat4(1.0));
+    return;
+  }
+  for (const int node : checked(model_.scenes, std::max(0, model_.defaultScene), "scene").nodes)
+    add_node(node, glm::dmat4(1.0), 0);
+}
+
+void read(const std::string& file, std::string_view bytes, Triangles& out) { SceneReader(file, out).read(bytes); }
+
+}  // namespace
+
+extern "C" {
+extern const GltfPlugin sensorfarm_gltf;
+const GltfPlugin sensorfarm_gltf{read};
+}
+
+}  // namespace sf::world

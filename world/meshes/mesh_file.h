@@ -1,0 +1,28 @@
+#pragma once
+// Meshes of files as bodies of models (`mesh "FILE"`).
+
+#include <string>
+#include <vector>
+
+#include "world/meshes/triangles.h"
+#include "world/world.h"
+
+namespace sf::world {
+
+/// Reads a file by the ending of its name: .stl, .obj, .ply, .gltf or .glb. The y axis of glTF, which is up, becomes z.
+/// @throws base::InputError with the place in the file
+Triangles read_triangles(const std::string& file);
+
+/// The box that contains a mesh.
+struct MeshBox {
+  glm::dvec3 low{}, high{};  ///< [m]
+  glm::dvec3 size() const { return high - low; }
+};
+MeshBox box_of(const std::vector<glm::dvec3>& vertices);
+
+/// Returns the convex outline of all vertices, seen from above, as the sides of a solid from the lowest to the highest
+/// one; none for a mesh without a height or a width. Corners nearer than 0.1 % of its size to the outline of the others
+/// are left out.
+std::vector<Segment> outline_from_above(const std::vector<glm::dvec3>& vertices);
+
+}  // namespace sf::world

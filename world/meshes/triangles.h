@@ -1,0 +1,68 @@
+#pragma once
+// Triangles of a mesh file while it is read.
+
+#include <cstdint>
+#include <glm/ext/vector_double3.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sf::world {
+
+inline constexpr std::size_t kMostTriangles = 16'000'000;  ///< of one file
+inline constexpr double kMostCoordinate = 1e7;             ///< [m]
+
+struct Triangles {
+  std::vector<glm::dvec3> vertices;    ///< in the file's frame and unit, within kMostCoordinate
+  std::vector<std::uint32_t> corners;  ///< three rows of `vertices` per triangle
+};
+
+/// A place in a file for errors: a line of a text, or an element of a binary file, both from 1.
+struct MeshPlace {
+  const char* kind;  ///< "line", "triangle", "vertex", "face"
+  std::uint64_t number;
+};
+
+/// Collects triangles. Its checks throw base::InputError with the file and the place.
+class TriangleBuilder {
+ public:
+  explicit TriangleBuilder(std::string file) : file_(std::move(file)) {}
+
+  [[noreturn]] void fail(const MeshPlace& at, std::string_view message) const;
+  [[noreturn]] void fail(std::string_view message) const;
+  /// Refuses more than kMostTriangles, before memory is taken for them.
+  void expect(std::uint64_t triangles) const;
+
+  /// @throws for numbers that are not finite or too large
+  void add_vertex(const glm::dvec3& p, const MeshPlace& at);
+  std::size_t vertices() const { return out_.vertices.size(); }
+  /// Appends a face as triangles around its first corner. @param corners rows of vertices added so far or, for
+  /// `finish` to check, later. @throws for fewer than three corners and for a face that is not convex
+  void add_face(std::span<const std::uint64_t> corners, const MeshPlace& at);
+
+  /// @throws for a file without triangles
+  Triangles finish();
+
+ private:
+  bool is_convex(std::span<const std::uint64_t> corners) const;
+
+  std::string file_;
+  Triangles out_;
+};
+
+// Readers of one format each. @param bytes the whole file; `file` names it in errors
+Triangles read_stl(const std::string& file, std::string_view bytes);
+Triangles read_obj(const std::string& file, std::string_view bytes);
+Triangles read_ply(const std::string& file, std::string_view bytes);
+/// glTF, as text or binary, through a plug-in (world/meshes/gltf.cpp).
+Triangles read_gltf(const std::string& file, std::string_view bytes);
+
+/// The interface of that plug-in. `read` fills vertices and corners, unchecked, and throws base::InputError.
+struct GltfPlugin {
+  void (*read)(const std::string& file, std::string_view bytes, Triangles& out);
+};
+/// Name of the plug-in's only symbol: `extern "C" const GltfPlugin sensorfarm_gltf`.
+inline constexpr const char* kGltfSymbol = "sensorfarm_gltf";
+
+}  // namespace sf::world

@@ -1,0 +1,53 @@
+#pragma once
+// Words and numbers of text mesh files.
+
+#include <charconv>
+#include <string_view>
+
+namespace sf::world {
+
+/// Reads the words of a text, which spaces separate.
+class WordReader {
+ public:
+  explicit WordReader(std::string_view text) : rest_(text) {}
+
+  /// Returns the next word, or an empty one at the end.
+  std::string_view word() {
+    const auto is_space = [](char c) {
+      return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
+    };
+    std::size_t first = 0;
+    while (first < rest_.size() && is_space(rest_[first])) lines_ += rest_[first++] == '\n';
+    std::size_t end = first;
+    while (end < rest_.size() && !is_space(rest_[end])) ++end;
+    const std::string_view found = rest_.substr(first, end - first);
+    rest_.remove_prefix(end);
+    return found;
+  }
+  /// Returns false for a word that is no number.
+  template <class Number>
+  bool number(Number& out) {
+    std::string_view text = word();
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return error == std::errc() && end == text.data() + text.size();
+  }
+  std::string_view rest() const { return rest_; }
+  std::uint64_t line() const { return lines_ + 1; }  ///< of the last word, from 1
+
+ private:
+  std::string_view rest_;
+  std::uint64_t lines_ = 0;
+};
+
+/// Takes the next line of a text, without its end. @return false after the last
+inline bool take_line(std::string_view& text, std::string_view& line) {
+  if (text.empty()) return false;
+  const std::size_t end = text.find('\n');
+  line = text.substr(0, end);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return true;
+}
+
+}  // namespace sf::world
