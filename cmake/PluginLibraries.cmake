@@ -27,6 +27,11 @@ find_library(GDAL gdal REQUIRED)
 find_path(TINYGLTF_INCLUDE tiny_gltf.h REQUIRED)  # libtinygltf-dev
 find_library(TINYGLTF tinygltf REQUIRED)
 
+# urdfdom without its CMake package, which searches for TinyXML (liburdfdom-dev).
+find_path(URDFDOM_INCLUDE urdf_parser/urdf_parser.h REQUIRED)
+find_library(URDFDOM urdfdom_model REQUIRED)
+find_library(CONSOLE_BRIDGE console_bridge REQUIRED)
+
 # Cyclone DDS without its CMake package, which requires OpenSSL's headers (cyclonedds-dev).
 find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
 find_library(CYCLONEDDS ddsc REQUIRED)
@@ -52,6 +57,8 @@ function(link_plugins)
   target_link_libraries(sensorfarm_gdal PRIVATE fmt::fmt ${GDAL})
   target_include_directories(sensorfarm_gltf SYSTEM PRIVATE ${TINYGLTF_INCLUDE})
   target_link_libraries(sensorfarm_gltf PRIVATE fmt::fmt ${TINYGLTF})
+  target_include_directories(sensorfarm_urdf SYSTEM PRIVATE ${URDFDOM_INCLUDE})
+  target_link_libraries(sensorfarm_urdf PRIVATE fmt::fmt ${URDFDOM} ${CONSOLE_BRIDGE})
   target_include_directories(sensorfarm_dds SYSTEM PRIVATE ${CYCLONEDDS_INCLUDE})
   target_compile_definitions(sensorfarm_dds PRIVATE DDS_NDEBUG)  # as in the library's build
   target_link_libraries(sensorfarm_dds PRIVATE fmt::fmt ${CYCLONEDDS})

@@ -31,7 +31,7 @@ class Scan {
  private:
   void begin(const BeamTile& tile);
   void draw_floor(const BeamTile& tile);
-  bool may_see(const BeamTile& tile, const SceneMesh& mesh) const;
+  void list_meshes(const BeamTile& tile);
   void evaluate_vector(const BeamTile& tile, std::uint32_t vector);
   void decide_uncertain(const BeamTile& tile, std::uint32_t vector);
   void write(const BeamTile& tile, std::uint32_t vector);
@@ -84,14 +84,19 @@ void Scan::draw_floor(const BeamTile& tile) {
   }
 }
 
-/// Returns false if the tile surely sees nothing of a mesh.
-bool Scan::may_see(const BeamTile& tile, const SceneMesh& mesh) const {
-  const auto along = [&](const float(*n)[1]) {
-    return n[0][0] * mesh.centre.x + n[1][0] * mesh.centre.y + n[2][0] * mesh.centre.z;
-  };
-  for (int k = 0; k < 4; ++k)
-    if (along(tile.tile.plane + 3 * k) < -mesh.reach) return false;
-  return along(tile.tile.axis) - mesh.reach <= static_cast<double>(depth_limit(farthest_of(s_)));
+/// Lists the meshes of which the tile may see something, from near to far.
+void Scan::list_meshes(const BeamTile& tile) {
+  s_.in_view.clear();
+  for (const SceneMesh& mesh : s_.meshes) {
+    const auto along = [&](const float(*n)[1]) {
+      return n[0][0] * mesh.centre.x + n[1][0] * mesh.centre.y + n[2][0] * mesh.centre.z;
+    };
+    bool inside = true;
+    for (int k = 0; k < 4 && inside; ++k) inside = along(tile.tile.plane + 3 * k) >= -mesh.reach;
+    if (inside)
+      s_.in_view.push_back({along(tile.tile.axis) - mesh.reach, static_cast<std::uint32_t>(&mesh - s_.meshes.data())});
+  }
+  std::sort(s_.in_view.begin(), s_.in_view.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
 }
 
 void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
@@ -150,10 +155,11 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
 
 bool Scan::cast(const BeamTile& tile) {
   begin(tile);
-  for (const SceneMesh& mesh : s_.meshes) {
-    if (!may_see(tile, mesh)) continue;
-    aim(s_, tile, mesh);
-    draw_mesh(s_, tile, mesh);
+  list_meshes(tile);
+  for (const MeshInView& near : s_.in_view) {
+    if (near.depth > static_cast<double>(depth_limit(farthest_of(s_)))) break;
+    aim(s_, tile, s_.meshes[near.row]);
+    draw_mesh(s_, tile, s_.meshes[near.row]);
   }
   for (std::uint32_t v = 0; v < kTileVectors; ++v) {
     evaluate_vector(tile, v);

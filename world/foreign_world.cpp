@@ -22,6 +22,7 @@ struct ForeignKind {
 
 constexpr std::string_view kModels =
     "write its solids as model( size [x y z] pose [x y z yaw] ), or their outlines as well-known text for `outlines`";
+constexpr std::string_view kMeshes = "name it in a model of a world file: model( mesh \"FILE\" size [x y z] )";
 constexpr std::string_view kClouds =
     "project its points onto a picture, dark where they are, and name that by `bitmap` or in the .yaml of a ROS map";
 constexpr std::string_view kGazebo =
@@ -63,9 +64,9 @@ constexpr auto kBeginnings = std::to_array<ForeignKind>({
     {"#X3D ", "X3D", kModels},
     {"#usda ", "Universal Scene Description", kModels},
     {"PXR-USDC", "Universal Scene Description", kModels},
-    {"glTF", "glTF", kModels},
-    {"ply\n", "PLY", kModels},
-    {"ply\r", "PLY", kModels},
+    {"glTF", "glTF", kMeshes},
+    {"ply\n", "PLY", kMeshes},
+    {"ply\r", "PLY", kMeshes},
     {"# .PCD ", "point clouds (PCD)", kClouds},
     {"VERSION .7", "point clouds (PCD)", kClouds},
     {"VERSION 0.7", "point clouds (PCD)", kClouds},
@@ -140,7 +141,7 @@ void refuse_json(const std::string& file, std::string_view text) {
   if (contains(text, "\"coordinates\"") || contains(text, "\"FeatureCollection\"") || contains(text, "\"Topology\""))
     refuse_outlines(file);
   if (contains(text, "\"asset\"") && (contains(text, "\"version\"") || contains(text, "\"meshes\"")))
-    refuse_world_of(file, 0, "glTF", kModels);
+    refuse_world_of(file, 0, "glTF", kMeshes);
   throw base::InputError(
       file, 0,
       fmt::format("is JSON of no known program; expected a Stage world or the .yaml of a ROS map: {}", kModels));
@@ -198,11 +199,11 @@ void refuse_foreign(const std::string& file, std::string_view text) {
     throw base::InputError(file, 0,
                            "is a picture; expected a world: include it with model( bitmap \"FILE\" size [x y z] ), or "
                            "as `image` in the .yaml of a ROS map");
-  if (is_stl(text)) refuse_world_of(file, 0, "STL", kModels);
+  if (is_stl(text)) refuse_world_of(file, 0, "STL", kMeshes);
   skip_blanks(text);
   for (const ForeignKind& kind : kBeginnings)
     if (text.starts_with(kind.mark)) refuse_world_of(file, 1, kind.program, kind.how);
-  if (is_obj(text)) refuse_world_of(file, 0, "Wavefront OBJ", kModels);
+  if (is_obj(text)) refuse_world_of(file, 0, "Wavefront OBJ", kMeshes);
   if (text.starts_with("%YAML") || text.starts_with("---")) refuse_yaml(file, text);
   if (begins_with(text, kGeometry)) refuse_outlines(file);
   if (text.starts_with('{')) refuse_json(file, text);

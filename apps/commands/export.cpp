@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/commands/cloud_files.h"
 #include "apps/commands/commands.h"
 #include "apps/commands/field_grid.h"
 #include "apps/commands/numbered_files.h"
@@ -148,9 +149,14 @@ int export_recording(const ExportOptions& options) {
   install_stop_handlers();
   const RecordingPart part = open_part(options.recording, options);
   scenarios::make_folder(options.out);
-  const std::vector<std::string> files = options.vtk ? write_vtk(part, options) : write_csv(part, options.out);
+  const bool clouds = options.clouds != CloudFormat::none;
+  const std::vector<std::string> files = options.vtk ? write_vtk(part, options)
+                                         : clouds    ? write_clouds(part, options.out, options.clouds)
+                                                     : write_csv(part, options.out);
   for (const std::string& file : files) print_message("wrote {}", file);
-  if (!options.vtk && part.recording.readings.empty())
+  if (clouds && files.empty())
+    print_message("no clouds: the run was recorded without --record-readings, or these robots have no lidars");
+  if (!options.vtk && !clouds && part.recording.readings.empty())
     print_message("no readings: the run was recorded without --record-readings, or these robots have no sensors");
   return 0;
 }

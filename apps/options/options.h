@@ -222,11 +222,16 @@ struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption, Swee
   bool curves = false;                  ///< curves instead of heat maps for readings with many elements
 };
 
+/// Files of point clouds. `pcd`: every beam of a scan in the sensor's frame, row by ring, NaN without an echo, as
+/// float32; VIEWPOINT is the sensor's pose. `ply`: the echoes in the world, in 64 bits.
+enum class CloudFormat { none, pcd, ply };
+
 struct ExportOptions : RecordingOption, PartOption, DeviceOption {
-  std::string out;      ///< folder
-  bool vtk = false;     ///< VTK files instead of CSV
-  double every = 1.0;   ///< [s] between files of a series
-  double height = 0.1;  ///< [m] of the field's plane
+  std::string out;                         ///< folder
+  bool vtk = false;                        ///< VTK files instead of CSV
+  CloudFormat clouds = CloudFormat::none;  ///< files of point clouds instead of CSV
+  double every = 1.0;                      ///< [s] between files of a series
+  double height = 0.1;                     ///< [m] of the field's plane
 };
 
 struct ViewOptions : RecordingOption, PartOption, DeviceOption, VideoOptions {

@@ -83,16 +83,22 @@ void add_plot(CLI::App& app, Call& call) {
 }
 
 void add_export(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "export", "Write a recorded run's trajectories and readings as CSV, or its geometry as VTK files for ParaView");
+  CLI::App* sub = app.add_subcommand("export",
+                                     "Write a recorded run's trajectories and readings as CSV, its geometry as VTK "
+                                     "files for ParaView, or the scans of lidars as point clouds");
   auto& o = add_command(*sub, call, export_recording, [sub] { require_any(*sub, {"--every", "--height"}, {"--vtk"}); });
-  add_examples(*sub, {"out/run -o tables", "out/run --vtk --every 0.5 -o paraview"});
+  add_examples(*sub, {"out/run -o tables", "out/run --vtk --every 0.5 -o paraview", "out/run --clouds pcd -o clouds"});
   add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the files")
       ->required()
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   sub->add_flag("--vtk", o.vtk, "Write walls, roads, robots, trajectories, scans, occupancy and field as VTK files");
+  add_choice<CloudFormat, CloudFormat>(*sub, "--clouds", o.clouds,
+                                       {{"pcd", CloudFormat::pcd}, {"ply", CloudFormat::ply}},
+                                       "Write the scans of lidars as point clouds: pcd (all beams, in the sensor's "
+                                       "frame, with its pose) or ply (echoes, in the world)")
+      ->excludes("--vtk");
   add_every(*sub, o.every, "Simulated time between the files of a VTK series [s]");
   add_height(*sub, o.height);
   add_part(*sub, o);

@@ -60,6 +60,12 @@ std::size_t count_docks(const world::World& world) {
                     [](const world::Emitter& e) { return e.kind == world::Emitter::Kind::dock; }));
 }
 
+std::size_t triangles_of(std::span<const world::Mesh> meshes) {
+  std::size_t triangles = 0;
+  for (const world::Mesh& mesh : meshes) triangles += mesh.corners.size() / 3;
+  return triangles;
+}
+
 std::size_t count_magnets(const world::World& world) {
   std::size_t magnets = world.magnets.size();
   for (const world::Mover& mover : world.movers) magnets += mover.magnets.size();

@@ -107,6 +107,7 @@ std::size_t count_robots(const world::World& world);
                                const std::vector<std::string_view>& names);
 /// Counts fixed and carried magnets.
 std::size_t count_magnets(const world::World& world);
+std::size_t triangles_of(std::span<const world::Mesh> meshes);
 /// Counts the docks among the infrared emitters; the others are virtual walls.
 std::size_t count_docks(const world::World& world);
 

@@ -19,6 +19,12 @@ struct LeafView {
   const std::uint32_t* face = nullptr;
 };
 
+/// A mesh that a tile may see.
+struct MeshInView {
+  double depth = 0.0;     ///< [m] along the tile's axis, of its nearest point
+  std::uint32_t row = 0;  ///< in Scratch::meshes
+};
+
 struct Rasterizer::Scratch {
   // Beams of the tile, in the frame of the mesh that is drawn.
   alignas(64) float x[kTileBeams], y[kTileBeams], z[kTileBeams];
@@ -37,6 +43,7 @@ struct Rasterizer::Scratch {
   std::vector<std::uint64_t> stack;  ///< depth as sortable bits, above node * 16 + child
   std::vector<DrawnFace> drawn;      ///< in this tile
   std::vector<SceneMesh> meshes;     ///< of this scan, by first face
+  std::vector<MeshInView> in_view;   ///< of this tile, from near to far
   ScanCounts counts;
 };
 

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <glm/gtc/quaternion.hpp>
 #include <sstream>
 
 #include "record/reading_messages.h"
@@ -64,6 +65,57 @@ class Recorded : public testing::Test {
 
   Folder folder_;
 };
+
+/// Numbers after a header that ends with `end`.
+template <class Number>
+Number number_at(const std::string& bytes, std::size_t at) {
+  Number value{};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+/// A cloud in the sensor's frame and one in the world have the same echoes.
+TEST(ExportClouds, BothFormatsHaveTheEchoes) {
+  const Folder folder;
+  run_successfully(
+      {"run", our_world("lidar.world"), "--duration", "0.3", "--record", folder.path("r"), "--record-readings"});
+  for (const char* format : {"pcd", "ply"})
+    run_successfully({"export", folder.path("r"), "--clouds", format, "--robots", "rover2", "-o", folder.path(format)});
+  const Rows table = rows_of(folder.path("pcd/clouds/clouds.csv"));
+  ASSERT_GE(table.size(), 3u);
+  EXPECT_EQ(table[1][0], "rover2_lidar_000000.pcd");
+  EXPECT_EQ(table[2][1], "0.1");
+  const std::string pcd = read_file(folder.path("pcd/clouds/" + table[2][0]));
+  const std::string ply = read_file(folder.path("ply/clouds/rover2_lidar_000001.ply"));
+  expect_in("\nWIDTH 900\nHEIGHT 16\n", pcd);
+  const std::size_t first = pcd.find("DATA binary\n") + 12, points = ply.find("end_header\n") + 11;
+  ASSERT_EQ(pcd.size(), first + 14u * 16 * 900);
+  double pose[7];
+  for (std::size_t k = 0; k < 7; ++k) pose[k] = std::stod(table[2][4 + k]);
+  const glm::dmat3 R = glm::mat3_cast(glm::dquat(pose[3], pose[4], pose[5], pose[6]));
+  std::size_t echoes = 0;
+  for (std::size_t i = 0; i < 16 * 900; ++i) {
+    const std::size_t at = first + 14 * i;
+    EXPECT_EQ(number_at<std::uint16_t>(pcd, at + 12), i / 900);
+    const glm::dvec3 p_S{number_at<float>(pcd, at), number_at<float>(pcd, at + 4), number_at<float>(pcd, at + 8)};
+    if (std::isnan(p_S.x)) continue;
+    const std::size_t to = points + 26 * echoes++;
+    const glm::dvec3 p{number_at<double>(ply, to), number_at<double>(ply, to + 8), number_at<double>(ply, to + 16)};
+    ASSERT_LT(glm::length(R * p_S + glm::dvec3(pose[0], pose[1], pose[2]) - p), 1e-5) << i;
+  }
+  EXPECT_GT(echoes, 5000u);
+  EXPECT_EQ(ply.size(), points + 26 * echoes);
+  expect_in(fmt::format("element vertex {}\n", echoes), ply);
+}
+
+TEST(ExportClouds, SayWhenThereAreNone) {
+  const Folder folder;
+  run_successfully(
+      {"run", our_world("cave.world"), "--robots", "1", "--duration", "0.2", "--record", folder.path("r")});
+  const Outcome none = run_successfully({"export", folder.path("r"), "--clouds", "ply", "-o", folder.path("c")});
+  expect_in("no clouds: the run was recorded without --record-readings, or these robots have no lidars", none.err);
+  expect_in("--vtk", run_program({"export", folder.path("r"), "--clouds", "ply", "--vtk", "-o", folder.path("c")}).err);
+}
 
 TEST_F(Recorded, TrajectoriesAreExportedToTheBit) {
   run_successfully(recorded("export", {"-o", folder_.path("csv")}));

@@ -22,8 +22,8 @@ struct MeshFormat {
   std::string_view ending;
   Triangles (*read)(const std::string& file, std::string_view bytes);
 };
-constexpr MeshFormat kFormats[] = {
-    {".stl", read_stl}, {".obj", read_obj}, {".ply", read_ply}, {".gltf", read_gltf}, {".glb", read_gltf}};
+constexpr MeshFormat kFormats[] = {{".stl", read_stl},   {".obj", read_obj},   {".ply", read_ply},
+                                   {".gltf", read_gltf}, {".urdf", read_urdf}, {".glb", read_gltf}};
 
 /// Returns the corners of the convex hull, counter-clockwise (Andrew's monotone chain).
 std::vector<glm::dvec2> hull_of(std::vector<glm::dvec2> points) {
@@ -65,12 +65,17 @@ std::vector<glm::dvec2> simplified(const std::vector<glm::dvec2>& hull, double m
 
 }  // namespace
 
-Triangles read_triangles(const std::string& file) {
+std::string ending_of(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto format = std::ranges::find(kFormats, ending, &MeshFormat::ending);
+  return ending;
+}
+
+Triangles read_triangles(const std::string& file) {
+  const auto format = std::ranges::find(kFormats, ending_of(file), &MeshFormat::ending);
   if (format == std::end(kFormats))
-    throw base::InputError(file, 0, fmt::format("is no mesh by its name; expected .stl, .obj, .ply, .glb or .gltf"));
+    throw base::InputError(file, 0,
+                           fmt::format("is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf or .urdf"));
   return format->read(file, base::read_bytes(file, kMostBytes));
 }
 

@@ -28,7 +28,7 @@ void TriangleBuilder::expect(std::uint64_t triangles) const {
 void TriangleBuilder::add_vertex(const glm::dvec3& p, const MeshPlace& at) {
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::abs(p[axis]) <= kMostCoordinate))
-      fail(at, fmt::format("the coordinate {} is not a number within {:g} of 0", p[axis], kMostCoordinate));
+      fail(at, fmt::format("the coordinate {:g} is not a number within {:g} of 0", p[axis], kMostCoordinate));
   out_.vertices.push_back(p);
 }
 

@@ -16,6 +16,7 @@ inline constexpr double kMostCoordinate = 1e7;             ///< [m]
 struct Triangles {
   std::vector<glm::dvec3> vertices;    ///< in the file's frame and unit, within kMostCoordinate
   std::vector<std::uint32_t> corners;  ///< three rows of `vertices` per triangle
+  std::vector<std::string> notes;      ///< what was left out, for the user
 };
 
 /// A place in a file for errors: a line of a text, or an element of a binary file, both from 1.
@@ -58,7 +59,10 @@ Triangles read_ply(const std::string& file, std::string_view bytes);
 /// glTF, as text or binary, through a plug-in (world/meshes/gltf.cpp).
 Triangles read_gltf(const std::string& file, std::string_view bytes);
 
-/// The interface of that plug-in. `read` fills vertices and corners, unchecked, and throws base::InputError.
+/// URDF: the robot with all joints at 0, through a plug-in (world/meshes/urdf_robot.h).
+Triangles read_urdf(const std::string& file, std::string_view bytes);
+
+/// The interface of glTF's plug-in. `read` fills vertices and corners, unchecked, and throws base::InputError.
 struct GltfPlugin {
   void (*read)(const std::string& file, std::string_view bytes, Triangles& out);
 };

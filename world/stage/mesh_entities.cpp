@@ -14,9 +14,11 @@ namespace {
 
 constexpr double kMostAll = 2.0 * kMostTriangles;  // triangles of all meshes
 
-const Triangles& triangles_of(BuildState& b, const std::string& file) {
+const Triangles& triangles_of(BuildState& b, const std::string& file, SourceLocation at) {
   const auto [found, is_new] = b.triangles.try_emplace(file);
-  if (is_new) found->second = read_triangles(file);
+  if (!is_new) return found->second;
+  found->second = read_triangles(file);
+  for (const std::string& note : found->second.notes) warn(b.context, at, fmt::format("{}: {}", file, note));
   return found->second;
 }
 
@@ -91,7 +93,7 @@ std::optional<std::uint32_t> mesh_of(BuildState& b, const Entity& entity, Size& 
   const MeshKey key{file, {R[0].x, R[0].y, R[0].z, R[1].x, R[1].y, R[1].z, scale, box.x, box.y, box.z}};
   auto known = b.mesh_rows.find(key);
   if (known == b.mesh_rows.end()) {
-    const Triangles& triangles = triangles_of(b, file);
+    const Triangles& triangles = triangles_of(b, file, at);
     charge(b.context, at, b.context.usage.triangles, static_cast<double>(triangles.corners.size() / 3), kMostAll,
            "triangles of meshes", "simplify them, or leave some out");
     Mesh mesh{file, triangles.vertices, triangles.corners};

@@ -229,7 +229,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   const std::vector<Segment> shape = shape_of_model(b, entity, said);
   is_floor_hole(b.context, entity) ? add_floor_holes(b, entity, model, shape, X_B)
                                    : add_body(b, entity, model, shape, X_B);
-  if (said.mesh) add_mesh(b, *said.mesh, surface_of(b, entity, model), X_B);
+  if (said.mesh && !is_floor_hole(b.context, entity)) add_mesh(b, *said.mesh, surface_of(b, entity, model), X_B);
   if (find(entity, "outlines") != nullptr)
     add_outlines(b, entity, model, surface_of(b, entity, model), said.size.z, X_B);
   add_magnet(b, entity, model, said.size, X_B);

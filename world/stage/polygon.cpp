@@ -9,11 +9,11 @@ using base::cross;
 
 namespace {
 
-bool same(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
+bool coincide(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
 
 void drop_repeated(std::vector<glm::dvec2>& points) {
   points.erase(std::unique(points.begin(), points.end(), same), points.end());
-  while (points.size() > 1 && same(points.front(), points.back())) points.pop_back();
+  while (points.size() > 1 && coincide(points.front(), points.back())) points.pop_back();
 }
 
 double twice_area(const std::vector<glm::dvec2>& points) {

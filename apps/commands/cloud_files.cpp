@@ -1,0 +1,158 @@
+#include "apps/commands/cloud_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+
+#include "apps/commands/numbered_files.h"
+#include "apps/commands/output_file.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/csv_text.h"
+#include "apps/reports/progress_line.h"
+#include "base/bytes.h"
+#include "base/error.h"
+#include "base/rigid_transform.h"
+#include "scenarios/recorded_states.h"
+#include "scenarios/replay.h"
+#include "scenarios/run_info.h"
+#include "sensors/lidar.h"
+#include "sensors/sensor_set.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// One scan.
+struct Cloud {
+  const sensors::LidarSettings& lidar;
+  std::span<const double> ranges;
+  base::RigidTransform X_WS;
+
+  bool has_echo(std::size_t i) const { return ranges[i] >= lidar.range_min && ranges[i] < lidar.range_max; }
+  std::size_t columns() const { return ranges.size() / lidar.beams->channels; }
+  std::uint16_t ring(std::size_t i) const { return static_cast<std::uint16_t>(i / columns()); }
+  glm::dvec3 point_S(std::size_t i) const { return ranges[i] * lidar.beams->directions[i]; }
+};
+
+/// [x y z qw qx qy qz]
+std::string pose_text(const base::RigidTransform& X, const char* separator) {
+  const glm::dquat q = glm::quat_cast(X.R);
+  const double numbers[] = {X.p.x, X.p.y, X.p.z, q.w, q.x, q.y, q.z};
+  return fmt::format("{}", fmt::join(numbers, separator));
+}
+
+void put_text(base::ByteWriter& out, const std::string& text) { out.put_bytes(text.data(), text.size()); }
+
+/// Point Cloud Data, version 0.7, binary (pointclouds.org).
+base::Bytes pcd_of(const Cloud& cloud) {
+  base::Bytes bytes;
+  base::ByteWriter out(bytes);
+  put_text(out,
+           fmt::format("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z ring\nSIZE 4 4 4 2\n"
+                       "TYPE F F F U\nCOUNT 1 1 1 1\nWIDTH {}\nHEIGHT {}\nVIEWPOINT {}\nPOINTS {}\nDATA binary\n",
+                       cloud.columns(), cloud.lidar.beams->channels, pose_text(cloud.X_WS, " "), cloud.ranges.size()));
+  for (std::size_t i = 0; i < cloud.ranges.size(); ++i) {
+    const glm::dvec3 p = cloud.has_echo(i) ? cloud.point_S(i) : glm::dvec3(NAN);
+    for (int axis = 0; axis < 3; ++axis) out.put(static_cast<float>(p[axis]));
+    out.put(cloud.ring(i));
+  }
+  return bytes;
+}
+
+base::Bytes ply_of(const Cloud& cloud) {
+  base::Bytes points, bytes;
+  base::ByteWriter out(points);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.ranges.size(); ++i) {
+    if (!cloud.has_echo(i)) continue;
+    const glm::dvec3 p = base::transform(cloud.X_WS, cloud.point_S(i));
+    out.put(p.x), out.put(p.y), out.put(p.z), out.put(cloud.ring(i));
+    ++count;
+  }
+  base::ByteWriter file(bytes);
+  put_text(file, fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty "
+                             "double y\nproperty double z\nproperty ushort ring\nend_header\n",
+                             count));
+  file.put_bytes(points.data(), points.size());
+  return bytes;
+}
+
+void write_file(const base::Bytes& bytes, const std::string& path) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw base::InputError(path, 0, "cannot be written; name a folder that can be written and has room");
+}
+
+/// Writes the files of all lidars in turn.
+class CloudWriter {
+ public:
+  CloudWriter(const world::World& world, const sensors::SensorSet& sensor_set, const std::string& folder,
+              CloudFormat format)
+      : world_(world),
+        sensor_set_(sensor_set),
+        lidars_(sensor_set.settings_of<sensors::LidarSettings>(sensors::kLidar)),
+        folder_(folder + "/clouds"),
+        ending_(format == CloudFormat::pcd ? ".pcd" : ".ply"),
+        format_(format) {}
+
+  void add(const base::ReadingBlock& reading);
+  /// @return the table written; nothing without clouds
+  std::vector<std::string> close() const {
+    if (rows_.empty()) return {};
+    const std::string path = folder_ + "/clouds.csv";
+    write_text(path, "file,time_s,robot,sensor,x_m,y_m,z_m,qw,qx,qy,qz\n" + rows_);
+    return {path};
+  }
+
+ private:
+  const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
+  const std::vector<sensors::LidarSettings>& lidars_;
+  std::string folder_, ending_;
+  CloudFormat format_;
+  std::map<std::string, std::size_t> numbers_;  ///< files so far, by the beginnings of their names
+  std::string rows_;
+};
+
+void CloudWriter::add(const base::ReadingBlock& reading) {
+  const sensors::SensorSpec& row = sensor_set_.row(reading);
+  const sensors::LidarSettings& lidar =
+      lidars_[static_cast<std::size_t>(&row - sensor_set_.group(reading.type)->rows.data())];
+  const Cloud cloud{lidar, reading.values, base::compose(base::transform_of(reading.X_WM, reading.tilt), lidar.X_MS)};
+  const std::string robot = world_.movers[reading.mover].name, sensor = row.name;
+  std::string name = fmt::format("{}_{}_", robot, sensor);
+  std::ranges::replace(name, '/', '_');
+  const auto [number, is_first] = numbers_.try_emplace(name, 0);
+  if (is_first) begin_numbered_files(folder_, name, ending_);
+  const std::string file = fmt::format("{}{:06}{}", name, number->second++, ending_);
+  write_file(format_ == CloudFormat::pcd ? pcd_of(cloud) : ply_of(cloud), folder_ + "/" + file);
+  rows_ += fmt::format("{},{},{},{},{}\n", csv_field(file), csv_number(1e-9 * static_cast<double>(reading.time)),
+                       csv_field(robot), csv_field(sensor), pose_text(cloud.X_WS, ","));
+}
+
+}  // namespace
+
+std::vector<std::string> write_clouds(const RecordingPart& part, const std::string& folder, CloudFormat format) {
+  const world::World world = scenarios::recorded_world(part.recording);
+  const sensors::SensorSet sensor_set(world);
+  if (sensor_set.group(sensors::kLidar) == nullptr) return {};
+  scenarios::Replay replay(
+      part.recording,
+      scenarios::run_info(world, sensor_set, {.seed = part.recording.info.seed, .record_readings = true}));
+  CloudWriter writer(world, sensor_set, folder, format);
+  Progress progress("writing clouds");
+  for (std::size_t tick = 0; tick < replay.ticks(); ++tick) {
+    const base::TickRecord record = replay.tick(tick, tick == 0 ? std::nullopt : std::optional(tick - 1));
+    for (const base::ReadingBlock& reading : record.readings)
+      if (reading.type == sensors::kLidar && part.chosen[reading.mover] != 0) writer.add(reading), heed_stop();
+    progress.show(static_cast<double>(tick) / static_cast<double>(replay.ticks()));
+  }
+  return writer.close();
+}
+
+}  // namespace sf::apps

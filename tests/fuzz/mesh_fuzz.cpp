@@ -1,0 +1,38 @@
+// libFuzzer target: any bytes as a file of triangles. The first byte chooses the format.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "base/error.h"
+#include "tests/fuzz/require.h"
+#include "world/meshes/triangles.h"
+
+using namespace sf;
+
+extern "C" const world::GltfPlugin sensorfarm_gltf;  // compiled in
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  constexpr std::array kReaders{world::read_stl, world::read_obj, world::read_ply};
+  try {
+    const std::size_t format = data[0] % 4;
+    world::Triangles found;
+    if (format == kReaders.size()) {
+      sensorfarm_gltf.read("fuzz.mesh", bytes, found);
+      require(found.corners.size() % 3 == 0);
+    } else {
+      found = kReaders[format]("fuzz.mesh", bytes);
+      require(!found.corners.empty() && found.corners.size() % 3 == 0 && found.vertices.size() <= size);
+      for (const glm::dvec3& p : found.vertices)
+        require(std::abs(p.x) <= world::kMostCoordinate && std::abs(p.y) <= world::kMostCoordinate &&
+                std::abs(p.z) <= world::kMostCoordinate);
+    }
+    for (const std::uint32_t corner : found.corners) require(corner < found.vertices.size());
+  } catch (const base::InputError& error) {
+    require(std::string_view(error.what()).starts_with("fuzz.mesh"));
+  }
+  return 0;
+}

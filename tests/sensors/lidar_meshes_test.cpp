@@ -1,0 +1,124 @@
+// Lidars among meshes of files, compared with the same surfaces as solids.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "sensors/lidar.h"
+#include "sensors/spatial_scene.h"
+#include "tests/folder.h"
+#include "tests/sensors/series.h"
+#include "world/copies.h"
+#include "world/shapes.h"
+
+namespace sf::trial {
+namespace {
+
+/// A box of 1 m, as a model's box of that size.
+constexpr const char* kBox =
+    "v -0.5 -0.5 0\nv 0.5 -0.5 0\nv 0.5 0.5 0\nv -0.5 0.5 0\nv -0.5 -0.5 1\nv 0.5 -0.5 1\nv 0.5 0.5 1\nv -0.5 0.5 1\n"
+    "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\nf 1 2 3 4\n";
+
+class LidarMeshes : public FolderTest {
+ protected:
+  LidarMeshes() { write("box.obj", kBox); }
+  /// A scene of boxes, as meshes or as solids.
+  world::World scene(bool meshes, const std::string& more = "") const {
+    const std::string shape = meshes ? "mesh \"" + path("box.obj") + "\" " : "";
+    return world_of("define box model( " + shape + ")\n" + "define robot position( size [0.4 0.3 0.2] " + shape +
+                    "model( size [0.1 0.1 0.3] " + shape +
+                    " ) lidar( channels 24 fov_v [-40 40] columns 120 range [0 20] size [0.1 0.1 0.1] ) )\n"
+                    "box( pose [3 0.2 0 25] size [1 2 0.8] ) box( pose [-3 1 1.5 70] size [3 3 0.2] )\n"
+                    "robot( name \"r1\" pose [0 0 0 10] ) robot( name \"r2\" pose [1.5 -1 0.2 50] )\n" +
+                    more);
+  }
+};
+
+base::ReadingBlock sense(farm::Farm& farm, const world::World& world, const base::Tilt& tilt = {}) {
+  return farm.sense(0, sensors::kLidar, 0, world.movers[0].X_WM, tilt);
+}
+
+/// The same planes give the same ranges to rounding; models, robots and what they carry are named alike.
+TEST_F(LidarMeshes, ABoxIsABox) {
+  const world::World meshes = scene(true), solids = scene(false);
+  EXPECT_EQ(meshes.meshes.size(), 4u) << "one per size";
+  EXPECT_EQ(meshes.mesh_models.size(), 6u);
+  for (const base::Tilt& tilt : {base::Tilt{}, base::Tilt{0.3, -0.2}}) {
+    farm::Farm mine(meshes, host_device(), {.noise = false, .threads = 2});
+    farm::Farm theirs(solids, host_device(), {.noise = false, .threads = 2});
+    const base::ReadingBlock a = sense(mine, meshes, tilt), b = sense(theirs, solids, tilt);
+    EXPECT_TRUE(std::ranges::equal(a.hits, b.hits));
+    for (std::size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(a.values[i], b.values[i], 1e-13) << i;
+    for (const char* name : {"box:0", "box:1", "r2", "r2.model:0"})
+      EXPECT_TRUE(std::ranges::any_of(a.hits, [&](std::uint32_t hit) {
+        return hit < meshes.models.size() && meshes.models[hit].name == name;
+      })) << name;
+    EXPECT_TRUE(std::ranges::none_of(a.hits, [&](std::uint32_t hit) {
+      return hit < meshes.models.size() && meshes.models[hit].mover == 0;
+    })) << "its own robot";
+  }
+}
+
+/// Every copy of a world sees its own robots' meshes.
+TEST_F(LidarMeshes, CopiesOfAWorld) {
+  world::World several = scene(true);
+  world::copy_movers(several, 3);
+  sensors::SpatialScene scene(several);
+  std::vector<base::Report> states;
+  for (std::uint32_t m = 0; m < several.movers.size(); ++m) states.push_back({m, 0, several.movers[m].X_WM, {}});
+  states[3].X_WM.x = 5.0;  // r2 of the second copy
+  scene.place(states);
+  std::vector<scene::Instance> out;
+  scene.list(2, {}, 20.0, out);
+  ASSERT_EQ(out.size(), 1u + 2 + 2) << "walls, two boxes, and the body and the load of one robot";
+  EXPECT_EQ(out[3].X_WI.p.x, 5.0);
+  EXPECT_EQ(several.models[out[3].owner].name, "r2");
+  scene.list(4, {}, 20.0, out);
+  EXPECT_EQ(out[3].X_WI.p.x, 1.5);
+}
+
+/// An object that takes on another shape is seen as that; with its own size again, as its mesh.
+TEST_F(LidarMeshes, ChangedShapesAreSolids) {
+  world::World world = scene(true, "shape( name \"crate\" size [1 1 1] )\nmodel( name \"tag1\" pose [2 2 0 0] mesh \"" +
+                                       path("box.obj") + "\" )\n");
+  sensors::SpatialScene scene(world);
+  std::vector<base::Report> states;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) states.push_back({m, 0, world.movers[m].X_WM, {}});
+  const auto seen = [&] {
+    scene.update_movers(world);
+    scene.place(states);
+    std::vector<scene::Instance> out;
+    scene.list(0, {}, 20.0, out);
+    EXPECT_EQ(out.size(), 6u);
+    return out.back().owner == base::kNoHit ? "solid" : "mesh";
+  };
+  EXPECT_STREQ(seen(), "mesh");
+  world::change_shape(world, 2, {.shape = "crate"});
+  EXPECT_STREQ(seen(), "solid");
+  world::change_shape(world, 2, {.shape = "original"});
+  EXPECT_STREQ(seen(), "mesh");
+}
+
+/// Far from the origin, and beyond a lidar's range, where meshes are not listed.
+TEST_F(LidarMeshes, PlacesFarAway) {
+  world::World meshes = scene(true, "box( pose [500 0 0 0] size [1 1 1] )\n"), solids = scene(false);
+  world::translate(meshes, 9e6, -5e6);
+  world::translate(solids, 9e6, -5e6);
+  farm::Farm mine(meshes, host_device(), {.noise = false, .threads = 1});
+  farm::Farm theirs(solids, host_device(), {.noise = false, .threads = 1});
+  const base::ReadingBlock a = sense(mine, meshes), b = sense(theirs, solids);
+  for (std::size_t i = 0; i < a.values.size(); ++i)
+    if (a.quality.empty() || a.quality[i] == base::QualityFlag::none)
+      ASSERT_NEAR(a.values[i], b.values[i], 1e-7) << "walls of solids are rounded to 2 nm here";
+  sensors::SpatialScene scene(meshes);
+  std::vector<base::Report> states;
+  for (std::uint32_t m = 0; m < meshes.movers.size(); ++m) states.push_back({m, 0, meshes.movers[m].X_WM, {}});
+  scene.place(states);
+  std::vector<scene::Instance> out;
+  scene.list(0, scene.X_WM(0).p, 20.0, out);
+  EXPECT_EQ(out.size(), 5u);
+}
+
+}  // namespace
+}  // namespace sf::trial
