@@ -20,6 +20,7 @@
 #include "scenarios/replay.h"
 #include "scenarios/run_info.h"
 #include "sensors/lidar.h"
+#include "sensors/lidar_beams.h"
 #include "sensors/sensor_set.h"
 
 namespace sf::apps {
@@ -112,7 +113,7 @@ class CloudWriter {
  private:
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
-  const std::vector<sensors::LidarSettings>& lidars_;
+  std::span<const sensors::LidarSettings> lidars_;
   std::string folder_, ending_;
   CloudFormat format_;
   std::map<std::string, std::size_t> numbers_;  ///< files so far, by the beginnings of their names

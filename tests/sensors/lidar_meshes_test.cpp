@@ -108,9 +108,10 @@ TEST_F(LidarMeshes, PlacesFarAway) {
   farm::Farm mine(meshes, host_device(), {.noise = false, .threads = 1});
   farm::Farm theirs(solids, host_device(), {.noise = false, .threads = 1});
   const base::ReadingBlock a = sense(mine, meshes), b = sense(theirs, solids);
-  for (std::size_t i = 0; i < a.values.size(); ++i)
-    if (a.quality.empty() || a.quality[i] == base::QualityFlag::none)
-      ASSERT_NEAR(a.values[i], b.values[i], 1e-7) << "walls of solids are rounded to 2 nm here";
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    if (!a.quality.empty() && a.quality[i] != base::QualityFlag::none) continue;
+    ASSERT_NEAR(a.values[i], b.values[i], 1e-7) << "walls of solids are rounded to 2 nm here";
+  }
   sensors::SpatialScene scene(meshes);
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < meshes.movers.size(); ++m) states.push_back({m, 0, meshes.movers[m].X_WM, {}});
