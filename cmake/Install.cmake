@@ -13,7 +13,7 @@ set_target_properties(sensorfarm_headers PROPERTIES EXPORT_NAME headers)
 target_link_libraries(sensorfarm_library INTERFACE sensorfarm_headers)
 
 install(TARGETS sensorfarm RUNTIME)
-foreach(plugin cairo ffmpeg vtk opencv pictures dds gdal gltf urdf mpi)
+foreach(plugin cairo ffmpeg vtk opencv pictures dds gdal gltf assimp urdf mpi)
   if(TARGET sensorfarm_${plugin})
     set_target_properties(sensorfarm_${plugin} PROPERTIES INSTALL_RPATH "")
     install(TARGETS sensorfarm_${plugin} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/sensorfarm)

@@ -27,6 +27,10 @@ find_library(GDAL gdal REQUIRED)
 find_path(TINYGLTF_INCLUDE tiny_gltf.h REQUIRED)  # libtinygltf-dev
 find_library(TINYGLTF tinygltf REQUIRED)
 
+# Assimp without its CMake package, which names a static zlib.
+find_path(ASSIMP_INCLUDE assimp/scene.h REQUIRED)  # libassimp-dev
+find_library(ASSIMP assimp REQUIRED)
+
 # urdfdom without its CMake package, which searches for TinyXML (liburdfdom-dev).
 find_path(URDFDOM_INCLUDE urdf_parser/urdf_parser.h REQUIRED)
 find_library(URDFDOM urdfdom_model REQUIRED)
@@ -57,6 +61,8 @@ function(link_plugins)
   target_link_libraries(sensorfarm_gdal PRIVATE fmt::fmt ${GDAL})
   target_include_directories(sensorfarm_gltf SYSTEM PRIVATE ${TINYGLTF_INCLUDE})
   target_link_libraries(sensorfarm_gltf PRIVATE fmt::fmt ${TINYGLTF})
+  target_include_directories(sensorfarm_assimp SYSTEM PRIVATE ${ASSIMP_INCLUDE})
+  target_link_libraries(sensorfarm_assimp PRIVATE fmt::fmt ${ASSIMP})
   target_include_directories(sensorfarm_urdf SYSTEM PRIVATE ${URDFDOM_INCLUDE})
   target_link_libraries(sensorfarm_urdf PRIVATE fmt::fmt ${URDFDOM} ${CONSOLE_BRIDGE})
   target_include_directories(sensorfarm_dds SYSTEM PRIVATE ${CYCLONEDDS_INCLUDE})

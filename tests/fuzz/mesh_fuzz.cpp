@@ -11,7 +11,7 @@
 
 using namespace sf;
 
-extern "C" const world::GltfPlugin sensorfarm_gltf;  // compiled in
+extern "C" const world::MeshPlugin sensorfarm_gltf;  // compiled in
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;

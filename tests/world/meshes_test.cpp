@@ -101,8 +101,7 @@ std::string glb(const std::function<void(std::string&)>& change = {}) {
   if (change) change(text);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const auto size = [](const std::string& part) { return static_cast<std::uint32_t>(part.size()); };
-  const std::string chunks =
-      raw(size(text)) + "JSON" + text + raw(size(data)) + std::string("BIN\0", 4) + data;
+  const std::string chunks = raw(size(text)) + "JSON" + text + raw(size(data)) + std::string("BIN\0", 4) + data;
   return "glTF" + raw(std::uint32_t{2}, static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
 }
 
@@ -150,7 +149,9 @@ TEST_F(Meshes, RefusalsNameThePlace) {
   struct {
     std::string name, bytes, expected;
   } const cases[] = {
-      {"a.3ds", "x", "a.3ds: is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf or .urdf"},
+      {"a.blend", "x",
+       "a.blend: is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx, .3ds, .3mf, .off or "
+       ".urdf"},
       {"a.obj", "v 0 0\n", "a.obj:1: expected: v X Y Z"},
       {"a.obj", "v 0 0 nan\n", "a.obj:1: the coordinate nan is not a number within 1e+07 of 0"},
       {"a.obj", "v 0 0 2e7\n", "a.obj:1: the coordinate 2e+07 is not a number within 1e+07 of 0"},
@@ -175,6 +176,33 @@ TEST_F(Meshes, RefusalsNameThePlace) {
       {"a.gltf", "{}", "a.gltf: is no readable glTF 2.0 file"},
   };
   for (const auto& [name, bytes, expected] : cases) expect_in(expected, refusal(name, bytes));
+}
+
+/// Formats that Assimp reads. COLLADA keeps its axes, and its unit becomes metres.
+TEST_F(Meshes, OtherFormats) {
+  std::string off = "OFF\n4 4 0\n";
+  for (const glm::dvec3& p : kVertices) off += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+  for (const auto& face : kFaces) off += fmt::format("3 {} {} {}\n", face[0], face[1], face[2]);
+  const char* const dae =
+      R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimeter" meter="0.01"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 100 0 0 0 200 0 0 0 300</float_array>
+<technique_common><accessor source="#a" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 1 2 3 2 0 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+  for (const auto& [name, bytes] : {std::pair<std::string, std::string>{"t.off", off}, {"t.dae", dae}}) {
+    SCOPED_TRACE(name);
+    const Triangles found = read_triangles(file(name, bytes));
+    ASSERT_EQ(found.corners.size(), 12u);
+    for (std::size_t i = 0; i < 12; ++i)
+      EXPECT_LT(glm::length(found.vertices[found.corners[i]] - kVertices[kFaces[i / 3][i % 3]]), 1e-6) << i;
+  }
+  expect_in("a.dae: is no readable mesh: ", refusal("a.dae", "<COLLADA/>"));
+  expect_in("a.fbx: is no readable mesh: ", refusal("a.fbx", "x"));
 }
 
 TEST_F(Meshes, RowsOfGltfAreChecked) {
@@ -216,7 +244,7 @@ TEST_F(Meshes, RobotsFromUrdf) {
   EXPECT_EQ(box.high.y, 4.0) << "the mesh, twice its size";
   EXPECT_EQ(box.high.z, 6.0);
   ASSERT_EQ(robot.notes.size(), 4u);
-  expect_in("link 'eye' has its shape for collisions: ", robot.notes[0]);
+  expect_in("link 'eye' has its shape for collisions: ", robot.notes[0]);  // there is no eye.dae
   EXPECT_EQ(robot.notes[1], "link 'lost' is left out: 'package://other/x.stl' is in no known folder");
   EXPECT_EQ(robot.notes[2], "1 movable joints stay at 0");
   EXPECT_EQ(robot.notes[3], "its sensors are left out; give them to the model, such as lidar( )");
@@ -306,7 +334,8 @@ TEST_F(MeshModels, RefuseWhatCannotBe) {
        "w.world:1: this mesh reaches 2e+07 m from its origin; expected at most 1e+07 m: give 'size' or 'mesh_scale'"},
       {"mesh \"none.obj\"", "none.obj"},
   };
-  for (const auto& [keys, expected] : cases) expect_in(expected, sf::refusal_of([&] { world("model( " + keys + " )\n"); }));
+  for (const auto& [keys, expected] : cases)
+    expect_in(expected, sf::refusal_of([&] { world("model( " + keys + " )\n"); }));
   expect_in("'mesh_scale' has no effect without", world("model( mesh_scale 2 )\n").warnings.at(0).message);
 }
 

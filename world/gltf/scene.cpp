@@ -222,8 +222,8 @@ void read(const std::string& file, std::string_view bytes, Triangles& out) { Sce
 }  // namespace
 
 extern "C" {
-extern const GltfPlugin sensorfarm_gltf;
-const GltfPlugin sensorfarm_gltf{read};
+extern const MeshPlugin sensorfarm_gltf;
+const MeshPlugin sensorfarm_gltf{read};
 }
 
 }  // namespace sf::world

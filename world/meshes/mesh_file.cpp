@@ -22,8 +22,11 @@ struct MeshFormat {
   std::string_view ending;
   Triangles (*read)(const std::string& file, std::string_view bytes);
 };
-constexpr MeshFormat kFormats[] = {{".stl", read_stl},   {".obj", read_obj},   {".ply", read_ply},
-                                   {".gltf", read_gltf}, {".urdf", read_urdf}, {".glb", read_gltf}};
+constexpr MeshFormat kFormats[] = {
+    {".stl", read_stl},        {".obj", read_obj},        {".ply", read_ply},        {".glb", read_gltf},
+    {".gltf", read_gltf},      {".urdf", read_urdf},      {".dae", read_other_mesh}, {".fbx", read_other_mesh},
+    {".3ds", read_other_mesh}, {".3mf", read_other_mesh}, {".off", read_other_mesh},
+};
 
 /// Returns the corners of the convex hull, counter-clockwise (Andrew's monotone chain).
 std::vector<glm::dvec2> hull_of(std::vector<glm::dvec2> points) {
@@ -74,8 +77,10 @@ std::string ending_of(const std::string& file) {
 Triangles read_triangles(const std::string& file) {
   const auto format = std::ranges::find(kFormats, ending_of(file), &MeshFormat::ending);
   if (format == std::end(kFormats))
-    throw base::InputError(file, 0,
-                           fmt::format("is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf or .urdf"));
+    throw base::InputError(
+        file, 0,
+        fmt::format(
+            "is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx, .3ds, .3mf, .off or .urdf"));
   return format->read(file, base::read_bytes(file, kMostBytes));
 }
 

@@ -12,7 +12,7 @@ namespace sf::world {
 /// Returns the ending of a file's name in small letters, such as ".stl".
 std::string ending_of(const std::string& file);
 
-/// Reads a file by the ending of its name: .stl, .obj, .ply, .gltf, .glb or .urdf. The y axis of glTF, which is up,
+/// Reads a file by the ending of its name, such as .stl or .urdf. The y axis of glTF, which is up,
 /// becomes z.
 /// @throws base::InputError with the place in the file
 Triangles read_triangles(const std::string& file);

@@ -56,17 +56,20 @@ class TriangleBuilder {
 Triangles read_stl(const std::string& file, std::string_view bytes);
 Triangles read_obj(const std::string& file, std::string_view bytes);
 Triangles read_ply(const std::string& file, std::string_view bytes);
-/// glTF, as text or binary, through a plug-in (world/meshes/gltf.cpp).
+/// glTF, as text or binary, through a plug-in (world/gltf/).
 Triangles read_gltf(const std::string& file, std::string_view bytes);
-
+/// COLLADA, FBX and others, through a plug-in (world/assimp/).
+Triangles read_other_mesh(const std::string& file, std::string_view bytes);
 /// URDF: the robot with all joints at 0, through a plug-in (world/meshes/urdf_robot.h).
 Triangles read_urdf(const std::string& file, std::string_view bytes);
 
-/// The interface of glTF's plug-in. `read` fills vertices and corners, unchecked, and throws base::InputError.
-struct GltfPlugin {
+/// The interface of plug-ins that read meshes. `read` fills vertices and corners, unchecked, and throws
+/// base::InputError.
+struct MeshPlugin {
   void (*read)(const std::string& file, std::string_view bytes, Triangles& out);
 };
-/// Name of the plug-in's only symbol: `extern "C" const GltfPlugin sensorfarm_gltf`.
+/// Names of the plug-ins' only symbols: `extern "C" const MeshPlugin sensorfarm_gltf`.
 inline constexpr const char* kGltfSymbol = "sensorfarm_gltf";
+inline constexpr const char* kAssimpSymbol = "sensorfarm_assimp";
 
 }  // namespace sf::world

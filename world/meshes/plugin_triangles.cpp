@@ -1,0 +1,42 @@
+// Checks the triangles that plug-ins find in files.
+
+#include <array>
+
+#include "base/plugin.h"
+#include "world/meshes/triangles.h"
+
+namespace sf::world {
+
+namespace {
+
+const MeshPlugin& plugin_named(const char* name, const char* library) {
+  return *static_cast<const MeshPlugin*>(
+      base::load_plugin(name, "this mesh cannot be read, but STL, OBJ and PLY", library));
+}
+
+Triangles read_with(const MeshPlugin& plugin, const std::string& file, std::string_view bytes) {
+  Triangles found;
+  plugin.read(file, bytes, found);
+  TriangleBuilder out(file);
+  out.expect(found.corners.size() / 3);
+  std::uint64_t number = 0;
+  for (const glm::dvec3& p : found.vertices) out.add_vertex(p, {"vertex", ++number});
+  for (std::size_t i = 0; i + 2 < found.corners.size(); i += 3)
+    out.add_face(std::array<std::uint64_t, 3>{found.corners[i], found.corners[i + 1], found.corners[i + 2]},
+                 {"triangle", i / 3 + 1});
+  return out.finish();
+}
+
+}  // namespace
+
+Triangles read_gltf(const std::string& file, std::string_view bytes) {
+  static const MeshPlugin& plugin = plugin_named(kGltfSymbol, "tinygltf 2.7 (Debian: libtinygltf2d)");
+  return read_with(plugin, file, bytes);
+}
+
+Triangles read_other_mesh(const std::string& file, std::string_view bytes) {
+  static const MeshPlugin& plugin = plugin_named(kAssimpSymbol, "Assimp 5.2 (Debian: libassimp5)");
+  return read_with(plugin, file, bytes);
+}
+
+}  // namespace sf::world
