@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/ext/vector_double3.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct Mesh {
   std::vector<Face> faces;            ///< fewer than 2^31
   std::vector<std::uint32_t> owners;  ///< per face: row in `world::World::models`; empty: Instance::owner
 
-  /// Appends a face with new vertices. @param corners three or four
-  void add(std::span<const glm::dvec3> corners, std::uint32_t owner);
+  /// Appends a face with new vertices. @param corners three or four @param owner nullopt: the mesh has no owners
+  void add(std::span<const glm::dvec3> corners, std::optional<std::uint32_t> owner);
 };
 
 }  // namespace sf::scene

@@ -158,7 +158,6 @@ bool Scan::cast(const BeamTile& tile) {
   list_meshes(tile);
   for (const MeshInView& near : s_.in_view) {
     if (near.depth > static_cast<double>(depth_limit(farthest_of(s_)))) break;
-    aim(s_, tile, s_.meshes[near.row]);
     draw_mesh(s_, tile, s_.meshes[near.row]);
   }
   for (std::uint32_t v = 0; v < kTileVectors; ++v) {

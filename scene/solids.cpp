@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <glm/geometric.hpp>
+#include <optional>
 #include <vector>
 
 #include "base/box_tree.h"
@@ -99,6 +100,23 @@ class Holes {
   base::BoxTree tree_;
 };
 
+/// Appends the pieces of a region at one height.
+void add_flat(std::span<const RegionEdge> edges, std::span<const double> heights, Mesh& mesh,
+              std::optional<std::uint32_t> owner) {
+  for (const Trapezoid& piece : trapezoids_of(edges)) {
+    std::vector<glm::dvec2> corners(piece.begin(), piece.end());
+    const auto same = std::unique(corners.begin(), corners.end());
+    corners.erase(same, corners.end());
+    if (corners.back() == corners.front()) corners.pop_back();
+    if (corners.size() < 3) continue;
+    for (const double z : heights) {
+      std::vector<glm::dvec3> flat;
+      for (const glm::dvec2& c : corners) flat.emplace_back(c, z);
+      mesh.add(flat, owner);
+    }
+  }
+}
+
 /// Appends the top and bottom of the solid inside an outline, without its holes.
 void add_caps(const Loop& outer, const Holes& holes, bool on_floor, Mesh& mesh) {
   const Segment& solid = outer.segments.front();
@@ -108,18 +126,19 @@ void add_caps(const Loop& outer, const Holes& holes, bool on_floor, Mesh& mesh) 
   };
   add(outer);
   holes.for_each_in(outer, add);
-  for (const Trapezoid& piece : trapezoids_of(edges)) {
-    std::vector<glm::dvec2> corners(piece.begin(), piece.end());
-    const auto same = std::unique(corners.begin(), corners.end());
-    corners.erase(same, corners.end());
-    if (corners.back() == corners.front()) corners.pop_back();
-    if (corners.size() < 3) continue;
-    for (const double z : {solid.z_min, solid.z_max}) {
-      if (on_floor && z == 0.0) continue;
-      std::vector<glm::dvec3> flat;
-      for (const glm::dvec2& c : corners) flat.emplace_back(c, z);
-      mesh.add(flat, solid.model);
-    }
+  std::vector<double> heights{solid.z_min, solid.z_max};
+  if (on_floor) std::erase(heights, 0.0);
+  add_flat(edges, heights, mesh, solid.model);
+}
+
+/// Appends the outline of a hole clockwise.
+void add_hole(std::span<const glm::dvec2> outline, std::vector<RegionEdge>& edges) {
+  double area = 0.0;
+  for (std::size_t i = 0; i + 1 < outline.size(); ++i)
+    area += base::cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 a = outline[i], b = outline[(i + 1) % outline.size()];
+    if (a != b) edges.push_back(area > 0.0 ? RegionEdge{b, a} : RegionEdge{a, b});
   }
 }
 
@@ -138,6 +157,30 @@ Mesh mesh_of(std::span<const Segment> segments, bool on_floor) {
   const Holes holes(loops);
   for (const Loop& loop : loops)
     if (loop.area > 0.0) add_caps(loop, holes, on_floor, mesh);
+  return mesh;
+}
+
+Mesh ground_of(const world::World& world, double reach) {
+  Mesh mesh;
+  for (const world::Ramp& ramp : world.ramps) {
+    const glm::dvec2 along = ramp.b - ramp.a;
+    const double length = glm::length(along);
+    if (!(length > 0.0) || (ramp.z_a == 0.0 && ramp.z_b == 0.0)) continue;
+    const glm::dvec2 left = ramp.half_width / length * glm::dvec2{-along.y, along.x};
+    const std::array<glm::dvec3, 4> corners{glm::dvec3{ramp.a - left, ramp.z_a},
+                                            {ramp.b - left, ramp.z_b},
+                                            {ramp.b + left, ramp.z_b},
+                                            {ramp.a + left, ramp.z_a}};
+    mesh.add(corners, {});
+  }
+  if (world.floor_unseen || world.floor_holes.empty()) return mesh;
+  const world::Extent& e = world.extent;
+  const glm::dvec2 low{e.x_min - reach, e.y_min - reach}, high{e.x_max + reach, e.y_max + reach};
+  const std::array<glm::dvec2, 4> outer{low, {high.x, low.y}, high, {low.x, high.y}};
+  std::vector<RegionEdge> edges;
+  for (std::size_t i = 0; i < 4; ++i) edges.push_back({outer[i], outer[(i + 1) % 4]});
+  for (const world::FloorHole& hole : world.floor_holes) add_hole(hole.outline, edges);
+  add_flat(edges, std::array{0.0}, mesh, {});
   return mesh;
 }
 

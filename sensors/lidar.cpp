@@ -66,12 +66,18 @@ class Lidars : public HostBackend {
   std::uint64_t rays_ = 0;
 };
 
+double longest_range(std::span<const LidarSettings> lidars) {
+  double longest = 0.0;
+  for (const LidarSettings& lidar : lidars) longest = std::max(longest, lidar.range_max);
+  return longest;
+}
+
 Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
     : HostBackend(context, lidar_type, sensors),
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
       reference_(!raycast::choose_caster(context.device.info().software, context.scene.caster).same_bytes),
-      scene_(context.world),
+      scene_(context.world, longest_range(settings_)),
       rasterizers_(context.thread_pool.threads()) {
   hits_.resize(first_value(rows().size()));
   quality_.resize(hits_.size());
@@ -107,7 +113,7 @@ void Lidars::cast(const Job& job, unsigned thread) {
   const auto tiles = std::span(s.beams->pattern).subspan(job.first_tile, job.end_tile - job.first_tile);
   const scene::ScanOutput out{sample.values, beams_of(hits_, job.sample), beams_of(quality_, job.sample)};
   if (reference_) return cast_reference(X_WS_[job.sample], tiles, s, instances_[job.sample], out);
-  rasterizers_[thread].scan(X_WS_[job.sample], tiles, s.range_max, {instances_[job.sample], !world().floor_unseen},
+  rasterizers_[thread].scan(X_WS_[job.sample], tiles, s.range_max, {instances_[job.sample], scene_.has_floor_plane()},
                             out);
 }
 
@@ -117,7 +123,7 @@ void Lidars::cast_reference(const base::RigidTransform& X_WS, std::span<const sc
   for (const scene::BeamTile& tile : tiles)
     for (const std::uint32_t i : tile.place) {
       const auto hit =
-          scene::reference_scan(X_WS, s.beams->directions[i], s.range_max, {instances, !world().floor_unseen});
+          scene::reference_scan(X_WS, s.beams->directions[i], s.range_max, {instances, scene_.has_floor_plane()});
       out.ranges[i] = static_cast<double>(hit.range);
       out.hits[i] = hit.owner;
     }

@@ -47,10 +47,14 @@ void require_numbers(const world::World& world) {
 
 }  // namespace
 
-SpatialScene::SpatialScene(const world::World& world)
-    : copies_(world), carried_(world.movers.size() / world.copies), X_WM_(world.movers.size()) {
+SpatialScene::SpatialScene(const world::World& world, double reach)
+    : copies_(world),
+      floor_plane_(!world.floor_unseen && world.floor_holes.empty()),
+      carried_(world.movers.size() / world.copies),
+      X_WM_(world.movers.size()) {
   require_numbers(world);
   walls_ = scene::build_tree(scene::mesh_of(without(world.walls, models_with_mesh(world)), !world.floor_unseen));
+  ground_ = scene::build_tree(scene::ground_of(world, reach));
   for (const world::Mesh& mesh : world.meshes) meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
   for (const world::MeshModel& row : world.mesh_models) {
     const std::uint32_t mover = world.models[row.model].mover;
@@ -86,7 +90,7 @@ void SpatialScene::add(const scene::SurfaceTree& tree, const base::RigidTransfor
 }
 
 void SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const {
-  out.assign(1, {&walls_, {}, true});
+  out.assign({{&walls_, {}, true}, {&ground_, {}, true, base::kFloorHit}});
   for (const Part& part : fixed_) add(meshes_[part.mesh], part.X_BF, part.model, p, range, out);
   const auto [first, end] = copies_.rows_with(mover, static_cast<std::uint32_t>(bodies_.size()));
   for (std::uint32_t m = first; m < end; ++m) {

@@ -15,13 +15,17 @@ namespace sf::sensors {
 class SpatialScene {
  public:
   /// @throws base::InputError for more triangles than their numbers can tell apart, over all places of all meshes
-  explicit SpatialScene(const world::World& world);
+  /// @param reach [m] longest range of a sensor
+  SpatialScene(const world::World& world, double reach);
 
   /// Builds the bodies of all movers again. Meshes stay; one whose mover has another shape or size is not seen.
   void update_movers(const world::World& world);
   /// @param states per mover
   void place(std::span<const base::Report> states);
   const base::RigidTransform& X_WM(std::uint32_t mover) const { return X_WM_[mover]; }
+
+  /// Returns whether the plane z = 0 is a surface. Where the floor has holes, it is a mesh instead.
+  bool has_floor_plane() const { return floor_plane_; }
 
   /// Sets `out` to the walls, and to all other surfaces of the world of `mover` within `range` [m] of `p`, except its
   /// own. They are valid until the movers are updated or placed.
@@ -39,7 +43,9 @@ class SpatialScene {
            double range, std::vector<scene::Instance>& out) const;
 
   world::CopyIndex copies_;
+  bool floor_plane_;
   scene::SurfaceTree walls_;
+  scene::SurfaceTree ground_;  ///< roads above the floor, and a floor with holes
   std::vector<scene::SurfaceTree> meshes_;
   std::vector<Part> fixed_;
   std::vector<std::vector<Part>> carried_;  ///< per mover of one world

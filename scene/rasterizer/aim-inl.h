@@ -42,8 +42,32 @@ HWY_INLINE void rotate_box(const Rotation& R, const float (*from)[1], float (*to
   }
 }
 
-/// Fills in the beams, boxes and offsets of `s`.
-HWY_INLINE void aim(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
+/// The sensor relative to a mesh's centre, in 32 bits. Offsets have room for the rounding of boxes, normals and
+/// products.
+struct Eye {
+  float v[3];
+  float room;
+  explicit Eye(const SceneMesh& mesh) {
+    const glm::dvec3 p = mesh.X_FS.p - mesh.tree->centre;
+    room = static_cast<float>(1e-6 * (mesh.tree->radius + glm::length(p)));
+    for (int axis = 0; axis < 3; ++axis) v[axis] = static_cast<float>(p[axis]);
+  }
+};
+
+/// Fills in the tile's box and its offsets in the mesh's frame.
+HWY_INLINE void aim_tile(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
+  const Rotation R(mesh.X_FS.R);
+  rotate_box(R, tile.tile.box, s.tile.box, 3);
+  rotate_box(R, tile.tile.plane, s.tile.plane, 4);
+  rotate_box(R, tile.tile.axis, s.tile.axis, 1);
+  const Eye eye(mesh);
+  const auto offset = [&](const float(*n)[1]) { return n[0][0] * eye.v[0] + n[1][0] * eye.v[1] + n[2][0] * eye.v[2]; };
+  for (int k = 0; k < 4; ++k) s.tile_side_offset[k] = offset(s.tile.plane + 3 * k) - eye.room;
+  s.tile_axis_offset = offset(s.tile.axis) + eye.room;
+}
+
+/// Fills in the beams, and the boxes and offsets of the vectors, in the mesh's frame.
+HWY_INLINE void aim_beams(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   const Rotation R(mesh.X_FS.R);
   for (std::uint32_t i = 0; i < kTileBeams; i += kWidth) {
     const Floats x = load(tile.x + i), y = load(tile.y + i), z = load(tile.z + i);
@@ -52,24 +76,15 @@ HWY_INLINE void aim(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   rotate_boxes(R, tile.vectors.box, s.vectors.box, 3);
   rotate_boxes(R, tile.vectors.plane, s.vectors.plane, 4);
   rotate_boxes(R, tile.vectors.axis, s.vectors.axis, 1);
-  rotate_box(R, tile.tile.box, s.tile.box, 3);
-  rotate_box(R, tile.tile.plane, s.tile.plane, 4);
-  rotate_box(R, tile.tile.axis, s.tile.axis, 1);
-  // Offsets have room for the rounding of boxes, normals and products.
-  const glm::dvec3 p = mesh.X_FS.p - mesh.tree->centre;
-  const auto room = static_cast<float>(1e-6 * (mesh.tree->radius + glm::length(p)));
-  const float v[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-  const Floats x = all(v[0]), y = all(v[1]), z = all(v[2]);
+  const Eye eye(mesh);
+  const Floats x = all(eye.v[0]), y = all(eye.v[1]), z = all(eye.v[2]);
   for (std::uint32_t g = 0; g < kTileVectors; g += kWidth) {
     const auto offset = [&](const float(*n)[kTileVectors]) {
       return dot(load(n[0] + g), load(n[1] + g), load(n[2] + g), x, y, z);
     };
-    for (int k = 0; k < 4; ++k) store(offset(s.vectors.plane + 3 * k) - all(room), s.side_offset[k] + g);
-    store(offset(s.vectors.axis) + all(room), s.axis_offset + g);
+    for (int k = 0; k < 4; ++k) store(offset(s.vectors.plane + 3 * k) - all(eye.room), s.side_offset[k] + g);
+    store(offset(s.vectors.axis) + all(eye.room), s.axis_offset + g);
   }
-  const auto offset = [&](const float(*n)[1]) { return n[0][0] * v[0] + n[1][0] * v[1] + n[2][0] * v[2]; };
-  for (int k = 0; k < 4; ++k) s.tile_side_offset[k] = offset(s.tile.plane + 3 * k) - room;
-  s.tile_axis_offset = offset(s.tile.axis) + room;
 }
 
 /// Largest and smallest n . d over boxes of directions.

@@ -101,7 +101,7 @@ HWY_INLINE void prefetch(const void* from, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
 }
 
-/// Draws a mesh. The beams and boxes of `s` are in its frame.
+/// Draws a mesh. Beams are rotated into its frame only if the tile may see a part of it.
 HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   const SurfaceTree& tree = *mesh.tree;
   constexpr std::uint32_t kAll = 0xFFFFFFFFu;
@@ -111,11 +111,17 @@ HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mes
     const LeafFaces faces = view_leaf(s, tree.leaves[~child], mesh);
     if ((faces.open | faces.edge_on) != 0) draw_leaf(s, tile, faces, mesh.first_face, vectors, farthest);
   };
-  if (tree.root < 0) return draw_one(tree.root, kAll);
+  aim_tile(s, tile, mesh);
+  if (tree.root < 0) {
+    aim_beams(s, tile, mesh);
+    return draw_one(tree.root, kAll);
+  }
   const TileCorners corners(s.tile);
   float limit = depth_limit(farthest);
   s.stack.clear();
   push_children(s, corners, tree.nodes[tree.root], tree.root, limit);
+  if (s.stack.empty()) return;
+  aim_beams(s, tile, mesh);
   while (!s.stack.empty()) {
     const std::uint64_t entry = s.stack.back();
     s.stack.pop_back();

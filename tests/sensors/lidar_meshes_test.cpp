@@ -64,25 +64,25 @@ TEST_F(LidarMeshes, ABoxIsABox) {
 TEST_F(LidarMeshes, CopiesOfAWorld) {
   world::World several = scene(true);
   world::copy_movers(several, 3);
-  sensors::SpatialScene scene(several);
+  sensors::SpatialScene scene(several, 20.0);
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < several.movers.size(); ++m) states.push_back({m, 0, several.movers[m].X_WM, {}});
   states[3].X_WM.x = 5.0;  // r2 of the second copy
   scene.place(states);
   std::vector<scene::Instance> out;
   scene.list(2, {}, 20.0, out);
-  ASSERT_EQ(out.size(), 1u + 2 + 2) << "walls, two boxes, and the body and the load of one robot";
-  EXPECT_EQ(out[3].X_WI.p.x, 5.0);
-  EXPECT_EQ(several.models[out[3].owner].name, "r2");
+  ASSERT_EQ(out.size(), 2u + 2 + 2) << "walls, ground, two boxes, and the body and the load of one robot";
+  EXPECT_EQ(out[4].X_WI.p.x, 5.0);
+  EXPECT_EQ(several.models[out[4].owner].name, "r2");
   scene.list(4, {}, 20.0, out);
-  EXPECT_EQ(out[3].X_WI.p.x, 1.5);
+  EXPECT_EQ(out[4].X_WI.p.x, 1.5);
 }
 
 /// An object that takes on another shape is seen as that; with its own size again, as its mesh.
 TEST_F(LidarMeshes, ChangedShapesAreSolids) {
   world::World world = scene(true, "shape( name \"crate\" size [1 1 1] )\nmodel( name \"tag1\" pose [2 2 0 0] mesh \"" +
                                        path("box.obj") + "\" )\n");
-  sensors::SpatialScene scene(world);
+  sensors::SpatialScene scene(world, 20.0);
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) states.push_back({m, 0, world.movers[m].X_WM, {}});
   const auto seen = [&] {
@@ -90,7 +90,7 @@ TEST_F(LidarMeshes, ChangedShapesAreSolids) {
     scene.place(states);
     std::vector<scene::Instance> out;
     scene.list(0, {}, 20.0, out);
-    EXPECT_EQ(out.size(), 6u);
+    EXPECT_EQ(out.size(), 7u);
     return out.back().owner == base::kNoHit ? "solid" : "mesh";
   };
   EXPECT_STREQ(seen(), "mesh");
@@ -112,13 +112,13 @@ TEST_F(LidarMeshes, PlacesFarAway) {
     if (!a.quality.empty() && a.quality[i] != base::QualityFlag::none) continue;
     ASSERT_NEAR(a.values[i], b.values[i], 1e-7) << "walls of solids are rounded to 2 nm here";
   }
-  sensors::SpatialScene scene(meshes);
+  sensors::SpatialScene scene(meshes, 20.0);
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < meshes.movers.size(); ++m) states.push_back({m, 0, meshes.movers[m].X_WM, {}});
   scene.place(states);
   std::vector<scene::Instance> out;
   scene.list(0, scene.X_WM(0).p, 20.0, out);
-  EXPECT_EQ(out.size(), 5u);
+  EXPECT_EQ(out.size(), 6u);
 }
 
 }  // namespace

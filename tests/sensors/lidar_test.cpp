@@ -123,6 +123,41 @@ TEST(Lidar, HandValues) {
   EXPECT_NEAR(r.directions[8 + 2].z, std::sin(M_PI / 36), 1e-15);
 }
 
+/// A beam through a hole in the floor meets nothing; its neighbours meet the floor up to the edge, and beyond it.
+TEST(Lidar, HolesInTheFloor) {
+  const std::string lidar =
+      "position( size [0.4 0.4 0.5] origin [0 0 0 0] lidar( size [0.1 0.1 0.1] pose [0 0 0.3 0] elevations [-60 -45 "
+      "-25] "
+      "columns 4 range [0 30] ) )\n";
+  const world::World world = world_of(lidar + "model( name \"pit\" pose [1.1 0 0 0] size [1 1 0.1] cliff_return 1 )\n");
+  const Sensed r = sense(world, {});
+  EXPECT_NEAR(r.values[2], 0.85 / std::sin(M_PI / 3), 1e-8) << "0.49 m ahead, before the hole";
+  EXPECT_EQ(r.hits[2], base::kFloorHit);
+  EXPECT_EQ(r.values[4 + 2], 30.0) << "0.85 m ahead, in the hole";
+  EXPECT_EQ(r.hits[4 + 2], base::kNoHit);
+  EXPECT_NEAR(r.values[8 + 2], 0.85 / std::sin(M_PI / 7.2), 1e-8) << "1.82 m ahead, behind it";
+  EXPECT_EQ(r.hits[8 + 2], base::kFloorHit);
+  const Sensed whole = sense(world_of(lidar), {});
+  for (std::size_t i = 0; i < r.values.size(); ++i)
+    EXPECT_NEAR(i == 6 ? whole.values[i] : r.values[i], whole.values[i], 1e-8);
+  const world::World unseen = world_of("floor_return 0\n" + lidar + "model( size [1 1 0.1] cliff_return 1 )\n");
+  EXPECT_EQ(std::ranges::count(sense(unseen, {}).hits, base::kFloorHit), 0);
+}
+
+/// A road above the floor is a surface from above and from below, and counts as ground.
+TEST(Lidar, RoadsAboveTheFloor) {
+  world::World world = world_of(
+      "position( size [0.4 0.4 0.5] origin [0 0 0 0] lidar( size [0.1 0.1 0.1] pose [0 0 0.3 0] elevations [-30 45 80] "
+      "columns 4 range [0 30] ) )\n");
+  world.ramps.push_back({{3.0, -5.0}, {3.0, 5.0}, 2.85, 2.85, 1.5});  // over x from 1.5 to 4.5
+  const Sensed r = sense(world, {});
+  EXPECT_NEAR(r.values[4 + 2], 2.0 * std::sqrt(2.0), 1e-8) << "2 m above the sensor, from below";
+  EXPECT_EQ(r.hits[4 + 2], base::kFloorHit);
+  EXPECT_EQ(r.hits[8 + 2], base::kNoHit) << "it passes 0.35 m ahead";
+  const Sensed above = sense(world, {3.0, 0.0, 2.85, 0.0});
+  EXPECT_NEAR(above.values[2], 0.85 * 2.0, 1e-8) << "on the road";
+}
+
 /// Positive pitch lowers the nose, positive roll raises the left side, yaw turns left: R = Rz Ry Rx.
 TEST(Lidar, MountAngles) {
   const auto forward = [](const std::string& angles) {

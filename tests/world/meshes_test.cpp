@@ -239,8 +239,9 @@ TEST_F(Meshes, RobotsFromUrdf) {
   write("mine/meshes/t.obj", kObj);
   const Triangles robot = read_triangles(file("mine/urdf/r.urdf", kUrdf));
   const MeshBox box = box_of(robot.vertices);
-  EXPECT_EQ(box.low, glm::dvec3(-0.5, -1.25, -0.5)) << "the eye is 1 m from the wheel's middle, to its side";
-  EXPECT_NEAR(box.high.x, 10.5, 1e-15);
+  EXPECT_LT(glm::length(box.low - glm::dvec3(-0.5, -1.25, -0.5)), 1e-12)
+      << "the eye is 1 m from the wheel's middle, to its side";
+  EXPECT_NEAR(box.high.x, 10.5, 1e-12);
   EXPECT_EQ(box.high.y, 4.0) << "the mesh, twice its size";
   EXPECT_EQ(box.high.z, 6.0);
   ASSERT_EQ(robot.notes.size(), 4u);

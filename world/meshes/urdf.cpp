@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 
+#include "base/elementary.h"
 #include "base/error.h"
 #include "base/plugin.h"
 #include "world/meshes/mesh_file.h"
@@ -29,7 +30,7 @@ void add_round(std::span<const glm::dvec2> profile, Triangles& out) {
   for (const glm::dvec2& ring : profile)
     for (std::uint32_t i = 0; i < kSides; ++i) {
       const double angle = 2.0 * M_PI * i / kSides;
-      out.vertices.emplace_back(ring.x * std::cos(angle), ring.x * std::sin(angle), ring.y);
+      out.vertices.emplace_back(ring.x * base::cos(angle), ring.x * base::sin(angle), ring.y);
     }
   for (std::uint32_t r = 0; r + 1 < profile.size(); ++r)
     for (std::uint32_t i = 0; i < kSides; ++i) {
@@ -59,7 +60,7 @@ Triangles solid_of(const UrdfShape& shape) {
     std::vector<glm::dvec2> profile{{0, -r}};
     for (std::uint32_t k = 1; k < kSides / 2; ++k) {
       const double angle = 2.0 * M_PI * k / kSides;
-      profile.emplace_back(r * std::sin(angle), -r * std::cos(angle));
+      profile.emplace_back(r * base::sin(angle), -r * base::cos(angle));
     }
     profile.emplace_back(0, r);
     add_round(profile, out);

@@ -2,7 +2,9 @@
 // Words and numbers of text mesh files.
 
 #include <charconv>
+#include <cstdint>
 #include <string_view>
+#include <system_error>
 
 namespace sf::world {
 

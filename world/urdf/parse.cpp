@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <mutex>
 
@@ -36,9 +37,13 @@ class Messages : public console_bridge::OutputHandler {
   std::string text_;
 };
 
+/// The parser computes quaternions by the C library's sine, whose last bits differ between libraries.
+double without_last_bits(double part) { return std::round(part * 0x1p45) * 0x1p-45; }
+
 glm::dmat4 transform_of(const urdf::Pose& pose) {
-  const urdf::Rotation& q = pose.rotation;
-  glm::dmat4 X = glm::mat4_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
+  const urdf::Rotation& r = pose.rotation;
+  const glm::dquat q(without_last_bits(r.w), without_last_bits(r.x), without_last_bits(r.y), without_last_bits(r.z));
+  glm::dmat4 X = glm::mat4_cast(glm::normalize(q));
   X[3] = {pose.position.x, pose.position.y, pose.position.z, 1.0};
   return X;
 }
