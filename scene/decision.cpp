@@ -41,22 +41,33 @@ bool before(glm::dvec3 a, glm::dvec3 b) {
   return a.z < b.z;
 }
 
-/// Returns the face's sides of the beam, positive inside if it is seen from its front.
+/// Fills in one of the face's sides, positive inside if it is seen from its front.
 /// @param d in the mesh's frame
-Cover cover_of(const SceneMesh& mesh, std::uint32_t row, glm::dvec3 d) {
-  const Face& face = mesh.tree->mesh.faces[row];
-  Cover cover{.edge_count = corners_of(face)};
-  for (std::uint32_t k = 0; k < cover.edge_count; ++k) {
-    Edge& edge = cover.edges[k];
-    edge.a = mesh.tree->mesh.vertices[face[k]];
-    edge.b = mesh.tree->mesh.vertices[face[(k + 1) % cover.edge_count]];
-    const bool swap = before(edge.b, edge.a);
-    if (swap) std::swap(edge.a, edge.b);
-    const glm::dvec3 a = edge.a - mesh.X_FS.p, b = edge.b - mesh.X_FS.p, n = glm::cross(a, b);
-    const double side = glm::dot(d, n);
-    edge.side = swap ? -side : side;
-    edge.left = !swap;
-    edge.certain = std::abs(side) > kSideError * (glm::length(a) * glm::length(b));
+void set_edge(const SceneMesh& mesh, const Face& face, std::uint32_t k, std::uint32_t corners, glm::dvec3 d,
+              Edge& edge) {
+  edge.a = mesh.tree->mesh.vertices[face[k]];
+  edge.b = mesh.tree->mesh.vertices[face[(k + 1) % corners]];
+  const bool swap = before(edge.b, edge.a);
+  if (swap) std::swap(edge.a, edge.b);
+  const glm::dvec3 a = edge.a - mesh.X_FS.p, b = edge.b - mesh.X_FS.p, n = glm::cross(a, b);
+  const double side = glm::dot(d, n);
+  edge.side = swap ? -side : side;
+  edge.left = !swap;
+  edge.certain = std::abs(side) > kSideError * (glm::length(a) * glm::length(b));
+}
+
+/// Returns the face's sides of the beam, as seen from its front or its back.
+/// @param whole all of them; else it ends, with one that is certainly negative, where the beam passes outside
+Cover cover_of(const Candidate& candidate, glm::dvec3 d, bool front, bool whole) {
+  const SceneMesh& mesh = *candidate.mesh;
+  const Face& face = mesh.tree->mesh.faces[candidate.face - mesh.first_face];
+  const std::uint32_t corners = corners_of(face);
+  Cover cover;
+  while (cover.edge_count < corners) {
+    Edge& edge = cover.edges[cover.edge_count];
+    set_edge(mesh, face, cover.edge_count++, corners, d, edge);
+    if (!front) edge.side = -edge.side, edge.left = !edge.left;
+    if (!whole && edge.certain && edge.side < 0.0) break;
   }
   return cover;
 }
@@ -101,23 +112,28 @@ SeenPlane seen_plane(const SceneMesh& mesh, std::uint32_t face) {
           owners.empty() ? mesh.owner : owners[face - mesh.first_face]};
 }
 
-Decision decide(std::span<const SceneMesh> meshes, std::span<const DrawnFace> drawn, std::uint32_t vector,
-                glm::dvec3 direction, Decision nearest) {
+void list_candidates(std::span<const SceneMesh> meshes, std::span<const DrawnFace> drawn, std::uint32_t vector,
+                     std::vector<Candidate>& out) {
+  out.clear();
+  for (const DrawnFace& face : drawn) {
+    if ((face.vectors & vector) == 0) continue;
+    const SceneMesh& mesh = mesh_with(meshes, face.face);
+    Candidate& candidate = out.emplace_back(Candidate{face.face, &mesh, seen_plane(mesh, face.face)});
+    const glm::dvec3 point = mesh.tree->planes[face.face - mesh.first_face].point;
+    candidate.flat = std::abs(candidate.plane.height) <= kHeightError * glm::length(point - mesh.X_FS.p);
+  }
+}
+
+Decision decide(std::span<const Candidate> candidates, glm::dvec3 direction, Decision nearest) {
   thread_local std::vector<Cover> covers;  // keeps its memory
   covers.clear();
   bool edge_on = false;
-  for (const DrawnFace& candidate : drawn) {
-    if ((candidate.vectors & vector) == 0) continue;
-    const SceneMesh& mesh = mesh_with(meshes, candidate.face);
-    const SeenPlane plane = seen_plane(mesh, candidate.face);
+  for (const Candidate& candidate : candidates) {
+    const SeenPlane& plane = candidate.plane;
     const double sine = sine_of(plane, direction), range = plane.height / sine;
-    const std::uint32_t row = candidate.face - mesh.first_face;
-    const double least_height = kHeightError * glm::length(mesh.tree->planes[row].point - mesh.X_FS.p);
-    const bool flat = std::abs(plane.height) <= least_height;
-    if (!flat && !(range > 0.0 && range <= nearest.range * (1.0 + 1e-9))) continue;
-    Cover cover = cover_of(mesh, row, mesh.X_FS.R * direction);
-    if (plane.height < 0.0) turn_around(cover);
-    if (flat) {
+    if (!candidate.flat && !(range > 0.0 && range <= nearest.range * (1.0 + 1e-9))) continue;
+    Cover cover = cover_of(candidate, candidate.mesh->X_FS.R * direction, plane.height >= 0.0, candidate.flat);
+    if (candidate.flat) {
       edge_on = edge_on || possible(cover);
       turn_around(cover);
       edge_on = edge_on || possible(cover);

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "base/rigid_transform.h"
 #include "scene/surface_tree.h"
@@ -55,9 +56,20 @@ struct Decision {
   bool flagged = false;
 };
 
-/// @param direction unit vector in the sensor's frame  @param vector bit of the beam's vector in `DrawnFace::vectors`
-/// @param nearest the range and face if no drawn face is nearer, such as the floor
-Decision decide(std::span<const SceneMesh> meshes, std::span<const DrawnFace> drawn, std::uint32_t vector,
-                glm::dvec3 direction, Decision nearest);
+/// A face that may cover beams of one vector.
+struct Candidate {
+  std::uint32_t face = 0;           ///< among those of all meshes
+  const SceneMesh* mesh = nullptr;  ///< its mesh
+  SeenPlane plane;
+  bool flat = false;  ///< the sensor may be in its plane
+};
+
+/// Lists the drawn faces of a vector in `out`. @param vector its bit in `DrawnFace::vectors`
+void list_candidates(std::span<const SceneMesh> meshes, std::span<const DrawnFace> drawn, std::uint32_t vector,
+                     std::vector<Candidate>& out);
+
+/// @param direction unit vector in the sensor's frame
+/// @param nearest the range and face if no candidate is nearer, such as the floor
+Decision decide(std::span<const Candidate> candidates, glm::dvec3 direction, Decision nearest);
 
 }  // namespace sf::scene

@@ -122,6 +122,7 @@ void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
 void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
   const std::uint32_t first = kWidth * vector;
   std::uint32_t rest = bits_of(at_least(load(s_.others + first), load(s_.low + first)));
+  if (rest != 0) list_candidates(s_.meshes, s_.drawn, 1u << vector, s_.candidates);
   for (; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
     const glm::dvec3 d{tile.dx[first + i], tile.dy[first + i], tile.dz[first + i]};
@@ -131,7 +132,7 @@ void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
       if (range > 0.0 && range < range_max_) nearest = {range, kFloorFace, std::abs(sine) < floor_plane_.least_sine};
       if (floor_plane_.height == 0.0) nearest.flagged = sine > -floor_plane_.least_sine;  // at the sensor itself
     }
-    nearest = decide(s_.meshes, s_.drawn, 1u << vector, d, nearest);
+    nearest = decide(s_.candidates, d, nearest);
     ranges_[i] = nearest.range;
     hits_[i] = nearest.face == kNoFace ? base::kNoHit : plane_of(nearest.face).owner;
     grazing_ = (grazing_ & ~(1u << i)) | std::uint32_t{nearest.flagged} << i;

@@ -40,10 +40,11 @@ struct Rasterizer::Scratch {
   float tile_side_offset[4], tile_axis_offset;
 
   LeafView leaf;
-  std::vector<std::uint64_t> stack;  ///< depth as sortable bits, above node * 16 + child
-  std::vector<DrawnFace> drawn;      ///< in this tile
-  std::vector<SceneMesh> meshes;     ///< of this scan, by first face
-  std::vector<MeshInView> in_view;   ///< of this tile, from near to far
+  std::vector<std::uint64_t> stack;   ///< depth as sortable bits, above node * 16 + child
+  std::vector<DrawnFace> drawn;       ///< in this tile
+  std::vector<Candidate> candidates;  ///< of one vector
+  std::vector<SceneMesh> meshes;      ///< of this scan, by first face
+  std::vector<MeshInView> in_view;    ///< of this tile, from near to far
   ScanCounts counts;
 };
 
