@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "scene/solids.h"
+#include "world/shapes.h"
 
 namespace sf::sensors {
 
@@ -18,12 +19,6 @@ std::vector<std::uint8_t> models_with_mesh(const world::World& world) {
   std::vector<std::uint8_t> with(world.models.size(), 0);
   for (const world::MeshModel& row : world.mesh_models) with[row.model] = 1;
   return with;
-}
-
-bool has_other_shape(const world::World& world, std::uint32_t mover) {
-  const auto found = world.changed_shapes.find(mover);
-  return found != world.changed_shapes.end() &&
-         (found->second.shape != world::kNone || found->second.size != found->second.original.size);
 }
 
 std::vector<world::Segment> without(std::span<const world::Segment> segments, const std::vector<std::uint8_t>& models) {
@@ -71,7 +66,7 @@ void SpatialScene::update_movers(const world::World& world) {
   std::vector<std::uint8_t> with_mesh = models_with_mesh(world);
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     const world::Mover& mover = world.movers[m];
-    changed_[m] = has_other_shape(world, m);
+    changed_[m] = !world::has_own_shape(world, m);
     const std::uint8_t own = std::exchange(with_mesh[mover.model], changed_[m] ? 0 : with_mesh[mover.model]);
     bodies_.push_back(scene::build_tree(scene::mesh_of(without(mover.body, with_mesh))));
     with_mesh[mover.model] = own;

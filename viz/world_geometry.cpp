@@ -6,7 +6,10 @@
 
 #include "base/bearing.h"
 #include "viz/signal_layer.h"
+#include "world/copies.h"
+#include "world/meshes/mesh_file.h"
 #include "world/path_geometry.h"
+#include "world/shapes.h"
 
 namespace sf::viz {
 namespace {
@@ -43,6 +46,43 @@ std::uint32_t color_of(const world::World& world, std::uint32_t model) {
 std::string model_name(const world::World& world, std::uint32_t model) {
   return model < world.models.size() ? world.models[model].name : "";
 }
+
+/// The models that are drawn as meshes: all that have one, or none if they are too many.
+class DrawnMeshes {
+ public:
+  explicit DrawnMeshes(const world::World& world) : world_(world), has_(world.models.size(), 0) {
+    std::size_t triangles = 0;
+    for (const world::MeshModel& row : world.mesh_models) triangles += world.meshes[row.mesh].corners.size() / 3;
+    if (triangles > kMostDrawnTriangles) return;
+    for (const world::MeshModel& row : world.mesh_models) has_[row.model] = 1;
+  }
+  /// @param mover kNone: a static model
+  bool has(std::uint32_t model, std::uint32_t mover) const {
+    return model < has_.size() && has_[model] != 0 &&
+           (mover == world::kNone || world_.movers[mover].model != model || world::has_own_shape(world_, mover));
+  }
+  /// Calls `add_cell(model)` for each triangle of the models of a mover that it has appended.
+  template <class AddCell>
+  void add(PolyData& data, std::uint32_t mover, const base::Pose& X_WM, const AddCell& add_cell) const {
+    const world::CopyIndex copies(world_);
+    for (const world::MeshModel& row : world_.mesh_models) {
+      const std::uint32_t carrier = world_.models[row.model].mover;
+      if (carrier != (mover == world::kNone ? mover : copies.row_of(mover)) || !has(row.model, mover)) continue;
+      const world::Mesh& mesh = world_.meshes[row.mesh];
+      const auto first = static_cast<std::int64_t>(data.points.size());
+      const base::Pose X = compose(X_WM, row.X_BF);
+      for (const glm::dvec3& p : mesh.vertices) add_point(data, transform(X, glm::dvec2{p.x, p.y}), X.z + p.z);
+      for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
+        data.polygons.push_back({first + mesh.corners[i], first + mesh.corners[i + 1], first + mesh.corners[i + 2]});
+        add_cell(row.model, mesh);
+      }
+    }
+  }
+
+ private:
+  const world::World& world_;
+  std::vector<std::uint8_t> has_;  ///< per model
+};
 
 /// The top face of a part of a body.
 struct Lid {
@@ -112,15 +152,28 @@ std::pair<double, double> lamp_of(const Head& head, bool single, world::LightSta
 
 PolyData walls_geometry(const world::World& world) {
   PolyData data;
+  const DrawnMeshes meshes(world);
+  const auto add_cell = [&](std::uint32_t model, double height, bool laser, bool robots) {
+    append(data.cell_data, "model", {static_cast<double>(model)});
+    append(data.cell_data, "height", {height});
+    append(data.cell_data, "laser", {laser ? 1.0 : 0.0});
+    append(data.cell_data, "robots", {robots ? 1.0 : 0.0});
+    append_color(data.cell_data, color_of(world, model));
+    data.names.push_back(model_name(world, model));
+  };
+  std::vector<std::uint8_t> stops(world.models.size(), 0);
   for (const world::Segment& wall : world.walls) {
+    if (wall.stops_robots && wall.model < stops.size()) stops[wall.model] = 1;
+    if (meshes.has(wall.model, world::kNone)) continue;
     add_upright(data, wall.a, wall.b, wall.z_min, wall.z_max);
-    append(data.cell_data, "model", {static_cast<double>(wall.model)});
-    append(data.cell_data, "height", {wall.z_max - wall.z_min});
-    append(data.cell_data, "laser", {wall.seen_by_laser ? 1.0 : 0.0});
-    append(data.cell_data, "robots", {wall.stops_robots ? 1.0 : 0.0});
-    append_color(data.cell_data, color_of(world, wall.model));
-    data.names.push_back(model_name(world, wall.model));
+    add_cell(wall.model, wall.z_max - wall.z_min, wall.seen_by_laser, wall.stops_robots);
   }
+  const world::Mesh* last = nullptr;
+  double height = 0.0;
+  meshes.add(data, world::kNone, {}, [&](std::uint32_t model, const world::Mesh& mesh) {
+    if (&mesh != last) last = &mesh, height = world::box_of(mesh.vertices).size().z;
+    add_cell(model, height, true, stops[model] != 0);
+  });
   return data;
 }
 
@@ -143,7 +196,8 @@ PolyData roads_geometry(const world::World& world) {
 
 PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses) {
   PolyData data;
-  for (std::size_t m = 0; m < std::min(poses.size(), world.movers.size()); ++m) {
+  const DrawnMeshes meshes(world);
+  for (std::uint32_t m = 0; m < std::min(poses.size(), world.movers.size()); ++m) {
     if (base::is_absent(poses[m])) continue;
     const auto add_cell = [&](std::uint32_t model) {
       append(data.cell_data, "robot", {static_cast<double>(m)});
@@ -151,16 +205,19 @@ PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> 
       data.names.push_back(world.movers[m].name);
     };
     for (const Lid& lid : lids_of(world.movers[m])) {
+      if (meshes.has(lid.model, m)) continue;
       std::vector<std::int64_t>& polygon = data.polygons.emplace_back();
       for (const glm::dvec2& p : lid.outline)
         polygon.push_back(add_point(data, transform(poses[m], p), poses[m].z + lid.z));
       add_cell(lid.model);
     }
     for (const world::Segment& side : world.movers[m].body) {
+      if (meshes.has(side.model, m)) continue;
       add_upright(data, transform(poses[m], side.a), transform(poses[m], side.b), poses[m].z + side.z_min,
                   poses[m].z + side.z_max);
       add_cell(side.model);
     }
+    meshes.add(data, m, poses[m], [&](std::uint32_t model, const world::Mesh&) { add_cell(model); });
   }
   return data;
 }

@@ -13,16 +13,20 @@
 
 namespace sf::viz {
 
-/// Returns one upright rectangle per wall segment. Cell arrays: `model` (row of the world's models), `height` [m],
-/// `rgb` [0, 255]; `laser` and `robots` are 1 if lasers see the wall or robots stop at it; `name` of the model.
+/// Triangles of meshes beyond this number, over all their places, are not drawn: their outlines are.
+inline constexpr std::size_t kMostDrawnTriangles = 2'000'000;
+
+/// Returns one upright rectangle per wall segment, or the triangles of a model that has a mesh. Cell arrays: `model`
+/// (row of the world's models), `height` [m], `rgb` [0, 255]; `laser` and `robots` are 1 if lasers see the wall or
+/// robots stop at it; `name` of the model.
 PolyData walls_geometry(const world::World& world);
 
 /// Returns lane markings and paths as lines on the ground. Cell arrays: `width` [m], `rgb` [0, 255], `kind`: 0 marking,
 /// 1 path.
 PolyData roads_geometry(const world::World& world);
 
-/// Returns the sides and tops of the bodies of movers at `poses`, one per mover of the world; absent movers are
-/// omitted. Cell arrays: `robot` (row of the world's movers), `rgb`; `name`.
+/// Returns the sides and tops of the bodies of movers, or the triangles of models that have a mesh, at `poses`, one per
+/// mover of the world; absent movers are omitted. Cell arrays: `robot` (row of the world's movers), `rgb`; `name`.
 PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses);
 
 /// Returns the states of traffic lights, one per light of the world: on top of each head an indicator, and on its front

@@ -173,6 +173,12 @@ void check_change(const World& world, std::uint32_t mover, const ShapeChange& ch
     refuse(fmt::format("changed objects would have {} sides together; expected at most {}", sides, kMostChangedSides));
 }
 
+bool has_own_shape(const World& world, std::uint32_t mover) {
+  const auto found = world.changed_shapes.find(mover);
+  return found == world.changed_shapes.end() ||
+         (found->second.shape == kNone && found->second.size == found->second.original.size);
+}
+
 bool change_shape(World& world, std::uint32_t mover, const ShapeChange& change) {
   check_change(world, mover, change);
   return use_shape(world, mover, changed(world, current_shape(world, mover), change));

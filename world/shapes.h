@@ -44,6 +44,9 @@ std::uint32_t color_named(const std::string& text);
 /// outline of its own, and for more than kMostChangedSides
 void check_change(const World& world, std::uint32_t mover, const ShapeChange& change);
 
+/// Returns false for a mover that was given another shape or size than in the file.
+bool has_own_shape(const World& world, std::uint32_t mover);
+
 /// Changes a mover in the world's tables: body, radius, magnets, fiducials, and the model's size and colour. Does not
 /// update extent and hash. Tables built from the world must be updated: farm::Farm::update_outlines,
 /// robots::Fleet::update_outline.

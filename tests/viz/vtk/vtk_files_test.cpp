@@ -177,6 +177,30 @@ TEST(VtkFiles, AbsentRobotsHaveNoBody) {
   for (const double robot : one.cell_data[0].values) EXPECT_EQ(robot, 1.0);
 }
 
+/// A model with a mesh is drawn as its triangles, unless these are too many or its mover has taken on another shape.
+TEST(VtkFiles, MeshesAreDrawnInPlaceOfOutlines) {
+  world::World world;
+  const std::uint32_t rock = scenes::add_model(world, "rock", 0xFF00FF00u);
+  world.walls.push_back({{0.0, 0.0}, {1.0, 0.0}, 0.0, 1.0, rock, true, true, false});
+  world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
+  world.meshes.push_back({"t.obj", {{0, 0, 0}, {1, 0, 0}, {0, 0, 2}}, {0, 1, 2}});
+  world.mesh_models = {{0, rock, {3.0, 4.0, 0.5, 0.0}}, {0, world.movers[0].model, {}}};
+  const PolyData walls = walls_geometry(world);
+  ASSERT_EQ(walls.polygons.size(), 1u);
+  EXPECT_EQ(walls.points[2], glm::dvec3(3.0, 4.0, 2.5));
+  EXPECT_EQ(walls.names[0], "rock");
+  EXPECT_EQ(walls.cell_data[1].values, std::vector{2.0}) << "height";
+  EXPECT_EQ(walls.cell_data[3].values, std::vector{0.0}) << "robots drive through";
+  const std::vector<base::Pose> poses{{5.0, 6.0, 0.25, M_PI / 2}};
+  const PolyData body = bodies_geometry(world, poses);
+  ASSERT_EQ(body.polygons.size(), 1u);
+  EXPECT_LT(glm::length(body.points[1] - glm::dvec3(5.0, 7.0, 0.25)), 1e-12);
+  world.changed_shapes[0].shape = 0;
+  EXPECT_EQ(bodies_geometry(world, poses).polygons.size(), 17u) << "16 sides and the top";
+  world.meshes[0].corners.resize(3 * kMostDrawnTriangles);
+  EXPECT_EQ(walls_geometry(world).polygons[0].size(), 4u) << "its wall";
+}
+
 /// Models with closed outlines have a lid at their height; an open bar has none.
 TEST(VtkFiles, OnlyClosedOutlinesHaveALid) {
   world::World world;
