@@ -9,6 +9,7 @@
 #include "base/box_tree.h"
 #include "base/pose.h"
 #include "scene/trapezoids.h"
+#include "world/ground.h"
 
 namespace sf::scene {
 
@@ -160,27 +161,37 @@ Mesh mesh_of(std::span<const Segment> segments, bool on_floor) {
   return mesh;
 }
 
-Mesh ground_of(const world::World& world, double reach) {
+Mesh roads_of(const world::World& world) {
   Mesh mesh;
   for (const world::Ramp& ramp : world.ramps) {
     const glm::dvec2 along = ramp.b - ramp.a;
     const double length = glm::length(along);
     if (!(length > 0.0) || (ramp.z_a == 0.0 && ramp.z_b == 0.0)) continue;
     const glm::dvec2 left = ramp.half_width / length * glm::dvec2{-along.y, along.x};
-    const std::array<glm::dvec3, 4> corners{glm::dvec3{ramp.a - left, ramp.z_a},
-                                            {ramp.b - left, ramp.z_b},
-                                            {ramp.b + left, ramp.z_b},
-                                            {ramp.a + left, ramp.z_a}};
-    mesh.add(corners, {});
+    const glm::dvec2 past = world::Ground::kOverlap * ramp.half_width / length * along;
+    const auto add = [&](glm::dvec2 a, double z_a, glm::dvec2 b, double z_b) {
+      mesh.add(std::array<glm::dvec3, 4>{glm::dvec3{a - left, z_a}, {b - left, z_b}, {b + left, z_b}, {a + left, z_a}},
+               {});
+    };
+    add(ramp.a - past, ramp.z_a, ramp.a, ramp.z_a);
+    add(ramp.a, ramp.z_a, ramp.b, ramp.z_b);
+    add(ramp.b, ramp.z_b, ramp.b + past, ramp.z_b);
   }
-  if (world.floor_unseen || world.floor_holes.empty()) return mesh;
-  const world::Extent& e = world.extent;
-  const glm::dvec2 low{e.x_min - reach, e.y_min - reach}, high{e.x_max + reach, e.y_max + reach};
-  const std::array<glm::dvec2, 4> outer{low, {high.x, low.y}, high, {low.x, high.y}};
+  return mesh;
+}
+
+Mesh holed_floor(const world::World& world, double reach) {
+  Mesh mesh;
   std::vector<RegionEdge> edges;
+  glm::dvec2 low(HUGE_VAL), high(-HUGE_VAL);
+  for (const world::FloorHole& hole : world.floor_holes) {
+    add_hole(hole.outline, edges);
+    for (const glm::dvec2& p : hole.outline) low = glm::min(low, p), high = glm::max(high, p);
+  }
+  low -= 2.0 * reach, high += 2.0 * reach;
+  const std::array<glm::dvec2, 4> outer{low, {high.x, low.y}, high, {low.x, high.y}};
   for (std::size_t i = 0; i < 4; ++i) edges.push_back({outer[i], outer[(i + 1) % 4]});
-  for (const world::FloorHole& hole : world.floor_holes) add_hole(hole.outline, edges);
-  add_flat(edges, std::array{0.0}, mesh, {});
+  add_flat(split_at_crossings(edges), std::array{0.0}, mesh, {});
   return mesh;
 }
 

@@ -15,9 +15,11 @@ namespace sf::scene {
 /// @param on_floor leaves out horizontal faces at z = 0, which coincide with the floor
 Mesh mesh_of(std::span<const world::Segment> segments, bool on_floor = false);
 
-/// Returns the roads above the floor and, in a world with holes in the floor, the floor without them, as far as `reach`
-/// [m] beyond the world's extent. Without owners. Bends of roads have the gaps and overlaps of World::ramps.
-Mesh ground_of(const world::World& world, double reach);
+/// Returns the roads above the floor, as bodies stand on them (world/ground.h). Without owners.
+Mesh roads_of(const world::World& world);
+
+/// Returns the floor without its holes, as far as 2 `reach` [m] beyond them. Without owners.
+Mesh holed_floor(const world::World& world, double reach);
 
 /// Returns the triangles of a file's mesh, without owners.
 Mesh mesh_of(const world::Mesh& triangles);

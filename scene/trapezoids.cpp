@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <map>
 #include <utility>
+
+#include "base/box_tree.h"
+#include "base/pose.h"
 
 namespace sf::scene {
 
@@ -92,5 +97,31 @@ std::vector<Trapezoid> Sweep::run() {
 }  // namespace
 
 std::vector<Trapezoid> trapezoids_of(std::span<const RegionEdge> edges) { return Sweep(edges).run(); }
+
+std::vector<RegionEdge> split_at_crossings(std::span<const RegionEdge> edges) {
+  std::vector<base::Box> boxes;
+  for (const RegionEdge& e : edges) boxes.push_back({glm::min(e.a, e.b), glm::max(e.a, e.b)});
+  const base::BoxTree tree(boxes);
+  std::vector<std::vector<glm::dvec2>> cuts(edges.size());
+  for (std::uint32_t i = 0; i < edges.size(); ++i)
+    tree.any(boxes[i], [&](std::uint32_t j) {
+      if (j <= i) return false;
+      const glm::dvec2 p = edges[i].b - edges[i].a, q = edges[j].b - edges[j].a, r = edges[j].a - edges[i].a;
+      const double area = base::cross(p, q), s = base::cross(r, q) / area, t = base::cross(r, p) / area;
+      if (!(area != 0.0 && s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0)) return false;
+      cuts[i].push_back(edges[i].a + s * p);
+      cuts[j].push_back(cuts[i].back());
+      return false;
+    });
+  std::vector<RegionEdge> pieces;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    std::ranges::sort(cuts[i], {}, [&](glm::dvec2 p) { return glm::distance(p, edges[i].a); });
+    cuts[i].push_back(edges[i].b);
+    glm::dvec2 from = edges[i].a;
+    for (const glm::dvec2& to : cuts[i])
+      if (to != from) pieces.push_back({from, to}), from = to;
+  }
+  return pieces;
+}
 
 }  // namespace sf::scene

@@ -21,4 +21,7 @@ using Trapezoid = std::array<glm::dvec2, 4>;
 /// overlaps. Corners are ends of edges wherever possible. Edges that cross inside give rise to inexact pieces.
 std::vector<Trapezoid> trapezoids_of(std::span<const RegionEdge> edges);
 
+/// Divides edges where they cross, so that the pieces of trapezoids_of are exact to rounding.
+std::vector<RegionEdge> split_at_crossings(std::span<const RegionEdge> edges);
+
 }  // namespace sf::scene

@@ -45,7 +45,7 @@ class Lidars : public HostBackend {
   void measure_all() override;
   void cast(const Job& job, unsigned thread);
   void cast_reference(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const LidarSettings& s,
-                      std::span<const scene::Instance> instances, const scene::ScanOutput& out) const;
+                      const scene::SceneView& view, const scene::ScanOutput& out) const;
   void finish(std::size_t sample);
   /// A sample's part of a table with one entry per beam of all lidars.
   template <class Value>
@@ -62,6 +62,7 @@ class Lidars : public HostBackend {
   std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
   std::vector<base::RigidTransform> X_WS_;      ///< per due sample
   std::vector<std::vector<scene::Instance>> instances_;
+  std::vector<std::uint8_t> floor_;  ///< per due sample: the plane z = 0 is a surface
   std::vector<Job> jobs_;
   std::uint64_t rays_ = 0;
 };
@@ -95,11 +96,12 @@ bool Lidars::prepare(std::span<const DueSample> due) {
   jobs_.clear();
   X_WS_.resize(due.size());
   instances_.resize(std::max(instances_.size(), due.size()));
+  floor_.resize(due.size());
   const bool whole = due.size() >= 8 * rasterizers_.size();  // enough work for all threads without dividing scans
   for (std::size_t i = 0; i < due.size(); ++i) {
     const LidarSettings& s = settings_[due[i].row];
     X_WS_[i] = base::compose(scene_.X_WM(rows()[due[i].row].mover), s.X_MS);
-    scene_.list(rows()[due[i].row].mover, X_WS_[i].p, s.range_max, instances_[i]);
+    floor_[i] = scene_.list(rows()[due[i].row].mover, X_WS_[i].p, s.range_max, instances_[i]);
     const std::size_t tiles = s.beams->pattern.size(), size = whole ? tiles : kTilesPerJob;
     for (std::size_t first = 0; first < tiles; first += size)
       jobs_.push_back({i, first, std::min(tiles, first + size)});
@@ -112,18 +114,16 @@ void Lidars::cast(const Job& job, unsigned thread) {
   const LidarSettings& s = settings_[sample.row];
   const auto tiles = std::span(s.beams->pattern).subspan(job.first_tile, job.end_tile - job.first_tile);
   const scene::ScanOutput out{sample.values, beams_of(hits_, job.sample), beams_of(quality_, job.sample)};
-  if (reference_) return cast_reference(X_WS_[job.sample], tiles, s, instances_[job.sample], out);
-  rasterizers_[thread].scan(X_WS_[job.sample], tiles, s.range_max, {instances_[job.sample], scene_.has_floor_plane()},
-                            out);
+  const scene::SceneView view{instances_[job.sample], floor_[job.sample] != 0};
+  if (reference_) return cast_reference(X_WS_[job.sample], tiles, s, view, out);
+  rasterizers_[thread].scan(X_WS_[job.sample], tiles, s.range_max, view, out);
 }
 
 void Lidars::cast_reference(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles,
-                            const LidarSettings& s, std::span<const scene::Instance> instances,
-                            const scene::ScanOutput& out) const {
+                            const LidarSettings& s, const scene::SceneView& view, const scene::ScanOutput& out) const {
   for (const scene::BeamTile& tile : tiles)
     for (const std::uint32_t i : tile.place) {
-      const auto hit =
-          scene::reference_scan(X_WS, s.beams->directions[i], s.range_max, {instances, scene_.has_floor_plane()});
+      const auto hit = scene::reference_scan(X_WS, s.beams->directions[i], s.range_max, view);
       out.ranges[i] = static_cast<double>(hit.range);
       out.hits[i] = hit.owner;
     }

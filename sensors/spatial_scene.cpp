@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "base/error.h"
 #include "scene/solids.h"
@@ -44,12 +46,16 @@ void require_numbers(const world::World& world) {
 
 SpatialScene::SpatialScene(const world::World& world, double reach)
     : copies_(world),
-      floor_plane_(!world.floor_unseen && world.floor_holes.empty()),
+      floor_(!world.floor_unseen),
       carried_(world.movers.size() / world.copies),
       X_WM_(world.movers.size()) {
   require_numbers(world);
   walls_ = scene::build_tree(scene::mesh_of(without(world.walls, models_with_mesh(world)), !world.floor_unseen));
-  ground_ = scene::build_tree(scene::ground_of(world, reach));
+  roads_ = scene::build_tree(scene::roads_of(world));
+  if (floor_ && !world.floor_holes.empty()) holed_floor_ = scene::build_tree(scene::holed_floor(world, reach));
+  for (const world::FloorHole& hole : world.floor_holes)
+    for (const glm::dvec2& p : hole.outline)
+      holes_low_ = glm::min(holes_low_, p), holes_high_ = glm::max(holes_high_, p);
   for (const world::Mesh& mesh : world.meshes) meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
   for (const world::MeshModel& row : world.mesh_models) {
     const std::uint32_t mover = world.models[row.model].mover;
@@ -84,8 +90,12 @@ void SpatialScene::add(const scene::SurfaceTree& tree, const base::RigidTransfor
   out.push_back({&tree, X_WI, false, owner});
 }
 
-void SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const {
-  out.assign({{&walls_, {}, true}, {&ground_, {}, true, base::kFloorHit}});
+bool SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const {
+  out.assign({{&walls_, {}, true}, {&roads_, {}, true, base::kFloorHit}});
+  const glm::dvec2 foot(p);
+  const bool near_holes =
+      !holed_floor_.empty() && glm::distance(foot, glm::clamp(foot, holes_low_, holes_high_)) <= range;
+  if (near_holes) out.push_back({&holed_floor_, {}, true, base::kFloorHit});
   for (const Part& part : fixed_) add(meshes_[part.mesh], part.X_BF, part.model, p, range, out);
   const auto [first, end] = copies_.rows_with(mover, static_cast<std::uint32_t>(bodies_.size()));
   for (std::uint32_t m = first; m < end; ++m) {
@@ -95,6 +105,7 @@ void SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::ve
       if (!part.own || changed_[m] == 0)
         add(meshes_[part.mesh], base::compose(X_WM_[m], part.X_BF), part.model, p, range, out);
   }
+  return floor_ && !near_holes;
 }
 
 }  // namespace sf::sensors

@@ -24,12 +24,10 @@ class SpatialScene {
   void place(std::span<const base::Report> states);
   const base::RigidTransform& X_WM(std::uint32_t mover) const { return X_WM_[mover]; }
 
-  /// Returns whether the plane z = 0 is a surface. Where the floor has holes, it is a mesh instead.
-  bool has_floor_plane() const { return floor_plane_; }
-
   /// Sets `out` to the walls, and to all other surfaces of the world of `mover` within `range` [m] of `p`, except its
   /// own. They are valid until the movers are updated or placed.
-  void list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const;
+  /// @return whether the plane z = 0 is a surface; near holes in the floor, a mesh in `out` is that instead
+  bool list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const;
 
  private:
   /// A mesh of a model.
@@ -43,9 +41,11 @@ class SpatialScene {
            double range, std::vector<scene::Instance>& out) const;
 
   world::CopyIndex copies_;
-  bool floor_plane_;
+  bool floor_;
   scene::SurfaceTree walls_;
-  scene::SurfaceTree ground_;  ///< roads above the floor, and a floor with holes
+  scene::SurfaceTree roads_;        ///< above the floor
+  scene::SurfaceTree holed_floor_;  ///< around all holes; empty: there are none
+  glm::dvec2 holes_low_{HUGE_VAL}, holes_high_{-HUGE_VAL};
   std::vector<scene::SurfaceTree> meshes_;
   std::vector<Part> fixed_;
   std::vector<std::vector<Part>> carried_;  ///< per mover of one world

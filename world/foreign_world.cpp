@@ -45,13 +45,13 @@ constexpr auto kElements = std::to_array<ForeignKind>({
     {"mujoco", "MuJoCo (MJCF)", kMujoco},
     {"mujocoinclude", "MuJoCo (MJCF)", kMujoco},
     {"robot", "URDF, which describes one robot",
-     "write its collision shapes as block( ... ) of a position( ), with laser( ) or ranger( ) for its sensors"},
+     "name it in a world file: position( mesh \"FILE\" ), with laser( ) or lidar( ) for its sensors"},
     {"launch", "ROS (a launch file)", "load the world or the map's .yaml that it names"},
     {"osm", "OpenStreetMap",
      "export its buildings as a table with well-known text (ogr2ogr -f CSV -lco GEOMETRY=AS_WKT -t_srs EPSG:...) and "
      "name it by `outlines`"},
     {"OpenDRIVE", "OpenDRIVE", "write its road as path( ... ), or its network as an RNDF for road( rndf \"FILE\" )"},
-    {"COLLADA", "COLLADA", kModels},
+    {"COLLADA", "COLLADA", kMeshes},
     {"svg", "a drawing program (SVG)", "export it as PNG and name it by `bitmap`"},
 });
 

@@ -9,8 +9,7 @@ namespace sf::world {
 namespace {
 
 constexpr double kContact = 0.01;  // [m] a body this close to a surface is on it
-// [half widths] pieces are this much longer at both ends, which closes the gaps between them on the outside of bends
-constexpr double kOverlap = 0.05;
+constexpr double kOverlap = Ground::kOverlap;
 
 base::BoxTree tree_of(std::span<const Ramp> ramps) {
   std::vector<base::Box> boxes;

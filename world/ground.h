@@ -1,6 +1,6 @@
 #pragma once
-// Heights of the ground: the floor at z = 0, and roads above it (World::ramps). Bodies stand on these; sensors do not
-// detect them.
+// Heights of the ground: the floor at z = 0, and roads above it (World::ramps). Bodies stand on these, and spatial
+// sensors see them (scene/solids.h); planar sensors do not.
 
 #include <span>
 
@@ -26,6 +26,9 @@ class Ground {
 
   static constexpr double kMostStep = 0.05;  ///< [m]
   static constexpr double kMostSlope = 0.5;
+  /// [half widths] Pieces are this much longer at both ends, level, which closes the gaps between them on the outside
+  /// of bends.
+  static constexpr double kOverlap = 0.05;
 
  private:
   std::span<const Ramp> ramps_;

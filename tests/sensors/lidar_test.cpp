@@ -144,6 +144,39 @@ TEST(Lidar, HolesInTheFloor) {
   EXPECT_EQ(std::ranges::count(sense(unseen, {}).hits, base::kFloorHit), 0);
 }
 
+/// Holes that overlap, at angles, and a sensor far from all: each beam meets the floor unless its point is in a hole.
+TEST(Lidar, FloorBetweenOverlappingHoles) {
+  const std::string lidar =
+      "position( size [0.4 0.4 0.5] origin [0 0 0 0] lidar( channels 40 fov_v [-60 -10] columns 360 "
+      "range [0 30] ) )\n";
+  const world::World world = world_of(lidar +
+                                      "model( pose [0.6 0.3 0 20] size [0.5 0.4 0.1] cliff_return 1 )\n"
+                                      "model( pose [0.7 0.35 0 50] size [0.5 0.4 0.1] cliff_return 1 )\n"
+                                      "model( pose [0.6 0.3 0 65] size [0.9 0.1 0.1] cliff_return 1 )\n");
+  const auto inside = [](const std::vector<glm::dvec2>& outline, glm::dvec2 p) {
+    bool in = false;
+    for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++)
+      if ((outline[i].y > p.y) != (outline[j].y > p.y) &&
+          p.x < (outline[j].x - outline[i].x) * (p.y - outline[i].y) / (outline[j].y - outline[i].y) + outline[i].x)
+        in = !in;
+    return in;
+  };
+  for (const base::Pose& X_WM : {base::Pose{}, base::Pose{0.6, 0.3, 0.0, 0.2}, base::Pose{500.0, -300.0, 0.0, 0.0}}) {
+    const Sensed r = sense(world, X_WM);
+    std::size_t holes = 0, wrong = 0;
+    for (std::size_t i = 0; i < r.values.size(); ++i) {
+      const glm::dvec3 d = r.X_WS.R * r.directions[i];
+      const double range = -r.X_WS.p.z / d.z;
+      const glm::dvec2 p = glm::dvec2(r.X_WS.p) + range * glm::dvec2(d);
+      const bool hole = std::ranges::any_of(world.floor_holes, [&](const auto& h) { return inside(h.outline, p); });
+      holes += hole;
+      wrong += hole ? r.hits[i] != base::kNoHit : !(std::abs(r.values[i] - range) < 1e-8);
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_EQ(holes > 0, X_WM.x < 100.0);
+  }
+}
+
 /// A road above the floor is a surface from above and from below, and counts as ground.
 TEST(Lidar, RoadsAboveTheFloor) {
   world::World world = world_of(

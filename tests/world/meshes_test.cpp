@@ -138,6 +138,13 @@ TEST_F(Meshes, FacesBecomeTriangles) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.4 0.2 0\n";
   EXPECT_EQ(read_triangles(file("a.obj", square + "f 1 2 3 4\n")).corners,
             (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+  // Comments, and corners on an edge to the precision of the text.
+  EXPECT_EQ(
+      read_triangles(file("a.obj", "v 0 0 0\nv 0.333333 0.249999 0\nv 4 3 0\nv 0 3 0\nf 1 2 3 4 # x\n")).corners.size(),
+      6u);
+  EXPECT_EQ(refusal("a.obj", "v 0 3 0\nv 2 -3 0\nv -3 1 0\nv 3 1 0\nv -2 -3 0\nf 1 2 3 4 5\n").substr(0, 34),
+            "a.obj:6: a face with 5 corners is ")
+      << "a star";
   // A line may continue, and end with CRLF.
   EXPECT_EQ(read_triangles(file("a.obj", square + "f 1 2 \\\n 3\r\n")).corners, (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(refusal("a.obj", square + "f 1 5 2 3 4\n"),
@@ -149,9 +156,7 @@ TEST_F(Meshes, RefusalsNameThePlace) {
   struct {
     std::string name, bytes, expected;
   } const cases[] = {
-      {"a.blend", "x",
-       "a.blend: is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx, .3ds, .3mf, .off or "
-       ".urdf"},
+      {"a.blend", "x", "a.blend: is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx or .urdf"},
       {"a.obj", "v 0 0\n", "a.obj:1: expected: v X Y Z"},
       {"a.obj", "v 0 0 nan\n", "a.obj:1: the coordinate nan is not a number within 1e+07 of 0"},
       {"a.obj", "v 0 0 2e7\n", "a.obj:1: the coordinate 2e+07 is not a number within 1e+07 of 0"},
@@ -178,11 +183,8 @@ TEST_F(Meshes, RefusalsNameThePlace) {
   for (const auto& [name, bytes, expected] : cases) expect_in(expected, refusal(name, bytes));
 }
 
-/// Formats that Assimp reads. COLLADA keeps its axes, and its unit becomes metres.
-TEST_F(Meshes, OtherFormats) {
-  std::string off = "OFF\n4 4 0\n";
-  for (const glm::dvec3& p : kVertices) off += fmt::format("{} {} {}\n", p.x, p.y, p.z);
-  for (const auto& face : kFaces) off += fmt::format("3 {} {} {}\n", face[0], face[1], face[2]);
+/// COLLADA, read by Assimp, keeps its axes, and its unit becomes metres.
+TEST_F(Meshes, Collada) {
   const char* const dae =
       R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="centimeter" meter="0.01"/><up_axis>Z_UP</up_axis></asset>
@@ -194,15 +196,54 @@ TEST_F(Meshes, OtherFormats) {
 </mesh></geometry></library_geometries>
 <library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
-  for (const auto& [name, bytes] : {std::pair<std::string, std::string>{"t.off", off}, {"t.dae", dae}}) {
-    SCOPED_TRACE(name);
-    const Triangles found = read_triangles(file(name, bytes));
-    ASSERT_EQ(found.corners.size(), 12u);
-    for (std::size_t i = 0; i < 12; ++i)
-      EXPECT_LT(glm::length(found.vertices[found.corners[i]] - kVertices[kFaces[i / 3][i % 3]]), 1e-6) << i;
-  }
+  const Triangles found = read_triangles(file("t.dae", dae));
+  ASSERT_EQ(found.corners.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i)
+    EXPECT_LT(glm::length(found.vertices[found.corners[i]] - kVertices[kFaces[i / 3][i % 3]]), 1e-6) << i;
   expect_in("a.dae: is no readable mesh: ", refusal("a.dae", "<COLLADA/>"));
   expect_in("a.fbx: is no readable mesh: ", refusal("a.fbx", "x"));
+}
+
+TEST_F(Meshes, TextOfStlMayBeWrittenInManyWays) {
+  std::string capital = text_stl();
+  for (char& c : capital) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (const std::string& bytes :
+       {capital, "\n " + text_stl(), "\xEF\xBB\xBF" + text_stl(), "solid vertex endfacet 1" + text_stl().substr(7)})
+    EXPECT_EQ(read_triangles(file("a.stl", bytes)).corners.size(), 12u) << bytes.substr(0, 20);
+  expect_in("a.stl: ends within a solid; expected 'endsolid'",
+            refusal("a.stl", text_stl().substr(0, text_stl().find("endsolid"))));
+  expect_in("a.stl: ends after 284 bytes", refusal("a.stl", binary_stl(5)));
+}
+
+/// Text that nests without need would overflow a reader's stack.
+TEST_F(Meshes, DeepTextIsRefused) {
+  expect_in("nests brackets more than 1000 deep", refusal("a.gltf", "{\"extras\":" + std::string(30'000, '[')));
+  std::string elements;
+  for (int i = 0; i < 50'000; ++i) elements += "<a>";
+  expect_in("nests elements more than 1000 deep", refusal("a.urdf", elements));
+  expect_in("nests elements more than 1000 deep", refusal("a.dae", "<COLLADA>" + elements));
+}
+
+/// What the parser cannot read is said; a mesh that cannot be read is missing from every link that has it.
+TEST_F(Meshes, UrdfSaysWhatIsLeftOut) {
+  const std::string link =
+      "<link name='NAME'><visual><geometry><mesh filename='none.stl'/></geometry></visual>"
+      "<collision><geometry><box size='1 1 1'/></geometry></collision></link>";
+  const auto named = [&](const std::string& name) { return std::string(link).replace(link.find("NAME"), 4, name); };
+  const std::string joint = "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>";
+  const Triangles two =
+      read_triangles(file("r.urdf", "<robot name='r'>" + named("a") + named("b") + joint + "</robot>"));
+  EXPECT_EQ(two.corners.size(), 72u);
+  EXPECT_EQ(two.notes.size(), 2u);
+  const Triangles capsule = read_triangles(file(
+      "r.urdf", "<robot name='r'>" + named("a") +
+                    "<link name='b'><visual><geometry><capsule/></geometry></visual></link>" + joint + "</robot>"));
+  EXPECT_EQ(capsule.corners.size(), 36u);
+  expect_in("parts are left out: ", capsule.notes.at(0));
+  expect_in("r.urdf: has no shape that can be read: link 'a' is left out: 'package://p/x.stl' is in no known folder",
+            refusal("r.urdf",
+                    "<robot name='r'><link name='a'><visual><geometry><mesh "
+                    "filename='package://p/x.stl'/></geometry></visual></link></robot>"));
 }
 
 TEST_F(Meshes, RowsOfGltfAreChecked) {
@@ -216,8 +257,9 @@ TEST_F(Meshes, RowsOfGltfAreChecked) {
             "a.glb: has nodes within nodes without end, or more than 1000000");
   EXPECT_EQ(with("\"mesh\":0", "\"mesh\":5"), "a.glb: refers to mesh 5, which does not exist");
   EXPECT_EQ(with("\"VEC3\"", "\"VEC2\""), "a.glb: has positions that are no vectors of three floats");
-  EXPECT_EQ(with("\"scene\":0", R"("extensionsRequired":["KHR_draco_mesh_compression"],"scene":0)"),
-            "a.glb: requires KHR_draco_mesh_compression; expected a file without compression: export it again");
+  EXPECT_EQ(
+      with("\"scene\":0", R"("extensionsRequired":["KHR_draco_mesh_compression"],"scene":0)"),
+      "a.glb: requires KHR_draco_mesh_compression, which is not read; expected a file without it: export it again");
 }
 
 constexpr const char* kUrdf = R"(<?xml version="1.0"?><robot name="r">
@@ -268,13 +310,13 @@ class MeshModels : public Meshes {
 TEST_F(MeshModels, AreInMetresOrFitASize) {
   const World plain = world("model( mesh \"t.obj\" pose [10 0 1 0] )\n");
   ASSERT_EQ(plain.meshes.size(), 1u);
-  EXPECT_EQ(plain.meshes[0].vertices, std::vector<glm::dvec3>(kVertices.begin(), kVertices.end()));
+  EXPECT_EQ(plain.meshes[0].vertices, (std::vector<glm::dvec3>{{0, 0, 0}, {0, 2, 0}, {1, 0, 0}, {0, 0, 3}}));
   EXPECT_EQ(plain.mesh_models[0].X_BF.x, 10.0);
   EXPECT_EQ(plain.models[0].size, glm::dvec2(1.0, 2.0));
   const World fitted = world("model( mesh \"t.obj\" size [4 4 6] )\n");
   EXPECT_EQ(fitted.meshes[0].vertices[3], glm::dvec3(-2, -2, 6));
   const World scaled = world("model( mesh \"t.obj\" mesh_scale 0.5 mesh_rotation [0 0 90] )\n");
-  EXPECT_LT(glm::length(scaled.meshes[0].vertices[1] - glm::dvec3(0, 0.5, 0)), 1e-15);
+  EXPECT_LT(glm::length(scaled.meshes[0].vertices[2] - glm::dvec3(0, 0.5, 0)), 1e-15);
 }
 
 TEST_F(MeshModels, HaveTheirConvexOutlineForPlanarSensors) {
@@ -299,12 +341,22 @@ TEST_F(MeshModels, ShareWhatIsEqual) {
   EXPECT_EQ(many.mesh_models.size(), 3u);
 }
 
+/// An upright plane is a thin wall; points that no triangle uses do not count.
+TEST_F(MeshModels, PlanesAndStrayPoints) {
+  write("p.obj", "v 0 -1 0\nv 0 1 0\nv 0 1 1\nv 0 -1 1\nv 100 100 100\nf 1 2 3 4\n");
+  const World world = load_world(file("w.world", "model( mesh \"p.obj\" )\n"), kWithLasers);
+  ASSERT_EQ(world.walls.size(), 1u);
+  EXPECT_FALSE(world.walls[0].solid_left);
+  EXPECT_EQ(glm::length(world.walls[0].b - world.walls[0].a), 2.0);
+  EXPECT_EQ(world.walls[0].z_max, 1.0);
+}
+
 TEST_F(MeshModels, OutlinesOfRoundMeshesHaveFewCorners) {
   std::string round;
   for (int i = 0; i < 1000; ++i)
     for (const int z : {0, 1})
       round += fmt::format("v {} {} {}\n", std::cos(i * 2e-3 * M_PI), std::sin(i * 2e-3 * M_PI), z);
-  round += "f 1 2 3\n";
+  for (int i = 1; i < 1999; ++i) round += fmt::format("f {} {} {}\n", i, i + 1, i + 2);
   write("r.obj", round);
   const World world = load_world(file("w.world", "model( mesh \"r.obj\" )\n"), kWithLasers);
   EXPECT_LT(world.walls.size(), 100u);

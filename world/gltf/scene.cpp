@@ -5,6 +5,7 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -20,7 +21,8 @@ namespace sf::world {
 
 namespace {
 
-constexpr int kMostDepth = 100;  ///< of nodes within nodes
+constexpr std::size_t kMostMessage = 300;  ///< [bytes] of the library's message, which may quote the file
+constexpr int kMostDepth = 100;            ///< of nodes within nodes
 constexpr std::uint64_t kMostNodes = 1'000'000;
 constexpr std::size_t kMostBuffer = std::size_t{4} << 30;  ///< [bytes] of one file
 
@@ -52,7 +54,8 @@ class SceneReader {
  private:
   [[noreturn]] void fail(const std::string& message) const { throw base::InputError(file_, 0, message); }
   void load(std::string_view bytes);
-  void refuse_compression() const;
+  void refuse_extensions() const;
+  void refuse_depth(std::string_view bytes) const;
   void add_node(int row, const glm::dmat4& X_parent, int depth);
   void add_mesh(int row, const glm::dmat4& X);
   void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& X);
@@ -89,13 +92,38 @@ void SceneReader::load(std::string_view bytes) {
                                         size, folder)
           : loader.LoadASCIIFromString(&model_, &error, &warning, bytes.data(), size, folder);
   while (!error.empty() && (error.back() == '\n' || error.back() == ' ')) error.pop_back();
+  if (error.size() > kMostMessage) error = error.substr(0, kMostMessage) + " ...";
   if (!good) fail(fmt::format("is no readable glTF 2.0 file: {}", error.empty() ? "no reason is given" : error));
 }
 
-void SceneReader::refuse_compression() const {
+/// Extensions of materials, textures and lights change no shape.
+void SceneReader::refuse_extensions() const {
+  constexpr std::string_view kHarmless[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp"};
   for (const std::string& name : model_.extensionsRequired)
-    if (name.find("compression") != std::string::npos || name == "KHR_mesh_quantization")
-      fail(fmt::format("requires {}; expected a file without compression: export it again", name));
+    if (std::none_of(std::begin(kHarmless), std::end(kHarmless), [&](auto begin) { return name.starts_with(begin); }))
+      fail(fmt::format("requires {}, which is not read; expected a file without it: export it again", name));
+}
+
+/// A file's text may nest what it does not need, which readers follow.
+void SceneReader::refuse_depth(std::string_view bytes) const {
+  constexpr std::size_t kHeader = 20, kMost = 1'000;
+  std::uint32_t length = 0;
+  if (bytes.starts_with("glTF") && bytes.size() >= kHeader) {
+    std::memcpy(&length, bytes.data() + 12, sizeof length);
+    bytes = bytes.substr(kHeader, length);
+  }
+  std::size_t depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (quoted && bytes[i] == '\\')
+      ++i;
+    else if (bytes[i] == '"')
+      quoted = !quoted;
+    else if (!quoted && (bytes[i] == '[' || bytes[i] == '{') && ++depth > kMost)
+      fail(fmt::format("nests brackets more than {} deep", kMost));
+    else if (!quoted && (bytes[i] == ']' || bytes[i] == '}') && depth > 0)
+      --depth;
+  }
 }
 
 const unsigned char* SceneReader::data_of(const tinygltf::Accessor& accessor, std::size_t& stride) const {
@@ -207,10 +235,17 @@ void SceneReader::add_node(int row, const glm::dmat4& X_parent, int depth) {
 }
 
 void SceneReader::read(std::string_view bytes) {
+  refuse_depth(bytes);
   load(bytes);
-  refuse_compression();
+  refuse_extensions();
   if (model_.scenes.empty()) {
-    for (std::size_t row = 0; row < model_.meshes.size(); ++row) add_mesh(static_cast<int>(row), glm::dmat4(1.0));
+    std::vector<bool> is_child(model_.nodes.size(), false);
+    for (const tinygltf::Node& node : model_.nodes)
+      for (const int child : node.children)
+        if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
+          is_child[static_cast<std::size_t>(child)] = true;
+    for (std::size_t row = 0; row < model_.nodes.size(); ++row)
+      if (!is_child[row]) add_node(static_cast<int>(row), glm::dmat4(1.0), 0);
     return;
   }
   for (const int node : checked(model_.scenes, std::max(0, model_.defaultScene), "scene").nodes)

@@ -23,9 +23,8 @@ struct MeshFormat {
   Triangles (*read)(const std::string& file, std::string_view bytes);
 };
 constexpr MeshFormat kFormats[] = {
-    {".stl", read_stl},        {".obj", read_obj},        {".ply", read_ply},        {".glb", read_gltf},
-    {".gltf", read_gltf},      {".urdf", read_urdf},      {".dae", read_other_mesh}, {".fbx", read_other_mesh},
-    {".3ds", read_other_mesh}, {".3mf", read_other_mesh}, {".off", read_other_mesh},
+    {".stl", read_stl},   {".obj", read_obj},   {".ply", read_ply},        {".glb", read_gltf},
+    {".gltf", read_gltf}, {".urdf", read_urdf}, {".dae", read_other_mesh}, {".fbx", read_other_mesh},
 };
 
 /// Returns the corners of the convex hull, counter-clockwise (Andrew's monotone chain).
@@ -33,7 +32,7 @@ std::vector<glm::dvec2> hull_of(std::vector<glm::dvec2> points) {
   const auto before = [](glm::dvec2 a, glm::dvec2 b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); };
   std::ranges::sort(points, before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return {};
+  if (points.size() < 3) return points;
   std::vector<glm::dvec2> hull;
   const auto add_chain = [&](auto first, auto last) {
     const std::size_t start = hull.size();
@@ -78,9 +77,7 @@ Triangles read_triangles(const std::string& file) {
   const auto format = std::ranges::find(kFormats, ending_of(file), &MeshFormat::ending);
   if (format == std::end(kFormats))
     throw base::InputError(
-        file, 0,
-        fmt::format(
-            "is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx, .3ds, .3mf, .off or .urdf"));
+        file, 0, fmt::format("is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx or .urdf"));
   return format->read(file, base::read_bytes(file, kMostBytes));
 }
 
@@ -97,12 +94,14 @@ std::vector<Segment> outline_from_above(const std::vector<glm::dvec3>& vertices)
   points.reserve(vertices.size());
   for (const glm::dvec3& p : vertices) points.emplace_back(p.x, p.y);
   std::vector<glm::dvec2> corners = hull_of(std::move(points));
-  if (corners.size() < 3 || !(box.low.z < box.high.z)) return {};
-  corners = simplified(corners, 1e-3 * std::max(box.size().x, box.size().y));
-  std::vector<Segment> sides(corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i) {
+  if (corners.size() < 2 || !(box.low.z < box.high.z)) return {};
+  const bool solid = corners.size() > 2;  // else an upright plane
+  if (solid) corners = simplified(corners, 1e-3 * std::max(box.size().x, box.size().y));
+  std::vector<Segment> sides(solid ? corners.size() : 1);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
     sides[i].a = corners[i], sides[i].b = corners[(i + 1) % corners.size()];
     sides[i].z_min = box.low.z, sides[i].z_max = box.high.z;
+    sides[i].solid_left = solid;
   }
   return sides;
 }

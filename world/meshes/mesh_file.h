@@ -25,8 +25,8 @@ struct MeshBox {
 MeshBox box_of(const std::vector<glm::dvec3>& vertices);
 
 /// Returns the convex outline of all vertices, seen from above, as the sides of a solid from the lowest to the highest
-/// one; none for a mesh without a height or a width. Corners nearer than 0.1 % of its size to the outline of the others
-/// are left out.
+/// one; a thin wall for an upright plane, none for a mesh without a height. Corners nearer than 0.1 % of its size to
+/// the outline of the others are left out.
 std::vector<Segment> outline_from_above(const std::vector<glm::dvec3>& vertices);
 
 }  // namespace sf::world

@@ -33,7 +33,7 @@ Triangles read_obj(const std::string& file, std::string_view bytes) {
   MeshPlace at{"line", 0};
   for (std::string_view line; take_line(bytes, line);) {
     ++at.number;
-    if (line.ends_with('\\')) {
+    if (line.ends_with('\\') && !bytes.empty()) {
       joined.append(line.substr(0, line.size() - 1)) += ' ';
       continue;
     }
@@ -46,7 +46,7 @@ Triangles read_obj(const std::string& file, std::string_view bytes) {
       out.add_vertex(p, at);
     } else if (word == "f") {
       corners.clear();
-      for (std::string_view corner = in.word(); !corner.empty(); corner = in.word())
+      for (std::string_view corner = in.word(); !corner.empty() && corner[0] != '#'; corner = in.word())
         corners.push_back(corner_of(out, corner, at));
       out.add_face(corners, at);
     }

@@ -46,29 +46,44 @@ Triangles read_text(TriangleBuilder& out, std::string_view text) {
   WordReader in(text);
   std::array<glm::dvec3, 3> corners;
   std::size_t count = 0;
+  bool open = false;  // a solid has not ended
   for (std::string_view word = in.word(); !word.empty(); word = in.word()) {
     const auto at = [&] { return MeshPlace{"line", in.line()}; };
-    if (word == "vertex") {
+    if (is_word(word, "solid") || is_word(word, "endsolid")) {
+      open = is_word(word, "solid");
+      in.skip_line();  // its name
+    } else if (is_word(word, "vertex")) {
       if (count == 3) out.fail(at(), "a facet has a fourth vertex; expected three");
       glm::dvec3& p = corners[count++];
       if (!in.number(p.x) || !in.number(p.y) || !in.number(p.z)) out.fail(at(), "expected: vertex X Y Z");
-    } else if (word == "endfacet") {
+    } else if (is_word(word, "endfacet")) {
       if (count != 3) out.fail(at(), fmt::format("a facet has {} vertices; expected three", count));
       add_triangle(out, corners, at());
       count = 0;
     }
   }
-  if (count > 0) out.fail("ends within a facet");
+  if (count > 0 || open) out.fail("ends within a solid; expected 'endsolid'");
   return out.finish();
+}
+
+/// Returns whether the bytes are text: they begin with "solid", after blanks or a byte order mark, and have a facet.
+bool is_text(std::string_view bytes) {
+  constexpr std::size_t kLooked = 4096;  // the name of a solid may be long
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  WordReader in(bytes.substr(0, kLooked));
+  if (!is_word(in.word(), "solid")) return false;
+  in.skip_line();
+  const std::string_view next = in.word();
+  return is_word(next, "facet") || is_word(next, "endsolid") || bytes.size() < kHeader;
 }
 
 }  // namespace
 
-/// Some binary files begin with "solid" as text does; their size then shows what they are.
+/// Some binary files begin with "solid" as text does.
 Triangles read_stl(const std::string& file, std::string_view bytes) {
   TriangleBuilder out(file);
   const bool sized = bytes.size() >= kHeader && bytes.size() == kHeader + kRecord * std::uint64_t{count_in(bytes)};
-  if (bytes.starts_with("solid") && !sized) return read_text(out, bytes);
+  if (!sized && is_text(bytes)) return read_text(out, bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0));
   if (bytes.size() < kHeader)
     out.fail("is too short for an STL file; expected text that begins with 'solid', or 84 bytes");
   return read_binary(out, bytes);

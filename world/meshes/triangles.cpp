@@ -32,15 +32,24 @@ void TriangleBuilder::add_vertex(const glm::dvec3& p, const MeshPlace& at) {
   out_.vertices.push_back(p);
 }
 
-/// Returns whether all corners turn to one side, seen along the face's mean normal.
+/// Returns whether the triangles around the first corner all have one side up, and all corners turn to it, within the
+/// rounding of coordinates that were written as text or float32.
 bool TriangleBuilder::is_convex(std::span<const std::uint64_t> corners) const {
+  constexpr double kRounding = 1e-5;  // of the face's size
   const std::size_t n = corners.size();
   const auto at = [&](std::size_t i) { return out_.vertices[corners[i % n]]; };
   glm::dvec3 normal{};
+  double size = 0.0;
   for (std::size_t i = 1; i + 1 < n; ++i) normal += glm::cross(at(i) - at(0), at(i + 1) - at(0));
-  const double rounding = 1e-12 * glm::dot(normal, normal);
+  for (std::size_t i = 1; i < n; ++i) size = std::max(size, glm::length(at(i) - at(0)));
+  const double most = kRounding * size * glm::length(normal);
+  const auto turns_back = [&](glm::dvec3 a, glm::dvec3 b) {
+    return glm::dot(glm::cross(a, b), normal) < -most * std::max(glm::length(a), glm::length(b));
+  };
   for (std::size_t i = 0; i < n; ++i)
-    if (glm::dot(glm::cross(at(i + 1) - at(i), at(i + 2) - at(i + 1)), normal) < -rounding) return false;
+    if (turns_back(at(i + 1) - at(i), at(i + 2) - at(i + 1)) ||
+        (i > 0 && i + 1 < n && turns_back(at(i) - at(0), at(i + 1) - at(0))))
+      return false;
   return true;
 }
 
@@ -59,7 +68,15 @@ void TriangleBuilder::add_face(std::span<const std::uint64_t> corners, const Mes
 }
 
 Triangles TriangleBuilder::finish() {
-  if (out_.corners.empty()) fail("has no triangles");
+  if (out_.corners.empty()) fail("has no triangles; expected a surface");
+  std::vector<std::uint32_t> rows(out_.vertices.size(), 0xFFFFFFFFu);  // of vertices that triangles use
+  std::vector<glm::dvec3> used;
+  for (std::uint32_t& corner : out_.corners) {
+    std::uint32_t& row = rows[corner];
+    if (row == 0xFFFFFFFFu) row = static_cast<std::uint32_t>(used.size()), used.push_back(out_.vertices[corner]);
+    corner = row;
+  }
+  out_.vertices = std::move(used);
   return std::move(out_);
 }
 

@@ -42,7 +42,7 @@ class TriangleBuilder {
   /// `finish` to check, later. @throws for fewer than three corners and for a face that is not convex
   void add_face(std::span<const std::uint64_t> corners, const MeshPlace& at);
 
-  /// @throws for a file without triangles
+  /// Returns the triangles, and the vertices that they use in order of their use. @throws for a file without triangles
   Triangles finish();
 
  private:
@@ -51,6 +51,9 @@ class TriangleBuilder {
   std::string file_;
   Triangles out_;
 };
+
+/// Refuses XML with elements within elements beyond 1 000 levels, which libraries follow.
+void refuse_deep_xml(const std::string& file, std::string_view bytes);
 
 // Readers of one format each. @param bytes the whole file; `file` names it in errors
 Triangles read_stl(const std::string& file, std::string_view bytes);

@@ -114,9 +114,8 @@ class RobotReader {
 
 const Triangles& RobotReader::mesh_of(const std::string& path) {
   if (ending_of(path) == ".urdf") throw base::InputError(path, 0, "is a robot within a robot");
-  const auto [found, is_new] = meshes_.try_emplace(path);
-  if (is_new) found->second = read_triangles(path);
-  return found->second;
+  const auto known = meshes_.find(path);
+  return known != meshes_.end() ? known->second : meshes_.emplace(path, read_triangles(path)).first->second;
 }
 
 /// Adds all shapes of a link, or none. @param reason out: why not
@@ -124,6 +123,8 @@ bool RobotReader::add(const std::vector<UrdfShape>& shapes, std::string& reason)
   std::vector<std::pair<const UrdfShape*, Triangles>> found;
   for (const UrdfShape& shape : shapes) {
     if (shape.kind != UrdfShape::Kind::mesh) {
+      if (!(shape.size.x > 0.0 && shape.size.y > 0.0 && shape.size.z > 0.0))
+        return reason = "a shape has a size that is not above 0", false;
       found.emplace_back(&shape, solid_of(shape));
       continue;
     }
@@ -151,6 +152,7 @@ bool RobotReader::add(const std::vector<UrdfShape>& shapes, std::string& reason)
 
 Triangles RobotReader::read(const UrdfRobot& robot) {
   std::vector<std::string> notes;
+  if (!robot.problems.empty()) notes.push_back("parts are left out: " + robot.problems);
   for (const UrdfLink& link : robot.links) {
     std::string visual, collision;
     if (add(link.visual, visual)) continue;
@@ -161,6 +163,7 @@ Triangles RobotReader::read(const UrdfRobot& robot) {
     else if (!collision.empty())
       notes.push_back(fmt::format("link '{}' is left out: {}", link.name, collision));
   }
+  if (builder_.vertices() == 0 && !notes.empty()) builder_.fail("has no shape that can be read: " + notes.front());
   Triangles out = builder_.finish();
   if (robot.movable > 0) notes.push_back(fmt::format("{} movable joints stay at 0", robot.movable));
   out.notes = std::move(notes);
@@ -170,6 +173,7 @@ Triangles RobotReader::read(const UrdfRobot& robot) {
 }  // namespace
 
 Triangles read_urdf(const std::string& file, std::string_view bytes) {
+  refuse_deep_xml(file, bytes);
   static const auto& plugin = *static_cast<const UrdfPlugin*>(
       base::load_plugin(kUrdfSymbol, "robots cannot be read from URDF", "urdfdom 3.0 (Debian: liburdfdom-model3.0)"));
   Triangles out = RobotReader(file).read(plugin.read(file, std::string(bytes)));

@@ -25,6 +25,7 @@ struct UrdfLink {
 struct UrdfRobot {
   std::vector<UrdfLink> links;
   std::size_t movable = 0;  ///< joints that are not fixed
+  std::string problems;     ///< of the parser, which leaves out what it cannot read
 };
 
 /// The interface of the plug-in. `read` throws base::InputError with the reasons of the parser.

@@ -1,6 +1,7 @@
 #pragma once
 // Words and numbers of text mesh files.
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <string_view>
@@ -34,6 +35,7 @@ class WordReader {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
     return error == std::errc() && end == text.data() + text.size();
   }
+  void skip_line() { rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size())); }
   std::string_view rest() const { return rest_; }
   std::uint64_t line() const { return lines_ + 1; }  ///< of the last word, from 1
 
@@ -41,6 +43,12 @@ class WordReader {
   std::string_view rest_;
   std::uint64_t lines_ = 0;
 };
+
+/// Compares with a word in small letters.
+inline bool is_word(std::string_view word, std::string_view small) {
+  return std::equal(word.begin(), word.end(), small.begin(), small.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b; });
+}
 
 /// Takes the next line of a text, without its end. @return false after the last
 inline bool take_line(std::string_view& text, std::string_view& line) {

@@ -88,7 +88,12 @@ UrdfRobot read(const std::string& file, const std::string& text) {
     throw base::InputError(file, 0,
                            fmt::format("is no readable URDF: {}", reasons.empty() ? "no reason is given" : reasons));
   UrdfRobot robot;
-  add_link(*model->getRoot(), glm::dmat4(1.0), 0, robot);
+  try {
+    add_link(*model->getRoot(), glm::dmat4(1.0), 0, robot);
+  } catch (const base::InputError& error) {
+    throw base::InputError(file, 0, error.what());
+  }
+  robot.problems = reasons;
   return robot;
 }
 

@@ -183,6 +183,7 @@ TEST(VtkFiles, MeshesAreDrawnInPlaceOfOutlines) {
   const std::uint32_t rock = scenes::add_model(world, "rock", 0xFF00FF00u);
   world.walls.push_back({{0.0, 0.0}, {1.0, 0.0}, 0.0, 1.0, rock, true, true, false});
   world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
+  world.models[world.movers[0].model].mover = 0;
   world.meshes.push_back({"t.obj", {{0, 0, 0}, {1, 0, 0}, {0, 0, 2}}, {0, 1, 2}});
   world.mesh_models = {{0, rock, {3.0, 4.0, 0.5, 0.0}}, {0, world.movers[0].model, {}}};
   const PolyData walls = walls_geometry(world);
