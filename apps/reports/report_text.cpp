@@ -82,7 +82,8 @@ std::string street_text(const world::World& world) {
   if (walls > 0) text += row("virtual walls", walls);
   if (!world.lamps.empty()) text += row("lamps", world.lamps.size());
   if (!world.heat_sources.empty()) text += row("heat sources", world.heat_sources.size());
-  if (!world.floor_holes.empty()) text += row("holes", "{}, visible to cliff sensors and lidars", world.floor_holes.size());
+  if (!world.floor_holes.empty())
+    text += row("holes", "{}, visible to cliff sensors and lidars", world.floor_holes.size());
   if (!world.paths.empty()) text += row("paths", world.paths.size());
   return text;
 }
