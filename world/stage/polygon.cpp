@@ -12,7 +12,7 @@ namespace {
 bool coincide(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
 
 void drop_repeated(std::vector<glm::dvec2>& points) {
-  points.erase(std::unique(points.begin(), points.end(), same), points.end());
+  points.erase(std::unique(points.begin(), points.end(), coincide), points.end());
   while (points.size() > 1 && coincide(points.front(), points.back())) points.pop_back();
 }
 
