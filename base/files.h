@@ -7,6 +7,9 @@
 
 namespace sf::base {
 
+/// Returns the ending of a file's name in lower case, such as ".stl"; empty: it has none.
+std::string ending_of(const std::string& file);
+
 /// Returns the whole content of a file. @throws InputError when the file is missing, not a regular file (a folder, a
 /// device, a pipe), empty, larger than `most` bytes, or not readable to its end.
 std::string read_bytes(const std::string& file, std::size_t most);

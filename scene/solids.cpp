@@ -180,15 +180,19 @@ Mesh roads_of(const world::World& world) {
   return mesh;
 }
 
+base::Box box_of_holes(const world::World& world) {
+  base::Box box = base::empty_box();
+  for (const world::FloorHole& hole : world.floor_holes)
+    for (const glm::dvec2& p : hole.outline) box = {glm::min(box.min, p), glm::max(box.max, p)};
+  return box;
+}
+
 Mesh holed_floor(const world::World& world, double reach) {
   Mesh mesh;
   std::vector<RegionEdge> edges;
-  glm::dvec2 low(HUGE_VAL), high(-HUGE_VAL);
-  for (const world::FloorHole& hole : world.floor_holes) {
-    add_hole(hole.outline, edges);
-    for (const glm::dvec2& p : hole.outline) low = glm::min(low, p), high = glm::max(high, p);
-  }
-  low -= 2.0 * reach, high += 2.0 * reach;
+  for (const world::FloorHole& hole : world.floor_holes) add_hole(hole.outline, edges);
+  const base::Box box = box_of_holes(world);
+  const glm::dvec2 low = box.min - 2.0 * reach, high = box.max + 2.0 * reach;
   const std::array<glm::dvec2, 4> outer{low, {high.x, low.y}, high, {low.x, high.y}};
   for (std::size_t i = 0; i < 4; ++i) edges.push_back({outer[i], outer[(i + 1) % 4]});
   add_flat(split_at_crossings(edges), std::array{0.0}, mesh, {});

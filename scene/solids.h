@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/box.h"
 #include "scene/mesh.h"
 #include "world/world.h"
 
@@ -18,7 +19,10 @@ Mesh mesh_of(std::span<const world::Segment> segments, bool on_floor = false);
 /// Returns the roads above the floor, as bodies stand on them (world/ground.h). Without owners.
 Mesh roads_of(const world::World& world);
 
-/// Returns the floor without its holes, as far as 2 `reach` [m] beyond them. Without owners.
+/// Returns the box around all holes of the floor; without holes, `base::empty_box()`.
+base::Box box_of_holes(const world::World& world);
+
+/// Returns the floor without its holes, as far as 2 `reach` [m] beyond their box. Without owners.
 Mesh holed_floor(const world::World& world, double reach);
 
 /// Returns the triangles of a file's mesh, without owners.

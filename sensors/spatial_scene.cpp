@@ -47,15 +47,13 @@ void require_numbers(const world::World& world) {
 SpatialScene::SpatialScene(const world::World& world, double reach)
     : copies_(world),
       floor_(!world.floor_unseen),
+      holes_(scene::box_of_holes(world)),
       carried_(world.movers.size() / world.copies),
       X_WM_(world.movers.size()) {
   require_numbers(world);
   walls_ = scene::build_tree(scene::mesh_of(without(world.walls, models_with_mesh(world)), !world.floor_unseen));
   roads_ = scene::build_tree(scene::roads_of(world));
   if (floor_ && !world.floor_holes.empty()) holed_floor_ = scene::build_tree(scene::holed_floor(world, reach));
-  for (const world::FloorHole& hole : world.floor_holes)
-    for (const glm::dvec2& p : hole.outline)
-      holes_low_ = glm::min(holes_low_, p), holes_high_ = glm::max(holes_high_, p);
   for (const world::Mesh& mesh : world.meshes) meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
   for (const world::MeshModel& row : world.mesh_models) {
     const std::uint32_t mover = world.models[row.model].mover;
@@ -94,7 +92,7 @@ bool SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::ve
   out.assign({{&walls_, {}, true}, {&roads_, {}, true, base::kFloorHit}});
   const glm::dvec2 foot(p);
   const bool near_holes =
-      !holed_floor_.empty() && glm::distance(foot, glm::clamp(foot, holes_low_, holes_high_)) <= range;
+      !holed_floor_.empty() && glm::distance(foot, glm::clamp(foot, holes_.min, holes_.max)) <= range;
   if (near_holes) out.push_back({&holed_floor_, {}, true, base::kFloorHit});
   for (const Part& part : fixed_) add(meshes_[part.mesh], part.X_BF, part.model, p, range, out);
   const auto [first, end] = copies_.rows_with(mover, static_cast<std::uint32_t>(bodies_.size()));

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "base/report.h"
 #include "base/rigid_transform.h"
 #include "scene/rasterizer.h"
@@ -45,7 +46,7 @@ class SpatialScene {
   scene::SurfaceTree walls_;
   scene::SurfaceTree roads_;        ///< above the floor
   scene::SurfaceTree holed_floor_;  ///< around all holes; empty: there are none
-  glm::dvec2 holes_low_{HUGE_VAL}, holes_high_{-HUGE_VAL};
+  base::Box holes_;
   std::vector<scene::SurfaceTree> meshes_;
   std::vector<Part> fixed_;
   std::vector<std::vector<Part>> carried_;  ///< per mover of one world

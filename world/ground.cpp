@@ -9,7 +9,6 @@ namespace sf::world {
 namespace {
 
 constexpr double kContact = 0.01;  // [m] a body this close to a surface is on it
-constexpr double kOverlap = Ground::kOverlap;
 
 base::BoxTree tree_of(std::span<const Ramp> ramps) {
   std::vector<base::Box> boxes;

@@ -112,9 +112,7 @@ RosMap map_of(const World& world) {
 }  // namespace
 
 bool is_ros_map(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = base::ending_of(file);
   return ending == ".yaml" || ending == ".yml";
 }
 

@@ -212,9 +212,7 @@ void translate(World& world, double dx, double dy) {
 }
 
 World load_world(const std::string& file, const LoadOptions& options) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = base::ending_of(file);
   if (is_ros_map(file)) return load_ros_map(file, options);
   if (ending == ".rndf" || ending == ".rdf" || ending == ".mdf")
     throw base::InputError(file, 0, "is not a world, but a world file can include it with road( rndf \"FILE\" )");

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 
@@ -14,7 +13,6 @@
 #include "apps/reports/csv_text.h"
 #include "apps/reports/progress_line.h"
 #include "base/bytes.h"
-#include "base/error.h"
 #include "base/rigid_transform.h"
 #include "scenarios/recorded_states.h"
 #include "scenarios/replay.h"
@@ -65,28 +63,19 @@ base::Bytes pcd_of(const Cloud& cloud) {
 }
 
 base::Bytes ply_of(const Cloud& cloud) {
-  base::Bytes points, bytes;
-  base::ByteWriter out(points);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < cloud.ranges.size(); ++i) {
-    if (!cloud.has_echo(i)) continue;
+  std::vector<std::size_t> echoes;
+  for (std::size_t i = 0; i < cloud.ranges.size(); ++i)
+    if (cloud.has_echo(i)) echoes.push_back(i);
+  base::Bytes bytes;
+  base::ByteWriter out(bytes);
+  put_text(out, fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty "
+                            "double y\nproperty double z\nproperty ushort ring\nend_header\n",
+                            echoes.size()));
+  for (const std::size_t i : echoes) {
     const glm::dvec3 p = base::transform(cloud.X_WS, cloud.point_S(i));
     out.put(p.x), out.put(p.y), out.put(p.z), out.put(cloud.ring(i));
-    ++count;
   }
-  base::ByteWriter file(bytes);
-  put_text(file, fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty "
-                             "double y\nproperty double z\nproperty ushort ring\nend_header\n",
-                             count));
-  file.put_bytes(points.data(), points.size());
   return bytes;
-}
-
-void write_file(const base::Bytes& bytes, const std::string& path) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw base::InputError(path, 0, "cannot be written; name a folder that can be written and has room");
 }
 
 /// Writes the files of all lidars in turn.
@@ -131,7 +120,8 @@ void CloudWriter::add(const base::ReadingBlock& reading) {
   const auto [number, is_first] = numbers_.try_emplace(name, 0);
   if (is_first) begin_numbered_files(folder_, name, ending_);
   const std::string file = fmt::format("{}{:06}{}", name, number->second++, ending_);
-  write_file(format_ == CloudFormat::pcd ? pcd_of(cloud) : ply_of(cloud), folder_ + "/" + file);
+  const base::Bytes bytes = format_ == CloudFormat::pcd ? pcd_of(cloud) : ply_of(cloud);
+  write_text(folder_ + "/" + file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   rows_ += fmt::format("{},{},{},{},{}\n", csv_field(file), csv_number(1e-9 * static_cast<double>(reading.time)),
                        csv_field(robot), csv_field(sensor), pose_text(cloud.X_WS, ","));
 }

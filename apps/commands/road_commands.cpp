@@ -11,6 +11,7 @@
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "viz/road_figure.h"
 #include "world/roads/roads.h"
 
@@ -20,15 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string ending_of(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
-bool is_network(const std::string& file) { return ending_of(file) == ".rndf" || ending_of(file) == ".rdf"; }
-bool is_mission(const std::string& file) { return ending_of(file) == ".mdf"; }
+bool is_network(const std::string& file) { return base::ending_of(file) == ".rndf" || base::ending_of(file) == ".rdf"; }
+bool is_mission(const std::string& file) { return base::ending_of(file) == ".mdf"; }
 
 void append(std::vector<world::Warning>& all, const std::vector<world::Warning>& more) {
   all.insert(all.end(), more.begin(), more.end());

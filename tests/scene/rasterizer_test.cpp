@@ -210,8 +210,8 @@ TEST(SpatialRasterizer, Instances) {
   EXPECT_EQ(cast(X_WS, beams, 25.0, {instances, true}).ranges, scan.ranges);
 }
 
-/// The range of a plane is the height divided by the sine of the depression. A sensor in the plane flags all beams but
-/// those that point up.
+/// The range of a plane is the height divided by the sine of the depression. A sensor in the plane flags every beam
+/// except those that point up.
 TEST(SpatialRasterizer, Floor) {
   const auto beams = rings(3, 8, -0.9, 0.9);
   const SpatialScan above = cast({glm::dmat3(1.0), {3.0, 4.0, 1.5}}, beams, 50.0, {{}, true});

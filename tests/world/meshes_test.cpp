@@ -215,7 +215,7 @@ TEST_F(Meshes, TextOfStlMayBeWrittenInManyWays) {
   expect_in("a.stl: ends after 284 bytes", refusal("a.stl", binary_stl(5)));
 }
 
-/// Text that nests without need would overflow a reader's stack.
+/// Parsers recurse into nested text, which would overflow the stack.
 TEST_F(Meshes, DeepTextIsRefused) {
   expect_in("nests brackets more than 1000 deep", refusal("a.gltf", "{\"extras\":" + std::string(30'000, '[')));
   std::string elements;
@@ -224,7 +224,7 @@ TEST_F(Meshes, DeepTextIsRefused) {
   expect_in("nests elements more than 1000 deep", refusal("a.dae", "<COLLADA>" + elements));
 }
 
-/// What the parser cannot read is said; a mesh that cannot be read is missing from every link that has it.
+/// Notes name each part that the parser skipped, and each link whose mesh cannot be read.
 TEST_F(Meshes, UrdfSaysWhatIsLeftOut) {
   const std::string link =
       "<link name='NAME'><visual><geometry><mesh filename='none.stl'/></geometry></visual>"

@@ -12,7 +12,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
-#include <limits>
 
 #include "base/error.h"
 #include "world/meshes/triangles.h"
@@ -24,9 +23,8 @@ namespace {
 constexpr std::size_t kMostMessage = 300;  ///< [bytes] of the library's message, which may quote the file
 constexpr int kMostDepth = 100;            ///< of nodes within nodes
 constexpr std::uint64_t kMostNodes = 1'000'000;
-constexpr std::size_t kMostBuffer = std::size_t{4} << 30;  ///< [bytes] of one file
 
-/// Only regular files are read: a buffer may name any path.
+/// Refuses devices and pipes, since the URI of a buffer may name any path.
 tinygltf::FsCallbacks regular_files() {
   tinygltf::FsCallbacks files{};
   files.FileExists = [](const std::string& path, void*) { return std::filesystem::is_regular_file(path); };
@@ -35,7 +33,7 @@ tinygltf::FsCallbacks regular_files() {
     std::error_code failure;
     const auto size = std::filesystem::file_size(path, failure);
     std::ifstream in(path, std::ios::binary);
-    if (failure || size > kMostBuffer || !in) return *error += "cannot read " + path, false;
+    if (failure || size > kMostMeshBytes || !in) return *error += "cannot read " + path, false;
     out->resize(size);
     in.read(reinterpret_cast<char*>(out->data()), static_cast<std::streamsize>(size));
     return static_cast<std::uintmax_t>(in.gcount()) == size;
@@ -60,7 +58,7 @@ class SceneReader {
   void add_mesh(int row, const glm::dmat4& X);
   void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& X);
   void add_triangles(int mode, std::span<const std::uint64_t> rows, std::uint64_t first);
-  /// Returns the bytes of an accessor's element, after checks that all of them are in their buffer.
+  /// Returns the bytes of an accessor's first element. @throws unless all elements are within their buffer
   const unsigned char* data_of(const tinygltf::Accessor& accessor, std::size_t& stride) const;
   std::vector<std::uint64_t> rows_of(const tinygltf::Primitive& primitive, std::uint64_t vertices) const;
   template <class Rows>
@@ -77,7 +75,6 @@ class SceneReader {
 };
 
 void SceneReader::load(std::string_view bytes) {
-  if (bytes.size() > std::numeric_limits<unsigned>::max()) fail("is larger than 4 GiB");
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(regular_files());
   loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
@@ -96,7 +93,7 @@ void SceneReader::load(std::string_view bytes) {
   if (!good) fail(fmt::format("is no readable glTF 2.0 file: {}", error.empty() ? "no reason is given" : error));
 }
 
-/// Extensions of materials, textures and lights change no shape.
+/// Refuses required extensions, except those of materials, textures and lights, which change no surface.
 void SceneReader::refuse_extensions() const {
   constexpr std::string_view kHarmless[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp"};
   for (const std::string& name : model_.extensionsRequired)
@@ -104,7 +101,7 @@ void SceneReader::refuse_extensions() const {
       fail(fmt::format("requires {}, which is not read; expected a file without it: export it again", name));
 }
 
-/// A file's text may nest what it does not need, which readers follow.
+/// Refuses deeply nested JSON: the parser recurses and would overflow the stack.
 void SceneReader::refuse_depth(std::string_view bytes) const {
   constexpr std::size_t kHeader = 20, kMost = 1'000;
   std::uint32_t length = 0;
@@ -144,7 +141,7 @@ const unsigned char* SceneReader::data_of(const tinygltf::Accessor& accessor, st
   return data.data() + offset;
 }
 
-/// Returns the vertices of a primitive's triangles in order.
+/// Returns the rows of vertices that a primitive's triangles list.
 std::vector<std::uint64_t> SceneReader::rows_of(const tinygltf::Primitive& primitive, std::uint64_t vertices) const {
   std::vector<std::uint64_t> rows;
   if (primitive.indices < 0) {

@@ -1,10 +1,6 @@
 #include "world/meshes/mesh_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -15,8 +11,6 @@
 namespace sf::world {
 
 namespace {
-
-constexpr std::size_t kMostBytes = std::size_t{4} << 30;
 
 struct MeshFormat {
   std::string_view ending;
@@ -67,18 +61,12 @@ std::vector<glm::dvec2> simplified(const std::vector<glm::dvec2>& hull, double m
 
 }  // namespace
 
-std::string ending_of(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
 Triangles read_triangles(const std::string& file) {
-  const auto format = std::ranges::find(kFormats, ending_of(file), &MeshFormat::ending);
+  const auto format = std::ranges::find(kFormats, base::ending_of(file), &MeshFormat::ending);
   if (format == std::end(kFormats))
-    throw base::InputError(
-        file, 0, fmt::format("is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx or .urdf"));
-  return format->read(file, base::read_bytes(file, kMostBytes));
+    throw base::InputError(file, 0,
+                           "is no mesh by its name; expected .stl, .obj, .ply, .glb, .gltf, .dae, .fbx or .urdf");
+  return format->read(file, base::read_bytes(file, kMostMeshBytes));
 }
 
 MeshBox box_of(const std::vector<glm::dvec3>& vertices) {

@@ -9,12 +9,8 @@
 
 namespace sf::world {
 
-/// Returns the ending of a file's name in small letters, such as ".stl".
-std::string ending_of(const std::string& file);
-
-/// Reads a file by the ending of its name, such as .stl or .urdf. The y axis of glTF, which is up,
-/// becomes z.
-/// @throws base::InputError with the place in the file
+/// Reads a file. The ending of its name selects the reader. The y axis of glTF, which is up, becomes z.
+/// @throws base::InputError with the line or the element
 Triangles read_triangles(const std::string& file);
 
 /// The box that contains a mesh.
@@ -24,9 +20,9 @@ struct MeshBox {
 };
 MeshBox box_of(const std::vector<glm::dvec3>& vertices);
 
-/// Returns the convex outline of all vertices, seen from above, as the sides of a solid from the lowest to the highest
-/// one; a thin wall for an upright plane, none for a mesh without a height. Corners nearer than 0.1 % of its size to
-/// the outline of the others are left out.
+/// Returns the convex outline of a mesh, seen from above, as the sides of a solid that extends from its lowest to its
+/// highest vertex. An upright plane gives a thin wall, and a mesh without a height gives none. Leaves out corners
+/// within 0.1 % of the mesh's size of the remaining outline.
 std::vector<Segment> outline_from_above(const std::vector<glm::dvec3>& vertices);
 
 }  // namespace sf::world

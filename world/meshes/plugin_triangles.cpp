@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cctype>
 #include <string>
 
@@ -22,12 +21,7 @@ Triangles read_with(const MeshPlugin& plugin, const std::string& file, std::stri
   Triangles found;
   plugin.read(file, bytes, found);
   TriangleBuilder out(file);
-  out.expect(found.corners.size() / 3);
-  std::uint64_t number = 0;
-  for (const glm::dvec3& p : found.vertices) out.add_vertex(p, {"vertex", ++number});
-  for (std::size_t i = 0; i + 2 < found.corners.size(); i += 3)
-    out.add_face(std::array<std::uint64_t, 3>{found.corners[i], found.corners[i + 1], found.corners[i + 2]},
-                 {"triangle", i / 3 + 1});
+  out.add(found);
   return out.finish();
 }
 

@@ -66,10 +66,9 @@ Triangles read_text(TriangleBuilder& out, std::string_view text) {
   return out.finish();
 }
 
-/// Returns whether the bytes are text: they begin with "solid", after blanks or a byte order mark, and have a facet.
+/// Returns whether a file is text: it begins with "solid" and a facet or an end follows.
 bool is_text(std::string_view bytes) {
-  constexpr std::size_t kLooked = 4096;  // the name of a solid may be long
-  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  constexpr std::size_t kLooked = 4096;  // [bytes], more than the name of a solid
   WordReader in(bytes.substr(0, kLooked));
   if (!is_word(in.word(), "solid")) return false;
   in.skip_line();
@@ -79,11 +78,13 @@ bool is_text(std::string_view bytes) {
 
 }  // namespace
 
-/// Some binary files begin with "solid" as text does.
+/// Some binary files begin with "solid" as text does; their size then matches their number of triangles.
 Triangles read_stl(const std::string& file, std::string_view bytes) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   TriangleBuilder out(file);
   const bool sized = bytes.size() >= kHeader && bytes.size() == kHeader + kRecord * std::uint64_t{count_in(bytes)};
-  if (!sized && is_text(bytes)) return read_text(out, bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0));
+  const std::string_view text = bytes.substr(bytes.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+  if (!sized && is_text(text)) return read_text(out, text);
   if (bytes.size() < kHeader)
     out.fail("is too short for an STL file; expected text that begins with 'solid', or 84 bytes");
   return read_binary(out, bytes);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -32,8 +33,8 @@ void TriangleBuilder::add_vertex(const glm::dvec3& p, const MeshPlace& at) {
   out_.vertices.push_back(p);
 }
 
-/// Returns whether the triangles around the first corner all have one side up, and all corners turn to it, within the
-/// rounding of coordinates that were written as text or float32.
+/// Returns whether all corners turn in one direction and all triangles around the first corner face one side, within
+/// the rounding of coordinates in text or float32.
 bool TriangleBuilder::is_convex(std::span<const std::uint64_t> corners) const {
   constexpr double kRounding = 1e-5;  // of the face's size
   const std::size_t n = corners.size();
@@ -65,6 +66,17 @@ void TriangleBuilder::add_face(std::span<const std::uint64_t> corners, const Mes
   const auto row = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     out_.corners.insert(out_.corners.end(), {row(0), row(i), row(i + 1)});
+}
+
+void TriangleBuilder::add(const Triangles& part) {
+  expect((out_.corners.size() + part.corners.size()) / 3);
+  const std::uint64_t first = vertices();
+  std::uint64_t number = 0;
+  for (const glm::dvec3& p : part.vertices) add_vertex(p, {"vertex", ++number});
+  for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
+    const auto row = [&](std::size_t k) { return first + part.corners[i + k]; };
+    add_face(std::array{row(0), row(1), row(2)}, {"triangle", i / 3 + 1});
+  }
 }
 
 Triangles TriangleBuilder::finish() {

@@ -10,13 +10,14 @@
 
 namespace sf::world {
 
+inline constexpr std::size_t kMostMeshBytes = 0xFFFFFFFF;  ///< [bytes] of one file
 inline constexpr std::size_t kMostTriangles = 16'000'000;  ///< of one file
 inline constexpr double kMostCoordinate = 1e7;             ///< [m]
 
 struct Triangles {
   std::vector<glm::dvec3> vertices;    ///< in the file's frame and unit, within kMostCoordinate
   std::vector<std::uint32_t> corners;  ///< three rows of `vertices` per triangle
-  std::vector<std::string> notes;      ///< what was left out, for the user
+  std::vector<std::string> notes;      ///< warnings about omitted parts
 };
 
 /// A place in a file for errors: a line of a text, or an element of a binary file, both from 1.
@@ -38,11 +39,13 @@ class TriangleBuilder {
   /// @throws for numbers that are not finite or too large
   void add_vertex(const glm::dvec3& p, const MeshPlace& at);
   std::size_t vertices() const { return out_.vertices.size(); }
-  /// Appends a face as triangles around its first corner. @param corners rows of vertices added so far or, for
-  /// `finish` to check, later. @throws for fewer than three corners and for a face that is not convex
+  /// Appends a face as triangles around its first corner. @param corners rows of vertices added so far
+  /// @throws for other rows, fewer than three corners, and a face that is not convex
   void add_face(std::span<const std::uint64_t> corners, const MeshPlace& at);
+  /// Appends unchecked triangles with their vertices.
+  void add(const Triangles& part);
 
-  /// Returns the triangles, and the vertices that they use in order of their use. @throws for a file without triangles
+  /// Returns the triangles, and their vertices in order of first use. @throws for a file without triangles
   Triangles finish();
 
  private:
@@ -52,7 +55,7 @@ class TriangleBuilder {
   Triangles out_;
 };
 
-/// Refuses XML with elements within elements beyond 1 000 levels, which libraries follow.
+/// Refuses XML that nests elements more than 1 000 deep: parsers recurse and would overflow the stack.
 void refuse_deep_xml(const std::string& file, std::string_view bytes);
 
 // Readers of one format each. @param bytes the whole file; `file` names it in errors
@@ -66,8 +69,8 @@ Triangles read_other_mesh(const std::string& file, std::string_view bytes);
 /// URDF: the robot with all joints at 0, through a plug-in (world/meshes/urdf_robot.h).
 Triangles read_urdf(const std::string& file, std::string_view bytes);
 
-/// The interface of plug-ins that read meshes. `read` fills vertices and corners, unchecked, and throws
-/// base::InputError.
+/// The interface of plug-ins that read meshes. `read` fills in vertices and corners, and does not check them.
+/// @throws base::InputError
 struct MeshPlugin {
   void (*read)(const std::string& file, std::string_view bytes, Triangles& out);
 };

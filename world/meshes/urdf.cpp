@@ -12,6 +12,7 @@
 
 #include "base/elementary.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "base/plugin.h"
 #include "world/meshes/mesh_file.h"
 #include "world/meshes/urdf_robot.h"
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kSides = 64;  ///< of a cylinder, and around a sphere
 
-/// A surface around the z axis: rings of kSides vertices, (radius, z) each, between two poles.
+/// Appends a surface of revolution about the z axis. @param profile (radius, z) [m] of each ring of kSides vertices
 void add_round(std::span<const glm::dvec2> profile, Triangles& out) {
   const auto first = static_cast<std::uint32_t>(out.vertices.size());
   for (const glm::dvec2& ring : profile)
@@ -68,8 +69,8 @@ Triangles solid_of(const UrdfShape& shape) {
   return out;
 }
 
-/// Returns the file that a URI names: `package://NAME/PATH` is searched for in the folders above the URDF's, and in
-/// those of $AMENT_PREFIX_PATH and $ROS_PACKAGE_PATH.
+/// Resolves a URI. Searches for `package://NAME/PATH` in the parents of the URDF's folder, then in the folders that
+/// $AMENT_PREFIX_PATH and $ROS_PACKAGE_PATH list.
 std::optional<std::string> file_of(const std::string& urdf, std::string_view uri) {
   const fs::path folder = fs::absolute(urdf).parent_path();
   constexpr std::string_view kPackage = "package://", kFile = "file://";
@@ -105,6 +106,7 @@ class RobotReader {
 
  private:
   bool add(const std::vector<UrdfShape>& shapes, std::string& reason);
+  Triangles part_of(const UrdfShape& shape);
   const Triangles& mesh_of(const std::string& path);
 
   std::string file_;
@@ -113,46 +115,43 @@ class RobotReader {
 };
 
 const Triangles& RobotReader::mesh_of(const std::string& path) {
-  if (ending_of(path) == ".urdf") throw base::InputError(path, 0, "is a robot within a robot");
+  if (base::ending_of(path) == ".urdf") throw base::InputError(path, 0, "is a robot within a robot");
   const auto known = meshes_.find(path);
   return known != meshes_.end() ? known->second : meshes_.emplace(path, read_triangles(path)).first->second;
 }
 
-/// Adds all shapes of a link, or none. @param reason out: why not
-bool RobotReader::add(const std::vector<UrdfShape>& shapes, std::string& reason) {
-  std::vector<std::pair<const UrdfShape*, Triangles>> found;
-  for (const UrdfShape& shape : shapes) {
-    if (shape.kind != UrdfShape::Kind::mesh) {
-      if (!(shape.size.x > 0.0 && shape.size.y > 0.0 && shape.size.z > 0.0))
-        return reason = "a shape has a size that is not above 0", false;
-      found.emplace_back(&shape, solid_of(shape));
-      continue;
-    }
+/// Returns a shape's triangles in the robot's frame. @throws base::InputError with the reason
+Triangles RobotReader::part_of(const UrdfShape& shape) {
+  Triangles part;
+  if (shape.kind == UrdfShape::Kind::mesh) {
     const std::optional<std::string> path = file_of(file_, shape.file);
-    if (!path) return reason = fmt::format("'{}' is in no known folder", shape.file), false;
-    try {
-      Triangles mesh = mesh_of(*path);
-      for (glm::dvec3& p : mesh.vertices) p *= shape.size;
-      found.emplace_back(&shape, std::move(mesh));
-    } catch (const base::InputError& error) {
-      return reason = error.what(), false;
-    }
+    if (!path) throw base::InputError(fmt::format("'{}' is in no known folder", shape.file));
+    part = mesh_of(*path);
+    for (glm::dvec3& p : part.vertices) p *= shape.size;
+  } else {
+    if (!(shape.size.x > 0.0 && shape.size.y > 0.0 && shape.size.z > 0.0))
+      throw base::InputError("a shape has a size that is not above 0");
+    part = solid_of(shape);
   }
-  for (const auto& [shape, part] : found) {
-    const std::uint64_t first = builder_.vertices();
-    for (const glm::dvec3& p : part.vertices)
-      builder_.add_vertex(shape->X * glm::dvec4(p, 1.0), {"vertex", builder_.vertices() + 1});
-    for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3)
-      builder_.add_face(std::array<std::uint64_t, 3>{first + part.corners[i], first + part.corners[i + 1],
-                                                     first + part.corners[i + 2]},
-                        {"triangle", i / 3 + 1});
+  for (glm::dvec3& p : part.vertices) p = shape.X * glm::dvec4(p, 1.0);
+  return part;
+}
+
+/// Adds all shapes of a link, or none. @param reason out: why none was added
+bool RobotReader::add(const std::vector<UrdfShape>& shapes, std::string& reason) {
+  std::vector<Triangles> parts;
+  try {
+    for (const UrdfShape& shape : shapes) parts.push_back(part_of(shape));
+  } catch (const base::InputError& error) {
+    return reason = error.what(), false;
   }
-  return !found.empty();
+  for (const Triangles& part : parts) builder_.add(part);
+  return !parts.empty();
 }
 
 Triangles RobotReader::read(const UrdfRobot& robot) {
   std::vector<std::string> notes;
-  if (!robot.problems.empty()) notes.push_back("parts are left out: " + robot.problems);
+  if (!robot.parser_errors.empty()) notes.push_back("parts are left out: " + robot.parser_errors);
   for (const UrdfLink& link : robot.links) {
     std::string visual, collision;
     if (add(link.visual, visual)) continue;

@@ -13,7 +13,7 @@ struct UrdfShape {
   enum class Kind : std::uint8_t { mesh, box, cylinder, sphere };
   Kind kind = Kind::mesh;
   std::string file;   ///< of a mesh, as written
-  glm::dvec3 size{};  ///< [m] of a box; cylinder: [radius radius length]; sphere: radius thrice; mesh: its scale
+  glm::dvec3 size{};  ///< [m] box: its sides; cylinder: [radius radius length]; sphere: its radius, thrice; mesh: scale
   glm::dmat4 X{1.0};  ///< its frame in the robot's, with all joints at 0
 };
 
@@ -24,11 +24,11 @@ struct UrdfLink {
 
 struct UrdfRobot {
   std::vector<UrdfLink> links;
-  std::size_t movable = 0;  ///< joints that are not fixed
-  std::string problems;     ///< of the parser, which leaves out what it cannot read
+  std::size_t movable = 0;    ///< joints that are not fixed
+  std::string parser_errors;  ///< one per element that the parser skipped; empty: none
 };
 
-/// The interface of the plug-in. `read` throws base::InputError with the reasons of the parser.
+/// The interface of the plug-in. `read` throws base::InputError with the parser's errors.
 struct UrdfPlugin {
   UrdfRobot (*read)(const std::string& file, const std::string& text);
 };

@@ -9,7 +9,7 @@
 
 namespace sf::world {
 
-/// Reads the words of a text, which spaces separate.
+/// Reads the words of a text, separated by white space.
 class WordReader {
  public:
   explicit WordReader(std::string_view text) : rest_(text) {}
@@ -27,7 +27,7 @@ class WordReader {
     rest_.remove_prefix(end);
     return found;
   }
-  /// Returns false for a word that is no number.
+  /// Reads the next word as a number. @return false for another word
   template <class Number>
   bool number(Number& out) {
     std::string_view text = word();
@@ -44,9 +44,9 @@ class WordReader {
   std::uint64_t lines_ = 0;
 };
 
-/// Compares with a word in small letters.
-inline bool is_word(std::string_view word, std::string_view small) {
-  return std::equal(word.begin(), word.end(), small.begin(), small.end(),
+/// Returns whether `word` in lower case equals `lower`.
+inline bool is_word(std::string_view word, std::string_view lower) {
+  return std::equal(word.begin(), word.end(), lower.begin(), lower.end(),
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b; });
 }
 

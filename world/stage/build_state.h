@@ -32,13 +32,18 @@ struct Parent {
 /// A mesh as a model shows it: its file, and numbers of its rotation, scale and box.
 using MeshKey = std::pair<std::string, std::array<double, 10>>;
 
+struct MeshRow {
+  std::uint32_t row = 0;  ///< in `World::meshes`
+  Size size;              ///< above the model's foot
+};
+
 struct BuildState {
   const LoadOptions& options;
   StageContext context;
   World world;
   BitmapCache bitmaps;
-  std::map<std::string, Triangles> triangles;                   ///< of files of meshes
-  std::map<MeshKey, std::uint32_t> mesh_rows;                   ///< in `World::meshes`
+  std::map<std::string, Triangles> triangles;  ///< of files of meshes
+  std::map<MeshKey, MeshRow> mesh_rows;
   std::map<std::uint32_t, std::vector<Segment>> mesh_outlines;  ///< per row of `World::meshes`, from above
   std::set<std::string> names;
   std::map<std::string, int> copies;                  ///< last number used for models with the same name

@@ -101,12 +101,13 @@ std::optional<std::uint32_t> mesh_of(BuildState& b, const Entity& entity, Size& 
     if (fits) fit(mesh.vertices, size);
     require_within(b, entity, mesh);
     leave_out_flat(b, entity, mesh);
-    known = b.mesh_rows.emplace(key, static_cast<std::uint32_t>(b.world.meshes.size())).first;
+    const MeshBox placed = box_of(mesh.vertices);
+    const Size above{placed.size().x, placed.size().y, std::max(0.0, placed.high.z)};
+    known = b.mesh_rows.emplace(key, MeshRow{static_cast<std::uint32_t>(b.world.meshes.size()), above}).first;
     b.world.meshes.push_back(std::move(mesh));
   }
-  const MeshBox placed = box_of(b.world.meshes[known->second].vertices);
-  if (!fits) size = {placed.size().x, placed.size().y, std::max(0.0, placed.high.z)};
-  return known->second;
+  if (!fits) size = known->second.size;
+  return known->second.row;
 }
 
 void add_mesh(BuildState& b, std::uint32_t mesh, const Segment& surface, const Pose& X_B) {

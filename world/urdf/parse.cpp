@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMostDepth = 1'000;  ///< of links in a chain
 
-/// While it exists, the parser's messages are collected instead of printed.
+/// Collects the parser's messages, which it would print, during its lifetime.
 class Messages : public console_bridge::OutputHandler {
  public:
   Messages() : guard_(lock()) { console_bridge::useOutputHandler(this); }
@@ -37,7 +37,7 @@ class Messages : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-/// The parser computes quaternions by the C library's sine, whose last bits differ between libraries.
+/// Rounds away the last bits, in which C libraries differ: the parser computes quaternions by their sine.
 double without_last_bits(double part) { return std::round(part * 0x1p45) * 0x1p-45; }
 
 glm::dmat4 transform_of(const urdf::Pose& pose) {
@@ -93,7 +93,7 @@ UrdfRobot read(const std::string& file, const std::string& text) {
   } catch (const base::InputError& error) {
     throw base::InputError(file, 0, error.what());
   }
-  robot.problems = reasons;
+  robot.parser_errors = reasons;
   return robot;
 }
 
