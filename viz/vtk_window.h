@@ -14,7 +14,7 @@ namespace sf::viz {
 
 /// The moving objects of a scene.
 struct Frame3d {
-  PolyData bodies, beams, lights;
+  PolyData bodies, beams, lights, clouds;
 };
 
 struct Scene3d {

@@ -7,35 +7,17 @@
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 
+#include "apps/commands/cloud_replay.h"
 #include "apps/commands/numbered_files.h"
 #include "apps/commands/output_file.h"
 #include "apps/processes/stop_signals.h"
 #include "apps/reports/csv_text.h"
 #include "apps/reports/progress_line.h"
 #include "base/bytes.h"
-#include "base/rigid_transform.h"
-#include "scenarios/recorded_states.h"
-#include "scenarios/replay.h"
-#include "scenarios/run_info.h"
-#include "sensors/lidar.h"
-#include "sensors/lidar_beams.h"
-#include "sensors/sensor_set.h"
 
 namespace sf::apps {
 
 namespace {
-
-/// One scan.
-struct Cloud {
-  const sensors::LidarSettings& lidar;
-  std::span<const double> ranges;
-  base::RigidTransform X_WS;
-
-  bool has_echo(std::size_t i) const { return ranges[i] >= lidar.range_min && ranges[i] < lidar.range_max; }
-  std::size_t columns() const { return ranges.size() / lidar.beams->channels; }
-  std::uint16_t ring(std::size_t i) const { return static_cast<std::uint16_t>(i / columns()); }
-  glm::dvec3 point_S(std::size_t i) const { return ranges[i] * lidar.beams->directions[i]; }
-};
 
 /// [x y z qw qx qy qz]
 std::string pose_text(const base::RigidTransform& X, const char* separator) {
@@ -72,7 +54,7 @@ base::Bytes ply_of(const Cloud& cloud) {
                             "double y\nproperty double z\nproperty ushort ring\nend_header\n",
                             echoes.size()));
   for (const std::size_t i : echoes) {
-    const glm::dvec3 p = base::transform(cloud.X_WS, cloud.point_S(i));
+    const glm::dvec3 p = cloud.point_W(i);
     out.put(p.x), out.put(p.y), out.put(p.z), out.put(cloud.ring(i));
   }
   return bytes;
@@ -81,16 +63,13 @@ base::Bytes ply_of(const Cloud& cloud) {
 /// Writes the files of all lidars in turn.
 class CloudWriter {
  public:
-  CloudWriter(const world::World& world, const sensors::SensorSet& sensor_set, const std::string& folder,
-              CloudFormat format)
+  CloudWriter(const world::World& world, const std::string& folder, CloudFormat format)
       : world_(world),
-        sensor_set_(sensor_set),
-        lidars_(sensor_set.settings_of<sensors::LidarSettings>(sensors::kLidar)),
         folder_(folder + "/clouds"),
         ending_(format == CloudFormat::pcd ? ".pcd" : ".ply"),
         format_(format) {}
 
-  void add(const base::ReadingBlock& reading);
+  void add(const Cloud& cloud);
   /// @return the table written; nothing without clouds
   std::vector<std::string> close() const {
     if (rows_.empty()) return {};
@@ -101,20 +80,14 @@ class CloudWriter {
 
  private:
   const world::World& world_;
-  const sensors::SensorSet& sensor_set_;
-  std::span<const sensors::LidarSettings> lidars_;
   std::string folder_, ending_;
   CloudFormat format_;
   std::map<std::string, std::size_t> numbers_;  ///< files so far, by the beginnings of their names
   std::string rows_;
 };
 
-void CloudWriter::add(const base::ReadingBlock& reading) {
-  const sensors::SensorSpec& row = sensor_set_.row(reading);
-  const sensors::LidarSettings& lidar =
-      lidars_[static_cast<std::size_t>(&row - sensor_set_.group(reading.type)->rows.data())];
-  const Cloud cloud{lidar, reading.values, base::compose(base::transform_of(reading.X_WM, reading.tilt), lidar.X_MS)};
-  const std::string robot = world_.movers[reading.mover].name, sensor = row.name;
+void CloudWriter::add(const Cloud& cloud) {
+  const std::string robot = world_.movers[cloud.mover].name, sensor = cloud.row.name;
   std::string name = fmt::format("{}_{}_", robot, sensor);
   std::ranges::replace(name, '/', '_');
   const auto [number, is_first] = numbers_.try_emplace(name, 0);
@@ -122,25 +95,18 @@ void CloudWriter::add(const base::ReadingBlock& reading) {
   const std::string file = fmt::format("{}{:06}{}", name, number->second++, ending_);
   const base::Bytes bytes = format_ == CloudFormat::pcd ? pcd_of(cloud) : ply_of(cloud);
   write_text(folder_ + "/" + file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  rows_ += fmt::format("{},{},{},{},{}\n", csv_field(file), csv_number(1e-9 * static_cast<double>(reading.time)),
+  rows_ += fmt::format("{},{},{},{},{}\n", csv_field(file), csv_number(1e-9 * static_cast<double>(cloud.time)),
                        csv_field(robot), csv_field(sensor), pose_text(cloud.X_WS, ","));
 }
 
 }  // namespace
 
 std::vector<std::string> write_clouds(const RecordingPart& part, const std::string& folder, CloudFormat format) {
-  const world::World world = scenarios::recorded_world(part.recording);
-  const sensors::SensorSet sensor_set(world);
-  if (sensor_set.group(sensors::kLidar) == nullptr) return {};
-  scenarios::Replay replay(
-      part.recording,
-      scenarios::run_info(world, sensor_set, {.seed = part.recording.info.seed, .record_readings = true}));
-  CloudWriter writer(world, sensor_set, folder, format);
+  CloudReplay replay(part);
+  CloudWriter writer(replay.world(), folder, format);
   Progress progress("writing clouds");
   for (std::size_t tick = 0; tick < replay.ticks(); ++tick) {
-    const base::TickRecord record = replay.tick(tick, tick == 0 ? std::nullopt : std::optional(tick - 1));
-    for (const base::ReadingBlock& reading : record.readings)
-      if (reading.type == sensors::kLidar && part.chosen[reading.mover] != 0) writer.add(reading), heed_stop();
+    for (const Cloud& cloud : replay.at(tick)) writer.add(cloud), heed_stop();
     progress.show(static_cast<double>(tick) / static_cast<double>(replay.ticks()));
   }
   return writer.close();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/commands/cloud_files.h"
+#include "apps/commands/cloud_replay.h"
 #include "apps/commands/commands.h"
 #include "apps/commands/field_grid.h"
 #include "apps/commands/numbered_files.h"
@@ -101,8 +102,23 @@ std::vector<std::string> write_scans(const RecordingPart& part, world::World& wo
   return {series.close(), occupancy};
 }
 
-/// Writes `walls.vtp`, `roads.vtp`, `trajectories.vtp`, the series `robots.pvd` and `scans.pvd`, `occupancy.vti` and
-/// `field.vti` into `options.out`, as far as the recording and its world have such data.
+/// Writes the newest recorded scans of all chosen lidars over time.
+std::vector<std::string> write_cloud_series(const RecordingPart& part, const ExportOptions& options) {
+  const std::unique_ptr<CloudReplay> replay = clouds_to_draw(part);
+  if (!replay) return {};
+  FileSeries series(options.out, "clouds");
+  Progress progress("writing clouds");
+  const std::vector<std::size_t> ticks = ticks_apart(part, options.every);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    series.add(time_at(part, ticks[i]), echoes_of(replay->at(ticks[i], true)));
+    progress.show(static_cast<double>(i) / static_cast<double>(ticks.size()));
+    heed_stop();
+  }
+  return {series.close()};
+}
+
+/// Writes `walls.vtp`, `roads.vtp`, `trajectories.vtp`, the series `robots.pvd`, `clouds.pvd` and `scans.pvd`,
+/// `occupancy.vti` and `field.vti` into `options.out`, as far as the recording and its world have such data.
 /// @return the files written; for a series only the `.pvd` file
 std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOptions& options) {
   world::World world = scenarios::recorded_world(part.recording);
@@ -123,6 +139,7 @@ std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOption
     robots.add(time_at(part, tick), viz::bodies_geometry(world, poses_at(part, tick))), heed_stop();
   }
   files.push_back(robots.close());
+  for (std::string& file : write_cloud_series(part, options)) files.push_back(std::move(file));
   if (!has_laser(part, world) && world.magnets.empty()) return files;
 
   gpu::Device device = open_device(options);

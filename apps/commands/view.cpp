@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "apps/commands/cloud_replay.h"
 #include "apps/commands/commands.h"
 #include "apps/commands/field_grid.h"
 #include "apps/commands/recorded_video.h"
@@ -60,6 +61,7 @@ int view_3d(const ViewOptions& options) {
 
   gpu::Device device = open_device(options);
   ScanReplay replay(part, world, device);
+  const std::unique_ptr<CloudReplay> clouds = clouds_to_draw(part);
   scene.title = "sensorfarm: " + part.recording.info.world;
   scene.walls = viz::walls_geometry(world);
   scene.roads = viz::roads_geometry(world);
@@ -68,7 +70,8 @@ int view_3d(const ViewOptions& options) {
     viz::ScanGeometry beams(true);
     for (const base::ReadingBlock& scan : replay.scans_at(ticks[row])) beams.add(replay.laser(scan), scan);
     return viz::Frame3d{viz::bodies_geometry(world, poses_at(part, ticks[row])), beams.data(),
-                        viz::lights_geometry(world, lights_at(part.recording, ticks[row]))};
+                        viz::lights_geometry(world, lights_at(part.recording, ticks[row])),
+                        clouds ? echoes_of(clouds->at(ticks[row], true)) : viz::PolyData()};
   };
   const auto first = std::lower_bound(scene.times.begin(), scene.times.end(), options.time - 1e-9);
   scene.first = static_cast<std::size_t>(first - scene.times.begin());

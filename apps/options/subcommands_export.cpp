@@ -215,10 +215,10 @@ void add_view(CLI::App& app, Call& call) {
                      ->excludes("--port")
                      ->type_name("DIR");
   add_video_look(*sub, o, frames);
-  auto* window =
-      sub->add_flag("--3d", o.three_d, "Open a 3-D window (VTK): walls, robots, beams, magnetic field, a time slider")
-          ->excludes(frames)
-          ->group(kGroup);
+  auto* window = sub->add_flag("--3d", o.three_d,
+                               "Open a 3-D window (VTK): walls, robots, beams, clouds, magnetic field, a time slider")
+                     ->excludes(frames)
+                     ->group(kGroup);
   add_every(*sub, o.every, "Simulated time between two frames [s]")->needs(window)->group(kGroup);
   add_height(*sub, o.height)->needs(window)->group(kGroup);
   sub->add_option("--time", o.time, "Simulated time to start at [s]")

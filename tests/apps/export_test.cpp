@@ -386,6 +386,29 @@ TEST_F(Recorded, ParaViewGetsTheRequestedPart) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path("w/scans.pvd"))) << "none of these has a laser";
 }
 
+/// At each time the newest scan of every chosen lidar: those of --clouds ply, point by point.
+TEST(ExportClouds, ParaViewGetsTheNewestScans) {
+  const Folder folder;
+  run_successfully(
+      {"run", our_world("lidar.world"), "--duration", "0.6", "--record", folder.path("r"), "--record-readings"});
+  const Words part{"--robots", "rover2", "-o", folder.path("v")};
+  run_successfully(with({"export", folder.path("r"), "--vtk", "--every", "0.25"}, part));
+  run_successfully(with({"export", folder.path("r"), "--clouds", "ply"}, part));
+  expect_in("timestep=\"0.5\" part=\"0\" file=\"clouds/clouds_000002.vtp\"", read_file(folder.path("v/clouds.pvd")));
+  const std::string vtp = folder.path("v/clouds/clouds_000002.vtp");
+  std::string newest;
+  for (const auto& row : rows_of(folder.path("v/clouds/clouds.csv")))
+    if (row[2] == "rover2" && std::stod(row[1]) <= 0.5 + 1e-9) newest = row[0];
+  expect_in("element vertex " + vtk_head(vtp, "<Piece", "NumberOfPoints") + "\n",
+            read_file(folder.path("v/clouds/" + newest)));
+  EXPECT_EQ(vtk_head(vtp, "\"ring\"", "RangeMax"), "15");
+  EXPECT_EQ(vtk_head(vtp, "\"time\"", "RangeMin"), vtk_head(vtp, "\"time\"", "RangeMax"));
+
+  run_successfully({"run", our_world("lidar.world"), "--duration", "0.2", "--record", folder.path("without")});
+  const Outcome none = run_successfully({"export", folder.path("without"), "--vtk", "-o", folder.path("w")});
+  expect_in("no clouds of lidars: the run was recorded without --record-readings", none.err);
+}
+
 /// Tags are not robots. A field needs no laser, and is at the requested height.
 TEST(Export, TagsHaveNoTrajectoriesAndMagnetsHaveAField) {
   const Folder folder;

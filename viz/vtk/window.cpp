@@ -132,7 +132,10 @@ class Window {
     roads_.actor->GetProperty()->SetLineWidth(2.0f);
     beams_.actor->GetProperty()->SetColor(0.1, 0.4, 0.9);
     beams_.actor->GetProperty()->SetOpacity(0.25);
-    for (Part* part : {&walls_, &roads_, &beams_, &bodies_, &lights_}) renderer_->AddActor(part->actor);
+    clouds_.actor->GetProperty()->SetColor(0.1, 0.4, 0.9);
+    clouds_.actor->GetProperty()->SetPointSize(2.0f);
+    clouds_.actor->GetProperty()->LightingOff();
+    for (Part* part : {&walls_, &roads_, &beams_, &bodies_, &lights_, &clouds_}) renderer_->AddActor(part->actor);
   }
 
   /// Adds contours of the magnitude at logarithmic steps, and stream lines of the field in the plane.
@@ -203,6 +206,7 @@ class Window {
     bodies_.set(frame.bodies);
     beams_.set(frame.beams);
     lights_.set(frame.lights);
+    clouds_.set(frame.clouds);
     static_cast<vtkSliderRepresentation2D*>(slider_->GetRepresentation())->SetValue(scene_.times[row_]);
   }
 
@@ -250,7 +254,7 @@ class Window {
   vtkNew<vtkRenderWindowInteractor> interactor_;
   vtkNew<vtkInteractorStyleTrackballCamera> style_;
   vtkNew<vtkSliderWidget> slider_;
-  Part walls_, roads_, beams_, bodies_, lights_, field_, stream_;
+  Part walls_, roads_, beams_, bodies_, lights_, clouds_, field_, stream_;
 };
 
 }  // namespace

@@ -1,0 +1,74 @@
+#include "apps/commands/cloud_replay.h"
+
+#include <algorithm>
+
+#include "apps/reports/text.h"
+#include "scenarios/recorded_states.h"
+#include "scenarios/run_info.h"
+#include "sensors/lidar.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::span<const sensors::LidarSettings> lidars_of(const sensors::SensorSet& sensor_set) {
+  if (sensor_set.group(sensors::kLidar) == nullptr) return {};
+  return sensor_set.settings_of<sensors::LidarSettings>(sensors::kLidar);
+}
+
+}  // namespace
+
+CloudReplay::CloudReplay(const RecordingPart& part)
+    : part_(part),
+      world_(scenarios::recorded_world(part.recording)),
+      sensor_set_(world_),
+      lidars_(lidars_of(sensor_set_)),
+      replay_(part.recording,
+              scenarios::run_info(world_, sensor_set_, {.seed = part.recording.info.seed, .record_readings = true})) {}
+
+bool CloudReplay::has_lidars() const {
+  const auto* group = sensor_set_.group(sensors::kLidar);
+  return group != nullptr &&
+         std::ranges::any_of(group->rows, [&](const auto& row) { return part_.chosen[row.mover] != 0; });
+}
+
+std::vector<Cloud> CloudReplay::at(std::size_t tick, bool newest) {
+  if (lidars_.empty()) return {};
+  const bool all = newest || tick == 0;
+  const base::TickRecord record = replay_.tick(tick, all ? std::nullopt : std::optional(tick - 1));
+  std::vector<Cloud> clouds;
+  for (const base::ReadingBlock& reading : record.readings) {
+    if (reading.type != sensors::kLidar || part_.chosen[reading.mover] == 0) continue;
+    const sensors::SensorSpec& row = sensor_set_.row(reading);
+    const sensors::LidarSettings& lidar =
+        lidars_[static_cast<std::size_t>(&row - sensor_set_.group(reading.type)->rows.data())];
+    clouds.push_back({reading.time, reading.mover, row, lidar, reading.values,
+                      base::compose(base::transform_of(reading.X_WM, reading.tilt), lidar.X_MS)});
+  }
+  return clouds;
+}
+
+std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part) {
+  auto replay = std::make_unique<CloudReplay>(part);
+  if (!replay->has_lidars()) return nullptr;
+  if (!part.recording.readings.empty()) return replay;
+  print_message("no clouds of lidars: the run was recorded without --record-readings");
+  return nullptr;
+}
+
+viz::PolyData echoes_of(std::span<const Cloud> clouds) {
+  viz::PolyData out;
+  for (const char* name : {"range", "ring", "robot", "sensor", "time"}) out.point_data.push_back({name, 1, {}});
+  for (const Cloud& cloud : clouds)
+    for (std::size_t i = 0; i < cloud.ranges.size(); ++i) {
+      if (!cloud.has_echo(i)) continue;
+      out.dots.push_back({static_cast<std::int64_t>(out.points.size())});
+      out.points.push_back(cloud.point_W(i));
+      const double values[] = {cloud.ranges[i], static_cast<double>(cloud.ring(i)), static_cast<double>(cloud.mover),
+                               static_cast<double>(cloud.row.sensor), 1e-9 * static_cast<double>(cloud.time)};
+      for (std::size_t k = 0; k < std::size(values); ++k) out.point_data[k].values.push_back(values[k]);
+    }
+  return out;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,62 @@
+#pragma once
+// Replays the recorded scans of lidars as points.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "apps/options/recording_part.h"
+#include "base/rigid_transform.h"
+#include "scenarios/replay.h"
+#include "sensors/lidar_beams.h"
+#include "sensors/sensor_set.h"
+#include "viz/vtk_files.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// One scan. Valid until the replay's next call.
+struct Cloud {
+  std::int64_t time = 0;  ///< [ns]
+  std::uint32_t mover = 0;
+  const sensors::SensorSpec& row;
+  const sensors::LidarSettings& lidar;
+  std::span<const double> ranges;  ///< [m]
+  base::RigidTransform X_WS;
+
+  bool has_echo(std::size_t i) const { return ranges[i] >= lidar.range_min && ranges[i] < lidar.range_max; }
+  std::size_t columns() const { return ranges.size() / lidar.beams->channels; }
+  std::uint16_t ring(std::size_t i) const { return static_cast<std::uint16_t>(i / columns()); }
+  glm::dvec3 point_S(std::size_t i) const { return ranges[i] * lidar.beams->directions[i]; }
+  glm::dvec3 point_W(std::size_t i) const { return base::transform(X_WS, point_S(i)); }
+};
+
+class CloudReplay {
+ public:
+  /// @param part must outlive it
+  explicit CloudReplay(const RecordingPart& part);
+
+  const world::World& world() const { return world_; }
+  /// True if a chosen mover has a lidar.
+  bool has_lidars() const;
+  std::size_t ticks() const { return replay_.ticks(); }
+  /// Returns the scans of chosen lidars since the preceding tick; at tick 0, or if `newest`, the newest of each.
+  std::vector<Cloud> at(std::size_t tick, bool newest = false);
+
+ private:
+  const RecordingPart& part_;
+  world::World world_;
+  sensors::SensorSet sensor_set_;
+  std::span<const sensors::LidarSettings> lidars_;
+  scenarios::Replay replay_;
+};
+
+/// Returns the replay for drawing; null without lidars on chosen robots, or, with a message, without recorded scans.
+std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part);
+
+/// Returns a dot per echo, in the world. Point arrays: `range` [m], `ring`, `robot` (row), `sensor` (of the robot's
+/// lidars), `time` [s].
+viz::PolyData echoes_of(std::span<const Cloud> clouds);
+
+}  // namespace sf::apps
