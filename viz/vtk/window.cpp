@@ -210,8 +210,9 @@ class Window {
     static_cast<vtkSliderRepresentation2D*>(slider_->GetRepresentation())->SetValue(scene_.times[row_]);
   }
 
-  /// Views the scene from the south, at 55 degrees.
+  /// Views the scene from the south, at 55 degrees. Echoes far beyond the walls do not make it smaller.
   void place_camera() {
+    clouds_.actor->UseBoundsOff();
     renderer_->ResetCamera();
     vtkCamera* camera = renderer_->GetActiveCamera();
     double at[3];
@@ -221,6 +222,8 @@ class Window {
     camera->SetViewUp(0.0, 1.0, 0.0);
     renderer_->ResetCamera();
     camera->Zoom(1.25);
+    clouds_.actor->UseBoundsOn();
+    renderer_->ResetCameraClippingRange();
   }
 
   void go_to(std::size_t row) {
