@@ -1,6 +1,6 @@
 // Measures the seconds per step of libsensorfarm, in wall time and CPU time of all threads, for bench/python_step.py:
-// library_step WORLD ROBOTS STEPS [WORLDS]. The first line of input starts the measurement; each further line repeats
-// it.
+// library_step WORLD ROBOTS STEPS [WORLDS], without noise if WORLDS is given, even as 1. The first line of input starts
+// the measurement; each further line repeats it.
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   const long steps = std::atol(argv[3]);
   try {
     sensorfarm::Simulation simulation(
-        argv[1], {.robots = static_cast<std::uint32_t>(std::atol(argv[2])), .copies = worlds, .noise = worlds == 1});
+        argv[1], {.robots = static_cast<std::uint32_t>(std::atol(argv[2])), .copies = worlds, .noise = argc == 4});
     std::vector<sensorfarm::Twist> twists(simulation.size());
     const auto drive = [&] {
       const sensorfarm::Readings scans = simulation.readings("laser");
