@@ -155,7 +155,8 @@ TEST(Localization, CoversTheScaleErrorOfAGyro) {
     sum += pose_nees(covers.predict(robot.time), robot.X_WM) / (3 * kSeeds);
     without += pose_nees(ignores.predict(robot.time), robot.X_WM) / (3 * kSeeds);
   }
-  EXPECT_GT(sum, instrumented() ? 0.35 : 0.7) << "ten instrumented seeds show only a gross fault";
+  // Ten instrumented seeds show only a gross fault: beyond the quantiles of kTail for 30 degrees of freedom.
+  EXPECT_GT(sum, instrumented() ? 0.31 : 0.7);
   EXPECT_LT(sum, instrumented() ? 2.2 : 1.3);
   EXPECT_GT(without, 2.0) << "the trial shows the error";
 }
