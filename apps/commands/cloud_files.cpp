@@ -14,6 +14,7 @@
 #include "apps/reports/csv_text.h"
 #include "apps/reports/progress_line.h"
 #include "base/bytes.h"
+#include "scenarios/recorded_states.h"
 
 namespace sf::apps {
 
@@ -102,8 +103,10 @@ void CloudWriter::add(const Cloud& cloud) {
 }  // namespace
 
 std::vector<std::string> write_clouds(const RecordingPart& part, const std::string& folder, CloudFormat format) {
-  CloudReplay replay(part);
-  CloudWriter writer(replay.world(), folder, format);
+  const world::World world = scenarios::recorded_world(part.recording);
+  if (!has_lidar(part, world)) return {};
+  CloudReplay replay(part, world);
+  CloudWriter writer(world, folder, format);
   Progress progress("writing clouds");
   for (std::size_t tick = 0; tick < replay.ticks(); ++tick) {
     for (const Cloud& cloud : replay.at(tick)) writer.add(cloud), heed_stop();

@@ -3,37 +3,26 @@
 #include <algorithm>
 
 #include "apps/reports/text.h"
-#include "scenarios/recorded_states.h"
 #include "scenarios/run_info.h"
 #include "sensors/lidar.h"
 
 namespace sf::apps {
 
-namespace {
-
-std::span<const sensors::LidarSettings> lidars_of(const sensors::SensorSet& sensor_set) {
-  if (sensor_set.group(sensors::kLidar) == nullptr) return {};
-  return sensor_set.settings_of<sensors::LidarSettings>(sensors::kLidar);
+bool has_lidar(const RecordingPart& part, const world::World& world) {
+  const auto is_lidar = [](const world::Sensor& sensor) { return sensor.type == sensors::lidar_type.name; };
+  for (std::size_t m = 0; m < part.chosen.size(); ++m)
+    if (part.chosen[m] != 0 && std::ranges::any_of(world.movers[m].sensors, is_lidar)) return true;
+  return false;
 }
 
-}  // namespace
-
-CloudReplay::CloudReplay(const RecordingPart& part)
+CloudReplay::CloudReplay(const RecordingPart& part, const world::World& world)
     : part_(part),
-      world_(scenarios::recorded_world(part.recording)),
-      sensor_set_(world_),
-      lidars_(lidars_of(sensor_set_)),
+      sensor_set_(world),
+      lidars_(sensor_set_.settings_of<sensors::LidarSettings>(sensors::kLidar)),
       replay_(part.recording,
-              scenarios::run_info(world_, sensor_set_, {.seed = part.recording.info.seed, .record_readings = true})) {}
-
-bool CloudReplay::has_lidars() const {
-  const auto* group = sensor_set_.group(sensors::kLidar);
-  return group != nullptr &&
-         std::ranges::any_of(group->rows, [&](const auto& row) { return part_.chosen[row.mover] != 0; });
-}
+              scenarios::run_info(world, sensor_set_, {.seed = part.recording.info.seed, .record_readings = true})) {}
 
 std::vector<Cloud> CloudReplay::at(std::size_t tick, bool newest) {
-  if (lidars_.empty()) return {};
   const bool all = newest || tick == 0;
   const base::TickRecord record = replay_.tick(tick, all ? std::nullopt : std::optional(tick - 1));
   std::vector<Cloud> clouds;
@@ -48,10 +37,9 @@ std::vector<Cloud> CloudReplay::at(std::size_t tick, bool newest) {
   return clouds;
 }
 
-std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part) {
-  auto replay = std::make_unique<CloudReplay>(part);
-  if (!replay->has_lidars()) return nullptr;
-  if (!part.recording.readings.empty()) return replay;
+std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part, const world::World& world) {
+  if (!has_lidar(part, world)) return nullptr;
+  if (!part.recording.readings.empty()) return std::make_unique<CloudReplay>(part, world);
   print_message("no clouds of lidars: the run was recorded without --record-readings");
   return nullptr;
 }

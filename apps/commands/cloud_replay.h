@@ -32,28 +32,27 @@ struct Cloud {
   glm::dvec3 point_W(std::size_t i) const { return base::transform(X_WS, point_S(i)); }
 };
 
+/// True if a chosen mover has a lidar.
+bool has_lidar(const RecordingPart& part, const world::World& world);
+
 class CloudReplay {
  public:
-  /// @param part must outlive it
-  explicit CloudReplay(const RecordingPart& part);
+  /// Both must outlive it. @param world of the recording, with a lidar
+  CloudReplay(const RecordingPart& part, const world::World& world);
 
-  const world::World& world() const { return world_; }
-  /// True if a chosen mover has a lidar.
-  bool has_lidars() const;
   std::size_t ticks() const { return replay_.ticks(); }
   /// Returns the scans of chosen lidars since the preceding tick; at tick 0, or if `newest`, the newest of each.
   std::vector<Cloud> at(std::size_t tick, bool newest = false);
 
  private:
   const RecordingPart& part_;
-  world::World world_;
   sensors::SensorSet sensor_set_;
   std::span<const sensors::LidarSettings> lidars_;
   scenarios::Replay replay_;
 };
 
 /// Returns the replay for drawing; null without lidars on chosen robots, or, with a message, without recorded scans.
-std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part);
+std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part, const world::World& world);
 
 /// Returns a dot per echo, in the world. Point arrays: `range` [m], `ring`, `robot` (row), `sensor` (of the robot's
 /// lidars), `time` [s].

@@ -103,8 +103,9 @@ std::vector<std::string> write_scans(const RecordingPart& part, world::World& wo
 }
 
 /// Writes the newest recorded scans of all chosen lidars over time.
-std::vector<std::string> write_cloud_series(const RecordingPart& part, const ExportOptions& options) {
-  const std::unique_ptr<CloudReplay> replay = clouds_to_draw(part);
+std::vector<std::string> write_cloud_series(const RecordingPart& part, const world::World& world,
+                                            const ExportOptions& options) {
+  const std::unique_ptr<CloudReplay> replay = clouds_to_draw(part, world);
   if (!replay) return {};
   FileSeries series(options.out, "clouds");
   Progress progress("writing clouds");
@@ -139,7 +140,7 @@ std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOption
     robots.add(time_at(part, tick), viz::bodies_geometry(world, poses_at(part, tick))), heed_stop();
   }
   files.push_back(robots.close());
-  for (std::string& file : write_cloud_series(part, options)) files.push_back(std::move(file));
+  for (std::string& file : write_cloud_series(part, world, options)) files.push_back(std::move(file));
   if (!has_laser(part, world) && world.magnets.empty()) return files;
 
   gpu::Device device = open_device(options);

@@ -61,7 +61,7 @@ int view_3d(const ViewOptions& options) {
 
   gpu::Device device = open_device(options);
   ScanReplay replay(part, world, device);
-  const std::unique_ptr<CloudReplay> clouds = clouds_to_draw(part);
+  const std::unique_ptr<CloudReplay> clouds = clouds_to_draw(part, world);
   scene.title = "sensorfarm: " + part.recording.info.world;
   scene.walls = viz::walls_geometry(world);
   scene.roads = viz::roads_geometry(world);

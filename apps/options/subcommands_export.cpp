@@ -93,7 +93,8 @@ void add_export(CLI::App& app, Call& call) {
       ->required()
       ->check(not_empty("a folder"))
       ->type_name("DIR");
-  sub->add_flag("--vtk", o.vtk, "Write walls, roads, robots, trajectories, scans, occupancy and field as VTK files");
+  sub->add_flag("--vtk", o.vtk,
+                "Write walls, roads, robots, trajectories, clouds, scans, occupancy and field as VTK files");
   add_choice<CloudFormat, CloudFormat>(*sub, "--clouds", o.clouds,
                                        {{"pcd", CloudFormat::pcd}, {"ply", CloudFormat::ply}},
                                        "Write the scans of lidars as point clouds: pcd (all beams, in the sensor's "

@@ -134,8 +134,9 @@ TEST(Localization, LearnsTheBiasOfAGyro) {
 /// Two minutes of curves to the left by wheels and a gyro with unknown constants, without cameras. Filters that take
 /// the gyro's scale for exact state a variance of yaw that is several times too small.
 TEST(Localization, CoversTheScaleErrorOfAGyro) {
+  const int seeds = instrumented() ? 20 : kSeeds;
   double sum = 0.0, without = 0.0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
+  for (int seed = 1; seed <= seeds; ++seed) {
     DrivenRobot robot{.random = std::mt19937_64(seed)};
     const double common = robot.normal(0.01), half = 0.5 * robot.normal(0.01);
     robot.left_scale = 1.0 + common - half, robot.right_scale = 1.0 + common + half;
@@ -152,12 +153,12 @@ TEST(Localization, CoversTheScaleErrorOfAGyro) {
       const double rate = robot.gyro_scale * robot.velocity.turn + robot.gyro_bias + robot.normal(1.7e-3);
       for (Localization* filter : {&covers, &ignores}) robot.add_encoder(*filter), filter->add_gyro(robot.time, rate);
     }
-    sum += pose_nees(covers.predict(robot.time), robot.X_WM) / (3 * kSeeds);
-    without += pose_nees(ignores.predict(robot.time), robot.X_WM) / (3 * kSeeds);
+    sum += pose_nees(covers.predict(robot.time), robot.X_WM) / (3 * seeds);
+    without += pose_nees(ignores.predict(robot.time), robot.X_WM) / (3 * seeds);
   }
-  // Ten instrumented seeds show only a gross fault: beyond the quantiles of kTail for 30 degrees of freedom.
-  EXPECT_GT(sum, instrumented() ? 0.31 : 0.7);
-  EXPECT_LT(sum, instrumented() ? 2.2 : 1.3);
+  // Twenty instrumented seeds show only a gross fault: beyond the quantiles of 1.5e-4 for 60 degrees of freedom.
+  EXPECT_GT(sum, instrumented() ? 0.47 : 0.7);
+  EXPECT_LT(sum, instrumented() ? 1.8 : 1.3);
   EXPECT_GT(without, 2.0) << "the trial shows the error";
 }
 
