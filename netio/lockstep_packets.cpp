@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/tilted_pose.h"
 #include "netio/packets.h"
 
 namespace sf::netio {
@@ -125,10 +126,12 @@ PacketStatus read_payload(std::span<const std::uint8_t> payload, State& out) {
   out.velocity = get_twist(reader);
   out.contact = reader.get<std::uint32_t>();
   out.flags = reader.get<std::uint32_t>();
-  const PacketStatus sized = compare_size(payload.size(), kStateBytes);
+  const bool tilted = payload.size() == kStateBytes + kTiltBytes;
+  const PacketStatus sized = tilted ? PacketStatus::accepted : compare_size(payload.size(), kStateBytes);
   if (sized != PacketStatus::accepted) return sized;
-  const std::array numbers{out.X_WR.x,           out.X_WR.y,        out.X_WR.z,       out.X_WR.yaw,
-                           out.velocity.forward, out.velocity.left, out.velocity.turn};
+  if (tilted) out.tilt.roll = reader.get<double>(), out.tilt.pitch = reader.get<double>();
+  const std::array numbers{out.X_WR.x,        out.X_WR.y,        out.X_WR.z,    out.X_WR.yaw,  out.velocity.forward,
+                           out.velocity.left, out.velocity.turn, out.tilt.roll, out.tilt.pitch};
   if (!all_finite(numbers)) return PacketStatus::not_finite;
   return status_if(out.part.index < out.part.datagrams && out.contact <= 1 && out.flags <= kDriverLostBit);
 }
@@ -180,6 +183,8 @@ void write_payload(const State& state, base::ByteWriter& writer) {
   put_twist(state.velocity, writer);
   writer.put(state.contact);
   writer.put(state.flags);
+  if (base::is_level(state.tilt)) return;
+  for (const double each : {state.tilt.roll, state.tilt.pitch}) writer.put(each);
 }
 
 void write_payload(const Values& values, base::ByteWriter& writer) {

@@ -66,6 +66,7 @@ struct State {
   base::Twist velocity;       ///< in the robot's frame
   std::uint32_t contact = 0;  ///< 1 if a wall or a robot stopped it
   std::uint32_t flags = 0;    ///< kDriverLostBit
+  base::Tilt tilt;            ///< of the robot, finite. A level robot's packet has the short form
 };
 
 /// From the farm: an unrounded reading, or a part of one.

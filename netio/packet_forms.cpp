@@ -7,7 +7,7 @@ namespace sf::netio {
 
 namespace {
 
-constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
+constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes, kTiltBytes},
                                  {Type::tag, "TAG", kHeaderBytes + kTagBytes},
                                  {Type::subscribe, "SUBSCRIBE", 0},
                                  {Type::start, "START", kHeaderBytes},
@@ -20,7 +20,7 @@ constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
                                  {Type::object, "OBJECT", 0},
                                  {Type::refusal, "REFUSAL", kHeaderBytes + kRefusalBytes},
                                  {Type::neighbours, "NEIGHBOURS", 0},
-                                 {Type::state, "STATE", kHeaderBytes + kStateBytes},
+                                 {Type::state, "STATE", kHeaderBytes + kStateBytes, kTiltBytes},
                                  {Type::values, "VALUES", 0},
                                  {Type::drive, "DRIVE", kHeaderBytes + kDriveBytes},
                                  {Type::lane, "LANE", kHeaderBytes + kLaneBytes},

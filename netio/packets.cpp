@@ -8,6 +8,7 @@
 
 #include "base/elementary.h"
 #include "base/error.h"
+#include "base/tilted_pose.h"
 
 namespace sf::netio {
 
@@ -43,12 +44,16 @@ PacketStatus first_fault(std::initializer_list<PacketStatus> reasons) {
   return found;
 }
 
+PacketStatus check(const base::Tilt& tilt) {
+  return first_fault({check(std::array{tilt.roll}, kMaxRoll), check(std::array{tilt.pitch}, kMaxPitch)});
+}
+
 PacketStatus check(const V2v& state) {
   const base::Pose& pose = state.X_WR;
   const base::Twist& twist = state.velocity;
   const PacketStatus numbers =
       first_fault({check(std::array{pose.x, pose.y, pose.z}, kMaxPosition), check(std::array{pose.yaw}, kMaxYaw),
-                   check(std::array{twist.forward, twist.left, twist.turn}, kMaxSpeed)});
+                   check(std::array{twist.forward, twist.left, twist.turn}, kMaxSpeed), check(state.tilt)});
   if (numbers != PacketStatus::accepted) return numbers;
   return state.follows == kNone || state.follows <= kMaxId ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
@@ -74,6 +79,11 @@ void put_doubles(const std::array<double, n>& values, base::ByteWriter& writer) 
   for (const double value : values) writer.put(value);
 }
 
+base::Tilt get_tilt(base::ByteReader& reader) {
+  const auto [roll, pitch] = get_doubles<2>(reader);
+  return {roll, pitch};
+}
+
 PacketStatus check(const Drive& drive) {
   const base::Twist& twist = drive.twist;
   return check(std::array{twist.forward, twist.left, twist.turn}, kMaxSpeed);
@@ -93,6 +103,7 @@ PacketStatus read_v2v(base::ByteReader& reader, Packet& packet) {
   state.checkpoint = reader.get<std::uint32_t>();
   const auto flags = reader.get<std::uint32_t>();
   state.docking = flags == kDockingBit;
+  if (reader.left() > 0) state.tilt = get_tilt(reader);
   packet.body = state;
   const PacketStatus status = check(state);
   if (status != PacketStatus::accepted) return status;
@@ -188,7 +199,8 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   PacketStatus status = PacketStatus::accepted;
   switch (packet.header.type) {
     case Type::v2v:
-      status = check_size(payload.size(), kV2vBytes - kHeaderBytes);
+      if (payload.size() != kV2vBytes - kHeaderBytes + kTiltBytes)
+        status = check_size(payload.size(), kV2vBytes - kHeaderBytes);
       return status == PacketStatus::accepted ? read_v2v(reader, packet) : status;
     case Type::tag:
       status = check_size(payload.size(), kTagBytes);
@@ -386,6 +398,7 @@ void encode(const Header& header, const V2v& state, base::Bytes& out) {
   writer.put(state.follows);
   writer.put(state.checkpoint);
   writer.put(state.docking ? kDockingBit : std::uint32_t{0});
+  if (!base::is_level(state.tilt)) put_doubles(std::array{state.tilt.roll, state.tilt.pitch}, writer);
 }
 
 void encode(const Header& header, const Tag& state, base::Bytes& out) {
@@ -532,19 +545,32 @@ void encode_reading(const Header& header, std::uint8_t type, std::span<const std
 }
 
 base::Report report(const Header& header, const V2v& state, std::uint32_t mover) {
-  return {mover, header.time, state.X_WR, state.velocity};
+  return {mover, header.time, state.X_WR, state.velocity, state.tilt};
 }
 
+namespace {
+
+/// Returns the pose of the mover under a tag with this orientation at the origin; its position is minus the arm from
+/// the mover's origin to the tag, in the world frame.
+base::TiltedPose under(const std::array<double, 4>& orientation, const base::Pose& X_MT) {
+  const auto& [x, y, z, w] = orientation;
+  if (x != 0.0 || y != 0.0) {
+    const base::RigidTransform X_TM = base::relative(base::transform_of(X_MT), {});
+    return base::tilted_pose_of(base::compose({base::rotation_of(base::Quaternion{w, x, y, z})}, X_TM));
+  }
+  const double yaw = base::atan2(2.0 * (w * z), 1.0 - 2.0 * (z * z)) - X_MT.yaw;
+  const glm::dvec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});
+  return {{-arm.x, -arm.y, -X_MT.z, yaw}};
+}
+
+}  // namespace
+
 base::Report report(const Header& header, const Tag& state, std::uint32_t mover, const base::Pose& X_MT) {
-  const auto& [x, y, z, w] = state.orientation;
-  const double yaw = base::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) - X_MT.yaw;
+  const auto [X, tilt] = under(state.orientation, X_MT);
   const double turn = state.angular[2];
-  const glm::dvec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});  // from the mover's origin to the tag, in the world frame
-  const glm::dvec2 velocity = base::rotate(-yaw, {state.linear[0] + turn * arm.y, state.linear[1] - turn * arm.x});
-  return {mover,
-          header.time,
-          {state.position[0] - arm.x, state.position[1] - arm.y, state.position[2] - X_MT.z, yaw},
-          {velocity.x, velocity.y, turn}};
+  const glm::dvec2 velocity = base::rotate(-X.yaw, {state.linear[0] - turn * X.y, state.linear[1] + turn * X.x});
+  const auto& p = state.position;
+  return {mover, header.time, {p[0] + X.x, p[1] + X.y, p[2] + X.z, X.yaw}, {velocity.x, velocity.y, turn}, tilt};
 }
 
 }  // namespace sf::netio

@@ -108,6 +108,8 @@ struct Accuracy {
 std::uint16_t encode_accuracy(const Accuracy& accuracy);
 Accuracy decode_accuracy(std::uint16_t word);
 
+inline constexpr double kMaxRoll = M_PI, kMaxPitch = M_PI_2;  ///< [rad] of a robot
+
 /// State of a robot.
 struct V2v {
   base::Pose X_WR;                   ///< pose of the robot in the world
@@ -115,6 +117,7 @@ struct V2v {
   std::uint32_t follows = kNone;     ///< id in [0, kMaxId] of its leader, or kNone
   std::uint32_t checkpoint = kNone;  ///< id of its next checkpoint, any number, or kNone
   bool docking = false;
+  base::Tilt tilt;  ///< of the robot; roll within kMaxRoll, pitch within kMaxPitch. Level robots send the short form
 };
 
 /// State of a tag, measured by an overhead camera, in the world frame.
@@ -185,7 +188,8 @@ struct Dropped {
   std::uint32_t network = 0;    ///< measured and not sent: no bytes were left
 };
 
-inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                 ///< size of a complete V2V packet
+inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                 ///< size of a V2V of a level robot
+inline constexpr std::size_t kTiltBytes = 16;                               ///< appended to V2V and STATE by a tilt
 inline constexpr std::size_t kTagBytes = 104;                               ///< payload sizes
 inline constexpr std::size_t kObjectBytes = 4, kShapedObjectBytes = 96;     ///< without and with a change of shape
 inline constexpr std::size_t kSubscribeBytes = 4, kWideSubscribeBytes = 8;  ///< without and with types above 31
@@ -194,7 +198,7 @@ inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4, kDriveBytes
 inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V
 
-/// Forwarded states of other robots: complete V2V datagrams, one after another.
+/// Forwarded states of other robots: complete V2V datagrams without tilt, one after another.
 struct Neighbours {
   std::span<const std::uint8_t> states;  ///< 1 to kMaxNeighbours states of kV2vBytes, not decoded; valid as long as the
                                          ///< datagram
@@ -255,8 +259,8 @@ struct SessionToken {
 /// Writes both fields into an encoded packet.
 void write_session_token(std::span<std::uint8_t> packet, const SessionToken& session_token);
 
-/// Returns the report for world mover `mover` from a state. Ignores a tag's tilt, and converts its velocity to the
-/// mover's velocity in the mover's frame.
+/// Returns the report for world mover `mover` from a state. Converts a tag's velocity to the mover's velocity in the
+/// mover's frame; of its angular velocity only the turn about the vertical counts.
 /// @param X_MT pose of the tag in the mover's frame
 base::Report report(const Header& header, const V2v& state, std::uint32_t mover);
 base::Report report(const Header& header, const Tag& state, std::uint32_t mover, const base::Pose& X_MT = {});

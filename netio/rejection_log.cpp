@@ -19,7 +19,9 @@ std::string size_text(std::span<const std::uint8_t> bytes, bool is_short) {
                                ? fmt::format("a packet of type {} and {} bytes", bytes[kTypeAt], bytes.size())
                                : fmt::format("a {} of {} bytes", form->name, bytes.size());
   const std::string fault = fmt::format("{} is too {}", size, is_short ? "short" : "long");
-  return form == nullptr || form->bytes == 0 ? fault : fmt::format("{}: expected {}", fault, form->bytes);
+  if (form == nullptr || form->bytes == 0) return fault;
+  const std::string longer = form->more > 0 ? fmt::format(" or {}", form->bytes + form->more) : "";
+  return fmt::format("{}: expected {}{}", fault, form->bytes, longer);
 }
 
 std::string ids_text(std::span<const std::uint32_t> ids) {

@@ -43,7 +43,9 @@ void Relay::take(const Packet& packet) {
     if (robot == nullptr) return;
     robot->age = 0;
     robot->p = {state->X_WR.x, state->X_WR.y};
-    encode(packet.header, *state, robot->state);
+    V2v level = *state;
+    level.tilt = {};  // receivers of earlier versions would drop all states of a NEIGHBOURS of another length
+    encode(packet.header, level, robot->state);
   } else if (std::holds_alternative<Start>(packet.body)) {
     const bool all = packet.header.robot == kBroadcastId;
     if (!all && robot == nullptr) return;

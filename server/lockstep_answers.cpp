@@ -86,7 +86,7 @@ void Lockstep::encode(Process& process, std::uint32_t index) {
     const base::Report& report = published_.report(part.mover);
     return netio::encode(header,
                          netio::State{place, report.X_WM, report.velocity, published_.contact(part.mover) ? 1u : 0u,
-                                      counts_.lost_robots > 0 ? netio::kDriverLostBit : 0u},
+                                      counts_.lost_robots > 0 ? netio::kDriverLostBit : 0u, report.tilt},
                          packet_);
   }
   const base::ReadingBlock& reading = published_.reading(part.reading);

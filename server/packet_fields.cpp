@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/tilted_pose.h"
 #include "maps/map_packets.h"
 #include "netio/packet_forms.h"
 #include "sensors/laser_packets.h"
@@ -62,12 +63,18 @@ void add_header(const netio::Header& header, Fields& out) {
   add(out, "covariance", header.state.covariance);
 }
 
+/// Packets of level robots have no such field.
+void add_tilt(const base::Tilt& tilt, Fields& out) {
+  if (!base::is_level(tilt)) add(out, "tilt", std::array{tilt.roll, tilt.pitch});
+}
+
 void add_body(const netio::V2v& state, Fields& out) {
   add_id(out, "follows", state.follows);
   add_id(out, "checkpoint", state.checkpoint);
   add(out, "docking", state.docking);
   add(out, "pose", std::array{state.X_WR.x, state.X_WR.y, state.X_WR.z, state.X_WR.yaw});
   add(out, "velocity", std::array{state.velocity.forward, state.velocity.left, state.velocity.turn});
+  add_tilt(state.tilt, out);
 }
 void add_body(const netio::Tag& state, Fields& out) {
   add(out, "position", state.position);
@@ -126,6 +133,7 @@ void add_body(const netio::State& state, Fields& out) {
   add(out, "flags", state.flags);
   add(out, "pose", std::array{state.X_WR.x, state.X_WR.y, state.X_WR.z, state.X_WR.yaw});
   add(out, "velocity", std::array{state.velocity.forward, state.velocity.left, state.velocity.turn});
+  add_tilt(state.tilt, out);
 }
 void add_body(const netio::Values& values, Fields& out) {
   add_part(values.part, out);

@@ -17,6 +17,7 @@ netio::V2v v2v_of(const base::Report& report, const base::Intent& intent) {
   state.follows = intent.follows <= netio::kMaxId ? intent.follows : netio::kNone;
   state.checkpoint = intent.checkpoint;
   state.docking = intent.docking;
+  state.tilt = {bound(base::wrap_angle(report.tilt.roll), netio::kMaxRoll), bound(report.tilt.pitch, netio::kMaxPitch)};
   return state;
 }
 

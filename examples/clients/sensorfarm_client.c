@@ -38,6 +38,7 @@ enum {
 enum {
   SF_HEADER = 64,
   SF_V2V_BYTES = 132,
+  SF_TILT_BYTES = 16,  // after a V2V or STATE of a robot that is not level
   SF_TAG_BYTES = 168,
   SF_MAX_VALUES = 361,
   SF_MAX_SENSORS = 32,
@@ -272,6 +273,7 @@ typedef struct {
   unsigned changes;              // OBJECT: sum of 2: shape, 4: colour (words[1], 0xAARRGGBB), 8: size (values, m)
   char shape[65];                // OBJECT: name of a shape, or "original"
   uint64_t tick;                 // lockstep
+  double tilt[2];                // V2V, STATE: roll, pitch [rad] (positive: left side higher, front lower)
   double sensor_pose[4], error;  // VALUES: x, y, z [m], yaw [rad] in the world frame; error bound, INFINITY: not stated
 } sf_packet;
 
@@ -512,19 +514,28 @@ static const char* decode_shaped(sf_packet* p, const uint8_t* b) {
   return check_numbers(p->values, 3, HUGE_VAL) ? "not finite" : in_range(good);
 }
 
+// Reads the tilt after the first `shorter` bytes of a payload, and takes it off its size; level robots send none.
+static void decode_tilt(sf_packet* p, const uint8_t* b, size_t shorter, size_t* size) {
+  if (*size != shorter + SF_TILT_BYTES) return;
+  for (unsigned i = 0; i < 2; ++i) p->tilt[i] = get_f64(b + shorter + 8 * i);
+  *size = shorter;
+}
+
 static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t* b, size_t size) {
   unsigned words = 0;
   while (type->words[words]) ++words;
   if (p->type == SF_OBJECT && size == SF_SHAPED_OBJECT) return decode_shaped(p, b);
   p->count = sf_row_width(type);
+  if (p->type == SF_V2V) decode_tilt(p, b, 8 * p->count + 4 * words, &size);
   if (size != 8 * p->count + 4 * words) return check_size(size, 8 * p->count + 4 * words);
   for (unsigned i = 0; i < p->count; ++i) p->values[i] = get_f64(b + 8 * i);
   for (unsigned i = 0; i < words; ++i) p->words[i] = (uint32_t)get(b + 8 * p->count + 4 * i, 4);
   const double* const v = p->values;
-  if (check_numbers(v, p->count, HUGE_VAL) != NULL) return "not finite";
+  if (check_numbers(v, p->count, HUGE_VAL) || check_numbers(p->tilt, 2, HUGE_VAL)) return "not finite";
   if (p->type == SF_V2V)
     return in_range(!check_numbers(v, 3, 1e7) && fabs(v[3]) <= 1e6 && !check_numbers(v + 4, 3, 1e3) &&
-                    p->words[2] <= 1 && (p->words[0] <= 65535 || p->words[0] == SF_NONE));
+                    fabs(p->tilt[0]) <= acos(-1.0) && fabs(p->tilt[1]) <= acos(0.0) && p->words[2] <= 1 &&
+                    (p->words[0] <= 65535 || p->words[0] == SF_NONE));
   if (p->type == SF_TAG)
     return in_range(!check_numbers(v, 3, 1e7) && !check_numbers(v + 7, 6, 1e3) && p->robot > 0 &&
                     fabs(hypot(hypot(v[3], v[4]), hypot(v[5], v[6])) - 1.0) <= 1e-3);
@@ -579,13 +590,14 @@ static const char* decode_lockstep(sf_packet* p, const uint8_t* b, size_t size) 
   if (p->type == SF_COMMAND) return decode_command(p, b, size);
   if (p->type == SF_VALUES) return decode_values(p, b, size);
   const size_t expected = p->type == SF_STATE ? 80 : 16;
+  if (p->type == SF_STATE) decode_tilt(p, b, expected, &size);
   if (size != expected) return check_size(size, expected);
   for (unsigned i = 0; i < 2; ++i) p->words[i] = (uint32_t)get(b + 8 + 4 * i, 4);
   if (p->type == SF_STEP) return in_range(p->words[0] >= 1 && p->words[0] <= 1000 && p->words[1] <= 65536);
   if (p->type == SF_FETCH) return in_range(p->words[1] >= 1 && p->words[1] <= 64);
   for (; p->count < 7; ++p->count) p->values[p->count] = get_f64(b + 16 + 8 * p->count);
   for (unsigned i = 2; i < 4; ++i) p->words[i] = (uint32_t)get(b + 64 + 4 * i, 4);
-  if (check_numbers(p->values, 7, HUGE_VAL)) return "not finite";
+  if (check_numbers(p->values, 7, HUGE_VAL) || check_numbers(p->tilt, 2, HUGE_VAL)) return "not finite";
   return in_range(p->words[0] < p->words[1] && p->words[2] <= 1 && p->words[3] <= 1);
 }
 
@@ -653,8 +665,8 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
 }
 
 // Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE, OBJECT or LANE from type, robot, sequence, time_ns, session, token,
-// words, values and, of an estimate in V2V or TAG, age_us, stale and covariance. Returns its size, at most
-// SF_TAG_BYTES; 0 for numbers that the farm would drop.
+// words, values, the tilt in V2V and, of an estimate in V2V or TAG, age_us, stale and covariance. Returns its size, at
+// most SF_TAG_BYTES; 0 for numbers that the farm would drop.
 size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   const sf_type* const type = sf_find_type(packet->type);
   if (!type || packet->type < SF_V2V ||
@@ -678,6 +690,8 @@ size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   size_t size = SF_HEADER;
   for (unsigned i = 0; i < sf_row_width(type); ++i, size += 8) put_f64(bytes + size, packet->values[i]);
   for (unsigned i = 0; type->words[i]; ++i, size += 4) put(bytes + size, 4, packet->words[i]);
+  const bool tilted = packet->type == SF_V2V && (packet->tilt[0] != 0 || packet->tilt[1] != 0);
+  for (unsigned i = 0; i < 2 && tilted; ++i, size += 8) put_f64(bytes + size, packet->tilt[i]);
   if (packet->type == SF_OBJECT && packet->changes) {
     put(bytes + SF_HEADER, 4, (packet->words[0] & 1) | packet->changes);
     put(bytes + size, 4, packet->changes & 4 ? packet->words[1] : 0);
@@ -792,6 +806,7 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
   }
   const unsigned approaches = p->type == SF_V2I ? 8 * p->approaches : p->count;
   print_columns(out, type, p->values, approaches, before, after);
+  if (p->tilt[0] != 0 || p->tilt[1] != 0) fprintf(out, "%stilt = %.10g %.10g%s", before, p->tilt[0], p->tilt[1], after);
   if (p->type == SF_V2I)
     print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
 }

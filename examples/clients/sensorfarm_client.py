@@ -38,7 +38,7 @@ REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
-HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
+HEADER_BYTES, V2V_BYTES, TILT_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 16, 1256, 24
 HEADER = struct.Struct("<4sBBHHHIqIII6fHH")
 STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I",
           OBJECT: "<I", REFUSAL: "<I", DRIVE: "<3d", LANE: "<3I", DROPPED: "<3I"}  # payloads
@@ -132,6 +132,14 @@ def unpack_rows(form, word, payload):
 def require_numbers(numbers, limit):
     require(all(math.isfinite(number) for number in numbers), "not finite")
     require(all(abs(number) <= limit for number in numbers))
+
+
+def split_tilt(size, payload):
+    """Returns the first `size` bytes, and the `tilt` after them: roll, pitch [rad], which a level robot does not send."""
+    if len(payload) != size + TILT_BYTES:
+        return payload, {}
+    tilt = list(struct.unpack("<2d", payload[size:]))
+    return payload[:size], {"tilt": tilt} if any(tilt) else {}
 
 
 def decode_laser(extended, payload):
@@ -271,11 +279,12 @@ def decode_lockstep(type, payload):
     if type == VALUES:
         return decode_values(payload)
     if type == STATE:
+        payload, tilt = split_tilt(80, payload)
         tick, index, datagrams, *numbers, contact, flags = unpack("<QII7dII", payload)
-        require(all(map(math.isfinite, numbers)), "not finite")
+        require(all(map(math.isfinite, numbers + tilt.get("tilt", []))), "not finite")
         require(index < datagrams and contact <= 1 and flags <= 1)
         return {"tick": tick, "index": index, "datagrams": datagrams, "contact": contact, "flags": flags,
-                "pose": numbers[:4], "velocity": numbers[4:]}
+                "pose": numbers[:4], "velocity": numbers[4:], **tilt}
     tick, first, second = unpack("<QII", payload)
     require(1 <= first <= 1000 and second <= 65536 if type == STEP else 1 <= second <= 64)
     return dict(zip(("tick", "ticks", "commands") if type == STEP else ("tick", "first", "count"), (tick, first, second)))
@@ -309,15 +318,18 @@ def decode_state(type, robot, payload):
         return {"states": states}
     if type == OBJECT and len(payload) == struct.calcsize(SHAPED_OBJECT):
         return decode_shaped(robot, payload)
+    payload, tilt = split_tilt(V2V_BYTES - HEADER_BYTES, payload) if type == V2V else (payload, {})
     numbers = unpack("<Q" if type == SUBSCRIBE and len(payload) == 8 else STATES[type], payload)
     if type == V2V:
-        require(all(map(math.isfinite, numbers[:7])), "not finite")
-        for part, limit in ((numbers[:3], 1e7), (numbers[3:4], 1e6), (numbers[4:7], 1e3)):
+        roll, pitch = tilt.get("tilt", (0.0, 0.0))
+        require(all(map(math.isfinite, (*numbers[:7], roll, pitch))), "not finite")
+        for part, limit in ((numbers[:3], 1e7), (numbers[3:4], 1e6), (numbers[4:7], 1e3), ([roll], math.pi),
+                            ([pitch], math.pi / 2)):
             require_numbers(part, limit)
         require((numbers[7] <= 65535 or numbers[7] == NONE) and numbers[9] <= 1)
         follows, checkpoint = (None if number == NONE else number for number in numbers[7:9])
         return {"follows": follows, "checkpoint": checkpoint, "docking": numbers[9], "pose": list(numbers[:4]),
-                "velocity": list(numbers[4:7])}
+                "velocity": list(numbers[4:7]), **tilt}
     if type == TAG:
         require_numbers(numbers, 1e7)
         require_numbers(numbers[7:], 1e3)
@@ -388,11 +400,12 @@ def encode(type, payload=b"", robot=0, sequence=0, time_ns=0, session=0, token=0
     return head + payload
 
 
-def encode_v2v(pose, velocity=(0.0, 0.0, 0.0), follows=None, checkpoint=None, docking=0, **header):
+def encode_v2v(pose, velocity=(0.0, 0.0, 0.0), follows=None, checkpoint=None, docking=0, tilt=(0.0, 0.0), **header):
     """Encodes a robot's state. pose: x, y, z [m], yaw [rad] in the world frame; velocity: forward, left [m/s], turn
-    [rad/s]."""
+    [rad/s]; tilt: roll, pitch [rad] (positive: left side higher, front lower)."""
     ids = [NONE if number is None else number for number in (follows, checkpoint)]
-    return encode(V2V, struct.pack(STATES[V2V], *pose, *velocity, *ids, docking), **header)
+    tilted = struct.pack("<2d", *tilt) if any(tilt) else b""
+    return encode(V2V, struct.pack(STATES[V2V], *pose, *velocity, *ids, docking) + tilted, **header)
 
 
 def encode_tag(position, orientation, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0), **header):

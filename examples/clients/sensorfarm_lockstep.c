@@ -30,6 +30,7 @@ typedef struct {
   uint16_t id;
   bool subscribed, commanded;
   double pose[4], velocity[3], command[3];  // x, y, z, yaw; forward, left, turn
+  double tilt[2];                           // roll, pitch [rad]
   bool contact;
   unsigned count;  // number of readings: the newest of each sensor
   sf_reading readings[SF_MAX_SENSORS];
@@ -152,6 +153,7 @@ static void place(sf_lockstep* l, const sf_packet* p) {
   }
   memcpy(robot->pose, p->values, sizeof robot->pose);
   memcpy(robot->velocity, p->values + 4, sizeof robot->velocity);
+  memcpy(robot->tilt, p->tilt, sizeof robot->tilt);
   robot->contact = p->words[2];
   l->driver_lost = p->words[3];
   l->time_ns = p->time_ns;

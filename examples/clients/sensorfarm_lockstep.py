@@ -32,7 +32,8 @@ from sensorfarm_client import (CHALLENGE, EVERY_ROBOT, LEAVE, REFUSAL, REFUSALS,
 ROWS, WINDOW, PUSHED = 38, 64, 64  # robots of a COMMAND; datagrams of a FETCH; datagrams that arrive without a FETCH
 PATIENCE = 0.02  # [s] of silence after which packets are repeated, doubled each time up to half a second
 
-State = collections.namedtuple("State", "pose velocity contact")  # x, y, z, yaw; forward, left, turn; 0 or 1
+# x, y, z, yaw; forward, left, turn; 0 or 1; roll, pitch
+State = collections.namedtuple("State", "pose velocity contact tilt")
 # error: the largest error of the first column of all elements; None: no bound is stated. unsure: 1: the type's bound
 # does not hold for all elements (noise, a bend of a lane edge, beams that graze or were not cast).
 Reading = collections.namedtuple("Reading", "time_ns pose values error tick unsure")
@@ -190,7 +191,8 @@ class Lockstep(Client):
         self.missing -= 1
         if packet["type"] == STATE:
             own = self.robots if packet["robot"] in self.robots else self.others
-            own[packet["robot"]] = State(packet["pose"], packet["velocity"], packet["contact"])
+            own[packet["robot"]] = State(packet["pose"], packet["velocity"], packet["contact"],
+                                         packet.get("tilt", [0.0, 0.0]))
             self.time, self.driver_lost = packet["time_ns"] * 1e-9, packet["flags"] == 1
         else:
             self._place_values(packet)

@@ -36,6 +36,13 @@ inline base::Bytes v2v_example() {
   return out;
 }
 
+inline base::Bytes tilted_v2v_example() {
+  base::Bytes out;
+  const V2v state{.X_WR = {1.5, -2.25, 0.75, 0.5}, .velocity = {0.25, 0.0, -0.125}, .tilt = {0.0625, 0.25}};
+  encode({.robot = 7, .sequence = 10, .time = 1'600'000'000}, state, out);
+  return out;
+}
+
 inline base::Bytes tag_example() {
   base::Bytes out;
   const Tag state{

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 
+#include "base/tilted_pose.h"
 #include "tests/netio/documented.h"
 #include "tests/netio/examples.h"
 #include "tests/units.h"
@@ -33,6 +34,7 @@ TEST(Packets, BytesMatchTheDocumentation) {
   EXPECT_EQ(reading_example(), documented("laser"));
   EXPECT_EQ(extended_example(), documented("laser_extended"));
   EXPECT_EQ(v2v_example(), documented("v2v"));
+  EXPECT_EQ(tilted_v2v_example(), documented("tilted_v2v"));
   EXPECT_EQ(tag_example(), documented("tag"));
   EXPECT_EQ(subscribe_example(), documented("subscribe"));
   EXPECT_EQ(start_example(), documented("start"));
@@ -317,6 +319,8 @@ TEST(Packets, RejectsNanAndInfinityInStates) {
   for (const double bad : {kNaN, kInf, -kInf}) {
     for (std::size_t i = 0; i < 7; ++i)
       EXPECT_EQ(reason_of(patched(v2v_example(), 64 + 8 * i, bad)), PacketStatus::not_finite) << i;
+    for (const std::size_t at : {132u, 140u})
+      EXPECT_EQ(reason_of(patched(tilted_v2v_example(), at, bad)), PacketStatus::not_finite) << at;
     for (std::size_t i = 0; i < 13; ++i)
       EXPECT_EQ(reason_of(patched(tag_example(), 64 + 8 * i, bad)), PacketStatus::not_finite) << i;
   }
@@ -345,6 +349,7 @@ TEST(Packets, RejectsStatesBeyondTheirLimits) {
   };
   for (const Limit& at : v2v) check(v2v_example(), at);
   for (const Limit& at : tag) check(tag_example(), at);
+  for (const Limit& at : {Limit{132, kMaxRoll}, Limit{140, kMaxPitch}}) check(tilted_v2v_example(), at);
 }
 
 TEST(Packets, RejectsV2iRowsBeyondTheirLimits) {
@@ -414,6 +419,38 @@ TEST(Packets, ConvertsStatesToReports) {
   EXPECT_EQ(got.time, 1'500'000'000);
   EXPECT_EQ(got.X_WM.y, -2.25);
   EXPECT_EQ(got.velocity.turn, -0.125);
+}
+
+TEST(Packets, TiltOfAV2vIsThatOfTheReport) {
+  Packet packet;
+  ASSERT_EQ(decode(tilted_v2v_example(), packet), PacketStatus::accepted);
+  const base::Report got = report(packet.header, std::get<V2v>(packet.body), 5);
+  EXPECT_EQ(got.tilt.roll, 0.0625);
+  EXPECT_EQ(got.tilt.pitch, 0.25);
+}
+
+/// Any tilt, also upside down and with a vertical x axis, where yaw and roll are not unique: compares rotations.
+TEST(Packets, TiltOfATagIsThatOfItsModel) {
+  const base::Pose X_MT{0.2, 0.1, 0.3, 2.0};
+  for (const base::Tilt& tilt :
+       {base::Tilt{0.1, 0.0}, {0.0, -0.2}, {0.3, 1.5}, {3.0, 0.4}, {0.2, M_PI_2}, {1.0, -M_PI_2}})
+    for (const double yaw : {0.0, M_PI / 2, -2.5}) {
+      const base::RigidTransform X_WM = base::transform_of({1.0, 2.0, 0.2, yaw}, tilt);
+      const base::RigidTransform X_WT = base::compose(X_WM, base::transform_of(X_MT));
+      const base::Quaternion R_WM = base::quaternion_of(yaw, tilt), R_MT = base::quaternion_of(X_MT.yaw, {});
+      const double norm = 1.0009;  // within the limits
+      const Tag tag{
+          .position = {X_WT.p.x, X_WT.p.y, X_WT.p.z},
+          .orientation = {norm * (R_WM.x * R_MT.w + R_WM.y * R_MT.z), norm * (R_WM.y * R_MT.w - R_WM.x * R_MT.z),
+                          norm * (R_WM.w * R_MT.z + R_WM.z * R_MT.w), norm * (R_WM.w * R_MT.w - R_WM.z * R_MT.z)}};
+      const base::Report got = report({.robot = 1}, tag, 3, X_MT);
+      const base::RigidTransform found = base::transform_of(got.X_WM, got.tilt);
+      EXPECT_LT(glm::distance(found.p, X_WM.p), 1e-12) << tilt.roll << " " << tilt.pitch << " " << yaw;
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_LT(glm::distance(found.R[axis], X_WM.R[axis]), 1e-12) << tilt.roll << " " << tilt.pitch << " " << yaw;
+      EXPECT_LE(std::abs(got.tilt.roll), kMaxRoll);
+      EXPECT_LE(std::abs(got.tilt.pitch), kMaxPitch);
+    }
 }
 
 TEST(Packets, RotatesTagVelocityIntoTheMoversFrame) {

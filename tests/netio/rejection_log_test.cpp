@@ -24,9 +24,11 @@ const std::vector<std::uint32_t> kRobots{1, 2};
 TEST(RejectionText, NamesTheFaultAndTheRemedy) {
   base::Bytes bytes = v2v();
   bytes.resize(bytes.size() - 4);
-  EXPECT_EQ(rejection_text(PacketStatus::too_short, bytes, kRobots), "a V2V of 128 bytes is too short: expected 132");
+  EXPECT_EQ(rejection_text(PacketStatus::too_short, bytes, kRobots),
+            "a V2V of 128 bytes is too short: expected 132 or 148");
   bytes.resize(140);
-  EXPECT_EQ(rejection_text(PacketStatus::too_long, bytes, kRobots), "a V2V of 140 bytes is too long: expected 132");
+  EXPECT_EQ(rejection_text(PacketStatus::too_long, bytes, kRobots),
+            "a V2V of 140 bytes is too long: expected 132 or 148");
   EXPECT_EQ(rejection_text(PacketStatus::too_short, std::span(bytes).first(3), kRobots),
             "3 bytes: every packet starts with a header of 64 bytes");
   EXPECT_EQ(rejection_text(PacketStatus::unknown_robot, v2v(), kRobots),

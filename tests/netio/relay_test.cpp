@@ -167,6 +167,20 @@ TEST_F(RelayTest, ForwardsBytesUnchanged) {
   EXPECT_EQ(arrived, bytes);
 }
 
+/// Receivers of earlier versions know one length of the states in NEIGHBOURS.
+TEST_F(RelayTest, ForwardsTiltedRobotsAsLevel) {
+  Packet packet;
+  ask(3, kNeighboursBit);
+  ASSERT_EQ(decode(tilted_v2v_example(), packet), PacketStatus::accepted);
+  relay.take(packet);
+  tick();
+  base::Bytes arrived;
+  v2v_socket(3).receive([&](std::span<const std::uint8_t> got) { arrived.assign(got.begin(), got.end()); });
+  EXPECT_EQ(arrived.size(), kV2vBytes);
+  ASSERT_EQ(decode(arrived, packet), PacketStatus::accepted);
+  EXPECT_EQ(std::get<V2v>(packet.body).X_WR.z, 0.75);
+}
+
 TEST_F(RelayTest, DoesNotForwardTagsAndRequests) {
   ask(3, kNeighboursBit);
   Packet packet;
