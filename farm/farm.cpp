@@ -285,9 +285,11 @@ void Farm::State::begin_tick(bool is_sample) {
 void Farm::State::apply(const base::Report& report) {
   if (is_gone(report.mover)) return;
   const base::Pose& X = report.X_WM;
-  SF_CHECK(std::isfinite(X.x + X.y + X.z + X.yaw),
+  const base::Tilt &before = states[report.mover].tilt, &tilt = report.tilt;
+  SF_CHECK(std::isfinite(X.x + X.y + X.z + X.yaw + tilt.roll + tilt.pitch),
            "the pose of mover " + std::to_string(report.mover) + " is not finite");
-  pose_changes->add(report.mover, states[report.mover].X_WM, X);
+  const bool tilted = tilt.roll != before.roll || tilt.pitch != before.pitch;
+  pose_changes->add(report.mover, states[report.mover].X_WM, X, tilted);
   states[report.mover] = report;
 }
 

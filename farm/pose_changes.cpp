@@ -38,8 +38,8 @@ void PoseChanges::begin() {
   sorted_ = true;
 }
 
-void PoseChanges::add(std::uint32_t mover, const base::Pose& from, const base::Pose& to) {
-  if (same(from, to)) return;
+void PoseChanges::add(std::uint32_t mover, const base::Pose& from, const base::Pose& to, bool tilted) {
+  if (same(from, to) && !tilted) return;
   const world::Mover& who = world_.movers[mover];
   moved_.push_back(mover);
   flags_[mover] = true;

@@ -18,8 +18,8 @@ class PoseChanges {
 
   /// Starts a tick without moved movers.
   void begin();
-  /// Records the motion of `mover`. Ignores it if both poses are bitwise equal.
-  void add(std::uint32_t mover, const base::Pose& from, const base::Pose& to);
+  /// Records the motion of `mover`. Ignores it if both poses are bitwise equal and it was not `tilted`.
+  void add(std::uint32_t mover, const base::Pose& from, const base::Pose& to, bool tilted = false);
 
   bool any() const { return !moved_.empty(); }
   bool moved(std::uint32_t mover) const { return flags_[mover]; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elementary.h"
+#include "base/tilted_pose.h"
 
 namespace sf::robots {
 
@@ -52,15 +53,23 @@ base::Report interpolate(const base::Report& before, const base::Report& after, 
   const base::Pose &from = before.X_WM, &to = after.X_WM;
   base::Report report = before;
   report.time = time;
+  const bool level = base::is_level(before.tilt) && base::is_level(after.tilt);
+  const bool same_tilt = before.tilt.roll == after.tilt.roll && before.tilt.pitch == after.tilt.pitch;
   // Bitwise equal poses allow readings of a mover at rest to be reused.
-  if (from.x == to.x && from.y == to.y && from.yaw == to.yaw) {
+  if (from.x == to.x && from.y == to.y && from.yaw == to.yaw && (level || (same_tilt && from.z == to.z))) {
     report.velocity = after.velocity;
     return report;
   }
   const double seconds = 1e-9 * static_cast<double>(after.time - before.time);
   const bool led = near(advance(from, after.velocity, seconds), to);
   report.velocity = led ? after.velocity : twist_between(from, to, seconds);
-  report.X_WM = advance(from, report.velocity, 1e-9 * static_cast<double>(time - before.time));
+  const double since = 1e-9 * static_cast<double>(time - before.time);
+  if (level) {
+    report.X_WM = advance(from, report.velocity, since);
+  } else if (since > 0.0) {
+    const auto between = base::screw_between({from, before.tilt}, {to, after.tilt}, since / seconds);
+    report.X_WM = between.X, report.tilt = between.tilt;
+  }
   return report;
 }
 

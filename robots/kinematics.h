@@ -21,13 +21,15 @@ base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double d
 /// [ns] Longest time by which a report is extrapolated with its velocity.
 inline constexpr std::int64_t kMaxExtrapolation = 500'000'000;
 
-/// Returns the state at `time` [ns] with the constant twist of `known`, extrapolated by at most kMaxExtrapolation and
-/// never backwards.
+/// Returns the state at `time` [ns] with the constant twist, height and tilt of `known`, extrapolated by at most
+/// kMaxExtrapolation and never backwards.
 base::Report extrapolate(const base::Report& known, std::int64_t time);
 
 /// Returns the state of a mover at `time`, between two of its states. Follows the arc of the later velocity if it
 /// connects the two poses, which holds unless the mover was stopped; otherwise follows the arc of constant twist
-/// between the poses, by the smaller turn. Contacts are those of `before`. Pure function.
+/// between the poses, by the smaller turn. Level movers keep their height until `after`. Movers that are tilted before
+/// or after follow the screw motion between the two poses (base::screw_between), with the planar velocity of level
+/// movers. Contacts are those of `before`. Pure function.
 /// @param time [ns] in [before.time, after.time); before.time < after.time
 base::Report interpolate(const base::Report& before, const base::Report& after, std::int64_t time);
 

@@ -28,7 +28,7 @@ RobotBody::RobotBody(const world::World& world, std::uint32_t mover, std::int64_
       forget_(forget),
       others_(world.movers.size()),
       commands_(world.movers.size()),
-      trail_(state().X_WM) {}
+      trail_({state().X_WM, state().tilt}) {}
 
 void RobotBody::update_other(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity,
                              std::int64_t now) {
@@ -67,7 +67,7 @@ void RobotBody::advance(const base::Twist& command, const base::Report* followed
   }
   const base::Pose after = state().X_WM;
   distance_ += base::hypot(after.x - before.x, after.y - before.y);
-  trail_.add(now, after);
+  trail_.add(now, {after, state().tilt});
 }
 
 }  // namespace sf::robots

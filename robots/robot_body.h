@@ -36,7 +36,7 @@ class RobotBody {
   bool contact() const { return followed_contact_.value_or(fleet_.contacts()[mover_] != 0); }
   double distance() const { return distance_; }  ///< [m] driven
   /// Returns the pose at `time`, interpolated between the last 256 moves. Earlier times give the oldest pose.
-  base::Pose pose_at(std::int64_t time) const { return trail_.at(time); }
+  base::TiltedPose pose_at(std::int64_t time) const { return trail_.at(time); }
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();

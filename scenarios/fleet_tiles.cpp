@@ -57,7 +57,7 @@ void put_report(const base::Report& report, base::ByteWriter& out) {
   out.put(report.mover);
   out.put(report.time);
   for (const double v : {report.X_WM.x, report.X_WM.y, report.X_WM.z, report.X_WM.yaw, report.velocity.forward,
-                         report.velocity.left, report.velocity.turn})
+                         report.velocity.left, report.velocity.turn, report.tilt.roll, report.tilt.pitch})
     out.put(v);
   out.put(report.contact_mask);
 }
@@ -67,7 +67,7 @@ base::Report get_report(base::ByteReader& in) {
   report.mover = in.get<std::uint32_t>();
   report.time = in.get<std::int64_t>();
   for (double* v : {&report.X_WM.x, &report.X_WM.y, &report.X_WM.z, &report.X_WM.yaw, &report.velocity.forward,
-                    &report.velocity.left, &report.velocity.turn})
+                    &report.velocity.left, &report.velocity.turn, &report.tilt.roll, &report.tilt.pitch})
     *v = in.get<double>();
   report.contact_mask = in.get<std::uint32_t>();
   return report;

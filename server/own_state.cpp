@@ -32,27 +32,29 @@ void OwnState::receive(std::int64_t now) {
   if (!inbox_) return;
   inbox_->receive(now, [&](const netio::Packet& packet) {
     if (const auto* tag = std::get_if<netio::Tag>(&packet.body))
-      take(packet.header, netio::report(packet.header, *tag, 0).X_WM, now);
+      take(packet.header, netio::report(packet.header, *tag, 0), now);
   });
 }
 
-void OwnState::take(const netio::Header& header, const base::Pose& X_WM, std::int64_t now) {
+void OwnState::take(const netio::Header& header, const base::Report& seen, std::int64_t now) {
   using estimation::ClockSource, estimation::ClockVerdict;
   if (++taken_ > kMostBetweenPredictions) {
     ++flooded_;
     return;
   }
-  if (header.session != session_) clock_.reset();  // the sender restarted
+  if (header.session != session_) clock_.reset(), tilt_time_ = 0;  // the sender restarted
   session_ = header.session;
   const CameraOptions& cameras = *options_.cameras;
   const std::int64_t epoch = cameras.clock.source == ClockSource::trusted ? epoch_ : 0;
   const ClockVerdict verdict = clock_.take(header.time, now + epoch);
   ++clock_counts_[static_cast<std::size_t>(verdict)];
   if (verdict != ClockVerdict::used && verdict != ClockVerdict::stepped) return;
+  if (header.time >= tilt_time_ || verdict == ClockVerdict::stepped) tilt_ = seen.tilt, tilt_time_ = header.time;
 
   const std::int64_t age =
       cameras.clock.source == ClockSource::arrival ? 0 : clock_.to_sender(now + epoch) - header.time;
-  localization_.add_pose(std::max(now - std::max(age, std::int64_t{0}), std::int64_t{0}), X_WM, covariance_of(header));
+  localization_.add_pose(std::max(now - std::max(age, std::int64_t{0}), std::int64_t{0}), seen.X_WM,
+                         covariance_of(header));
 }
 
 estimation::PoseCovariance OwnState::covariance_of(const netio::Header& header) const {
@@ -91,9 +93,9 @@ void OwnState::predict(std::int64_t now, double z) {
   lost_ = has_wheels() ? !(sigma_ <= options_.most_sigma) : unseen;
   if (lost_) return;
   quality_ = quality_of(prediction);
-  state_ = {state_.mover, now, prediction.estimate.X_WM, prediction.estimate.velocity};
+  state_ = {state_.mover, now, prediction.estimate.X_WM, prediction.estimate.velocity, tilt_};
   state_.X_WM.z = z;
-  trail_.add(now, state_.X_WM);
+  trail_.add(now, {state_.X_WM, tilt_});
 }
 
 OwnStateCounts OwnState::counts() const {

@@ -74,7 +74,7 @@ class OwnState {
   /// Returns whether the position is unknown, or too uncertain to act on.
   bool is_lost() const { return lost_; }
   const base::Report& state() const { return state_; }  ///< valid once the robot was not lost
-  base::Pose pose_at(std::int64_t time) const { return trail_.at(time); }
+  base::TiltedPose pose_at(std::int64_t time) const { return trail_.at(time); }
   double sigma() const { return sigma_; }  ///< [m] standard deviation of the position; infinite: never located
   /// Quality of `state`: the age of the last pose or position, and the covariance.
   const netio::StateQuality& quality() const { return quality_; }
@@ -86,7 +86,7 @@ class OwnState {
   OwnStateCounts counts() const;
 
  private:
-  void take(const netio::Header& header, const base::Pose& X_WM, std::int64_t now);
+  void take(const netio::Header& header, const base::Report& seen, std::int64_t now);
   estimation::PoseCovariance covariance_of(const netio::Header& header) const;
 
   OwnStateOptions options_;
@@ -94,8 +94,10 @@ class OwnState {
   estimation::Localization localization_;
   estimation::SenderClock clock_;
   std::uint32_t session_ = 0;
-  std::int64_t epoch_ = 0;  ///< [ns]
-  std::size_t taken_ = 0;   ///< since the last prediction
+  base::Tilt tilt_;             ///< of the newest pose from cameras
+  std::int64_t tilt_time_ = 0;  ///< [ns] of it, on the cameras' clock
+  std::int64_t epoch_ = 0;      ///< [ns]
+  std::size_t taken_ = 0;       ///< since the last prediction
   std::array<std::uint64_t, 4> clock_counts_{};
   std::uint64_t flooded_ = 0;
   bool lost_ = true;

@@ -377,7 +377,8 @@ void RobotClient::gather_readings(std::int64_t now) {
   for (RobotLink::Newest& newest : link_.readings()) {
     if (farm_is_silent) break;  // too old to act on
     base::ReadingBlock& block = readings_.emplace_back(newest.block);
-    block.X_WM = own_ ? own_->pose_at(block.time) : body_.pose_at(block.time);
+    const base::TiltedPose pose = own_ ? own_->pose_at(block.time) : body_.pose_at(block.time);
+    block.X_WM = pose.X, block.tilt = pose.tilt;
     block.X_WS = base::compose(block.X_WM, newest.row->X_MS);
   }
   if (real_) gather_own_readings(now);
@@ -401,7 +402,7 @@ void RobotClient::gather_own_readings(std::int64_t now) {
     block.time = own.time;
     block.values = own.values;
     block.sigma = HUGE_VAL;
-    block.X_WM = block.X_WS = own_ ? own_->pose_at(own.time) : body_.pose_at(own.time);
+    block.X_WM = block.X_WS = (own_ ? own_->pose_at(own.time) : body_.pose_at(own.time)).X;
   }
 }
 

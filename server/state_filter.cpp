@@ -64,7 +64,10 @@ bool StateFilter::take(const base::Report& report, const netio::Header& header, 
   const std::int64_t sender_now = sender_time(mover, now);
   estimation::Measurement m = measurement(report, header);
   m.time = options_.clock.source == ClockSource::arrival ? now : header.time;
-  mover.track->take(m, sender_now);
+  const estimation::Verdict used = mover.track->take(m, sender_now);
+  const bool restarted = used == estimation::Verdict::started;
+  if (restarted || (used == estimation::Verdict::used && m.time >= mover.tilt_time))
+    mover.tilt = report.tilt, mover.tilt_time = m.time;
   return true;
 }
 
@@ -124,7 +127,7 @@ const std::vector<base::Report>& StateFilter::predict(std::int64_t now) {
     const bool stale = prediction.status == Status::stale;
     mover.quality = quality_of(prediction);
     mover.gone = stale && options_.policy != estimation::StalePolicy::freeze;
-    reports_.push_back({row, now, prediction.estimate.X_WM, prediction.estimate.velocity});
+    reports_.push_back({row, now, prediction.estimate.X_WM, prediction.estimate.velocity, mover.tilt});
     if (stale && options_.policy == estimation::StalePolicy::drop) forget(mover);
   }
   return reports_;

@@ -102,7 +102,9 @@ class StateFilter {
     bool filtered = false;
     bool synchronised = false;  ///< its timestamps are used as Unix time
     std::uint32_t session = 0;
-    std::size_t taken = 0;  ///< since the last prediction
+    std::size_t taken = 0;       ///< since the last prediction
+    base::Tilt tilt;             ///< of the newest state that was used
+    std::int64_t tilt_time = 0;  ///< [ns] of it, on the track's clock
     netio::StateQuality quality;
     bool gone = false;
   };

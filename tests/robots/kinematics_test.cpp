@@ -1,4 +1,5 @@
 #include "robots/kinematics.h"
+#include "base/tilted_pose.h"
 #include "tests/units.h"
 
 #include <gtest/gtest.h>
@@ -110,6 +111,32 @@ TEST(Interpolate, MoverAtRestStaysAtRest) {
   EXPECT_EQ(report.X_WM.y, 0.2);
   EXPECT_EQ(report.X_WM.yaw, 7.0);
   EXPECT_EQ(report.X_WM.z, 0.3);
+}
+
+/// Height and tilt, too. The planar velocity is that of gyros and encoders.
+TEST(Interpolate, TiltedMoverIsOnTheScrewMotionBetweenItsPoses) {
+  base::Report before = at(0, {1, 2, 0.5, 3.0}, {}), after = at(kTick, {1.1, 2, 0.75, -3.0}, {});
+  after.tilt = {0.1, -0.4};
+  const base::TiltedPose expected = base::screw_between({before.X_WM, {}}, {after.X_WM, after.tilt}, 0.25);
+  const base::Report report = interpolate(before, after, kTick / 4);
+  expect_pose(report.X_WM, expected.X, 1e-15);
+  EXPECT_NEAR(report.X_WM.z, expected.X.z, 1e-15);
+  EXPECT_NEAR(report.tilt.roll, expected.tilt.roll, 1e-15);
+  EXPECT_NEAR(report.tilt.pitch, expected.tilt.pitch, 1e-15);
+  EXPECT_NEAR(report.velocity.turn, (2 * M_PI - 6.0) / 0.1, 1e-9);
+  EXPECT_EQ(interpolate(before, after, 0).X_WM.z, 0.5) << "bitwise the state before at its time";
+}
+
+TEST(Interpolate, TiltedMoverAtRestStaysAtRest) {
+  base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {});
+  before.tilt = after.tilt = {0.3, 0.2};
+  const base::Report rest = interpolate(before, after, kTick / 3);
+  EXPECT_EQ(rest.X_WM.yaw, 7.0) << "bitwise";
+  EXPECT_EQ(rest.tilt.roll, 0.3);
+  after.tilt.roll = 0.5;  // it tips over on the spot
+  EXPECT_NEAR(interpolate(before, after, kTick / 2).tilt.roll, 0.4, 1e-15);
+  after.tilt.roll = 0.3, after.X_WM.z = 0.5;  // it is lifted
+  EXPECT_NEAR(interpolate(before, after, kTick / 2).X_WM.z, 0.4, 1e-15);
 }
 
 /// Contacts change at ticks only.

@@ -55,7 +55,7 @@ TEST_F(BodyTest, FollowsARealRobot) {
   EXPECT_FALSE(body.contact()) << "in a wall of the world file, and free";
   EXPECT_EQ(body.state().X_WM.x, -2.95);
   EXPECT_NEAR(body.distance(), std::hypot(0.5, 0.5) + 1.45, 1e-9);
-  EXPECT_NEAR(body.pose_at(300 * kMs).x, -2.225, 1e-9);
+  EXPECT_NEAR(body.pose_at(300 * kMs).X.x, -2.225, 1e-9);
 }
 
 /// The other robot reports a pose in the way, then sends nothing more.
@@ -94,23 +94,23 @@ TEST_F(BodyTest, IsStoppedByOthers) {
 
 TEST_F(BodyTest, KeepsItsPastPoses) {
   for (int i = 1; i <= 10; ++i) body.move({0.2, 0.0, 0.0}, i * 100 * kMs);
-  EXPECT_NEAR(body.pose_at(350 * kMs).x, -2.0 + 0.2 * 0.35, 1e-12);  // between two moves
-  EXPECT_NEAR(body.pose_at(400 * kMs).x, -2.0 + 0.2 * 0.4, 1e-12);   // at a move
-  EXPECT_EQ(body.pose_at(-5).x, -2.0);                               // before the first
-  EXPECT_EQ(body.pose_at(2000 * kMs).x, body.state().X_WM.x);        // after the last
+  EXPECT_NEAR(body.pose_at(350 * kMs).X.x, -2.0 + 0.2 * 0.35, 1e-12);  // between two moves
+  EXPECT_NEAR(body.pose_at(400 * kMs).X.x, -2.0 + 0.2 * 0.4, 1e-12);   // at a move
+  EXPECT_EQ(body.pose_at(-5).X.x, -2.0);                               // before the first
+  EXPECT_EQ(body.pose_at(2000 * kMs).X.x, body.state().X_WM.x);        // after the last
 }
 
 TEST_F(BodyTest, DropsOldPoses) {
   for (int i = 1; i <= 1000; ++i) body.move({0.0, 0.0, 0.5}, i * kMs);
-  EXPECT_NEAR(body.pose_at(900 * kMs).yaw, 0.45, 1e-9);
-  EXPECT_NEAR(body.pose_at(0).yaw, 0.5 * 0.745, 1e-9);  // the oldest of 256
+  EXPECT_NEAR(body.pose_at(900 * kMs).X.yaw, 0.45, 1e-9);
+  EXPECT_NEAR(body.pose_at(0).X.yaw, 0.5 * 0.745, 1e-9);  // the oldest of 256
 }
 
 TEST_F(BodyTest, HeadingsInterpolateAcrossHalfATurn) {
   world.movers[0].X_WM.yaw = M_PI - 0.01;
   RobotBody turned(world, 0);
   turned.move({0.0, 0.0, 0.2}, 100 * kMs);
-  EXPECT_NEAR(std::abs(turned.pose_at(50 * kMs).yaw), M_PI, 1e-9);
+  EXPECT_NEAR(std::abs(turned.pose_at(50 * kMs).X.yaw), M_PI, 1e-9);
 }
 
 }  // namespace

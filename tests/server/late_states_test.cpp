@@ -94,6 +94,24 @@ StateFilterOptions in_mode(FilterMode mode, StalePolicy policy = StalePolicy::hi
   return options;
 }
 
+/// Between states a robot keeps its tilt, also where its pose is filtered; a state of the short form makes it level.
+TEST(LateStates, TiltIsKeptBetweenStates) {
+  for (const FilterMode mode : {FilterMode::off, FilterMode::on}) {
+    LateReceiver f({.mode = mode});
+    const auto tilt_after = [&](std::uint32_t sequence, const base::Tilt& tilt) {
+      const std::int64_t sent = sequence * 100 * kMs;
+      f.send({.robot = 1, .sequence = sequence, .time = sent}, netio::V2v{.X_WR = {1, 2, 0.5, 0}, .tilt = tilt});
+      f.receiver.receive_pending(sent);
+      f.receiver.predict(sent + 50 * kMs);
+      return f.receiver.states(sent + 50 * kMs)[0].tilt;
+    };
+    EXPECT_EQ(tilt_after(1, {0.1, -0.2}).roll, 0.1);
+    EXPECT_EQ(tilt_after(2, {0.2, -0.2}).roll, 0.2);
+    EXPECT_EQ(tilt_after(3, {0.2, -0.25}).pitch, -0.25);
+    EXPECT_EQ(tilt_after(4, {}).pitch, 0.0);
+  }
+}
+
 /// 0.1 to 0.4 s of delay. The clock of the second robot has another epoch, so its least delay is unknown.
 TEST(LateStates, AreFilteredByDefault) {
   for (const std::int64_t offset : {std::int64_t{0}, 3600 * base::kSecond}) {

@@ -160,6 +160,24 @@ TEST_F(OwnStateTest, WeighsPosesByTheirStatedCovariance) {
   }
 }
 
+/// Cameras that measure tilt tilt the robot's own state, which it broadcasts.
+TEST_F(CamerasOnly, TiltIsThatOfTheNewestPose) {
+  const auto see_tilted = [&](std::uint32_t number, double roll) {
+    base::Bytes bytes;
+    netio::encode({.robot = kTag, .sequence = number, .time = number * 100 * kMs},
+                  netio::Tag{.orientation = {std::sin(0.5 * roll), 0.0, 0.0, std::cos(0.5 * roll)}}, bytes);
+    outbox->queue({netio::kLoopback, own->port()}, bytes);
+    outbox->flush();
+    own->receive(now += 100 * kMs);
+    own->predict(now);
+  };
+  for (const auto& [number, roll] : {std::pair{1u, 0.1}, {3u, 0.3}}) {
+    see_tilted(number, roll);
+    EXPECT_NEAR(own->state().tilt.roll, roll, 1e-15);
+  }
+  EXPECT_NEAR(own->pose_at(now - 50 * kMs).tilt.roll, 0.2, 1e-12) << "half way";
+}
+
 TEST_F(OwnStateTest, IsLostUntilACameraSeesIt) {
   own->add_wheels(now, {0.0, 0.0});
   own->predict(now);
