@@ -13,6 +13,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/suggest.h"
+#include "base/tilted_pose.h"
 #include "cluster/failure.h"
 #include "cluster/shares.h"
 #include "control/own_controller.h"
@@ -93,7 +94,9 @@ struct Simulation::State {
     return simulation->farm().episodes().start_of(static_cast<std::uint32_t>(k * robots.size()));
   }
   const std::string& name_of(std::size_t row) const { return robots[row % robots.size()].name; }
-  void put(std::size_t row, const Pose& pose);
+  void put(std::size_t row, const Pose& pose, const base::Tilt& tilt = {});
+  void put7(std::size_t row, const Pose7& pose);
+  std::span<const Pose7> poses_with_tilts();
   std::size_t add(const NewRobot& robot);
   void add_tables(std::vector<library::ReadingTable>& before);
   void remove(std::size_t row);
@@ -131,6 +134,7 @@ struct Simulation::State {
   std::vector<double> radii;
   std::shared_ptr<Earlier> earlier = std::make_shared<Earlier>();  ///< for the next robot that joins
   std::vector<base::ReadingBlock> of_type;                         ///< scratch
+  std::vector<Pose7> poses7;                                       ///< as of the last `poses_with_tilts`
   std::vector<std::pair<ImageOptions, viz::TopView>> top_views;    ///< of the last images, the newest at the end
   std::vector<std::weak_ptr<Observations::State>> observers;
   std::uint64_t tick = 0;
@@ -278,15 +282,37 @@ void Simulation::State::restart(std::span<const std::uint32_t> worlds, std::span
   observe(worlds);
 }
 
-void Simulation::State::put(std::size_t row, const Pose& pose) {
+void Simulation::State::put(std::size_t row, const Pose& pose, const base::Tilt& tilt) {
   if (row >= poses.size())
     throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
   if (!present[row])
     throw base::InputError(fmt::format("'{}' was removed; add it again before placing it", name_of(row)));
   if (!std::isfinite(pose.x + pose.y + pose.z + pose.yaw))
     throw base::InputError(fmt::format("the pose of '{}' is not finite", name_of(row)));
-  simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw});
+  simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw}, tilt);
   poses[row] = pose, velocities[row] = {};
+}
+
+void Simulation::State::put7(std::size_t row, const Pose7& pose) {
+  const double norm = base::hypot(base::hypot(pose.w, pose.qx), base::hypot(pose.qy, pose.qz));
+  if (!(std::abs(norm - 1.0) <= 1e-3))
+    throw base::InputError(
+        fmt::format("the quaternion of row {} has the norm {:.4g}; expected a unit quaternion w, x, y, z", row, norm));
+  const auto [X, tilt] = base::tilted_pose_of(
+      {base::rotation_of(base::Quaternion{pose.w, pose.qx, pose.qy, pose.qz}), {pose.x, pose.y, pose.z}});
+  put(row, {X.x, X.y, X.z, X.yaw}, tilt);
+}
+
+/// Those of absent robots are NaN.
+std::span<const Pose7> Simulation::State::poses_with_tilts() {
+  poses7.clear();
+  for (std::uint32_t row = 0; row < poses.size(); ++row) {
+    const Pose& p = poses[row];
+    const base::Tilt tilt = present[row] != 0 ? simulation->tilt(row) : base::Tilt{NAN, NAN};
+    const base::Quaternion q = base::quaternion_of(p.yaw, tilt);
+    poses7.push_back({p.x, p.y, p.z, q.w, q.x, q.y, q.z});
+  }
+  return poses7;
 }
 
 std::size_t Simulation::State::add(const NewRobot& robot) {
@@ -534,7 +560,11 @@ void Simulation::put(std::size_t row, const Pose& pose) {
 std::size_t Simulation::copies() const { return state_->world.copies; }
 std::size_t Simulation::size() const { return state_->poses.size(); }
 const std::vector<Robot>& Simulation::robots() const { return state_->robots; }
+void Simulation::put7(std::size_t row, const Pose7& pose) {
+  library::translated([&] { state_->put7(row, pose); });
+}
 std::span<const Pose> Simulation::poses() const { return state_->poses; }
+std::span<const Pose7> Simulation::poses7() const { return state_->poses_with_tilts(); }
 std::span<const Twist> Simulation::velocities() const { return state_->velocities; }
 std::span<const double> Simulation::radii() const { return state_->radii; }
 std::span<const std::uint8_t> Simulation::contacts() const { return state_->contacts; }

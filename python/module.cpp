@@ -358,10 +358,30 @@ void add_observations(py::module_& module) {
       .def("__len__", [](const O& o) { return o.agents(); });
 }
 
+/// @param p x, y, z, yaw, or x, y, z and a quaternion
+void put(PySimulation& s, std::size_t row, const std::vector<double>& p) {
+  if (p.size() != 4 && p.size() != 7)
+    throw Error("a pose of " + std::to_string(p.size()) + " numbers; expected x, y, z, yaw or x, y, z, w, qx, qy, qz");
+  in_farm(s, [&] {
+    if (p.size() == 4)
+      s.farm.put(row, {p[0], p[1], p[2], p[3]});
+    else
+      s.farm.put7(row, {p[0], p[1], p[2], p[3], p[4], p[5], p[6]});
+  });
+}
+
 void add_state(py::class_<PySimulation>& c) {
   c.def_property_readonly(
        "poses", [](const PySimulation& s) { return rows(s, s.farm.poses()); },
        "(robots, 4): x, y, z [m], yaw [rad] of the last tick.")
+      .def_property_readonly(
+          "poses7",
+          [](const PySimulation& s) {
+            const auto poses = s.farm.poses7();
+            static_assert(sizeof(Pose7) == 7 * sizeof(double));
+            return py::array_t<double>({count(poses.size()), py::ssize_t{7}}, &poses.data()->x);
+          },
+          "(robots, 7): x, y, z [m] and a unit quaternion w, x, y, z of the last tick; a copy.")
       .def_property_readonly(
           "velocities", [](const PySimulation& s) { return rows(s, s.farm.velocities()); },
           "(robots, 3): forward, left [m/s], turn [rad/s].")
@@ -487,9 +507,8 @@ void add_simulation(py::module_& module) {
       .def(
           "time_of", [](const PySimulation& s, std::size_t world) { return s.farm.time(world); }, py::arg("world"),
           "[s] of the last tick, of one of several worlds.")
-      .def(
-          "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm(s, [&] { s.farm.put(row, pose); }); },
-          py::arg("row"), py::arg("pose"), "Places a robot at (x, y, z [m], yaw [rad]), at rest.")
+      .def("put", &put, py::arg("row"), py::arg("pose"),
+           "Places a robot at rest at (x, y, z [m], yaw [rad]), or at (x, y, z, w, qx, qy, qz), a unit quaternion.")
       .def("add_robot", &add_robot, py::arg("name"), py::arg("like"), py::arg("pose"), py::kw_only(),
            py::arg("controller") = "", py::arg("settings") = py::dict(),
            "Adds a copy of a robot at (x, y, z [m], yaw [rad]), at rest, and returns its row.")

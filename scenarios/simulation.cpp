@@ -103,6 +103,11 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
     throw base::InputError("[v2v] cannot be simulated with --tiles; expected ranks that share the whole world");
   if (options.v2v) v2v_.emplace(*options.v2v, world.movers.size());
   farm_.subscribe_all();
+  for (const auto& [row, tilt] : options.tilts) {
+    base::Report tilted = fleet_.reports()[row];
+    tilted.tilt = tilt;
+    fleet_.apply({&tilted, 1});
+  }
   for (std::uint32_t m = 0; m < world.movers.size(); ++m)
     if (world.movers[m].absent) set_absent(m, true);
   share_->attach(world_, farm_);
@@ -489,9 +494,9 @@ void Simulation::drive(std::uint32_t mover, const base::Twist& command) {
   commands_[mover] = command;
 }
 
-void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
+void Simulation::put(std::uint32_t mover, const base::Pose& X_WM, const base::Tilt& tilt) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
-  base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}};
+  base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}, tilt};
   if (std::isnan(X_WM.z))
     report.X_WM.z = world::height_on_road(world_, {X_WM.x, X_WM.y}, world::clearance_of(world_, world_.movers[mover]));
   fleet_.apply({&report, 1});

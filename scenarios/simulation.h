@@ -64,7 +64,9 @@ struct SimulationOptions {
   Actor actor;                ///< default of all robots
   std::vector<Actor> actors;  ///< per mover of a copy of the world by row, tags included; empty: `actor` for all
                               ///< robots, and tags at rest
-  double start_at = 0.0;      ///< [s] time of the start signal
+  /// Tilts at the start, by row. Other movers start level.
+  std::vector<std::pair<std::uint32_t, base::Tilt>> tilts = {};
+  double start_at = 0.0;                   ///< [s] time of the start signal
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: the farm has the true states
   std::optional<PositioningOptions> positioning;  ///< of robots that localize themselves; nullopt: none
   std::optional<V2vLinkOptions> v2v;              ///< between robots; nullopt: V2V is current. Not with tiles
@@ -120,7 +122,9 @@ class Simulation {
 
   /// Places the mover at a pose, at rest. Call it between two steps.
   /// @param X_WM z NaN: on the highest road there, as high above it as in the world file
-  void put(std::uint32_t mover, const base::Pose& X_WM);
+  void put(std::uint32_t mover, const base::Pose& X_WM, const base::Tilt& tilt = {});
+  /// Returns the tilt of a mover after the last tick, or where `put` placed it.
+  const base::Tilt& tilt(std::uint32_t mover) const { return fleet_.reports()[mover].tilt; }
 
   /// Removes a mover from the world, or restores it at its last pose, at rest. An absent mover has no readings, decides
   /// nothing and remains at rest. Call it between two steps: sensors see the change from the next step on.

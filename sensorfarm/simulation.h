@@ -113,6 +113,12 @@ struct Readings {
   std::span<const std::uint32_t> hits_of(std::size_t i) const { return {hits + i * hit_stride, elements}; }
 };
 
+/// A pose in six degrees of freedom in the world frame. Level robots have qx and qy of 0.
+struct Pose7 {
+  double x = 0.0, y = 0.0, z = 0.0;              ///< [m]
+  double w = 1.0, qx = 0.0, qy = 0.0, qz = 0.0;  ///< unit quaternion of the body's orientation
+};
+
 /// A robot that joins a simulation.
 struct NewRobot {
   std::string name;        ///< 1 to 64 letters, digits or '_', not beginning with a digit; not the name of another
@@ -218,12 +224,18 @@ class SENSORFARM_API Simulation {
   /// roads
   void set_lane(const std::string& lane, const std::string& use);
   /// Places a robot or tag, at rest, between two steps. Its sensors see the new place from the next step on.
+  /// It is level there.
   void put(std::size_t row, const Pose& pose);
+  /// The same with a tilt, which it keeps while it drives. Lidars and what they see of the body are tilted; contacts
+  /// and all other sensors stay planar, at this height.
+  /// @param pose the norm of its quaternion is within 0.001 of 1
+  void put7(std::size_t row, const Pose7& pose);
 
   std::size_t copies() const;                 ///< number of worlds
   std::size_t size() const;                   ///< number of rows: robots, and tags if the world contains any
   const std::vector<Robot>& robots() const;   ///< per row of a world
   std::span<const Pose> poses() const;        ///< per row, of the last tick
+  std::span<const Pose7> poses7() const;      ///< the same with tilts, computed by this call and valid until the next
   std::span<const Twist> velocities() const;  ///< per row
   /// [m] Per row: radius of the circle about its origin that contains its body, in its present size. Valid until
   /// the next `add_robot`.

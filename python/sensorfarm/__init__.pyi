@@ -402,7 +402,9 @@ class Simulation:
         whose end only turns may leave. Robots with a route controller replan. A lane is reversed once it has been empty
         for 2 s; until then it is closed. A reset restores all lanes. Raises Error, with nothing changed."""
     def put(self, row: int, pose: Sequence[float]) -> None:
-        """Places a robot at (x, y, z, yaw), at rest. Its sensors see the new place from the next step on."""
+        """Places a robot at rest at (x, y, z, yaw), level, or at (x, y, z, w, qx, qy, qz), with the orientation of this
+        unit quaternion. Its sensors see the new place from the next step on. It keeps its tilt while it drives; contacts
+        and planar sensors are those of a level robot."""
     def draw(self, file: str, *, world: int = 0) -> None:
         """Writes a PNG of the world, or of one of several, at this time."""
     def image(self, width: int = 640, height: int = 480,
@@ -418,6 +420,9 @@ class Simulation:
     @property
     def poses(self) -> NDArray[np.float64]:
         """(robots, 4): x, y, z [m], yaw [rad] of the last tick."""
+    @property
+    def poses7(self) -> NDArray[np.float64]:
+        """(robots, 7): x, y, z [m] and a unit quaternion w, x, y, z of the last tick. A copy."""
     @property
     def velocities(self) -> NDArray[np.float64]:
         """(robots, 3): forward, left [m/s], turn [rad/s]."""
@@ -573,6 +578,9 @@ class Worlds(_WorldStates):
                  text: str | None = None, **options: Any) -> None:
         """world: a world file, or several; text: the world's text, which `world` then names. copies: of each, or one
         number per file. options: those of Simulation, except ranks, positioning and faults; record: of one file."""
+    @property
+    def poses7(self) -> NDArray[np.float64]:
+        """(worlds, robots, 7): x, y, z [m] and a unit quaternion w, x, y, z. A copy."""
     @property
     def done(self) -> NDArray[np.bool_]:
         """(worlds, robots): its controller is done."""

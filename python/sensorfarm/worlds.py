@@ -139,6 +139,8 @@ class Worlds:
 
     poses = property(lambda self: self._rows([part.poses for part in self.parts]),
                      doc="(worlds, robots, 4): x, y, z [m], yaw [rad].")
+    poses7 = property(lambda self: self._rows([part.poses7 for part in self.parts]),
+                      doc="(worlds, robots, 7): x, y, z [m] and a unit quaternion w, x, y, z; a copy.")
     velocities = property(lambda self: self._rows([part.velocities for part in self.parts]),
                           doc="(worlds, robots, 3): forward, left [m/s], turn [rad/s].")
     contacts = property(lambda self: self._rows([part.contacts for part in self.parts]),

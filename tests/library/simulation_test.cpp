@@ -292,6 +292,32 @@ TEST(Library, PlacesRobots) {
   expect_in("is not finite", refusal_of<Error>([&] { simulation.put(0, {NAN}); }));
 }
 
+/// A tilt turns lidars, lasts while the robot drives, and ends where it is placed level.
+TEST(Library, PlacesTiltedRobots) {
+  Simulation simulation(SF_SOURCE_DIR "/worlds/lidar.world");
+  const auto scan = [&] {
+    simulation.step(std::vector<Twist>{{1.0, 0.0, 0.0}, {}});
+    const auto row = simulation.readings("lidar").row(0);
+    return std::vector<double>(row.begin(), row.end());
+  };
+  simulation.put(0, {0.5, 0.25, 0.5, 0.0});
+  const std::vector<double> level = scan();
+  simulation.put7(0, {0.5, 0.25, 0.5, std::cos(0.1), 0.0, std::sin(0.1), 0.0});
+  EXPECT_NE(scan(), level);
+  const Pose7 driven = simulation.poses7()[0];
+  EXPECT_GT(driven.x, 0.55);
+  EXPECT_EQ(driven.z, 0.5);
+  EXPECT_NEAR(driven.w, std::cos(0.1), 1e-15);
+  EXPECT_NEAR(driven.qy, std::sin(0.1), 1e-15);
+  simulation.put(0, {0.5, 0.25, 0.5, 0.0});
+  EXPECT_EQ(simulation.poses7()[0].qy, 0.0);
+  EXPECT_EQ(scan(), level);
+  expect_in("the norm 2", refusal_of<Error>([&] { simulation.put7(0, {0, 0, 0, 2}); }));
+  expect_in("is not finite", refusal_of<Error>([&] { simulation.put7(0, {NAN, 0, 0, 1}); }));
+  simulation.remove_robot(0);
+  EXPECT_TRUE(std::isnan(simulation.poses7()[0].w));
+}
+
 TEST(Library, RejectsBadInputWithoutChanges) {
   Simulation simulation(kCave, {.robots = 2});
   std::vector<Twist> commands(2);

@@ -1,5 +1,6 @@
 """sensorfarm.Simulation: arrays, options, errors."""
 
+import math
 import os
 import sys
 import tempfile
@@ -78,6 +79,18 @@ class Arrays(unittest.TestCase):
         sim.put(0, (0.5, 0.5, 0, 1))
         sim.step()
         numpy.testing.assert_allclose(before[0], (0.5, 0.5, 0, 1))
+
+    def test_poses7(self):
+        sim = room()
+        half = math.sqrt(0.5)
+        sim.put(0, (0.5, 0.5, 0.25, half, 0, half, 0))  # its nose points down
+        numpy.testing.assert_allclose(sim.poses7[0], (0.5, 0.5, 0.25, half, 0, half, 0), atol=1e-15)
+        sim.put(0, (0.5, 0.5, 0, 1))
+        numpy.testing.assert_array_equal(sim.poses7[0], (0.5, 0.5, 0, math.cos(0.5), 0, 0, math.sin(0.5)))
+        for pose in ((0, 0, 0), (0, 0, 0, 1, 0), (0, 0, 0, 2, 0, 0, 0), (0, 0, 0, math.nan, 0, 0, 0)):
+            with self.assertRaises(sensorfarm.Error, msg=pose):
+                sim.put(0, pose)
+        self.assertEqual(sim.poses7.shape, (len(sim), 7))
 
     def test_the_interpreter_runs_during_a_step(self):
         """With an endless switch interval another thread runs only when a step releases the interpreter."""
