@@ -68,6 +68,7 @@ struct Command {
 struct Placement {
   std::uint32_t mover = 0;
   base::Pose X_WM;  ///< finite
+  base::Tilt tilt = {};
 };
 
 /// User requests since the last call, in order of arrival. Bridges reject requests that name no mover or contain

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/elementary.h"
+#include "base/tilted_pose.h"
 #include "netio/packets.h"
 #include "record/ros_messages.h"
 
@@ -44,12 +45,13 @@ bool is_simple(std::string_view pattern) {
   return true;
 }
 
-/// (x, y, z, w) of a rotation about +z, of any non-zero length.
-std::optional<double> yaw_of(double x, double y, double z, double w) {
+/// Returns yaw and tilt of the quaternion (x, y, z, w); nullopt unless its length is nearly 1.
+std::optional<base::TiltedPose> turn_of(double x, double y, double z, double w) {
   const double length = base::hypot(base::hypot(x, y), base::hypot(z, w));
-  constexpr double kSmall = 1e-3;
-  if (!(std::abs(length - 1.0) <= kSmall) || base::hypot(x, y) > kSmall) return std::nullopt;
-  return 2.0 * base::atan2(z, w);
+  constexpr double kSmall = 1e-3, kRounding = 1e-6;
+  if (!(std::abs(length - 1.0) <= kSmall)) return std::nullopt;
+  if (base::hypot(x, y) <= kRounding) return base::TiltedPose{{0.0, 0.0, 0.0, 2.0 * base::atan2(z, w)}};
+  return base::tilted_pose_of({base::rotation_of(base::Quaternion{w, x, y, z})});
 }
 
 }  // namespace
@@ -76,8 +78,7 @@ std::string find_entities(record::CdrReader& cdr, const record::RunInfo& info, c
 void put_entity_state(record::CdrWriter& cdr, std::int64_t time, const base::Report& state) {
   record::put_header(cdr, time, "world");
   const base::Pose& X_WM = state.X_WM;
-  const double half = 0.5 * X_WM.yaw;
-  for (const double value : {X_WM.x, X_WM.y, X_WM.z, 0.0, 0.0, base::sin(half), base::cos(half)}) cdr.put(value);
+  record::put_pose(cdr, X_WM, state.tilt);
   const glm::dvec2 v_W = base::rotate(X_WM.yaw, {state.velocity.forward, state.velocity.left});
   for (const double value : {v_W.x, v_W.y, 0.0, 0.0, 0.0, state.velocity.turn}) cdr.put(value);
   for (int i = 0; i < 6; ++i) cdr.put(0.0);  // accelerations are unknown
@@ -90,9 +91,9 @@ EntityState get_stamped_pose(record::CdrReader& cdr, double z) {
   const auto x = cdr.get<double>(), y = cdr.get<double>();
   cdr.get<double>();  // height
   const auto a = cdr.get<double>(), b = cdr.get<double>(), c = cdr.get<double>(), d = cdr.get<double>();
-  const std::optional<double> yaw = yaw_of(a, b, c, d);
-  state.valid = std::abs(x) <= netio::kMaxPosition && std::abs(y) <= netio::kMaxPosition && yaw;
-  if (state.valid) state.X_WM = {x, y, z, *yaw};
+  const std::optional<base::TiltedPose> turn = turn_of(a, b, c, d);
+  state.valid = std::abs(x) <= netio::kMaxPosition && std::abs(y) <= netio::kMaxPosition && turn;
+  if (state.valid) state.X_WM = {x, y, z, turn->X.yaw}, state.tilt = turn->tilt;
   return state;
 }
 

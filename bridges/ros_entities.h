@@ -24,8 +24,9 @@ void put_entity_state(record::CdrWriter& cdr, std::int64_t time, const base::Rep
 /// A requested state.
 struct EntityState {
   std::string frame;
-  bool valid = false;  ///< finite, within bounds, and rotated about +z only
+  bool valid = false;  ///< finite, within bounds, and rotated by a unit quaternion
   base::Pose X_WM;
+  base::Tilt tilt;
   bool pose = true, twist = false, acceleration = false;  ///< members to set
 };
 

@@ -140,8 +140,8 @@ struct RosServices::Handlers {
     if (!wanted.pose || wanted.twist || wanted.acceleration)
       return of.add_result(call, kUnsupported, "only poses can be set; velocities are commanded by cmd_vel"), true;
     if (!wanted.valid)
-      return of.add_result(call, kInvalidPose, "expected a finite position, and a turn about z of length 1"), true;
-    requests.placements.push_back({row, wanted.X_WM});
+      return of.add_result(call, kInvalidPose, "expected a finite position, and a quaternion of length 1"), true;
+    requests.placements.push_back({row, wanted.X_WM, wanted.tilt});
     of.add_result(call, kOk);
     return true;
   }

@@ -199,7 +199,9 @@ Spawn get_spawn(CdrReader& cdr, const Scene& scene, const std::vector<base::Repo
     return refused(kNotFound, error.what());
   }
   if (!pose.frame.empty() && pose.frame != "world") return refused(kPoseInvalid, "poses are in the frame \"world\"");
-  if (!pose.valid) return refused(kPoseInvalid, "expected a finite position, and a turn about z of length 1");
+  constexpr double kLevel = 2e-3;  // [rad] rounded quaternions
+  if (!pose.valid || !(base::hypot(pose.tilt.roll, pose.tilt.pitch) <= kLevel))
+    return refused(kPoseInvalid, "expected a finite position, and a turn about z of length 1: robots join level");
 
   Spawn spawn;
   spawn.joining = {name, uri, pose.X_WM, std::make_shared<Outcome>()};

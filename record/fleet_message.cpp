@@ -1,6 +1,10 @@
 #include "record/fleet_message.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
+#include "base/tilted_pose.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 
@@ -16,7 +20,36 @@ void get_twist(CdrReader& cdr, base::Twist& twist) {
   for (double* value : {&twist.forward, &twist.left, &twist.turn}) *value = cdr.get<double>();
 }
 
+bool is_tilted(const base::Report& report) { return !base::is_level(report.tilt) && !base::is_absent(report.X_WM); }
+
 }  // namespace
+
+bool any_tilted(const base::TickRecord& record) { return std::ranges::any_of(record.reports, is_tilted); }
+
+void encode_tilts(const base::TickRecord& record, base::Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, record.time, "world");
+  cdr.put_count(static_cast<std::size_t>(std::ranges::count_if(record.reports, is_tilted)));
+  for (const base::Report& report : record.reports) {
+    if (!is_tilted(report)) continue;
+    cdr.put(report.mover);
+    for (const double value : {report.tilt.roll, report.tilt.pitch}) cdr.put(value);
+  }
+}
+
+bool decode_tilts(std::span<const std::uint8_t> message, TiltsSample& sample) {
+  constexpr std::size_t kLeastTilt = 20;  // [byte]
+  CdrReader cdr(message);
+  get_header(cdr, sample.time);
+  sample.tilts.resize(cdr.get_count(kLeastTilt));
+  bool finite = true;
+  for (MoverTilt& each : sample.tilts) {
+    each.mover = cdr.get<std::uint32_t>();
+    for (double* value : {&each.tilt.roll, &each.tilt.pitch}) *value = cdr.get<double>();
+    finite = finite && std::isfinite(each.tilt.roll + each.tilt.pitch);
+  }
+  return cdr.good() && finite;
+}
 
 void encode_fleet(const base::TickRecord& record, base::Bytes& out) {
   const std::size_t count = record.reports.size();

@@ -1,5 +1,6 @@
 #pragma once
-// State, command and contact of all movers at one tick, bit for bit: `sensorfarm_msgs/msg/Fleet`.
+// State, command and contact of all movers at one tick, bit for bit: `sensorfarm_msgs/msg/Fleet`, and, where some are
+// not level, their tilts: `sensorfarm_msgs/msg/Tilts`.
 
 #include <cstdint>
 #include <span>
@@ -24,6 +25,24 @@ struct FleetState {
   std::int64_t time = 0;  ///< [ns] simulated
   std::vector<MoverState> states;
 };
+
+struct MoverTilt {
+  std::uint32_t mover = 0;
+  base::Tilt tilt;  ///< finite
+};
+
+/// The tilts of all movers that are not level at one tick.
+struct TiltsSample {
+  std::int64_t time = 0;  ///< [ns] simulated
+  std::vector<MoverTilt> tilts;
+};
+
+/// Returns whether a mover that is in the world is not level.
+bool any_tilted(const base::TickRecord& record);
+/// Appends one message, of the tilted movers that are in the world.
+void encode_tilts(const base::TickRecord& record, base::Bytes& out);
+/// @return false if the bytes are not a Tilts message. Replaces the content of `sample`.
+bool decode_tilts(std::span<const std::uint8_t> message, TiltsSample& sample);
 
 /// Appends one message. @pre `commands` and `contacts` are empty or contain one entry per report
 void encode_fleet(const base::TickRecord& record, base::Bytes& out);

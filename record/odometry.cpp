@@ -48,7 +48,7 @@ void Odometer::begin() {
 }
 
 void Odometer::move(std::int64_t time, const base::Pose& X_WM, const base::Twist& velocity,
-                    const base::StateQuality& quality) {
+                    const base::StateQuality& quality, const base::Tilt& tilt) {
   if (!truth_) {
     const base::Pose before = base::compose(state_.X_WO, state_.X_OM);
     const double seconds = 1e-9 * static_cast<double>(time - state_.time);
@@ -58,6 +58,7 @@ void Odometer::move(std::int64_t time, const base::Pose& X_WM, const base::Twist
   state_.X_OM = base::compose(base::inverse(state_.X_WO), X_WM);
   state_.time = time;
   state_.velocity = velocity;
+  state_.tilt = tilt;
   state_.covariance = truth_ ? OdometryCovariance{} : kExact;
   if (quality.stated) state_.covariance = {turned(quality.covariance, state_.X_WO.yaw), {}, kLeastVariance};
 }
@@ -78,6 +79,7 @@ bool Odometer::roll(const base::ReadingBlock& encoder) {
   X_OM = {X_OM.x + step.x, X_OM.y + step.y, 0.0, base::wrap_angle(X_OM.yaw + turn)};
   state_.X_WO = base::compose(encoder.X_WM, base::inverse(X_OM));
   state_.time = encoder.time;
+  state_.tilt = encoder.tilt;
   state_.velocity = seconds > 0.0 ? base::Twist{way / seconds, 0.0, turn / seconds} : base::Twist{};
   state_covariance(left, right, seconds);
   return true;

@@ -46,6 +46,7 @@ struct OdometryState {
   base::Pose X_OM;         ///< pose of the robot in the odometry's frame
   base::Pose X_WO;         ///< pose of the odometry's frame in the world, which drifts by the odometry's errors
   base::Twist velocity;    ///< in the robot's frame
+  base::Tilt tilt;         ///< true: encoders do not measure it
   OdometryCovariance covariance;
 };
 
@@ -65,7 +66,7 @@ class Odometer {
   /// Updates the state from the true pose, or from its estimate with a quality. A displacement of more than 0.5 m plus
   /// twice the distance possible at top speed moves the odometry's frame instead, because encoders do not count it.
   void move(std::int64_t time, const base::Pose& X_WM, const base::Twist& velocity,
-            const base::StateQuality& quality = {});
+            const base::StateQuality& quality = {}, const base::Tilt& tilt = {});
   /// Updates the state from a reading of the encoders. @return false if it is earlier than the last one, which may
   /// arrive twice; it is then ignored
   bool roll(const base::ReadingBlock& encoder);

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "record/fleet_message.h"
 #include "record/topic_names.h"
 
 namespace sf::record {
@@ -122,7 +123,9 @@ Recorder::~Recorder() {
 void Recorder::write(const base::TickRecord& record) {
   SF_CHECK(!finished_, "tick " + std::to_string(record.tick) + " after the end of the recording");
   time_ = record.time;
-  const bool new_topic = !record.shapes.empty() && wanted_.empty() && messages_->add_shapes();
+  const bool whole = wanted_.empty(), shapes = whole && !record.shapes.empty(), tilts = whole && any_tilted(record);
+  const bool new_shapes = shapes && messages_->add_shapes(), new_tilts = tilts && messages_->add_tilts();
+  const bool new_topic = new_shapes || new_tilts;
   const bool threaded = new_topic && stop_writer();
   if (new_topic) add_channels();
   messages_->encode(
@@ -183,6 +186,7 @@ void Recorder::add_movers(RunInfo info) {
   info_.shape = {};
   messages_.emplace(info_);
   if (before.has_shapes()) messages_->add_shapes();
+  if (before.has_tilts()) messages_->add_tilts();
   const bool threaded = stop_writer();
   for (std::size_t i = known; i < info_.joined.size(); ++i)
     mcap_.add_metadata({kJoinedMetadata, pairs_of(info_.joined[i])});

@@ -81,6 +81,18 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
   return true;
 }
 
+/// Adds the tilts to the states of their tick, which is the last one read, unless its states are damaged.
+bool read_tilts(const McapMessage& message, Recording& recording) {
+  TiltsSample sample;
+  if (!decode_tilts(message.data, sample)) return false;
+  for (const MoverTilt& each : sample.tilts) {
+    if (each.mover >= recording.states.size()) return false;
+    auto& states = recording.states[each.mover];
+    if (!states.empty() && states.back().time == sample.time) states.back().tilt = each.tilt;
+  }
+  return true;
+}
+
 /// Beams without a return are infinite in messages; in the run they may have been `range_max`.
 bool read_scan(const McapMessage& message, const SensorTopic& topic, const RunInfo& info, ReadingSample& sample) {
   const std::optional<Scan> scan = decode_scan(message.data);
@@ -106,6 +118,7 @@ bool read_reading(const McapMessage& message, const SensorTopic& topic, Recordin
 bool read_message(const McapMessage& message, std::string_view type, const std::string& name, const Topics& topics,
                   FleetState& fleet, Recording& recording) {
   if (type == kFleet) return read_fleet(message, fleet, recording);
+  if (type == kTilts) return read_tilts(message, recording);
   if (type == kLights) {
     LightsSample& sample = recording.lights.emplace_back();
     const bool good = decode_lights(message.data, sample.time, sample.lights);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/fault.h"
+#include "base/report.h"
 #include "record/fleet_message.h"
 #include "record/run_info.h"
 #include "record/shapes_message.h"
@@ -21,7 +22,12 @@ struct StateSample {
   base::Pose X_WM;
   base::Twist velocity;
   base::Twist command;
+  base::Tilt tilt;
 };
+
+inline base::Report report_of(const StateSample& state, std::uint32_t mover) {
+  return {mover, state.time, state.X_WM, state.velocity, state.tilt};
+}
 
 /// One recorded reading.
 struct ReadingSample {

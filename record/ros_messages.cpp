@@ -5,6 +5,7 @@
 
 #include "base/elementary.h"
 #include "base/error.h"
+#include "base/tilted_pose.h"
 #include "base/time.h"
 #include "record/cdr.h"
 
@@ -35,9 +36,9 @@ std::string get_header(CdrReader& cdr, std::int64_t& time) {
   return cdr.get_string();
 }
 
-void put_pose(CdrWriter& cdr, const Pose& pose) {
-  const double half = 0.5 * pose.yaw;
-  for (const double value : {pose.x, pose.y, pose.z, 0.0, 0.0, base::sin(half), base::cos(half)}) cdr.put(value);
+void put_pose(CdrWriter& cdr, const Pose& pose, const base::Tilt& tilt) {
+  const base::Quaternion q = base::quaternion_of(pose.yaw, tilt);
+  for (const double value : {pose.x, pose.y, pose.z, q.x, q.y, q.z, q.w}) cdr.put(value);
 }
 
 void put_zeros(CdrWriter& cdr, int count) {
@@ -70,7 +71,7 @@ void encode_odometry(const Transform& transform, const Twist& velocity, const Od
   CdrWriter cdr(out);
   put_header(cdr, transform.time, transform.parent);
   cdr.put(transform.child);
-  put_pose(cdr, transform.X_PC);
+  put_pose(cdr, transform.X_PC, transform.tilt);
   put_planar(cdr, {xx, xy, xa, yy, ya, aa}, covariance.fixed);
   put_twist(cdr, velocity);
   put_planar(cdr, {ff, 0.0, ft, covariance.fixed, 0.0, tt}, covariance.fixed);
@@ -88,7 +89,7 @@ void encode_transforms(std::span<const Transform> transforms, Bytes& out) {
   for (const Transform& transform : transforms) {
     put_header(cdr, transform.time, transform.parent);
     cdr.put(transform.child);
-    put_pose(cdr, transform.X_PC);
+    put_pose(cdr, transform.X_PC, transform.tilt);
   }
 }
 

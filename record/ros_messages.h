@@ -32,6 +32,7 @@ struct Transform {
   std::string_view parent;
   std::string_view child;
   base::Pose X_PC;
+  base::Tilt tilt = {};  ///< of the child after X_PC
 };
 
 /// One planar scan.
@@ -45,8 +46,8 @@ struct Scan {
   std::vector<float> ranges;  ///< [m] one per sample, as defined by base::rep117_range
 };
 
-/// Writes position and the quaternion (x, y, z, w) of a rotation about +z.
-void put_pose(CdrWriter& cdr, const base::Pose& pose);
+/// Writes position and orientation, the quaternion (x, y, z, w).
+void put_pose(CdrWriter& cdr, const base::Pose& pose, const base::Tilt& tilt = {});
 /// Writes `count` zeros, for example for a covariance that is zero or unknown.
 void put_zeros(CdrWriter& cdr, int count);
 

@@ -89,6 +89,8 @@ constexpr std::array kDefinitions = {
                "uint32 mover\nbool contact\nsensorfarm_msgs/Pose pose\n"
                "sensorfarm_msgs/Twist velocity\nsensorfarm_msgs/Twist command\n"},
     Definition{"sensorfarm_msgs/Fleet", "std_msgs/Header header\nuint64 tick\nsensorfarm_msgs/State[] states\n"},
+    Definition{"sensorfarm_msgs/Tilt", "uint32 mover\nfloat64 roll\nfloat64 pitch\n"},
+    Definition{"sensorfarm_msgs/Tilts", "std_msgs/Header header\nsensorfarm_msgs/Tilt[] tilts\n"},
     Definition{"sensorfarm_msgs/Light",
                "uint8 DARK=0\nuint8 RED=1\nuint8 YELLOW=2\nuint8 GREEN=3\nuint8 FLASHING_RED=4\n"
                "uint8 FLASHING_YELLOW=5\nstring name\nuint8 state\nfloat64 left\n"},

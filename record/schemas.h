@@ -24,6 +24,7 @@ inline constexpr std::string_view kStateQuality = "sensorfarm_msgs/msg/StateQual
 inline constexpr std::string_view kLights = "sensorfarm_msgs/msg/Lights";
 inline constexpr std::string_view kFaults = "sensorfarm_msgs/msg/Faults";
 inline constexpr std::string_view kShapes = "sensorfarm_msgs/msg/Shapes";
+inline constexpr std::string_view kTilts = "sensorfarm_msgs/msg/Tilts";
 inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
 inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 

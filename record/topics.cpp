@@ -71,6 +71,12 @@ TickMessages::TickMessages(const RunInfo& info)
     for (std::size_t row = 0; row < info.movers.size(); ++row) add_readings(row);
 }
 
+bool TickMessages::add_tilts() {
+  if (tilts_ != 0) return false;
+  tilts_ = add("/tilts", kTilts);
+  return true;
+}
+
 bool TickMessages::add_shapes() {
   if (shapes_ != 0) return false;
   shapes_ = add("/shapes", kShapes);
@@ -128,7 +134,8 @@ void TickMessages::add_readings(std::size_t row) {
 
 std::vector<bool> TickMessages::readings_and_clock() const {
   std::vector<bool> wanted(topics_.size());
-  for (std::size_t topic = first_reading_; topic < wanted.size(); ++topic) wanted[topic] = topic != shapes_;
+  for (std::size_t topic = first_reading_; topic < wanted.size(); ++topic)
+    wanted[topic] = topic != shapes_ && topic != tilts_;
   wanted[kClockRow] = true;
   return wanted;
 }
@@ -191,6 +198,8 @@ void TickMessages::encode(const base::TickRecord& record, const Emit& emit, cons
   const Output out{record, emit, wanted, message_};
   find_odometry(record);
   out.send(kFleetRow, ticks_, record.time, [&](base::Bytes& bytes) { encode_fleet(record, bytes); });
+  if (tilts_ != 0 && any_tilted(record))
+    out.send(tilts_, ticks_, record.time, [&](base::Bytes& bytes) { encode_tilts(record, bytes); });
   send_transforms(out);
   out.send(kClockRow, ticks_, record.time, [&](base::Bytes& bytes) { encode_clock(record.time, bytes); });
   if (!record.lights.empty())
@@ -224,7 +233,7 @@ void TickMessages::find_odometry(const base::TickRecord& record) {
     if (base::is_absent(report.X_WM)) odometer.leave();
     if (odometer.has_encoders() || base::is_absent(report.X_WM)) continue;
     const auto quality = record.qualities.empty() ? base::StateQuality{} : record.qualities[i];
-    odometer.move(record.time, report.X_WM, report.velocity, quality);
+    odometer.move(record.time, report.X_WM, report.velocity, quality, report.tilt);
     news_.push_back({report.mover, odometer.state()});
   }
   for (const base::ReadingBlock& reading : record.readings) {
@@ -260,7 +269,8 @@ void TickMessages::add_transforms(const Odometry& odometry) {
   const OdometryState& state = odometry.state;
   if (places_odometry(mover) && odometry_ != OdometrySource::truth)
     transforms_.push_back({state.time, root_, mover.odom_frame, state.X_WO});
-  if (!naming_.filter || mover.tag) transforms_.push_back({state.time, mover.odom_frame, mover.base_frame, state.X_OM});
+  if (!naming_.filter || mover.tag)
+    transforms_.push_back({state.time, mover.odom_frame, mover.base_frame, state.X_OM, state.tilt});
 }
 
 void TickMessages::send_qualities(const Output& out) const {
@@ -279,8 +289,8 @@ void TickMessages::send_odometry(const Output& out) {
   for (const auto& [row, state] : news_) {
     const MoverInfo& mover = info_.movers[row];
     out.send(movers_[row].odometry, odometries_, state.time, [&, &state = state](base::Bytes& bytes) {
-      encode_odometry({state.time, mover.odom_frame, mover.base_frame, state.X_OM}, state.velocity, state.covariance,
-                      bytes);
+      encode_odometry({state.time, mover.odom_frame, mover.base_frame, state.X_OM, state.tilt}, state.velocity,
+                      state.covariance, bytes);
     });
   }
 }
@@ -295,7 +305,7 @@ void TickMessages::send_truth(const Output& out) {
     const std::string& frame = info_.movers[report.mover].base_frame;
     if (has_truth())
       out.send(topics.truth, odometries_, record.time, [&](base::Bytes& bytes) {
-        encode_odometry({record.time, "world", frame, report.X_WM}, report.velocity, {}, bytes);
+        encode_odometry({record.time, "world", frame, report.X_WM, report.tilt}, report.velocity, {}, bytes);
       });
     if (!record.commands.empty())
       out.send(topics.command, odometries_, record.time,

@@ -194,6 +194,7 @@ base::ReadingBlock Replayer::block_of(const record::ReadingSample& reading) cons
           .sequence = reading.sequence,
           .time = reading.time,
           .X_WM = states_[reading.mover].X_WM,
+          .tilt = states_[reading.mover].tilt,
           .X_WS = base::kAbsent,
           .values = reading.values,
           .sigma = HUGE_VAL};

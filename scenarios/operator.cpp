@@ -57,7 +57,7 @@ void Operator::begin_again() {
 void Operator::apply(Simulation& simulation, double simulated) {
   if (bridges_.empty()) return;
   bridges_.take(requests_);
-  for (const bridges::Placement& each : requests_.placements) simulation.put(each.mover, each.X_WM);
+  for (const bridges::Placement& each : requests_.placements) simulation.put(each.mover, each.X_WM, each.tilt);
   for (const bridges::Command& each : requests_.commands) simulation.drive(each.mover, each.twist);
   if (requests_.speed) {
     state_.speed = *requests_.speed;

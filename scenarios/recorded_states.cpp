@@ -37,10 +37,8 @@ bool has_all_states(const record::Recording& recording) {
 
 void recorded_reports(const record::Recording& recording, std::size_t tick, std::vector<base::Report>& reports) {
   reports.clear();
-  for (std::uint32_t m = 0; m < recording.states.size(); ++m) {
-    const record::StateSample& s = recording.states[m][tick];
-    reports.push_back({m, s.time, s.X_WM, s.velocity});
-  }
+  for (std::uint32_t m = 0; m < recording.states.size(); ++m)
+    reports.push_back(record::report_of(recording.states[m][tick], m));
 }
 
 bool RecordedShapes::go_to(std::int64_t time) {

@@ -235,9 +235,9 @@ class Verifier {
     poses.clear();
     for (const auto& states : recording_.states) {
       const record::StateSample& s = states[asked.tick];
-      const base::Report after{0, s.time, s.X_WM, s.velocity};
+      const base::Report after = record::report_of(s, 0);
       const record::StateSample& p = states[asked.tick - (asked.time < s.time ? 1 : 0)];
-      const base::Report before{0, p.time, p.X_WM, p.velocity};
+      const base::Report before = record::report_of(p, 0);
       const bool between = asked.time < s.time && !base::is_absent(p.X_WM) && !base::is_absent(s.X_WM);
       poses.push_back(between ? robots::interpolate(before, after, asked.time).X_WM : s.X_WM);
     }

@@ -105,22 +105,27 @@ void Replay::add_states(std::size_t number) {
     const auto& states = recording_.states[mover];
     if (number >= states.size()) continue;
     const record::StateSample& state = states[number];
-    reports_.push_back({mover, state.time, state.X_WM, state.velocity});
+    reports_.push_back(record::report_of(state, mover));
     commands_.push_back(state.command);
     contacts_.push_back(state.contact ? 1 : 0);
   }
 }
 
 /// Interpolates between ticks, because sensors also measure between ticks.
-base::Pose Replay::pose_at(std::uint32_t mover, std::int64_t time) const {
+base::TiltedPose Replay::pose_at(std::uint32_t mover, std::int64_t time) const {
   const auto& states = recording_.states[mover];
   const auto after = std::upper_bound(states.begin(), states.end(), time,
                                       [](std::int64_t t, const record::StateSample& state) { return t < state.time; });
-  if (after == states.begin() || after == states.end()) return (after == states.begin() ? *after : after[-1]).X_WM;
+  if (after == states.begin() || after == states.end()) {
+    const record::StateSample& end = after == states.begin() ? *after : after[-1];
+    return {end.X_WM, end.tilt};
+  }
   const base::Pose &from = after[-1].X_WM, &to = after->X_WM;
   const double part = static_cast<double>(time - after[-1].time) / static_cast<double>(after->time - after[-1].time);
-  return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y), from.z + part * (to.z - from.z),
-          from.yaw + part * base::wrap_angle(to.yaw - from.yaw)};
+  if (!base::is_level(after[-1].tilt) || !base::is_level(after->tilt))
+    return base::screw_between({from, after[-1].tilt}, {to, after->tilt}, part);
+  return {{from.x + part * (to.x - from.x), from.y + part * (to.y - from.y), from.z + part * (to.z - from.z),
+           from.yaw + part * base::wrap_angle(to.yaw - from.yaw)}};
 }
 
 void Replay::add_reading(std::size_t row) {
@@ -132,7 +137,8 @@ void Replay::add_reading(std::size_t row) {
   block.sequence = reading.sequence;
   block.time = reading.time;
   block.values = reading.values;
-  block.X_WM = pose_at(reading.mover, reading.time);
+  const base::TiltedPose pose = pose_at(reading.mover, reading.time);
+  block.X_WM = pose.X, block.tilt = pose.tilt;
   block.X_WS = compose(block.X_WM, mount_of(recording_.info, reading));
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/tick_record.h"
+#include "base/tilted_pose.h"
 #include "record/recording.h"
 
 namespace sf::scenarios {
@@ -36,7 +37,7 @@ class Replay {
  private:
   void add_states(std::size_t number);
   void add_reading(std::size_t row);
-  base::Pose pose_at(std::uint32_t mover, std::int64_t time) const;
+  base::TiltedPose pose_at(std::uint32_t mover, std::int64_t time) const;
 
   const record::Recording& recording_;
   std::size_t lights_;             ///< number in the world

@@ -206,7 +206,8 @@ void Service::call_models(std::int64_t now) {
     receiver_.change_shape(change.mover, change.shape);
     if (!change.velocity) continue;
     receiver_.place({change.mover, now, change.X_WM.value_or(states[change.mover].X_WM),
-                     robots::limit_kinematics(world_.movers[change.mover], *change.velocity)},
+                     robots::limit_kinematics(world_.movers[change.mover], *change.velocity),
+                     change.X_WM ? base::Tilt{} : states[change.mover].tilt},
                     change.present.value_or(!absent_[change.mover]));
   }
 }

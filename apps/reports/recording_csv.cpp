@@ -10,6 +10,7 @@
 #include "apps/reports/csv_text.h"
 #include "base/bearing.h"
 #include "base/error.h"
+#include "base/tilted_pose.h"
 #include "record/reading_messages.h"
 #include "scenarios/recorded_states.h"
 #include "world/lights.h"
@@ -95,19 +96,24 @@ void write_reading(CsvFile& file, const record::RunInfo& info, const record::Sen
 
 }  // namespace
 
+/// Roll and pitch have columns only in recordings in which a robot is tilted.
 std::string write_trajectories_csv(const RecordingPart& part, const std::string& folder) {
   const std::string path = folder + "/trajectories.csv";
+  const auto is_tilted = [](const record::StateSample& s) { return !base::is_level(s.tilt); };
+  const bool tilted = std::ranges::any_of(part.recording.states,
+                                          [&](const auto& states) { return std::ranges::any_of(states, is_tilted); });
   CsvFile file(path);
-  file.row(
-      "time_s,robot,x_m,y_m,z_m,yaw_rad,forward_m_s,left_m_s,turn_rad_s,command_forward_m_s,command_left_m_s,"
-      "command_turn_rad_s,contact");
+  file.row(std::string("time_s,robot,x_m,y_m,z_m,yaw_rad,forward_m_s,left_m_s,turn_rad_s,command_forward_m_s,"
+                       "command_left_m_s,command_turn_rad_s,contact") +
+           (tilted ? ",roll_rad,pitch_rad" : ""));
   for (std::size_t m = 0; m < part.recording.states.size(); ++m) {
     if (part.chosen[m] == 0) continue;
     const std::string name = csv_field(part.recording.info.movers[m].name);
     for (const record::StateSample& s : part.recording.states[m])
       file.row(fmt::format("{},{},{},{},{},{},{},{},{:d}", seconds(s.time), name, csv_number(s.X_WM.x),
                            csv_number(s.X_WM.y), csv_number(s.X_WM.z), csv_number(s.X_WM.yaw), twist_fields(s.velocity),
-                           twist_fields(s.command), s.contact));
+                           twist_fields(s.command), s.contact) +
+               (tilted ? fmt::format(",{},{}", csv_number(s.tilt.roll), csv_number(s.tilt.pitch)) : ""));
   }
   file.close();
   return path;

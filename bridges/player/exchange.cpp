@@ -67,7 +67,8 @@ void Exchange::take(Requests& requests) {
   const std::lock_guard lock(mutex_);
   for (std::uint32_t mover = 0; mover < robots_.size(); ++mover) {
     Robot& robot = robots_[mover];
-    if (robot.placement && !std::exchange(robot.placed, true)) requests.placements.push_back({mover, *robot.placement});
+    if (robot.placement && !std::exchange(robot.placed, true))
+      requests.placements.push_back({mover, *robot.placement, reports_[mover].tilt});
     if (robot.command) requests.commands.push_back({mover, *robot.command});
     robot.command.reset();
   }

@@ -399,8 +399,8 @@ base::Bytes placement(const std::string& name, const std::string& frame, const s
 TEST_F(Ros2BridgeTest, RobotsArePlacedAtValidPoses) {
   open();
   const std::vector<double> pose{3.0, -4.0, 9.0, 0.0, 0.0, std::sin(0.5), std::cos(0.5)};
-  std::vector<double> tilted = pose, infinite = pose, far = pose, zero = pose;
-  tilted[3] = 0.5, infinite[0] = INFINITY, far[1] = 1e300, zero[6] = zero[5] = 0.0;
+  std::vector<double> longer = pose, infinite = pose, far = pose, zero = pose;
+  longer[3] = 0.5, infinite[0] = INFINITY, far[1] = 1e300, zero[6] = zero[5] = 0.0;
   struct Case {
     base::Bytes request;
     int code;
@@ -412,7 +412,7 @@ TEST_F(Ros2BridgeTest, RobotsArePlacedAtValidPoses) {
                                 {placement("scout", "", pose, {true, true, false}), 0},
                                 {placement("missing", "", pose, flags), 2},
                                 {placement("robot_2", "", pose, flags), 2},  // absent
-                                {placement("scout", "", tilted, flags), 101},
+                                {placement("scout", "", longer, flags), 101},
                                 {placement("scout", "", infinite, flags), 101},
                                 {placement("scout", "", far, flags), 101},
                                 {placement("scout", "", zero, flags), 101}};

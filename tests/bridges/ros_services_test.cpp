@@ -146,7 +146,11 @@ TEST_F(RosServicesTest, PosesUpToTheirLimits) {
     EXPECT_EQ(code(sign * 1e7, 0.0, 0.0, 1.0) + code(0.0, sign * 1e7, 0.0, 1.0), "1 1 ");
     EXPECT_EQ(code(sign * 1.0001e7, 0.0, 0.0, 1.0) + code(0.0, sign * 1.0001e7, 0.0, 1.0), "1010");
     EXPECT_EQ(code(0.0, 0.0, sign * 0.99e-3, 1.0) + code(0.0, 0.0, 0.0, 1.0 + sign * 0.99e-3), "1 1 ") << "rounding";
-    EXPECT_EQ(code(0.0, 0.0, sign * 1.01e-3, 1.0) + code(0.0, 0.0, 0.0, 1.0 + sign * 1.01e-3), "1010");
+    EXPECT_EQ(code(0.0, 0.0, sign * 1.01e-3, 1.0) + code(0.0, 0.0, 0.0, 1.0 + sign * 1.01e-3), "1 10");
+    EXPECT_EQ(code(0.0, 0.0, sign * 0.5, 1.0), "1 ");
+    EXPECT_NEAR(asked.placements.back().tilt.roll, sign * M_PI / 3.0, 1e-12);
+    EXPECT_EQ(code(0.0, 0.0, sign * 0.99e-6, 1.0), "1 ");
+    EXPECT_EQ(asked.placements.back().tilt.roll, 0.0) << "rounding, too";
   }
 }
 

@@ -20,7 +20,7 @@ struct WorldServicesTest : RosServicesTest {
     std::string name = "new_one";
     bool renaming = false;
     std::string uri = "scout", text, space, frame;
-    double x = 0.0, w = 1.0;
+    double x = 0.0, w = 1.0, tilt = 0.0;
   };
   static void put(record::CdrWriter& cdr, const Wanted& wanted) {
     cdr.put(wanted.name);
@@ -29,7 +29,7 @@ struct WorldServicesTest : RosServicesTest {
     cdr.put(wanted.text);
     cdr.put(wanted.space);
     record::put_header(cdr, 0, wanted.frame);
-    for (const double value : {wanted.x, 2.0, 0.0, 0.0, 0.0, 0.0, wanted.w}) cdr.put(value);
+    for (const double value : {wanted.x, 2.0, 0.0, wanted.tilt, 0.0, 0.0, wanted.w}) cdr.put(value);
   }
   static Fields spawn(const Wanted& wanted) {
     return [wanted](record::CdrWriter& cdr) { put(cdr, wanted); };
@@ -151,6 +151,7 @@ TEST_F(WorldServicesTest, SpawnsOrGivesAReason) {
       {{.x = NAN}, "109 "},
       {{.x = 1.1e7}, "109 "},
       {{.w = 0.0}, "109 "},
+      {{.w = 0.8, .tilt = 0.6}, "109 "},  // robots join level
   };
   for (const auto& [wanted, code] : kRefused) {
     EXPECT_EQ(spawned(wanted), code) << wanted.name << wanted.uri << wanted.space;

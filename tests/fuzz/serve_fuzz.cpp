@@ -167,6 +167,7 @@ class Harness {
     state.docking = (rest & 1) != 0;
     if ((rest & 2) != 0) state.follows = rest >> 2;
     if ((rest & 4) != 0) state.checkpoint = 0xFFFFFFFEu;
+    if ((rest & 8) != 0) state.tilt = {number(0.5, netio::kMaxRoll), number(0.5, netio::kMaxPitch)};
     return state;
   }
   netio::Tag tag() {

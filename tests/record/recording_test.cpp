@@ -235,6 +235,26 @@ TEST(Recording, SkipsAndReportsStatesOfUnknownMovers) {
   EXPECT_EQ(recording.damage.size(), 1u);
 }
 
+TEST(Recording, SkipsAndReportsTiltsOfUnknownMovers) {
+  McapWriter writer("ros2", "sensorfarm");
+  add_world(writer, {1});
+  add_run_info(writer, {.movers = {{.name = "only"}}});
+  SampleTick one(0, 1), two(0, 2);
+  one.reports[0].tilt.roll = 0.25, two.reports[1].tilt.roll = 0.5;
+  one.record.reports = one.reports, two.record.reports = two.reports;
+  const auto add = [&](std::string_view type, const char* topic, const Bytes& message) {
+    const auto schema = writer.add_schema(type, "ros2msg", schema_text(type));
+    writer.add_message({.channel = writer.add_channel(schema, topic, "cdr"), .data = message});
+  };
+  Bytes fleet, tilts, others;
+  encode_fleet(one.record, fleet), encode_tilts(one.record, tilts), encode_tilts(two.record, others);
+  add(kFleet, "/fleet", fleet), add(kTilts, "/tilts", tilts), add(kTilts, "/tilts", others);
+  const Recording recording = read_recording(finished(writer), "run.mcap");
+  ASSERT_EQ(recording.ticks, 1u);
+  EXPECT_EQ(recording.states[0][0].tilt.roll, 0.25);
+  EXPECT_EQ(recording.damage.size(), 1u);
+}
+
 /// Earlier versions named topics after sensors, without an option that states it.
 TEST(Recording, ReadsTopicsOfEarlierVersions) {
   McapWriter writer("ros2", "sensorfarm");

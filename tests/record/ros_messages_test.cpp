@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/tilted_pose.h"
 #include "record/fleet_message.h"
 #include "record/run_info.h"
 #include "tests/record/bytes_at.h"
@@ -129,6 +130,41 @@ TEST(Messages, OdometryHasTheLayoutOfROS) {
   EXPECT_EQ(at<double>(out, twist + 8), -0.25);
   EXPECT_EQ(at<double>(out, twist + 40), 0.125);
   EXPECT_EQ(out.size(), twist + 48 + 36 * 8);
+}
+
+TEST(Messages, PosesOfTiltedRobotsHaveWholeQuaternions) {
+  const base::Tilt tilt{0.3, -0.2};
+  const base::Quaternion q = base::quaternion_of(0.7, tilt);
+  Bytes odometry, transforms;
+  encode_odometry({0, "world", "r", {1.0, 2.0, 3.0, 0.7}, tilt}, {}, {}, odometry);
+  encode_transforms(std::vector<Transform>{{0, "abc", "xyz", {1.0, 2.0, 3.0, 0.7}, tilt}}, transforms);
+  for (const Bytes* message : {&odometry, &transforms})  // both have the position at byte 36
+    for (const auto& [k, value] : {std::pair{0, 1.0}, {2, 3.0}, {3, q.x}, {4, q.y}, {5, q.z}, {6, q.w}})
+      EXPECT_EQ(at<double>(*message, 36 + 8 * static_cast<std::size_t>(k)), value) << k;
+}
+
+/// Only movers in the world that are not level are in the message.
+TEST(Messages, TiltsRoundTripBitwise) {
+  test::SampleTick tick(3, 4);
+  EXPECT_FALSE(any_tilted(tick.record));
+  tick.reports[1].tilt = {0.1, -1.0 / 3.0}, tick.reports[2].tilt.pitch = 0.5, tick.reports[3].tilt.roll = 0.5;
+  tick.reports[3].X_WM = base::kAbsent;
+  tick.record.reports = tick.reports;
+  EXPECT_TRUE(any_tilted(tick.record));
+  Bytes out;
+  encode_tilts(tick.record, out);
+  TiltsSample sample;
+  ASSERT_TRUE(decode_tilts(out, sample));
+  EXPECT_EQ(sample.time, 300'000'000);
+  ASSERT_EQ(sample.tilts.size(), 2u);
+  EXPECT_EQ(sample.tilts[0].mover, 1u);
+  EXPECT_EQ(sample.tilts[0].tilt.pitch, -1.0 / 3.0);
+  EXPECT_EQ(sample.tilts[1].mover, 2u);
+  EXPECT_EQ(sample.tilts[1].tilt.pitch, 0.5);
+  for (std::size_t size = 0; size < out.size(); ++size) EXPECT_FALSE(decode_tilts(std::span(out).first(size), sample));
+  tick.reports[2].tilt.pitch = NAN;
+  encode_tilts(tick.record, out = {});
+  EXPECT_FALSE(decode_tilts(out, sample)) << "the farm requires finite tilts";
 }
 
 TEST(Messages, CommandsAndTransformsHaveTheLayoutOfROS) {
