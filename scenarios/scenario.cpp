@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "base/tilted_pose.h"
 #include "control/own_controllers.h"
 #include "scenarios/fleet_spawn.h"
 #include "sensors/sensor_type.h"
@@ -82,6 +83,9 @@ SimulationOptions simulation_of(const Scenario& scenario, const world::World& wo
                               mover.is_tag ? netio::LinkModel{} : scenario.actor.link});
   for (const RobotSetup& setup : scenario.robot_setups)
     if (setup.actor) options.actors[row_of(scenario, world, setup.name, setup.line)] = *setup.actor;
+  for (const RobotSetup& setup : scenario.robot_setups)
+    if (!base::is_level(setup.tilt))
+      options.tilts.push_back({row_of(scenario, world, setup.name, setup.line), setup.tilt});
   for (Actor& actor : options.actors) actor.link.seed = scenario.seed;
   return options;
 }

@@ -25,6 +25,7 @@ struct RobotSetup {
   std::optional<Actor> actor;      ///< controller and link; nullopt: the scenario's
   std::optional<base::Pose> pose;  ///< [m], [rad] start pose; nullopt: the world's. z NaN: on the highest
                                    ///< road there, as high above it as in the world file
+  base::Tilt tilt = {};            ///< at the start
   int line = 0;                    ///< in the file
   int controller_line = 0;         ///< line of its controller, or of the robot
 };
@@ -76,6 +77,7 @@ struct ObjectEvent {
   std::string use = {};           ///< for `lane` (world/roads/lane_use.h)
   world::ShapeChange shape = {};  ///< for `shape`, of any mover
   base::Pose X_WM = {};           ///< for `pose`, of any mover; z NaN: see Simulation::put
+  base::Tilt tilt = {};           ///< for `pose`
 };
 
 struct Scenario {

@@ -48,13 +48,13 @@ void join(const Scenario& scenario, const ObjectEvent& event, world::World& worl
   });
 }
 
-void place(Simulation& simulation, const world::Mover& mover, std::uint32_t row, const base::Pose& X_WM) {
+void place(Simulation& simulation, const world::Mover& mover, std::uint32_t row, const ObjectEvent& event) {
   if (simulation.share().passed_on())
     throw base::InputError("poses cannot be set with --tiles; expected ranks that share the whole world");
   if (!mover.is_tag && simulation.is_absent(row))
     throw base::InputError(
         fmt::format("'{}' was removed; expected a pose before that, or after it has been added again", mover.name));
-  simulation.put(row, X_WM);
+  simulation.put(row, event.X_WM, event.tilt);
 }
 
 /// Checks that each change of lane use is possible after those before it.
@@ -122,7 +122,7 @@ void ScenarioEvents::apply(Simulation& simulation, world::World& world, double t
     if (event.kind == ObjectEvent::Kind::shape)
       at_line(scenario_, event, [&] { simulation.set_shape(world, row, event.shape); });
     else if (event.kind == ObjectEvent::Kind::pose)
-      at_line(scenario_, event, [&] { place(simulation, world.movers[row], row, event.X_WM); });
+      at_line(scenario_, event, [&] { place(simulation, world.movers[row], row, event); });
     else if (event.kind == ObjectEvent::Kind::object)
       simulation.set_absent(row, !event.present);
     else

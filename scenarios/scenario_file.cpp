@@ -13,6 +13,7 @@
 #include "base/files.h"
 #include "base/installation.h"
 #include "base/suggest.h"
+#include "base/tilted_pose.h"
 #include "control/own_controllers.h"
 #include "scenarios/fault_tables.h"
 #include "scenarios/scenario.h"
@@ -192,14 +193,17 @@ std::optional<PositioningOptions> positioning_of(const Reader& reader, const Tom
 }
 
 /// @param with_z z may be stated  @return z is NaN if it is not stated
-base::Pose pose_of(const Reader& reader, const TomlNode& node, bool with_z) {
+base::TiltedPose pose_of(const Reader& reader, const TomlNode& node, bool spatial) {
   const std::size_t count = node.items.size();
-  if (node.kind != NodeKind::list || (count != 3 && !(with_z && count == 4)))
-    reader.fail(node,
-                fmt::format("'pose' expects [x, y, yaw]{} in metres and degrees", with_z ? " or [x, y, z, yaw]" : ""));
+  if (node.kind != NodeKind::list || (count != 3 && !(spatial && (count == 4 || count == 6))))
+    reader.fail(node, fmt::format("'pose' expects [x, y, yaw]{} in metres and degrees",
+                                  spatial ? ", [x, y, z, yaw] or [x, y, z, roll, pitch, yaw]" : ""));
   const auto at = [&](std::size_t i, double most) { return reader.number(node.items[i], "pose", -most, most); };
-  return {at(0, kMostPosition), at(1, kMostPosition), count == 4 ? at(2, kMostPosition) : NAN,
-          at(count - 1, 1e6) * M_PI / 180.0};
+  const auto angle = [&](std::size_t i, double most) { return at(i, most) * M_PI / 180.0; };
+  base::TiltedPose pose{
+      {at(0, kMostPosition), at(1, kMostPosition), count > 3 ? at(2, kMostPosition) : NAN, angle(count - 1, 1e6)}};
+  if (count == 6) pose.tilt = {angle(3, 180.0), angle(4, 90.0)};
+  return pose;
 }
 
 FleetSpawn crowd_of(const Reader& reader, const TomlNode& root) {
@@ -233,7 +237,10 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
     if (sets_actor)
       setup.actor = Actor{controller_config_of(reader, node, scenario.actor.controller),
                           link_of(reader, reader.table(node, "link"), scenario.actor.link)};
-    if (const TomlNode* pose = world::find(node, "pose")) setup.pose = pose_of(reader, *pose, true);
+    if (const TomlNode* node_of_pose = world::find(node, "pose")) {
+      const base::TiltedPose pose = pose_of(reader, *node_of_pose, true);
+      setup.pose = pose.X, setup.tilt = pose.tilt;
+    }
     const TomlNode* driver = world::find(node, "controller");
     setup.controller_line = driver == nullptr ? node.line : driver->line;
     const auto [other, fresh] = lines.emplace(setup.name, setup.line);
@@ -308,7 +315,7 @@ ObjectEvent read_joining(const Reader& reader, const TomlNode& table, const Scen
                "at = SECONDS, add = \"NAME\", like = \"ROBOT\" and pose = [x, y, yaw]");
   ObjectEvent event{reader.text(table, "add", ""), reader.number(table, "at", 0.0, 0.0, kLongest, "seconds"), true,
                     table.line, ObjectEvent::Kind::add};
-  event.joining = {event.object, reader.text(table, "like", ""), pose_of(reader, *world::find(table, "pose"), false),
+  event.joining = {event.object, reader.text(table, "like", ""), pose_of(reader, *world::find(table, "pose"), false).X,
                    Actor{controller_config_of(reader, table, scenario.actor.controller),
                          link_of(reader, reader.table(table, "link"), scenario.actor.link)}};
   event.joining.actor.link.seed = scenario.seed;
@@ -349,7 +356,8 @@ void read_object(const Reader& reader, const TomlNode& table, Scenario& scenario
   if (presence) scenario.events.push_back(event);
   if (pose != nullptr) {
     event.kind = ObjectEvent::Kind::pose;
-    event.X_WM = pose_of(reader, *pose, true);
+    const base::TiltedPose placed = pose_of(reader, *pose, true);
+    event.X_WM = placed.X, event.tilt = placed.tilt;
     scenario.events.push_back(event);
   }
   if (!shape.any()) return;

@@ -209,7 +209,8 @@ TEST(ObjectEvent, ErrorsNameLineAndRemedy) {
       {"at = 1\nobject = \"tag9\"\npresent = true\n", "test.toml:2: "},
       {"at = 1\nobject = \"tag1\"\npresent = 1\n", "test.toml:5: 'present' expects true or false"},
       {"at = 1\nobjekt = \"tag1\"\npresent = true\n", "test.toml:4: unknown key 'objekt'; did you mean 'object'?"},
-      {"at = 1\nobject = \"tag1\"\npose = [1, 2]\n", "test.toml:5: 'pose' expects [x, y, yaw] or [x, y, z, yaw]"},
+      {"at = 1\nobject = \"tag1\"\npose = [1, 2]\n",
+       "test.toml:5: 'pose' expects [x, y, yaw], [x, y, z, yaw] or [x, y, z, roll, pitch, yaw]"},
       {"at = 1\nobject = \"tag1\"\npose = [1, 2e7, 0]\n", "test.toml:5: 'pose' expects a number from -1"},
       {"at = 1\nobject = \"pioneer1\"\npresent = false\n", "test.toml:2: 'pioneer1' has sensors or a controller"},
   };
