@@ -358,18 +358,6 @@ void add_observations(py::module_& module) {
       .def("__len__", [](const O& o) { return o.agents(); });
 }
 
-/// @param p x, y, z, yaw, or x, y, z and a quaternion
-void put(PySimulation& s, std::size_t row, const std::vector<double>& p) {
-  if (p.size() != 4 && p.size() != 7)
-    throw Error("a pose of " + std::to_string(p.size()) + " numbers; expected x, y, z, yaw or x, y, z, w, qx, qy, qz");
-  in_farm(s, [&] {
-    if (p.size() == 4)
-      s.farm.put(row, {p[0], p[1], p[2], p[3]});
-    else
-      s.farm.put7(row, {p[0], p[1], p[2], p[3], p[4], p[5], p[6]});
-  });
-}
-
 void add_state(py::class_<PySimulation>& c) {
   c.def_property_readonly(
        "poses", [](const PySimulation& s) { return rows(s, s.farm.poses()); },
@@ -507,8 +495,15 @@ void add_simulation(py::module_& module) {
       .def(
           "time_of", [](const PySimulation& s, std::size_t world) { return s.farm.time(world); }, py::arg("world"),
           "[s] of the last tick, of one of several worlds.")
-      .def("put", &put, py::arg("row"), py::arg("pose"),
-           "Places a robot at rest at (x, y, z [m], yaw [rad]), or at (x, y, z, w, qx, qy, qz), a unit quaternion.")
+      .def(
+          "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm(s, [&] { s.farm.put(row, pose); }); },
+          py::arg("row"), py::arg("pose"), "Places a robot at (x, y, z [m], yaw [rad]), at rest.")
+      .def(
+          "put",
+          [](PySimulation& s, std::size_t row, const std::array<double, 7>& p) {
+            in_farm(s, [&] { s.farm.put7(row, {p[0], p[1], p[2], p[3], p[4], p[5], p[6]}); });
+          },
+          py::arg("row"), py::arg("pose"), "Places and tilts it: x, y, z [m] and a unit quaternion w, x, y, z.")
       .def("add_robot", &add_robot, py::arg("name"), py::arg("like"), py::arg("pose"), py::kw_only(),
            py::arg("controller") = "", py::arg("settings") = py::dict(),
            "Adds a copy of a robot at (x, y, z [m], yaw [rad]), at rest, and returns its row.")

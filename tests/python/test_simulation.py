@@ -87,8 +87,9 @@ class Arrays(unittest.TestCase):
         numpy.testing.assert_allclose(sim.poses7[0], (0.5, 0.5, 0.25, half, 0, half, 0), atol=1e-15)
         sim.put(0, (0.5, 0.5, 0, 1))
         numpy.testing.assert_array_equal(sim.poses7[0], (0.5, 0.5, 0, math.cos(0.5), 0, 0, math.sin(0.5)))
-        for pose in ((0, 0, 0), (0, 0, 0, 1, 0), (0, 0, 0, 2, 0, 0, 0), (0, 0, 0, math.nan, 0, 0, 0)):
-            with self.assertRaises(sensorfarm.Error, msg=pose):
+        for error, pose in ((TypeError, (0, 0, 0)), (TypeError, (0, 0, 0, 1, 0)),
+                            (sensorfarm.Error, (0, 0, 0, 2, 0, 0, 0)), (sensorfarm.Error, (0, 0, 0, math.nan, 0, 0, 0))):
+            with self.assertRaises(error, msg=pose):
                 sim.put(0, pose)
         self.assertEqual(sim.poses7.shape, (len(sim), 7))
 
