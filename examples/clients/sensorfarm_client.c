@@ -1,6 +1,7 @@
 // A robot's side of the sensor farm in C11 and POSIX. docs/packets.md specifies every byte.
 //
-// As a program: robot 7 reports its pose (x, y [m], yaw [degrees]) ten times a second and prints its readings.
+// As a program: robot 7 reports its pose (x, y [m], yaw [degrees]; or x, y, z, roll, pitch, yaw) ten times a second and
+// prints its readings.
 //
 //   cc -std=c11 -O2 -o sensorfarm_client sensorfarm_client.c -lm
 //   ./sensorfarm_client --robot 7 --farm 127.0.0.1:9000 --pose 1.5,-2.25,30 --sensor laser --sensor gps.0
@@ -971,6 +972,7 @@ typedef struct {
   uint32_t session, token, farm_session, types, states, requests;
   bool all;             // requests all types, and no states of others
   double next_request;  // [s] on the monotonic clock
+  double tilt[2];       // roll, pitch [rad] in the states that it sends
   unsigned sockets;
   struct pollfd polled[1 + SF_MAX_SENSORS];
   sf_window windows[1 + SF_MAX_SENSORS];  // of the farm's signatures, by socket
@@ -1077,6 +1079,7 @@ void sf_send_state(sf_client* c, const double state[7], uint32_t follows, uint32
   }
   sf_packet packet = {.type = SF_V2V, .sequence = c->states++, .words = {follows, checkpoint, docking}};
   memcpy(packet.values, state, 7 * sizeof *state);
+  memcpy(packet.tilt, c->tilt, sizeof packet.tilt);
   send_packet(c, &packet);
 }
 
@@ -1203,20 +1206,27 @@ int main(int argc, char** argv) {
       *(is_sensor ? &sensors[count++] : &values[k]) = argv[i + 1], ++i;
   }
   char host[256], port[6], rest;
-  double state[7] = {0}, degrees, rate;
+  double state[7] = {0}, pose[6] = {0}, rate;
   if (sscanf(values[0], "%6u%c", &robot, &rest) != 1 || robot > 65535)
     return fail("--robot takes an id from 0 to 65535, not ", values[0]);
   if (sscanf(values[1], "%255[^:]:%5[0-9]%c", host, port, &rest) != 2)
     return fail("--farm takes HOST:PORT, not ", values[1]);
-  if (sscanf(values[2], "%lf,%lf,%lf%c", &state[0], &state[1], &degrees, &rest) != 3 || check_numbers(state, 2, 1e7) ||
-      !(fabs(degrees) <= 1e6))
-    return fail("--pose takes X,Y,DEGREES, not ", values[2]);
+  const bool planar = sscanf(values[2], "%lf,%lf,%lf%c", pose, pose + 1, pose + 2, &rest) == 3;
+  const bool whole = !planar && sscanf(values[2], "%lf,%lf,%lf,%lf,%lf,%lf%c", pose, pose + 1, pose + 2, pose + 3,
+                                       pose + 4, pose + 5, &rest) == 6;
+  const double yaw = pose[planar ? 2 : 5];
+  if ((!planar && !whole) || check_numbers(pose, planar ? 2 : 3, 1e7) || !(fabs(yaw) <= 1e6) ||
+      (whole && !(fabs(pose[3]) <= 180 && fabs(pose[4]) <= 90)))
+    return fail("--pose takes X,Y,DEGREES or X,Y,Z,ROLL,PITCH,YAW, not ", values[2]);
   if (sscanf(values[3], "%lf%c", &rate, &rest) != 1 || !(rate >= 1 && rate <= 1000))
     return fail("--rate takes 1 to 1000 states per second, not ", values[3]);
-  state[3] = degrees * acos(-1.0) / 180;
+  const double degree = acos(-1.0) / 180;
+  memcpy(state, pose, (planar ? 2 : 3) * sizeof *pose);
+  state[3] = yaw * degree;
   if (!sf_open(&c, (uint16_t)robot, host, port, neighbours)) return fail("no such host: ", host);
   if (values[4][0] && !sf_read_key(&c, values[4]))
     return fail("--key takes a file of 64 hexadecimal digits, not ", values[4]);
+  for (unsigned i = 0; i < 2 && whole; ++i) c.tilt[i] = pose[3 + i] * degree;
   for (unsigned i = 0; i == 0 || i < count; ++i)
     if (!add_sensor(&c, sensors[i])) return fail("no such sensor, or its port is taken: ", sensors[i]);
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """A robot's side of the sensor farm, using only Python's standard library. docs/packets.md specifies every byte.
 
-As a program: robot 7 reports its pose (x, y [m], yaw [degrees]) ten times a second and prints its readings.
+As a program: robot 7 reports its pose (x, y [m], yaw [degrees]; or x, y, z, roll, pitch, yaw) ten times a second and
+prints its readings.
 
     python3 sensorfarm_client.py --robot 7 --farm 127.0.0.1:9000 --pose 1.5,-2.25,30 --sensor laser --sensor gps.0
 
@@ -635,8 +636,12 @@ def read_sensor(word):
 
 
 def read_pose(word):
-    x, y, degrees = map(float, word.split(","))
-    return x, y, 0.0, math.radians(degrees)
+    """X,Y,YAW, or X,Y,Z,ROLL,PITCH,YAW. Returns the arguments of encode_v2v."""
+    numbers = [float(number) for number in word.split(",")]
+    if len(numbers) not in (3, 6):
+        raise ValueError
+    z, *tilt = numbers[2:-1] or (0.0, 0.0, 0.0)
+    return {"pose": (*numbers[:2], z, math.radians(numbers[-1])), "tilt": tuple(map(math.radians, tilt))}
 
 
 def read_key(file):
@@ -656,7 +661,8 @@ def main():
     parser = argparse.ArgumentParser(description="Connects a robot to a sensor farm: sends its pose, prints its readings.")
     parser.add_argument("--robot", type=int, required=True, help="id, 0 to 65535")
     parser.add_argument("--farm", type=read_farm, default=("127.0.0.1", 9000), metavar="HOST:PORT")
-    parser.add_argument("--pose", type=read_pose, default=(0.0, 0.0, 0.0, 0.0), metavar="X,Y,DEGREES")
+    parser.add_argument("--pose", type=read_pose, default={"pose": (0.0,) * 4}, metavar="X,Y,DEGREES",
+                        help="or X,Y,Z,ROLL,PITCH,YAW in metres and degrees")
     parser.add_argument("--rate", type=float, default=10.0, metavar="HZ", help="states per second, 1 to 1000")
     parser.add_argument("--sensor", type=read_sensor, action="append", metavar="TYPE[.NUMBER][=PORT]")
     parser.add_argument("--key", type=read_key, metavar="FILE", help="64 hexadecimal digits: sign, and check signatures")
@@ -666,7 +672,7 @@ def main():
     if not (0 <= options.robot <= 65535 and 1.0 <= options.rate <= 1000.0):
         parser.error("expected --robot from 0 to 65535 and --rate from 1 to 1000")
     try:
-        encode_v2v(options.pose)
+        encode_v2v(**options.pose)
         client = Client(options.robot, options.farm, options.sensor or [("laser", 0)], options.neighbours,
                         options.key)
     except (OSError, OverflowError, Malformed) as error:
@@ -677,7 +683,7 @@ def main():
         due = time.monotonic()
         while True:
             if time.monotonic() >= due:
-                client.send_state(options.pose)
+                client.send_state(**options.pose)
                 due = max(due + 1.0 / options.rate, time.monotonic())
             for packet in client.receive(due - time.monotonic()):
                 print(words(packet), flush=True)

@@ -140,6 +140,32 @@ TEST(Clients, CReadsAndWritesTheVectors) {
   expect_agreement(compiled(folder, SF_SOURCE_DIR "/tests/apps/clients/vectors.c"), {});
 }
 
+/// Roll and pitch reach the lidar, whose ranges are those of `sense`.
+TEST(Clients, BothTiltTheirRobot) {
+  if (!have_python()) GTEST_SKIP() << kNoPython;
+  if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
+  const std::string pose = "-1,0.5,0.25,5,-10,30";
+  const unsigned ports = free_ports(16);
+  Service service(
+      "model( name \"room\" size [6 4 1] boundary 1 noblocks 0 )\n"
+      "position( name \"roomba1\" size [0.3 0.3 0.1] lidar( channels 4 columns 30 range [0 20] rate 50 ) )\n",
+      {"--rate", "50", "--lidar-port", std::to_string(ports)});
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  const std::vector<double> expected = sensed(service.world, "roomba1", pose);
+  const std::string c_client = compiled(service.folder, kCClient);
+  for (const auto& [program, words] : {std::pair{std::string("python3"), Words{kPythonClient}}, {c_client, Words{}}}) {
+    const std::string out = service.folder.path("out");
+    Program client(with(words, {"--robot", "1", "--farm", "127.0.0.1:" + std::to_string(service.port), "--pose", pose,
+                                "--rate", "50", "--sensor", "lidar=" + std::to_string(ports + 8)}),
+                   {}, out, "", program);
+    EXPECT_TRUE(until([&] {
+      return near(printed(read_file(out), "lidar", {"range_m"}), expected, 0.000501) || !client.running();
+    })) << read_file(out);
+    EXPECT_TRUE(client.running()) << client.err();
+    client.stop();
+  }
+}
+
 /// Both run as the same robot, one after the other: the second is accepted because the first has sent LEAVE.
 TEST(Clients, BothPrintTheReadingsOfSense) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
