@@ -14,6 +14,7 @@
 
 #include "record/reading_messages.h"
 #include "record/recording.h"
+#include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/instrumented.h"
 #include "tests/refusal.h"
@@ -157,6 +158,36 @@ TEST_F(Recorded, ReadingsAreExportedToTheBit) {
     EXPECT_EQ(row, rows.size()) << type.name;
   }
   EXPECT_GT(checked, 15u * 31u + 30u * 4u) << "scans at 5 Hz, encoders at 10 Hz";
+}
+
+/// A robot that an event tilts has its angles in the table, and its clouds in the orientation that `sense` prints.
+TEST(ExportTilts, AsColumnsAndInClouds) {
+  const Folder folder;
+  folder.write(
+      "w.world",
+      "model( name \"room\" size [8 8 2] boundary 1 )\n"
+      "position( name \"one\" size [0.3 0.3 0.2] pose [-2 -2 0 30] lidar( channels 4 columns 20 range [0 20] ) )\n");
+  const std::string scenario = folder.write("t.toml",
+                                            "world = \"w.world\"\nduration = 0.3\n[default]\ncontroller = \"none\"\n"
+                                            "[[event]]\nat = 0.1\nobject = \"one\"\npose = [1, 0, 0.5, 10, -20, 40]\n");
+  run_successfully({"run", scenario, "--record", folder.path("r"), "--record-readings"});
+  run_successfully({"verify", folder.path("r")});
+  run_successfully({"export", folder.path("r"), "-o", folder.path("x")});
+  run_successfully({"export", folder.path("r"), "--clouds", "pcd", "-o", folder.path("x")});
+  const Rows rows = rows_of(folder.path("x/trajectories.csv"));
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0][13] + " " + rows[0].back(), "roll_rad pitch_rad");
+  EXPECT_TRUE(same(rows[1][13], 0.0) && same(rows[1][14], 0.0));
+  EXPECT_NEAR(std::stod(rows[3][13]), M_PI / 18.0, 1e-15);
+  EXPECT_NEAR(std::stod(rows[3][14]), -M_PI / 9.0, 1e-15);
+  const Json sensed(
+      run_successfully({"sense", folder.path("w.world"), "--type", "lidar", "--pose", "1,0,0.5,10,-20,40", "--json"})
+          .out);
+  const Rows clouds = rows_of(folder.path("x/clouds/clouds.csv"));
+  ASSERT_EQ(clouds.size(), 4u);
+  for (const auto& [first, key, count] : {std::tuple{4u, "/sensor_position/", 3u}, {7u, "/sensor_orientation/", 4u}})
+    for (unsigned k = 0; k < count; ++k)
+      EXPECT_NEAR(std::stod(clouds[3][first + k]), sensed.number(key + std::to_string(k)), 1e-12) << key << k;
 }
 
 TEST_F(Recorded, APartIsExported) {
