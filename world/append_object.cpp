@@ -98,6 +98,8 @@ World as_mover(const World& world, std::uint32_t root) {
     row.X_BF = compose(X_MW, row.X_BF);
     part.mesh_models.push_back(row);
   }
+  std::ranges::copy_if(world.reflectances, std::back_inserter(part.reflectances),
+                       [&](const Reflectance& row) { return inside[row.model]; });
   part.movers.push_back(std::move(mover));
   return part;
 }

@@ -153,6 +153,8 @@ void append_copy(World& world, const World& from, std::uint32_t original, const 
     if (&from != &world) row.mesh = mesh_row(world, from.meshes[row.mesh]);
     world.mesh_models.push_back(row);
   }
+  const std::vector<Reflectance> reflectances = rows_on(from.reflectances, from, original, rows);
+  world.reflectances.insert(world.reflectances.end(), reflectances.begin(), reflectances.end());
   world.movers.push_back(std::move(copy));
   world.fiducials.insert(world.fiducials.end(), fiducials.begin(), fiducials.end());
   restore_copy(world, static_cast<std::uint32_t>(world.movers.size() - 1), from, original);

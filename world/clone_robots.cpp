@@ -69,15 +69,17 @@ struct Carried {
   std::vector<Model> models;
   std::vector<Fiducial> fiducials;
   std::vector<MeshModel> meshes;
+  std::vector<Reflectance> reflectances;
 
   void add(const World& world, std::uint32_t mover, std::span<const std::uint32_t> rows) {
     std::ranges::copy(rows_on(world.fiducials, world, mover, rows), std::back_inserter(fiducials));
     std::ranges::copy(rows_on(world.mesh_models, world, mover, rows), std::back_inserter(meshes));
+    std::ranges::copy(rows_on(world.reflectances, world, mover, rows), std::back_inserter(reflectances));
   }
 };
 
 // Returns a copy of the robot in row `original` of the world's movers, with id `id`, for row `mover`. Appends its
-// models, fiducials and meshes to `carried`.
+// models and their tables to `carried`.
 Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std::uint32_t mover, const Pose& X_WM,
               const Kept& kept, Carried& carried) {
   Mover copy = world.movers[original];
@@ -147,10 +149,10 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
                  std::span<const std::uint32_t> robots) {
   SF_CHECK(original < world.movers.size(), "a copy of a robot that does not exist");
   const Kept kept = keep(world, robots, poses.size());
-  Carried carried{kept.models, {}, {}};
+  Carried carried{kept.models, {}, {}, {}};
   std::vector<Mover> movers;
   carried.add(world, kNone, kept.model_rows);
-  const bool any = !world.fiducials.empty() || !world.mesh_models.empty();
+  const bool any = !world.fiducials.empty() || !world.mesh_models.empty() || !world.reflectances.empty();
   for (std::uint32_t row = 0; row < (any ? world.movers.size() : 0); ++row) carried.add(world, row, kept.model_rows);
   std::set<std::uint32_t> taken;
   for (const std::uint32_t row : robots) {
@@ -173,6 +175,7 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   retarget(world.heat_sources, kept.model_rows);
   world.fiducials = std::move(carried.fiducials);
   world.mesh_models = std::move(carried.meshes);
+  world.reflectances = std::move(carried.reflectances);
   retarget(world.floor_holes, kept.model_rows);
   world.models = std::move(carried.models);
   world.movers = std::move(movers);

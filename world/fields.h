@@ -131,6 +131,9 @@ template <> inline constexpr auto kFields<Shape> = std::make_tuple(
 template <> inline constexpr auto kFields<Mesh> = std::make_tuple(
     path(&Mesh::file), field(&Mesh::vertices), field(&Mesh::corners));
 
+template <> inline constexpr auto kFields<Reflectance> = std::make_tuple(
+    field(&Reflectance::model), field(&Reflectance::value, Bounds{0.0, 100.0}));
+
 template <> inline constexpr auto kFields<MeshModel> = std::make_tuple(
     field(&MeshModel::mesh), field(&MeshModel::model), field(&MeshModel::X_BF));
 
@@ -165,7 +168,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 11
     field(&World::floor_unseen),
     // since version 12
-    field(&World::meshes), field(&World::mesh_models));
+    field(&World::meshes), field(&World::mesh_models),
+    // since version 13
+    field(&World::reflectances));
 
 // clang-format on
 

@@ -19,7 +19,7 @@ constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_an
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
 
-constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "outlines", "mesh", "mesh_scale", "mesh_rotation", "boundary", "stack_children",
+constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "outlines", "mesh", "mesh_scale", "mesh_rotation", "reflectance", "boundary", "stack_children",
   "noblocks", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment", "magnetometer_return", "blocks",
   "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose", "fiducial_return", "fiducial_key", "random_pose", "random_present", "random_size",
   // known, not modelled

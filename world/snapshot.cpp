@@ -12,9 +12,10 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 12;
+constexpr std::uint16_t kVersion = 13;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
+constexpr std::size_t kSinceVersion13 = least_bytes<std::vector<Reflectance>>();
 constexpr std::size_t kSinceVersion12 = least_bytes<std::vector<Mesh>>() + least_bytes<std::vector<MeshModel>>();
 constexpr std::size_t kSinceVersion11 = least_bytes<bool>();
 constexpr std::size_t kSinceVersion10 = least_bytes<std::vector<Variation>>();
@@ -25,6 +26,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
+  if (!world.reflectances.empty()) return 13;
   if (!world.meshes.empty() || !world.mesh_models.empty()) return 12;
   if (world.floor_unseen) return 11;
   if (!world.variations.empty()) return 10;
@@ -38,7 +40,8 @@ std::uint16_t version_of(const World& world) {
 std::size_t missing_bytes(std::uint16_t version) {
   return (version < 6 ? kSinceVersion6 : 0) + (version < 7 ? kSinceVersion7 : 0) + (version < 8 ? kSinceVersion8 : 0) +
          (version < 9 ? kSinceVersion9 : 0) + (version < 10 ? kSinceVersion10 : 0) +
-         (version < 11 ? kSinceVersion11 : 0) + (version < 12 ? kSinceVersion12 : 0);
+         (version < 11 ? kSinceVersion11 : 0) + (version < 12 ? kSinceVersion12 : 0) +
+         (version < 13 ? kSinceVersion13 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
@@ -63,6 +66,7 @@ void check_links(const World& world) {
   good &= std::all_of(world.fiducials.begin(), world.fiducials.end(), known);
   good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
   good &= std::all_of(world.mesh_models.begin(), world.mesh_models.end(), known);
+  good &= std::all_of(world.reflectances.begin(), world.reflectances.end(), known);
   for (const MeshModel& row : world.mesh_models) good &= row.mesh < world.meshes.size();
   if (!good) refuse("a row refers to a row that does not exist");
 }

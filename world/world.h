@@ -304,6 +304,14 @@ struct MeshModel {
   Pose X_BF;                ///< frame of its body in its mover's frame, or in the world if no mover carries it
 };
 
+/// Reflectance of a model's surfaces for the intensities of spatial scans: the part of light that an ideal diffuse
+/// surface returns; above 1 for retroreflectors.
+struct Reflectance {
+  std::uint32_t model = 0;  ///< row in `World::models`
+  double value = 0.0;       ///< in [0, 100]
+};
+inline constexpr double kDefaultReflectance = 0.5;  ///< of all other models, and of the floor
+
 /// A user message about a problem that did not stop the load.
 struct Warning {
   std::string file;
@@ -362,6 +370,7 @@ struct World {
   bool floor_unseen = false;  ///< spatial scans see no floor at z = 0 (`floor_return 0`)
   std::vector<Mesh> meshes;
   std::vector<MeshModel> mesh_models;
+  std::vector<Reflectance> reflectances;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)

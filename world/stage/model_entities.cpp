@@ -181,6 +181,16 @@ Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const 
   return model;
 }
 
+void read_reflectance(BuildState& b, const Entity& entity) {
+  if (find(entity, "reflectance") == nullptr) return;
+  const double value = number(b.context, entity, "reflectance", kDefaultReflectance);
+  if (!(value >= 0.0 && value <= 100.0))
+    fail(b.context, location_of(entity, "reflectance"),
+         fmt::format("'reflectance' is {:g}; expected 0 to 1 for diffuse surfaces, up to 100 for retroreflectors",
+                     value));
+  b.world.reflectances.push_back({static_cast<std::uint32_t>(b.world.models.size()), value});
+}
+
 // Returns true if the model becomes a mover: a robot or a linked object. A model carried by a mover belongs to that
 // mover, whatever its type or name.
 bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
@@ -232,6 +242,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   if (said.mesh && !is_floor_hole(b.context, entity)) add_mesh(b, *said.mesh, surface_of(b, entity, model), X_B);
   if (find(entity, "outlines") != nullptr)
     add_outlines(b, entity, model, surface_of(b, entity, model), said.size.z, X_B);
+  read_reflectance(b, entity);
   add_magnet(b, entity, model, said.size, X_B);
   add_emitter(b, entity, model, said.size, X_B);
   add_lamp(b, entity, model, said.size, X_B);
