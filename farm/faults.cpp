@@ -97,7 +97,7 @@ void check_faults(std::span<const Fault> faults, const world::World& world, cons
     for (const sensors::SensorSpec& row : group.rows) {
       if (row.sensor != fault.sensor || !is_of_robot(fault, world, row.mover)) continue;
       ++found;
-      const double bytes = 256.0 + 16.0 * row.elements * static_cast<double>(sensors::element_width(*group.type));
+      const double bytes = 256.0 + 16.0 * row.elements * static_cast<double>(sensors::element_width(*group.type, row));
       if (fault.kind == FaultKind::delay) held += bytes * (1.0 + row.rate * fault.amount);
     }
     if (found == 0)
@@ -130,7 +130,7 @@ void Faults::add_sensors(const world::World& world, const sensors::SensorSet& se
     type.targets.resize(group.rows.size(), 0);
     for (std::size_t i = known; i < group.rows.size(); ++i) {
       const sensors::SensorSpec& row = group.rows[i];
-      Target target{.width = sensors::element_width(*group.type), .limits = sensors::limits_of(row)};
+      Target target{.width = sensors::element_width(*group.type, row), .limits = sensors::limits_of(row)};
       for (std::uint32_t k = 0; k < faults_.size(); ++k) {
         const Fault& fault = faults_[k];
         if (row.sensor != fault.sensor || !is_of_type(fault, *group.type) || !is_of_robot(fault, world, row.mover))

@@ -20,15 +20,15 @@ bool at_every_tick(const sensors::SensorSpec& row, double interval) {
 ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interval) : group_(group) {
   const std::vector<sensors::SensorSpec>& rows = group.rows;
   every_tick_ = std::all_of(rows.begin(), rows.end(), [&](const auto& row) {
-    return at_every_tick(row, interval) && row.elements == rows.front().elements;
+    return at_every_tick(row, interval) && row.elements == rows.front().elements && row.width == rows.front().width;
   });
   for (const sensors::SensorSpec& row : rows) {
     view_.elements = std::max<std::size_t>(view_.elements, row.elements);
+    view_.columns = std::max(view_.columns, sensors::element_width(*group.type, row));
     robots_.push_back(row.mover);
   }
   view_.type = group.type->name;
   view_.sensors = rows.size();
-  view_.columns = sensors::element_width(*group.type);
   times_.assign(rows.size(), kNan);
   bounds_.assign(rows.size(), std::numeric_limits<double>::infinity());
   bound_without_noise_ = bounds_;
@@ -84,8 +84,10 @@ void ReadingTable::copy(std::span<const base::ReadingBlock> readings) {
   if (group_.type->is_scan) hits_.resize(view_.sensors * view_.elements, base::kNoHit);
   for (const base::ReadingBlock& reading : readings) {
     const std::size_t row = row_of(reading);
-    std::copy(reading.values.begin(), reading.values.end(),
-              values_.begin() + static_cast<std::ptrdiff_t>(row * length));
+    const std::size_t width = sensors::element_width(*group_.type, group_.rows[row]);
+    for (std::size_t i = 0; i * width < reading.values.size(); ++i)
+      std::copy_n(reading.values.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                  values_.begin() + static_cast<std::ptrdiff_t>(row * length + i * view_.columns));
     if (!hits_.empty())
       std::copy(reading.hits.begin(), reading.hits.end(),
                 hits_.begin() + static_cast<std::ptrdiff_t>(row * view_.elements));

@@ -38,9 +38,20 @@ void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
   }
 }
 
-/// Returns whether a message can hold that many elements: a number takes at least four bytes.
-bool fits(const SensorTypeInfo& sensor_type, std::size_t elements, std::size_t message) {
-  return elements <= message && element_width(sensor_type) * elements <= message / 4;
+/// Returns whether a message can hold that many numbers: each takes at least four bytes.
+bool fits(std::size_t numbers, std::span<const std::uint8_t> message) { return numbers <= message.size() / 4; }
+
+/// Moves a column's numbers, at the end of `values`, to the ends of the elements.
+/// @param width numbers per element before  @param added of the column
+void order(std::vector<double>& values, std::size_t elements, std::size_t width, std::size_t added) {
+  if (width == 0 || elements <= 1) return;
+  const std::vector<double> columns = values;
+  for (std::size_t i = 0; i < elements; ++i) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(i * (width + added));
+    std::copy_n(columns.begin() + static_cast<std::ptrdiff_t>(i * width), width, at);
+    std::copy_n(columns.begin() + static_cast<std::ptrdiff_t>(elements * width + i * added), added,
+                at + static_cast<std::ptrdiff_t>(width));
+  }
 }
 
 }  // namespace
@@ -65,8 +76,8 @@ std::size_t element_width(const SensorTypeInfo& sensor_type) {
 }
 
 void encode_reading(const SensorTypeInfo& sensor_type, std::int64_t time, std::string_view frame,
-                    std::span<const double> values, base::Bytes& out) {
-  const std::size_t width = element_width(sensor_type);
+                    std::span<const double> values, base::Bytes& out, std::size_t width) {
+  if (width == 0) width = element_width(sensor_type);
   const bool whole = width > 0 && values.size() % width == 0;
   SF_CHECK(whole && (!sensor_type.list.empty() || values.size() == width),
            std::to_string(values.size()) + " values in a reading of type " + sensor_type.name);
@@ -76,33 +87,38 @@ void encode_reading(const SensorTypeInfo& sensor_type, std::int64_t time, std::s
   const std::size_t elements = values.size() / width;
   std::size_t first = 0;
   for (const ColumnInfo& column : sensor_type.columns) {
-    if (!sensor_type.list.empty()) cdr.put_count(elements * column.width);
-    for (std::size_t i = 0; i < elements; ++i)
+    const std::size_t rows = first < width ? elements : 0;
+    if (!sensor_type.list.empty()) cdr.put_count(rows * column.width);
+    for (std::size_t i = 0; i < rows; ++i)
       for (std::size_t k = 0; k < column.width; ++k) put_number(cdr, column, values[width * i + first + k]);
     first += column.width;
   }
 }
 
 bool decode_reading(const SensorTypeInfo& sensor_type, std::span<const std::uint8_t> message, std::int64_t& time,
-                    std::vector<double>& values) {
+                    std::vector<double>& values, std::size_t* width_out) {
   CdrReader cdr(message);
   get_header(cdr, time);
 
-  const std::size_t width = element_width(sensor_type);
   std::size_t elements = 1;  // with a list: the length of its first array
-  std::size_t first = 0;
+  std::size_t width = 0;     // of the columns so far
+  bool complete = true;      // none of them is empty
+  values.clear();
   for (const ColumnInfo& column : sensor_type.columns) {
     const std::size_t numbers = sensor_type.list.empty() ? column.width : cdr.get_count(sizeof(std::uint32_t));
-    if (first == 0 && column.width > 0) elements = numbers / column.width;
-    if (column.width == 0 || numbers != elements * column.width || !fits(sensor_type, elements, message.size()))
+    if (width == 0 && column.width > 0) elements = numbers / column.width;
+    const bool left_out = width > 0 && elements > 0 && numbers == 0;
+    complete = complete && !left_out;
+    if (left_out) continue;
+    if (column.width == 0 || !complete || numbers != elements * column.width || !fits(values.size() + numbers, message))
       return false;
-    values.resize(elements * width);
-    for (std::size_t i = 0; i < elements; ++i)
-      for (std::size_t k = 0; k < column.width; ++k)
-        values[width * i + first + k] = column.whole ? cdr.get<std::uint32_t>() : cdr.get<double>();
-    first += column.width;
+    for (std::size_t i = 0; i < numbers; ++i)
+      values.push_back(column.whole ? static_cast<double>(cdr.get<std::uint32_t>()) : cdr.get<double>());
+    order(values, elements, width, column.width);
+    width += column.width;
   }
-  return first > 0 && cdr.good();
+  if (width_out != nullptr) *width_out = width;
+  return width > 0 && cdr.good();
 }
 
 }  // namespace sf::record

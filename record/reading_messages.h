@@ -27,12 +27,15 @@ std::size_t element_width(const SensorTypeInfo& sensor_type);
 
 /// Appends one message. @pre `values` are whole elements, and exactly one element for a sensor type without a list
 /// @param time [ns] of the measurement
+/// @param width numbers per element, those of the first columns, if the type has a list: the arrays of the others are
+///              empty; 0: all
 void encode_reading(const SensorTypeInfo& sensor_type, std::int64_t time, std::string_view frame,
-                    std::span<const double> values, base::Bytes& out);
+                    std::span<const double> values, base::Bytes& out, std::size_t width = 0);
 
 /// @param values element by element, as in the reading; its capacity is reused
+/// @param width out, unless null: numbers per element
 /// @return false if the bytes are not a reading of that type; the outputs are then partly filled
 bool decode_reading(const SensorTypeInfo& sensor_type, std::span<const std::uint8_t> message, std::int64_t& time,
-                    std::vector<double>& values);
+                    std::vector<double>& values, std::size_t* width = nullptr);
 
 }  // namespace sf::record

@@ -99,16 +99,18 @@ bool read_scan(const McapMessage& message, const SensorTopic& topic, const RunIn
   if (!scan) return false;
   const double none = option_of(info, kNoReturn) == "inf" ? HUGE_VAL : topic.info->range_max;
   sample.time = scan->time;
+  sample.width = 1;
   sample.values.assign(scan->ranges.begin(), scan->ranges.end());
   std::replace(sample.values.begin(), sample.values.end(), HUGE_VAL, none);
   return true;
 }
 
 bool read_reading(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
-  ReadingSample sample{topic.mover, topic.type->id, topic.sensor, message.sequence,
-                       static_cast<std::int64_t>(message.log_time)};
+  ReadingSample sample{
+      topic.mover, topic.type->id, topic.sensor, message.sequence, static_cast<std::int64_t>(message.log_time), 0, 0,
+      {}};
   if (!(topic.type->is_scan ? read_scan(message, topic, recording.info, sample)
-                            : decode_reading(*topic.type, message.data, sample.time, sample.values)))
+                            : decode_reading(*topic.type, message.data, sample.time, sample.values, &sample.width)))
     return false;
   recording.readings.push_back(std::move(sample));
   return true;

@@ -37,6 +37,7 @@ struct ReadingSample {
   std::uint32_t sequence = 0;
   std::int64_t delivered = 0;  ///< [ns] simulated time of the tick of delivery
   std::int64_t time = 0;       ///< [ns] time of the measurement
+  std::size_t width = 0;       ///< numbers per element, those of the sensor type's first columns
   /// Element by element, in the order of the sensor type's columns; scans in float32. A range of -infinity means a
   /// surface nearer than the sensor's minimum; a range from the sensor's maximum on means no echo.
   std::vector<double> values;

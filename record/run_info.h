@@ -54,6 +54,8 @@ struct StandardTopic {
   // For points, of which an element is the whole reading:
   std::shared_ptr<const std::vector<glm::dvec3>> directions;  ///< unit vectors of the beams in frame `frame`
   std::uint32_t rings = 1;                                    ///< rows of the cloud, of equal length
+  std::size_t width = 1;                                      ///< numbers per beam: the range, the intensity, ...
+  std::shared_ptr<const std::vector<double>> times;           ///< [s] of the beams relative to the reading; null: 0
 
   /// Standard deviation of a turn rate [rad/s], or of a fix [m] at an HDOP of 1; 0: not stated.
   double sigma = 0.0;
@@ -69,6 +71,7 @@ struct SensorInfo {
   std::uint32_t samples = 0;
   double range_min = 0.0;               ///< [m]
   double range_max = 0.0;               ///< [m]
+  std::size_t width = 0;                ///< as for `encode_reading`; not read back
   std::vector<StandardTopic> standard;  ///< not read back, since the world contains them
   std::string frame;                    ///< not read back
 };

@@ -321,8 +321,9 @@ void TickMessages::send_reading(const base::ReadingBlock& reading, const Output&
     each.header.time = reading.time;
     const auto values = marks_too_near_ ? base::marked_values(reading, marked_) : reading.values;
     out.send(each.topic, reading.sequence, reading.time, [&](base::Bytes& bytes) {
-      each.type->is_scan ? encode_scan(each.header, values, bytes)
-                         : encode_reading(*each.type, reading.time, each.header.frame, values, bytes);
+      each.type->is_scan
+          ? encode_scan(each.header, values, bytes)
+          : encode_reading(*each.type, reading.time, each.header.frame, values, bytes, each.sensor->width);
     });
     std::uint32_t topic = each.standard;
     for (const StandardTopic& standard : each.sensor->standard)

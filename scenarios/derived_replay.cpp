@@ -151,7 +151,9 @@ void Replayer::add_feed(std::size_t row) {
                            ? std::span<const sensors::SensorSpec>()
                            : sensor_set_.of(reading.type, reading.mover);
   const std::size_t expected =
-      reading.sensor < sensors.size() ? sensors[reading.sensor].elements * sensors::element_width(*type) : 0;
+      reading.sensor < sensors.size()
+          ? sensors[reading.sensor].elements * sensors::element_width(*type, sensors[reading.sensor])
+          : 0;
   if (reading.time < 0 || expected == 0 || reading.values.size() != expected)
     throw base::InputError(
         recording_.file, 0,

@@ -259,6 +259,7 @@ void ForeignReader::add(const ForeignSensor& sensor, std::int64_t stamp, std::in
   reading.sensor = sensor.number;
   reading.time = file_.clock == ForeignClock::log ? log : stamp;
   reading.delivered = file_.clock == ForeignClock::stamp ? stamp : std::max(log, reading.time);
+  reading.width = sensors::element_width(*sensor.type);
   reading.values = values;
 }
 

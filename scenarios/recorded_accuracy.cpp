@@ -36,7 +36,7 @@ class Pair {
                                .unit = std::string(sensors::unit_of(*group.type)),
                                .errors = {}});
       for (const sensors::SensorSpec& row : group.rows) result_.types.back().noisy |= row.sigma > 0.0;
-      rows_.push_back({group.type, sensors::element_width(*group.type)});
+      rows_.push_back(group.type);
     }
     for (std::uint32_t m = 0; m < world_.movers.size(); ++m)
       for (farm::Farm* farm : {&farm_, &exact_}) farm->subscribe(m, types_);
@@ -55,11 +55,6 @@ class Pair {
   }
 
  private:
-  struct Row {
-    const sensors::SensorType* type;
-    std::size_t width;
-  };
-
   static farm::FarmOptions options_of(const record::Recording& recording, const VerifyOptions& options) {
     return {.seed = recording.info.seed, .noise = false, .threads = options.threads};
   }
@@ -78,13 +73,13 @@ class Pair {
   void compare(std::span<const base::ReadingBlock> readings, std::span<const base::ReadingBlock> exact) {
     SF_CHECK(readings.size() == exact.size(), "the same sensors are due in every mode");
     for (std::size_t i = 0; i < readings.size(); ++i) {
-      const auto row =
-          std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.type->id == readings[i].type; });
+      const auto row = std::ranges::find(rows_, readings[i].type, &sensors::SensorType::id);
       if (row == rows_.end() || readings[i].values.size() != exact[i].values.size()) continue;
       ErrorDistribution& errors = result_.types[static_cast<std::size_t>(row - rows_.begin())].errors;
-      for (std::size_t k = 0; k < readings[i].values.size(); k += row->width) {
+      const std::size_t width = sensors::element_width(**row, farm_.sensor_set().row(readings[i]));
+      for (std::size_t k = 0; k < readings[i].values.size(); k += width) {
         const double value = readings[i].values[k];
-        errors.add(value, exact[i].values[k], covering_bound(readings[i], k / row->width, value));
+        errors.add(value, exact[i].values[k], covering_bound(readings[i], k / width, value));
       }
     }
   }
@@ -93,8 +88,8 @@ class Pair {
   world::World world_, exact_world_;
   RecordedShapes shapes_, exact_shapes_;
   farm::Farm farm_, exact_;
-  base::SensorTypes types_ = 0;  ///< types that have modes
-  std::vector<Row> rows_;        ///< of `result_.types`
+  base::SensorTypes types_ = 0;                   ///< types that have modes
+  std::vector<const sensors::SensorType*> rows_;  ///< of `result_.types`
   std::vector<base::Report> reports_;
   RecordedAccuracy result_;
 };

@@ -13,8 +13,16 @@ bool same_columns(const record::SensorTypeInfo& a, const record::SensorTypeInfo&
   const auto equal = [](const record::ColumnInfo& x, const record::ColumnInfo& y) {
     return x.name == y.name && x.width == y.width;
   };
+  // Later versions may have appended columns to a list.
+  const auto end = b.list.empty() || b.columns.size() < a.columns.size() ? b.columns.end()
+                                                                         : b.columns.begin() + std::ssize(a.columns);
   return a.list == b.list && a.is_scan == b.is_scan &&
-         std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(), equal);
+         std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), end, equal);
+}
+
+/// Returns the numbers per element of a sensor, as in `info`.
+std::size_t width_of(const record::SensorTypeInfo& type, const record::SensorInfo& sensor) {
+  return sensor.width != 0 ? sensor.width : record::element_width(type);
 }
 
 /// Returns whether `info` has the sensor of a reading, with values of the same form.
@@ -22,11 +30,13 @@ bool is_known(const record::ReadingSample& reading, const record::RunInfo& recor
   const record::SensorTypeInfo* const then = record::find_sensor_type(recorded, reading.type);
   const record::SensorTypeInfo* const now = record::find_sensor_type(info, reading.type);
   if (then == nullptr || now == nullptr || !same_columns(*then, *now)) return false;
-  const auto& sensors = info.movers[reading.mover].sensors;
-  const auto count = std::count_if(sensors.begin(), sensors.end(),
-                                   [&](const record::SensorInfo& sensor) { return sensor.type == reading.type; });
-  const std::size_t width = record::element_width(*now), size = reading.values.size();
-  return reading.sensor < count && (now->list.empty() ? size == width : size % width == 0);
+  std::uint32_t before = 0;  // sensors of the same type before it
+  for (const record::SensorInfo& sensor : info.movers[reading.mover].sensors) {
+    if (sensor.type != reading.type || before++ != reading.sensor) continue;
+    const std::size_t width = width_of(*now, sensor), size = reading.values.size();
+    return now->list.empty() ? size == width : size % width == 0;
+  }
+  return false;
 }
 
 /// Returns X_MS of the sensor of a reading.

@@ -26,8 +26,8 @@ void add_type(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     info.sensor_types.push_back(sensor_type_info(*group.type));
     for (const sensors::SensorSpec& row : group.rows)
-      info.movers[row.mover].sensors.push_back(
-          {group.type->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements, row.range_min, row.limit});
+      info.movers[row.mover].sensors.push_back({group.type->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements,
+                                                row.range_min, row.limit, row.width});
   }
 }
 

@@ -54,7 +54,7 @@ class ModeEntrant {
   void time() {
     std::size_t elements = 0;
     const auto start = std::chrono::steady_clock::now();
-    lap([&](const base::ReadingBlock& block) { elements += block.values.size() / width(); });
+    lap([&](const base::ReadingBlock& block) { elements += block.values.size() / width_of(block); });
     laps_.push_back(base::seconds_since(start));
     elements_ = elements;
   }
@@ -64,7 +64,9 @@ class ModeEntrant {
   const world::World& world() const { return world_; }
 
  private:
-  std::size_t width() const { return sensors::element_width(type_); }
+  std::size_t width_of(const base::ReadingBlock& block) const {
+    return sensors::element_width(type_, farm_->sensor_set().row(block));
+  }
 
   template <class Look>
   void lap(Look look) {
@@ -77,9 +79,10 @@ class ModeEntrant {
 
   void take(const base::ReadingBlock& block, Read& read) {
     if (read.values.size() > kMostValues) return;
-    for (std::size_t i = 0; i < block.values.size(); i += width()) {
+    const std::size_t width = width_of(block);
+    for (std::size_t i = 0; i < block.values.size(); i += width) {
       read.values.push_back(block.values[i]);
-      read.bounds.push_back(covering_bound(block, i / width(), block.values[i]));
+      read.bounds.push_back(covering_bound(block, i / width, block.values[i]));
     }
   }
 

@@ -20,7 +20,7 @@ HostBackend::HostBackend(const SensorContext& context, const SensorType& type, c
       type_(type.id),
       rows_(sensors.rows) {
   first_.push_back(0);
-  for (const SensorSpec& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(type));
+  for (const SensorSpec& row : rows_) first_.push_back(first_.back() + row.elements * element_width(type, row));
   values_.resize(first_.back());
   samples_.reserve(rows_.size());
 }

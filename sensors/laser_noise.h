@@ -54,10 +54,10 @@ bool finish_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const ba
 /// @param values out: as many as the reading has
 inline void mark_no_return(const base::ReadingBlock& reading, double range_max, std::span<double> values) {
   const bool scan = !reading.hits.empty();
-  const auto marked = [&](double value) {
-    return scan && base::echo_of(value, {.max = range_max}) == base::Echo::none ? HUGE_VAL : value;
-  };
-  std::transform(reading.values.begin(), reading.values.end(), values.begin(), marked);
+  std::ranges::copy(reading.values, values.begin());
+  const std::size_t width = scan ? values.size() / reading.hits.size() : 0;
+  for (std::size_t i = 0; scan && i < values.size(); i += width)
+    if (base::echo_of(values[i], {.max = range_max}) == base::Echo::none) values[i] = HUGE_VAL;
 }
 
 }  // namespace sf::sensors

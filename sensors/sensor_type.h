@@ -58,6 +58,7 @@ struct SensorSpec {
   double latency = 0.0;        ///< [s] from measurement to delivery
   std::uint8_t priority = 5;   ///< 0 to 9: with a budget (farm/processor_budget.h), larger ones are measured first
   std::uint32_t elements = 1;  ///< rows of a reading: beams of a laser, elements of an array, words of a map, else 1
+  std::uint32_t width = 0;     ///< numbers per row, those of its type's first columns; 0: all columns
   double limit = 0.0;          ///< largest value of an element, in the unit of its first column
   std::uint32_t across = 0;    ///< elements per row of an image; 0: the elements are not an image
   double pitch = 0.0;          ///< [m] side of an image's cell
@@ -99,6 +100,7 @@ inline double bearing_of(const SensorSpec& sensor, std::uint32_t i) {
 struct SpatialBeams {
   base::RigidTransform X_MS;               ///< sensor in the mover's frame
   std::span<const glm::dvec3> directions;  ///< unit vectors in the sensor's frame, one per beam
+  std::span<const double> times;           ///< [s] <= 0, relative to the reading, one per beam; empty: all are 0
 };
 
 /// Returns the azimuth and the elevation [rad] of a beam's direction.
@@ -236,6 +238,11 @@ inline std::size_t element_width(const SensorType& type) {
   std::size_t width = 0;
   for (const Column& column : type.columns) width += column.width;
   return width;
+}
+
+/// Returns the number of values per element of a sensor's readings.
+inline std::size_t element_width(const SensorType& type, const SensorSpec& sensor) {
+  return sensor.width != 0 ? sensor.width : element_width(type);
 }
 
 /// Implements `SensorType::make` for a backend that is constructed from these two.

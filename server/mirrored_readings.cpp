@@ -22,7 +22,7 @@ netio::ReceiverOptions receiver_options(const world::World& world, const std::ve
   netio::ReceiverOptions options;
   for (const SensorStream& source : sources)
     options.streams.push_back({{.robot = world.movers[source.row->mover].id, .sensor = source.row->sensor},
-                               source.row->elements * sensors::element_width(*source.type)});
+                               source.row->elements * sensors::element_width(*source.type, *source.row)});
   options.inspect = [&sources](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return inspect_payload(sources[i], sensors::WireFormat::farm, header, payload);
   };

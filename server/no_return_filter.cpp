@@ -7,7 +7,7 @@ namespace sf::server {
 std::span<const base::ReadingBlock> NoReturnFilter::apply(std::span<const base::ReadingBlock> readings) {
   if (!infinite_) return readings;
   std::size_t count = 0;
-  for (const base::ReadingBlock& r : readings) count += r.hits.size();
+  for (const base::ReadingBlock& r : readings) count += r.hits.empty() ? 0 : r.values.size();
   ranges_.resize(count);
   blocks_.assign(readings.begin(), readings.end());
   double* at = ranges_.data();

@@ -79,7 +79,7 @@ netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, c
   const std::vector<netio::StreamSpec> all = specs(layout);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const SensorStream& source = streams_[i].source;
-    receiver.streams.push_back({all[i], source.row->elements * element_width(*source.type)});
+    receiver.streams.push_back({all[i], source.row->elements * element_width(*source.type, *source.row)});
   }
   receiver.headerless = layout.wire == sensors::WireFormat::thesis;
   const sensors::WireFormat wire = layout.wire;

@@ -76,8 +76,17 @@ viz::SeriesOptions lane_edges(const record::Recording& recording, const std::vec
           {panel}};
 }
 
-std::size_t element_count(const Channel& channel, std::size_t width) {
-  return std::max<std::size_t>(1, channel.readings.front()->values.size() / width);
+/// Numbers per element of its readings.
+std::size_t width_of(const Channel& channel) { return channel.readings.front()->width; }
+
+std::size_t element_count(const Channel& channel) {
+  return std::max<std::size_t>(1, channel.readings.front()->values.size() / width_of(channel));
+}
+
+std::size_t widest(const std::vector<Channel>& channels) {
+  std::size_t most = 0;
+  for (const Channel& channel : channels) most = std::max(most, width_of(channel));
+  return most;
 }
 
 /// Returns the elements to draw for a sensor with `count` elements.
@@ -112,9 +121,9 @@ struct ElementColumn {
   double scale = 1.0;
 };
 
-viz::Panel heat_panel(const Channel& channel, const SensorElements& elements, std::size_t width,
-                      const ElementColumn& column) {
-  const std::size_t count = element_count(channel, width), every = (count + kMostRows - 1) / kMostRows;
+viz::Panel heat_panel(const Channel& channel, const SensorElements& elements, const ElementColumn& column) {
+  const std::size_t width = width_of(channel), count = element_count(channel),
+                    every = (count + kMostRows - 1) / kMostRows;
   viz::HeatMap map{.value_name = column.name, .whole = column.whole};
   const bool has_bearings = elements.bearings.size() == count;
   map.elements = element_rows(elements, count, every);
@@ -141,10 +150,9 @@ viz::Panel heat_panel(const Channel& channel, const SensorElements& elements, st
 }
 
 /// |B| of each element of one sensor.
-viz::Panel fields_of(const Channel& channel, std::size_t width, const PlotOptions& options) {
-  const std::size_t elements = element_count(channel, width);
-  if (as_heat_map(elements, options))
-    return heat_panel(channel, {}, width, {0, "|B| [G]", false, false, kPlottedGauss});
+viz::Panel fields_of(const Channel& channel, const PlotOptions& options) {
+  const std::size_t width = width_of(channel), elements = element_count(channel);
+  if (as_heat_map(elements, options)) return heat_panel(channel, {}, {0, "|B| [G]", false, false, kPlottedGauss});
   viz::Panel panel{channel.name, "|B| [G]", {}};
   for (const std::size_t e : chosen_elements(elements, options))
     panel.series.push_back(series_of(fmt::format("element {}", e), channel, [=](const record::ReadingSample& r) {
@@ -155,16 +163,16 @@ viz::Panel fields_of(const Channel& channel, std::size_t width, const PlotOption
 
 /// A reading has |B| first, then the vector. Path followers steer by the difference between the magnitudes at the last
 /// and the first element.
-viz::SeriesOptions fields(const record::Recording& recording, const std::vector<Channel>& channels, std::size_t width,
+viz::SeriesOptions fields(const record::Recording& recording, const std::vector<Channel>& channels,
                           const PlotOptions& options) {
   viz::SeriesOptions figure{"Magnetic field", "", {}};
   // Signed, since a difference of magnitudes may be negative.
   viz::Panel difference{"last element minus first", "difference of |B| [G]", {}};
   const std::size_t drawn = std::min(channels.size(), kMostMagnetometers);
   for (std::size_t i = 0; i < drawn; ++i) {
-    figure.panels.push_back(fields_of(channels[i], width, options));
-    difference.series.push_back(series_of(channels[i].name, channels[i], [=](const record::ReadingSample& r) {
-      return r.values.size() > width ? kPlottedGauss * (r.values[r.values.size() - width] - r.values[0]) : NAN;
+    figure.panels.push_back(fields_of(channels[i], options));
+    difference.series.push_back(series_of(channels[i].name, channels[i], [](const record::ReadingSample& r) {
+      return r.values.size() > r.width ? kPlottedGauss * (r.values[r.values.size() - r.width] - r.values[0]) : NAN;
     }));
   }
   if (options.elements.empty()) figure.panels.push_back(std::move(difference));
@@ -212,18 +220,19 @@ std::string subtitle_of(const record::Recording& recording, std::size_t sensors,
 
 /// One panel per column and sensor, for the first few sensors.
 viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world::World& world,
-                                const record::SensorTypeInfo& type, const std::vector<Channel>& channels,
-                                std::size_t width) {
+                                const record::SensorTypeInfo& type, const std::vector<Channel>& channels) {
   viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
+  const std::size_t width = widest(channels);
   const sensors::SensorSet sensor_set(world);
   const std::size_t drawn = std::min({channels.size(), kMostHeatMaps, std::max<std::size_t>(1, kMostPanels / width)});
   for (std::size_t i = 0; i < drawn; ++i) {
     const SensorElements elements = elements_of(sensor_set, type.id, channels[i].mover, channels[i].sensor);
     std::size_t offset = 0;
     for (const record::ColumnInfo& column : type.columns)
-      for (std::uint32_t k = 0; k < column.width && figure.panels.size() < kMostPanels; ++k)
+      for (std::uint32_t k = 0;
+           k < column.width && offset < width_of(channels[i]) && figure.panels.size() < kMostPanels; ++k)
         figure.panels.push_back(
-            heat_panel(channels[i], elements, width,
+            heat_panel(channels[i], elements,
                        {offset++, axis_name(column.name) + (column.width > 1 ? fmt::format(" {}", "xyz"[k % 3]) : ""),
                         is_whole(column), column.name == "range_m" || type.is_scan}));
   }
@@ -233,23 +242,24 @@ viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world:
 
 /// Handles any sensor type: one panel per column, one curve per sensor, element and vector component.
 viz::SeriesOptions columns_of(const record::Recording& recording, const record::SensorTypeInfo& type,
-                              const std::vector<Channel>& channels, std::size_t width, const PlotOptions& options) {
+                              const std::vector<Channel>& channels, const PlotOptions& options) {
   viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
   std::size_t drawn = 0, offset = 0;
   for (const record::ColumnInfo& column : type.columns) {
-    if (figure.panels.size() == kMostPanels) break;
+    if (figure.panels.size() == kMostPanels || offset >= widest(channels)) break;
     viz::Panel panel{"", axis_name(column.name), {}, false, is_whole(column)};
     drawn = 0;
     for (const Channel& channel : channels) {
-      const std::size_t elements = element_count(channel, width);
+      const std::size_t elements = element_count(channel), width = width_of(channel);
       const std::vector<std::size_t> chosen = chosen_elements(elements, options);
       if (drawn > 0 && panel.series.size() + chosen.size() * column.width > kMostCurves) break;
       for (const std::size_t e : chosen)
         for (std::uint32_t k = 0; k < column.width; ++k)
-          panel.series.push_back(series_of(part_name(channel, e, elements, k, column.width), channel,
-                                           [at = e * width + offset + k](const record::ReadingSample& r) {
-                                             return at < r.values.size() ? r.values[at] : NAN;
-                                           }));
+          panel.series.push_back(
+              series_of(part_name(channel, e, elements, k, column.width), channel,
+                        [at = offset < width ? e * width + offset + k : SIZE_MAX](const record::ReadingSample& r) {
+                          return at < r.values.size() ? r.values[at] : NAN;
+                        }));
       ++drawn;
     }
     offset += column.width;
@@ -264,16 +274,15 @@ std::optional<viz::SeriesOptions> figure_of(const record::Recording& recording, 
                                             const record::SensorTypeInfo& type, const PlotOptions& options) {
   const std::vector<Channel> channels = channels_of(recording, type);
   if (channels.empty() || type.id == sensors::kOccupancy) return std::nullopt;  // maps have separate figures
-  const std::size_t width = record::element_width(type);
   std::size_t most = 0;
-  for (const Channel& channel : channels) most = std::max(most, element_count(channel, width));
+  for (const Channel& channel : channels) most = std::max(most, element_count(channel));
   if (!options.elements.empty() && chosen_elements(most, options).empty()) return std::nullopt;
   if (type.name == "laneedge") return lane_edges(recording, channels);
-  if (type.name == "magnetometer") return fields(recording, channels, width, options);
-  if (as_heat_map(most, options)) return heat_maps_of(recording, world, type, channels, width);
+  if (type.name == "magnetometer") return fields(recording, channels, options);
+  if (as_heat_map(most, options)) return heat_maps_of(recording, world, type, channels);
   if (type.is_scan && options.elements.empty() && !options.curves)
     return std::nullopt;  // scans with few beams are drawn on the map
-  return columns_of(recording, type, channels, width, options);
+  return columns_of(recording, type, channels, options);
 }
 
 /// @throws base::InputError for an element that no recorded sensor has
@@ -281,8 +290,7 @@ void check_elements(const record::Recording& recording, const PlotOptions& optio
   std::size_t most = 0;
   for (const record::SensorTypeInfo& type : recording.info.sensor_types)
     if (type.id != sensors::kOccupancy)
-      for (const Channel& channel : channels_of(recording, type))
-        most = std::max(most, element_count(channel, record::element_width(type)));
+      for (const Channel& channel : channels_of(recording, type)) most = std::max(most, element_count(channel));
   for (const std::uint32_t element : options.elements)
     if (element >= most)
       throw base::InputError(

@@ -82,7 +82,8 @@ void write_reading(CsvFile& file, const record::RunInfo& info, const record::Sen
   const std::string begin =
       fmt::format("{},{},{},{},{},", seconds(reading.time), seconds(reading.delivered), csv_field(mover.name),
                   csv_field(sensor != nullptr ? sensor->name : ""), reading.sequence);
-  const std::size_t width = record::element_width(type), elements = reading.values.size() / width;
+  const std::size_t width = reading.width, elements = reading.values.size() / width;
+  const std::string missing(record::element_width(type) - width, ',');
   for (std::size_t e = 0; e < elements; ++e) {
     std::string row = begin + std::to_string(e);
     if (type.is_scan)
@@ -90,7 +91,7 @@ void write_reading(CsvFile& file, const record::RunInfo& info, const record::Sen
                                                 : base::bearing_of(sensor->fov, static_cast<std::uint32_t>(elements),
                                                                    static_cast<std::uint32_t>(e)));
     for (std::size_t k = 0; k < width; ++k) row += "," + csv_number(reading.values[e * width + k]);
-    file.row(row);
+    file.row(row + missing);
   }
 }
 

@@ -20,10 +20,11 @@ std::string missing_or(double value, const sensors::Column& column) {
 
 /// `distance_m,points`; a vector has the columns `vector_T_x,vector_T_y,vector_T_z`. Scans also have bearings and
 /// models.
-std::string csv_heading(const sensors::SensorType& type) {
+/// @param width of the sensor's columns
+std::string csv_heading(const sensors::SensorType& type, std::size_t width) {
   std::string text = type.is_scan ? "bearing_rad" : type.beams != nullptr ? "azimuth_rad,elevation_rad" : "";
   for (const sensors::Column& column : type.columns)
-    for (std::uint32_t k = 0; k < column.width; ++k) {
+    for (std::uint32_t k = 0; k < column.width && width > 0; ++k, --width) {
       if (!text.empty()) text += ',';
       text += column.name;
       if (column.width > 1) text += column.width <= 3 ? fmt::format("_{}", "xyz"[k]) : fmt::format("_{}", k);
@@ -63,14 +64,14 @@ std::string place_of(const world::World& world, const sensors::SensorSet& sensor
 std::string reading_csv(const world::World& world, const sensors::SensorSet& sensor_set,
                         const base::ReadingBlock& reading) {
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
-  std::string text = csv_heading(type);
-  const std::size_t width = element_width(type);
+  const std::size_t width = element_width(type, sensor_set.row(reading));
+  std::string text = csv_heading(type, width);
   const bool directed = type.is_scan || type.beams != nullptr;
   for (std::uint32_t i = 0; (i + 1) * width <= reading.values.size(); ++i) {
     std::string line = direction_csv(sensor_set, reading, i);
     std::size_t at = i * width;
     for (const sensors::Column& column : type.columns)
-      for (std::uint32_t k = 0; k < column.width; ++k, ++at)
+      for (std::uint32_t k = 0; k < column.width && at < (i + 1) * width; ++k, ++at)
         line += (directed || at > i * width ? "," : "") + missing_or(reading.values[at], column);
     if (directed) line += "," + csv_field(hit_name(world, reading.hits[i]));
     text += line + "\n";

@@ -103,12 +103,16 @@ Json element_json(const world::World& world, const sensors::SensorSet& sensor_se
   Json json = Json::object();
   if (type.is_scan) json["bearing_rad"] = bearing_of(sensor_set.row(reading), i);
   if (type.beams != nullptr) {
-    const auto [azimuth, elevation] = sensors::angles_of(sensor_set.beams(reading).directions[i]);
+    const sensors::SpatialBeams beams = sensor_set.beams(reading);
+    const auto [azimuth, elevation] = sensors::angles_of(beams.directions[i]);
     json["azimuth_rad"] = azimuth;
     json["elevation_rad"] = elevation;
+    if (!beams.times.empty()) json["time_s"] = beams.times[i];
   }
-  std::size_t at = i * element_width(type);
+  const std::size_t width = element_width(type, sensor_set.row(reading)), end = (i + 1) * width;
+  std::size_t at = i * width;
   for (const sensors::Column& column : type.columns) {
+    if (at == end) break;
     Json numbers = Json::array();
     for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(reading.values[at++], column.whole));
     json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
@@ -403,7 +407,7 @@ std::string reading_json(const world::World& world, const sensors::SensorSet& se
   std::string text = dump_json(head);
   text.back() = ',';
   text += fmt::format("\n\"{}\": [", type.list);
-  for (std::uint32_t i = 0; i < reading.values.size() / element_width(type); ++i)
+  for (std::uint32_t i = 0; i < reading.values.size() / element_width(type, sensor_set.row(reading)); ++i)
     text += (i == 0 ? "\n  " : ",\n  ") + dump_json(element_json(world, sensor_set, reading, i));
   return text + "\n]}\n";
 }

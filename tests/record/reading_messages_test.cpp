@@ -146,5 +146,27 @@ TEST(Readings, BrokenPreconditionsAbortWithTheValues) {
   EXPECT_DEATH(encoded({.id = 4, .name = "none"}, {}), "0 values");
 }
 
+/// A lidar reports as many columns as it was asked for: the arrays of the others are empty.
+TEST(Readings, LastColumnsOfAListMayBeLeftOut) {
+  const SensorTypeInfo type{44, "lidar", "beams", {{"range_m"}, {"intensity"}, {"vector_T", 3}}, false};
+  for (const std::size_t width : {1u, 2u, 5u}) {
+    std::vector<double> values(3 * width), got;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.5 * static_cast<double>(i);
+    Bytes bytes;
+    encode_reading(type, 5, "f", values, bytes, width);
+    std::int64_t time = 0;
+    std::size_t read = 0;
+    ASSERT_TRUE(decode_reading(type, bytes, time, got, &read));
+    EXPECT_EQ(got, values);
+    EXPECT_EQ(read, width);
+  }
+  Bytes gap;  // a column after one that is left out
+  encode_reading({44, "lidar", "beams", {{"range_m"}, {"a"}, {"b"}}, false}, 5, "f", std::vector<double>{1, 2}, gap, 1);
+  gap[gap.size() - 4] = 2, gap.resize(gap.size() + 20);
+  std::int64_t time = 0;
+  std::vector<double> got;
+  EXPECT_FALSE(decode_reading({44, "lidar", "beams", {{"range_m"}, {"a"}, {"b"}}, false}, gap, time, got));
+}
+
 }  // namespace
 }  // namespace sf::record

@@ -109,6 +109,7 @@ TEST(Recording, RoundTripsReadingsBitwiseAndScansAsFloat32) {
                            reading.sequence,
                            given.record.time,
                            reading.time,
+                           element_width(*find_sensor_type(recording.info, reading.type)),
                            {reading.values.begin(), reading.values.end()}};
     if (reading.type == 1)
       for (double& range : expected.values) range = static_cast<float>(range);
