@@ -425,7 +425,7 @@ void add_readings(py::class_<PySimulation>& c) {
   const py::arg type("type");
   c.def("readings", &values, type,
         "(sensors, elements[, columns]): the newest reading of each sensor; shorter ones end in NaN.")
-      .def("hits", &hits, type, "(sensors, beams): number of the model that each beam met, or NONE.")
+      .def("hits", &hits, type, "(sensors, beams): number of the model that each beam met, FLOOR or NONE.")
       .def("flags", &flags, type, "(sensors, elements): 0 where a stated bound holds.")
       .def(
           "bounds", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).bounds); }, type,
@@ -648,7 +648,7 @@ void add_device_worlds(py::module_& module) {
 PYBIND11_MODULE(_sensorfarm, module) {
   py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
   py::register_exception<DeviceError>(module, "DeviceError", module.attr("Error"));
-  module.attr("NONE") = kNone;
+  module.attr("NONE") = kNone, module.attr("FLOOR") = kFloor;
   add_controller_types(module);
   add_observations(module);
   add_simulation(module);

@@ -66,7 +66,8 @@ struct Reading {
   Pose X_WS;                       ///< pose of the sensor at the measurement
   std::span<const double> values;  ///< row by row, each with the columns of the type; a range without a return equals
                                    ///< the limit
-  std::span<const std::uint32_t> hits;  ///< lasers in a simulation: index of the model hit by each beam, or kNone
+  std::span<const std::uint32_t>
+      hits;  ///< lasers in a simulation: index of the model hit by each beam, kFloor or kNone
   /// Largest error of the first column, in rows without a flag; infinite: not stated, as for noisy sensors.
   double bound = std::numeric_limits<double>::infinity();
   double bound_without_noise = std::numeric_limits<double>::infinity();  ///< the same before noise is added

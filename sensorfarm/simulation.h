@@ -99,7 +99,8 @@ struct Readings {
   std::size_t columns = 1;                ///< numbers per element
   const double* values = nullptr;         ///< element by element, within an element column by column
   std::size_t stride = 0;                 ///< distance between rows, in numbers; >= elements * columns
-  const std::uint32_t* hits = nullptr;    ///< indices of the models hit by the beams, or kNone; null for other types
+  const std::uint32_t* hits = nullptr;    ///< indices of the models hit by the beams, kFloor or kNone; null for other
+                                          ///< types
   std::size_t hit_stride = 0;             ///< distance between rows
   std::span<const std::uint32_t> robots;  ///< per row: the row of its robot in Simulation::poses
   std::span<const double> times;          ///< [s] per row: time of the measurement; NaN before the first

@@ -23,6 +23,7 @@ struct Twist {
   double turn = 0.0;     ///< [rad/s] counter-clockwise
 };
 
-inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< no id; as a hit: the beam met nothing within range
+inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;   ///< no id; as a hit: the beam met nothing within range
+inline constexpr std::uint32_t kFloor = 0xFFFFFFFEu;  ///< as a hit: a tilted beam met the floor or a road
 
 }  // namespace sensorfarm

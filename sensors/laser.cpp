@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include "base/elementary.h"
+#include "raycast/casters.h"
 #include "raycast/ray_caster.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_packets.h"
+#include "sensors/tilted_scans.h"
 
 namespace sf::sensors {
 
@@ -45,10 +49,12 @@ class Lasers : public SensorBackend {
   void place_movers() override { caster_.place_movers(); }
   bool update_outlines(const world::World& world) override {
     longest_ = reaches_of(world).longest;
+    if (tilted_) tilted_->update_movers(world);
     return caster_.update_outlines(world);
   }
   bool prepare(std::span<const DueSample> due) override {
     due_.assign(due.begin(), due.end());
+    prepare_tilted();
     return caster_.prepare(due);
   }
   void record_measure(gpu::Batch& batch) override { caster_.record(batch); }
@@ -63,7 +69,13 @@ class Lasers : public SensorBackend {
   void shape(std::size_t i);
   void mark(std::size_t i);
   void write(std::size_t i, base::ReadingBlock& block) const;
+  bool is_tilted(std::size_t i) const;
+  void prepare_tilted();
+  void cast_tilted(std::size_t i, unsigned thread);
 
+  const world::World& world_;
+  std::span<const base::Report> states_;
+  bool reference_;
   base::ThreadPool& thread_pool_;
   raycast::Episodes episodes_;
   bool noise_;
@@ -72,13 +84,19 @@ class Lasers : public SensorBackend {
   const std::vector<CastLaser>& lasers_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<DueSample> due_;
-  std::vector<double> values_;              ///< [m] samples of all lasers, if any laser is reworked
-  std::vector<std::uint32_t> met_;          ///< models of all lasers' samples, if any laser is reworked
-  std::vector<base::QualityFlag> quality_;  ///< flags of all lasers' samples
+  std::vector<double> values_;                           ///< [m] samples of all lasers, if any laser is reworked
+  std::vector<std::uint32_t> met_;                       ///< models of all lasers' samples, if any laser is reworked
+  std::vector<base::QualityFlag> quality_;               ///< flags of all lasers' samples
+  std::unique_ptr<TiltedScans> tilted_;                  ///< null: no robot has been tilted
+  std::map<std::vector<double>, PlanarBeams> patterns_;  ///< by the cast bearings [rad], for tilted lasers
+  std::vector<TiltedScan> scans_;                        ///< per thread
 };
 
 Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
-    : thread_pool_(context.thread_pool),
+    : world_(context.world),
+      states_(context.states),
+      reference_(!raycast::choose_caster(context.device.info().software, context.scene.caster).same_bytes),
+      thread_pool_(context.thread_pool),
       episodes_(context.episodes),
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
@@ -179,12 +197,73 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   block.state = {};
 }
 
+bool Lasers::is_tilted(std::size_t i) const {
+  const base::Tilt& tilt = states_[rows_[due_[i].row].mover].tilt;
+  return tilt.roll != 0.0 || tilt.pitch != 0.0;
+}
+
+/// Bearings [rad] of the cast beams of a laser, without angular noise.
+std::vector<double> bearings_of(const raycast::ScanSettings& scan, const raycast::BeamPlan& plan) {
+  std::vector<double> bearings;
+  for (const std::uint32_t sample : plan.samples) bearings.push_back(raycast::bearing_of(scan, sample));
+  return bearings;
+}
+
+void Lasers::prepare_tilted() {
+  bool any = false;
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    if (!is_tilted(i)) continue;
+    any = true;
+    const auto bearings = bearings_of(caster_.scanners()[due_[i].row].scan, caster_.plan(due_[i].row));
+    if (!patterns_.contains(bearings)) patterns_.emplace(bearings, planar_beams(bearings));
+  }
+  if (!any) return;
+  if (!tilted_) {
+    double reach = 0.0;
+    for (const Row& row : rows_) reach = std::max(reach, row.range_max);
+    tilted_ = std::make_unique<TiltedScans>(world_, reach, reference_, thread_pool_.threads());
+    scans_.resize(thread_pool_.threads());
+  }
+  tilted_->place(states_);
+}
+
+/// Replaces the results of the planar caster, in its tables, by those in the plane of a tilted laser.
+void Lasers::cast_tilted(std::size_t i, unsigned thread) {
+  const std::uint32_t r = due_[i].row;
+  Row& row = rows_[r];
+  const raycast::BeamPlan& plan = caster_.plan(r);
+  const raycast::ScanSettings& scan = caster_.scanners()[r].scan;
+  std::vector<double> bearings = bearings_of(scan, plan);
+  const PlanarBeams* beams = &patterns_.at(bearings);
+  PlanarBeams noisy;
+  if (noise_ && scan.noise.angle_sigma > 0.0) {
+    std::vector<double> noise(bearings.size());
+    raycast::draw_angle_noise(
+        scan, plan, episodes_.key(base::RandomStream::angle_noise, row.mover, row.sensor, due_[i].sequence), noise);
+    for (std::size_t k = 0; k < noise.size(); ++k) bearings[k] += noise[k];
+    noisy = planar_beams(bearings);
+    beams = &noisy;
+  }
+  TiltedScan& out = scans_[thread];
+  tilted_->cast(*beams, row.mover, lasers_[r].laser.X_MS, row.range_max, thread, out);
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{caster_.lane(r)};
+  row.grazing = false;
+  for (std::size_t k = 0; k < plan.samples.size(); ++k) {
+    caster_.ranges().host<double>()[first + plan.place(k)] = out.ranges[k];
+    caster_.hits().host<std::uint32_t>()[first + plan.place(k)] = out.hits[k];
+    quality_[row.first_sample + plan.samples[k]] = out.quality[k];
+    row.grazing = row.grazing || out.quality[k] != base::QualityFlag::none;
+  }
+}
+
 void Lasers::collect(std::span<base::ReadingBlock> out) {
   caster_.take_flags();
-  thread_pool_.parallel_for_each(due_.size(), 32, [&](std::size_t i, unsigned) {
-    mark(i);
+  thread_pool_.parallel_for_each(due_.size(), 32, [&](std::size_t i, unsigned thread) {
+    const bool tilted = is_tilted(i);
+    tilted ? cast_tilted(i, thread) : mark(i);
     if (rows_[due_[i].row].reworked) shape(i);
     write(i, out[i]);
+    if (tilted) out[i].bound = out[i].bound_without_noise = scene::kRangeError;
   });
 }
 

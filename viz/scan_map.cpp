@@ -41,7 +41,7 @@ void ScanMap::add(const world::World& world, const sensors::SensorSpec& laser, c
   if (beams.empty()) beams = maps::beam_directions(laser.fov, laser.elements);
   const auto traced = maps::trace_scan(odds_.geometry, {scan.X_WS, ranges_, beams, range_min, range_max}, ends_);
   for (std::size_t k = 0; k < scan.hits.size(); ++k) {
-    const bool moves = scan.hits[k] != base::kNoHit && world.models[scan.hits[k]].mover != world::kNone;
+    const bool moves = scan.hits[k] < world.models.size() && world.models[scan.hits[k]].mover != world::kNone;
     if (moves) ends_[k] = maps::without_hit(ends_[k]);
   }
   maps::add_traced_scan(odds_, traced, ends_);

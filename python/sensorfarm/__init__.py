@@ -15,12 +15,12 @@ import tempfile as _tempfile
 
 import numpy as _numpy
 
-from ._sensorfarm import (NONE, DeviceArray, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot,
+from ._sensorfarm import (FLOOR, NONE, DeviceArray, DeviceError, Error, Input, Light, Model, ModelContact, ModelSite, NearRobot,
                           Neighbour, Observations, Pose, Reading, Robot, SensorInfo, Settings, Simulation, Twist, WorldObject,
                           _abort_ranks, add_model_controller, load_plugin)
 from .worlds import DeviceWorlds, Worlds
 
-__all__ = ["NONE", "DeviceArray", "DeviceError", "DeviceWorlds", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite",
+__all__ = ["FLOOR", "NONE", "DeviceArray", "DeviceError", "DeviceWorlds", "Error", "Input", "Light", "Model", "ModelContact", "ModelSite",
            "NearRobot", "Neighbour", "Observations", "Pose", "Reading", "Robot", "SensorInfo", "Settings", "Simulation", "Twist",
            "WorldObject", "Worlds", "add_model_controller", "load_plugin"]
 

@@ -11,6 +11,7 @@ _ByRow = ArrayLike | Mapping[str, ArrayLike] | None
 """An array, or arrays by name."""
 
 NONE: int
+FLOOR: int
 """No model: the beam met nothing within its range."""
 
 class Error(RuntimeError):
@@ -107,7 +108,7 @@ class Reading:
         """(elements,), or (elements, columns) for several columns. A range without a return equals the limit."""
     @property
     def hits(self) -> NDArray[np.uint32] | None:
-        """(beams,) indices of models, or NONE; None for types without beams."""
+        """(beams,) indices of models, FLOOR or NONE; None for types without beams."""
     @property
     def bound(self) -> float:
         """Largest error of the first column, for elements without a flag; infinity: not stated, as for noisy
@@ -484,7 +485,7 @@ class Simulation:
         reading of each sensor of the type. Shorter readings are padded with NaN. A range without a return equals the
         sensor's limit. The range of a surface nearer than the sensor's minimum equals this minimum, with flag 5."""
     def hits(self, type: str) -> NDArray[np.uint32]:
-        """Returns (sensors, beams): index of the model hit by each beam, or NONE."""
+        """Returns (sensors, beams): index of the model hit by each beam, FLOOR or NONE."""
     def flags(self, type: str) -> NDArray[np.uint8]:
         """Returns (sensors, elements): 0 if a stated bound holds (docs/accuracy.md); 5: the surface is too near."""
     def valid(self, type: str, without_noise: bool = False) -> NDArray[np.bool_]:
