@@ -25,7 +25,9 @@ enum class RandomStream : std::uint32_t {
   fiducials = 13,
   faults = 14,  ///< of sensors
   thermometers = 15,
-  spatial_range = 16  ///< of lidars
+  spatial_range = 16,   ///< of lidars
+  spatial_second = 17,  ///< second echoes of lidars
+  spatial_dropout = 18  ///< of lidars' beams
 };
 
 /// Identifies one draw by its first five fields.

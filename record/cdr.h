@@ -37,6 +37,11 @@ class CdrWriter {
     bytes_.put(std::uint8_t{0});
   }
   void put(const char* text) { put(std::string_view(text)); }
+  /// Appends a number within a sequence of bytes, where it is not aligned.
+  template <class T>
+  void put_packed(T value) {
+    bytes_.put(value);
+  }
   /// Appends the number of elements that precedes a sequence.
   void put_count(std::size_t count) { put(static_cast<std::uint32_t>(count)); }
 

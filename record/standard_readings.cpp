@@ -100,31 +100,50 @@ void put_map(CdrWriter& cdr, const StandardTopic& topic, std::int64_t time, std:
     }
 }
 
-/// Organized cloud: one row per ring, with the fields of drivers. A beam without an echo in the limits is NaN.
+constexpr std::uint8_t kUint16 = 4, kFloat32 = 7;  // PointField's datatypes
+
+struct PointField {
+  const char* name;
+  std::uint8_t type;
+};
+
+/// The fields that drivers of lidars publish, those that the sensor has.
+std::vector<PointField> point_fields(const StandardTopic& topic) {
+  std::vector<PointField> fields{{"x", kFloat32}, {"y", kFloat32}, {"z", kFloat32}};
+  if (topic.width > 1) fields.push_back({"intensity", kFloat32});
+  fields.push_back({"ring", kUint16});
+  if (topic.times != nullptr) fields.push_back({"time", kFloat32});
+  return fields;
+}
+
+/// Organized cloud: one row per ring. A beam without an echo in the limits is NaN. Its points are as long as a multiple
+/// of two bytes, and of four without times.
 void put_points(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
-  constexpr std::uint8_t kUint16 = 4, kFloat32 = 7;  // PointField's datatypes
-  struct Field {
-    const char* name;
-    std::uint32_t offset;
-    std::uint8_t type;
-  };
-  constexpr Field kPointFields[] = {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"ring", 12, kUint16}};
-  constexpr std::uint32_t kPointBytes = 16;
-  const auto count = static_cast<std::uint32_t>(values.size()), columns = count / topic.rings;
+  const auto count = static_cast<std::uint32_t>(values.size() / topic.width), columns = count / topic.rings;
+  const std::vector<PointField> fields = point_fields(topic);
   cdr.put(topic.rings), cdr.put(columns);
-  cdr.put_count(std::size(kPointFields));
-  for (const Field& field : kPointFields) {
+  cdr.put_count(fields.size());
+  std::uint32_t bytes = 0;
+  for (const PointField& field : fields) {
     cdr.put(std::string_view(field.name));
-    cdr.put(field.offset), cdr.put(field.type), cdr.put(std::uint32_t{1});
+    cdr.put(bytes), cdr.put(field.type), cdr.put(std::uint32_t{1});
+    bytes += field.type == kUint16 ? 2 : 4;
   }
+  const bool padded = topic.times == nullptr;
+  if (padded) bytes += 2;
   cdr.put(std::uint8_t{0});  // little-endian
-  cdr.put(kPointBytes), cdr.put(kPointBytes * columns);
-  cdr.put_count(std::size_t{kPointBytes} * count);
+  cdr.put(bytes), cdr.put(bytes * columns);
+  cdr.put_count(std::size_t{bytes} * count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const bool echo = base::echo_of(values[i], {topic.range_min, topic.range_max}) == base::Echo::valid;
-    const glm::dvec3 p = (echo ? values[i] : std::nan("")) * (*topic.directions)[i];
-    cdr.put(static_cast<float>(p.x)), cdr.put(static_cast<float>(p.y)), cdr.put(static_cast<float>(p.z));
-    cdr.put(static_cast<std::uint16_t>(i / columns)), cdr.put(std::uint16_t{0});
+    const double range = values[i * topic.width];
+    const bool echo = base::echo_of(range, {topic.range_min, topic.range_max}) == base::Echo::valid;
+    const glm::dvec3 p = (echo ? range : std::nan("")) * (*topic.directions)[i];
+    cdr.put_packed(static_cast<float>(p.x)), cdr.put_packed(static_cast<float>(p.y)),
+        cdr.put_packed(static_cast<float>(p.z));
+    if (topic.width > 1) cdr.put_packed(static_cast<float>(values[i * topic.width + 1]));
+    cdr.put_packed(static_cast<std::uint16_t>(i / columns));
+    if (topic.times != nullptr) cdr.put_packed(static_cast<float>((*topic.times)[i]));
+    if (padded) cdr.put_packed(std::uint16_t{0});
   }
   cdr.put(std::uint8_t{0});  // is_dense: points may be NaN
 }

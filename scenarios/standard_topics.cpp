@@ -100,10 +100,14 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
   for_each_sensor<sensors::LidarSettings>(sensor_set, sensors::kLidar, [&](const auto& row, const auto& lidar) {
     add(row, sensors::kLidar,
         {.message = Message::points,
-         .range_min = lidar.range_min,
-         .range_max = lidar.range_max,
+         .range_min = lidar.echo.range_min,
+         .range_max = lidar.echo.range_max,
          .directions = clouds.of(row, lidar),
-         .rings = lidar.beams->channels});
+         .rings = lidar.beams->channels,
+         .width = lidar.echo.width,
+         .times = lidar.beams->times.empty()
+                      ? nullptr
+                      : std::shared_ptr<const std::vector<double>>(lidar.beams, &lidar.beams->times)});
   });
   for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {
     add(row, sensors::kGps, {.message = Message::fix, .sigma = gps.noise});

@@ -29,7 +29,8 @@ class Grouping {
     for (const glm::dvec3& d : directions)
       angles_.push_back({base::atan2(d.y, d.x), base::atan2(d.z, base::hypot(d.x, d.y))});
   }
-  BeamPattern make();
+  /// @param times as make_pattern's
+  BeamPattern make(std::span<const double> times);
 
  private:
   using Range = std::pair<std::size_t, std::size_t>;
@@ -40,6 +41,7 @@ class Grouping {
   glm::dvec3 mean(Range range) const;
   DirectionBox box_of(Range range) const;
   void write_tile(std::span<const Range> vectors, BeamTile& tile) const;
+  std::vector<Range> equal_times(std::span<const double> times);
 
   std::span<const glm::dvec3> directions_;
   std::uint32_t row_;
@@ -162,6 +164,7 @@ void Grouping::write_tile(std::span<const Range> vectors, BeamTile& tile) const 
   write_box(all, tile.tile, 0);
   tile.longest = static_cast<float>(all.longest * 1.000001);
   tile.consecutive = true;
+  tile.used = static_cast<std::uint32_t>(vectors.size());
   for (std::uint32_t v = 0; v < kTileVectors; ++v) {
     const Range range = vectors[std::min<std::size_t>(v, vectors.size() - 1)];
     const DirectionBox box = box_of(range);
@@ -179,25 +182,42 @@ void Grouping::write_tile(std::span<const Range> vectors, BeamTile& tile) const 
   }
 }
 
-BeamPattern Grouping::make() {
-  std::vector<Range> groups;
-  split({0, order_.size()}, kTileBeams, tile_weight(), groups);
+/// Sorts the beams by time. @return ranges with one time each
+std::vector<Grouping::Range> Grouping::equal_times(std::span<const double> times) {
+  if (times.empty()) return {{0, order_.size()}};
+  std::ranges::stable_sort(order_, {}, [&](std::uint32_t i) { return times[i]; });
+  std::vector<Range> ranges;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    if (i == 0 || times[order_[i]] != times[order_[i - 1]]) ranges.push_back({i, i});
+    ++ranges.back().second;
+  }
+  return ranges;
+}
+
+BeamPattern Grouping::make(std::span<const double> times) {
   BeamPattern pattern;
-  for (const Range& group : groups) {
-    std::vector<Range> vectors;
-    split(group, kWidth, along_row() ? 16.0 : 1.0, vectors);
-    for (const Range& vector : vectors) std::sort(order_.begin() + vector.first, order_.begin() + vector.second);
-    for (std::size_t first = 0; first < vectors.size(); first += kTileVectors)
-      write_tile(std::span(vectors).subspan(first, std::min<std::size_t>(kTileVectors, vectors.size() - first)),
-                 pattern.emplace_back());
+  const double weight = tile_weight();
+  for (const Range& range : equal_times(times)) {
+    std::vector<Range> groups;
+    split(range, kTileBeams, weight, groups);
+    for (const Range& group : groups) {
+      std::vector<Range> vectors;
+      split(group, kWidth, along_row() && times.empty() ? 16.0 : 1.0, vectors);
+      for (const Range& vector : vectors) std::sort(order_.begin() + vector.first, order_.begin() + vector.second);
+      for (std::size_t first = 0; first < vectors.size(); first += kTileVectors) {
+        const std::size_t count = std::min<std::size_t>(kTileVectors, vectors.size() - first);
+        write_tile(std::span(vectors).subspan(first, count), pattern.emplace_back());
+        if (!times.empty()) pattern.back().time = times[order_[range.first]];
+      }
+    }
   }
   return pattern;
 }
 
 }  // namespace
 
-BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row) {
-  return Grouping(directions, row).make();
+BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row, std::span<const double> times) {
+  return Grouping(directions, row).make(times);
 }
 
 }  // namespace sf::scene

@@ -23,7 +23,7 @@ struct DirectionBoxes {
   alignas(64) float axis[3][count];    ///< unit vectors
 };
 
-/// Beams that are cast together, in vectors of 16. Vectors and tiles that are not full repeat their last beam.
+/// Beams that are cast together, in vectors of 16. Vectors that are not full repeat their last beam.
 struct alignas(64) BeamTile {
   alignas(64) float x[kTileBeams], y[kTileBeams], z[kTileBeams];      ///< unit vectors in the sensor's frame
   alignas(64) double dx[kTileBeams], dy[kTileBeams], dz[kTileBeams];  ///< the same in double
@@ -32,6 +32,8 @@ struct alignas(64) BeamTile {
   DirectionBoxes<1> tile;                                             ///< box of all
   float longest = 1.0f;      ///< largest norm of a direction in any of the boxes
   bool consecutive = false;  ///< the beams of each vector follow each other in the scan
+  std::uint32_t used = 0;    ///< vectors, in [1, kTileVectors]; the others repeat the last one and are not cast
+  double time = 0.0;         ///< [s] of all of its beams, relative to the reading
 };
 
 using BeamPattern = std::vector<BeamTile>;
@@ -39,6 +41,7 @@ using BeamPattern = std::vector<BeamTile>;
 /// @param directions unit vectors to rounding, in the sensor's frame, in the order of the scan; 1 to 2^24
 /// @param row the beams of a vector should be neighbours in the scan if `row` of them follow each other at one
 ///            elevation (a lidar's ring); 0: vectors should be square
-BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row);
+/// @param times [s] of the beams relative to the reading, those of a tile are equal; empty: all 0
+BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row, std::span<const double> times = {});
 
 }  // namespace sf::scene

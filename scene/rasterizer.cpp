@@ -53,17 +53,19 @@ class Scan {
   // One vector's results.
   alignas(64) double ranges_[kWidth];
   alignas(64) std::uint32_t hits_[kWidth];
-  std::uint32_t grazing_ = 0;  ///< bit mask
+  alignas(64) double sines_[kWidth];  ///< of the angles to the faces; 0 without one
+  std::uint32_t grazing_ = 0;         ///< bit mask
 };
 
 void Scan::begin(const BeamTile& tile) {
   const auto inverse = static_cast<float>(1.0 / range_max_);
   const Floats low = all(inverse * (1.0f - 1e-6f)), high = all(inverse * (1.0f + 1e-6f));
-  for (std::uint32_t i = 0; i < kTileBeams; i += kWidth) {
+  for (std::uint32_t i = 0; i < kWidth * tile.used; i += kWidth) {
     store(low, s_.low + i), store(high, s_.high + i), store(all(0.0f), s_.others + i);
     store(all(kNoFace), s_.face + i);
   }
   for (std::uint32_t g = 0; g < kTileVectors; g += kWidth) store(low, s_.farthest + g);
+  std::fill(s_.farthest + tile.used, s_.farthest + kTileVectors, kUnbounded);  // sees nothing
   s_.drawn.clear();
   if (floor_) draw_floor(tile);
 }
@@ -77,7 +79,7 @@ void Scan::draw_floor(const BeamTile& tile) {
     view.inverse[axis][0] = edge_on ? 0.0f : static_cast<float>(floor_plane_.normal[axis]) * inverse;
   view.above[0] = view.below[0] = 1.0f;
   view.slack[0] = edge_on ? kUnbounded : 17.0f * kRounding * std::abs(inverse);
-  for (std::uint32_t v = 0; v < kTileVectors; ++v) {
+  for (std::uint32_t v = 0; v < tile.used; ++v) {
     Beams beams = load_beams(tile, s_, v);
     draw<true>(view, 0, 1.0f, kFloorFace, beams);
     store_beams(s_, v, beams);
@@ -109,13 +111,13 @@ void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
     const std::uint32_t owner = face == kNoFace ? base::kNoHit : plane_of(face).owner;
     store(all(owner), hits_);
     if (face == kNoFace)
-      std::fill_n(ranges_, kWidth, range_max_);
+      std::fill_n(ranges_, kWidth, range_max_), std::fill_n(sines_, kWidth, 0.0);
     else
-      grazing_ = evaluate_one(tile, first, range_max_, plane_of(face), ranges_);
+      grazing_ = evaluate_one(tile, first, range_max_, plane_of(face), ranges_, sines_);
   } else {
     grazing_ = evaluate_several(
         tile, first, range_max_, s_.face + first, [&](std::uint32_t f) -> const SeenPlane& { return plane_of(f); },
-        ranges_, hits_);
+        ranges_, sines_, hits_);
   }
 }
 
@@ -135,6 +137,7 @@ void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
     nearest = decide(s_.candidates, d, nearest);
     ranges_[i] = nearest.range;
     hits_[i] = nearest.face == kNoFace ? base::kNoHit : plane_of(nearest.face).owner;
+    sines_[i] = nearest.face == kNoFace ? 0.0 : sine_of(plane_of(nearest.face), d);
     grazing_ = (grazing_ & ~(1u << i)) | std::uint32_t{nearest.flagged} << i;
     ++s_.counts.uncertain;
   }
@@ -149,6 +152,9 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
   } else {
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.ranges[place[i]] = ranges_[i], out_.hits[place[i]] = hits_[i];
   }
+  if (!out_.cosines.empty())
+    for (std::uint32_t i = 0; i < kWidth; ++i)
+      out_.cosines[place[i]] = hits_[i] == base::kNoHit ? 0.0f : static_cast<float>(std::min(1.0, std::abs(sines_[i])));
   flagged_ = flagged_ || grazing_ != 0;
   for (; grazing_ != 0; grazing_ &= grazing_ - 1)
     out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;
@@ -161,12 +167,12 @@ bool Scan::cast(const BeamTile& tile) {
     if (near.depth > static_cast<double>(depth_limit(farthest_of(s_)))) break;
     draw_mesh(s_, tile, s_.meshes[near.row]);
   }
-  for (std::uint32_t v = 0; v < kTileVectors; ++v) {
+  for (std::uint32_t v = 0; v < tile.used; ++v) {
     evaluate_vector(tile, v);
     decide_uncertain(tile, v);
     write(tile, v);
   }
-  s_.counts.beams += kTileBeams;
+  s_.counts.beams += kWidth * tile.used;
   return flagged_;
 }
 

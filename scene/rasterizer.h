@@ -54,6 +54,8 @@ struct ScanOutput {
   std::span<double> ranges;              ///< [m] in [0, range_max]; range_max where nothing is nearer
   std::span<std::uint32_t> hits;         ///< owner of the face (Mesh::owners), base::kFloorHit, or base::kNoHit
   std::span<base::QualityFlag> quality;  ///< `grazing` where the error may exceed the bound. Only these are written
+  std::span<float> cosines = {};         ///< of the angles between beams and the surfaces' normals, in [0, 1]; 0
+                                         ///< without a surface. Empty: not wanted
 };
 
 struct ScanCounts {

@@ -38,6 +38,12 @@ Real face_range(const Ray& ray, const Mesh& mesh, const Face& face) {
   return corners_of(face) == 3 ? range : std::min(range, triangle_range(ray, p[0], p[2], p[3]));
 }
 
+/// Cosine of the angle between a ray and the normal of a face.
+Real cosine_of(const Ray& ray, const Mesh& mesh, const Face& face) {
+  const Vector a(mesh.vertices[face[0]]), b(mesh.vertices[face[1]]), c(mesh.vertices[face[2]]);
+  return std::abs(glm::dot(glm::normalize(glm::cross(b - a, c - a)), glm::normalize(ray.direction)));
+}
+
 }  // namespace
 
 ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, double range_max,
@@ -46,7 +52,8 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
   ReferenceHit hit{.range = range_max};
   if (scene.floor && ray_W.direction.z != 0.0L) {
     const Real range = -ray_W.origin.z / ray_W.direction.z;
-    if (range > 0.0L && range < hit.range) hit = {range, base::kFloorHit};
+    if (range > 0.0L && range < hit.range)
+      hit = {range, base::kFloorHit, std::abs(ray_W.direction.z) / glm::length(ray_W.direction)};
   }
   for (const Instance& instance : scene.instances) {
     const glm::dmat3 R_IW = glm::transpose(instance.X_WI.R);
@@ -56,7 +63,8 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
       const Real range = face_range(ray, mesh, face);
       if (!(range < hit.range)) continue;
       hit = {range,
-             mesh.owners.empty() ? instance.owner : mesh.owners[static_cast<std::size_t>(&face - mesh.faces.data())]};
+             mesh.owners.empty() ? instance.owner : mesh.owners[static_cast<std::size_t>(&face - mesh.faces.data())],
+             cosine_of(ray, mesh, face)};
     }
   }
   return hit;

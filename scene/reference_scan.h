@@ -11,6 +11,7 @@ namespace sf::scene {
 struct ReferenceHit {
   long double range = 0.0L;            ///< [m] range_max where nothing is nearer
   std::uint32_t owner = base::kNoHit;  ///< as ScanOutput::hits
+  long double cosine = 0.0L;           ///< of the angle of incidence
 };
 
 /// @param direction in the sensor's frame; need not be a unit vector to rounding, ranges are along it

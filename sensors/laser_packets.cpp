@@ -30,18 +30,13 @@ Word to_word(double metres, double per_metre, Word largest) {
 
 std::uint16_t plain_word(double metres) { return to_word<std::uint16_t>(metres, kPlainPerMetre, 0xFFFF); }
 
-std::uint32_t extended_word(double metres) {
-  if (metres == std::numeric_limits<double>::infinity()) return kNoReturn;
-  return to_word<std::uint32_t>(metres, kExtendedPerMetre, kNoReturn - 1);
-}
-
 /// Returns the number of the largest word that encodes a range [m].
 double largest_range(bool extended) { return extended ? (kNoReturn - 1) / kExtendedPerMetre : kPlainRange; }
 
 /// A range_max that is unknown (0) or beyond the largest word has no word of its own.
 WireLimits wire_limits(const SensorSpec& sensor, bool extended) {
   const auto rounded = [&](double metres) {
-    return extended ? extended_word(metres) / kExtendedPerMetre : plain_word(metres) / kPlainPerMetre;
+    return extended ? extended_range_word(metres) / kExtendedPerMetre : plain_word(metres) / kPlainPerMetre;
   };
   const bool has_word = sensor.limit > 0.0 && sensor.limit <= largest_range(extended);
   return {limits_of(sensor), {rounded(sensor.range_min), has_word ? rounded(sensor.limit) : HUGE_VAL}};
@@ -59,7 +54,7 @@ void put_extended(std::uint32_t total, std::uint32_t part, std::span<const doubl
   writer.put(static_cast<std::uint16_t>(parts_of(total)));
   writer.put(static_cast<std::uint16_t>(ranges.size()));
   writer.put(std::uint16_t{0});
-  for (const double metres : ranges) writer.put(extended_word(metres));
+  for (const double metres : ranges) writer.put(extended_range_word(metres));
 }
 
 bool has_nan(std::span<const double> ranges) {
@@ -113,6 +108,17 @@ bool plausible(const LaserPart& scan, double range_max) {
 }
 
 }  // namespace
+
+std::uint32_t extended_range_word(double metres) {
+  if (metres == std::numeric_limits<double>::infinity()) return kNoReturn;
+  return to_word<std::uint32_t>(metres, kExtendedPerMetre, kNoReturn - 1);
+}
+
+double extended_range(std::uint32_t word) {
+  return word == kNoReturn ? std::numeric_limits<double>::infinity() : word / kExtendedPerMetre;
+}
+
+double read_range(const SensorSpec& sensor, double metres) { return wire_limits(sensor, true).range(metres); }
 
 std::string laser_wire_problem(const SensorSpec& sensor, WireFormat wire) {
   if (sensor.elements > kExtendedRays)
@@ -198,8 +204,7 @@ double range_of(const LaserPart& scan, std::uint32_t i) {
   SF_CHECK(i < scan.count, "ray " + std::to_string(i) + " of " + std::to_string(scan.count));
   if (!scan.extended)
     return base::ByteReader(scan.words.subspan(2 * std::size_t{i})).get<std::uint16_t>() / kPlainPerMetre;
-  const auto word = base::ByteReader(scan.words.subspan(4 * std::size_t{i})).get<std::uint32_t>();
-  return word == kNoReturn ? std::numeric_limits<double>::infinity() : word / kExtendedPerMetre;
+  return extended_range(base::ByteReader(scan.words.subspan(4 * std::size_t{i})).get<std::uint32_t>());
 }
 
 }  // namespace sf::sensors

@@ -50,6 +50,12 @@ PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t>
 void fill_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                 std::span<double> values);
 
+/// Words of the extended form, for ranges in [m]; infinity is no return.
+std::uint32_t extended_range_word(double metres);
+double extended_range(std::uint32_t word);
+/// Returns the range that a receiver reads for the number of an extended word [m].
+double read_range(const SensorSpec& sensor, double metres);
+
 /// A decoded payload: a whole scan, or one part of an extended one.
 struct LaserPart {
   std::uint32_t total = 0;  ///< rays of the whole scan, in [1, kExtendedRays]

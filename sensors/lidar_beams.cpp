@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "base/elementary.h"
 #include "base/suggest.h"
+#include "sensors/accuracy.h"
+#include "sensors/beam_table.h"
+#include "sensors/lidar_modes.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -42,13 +47,24 @@ struct Layout {
   std::vector<double> elevations;  ///< [rad] per channel
   std::vector<double> offsets;     ///< [rad] of the azimuths, per channel
   std::uint32_t columns = 0;
-  double fov = 0.0;      ///< [rad] in (0, 2 pi]
-  bool rosette = false;  ///< a circle of diameter `fov` instead of rings
+  double fov = 0.0;                  ///< [rad] in (0, 2 pi]
+  bool rosette = false;              ///< a circle of diameter `fov` instead of rings
+  const BeamTable* table = nullptr;  ///< instead of all these
+  double scan_time = 0.0;            ///< [s] of a rolling scan; 0: all beams are cast at once
+  double divergence = 0.0;           ///< [rad] angle of a beam's cone
+  std::uint32_t parts = 1;
+  std::uint32_t skip = 1;  ///< casts every so many columns, and the last one
 
+  bool has_rings() const { return !rosette && table == nullptr; }
+  std::size_t beams() const { return table != nullptr ? table->rows.size() : elevations.size() * columns; }
   std::vector<double> description() const {
-    std::vector<double> all{static_cast<double>(columns), fov, rosette ? 1.0 : 0.0};
+    std::vector<double> all{
+        static_cast<double>(columns), fov,        rosette ? 1.0 : 0.0,        scan_time,
+        static_cast<double>(skip),    divergence, static_cast<double>(parts), static_cast<double>(elevations.size())};
     all.insert(all.end(), elevations.begin(), elevations.end());
     all.insert(all.end(), offsets.begin(), offsets.end());
+    if (table != nullptr)
+      for (const BeamTable::Row& row : table->rows) all.insert(all.end(), {row.azimuth, row.elevation, row.time});
     return all;
   }
 };
@@ -99,9 +115,8 @@ std::vector<double> elevations_of(const world::Sensor& sensor, const Preset* pre
   return elevations;
 }
 
-Layout layout_of(const world::Sensor& sensor) {
+void read_rings(const world::Sensor& sensor, Layout& layout) {
   const Preset* const preset = preset_of(sensor);
-  Layout layout;
   layout.rosette = preset == &kRosette;
   layout.elevations = elevations_of(sensor, preset);
   layout.columns = whole(sensor, "columns", preset != nullptr ? preset->columns : 1800, 1, kMostLidarBeams);
@@ -114,12 +129,27 @@ Layout layout_of(const world::Sensor& sensor) {
     refuse(sensor, "azimuth_offsets",
            fmt::format("{} offsets of {} channels; expected one per channel", layout.offsets.size(),
                        layout.elevations.size()));
-  const std::size_t beams = layout.elevations.size() * layout.columns;
-  if (beams > kMostLidarBeams)
-    refuse(sensor, "columns",
-           fmt::format("{} channels of {} columns are {} beams; expected at most {}", layout.elevations.size(),
-                       layout.columns, beams, kMostLidarBeams));
-  return layout;
+}
+
+void read_parts(const world::Sensor& sensor, Layout& layout) {
+  layout.divergence = angle(sensor, "divergence", 0.0, 0.0, 0.2);
+  if (layout.divergence > 0.0) {
+    layout.parts = whole(sensor, "beam_parts", 7, 2, kMostBeamParts);
+  } else if (find(sensor, "beam_parts") != nullptr) {
+    refuse(sensor, "beam_parts", "'beam_parts' divides the cone of a beam; expected 'divergence' with it");
+  }
+}
+
+void require_few(const world::Sensor& sensor, const Layout& layout) {
+  const std::size_t cast = layout.beams() * layout.parts;
+  if (cast <= kMostLidarBeams) return;
+  if (layout.parts > 1)
+    refuse(sensor, "beam_parts",
+           fmt::format("{} beams of {} parts are {}; expected at most {}", layout.beams(), layout.parts, cast,
+                       kMostLidarBeams));
+  refuse(sensor, "columns",
+         fmt::format("{} channels of {} columns are {} beams; expected at most {}", layout.elevations.size(),
+                     layout.columns, cast, kMostLidarBeams));
 }
 
 glm::dvec3 direction_of(double azimuth, double elevation) {
@@ -155,6 +185,58 @@ std::vector<glm::dvec3> rings_of(const Layout& layout) {
   return directions;
 }
 
+std::vector<glm::dvec3> directions_of(const Layout& layout) {
+  if (layout.table == nullptr) return layout.rosette ? rosette(layout) : rings_of(layout);
+  std::vector<glm::dvec3> directions;
+  for (const BeamTable::Row& row : layout.table->rows) directions.push_back(direction_of(row.azimuth, row.elevation));
+  return directions;
+}
+
+/// The last column, or the last row of a table, is cast at the time of the reading.
+std::vector<double> times_of(const Layout& layout) {
+  std::vector<double> times;
+  if (layout.scan_time == 0.0) return times;
+  for (std::size_t i = 0; i < layout.beams(); ++i) {
+    const double from_end = static_cast<double>(layout.columns - 1 - i % layout.columns) / layout.columns;
+    times.push_back(layout.table != nullptr ? layout.table->rows[i].time - layout.table->duration()
+                                            : -layout.scan_time * from_end);
+  }
+  return times;
+}
+
+std::vector<std::uint32_t> cast_of(const Layout& layout) {
+  std::vector<std::uint32_t> cast;
+  for (std::uint32_t i = 0; layout.skip > 1 && i < layout.beams(); ++i) {
+    const std::uint32_t column = i % layout.columns;
+    if (column % layout.skip == 0 || column + 1 == layout.columns) cast.push_back(i);
+  }
+  return cast;
+}
+
+std::vector<glm::dvec3> chosen(const std::vector<glm::dvec3>& all, const std::vector<std::uint32_t>& rows) {
+  if (rows.empty()) return all;
+  std::vector<glm::dvec3> some;
+  for (const std::uint32_t row : rows) some.push_back(all[row]);
+  return some;
+}
+
+/// Divides each beam's cone: a spiral of parts with equal solid angles (Vogel 1979).
+std::vector<glm::dvec3> parts_of(const LidarBeams& beams, double divergence) {
+  constexpr double kGoldenAngle = 2.399963229728653;
+  std::vector<glm::dvec3> parts;
+  for (const glm::dvec3& d : chosen(beams.directions, beams.cast)) {
+    const glm::dvec3 aside =
+        glm::normalize(glm::cross(std::abs(d.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0}, d));
+    const glm::dvec3 up = glm::cross(d, aside);
+    for (std::uint32_t k = 0; k < beams.parts; ++k) {
+      const double radius = base::tan(0.5 * divergence) * std::sqrt((k + 0.5) / beams.parts);
+      const auto [s, c] = base::sin_cos(kGoldenAngle * k);
+      parts.push_back(glm::normalize(d + radius * (c * aside + s * up)));
+    }
+  }
+  return parts;
+}
+
 base::RigidTransform mount_of(const world::Sensor& sensor) {
   base::RigidTransform X_MB = base::transform_of(sensor.X_MS);
   if (const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]")) {
@@ -170,26 +252,17 @@ base::RigidTransform mount_of(const world::Sensor& sensor) {
   return base::compose(X_MB, {glm::dmat3(1.0), {0.0, 0.0, 0.5 * sensor.height}});
 }
 
-}  // namespace
-
-std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor) {
-  const Layout layout = layout_of(sensor);
-  const std::vector<double> description = layout.description();
-  const auto same = [&](const auto& known) { return known.first == description; };
-  const auto known = std::ranges::find_if(known_, same);
-  if (known != known_.end()) return known->second;
-  auto beams = std::make_shared<LidarBeams>();
-  beams->directions = layout.rosette ? rosette(layout) : rings_of(layout);
-  beams->channels = static_cast<std::uint32_t>(layout.elevations.size());
-  beams->pattern = scene::make_pattern(beams->directions, layout.rosette ? 0 : layout.columns);
-  return known_.emplace_back(description, std::move(beams)).second;
+void require_few_times(const world::Sensor& sensor, std::vector<double> times) {
+  std::ranges::sort(times);
+  const auto different = static_cast<std::size_t>(std::unique(times.begin(), times.end()) - times.begin());
+  if (different > kMostBeamTimes)
+    refuse(sensor, "rolling",
+           fmt::format("the beams have {} different times; expected at most {}: use fewer columns, or "
+                       "round the times in the file",
+                       different, kMostBeamTimes));
 }
 
-LidarSettings LidarReader::read(const world::Sensor& sensor) {
-  const Preset* const preset = preset_of(sensor);
-  LidarSettings s;
-  s.X_MS = mount_of(sensor);
-  if (preset != nullptr) s.range_max = preset->range, s.range_sigma = preset->sigma;
+void read_range(const world::Sensor& sensor, EchoSettings& s) {
   if (const auto range = tuple(sensor, "range", 2, "[min max]"))
     s.range_min = sensor.metres_per_unit * (*range)[0], s.range_max = sensor.metres_per_unit * (*range)[1];
   s.range_min = length(sensor, "range_min", s.range_min, -HUGE_VAL, HUGE_VAL);
@@ -199,13 +272,97 @@ LidarSettings LidarReader::read(const world::Sensor& sensor) {
     refuse(sensor, key,
            fmt::format("a range from {:g} to {:g} m; expected 0 or more, to more than that and at most {:g} m",
                        s.range_min, s.range_max, kLongestLidarRange));
-  if (const auto noise = tuple(sensor, "noise", 1, "[constant proportional], standard deviations")) {
-    s.range_sigma = (*noise)[0] * sensor.metres_per_unit;
-    s.range_proportional = noise->size() > 1 ? (*noise)[1] : 0.0;
-    if (!(s.range_sigma >= 0.0 && s.range_proportional >= 0.0))
-      refuse(sensor, "noise", "'noise' is negative; expected standard deviations of 0 or more");
+}
+
+void read_noise(const world::Sensor& sensor, EchoSettings& s) {
+  s.dropout = number(sensor, "dropout", 0.0, 0.0, 1.0);
+  const auto noise = tuple(sensor, "noise", 1, "[constant proportional slope], standard deviations");
+  if (!noise) return;
+  s.sigma = (*noise)[0] * sensor.metres_per_unit;
+  s.proportional = noise->size() > 1 ? (*noise)[1] : 0.0;
+  s.slope = noise->size() > 2 ? (*noise)[2] * sensor.metres_per_unit : 0.0;
+  if (!(s.sigma >= 0.0 && s.proportional >= 0.0 && s.slope >= 0.0))
+    refuse(sensor, "noise", "'noise' is negative; expected standard deviations of 0 or more");
+}
+
+void read_echoes(const world::Sensor& sensor, EchoSettings& s) {
+  const bool two = whole(sensor, "returns", 1, 1, 2) == 2, incidence = whole(sensor, "incidence", 0, 0, 1) == 1;
+  const bool intensity = whole(sensor, "intensity", 0, 0, 1) == 1;
+  s.width = two ? 5 : incidence ? 3 : intensity ? 2 : 1;
+  s.intensity_range = length(sensor, "intensity_range", 0.0, 0.0, kLongestLidarRange);
+  s.separation = length(sensor, "separation", s.separation, 0.0, kLongestLidarRange);
+  if (s.intensity_range > 0.0 && s.width == 1)
+    refuse(sensor, "intensity_range", "'intensity_range' scales intensities; expected 'intensity 1' with it");
+  if (two && find(sensor, "divergence") == nullptr)
+    refuse(sensor, "returns", "a beam without a width meets one surface; expected 'divergence' with 'returns 2'");
+  if (const auto detects = tuple(sensor, "detects", 2, "[range reflectance]")) {
+    s.detection_range = (*detects)[0] * sensor.metres_per_unit, s.detection_reflectance = (*detects)[1];
+    if (!(s.detection_range > 0.0 && s.detection_range <= kLongestLidarRange && s.detection_reflectance > 0.0 &&
+          s.detection_reflectance <= 100.0))
+      refuse(sensor, "detects",
+             "expected the range at which a surface that faces the sensor is just detected, above 0, and its "
+             "reflectance, above 0 to 100");
   }
-  s.beams = beams_of(sensor);
+}
+
+}  // namespace
+
+std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor, std::uint32_t skip) {
+  Layout layout;
+  if (const world::Setting* const file = find(sensor, "directions")) {
+    const std::string path = (std::filesystem::path(file->file).parent_path() / file->text).string();
+    for (const char* key : {"channels", "columns", "fov", "fov_v", "elevations", "azimuth_offsets", "scan_time"})
+      if (find(sensor, key) != nullptr)
+        refuse(sensor, key, fmt::format("'{}' and 'directions'; expected one of them", key));
+    auto& table = files_[path];
+    if (!table) table = std::make_shared<BeamTable>(read_beam_table(path));
+    layout.table = table.get(), layout.columns = static_cast<std::uint32_t>(table->rows.size());
+    layout.elevations.resize(1);
+  } else {
+    read_rings(sensor, layout);
+  }
+  read_parts(sensor, layout);
+  if (layout.has_rings()) layout.skip = skip;
+  require_few(sensor, layout);
+  if (whole(sensor, "rolling", 0, 0, 1) == 1)
+    layout.scan_time = number(sensor, "scan_time", 1.0 / rate_of(sensor, 10.0), 1e-6, 60.0);
+  if (layout.scan_time > 0.0 && layout.table != nullptr && !layout.table->timed)
+    refuse(sensor, "rolling", "the table of 'directions' has no column time_s; expected one for rolling scans");
+  const std::vector<double> description = layout.description();
+  const auto same = [&](const auto& known) { return known.first == description; };
+  const auto known = std::ranges::find_if(known_, same);
+  if (known != known_.end()) return known->second;
+  auto beams = std::make_shared<LidarBeams>();
+  beams->directions = directions_of(layout);
+  beams->times = times_of(layout);
+  beams->channels = static_cast<std::uint32_t>(layout.elevations.size());
+  beams->parts = layout.parts;
+  beams->cast = cast_of(layout);
+  if (beams->parts > 1)
+    beams->part_directions = parts_of(*beams, layout.divergence);
+  else if (!beams->cast.empty())
+    beams->part_directions = chosen(beams->directions, beams->cast);
+  require_few_times(sensor, beams->times);
+  std::vector<double> part_times;
+  const std::size_t cast = beams->cast_directions().size() / beams->parts;
+  for (std::size_t i = 0; i < cast && !beams->times.empty(); ++i)
+    part_times.insert(part_times.end(), beams->parts, beams->times[beams->cast.empty() ? i : beams->cast[i]]);
+  const bool rings = layout.has_rings() && beams->parts == 1;
+  beams->pattern = scene::make_pattern(beams->cast_directions(),
+                                       rings ? static_cast<std::uint32_t>(cast / beams->channels) : 0, part_times);
+  return known_.emplace_back(description, std::move(beams)).second;
+}
+
+LidarSettings LidarReader::read(const world::World& world, const world::Sensor& sensor) {
+  const Preset* const preset = preset_of(sensor);
+  LidarSettings s;
+  s.X_MS = mount_of(sensor);
+  if (preset != nullptr) s.echo.range_max = preset->range, s.echo.sigma = preset->sigma;
+  read_range(sensor, s.echo);
+  read_noise(sensor, s.echo);
+  read_echoes(sensor, s.echo);
+  s.mode = mode_of("lidar", kLidarModes, accuracy_of(sensor), world);
+  s.beams = beams_of(sensor, kLidarSkips[s.mode]);
   return s;
 }
 

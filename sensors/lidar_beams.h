@@ -3,52 +3,68 @@
 
 #include <cstdint>
 #include <glm/ext/vector_double3.hpp>
+#include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/rigid_transform.h"
 #include "scene/beam_pattern.h"
+#include "sensors/lidar_echoes.h"
 #include "world/world.h"
 
 namespace sf::sensors {
 
-inline constexpr std::uint32_t kMostLidarBeams = 1'000'000;  ///< of one lidar
+inline constexpr std::uint32_t kMostLidarBeams = 1'000'000;  ///< of one lidar, parts of diverging beams included
+inline constexpr std::uint32_t kMostBeamParts = 64;
+inline constexpr std::size_t kMostBeamTimes = 10'000;  ///< different ones in a rolling scan
 inline constexpr std::uint32_t kMostChannels = 1'024;
 inline constexpr double kLongestLidarRange = 1e5;  ///< [m]
 
 /// Beams of all lidars with the same settings.
 struct LidarBeams {
   std::vector<glm::dvec3> directions;  ///< unit vectors in the sensor's frame; ring by ring, each counter-clockwise
-  scene::BeamPattern pattern;
-  std::uint32_t channels = 1;  ///< rings; beams per ring: directions.size() / channels
+  std::vector<double> times;           ///< [s] <= 0, per beam, relative to the reading; empty: all are cast at its time
+  std::uint32_t channels = 1;          ///< rings; beams per ring: directions.size() / channels
+  std::uint32_t parts = 1;             ///< per beam
+  std::vector<std::uint32_t> cast;     ///< beams that are cast, ascending; empty: all
+  std::vector<glm::dvec3> part_directions;  ///< of all parts of the cast beams, beam by beam; empty: `directions`
+  scene::BeamPattern pattern;               ///< of the parts
+
+  const std::vector<glm::dvec3>& cast_directions() const {
+    return part_directions.empty() ? directions : part_directions;
+  }
 };
 
 /// Settings of one lidar.
 struct LidarSettings {
-  base::RigidTransform X_MS;        ///< sensor in the mover's frame
-  double range_min = 0.0;           ///< [m] in [0, range_max]
-  double range_max = 100.0;         ///< [m] in (0, kLongestLidarRange]
-  double range_sigma = 0.0;         ///< [m] >= 0, standard deviation of the range noise
-  double range_proportional = 0.0;  ///< >= 0, its part that grows with the range
+  base::RigidTransform X_MS;  ///< sensor in the mover's frame
+  EchoSettings echo;          ///< range_max is at most kLongestLidarRange
+  std::uint8_t mode = 0;      ///< row of kLidarModes
   std::shared_ptr<const LidarBeams> beams;
 };
 
-inline constexpr std::string_view kLidarKeys[] = {"preset", "channels",  "columns",    "fov",
-                                                  "fov_v",  "range_min", "elevations", "azimuth_offsets",
-                                                  "range",  "range_max", "noise",      "pose6"};
+inline constexpr std::string_view kLidarKeys[] = {
+    "preset",    "channels",  "columns",         "fov",     "fov_v",      "range_min",  "elevations", "azimuth_offsets",
+    "range",     "range_max", "noise",           "pose6",   "directions", "rolling",    "scan_time",  "intensity",
+    "incidence", "returns",   "intensity_range", "detects", "dropout",    "divergence", "beam_parts", "separation"};
+
+struct BeamTable;
 
 /// Reads the settings of lidars. Lidars with equal beams share them.
 class LidarReader {
  public:
   /// @throws base::InputError with file and line for invalid settings
-  LidarSettings read(const world::Sensor& sensor);
+  LidarSettings read(const world::World& world, const world::Sensor& sensor);
 
  private:
-  std::shared_ptr<const LidarBeams> beams_of(const world::Sensor& sensor);
+  /// @param skip casts every so many columns of rings
+  std::shared_ptr<const LidarBeams> beams_of(const world::Sensor& sensor, std::uint32_t skip);
 
   /// With their description.
   std::vector<std::pair<std::vector<double>, std::shared_ptr<const LidarBeams>>> known_;
+  std::map<std::string, std::shared_ptr<const BeamTable>> files_;  ///< by path
 };
 
 }  // namespace sf::sensors

@@ -10,6 +10,8 @@
 #include "maps/map_packets.h"
 #include "netio/packet_forms.h"
 #include "sensors/laser_packets.h"
+#include "sensors/lidar.h"
+#include "sensors/lidar_packets.h"
 #include "sensors/occupancy.h"
 #include "server/sensor_streams.h"
 
@@ -246,6 +248,22 @@ void add_scan(std::span<const std::uint8_t> payload, bool extended, Fields& out)
   add(out, "range_m", ranges);
 }
 
+void add_lidar(std::span<const std::uint8_t> payload, bool extended, const sensors::SensorType& type, Fields& out) {
+  sensors::LidarPart scan;
+  sensors::read_lidar(payload, extended, scan);
+  if (extended) {
+    add(out, "total", scan.total);
+    add(out, "first", scan.first);
+    add(out, "part", scan.part);
+    add(out, "parts", scan.parts);
+  }
+  for (std::uint32_t column = 0; column < scan.width; ++column) {
+    std::vector<double> numbers;
+    for (std::size_t i = column; i < scan.values.size(); i += scan.width) numbers.push_back(scan.values[i]);
+    add(out, std::string(type.columns[column].name), numbers);
+  }
+}
+
 void add_map(std::span<const std::uint8_t> payload, Fields& out) {
   maps::MapPart map;
   maps::read_part(payload, map);
@@ -285,7 +303,9 @@ PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8
   const netio::PayloadInfo info = inspect_payload({&type, &any}, sensors::WireFormat::farm, header, payload);
   if (info.status != PacketStatus::accepted) return info.status;
   const bool extended = static_cast<std::uint8_t>(header.type) >= sensors::kExtended;
-  if (type.is_scan) {
+  if (type.id == sensors::kLidar) {
+    add_lidar(payload, extended, type, out);
+  } else if (type.is_scan) {
     add_scan(payload, extended, out);
   } else if (type.id == sensors::kOccupancy) {
     add_map(payload, out);

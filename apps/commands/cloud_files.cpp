@@ -31,32 +31,42 @@ void put_text(base::ByteWriter& out, const std::string& text) { out.put_bytes(te
 
 /// Point Cloud Data, version 0.7, binary (pointclouds.org).
 base::Bytes pcd_of(const Cloud& cloud) {
+  const bool bright = cloud.has_intensity(), timed = cloud.is_timed();
   base::Bytes bytes;
   base::ByteWriter out(bytes);
-  put_text(out,
-           fmt::format("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z ring\nSIZE 4 4 4 2\n"
-                       "TYPE F F F U\nCOUNT 1 1 1 1\nWIDTH {}\nHEIGHT {}\nVIEWPOINT {}\nPOINTS {}\nDATA binary\n",
-                       cloud.columns(), cloud.lidar.beams->channels, pose_text(cloud.X_WS, " "), cloud.ranges.size()));
-  for (std::size_t i = 0; i < cloud.ranges.size(); ++i) {
+  put_text(out, fmt::format("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z{0} ring{1}\n"
+                            "SIZE 4 4 4{2} 2{3}\nTYPE F F F{4} U{5}\nCOUNT 1 1 1{6} 1{7}\n",
+                            bright ? " intensity" : "", timed ? " time" : "", bright ? " 4" : "", timed ? " 4" : "",
+                            bright ? " F" : "", timed ? " F" : "", bright ? " 1" : "", timed ? " 1" : ""));
+  put_text(out, fmt::format("WIDTH {}\nHEIGHT {}\nVIEWPOINT {}\nPOINTS {}\nDATA binary\n", cloud.columns(),
+                            cloud.lidar.beams->channels, pose_text(cloud.X_WS, " "), cloud.beams()));
+  for (std::size_t i = 0; i < cloud.beams(); ++i) {
     const glm::dvec3 p = cloud.has_echo(i) ? cloud.point_S(i) : glm::dvec3(NAN);
     for (int axis = 0; axis < 3; ++axis) out.put(static_cast<float>(p[axis]));
+    if (bright) out.put(static_cast<float>(cloud.intensity(i)));
     out.put(cloud.ring(i));
+    if (timed) out.put(static_cast<float>(cloud.lidar.beams->times[i]));
   }
   return bytes;
 }
 
 base::Bytes ply_of(const Cloud& cloud) {
   std::vector<std::size_t> echoes;
-  for (std::size_t i = 0; i < cloud.ranges.size(); ++i)
+  for (std::size_t i = 0; i < cloud.beams(); ++i)
     if (cloud.has_echo(i)) echoes.push_back(i);
+  const bool bright = cloud.has_intensity(), timed = cloud.is_timed();
   base::Bytes bytes;
   base::ByteWriter out(bytes);
   put_text(out, fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty "
-                            "double y\nproperty double z\nproperty ushort ring\nend_header\n",
-                            echoes.size()));
+                            "double y\nproperty double z\n{}property ushort ring\n{}end_header\n",
+                            echoes.size(), bright ? "property float intensity\n" : "",
+                            timed ? "property float time\n" : ""));
   for (const std::size_t i : echoes) {
     const glm::dvec3 p = cloud.point_W(i);
-    out.put(p.x), out.put(p.y), out.put(p.z), out.put(cloud.ring(i));
+    out.put(p.x), out.put(p.y), out.put(p.z);
+    if (bright) out.put(static_cast<float>(cloud.intensity(i)));
+    out.put(cloud.ring(i));
+    if (timed) out.put(static_cast<float>(cloud.lidar.beams->times[i]));
   }
   return bytes;
 }

@@ -46,14 +46,19 @@ std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part, const wor
 
 viz::PolyData echoes_of(std::span<const Cloud> clouds) {
   viz::PolyData out;
-  for (const char* name : {"range", "ring", "robot", "sensor", "time"}) out.point_data.push_back({name, 1, {}});
+  for (const char* name : {"range", "ring", "robot", "sensor", "time", "intensity"})
+    out.point_data.push_back({name, 1, {}});
   for (const Cloud& cloud : clouds)
-    for (std::size_t i = 0; i < cloud.ranges.size(); ++i) {
+    for (std::size_t i = 0; i < cloud.beams(); ++i) {
       if (!cloud.has_echo(i)) continue;
       out.dots.push_back({static_cast<std::int64_t>(out.points.size())});
       out.points.push_back(cloud.point_W(i));
-      const double values[] = {cloud.ranges[i], static_cast<double>(cloud.ring(i)), static_cast<double>(cloud.mover),
-                               static_cast<double>(cloud.row.sensor), 1e-9 * static_cast<double>(cloud.time)};
+      const double values[] = {cloud.range(i),
+                               static_cast<double>(cloud.ring(i)),
+                               static_cast<double>(cloud.mover),
+                               static_cast<double>(cloud.row.sensor),
+                               1e-9 * static_cast<double>(cloud.time),
+                               cloud.has_intensity() ? cloud.intensity(i) : 0.0};
       for (std::size_t k = 0; k < std::size(values); ++k) out.point_data[k].values.push_back(values[k]);
     }
   return out;

@@ -22,13 +22,18 @@ struct Cloud {
   std::uint32_t mover = 0;
   const sensors::SensorSpec& row;
   const sensors::LidarSettings& lidar;
-  std::span<const double> ranges;  ///< [m]
+  std::span<const double> values;  ///< of the reading
   base::RigidTransform X_WS;
 
-  bool has_echo(std::size_t i) const { return ranges[i] >= lidar.range_min && ranges[i] < lidar.range_max; }
-  std::size_t columns() const { return ranges.size() / lidar.beams->channels; }
+  std::size_t beams() const { return values.size() / lidar.echo.width; }
+  double range(std::size_t i) const { return values[i * lidar.echo.width]; }  ///< [m]
+  bool has_intensity() const { return lidar.echo.width > 1; }
+  double intensity(std::size_t i) const { return values[i * lidar.echo.width + 1]; }
+  bool is_timed() const { return !lidar.beams->times.empty(); }
+  bool has_echo(std::size_t i) const { return range(i) >= lidar.echo.range_min && range(i) < lidar.echo.range_max; }
+  std::size_t columns() const { return beams() / lidar.beams->channels; }
   std::uint16_t ring(std::size_t i) const { return static_cast<std::uint16_t>(i / columns()); }
-  glm::dvec3 point_S(std::size_t i) const { return ranges[i] * lidar.beams->directions[i]; }
+  glm::dvec3 point_S(std::size_t i) const { return range(i) * lidar.beams->directions[i]; }
   glm::dvec3 point_W(std::size_t i) const { return base::transform(X_WS, point_S(i)); }
 };
 
@@ -55,7 +60,7 @@ class CloudReplay {
 std::unique_ptr<CloudReplay> clouds_to_draw(const RecordingPart& part, const world::World& world);
 
 /// Returns a dot per echo, in the world. Point arrays: `range` [m], `ring`, `robot` (row), `sensor` (of the robot's
-/// lidars), `time` [s].
+/// lidars), `time` [s], `intensity` (0 if the lidar has none).
 viz::PolyData echoes_of(std::span<const Cloud> clouds);
 
 }  // namespace sf::apps

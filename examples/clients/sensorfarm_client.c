@@ -41,7 +41,7 @@ enum {
   SF_V2V_BYTES = 132,
   SF_TILT_BYTES = 16,  // after a V2V or STATE of a robot that is not level
   SF_TAG_BYTES = 168,
-  SF_MAX_VALUES = 361,
+  SF_MAX_VALUES = 465,
   SF_MAX_SENSORS = 32,
   SF_SIGNATURE = 24
 };
@@ -226,7 +226,8 @@ static const sf_type sf_types[] = {
                                 {"identity", 1, 1},    {"kind", 1, 1},        {"tag", 1, 1},
                                 {"ahead_m", 1, 0},     {"contact_s", 1, 0}}},
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
-    {108, "lidar", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
+    {108, "lidar", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}, {"intensity", 1, 1e-3}, {"incidence_rad", 1, 1e-4},
+      {"second_range_m", 1, 1e-4}, {"second_intensity", 1, 1e-3}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},
     {130, "SUBSCRIBE", 0, {"types"}, {{0}}},
@@ -266,6 +267,7 @@ typedef struct {
   uint32_t words[5];             // the integers named in sf_types
   double corner[3];              // OCCUPANCY, TEAM_MAP: left, top, cell [m]
   unsigned count;                // number of values. NEIGHBOURS: number of V2V packets
+  unsigned width;                // values per row, of the first columns; 0: of all
   unsigned approaches;           // V2I: number of rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
   const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; valid as long as the datagram
@@ -322,10 +324,39 @@ static const char* check_numbers(const double* values, unsigned count, double li
 }
 static const char* in_range(bool fine) { return fine ? NULL : "out of range"; }
 
+// A part of a lidar's scan with `more` numbers per beam in addition to its range.
+static const char* decode_echoes(sf_packet* p, const uint8_t* b, size_t size, unsigned more) {
+  const sf_type* const type = sf_find_type(SF_LIDAR_EXTENDED);
+  if (more > 4 || more == 3) return "out of range";
+  unsigned beam = 0;
+  for (unsigned c = 0; c <= more; ++c) beam += c % 3 == 0 ? 4 : 2;
+  const unsigned most = 1240 / beam;
+  uint32_t* const w = p->words;  // total, first, part, parts
+  w[0] = (uint32_t)get(b, 4), w[1] = (uint32_t)get(b + 4, 4), w[2] = (uint32_t)get(b + 8, 2), w[3] = (uint32_t)get(b + 10, 2);
+  const unsigned count = (unsigned)get(b + 12, 2);
+  const char* const sized = check_size(size, 16 + (size_t)beam * count);
+  if (sized) return sized;
+  if (w[0] < 1 || w[0] > 1000000 || w[3] != (w[0] + most - 1) / most || w[2] >= w[3] || w[1] != most * w[2] ||
+      count != (w[0] - w[1] < most ? w[0] - w[1] : most))
+    return "out of range";
+  p->width = more + 1;
+  p->count = count * p->width;
+  b += 16;
+  for (unsigned i = 0; i < p->count; ++i) {
+    const unsigned column = i % p->width, bytes = column % 3 == 0 ? 4 : 2;
+    const uint32_t units = (uint32_t)get(b, bytes);
+    p->values[i] = bytes == 4 && units == UINT32_MAX ? INFINITY : units * type->columns[column].unit;
+    b += bytes;
+  }
+  return NULL;
+}
+
 static const char* decode_laser(sf_packet* p, const uint8_t* b, size_t size) {
   const bool extended = p->type == SF_LASER_EXTENDED || p->type == SF_LIDAR_EXTENDED;
   const unsigned head = extended ? 16 : 2, word = extended ? 4 : 2;
   if (size < head) return "too short";
+  p->width = 1;
+  if (p->type == SF_LIDAR_EXTENDED && get(b + 14, 2) != 0) return decode_echoes(p, b, size, (unsigned)get(b + 14, 2));
   p->count = (unsigned)get(b + (extended ? 12 : 0), 2);
   const char* const sized = check_size(size, head + (size_t)word * p->count);
   if (sized) return sized;
@@ -704,11 +735,13 @@ size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   return sf_decode(bytes, size, &back) == NULL ? size : 0;
 }
 
-static void print_columns(FILE* out, const sf_type* type, const double* values, unsigned count, const char* before,
-                          const char* after) {
-  for (unsigned c = 0, first = 0; type->columns[c].name; first += type->columns[c++].width) {
+// Prints the first columns, of `width` values per row; 0: all.
+static void print_columns(FILE* out, const sf_type* type, const double* values, unsigned count, unsigned width,
+                          const char* before, const char* after) {
+  if (width == 0) width = sf_row_width(type);
+  for (unsigned c = 0, first = 0; type->columns[c].name && first < width; first += type->columns[c++].width) {
     fprintf(out, "%s%s =", before, type->columns[c].name);
-    for (unsigned row = 0; row < count; row += sf_row_width(type))
+    for (unsigned row = 0; row < count; row += width)
       for (unsigned k = 0; k < type->columns[c].width; ++k)
         fprintf(out, isnan(values[row + first + k]) ? " none" : " %.10g", values[row + first + k]);
     if (count == 0) fputc(' ', out);
@@ -806,10 +839,11 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     fputs(after, out);
   }
   const unsigned approaches = p->type == SF_V2I ? 8 * p->approaches : p->count;
-  print_columns(out, type, p->values, approaches, before, after);
+  print_columns(out, type, p->values, approaches, p->width, before, after);
   if (p->tilt[0] != 0 || p->tilt[1] != 0) fprintf(out, "%stilt = %.10g %.10g%s", before, p->tilt[0], p->tilt[1], after);
   if (p->type == SF_V2I)
-    print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
+    print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, 0, before,
+                  after);
 }
 
 // Prints "; error up to " with three digits, never less than the bound.

@@ -127,7 +127,7 @@ def unpack_rows(form, word, payload):
     size = struct.calcsize(form)
     require(len(payload) >= size, "too short")
     head = struct.unpack_from(form, payload)
-    return head, unpack("<%d%s" % (head[-1], word), payload[size:])
+    return head, unpack("<" + head[-1] * word, payload[size:])
 
 
 def require_numbers(numbers, limit):
@@ -154,6 +154,28 @@ def decode_laser(extended, payload):
     require(first == 310 * part and count == min(310, total - first))
     ranges = [math.inf if word == 2**32 - 1 else word / 1e4 for word in words]
     return {"total": total, "first": first, "part": part, "parts": parts, "range_m": ranges}
+
+
+LIDAR_COLUMNS = [("range_m", "I", 1e4), ("intensity", "H", 1e3), ("incidence_rad", "H", 1e4), ("second_range_m", "I", 1e4),
+                 ("second_intensity", "H", 1e3)]
+
+
+def decode_lidar(extended, payload):
+    """Ranges as of lasers, or with more numbers per beam."""
+    more = struct.unpack_from("<H", payload, 14)[0] if extended and len(payload) >= 16 else 0
+    if more == 0:
+        return decode_laser(extended, payload)
+    require(more in (1, 2, 4))
+    columns = LIDAR_COLUMNS[:more + 1]
+    row = "".join(word for _, word, _ in columns)
+    most = 1240 // struct.calcsize("<" + row)
+    (total, first, part, parts, count), words = unpack_rows("<IIHHH", row, payload[:14] + payload[16:])
+    require(1 <= total <= 1000000 and parts == -(-total // most) and part < parts)
+    require(first == most * part and count == min(most, total - first))
+    body = {"total": total, "first": first, "part": part, "parts": parts}
+    for i, (name, _, per_unit) in enumerate(columns):
+        body[name] = [math.inf if word == 2**32 - 1 else word / per_unit for word in words[i::len(columns)]]
+    return body
 
 
 def decode_lane_edge(payload):
@@ -379,8 +401,10 @@ def decode(data):
         packet.update(decode_lockstep(type, payload))
     elif type >= 128:
         packet.update(decode_state(type, robot, payload))
-    elif type in (LASER, LASER_EXTENDED, LIDAR, LIDAR_EXTENDED):
-        packet.update(decode_laser(type in (LASER_EXTENDED, LIDAR_EXTENDED), payload))
+    elif type in (LASER, LASER_EXTENDED):
+        packet.update(decode_laser(type == LASER_EXTENDED, payload))
+    elif type in (LIDAR, LIDAR_EXTENDED):
+        packet.update(decode_lidar(type == LIDAR_EXTENDED, payload))
     elif type == LANE_EDGE:
         packet.update(decode_lane_edge(payload))
     elif type == OCCUPANCY:

@@ -69,7 +69,7 @@ HWY_INLINE void aim_tile(Scratch& s, const BeamTile& tile, const SceneMesh& mesh
 /// Fills in the beams, and the boxes and offsets of the vectors, in the mesh's frame.
 HWY_INLINE void aim_beams(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   const Rotation R(mesh.X_FS.R);
-  for (std::uint32_t i = 0; i < kTileBeams; i += kWidth) {
+  for (std::uint32_t i = 0; i < kWidth * tile.used; i += kWidth) {
     const Floats x = load(tile.x + i), y = load(tile.y + i), z = load(tile.z + i);
     store(R.row(0, x, y, z), s.x + i), store(R.row(1, x, y, z), s.y + i), store(R.row(2, x, y, z), s.z + i);
   }

@@ -20,10 +20,11 @@ struct BeamPlanes {
   alignas(64) double x[kWidth], y[kWidth], z[kWidth], height[kWidth], extra[kWidth], least_sine[kWidth];
 };
 
-/// Writes sixteen ranges. @return bit mask of the beams whose angle to their face is too small
+/// Writes sixteen ranges, and the sines of the angles to the faces. @return bit mask of the beams whose angle to their
+/// face is too small
 template <class Row>
 HWY_INLINE std::uint32_t evaluate(const BeamTile& tile, std::uint32_t first, double range_max, const Row& row,
-                                  double* out) {
+                                  double* out, double* sines) {
   const VD most = hn::Set(kD, range_max);
   std::uint32_t grazing = 0;
   for (std::size_t i = 0; i < kWidth; i += hn::Lanes(kD)) {
@@ -31,6 +32,7 @@ HWY_INLINE std::uint32_t evaluate(const BeamTile& tile, std::uint32_t first, dou
     const VD along = hn::Add(hn::Mul(plane.x, hn::Load(kD, tile.dx + first + i)),
                              hn::Mul(plane.y, hn::Load(kD, tile.dy + first + i)));
     const VD sine = hn::Add(along, hn::Mul(plane.z, hn::Load(kD, tile.dz + first + i)));
+    hn::Store(sine, kD, sines + i);
     hn::Store(hn::Min(hn::Div(plane.height, hn::Add(sine, plane.extra)), most), kD, out + i);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(kD, hn::Abs(sine) < plane.least_sine, bits);
@@ -45,7 +47,7 @@ struct PlaneVectors {
 
 /// Ranges of sixteen beams that meet one face.
 HWY_INLINE std::uint32_t evaluate_one(const BeamTile& tile, std::uint32_t first, double range_max,
-                                      const SeenPlane& plane, double* out) {
+                                      const SeenPlane& plane, double* out, double* sines) {
   const PlaneVectors rows{hn::Set(kD, plane.normal.x),
                           hn::Set(kD, plane.normal.y),
                           hn::Set(kD, plane.normal.z),
@@ -53,14 +55,14 @@ HWY_INLINE std::uint32_t evaluate_one(const BeamTile& tile, std::uint32_t first,
                           hn::Zero(kD),
                           hn::Set(kD, plane.least_sine)};
   return evaluate(
-      tile, first, range_max, [&](std::size_t) -> const PlaneVectors& { return rows; }, out);
+      tile, first, range_max, [&](std::size_t) -> const PlaneVectors& { return rows; }, out, sines);
 }
 
 /// Ranges of sixteen beams that meet several faces.
 template <class PlaneOf>
 HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t first, double range_max,
                                           const std::uint32_t* faces, const PlaneOf& plane_of, double* out,
-                                          std::uint32_t* hits) {
+                                          double* sines, std::uint32_t* hits) {
   BeamPlanes rows;
   SeenPlane plane;
   for (std::uint32_t i = 0; i < kWidth; ++i) {
@@ -75,7 +77,7 @@ HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t fi
     return PlaneVectors{hn::Load(kD, rows.x + i),      hn::Load(kD, rows.y + i),     hn::Load(kD, rows.z + i),
                         hn::Load(kD, rows.height + i), hn::Load(kD, rows.extra + i), hn::Load(kD, rows.least_sine + i)};
   };
-  return evaluate(tile, first, range_max, row, out);
+  return evaluate(tile, first, range_max, row, out, sines);
 }
 
 }  // namespace sf::scene::HWY_NAMESPACE

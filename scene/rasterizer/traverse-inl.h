@@ -104,8 +104,8 @@ HWY_INLINE void prefetch(const void* from, std::size_t bytes) {
 /// Draws a mesh. Beams are rotated into its frame only if the tile may see a part of it.
 HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   const SurfaceTree& tree = *mesh.tree;
-  constexpr std::uint32_t kAll = 0xFFFFFFFFu;
   static_assert(kTileVectors == 32);
+  const std::uint32_t used = 0xFFFFFFFFu >> (kTileVectors - tile.used);  // bit mask of the vectors
   float farthest = farthest_of(s);
   const auto draw_one = [&](std::int32_t child, std::uint32_t vectors) {
     const LeafFaces faces = view_leaf(s, tree.leaves[~child], mesh);
@@ -114,7 +114,7 @@ HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mes
   aim_tile(s, tile, mesh);
   if (tree.root < 0) {
     aim_beams(s, tile, mesh);
-    return draw_one(tree.root, kAll);
+    return draw_one(tree.root, used);
   }
   const TileCorners corners(s.tile);
   float limit = depth_limit(farthest);
@@ -129,7 +129,7 @@ HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mes
     const auto place = static_cast<std::uint32_t>(entry);
     const TreeNode& node = tree.nodes[place / kWidth];
     const std::int32_t child = node.child[place % kWidth];
-    const std::uint32_t vectors = vectors_that_see(s, node, place % kWidth);
+    const std::uint32_t vectors = used & vectors_that_see(s, node, place % kWidth);
     if (vectors == 0) continue;
     if (child >= 0) {
       push_children(s, corners, tree.nodes[child], child, limit);

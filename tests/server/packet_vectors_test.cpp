@@ -8,6 +8,8 @@
 #include "maps/map_packets.h"
 #include "netio/packets.h"
 #include "sensors/laser_packets.h"
+#include "sensors/lidar.h"
+#include "sensors/lidar_packets.h"
 #include "sensors/occupancy.h"
 #include "server/packet_fields.h"
 #include "server/sensor_streams.h"
@@ -46,6 +48,11 @@ void restore_spec(std::uint8_t type, std::span<const std::uint8_t> payload, Deco
     EXPECT_EQ(sensors::read_laser(payload, type >= sensors::kExtended, scan), sensors::PayloadError::none);
     out.spec.elements = scan.total;
     out.spec.limit = scan.extended ? 1e6 : sensors::kPlainRange;
+  } else if (out.type->id == sensors::kLidar) {
+    sensors::LidarPart scan;
+    EXPECT_EQ(sensors::read_lidar(payload, type >= sensors::kExtended, scan), sensors::PayloadError::none);
+    out.spec.elements = scan.total, out.spec.width = scan.width;
+    out.spec.limit = type >= sensors::kExtended ? 1e6 : sensors::kPlainRange;
   } else if (type == sensors::kOccupancy) {
     maps::MapPart map;
     EXPECT_EQ(maps::read_part(payload, map), maps::PartFault::none);
@@ -66,7 +73,7 @@ void decode_payload(std::uint8_t type, std::span<const std::uint8_t> payload, De
   out.part = part.part;
   out.spec.elements = part.elements;
   restore_spec(type, payload, out);
-  out.values.resize(out.spec.elements * sensors::element_width(*out.type));
+  out.values.resize(out.spec.elements * sensors::element_width(*out.type, out.spec));
   out.type->read(out.spec, payload, type, sensors::WireFormat::farm, out.values);
   out.block.values = out.values;
 }
@@ -108,8 +115,8 @@ TEST(PacketVectors, MatchTheFarmsPacketsInBothDirections) {
           << vector.text;
     }
   }
-  EXPECT_EQ(types.size(), sensors::sensor_types().size() + 1 + std::variant_size_v<decltype(netio::Packet::body)> - 1)
-      << "each sensor type, the lasers' second form, and each state and request has a file";
+  EXPECT_EQ(types.size(), sensors::sensor_types().size() + 2 + std::variant_size_v<decltype(netio::Packet::body)> - 1)
+      << "each sensor type, the second forms of lasers and lidars, and each state and request has a file";
 }
 
 TEST(PacketVectors, HaveTheFarmsStatuses) {

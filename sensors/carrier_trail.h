@@ -1,0 +1,37 @@
+#pragma once
+// Recent states of a rolling sensor's carrier, for poses during its last scan.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/report.h"
+
+namespace sf::sensors {
+
+class CarrierTrail {
+ public:
+  /// @param duration [ns] that `at` looks back  @param max_speed [m/s] of the carrier
+  CarrierTrail(std::int64_t duration, double max_speed) : duration_(duration), max_speed_(max_speed) {}
+
+  /// Adds the state of a tick. Times increase.
+  void add(const base::Report& state);
+  void clear() { states_.clear(); }
+  /// Returns the state at `time` [ns] on the arcs between the ticks, and from the last tick to `now`. Before the first
+  /// tick and before a relocation the carrier stood still.
+  base::Report at(std::int64_t time, const base::Report& now) const;
+  /// Returns the greatest distance [m] of the positions since the oldest tick from that of `now`.
+  double reach(const base::Report& now) const;
+
+  void write(base::ByteWriter& out) const;
+  void read(base::ByteReader& in);
+
+ private:
+  base::Report between(const base::Report& from, const base::Report& to, std::int64_t time) const;
+
+  std::int64_t duration_;
+  double max_speed_;
+  std::vector<base::Report> states_;  ///< by time
+};
+
+}  // namespace sf::sensors

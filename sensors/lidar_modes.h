@@ -1,0 +1,35 @@
+#pragma once
+// Accuracy modes of lidars: fewer columns are cast, the others interpolated between them.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/reading.h"
+#include "sensors/lidar_beams.h"
+
+namespace sf::sensors {
+
+inline constexpr AccuracyMode kLidarModes[] = {
+    {"exact", "every beam"},
+    {"skip2", "every 2nd column; the others interpolated between the hits"},
+    {"skip4", "every 4th column"},
+};
+/// Columns per cast column, by row of kLidarModes.
+inline constexpr std::uint32_t kLidarSkips[] = {1, 2, 4};
+
+/// A scan's tables, beam by beam.
+struct LidarScan {
+  std::span<double> values;  ///< `width` numbers per beam
+  std::size_t width = 1;
+  std::span<std::uint32_t> hits;
+  std::span<base::QualityFlag> quality;
+};
+
+/// Fills in the beams that were not cast, with the flag `not_cast`. Between beams that hit one model, the range is that
+/// of the straight line between their points, which is exact on a plane along a great circle; else all numbers are the
+/// nearer beam's.
+/// @param beams with several columns, of which `LidarBeams::cast` lists those with numbers
+void interpolate_columns(const LidarBeams& beams, double range_max, const LidarScan& scan);
+
+}  // namespace sf::sensors
