@@ -34,11 +34,14 @@ class FarmCaster : public SpatialCaster {
         hits_(beams.size()),
         quality_(beams.size()) {}
   std::string name() const override { return "farm"; }
-  void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
-    rasterizer_.scan(X_WS, pattern_, kRange, {{&instance_, 1}, false}, {ranges, hits_, quality_});
-  }
+  void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override { scan(X_WS, ranges, {}); }
   double uncertain() const {
     return static_cast<double>(rasterizer_.counts().uncertain) / static_cast<double>(rasterizer_.counts().beams);
+  }
+
+ protected:
+  void scan(const base::RigidTransform& X_WS, std::span<double> ranges, std::span<float> cosines) {
+    rasterizer_.scan(X_WS, pattern_, kRange, {{&instance_, 1}, false}, {ranges, hits_, quality_, cosines});
   }
 
  private:
@@ -47,6 +50,43 @@ class FarmCaster : public SpatialCaster {
   std::vector<std::uint32_t> hits_;
   std::vector<base::QualityFlag> quality_;
   scene::Rasterizer rasterizer_;
+};
+
+/// Every column has its own time, and is cast by a scan of its own.
+class RollingCaster : public SpatialCaster {
+ public:
+  RollingCaster(const scene::SurfaceTree& tree, const std::vector<glm::dvec3>& beams, std::uint32_t row)
+      : instance_{&tree, {}, true}, hits_(beams.size()), quality_(beams.size()) {
+    std::vector<double> times;
+    for (std::size_t i = 0; i < beams.size(); ++i) times.push_back(static_cast<double>(i % row));
+    pattern_ = scene::make_pattern(beams, row, times);
+  }
+  std::string name() const override { return "farm, rolling"; }
+  void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
+    for (const scene::BeamTile& tile : pattern_)
+      rasterizer_.scan(X_WS, {&tile, 1}, kRange, {{&instance_, 1}, false}, {ranges, hits_, quality_});
+  }
+
+ private:
+  scene::Instance instance_;
+  scene::BeamPattern pattern_;
+  std::vector<std::uint32_t> hits_;
+  std::vector<base::QualityFlag> quality_;
+  scene::Rasterizer rasterizer_;
+};
+
+/// With the cosines that intensities need.
+class CosineCaster : public FarmCaster {
+ public:
+  using FarmCaster::FarmCaster;
+  std::string name() const override { return "farm, cosines"; }
+  void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
+    cosines_.resize(ranges.size());
+    scan(X_WS, ranges, cosines_);
+  }
+
+ private:
+  std::vector<float> cosines_;
 };
 
 struct Method : Timing {
@@ -109,6 +149,8 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
     methods.back().caster = std::move(caster);
   };
   add(std::make_unique<FarmCaster>(tree, beams, row));
+  add(std::make_unique<CosineCaster>(tree, beams, row));
+  if (row > 0) add(std::make_unique<RollingCaster>(tree, beams, row));
   for (auto& caster : embree_casters(scene.mesh, beams, kRange)) add(std::move(caster));
   std::vector<double> ranges(beams.size());
   take_turns(methods, turns, "farm", [&](std::size_t k, std::size_t) {

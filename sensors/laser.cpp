@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/elementary.h"
+#include "base/tilted_pose.h"
 #include "raycast/casters.h"
 #include "raycast/ray_caster.h"
 #include "sensors/laser_modes.h"
@@ -197,10 +198,7 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   block.state = {};
 }
 
-bool Lasers::is_tilted(std::size_t i) const {
-  const base::Tilt& tilt = states_[rows_[due_[i].row].mover].tilt;
-  return tilt.roll != 0.0 || tilt.pitch != 0.0;
-}
+bool Lasers::is_tilted(std::size_t i) const { return !base::is_level(states_[rows_[due_[i].row].mover].tilt); }
 
 /// Bearings [rad] of the cast beams of a laser, without angular noise.
 std::vector<double> bearings_of(const raycast::ScanSettings& scan, const raycast::BeamPlan& plan) {
