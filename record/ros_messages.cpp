@@ -93,15 +93,21 @@ void encode_transforms(std::span<const Transform> transforms, Bytes& out) {
   }
 }
 
+/// [ns] from the first beam, whose time is a message's stamp, to the last.
+static std::int64_t duration_of(float time_increment, std::size_t samples) {
+  const double seconds = static_cast<double>(time_increment) * static_cast<double>(samples > 0 ? samples - 1 : 0);
+  return std::isfinite(seconds) && std::abs(seconds) < 1e6 ? base::nanoseconds(seconds) : 0;
+}
+
 void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
   CdrWriter cdr(out);
-  put_header(cdr, scan.time, scan.frame);
+  put_header(cdr, scan.time - duration_of(scan.time_increment, ranges.size()), scan.frame);
   const bool one = ranges.size() < 2;
   const float fov = one ? 0.0F : scan.fov;
   cdr.put(-0.5F * fov);
   cdr.put(0.5F * fov);
   cdr.put(one ? 0.0F : fov / static_cast<float>(ranges.size() - 1));
-  cdr.put(0.0F);
+  cdr.put(scan.time_increment);
   cdr.put(scan.scan_time);
   cdr.put(base::float_below(scan.range_min));
   cdr.put(base::float_above(scan.range_max));
@@ -131,7 +137,7 @@ std::optional<Scan> decode_scan(std::span<const std::uint8_t> message) {
   const auto angle_min = cdr.get<float>();
   scan.fov = cdr.get<float>() - angle_min;
   cdr.get<float>();  // angle_increment
-  cdr.get<float>();  // time_increment
+  scan.time_increment = cdr.get<float>();
   scan.scan_time = cdr.get<float>();
   scan.range_min = cdr.get<float>();
   scan.range_max = cdr.get<float>();
@@ -139,6 +145,7 @@ std::optional<Scan> decode_scan(std::span<const std::uint8_t> message) {
   for (float& range : scan.ranges) range = cdr.get<float>();
   cdr.get_count(sizeof(float));
   if (!cdr.good()) return std::nullopt;
+  scan.time += duration_of(scan.time_increment, scan.ranges.size());
   return scan;
 }
 

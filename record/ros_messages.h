@@ -37,13 +37,14 @@ struct Transform {
 
 /// One planar scan.
 struct Scan {
-  std::int64_t time = 0;      ///< [ns] time of the measurement
-  std::string frame;          ///< frame of the sensor: x along bearing 0
-  float fov = 0.0F;           ///< [rad] bearings range from -fov/2 to +fov/2, inclusive; a single sample has bearing 0
-  float scan_time = 0.0F;     ///< [s] time between scans
-  double range_min = 0.0;     ///< [m]
-  double range_max = 0.0;     ///< [m]
-  std::vector<float> ranges;  ///< [m] one per sample, as defined by base::rep117_range
+  std::int64_t time = 0;   ///< [ns] time of the measurement
+  std::string frame;       ///< frame of the sensor: x along bearing 0
+  float fov = 0.0F;        ///< [rad] bearings range from -fov/2 to +fov/2, inclusive; a single sample has bearing 0
+  float scan_time = 0.0F;  ///< [s] time between scans
+  float time_increment = 0.0F;  ///< [s] between beams of a rolling scan, whose last is cast at `time`; else 0
+  double range_min = 0.0;       ///< [m]
+  double range_max = 0.0;       ///< [m]
+  std::vector<float> ranges;    ///< [m] one per sample, as defined by base::rep117_range
 };
 
 /// Writes position and orientation, the quaternion (x, y, z, w).

@@ -72,6 +72,7 @@ struct SensorInfo {
   double range_min = 0.0;               ///< [m]
   double range_max = 0.0;               ///< [m]
   std::size_t width = 0;                ///< as for `encode_reading`; not read back
+  double sweep = 0.0;                   ///< [s] of a rolling scan; not read back
   std::vector<StandardTopic> standard;  ///< not read back, since the world contains them
   std::string frame;                    ///< not read back
 };

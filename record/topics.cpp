@@ -25,6 +25,7 @@ Scan header_of(const SensorInfo& sensor) {
   return {.frame = sensor.frame,
           .fov = static_cast<float>(sensor.fov),
           .scan_time = static_cast<float>(1.0 / sensor.rate),
+          .time_increment = static_cast<float>(sensor.sweep / std::max(1u, sensor.samples)),
           .range_min = sensor.range_min,
           .range_max = sensor.range_max};
 }

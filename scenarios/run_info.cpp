@@ -27,7 +27,7 @@ void add_type(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
     info.sensor_types.push_back(sensor_type_info(*group.type));
     for (const sensors::SensorSpec& row : group.rows)
       info.movers[row.mover].sensors.push_back({group.type->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements,
-                                                row.range_min, row.limit, row.width});
+                                                row.range_min, row.limit, row.width, row.sweep});
   }
 }
 

@@ -47,6 +47,10 @@ double CarrierTrail::reach(const base::Report& now) const {
   return most;
 }
 
+bool CarrierTrail::at_rest(const base::Report& now) const {
+  return std::ranges::all_of(states_, [&](const base::Report& state) { return is_same_place(state, now); });
+}
+
 void CarrierTrail::write(base::ByteWriter& out) const {
   out.put(static_cast<std::uint32_t>(states_.size()));
   for (const base::Report& s : states_) {

@@ -9,6 +9,12 @@
 
 namespace sf::sensors {
 
+/// Equal poses and tilts, to the bit.
+inline bool is_same_place(const base::Report& a, const base::Report& b) {
+  return a.X_WM.x == b.X_WM.x && a.X_WM.y == b.X_WM.y && a.X_WM.z == b.X_WM.z && a.X_WM.yaw == b.X_WM.yaw &&
+         a.tilt.roll == b.tilt.roll && a.tilt.pitch == b.tilt.pitch;
+}
+
 class CarrierTrail {
  public:
   /// @param duration [ns] that `at` looks back  @param max_speed [m/s] of the carrier
@@ -22,6 +28,9 @@ class CarrierTrail {
   base::Report at(std::int64_t time, const base::Report& now) const;
   /// Returns the greatest distance [m] of the positions since the oldest tick from that of `now`.
   double reach(const base::Report& now) const;
+
+  /// True if the carrier stood still since the oldest tick.
+  bool at_rest(const base::Report& now) const;
 
   void write(base::ByteWriter& out) const;
   void read(base::ByteReader& in);

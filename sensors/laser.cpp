@@ -7,8 +7,10 @@
 
 #include "base/elementary.h"
 #include "base/tilted_pose.h"
+#include "base/time.h"
 #include "raycast/casters.h"
 #include "raycast/ray_caster.h"
+#include "sensors/carrier_trail.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_packets.h"
@@ -47,6 +49,10 @@ class Lasers : public SensorBackend {
  public:
   Lasers(const SensorContext& context, const ParsedSensors& sensors);
 
+  void accumulate(std::int64_t now, bool between) override;
+  void write_state(std::uint32_t row, base::ByteWriter& out) const override;
+  void read_state(std::uint32_t row, base::ByteReader& in) override;
+  void restart(std::uint32_t row, std::int64_t now) override;
   void place_movers() override { caster_.place_movers(); }
   bool update_outlines(const world::World& world) override {
     longest_ = reaches_of(world).longest;
@@ -55,7 +61,7 @@ class Lasers : public SensorBackend {
   }
   bool prepare(std::span<const DueSample> due) override {
     due_.assign(due.begin(), due.end());
-    prepare_tilted();
+    prepare_scene();
     return caster_.prepare(due);
   }
   void record_measure(gpu::Batch& batch) override { caster_.record(batch); }
@@ -70,9 +76,12 @@ class Lasers : public SensorBackend {
   void shape(std::size_t i);
   void mark(std::size_t i);
   void write(std::size_t i, base::ReadingBlock& block) const;
-  bool is_tilted(std::size_t i) const;
-  void prepare_tilted();
-  void cast_tilted(std::size_t i, unsigned thread);
+  base::Report state_of(std::uint32_t row) const;
+  bool moves(std::uint32_t row) const;
+  bool needs_scene(std::size_t i) const;
+  void prepare_scene();
+  void find_poses(std::uint32_t row, const PlanarBeams& beams, std::vector<base::RigidTransform>& X_WS) const;
+  void cast_in_scene(std::size_t i, unsigned thread);
 
   const world::World& world_;
   std::span<const base::Report> states_;
@@ -88,9 +97,17 @@ class Lasers : public SensorBackend {
   std::vector<double> values_;                           ///< [m] samples of all lasers, if any laser is reworked
   std::vector<std::uint32_t> met_;                       ///< models of all lasers' samples, if any laser is reworked
   std::vector<base::QualityFlag> quality_;               ///< flags of all lasers' samples
-  std::unique_ptr<TiltedScans> tilted_;                  ///< null: no robot has been tilted
-  std::map<std::vector<double>, PlanarBeams> patterns_;  ///< by the cast bearings [rad], for tilted lasers
-  std::vector<TiltedScan> scans_;                        ///< per thread
+  std::unique_ptr<TiltedScans> tilted_;                  ///< null: no scan has needed it
+  std::map<std::vector<double>, PlanarBeams> patterns_;  ///< by the cast bearings [rad] and times [s]
+  /// Of one thread.
+  struct Scratch {
+    TiltedScan scan;
+    std::vector<base::RigidTransform> X_WS;
+  };
+  std::vector<Scratch> scratch_;
+  std::vector<CarrierTrail> trails_;  ///< per laser; empty: no scan is rolling
+  std::vector<base::Report> last_;    ///< per laser, in the last tick or sample, if a scan is rolling
+  std::int64_t now_ = 0;
 };
 
 Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
@@ -112,6 +129,12 @@ Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
   values_.resize(any ? samples : 0);
   met_.resize(any ? samples : 0);
   quality_.assign(samples, base::QualityFlag::not_cast);
+  if (std::ranges::any_of(lasers_, [](const CastLaser& each) { return each.laser.scan_time > 0.0; })) {
+    for (const CastLaser& each : lasers_)
+      trails_.emplace_back(base::nanoseconds(each.laser.scan_time),
+                           context.world.movers[rows_[trails_.size()].mover].max_forward);
+    last_.resize(rows_.size());
+  }
   for (std::uint32_t i = 0; i < rows_.size(); ++i) {
     find_results(i);
     for (const std::uint32_t sample : caster_.plan(i).samples)
@@ -198,7 +221,46 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   block.state = {};
 }
 
-bool Lasers::is_tilted(std::size_t i) const { return !base::is_level(states_[rows_[due_[i].row].mover].tilt); }
+base::Report Lasers::state_of(std::uint32_t row) const {
+  base::Report state = states_[rows_[row].mover];
+  state.time = now_;
+  return state;
+}
+
+void Lasers::accumulate(std::int64_t now, bool between) {
+  now_ = now;
+  for (std::uint32_t row = 0; row < trails_.size(); ++row) {
+    last_[row] = state_of(row);
+    if (!between && lasers_[row].laser.scan_time > 0.0) trails_[row].add(last_[row]);
+  }
+}
+
+void Lasers::write_state(std::uint32_t row, base::ByteWriter& out) const {
+  if (!trails_.empty()) trails_[row].write(out);
+}
+
+void Lasers::read_state(std::uint32_t row, base::ByteReader& in) {
+  if (!trails_.empty()) trails_[row].read(in);
+}
+
+void Lasers::restart(std::uint32_t row, std::int64_t now) {
+  now_ = now;
+  if (trails_.empty()) return;
+  trails_[row].clear();
+  last_[row] = state_of(row);
+}
+
+/// True if a rolling laser's carrier moved during its scan, and is where the last tick or sample left it, not at a pose
+/// of a single reading.
+bool Lasers::moves(std::uint32_t row) const {
+  if (trails_.empty() || lasers_[row].laser.scan_time == 0.0) return false;
+  const base::Report now = state_of(row);
+  return is_same_place(now, last_[row]) && !trails_[row].at_rest(now);
+}
+
+bool Lasers::needs_scene(std::size_t i) const {
+  return !base::is_level(states_[rows_[due_[i].row].mover].tilt) || moves(due_[i].row);
+}
 
 /// Bearings [rad] of the cast beams of a laser, without angular noise.
 std::vector<double> bearings_of(const raycast::ScanSettings& scan, const raycast::BeamPlan& plan) {
@@ -207,43 +269,74 @@ std::vector<double> bearings_of(const raycast::ScanSettings& scan, const raycast
   return bearings;
 }
 
-void Lasers::prepare_tilted() {
+/// Times [s] of the cast beams of a rolling laser, the last one at the reading's.
+std::vector<double> times_of(const LaserSettings& laser, const raycast::BeamPlan& plan) {
+  std::vector<double> times;
+  for (const std::uint32_t sample : plan.samples)
+    times.push_back(-laser.scan_time * static_cast<double>(laser.samples - 1 - sample) / laser.samples);
+  return times;
+}
+
+std::vector<double> pattern_key(const std::vector<double>& bearings, const std::vector<double>& times) {
+  std::vector<double> key = bearings;
+  key.insert(key.end(), times.begin(), times.end());
+  return key;
+}
+
+void Lasers::prepare_scene() {
   bool any = false;
   for (std::size_t i = 0; i < due_.size(); ++i) {
-    if (!is_tilted(i)) continue;
+    if (!needs_scene(i)) continue;
     any = true;
-    const auto bearings = bearings_of(caster_.scanners()[due_[i].row].scan, caster_.plan(due_[i].row));
-    if (!patterns_.contains(bearings)) patterns_.emplace(bearings, planar_beams(bearings));
+    const std::uint32_t row = due_[i].row;
+    const auto bearings = bearings_of(caster_.scanners()[row].scan, caster_.plan(row));
+    const auto times = moves(row) ? times_of(lasers_[row].laser, caster_.plan(row)) : std::vector<double>();
+    const auto key = pattern_key(bearings, times);
+    if (!patterns_.contains(key)) patterns_.emplace(key, planar_beams(bearings, times));
   }
   if (!any) return;
   if (!tilted_) {
     double reach = 0.0;
     for (const Row& row : rows_) reach = std::max(reach, row.range_max);
     tilted_ = std::make_unique<TiltedScans>(world_, reach, reference_, thread_pool_.threads());
-    scans_.resize(thread_pool_.threads());
+    scratch_.resize(thread_pool_.threads());
   }
   tilted_->place(states_);
 }
 
-/// Replaces the results of the planar caster, in its tables, by those in the plane of a tilted laser.
-void Lasers::cast_tilted(std::size_t i, unsigned thread) {
+/// The sensor's poses, one, or one per tile of a rolling scan.
+void Lasers::find_poses(std::uint32_t row, const PlanarBeams& beams, std::vector<base::RigidTransform>& X_WS) const {
+  const base::RigidTransform X_MS = base::transform_of(lasers_[row].laser.X_MS);
+  X_WS.clear();
+  if (!moves(row)) return X_WS.push_back(base::compose(tilted_->X_WM(rows_[row].mover), X_MS));
+  const base::Report now = state_of(row);
+  for (const scene::BeamTile& tile : beams.pattern) {
+    const base::Report state = trails_[row].at(now_ + base::nanoseconds(tile.time), now);
+    X_WS.push_back(base::compose(base::transform_of(state.X_WM, state.tilt), X_MS));
+  }
+}
+
+/// Replaces the results of the planar caster, in its tables, by those in the scene of solids.
+void Lasers::cast_in_scene(std::size_t i, unsigned thread) {
   const std::uint32_t r = due_[i].row;
   Row& row = rows_[r];
   const raycast::BeamPlan& plan = caster_.plan(r);
   const raycast::ScanSettings& scan = caster_.scanners()[r].scan;
   std::vector<double> bearings = bearings_of(scan, plan);
-  const PlanarBeams* beams = &patterns_.at(bearings);
+  const auto times = moves(r) ? times_of(lasers_[r].laser, plan) : std::vector<double>();
+  const PlanarBeams* beams = &patterns_.at(pattern_key(bearings, times));
   PlanarBeams noisy;
   if (noise_ && scan.noise.angle_sigma > 0.0) {
     std::vector<double> noise(bearings.size());
     raycast::draw_angle_noise(
         scan, plan, episodes_.key(base::RandomStream::angle_noise, row.mover, row.sensor, due_[i].sequence), noise);
     for (std::size_t k = 0; k < noise.size(); ++k) bearings[k] += noise[k];
-    noisy = planar_beams(bearings);
+    noisy = planar_beams(bearings, times);
     beams = &noisy;
   }
-  TiltedScan& out = scans_[thread];
-  tilted_->cast(*beams, row.mover, lasers_[r].laser.X_MS, row.range_max, thread, out);
+  auto& [out, X_WS] = scratch_[thread];
+  find_poses(r, *beams, X_WS);
+  tilted_->cast(*beams, row.mover, X_WS, row.range_max, thread, out);
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{caster_.lane(r)};
   row.grazing = false;
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
@@ -257,11 +350,11 @@ void Lasers::cast_tilted(std::size_t i, unsigned thread) {
 void Lasers::collect(std::span<base::ReadingBlock> out) {
   caster_.take_flags();
   thread_pool_.parallel_for_each(due_.size(), 32, [&](std::size_t i, unsigned thread) {
-    const bool tilted = is_tilted(i);
-    tilted ? cast_tilted(i, thread) : mark(i);
+    const bool in_scene = needs_scene(i);
+    in_scene ? cast_in_scene(i, thread) : mark(i);
     if (rows_[due_[i].row].reworked) shape(i);
     write(i, out[i]);
-    if (tilted) out[i].bound = out[i].bound_without_noise = scene::kRangeError;
+    if (in_scene) out[i].bound = out[i].bound_without_noise = scene::kRangeError;
   });
 }
 
@@ -280,7 +373,9 @@ SensorSpec spec_of(const CastLaser& cast, std::uint32_t mover, std::uint32_t num
                  .mode = cast.mode};
   row.fov = laser.fov;
   row.range_min = laser.range_min;
-  row.dependency_radius = row.reach = laser.range_max;
+  row.reach = laser.range_max;
+  row.dependency_radius = laser.scan_time > 0.0 ? 0.0 : laser.range_max;  // else also on earlier poses
+  row.sweep = laser.scan_time;
   const raycast::ScanNoise& noise = laser.noise;
   row.sigma = noise.angle_sigma > 0.0  // a beam that turns may hit another surface
                   ? HUGE_VAL

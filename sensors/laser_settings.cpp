@@ -14,6 +14,7 @@ namespace sf::sensors {
 namespace {
 
 constexpr std::uint32_t kMostSamples = 1'000'000;
+constexpr std::uint32_t kMostRollingBeams = 10'000;
 constexpr std::uint32_t kMostTransducers = 1'000;
 constexpr double kTransducerHeight = 0.02;  // [m]
 constexpr double kLongestLaserRange = 1e7;  // [m]
@@ -73,6 +74,14 @@ LaserSettings read_laser(const world::Sensor& sensor, LaserSettings laser) {
   laser.phase = common.phase;
   laser.latency = common.latency;
   laser.priority = common.priority;
+  const double turn_time = laser.fov / (2.0 * M_PI * laser.rate);
+  if (whole(sensor, "rolling", 0, 0, 1) == 1)
+    laser.scan_time = number(sensor, "scan_time", std::max(1e-6, turn_time), 1e-6, 60.0);
+  else if (find(sensor, "scan_time") != nullptr)
+    refuse(sensor, "scan_time", "'scan_time' is that of a rolling scan; expected 'rolling 1' with it");
+  if (laser.scan_time > 0.0 && laser.samples > kMostRollingBeams)
+    refuse(sensor, "rolling",
+           fmt::format("a rolling scan of {} beams; expected at most {}", laser.samples, kMostRollingBeams));
   laser.accuracy = accuracy_of(sensor);
   laser.color = sensor.color;
   return laser;
@@ -135,6 +144,7 @@ world::Sensor laser_sensor(const LaserSettings& laser) {
   set("rate", {laser.rate});
   set("phase", {laser.phase});
   set("latency", {laser.latency});
+  if (laser.scan_time > 0.0) set("rolling", {1.0}), set("scan_time", {laser.scan_time});
   const world::Accuracy& accuracy = laser.accuracy;
   if (!accuracy.word.empty()) sensor.settings.push_back({"accuracy", {}, accuracy.word, accuracy.line, accuracy.file});
   return sensor;

@@ -19,6 +19,7 @@ struct LaserSettings : raycast::ScanSettings {
   double rate = 10.0;         ///< [Hz] > 0
   double phase = 0.0;         ///< [s] time of the first reading
   double latency = 0.0;       ///< [s] from measurement to delivery
+  double scan_time = 0.0;     ///< [s] from the first beam of a rolling scan to the end of the last; 0: all at once
   std::uint8_t priority = 5;  ///< as SensorSpec::priority
   world::Accuracy accuracy;
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
@@ -26,13 +27,15 @@ struct LaserSettings : raycast::ScanSettings {
 
 /// Keys of a laser, in addition to the common ones.
 inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color", "noise",
-                                                  "resolution",
+                                                  "resolution", "rolling", "scan_time",
                                                   // Stage's older name of `resolution`, with the same meaning
                                                   "laser_sample_skip"};
 inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]", "spose3[]", "noise", "resolution",
+                                                   "rolling", "scan_time",
                                                    // accepted but not modelled
                                                    "ssize", "sraycount"};
-inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples", "noise", "resolution"};
+inline constexpr std::string_view kBlockKeys[] = {"range", "view",       "fov",     "samples",
+                                                  "noise", "resolution", "rolling", "scan_time"};
 inline constexpr world::SensorKeyword kLaserWord{"laser", kLaserKeys};
 inline constexpr world::SensorKeyword kRangerWord{"ranger", kRangerKeys, kBlockKeys};
 

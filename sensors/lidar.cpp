@@ -101,8 +101,12 @@ class Lidars : public HostBackend {
   std::uint64_t rays_ = 0;
 };
 
-/// A mixed pixel has no true range.
-double range_error(const LidarSettings& s) { return s.beams->parts == 1 ? scene::kRangeError : HUGE_VAL; }
+bool is_coarse(const LidarSettings& s) { return kLidarAngles[s.mode] > 0.0; }
+
+/// A mixed pixel has no true range, and a simplified mesh none that is bounded along a beam.
+double range_error(const LidarSettings& s) {
+  return s.beams->parts == 1 && !is_coarse(s) ? scene::kRangeError : HUGE_VAL;
+}
 
 double longest_range(std::span<const LidarSettings> lidars) {
   double longest = 0.0;
@@ -125,7 +129,7 @@ Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
       reference_(!raycast::choose_caster(context.device.info().software, context.scene.caster).same_bytes),
-      scene_(context.world, longest_range(settings_)),
+      scene_(context.world, longest_range(settings_), std::ranges::any_of(settings_, is_coarse)),
       reflectances_(context.world),
       first_beam_(1, 0),
       first_part_(1, 0),
@@ -151,11 +155,7 @@ base::Report Lidars::state_of(std::size_t row) const {
   return state;
 }
 
-bool Lidars::moves_on(std::size_t row) const {
-  const base::Report &now = states()[rows()[row].mover], &last = last_[row];
-  return now.X_WM.x == last.X_WM.x && now.X_WM.y == last.X_WM.y && now.X_WM.z == last.X_WM.z &&
-         now.X_WM.yaw == last.X_WM.yaw && now.tilt.roll == last.tilt.roll && now.tilt.pitch == last.tilt.pitch;
-}
+bool Lidars::moves_on(std::size_t row) const { return is_same_place(states()[rows()[row].mover], last_[row]); }
 
 void Lidars::accumulate(std::int64_t now, bool between) {
   now_ = now;
@@ -200,7 +200,7 @@ bool Lidars::prepare(std::span<const DueSample> due) {
     X_WS_[i] = base::compose(scene_.X_WM(mover), s.X_MS);
     double reach = s.echo.range_max;
     if (!trails_.empty() && moves_on(row)) reach += trails_[row].reach(state_of(row)) + 2.0 * glm::length(s.X_MS.p);
-    floor_[i] = scene_.list(mover, X_WS_[i].p, reach, instances_[i]);
+    floor_[i] = scene_.list(mover, X_WS_[i].p, reach, instances_[i], kLidarAngles[s.mode]);
     const std::size_t tiles = s.beams->pattern.size(), size = whole ? tiles : kTilesPerJob;
     for (std::size_t first = 0; first < tiles; first += size)
       jobs_.push_back({i, first, std::min(tiles, first + size)});
@@ -368,8 +368,10 @@ SpatialBeams beams_of_lidar(const ParsedSensors& sensors, std::size_t row) {
 }
 
 ErrorBound bound_of_lidar(const world::World&, const ParsedSensors& sensors, std::size_t row) {
-  const double error = range_error(sensors.settings_as<LidarSettings>()[row]);
-  return {error, std::isinf(error) ? "none for beams with a divergence" : ""};
+  const LidarSettings& s = sensors.settings_as<LidarSettings>()[row];
+  return {range_error(s), is_coarse(s)         ? "none for simplified meshes"
+                          : s.beams->parts > 1 ? "none for beams with a divergence"
+                                               : ""};
 }
 
 constexpr Column kColumns[] = {

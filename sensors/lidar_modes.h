@@ -1,5 +1,5 @@
 #pragma once
-// Accuracy modes of lidars: fewer columns are cast, the others interpolated between them.
+// Accuracy modes of lidars: fewer columns are cast, the others interpolated between them; or meshes are simplified.
 
 #include <cstdint>
 #include <span>
@@ -14,9 +14,12 @@ inline constexpr AccuracyMode kLidarModes[] = {
     {"exact", "every beam"},
     {"skip2", "every 2nd column; the others interpolated between the hits"},
     {"skip4", "every 4th column"},
+    {"coarse1", "every beam; meshes simplified by at most 1 mrad as seen from the sensor"},
+    {"coarse4", "meshes simplified by at most 4 mrad"},
 };
-/// Columns per cast column, by row of kLidarModes.
-inline constexpr std::uint32_t kLidarSkips[] = {1, 2, 4};
+// By row of kLidarModes.
+inline constexpr std::uint32_t kLidarSkips[] = {1, 2, 4, 1, 1};          ///< columns per cast column
+inline constexpr double kLidarAngles[] = {0.0, 0.0, 0.0, 0.001, 0.004};  ///< [rad] of displaced vertices
 
 /// A scan's tables, beam by beam.
 struct LidarScan {

@@ -44,7 +44,7 @@ void require_numbers(const world::World& world) {
 
 }  // namespace
 
-SpatialScene::SpatialScene(const world::World& world, double reach)
+SpatialScene::SpatialScene(const world::World& world, double reach, bool coarse)
     : copies_(world),
       floor_(!world.floor_unseen),
       holes_(scene::box_of_holes(world)),
@@ -54,7 +54,10 @@ SpatialScene::SpatialScene(const world::World& world, double reach)
   walls_ = scene::build_tree(scene::mesh_of(without(world.walls, models_with_mesh(world)), !world.floor_unseen));
   roads_ = scene::build_tree(scene::roads_of(world));
   if (floor_ && !world.floor_holes.empty()) holed_floor_ = scene::build_tree(scene::holed_floor(world, reach));
-  for (const world::Mesh& mesh : world.meshes) meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
+  for (const world::Mesh& mesh : world.meshes) {
+    meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
+    if (coarse) levels_.push_back(scene::levels_of(mesh));
+  }
   for (const world::MeshModel& row : world.mesh_models) {
     const std::uint32_t mover = world.models[row.model].mover;
     const bool own = mover != world::kNone && world.movers[mover].model == row.model;
@@ -88,20 +91,29 @@ void SpatialScene::add(const scene::SurfaceTree& tree, const base::RigidTransfor
   out.push_back({&tree, X_WI, false, owner});
 }
 
-bool SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const {
+void SpatialScene::add_mesh(std::uint32_t mesh, const base::RigidTransform& X_WI, std::uint32_t owner, const View& view,
+                            std::vector<scene::Instance>& out) const {
+  const scene::SurfaceTree& exact = meshes_[mesh];
+  if (view.angle == 0.0 || levels_.empty()) return add(exact, X_WI, owner, view.p, view.range, out);
+  const double away = glm::distance(base::transform(X_WI, exact.centre), view.p) - exact.radius;
+  add(scene::level_for(levels_[mesh], view.angle * away, exact), X_WI, owner, view.p, view.range, out);
+}
+
+bool SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out,
+                        double angle) const {
+  const View view{p, range, angle};
   out.assign({{&walls_, {}, true}, {&roads_, {}, true, base::kFloorHit}});
   const glm::dvec2 foot(p);
   const bool near_holes =
       !holed_floor_.empty() && glm::distance(foot, glm::clamp(foot, holes_.min, holes_.max)) <= range;
   if (near_holes) out.push_back({&holed_floor_, {}, true, base::kFloorHit});
-  for (const Part& part : fixed_) add(meshes_[part.mesh], part.X_BF, part.model, p, range, out);
+  for (const Part& part : fixed_) add_mesh(part.mesh, part.X_BF, part.model, view, out);
   const auto [first, end] = copies_.rows_with(mover, static_cast<std::uint32_t>(bodies_.size()));
   for (std::uint32_t m = first; m < end; ++m) {
     if (m == mover) continue;
     add(bodies_[m], X_WM_[m], base::kNoHit, p, range, out);
     for (const Part& part : carried_[copies_.row_of(m)])
-      if (!part.own || changed_[m] == 0)
-        add(meshes_[part.mesh], base::compose(X_WM_[m], part.X_BF), part.model, p, range, out);
+      if (!part.own || changed_[m] == 0) add_mesh(part.mesh, base::compose(X_WM_[m], part.X_BF), part.model, view, out);
   }
   return floor_ && !near_holes;
 }

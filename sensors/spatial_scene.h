@@ -8,6 +8,7 @@
 #include "base/report.h"
 #include "base/rigid_transform.h"
 #include "scene/rasterizer.h"
+#include "scene/simplify.h"
 #include "world/copies.h"
 #include "world/world.h"
 
@@ -16,8 +17,8 @@ namespace sf::sensors {
 class SpatialScene {
  public:
   /// @throws base::InputError for more triangles than their numbers can tell apart, over all places of all meshes
-  /// @param reach [m] longest range of a sensor
-  SpatialScene(const world::World& world, double reach);
+  /// @param reach [m] longest range of a sensor  @param coarse also builds coarser meshes, for `list`
+  SpatialScene(const world::World& world, double reach, bool coarse = false);
 
   /// Builds the bodies of all movers again. Meshes stay; one whose mover has another shape or size is not seen.
   void update_movers(const world::World& world);
@@ -27,8 +28,10 @@ class SpatialScene {
 
   /// Sets `out` to the walls, and to all other surfaces of the world of `mover` within `range` [m] of `p`, except its
   /// own. They are valid until the movers are updated or placed.
+  /// @param angle [rad] meshes may be coarser by displacements of this size as seen from `p`; 0: exact
   /// @return whether the plane z = 0 is a surface; near holes in the floor, a mesh in `out` is that instead
-  bool list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out) const;
+  bool list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out,
+            double angle = 0.0) const;
 
  private:
   /// A mesh of a model.
@@ -38,6 +41,13 @@ class SpatialScene {
     std::uint32_t model = 0;
     bool own = false;  ///< of the mover's own model, whose shape may change
   };
+  /// Surroundings of a sensor.
+  struct View {
+    glm::dvec3 p;
+    double range = 0.0, angle = 0.0;
+  };
+  void add_mesh(std::uint32_t mesh, const base::RigidTransform& X_WI, std::uint32_t owner, const View& view,
+                std::vector<scene::Instance>& out) const;
   void add(const scene::SurfaceTree& tree, const base::RigidTransform& X_WI, std::uint32_t owner, glm::dvec3 p,
            double range, std::vector<scene::Instance>& out) const;
 
@@ -48,6 +58,7 @@ class SpatialScene {
   scene::SurfaceTree holed_floor_;  ///< around all holes; empty: there are none
   base::Box holes_;
   std::vector<scene::SurfaceTree> meshes_;
+  std::vector<std::vector<scene::MeshLevel>> levels_;  ///< per mesh; empty: only exact ones
   std::vector<Part> fixed_;
   std::vector<std::vector<Part>> carried_;  ///< per mover of one world
   std::vector<scene::SurfaceTree> bodies_;  ///< per mover

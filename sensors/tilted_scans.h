@@ -1,6 +1,6 @@
 #pragma once
-// Planar scans of tilted robots: a laser's plane cuts the scene of solids, meshes and the floor that lidars see. Takes
-// memory only once a robot with a laser is tilted.
+// Planar scans of tilted robots, and of robots that move while they scan: each beam cuts the scene of solids, meshes
+// and the floor that lidars see. Takes memory only once a robot needs it.
 
 #include <cstdint>
 #include <glm/ext/vector_double3.hpp>
@@ -21,7 +21,8 @@ struct PlanarBeams {
   std::vector<glm::dvec3> directions;  ///< unit vectors
   scene::BeamPattern pattern;
 };
-PlanarBeams planar_beams(std::span<const double> bearings);
+/// @param times [s] <= 0 of the beams relative to the reading; empty: all 0
+PlanarBeams planar_beams(std::span<const double> bearings, std::span<const double> times);
 
 /// One scan, beam by beam.
 struct TiltedScan {
@@ -38,10 +39,12 @@ class TiltedScans {
 
   void update_movers(const world::World& world) { scene_.update_movers(world); }
   void place(std::span<const base::Report> states) { scene_.place(states); }
-  /// @param X_MS sensor in the frame of `mover`  @param range_max [m]  @param thread less than `threads`; each thread
-  /// uses its own number
-  void cast(const PlanarBeams& beams, std::uint32_t mover, const base::Pose& X_MS, double range_max, unsigned thread,
-            TiltedScan& out);
+  /// Pose of the mover in the world, as placed.
+  const base::RigidTransform& X_WM(std::uint32_t mover) const { return scene_.X_WM(mover); }
+  /// @param X_WS the sensor's poses, one or one per tile of the pattern, the last at the time of the reading
+  /// @param range_max [m]  @param thread less than `threads`; each thread uses its own number
+  void cast(const PlanarBeams& beams, std::uint32_t mover, std::span<const base::RigidTransform> X_WS, double range_max,
+            unsigned thread, TiltedScan& out);
 
  private:
   struct Scratch {

@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "raycast/casters.h"
+#include "robots/kinematics.h"
 #include "scene/rasterizer.h"
 #include "sensors/laser.h"
 #include "sensors/lidar.h"
+#include "tests/refusal.h"
 #include "tests/sensors/series.h"
 
 namespace sf::trial {
@@ -81,6 +83,55 @@ TEST(TiltedLaser, IsReworkedAsLevelScansAre) {
   }
   EXPECT_EQ(tilted.quality[1], base::QualityFlag::not_cast);
   EXPECT_TRUE(std::ranges::equal(farm.sense(0, sensors::kLaser, 0, X).values, before));
+}
+
+/// Drives in ticks of 10 ms. @return the last scan
+std::vector<double> drive(const world::World& world, const base::Twist& twist, base::Pose& X_WM) {
+  farm::Farm farm(world, host_device(), {.noise = false, .threads = 2});
+  farm.subscribe(0, base::only(sensors::kLaser));
+  std::vector<double> last;
+  base::Report state{0, 0, X_WM, twist};
+  for (int tick = 0; tick <= 20; ++tick, state.time += 10'000'000) {
+    if (tick > 0) state.X_WM = robots::advance(state.X_WM, twist, 0.01);
+    for (const base::ReadingBlock& r : farm.tick(state.time, std::span(&state, 1)))
+      last.assign(r.values.begin(), r.values.end());
+  }
+  X_WM = state.X_WM;
+  return last;
+}
+
+/// Each beam of a rolling scan has the range from the pose at its own time: a half turn of a laser of 10 Hz takes 50
+/// ms, and the last of its 91 beams is cast at the time of the reading.
+TEST(RollingLaser, EachBeamIsCastFromThePoseAtItsTime) {
+  world::World rolling = twins("rolling 1");
+  rolling.interval = 0.01;
+  const base::Twist twist{1.0, 0.2, 2.0};
+  base::Pose last{0.3, -0.2, 0.0, 0.4};
+  const std::vector<double> values = drive(rolling, twist, last);
+  const world::World still = twins();
+  farm::Farm farm(still, host_device(), {.noise = false, .threads = 1});
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const base::Pose then = robots::advance(last, twist, -0.05 * static_cast<double>(90 - i) / 91);
+    EXPECT_NEAR(farm.sense(0, sensors::kLaser, 0, then).values[i], values[i], 1e-6) << i;
+    moved += std::abs(farm.sense(0, sensors::kLaser, 0, last).values[i] - values[i]) > 1e-3;
+  }
+  EXPECT_GT(moved, 20u);
+}
+
+/// At rest it has the bytes of a scan that is not rolling.
+TEST(RollingLaser, AtRestNothingChanges) {
+  base::Pose X{0.3, -0.2, 0.0, 0.4};
+  EXPECT_EQ(drive(twins("rolling 1"), {}, X), drive(twins(), {}, X));
+}
+
+TEST(RollingLaser, ImpossibleSettingsAreRefused) {
+  const auto refused = [](const std::string& laser) {
+    return refusal_of([&] { const sensors::SensorSet set(world_of("position( \nlaser( " + laser + " ) )")); });
+  };
+  expect_in("trial.world:2: 'scan_time' is that of a rolling scan", refused("scan_time 0.1"));
+  expect_in("'scan_time'", refused("rolling 1 scan_time 0"));
+  expect_in("a rolling scan of 20000 beams; expected at most 10000", refused("rolling 1 samples 20000"));
 }
 
 }  // namespace
