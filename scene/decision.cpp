@@ -80,17 +80,35 @@ bool possible(const Cover& cover) {
   return std::ranges::none_of(cover.sides(), [](const Edge& e) { return e.certain && e.side < 0.0; });
 }
 
-/// Returns true if another face possibly covers the beam from the other side of an edge.
-bool shared(const Edge& edge, const Cover& owner, std::span<const Cover> covers) {
-  return std::ranges::any_of(covers, [&](const Cover& other) {
-    return other.face != owner.face && std::ranges::any_of(other.sides(), [&](const Edge& e) {
-             return e.a == edge.a && e.b == edge.b && e.left != edge.left;
-           });
-  });
+/// Returns true if a face possibly covers the beam from the other side of an edge of `owner`.
+bool shares(const Cover& other, const Edge& edge, const Cover& owner) {
+  return other.face != owner.face && std::ranges::any_of(other.sides(), [&](const Edge& e) {
+           return e.a == edge.a && e.b == edge.b && e.left != edge.left;
+         });
 }
 
-bool certain(const Cover& cover, std::span<const Cover> covers) {
-  return std::ranges::all_of(cover.sides(), [&](const Edge& e) { return e.certain || shared(e, cover, covers); });
+bool certain(const Cover& cover) {
+  return std::ranges::all_of(cover.sides(), [](const Edge& e) { return e.certain; });
+}
+
+/// Returns true if the beam certainly meets a surface at a face: it certainly covers the beam, or all faces that are
+/// connected to it by edges near the beam leave no such edge open. At a vertex on the outline of a body, one of the
+/// faces around it has an open edge.
+bool closed(const Cover& cover, std::span<const Cover> covers) {
+  thread_local std::vector<const Cover*> connected;  // keeps its memory
+  connected.assign(1, &cover);
+  for (std::size_t k = 0; k < connected.size(); ++k)
+    for (const Edge& edge : connected[k]->sides()) {
+      if (edge.certain) continue;
+      bool open = true;
+      for (const Cover& other : covers) {
+        if (!shares(other, edge, *connected[k])) continue;
+        open = false;
+        if (std::ranges::find(connected, &other) == connected.end()) connected.push_back(&other);
+      }
+      if (open) return false;
+    }
+  return true;
 }
 
 }  // namespace
@@ -142,11 +160,11 @@ Decision decide(std::span<const Candidate> candidates, glm::dvec3 direction, Dec
     if (!possible(cover)) continue;
     cover.face = candidate.face, cover.range = range, cover.grazing = std::abs(sine) < plane.least_sine;
     covers.push_back(cover);
-    if (range < nearest.range && certain(cover, {})) nearest.range = range, nearest.face = candidate.face;
+    if (range < nearest.range && certain(cover)) nearest.range = range, nearest.face = candidate.face;
   }
   for (const Cover& cover : covers) {
     const bool nearer = cover.range < nearest.range || (cover.range == nearest.range && cover.face <= nearest.face);
-    if (nearer) nearest = {cover.range, cover.face, cover.grazing || !certain(cover, covers)};
+    if (nearer) nearest = {cover.range, cover.face, cover.grazing || !closed(cover, covers)};
   }
   nearest.flagged = nearest.flagged || edge_on;
   return nearest;

@@ -5,7 +5,7 @@
 // same number. Its error is below 2^-48 |q_a| |q_b|. A face covers a beam certainly if all its sides exceed it, and
 // possibly if none is below its negative. The nearest of all that possibly cover it is the result: no beam passes
 // between faces that share an edge. It has a flag unless it certainly covers the beam, or every edge that does not is
-// shared with another face that possibly covers the beam from the other side.
+// shared with another face that possibly covers the beam from the other side, and so on around a vertex.
 
 #include <cstdint>
 #include <span>

@@ -212,8 +212,9 @@ void Lidars::cast(const Job& job, unsigned thread) {
   const std::uint32_t row = samples()[job.sample].row;
   const LidarBeams& beams = *settings_[row].beams;
   const auto tiles = std::span(beams.pattern).subspan(job.first_tile, job.end_tile - job.first_tile);
-  if (beams.times.empty() || !moves_on(row)) return cast_tiles(X_WS_[job.sample], tiles, job, thread);
   const base::Report now = state_of(row);
+  if (beams.times.empty() || !moves_on(row) || trails_[row].at_rest(now))
+    return cast_tiles(X_WS_[job.sample], tiles, job, thread);
   for (const scene::BeamTile& tile : tiles) {
     const base::Report state = trails_[row].at(now_ + base::nanoseconds(tile.time), now);
     const auto X_WS = base::compose(base::transform_of(state.X_WM, state.tilt), settings_[row].X_MS);

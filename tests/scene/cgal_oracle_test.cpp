@@ -71,7 +71,7 @@ TEST(CgalOracle, SharedVerticesAndEdges) {
     const ExactTree exact_tree(triangles.begin(), triangles.end());
     const SurfaceTree tree = build_tree(mesh);
     const Instance instance{&tree, {}, true};
-    for (const glm::dvec3 eye : {glm::dvec3{0.3, 0.1, -0.2}, glm::dvec3{1.0, 0.5, 0.25}, glm::dvec3{-6.0, 3.0, 2.0}}) {
+    for (const glm::dvec3& eye : {glm::dvec3{0.3, 0.1, -0.2}, glm::dvec3{1.0, 0.5, 0.25}, glm::dvec3{-6.0, 3.0, 2.0}}) {
       const std::vector<glm::dvec3> beams = aimed(mesh, eye, 7);
       const SpatialScan scan = cast({glm::dmat3(1.0), eye}, beams, 50.0, {{&instance, 1}, false});
       for (std::size_t i = 0; i < beams.size(); ++i, ++count) {

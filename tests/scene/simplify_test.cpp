@@ -65,7 +65,9 @@ TEST(Simplify, LevelsOfAClosedSurface) {
   const BeamPattern pattern = make_pattern(beams, 0);
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const MeshLevel& level = levels[k];
-    if (k > 0) EXPECT_DOUBLE_EQ(level.displacement, 0.5 * levels[k - 1].displacement);
+    if (k > 0) {
+      EXPECT_DOUBLE_EQ(level.displacement, 0.5 * levels[k - 1].displacement);
+    }
     EXPECT_LE(level.tree.mesh.faces.size(), 0.7 * static_cast<double>(mesh.corners.size()) / 3.0);
     const Instance instance{&level.tree, {}, true, 0};
     std::vector<double> ranges(beams.size());

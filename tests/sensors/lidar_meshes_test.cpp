@@ -127,7 +127,7 @@ TEST_F(LidarMeshes, PlacesFarAway) {
 /// A ball of 2 m, 20 m away, may be off by 4 mrad, 8 cm; without a bound, and with fewer triangles.
 TEST_F(LidarMeshes, CoarseMeshesAreNear) {
   std::string ball;
-  constexpr int kRings = 60, kColumns = 120;
+  constexpr int kRings = 150, kColumns = 300;
   for (int i = 0; i <= kRings; ++i)
     for (int k = 0; k < kColumns; ++k) {
       const double a = M_PI * i / kRings, b = 2 * M_PI * k / kColumns;
