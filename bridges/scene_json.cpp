@@ -196,6 +196,7 @@ Json sensors_json(const Scene& scene, std::uint32_t mover) {
              {"pose", pose_json(sensor.X_MS)},
              {"rate", sensor.rate}};
     if (type != nullptr && type->is_scan) row.update(Json{{"fov", sensor.fov}, {"range_max", sensor.range_max}});
+    if (sensor.width > 0) row["columns"] = sensor.width;  // of its type's
     add_elements(sensor, row);
     if (sensor.type == sensors::kLaser && scans < lasers.size()) row["color"] = color_of(lasers[scans++].laser.color);
     if (sensor.type == sensors::kLaneEdge && lane_edges < edges.size()) add_lane_edge(edges[lane_edges++], row);

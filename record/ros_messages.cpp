@@ -101,13 +101,16 @@ static std::int64_t duration_of(float time_increment, std::size_t samples) {
 
 void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
   CdrWriter cdr(out);
-  put_header(cdr, scan.time - duration_of(scan.time_increment, ranges.size()), scan.frame);
+  // Before time 0 nothing moved: such a scan has one time.
+  const std::int64_t duration = duration_of(scan.time_increment, ranges.size());
+  const bool one_time = duration > scan.time;
+  put_header(cdr, one_time ? scan.time : scan.time - duration, scan.frame);
   const bool one = ranges.size() < 2;
   const float fov = one ? 0.0F : scan.fov;
   cdr.put(-0.5F * fov);
   cdr.put(0.5F * fov);
   cdr.put(one ? 0.0F : fov / static_cast<float>(ranges.size() - 1));
-  cdr.put(scan.time_increment);
+  cdr.put(one_time ? 0.0F : scan.time_increment);
   cdr.put(scan.scan_time);
   cdr.put(base::float_below(scan.range_min));
   cdr.put(base::float_above(scan.range_max));

@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "base/thread_pool.h"
+#include "base/tilted_pose.h"
 #include "farm/farm.h"
 #include "raycast/casters.h"
 #include "robots/kinematics.h"
@@ -172,6 +173,7 @@ class Verifier {
     if (faulty_scans_ > 0)
       result_.skipped.push_back(
           fmt::format("{} faulty scans in plain C++, which has no faults of sensors", faulty_scans_));
+    add_spatial();
     if (near_maps_ > 0)
       result_.skipped.push_back(
           fmt::format("{} occupancy maps: earlier versions treated surfaces nearer than a laser's minimum as obstacles",
@@ -179,6 +181,13 @@ class Verifier {
     if (recording_.readings.empty() && farm_.sensor_set().group(sensors::kLaser) == nullptr)
       result_.skipped.emplace_back(
           "all readings: none were recorded, and no robot has a laser to compare with plain C++");
+  }
+
+  void add_spatial() {
+    if (spatial_scans_ > 0)
+      result_.skipped.push_back(
+          fmt::format("{} rolling scans and scans of tilted robots in plain C++, which casts level ones from one pose",
+                      spatial_scans_));
   }
 
   /// A service's readings are those that robots subscribed to, at times of its clock. Only scans can be recomputed,
@@ -190,6 +199,8 @@ class Verifier {
         ++others;
       } else if (!has_states_at(r.time)) {
         ++lost;
+      } else if (is_spatial(r.mover, r.sensor, recording_.states[r.mover][tick_at(r.time)].tilt)) {
+        ++spatial_scans_;
       } else if (seen_++ % stride_ == 0) {
         const std::size_t tick = tick_at(r.time);
         asked_.push_back({r.mover, r.sensor, r.sequence, tick, r.time, r.values, allowed_at(r.mover, r.sensor, tick)});
@@ -203,6 +214,7 @@ class Verifier {
     }
     cast_again();
     result_.ticks = recording_.ticks;
+    add_spatial();
     if (recording_.readings.empty()) result_.skipped.push_back("no robot requested readings");
     if (lost > 0)
       result_.skipped.push_back(fmt::format("{} scans: the states at their times are missing or damaged", lost));
@@ -358,9 +370,18 @@ class Verifier {
   }
 
   /// Adds every `stride_`-th scan to the list for plain C++.
+  /// True for scans that are not planar: of tilted robots, or rolling ones.
+  bool is_spatial(std::uint32_t mover, std::uint32_t sensor, const base::Tilt& tilt) const {
+    return !base::is_level(tilt) || reference_.laser(mover, sensor).laser.scan_time > 0.0;
+  }
+
   void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {
     if (faulty_.contains({reading.type, reading.mover, reading.sensor, reading.sequence})) {
       ++faulty_scans_;
+      return;
+    }
+    if (is_spatial(reading.mover, reading.sensor, reading.tilt)) {
+      ++spatial_scans_;
       return;
     }
     if (seen_++ % stride_ == 0)
@@ -447,7 +468,7 @@ class Verifier {
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;
-  std::uint64_t unfelt_ = 0, near_maps_ = 0, faulty_scans_ = 0, received_ = 0;
+  std::uint64_t unfelt_ = 0, near_maps_ = 0, faulty_scans_ = 0, spatial_scans_ = 0, received_ = 0;
   /// Type, mover and number of derived sensors that depend on what robots received.
   std::set<std::tuple<std::uint8_t, std::uint32_t, std::uint32_t>> from_received_;
   std::vector<base::FaultMark> marks_;  ///< of all recomputed readings

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/elapsed.h"
+#include "base/tilted_pose.h"
 #include "base/time.h"
 #include "farm/farm.h"
 #include "scenarios/error_distribution.h"
@@ -172,7 +173,8 @@ std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device,
                        .unit = std::string(sensors::unit_of(type))};
       if (mode == 0) exact = read;
       compare(read, exact, grade);
-      if (mode == 0 && type.id == sensors::kLaser) {
+      const auto level = [](const base::Report& report) { return base::is_level(report.tilt); };
+      if (mode == 0 && type.id == sensors::kLaser && std::ranges::all_of(paths.front(), level)) {
         grade_errors(laser_errors(*entrants[0], paths, read, sensor_set), grade);
         grade.covered_max = grade.max;  // `exact` does not differ from itself
       }

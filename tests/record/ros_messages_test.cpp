@@ -86,6 +86,22 @@ TEST(Messages, ScanRoundTrips) {
   EXPECT_EQ(scan->ranges, (std::vector<float>{0.5F, 7.75F}));
 }
 
+/// The stamp is the time of the first beam; `time` that of the last. A scan that began before time 0 has one time.
+TEST(Messages, RollingScansHaveTheTimeOfTheirFirstBeam) {
+  Scan scan = sample_scan();
+  scan.time_increment = 0.025F;
+  Bytes out, first;
+  encode_scan(scan, std::vector<double>{1.0, 2.0, 3.0}, out);
+  EXPECT_EQ(at<std::int32_t>(out, 4), 11);
+  EXPECT_NEAR(at<std::uint32_t>(out, 8), 950'000'034.0, 2.0);
+  EXPECT_EQ(at<float>(out, 32), 0.025F);
+  EXPECT_EQ(decode_scan(out)->time, scan.time);
+  scan.time = 0;
+  encode_scan(scan, std::vector<double>{1.0, 2.0, 3.0}, first);
+  EXPECT_EQ(at<float>(first, 32), 0.0F);
+  EXPECT_EQ(decode_scan(first)->time, 0);
+}
+
 TEST(Messages, RejectsEveryTruncation) {
   const test::SampleTick tick(3);
   RunInfo info = test::sample_info(true);

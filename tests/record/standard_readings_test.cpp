@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <GeographicLib/LocalCartesian.hpp>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "record/cdr.h"
@@ -150,6 +152,47 @@ TEST(StandardReadings, MapIsFlippedVertically) {
   ASSERT_EQ(message.cdr.get_count(1), 32u);
   for (int i = 0; i < 32; ++i) EXPECT_EQ(message.cdr.get<std::int8_t>(), i == 7 ? 0 : i == 24 ? 100 : -1) << i;
   EXPECT_TRUE(message.cdr.good());
+}
+
+/// With intensities and times, points have the layout of velodyne_pointcloud's PointXYZIRT, of 22 bytes.
+TEST(StandardReadings, PointsHaveTheFieldsOfDrivers) {
+  StandardTopic topic{.message = Message::points, .range_min = 0.5, .range_max = 8.0};
+  topic.directions = std::make_shared<const std::vector<glm::dvec3>>(2, glm::dvec3{0, 1, 0});
+  topic.times = std::make_shared<const std::vector<double>>(std::vector<double>{-0.05, 0.0});
+  topic.width = 3;
+  Encoded message = of(topic, {2.0, 0.25, 0.1, 3.0, 0.75, 0.2});
+  CdrReader& cdr = message.cdr;
+  cdr.get<std::uint32_t>(), cdr.get<std::uint32_t>();
+  ASSERT_EQ(cdr.get_count(1), 6u);
+  for (const auto& [name, offset, type] : {std::tuple{"x", 0u, 7},
+                                           {"y", 4u, 7},
+                                           {"z", 8u, 7},
+                                           {"intensity", 12u, 7},
+                                           {"ring", 16u, 4},
+                                           {"time", 18u, 7}}) {
+    EXPECT_EQ(cdr.get_string(), name);
+    EXPECT_EQ(cdr.get<std::uint32_t>(), offset);
+    EXPECT_EQ(cdr.get<std::uint8_t>(), type);
+    EXPECT_EQ(cdr.get<std::uint32_t>(), 1u);
+  }
+  cdr.get<std::uint8_t>();
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 22u);
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 44u);
+  ASSERT_EQ(cdr.get_count(1), 44u);
+  std::array<std::uint8_t, 44> bytes;
+  for (std::uint8_t& byte : bytes) byte = cdr.get<std::uint8_t>();
+  const auto number = [&](std::size_t at) {
+    float value;
+    std::memcpy(&value, &bytes[at], sizeof value);
+    return value;
+  };
+  EXPECT_EQ(number(4), 2.0F);
+  EXPECT_EQ(number(12), 0.25F);
+  EXPECT_EQ(number(18), -0.05F);
+  EXPECT_EQ(number(22 + 4), 3.0F);
+  EXPECT_EQ(number(22 + 12), 0.75F);
+  EXPECT_EQ(cdr.get<std::uint8_t>(), 0) << "is_dense";
+  EXPECT_TRUE(cdr.good());
 }
 
 /// An organized cloud, one row per ring. Points without an echo in [min, max) are NaN.

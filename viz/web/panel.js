@@ -51,7 +51,7 @@ class Card {
     this.sensor = sensor;
     this.waiting = waiting;
     this.type = type;
-    this.quantities = quantities(type);
+    this.quantities = quantities({ ...type, columns: type.columns.slice(0, sensor.columns) });
     this.histories = this.quantities.map(() => new History());
     this.rows = element('dl');
     this.plot = element('canvas', { className: 'plot' });
