@@ -41,6 +41,13 @@ class Scan {
     return last_plane_;
   }
 
+  /// Normal of a beam's surface, toward the sensor.
+  glm::vec3 normal_of(std::uint32_t hit, std::uint32_t beam) {
+    if (hit == base::kNoHit) return {};
+    const glm::vec3 normal(plane_of(s_.face[beam]).normal);
+    return sines_[beam % kWidth] > 0.0 ? -normal : normal;
+  }
+
   Scratch& s_;
   double range_max_;
   bool floor_;
@@ -138,6 +145,7 @@ void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
     ranges_[i] = nearest.range;
     hits_[i] = nearest.face == kNoFace ? base::kNoHit : plane_of(nearest.face).owner;
     sines_[i] = nearest.face == kNoFace ? 0.0 : sine_of(plane_of(nearest.face), d);
+    s_.face[first + i] = nearest.face;
     grazing_ = (grazing_ & ~(1u << i)) | std::uint32_t{nearest.flagged} << i;
     ++s_.counts.uncertain;
   }
@@ -155,6 +163,8 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
   if (!out_.cosines.empty())
     for (std::uint32_t i = 0; i < kWidth; ++i)
       out_.cosines[place[i]] = hits_[i] == base::kNoHit ? 0.0f : static_cast<float>(std::min(1.0, std::abs(sines_[i])));
+  if (!out_.normals.empty())
+    for (std::uint32_t i = 0; i < kWidth; ++i) out_.normals[place[i]] = normal_of(hits_[i], first + i);
   flagged_ = flagged_ || grazing_ != 0;
   for (; grazing_ != 0; grazing_ &= grazing_ - 1)
     out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;

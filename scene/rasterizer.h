@@ -19,6 +19,7 @@
 // R is rounded up by 1e-5, which exceeds all products of these errors.
 
 #include <cstdint>
+#include <glm/ext/vector_float3.hpp>
 #include <memory>
 #include <span>
 #include <vector>
@@ -54,9 +55,13 @@ struct ScanOutput {
   std::span<double> ranges;              ///< [m] in [0, range_max]; range_max where nothing is nearer
   std::span<std::uint32_t> hits;         ///< owner of the face (Mesh::owners), base::kFloorHit, or base::kNoHit
   std::span<base::QualityFlag> quality;  ///< `grazing` where the error may exceed the bound. Only these are written
-  std::span<float> cosines = {};         ///< of the angles between beams and the surfaces' normals, in [0, 1]; 0
-                                         ///< without a surface. Empty: not wanted
-};
+  std::span<float> cosines = {  /// Unit normals of the surfaces in the sensor's frame, on the side of the sensor; 0
+                                /// without a surface. Empty: not
+      /// wanted.
+      std::span<glm::vec3> normals = {};
+};  ///< of the angles between beams and the surfaces' normals, in [0, 1]; 0
+    ///< without a surface. Empty: not wanted
+};  // namespace sf::scene
 
 struct ScanCounts {
   std::uint64_t beams = 0;

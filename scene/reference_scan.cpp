@@ -38,10 +38,15 @@ Real face_range(const Ray& ray, const Mesh& mesh, const Face& face) {
   return corners_of(face) == 3 ? range : std::min(range, triangle_range(ray, p[0], p[2], p[3]));
 }
 
-/// Cosine of the angle between a ray and the normal of a face.
-Real cosine_of(const Ray& ray, const Mesh& mesh, const Face& face) {
+Vector normal_of(const Mesh& mesh, const Face& face) {
   const Vector a(mesh.vertices[face[0]]), b(mesh.vertices[face[1]]), c(mesh.vertices[face[2]]);
-  return std::abs(glm::dot(glm::normalize(glm::cross(b - a, c - a)), glm::normalize(ray.direction)));
+  return glm::normalize(glm::cross(b - a, c - a));
+}
+
+/// Returns a normal in the world in the sensor's frame, toward the sensor.
+glm::vec3 seen_from(const glm::dmat3& R_WS, Vector normal, Vector direction) {
+  if (glm::dot(normal, direction) > 0.0L) normal = -normal;
+  return glm::vec3(rotate(glm::transpose(R_WS), normal));
 }
 
 }  // namespace
@@ -53,7 +58,8 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
   if (scene.floor && ray_W.direction.z != 0.0L) {
     const Real range = -ray_W.origin.z / ray_W.direction.z;
     if (range > 0.0L && range < hit.range)
-      hit = {range, base::kFloorHit, std::abs(ray_W.direction.z) / glm::length(ray_W.direction)};
+      hit = {range, base::kFloorHit, std::abs(ray_W.direction.z) / glm::length(ray_W.direction),
+             seen_from(X_WS.R, {0, 0, 1}, ray_W.direction)};
   }
   for (const Instance& instance : scene.instances) {
     const glm::dmat3 R_IW = glm::transpose(instance.X_WI.R);
@@ -62,9 +68,11 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
     for (const Face& face : mesh.faces) {
       const Real range = face_range(ray, mesh, face);
       if (!(range < hit.range)) continue;
+      const Vector normal = normal_of(mesh, face);
       hit = {range,
              mesh.owners.empty() ? instance.owner : mesh.owners[static_cast<std::size_t>(&face - mesh.faces.data())],
-             cosine_of(ray, mesh, face)};
+             std::abs(glm::dot(normal, glm::normalize(ray.direction))),
+             seen_from(X_WS.R, rotate(instance.X_WI.R, normal), ray_W.direction)};
     }
   }
   return hit;

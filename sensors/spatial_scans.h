@@ -1,0 +1,104 @@
+#pragma once
+// Base class of sensors that cast beams into the scene of solids: poses at the times of the beams, scenes, casting on
+// all threads. Derived classes turn what the beams meet into readings.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scene/rasterizer.h"
+#include "sensors/carrier_trail.h"
+#include "sensors/host_backend.h"
+#include "sensors/lidar_beams.h"
+#include "sensors/spatial_scene.h"
+
+namespace sf::sensors {
+
+/// One sensor.
+struct SpatialScanner {
+  base::RigidTransform X_MS;  ///< sensor in the mover's frame
+  double range_max = 0.0;     ///< [m] > 0, along the beams
+  double angle = 0.0;         ///< [rad] as SpatialScene::list
+  std::shared_ptr<const LidarBeams> beams;
+  bool plain = false;    ///< beams are cast into the reading's values
+  bool normals = false;  ///< also casts the normals of surfaces
+};
+
+/// Not thread-safe.
+class SpatialScans : public HostBackend {
+ public:
+  void accumulate(std::int64_t now, bool between) override;
+  void place_movers() override { scene_.place(states()); }
+  bool update_outlines(const world::World& world) override;
+  bool prepare(std::span<const DueSample> due) override;
+  void collect(std::span<base::ReadingBlock> out) override;
+  void write_state(std::uint32_t row, base::ByteWriter& out) const override;
+  void read_state(std::uint32_t row, base::ByteReader& in) override;
+  void restart(std::uint32_t row, std::int64_t now) override;
+  SensorStats stats() const override;
+
+ protected:
+  SpatialScans(const SensorContext& context, const SensorType& type, const ParsedSensors& sensors,
+               std::vector<SpatialScanner> scanners);
+
+  /// Writes the values, hits and flags of a due sample from what its beams met. Several threads call it at once.
+  virtual void finish(std::size_t sample, unsigned thread) = 0;
+
+  const SpatialScanner& scanner_of(std::size_t sample) const { return scanners_[samples()[sample].row]; }
+  /// What the beams of a sample met, part by part of the cast beams; of a plain one, its reading.
+  scene::ScanOutput output_of(std::size_t sample);
+  std::span<std::uint32_t> hits_of(std::size_t sample) { return beams_of(hits_, sample); }
+  std::span<base::QualityFlag> quality_of(std::size_t sample) { return beams_of(quality_, sample); }
+
+ private:
+  /// Part of a scan, the work of one thread.
+  struct Job {
+    std::size_t sample = 0;
+    std::size_t first_tile = 0, end_tile = 0;
+  };
+  void measure_all() override;
+  void cast(const Job& job, unsigned thread);
+  void cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const Job& job,
+                  unsigned thread);
+  base::Report state_of(std::size_t row) const;
+  /// True if the carrier is where the last tick or sample left it, not at a pose of a single reading.
+  bool moves_on(std::size_t row) const { return is_same_place(states()[rows()[row].mover], last_[row]); }
+  /// A sample's part of a table with one entry per beam.
+  template <class Value>
+  std::span<Value> beams_of(std::vector<Value>& table, std::size_t sample) const {
+    const std::size_t row = samples()[sample].row;
+    return std::span(table).subspan(first_beam_[row], first_beam_[row + 1] - first_beam_[row]);
+  }
+  /// A sample's part of a table with one entry per part of the cast beams.
+  template <class Value>
+  std::span<Value> parts_of(std::vector<Value>& table, std::size_t sample) const {
+    const std::size_t row = samples()[sample].row;
+    return std::span(table).subspan(first_part_[row], first_part_[row + 1] - first_part_[row]);
+  }
+
+  std::vector<SpatialScanner> scanners_;
+  bool reference_;  ///< casts every beam against every face in `long double`
+  SpatialScene scene_;
+  std::vector<std::uint32_t> hits_;  ///< of all beams
+  std::vector<base::QualityFlag> quality_;
+  std::vector<std::size_t> first_beam_;  ///< per row, plus one: index of its first beam in these tables
+  // Of the parts of the cast beams of sensors that are not plain.
+  std::vector<double> part_ranges_;  ///< [m]
+  std::vector<float> part_cosines_;
+  std::vector<std::uint32_t> part_hits_;
+  std::vector<base::QualityFlag> part_quality_;
+  std::vector<glm::vec3> part_normals_;         ///< empty: nobody wants them
+  std::vector<std::size_t> first_part_;         ///< per row, plus one
+  std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
+  std::vector<CarrierTrail> trails_;            ///< per row; empty: no scan is rolling
+  std::vector<base::Report> last_;              ///< per row, in the last tick or sample, if a scan is rolling
+  std::int64_t now_ = 0;
+  std::vector<base::RigidTransform> X_WS_;  ///< per due sample
+  std::vector<std::vector<scene::Instance>> instances_;
+  std::vector<std::uint8_t> floor_;  ///< per due sample: the plane z = 0 is a surface
+  std::vector<Job> jobs_;
+  std::uint64_t rays_ = 0;
+};
+
+}  // namespace sf::sensors
