@@ -237,21 +237,6 @@ std::vector<glm::dvec3> parts_of(const LidarBeams& beams, double divergence) {
   return parts;
 }
 
-base::RigidTransform mount_of(const world::Sensor& sensor) {
-  base::RigidTransform X_MB = base::transform_of(sensor.X_MS);
-  if (const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]")) {
-    const auto& v = *pose;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!(std::abs(v[k] * sensor.metres_per_unit) <= 1e6)) refuse(sensor, "pose6", "'pose6' is more than 1e6 m away");
-    const double unit = sensor.radians_per_unit;
-    for (std::size_t k = 3; k < 6; ++k)
-      if (!(std::abs(v[k] * unit) <= 1e6)) refuse(sensor, "pose6", "an angle of 'pose6' is more than 1e6 radians");
-    X_MB = base::compose(X_MB, {base::rotation_of(unit * v[3], unit * v[4], unit * v[5]),
-                                sensor.metres_per_unit * glm::dvec3{v[0], v[1], v[2]}});
-  }
-  return base::compose(X_MB, {glm::dmat3(1.0), {0.0, 0.0, 0.5 * sensor.height}});
-}
-
 void require_few_times(const world::Sensor& sensor, std::vector<double> times) {
   std::ranges::sort(times);
   const auto different = static_cast<std::size_t>(std::unique(times.begin(), times.end()) - times.begin());
@@ -307,6 +292,21 @@ void read_echoes(const world::Sensor& sensor, EchoSettings& s) {
 
 }  // namespace
 
+base::RigidTransform spatial_mount(const world::Sensor& sensor) {
+  base::RigidTransform X_MB = base::transform_of(sensor.X_MS);
+  if (const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]")) {
+    const auto& v = *pose;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!(std::abs(v[k] * sensor.metres_per_unit) <= 1e6)) refuse(sensor, "pose6", "'pose6' is more than 1e6 m away");
+    const double unit = sensor.radians_per_unit;
+    for (std::size_t k = 3; k < 6; ++k)
+      if (!(std::abs(v[k] * unit) <= 1e6)) refuse(sensor, "pose6", "an angle of 'pose6' is more than 1e6 radians");
+    X_MB = base::compose(X_MB, {base::rotation_of(unit * v[3], unit * v[4], unit * v[5]),
+                                sensor.metres_per_unit * glm::dvec3{v[0], v[1], v[2]}});
+  }
+  return base::compose(X_MB, {glm::dmat3(1.0), {0.0, 0.0, 0.5 * sensor.height}});
+}
+
 std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor, std::uint32_t skip) {
   Layout layout;
   if (const world::Setting* const file = find(sensor, "directions")) {
@@ -356,7 +356,7 @@ std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sen
 LidarSettings LidarReader::read(const world::World& world, const world::Sensor& sensor) {
   const Preset* const preset = preset_of(sensor);
   LidarSettings s;
-  s.X_MS = mount_of(sensor);
+  s.X_MS = spatial_mount(sensor);
   if (preset != nullptr) s.echo.range_max = preset->range, s.echo.sigma = preset->sigma;
   read_range(sensor, s.echo);
   read_noise(sensor, s.echo);

@@ -9,6 +9,7 @@
 #include "base/tilted_pose.h"
 #include "maps/map_packets.h"
 #include "netio/packet_forms.h"
+#include "sensors/camera.h"
 #include "sensors/laser_packets.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
@@ -303,7 +304,7 @@ PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8
   const netio::PayloadInfo info = inspect_payload({&type, &any}, sensors::WireFormat::farm, header, payload);
   if (info.status != PacketStatus::accepted) return info.status;
   const bool extended = static_cast<std::uint8_t>(header.type) >= sensors::kExtended;
-  if (type.id == sensors::kLidar) {
+  if (type.id == sensors::kLidar || type.id == sensors::kCamera) {
     add_lidar(payload, extended, type, out);
   } else if (type.is_scan) {
     add_scan(payload, extended, out);

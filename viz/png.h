@@ -17,6 +17,9 @@ enum class PngContent { figure, photograph };
 std::string encode_png(std::span<const std::uint8_t> rgb, int width, int height,
                        PngContent content = PngContent::figure, double dpi = 0.0);
 
+/// Returns the bytes of a PNG file with 16 bits per pixel. @param grey row by row, the top row first
+std::string encode_grey_png(std::span<const std::uint16_t> grey, int width, int height);
+
 /// Writes the bytes of a picture. @throws base::InputError if the file cannot be written
 void write_picture(const std::string& path, std::string_view bytes);
 

@@ -12,7 +12,9 @@
 #include "apps/reports/text.h"
 #include "base/box.h"
 #include "base/error.h"
+#include "sensors/camera.h"
 #include "sensors/laser_noise.h"
+#include "viz/png.h"
 #include "viz/world_figure.h"
 #include "world/free_space.h"
 
@@ -107,6 +109,22 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
   if (!where.empty()) print_message("warning: at ({:g}, {:g}) '{}' is {}", X_WM.x, X_WM.y, robot.name, where);
 }
 
+/// @return the exit code
+int write_image(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
+                const SenseOptions& options) {
+  const std::string& name = sensor_set.row(reading).name;
+  if (reading.type != sensors::kCamera)
+    throw base::InputError(world.file, 0,
+                           fmt::format("'{}' is no camera; expected one for --image (--type camera)", name));
+  const auto cameras = sensor_set.settings_of<sensors::CameraSettings>(sensors::kCamera, reading.mover);
+  const sensors::CameraSettings& camera = cameras[reading.sensor];
+  if (options.image == ImageKind::normals && !camera.normals)
+    throw base::InputError(world.file, 0, fmt::format("'{}' has no normals; expected 'normals 1' in the camera", name));
+  viz::write_picture(options.out, camera_png(camera, reading, *options.image));
+  print_message("wrote {}", options.out);
+  return 0;
+}
+
 }  // namespace
 
 int devices(const DevicesOptions& options) {
@@ -161,6 +179,7 @@ int sense(const SenseOptions& options) {
   if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   if (!options.json && !options.too_near_min) base::mark_too_near(reading.quality, values);
   reading.values = values;
+  if (options.image) return write_image(world, sensor_set, reading, options);
   if (!options.json) print_message(place_of(world, sensor_set, reading));
   print(options.json ? with_warnings(reading_json(world, sensor_set, reading), world.warnings)
                      : reading_csv(world, sensor_set, reading));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/options/tilted_pose.h"
+#include "apps/reports/camera_image.h"
 #include "base/pose.h"
 #include "bridges/web_access.h"
 #include "netio/packets.h"
@@ -205,6 +206,8 @@ struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
   std::string robot;               ///< empty: the first robot that has a sensor
   std::uint8_t type = 0;           ///< of the sensor; 0: the robot's first type
   std::uint32_t sensor = 0;        ///< index among the robot's sensors of that type
+  std::optional<ImageKind> image;  ///< of a camera, written to `out`
+  std::string out;
 };
 
 /// User settings of plots of sweeps.

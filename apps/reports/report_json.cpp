@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/rigid_transform.h"
 #include "sensors/accuracy.h"
+#include "sensors/camera.h"
 #include "sensors/laser.h"
 #include "sensors/magnetic_field/truncation.h"
 
@@ -94,6 +95,28 @@ Json spatial_pose_json(const base::ReadingBlock& reading, const sensors::Spatial
   const auto X_WS = base::compose(base::transform_of(reading.X_WM, reading.tilt), beams.X_MS);
   const glm::dquat q = glm::quat_cast(X_WS.R);
   return {{"sensor_position", {X_WS.p.x, X_WS.p.y, X_WS.p.z}}, {"sensor_orientation", {q.w, q.x, q.y, q.z}}};
+}
+
+/// Returns the numbers of an image, row by row from the top left.
+Json image_json(const world::World& world, const sensors::CameraSettings& camera, const base::ReadingBlock& reading) {
+  Json depth = Json::array(), labels = Json::array(), normals = Json::array();
+  const std::size_t width = camera.normals ? 4 : 1;
+  for (std::size_t i = 0; i < reading.hits.size(); ++i) {
+    const std::span<const double> pixel = reading.values.subspan(i * width, width);
+    depth.push_back(pixel[0]);
+    labels.push_back(reading.hits[i] == base::kNoHit ? Json() : Json(hit_name(world, reading.hits[i])));
+    if (camera.normals) normals.push_back({pixel[1], pixel[2], pixel[3]});
+  }
+  Json json{{"resolution", {camera.width, camera.height}},
+            {"focal_length_px", camera.focal_length},
+            {"depth_m", std::move(depth)},
+            {"labels", std::move(labels)}};
+  if (camera.normals) json["normals"] = std::move(normals);
+  Json unsure = Json::array();
+  for (std::size_t i = 0; i < reading.quality.size(); ++i)
+    if (reading.quality[i] != base::QualityFlag::none) unsure.push_back(i);
+  json["unsure_pixels"] = std::move(unsure);
+  return json;
 }
 
 /// Returns the columns of one element, by name. Beams also have their direction and the model that they hit.
@@ -398,6 +421,12 @@ std::string reading_json(const world::World& world, const sensors::SensorSet& se
     if (sigma > 0.0) head.update(noise_json(reading.bound_without_noise, sigma));
   }
   if (type.beams != nullptr) head.update(spatial_pose_json(reading, sensor_set.beams(reading)));
+  if (type.id == sensors::kCamera) {
+    head.update(image_json(
+        world, sensor_set.settings_of<sensors::CameraSettings>(sensors::kCamera, reading.mover)[reading.sensor],
+        reading));
+    return dump_json(head) + "\n";
+  }
   if (type.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
   if (type.list.empty()) {
     head.update(element_json(world, sensor_set, reading, 0));

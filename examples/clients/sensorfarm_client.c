@@ -34,7 +34,9 @@ enum {
   SF_OCCUPANCY = 12,
   SF_LASER_EXTENDED = 65,
   SF_LIDAR = 44,
-  SF_LIDAR_EXTENDED = 108
+  SF_LIDAR_EXTENDED = 108,
+  SF_CAMERA = 45,
+  SF_CAMERA_EXTENDED = 109
 };
 enum {
   SF_HEADER = 64,
@@ -188,6 +190,7 @@ static const sf_type sf_types[] = {
      {0},
      {{"value", 1, 0}, {"valid", 1, 1}, {"variance", 1, 0}, {"source", 1, 1}, {"age_s", 1, 0}}},
     {44, "lidar", 14000, {0}, {{"range_m", 1, 1e-3}}},
+    {45, "camera", 15000, {0}, {{"depth_m", 1, 1e-3}}},
     {36, "loop", 8000, {0}, {{"count", 1, 1}, {"occupancy", 1, 1e-6}, {"speed_m_s", 1, 1e-4}, {"vehicles", 1, 1}}},
     {37,
      "link-speed",
@@ -228,6 +231,7 @@ static const sf_type sf_types[] = {
     {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
     {108, "lidar", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}, {"intensity", 1, 1e-3}, {"incidence_rad", 1, 1e-4},
       {"second_range_m", 1, 1e-4}, {"second_intensity", 1, 1e-3}}},
+    {109, "camera", 0, {"total", "first", "part", "parts"}, {{"depth_m", 1, 1e-4}}},
     {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},
     {130, "SUBSCRIBE", 0, {"types"}, {{0}}},
@@ -352,7 +356,7 @@ static const char* decode_echoes(sf_packet* p, const uint8_t* b, size_t size, un
 }
 
 static const char* decode_laser(sf_packet* p, const uint8_t* b, size_t size) {
-  const bool extended = p->type == SF_LASER_EXTENDED || p->type == SF_LIDAR_EXTENDED;
+  const bool extended = p->type >= 64;
   const unsigned head = extended ? 16 : 2, word = extended ? 4 : 2;
   if (size < head) return "too short";
   p->width = 1;
@@ -679,9 +683,10 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   packet->fused = packet->type < 128 ? bytes[62] >> 2 & 1 : 0;
   if (has_accuracy(packet)) decode_accuracy(packet, bytes);
   if (packet->type < 128 || packet->type == SF_V2V || packet->type == SF_TAG) decode_state_quality(packet, bytes);
-  const uint8_t laser = packet->type;  // or a lidar
+  const uint8_t laser = packet->type;  // or a lidar or camera
   const char* const status =
-      laser == SF_LASER || laser == SF_LASER_EXTENDED || laser == SF_LIDAR || laser == SF_LIDAR_EXTENDED
+      laser == SF_LASER || laser == SF_LASER_EXTENDED || laser == SF_LIDAR || laser == SF_LIDAR_EXTENDED ||
+              laser == SF_CAMERA || laser == SF_CAMERA_EXTENDED
           ? decode_laser(packet, b, size)
       : packet->type == SF_LANE_EDGE    ? decode_lane_edge(packet, b, size)
       : packet->type == SF_OCCUPANCY    ? decode_occupancy(packet, b, size)
@@ -1130,7 +1135,8 @@ static bool is_newer(sf_client* c, const sf_packet* p) {
     if (c->newest[at].when < c->newest[oldest].when) oldest = at;
   const uint32_t ahead = at < 64 ? p->sequence - c->newest[at].sequence : 1;
   const bool repeated =
-      ahead == 0 && (p->type == SF_LASER_EXTENDED || p->type == SF_LIDAR_EXTENDED || p->type == SF_OCCUPANCY);
+      ahead == 0 && (p->type == SF_LASER_EXTENDED || p->type == SF_LIDAR_EXTENDED ||
+                     p->type == SF_CAMERA_EXTENDED || p->type == SF_OCCUPANCY);
   if (at < 64 && now_s() - c->newest[at].when <= 2.0 && !repeated && (ahead == 0 || ahead >= 1u << 31)) return false;
   at = at < 64 ? at : oldest;
   c->newest[at].stream = stream;

@@ -31,6 +31,7 @@ import time
 
 LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 4, 5, 6, 12, 65
 LIDAR, LIDAR_EXTENDED = 44, 108
+CAMERA, CAMERA_EXTENDED = 45, 109
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
 REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
             4: "refused: wrong address"}
@@ -81,6 +82,7 @@ SENSORS = {
                             ("yy_m2", None), ("source", 1), ("age_s", None)]),
     42: ("thermometer", 22000, [("temperature_C", 1e-3)]),
     44: ("lidar", 14000, [("range_m", 1e-3)]),
+    45: ("camera", 15000, [("depth_m", 1e-3)]),
     43: ("aggregate", 18000, [("value", None), ("valid", 1), ("variance", None), ("source", 1), ("age_s", None)]),
     36: ("loop", 8000, [("count", 1), ("occupancy", 1e-6), ("speed_m_s", 1e-4), ("vehicles", 1)]),
     37: ("link-speed", 2000, [("speed_m_s", None), ("travel_time_s", None), ("valid", 1), ("speed_speed_m2_s2", None),
@@ -95,7 +97,7 @@ SENSORS = {
                            ("vx_vy_m2_s2", None), ("vy_vy_m2_s2", None), ("identity", 1), ("kind", 1), ("tag", 1),
                            ("ahead_m", None), ("contact_s", None)]),
 }
-TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 108: "lidar", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
+TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 108: "lidar", 109: "camera", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
               137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES", 143: "DRIVE",
               144: "LANE", 145: "TEAM_MAP", 146: "OWN_READINGS", 147: "DROPPED"}
@@ -403,6 +405,9 @@ def decode(data):
         packet.update(decode_state(type, robot, payload))
     elif type in (LASER, LASER_EXTENDED):
         packet.update(decode_laser(type == LASER_EXTENDED, payload))
+    elif type in (CAMERA, CAMERA_EXTENDED):
+        image = decode_laser(type == CAMERA_EXTENDED, payload)
+        packet.update({"depth_m" if key == "range_m" else key: value for key, value in image.items()})
     elif type in (LIDAR, LIDAR_EXTENDED):
         packet.update(decode_lidar(type == LIDAR_EXTENDED, payload))
     elif type == LANE_EDGE:

@@ -7,6 +7,7 @@
 
 #include "maps/map_packets.h"
 #include "netio/packets.h"
+#include "sensors/camera.h"
 #include "sensors/laser_packets.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
@@ -48,7 +49,7 @@ void restore_spec(std::uint8_t type, std::span<const std::uint8_t> payload, Deco
     EXPECT_EQ(sensors::read_laser(payload, type >= sensors::kExtended, scan), sensors::PayloadError::none);
     out.spec.elements = scan.total;
     out.spec.limit = scan.extended ? 1e6 : sensors::kPlainRange;
-  } else if (out.type->id == sensors::kLidar) {
+  } else if (out.type->id == sensors::kLidar || out.type->id == sensors::kCamera) {
     sensors::LidarPart scan;
     EXPECT_EQ(sensors::read_lidar(payload, type >= sensors::kExtended, scan), sensors::PayloadError::none);
     out.spec.elements = scan.total, out.spec.width = scan.width;
@@ -115,8 +116,8 @@ TEST(PacketVectors, MatchTheFarmsPacketsInBothDirections) {
           << vector.text;
     }
   }
-  EXPECT_EQ(types.size(), sensors::sensor_types().size() + 2 + std::variant_size_v<decltype(netio::Packet::body)> - 1)
-      << "each sensor type, the second forms of lasers and lidars, and each state and request has a file";
+  EXPECT_EQ(types.size(), sensors::sensor_types().size() + 3 + std::variant_size_v<decltype(netio::Packet::body)> - 1)
+      << "each sensor type, the second forms of lasers, lidars and cameras, and each state and request has a file";
 }
 
 TEST(PacketVectors, HaveTheFarmsStatuses) {

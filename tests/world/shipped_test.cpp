@@ -45,6 +45,7 @@ World shipped(const std::string& name) {
                                              {"ptz", kFelt},
                                              {"fiducial", kSeen},
                                              {"lidar", kBeams},
+                                             {"camera", kBeams},
                                              {"localization", kComputed, {}, true},
                                              {"features", kComputed, {}, true},
                                              {"tracks", kComputed, {}, true}};
