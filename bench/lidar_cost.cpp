@@ -28,12 +28,15 @@ constexpr std::size_t kChecked = 2'000;  ///< beams checked against the referenc
 
 class FarmCaster : public SpatialCaster {
  public:
-  FarmCaster(const scene::SurfaceTree& tree, const std::vector<glm::dvec3>& beams, std::uint32_t row)
+  /// @param field null: the triangles of `tree`
+  FarmCaster(const scene::SurfaceTree& tree, const scene::HeightField* field, const std::vector<glm::dvec3>& beams,
+             std::uint32_t row)
       : instance_{&tree, {}, true},
+        field_(field),
         pattern_(scene::make_pattern(beams, row)),
         hits_(beams.size()),
         quality_(beams.size()) {}
-  std::string name() const override { return "farm"; }
+  std::string name() const override { return field_ == nullptr ? "farm" : "farm, terrain"; }
   void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override { scan(X_WS, ranges, {}); }
   double uncertain() const {
     return static_cast<double>(rasterizer_.counts().uncertain) / static_cast<double>(rasterizer_.counts().beams);
@@ -41,11 +44,13 @@ class FarmCaster : public SpatialCaster {
 
  protected:
   void scan(const base::RigidTransform& X_WS, std::span<double> ranges, std::span<float> cosines) {
-    rasterizer_.scan(X_WS, pattern_, kRange, {{&instance_, 1}, false}, {ranges, hits_, quality_, cosines});
+    const std::span instances(&instance_, field_ == nullptr ? 1 : 0);
+    rasterizer_.scan(X_WS, pattern_, kRange, {instances, false, {field_, {}}}, {ranges, hits_, quality_, cosines});
   }
 
  private:
   scene::Instance instance_;
+  const scene::HeightField* field_;
   scene::BeamPattern pattern_;
   std::vector<std::uint32_t> hits_;
   std::vector<base::QualityFlag> quality_;
@@ -148,9 +153,10 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
     methods.back().method = caster->name();
     methods.back().caster = std::move(caster);
   };
-  add(std::make_unique<FarmCaster>(tree, beams, row));
-  add(std::make_unique<CosineCaster>(tree, beams, row));
+  add(std::make_unique<FarmCaster>(tree, nullptr, beams, row));
+  add(std::make_unique<CosineCaster>(tree, nullptr, beams, row));
   if (row > 0) add(std::make_unique<RollingCaster>(tree, beams, row));
+  if (!scene.field.empty()) add(std::make_unique<FarmCaster>(tree, &scene.field, beams, row));
   for (auto& caster : embree_casters(scene.mesh, beams, kRange)) add(std::move(caster));
   std::vector<double> ranges(beams.size());
   take_turns(methods, turns, "farm", [&](std::size_t k, std::size_t) {
@@ -161,9 +167,11 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
     if (std::ranges::any_of(ranges, [](double r) { return std::isnan(r); })) fmt::print("{}: NaN\n", methods[k].method);
     return cost;
   });
-  fmt::print("{}, {}: {} faces, tree {:.2f} s, {} beams, {} poses, {} turns, {:.4f} % uncertain\n", scene_name, sensor,
-             tree.mesh.faces.size(), built.cpu_s, beams.size(), poses, turns,
-             100.0 * dynamic_cast<FarmCaster&>(*methods.front().caster).uncertain());
+  fmt::print("{}, {}: {} faces, tree {:.2f} s, {} beams, {} poses, {} turns\n", scene_name, sensor,
+             tree.mesh.faces.size(), built.cpu_s, beams.size(), poses, turns);
+  for (const Method& method : methods)
+    if (const auto* const farm = dynamic_cast<FarmCaster*>(method.caster.get()))
+      fmt::print("  {:16} {:.4f} % uncertain\n", method.method, 100.0 * farm->uncertain());
   const std::vector<Sample> samples = samples_of(scene, tree, beams);
   for (Method& method : methods) {
     check(method, scene, samples, ranges);

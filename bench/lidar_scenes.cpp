@@ -104,9 +104,12 @@ LidarScene terrain(int poses, Random& random) {
     return 6.0 * std::sin(0.05 * x) * std::cos(0.04 * y) + 1.5 * std::sin(0.21 * x + 0.3) * std::sin(0.17 * y) +
            0.2 * std::sin(1.3 * x) * std::sin(1.1 * y);
   };
+  std::vector<float> heights;
+  for (int r = 0; r <= 512; ++r)
+    for (int c = 0; c <= 512; ++c) heights.push_back(static_cast<float>(height(0.5 * c, 0.5 * r)));
+  out.field = scene::build_height_field(513, 513, {0.5, 0.5}, heights);
   add_grid(out.mesh, 512, 512, false, [&](std::uint32_t r, std::uint32_t c) {
-    const double x = 0.5 * c, y = 0.5 * r;
-    return dvec3{x, y, height(x, y)};
+    return dvec3{0.5 * c, 0.5 * r, heights[513 * r + c]};
   });
   for (int k = 0; k < poses; ++k) {
     const double x = uniform(random, 50, 206), y = uniform(random, 50, 206);

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "base/rigid_transform.h"
+#include "scene/height_field.h"
 #include "scene/mesh.h"
 
 namespace sf::bench {
 
 struct LidarScene {
   scene::Mesh mesh;
+  scene::HeightField field;                 ///< of the same surface; empty: none
   std::vector<base::RigidTransform> poses;  ///< of the sensor
 };
 

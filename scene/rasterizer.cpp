@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "scene/rasterizer/scratch.h"
 
@@ -12,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "scene/rasterizer.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h: the code that is compiled per instruction set.
+#include "scene/rasterizer/march-inl.h"
 #include "scene/rasterizer/ranges-inl.h"
 #include "scene/rasterizer/traverse-inl.h"
 
@@ -24,6 +26,9 @@ class Scan {
   Scan(Scratch& s, const RigidTransform& X_WS, double range_max, const SceneView& scene, const ScanOutput& out)
       : s_(s), range_max_(range_max), floor_(scene.floor), out_(out) {
     const glm::dmat3 R_SW = glm::transpose(X_WS.R);
+    if (scene.terrain.field != nullptr)
+      terrain_.emplace(*scene.terrain.field, base::relative(scene.terrain.X_WF, X_WS), range_max);
+    if (terrain_ && terrain_->side > 0) build_horizon(*terrain_, horizon_);
     floor_plane_ = {-R_SW[2], X_WS.p.z, 0x1p-53 * 32.0 * range_max / kRangeError, base::kFloorHit};
   }
   bool cast(const BeamTile& tile);
@@ -34,6 +39,8 @@ class Scan {
   void list_meshes(const BeamTile& tile);
   void evaluate_vector(const BeamTile& tile, std::uint32_t vector);
   void decide_uncertain(const BeamTile& tile, std::uint32_t vector);
+  void march(const BeamTile& tile, std::uint32_t vector);
+  void meet_terrain(const BeamTile& tile, std::uint32_t vector);
   void write(const BeamTile& tile, std::uint32_t vector);
   const SeenPlane& plane_of(std::uint32_t face) {
     if (face == kFloorFace) return floor_plane_;
@@ -44,14 +51,20 @@ class Scan {
   /// Normal of a beam's surface, toward the sensor.
   glm::vec3 normal_of(std::uint32_t hit, std::uint32_t beam) {
     if (hit == base::kNoHit) return {};
-    const glm::vec3 normal(plane_of(s_.face[beam]).normal);
-    return sines_[beam % kWidth] > 0.0 ? -normal : normal;
+    const std::uint32_t i = beam % kWidth;
+    const bool on_terrain = (terrain_hits_ >> i & 1) != 0;
+    const glm::vec3 normal(on_terrain ? terrain_normals_[i] : plane_of(s_.face[beam]).normal);
+    return sines_[i] > 0.0 ? -normal : normal;
   }
 
   Scratch& s_;
   double range_max_;
   bool floor_;
   SeenPlane floor_plane_;
+  std::optional<FieldView> terrain_;
+  Horizon horizon_;  ///< of a sensor above the terrain
+  static constexpr std::uint32_t kMarchings = 4;
+  Marching marching_[kMarchings];
   const ScanOutput& out_;
   bool flagged_ = false;
   std::uint32_t last_face_ = kNoFace;
@@ -170,6 +183,33 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
     out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;
 }
 
+/// Searches the terrain for some vectors at a time, since each step waits for the one before.
+void Scan::march(const BeamTile& tile, std::uint32_t vector) {
+  const std::span marchings = std::span(marching_).first(std::min(kMarchings, tile.used - vector));
+  for (std::uint32_t k = 0; k < marchings.size(); ++k) {
+    const std::uint32_t first = kWidth * (vector + k);
+    marchings[k].begin(*terrain_, horizon_, tile, first, all(1.000002f) / load(s_.low + first));
+  }
+  for (bool more = true; more;) {
+    more = false;
+    for (Marching& m : marchings) more = m.step() || more;
+  }
+}
+
+/// Shortens a vector's ranges to the terrain.
+void Scan::meet_terrain(const BeamTile& tile, std::uint32_t vector) {
+  Marching& marching = marching_[vector % kMarchings];
+  grazing_ |= marching.finish(ranges_, hits_, s_.counts);
+  if (out_.cosines.empty() && out_.normals.empty()) return;
+  terrain_hits_ = marching.met();
+  for (std::uint32_t rest = terrain_hits_; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    const std::uint32_t beam = kWidth * vector + i;
+    terrain_normals_[i] = glm::transpose(terrain_->X_FS.R) * marching.normal(i);
+    sines_[i] = glm::dot(terrain_normals_[i], glm::dvec3{tile.dx[beam], tile.dy[beam], tile.dz[beam]});
+  }
+}
+
 bool Scan::cast(const BeamTile& tile) {
   begin(tile);
   list_meshes(tile);
@@ -178,8 +218,10 @@ bool Scan::cast(const BeamTile& tile) {
     draw_mesh(s_, tile, s_.meshes[near.row]);
   }
   for (std::uint32_t v = 0; v < tile.used; ++v) {
+    if (terrain_ && v % kMarchings == 0) march(tile, v);
     evaluate_vector(tile, v);
     decide_uncertain(tile, v);
+    if (terrain_) meet_terrain(tile, v);
     write(tile, v);
   }
   s_.counts.beams += kWidth * tile.used;

@@ -27,6 +27,7 @@
 #include "base/reading.h"
 #include "base/rigid_transform.h"
 #include "scene/beam_pattern.h"
+#include "scene/height_field.h"
 #include "scene/surface_tree.h"
 
 namespace sf::scene {
@@ -44,10 +45,17 @@ struct Instance {
   std::uint32_t owner = base::kNoHit;  ///< of all faces, for a mesh without `Mesh::owners`
 };
 
+/// A height field in the world. It must outlive the scans.
+struct Terrain {
+  const HeightField* field = nullptr;  ///< null: none
+  RigidTransform X_WF;
+};
+
 /// Scene of one scan.
 struct SceneView {
   std::span<const Instance> instances;
   bool floor = false;  ///< the plane z = 0 is a surface
+  Terrain terrain{};   ///< a beam that meets it hits base::kFloorHit
 };
 
 /// Results of one scan, beam by beam in the order of the scan.

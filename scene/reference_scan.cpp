@@ -49,6 +49,29 @@ glm::vec3 seen_from(const glm::dmat3& R_WS, Vector normal, Vector direction) {
   return glm::vec3(rotate(glm::transpose(R_WS), normal));
 }
 
+struct FieldMeeting {
+  Real range = HUGE_VALL;  ///< infinite: none
+  Vector normal{};
+};
+
+/// The smallest range to the triangles of a height field.
+FieldMeeting field_range(const Ray& ray, const HeightField& field) {
+  const auto point = [&](std::int32_t i, std::int32_t j) {
+    return Vector(Real(i) * field.cell.x, Real(j) * field.cell.y, field.heights[field.at(i, j)]);
+  };
+  FieldMeeting nearest;
+  const auto try_one = [&](const Vector& a, const Vector& b, const Vector& c) {
+    const Real range = triangle_range(ray, a, b, c);
+    if (range < nearest.range) nearest = {range, glm::normalize(glm::cross(b - a, c - a))};
+  };
+  for (std::int32_t j = 0; j + 1 < field.rows; ++j)
+    for (std::int32_t i = 0; i + 1 < field.columns; ++i) {
+      const Vector a = point(i, j), e = point(i + 1, j + 1);
+      try_one(a, point(i + 1, j), e), try_one(a, e, point(i, j + 1));
+    }
+  return nearest;
+}
+
 }  // namespace
 
 ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, double range_max,
@@ -61,9 +84,19 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
       hit = {range, base::kFloorHit, std::abs(ray_W.direction.z) / glm::length(ray_W.direction),
              seen_from(X_WS.R, {0, 0, 1}, ray_W.direction)};
   }
+  const auto ray_in = [&](const RigidTransform& X_WF) {
+    const glm::dmat3 R_FW = glm::transpose(X_WF.R);
+    return Ray{rotate(R_FW, ray_W.origin - Vector(X_WF.p)), rotate(R_FW, ray_W.direction)};
+  };
+  if (scene.terrain.field != nullptr) {
+    const Ray ray = ray_in(scene.terrain.X_WF);
+    const FieldMeeting met = field_range(ray, *scene.terrain.field);
+    if (met.range < hit.range)
+      hit = {met.range, base::kFloorHit, std::abs(glm::dot(met.normal, glm::normalize(ray.direction))),
+             seen_from(X_WS.R, rotate(scene.terrain.X_WF.R, met.normal), ray_W.direction)};
+  }
   for (const Instance& instance : scene.instances) {
-    const glm::dmat3 R_IW = glm::transpose(instance.X_WI.R);
-    const Ray ray{rotate(R_IW, ray_W.origin - Vector(instance.X_WI.p)), rotate(R_IW, ray_W.direction)};
+    const Ray ray = ray_in(instance.X_WI);
     const Mesh& mesh = instance.tree->mesh;
     for (const Face& face : mesh.faces) {
       const Real range = face_range(ray, mesh, face);

@@ -31,6 +31,10 @@ struct Words {
 struct Mask {
   hn::Mask<decltype(kF)> part[kParts];
 };
+constexpr hn::RebindToSigned<decltype(kF)> kI;
+struct Ints {
+  hn::Vec<decltype(kI)> part[kParts];
+};
 
 /// Defines a function of vectors by its result in part `p`.
 #define SF_BY_PARTS(Result, name, parameters, result)                \
@@ -66,6 +70,27 @@ SF_BY_PARTS(Floats, select, (const Mask& m, const Floats& yes, const Floats& no)
 SF_BY_PARTS(Words, select, (const Mask& m, const Words& yes, const Words& no),
             hn::IfThenElse(hn::RebindMask(kU, m.part[p]), yes.part[p], no.part[p]))
 SF_BY_PARTS(Floats, select_or_zero, (const Mask& m, const Floats& yes), hn::IfThenElseZero(m.part[p], yes.part[p]))
+SF_BY_PARTS(Mask, either, (const Mask& a, const Mask& b), hn::Or(a.part[p], b.part[p]))
+/// a and not b.
+SF_BY_PARTS(Mask, without, (const Mask& a, const Mask& b), hn::AndNot(b.part[p], a.part[p]))
+
+SF_BY_PARTS(Ints, all, (std::int32_t value), hn::Set(kI, value))
+SF_BY_PARTS(Ints, load, (const std::int32_t* from), hn::Load(kI, from + p * kLanes))
+SF_BY_PARTS(Ints, operator+, (const Ints& a, const Ints& b), hn::Add(a.part[p], b.part[p]))
+SF_BY_PARTS(Ints, operator-, (const Ints& a, const Ints& b), hn::Sub(a.part[p], b.part[p]))
+SF_BY_PARTS(Ints, operator*, (const Ints& a, const Ints& b), hn::Mul(a.part[p], b.part[p]))
+SF_BY_PARTS(Ints, operator&, (const Ints& a, const Ints& b), hn::And(a.part[p], b.part[p]))
+SF_BY_PARTS(Ints, operator<<, (const Ints& a, const Ints& bits), a.part[p] << bits.part[p])
+SF_BY_PARTS(Ints, operator>>, (const Ints& a, const Ints& bits), a.part[p] >> bits.part[p])
+SF_BY_PARTS(Ints, larger, (const Ints& a, const Ints& b), hn::Max(a.part[p], b.part[p]))
+SF_BY_PARTS(Ints, smaller, (const Ints& a, const Ints& b), hn::Min(a.part[p], b.part[p]))
+SF_BY_PARTS(Mask, greater, (const Ints& a, const Ints& b), hn::RebindMask(kF, a.part[p] > b.part[p]))
+SF_BY_PARTS(Mask, equal, (const Ints& a, const Ints& b), hn::RebindMask(kF, a.part[p] == b.part[p]))
+SF_BY_PARTS(Ints, select, (const Mask& m, const Ints& yes, const Ints& no),
+            hn::IfThenElse(hn::RebindMask(kI, m.part[p]), yes.part[p], no.part[p]))
+SF_BY_PARTS(Floats, floats_of, (const Ints& a), hn::ConvertTo(kF, a.part[p]))
+SF_BY_PARTS(Ints, bits_of_floats, (const Floats& a), hn::BitCast(kI, a.part[p]))
+SF_BY_PARTS(Floats, gather, (const float* from, const Ints& rows), hn::GatherIndex(kF, from, rows.part[p]))
 #undef SF_BY_PARTS
 
 HWY_INLINE void store(const Floats& v, float* to) {
@@ -73,6 +98,14 @@ HWY_INLINE void store(const Floats& v, float* to) {
 }
 HWY_INLINE void store(const Words& v, std::uint32_t* to) {
   for (std::size_t p = 0; p < kParts; ++p) hn::Store(v.part[p], kU, to + p * kLanes);
+}
+HWY_INLINE void store(const Ints& v, std::int32_t* to) {
+  for (std::size_t p = 0; p < kParts; ++p) hn::Store(v.part[p], kI, to + p * kLanes);
+}
+HWY_INLINE bool none(const Mask& m) {
+  bool out = true;
+  for (std::size_t p = 0; p < kParts; ++p) out = out && hn::AllFalse(kF, m.part[p]);
+  return out;
 }
 HWY_INLINE std::uint32_t bits_of(const Mask& m) {
   std::uint32_t out = 0;

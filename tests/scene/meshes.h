@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/rasterizer.h"
+#include "scene/reference_scan.h"
 
 namespace sf::scene {
 
@@ -121,5 +122,34 @@ inline SpatialScan cast(const RigidTransform& X_WS, const std::vector<glm::dvec3
   out.uncertain = rasterizer.counts().uncertain;
   return out;
 }
+
+/// Compares a scan with the reference. @return the number of flagged beams
+inline std::size_t expect_bound(const SpatialScan& scan, const RigidTransform& X_WS,
+                                const std::vector<glm::dvec3>& beams, double range_max, const SceneView& scene) {
+  std::size_t flagged = 0, wrong = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (scan.quality[i] != base::QualityFlag::none) {
+      ++flagged;
+      continue;
+    }
+    const ReferenceHit hit = reference_scan(X_WS, beams[i], range_max, scene);
+    const double error = static_cast<double>(std::abs(scan.ranges[i] - hit.range));
+    if (error <= kRangeError) continue;
+    if (++wrong < 4)
+      ADD_FAILURE() << "beam " << i << ": " << scan.ranges[i] << ", expected " << static_cast<double>(hit.range);
+  }
+  EXPECT_EQ(wrong, 0u);
+  return flagged;
+}
+
+struct Posed {
+  RigidTransform X_WS;
+  explicit Posed(std::uint64_t seed, double spread = 0.0) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    X_WS.R = base::rotation_of(M_PI * unit(random), 0.5 * M_PI * unit(random), M_PI * unit(random));
+    X_WS.p = spread * glm::dvec3{unit(random), unit(random), unit(random)};
+  }
+};
 
 }  // namespace sf::scene
