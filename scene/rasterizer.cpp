@@ -75,6 +75,9 @@ class Scan {
   alignas(64) std::uint32_t hits_[kWidth];
   alignas(64) double sines_[kWidth];  ///< of the angles to the faces; 0 without one
   std::uint32_t grazing_ = 0;         ///< bit mask
+  // Of beams that meet the terrain, if cosines or normals are wanted.
+  std::uint32_t terrain_hits_ = 0;  ///< bit mask
+  glm::dvec3 terrain_normals_[kWidth];
 };
 
 void Scan::begin(const BeamTile& tile) {

@@ -63,13 +63,12 @@ struct ScanOutput {
   std::span<double> ranges;              ///< [m] in [0, range_max]; range_max where nothing is nearer
   std::span<std::uint32_t> hits;         ///< owner of the face (Mesh::owners), base::kFloorHit, or base::kNoHit
   std::span<base::QualityFlag> quality;  ///< `grazing` where the error may exceed the bound. Only these are written
-  std::span<float> cosines = {  /// Unit normals of the surfaces in the sensor's frame, on the side of the sensor; 0
-                                /// without a surface. Empty: not
-      /// wanted.
-      std::span<glm::vec3> normals = {};
-};  ///< of the angles between beams and the surfaces' normals, in [0, 1]; 0
-    ///< without a surface. Empty: not wanted
-};  // namespace sf::scene
+  std::span<float> cosines = {};         ///< of the angles between beams and the surfaces' normals, in [0, 1]; 0
+                                         ///< without a surface. Empty: not wanted
+  /// Unit normals of the surfaces in the sensor's frame, on the side of the sensor; 0 without a surface. Empty: not
+  /// wanted.
+  std::span<glm::vec3> normals = {};
+};
 
 struct ScanCounts {
   std::uint64_t beams = 0;

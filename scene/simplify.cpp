@@ -14,7 +14,7 @@ namespace sf::scene {
 
 namespace {
 
-constexpr int kMostLevels = 10;
+constexpr int kMostMeshLevels = 10;
 constexpr double kLeastGain = 0.7;
 
 using Cell = std::array<std::int64_t, 3>;
@@ -63,7 +63,7 @@ std::vector<MeshLevel> levels_of(const world::Mesh& mesh) {
   for (const glm::dvec3& p : mesh.vertices) low = glm::min(low, p), high = glm::max(high, p);
   std::vector<MeshLevel> levels;
   double cell = glm::length(high - low) / 8.0;
-  for (int k = 0; k < kMostLevels; ++k, cell *= 0.5) {
+  for (int k = 0; k < kMostMeshLevels; ++k, cell *= 0.5) {
     const world::Mesh coarse = clustered(mesh, cell);
     if (static_cast<double>(coarse.corners.size()) > kLeastGain * static_cast<double>(mesh.corners.size())) break;
     if (!coarse.corners.empty()) levels.push_back({build_tree(mesh_of(coarse)), std::sqrt(3.0) * cell});
