@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "base/elementary.h"
+#include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
 #include "sensors/settings.h"
 #include "sensors/spatial_scans.h"
