@@ -29,12 +29,22 @@ std::vector<Segment> stopping(const world::World& world) {
   return walls;
 }
 
+/// Returns the tilt of a mover on terrain. Wheels are as far apart along a robot without a wheelbase as across.
+base::Tilt tilt_of(const world::Ground& ground, const world::Mover& mover, const base::Pose& X_WM) {
+  if (mover.is_tag || !ground.has_terrain()) return {};
+  return ground.tilt(X_WM, mover.drive == world::Drive::car ? mover.wheelbase : mover.track, mover.track);
+}
+
 }  // namespace
 
 std::vector<base::Report> states_at_load(const world::World& world) {
+  const world::Ground ground({}, world.terrain);
   std::vector<base::Report> states;
   for (const world::Mover& mover : world.movers)
-    states.push_back({.mover = static_cast<std::uint32_t>(states.size()), .X_WM = mover.X_WM, .velocity = {}});
+    states.push_back({.mover = static_cast<std::uint32_t>(states.size()),
+                      .X_WM = mover.X_WM,
+                      .velocity = {},
+                      .tilt = tilt_of(ground, mover, mover.X_WM)});
   return states;
 }
 
@@ -43,7 +53,7 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
       thread_pool_(thread_pool),
       footprints_(footprints_of(world)),
       walls_(stopping(world)),
-      ground_(world.ramps),
+      ground_(world.ramps, world.terrain),
       copies_(world),
       reports_(states_at_load(world)),
       predicted_(reports_),
@@ -60,7 +70,8 @@ void Fleet::add_mover() {
   reports_.push_back({.mover = static_cast<std::uint32_t>(row),
                       .time = reports_.empty() ? 0 : reports_.front().time,
                       .X_WM = world_.movers[row].X_WM,
-                      .velocity = {}});
+                      .velocity = {},
+                      .tilt = tilt_of(ground_, world_.movers[row], world_.movers[row].X_WM)});
   predicted_ = reports_;
   rank_ = ranks_of(world_);
   disturbed_ = true;
@@ -68,7 +79,12 @@ void Fleet::add_mover() {
 }
 
 void Fleet::restart(std::uint32_t row) {
-  reports_[row] = {.mover = row, .time = reports_[row].time, .X_WM = world_.movers[row].X_WM, .velocity = {}};
+  const base::Pose& X_WM = world_.movers[row].X_WM;
+  reports_[row] = {.mover = row,
+                   .time = reports_[row].time,
+                   .X_WM = X_WM,
+                   .velocity = {},
+                   .tilt = tilt_of(ground_, world_.movers[row], X_WM)};
   predicted_[row] = reports_[row];
   free_discs_[row] = {};
   for (auto* flags : {&contacts_, &refused_, &struck_, &reported_}) (*flags)[row] = 0;
@@ -143,6 +159,7 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
     if (ground_.is_flat() || absent_[row] != 0) return;
     const double z = ground_.follow(starts_[row], {reports_[row].X_WM.x, reports_[row].X_WM.y});
     if (z != std::exchange(reports_[row].X_WM.z, z)) moved_[row] = 1;
+    if (ground_.has_terrain()) reports_[row].tilt = tilt_of(ground_, world_.movers[row], reports_[row].X_WM);
   });
   update_contacts();
 }

@@ -10,6 +10,7 @@
 #include "base/pose.h"
 #include "scene/trapezoids.h"
 #include "world/ground.h"
+#include "world/terrain.h"
 
 namespace sf::scene {
 
@@ -184,6 +185,8 @@ base::Box box_of_holes(const world::World& world) {
   base::Box box = base::empty_box();
   for (const world::FloorHole& hole : world.floor_holes)
     for (const glm::dvec2& p : hole.outline) box = {glm::min(box.min, p), glm::max(box.max, p)};
+  for (const world::Terrain& terrain : world.terrain)
+    for (const glm::dvec2& p : world::outline_of(terrain)) box = {glm::min(box.min, p), glm::max(box.max, p)};
   return box;
 }
 
@@ -191,6 +194,7 @@ Mesh holed_floor(const world::World& world, double reach) {
   Mesh mesh;
   std::vector<RegionEdge> edges;
   for (const world::FloorHole& hole : world.floor_holes) add_hole(hole.outline, edges);
+  for (const world::Terrain& terrain : world.terrain) add_hole(world::outline_of(terrain), edges);
   const base::Box box = box_of_holes(world);
   const glm::dvec2 low = box.min - 2.0 * reach, high = box.max + 2.0 * reach;
   const std::array<glm::dvec2, 4> outer{low, {high.x, low.y}, high, {low.x, high.y}};

@@ -19,10 +19,11 @@ Mesh mesh_of(std::span<const world::Segment> segments, bool on_floor = false);
 /// Returns the roads above the floor, as bodies stand on them (world/ground.h). Without owners.
 Mesh roads_of(const world::World& world);
 
-/// Returns the box around all holes of the floor; without holes, `base::empty_box()`.
+/// Returns the box around all holes of the floor and the rectangle of the terrain; without these, `base::empty_box()`.
 base::Box box_of_holes(const world::World& world);
 
-/// Returns the floor without its holes, as far as 2 `reach` [m] beyond their box. Without owners.
+/// Returns the floor without its holes and without that rectangle, as far as 2 `reach` [m] beyond their box. Without
+/// owners.
 Mesh holed_floor(const world::World& world, double reach);
 
 /// Returns the triangles of a file's mesh, without owners.

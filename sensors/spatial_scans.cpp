@@ -139,7 +139,7 @@ void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const 
   const std::uint32_t row = samples()[job.sample].row;
   const SpatialScanner& s = scanners_[row];
   const scene::ScanOutput out = output_of(job.sample);
-  const scene::SceneView view{instances_[job.sample], floor_[job.sample] != 0};
+  const scene::SceneView view{instances_[job.sample], floor_[job.sample] != 0, scene_.terrain()};
   if (!reference_) {
     rasterizers_[thread].scan(X_WS, tiles, s.range_max, view, out);
     return;

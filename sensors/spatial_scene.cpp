@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "scene/solids.h"
 #include "world/shapes.h"
+#include "world/terrain.h"
 
 namespace sf::sensors {
 
@@ -53,7 +54,12 @@ SpatialScene::SpatialScene(const world::World& world, double reach, bool coarse)
   require_numbers(world);
   walls_ = scene::build_tree(scene::mesh_of(without(world.walls, models_with_mesh(world)), !world.floor_unseen));
   roads_ = scene::build_tree(scene::roads_of(world));
-  if (floor_ && !world.floor_holes.empty()) holed_floor_ = scene::build_tree(scene::holed_floor(world, reach));
+  for (const world::Terrain& row : world.terrain) {
+    terrain_ = scene::build_height_field(row.columns, row.rows, row.cell, row.heights);
+    X_WF_ = base::transform_of(world::corner_of(row));
+  }
+  if (floor_ && !(world.floor_holes.empty() && world.terrain.empty()))
+    holed_floor_ = scene::build_tree(scene::holed_floor(world, reach));
   for (const world::Mesh& mesh : world.meshes) {
     meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
     if (coarse) levels_.push_back(scene::levels_of(mesh));

@@ -26,10 +26,12 @@ class SpatialScene {
   void place(std::span<const base::Report> states);
   const base::RigidTransform& X_WM(std::uint32_t mover) const { return X_WM_[mover]; }
 
+  scene::Terrain terrain() const { return {terrain_.empty() ? nullptr : &terrain_, X_WF_}; }
   /// Sets `out` to the walls, and to all other surfaces of the world of `mover` within `range` [m] of `p`, except its
   /// own. They are valid until the movers are updated or placed.
   /// @param angle [rad] meshes may be coarser by displacements of this size as seen from `p`; 0: exact
-  /// @return whether the plane z = 0 is a surface; near holes in the floor, a mesh in `out` is that instead
+  /// @return whether the plane z = 0 is a surface; near holes in the floor, or terrain, a mesh in
+  /// `out` is that instead
   bool list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out,
             double angle = 0.0) const;
 
@@ -57,6 +59,8 @@ class SpatialScene {
   scene::SurfaceTree roads_;        ///< above the floor
   scene::SurfaceTree holed_floor_;  ///< around all holes; empty: there are none
   base::Box holes_;
+  scene::HeightField terrain_;  ///< empty: none
+  base::RigidTransform X_WF_;   ///< its frame
   std::vector<scene::SurfaceTree> meshes_;
   std::vector<std::vector<scene::MeshLevel>> levels_;  ///< per mesh; empty: only exact ones
   std::vector<Part> fixed_;

@@ -28,7 +28,7 @@ void TiltedScans::cast(const PlanarBeams& beams, std::uint32_t mover, std::span<
   double reach = range_max;
   for (const base::RigidTransform& X : X_WS) reach = std::max(reach, range_max + glm::distance(X.p, last.p));
   const bool floor = scene_.list(mover, last.p, reach, scratch.instances);
-  const scene::SceneView view{scratch.instances, floor};
+  const scene::SceneView view{scratch.instances, floor, scene_.terrain()};
   const std::size_t count = beams.directions.size();
   out.ranges.resize(count), out.hits.resize(count);
   out.quality.assign(count, base::QualityFlag::none);

@@ -137,6 +137,10 @@ template <> inline constexpr auto kFields<Reflectance> = std::make_tuple(
 template <> inline constexpr auto kFields<MeshModel> = std::make_tuple(
     field(&MeshModel::mesh), field(&MeshModel::model), field(&MeshModel::X_BF));
 
+template <> inline constexpr auto kFields<Terrain> = std::make_tuple(
+    path(&Terrain::file), field(&Terrain::X_WT), field(&Terrain::cell, kAboveZero), field(&Terrain::columns),
+    field(&Terrain::rows), field(&Terrain::heights));
+
 template <> inline constexpr auto kFields<Warning> = std::make_tuple(
     path(&Warning::file), label(&Warning::line), label(&Warning::message));
 
@@ -170,7 +174,7 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 12
     field(&World::meshes), field(&World::mesh_models),
     // since version 13
-    field(&World::reflectances));
+    field(&World::reflectances), field(&World::terrain));
 
 // clang-format on
 

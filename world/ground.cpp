@@ -4,6 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/elementary.h"
+#include "world/terrain.h"
+
 namespace sf::world {
 
 namespace {
@@ -22,10 +25,17 @@ base::BoxTree tree_of(std::span<const Ramp> ramps) {
 
 }  // namespace
 
-Ground::Ground(std::span<const Ramp> ramps) : ramps_(ramps), tree_(tree_of(ramps)) {}
+Ground::Ground(std::span<const Ramp> ramps, std::span<const Terrain> terrain)
+    : ramps_(ramps), terrain_(terrain), tree_(tree_of(ramps)) {}
+
+/// Of the terrain, or of the floor.
+double Ground::base_height(glm::dvec2 p) const {
+  return terrain_.empty() ? 0.0 : height_at(terrain_[0], p).value_or(0.0);
+}
 
 double Ground::height(glm::dvec2 p, double most) const {
-  double highest = 0.0, beyond = 0.0;  // of pieces at p, and of those that end near p
+  const double ground = base_height(p);
+  double highest = ground, beyond = ground;  // of pieces at p, and of those that end near p
   tree_.any({p, p}, [&](std::uint32_t i) {
     const Ramp& ramp = ramps_[i];
     const glm::dvec2 e = ramp.b - ramp.a;
@@ -50,13 +60,23 @@ double Ground::follow(const base::Pose& from, glm::dvec2 to) const {
   return std::abs(from.z - below) <= kContact ? next : from.z + (next - below);
 }
 
+base::Tilt Ground::tilt(const base::Pose& at, double length, double width) const {
+  if (terrain_.empty()) return {};
+  const auto height_of = [&](double x, double y) { return base_height(base::transform(at, {x * length, y * width})); };
+  const double front_left = height_of(0.5, 0.5), front_right = height_of(0.5, -0.5);
+  const double rear_left = height_of(-0.5, 0.5), rear_right = height_of(-0.5, -0.5);
+  const double along = 0.5 * ((front_left - rear_left) + (front_right - rear_right)) / length;
+  const double across = 0.5 * ((front_left - front_right) + (rear_left - rear_right)) / width;
+  return {.roll = base::atan2(across, base::hypot(1.0, along)), .pitch = -base::atan2(along, 1.0)};
+}
+
 double clearance_of(const World& world, const Mover& mover) {
   const base::Pose& X = mover.X_WM;
-  return X.z - Ground(world.ramps).height({X.x, X.y}, X.z + kContact);
+  return X.z - Ground(world.ramps, world.terrain).height({X.x, X.y}, X.z + kContact);
 }
 
 double height_on_road(const World& world, glm::dvec2 p, double clearance) {
-  return clearance + Ground(world.ramps).height(p, HUGE_VAL);
+  return clearance + Ground(world.ramps, world.terrain).height(p, HUGE_VAL);
 }
 
 }  // namespace sf::world

@@ -1,6 +1,6 @@
 #pragma once
-// Heights of the ground: the floor at z = 0, and roads above it (World::ramps). Bodies stand on these, and spatial
-// sensors see them (scene/solids.h); planar sensors do not.
+// Heights of the ground: the floor at z = 0 or a terrain in its place, and roads above it (World::ramps). Bodies stand
+// on these, and spatial sensors see them (scene/solids.h); planar sensors do not.
 
 #include <span>
 
@@ -13,16 +13,21 @@ namespace sf::world {
 /// Immutable and thread-safe.
 class Ground {
  public:
-  /// `ramps` must outlive it.
-  explicit Ground(std::span<const Ramp> ramps);
+  /// Both must outlive it.
+  explicit Ground(std::span<const Ramp> ramps, std::span<const Terrain> terrain = {});
 
-  bool is_flat() const { return ramps_.empty(); }
-  /// Returns the height [m] of the highest surface at `p` that is at most `most` [m] high; 0: the floor.
+  bool is_flat() const { return ramps_.empty() && terrain_.empty(); }
+  bool has_terrain() const { return !terrain_.empty(); }
+  /// Returns the height [m] of the highest road at `p` that is at most `most` [m] high, or of the ground below.
   double height(glm::dvec2 p, double most) const;
   /// Returns the z [m] of a body after a move. On a surface (within 1 cm) it stays on it, and above a surface it keeps
-  /// its height above it. It climbs a rise of at most kMostStep plus kMostSlope times the length of the move, passes
-  /// under higher surfaces, and drops from an edge within the move.
+  /// its height above it. It climbs a rise of a road of at most kMostStep plus kMostSlope times the length of the move,
+  /// passes under higher roads, drops from an edge within the move, and follows terrain of any slope.
   double follow(const base::Pose& from, glm::dvec2 to) const;
+  /// Returns the tilt of a robot on terrain: that of the plane through the contacts of its four wheels, at the corners
+  /// of a rectangle about its origin (least squares). Zero in worlds without terrain.
+  /// @param length, width [m] > 0, along and across its heading
+  base::Tilt tilt(const base::Pose& at, double length, double width) const;
 
   static constexpr double kMostStep = 0.05;  ///< [m]
   static constexpr double kMostSlope = 0.5;
@@ -31,7 +36,10 @@ class Ground {
   static constexpr double kOverlap = 0.05;
 
  private:
+  double base_height(glm::dvec2 p) const;
+
   std::span<const Ramp> ramps_;
+  std::span<const Terrain> terrain_;
   base::BoxTree tree_;
 };
 

@@ -52,6 +52,8 @@ constexpr auto kShape = std::to_array<std::string_view>({"name", "size", "color"
   // known, not modelled
   "block[].color"});
 
+constexpr auto kTerrain = std::to_array<std::string_view>({"file", "size", "heights", "pose"});
+
 constexpr auto kUnmodelledTypes = std::to_array<std::string_view>({"actuator", "blinkenlight", "blobfinder", "bumper", "camera", "charger", "fiducial", "gripper",
   "laneedge", "laser", "lightindicator", "magnetometer", "map", "powerpack", "puck", "ranger", "sonar", "speech", "wifi"});
 constexpr auto kNoBodyTypes = std::to_array<std::string_view>({"blobfinder", "bumper", "fiducial", "laneedge", "magnetometer", "powerpack", "ranger", "sonar",
@@ -118,6 +120,8 @@ std::vector<Words> keys_in(KeyScope where) {
       return {kPath};
     case KeyScope::shape:
       return {kShape};
+    case KeyScope::terrain:
+      return {kTerrain};
     case KeyScope::model:
     case KeyScope::unmodelled:
       break;
@@ -134,6 +138,7 @@ EntityKind entity_kind(std::string_view type) {
   if (type == "road") return EntityKind::road;
   if (type == "path") return EntityKind::path;
   if (type == "shape") return EntityKind::shape;
+  if (type == "terrain") return EntityKind::terrain;
   if (has(kIgnoredTypes, type)) return EntityKind::ignored;
   return has(kUnmodelledTypes, type) ? EntityKind::unmodelled : EntityKind::unknown;
 }
@@ -141,7 +146,8 @@ EntityKind entity_kind(std::string_view type) {
 bool has_no_body(std::string_view type) { return has(kNoBodyTypes, type); }
 
 std::vector<std::string_view> known_types() {
-  std::vector<std::string_view> types{"model", "position", "light", "sensor", "block", "road", "path", "shape"};
+  std::vector<std::string_view> types{"model", "position", "light", "sensor", "block",
+                                      "road",  "path",     "shape", "terrain"};
   types.insert(types.end(), kUnmodelledTypes.begin(), kUnmodelledTypes.end());
   types.insert(types.end(), kIgnoredTypes.begin(), kIgnoredTypes.end());
   return types;

@@ -11,10 +11,24 @@
 namespace sf::world {
 
 /// The entity that contains a property.
-enum class KeyScope { world, model, position, light, sensor, block, device, sensing, road, path, shape, unmodelled };
+enum class KeyScope {
+  world,
+  model,
+  position,
+  light,
+  sensor,
+  block,
+  device,
+  sensing,
+  road,
+  path,
+  shape,
+  terrain,
+  unmodelled
+};
 
 /// How a type of the world file is treated.
-enum class EntityKind { model, position, light, road, path, shape, unmodelled, ignored, unknown };
+enum class EntityKind { model, position, light, road, path, shape, terrain, unmodelled, ignored, unknown };
 
 EntityKind entity_kind(std::string_view type);
 

@@ -6,6 +6,7 @@
 #include "world/meshes/triangles.h"
 #include "world/serialization.h"
 #include "world/shapes.h"
+#include "world/terrain.h"
 
 namespace sf::world {
 
@@ -15,7 +16,7 @@ constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 13;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
-constexpr std::size_t kSinceVersion13 = least_bytes<std::vector<Reflectance>>();
+constexpr std::size_t kSinceVersion13 = least_bytes<std::vector<Reflectance>>() + least_bytes<std::vector<Terrain>>();
 constexpr std::size_t kSinceVersion12 = least_bytes<std::vector<Mesh>>() + least_bytes<std::vector<MeshModel>>();
 constexpr std::size_t kSinceVersion11 = least_bytes<bool>();
 constexpr std::size_t kSinceVersion10 = least_bytes<std::vector<Variation>>();
@@ -26,7 +27,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
-  if (!world.reflectances.empty()) return 13;
+  if (!world.reflectances.empty() || !world.terrain.empty()) return 13;
   if (!world.meshes.empty() || !world.mesh_models.empty()) return 12;
   if (world.floor_unseen) return 11;
   if (!world.variations.empty()) return 10;
@@ -85,6 +86,10 @@ void check_rows(const World& world) {
     good &= mesh.corners.size() % 3 == 0 && mesh.corners.size() / 3 <= kMostTriangles;
     for (const std::uint32_t corner : mesh.corners) good &= corner < mesh.vertices.size();
   }
+  good &= world.terrain.size() <= 1;
+  for (const Terrain& terrain : world.terrain)
+    good &= std::min(terrain.columns, terrain.rows) >= 2 && std::max(terrain.columns, terrain.rows) <= kMostSide &&
+            terrain.heights.size() == std::size_t{terrain.columns} * terrain.rows;
   good &= world.marking_heights.size() <= world.lane_markings.size();
   if (!good) refuse("a row breaks the rules of its table");
 }

@@ -13,6 +13,7 @@
 #include "world/ros_map.h"
 #include "world/serialization.h"
 #include "world/stage/build_world.h"
+#include "world/terrain.h"
 
 namespace sf::world {
 
@@ -71,6 +72,8 @@ Extent extent_of(const World& world, Extent extent) {
   for (const HeatSource& source : world.heat_sources) include(source.p);
   for (const FloorHole& hole : world.floor_holes)
     for (const glm::dvec2& p : hole.outline) include(p);
+  for (const Terrain& terrain : world.terrain)
+    for (const glm::dvec2& p : outline_of(terrain)) include(p);
   for (const Mover& mover : world.movers) {
     include({mover.X_WM.x, mover.X_WM.y});
     for (const Segment& segment : mover.body) {
@@ -89,7 +92,7 @@ constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, 
 constexpr auto kHashedIfSet =
     std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights,
                     &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature, &World::variations,
-                    &World::floor_unseen, &World::meshes, &World::mesh_models, &World::reflectances);
+                    &World::floor_unseen, &World::meshes, &World::mesh_models, &World::reflectances, &World::terrain);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -206,6 +209,7 @@ void translate(World& world, double dx, double dy) {
     if (world.models[row.model].mover == kNone) move(row.X_BF);
   for (FloorHole& hole : world.floor_holes)
     for (glm::dvec2& p : hole.outline) move(p);
+  for (Terrain& terrain : world.terrain) move(terrain.X_WT);
   for (Model& model : world.models) move(model.X_WM);
   for (Mover& mover : world.movers) move(mover.X_WM);
   update_extent_and_hash(world);

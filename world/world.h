@@ -312,6 +312,16 @@ struct Reflectance {
 };
 inline constexpr double kDefaultReflectance = 0.5;  ///< of all other models, and of the floor
 
+/// A height map of the ground (world/terrain.h), in place of the floor in its rectangle. Each cell is cut along the
+/// diagonal from its corner with the smallest x and y into two triangles.
+struct Terrain {
+  std::string file;                     ///< as opened
+  Pose X_WT;                            ///< its middle, with x along the rows; z is that of height 0
+  glm::dvec2 cell{};                    ///< [m] > 0
+  std::uint32_t columns = 0, rows = 0;  ///< of points, each at least 2
+  std::vector<float> heights;           ///< [m] row by row from the smallest y, finite
+};
+
 /// A user message about a problem that did not stop the load.
 struct Warning {
   std::string file;
@@ -371,6 +381,7 @@ struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshModel> mesh_models;
   std::vector<Reflectance> reflectances;
+  std::vector<Terrain> terrain;           ///< at most one
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)

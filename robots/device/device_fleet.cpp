@@ -60,6 +60,7 @@ std::vector<MotionBound> motion_bounds(const world::World& world) {
 }  // namespace
 
 std::string DeviceFleet::refusal(const world::World& world, std::int64_t dt) {
+  if (!world.terrain.empty()) return "the world has a terrain, which kernels do not follow";
   if (!world.ramps.empty()) return "the world has roads above the floor, which kernels do not follow";
   const double seconds = 1e-9 * static_cast<double>(dt);
   for (const world::Mover& mover : world.movers) {

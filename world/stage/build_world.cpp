@@ -17,6 +17,7 @@
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
 #include "world/stage/read_keys.h"
+#include "world/stage/terrain_entity.h"
 
 namespace sf::world {
 
@@ -136,6 +137,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   b.world.name = std::filesystem::path(file).stem().string();
   read_keys(b.context, document.root, b.world);
   b.world.accuracy = accuracy(b.context, options, document.root);
+  read_terrain(b, document.root);
   Parent nowhere;
   add_children(b, document.root, nowhere);
   if (!document.ros_map.empty()) add_ros_map(b.world, document.ros_map, options);

@@ -20,6 +20,7 @@
 #include "world/stage/read_keys.h"
 #include "world/stage/road_entities.h"
 #include "world/stage/shape_entities.h"
+#include "world/stage/terrain_entity.h"
 
 namespace sf::world {
 
@@ -128,6 +129,7 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
   said.name = own_name(b, entity, parent);
   said.X_PB = pose(b.context, entity, "pose");
   said.X_PB.z += parent.lift;
+  if (parent.model == kNone) said.X_PB.z += terrain_height(b.world, {said.X_PB.x, said.X_PB.y});
   said.size = size_of(b.context, entity, default_size(entity));
   said.mesh = mesh_of(b, entity, said.size);
 
@@ -309,6 +311,9 @@ void add_children(BuildState& b, const Entity& entity, Parent& parent) {
       if (parent.model != kNone)
         fail(b.context, child.at, fmt::format("'{}' is part of a model; expected it at the top level", child.word));
       entity_kind(child.type) == EntityKind::road ? add_road(b, child) : add_path(b, child);
+    } else if (entity_kind(child.type) == EntityKind::terrain) {
+      if (parent.model != kNone)
+        fail(b.context, child.at, "'terrain' is part of a model; expected it at the top level");
     } else if (entity_kind(child.type) == EntityKind::shape) {
       if (parent.model != kNone)
         fail(b.context, child.at, fmt::format("'{}' is part of a model; expected it at the top level", child.word));
