@@ -4,18 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 #include <utility>
 
+#include "bridges/view_solids.h"
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
-#include "world/ground.h"
 #include "world/lights.h"
+#include "world/shapes.h"
 
 namespace sf::bridges {
 
@@ -67,21 +67,6 @@ Json lines_of(const std::vector<const Segment*>& segments) {
   return lines;
 }
 
-/// [m] height above all movers, as if all were on the floor; infinite if there are none.
-double headroom(const World& world) {
-  double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
-  for (const world::Mover& mover : world.movers)
-    for (const Segment& s : mover.body) top = std::max(top, world::clearance_of(world, mover) + s.z_max);
-  return top;
-}
-
-/// Distinguishes walls as the figures do (viz/wall_layer.cpp).
-const char* kind_of(const Segment& s, double room) {
-  if (s.z_min >= room) return "overhead";
-  if (!s.seen_by_laser) return "unseen";
-  return s.stops_robots ? "solid" : "passable";
-}
-
 std::string wall_color(const World& world, std::uint32_t model) {
   const bool known = model < world.models.size() && !world.models[model].is_bitmap;
   return known ? color_of(world.models[model].color) : std::string();
@@ -89,9 +74,9 @@ std::string wall_color(const World& world, std::uint32_t model) {
 
 Json walls_json(const World& world) {
   std::map<std::tuple<std::string, std::string, bool>, std::vector<const Segment*>> groups;
-  const double room = headroom(world);
+  const double headroom = headroom_of(world);
   for (const Segment& s : world.walls)
-    groups[{kind_of(s, room), wall_color(world, s.model), s.solid_left}].push_back(&s);
+    groups[{wall_kind(s, headroom), wall_color(world, s.model), s.solid_left}].push_back(&s);
   Json walls = Json::array();
   for (const auto& [key, segments] : groups) {
     const auto& [kind, color, closed] = key;
@@ -102,9 +87,12 @@ Json walls_json(const World& world) {
 
 Json markings_json(const World& world) {
   Json markings = Json::array();
-  for (const world::LaneMarking& marking : world.lane_markings)
+  for (const world::LaneMarking& marking : world.lane_markings) {
     markings.push_back(
         {{"line", points_json(marking.line)}, {"width", round(marking.width)}, {"color", color_of(marking.color)}});
+    const std::size_t row = markings.size() - 1;
+    if (row < world.marking_heights.size()) markings.back()["z"] = round(world.marking_heights[row].z_max);
+  }
   return markings;
 }
 
@@ -206,10 +194,28 @@ Json sensors_json(const Scene& scene, std::uint32_t mover) {
 }
 
 /// Fleets have few different bodies, so each is stored once in `shapes`; `numbers` maps a body to its number.
-std::size_t shape_number(const world::Mover& mover, std::map<std::string, std::size_t>& numbers, Json& shapes) {
-  std::vector<const Segment*> closed, open;
-  for (const Segment& s : mover.body) (s.solid_left ? closed : open).push_back(&s);
-  Json shape{{"closed", lines_of(closed)}, {"open", lines_of(open)}};
+/// @param as_mesh per model, for the 3-D view
+std::size_t shape_number(const World& world, std::uint32_t row, const std::vector<std::uint8_t>& as_mesh,
+                         std::map<std::string, std::size_t>& numbers, Json& shapes) {
+  using Heights = std::tuple<double, double, bool>;  // z_min, z_max, whether a mesh is drawn instead
+  std::map<bool, std::map<Heights, std::vector<const Segment*>>> parts;
+  const world::Mover& mover = world.movers[row];
+  for (const Segment& s : mover.body) {
+    const bool is_changed = s.model == mover.model && !world::has_own_shape(world, row);
+    const bool is_mesh = s.model < as_mesh.size() && as_mesh[s.model] != 0 && !is_changed;
+    parts[s.solid_left][{s.z_min, s.z_max, is_mesh}].push_back(&s);
+  }
+  Json shape;
+  for (const bool closed : {true, false}) {
+    const std::string name = closed ? "closed" : "open";
+    shape[name] = shape[name + "_z"] = Json::array();
+    for (const auto& [heights, segments] : parts[closed])
+      for (Json& line : lines_of(segments)) {
+        shape[name].push_back(std::move(line));
+        shape[name + "_z"].push_back(
+            {round(std::get<0>(heights)), round(std::get<1>(heights)), std::get<2>(heights) ? 1 : 0});
+      }
+  }
   const auto [number, is_new] = numbers.try_emplace(shape.dump(), shapes.size());
   if (is_new) shapes.push_back(std::move(shape));
   return number->second;
@@ -219,6 +225,7 @@ void add_movers(const Scene& scene, Json& json) {
   const World& world = scene.world;
   Json shapes = Json::array(), movers = Json::array();
   std::map<std::string, std::size_t> numbers;
+  const std::vector<std::uint8_t> as_mesh = models_in_view_as_mesh(world);
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
     const world::Mover& mover = world.movers[row];
     movers.push_back({{"name", mover.name},
@@ -229,7 +236,7 @@ void add_movers(const Scene& scene, Json& json) {
                       {"pose", pose_json(mover.X_WM)},
                       {"radius", round(mover.radius)},
                       {"color", mover.model < world.models.size() ? color_of(world.models[mover.model].color) : ""},
-                      {"shape", shape_number(mover, numbers, shapes)},
+                      {"shape", shape_number(world, row, as_mesh, numbers, shapes)},
                       {"max", {mover.max_forward, mover.max_turn}},
                       {"sensors", sensors_json(scene, row)}});
   }

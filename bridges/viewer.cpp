@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "bridges/scene_json.h"
+#include "bridges/view_solids.h"
 #include "bridges/web_files.h"
+#include "record/schemas.h"
 
 namespace sf::bridges {
 
@@ -15,6 +17,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLeastInterval(25);
 constexpr milliseconds kStateInterval(500);  // of the measured speed
 constexpr int kMostWaiting = 4;
+constexpr std::size_t kViewTopics = 2;  // clouds and solids
 
 std::vector<std::string> drivers_of(const Scene& scene, ViewerMode mode) {
   std::vector<std::string> topics;
@@ -29,6 +32,15 @@ std::uint32_t row_of(std::string_view name, std::span<const record::Topic> topic
   return static_cast<std::uint32_t>(found - topics.begin());
 }
 
+/// The topics of messages, then those of the 3-D view.
+std::vector<record::Topic> topics_of(const record::TickMessages& messages) {
+  static const std::string clouds = record::schema_text(record::kClouds), solids = record::schema_text(record::kSolids);
+  std::vector<record::Topic> topics = messages.topics();
+  topics.push_back({std::string(kCloudsTopic), record::kClouds, clouds});
+  topics.push_back({std::string(kSolidsTopic), record::kSolids, solids, true});
+  return topics;
+}
+
 }  // namespace
 
 Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
@@ -36,13 +48,15 @@ Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
       messages_(scene.info),
       scene_json_(scene_json(scene, options.mode)),
       mode_(options.mode),
-      wishes_(messages_.topics().size()),
+      wishes_(messages_.topics().size() + kViewTopics),
       sessions_({"sensorfarm: " + scene.info.world, options.mode, options.start, options.end,
                  drivers_of(scene, options.mode)},
-                messages_.topics(), wishes_),
+                topics_of(messages_), wishes_),
       fleet_(row_of("/fleet", messages_.topics())),
-      wanted_(messages_.topics().size()),
-      next_(messages_.topics().size()) {
+      cloud_topic_(static_cast<std::uint32_t>(messages_.topics().size())),
+      clouds_(scene),
+      wanted_(messages_.topics().size() + kViewTopics),
+      next_(messages_.topics().size() + kViewTopics) {
   std::vector<SharedMessage> latched;
   messages_.begin([&](const record::TopicMessage& message) {
     latched.push_back({message.topic, message.log_time,
@@ -51,7 +65,10 @@ Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
   WebOptions web{options.address, {kSdkV1, kWebSocketV1}, web_files(), options.limits};
   web.files["/scene.json"] = {"application/json", scene_json_, true};
   server_ = std::make_unique<WebServer>(std::move(web), sessions_);
-  server_->post([this, latched = std::move(latched)] { sessions_.start(*server_, latched); });
+  server_->post([this, latched = std::move(latched), headroom = headroom_of(scene.world)] {
+    sessions_.start(*server_, latched);
+    sessions_.provide(cloud_topic_ + 1, [this, headroom] { return solids_message(scene_.world, headroom); });
+  });
 }
 
 Viewer::~Viewer() = default;
@@ -69,7 +86,9 @@ void Viewer::publish(const base::TickRecord& tick, const RunState& state) {
   paused_shown_ = state.paused;
   if (!is_watched) return;
   choose_topics(state.paused);
-  if (!due_.empty() || Clock::now() >= next_time_) send(is_kept_ && !fresh_.empty() ? last_.record() : tick);
+  const base::TickRecord& shown = is_kept_ && !fresh_.empty() ? last_.record() : tick;
+  keep_clouds(shown);
+  if (!due_.empty() || Clock::now() >= next_time_) send(shown);
 }
 
 void Viewer::take(Requests& requests) {
@@ -85,7 +104,14 @@ void Viewer::publish(const RunState& state) {
   if (sessions_.empty() || last_.empty()) return;
   choose_topics(!paused_shown_);  // ticks may have been skipped before the pause
   paused_shown_ = true;
-  if (!due_.empty()) send(last_.record());
+  if (due_.empty()) return;
+  keep_clouds(last_.record());
+  send(last_.record());
+}
+
+/// Sensors are read in different ticks, of which clients get some only.
+void Viewer::keep_clouds(const base::TickRecord& tick) {
+  if (std::binary_search(topics_.begin(), topics_.end(), cloud_topic_)) clouds_.add(tick);
 }
 
 /// Between two ticks the world does not change, so this thread may read it.
@@ -144,6 +170,11 @@ void Viewer::send(const base::TickRecord& tick) {
     update.push_back({message.topic, message.log_time, copy_of(message.bytes)});
   };
   messages_.encode(tick, add, wanted_);
+  if (wanted_[cloud_topic_]) {
+    cloud_message_.clear();
+    clouds_.encode(tick, cloud_message_);
+    add({.topic = cloud_topic_, .log_time = tick.time, .time = tick.time, .bytes = cloud_message_});
+  }
   for (const std::uint32_t topic : due_) wanted_[topic] = false;
   ++waiting_;
   server_->post([this, time = tick.time, update = std::move(update)] {

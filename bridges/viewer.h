@@ -17,6 +17,7 @@
 
 #include "bridges/bridge.h"
 #include "bridges/last_tick.h"
+#include "bridges/view_clouds.h"
 #include "bridges/viewer_sessions.h"
 #include "bridges/web_server.h"
 #include "record/topics.h"
@@ -53,6 +54,7 @@ class Viewer : public Bridge {
   void show_shapes();
   void choose_topics(bool all);
   void send(const base::TickRecord& tick);
+  void keep_clouds(const base::TickRecord& tick);
   std::shared_ptr<const base::Bytes> copy_of(std::span<const std::uint8_t> message);
 
   const Scene scene_;
@@ -65,7 +67,10 @@ class Viewer : public Bridge {
   RunState state_;
   bool shown_ = false;
   Clock::time_point next_state_, next_time_;
-  std::uint32_t fleet_;                              ///< topic of the states
+  std::uint32_t fleet_;        ///< topic of the states
+  std::uint32_t cloud_topic_;  ///< of `clouds_`; that of the solids follows
+  ViewClouds clouds_;
+  base::Bytes cloud_message_;
   std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: topics to send, including `fresh_`
   std::vector<bool> wanted_;
   std::vector<Clock::time_point> next_;                ///< per topic: earliest time of its next message

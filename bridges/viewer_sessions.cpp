@@ -177,6 +177,11 @@ void ViewerSessions::subscribe(ClientId id, Client& client, const ClientText::Su
   client.topic_of[subscription.id] = subscription.channel;
   client.subscription_of[subscription.channel] = subscription.id;
   wishes_.subscribe(subscription.channel, true);
+  if (const auto maker = makers_.find(subscription.channel); maker != makers_.end()) {
+    latched_[subscription.channel] = {subscription.channel, about_.start,
+                                      std::make_shared<const base::Bytes>(maker->second())};
+    makers_.erase(maker);
+  }
   const auto latched = latched_.find(subscription.channel);
   if (latched == latched_.end()) return;
   WebMessage message{.body = latched->second.bytes, .is_lasting = true};

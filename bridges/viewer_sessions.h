@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -73,6 +74,10 @@ class ViewerSessions : public WebApplication {
   /// @param latched messages, at most one per topic
   void start(WebServer& server, std::vector<SharedMessage> latched);
 
+  /// Called once, before the first client: the first subscriber of `topic` has its only message made, on the server's
+  /// thread, and all get it.
+  void provide(std::uint32_t topic, std::function<base::Bytes()> make) { makers_[topic] = std::move(make); }
+
   void opened(ClientId client, const std::string& protocol) override;
   void received(ClientId client, bool is_text, std::span<const std::uint8_t> bytes) override;
   void closed(ClientId client) override;
@@ -120,7 +125,8 @@ class ViewerSessions : public WebApplication {
   std::vector<std::shared_ptr<const base::Bytes>> greetings_;  ///< channels and services
   std::size_t topic_count_ = 0;
   std::unordered_map<std::uint32_t, SharedMessage> latched_;
-  std::unordered_map<std::string, std::uint32_t> movers_;  ///< by command topic
+  std::unordered_map<std::uint32_t, std::function<base::Bytes()>> makers_;  ///< of `provide`, those not yet called
+  std::unordered_map<std::string, std::uint32_t> movers_;                   ///< by command topic
   std::string session_;
   std::map<ClientId, Client> clients_;
   std::atomic<std::size_t> count_ = 0;  ///< of clients

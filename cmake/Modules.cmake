@@ -11,6 +11,8 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_library(SODIUM sodium REQUIRED)  # libsodium-dev
 find_library(ZSTD zstd REQUIRED)  # libzstd-dev
 find_library(MUPARSER muparser REQUIRED)  # libmuparser-dev
+find_file(THREE_JS three.min.js PATHS /usr/share/javascript/three)  # libjs-three, for the live view; optional
+find_file(THREE_JS_LICENSE copyright PATHS /usr/share/doc/libjs-three NO_DEFAULT_PATH)
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
 # Without plug-ins, the program supports everything that needs no heavy library, and names the plug-in that a command

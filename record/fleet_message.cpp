@@ -26,15 +26,19 @@ bool is_tilted(const base::Report& report) { return !base::is_level(report.tilt)
 
 bool any_tilted(const base::TickRecord& record) { return std::ranges::any_of(record.reports, is_tilted); }
 
-void encode_tilts(const base::TickRecord& record, base::Bytes& out) {
-  CdrWriter cdr(out);
-  put_header(cdr, record.time, "world");
+void put_tilts(CdrWriter& cdr, const base::TickRecord& record) {
   cdr.put_count(static_cast<std::size_t>(std::ranges::count_if(record.reports, is_tilted)));
   for (const base::Report& report : record.reports) {
     if (!is_tilted(report)) continue;
     cdr.put(report.mover);
     for (const double value : {report.tilt.roll, report.tilt.pitch}) cdr.put(value);
   }
+}
+
+void encode_tilts(const base::TickRecord& record, base::Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, record.time, "world");
+  put_tilts(cdr, record);
 }
 
 bool decode_tilts(std::span<const std::uint8_t> message, TiltsSample& sample) {

@@ -12,6 +12,8 @@
 
 namespace sf::record {
 
+class CdrWriter;
+
 struct MoverState {
   std::uint32_t mover = 0;  ///< row in `RunInfo::movers`
   bool contact = false;     ///< a wall or a robot stopped it
@@ -39,6 +41,8 @@ struct TiltsSample {
 
 /// Returns whether a mover that is in the world is not level.
 bool any_tilted(const base::TickRecord& record);
+/// Appends the tilted movers that are in the world as a sequence of `sensorfarm_msgs/Tilt`.
+void put_tilts(CdrWriter& cdr, const base::TickRecord& record);
 /// Appends one message, of the tilted movers that are in the world.
 void encode_tilts(const base::TickRecord& record, base::Bytes& out);
 /// @return false if the bytes are not a Tilts message. Replaces the content of `sample`.

@@ -91,6 +91,15 @@ constexpr std::array kDefinitions = {
     Definition{"sensorfarm_msgs/Fleet", "std_msgs/Header header\nuint64 tick\nsensorfarm_msgs/State[] states\n"},
     Definition{"sensorfarm_msgs/Tilt", "uint32 mover\nfloat64 roll\nfloat64 pitch\n"},
     Definition{"sensorfarm_msgs/Tilts", "std_msgs/Header header\nsensorfarm_msgs/Tilt[] tilts\n"},
+    Definition{"sensorfarm_msgs/Cloud",
+               "uint32 mover\nuint8 type\nuint32 sensor\nbool planar\nfloat32[3] position\nfloat32[] points\n"},
+    Definition{"sensorfarm_msgs/Clouds",
+               "std_msgs/Header header\nfloat64[3] origin\nuint32 stride\nsensorfarm_msgs/Tilt[] tilts\n"
+               "sensorfarm_msgs/Cloud[] clouds\n"},
+    Definition{"sensorfarm_msgs/Place", "uint32 mover\nsensorfarm_msgs/Pose pose\nuint32 color\n"},
+    Definition{"sensorfarm_msgs/Solid",
+               "string kind\nfloat32[] vertices\nuint32[] corners\nsensorfarm_msgs/Place[] places\n"},
+    Definition{"sensorfarm_msgs/Solids", "string note\nsensorfarm_msgs/Solid[] solids\n"},
     Definition{"sensorfarm_msgs/Light",
                "uint8 DARK=0\nuint8 RED=1\nuint8 YELLOW=2\nuint8 GREEN=3\nuint8 FLASHING_RED=4\n"
                "uint8 FLASHING_YELLOW=5\nstring name\nuint8 state\nfloat64 left\n"},

@@ -25,6 +25,8 @@ inline constexpr std::string_view kLights = "sensorfarm_msgs/msg/Lights";
 inline constexpr std::string_view kFaults = "sensorfarm_msgs/msg/Faults";
 inline constexpr std::string_view kShapes = "sensorfarm_msgs/msg/Shapes";
 inline constexpr std::string_view kTilts = "sensorfarm_msgs/msg/Tilts";
+inline constexpr std::string_view kClouds = "sensorfarm_msgs/msg/Clouds";
+inline constexpr std::string_view kSolids = "sensorfarm_msgs/msg/Solids";
 inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
 inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 

@@ -250,6 +250,124 @@ async function touchMap(browser, requests) {
   await server.end();
 }
 
+/** Three dimensions: solids, bodies and clouds of all robots; the plan view is as before, also without three.js. */
+async function watchThird(browser, requests) {
+  const server = start(program, ["run", "worlds/lidar.world", "--view", "0", "--duration", "600"]);
+  let page = await open(browser, await server.url, requests);
+  const noticed = () => page.evaluate(() => (document.getElementById("notice").hidden ? "" : document.getElementById("notice").textContent));
+  await page.route("**/three.js", (route) => route.abort());
+  await page.keyboard.press("v");
+  await until(page, "no word of a missing three.js", () => /without three\.js/.test(document.getElementById("notice").textContent));
+  check(await page.evaluate(() => document.getElementById("view-3d").hidden && view.third === null), "the plan view is gone");
+  await page.close();
+
+  const known = requests.length;
+  page = await open(browser, await server.url, requests);
+  check(!requests.slice(known).some((url) => /three\.js|_3d\.js/.test(url)), "the plan view loads parts of the other");
+  await page.click("#third");
+  await until(page, "neither three dimensions nor a word why", () => view.third !== null || !document.getElementById("notice").hidden);
+  if (await page.evaluate(() => view.third === null)) {
+    const why = await noticed();
+    check(/three\.js|WebGL/.test(why), why);
+    console.log(`three dimensions were not tested: ${why}`);
+    await page.close();
+    return server.end();
+  }
+  await until(page, "no clouds of both robots", () => view.third.counts.points > 5000 && view.third.drawn.walls > 40);
+  check(/height/.test(await page.textContent("#notes")), "no notes");
+  const painted = () => page.evaluate(() => {
+    view.third.frame();
+    const gl = view.third.renderer.getContext(), { width, height } = view.third.canvas, bytes = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    let count = 0;
+    for (let i = 0; i < bytes.length; i += 4) count += bytes[i] < 235 || bytes[i + 1] < 235 || bytes[i + 2] < 235;
+    return count / (width * height);
+  });
+  const all = await painted();
+  check(all > 0.05 && all < 0.95, `drawn: ${all}`);
+  // Drags turn the view, the wheel zooms, clicks select.
+  const before = await page.evaluate(() => ({ ...view.third.orbit }));
+  await page.mouse.move(500, 400);
+  await page.mouse.down();
+  await page.mouse.move(560, 420, { steps: 4 });
+  await page.mouse.up();
+  await page.mouse.wheel(0, -200);
+  await until(page, "not turned", (was) => view.third.orbit.azimuth !== was.azimuth && view.third.orbit.elevation > was.elevation && view.third.orbit.distance < was.distance, before);
+  await page.keyboard.press("0");
+  await page.keyboard.press("]");
+  await page.keyboard.press("f");
+  await until(page, "not followed", () => view.third.orbit.target[0] !== 0 && view.drawing.selected === 0);
+  await page.keyboard.press("Escape");
+  const box = await page.evaluate(() => { const { x, y, width, height } = document.getElementById("view-3d").getBoundingClientRect(); return [x + width / 2, y + height / 2]; });
+  await page.mouse.click(...box);
+  await until(page, "not picked", () => view.drawing.selected === 0);
+  // Roll, pitch and yaw as in base::rotation_of.
+  const columns = await page.evaluate(async () => { const { poseMatrix } = await import("./bodies_3d.js"); return poseMatrix(window.THREE, { x: 1, y: 2, z: 3, yaw: 0.3 }, { roll: 0.1, pitch: 0.2 }).elements; });
+  const { cos, sin } = Math, wanted = [cos(0.3) * cos(0.2), sin(0.3) * cos(0.2), -sin(0.2)];
+  check(wanted.every((v, k) => Math.abs(columns[k] - v) < 1e-6) && Math.abs(columns[6] - cos(0.2) * sin(0.1)) < 1e-6 && columns[14] === 3, `pose ${columns}`);
+  // The dark theme; without clouds; back in the plan view, which gets none.
+  await page.keyboard.press("t");
+  check((await painted()) > 0.95, "not dark");
+  await page.keyboard.press("v");
+  const { updates } = await page.evaluate(() => ({ ...view.third.counts }));
+  await until(page, "no plan", () => !document.getElementById("view").hidden && view.drawing.drawn.robots === 2 && view.camera.width > 100);
+  const { now, tick } = await page.evaluate(() => ({ now: view.third.counts.updates, tick: view.fleet.tick }));
+  await until(page, "no ticks", (was) => view.fleet.tick > was + 5, tick);
+  check((await page.evaluate(() => view.third.counts.updates)) <= now + 1 && now <= updates + 1, "clouds for the plan view");
+  await page.keyboard.press("t");
+  await page.close();
+  await server.end();
+}
+
+/** Ten robots with lidars of 64 x 1 024 beams among blocks. */
+function town() {
+  const colors = ["tan", "salmon", "khaki", "gray70", "light blue", "pale green", "thistle"], lines = [
+    "define rover position( size [0.8 0.6 0.4] drive \"diff\" ctrl \"wander\" lidar( preset \"OS1-64\" range [0.5 60] noise 0 size [0.2 0.2 0.15] ) laser( pose [0.3 0 -0.2 0] size [0.1 0.1 0.1] samples 181 fov 180 range_max 8 ) )",
+    "model( name \"yard\" size [60 40 1.2] boundary 1 color \"gray50\" )", "model( name \"bridge\" pose [4.1 0 3 0] size [1.5 36 0.3] color \"gray60\" )"];
+  for (let k = 0; k < 35; ++k) {
+    const x = 8.2 * (k % 7 - 3), y = 7.6 * (Math.floor(k / 7) - 2), [a, b, c] = [5, 7, 11].map((factor) => (factor * k * k + k) % 13 / 13);
+    lines.push(`model( name "block${k}" pose [${x} ${y} 0 ${30 * a - 15}] size [${2 + 2 * b} ${2 + 1.6 * c} ${[1, 1.6, 2.5, 4, 6][(k * k + 3 * k) % 5]}] color "${colors[k % 7]}" )`);
+    if (k % 3 === 0 && k < 30) lines.push(`rover( name "rover${k / 3 + 1}" pose [${Math.min(20, x) + 4.1} ${Math.min(8, y) + 3.8} 0 ${70 * k}] )`);
+  }
+  return lines.join("\n");
+}
+
+/** Clouds are thinned out with a note. Prints the rates, which depend on the machine. */
+async function watchTown(browser, requests) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "town-")), world = path.join(folder, "town.world");
+  fs.writeFileSync(world, town());
+  const server = start(program, ["run", world, "--view", "0", "--duration", "600"]);
+  const page = await open(browser, await server.url, requests);
+  await page.keyboard.press("v");
+  await until(page, "neither three dimensions nor a word why", () => view.third !== null || !document.getElementById("notice").hidden);
+  if (await page.evaluate(() => view.third !== null)) {
+    await until(page, "no clouds", () => view.third.counts.points > 20000);
+    check((await page.evaluate(() => view.third.counts.points)) <= 65536 + 20, "too many points");
+    await until(page, "no note", () => /one in 11 beams/.test(document.getElementById("notes").textContent));
+    const rates = await page.evaluate(async () => {
+      const count = () => [performance.now() / 1000, view.third.counts.updates, view.third.drawn.frames], begin = count();
+      await new Promise((done) => setTimeout(done, 3000));
+      const [seconds, ...counts] = count().map((value, k) => value - begin[k]);
+      return counts.map((value) => (value / seconds).toFixed(1));
+    });
+    console.log(`10 robots with 64 x 1 024 beams in three dimensions: ${rates[0]} updates/s, ${rates[1]} frames/s`);
+    if (picture) {
+      await page.evaluate(() => {  // as with a GPU
+        Object.assign(view.third.orbit, { elevation: 0.62, azimuth: -1.9, distance: 0.5 * view.third.orbit.distance });
+        Object.defineProperty(view.third, "share", { get: () => 1, set: () => {} });
+        view.third.renderer.setPixelRatio(2);
+        view.third.resize();
+        view.select(3);
+      });
+      await page.evaluate(() => new Promise((done) => setTimeout(done, 2000)));
+      await page.screenshot({ path: picture.replace(/(\.\w+)?$/, "-3d$1") });
+    }
+  }
+  await page.close();
+  await server.end();
+  fs.rmSync(folder, { recursive: true });
+}
+
 async function watchRecording(browser, requests) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "view-"));
   execFileSync(program, ["run", "worlds/mapping/mapping.world", "--duration", "8", "--record", folder, "--record-readings"], { stdio: "ignore" });
@@ -295,7 +413,7 @@ async function main() {
   const profile = fs.mkdtempSync(path.join(os.tmpdir(), "chromium-"));
   const browser = await chromium.launchPersistentContext(profile, { executablePath: process.env.CHROMIUM, headless: true, args: flags, viewport: { width: 1366, height: 768 } });
   const requests = [];
-  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchRecording, watchCameras]) {
+  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchThird, watchTown, watchRecording, watchCameras]) {
     const since = Date.now();
     await part(browser, requests);
     console.log(`${part.name}: ${((Date.now() - since) / 1000).toFixed(1)} s`);

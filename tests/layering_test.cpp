@@ -43,7 +43,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"server",
      {"netio", "v2x", "control", "farm", "record", "sensors", "raycast", "maps", "robots/estimation", "robots", "world",
       "gpu", "base"}},
-    {"bridges", {"netio", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
+    {"bridges", {"netio", "record", "scene", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"selftest", {"farm", "scene", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"vision", {"world", "base"}},
     {"viz", {"farm", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},

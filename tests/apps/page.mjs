@@ -13,6 +13,8 @@ const { Fleet } = await load('fleet.js');
 const { HeldReadings } = await load('held.js');
 const { keyDown, pressed } = await load('input.js');
 const { keyName } = await load('key_name.js');
+const { Orbit, fov } = await load('orbit.js');
+const { prisms } = await load('solids_3d.js');
 const near = (found, expected, within, what) => assert.ok(Math.abs(found - expected) <= within, `${what}: ${found}, not ${expected}`);
 
 // The contrast formula, with the examples of WCAG: black on white, and the lightest grey that is valid for text on
@@ -72,7 +74,7 @@ function actionOf(key, { typing = false, driving = false, ...more } = {}) {
   keyDown({ key, shiftKey: false, target: { matches: () => typing, blur: () => { called = 'blur'; } }, getModifierState: () => false, preventDefault: () => {}, ...more }, page);
   return called;
 }
-for (const [key, more, action] of [['n', {}, 'step '], ['F', {}, 'toggleFollowing '], ['4', {}, 'setFastest '], ['r', {}, ''], ['n', { ctrlKey: true }, ''], ['n', { typing: true }, ''], ['Escape', { typing: true }, 'blur'], ['ArrowLeft', {}, 'pan 60,0'], ['ArrowUp', { driving: true }, '']])
+for (const [key, more, action] of [['n', {}, 'step '], ['F', {}, 'toggleFollowing '], ['4', {}, 'setFastest '], ['r', {}, ''], ['n', { ctrlKey: true }, ''], ['n', { typing: true }, ''], ['Escape', { typing: true }, 'blur'], ['ArrowLeft', {}, 'pan 60,0'], ['v', {}, 'toggleThird '], ['ArrowUp', { driving: true }, '']])
   assert.equal(actionOf(key, more), action, `${key} ${JSON.stringify(more)}`);
 assert.deepEqual([...pressed], ['ArrowUp']);
 
@@ -135,4 +137,32 @@ function echo({ message, pose: [x, , yaw] }) { return x + message.range * Math.c
   fleet.update({ tick: 0, states: [state(0, [0, 0, 0])] }, 3.15, 3.15);
   assert.ok(!fleet.isStuck(0), 'it moves again');
   assert.ok(!fleet.isOutside(1), 'absent robots count nowhere');
+}
+
+// The camera of the 3-D view: its distance and its side; it stays above the floor.
+{
+  const orbit = new Orbit(), length = ([x, y, z]) => Math.hypot(x, y, z);
+  orbit.resize(600);
+  orbit.fit([90, 40, 110, 60], [100, 50]);
+  near(length(orbit.eye()), orbit.distance, 1e-9, 'distance');
+  assert.ok(orbit.distance * Math.tan(fov / 2) > 10, 'all is in sight');
+  orbit.azimuth = -Math.PI / 2;  // seen from the south
+  orbit.turn(0, 1e6);
+  near(orbit.eye()[2], orbit.distance, 1e-3, 'from above');
+  orbit.pan(300, -600);
+  near(orbit.target[0], -orbit.distance * Math.tan(fov / 2), 1e-3, 'half of the height to the right: the world follows');
+  near(orbit.target[1], -2 * orbit.distance * Math.tan(fov / 2), 1e-3, 'and up');
+  orbit.turn(0, -1e6);
+  assert.ok(orbit.eye()[2] > 0, 'above the floor');
+  for (const factor of [1e12, 1e-12]) { orbit.zoom(factor); assert.ok(orbit.distance > 0 && orbit.distance < 1e7, 'zoom'); }
+}
+{
+  // Prisms: a square with a top and a bottom, an open line without, and an outline whose mesh is drawn instead.
+  const THREE = { Vector2: class { constructor(x, y) { Object.assign(this, { x, y }); } equals(p) { return p.x === this.x && p.y === this.y; } }, ShapeUtils: { triangulateShape: (points) => { assert.equal(points.length, 4); return [[0, 1, 2], [0, 2, 3]]; } } };
+  const square = [0, 0, 1, 0, 1, 1, 0, 1, 0, 0];
+  const shape = { closed: [square, square], closed_z: [[0.1, 0.5, 0], [0, 2, 1]], open: [[0, 0, 1, 1]], open_z: [[0, 0.7, 0]] };
+  const { vertices, top, isMesh } = prisms(THREE, shape, 1), triangles = vertices.length / 9;
+  assert.deepEqual([triangles, top, isMesh], [2 * 4 + 2 * 2 + 2, 2, true]);
+  assert.equal(Math.min(...vertices.filter((_, k) => k % 3 === 2)), 0);
+  assert.deepEqual(prisms({ ...THREE, ShapeUtils: { triangulateShape: () => [] } }, { closed: [], closed_z: [], open: [], open_z: [] }, 0.5).top, 0.5, 'a body without outlines');
 }

@@ -13,7 +13,7 @@ export class Drawing {
   constructor(canvas, camera, scene, layer, fleet, held) {
     Object.assign(this, { canvas, camera, scene, layer, fleet, held });
     this.context = canvas.getContext('2d', { alpha: false });
-    this.layers = { trails: true, beams: true, maps: true, names: true, lights: true, contacts: true, colors: true, lasers: true };
+    this.layers = { trails: true, beams: true, maps: true, names: true, lights: true, contacts: true, colors: true, lasers: true, clouds: true, intensity: false };
     this.lights = [];
     this.selected = -1;
     this.maps = new Map();  // by topic: MapPicture

@@ -6,11 +6,11 @@ import { keyName } from './key_name.js';
 export const pressed = new Set();
 
 /** The list of keys in the page's help, with their effects. */
-export const keyHelp = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow the robot'], ['D', 'drive the robot'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'recording: one second back, forward'], ['Esc', 'close, stop driving, clear the selection']];
+export const keyHelp = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow the robot'], ['V', 'three-dimensional or plan view; drags turn it, with Shift or the right button they pan'], ['D', 'drive the robot'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'recording: one second back, forward'], ['Esc', 'close, stop driving, clear the selection']];
 
 // Letters as without caps lock.
 const keys = {
-  ' ': (page) => page.togglePaused(), n: (page) => page.step(), 'Shift r': (page) => page.reset(), t: (page) => page.toggleTheme(), f: (page) => page.toggleFollowing(), d: (page) => page.toggleDriving(),
+  ' ': (page) => page.togglePaused(), n: (page) => page.step(), 'Shift r': (page) => page.reset(), t: (page) => page.toggleTheme(), f: (page) => page.toggleFollowing(), d: (page) => page.toggleDriving(), v: (page) => page.toggleThird(),
   '+': (page) => page.zoom(1.25), '=': (page) => page.zoom(1.25), '-': (page) => page.zoom(0.8), '0': (page) => page.fitAll(), Home: (page) => page.fitAll(),
   '[': (page) => page.nextRobot(-1), ']': (page) => page.nextRobot(1), l: (page) => page.openPopup('layers'), '?': (page) => page.openPopup('help'),
   '/': (page) => page.search(), Escape: (page) => page.escape(), ',': (page) => page.seekBy(-1), '.': (page) => page.seekBy(1),
@@ -70,7 +70,7 @@ export function listenToPointer(canvas, page) {
     const dx = event.offsetX - from[0], dy = event.offsetY - from[1];
     if (!moved && Math.hypot(dx, dy) < 4) return;
     moved = true;
-    page.pan(dx, dy);
+    page.drag(dx, dy, event);
     from = [event.offsetX, event.offsetY];
   };
   canvas.onpointerup = canvas.onpointercancel = (event) => {

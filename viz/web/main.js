@@ -18,6 +18,7 @@ const seconds = () => performance.now() / 1000;
 
 let scene, camera, fleet, drawing, panel, connection;
 let paused = false, speed = 1, following = false, driving = false, sliding = false, dirty = true, time = 0;
+let third = null;  // the three-dimensional view, once it was opened
 let runs = null, shapes = 0, range = [0, 0];
 const readings = new HeldReadings();
 
@@ -102,6 +103,7 @@ async function loadShapes() {
     next.movers.forEach(({ shape, radius, color }, i) => Object.assign(scene.movers[i], { shape, radius, color }));
     fleet.measure(scene);
     drawing.restyle();
+    third?.restyle();
     dirty = true;
   } catch { /* the connection is lost: the page loads the scene again */ }
 }
@@ -196,6 +198,7 @@ function restyle() {
   if (!drawing) return;
   drawing.restyle();
   for (const [topic, { message, geometry }] of drawing.maps) drawing.maps.set(topic, new MapPicture(message, geometry));
+  third?.restyle();
   panel.fill();
   panel.dirty = true;
   showLegend.key = null;
@@ -221,6 +224,43 @@ function showPanel(open) {
 function fitAll() {
   setFollowing(false);
   camera.fit(scene.extent);
+  third?.fit();
+  dirty = true;
+}
+
+const inThird = () => !$('view-3d').hidden;
+
+/** The plan view does not load the three-dimensional one, and the server sends it no clouds. */
+async function toggleThird() {
+  if (toggleThird.isLoading) return;
+  toggleThird.isLoading = true;
+  try {
+    if (!third) await openThird();
+    showThird(!inThird());
+  } catch (error) {
+    notice(error.message);
+  }
+  toggleThird.isLoading = false;
+}
+
+async function openThird() {
+  const { View3D } = await import('./view_3d.js');
+  third = await View3D.open($('view-3d'), { scene, fleet, drawing });
+  listenToPointer($('view-3d'), Object.assign(Object.create(actions), { drag: (dx, dy, { shiftKey, buttons }) => (shiftKey || buttons & 2 ? pan(dx, dy) : turn(dx, dy)) }));
+  $('view-3d').oncontextmenu = (event) => event.preventDefault();
+  new ResizeObserver(() => { third.resize(); dirty = true; }).observe($('view-3d'));
+}
+
+function showThird(on) {
+  for (const id of ['view', 'legend', 'scale']) $(id).hidden = on;
+  for (const id of ['view-3d', 'notes']) $(id).hidden = !on;
+  $('third').setAttribute('aria-pressed', String(on));
+  if (on) third.subscribe(connection, () => { dirty = true; }); else third.unsubscribe(connection);
+  dirty = true;
+}
+
+function turn(dx, dy) {
+  third.orbit.turn(dx, dy);
   dirty = true;
 }
 
@@ -252,6 +292,19 @@ function showLegend() {
   $('legend').replaceChildren(...items.flatMap(([canvas, text]) => [canvas, Object.assign(document.createElement('span'), { textContent: text })]));
 }
 
+function drawPlan() {
+  drawing.frame();
+  showScale();
+  showLegend();
+}
+
+function drawThird() {
+  if (following) third.follow(drawing.selected);
+  third.frame();
+  const notes = third.notes();
+  if (notes !== $('notes').textContent) $('notes').textContent = notes;
+}
+
 function animate() {
   requestAnimationFrame(animate);
   const now = seconds(), moving = fleet.animate(now);
@@ -261,11 +314,9 @@ function animate() {
     camera.y = fleet.shownY[drawing.selected];
   }
   const blinking = drawing.lights.some(({ state }) => state >= 4);
-  if (dirty || moving || blinking) {
+  if ((dirty || moving || blinking) && (!inThird() || third.isDue())) {
     dirty = false;
-    drawing.frame();
-    showScale();
-    showLegend();
+    if (inThird()) drawThird(); else drawPlan();
     ++counters.frames;
   }
   panel.draw(now, drawing.maps);
@@ -282,9 +333,9 @@ function openPopup(id, open = $(`${id}-list`).hidden) {
 }
 
 function fillPopups() {
-  const words = { trails: 'Trails', beams: 'Beams and fields of the selected robot', maps: 'Its occupancy map', names: 'Names', lights: 'Traffic lights', contacts: 'Contacts', colors: 'Own colours of robots that look alike', lasers: 'Own colours of lasers (laser_color)' };
+  const words = { trails: 'Trails', beams: 'Beams and fields of the selected robot', maps: 'Its occupancy map', names: 'Names', lights: 'Traffic lights', contacts: 'Contacts', colors: 'Own colours of robots that look alike', lasers: 'Own colours of lasers (laser_color)', clouds: 'Clouds and scans of all robots (3-D)', intensity: 'Clouds in colours of the intensity instead of the height (3-D)' };
   $('layers-list').replaceChildren(...Object.entries(words).map(([key, text]) => {
-    const box = Object.assign(document.createElement('input'), { type: 'checkbox', checked: true, onchange: () => { drawing.layers[key] = box.checked; if (key === 'colors') restyle(); dirty = true; } });
+    const box = Object.assign(document.createElement('input'), { type: 'checkbox', checked: drawing.layers[key], onchange: () => { drawing.layers[key] = box.checked; if (key === 'colors') restyle(); dirty = true; } });
     const label = document.createElement('label');
     label.append(box, text);
     return label;
@@ -313,17 +364,18 @@ function togglePaused() { setPaused(!paused); }
 function toggleFollowing() { setFollowing(!following); }
 
 function zoom(factor, x, y) {
-  camera.zoom(factor, following ? undefined : x, following ? undefined : y);
+  if (inThird()) third.orbit.zoom(factor); else camera.zoom(factor, following ? undefined : x, following ? undefined : y);
   dirty = true;
 }
 
 function pan(dx, dy) {
   setFollowing(false);
-  camera.pan(dx, dy);
+  (inThird() ? third.orbit : camera).pan(dx, dy);
   dirty = true;
 }
 
 function selectAt(px, py) {
+  if (inThird()) return select(third.pick(px, py));
   const [x, y] = camera.toWorld(px, py);
   select(fleet.pick(x, y, 10 / camera.scale));
 }
@@ -331,7 +383,7 @@ function selectAt(px, py) {
 /** The effects of keys and pointer (input.js). */
 const actions = {
   get driving() { return driving; }, get following() { return following; },
-  escape, fitAll, nextRobot, openPopup, pan, reset, search, seekBy, selectAt, setFastest, setSpeed, step, toggleDriving, toggleFollowing, togglePaused, toggleTheme, zoom,
+  drag: pan, escape, fitAll, nextRobot, openPopup, pan, reset, search, seekBy, selectAt, setFastest, setSpeed, step, toggleDriving, toggleFollowing, togglePaused, toggleTheme, toggleThird, zoom,
 };
 
 function listen() {
@@ -340,6 +392,7 @@ function listen() {
   $('reset').onclick = reset;
   $('speed').onchange = () => setSpeed(Number($('speed').value));
   $('fit').onclick = fitAll;
+  $('third').onclick = toggleThird;
   $('follow').onclick = toggleFollowing;
   $('layers').onclick = () => openPopup('layers');
   $('help').onclick = () => openPopup('help');
@@ -352,7 +405,7 @@ function listen() {
   $('slider').onchange = () => { sliding = false; };
   listenToKeys(actions);
   listenToPointer($('view'), actions);
-  new ResizeObserver(() => { drawing.resize(); dirty = true; }).observe($('view'));
+  new ResizeObserver(() => { if (inThird()) return; drawing.resize(); dirty = true; }).observe($('view'));
 }
 
 // Connection
@@ -400,6 +453,7 @@ function connect() {
     dirty = true;
   });
   connection.subscribe('/lights', (message) => { drawing.lights = message.lights; dirty = true; });
+  if (inThird()) third.subscribe(connection, () => { dirty = true; });
   const row = drawing.selected;
   drawing.selected = -1;
   select(row);
@@ -442,7 +496,7 @@ async function start() {
   $('follow').disabled = true;
   connect();
   // For tests, and for the browser's console.
-  window.view = { scene, camera, fleet, drawing, panel, counters, select, get paused() { return paused; }, get time() { return time; }, get connection() { return connection; } };
+  window.view = { scene, camera, fleet, drawing, panel, counters, select, get paused() { return paused; }, get time() { return time; }, get connection() { return connection; }, get third() { return third; } };
   requestAnimationFrame(animate);
 }
 
