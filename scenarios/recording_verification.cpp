@@ -186,7 +186,8 @@ class Verifier {
   void add_spatial() {
     if (spatial_scans_ > 0)
       result_.skipped.push_back(
-          fmt::format("{} rolling scans and scans of tilted robots in plain C++, which casts level ones from one pose",
+          fmt::format("{} scans of rolling lasers, of tilted robots or on terrain in plain C++, which casts level ones "
+                      "from one pose",
                       spatial_scans_));
   }
 
@@ -370,9 +371,9 @@ class Verifier {
   }
 
   /// Adds every `stride_`-th scan to the list for plain C++.
-  /// True for scans that are not planar: of tilted robots, or rolling ones.
+  /// True for scans that are not planar: on terrain, of tilted robots, or rolling ones.
   bool is_spatial(std::uint32_t mover, std::uint32_t sensor, const base::Tilt& tilt) const {
-    return !base::is_level(tilt) || reference_.laser(mover, sensor).laser.scan_time > 0.0;
+    return !world_.terrain.empty() || !base::is_level(tilt) || reference_.laser(mover, sensor).laser.scan_time > 0.0;
   }
 
   void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {

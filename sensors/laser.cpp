@@ -258,8 +258,9 @@ bool Lasers::moves(std::uint32_t row) const {
   return is_same_place(now, last_[row]) && !trails_[row].at_rest(now);
 }
 
+/// The planar caster sees no terrain, and no tilt.
 bool Lasers::needs_scene(std::size_t i) const {
-  return !base::is_level(states_[rows_[due_[i].row].mover].tilt) || moves(due_[i].row);
+  return !world_.terrain.empty() || !base::is_level(states_[rows_[due_[i].row].mover].tilt) || moves(due_[i].row);
 }
 
 /// Bearings [rad] of the cast beams of a laser, without angular noise.

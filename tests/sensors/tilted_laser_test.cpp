@@ -68,6 +68,18 @@ TEST(TiltedLaser, SeesTheFloor) {
   EXPECT_EQ(sense(world, sensors::kLaser, {}).values[1], 8.0);
 }
 
+/// A level laser in a world with terrain sees it, as a lidar does: 2 m high from x = 4 on.
+TEST(TiltedLaser, SeesTerrainFromALevelRobot) {
+  world::World world = world_of(
+      "position( size [0.4 0.4 0.5] origin [0 0 0 0] laser( pose [0 0 0.25 0] size [0 0 0] samples 3 fov 2 range_max 8 "
+      ") )");
+  world.terrain.push_back({"", {5.0, 0.0, 0.0, 0.0}, {1.0, 1.0}, 11, 11, std::vector<float>(121)});
+  for (std::size_t i = 0; i < 121; ++i) world.terrain[0].heights[i] = i % 11 >= 4 ? 2.0f : 0.0f;
+  farm::Farm farm(world, host_device(), {.noise = false, .threads = 1});
+  const base::ReadingBlock r = farm.sense(0, sensors::kLaser, 0, {});
+  EXPECT_NEAR(r.values[1], 3.25, 1e-6) << "the slope from x = 3 to 4 at 0.5 m";
+}
+
 /// Level scans keep their bytes after tilted ones, and `range_min`, `resolution` and noise apply to tilted ones too.
 TEST(TiltedLaser, IsReworkedAsLevelScansAre) {
   const world::World world = twins("range_min 2.5 resolution 3");
