@@ -61,7 +61,8 @@ TEST(Terrain, HeightsArePlanesOfTriangles) {
   const Terrain& t = world.terrain[0];
   EXPECT_NEAR(*height_at(t, {11.0 - 1e-9, 18.0 + 1e-9}), 6.0, 1e-7) << "the first point";
   EXPECT_NEAR(*height_at(t, {9.0 + 1e-9, 22.0 - 1e-9}), 6.0, 1e-7) << "the last";
-  EXPECT_NEAR(*height_at(t, {10.5, 18.5}), 1.0 + 4.0, 1e-9) << "x = 0.25 and y = 0.25 of the first cell, on its diagonal";
+  EXPECT_NEAR(*height_at(t, {10.5, 18.5}), 1.0 + 4.0, 1e-9)
+      << "x = 0.25 and y = 0.25 of the first cell, on its diagonal";
   EXPECT_NEAR(*height_at(t, {10.5, 19.0}), 1.0 + 2.75, 1e-9) << "x = 0.5, y = 0.25: below the diagonal";
   EXPECT_NEAR(*height_at(t, {10.0, 18.5}), 1.0 + 2.75, 1e-9) << "x = 0.25, y = 0.5: above it";
   EXPECT_FALSE(height_at(t, {11.1, 20.0})) << "outside";
