@@ -52,10 +52,15 @@ struct SystemUnits {
 /// units are unknown, except that numbers from 4001 to 4999 are degrees.
 SystemUnits units_of_epsg(std::uint32_t number);
 
-/// The interface of the GDAL plug-in. `open` throws base::InputError with GDAL's reasons.
+/// Throws base::InputError unless a height map of this size is within the limits (world/terrain.h).
+using HeightMapSizeRule = void (*)(const std::string& file, std::uint64_t columns, std::uint64_t rows);
+struct HeightMap;
+
+/// The interface of the GDAL plug-in. `open` and `read_heights` throw base::InputError with GDAL's reasons.
 struct GdalPlugin {
   std::unique_ptr<OutlineRows> (*open)(const std::string& file);
   SystemUnits (*units_of_epsg)(std::uint32_t number);
+  HeightMap (*read_heights)(const std::string& file, HeightMapSizeRule require_size);  ///< of a GeoTIFF
 };
 /// Name of the plug-in's only symbol: `extern "C" const GdalPlugin sensorfarm_gdal`.
 inline constexpr const char* kGdalSymbol = "sensorfarm_gdal";

@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/plugin.h"
+#include "world/outline_rows.h"
 
 namespace sf::world {
 
@@ -61,6 +63,18 @@ HeightMap decode_height_map(const std::string& file, const std::string& bytes, d
       map.heights[y * map.columns + x] =
           static_cast<float>(lowest + (highest - lowest) * (values[(map.rows - 1 - y) * map.columns + x] / kMostValue));
   return map;
+}
+
+bool is_geotiff(const std::string& file) {
+  const std::string ending = base::ending_of(file);
+  return ending == ".tif" || ending == ".tiff";
+}
+
+HeightMap read_geotiff(const std::string& file) {
+  const auto* const plugin = static_cast<const GdalPlugin*>(
+      base::load_plugin(kGdalSymbol, "only PNG height maps can be read; convert this one to a greyscale PNG of 16 bits",
+                        "GDAL (Debian: libgdal32)"));
+  return plugin->read_heights(file, require_height_map_size);
 }
 
 HeightMap read_height_map(const std::string& file, double lowest, double highest) {

@@ -19,6 +19,11 @@ struct HeightMap {
   glm::dvec2 cell{};           ///< [m] distances of points as the file states them; 0: it does not
 };
 
+/// Returns true for names of GeoTIFF files, which state heights and possibly distances themselves.
+bool is_geotiff(const std::string& file);
+/// Reads a GeoTIFF by the GDAL plug-in.
+/// @throws base::InputError also for a height that is missing or not finite, and if the plug-in cannot be loaded
+HeightMap read_geotiff(const std::string& file);
 /// Reads a greyscale PNG of 16 bits, whose values from 0 to 65535 become heights from `lowest` to `highest` [m].
 /// Checks sizes before allocating memory.
 /// @throws base::InputError if the file is missing, broken, of another format or too large

@@ -54,6 +54,11 @@ struct CellHeights {
   }
 };
 
+HWY_INLINE Floats reciprocal(const Floats& v) {
+  const Floats least = all(1e-30f), size = larger(absolute(v), least);
+  return turned(all(1.0f) / size, v);
+}
+
 /// The search of sixteen beams. All heights are multiplied by `side`, so that beams come from above.
 class Search {
  public:
@@ -64,6 +69,7 @@ class Search {
     const Mask no = greater(all(0.0f), all(0.0f));
     points_ = points, active_ = active, found_ = {no, no, no};
     level_ = smaller(level, all(field_->levels));
+    per_x_ = reciprocal(dx_), per_y_ = reciprocal(dy_), per_turn_ = reciprocal(dx_ - dy_);
   }
   /// Starts from the sensor, or from where the beams come close to the surface.
   HWY_INLINE void start(const Horizon& horizon);
@@ -127,11 +133,6 @@ class Search {
   Found found_;
 };
 
-HWY_INLINE Floats reciprocal(const Floats& v) {
-  const Floats least = all(1e-30f), size = larger(absolute(v), least);
-  return turned(all(1.0f) / size, v);
-}
-
 /// Loads pairs of floats from from[row] and from[row + 1].
 HWY_INLINE void gather_pairs(const float* from, const Ints& rows, Floats& first, Floats& second) {
 #if HWY_TARGET == HWY_SCALAR
@@ -162,7 +163,6 @@ Search::Search(const FieldView& view, const FieldRays& rays, float side, const F
   planes_ = (side > 0.0f ? field_->above : field_->below).data() +
             static_cast<std::ptrdiff_t>(field_->bias / 2) * field_->pitch;
   dx_ = as_floats(rays.x, 1.0), dy_ = as_floats(rays.y, 1.0), dz_ = as_floats(rays.z, side);
-  per_x_ = reciprocal(dx_), per_y_ = reciprocal(dy_), per_turn_ = reciprocal(dx_ - dy_);
   const Floats zero = all(0.0f);
   from_x_ = all(static_cast<float>(view.from.x)), from_y_ = all(static_cast<float>(view.from.y));
   step_x_ = select(at_least(dx_, zero), all(1), all(0)), step_y_ = select(at_least(dy_, zero), all(1), all(0));
@@ -178,7 +178,8 @@ void Search::enter(Floats& in, Floats& out) const {
     in = larger(in, smaller(low, high)), out = smaller(out, larger(low, high));
   };
   in = all(0.0f), out = end_;
-  along(view_->base.x, field_->columns - 1, from_x_, per_x_), along(view_->base.y, field_->rows - 1, from_y_, per_y_);
+  along(view_->base.x, field_->columns - 1, from_x_, reciprocal(dx_));
+  along(view_->base.y, field_->rows - 1, from_y_, reciprocal(dy_));
 }
 
 void Search::start(const Horizon& horizon) {
@@ -205,6 +206,12 @@ void Search::start(const Horizon& horizon) {
     reach = select(over, all(horizon.reach[k]), reach), level = select(over, all(horizon.level[k]), level);
   }
   const Mask ends = at_least(reach, all(horizon.reach[horizon.rings - 1]));
+  if (none(without(at_least(end_, zero), ends))) {  // all beams stay above the ground
+    const Mask no = greater(zero, zero);
+    active_ = no, found_ = {no, no, no};
+    points_ = {all(0), low_y_, zero};
+    return;
+  }
   const Floats t = reach / larger(flat, all(1e-30f)) * all(0.999999f);
   start(points_at(smaller(t, end_)), without(both(at_least(end_, zero), at_least(end_, t)), ends), level);
 }

@@ -52,6 +52,23 @@ TEST(Terrain, RefusesBadKeys) {
             std::string::npos);
 }
 
+std::string geotiff(const std::string& name, const std::string& keys = "") {
+  return "terrain( file \"" SF_SOURCE_DIR "/tests/world/terrain/" + name + "\" " + keys + " )\n";
+}
+
+/// Heights and distances of a GeoTIFF in metres, whose first row is the northernmost.
+TEST(Terrain, ReadsGeoTiff) {
+  const World world = read_world(geotiff("three_by_two.tif"));
+  EXPECT_EQ(world.terrain.at(0).heights, (std::vector<float>{4.0f, 5.0f, 6.5f, 1.0f, 2.0f, 3.0f}));
+  EXPECT_EQ(world.terrain[0].cell, (glm::dvec2{0.5, 2.0}));
+  EXPECT_EQ(read_world(geotiff("three_by_two.tif", "size [4 3]")).terrain[0].cell, (glm::dvec2{2.0, 3.0}));
+  EXPECT_NE(error_of(geotiff("three_by_two.tif", "heights [0 1]")).find("test.world:1: a GeoTIFF states its heights"),
+            std::string::npos);
+  EXPECT_NE(error_of(geotiff("gap.tif")).find("the height in column 1, row 1 is -9999"), std::string::npos)
+      << "no data";
+  EXPECT_NE(error_of(geotiff("nan.tif")).find("the height in column 2, row 0 is nan"), std::string::npos);
+}
+
 /// The picture's 3 x 2 points on 4 m x 2 m, turned by 90 degrees about (10, 20, 1).
 const std::string kTurned = block("size [4 2] heights [0 5] pose [10 20 1 90]");
 

@@ -1,7 +1,5 @@
 // The GDAL plug-in: returns features of GeoPackages, shapefiles and GeoJSON as rows.
 
-#include <cpl_error.h>
-#include <cpl_http.h>
 #include <fmt/format.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "world/gdal/heights.h"
 #include "world/outline_rows.h"
 
 namespace sf::world {
@@ -22,36 +21,6 @@ namespace sf::world {
 namespace {
 
 constexpr std::size_t kShownNames = 20;
-
-/// While a Guard exists, GDAL's messages in this thread are collected, and its network requests fail: a GeoJSON file
-/// may refer to its coordinate system by a URL.
-class Guard {
- public:
-  explicit Guard(std::string& messages) {
-    CPLPushErrorHandlerEx(collect, &messages);
-    CPLHTTPPushFetchCallback(refuse, nullptr);
-  }
-  ~Guard() {
-    CPLHTTPPopFetchCallback();
-    CPLPopErrorHandler();
-  }
-  Guard(const Guard&) = delete;
-
- private:
-  static void collect(CPLErr kind, CPLErrorNum, const char* text) {
-    constexpr std::size_t kMost = 500;
-    auto& messages = *static_cast<std::string*>(CPLGetErrorHandlerUserData());
-    if (kind < CE_Warning || messages.size() > kMost || messages.find(text) != std::string::npos) return;
-    messages += (messages.empty() ? "" : "; ") + std::string(text).substr(0, kMost);
-  }
-  static CPLHTTPResult* refuse(const char*, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*,
-                               void*) {
-    CPLError(CE_Failure, CPLE_AppDefined, "the file refers to a network location, which is not used");
-    auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
-    result->nStatus = 1;
-    return result;
-  }
-};
 
 std::string quoted(const std::vector<std::string>& names) {
   std::string text;
@@ -236,5 +205,6 @@ std::unique_ptr<OutlineRows> open_layers(const std::string& file) {
 extern "C" {
 extern const sf::world::GdalPlugin sensorfarm_gdal;
 const sf::world::GdalPlugin sensorfarm_gdal{.open = sf::world::open_layers,
-                                            .units_of_epsg = sf::world::units_of_epsg_by_gdal};
+                                            .units_of_epsg = sf::world::units_of_epsg_by_gdal,
+                                            .read_heights = sf::world::read_heights_by_gdal};
 }

@@ -27,9 +27,20 @@ glm::dvec2 heights_of(const StageContext& context, const Entity& entity) {
   return range;
 }
 
+HeightMap map_of(const StageContext& context, const Entity& entity, const std::string& file) {
+  if (is_geotiff(file)) {
+    if (find(entity, "heights") != nullptr)
+      fail(context, location_of(entity, "heights"), "a GeoTIFF states its heights; expected no 'heights' here");
+    return read_geotiff(file);
+  }
+  const glm::dvec2 heights = heights_of(context, entity);
+  return read_height_map(file, heights.x, heights.y);
+}
+
 glm::dvec2 cell_of(const StageContext& context, const Entity& entity, const HeightMap& map) {
   const SourceLocation at = location_of(entity, "size");
   const auto size = tuple(context, entity, "size", 2, "[x y]");
+  if (!size && map.cell.x >= kLeastCell && map.cell.y >= kLeastCell) return map.cell;
   if (!size) fail(context, at, "a terrain needs 'size [x y]': the distances of its outermost points");
   const glm::dvec2 metres{to_metres(context, at, (*size)[0]), to_metres(context, at, (*size)[1])};
   const glm::dvec2 cell = metres / glm::dvec2(map.columns - 1, map.rows - 1);
@@ -49,8 +60,7 @@ void read_terrain(BuildState& b, const Entity& root) {
     check_keys(b.context, entity, KeyScope::terrain);
     if (find(entity, "file") == nullptr) fail(b.context, entity.at, "a terrain needs 'file \"FILE\"': its height map");
     const std::string file = file_of(b.context, entity, "file");
-    const glm::dvec2 heights = heights_of(b.context, entity);
-    HeightMap map = read_height_map(file, heights.x, heights.y);
+    HeightMap map = map_of(b.context, entity, file);
     const glm::dvec2 cell = cell_of(b.context, entity, map);
     b.world.terrain.push_back(
         {file, pose(b.context, entity, "pose"), cell, map.columns, map.rows, std::move(map.heights)});
