@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "world/gdal/guard.h"
 #include "world/gdal/heights.h"
 #include "world/outline_rows.h"
 
