@@ -13,6 +13,7 @@
 #include "record/cdr.h"
 #include "scene/solids.h"
 #include "world/ground.h"
+#include "world/terrain.h"
 
 namespace sf::bridges {
 
@@ -21,7 +22,7 @@ namespace {
 using world::Segment;
 using world::World;
 
-constexpr std::uint32_t kRoadColor = 0xFF808890u;
+constexpr std::uint32_t kRoadColor = 0xFF808890u, kTerrainColor = 0xFFA3AD94u;
 
 /// One use of a solid.
 struct Place {
@@ -69,6 +70,33 @@ Place place_of(const World& world, const world::MeshModel& row) {
   return {model.mover, row.X_BF, model.mover == world::kNone ? model.color : 0};
 }
 
+/// Returns the number of points along a side of a height map in steps that include both ends.
+std::size_t points_along(std::uint32_t points, std::uint32_t step) { return (points - 2) / step + 2; }
+
+std::uint32_t step_of(const world::Terrain& terrain) {
+  std::uint32_t step = 1;
+  while (points_along(terrain.columns, step) * points_along(terrain.rows, step) > kMostViewHeights) ++step;
+  return step;
+}
+
+/// Returns the surface of every so many-th height, in the frame of its corner.
+scene::Mesh mesh_of(const world::Terrain& terrain, std::uint32_t step) {
+  const auto columns = static_cast<std::uint32_t>(points_along(terrain.columns, step));
+  const auto rows = static_cast<std::uint32_t>(points_along(terrain.rows, step));
+  scene::Mesh mesh;
+  for (std::uint32_t row = 0; row < rows; ++row)
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const std::size_t i = std::min(column * step, terrain.columns - 1), j = std::min(row * step, terrain.rows - 1);
+      mesh.vertices.emplace_back(static_cast<double>(i) * terrain.cell.x, static_cast<double>(j) * terrain.cell.y,
+                                 terrain.heights[j * terrain.columns + i]);
+      if (row + 1 == rows || column + 1 == columns) continue;
+      const std::uint32_t k = row * columns + column, above = k + columns;
+      mesh.faces.push_back({k, k + 1, above + 1, above + 1});
+      mesh.faces.push_back({k, above + 1, above, above});
+    }
+  return mesh;
+}
+
 /// Returns what is missing, for users; empty: nothing.
 std::string note_of(const World& world, const std::vector<std::uint8_t>& as_mesh) {
   std::string note;
@@ -79,6 +107,9 @@ std::string note_of(const World& world, const std::vector<std::uint8_t>& as_mesh
   if (missing > 0)
     note += fmt::format("{}{} models as prisms: their meshes have more than {} triangles in all",
                         note.empty() ? "" : "; ", missing, kMostViewTriangles);
+  for (const world::Terrain& terrain : world.terrain)
+    if (const std::uint32_t step = step_of(terrain); step > 1)
+      note += fmt::format("{}terrain in steps of {} points", note.empty() ? "" : "; ", step);
   return note;
 }
 
@@ -122,11 +153,14 @@ base::Bytes solids_message(const World& world, double headroom) {
   base::Bytes out;
   record::CdrWriter cdr(out);
   cdr.put(note_of(world, as_mesh));
-  cdr.put_count(walls.size() + places.size() + (roads.faces.empty() ? 0 : 1));
+  cdr.put_count(walls.size() + places.size() + (roads.faces.empty() ? 0 : 1) + world.terrain.size());
   for (const auto& [group, segments] : walls)
     put_solid(cdr, group.first, scene::mesh_of(segments), origin, {{Place{world::kNone, X_WO, group.second}}});
   for (const auto& [row, of_mesh] : places) put_solid(cdr, "mesh", scene::mesh_of(world.meshes[row]), {}, of_mesh);
   if (!roads.faces.empty()) put_solid(cdr, "road", roads, origin, {{Place{world::kNone, X_WO, kRoadColor}}});
+  for (const world::Terrain& terrain : world.terrain)
+    put_solid(cdr, "terrain", mesh_of(terrain, step_of(terrain)), {},
+              {{Place{world::kNone, world::corner_of(terrain), kTerrainColor}}});
   return out;
 }
 

@@ -16,6 +16,8 @@ inline constexpr std::string_view kSolidsTopic = "/view_3d/solids";
 inline constexpr std::size_t kMostViewWalls = 100'000;      ///< the first of the world are sent
 inline constexpr std::size_t kMostViewTriangles = 400'000;  ///< of meshes, each counted once
 
+inline constexpr std::size_t kMostViewHeights = 100'000;  ///< points of terrain; larger maps are sent in larger steps
+
 /// Distinguishes walls as the figures do (viz/wall_layer.cpp): "solid"; "passable" for robots; "unseen" by lasers;
 /// "overhead" of all movers.
 /// @param headroom [m] of headroom_of

@@ -243,6 +243,28 @@ TEST(ViewSolids, MeshesAreBounded) {
   EXPECT_FALSE(flagged());
 }
 
+/// Both ends of a side are points of it, whatever the step.
+TEST(ViewSolids, LargeTerrainIsThinnedOut) {
+  for (const std::uint32_t columns : {2u, 1000u, 1001u, 16'384u}) {
+    world::World world;
+    world.terrain = {{.cell = {2.0, 1.0}, .columns = columns, .rows = 100}};
+    world.terrain[0].heights.assign(std::size_t{100} * columns, 0.5F);
+    world.terrain[0].heights.back() = 7.0F;
+    const base::Bytes message = solids_message(world, 1.0);
+    record::CdrReader cdr(message);
+    EXPECT_EQ(cdr.get_string(), columns <= 1000   ? ""
+                                : columns == 1001 ? "terrain in steps of 2 points"
+                                                  : "terrain in steps of 5 points");
+    EXPECT_EQ(cdr.get_count(4), 1u);
+    EXPECT_EQ(cdr.get_string(), "terrain");
+    std::vector<float> vertices(cdr.get_count(4));
+    for (float& v : vertices) v = cdr.get<float>();
+    EXPECT_LE(vertices.size(), 3 * kMostViewHeights) << columns;
+    const std::vector<float> last(vertices.end() - 3, vertices.end());
+    EXPECT_EQ(last, (std::vector<float>{2.0F * static_cast<float>(columns - 1), 99.0F, 7.0F})) << columns;
+  }
+}
+
 /// Plan viewers get nothing of it; the solids are made once, for the first subscriber.
 TEST(View3d, IsSentToItsSubscribersOnly) {
   ViewerFixture fixture;

@@ -314,7 +314,8 @@ function animate() {
     camera.y = fleet.shownY[drawing.selected];
   }
   const blinking = drawing.lights.some(({ state }) => state >= 4);
-  if ((dirty || moving || blinking) && (!inThird() || third.isDue())) {
+  const waiting = inThird() && third.isWaiting;
+  if ((dirty || moving || blinking || waiting) && (!inThird() || third.isDue())) {
     dirty = false;
     if (inThird()) drawThird(); else drawPlan();
     ++counters.frames;

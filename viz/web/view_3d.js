@@ -41,7 +41,7 @@ export class View3D {
   orbit = new Orbit();
   drawn = { walls: 0, frames: 0 };
   share = 1;  // of the points received, those drawn
-  #THREE; #page; #camera; #root = null; #clouds; #cloudRoot; #bodies; #solids = null; #tilts = new Map(); #last = 0;
+  #THREE; #page; #camera; #root = null; #clouds; #cloudRoot; #bodies; #solids = null; #tilts = new Map(); #last = 0; #waiting = [];
 
   /** @param page {scene, fleet, drawing}  @throws Error for users if three.js or WebGL is missing */
   static async open(canvas, page) {
@@ -66,8 +66,8 @@ export class View3D {
   /** @param onChange called when something is to be drawn */
   subscribe(connection, onChange) {
     connection.subscribe(cloudTopic, (message, time) => {
-      this.#tilts = new Map(message.tilts.map((tilt) => [tilt.mover, tilt]));
-      this.#clouds.take(message, time, this.#page.scene.origin);
+      if (time < this.#waiting.at(-1)?.time) this.#waiting = [];  // the run was restarted
+      this.#waiting.push({ message, time });
       onChange();
     });
     if (this.#solids) return;
@@ -82,6 +82,18 @@ export class View3D {
     connection.unsubscribe(cloudTopic);
     connection.unsubscribe(solidTopic);
     this.#clouds.clear();
+    this.#waiting = [];
+  }
+
+  /** True if clouds wait for the robots, which are shown on their way to the newest states. */
+  get isWaiting() { return this.#waiting.length > 0; }
+  #takeWaiting() {
+    const { fleet, scene } = this.#page, most = 4;
+    while (this.isWaiting && (this.#waiting[0].time <= fleet.shownTime + 1e-6 || this.#waiting.length > most)) {
+      const { message, time } = this.#waiting.shift();
+      this.#tilts = new Map(message.tilts.map((tilt) => [tilt.mover, tilt]));
+      this.#clouds.take(message, time, scene.origin);
+    }
   }
 
   /** Builds everything that has colours or shapes again. */
@@ -126,6 +138,7 @@ export class View3D {
 
   frame() {
     const { fleet, drawing } = this.#page;
+    this.#takeWaiting();
     this.#bodies.update(fleet, this.#tilts, drawing.selected);
     this.#clouds.style({ byIntensity: drawing.layers.intensity, size: 2.2 * this.renderer.getPixelRatio() });
     this.#adapt(performance.now());
