@@ -29,7 +29,7 @@ record::Recording small_recording() {
                                          {static_cast<double>(tick), static_cast<double>(mover)},
                                          {},
                                          {0.5}});
-  recording.readings = {{0, 6, 0, 0, 0, 0, {7.0}}, {0, 6, 0, 1, 2 * kStep, 2 * kStep, {8.0}}};
+  recording.readings = {{0, 6, 0, 0, 0, 0, 1, {7.0}}, {0, 6, 0, 1, 2 * kStep, 2 * kStep, 1, {8.0}}};
   return recording;
 }
 
@@ -74,7 +74,7 @@ TEST(Replay, ReturnsThePoseOfASensorAtItsMeasurement) {
   recording.states[0][1].X_WM.yaw = 3.0;
   recording.states[0][2].X_WM.yaw = -3.0;  // 0.28 rad across pi
   const auto pose_at = [&](std::int64_t time) {
-    recording.readings = {{0, 6, 0, 0, 3 * kStep, time, {7.0}}};
+    recording.readings = {{0, 6, 0, 0, 3 * kStep, time, 1, {7.0}}};
     Replay replay(recording, recording.info);
     const base::ReadingBlock& reading = replay.tick(3, 2).readings[0];
     EXPECT_NEAR(reading.X_WS.x, reading.X_WM.x + 0.5 * std::cos(reading.X_WM.yaw), 1e-12);
@@ -98,9 +98,9 @@ TEST(Replay, ReturnsEachSensorsNewestReadingAfterAJump) {
 TEST(Replay, SkipsReadingsOfOtherForms) {
   record::Recording recording = small_recording();
   record::RunInfo info = recording.info;
-  recording.readings.push_back({0, 6, 1, 0, 0, 0, {1.0}});       // unknown sensor
-  recording.readings.push_back({0, 6, 0, 0, 0, 0, {1.0, 2.0}});  // two rows of a type that has one
-  recording.readings.push_back({0, 9, 0, 0, 0, 0, {1.0}});       // unknown type
+  recording.readings.push_back({0, 6, 1, 0, 0, 0, 1, {1.0}});       // unknown sensor
+  recording.readings.push_back({0, 6, 0, 0, 0, 0, 1, {1.0, 2.0}});  // two rows of a type that has one
+  recording.readings.push_back({0, 9, 0, 0, 0, 0, 1, {1.0}});       // unknown type
   EXPECT_EQ(Replay(recording, info).left_out(), 3u);
   info.sensor_types[0].columns[0].name = "force_N";  // another version of the type
   EXPECT_EQ(Replay(recording, info).left_out(), 5u);

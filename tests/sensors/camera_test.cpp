@@ -69,7 +69,7 @@ TEST(Camera, DepthOfFacingPlanes) {
 TEST(Camera, PixelsOfAKnownEdge) {
   const Image image = shoot(boards("resolution [101 1] fov 60 range [0 50]"));
   const double f = 0.5 * 101 / std::tan(30 * M_PI / 180), first = 50 - f / 8, last = 50 + f / 8;
-  for (std::size_t u = 0; u < 101; ++u) EXPECT_EQ(image.hits[u] == 0, u >= first && u <= last) << u;
+  for (int u = 0; u < 101; ++u) EXPECT_EQ(image.hits[static_cast<std::size_t>(u)] == 0, u >= first && u <= last) << u;
 }
 
 /// Every pixel of a tilted camera against the reference, with its normals.
