@@ -153,6 +153,8 @@ ErrorBound bound_of_camera(const world::World&, const ParsedSensors&, std::size_
 
 // Depths are sent as the ranges of lidars are. Normals are not sent.
 
+std::size_t width_of(const SensorSpec& sensor) { return sensor.width != 0 ? sensor.width : 4; }
+
 std::vector<double> depths_of(std::span<const double> values, std::size_t width) {
   std::vector<double> depths;
   for (std::size_t i = 0; i < values.size(); i += width) depths.push_back(values[i]);
@@ -175,7 +177,7 @@ std::uint32_t parts(const SensorSpec& sensor, WireFormat wire) { return lidar_pa
 std::uint8_t encode(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire, std::uint32_t part,
                     base::Bytes& out) {
   base::ReadingBlock depths = reading;
-  const std::vector<double> values = depths_of(reading.values, std::max(1u, sensor.width));
+  const std::vector<double> values = depths_of(reading.values, width_of(sensor));
   depths.values = values;
   const std::uint8_t type = encode_lidar(depth_spec(sensor), depths, wire, part, out);
   return type == 0 ? 0 : static_cast<std::uint8_t>(type - kLidar + kCamera);
@@ -183,7 +185,7 @@ std::uint8_t encode(const SensorSpec& sensor, const base::ReadingBlock& reading,
 
 double wire_error(const SensorSpec& sensor, const base::ReadingBlock& reading) {
   base::ReadingBlock depths = reading;
-  const std::vector<double> values = depths_of(reading.values, std::max(1u, sensor.width));
+  const std::vector<double> values = depths_of(reading.values, width_of(sensor));
   depths.values = values;
   return lidar_wire_error(depth_spec(sensor), depths);
 }
@@ -195,7 +197,7 @@ PayloadPart decode(const SensorSpec& sensor, std::span<const std::uint8_t> paylo
 
 void read(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
           std::span<double> values) {
-  const std::size_t width = std::max(1u, sensor.width);
+  const std::size_t width = width_of(sensor);
   std::vector<double> depths = depths_of(values, width);
   fill_lidar(depth_spec(sensor), payload, lidar_form(type), wire, depths);
   for (std::size_t i = 0; i < depths.size(); ++i) values[i * width] = depths[i];

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kBeamBytes[] = {0, 4, 6, 8, 0, 14};  ///< by numbers per beam
 constexpr std::uint32_t kMostNumbers = 5;
 
-std::uint32_t width_of(const SensorSpec& sensor) { return std::max(sensor.width, 1u); }
+std::uint32_t width_of(const SensorSpec& sensor) { return sensor.width != 0 ? sensor.width : kMostNumbers; }
 std::uint32_t beams_per_part(std::uint32_t width) {
   return static_cast<std::uint32_t>((kPartBytes - kPartHeaderBytes) / kBeamBytes[width]);
 }

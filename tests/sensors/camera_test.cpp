@@ -16,7 +16,7 @@
 namespace sf::trial {
 namespace {
 
-/// A robot with a camera 0.5 m above the floor, a board 4 m ahead and a wall 9 m ahead.
+/// A robot with a camera 0.75 m above the floor, a board 4 m ahead and a wall 9 m ahead.
 world::World boards(const std::string& camera) {
   return world_of(
       "define robot position( size [0.4 0.4 0.5] origin [0 0 0 0] )\n"
@@ -122,7 +122,7 @@ TEST(Camera, ReadsStagesKeys) {
       "40] "
       "range [0.2 8] pantilt [0 90] ) )");
   const Image image = shoot(world);
-  EXPECT_NEAR(image.values[4], 0.5, 1e-9) << "straight down";
+  EXPECT_NEAR(image.values[4], 0.75, 1e-9) << "straight down";
   EXPECT_EQ(image.hits[4], base::kFloorHit);
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-/// A robot with a lidar 0.5 m above the floor, a board 4 m ahead and a wall 9 m ahead.
+/// A robot with a lidar 0.75 m above the floor, a board 4 m ahead and a wall 9 m ahead.
 world::World boards(const std::string& lidar, const std::string& board = "reflectance 0.8") {
   return world_of(
       "define robot position( size [0.4 0.4 0.5] origin [0 0 0 0] )\n"

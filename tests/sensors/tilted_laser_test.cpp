@@ -15,7 +15,7 @@
 namespace sf::trial {
 namespace {
 
-/// A laser and a lidar of one ring at one place, 0.5 m above the floor, with equal beams.
+/// A laser and a lidar of one ring at one place, 0.75 m above the floor, with equal beams.
 world::World twins(const std::string& laser = "") {
   return world_of(
       "define robot position( size [0.4 0.4 0.5] origin [0 0 0 0] laser( pose [0.1 0 0.25 20] size [0 0 0] samples 91 "
@@ -56,14 +56,14 @@ TEST(TiltedLaser, ReadsWhatALidarOfOneRingReads) {
     }
 }
 
-/// Nose down by 10 degrees, the middle beam meets the floor h / sin(10 degrees) ahead, below the wall behind it.
+/// Nose down by 10 degrees, the middle beam meets the floor. The sensor, 0.75 m above the origin, tilts with its robot.
 TEST(TiltedLaser, SeesTheFloor) {
   const world::World world = world_of(
       "position( size [0.4 0.4 0.5] origin [0 0 0 0] laser( pose [0 0 0.25 0] size [0 0 0] samples 3 fov 90 range_max "
       "8 ) )");
   const double pitch = 10 * M_PI / 180;
   const Scan scan = sense(world, sensors::kLaser, {0.0, pitch});
-  EXPECT_NEAR(scan.values[1], 0.5 / std::sin(pitch), 1e-9);
+  EXPECT_NEAR(scan.values[1], 0.75 / std::tan(pitch), 1e-9);
   EXPECT_EQ(scan.hits[1], base::kFloorHit);
   EXPECT_EQ(sense(world, sensors::kLaser, {}).values[1], 8.0);
 }
@@ -77,7 +77,7 @@ TEST(TiltedLaser, SeesTerrainFromALevelRobot) {
   for (std::size_t i = 0; i < 121; ++i) world.terrain[0].heights[i] = i % 11 >= 4 ? 2.0f : 0.0f;
   farm::Farm farm(world, host_device(), {.noise = false, .threads = 1});
   const base::ReadingBlock r = farm.sense(0, sensors::kLaser, 0, {});
-  EXPECT_NEAR(r.values[1], 3.25, 1e-6) << "the slope from x = 3 to 4 at 0.5 m";
+  EXPECT_NEAR(r.values[1], 3.375, 1e-6) << "the slope from x = 3 to 4 at 0.75 m";
 }
 
 /// Level scans keep their bytes after tilted ones, and `range_min`, `resolution` and noise apply to tilted ones too.
