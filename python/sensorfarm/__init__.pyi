@@ -11,8 +11,9 @@ _ByRow = ArrayLike | Mapping[str, ArrayLike] | None
 """An array, or arrays by name."""
 
 NONE: int
-FLOOR: int
 """No model: the beam met nothing within its range."""
+FLOOR: int
+"""No model: a tilted beam met the floor, a road or terrain."""
 
 class Error(RuntimeError):
     """An error that you can correct. The message is one line, with file and line number if available."""

@@ -17,7 +17,7 @@ class Stubs(unittest.TestCase):
             body = ast.parse(file.read()).body
         classes = {node.name: node for node in body if isinstance(node, ast.ClassDef)}
         self.assertEqual(public(sensorfarm.__all__), public(
-            set(classes) - {"Controller", "ModelController"} | {n.name for n in body if isinstance(n, ast.FunctionDef)} | {"NONE"}))
+            set(classes) - {"Controller", "ModelController"} | {n.name for n in body if isinstance(n, ast.FunctionDef)} | {"NONE", "FLOOR"}))
         for name in ("SensorInfo", "Robot", "Reading", "Neighbour", "Light", "Input", "Settings", "Simulation", "Observations", "Worlds", "DeviceArray", "DeviceWorlds", "Model",
                      "ModelContact", "ModelSite", "NearRobot", "WorldObject"):
             bases = [classes[base.id] for base in classes[name].bases]
