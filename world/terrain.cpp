@@ -56,7 +56,7 @@ HeightMap decode_height_map(const std::string& file, const std::string& bytes, d
   require_grey(file, header);
   require_height_map_size(file, header.width, header.height);
   std::vector<std::uint16_t> values(std::size_t{header.width} * header.height);
-  check(file, spng_decode_image(png.get(), values.data(), 2 * values.size(), SPNG_FMT_RAW, 0));
+  check(file, spng_decode_image(png.get(), values.data(), 2 * values.size(), SPNG_FMT_PNG, 0));
   HeightMap map{header.width, header.height, std::vector<float>(values.size()), {}};
   for (std::size_t y = 0; y < map.rows; ++y)
     for (std::size_t x = 0; x < map.columns; ++x)

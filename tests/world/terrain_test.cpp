@@ -30,6 +30,12 @@ TEST(Terrain, ReadsThePictureFromItsLastRow) {
   EXPECT_EQ(map.heights, (std::vector<float>{4.0f, -1.0f, -1.0f, -1.0f, 0.0f, 4.0f}));
 }
 
+/// Both bytes of a value count, the first more: pictures are big-endian.
+TEST(Terrain, ValuesHaveTwoBytes) {
+  const HeightMap map = read_height_map(path_of("uneven.png"), 0.0, 65'535.0);
+  EXPECT_EQ(map.heights, (std::vector<float>{0xff00, 0x1234, 0x0100, 0x0001}));
+}
+
 TEST(Terrain, RefusesOtherPictures) {
   EXPECT_NE(refusal("eight_bit.png").find("8 bits per pixel; expected a height map as greyscale PNG of 16"),
             std::string::npos);
