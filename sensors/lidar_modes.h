@@ -7,6 +7,7 @@
 
 #include "base/reading.h"
 #include "sensors/lidar_beams.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
