@@ -97,7 +97,7 @@ scene::Mesh mesh_of(const world::Terrain& terrain, std::uint32_t step) {
   return mesh;
 }
 
-/// Returns what is missing, for users; empty: nothing.
+/// Tells users what the view omits. Empty if it shows the whole world.
 std::string note_of(const World& world, const std::vector<std::uint8_t>& as_mesh) {
   std::string note;
   if (world.walls.size() > kMostViewWalls)

@@ -303,7 +303,7 @@ void Simulation::State::put7(std::size_t row, const Pose7& pose) {
   put(row, {X.x, X.y, X.z, X.yaw}, tilt);
 }
 
-/// Those of absent robots are NaN.
+/// Fills the rows of absent robots with NaN.
 std::span<const Pose7> Simulation::State::poses_with_tilts() {
   poses7.clear();
   for (std::uint32_t row = 0; row < poses.size(); ++row) {

@@ -74,7 +74,7 @@ class EchoFinder {
 /// Adds noise to the range of an echo. @param normal of standard deviation 1
 double noisy_range(const EchoSettings& settings, const Echo& echo, double normal);
 
-/// Writes the numbers of one beam: range_max without a first or second echo, and 0 for what it would have had.
+/// Writes the values of one beam. A missing echo reports range_max, and 0 for its other quantities.
 void write_echoes(const EchoSettings& settings, const EchoFinder::Echoes& echoes, std::span<double> values);
 
 }  // namespace sf::sensors

@@ -46,7 +46,7 @@ class SpatialScans : public HostBackend {
   virtual void finish(std::size_t sample, unsigned thread) = 0;
 
   const SpatialScanner& scanner_of(std::size_t sample) const { return scanners_[samples()[sample].row]; }
-  /// What the beams of a sample met, part by part of the cast beams; of a plain one, its reading.
+  /// Returns the hits of a sample, one per part of each cast beam. For a plain sensor, this is its reading itself.
   scene::ScanOutput output_of(std::size_t sample);
   std::span<std::uint32_t> hits_of(std::size_t sample) { return beams_of(hits_, sample); }
   std::span<base::QualityFlag> quality_of(std::size_t sample) { return beams_of(quality_, sample); }
@@ -88,7 +88,7 @@ class SpatialScans : public HostBackend {
   std::vector<float> part_cosines_;
   std::vector<std::uint32_t> part_hits_;
   std::vector<base::QualityFlag> part_quality_;
-  std::vector<glm::vec3> part_normals_;         ///< empty: nobody wants them
+  std::vector<glm::vec3> part_normals_;         ///< empty unless a sensor uses them
   std::vector<std::size_t> first_part_;         ///< per row, plus one
   std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
   std::vector<CarrierTrail> trails_;            ///< per row; empty: no scan is rolling

@@ -1,4 +1,4 @@
-// What lidars report besides ranges: intensities, angles of incidence, second echoes, dropouts; and rolling scans.
+// Tests intensities, angles of incidence, second echoes, dropouts and rolling scans of lidars.
 
 #include "sensors/lidar_echoes.h"
 
