@@ -235,15 +235,19 @@ void add_body(const netio::Neighbours& neighbours, Fields& out) {
   }
 }
 
+/// Which part of a scan an extended packet carries.
+template <typename Part>
+void add_part(const Part& scan, Fields& out) {
+  add(out, "total", scan.total);
+  add(out, "first", scan.first);
+  add(out, "part", scan.part);
+  add(out, "parts", scan.parts);
+}
+
 void add_scan(std::span<const std::uint8_t> payload, bool extended, Fields& out) {
   sensors::LaserPart scan;
   sensors::read_laser(payload, extended, scan);
-  if (extended) {
-    add(out, "total", scan.total);
-    add(out, "first", scan.first);
-    add(out, "part", scan.part);
-    add(out, "parts", scan.parts);
-  }
+  if (extended) add_part(scan, out);
   std::vector<double> ranges;
   for (std::uint32_t i = 0; i < scan.count; ++i) ranges.push_back(sensors::range_of(scan, i));
   add(out, "range_m", ranges);
@@ -252,12 +256,7 @@ void add_scan(std::span<const std::uint8_t> payload, bool extended, Fields& out)
 void add_lidar(std::span<const std::uint8_t> payload, bool extended, const sensors::SensorType& type, Fields& out) {
   sensors::LidarPart scan;
   sensors::read_lidar(payload, extended, scan);
-  if (extended) {
-    add(out, "total", scan.total);
-    add(out, "first", scan.first);
-    add(out, "part", scan.part);
-    add(out, "parts", scan.parts);
-  }
+  if (extended) add_part(scan, out);
   for (std::uint32_t column = 0; column < scan.width; ++column) {
     std::vector<double> numbers;
     for (std::size_t i = column; i < scan.values.size(); i += scan.width) numbers.push_back(scan.values[i]);
