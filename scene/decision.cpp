@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "scene/rasterizer.h"
+
 namespace sf::scene {
 
 namespace {
@@ -111,7 +113,34 @@ bool closed(const Cover& cover, std::span<const Cover> covers) {
   return true;
 }
 
+/// Returns the smallest sine of an angle to a face at which ranges are within their bound. @param sizes [m]
+double least_sine(double sizes) { return 0x1p-53 * (32.0 * sizes) / kRangeError; }
+
 }  // namespace
+
+void list_meshes(const base::RigidTransform& X_WS, double range_max, std::span<const Instance> instances,
+                 std::vector<SceneMesh>& out) {
+  out.clear();
+  std::uint32_t first = 0;
+  for (const Instance& instance : instances) {
+    const SurfaceTree& tree = *instance.tree;
+    if (tree.empty()) continue;
+    SceneMesh mesh{.tree = &tree, .X_FS = X_WS, .first_face = first, .owner = instance.owner};
+    if (!instance.at_origin) mesh.X_FS = base::relative(instance.X_WI, X_WS);
+    const double moved = instance.at_origin ? 0.0 : tree.radius;
+    mesh.least_sine = least_sine(range_max + tree.longest_edge + moved);
+    mesh.centre = glm::transpose(mesh.X_FS.R) * (tree.centre - mesh.X_FS.p);
+    const double distance = glm::length(mesh.centre);
+    mesh.reach = tree.radius + 1e-6 * (tree.radius + distance);
+    if (!(distance - mesh.reach <= range_max)) continue;
+    out.push_back(mesh);
+    first += static_cast<std::uint32_t>(tree.mesh.faces.size());
+  }
+}
+
+SeenPlane floor_plane(const base::RigidTransform& X_WS, double range_max) {
+  return {-glm::transpose(X_WS.R)[2], X_WS.p.z, least_sine(range_max), base::kFloorHit};
+}
 
 const SceneMesh& mesh_with(std::span<const SceneMesh> meshes, std::uint32_t face) {
   if (meshes.size() == 1) return meshes.front();

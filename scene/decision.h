@@ -27,6 +27,8 @@ struct SceneMesh {
   std::uint32_t owner = 0;       ///< as Instance::owner
 };
 
+struct Instance;
+
 /// Plane of a face in the sensor's frame. Beam d meets it at range height / (normal . d).
 struct SeenPlane {
   glm::dvec3 normal{};      ///< unit vector
@@ -35,9 +37,15 @@ struct SeenPlane {
   std::uint32_t owner = 0;  ///< as Mesh::owners
 };
 
+/// Sets `out` to the meshes within range of a scan, by first face.
+void list_meshes(const base::RigidTransform& X_WS, double range_max, std::span<const Instance> instances,
+                 std::vector<SceneMesh>& out);
+
 /// Returns the mesh with a face. @param face less than the number of faces of all meshes
 const SceneMesh& mesh_with(std::span<const SceneMesh> meshes, std::uint32_t face);
 SeenPlane seen_plane(const SceneMesh& mesh, std::uint32_t face);
+/// Returns the plane z = 0 of the world.
+SeenPlane floor_plane(const base::RigidTransform& X_WS, double range_max);
 
 /// Returns normal . d, in the order of operations that all evaluations of a range share.
 inline double sine_of(const SeenPlane& plane, glm::dvec3 d) {

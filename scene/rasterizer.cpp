@@ -24,18 +24,21 @@ namespace sf::scene::HWY_NAMESPACE {
 class Scan {
  public:
   Scan(Scratch& s, const RigidTransform& X_WS, double range_max, const SceneView& scene, const ScanOutput& out)
-      : s_(s), range_max_(range_max), floor_(scene.floor), out_(out) {
-    const glm::dmat3 R_SW = glm::transpose(X_WS.R);
+      : s_(s), range_max_(range_max), floor_(scene.floor), floor_plane_(floor_plane(X_WS, range_max)), out_(out) {
     if (scene.terrain.field != nullptr)
       terrain_.emplace(*scene.terrain.field, base::relative(scene.terrain.X_WF, X_WS), range_max);
     if (terrain_ && terrain_->side > 0) build_horizon(*terrain_, horizon_);
-    floor_plane_ = {-R_SW[2], X_WS.p.z, 0x1p-53 * 32.0 * range_max / kRangeError, base::kFloorHit};
   }
   bool cast(const BeamTile& tile);
+  /// Casts only the vectors with uncertain beams. @param cast the tile's beams from the device, in a scene without
+  /// terrain
+  bool finish(const BeamTile& tile, std::span<const CastBeam> cast);
 
  private:
-  void begin(const BeamTile& tile);
-  void draw_floor(const BeamTile& tile);
+  void draw(const BeamTile& tile, std::uint32_t vectors);
+  void begin(const BeamTile& tile, std::uint32_t vectors);
+  void draw_floor(const BeamTile& tile, std::uint32_t vectors);
+  void take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast);
   void list_meshes(const BeamTile& tile);
   void evaluate_vector(const BeamTile& tile, std::uint32_t vector);
   void decide_uncertain(const BeamTile& tile, std::uint32_t vector);
@@ -80,21 +83,22 @@ class Scan {
   glm::dvec3 terrain_normals_[kWidth];
 };
 
-void Scan::begin(const BeamTile& tile) {
+/// @param vectors bit mask of those that are cast
+void Scan::begin(const BeamTile& tile, std::uint32_t vectors) {
   const auto inverse = static_cast<float>(1.0 / range_max_);
   const Floats low = all(inverse * (1.0f - 1e-6f)), high = all(inverse * (1.0f + 1e-6f));
   for (std::uint32_t i = 0; i < kWidth * tile.used; i += kWidth) {
     store(low, s_.low + i), store(high, s_.high + i), store(all(0.0f), s_.others + i);
     store(all(kNoFace), s_.face + i);
   }
-  for (std::uint32_t g = 0; g < kTileVectors; g += kWidth) store(low, s_.farthest + g);
-  std::fill(s_.farthest + tile.used, s_.farthest + kTileVectors, kUnbounded);  // sees nothing
+  for (std::uint32_t v = 0; v < kTileVectors; ++v)
+    s_.farthest[v] = (vectors >> v & 1) != 0 ? inverse * (1.0f - 1e-6f) : kUnbounded;  // else it sees nothing
   s_.drawn.clear();
-  if (floor_) draw_floor(tile);
+  if (floor_) draw_floor(tile, vectors);
 }
 
 /// Errors as in rasterizer.h, without a rotation.
-void Scan::draw_floor(const BeamTile& tile) {
+void Scan::draw_floor(const BeamTile& tile, std::uint32_t vectors) {
   const auto inverse = static_cast<float>(1.0 / floor_plane_.height);
   const bool edge_on = !(std::abs(inverse) < kUnbounded);
   LeafView& view = s_.leaf;
@@ -102,9 +106,10 @@ void Scan::draw_floor(const BeamTile& tile) {
     view.inverse[axis][0] = edge_on ? 0.0f : static_cast<float>(floor_plane_.normal[axis]) * inverse;
   view.above[0] = view.below[0] = 1.0f;
   view.slack[0] = edge_on ? kUnbounded : 17.0f * kRounding * std::abs(inverse);
-  for (std::uint32_t v = 0; v < tile.used; ++v) {
+  for (; vectors != 0; vectors &= vectors - 1) {
+    const auto v = static_cast<std::uint32_t>(__builtin_ctz(vectors));
     Beams beams = load_beams(tile, s_, v);
-    draw<true>(view, 0, 1.0f, kFloorFace, beams);
+    HWY_NAMESPACE::draw<true>(view, 0, 1.0f, kFloorFace, beams);
     store_beams(s_, v, beams);
   }
 }
@@ -213,13 +218,18 @@ void Scan::meet_terrain(const BeamTile& tile, std::uint32_t vector) {
   }
 }
 
-bool Scan::cast(const BeamTile& tile) {
-  begin(tile);
+/// Draws all surfaces into vectors. @param vectors bit mask
+void Scan::draw(const BeamTile& tile, std::uint32_t vectors) {
+  begin(tile, vectors);
   list_meshes(tile);
   for (const MeshInView& near : s_.in_view) {
     if (near.depth > static_cast<double>(depth_limit(farthest_of(s_)))) break;
     draw_mesh(s_, tile, s_.meshes[near.row]);
   }
+}
+
+bool Scan::cast(const BeamTile& tile) {
+  draw(tile, used_vectors(tile));
   for (std::uint32_t v = 0; v < tile.used; ++v) {
     if (terrain_ && v % kMarchings == 0) march(tile, v);
     evaluate_vector(tile, v);
@@ -231,11 +241,44 @@ bool Scan::cast(const BeamTile& tile) {
   return flagged_;
 }
 
+/// Takes over what the device found along a vector's beams, which are all certain.
+void Scan::take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast) {
+  const std::uint32_t first = kWidth * vector;
+  const bool sines = !out_.cosines.empty() || !out_.normals.empty();
+  grazing_ = 0;
+  for (std::uint32_t i = 0; i < kWidth; ++i) {
+    const std::uint32_t face = cast[i].face, beam = first + i;
+    ranges_[i] = cast[i].range;
+    s_.face[beam] = face;
+    hits_[i] = face == kNoFace ? base::kNoHit : plane_of(face).owner;
+    sines_[i] = 0.0;
+    if (sines && face != kNoFace) sines_[i] = sine_of(plane_of(face), {tile.dx[beam], tile.dy[beam], tile.dz[beam]});
+    grazing_ |= (cast[i].flags & CastBeam::kGrazing) != 0 ? 1u << i : 0u;
+  }
+}
+
+bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
+  std::uint32_t uncertain = 0;
+  for (std::uint32_t i = 0; i < kWidth * tile.used; ++i)
+    uncertain |= (cast[i].flags & CastBeam::kUncertain) != 0 ? 1u << i / kWidth : 0u;
+  if (uncertain != 0) draw(tile, uncertain);
+  for (std::uint32_t v = 0; v < tile.used; ++v) {
+    if ((uncertain >> v & 1) != 0)
+      evaluate_vector(tile, v), decide_uncertain(tile, v);
+    else
+      take(tile, v, cast.subspan(kWidth * v).first<kWidth>());
+    write(tile, v);
+  }
+  s_.counts.beams += kWidth * tile.used;
+  return flagged_;
+}
+
 bool scan_tiles(Scratch& s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
-                const SceneView& scene, const ScanOutput& out) {
+                const SceneView& scene, const ScanOutput& out, std::span<const CastBeam> cast) {
   Scan scan(s, X_WS, range_max, scene, out);
   bool flagged = false;
-  for (const BeamTile& tile : tiles) flagged = scan.cast(tile);
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    flagged = cast.empty() ? scan.cast(tiles[i]) : scan.finish(tiles[i], cast.subspan(i * kTileBeams, kTileBeams));
   return flagged;
 }
 
@@ -254,27 +297,10 @@ Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
 const ScanCounts& Rasterizer::counts() const { return scratch_->counts; }
 
 bool Rasterizer::scan(const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
-                      const SceneView& scene, const ScanOutput& out) {
+                      const SceneView& scene, const ScanOutput& out, std::span<const CastBeam> cast) {
   Scratch& s = *scratch_;
-  s.meshes.clear();
-  std::uint32_t first = 0;
-  for (const Instance& instance : scene.instances) {
-    const SurfaceTree& tree = *instance.tree;
-    if (!tree.empty()) {
-      SceneMesh mesh{.tree = &tree, .X_FS = X_WS, .first_face = first, .owner = instance.owner};
-      if (!instance.at_origin) mesh.X_FS = base::relative(instance.X_WI, X_WS);
-      const double moved = instance.at_origin ? 0.0 : tree.radius;
-      const double sizes = 32.0 * (range_max + tree.longest_edge + moved);
-      mesh.least_sine = 0x1p-53 * sizes / kRangeError;
-      mesh.centre = glm::transpose(mesh.X_FS.R) * (tree.centre - mesh.X_FS.p);
-      const double distance = glm::length(mesh.centre);
-      mesh.reach = tree.radius + 1e-6 * (tree.radius + distance);
-      if (!(distance - mesh.reach <= range_max)) continue;
-      s.meshes.push_back(mesh);
-      first += static_cast<std::uint32_t>(tree.mesh.faces.size());
-    }
-  }
-  return HWY_DYNAMIC_DISPATCH(scan_tiles)(s, X_WS, tiles, range_max, scene, out);
+  list_meshes(X_WS, range_max, scene.instances, s.meshes);
+  return HWY_DYNAMIC_DISPATCH(scan_tiles)(s, X_WS, tiles, range_max, scene, out, cast);
 }
 
 }  // namespace sf::scene

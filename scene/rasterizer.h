@@ -70,6 +70,14 @@ struct ScanOutput {
   std::span<glm::vec3> normals = {};
 };
 
+/// What a device found along a beam (scene/device/device_rasterizer.h).
+struct CastBeam {
+  static constexpr std::uint32_t kUncertain = 1, kGrazing = 2;
+  double range = 0.0;       ///< [m] as ScanOutput::ranges
+  std::uint32_t face = 0;   ///< among those of all meshes (decision.h), kFloorFace or kNoFace
+  std::uint32_t flags = 0;  ///< `kUncertain`: the host has to cast the beam, the rest means nothing. `kGrazing`
+};
+
 struct ScanCounts {
   std::uint64_t beams = 0;
   std::uint64_t uncertain = 0;  ///< decided in 64 bits
@@ -88,9 +96,10 @@ class Rasterizer {
   /// Casts the beams of some tiles of a pattern. Ranges and flags do not depend on the order of instances, nor results
   /// on the division into tiles or the machine's instruction set.
   /// @param X_WS the sensor's pose  @param range_max [m] > 0
+  /// @param cast kTileBeams per tile that a device has cast in this scene, which has no terrain; empty: none
   /// @return true if any of these beams has a flag
   bool scan(const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max, const SceneView& scene,
-            const ScanOutput& out);
+            const ScanOutput& out, std::span<const CastBeam> cast = {});
   const ScanCounts& counts() const;
 
   struct Scratch;

@@ -88,6 +88,12 @@ HWY_INLINE void push_children(Scratch& s, const TileCorners& corners, const Tree
   }
 }
 
+/// Bit mask of the tile's vectors that have beams of their own.
+HWY_INLINE std::uint32_t used_vectors(const BeamTile& tile) {
+  static_assert(kTileVectors == 32);
+  return 0xFFFFFFFFu >> (kTileVectors - tile.used);
+}
+
 /// Returns the inverse range [1/m] below which no beam of the tile can hit a nearer surface.
 HWY_INLINE float farthest_of(const Scratch& s) {
   Floats v = load(s.farthest);
@@ -104,8 +110,7 @@ HWY_INLINE void prefetch(const void* from, std::size_t bytes) {
 /// Draws a mesh. Beams are rotated into its frame only if the tile may see a part of it.
 HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   const SurfaceTree& tree = *mesh.tree;
-  static_assert(kTileVectors == 32);
-  const std::uint32_t used = 0xFFFFFFFFu >> (kTileVectors - tile.used);  // bit mask of the vectors
+  const std::uint32_t used = used_vectors(tile);
   float farthest = farthest_of(s);
   const auto draw_one = [&](std::int32_t child, std::uint32_t vectors) {
     const LeafFaces faces = view_leaf(s, tree.leaves[~child], mesh);
