@@ -42,7 +42,7 @@ struct SensorStats {
   std::uint64_t movers_in_range = 0;  ///< pairs of a sensing robot and a mover within its range
   std::uint64_t movers_visible =
       0;                         ///< of these, pairs in view; on the host, also not hidden by nearer movers or walls
-  std::uint64_t host_scans = 0;  ///< scans that ran on the host because the device's lists would be too long
+  std::uint64_t host_scans = 0;  ///< scans that the device could not take
 
   SensorStats& operator+=(const SensorStats& more);
   SensorStats operator-(const SensorStats& before) const;

@@ -54,6 +54,8 @@ SpatialScans::SpatialScans(const SensorContext& context, const SensorType& type,
   for (std::size_t row = 0; rolling && row < scanners_.size(); ++row)
     trails_.emplace_back(duration_of(*scanners_[row].beams), context.world.movers[rows()[row].mover].max_forward);
   last_.resize(trails_.size());
+  if (raycast::choose_caster(context.device.info().software, context.scene.caster).on_device)
+    device_.emplace(context.device);
 }
 
 base::Report SpatialScans::state_of(std::size_t row) const {
@@ -87,12 +89,15 @@ void SpatialScans::restart(std::uint32_t row, std::int64_t now) {
 
 bool SpatialScans::update_outlines(const world::World& world) {
   scene_.update_movers(world);
+  if (device_) device_->forget();
   return true;
 }
 
 bool SpatialScans::prepare(std::span<const DueSample> due) {
-  const bool again = HostBackend::prepare(due);
+  bool again = HostBackend::prepare(due);
   jobs_.clear();
+  if (device_) device_->begin();
+  on_device_.assign(due.size(), std::nullopt);
   X_WS_.resize(due.size());
   instances_.resize(std::max(instances_.size(), due.size()));
   floor_.resize(due.size());
@@ -104,20 +109,44 @@ bool SpatialScans::prepare(std::span<const DueSample> due) {
     double reach = s.range_max;
     if (!trails_.empty() && moves_on(row)) reach += trails_[row].reach(state_of(row)) + 2.0 * glm::length(s.X_MS.p);
     floor_[i] = scene_.list(mover, X_WS_[i].p, reach, instances_[i], s.angle);
+    if (device_ && !moves(row)) {
+      const scene::SceneView view{instances_[i], floor_[i] != 0, scene_.terrain()};
+      on_device_[i] = device_->add(X_WS_[i], s.beams->pattern, s.range_max, view);
+    }
+    if (device_ && !on_device_[i]) ++host_scans_;
     const std::size_t tiles = s.beams->pattern.size(), size = whole ? tiles : kTilesPerJob;
     for (std::size_t first = 0; first < tiles; first += size)
       jobs_.push_back({i, first, std::min(tiles, first + size)});
   }
+  if (device_) again = device_->prepare() || again;
   return again;
+}
+
+void SpatialScans::record_measure(gpu::Batch& batch) {
+  if (device_) device_->record(batch);
+}
+
+void SpatialScans::add_copies(gpu::Batch& batch) {
+  if (device_) device_->add_copies(batch);
+}
+
+bool SpatialScans::moves(std::size_t row) const {
+  return !trails_.empty() && !scanners_[row].beams->times.empty() && moves_on(row) &&
+         !trails_[row].at_rest(state_of(row));
+}
+
+std::span<const scene::CastBeam> SpatialScans::cast_beams_of(const Job& job) {
+  const std::optional<std::size_t> first = on_device_[job.sample];
+  if (!first) return {};
+  return device_->results(*first + job.first_tile, job.end_tile - job.first_tile);
 }
 
 void SpatialScans::cast(const Job& job, unsigned thread) {
   const std::uint32_t row = samples()[job.sample].row;
   const LidarBeams& beams = *scanners_[row].beams;
   const auto tiles = std::span(beams.pattern).subspan(job.first_tile, job.end_tile - job.first_tile);
+  if (!moves(row)) return cast_tiles(X_WS_[job.sample], tiles, job, thread, cast_beams_of(job));
   const base::Report now = state_of(row);
-  if (beams.times.empty() || !moves_on(row) || trails_[row].at_rest(now))
-    return cast_tiles(X_WS_[job.sample], tiles, job, thread);
   for (const scene::BeamTile& tile : tiles) {
     const base::Report state = trails_[row].at(now_ + base::nanoseconds(tile.time), now);
     const auto X_WS = base::compose(base::transform_of(state.X_WM, state.tilt), scanners_[row].X_MS);
@@ -135,13 +164,13 @@ scene::ScanOutput SpatialScans::output_of(std::size_t i) {
 }
 
 void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const Job& job,
-                              unsigned thread) {
+                              unsigned thread, std::span<const scene::CastBeam> cast) {
   const std::uint32_t row = samples()[job.sample].row;
   const SpatialScanner& s = scanners_[row];
   const scene::ScanOutput out = output_of(job.sample);
   const scene::SceneView view{instances_[job.sample], floor_[job.sample] != 0, scene_.terrain()};
   if (!reference_) {
-    rasterizers_[thread].scan(X_WS, tiles, s.range_max, view, out);
+    rasterizers_[thread].scan(X_WS, tiles, s.range_max, view, out, cast);
     return;
   }
   for (const scene::BeamTile& tile : tiles)
@@ -173,7 +202,7 @@ void SpatialScans::collect(std::span<base::ReadingBlock> out) {
 }
 
 SensorStats SpatialScans::stats() const {
-  SensorStats sum{.rays = rays_};
+  SensorStats sum{.rays = rays_, .host_scans = host_scans_};
   for (const scene::Rasterizer& rasterizer : rasterizers_) sum.uncertain += rasterizer.counts().uncertain;
   return sum;
 }

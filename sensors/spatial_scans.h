@@ -1,12 +1,14 @@
 #pragma once
 // Base class of sensors that cast beams into the scene of solids: poses at the times of the beams, scenes, casting on
-// all threads. Derived classes turn what the beams meet into readings.
+// all threads, or on the device where its caster runs there. Derived classes turn what the beams meet into readings.
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "scene/device/device_rasterizer.h"
 #include "scene/rasterizer.h"
 #include "sensors/carrier_trail.h"
 #include "sensors/host_backend.h"
@@ -32,6 +34,9 @@ class SpatialScans : public HostBackend {
   void place_movers() override { scene_.place(states()); }
   bool update_outlines(const world::World& world) override;
   bool prepare(std::span<const DueSample> due) override;
+  void record_measure(gpu::Batch& batch) override;
+  void add_copies(gpu::Batch& batch) override;
+  bool on_device() const override { return device_.has_value(); }
   void collect(std::span<base::ReadingBlock> out) override;
   void write_state(std::uint32_t row, base::ByteWriter& out) const override;
   void read_state(std::uint32_t row, base::ByteReader& in) override;
@@ -58,9 +63,13 @@ class SpatialScans : public HostBackend {
     std::size_t first_tile = 0, end_tile = 0;
   };
   void measure_all() override;
+  /// Returns whether the carrier has moved during a due scan, so that its tiles have poses of their own.
+  bool moves(std::size_t row) const;
   void cast(const Job& job, unsigned thread);
+  /// Returns what the device found along the beams of a job; empty: the host casts them.
+  std::span<const scene::CastBeam> cast_beams_of(const Job& job);
   void cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const Job& job,
-                  unsigned thread);
+                  unsigned thread, std::span<const scene::CastBeam> cast = {});
   base::Report state_of(std::size_t row) const;
   /// True if the carrier is where the last tick or sample left it, not at a pose of a single reading.
   bool moves_on(std::size_t row) const { return is_same_place(states()[rows()[row].mover], last_[row]); }
@@ -98,6 +107,9 @@ class SpatialScans : public HostBackend {
   std::vector<std::vector<scene::Instance>> instances_;
   std::vector<std::uint8_t> floor_;  ///< per due sample: the plane z = 0 is a surface
   std::vector<Job> jobs_;
+  std::optional<scene::DeviceRasterizer> device_;
+  std::vector<std::optional<std::size_t>> on_device_;  ///< per due sample: its first tile in the device's results
+  std::uint64_t host_scans_ = 0;                       ///< that the device could not cast
   std::uint64_t rays_ = 0;
 };
 

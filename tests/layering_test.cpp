@@ -30,12 +30,13 @@ const std::map<std::string, Modules> kMayInclude{
     {"maps", {"base"}},
     {"raycast", {"robots/device", "world", "gpu", "base", "shaders"}},
     {"scene", {"world", "base"}},
+    {"scene/device", {"scene", "gpu", "base", "shaders"}},
     {"sensors",
-     {"sensorfarm", "scene", "raycast", "maps", "robots/estimation", "robots", "world", "gpu", "base", "shaders"}},
+     {"sensorfarm", "scene/device", "scene", "raycast", "maps", "robots/estimation", "robots", "world", "gpu", "base", "shaders"}},
     {"sensorfarm", {}},
     {"python", {"sensorfarm"}},
     {"control", {"sensorfarm", "sensors", "maps", "robots/estimation", "robots", "world", "base"}},
-    {"shaders", {"raycast", "robots/device", "sensors", "maps", "base"}},
+    {"shaders", {"raycast", "robots/device", "scene/device", "sensors", "maps", "base"}},
     {"farm", {"sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"record", {"maps", "base"}},
     {"netio", {"base"}},
@@ -253,7 +254,7 @@ TEST(Layering, HeavyLibrariesAreInFewSources) {
 TEST(Layering, KernelsReadSharedHeadersOnly) {
   // A header that both compilers read says so with a guard, since GLSL has no `#pragma once`, and includes nothing.
   static const std::regex kOurs(
-      "#\\s*include\\s*\"(shaders/)?((raycast|robots/device|sensors|maps|base)/[^\"]+)\\.(h|glsl)\"");
+      "#\\s*include\\s*\"(shaders/)?((raycast|robots/device|scene/device|sensors|maps|base)/[^\"]+)\\.(h|glsl)\"");
   for (const Source& source : read_sources()) {
     if (module_of(source.path) != "shaders") continue;
     for (std::sregex_iterator m(source.text.begin(), source.text.end(), kOurs), end; m != end; ++m) {

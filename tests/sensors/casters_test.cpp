@@ -22,7 +22,8 @@
 namespace sf::trial {
 namespace {
 
-/// Lasers with noise, skipped beams and a minimum, at two heights; sonar, infrared, and edges of a road.
+/// Lasers with noise, skipped beams and a minimum, at two heights; sonar, infrared, edges of a road, lidars and
+/// cameras.
 world::World mixed() {
   world::World world = scenes::boxes(20, 8.0, 3);
   world.lane_markings.push_back(marking({8.0, 0.1}, {-8.0, 0.1}));
@@ -35,6 +36,22 @@ world::World mixed() {
   scenes::edit_laser(world.movers[2])->X_MS.z += 0.4;
   add_ranger(world, {0.3, -0.4, 0.0, 0.2}, cones("sonar", ring(6, 0.15), {cone_setting("incidence", {0.6})}), 0.16);
   add_ranger(world, {-0.6, 0.5, 0.0, 2.0}, cones("infrared", ring(5, 0.15)), 0.16);
+  add_ranger(
+      world, {0.2, 0.9, 0.0, 1.0},
+      {.type = "lidar",
+       .name = "lidar",
+       .height = 0.2,
+       .settings = {cone_setting("channels", {8}), cone_setting("columns", {90}), cone_setting("fov_v", {-0.4, 0.3}),
+                    cone_setting("range", {0.0, 20.0}), cone_setting("intensity", {1}), cone_setting("returns", {2}),
+                    cone_setting("divergence", {0.003}), cone_setting("beam_parts", {4})}},
+      0.2);
+  add_ranger(world, {-0.4, -0.9, 0.0, 3.0},
+             {.type = "camera",
+              .name = "camera",
+              .height = 0.2,
+              .settings = {cone_setting("resolution", {24, 18}), cone_setting("range", {0.0, 20.0}),
+                           cone_setting("normals", {1})}},
+             0.2);
   for (int i = 0; i < 3; ++i) add_edge_eye(world, {0.5 * i - 0.7, -0.25 - 0.02 * i, 0.0, M_PI / 2.0});
   return world;
 }

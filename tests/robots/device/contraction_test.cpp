@@ -1,5 +1,5 @@
 // No kernel that moves a fleet or casts from its poses lets the device fuse a product with a sum, which would change
-// the last bit.
+// the last bit; nor does the kernel of spatial scans in 64 bits.
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@
 #include "shaders/fleet_start.comp.h"
 #include "shaders/observe.comp.h"
 #include "shaders/pose_scans.comp.h"
+#include "shaders/scene_tiles.comp.h"
 
 namespace sf {
 namespace {
@@ -23,15 +24,19 @@ struct Arithmetic {
   std::size_t fusible = 0;
 };
 
-Arithmetic arithmetic_of(std::span<const std::uint32_t> spirv) {
-  constexpr std::uint32_t kDecorate = 71, kNoContraction = 42;
+/// @param only64 counts only operations whose results are of 64 bits
+Arithmetic arithmetic_of(std::span<const std::uint32_t> spirv, bool only64 = false) {
+  constexpr std::uint32_t kDecorate = 71, kNoContraction = 42, kTypeFloat = 22, kTypeVector = 23;
+  std::set<std::uint32_t> types64;
   const std::set<std::uint32_t> kOperations{129, 131, 133, 142, 148};  // FAdd, FSub, FMul, VectorTimesScalar, Dot
   Arithmetic count;
   std::set<std::uint32_t> exact;
   for (std::size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
     const std::uint32_t opcode = spirv[at] & 0xFFFFu;
     if (opcode == kDecorate && spirv[at + 2] == kNoContraction) exact.insert(spirv[at + 1]);
-    if (kOperations.count(opcode) == 0) continue;
+    if (opcode == kTypeFloat && spirv[at + 2] == 64) types64.insert(spirv[at + 1]);
+    if (opcode == kTypeVector && types64.count(spirv[at + 2]) > 0) types64.insert(spirv[at + 1]);
+    if (kOperations.count(opcode) == 0 || (only64 && types64.count(spirv[at + 1]) == 0)) continue;
     ++count.all;
     if (exact.count(spirv[at + 2]) == 0) ++count.fusible;
   }
@@ -48,6 +53,12 @@ TEST(Contraction, KernelsOfAFleetAndItsScansFuseNothing) {
   EXPECT_GT(contacts.all, 80u);
   for (const Arithmetic& kernel : {start, index, advance, commit, contacts, scans, observe})
     EXPECT_EQ(kernel.fusible, 0u);
+}
+
+TEST(Contraction, SpatialScansFuseNothingIn64Bits) {
+  const Arithmetic tiles = arithmetic_of(scene_tiles_comp_spv, true);
+  EXPECT_GT(tiles.all, 10u);
+  EXPECT_EQ(tiles.fusible, 0u);
 }
 
 }  // namespace
