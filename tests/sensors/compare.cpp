@@ -163,13 +163,17 @@ void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const bas
     EXPECT_EQ(p[i].bound, q[i].bound) << i;
     EXPECT_TRUE(std::ranges::equal(p[i].quality, q[i].quality)) << "flags of reading " << i;
     ASSERT_EQ(p[i].hits.size(), q[i].hits.size());
+    const auto hit_of = [&](const base::ReadingBlock& r,
+                            std::size_t k) {  // of its beam, which may have several numbers
+      return r.hits.empty() ? 0 : r.hits[k * r.hits.size() / r.values.size()];
+    };
     for (std::size_t k = 0; k < p[i].values.size(); ++k) {
-      const bool same = std::memcmp(&p[i].values[k], &q[i].values[k], sizeof(double)) == 0 &&
-                        (p[i].hits.empty() || p[i].hits[k] == q[i].hits[k]);
+      const bool same =
+          std::memcmp(&p[i].values[k], &q[i].values[k], sizeof(double)) == 0 && hit_of(p[i], k) == hit_of(q[i], k);
       if (same || ++differ > 1) continue;
       example << "reading " << i << " at (" << p[i].X_WS.x << ", " << p[i].X_WS.y << "; " << p[i].X_WS.yaw
-              << "), number " << k << ": " << p[i].values[k] << " of " << (p[i].hits.empty() ? 0 : p[i].hits[k]) << ", "
-              << q[i].values[k] << " of " << (q[i].hits.empty() ? 0 : q[i].hits[k]);
+              << "), number " << k << ": " << p[i].values[k] << " of " << hit_of(p[i], k) << ", " << q[i].values[k]
+              << " of " << hit_of(q[i], k);
     }
   }
   EXPECT_EQ(differ, 0u) << example.str();
