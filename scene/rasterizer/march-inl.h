@@ -78,8 +78,8 @@ class Search {
   const Found& found() const { return found_; }
   const FieldPoints& points() const { return points_; }
 
-  /// Sets where the beams enter and leave the field, with room for rounding.
-  HWY_INLINE void enter(Floats& in, Floats& out) const;
+  /// Sets where the beams enter and leave the field, widened by `room` [cells].
+  HWY_INLINE void enter(const Floats& room, Floats& in, Floats& out) const;
   /// Cells at some points of the beams: the field's nearest.
   HWY_INLINE FieldPoints points_at(const Floats& t) const {
     const Ints one = all(1);
@@ -91,6 +91,8 @@ class Search {
                                      from_y_ - floats_of(points.y - origin_y()));
     return cell.above(points.t, dx_, dy_, dz_);
   }
+  /// [cells] bound of the error of a place on the beams.
+  HWY_INLINE Floats room() const { return place_error(end_); }
   HWY_INLINE Floats error_at(const Floats& t) const { return muladd(error_per_metre_, t, error_); }
 
  private:
@@ -170,8 +172,7 @@ Search::Search(const FieldView& view, const FieldRays& rays, float side, const F
   error_ = all(view.error32), error_per_metre_ = all(view.error32_per_metre);
 }
 
-void Search::enter(Floats& in, Floats& out) const {
-  const Floats room = place_error(end_);
+void Search::enter(const Floats& room, Floats& in, Floats& out) const {
   const auto along = [&](std::int32_t base, std::int32_t cells, const Floats& from, const Floats& inverse) {
     const Floats low = (all(static_cast<float>(-base)) - from - room) * inverse;
     const Floats high = (all(static_cast<float>(cells - base)) - from + room) * inverse;
@@ -213,7 +214,13 @@ void Search::start(const Horizon& horizon) {
     return;
   }
   const Floats t = reach / larger(flat, all(1e-30f)) * all(0.999999f);
-  start(points_at(smaller(t, end_)), without(both(at_least(end_, zero), at_least(end_, t)), ends), level);
+  Floats in, inside, out;
+  enter(zero - room(), in, inside), enter(room(), in, out);
+  // Beams that may leave the field about there start at the sensor, in 64 bits.
+  const Mask goes = without(both(at_least(end_, zero), at_least(smaller(end_, out), t)), ends);
+  const Mask unsure = both(goes, greater(t, inside));
+  start(points_at(select(unsure, zero, smaller(t, end_))), without(goes, unsure), level);
+  found_.unsure = unsure;
 }
 
 CellHeights Search::cell_at(const Ints& x, const Ints& y, const Floats& place_x, const Floats& place_y) const {
@@ -401,7 +408,7 @@ void Marching::begin(const FieldView& view, const Horizon& horizon, const BeamTi
   // From outside: where each beam enters the field.
   const Search above(view, rays_, 1.0f, end);
   Floats in, out;
-  above.enter(in, out);
+  above.enter(above.room(), in, out);
   const Mask enters = both(at_least(out, in), at_least(end, in));
   if (none(enters)) return;
   const FieldPoints points = above.points_at(in);

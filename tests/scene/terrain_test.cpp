@@ -88,6 +88,19 @@ RC_GTEST_PROP(SpatialTerrain, AnyScene, ()) {
   RC_ASSERT(scan == by_rows);
 }
 
+/// Where the horizon lets beams skip the field up to its border and beyond, they meet nothing: next to the border, and in
+/// a narrow field.
+TEST(SpatialTerrain, BeamsLeaveOverTheBorder) {
+  const auto beams = rings(12, 60, -1.5, 1.5);
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const HeightField field = waves(2 + seed % 7, 13, 0.1, seed, {0.01, 1.0});
+    RigidTransform X_WS = Posed(seed + 1, 1.0).X_WS;
+    X_WS.p = {0.0061, 3.0 + 0.4 * static_cast<double>(seed), 2.2};
+    const SpatialScan scan = cast(X_WS, beams, 60.0, over(field), seed % 2 ? 60 : 0);
+    EXPECT_EQ(expect_bound(scan, X_WS, beams, 60.0, over(field)), 0u) << seed;
+  }
+}
+
 /// No beam passes between cells or their triangles: at points of the grid, on edges, on diagonals. From above, none of
 /// these meets the terrain at an outline, so none has a flag.
 TEST(SpatialTerrain, IsWatertight) {
