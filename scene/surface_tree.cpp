@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "scene/closed_bodies.h"
+
 namespace sf::scene {
 
 namespace {
@@ -17,20 +19,14 @@ constexpr int kBins = 24;
 constexpr float kUnused = 1e30f;  // [m]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-struct Box {
-  glm::dvec3 low{kInfinity}, high{-kInfinity};
-
-  void add(glm::dvec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
-  void add(const Box& box) { low = glm::min(low, box.low), high = glm::max(high, box.high); }
-  double area() const {
-    const glm::dvec3 d = high - low;
-    return d.x * d.y + d.y * d.z + d.z * d.x;
-  }
-};
+double area_of(const Bounds& box) {
+  const glm::dvec3 d = box.high - box.low;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
 
 /// A node of the binary tree: `first` and `count` are a range of `Builder::order_`.
 struct BinaryNode {
-  Box box;
+  Bounds box;
   std::uint32_t first = 0, count = 0;
   std::int32_t left = -1, right = -1;  ///< rows; -1: a leaf
 };
@@ -43,25 +39,28 @@ class Builder {
  private:
   void add_planes();
   std::int32_t split(std::uint32_t first, std::uint32_t end);
-  std::uint32_t partition(std::uint32_t first, std::uint32_t end, const Box& centres);
+  std::uint32_t partition(std::uint32_t first, std::uint32_t end, const Bounds& centres);
   std::int32_t collapse(std::int32_t binary);
   std::int32_t make_leaf(const BinaryNode& node);
   void write_face(TreeLeaf& leaf, std::uint32_t i, std::uint32_t face);
+  void write_bodies(TreeLeaf& leaf) const;
 
   SurfaceTree& tree_;
   const Mesh& mesh_;
-  std::vector<Box> boxes_;            ///< per face, relative to the centre
+  FaceSides sides_;
+  std::vector<Bounds> boxes_;         ///< per face, relative to the centre
   std::vector<std::uint32_t> order_;  ///< rows of faces
   std::vector<BinaryNode> binary_;
 };
 
 void Builder::build() {
-  Box all;
+  Bounds all;
   for (const glm::dvec3& vertex : mesh_.vertices) all.add(vertex);
   tree_.centre = 0.5 * (all.low + all.high);
   for (const glm::dvec3& vertex : mesh_.vertices)
     tree_.radius = std::max(tree_.radius, glm::length(vertex - tree_.centre));
   add_planes();
+  sides_ = find_closed_bodies(mesh_);
   order_.resize(mesh_.faces.size());
   std::iota(order_.begin(), order_.end(), 0u);
   split(0, static_cast<std::uint32_t>(order_.size()));
@@ -70,7 +69,7 @@ void Builder::build() {
 
 void Builder::add_planes() {
   for (const Face& face : mesh_.faces) {
-    Box box;
+    Bounds box;
     for (const std::uint32_t corner : face) box.add(mesh_.vertices[corner] - tree_.centre);
     boxes_.push_back(box);
     const glm::dvec3 p = mesh_.vertices[face[0]];
@@ -83,9 +82,9 @@ void Builder::add_planes() {
 
 std::int32_t Builder::split(std::uint32_t first, std::uint32_t end) {
   BinaryNode node{.first = first, .count = end - first};
-  Box centres;
+  Bounds centres;
   for (std::uint32_t i = first; i < end; ++i) {
-    const Box& box = boxes_[order_[i]];
+    const Bounds& box = boxes_[order_[i]];
     node.box.add(box);
     centres.add(0.5 * (box.low + box.high));
   }
@@ -100,7 +99,7 @@ std::int32_t Builder::split(std::uint32_t first, std::uint32_t end) {
 }
 
 /// Reorders a range of faces into two. @return the start of the second, which like the first is not empty
-std::uint32_t Builder::partition(std::uint32_t first, std::uint32_t end, const Box& centres) {
+std::uint32_t Builder::partition(std::uint32_t first, std::uint32_t end, const Bounds& centres) {
   const auto bin_of = [&](std::uint32_t face, int axis) {
     const double c = 0.5 * (boxes_[face].low[axis] + boxes_[face].high[axis]);
     const double width = centres.high[axis] - centres.low[axis];
@@ -110,26 +109,26 @@ std::uint32_t Builder::partition(std::uint32_t first, std::uint32_t end, const B
   int best_axis = -1, best_bin = 0;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(centres.high[axis] > centres.low[axis])) continue;
-    std::array<Box, kBins> bins;
+    std::array<Bounds, kBins> bins;
     std::array<std::uint32_t, kBins> counts{};
     for (std::uint32_t i = first; i < end; ++i) {
       const int bin = bin_of(order_[i], axis);
       bins[bin].add(boxes_[order_[i]]), ++counts[bin];
     }
     std::array<double, kBins> above{};  // cost of all bins from this one
-    Box box;
+    Bounds box;
     std::uint32_t count = 0;
     for (int k = kBins - 1; k > 0; --k) {
       if (counts[k] > 0) box.add(bins[k]);
       count += counts[k];
-      above[k] = count == 0 ? kInfinity : box.area() * ((count + kWidth - 1) / kWidth);
+      above[k] = count == 0 ? kInfinity : area_of(box) * ((count + kWidth - 1) / kWidth);
     }
     box = {}, count = 0;
     for (int k = 1; k < kBins; ++k) {
       if (counts[k - 1] > 0) box.add(bins[k - 1]);
       count += counts[k - 1];
       if (count == 0) continue;
-      const double cost = box.area() * ((count + kWidth - 1) / kWidth) + above[k];
+      const double cost = area_of(box) * ((count + kWidth - 1) / kWidth) + above[k];
       if (cost < least) least = cost, best_axis = axis, best_bin = k;
     }
   }
@@ -146,7 +145,8 @@ std::int32_t Builder::collapse(std::int32_t binary) {
   while (children.size() < kWidth) {  // replace the largest by its two
     auto largest = children.end();
     for (auto c = children.begin(); c != children.end(); ++c)
-      if (binary_[*c].left >= 0 && (largest == children.end() || binary_[*c].box.area() > binary_[*largest].box.area()))
+      if (binary_[*c].left >= 0 &&
+          (largest == children.end() || area_of(binary_[*c].box) > area_of(binary_[*largest].box)))
         largest = c;
     if (largest == children.end()) break;
     const BinaryNode& node = binary_[*largest];
@@ -160,7 +160,7 @@ std::int32_t Builder::collapse(std::int32_t binary) {
     for (int axis = 0; axis < 3; ++axis) {
       node.bound[axis][i] = kUnused, node.bound[axis + 3][i] = -kUnused;
       if (i >= children.size()) continue;
-      const Box& box = binary_[children[i]].box;
+      const Bounds& box = binary_[children[i]].box;
       node.bound[axis][i] = std::nextafter(static_cast<float>(box.low[axis]), -HUGE_VALF);
       node.bound[axis + 3][i] = std::nextafter(static_cast<float>(box.high[axis]), HUGE_VALF);
     }
@@ -181,6 +181,7 @@ std::int32_t Builder::make_leaf(const BinaryNode& node) {
   leaf.radius = std::nextafter(static_cast<float>(radius), HUGE_VALF);
   leaf.count = node.count;
   for (std::uint32_t i = 0; i < node.count; ++i) write_face(leaf, i, order_[node.first + i]);
+  write_bodies(leaf);
   tree_.leaves.push_back(leaf);
   return ~static_cast<std::int32_t>(tree_.leaves.size() - 1);
 }
@@ -200,6 +201,24 @@ void Builder::write_face(TreeLeaf& leaf, std::uint32_t i, std::uint32_t row) {
   leaf.extent[i] = static_cast<float>((2.0 * static_cast<double>(leaf.radius) + 6.0 * longest) * 1.001);
   leaf.face[i] = row;
   tree_.longest_edge = std::max(tree_.longest_edge, longest);
+}
+
+void Builder::write_bodies(TreeLeaf& leaf) const {
+  Bounds bodies;
+  for (std::uint32_t i = 0; i < leaf.count; ++i) {
+    const std::int8_t side = sides_.outward[leaf.face[i]];
+    if (side == 0) continue;
+    leaf.outward |= 1u << (side > 0 ? i : i + kWidth);
+    bodies.add(sides_.bounds[sides_.body[leaf.face[i]]]);
+  }
+  if (leaf.outward == 0) return;
+  const glm::dvec3 centre{leaf.centre[0], leaf.centre[1], leaf.centre[2]};
+  const glm::dvec3 low = bodies.low - centre, high = bodies.high - centre;
+  const double room = 1e-5 * std::max(glm::length(low), glm::length(high));
+  for (int axis = 0; axis < 3; ++axis) {
+    leaf.body[axis] = static_cast<float>(low[axis] - room);
+    leaf.body[axis + 3] = static_cast<float>(high[axis] + room);
+  }
 }
 
 }  // namespace

@@ -27,6 +27,10 @@ struct alignas(64) TreeLeaf {
   double centre[3];            ///< [m] in the mesh's frame
   float radius;                ///< [m] of the sphere about the centre that contains all faces
   std::uint32_t count;         ///< of faces, in [1, 16]
+  float body[6];          ///< [m] box around the closed bodies of its faces (closed_bodies.h), relative to `centre`
+                          ///< and with room: smallest x, y, z, then largest
+  std::uint32_t outward;  ///< bit mask of faces of closed bodies: bits 0 to 15 have their normals outward, 16 to 31
+                          ///< inward. Seen from outside of the box, back faces are hidden
 };
 
 /// Plane of a face: `normal` . (x - point) = 0.

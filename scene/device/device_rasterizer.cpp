@@ -31,6 +31,7 @@ static_assert(sizeof(TreeLeaf) == 4 * SF_LEAF_WORDS && offsetof(TreeLeaf, corner
 static_assert(offsetof(TreeLeaf, normal) == 4 * SF_LEAF_NORMAL && offsetof(TreeLeaf, extent) == 4 * SF_LEAF_EXTENT);
 static_assert(offsetof(TreeLeaf, face) == 4 * SF_LEAF_FACE && offsetof(TreeLeaf, centre) == 4 * SF_LEAF_CENTRE);
 static_assert(offsetof(TreeLeaf, radius) == 4 * SF_LEAF_RADIUS && offsetof(TreeLeaf, count) == 4 * SF_LEAF_COUNT);
+static_assert(offsetof(TreeLeaf, body) == 4 * SF_LEAF_BODY && offsetof(TreeLeaf, outward) == 4 * SF_LEAF_OUTWARD);
 static_assert(SF_SCENE_NO_FACE == kNoFace && SF_SCENE_FLOOR_FACE == kFloorFace);
 static_assert(sizeof(CastBeam) == 16 && SF_BEAM_UNCERTAIN == CastBeam::kUncertain &&
               SF_BEAM_GRAZING == CastBeam::kGrazing);

@@ -30,6 +30,11 @@
 #define SF_LEAF_CENTRE 272u
 #define SF_LEAF_RADIUS 278u
 #define SF_LEAF_COUNT 279u
+#define SF_LEAF_BODY 280u
+#define SF_LEAF_OUTWARD 286u
+
+#define SF_FACE_EDGE_ON 1u  // seen edge-on: it may be anywhere
+#define SF_FACE_HIDDEN 2u   // a back face of a closed body
 
 #ifdef __cplusplus
 

@@ -10,7 +10,7 @@ shared float edge_square[4][16];
 shared float inverse[3][16];  // n / h; 0 if seen edge-on
 shared float above[16], below[16], slack[16], edge_error[16];
 shared uint leaf_face[16];
-shared uint leaf_edge_on[16];  // 1: may be anywhere
+shared uint leaf_kind[16];  // SF_FACE_EDGE_ON, SF_FACE_HIDDEN or 0
 
 /// Beams of a lane. Bounds are inverse ranges [1/m].
 struct Beams {

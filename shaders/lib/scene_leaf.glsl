@@ -16,6 +16,16 @@ vec4 leaf_eye(uint leaf, SceneInstance mesh) {
   return vec4(eye, (length(eye) + leaf_float(leaf + SF_LEAF_RADIUS)) * 1.00002);
 }
 
+/// Returns whether a face is certainly a back face of a closed body, seen from outside.
+bool is_hidden(uint leaf, uint k, vec3 eye, float h, float reach) {
+  bool inside = true;
+  for (uint axis = 0u; axis < 3u; ++axis)
+    inside = inside && leaf_float(leaf + SF_LEAF_BODY + axis) <= eye[axis] &&
+             eye[axis] <= leaf_float(leaf + SF_LEAF_BODY + 3u + axis);
+  const uint bit = imageLoad(leaves, int(leaf + SF_LEAF_OUTWARD)).x >> (h > 0.0 ? k : k + 16u) & 1u;
+  return !inside && bit != 0u && abs(h) > 25.0 * kRounding * reach;
+}
+
 /// Prepares one edge of one face; the first edge's lane also the face's plane. @param reach as `leaf_eye`
 void view_face(uint leaf, uint k, uint e, vec3 eye, float reach) {
   const vec3 corner = leaf_vector(leaf + 48u * e + k), next = leaf_vector(leaf + 48u * ((e + 1u) & 3u) + k);
@@ -32,7 +42,7 @@ void view_face(uint leaf, uint k, uint e, vec3 eye, float reach) {
   above[k] = open ? 1.0 + 1.4 * relative : 1.0;
   below[k] = open ? 1.0 - 1.4 * relative : 1.0;
   leaf_face[k] = imageLoad(leaves, int(leaf + SF_LEAF_FACE + k)).x;
-  leaf_edge_on[k] = open ? 0u : 1u;
+  leaf_kind[k] = is_hidden(leaf, k, eye, h, reach) ? SF_FACE_HIDDEN : (open ? 0u : SF_FACE_EDGE_ON);
 }
 
 /// Largest n . d over the box of vector v.
@@ -46,7 +56,7 @@ float largest_side(uint e, uint k, uint v) { return largest(vec3(edge[e][k], edg
 
 /// Returns whether a beam of vector v may meet face k. @param longest BeamTile::longest
 bool sees_face(uint k, uint v, float longest) {
-  if (leaf_edge_on[k] != 0u) return true;
+  if (leaf_kind[k] != 0u) return leaf_kind[k] == SF_FACE_EDGE_ON;
   const float inside = min(min(largest_side(0u, k, v), largest_side(3u, k, v)),
                            min(largest_side(6u, k, v), largest_side(9u, k, v)));
   const float nearest = largest(vec3(inverse[0][k], inverse[1][k], inverse[2][k]), v);

@@ -133,7 +133,7 @@ void draw_leaf(uint row, SceneInstance mesh, uint instance, uint wanted, uint us
     const uint k = uint(findLSB(faces));
     faces &= faces - 1u;
     draw(k, 1.0, instance, b);
-    if (leaf_edge_on[k] != 0u) draw(k, -1.0, instance, b);
+    if (leaf_kind[k] == SF_FACE_EDGE_ON) draw(k, -1.0, instance, b);
   }
   begin_farthest(b);
   barrier();
