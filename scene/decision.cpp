@@ -152,11 +152,12 @@ const SceneMesh& mesh_with(std::span<const SceneMesh> meshes, std::uint32_t face
 SeenPlane seen_plane(const SceneMesh& mesh, std::uint32_t face) {
   const Plane& plane = mesh.tree->planes[face - mesh.first_face];
   const glm::dmat3& R = mesh.X_FS.R;
-  const std::vector<std::uint32_t>& owners = mesh.tree->mesh.owners;
+  const std::vector<std::uint32_t>&owners = mesh.tree->mesh.owners, &materials = mesh.tree->mesh.materials;
   return {{glm::dot(R[0], plane.normal), glm::dot(R[1], plane.normal), glm::dot(R[2], plane.normal)},
           glm::dot(plane.normal, plane.point - mesh.X_FS.p),
           mesh.least_sine,
-          owners.empty() ? mesh.owner : owners[face - mesh.first_face]};
+          owners.empty() ? mesh.owner : owners[face - mesh.first_face],
+          materials.empty() ? world::kNoMaterial : materials[face - mesh.first_face]};
 }
 
 void list_candidates(std::span<const SceneMesh> meshes, std::span<const DrawnFace> drawn, std::uint32_t vector,

@@ -31,10 +31,11 @@ struct Instance;
 
 /// Plane of a face in the sensor's frame. Beam d meets it at range height / (normal . d).
 struct SeenPlane {
-  glm::dvec3 normal{};      ///< unit vector
-  double height = 0.0;      ///< [m]
-  double least_sine = 0.0;  ///< as SceneMesh::least_sine
-  std::uint32_t owner = 0;  ///< as Mesh::owners
+  glm::dvec3 normal{};                          ///< unit vector
+  double height = 0.0;                          ///< [m]
+  double least_sine = 0.0;                      ///< as SceneMesh::least_sine
+  std::uint32_t owner = 0;                      ///< as Mesh::owners
+  std::uint32_t material = world::kNoMaterial;  ///< as Mesh::materials
 };
 
 /// Sets `out` to the meshes within range of a scan, by first face.

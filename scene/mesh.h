@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "world/material.h"
+
 namespace sf::scene {
 
 /// Corners of a flat, convex face, in order around it; each a row in `Mesh::vertices`. A triangle repeats its last
@@ -19,9 +21,10 @@ inline std::uint32_t corners_of(const Face& face) { return face[2] == face[3] ? 
 /// Invariant: the distance of a face's corners from its plane is below 1e-13 of its size plus 4 roundings of its
 /// coordinates; no face has an area of 0.
 struct Mesh {
-  std::vector<glm::dvec3> vertices;   ///< [m] in the body's frame, finite
-  std::vector<Face> faces;            ///< fewer than 2^31
-  std::vector<std::uint32_t> owners;  ///< per face: row in `world::World::models`; empty: Instance::owner
+  std::vector<glm::dvec3> vertices;      ///< [m] in the body's frame, finite
+  std::vector<Face> faces;               ///< fewer than 2^31
+  std::vector<std::uint32_t> owners;     ///< per face: row in `world::World::models`; empty: Instance::owner
+  std::vector<std::uint32_t> materials;  ///< per face: row in a table of the caller, or world::kNoMaterial; empty: none
 
   /// Appends a face with new vertices. @param corners three or four @param owner nullopt: the mesh has no owners
   void add(std::span<const glm::dvec3> corners, std::optional<std::uint32_t> owner);

@@ -51,6 +51,11 @@ class Scan {
     return last_plane_;
   }
 
+  std::uint32_t material_of(std::uint32_t hit, std::uint32_t beam) {
+    const bool on_mesh = hit != base::kNoHit && (terrain_hits_ >> beam % kWidth & 1) == 0;
+    return on_mesh ? plane_of(s_.face[beam]).material : world::kNoMaterial;
+  }
+
   /// Normal of a beam's surface, toward the sensor.
   glm::vec3 normal_of(std::uint32_t hit, std::uint32_t beam) {
     if (hit == base::kNoHit) return {};
@@ -78,8 +83,8 @@ class Scan {
   alignas(64) std::uint32_t hits_[kWidth];
   alignas(64) double sines_[kWidth];  ///< of the angles to the faces; 0 without one
   std::uint32_t grazing_ = 0;         ///< bit mask
-  // Of beams that meet the terrain, if cosines or normals are wanted.
-  std::uint32_t terrain_hits_ = 0;  ///< bit mask
+  std::uint32_t terrain_hits_ = 0;    ///< bit mask of beams that meet the terrain,
+  // and of these, if cosines or normals are wanted:
   glm::dvec3 terrain_normals_[kWidth];
 };
 
@@ -186,6 +191,8 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
       out_.cosines[place[i]] = hits_[i] == base::kNoHit ? 0.0f : static_cast<float>(std::min(1.0, std::abs(sines_[i])));
   if (!out_.normals.empty())
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.normals[place[i]] = normal_of(hits_[i], first + i);
+  if (!out_.materials.empty())
+    for (std::uint32_t i = 0; i < kWidth; ++i) out_.materials[place[i]] = material_of(hits_[i], first + i);
   flagged_ = flagged_ || grazing_ != 0;
   for (; grazing_ != 0; grazing_ &= grazing_ - 1)
     out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;
@@ -208,8 +215,8 @@ void Scan::march(const BeamTile& tile, std::uint32_t vector) {
 void Scan::meet_terrain(const BeamTile& tile, std::uint32_t vector) {
   Marching& marching = marching_[vector % kMarchings];
   grazing_ |= marching.finish(ranges_, hits_, s_.counts);
-  if (out_.cosines.empty() && out_.normals.empty()) return;
   terrain_hits_ = marching.met();
+  if (out_.cosines.empty() && out_.normals.empty()) return;
   for (std::uint32_t rest = terrain_hits_; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
     const std::uint32_t beam = kWidth * vector + i;

@@ -68,6 +68,8 @@ struct ScanOutput {
   /// Unit normals of the surfaces in the sensor's frame, on the side of the sensor; 0 without a surface. Empty: not
   /// wanted.
   std::span<glm::vec3> normals = {};
+  std::span<std::uint32_t> materials =
+      {};  ///< of the faces (Mesh::materials), or world::kNoMaterial. Empty: not wanted
 };
 
 /// What a device found along a beam (scene/device/device_rasterizer.h).

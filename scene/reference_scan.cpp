@@ -102,10 +102,11 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
       const Real range = face_range(ray, mesh, face);
       if (!(range < hit.range)) continue;
       const Vector normal = normal_of(mesh, face);
-      hit = {range,
-             mesh.owners.empty() ? instance.owner : mesh.owners[static_cast<std::size_t>(&face - mesh.faces.data())],
+      const auto row = static_cast<std::size_t>(&face - mesh.faces.data());
+      hit = {range, mesh.owners.empty() ? instance.owner : mesh.owners[row],
              std::abs(glm::dot(normal, glm::normalize(ray.direction))),
-             seen_from(X_WS.R, rotate(instance.X_WI.R, normal), ray_W.direction)};
+             seen_from(X_WS.R, rotate(instance.X_WI.R, normal), ray_W.direction),
+             mesh.materials.empty() ? world::kNoMaterial : mesh.materials[row]};
     }
   }
   return hit;

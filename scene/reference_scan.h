@@ -9,10 +9,11 @@
 namespace sf::scene {
 
 struct ReferenceHit {
-  long double range = 0.0L;            ///< [m] range_max where nothing is nearer
-  std::uint32_t owner = base::kNoHit;  ///< as ScanOutput::hits
-  long double cosine = 0.0L;           ///< of the angle of incidence
-  glm::vec3 normal{};                  ///< as ScanOutput::normals
+  long double range = 0.0L;                     ///< [m] range_max where nothing is nearer
+  std::uint32_t owner = base::kNoHit;           ///< as ScanOutput::hits
+  long double cosine = 0.0L;                    ///< of the angle of incidence
+  glm::vec3 normal{};                           ///< as ScanOutput::normals
+  std::uint32_t material = world::kNoMaterial;  ///< as ScanOutput::materials
 };
 
 /// @param direction in the sensor's frame; need not be a unit vector to rounding, ranges are along it

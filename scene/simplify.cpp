@@ -28,8 +28,9 @@ struct Cluster {
 
 }  // namespace
 
-world::Mesh clustered(const world::Mesh& mesh, double cell) {
-  world::Mesh out{.file = mesh.file, .vertices = {}, .corners = {}};
+ClusteredMesh clustered(const world::Mesh& mesh, double cell) {
+  ClusteredMesh result{.mesh = {.file = mesh.file, .vertices = {}, .corners = {}}, .sources = {}};
+  world::Mesh& out = result.mesh;
   glm::dvec3 low(HUGE_VAL);
   for (const glm::dvec3& p : mesh.vertices) low = glm::min(low, p);
   std::map<Cell, Cluster> clusters;
@@ -54,19 +55,23 @@ world::Mesh clustered(const world::Mesh& mesh, double cell) {
     const glm::dvec3 &a = out.vertices[rows[0]], &b = out.vertices[rows[1]], &c = out.vertices[rows[2]];
     if (glm::length(glm::cross(b - a, c - a)) <= 1e-9 * cell * cell || !known.insert(sorted).second) continue;
     out.corners.insert(out.corners.end(), rows.begin(), rows.end());
+    result.sources.push_back(static_cast<std::uint32_t>(i / 3));
   }
-  return out;
+  return result;
 }
 
-std::vector<MeshLevel> levels_of(const world::Mesh& mesh) {
+std::vector<MeshLevel> levels_of(const world::Mesh& mesh, std::span<const std::uint32_t> materials) {
   glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
   for (const glm::dvec3& p : mesh.vertices) low = glm::min(low, p), high = glm::max(high, p);
   std::vector<MeshLevel> levels;
   double cell = glm::length(high - low) / 8.0;
   for (int k = 0; k < kMostMeshLevels; ++k, cell *= 0.5) {
-    const world::Mesh coarse = clustered(mesh, cell);
+    const auto [coarse, sources] = clustered(mesh, cell);
     if (static_cast<double>(coarse.corners.size()) > kLeastGain * static_cast<double>(mesh.corners.size())) break;
-    if (!coarse.corners.empty()) levels.push_back({build_tree(mesh_of(coarse)), std::sqrt(3.0) * cell});
+    if (coarse.corners.empty()) continue;
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < sources.size() && !materials.empty(); ++i) kept.push_back(materials[sources[i]]);
+    levels.push_back({build_tree(mesh_of(coarse, std::move(kept))), std::sqrt(3.0) * cell});
   }
   return levels;
 }

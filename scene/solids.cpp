@@ -203,8 +203,8 @@ Mesh holed_floor(const world::World& world, double reach) {
   return mesh;
 }
 
-Mesh mesh_of(const world::Mesh& triangles) {
-  Mesh mesh{triangles.vertices, {}, {}};
+Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials) {
+  Mesh mesh{triangles.vertices, {}, {}, std::move(materials)};
   const std::vector<std::uint32_t>& corners = triangles.corners;
   mesh.faces.reserve(corners.size() / 3);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)

@@ -54,8 +54,15 @@ bool is_plain(const LidarSettings& s) {
 
 std::vector<SpatialScanner> scanners_of(const std::vector<LidarSettings>& lidars) {
   std::vector<SpatialScanner> scanners;
-  for (const LidarSettings& s : lidars)
-    scanners.push_back({s.X_MS, s.echo.range_max, kLidarAngles[s.mode], s.beams, is_plain(s)});
+  for (const LidarSettings& s : lidars) {
+    const bool powers = s.echo.width > 1 || s.beams->parts > 1 || s.echo.detection_range > 0.0;
+    scanners.push_back({.X_MS = s.X_MS,
+                        .range_max = s.echo.range_max,
+                        .angle = kLidarAngles[s.mode],
+                        .beams = s.beams,
+                        .plain = is_plain(s),
+                        .materials = powers});
+  }
   return scanners;
 }
 
@@ -63,7 +70,7 @@ Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
     : SpatialScans(context, lidar_type, sensors, scanners_of(sensors.settings_as<LidarSettings>())),
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
-      reflectances_(context.world),
+      reflectances_(context.world, materials()),
       finders_(context.thread_pool.threads()) {}
 
 void Lidars::finish(std::size_t i, unsigned thread) { scanner_of(i).plain ? add_noise(i) : find_echoes(i, thread); }
@@ -109,10 +116,10 @@ void Lidars::find_echoes(std::size_t i, unsigned thread) {
   for (std::uint32_t c = 0; c < s.beams->cast_directions().size() / parts; ++c) {
     const std::uint32_t k = cast.empty() ? c : cast[c];
     const std::size_t at = c * parts;
-    EchoFinder::Echoes echoes = finders_[thread].find(s.echo,
-                                                      {from.ranges.subspan(at, parts), from.cosines.subspan(at, parts),
-                                                       from.hits.subspan(at, parts), from.quality.subspan(at, parts)},
-                                                      reflectances_);
+    BeamParts beam{from.ranges.subspan(at, parts), from.cosines.subspan(at, parts), from.hits.subspan(at, parts),
+                   from.quality.subspan(at, parts)};
+    if (!from.materials.empty()) beam.materials = from.materials.subspan(at, parts);
+    EchoFinder::Echoes echoes = finders_[thread].find(s.echo, beam, reflectances_);
     if (noise_ && s.echo.dropout > 0.0 && base::random_uniform(drop, k)[0] < s.echo.dropout) echoes = {};
     for (std::size_t e = 0; e < echoes.size(); ++e) {
       auto& echo = echoes[e];

@@ -38,8 +38,10 @@ double intensity_of(const EchoSettings& s, const Echo& echo) {
 
 }  // namespace
 
-Reflectances::Reflectances(const world::World& world) : models_(world.models.size(), world::kDefaultReflectance) {
+Reflectances::Reflectances(const world::World& world, const std::vector<world::Material>& materials)
+    : models_(world.models.size(), kUnstated) {
   for (const world::Reflectance& row : world.reflectances) models_[row.model] = row.value;
+  for (const world::Material& material : materials) materials_.push_back(material.reflectance);
 }
 
 EchoFinder::Echoes EchoFinder::find(const EchoSettings& s, const BeamParts& parts, const Reflectances& reflectances) {
@@ -47,7 +49,8 @@ EchoFinder::Echoes EchoFinder::find(const EchoSettings& s, const BeamParts& part
   const std::size_t count = parts.ranges.size();
   for (std::size_t k = 0; k < count; ++k) {
     if (parts.hits[k] == base::kNoHit) continue;
-    const double power = reflectances.of(parts.hits[k]) * static_cast<double>(parts.cosines[k]);
+    const std::uint32_t material = parts.materials.empty() ? world::kNoMaterial : parts.materials[k];
+    const double power = reflectances.of(parts.hits[k], material) * static_cast<double>(parts.cosines[k]);
     echoes_.push_back(
         {parts.ranges[k], power / static_cast<double>(count), parts.cosines[k], parts.hits[k], parts.quality[k]});
   }

@@ -41,6 +41,7 @@ struct BeamParts {
   std::span<const float> cosines;       ///< of the angles of incidence
   std::span<const std::uint32_t> hits;  ///< as ReadingBlock::hits
   std::span<const base::QualityFlag> quality;
+  std::span<const std::uint32_t> materials = {};  ///< as scene::ScanOutput::materials; empty: none
 };
 
 struct Echo {
@@ -51,14 +52,20 @@ struct Echo {
   base::QualityFlag quality = base::QualityFlag::none;
 };
 
-/// Reflectances of a world's surfaces.
+/// Reflectances of a world's surfaces: that of the model if it states one, else of the material.
 class Reflectances {
  public:
-  explicit Reflectances(const world::World& world);
-  double of(std::uint32_t hit) const { return hit < models_.size() ? models_[hit] : world::kDefaultReflectance; }
+  /// @param materials by row of scene::ScanOutput::materials
+  Reflectances(const world::World& world, const std::vector<world::Material>& materials);
+  double of(std::uint32_t hit, std::uint32_t material) const {
+    if (hit < models_.size() && models_[hit] != kUnstated) return models_[hit];
+    return material < materials_.size() ? materials_[material] : world::kDefaultReflectance;
+  }
 
  private:
-  std::vector<double> models_;  ///< by row
+  static constexpr double kUnstated = -1.0;
+  std::vector<double> models_;     ///< by row
+  std::vector<double> materials_;  ///< by row
 };
 
 /// Returns the nearest detected echo and the strongest of the others, without noise.

@@ -21,8 +21,11 @@ double longest_range(std::span<const SpatialScanner> scanners) {
   return longest;
 }
 
-bool any_coarse(std::span<const SpatialScanner> scanners) {
-  return std::ranges::any_of(scanners, [](const SpatialScanner& scanner) { return scanner.angle > 0.0; });
+SceneExtras extras_of(std::span<const SpatialScanner> scanners) {
+  SceneExtras extras;
+  for (const SpatialScanner& s : scanners)
+    extras.coarse = extras.coarse || s.angle > 0.0, extras.materials = extras.materials || s.materials;
+  return extras;
 }
 
 /// [ns] since the first beam of a rolling scan.
@@ -37,7 +40,7 @@ SpatialScans::SpatialScans(const SensorContext& context, const SensorType& type,
     : HostBackend(context, type, sensors),
       scanners_(std::move(scanners)),
       reference_(!raycast::choose_caster(context.device.info().software, context.scene.caster).same_bytes),
-      scene_(context.world, longest_range(scanners_), any_coarse(scanners_)),
+      scene_(context.world, longest_range(scanners_), extras_of(scanners_)),
       first_beam_(1, 0),
       first_part_(1, 0),
       rasterizers_(context.thread_pool.threads()) {
@@ -51,6 +54,7 @@ SpatialScans::SpatialScans(const SensorContext& context, const SensorType& type,
   const std::size_t parts = first_part_.back();
   part_ranges_.resize(parts), part_cosines_.resize(parts), part_hits_.resize(parts), part_quality_.resize(parts);
   if (normals) part_normals_.resize(parts);
+  if (!materials().empty()) part_materials_.resize(parts);
   for (std::size_t row = 0; rolling && row < scanners_.size(); ++row)
     trails_.emplace_back(duration_of(*scanners_[row].beams), context.world.movers[rows()[row].mover].max_forward);
   last_.resize(trails_.size());
@@ -160,6 +164,7 @@ scene::ScanOutput SpatialScans::output_of(std::size_t i) {
   scene::ScanOutput out{parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i),
                         parts_of(part_cosines_, i)};
   if (scanners_[sample.row].normals) out.normals = parts_of(part_normals_, i);
+  if (scanners_[sample.row].materials && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
   return out;
 }
 
@@ -180,6 +185,7 @@ void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const 
       out.hits[i] = hit.owner;
       if (!out.cosines.empty()) out.cosines[i] = static_cast<float>(hit.cosine);
       if (!out.normals.empty()) out.normals[i] = hit.normal;
+      if (!out.materials.empty()) out.materials[i] = hit.material;
     }
 }
 

@@ -23,8 +23,9 @@ struct SpatialScanner {
   double range_max = 0.0;     ///< [m] > 0, along the beams
   double angle = 0.0;         ///< [rad] as SpatialScene::list
   std::shared_ptr<const LidarBeams> beams;
-  bool plain = false;    ///< beams are cast into the reading's values
-  bool normals = false;  ///< also casts the normals of surfaces
+  bool plain = false;      ///< beams are cast into the reading's values
+  bool normals = false;    ///< also casts the normals of surfaces
+  bool materials = false;  ///< also casts their materials
 };
 
 /// Not thread-safe.
@@ -50,6 +51,8 @@ class SpatialScans : public HostBackend {
   /// Writes the values, hits and flags of a due sample from what its beams met. Several threads call it at once.
   virtual void finish(std::size_t sample, unsigned thread) = 0;
 
+  /// As SpatialScene::materials, if a sensor uses them.
+  const std::vector<world::Material>& materials() const { return scene_.materials(); }
   const SpatialScanner& scanner_of(std::size_t sample) const { return scanners_[samples()[sample].row]; }
   /// Returns the hits of a sample, one per part of each cast beam. For a plain sensor, this is its reading itself.
   scene::ScanOutput output_of(std::size_t sample);
@@ -98,6 +101,7 @@ class SpatialScans : public HostBackend {
   std::vector<std::uint32_t> part_hits_;
   std::vector<base::QualityFlag> part_quality_;
   std::vector<glm::vec3> part_normals_;         ///< empty unless a sensor uses them
+  std::vector<std::uint32_t> part_materials_;   ///< empty unless a sensor uses them
   std::vector<std::size_t> first_part_;         ///< per row, plus one
   std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
   std::vector<CarrierTrail> trails_;            ///< per row; empty: no scan is rolling

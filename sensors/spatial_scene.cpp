@@ -45,7 +45,7 @@ void require_numbers(const world::World& world) {
 
 }  // namespace
 
-SpatialScene::SpatialScene(const world::World& world, double reach, bool coarse)
+SpatialScene::SpatialScene(const world::World& world, double reach, const SceneExtras& extras)
     : copies_(world),
       floor_(!world.floor_unseen),
       holes_(scene::box_of_holes(world)),
@@ -60,10 +60,7 @@ SpatialScene::SpatialScene(const world::World& world, double reach, bool coarse)
   }
   if (floor_ && !(world.floor_holes.empty() && world.terrain.empty()))
     holed_floor_ = scene::build_tree(scene::holed_floor(world, reach));
-  for (const world::Mesh& mesh : world.meshes) {
-    meshes_.push_back(scene::build_tree(scene::mesh_of(mesh)));
-    if (coarse) levels_.push_back(scene::levels_of(mesh));
-  }
+  add_meshes(world, extras);
   for (const world::MeshModel& row : world.mesh_models) {
     const std::uint32_t mover = world.models[row.model].mover;
     const bool own = mover != world::kNone && world.movers[mover].model == row.model;
@@ -71,6 +68,21 @@ SpatialScene::SpatialScene(const world::World& world, double reach, bool coarse)
         .push_back({row.mesh, base::transform_of(row.X_BF), row.model, own});
   }
   update_movers(world);
+}
+
+void SpatialScene::add_meshes(const world::World& world, const SceneExtras& extras) {
+  std::vector<std::vector<std::uint32_t>> of_faces(world.meshes.size());
+  for (const world::MeshMaterials& row : world.mesh_materials) {
+    if (!extras.materials) break;
+    const auto first = static_cast<std::uint32_t>(materials_.size());
+    for (const std::uint32_t material : row.triangles)
+      of_faces[row.mesh].push_back(material == world::kNoMaterial ? material : first + material);
+    materials_.insert(materials_.end(), row.materials.begin(), row.materials.end());
+  }
+  for (std::size_t i = 0; i < world.meshes.size(); ++i) {
+    if (extras.coarse) levels_.push_back(scene::levels_of(world.meshes[i], of_faces[i]));
+    meshes_.push_back(scene::build_tree(scene::mesh_of(world.meshes[i], std::move(of_faces[i]))));
+  }
 }
 
 void SpatialScene::update_movers(const world::World& world) {

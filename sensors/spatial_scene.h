@@ -14,17 +14,25 @@
 
 namespace sf::sensors {
 
+/// What sensors use beyond the surfaces.
+struct SceneExtras {
+  bool coarse = false;     ///< coarser meshes, for `list`
+  bool materials = false;  ///< faces have their materials
+};
+
 class SpatialScene {
  public:
   /// @throws base::InputError for more triangles than their numbers can tell apart, over all places of all meshes
-  /// @param reach [m] longest range of a sensor  @param coarse also builds coarser meshes, for `list`
-  SpatialScene(const world::World& world, double reach, bool coarse = false);
+  /// @param reach [m] longest range of a sensor
+  SpatialScene(const world::World& world, double reach, const SceneExtras& extras = {});
 
   /// Builds the bodies of all movers again. Meshes stay; one whose mover has another shape or size is not seen.
   void update_movers(const world::World& world);
   /// @param states per mover
   void place(std::span<const base::Report> states);
   const base::RigidTransform& X_WM(std::uint32_t mover) const { return X_WM_[mover]; }
+  /// Materials of all meshes, by row as in scene::ScanOutput::materials. Empty unless asked for.
+  const std::vector<world::Material>& materials() const { return materials_; }
 
   scene::Terrain terrain() const { return {terrain_.empty() ? nullptr : &terrain_, X_WF_}; }
   /// Sets `out` to the walls, and to all other surfaces of the world of `mover` within `range` [m] of `p`, except its
@@ -43,6 +51,7 @@ class SpatialScene {
     std::uint32_t model = 0;
     bool own = false;  ///< of the mover's own model, whose shape may change
   };
+  void add_meshes(const world::World& world, const SceneExtras& extras);
   /// Surroundings of a sensor.
   struct View {
     glm::dvec3 p;
@@ -61,6 +70,7 @@ class SpatialScene {
   base::Box holes_;
   scene::HeightField terrain_;  ///< empty: none
   base::RigidTransform X_WF_;   ///< its frame
+  std::vector<world::Material> materials_;
   std::vector<scene::SurfaceTree> meshes_;
   std::vector<std::vector<scene::MeshLevel>> levels_;  ///< per mesh; empty: only exact ones
   std::vector<Part> fixed_;

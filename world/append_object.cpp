@@ -93,6 +93,7 @@ World as_mover(const World& world, std::uint32_t root) {
     part.fiducials.push_back(fiducial);
   }
   part.meshes = world.meshes;
+  part.mesh_materials = world.mesh_materials;
   for (MeshModel row : world.mesh_models) {
     if (!inside[row.model]) continue;
     row.X_BF = compose(X_MW, row.X_BF);

@@ -123,14 +123,18 @@ std::string free_model_name(const World& world, std::string name) {
 
 }  // namespace
 
-/// Returns the row of a mesh of another world, which is appended unless it is there.
-std::uint32_t mesh_row(World& world, const Mesh& mesh) {
+/// Returns the row of a mesh of another world, which is appended with its materials unless it is there.
+std::uint32_t mesh_row(World& world, const World& from, std::uint32_t mesh_of_other) {
+  const Mesh& mesh = from.meshes[mesh_of_other];
   const auto same = [&](const Mesh& other) {
     return other.file == mesh.file && other.vertices == mesh.vertices && other.corners == mesh.corners;
   };
   const auto found = std::ranges::find_if(world.meshes, same);
   const auto row = static_cast<std::uint32_t>(found - world.meshes.begin());
-  if (row == world.meshes.size()) world.meshes.push_back(mesh);
+  if (row < world.meshes.size()) return row;
+  world.meshes.push_back(mesh);
+  for (MeshMaterials materials : from.mesh_materials)
+    if (materials.mesh == mesh_of_other) materials.mesh = row, world.mesh_materials.push_back(std::move(materials));
   return row;
 }
 
@@ -150,7 +154,7 @@ void append_copy(World& world, const World& from, std::uint32_t original, const 
   for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];
   const std::vector<Fiducial> fiducials = rows_on(from.fiducials, from, original, rows);
   for (MeshModel row : rows_on(from.mesh_models, from, original, rows)) {
-    if (&from != &world) row.mesh = mesh_row(world, from.meshes[row.mesh]);
+    if (&from != &world) row.mesh = mesh_row(world, from, row.mesh);
     world.mesh_models.push_back(row);
   }
   const std::vector<Reflectance> reflectances = rows_on(from.reflectances, from, original, rows);

@@ -132,7 +132,13 @@ template <> inline constexpr auto kFields<Mesh> = std::make_tuple(
     path(&Mesh::file), field(&Mesh::vertices), field(&Mesh::corners));
 
 template <> inline constexpr auto kFields<Reflectance> = std::make_tuple(
-    field(&Reflectance::model), field(&Reflectance::value, Bounds{0.0, 100.0}));
+    field(&Reflectance::model), field(&Reflectance::value, Bounds{0.0, kMostReflectance}));
+
+template <> inline constexpr auto kFields<Material> = std::make_tuple(
+    field(&Material::color), field(&Material::reflectance, Bounds{0.0, kMostReflectance}));
+
+template <> inline constexpr auto kFields<MeshMaterials> = std::make_tuple(
+    field(&MeshMaterials::mesh), field(&MeshMaterials::materials), field(&MeshMaterials::triangles));
 
 template <> inline constexpr auto kFields<MeshModel> = std::make_tuple(
     field(&MeshModel::mesh), field(&MeshModel::model), field(&MeshModel::X_BF));
@@ -174,7 +180,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 12
     field(&World::meshes), field(&World::mesh_models),
     // since version 13
-    field(&World::reflectances), field(&World::terrain));
+    field(&World::reflectances), field(&World::terrain),
+    // since version 14
+    field(&World::mesh_materials));
 
 // clang-format on
 

@@ -13,9 +13,10 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 13;
+constexpr std::uint16_t kVersion = 14;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
+constexpr std::size_t kSinceVersion14 = least_bytes<std::vector<MeshMaterials>>();
 constexpr std::size_t kSinceVersion13 = least_bytes<std::vector<Reflectance>>() + least_bytes<std::vector<Terrain>>();
 constexpr std::size_t kSinceVersion12 = least_bytes<std::vector<Mesh>>() + least_bytes<std::vector<MeshModel>>();
 constexpr std::size_t kSinceVersion11 = least_bytes<bool>();
@@ -27,6 +28,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
+  if (!world.mesh_materials.empty()) return 14;
   if (!world.reflectances.empty() || !world.terrain.empty()) return 13;
   if (!world.meshes.empty() || !world.mesh_models.empty()) return 12;
   if (world.floor_unseen) return 11;
@@ -42,7 +44,7 @@ std::size_t missing_bytes(std::uint16_t version) {
   return (version < 6 ? kSinceVersion6 : 0) + (version < 7 ? kSinceVersion7 : 0) + (version < 8 ? kSinceVersion8 : 0) +
          (version < 9 ? kSinceVersion9 : 0) + (version < 10 ? kSinceVersion10 : 0) +
          (version < 11 ? kSinceVersion11 : 0) + (version < 12 ? kSinceVersion12 : 0) +
-         (version < 13 ? kSinceVersion13 : 0);
+         (version < 13 ? kSinceVersion13 : 0) + (version < 14 ? kSinceVersion14 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
@@ -69,6 +71,7 @@ void check_links(const World& world) {
   good &= std::all_of(world.mesh_models.begin(), world.mesh_models.end(), known);
   good &= std::all_of(world.reflectances.begin(), world.reflectances.end(), known);
   for (const MeshModel& row : world.mesh_models) good &= row.mesh < world.meshes.size();
+  for (const MeshMaterials& row : world.mesh_materials) good &= row.mesh < world.meshes.size();
   if (!good) refuse("a row refers to a row that does not exist");
 }
 
@@ -85,6 +88,15 @@ void check_rows(const World& world) {
   for (const Mesh& mesh : world.meshes) {
     good &= mesh.corners.size() % 3 == 0 && mesh.corners.size() / 3 <= kMostTriangles;
     for (const std::uint32_t corner : mesh.corners) good &= corner < mesh.vertices.size();
+  }
+  std::vector<bool> with_materials(world.meshes.size());
+  for (const MeshMaterials& row : world.mesh_materials) {
+    good &= !with_materials[row.mesh] && row.triangles.size() == world.meshes[row.mesh].corners.size() / 3;
+    for (const std::uint32_t material : row.triangles)
+      good &= material < row.materials.size() || material == kNoMaterial;
+    for (const Material& material : row.materials)
+      for (int k = 0; k < 3; ++k) good &= material.color[k] >= 0.0 && material.color[k] <= 1.0;
+    with_materials[row.mesh] = true;
   }
   good &= world.terrain.size() <= 1;
   for (const Terrain& terrain : world.terrain)

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "world/material.h"
 
 namespace sf::world {
 
@@ -297,6 +298,13 @@ struct Mesh {
   std::vector<std::uint32_t> corners;  ///< three rows of `vertices` per triangle, each with an area above 0
 };
 
+/// Materials of a mesh whose file states some.
+struct MeshMaterials {
+  std::uint32_t mesh = 0;                ///< row in `World::meshes`; at most one row of this table per mesh
+  std::vector<Material> materials;       ///< at least one
+  std::vector<std::uint32_t> triangles;  ///< per triangle: row in `materials`, or kNoMaterial
+};
+
 /// A model that spatial sensors see as a mesh. Planar sensors and contacts use its outline.
 struct MeshModel {
   std::uint32_t mesh = 0;   ///< row in `World::meshes`
@@ -305,12 +313,11 @@ struct MeshModel {
 };
 
 /// Reflectance of a model's surfaces for the intensities of spatial scans: the part of light that an ideal diffuse
-/// surface returns; above 1 for retroreflectors.
+/// surface returns; above 1 for retroreflectors. Models without a row have those of their mesh's materials.
 struct Reflectance {
   std::uint32_t model = 0;  ///< row in `World::models`
-  double value = 0.0;       ///< in [0, 100]
+  double value = 0.0;       ///< in [0, kMostReflectance]
 };
-inline constexpr double kDefaultReflectance = 0.5;  ///< of all other models, and of the floor
 
 /// A height map of the ground (world/terrain.h), in place of the floor in its rectangle. Each cell is cut along the
 /// diagonal from its corner with the smallest x and y into two triangles.
@@ -381,7 +388,8 @@ struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshModel> mesh_models;
   std::vector<Reflectance> reflectances;
-  std::vector<Terrain> terrain;           ///< at most one
+  std::vector<Terrain> terrain;  ///< at most one
+  std::vector<MeshMaterials> mesh_materials;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)

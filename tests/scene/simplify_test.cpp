@@ -35,7 +35,7 @@ world::Mesh sphere(std::uint32_t rings) {
 TEST(Simplify, DisplacesVerticesByLessThanADiagonal) {
   const world::Mesh mesh = sphere(60);
   for (const double cell : {0.5, 0.1, 0.02}) {
-    const world::Mesh coarse = clustered(mesh, cell);
+    const world::Mesh coarse = clustered(mesh, cell).mesh;
     EXPECT_LT(coarse.vertices.size(), mesh.vertices.size());
     for (std::size_t i = 0; i < mesh.vertices.size(); i += 7) {
       double nearest = HUGE_VAL;
@@ -48,8 +48,8 @@ TEST(Simplify, DisplacesVerticesByLessThanADiagonal) {
 /// Cells smaller than the distances of the vertices change nothing; one cell leaves nothing.
 TEST(Simplify, ExtremeCells) {
   const world::Mesh mesh = sphere(8);
-  EXPECT_EQ(clustered(mesh, 1e-6).corners.size(), mesh.corners.size());
-  EXPECT_TRUE(clustered(mesh, 10.0).corners.empty());
+  EXPECT_EQ(clustered(mesh, 1e-6).mesh.corners.size(), mesh.corners.size());
+  EXPECT_TRUE(clustered(mesh, 10.0).mesh.corners.empty());
 }
 
 /// Seen from its centre, a closed surface stays closed, and every range is off by at most the displacement.

@@ -156,7 +156,7 @@ TEST(LidarEchoes, SecondIsTheStrongestOfTheOthers) {
   const std::uint32_t hits[] = {0, 0, 0, 0, 0, 0};
   const base::QualityFlag quality[6] = {};
   sensors::EchoFinder finder;
-  const auto echoes = finder.find({}, {ranges, cosines, hits, quality}, sensors::Reflectances(world::World{}));
+  const auto echoes = finder.find({}, {ranges, cosines, hits, quality}, sensors::Reflectances(world::World{}, {}));
   EXPECT_EQ(echoes[0]->range, 3.0);
   EXPECT_EQ(echoes[1]->range, 8.0);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "raycast/casters.h"
 #include "sensors/lidar.h"
 #include "sensors/spatial_scene.h"
 #include "tests/folder.h"
@@ -61,6 +62,44 @@ TEST_F(LidarMeshes, ABoxIsABox) {
       return hit < meshes.models.size() && meshes.models[hit].mover == 0;
     })) << "its own robot";
   }
+}
+
+/// Intensities are those of each face's material, where its model states no reflectance: in exact scans, by the
+/// reference and among simplified meshes. Lidars without intensities build no table of materials.
+TEST_F(LidarMeshes, MaterialsReflect) {
+  write("m.mtl", "newmtl dark\nKd 0.1\nnewmtl light\nKd 0.9\n");
+  write("wall.obj",
+        "mtllib m.mtl\nv 0 -9 -9\nv 0 0 -9\nv 0 9 -9\nv 0 9 9\nv 0 0 9\nv 0 -9 9\n"
+        "usemtl dark\nf 1 2 5 6\nusemtl light\nf 2 3 4 5\n");
+  const auto intensities = [&](const std::string& model, const std::string& mode, bool reference = false) {
+    const world::World world =
+        world_of("model( pose [5 0 0 0] noblocks 1 mesh \"" + path("wall.obj") + "\" " + model +
+                 " )\nposition( size [0.4 0.4 0.5] lidar( channels 3 fov_v [0 10] columns 41 fov 60 range [0 50] "
+                 "intensity 1 " +
+                 mode + " ) )");
+    farm::FarmOptions options{.noise = false, .threads = 1};
+    if (reference) options.scene.caster = raycast::caster_named("reference");
+    farm::Farm farm(world, host_device(), options);
+    const base::ReadingBlock r = farm.sense(0, sensors::kLidar, 0, {});
+    return std::vector<double>(r.values.begin(), r.values.end());
+  };
+  const std::vector<double> found = intensities("", "");
+  for (std::size_t i = 0; i < found.size(); i += 2) {
+    if (i / 2 % 41 == 20) continue;  // the edge between the halves
+    const bool left = i / 2 % 41 > 20;
+    EXPECT_NEAR(found[i + 1], (left ? 0.9 : 0.1) * 5.0 / found[i], 1e-6) << i;
+  }
+  EXPECT_EQ(intensities("", "accuracy \"coarse1\""), found);
+  const std::vector<double> slow = intensities("", "", true);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (i / 2 % 41 != 20) {
+      EXPECT_NEAR(slow[i], found[i], 1e-6) << i;
+    }
+  EXPECT_NEAR(intensities("reflectance 0.3", "")[1], 0.3 * 5.0 / found[0], 1e-6) << "the model's own key wins";
+
+  const world::World world = world_of("model( mesh \"" + path("wall.obj") + "\" )\n");
+  EXPECT_TRUE(sensors::SpatialScene(world, 20.0).materials().empty());
+  EXPECT_EQ(sensors::SpatialScene(world, 20.0, {.coarse = false, .materials = true}).materials().size(), 2u);
 }
 
 /// Every copy of a world sees its own robots' meshes.

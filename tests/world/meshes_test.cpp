@@ -134,6 +134,59 @@ TEST_F(Meshes, EveryFormatGivesTheSameTriangles) {
   }
 }
 
+/// Of OBJ: the colour of `Kd` and its luminance, or the default where a texture or nothing states one.
+TEST_F(Meshes, MaterialsOfObj) {
+  write("two parts.mtl",
+        "newmtl dark red\nKd 0.5 0 0\nnewmtl grey\nKd 0.25\nnewmtl textured\nmap_Kd a.png\nKd 1 1 1\n"
+        "newmtl bright\nKd 2 0 -1\nnewmtl odd\nKd spectral a.rfl\n");
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nmtllib two parts.mtl\n";
+  const Triangles found = read_triangles(file(
+      "a.obj", corners +
+                   "f 1 2 3\nusemtl dark red\nf 1 2 3 4\nusemtl grey\nf 1 2 3\nusemtl textured\nf 1 2 3\n"
+                   "usemtl dark red\nf 1 2 3\nusemtl bright\nf 1 2 3\nusemtl odd\nf 1 2 3\nusemtl none\nf 1 2 3\n"));
+  EXPECT_EQ(found.material_of, (std::vector<std::uint32_t>{kNoMaterial, 0, 0, 1, 2, 0, 3, 4, kNoMaterial}));
+  ASSERT_EQ(found.materials.size(), 5u);
+  EXPECT_EQ(found.materials[0].color, glm::dvec3(0.5, 0, 0));
+  EXPECT_DOUBLE_EQ(found.materials[0].reflectance, 0.5 * 0.2126);
+  EXPECT_DOUBLE_EQ(found.materials[1].reflectance, 0.25) << "one number: grey";
+  EXPECT_EQ(found.materials[2].reflectance, kDefaultReflectance);
+  EXPECT_EQ(found.materials[3].color, glm::dvec3(1, 0, 0)) << "clamped";
+  EXPECT_EQ(found.materials[4].color, glm::dvec3(0.5)) << "a spectrum is no colour";
+  ASSERT_EQ(found.notes.size(), 2u);
+  expect_in("the colour of material 'bright' is not within 0 to 1", found.notes[0]);
+  expect_in("material 'none' is in none of its files of materials", found.notes[1]);
+
+  const Triangles without = read_triangles(file("a.obj", corners.substr(0, 32) + "mtllib none.mtl\nf 1 2 3\n"));
+  EXPECT_TRUE(without.materials.empty() && without.material_of.empty());
+  expect_in("none.mtl: no such file", without.notes.at(0));
+}
+
+/// Of glTF: the base colour and its luminance, or `extras.reflectance`; the default for textures.
+TEST_F(Meshes, MaterialsOfGltf) {
+  const auto with = [](const std::string& material) {
+    return glb([&](std::string& text) {
+      text.replace(text.find("\"indices\":1"), 11, "\"indices\":1,\"material\":1");
+      text.insert(1, "\"materials\":[{},{\"name\":\"m\"" + material + "}],\"textures\":[{}],");
+    });
+  };
+  const auto material = [&](const std::string& text) {
+    const Triangles found = read_triangles(file("a.glb", with(text)));
+    EXPECT_EQ(found.material_of, std::vector<std::uint32_t>(4, 1)) << text;
+    return found.materials.at(1);
+  };
+  const std::string green = ",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0.5,0,1]";
+  EXPECT_EQ(material(green + "}").color, glm::dvec3(0, 0.5, 0));
+  EXPECT_DOUBLE_EQ(material(green + "}").reflectance, 0.5 * 0.7152);
+  EXPECT_DOUBLE_EQ(material("").reflectance, 1.0) << "white by the standard";
+  EXPECT_EQ(material(green + ",\"baseColorTexture\":{\"index\":0}}").reflectance, kDefaultReflectance);
+  EXPECT_EQ(material(green + "},\"extras\":{\"reflectance\":80}").reflectance, 80.0) << "a retroreflector";
+  EXPECT_TRUE(read_triangles(file("a.glb", glb())).material_of.empty());
+  EXPECT_EQ(refusal("a.glb", with(",\"extras\":{\"reflectance\":101}")),
+            "a.glb: material '2' has the reflectance 101; expected 0 to 100");
+  EXPECT_EQ(refusal("a.glb", with(",\"extras\":{\"reflectance\":\"x\"}")),
+            "a.glb: has the material 'm' whose 'reflectance' is no number");
+}
+
 TEST_F(Meshes, FacesBecomeTriangles) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.4 0.2 0\n";
   EXPECT_EQ(read_triangles(file("a.obj", square + "f 1 2 3 4\n")).corners,
@@ -317,6 +370,29 @@ TEST_F(MeshModels, AreInMetresOrFitASize) {
   EXPECT_EQ(fitted.meshes[0].vertices[3], glm::dvec3(-2, -2, 6));
   const World scaled = world("model( mesh \"t.obj\" mesh_scale 0.5 mesh_rotation [0 0 90] )\n");
   EXPECT_LT(glm::length(scaled.meshes[0].vertices[2] - glm::dvec3(0, 0.5, 0)), 1e-15);
+}
+
+/// Materials stay with their triangles as flat ones are left out, and in snapshots, which check them.
+TEST_F(MeshModels, HaveTheirMaterials) {
+  write("m.mtl", "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n");
+  write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 1\nusemtl a\nf 1 2 2\nusemtl b\nf 1 2 3\n");
+  World mine = world("model( mesh \"m.obj\" ) model( mesh \"t.obj\" pose [5 0 0 0] )\n");
+  ASSERT_EQ(mine.mesh_materials.size(), 1u) << "the other mesh has none";
+  EXPECT_EQ(mine.mesh_materials[0].triangles, std::vector<std::uint32_t>{1});
+  const World again = from_snapshot(snapshot(mine));
+  EXPECT_EQ(again.hash, mine.hash);
+  EXPECT_EQ(again.mesh_materials.at(0).materials.at(1).color, glm::dvec3(0, 0, 1));
+  const auto broken = [&](auto change) {
+    World world = mine;
+    change(world.mesh_materials[0]);
+    update_extent_and_hash(world);
+    return sf::refusal_of([&] { from_snapshot(snapshot(world)); });
+  };
+  expect_in("a row breaks the rules of its table", broken([](MeshMaterials& m) { m.triangles[0] = 2; }));
+  expect_in("a row breaks the rules of its table", broken([](MeshMaterials& m) { m.triangles.push_back(0); }));
+  expect_in("a row breaks the rules of its table", broken([](MeshMaterials& m) { m.materials[0].color.y = 1.5; }));
+  expect_in("a row breaks the rules of its table", broken([](MeshMaterials& m) { m.materials[0].reflectance = 101; }));
+  expect_in("refers to a row that does not exist", broken([](MeshMaterials& m) { m.mesh = 2; }));
 }
 
 TEST_F(MeshModels, HaveTheirConvexOutlineForPlanarSensors) {

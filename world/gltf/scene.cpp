@@ -54,6 +54,7 @@ class SceneReader {
   void load(std::string_view bytes);
   void refuse_extensions() const;
   void refuse_depth(std::string_view bytes) const;
+  void add_materials();
   void add_node(int row, const glm::dmat4& X_parent, int depth);
   void add_mesh(int row, const glm::dmat4& X);
   void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& X);
@@ -203,7 +204,31 @@ void SceneReader::add_primitive(const tinygltf::Primitive& primitive, const glm:
     const glm::dvec4 q = X * glm::dvec4(p[0], p[1], p[2], 1.0);
     out_.vertices.emplace_back(q.x, -q.z, q.y);  // y is up in glTF
   }
+  const std::size_t before = out_.corners.size() / 3;
   add_triangles(mode, rows_of(primitive, accessor.count), first);
+  if (primitive.material < 0) return;
+  checked(model_.materials, primitive.material, "material");
+  out_.material_of.resize(before, kNoMaterial);
+  out_.material_of.resize(out_.corners.size() / 3, static_cast<std::uint32_t>(primitive.material));
+}
+
+/// The reflectance is the number `extras.reflectance` of a material, else the luminance of its base colour. Textured
+/// materials have the default: the factor of a texture states nothing about it.
+void SceneReader::add_materials() {
+  for (const tinygltf::Material& from : model_.materials) {
+    Material material;
+    const std::vector<double>& factor = from.pbrMetallicRoughness.baseColorFactor;
+    if (factor.size() >= 3) material.color = {factor[0], factor[1], factor[2]};
+    const bool textured = from.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
+                          from.extensions.contains("KHR_materials_pbrSpecularGlossiness");
+    if (!textured) material.reflectance = luminance(material.color);
+    if (from.extras.Has("reflectance")) {
+      const tinygltf::Value& stated = from.extras.Get("reflectance");
+      if (!stated.IsNumber()) fail(fmt::format("has the material '{}' whose 'reflectance' is no number", from.name));
+      material.reflectance = stated.GetNumberAsDouble();
+    }
+    out_.materials.push_back(material);
+  }
 }
 
 void SceneReader::add_mesh(int row, const glm::dmat4& X) {
@@ -235,6 +260,7 @@ void SceneReader::read(std::string_view bytes) {
   refuse_depth(bytes);
   load(bytes);
   refuse_extensions();
+  add_materials();
   if (model_.scenes.empty()) {
     std::vector<bool> is_child(model_.nodes.size(), false);
     for (const tinygltf::Node& node : model_.nodes)
@@ -249,7 +275,10 @@ void SceneReader::read(std::string_view bytes) {
     add_node(node, glm::dmat4(1.0), 0);
 }
 
-void read(const std::string& file, std::string_view bytes, Triangles& out) { SceneReader(file, out).read(bytes); }
+void read(const std::string& file, std::string_view bytes, Triangles& out) {
+  SceneReader(file, out).read(bytes);
+  if (!out.material_of.empty()) out.material_of.resize(out.corners.size() / 3, kNoMaterial);
+}
 
 }  // namespace
 

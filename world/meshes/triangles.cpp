@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 
@@ -66,17 +67,42 @@ void TriangleBuilder::add_face(std::span<const std::uint64_t> corners, const Mes
   const auto row = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     out_.corners.insert(out_.corners.end(), {row(0), row(i), row(i + 1)});
+  if (material_ == kNoMaterial) return;
+  out_.material_of.resize(out_.corners.size() / 3 - (corners.size() - 2), kNoMaterial);  // faces before this one
+  out_.material_of.resize(out_.corners.size() / 3, material_);
+}
+
+std::uint32_t TriangleBuilder::add_material(const std::string& name, Material material) {
+  if (!(material.reflectance >= 0.0 && material.reflectance <= kMostReflectance))
+    fail(fmt::format("material '{}' has the reflectance {:g}; expected 0 to {:g}", name, material.reflectance,
+                     kMostReflectance));
+  bool clamped = clamped_;
+  for (int k = 0; k < 3; ++k) {
+    double& part = material.color[k];
+    clamped = clamped || !(part >= 0.0 && part <= 1.0);
+    part = part > 0.0 ? std::min(part, 1.0) : 0.0;
+  }
+  if (std::exchange(clamped_, clamped) != clamped)
+    add_note(fmt::format("the colour of material '{}' is not within 0 to 1; such colours are clamped", name));
+  out_.materials.push_back(material);
+  return static_cast<std::uint32_t>(out_.materials.size() - 1);
 }
 
 void TriangleBuilder::add(const Triangles& part) {
   expect((out_.corners.size() + part.corners.size()) / 3);
   const std::uint64_t first = vertices();
+  const auto first_material = static_cast<std::uint32_t>(out_.materials.size());
+  for (std::size_t i = 0; i < part.materials.size(); ++i) add_material(std::to_string(i + 1), part.materials[i]);
   std::uint64_t number = 0;
   for (const glm::dvec3& p : part.vertices) add_vertex(p, {"vertex", ++number});
   for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
     const auto row = [&](std::size_t k) { return first + part.corners[i + k]; };
+    const std::uint32_t material = part.material_of.empty() ? kNoMaterial : part.material_of[i / 3];
+    material_ = material == kNoMaterial ? material : first_material + material;
     add_face(std::array{row(0), row(1), row(2)}, {"triangle", i / 3 + 1});
   }
+  material_ = kNoMaterial;
+  out_.notes.insert(out_.notes.end(), part.notes.begin(), part.notes.end());
 }
 
 Triangles TriangleBuilder::finish() {
@@ -89,6 +115,10 @@ Triangles TriangleBuilder::finish() {
     corner = row;
   }
   out_.vertices = std::move(used);
+  if (out_.material_of.empty())
+    out_.materials.clear();
+  else
+    out_.material_of.resize(out_.corners.size() / 3, kNoMaterial);
   return std::move(out_);
 }
 

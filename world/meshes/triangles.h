@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "world/material.h"
+
 namespace sf::world {
 
 inline constexpr std::size_t kMostMeshBytes = 0xFFFFFFFF;  ///< [bytes] of one file
@@ -17,7 +19,9 @@ inline constexpr double kMostCoordinate = 1e7;             ///< [m]
 struct Triangles {
   std::vector<glm::dvec3> vertices;    ///< in the file's frame and unit, within kMostCoordinate
   std::vector<std::uint32_t> corners;  ///< three rows of `vertices` per triangle
-  std::vector<std::string> notes;      ///< warnings about omitted parts
+  std::vector<Material> materials;
+  std::vector<std::uint32_t> material_of;  ///< per triangle: row of `materials` or kNoMaterial; empty: none has one
+  std::vector<std::string> notes;          ///< warnings about omitted parts
 };
 
 /// A place in a file for errors: a line of a text, or an element of a binary file, both from 1.
@@ -42,7 +46,14 @@ class TriangleBuilder {
   /// Appends a face as triangles around its first corner. @param corners rows of vertices added so far
   /// @throws for other rows, fewer than three corners, and a face that is not convex
   void add_face(std::span<const std::uint64_t> corners, const MeshPlace& at);
-  /// Appends unchecked triangles with their vertices.
+  /// Adds a material. Numbers of its colour beyond [0, 1] are clamped, with a note for the
+  /// first. @return its row
+  /// @throws for a reflectance outside [0, kMostReflectance]
+  std::uint32_t add_material(const std::string& name, Material material);
+  /// Faces added from now on have this material. @param row of one that was added, or kNoMaterial
+  void use_material(std::uint32_t row) { material_ = row; }
+  void add_note(std::string note) { out_.notes.push_back(std::move(note)); }
+  /// Appends unchecked triangles with their vertices, materials and notes.
   void add(const Triangles& part);
 
   /// Returns the triangles, and their vertices in order of first use. @throws for a file without triangles
@@ -53,6 +64,8 @@ class TriangleBuilder {
 
   std::string file_;
   Triangles out_;
+  std::uint32_t material_ = kNoMaterial;
+  bool clamped_ = false;  ///< a material's colour, of which one note is enough
 };
 
 /// Refuses XML that nests elements more than 1 000 deep: parsers recurse and would overflow the stack.
@@ -69,7 +82,8 @@ Triangles read_other_mesh(const std::string& file, std::string_view bytes);
 /// URDF: the robot with all joints at 0, through a plug-in (world/meshes/urdf_robot.h).
 Triangles read_urdf(const std::string& file, std::string_view bytes);
 
-/// The interface of plug-ins that read meshes. `read` fills in vertices and corners, and does not check them.
+/// The interface of plug-ins that read meshes. `read` fills in vertices, corners and materials, and does not
+/// check them.
 /// @throws base::InputError
 struct MeshPlugin {
   void (*read)(const std::string& file, std::string_view bytes, Triangles& out);

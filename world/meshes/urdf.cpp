@@ -165,7 +165,7 @@ Triangles RobotReader::read(const UrdfRobot& robot) {
   if (builder_.vertices() == 0 && !notes.empty()) builder_.fail("has no shape that can be read: " + notes.front());
   Triangles out = builder_.finish();
   if (robot.movable > 0) notes.push_back(fmt::format("{} movable joints stay at 0", robot.movable));
-  out.notes = std::move(notes);
+  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
   return out;
 }
 

@@ -50,6 +50,13 @@ inline bool is_word(std::string_view word, std::string_view lower) {
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b; });
 }
 
+/// Returns a text without white space at its ends.
+inline std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r\n\f\v";
+  text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+  return text.substr(0, text.find_last_not_of(kSpace) + 1);
+}
+
 /// Takes the next line of a text, without its end. @return false after the last
 inline bool take_line(std::string_view& text, std::string_view& line) {
   if (text.empty()) return false;

@@ -51,14 +51,17 @@ void require_within(const BuildState& b, const Entity& entity, const Mesh& mesh)
 }
 
 /// Leaves out triangles whose corners are on one line, as at the poles of many spheres.
-void leave_out_flat(BuildState& b, const Entity& entity, Mesh& mesh) {
+/// @param materials per triangle, or empty
+void leave_out_flat(BuildState& b, const Entity& entity, Mesh& mesh, std::vector<std::uint32_t>& materials) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.corners.size(); i += 3) {
     const auto at = [&](std::size_t k) { return mesh.vertices[mesh.corners[i + k]]; };
     const glm::dvec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
     if (!(glm::dot(normal, normal) > 0.0)) continue;
+    if (!materials.empty()) materials[kept / 3] = materials[i / 3];
     for (std::size_t k = 0; k < 3; ++k) mesh.corners[kept++] = mesh.corners[i + k];
   }
+  if (!materials.empty()) materials.resize(kept / 3);
   const std::size_t flat = (mesh.corners.size() - kept) / 3;
   mesh.corners.resize(kept);
   const SourceLocation at = location_of(entity, "mesh");
@@ -100,10 +103,13 @@ std::optional<std::uint32_t> mesh_of(BuildState& b, const Entity& entity, Size& 
     for (glm::dvec3& p : mesh.vertices) p = R * p * scale;
     if (fits) fit(mesh.vertices, size);
     require_within(b, entity, mesh);
-    leave_out_flat(b, entity, mesh);
+    std::vector<std::uint32_t> material_of = triangles.material_of;
+    leave_out_flat(b, entity, mesh, material_of);
     const MeshBox placed = box_of(mesh.vertices);
     const Size above{placed.size().x, placed.size().y, std::max(0.0, placed.high.z)};
     known = b.mesh_rows.emplace(key, MeshRow{static_cast<std::uint32_t>(b.world.meshes.size()), above}).first;
+    if (!material_of.empty())
+      b.world.mesh_materials.push_back({known->second.row, triangles.materials, std::move(material_of)});
     b.world.meshes.push_back(std::move(mesh));
   }
   if (!fits) size = known->second.size;
