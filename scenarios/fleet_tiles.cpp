@@ -41,7 +41,9 @@ double reach_of(const world::World& world, const sensors::SensorSet& sensor_set)
       if (!std::isfinite(row.reach))
         throw base::InputError("--tiles: the readings of '" + row.name + "' of '" + world.movers[row.mover].name +
                                "' depend on the whole world; leave --tiles out");
-      reach = std::max(reach, row.reach + base::hypot(row.X_MS.x, row.X_MS.y));
+      // Rolling scans see movers where they were.
+      const double ticks = row.sweep > 0.0 ? std::ceil(row.sweep / world.interval) + 2.0 : 0.0;
+      reach = std::max(reach, row.reach + base::hypot(row.X_MS.x, row.X_MS.y) + 2.0 * ticks * largest.way);
     }
   // Samples between two ticks see movers during their motion.
   return reach + largest.radius + 4.0 * largest.way;

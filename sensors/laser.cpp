@@ -10,10 +10,10 @@
 #include "base/time.h"
 #include "raycast/casters.h"
 #include "raycast/ray_caster.h"
-#include "sensors/carrier_trail.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_packets.h"
+#include "sensors/mover_trails.h"
 #include "sensors/tilted_scans.h"
 
 namespace sf::sensors {
@@ -45,14 +45,26 @@ std::vector<raycast::Scanner> scanners_of(const ParsedSensors& sensors) {
   return scanners;
 }
 
+/// [ns] from the first beam to the reading; 0: all beams are cast at once.
+std::int64_t duration_of(const LaserSettings& laser) { return base::nanoseconds(laser.scan_time); }
+
+std::int64_t longest_scan(const std::vector<CastLaser>& lasers) {
+  std::int64_t longest = 0;
+  for (const CastLaser& each : lasers) longest = std::max(longest, duration_of(each.laser));
+  return longest;
+}
+
 class Lasers : public SensorBackend {
  public:
   Lasers(const SensorContext& context, const ParsedSensors& sensors);
 
-  void accumulate(std::int64_t now, bool between) override;
+  void accumulate(std::int64_t now, bool between) override { trails_.add(now, between); }
   void write_state(std::uint32_t row, base::ByteWriter& out) const override;
   void read_state(std::uint32_t row, base::ByteReader& in) override;
-  void restart(std::uint32_t row, std::int64_t now) override;
+  void take_over(SensorBackend& before, std::uint32_t) override {
+    trails_.take_over(static_cast<Lasers&>(before).trails_);
+  }
+  void restart(std::uint32_t row, std::int64_t now) override { trails_.restart(rows_[row].mover, now); }
   void place_movers() override { caster_.place_movers(); }
   bool update_outlines(const world::World& world) override {
     longest_ = reaches_of(world).longest;
@@ -76,11 +88,9 @@ class Lasers : public SensorBackend {
   void shape(std::size_t i);
   void mark(std::size_t i);
   void write(std::size_t i, base::ReadingBlock& block) const;
-  base::Report state_of(std::uint32_t row) const;
   bool moves(std::uint32_t row) const;
   bool needs_scene(std::size_t i) const;
   void prepare_scene();
-  void find_poses(std::uint32_t row, const PlanarBeams& beams, std::vector<base::RigidTransform>& X_WS) const;
   void cast_in_scene(std::size_t i, unsigned thread);
 
   const world::World& world_;
@@ -94,20 +104,14 @@ class Lasers : public SensorBackend {
   const std::vector<CastLaser>& lasers_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<DueSample> due_;
+  std::vector<std::uint8_t> rolling_;                    ///< per due sample, as `moves`
   std::vector<double> values_;                           ///< [m] samples of all lasers, if any laser is reworked
   std::vector<std::uint32_t> met_;                       ///< models of all lasers' samples, if any laser is reworked
   std::vector<base::QualityFlag> quality_;               ///< flags of all lasers' samples
   std::unique_ptr<TiltedScans> tilted_;                  ///< null: no scan has needed it
   std::map<std::vector<double>, PlanarBeams> patterns_;  ///< by the cast bearings [rad] and times [s]
-  /// Of one thread.
-  struct Scratch {
-    TiltedScan scan;
-    std::vector<base::RigidTransform> X_WS;
-  };
-  std::vector<Scratch> scratch_;
-  std::vector<CarrierTrail> trails_;  ///< per laser; empty: no scan is rolling
-  std::vector<base::Report> last_;    ///< per laser, in the last tick or sample, if a scan is rolling
-  std::int64_t now_ = 0;
+  std::vector<TiltedScan> scans_;                        ///< per thread
+  MoverTrails trails_;                                   ///< empty: no scan is rolling
 };
 
 Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
@@ -119,7 +123,8 @@ Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
       caster_(context, context.world, scanners_of(sensors)),
-      lasers_(sensors.settings_as<CastLaser>()) {
+      lasers_(sensors.settings_as<CastLaser>()),
+      trails_(context.world, context.states, longest_scan(lasers_)) {
   std::size_t samples = 0;
   for (std::uint32_t i = 0; i < lasers_.size(); ++i) {
     rows_.push_back(make_row(i, samples));
@@ -129,12 +134,6 @@ Lasers::Lasers(const SensorContext& context, const ParsedSensors& sensors)
   values_.resize(any ? samples : 0);
   met_.resize(any ? samples : 0);
   quality_.assign(samples, base::QualityFlag::not_cast);
-  if (std::ranges::any_of(lasers_, [](const CastLaser& each) { return each.laser.scan_time > 0.0; })) {
-    for (const CastLaser& each : lasers_)
-      trails_.emplace_back(base::nanoseconds(each.laser.scan_time),
-                           context.world.movers[rows_[trails_.size()].mover].max_forward);
-    last_.resize(rows_.size());
-  }
   for (std::uint32_t i = 0; i < rows_.size(); ++i) {
     find_results(i);
     for (const std::uint32_t sample : caster_.plan(i).samples)
@@ -221,46 +220,26 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   block.state = {};
 }
 
-base::Report Lasers::state_of(std::uint32_t row) const {
-  base::Report state = states_[rows_[row].mover];
-  state.time = now_;
-  return state;
-}
-
-void Lasers::accumulate(std::int64_t now, bool between) {
-  now_ = now;
-  for (std::uint32_t row = 0; row < trails_.size(); ++row) {
-    last_[row] = state_of(row);
-    if (!between && lasers_[row].laser.scan_time > 0.0) trails_[row].add(last_[row]);
-  }
-}
-
 void Lasers::write_state(std::uint32_t row, base::ByteWriter& out) const {
-  if (!trails_.empty()) trails_[row].write(out);
+  if (duration_of(lasers_[row].laser) > 0) trails_.write(rows_[row].mover, out);
 }
 
 void Lasers::read_state(std::uint32_t row, base::ByteReader& in) {
-  if (!trails_.empty()) trails_[row].read(in);
+  if (duration_of(lasers_[row].laser) > 0) trails_.read(in);
 }
 
-void Lasers::restart(std::uint32_t row, std::int64_t now) {
-  now_ = now;
-  if (trails_.empty()) return;
-  trails_[row].clear();
-  last_[row] = state_of(row);
-}
-
-/// True if a rolling laser's carrier moved during its scan, and is where the last tick or sample left it, not at a pose
-/// of a single reading.
+/// True if a rolling laser's carrier, or another mover within its range, moved during its scan.
 bool Lasers::moves(std::uint32_t row) const {
-  if (trails_.empty() || lasers_[row].laser.scan_time == 0.0) return false;
-  const base::Report now = state_of(row);
-  return is_same_place(now, last_[row]) && !trails_[row].at_rest(now);
+  const std::int64_t duration = duration_of(lasers_[row].laser);
+  const std::uint32_t mover = rows_[row].mover;
+  return duration > 0 && trails_.is_here(mover) &&
+         trails_.any_moves(mover, trails_.now() - duration,
+                           rows_[row].range_max + base::hypot(lasers_[row].laser.X_MS.x, lasers_[row].laser.X_MS.y));
 }
 
 /// The planar caster sees no terrain, and no tilt.
 bool Lasers::needs_scene(std::size_t i) const {
-  return !world_.terrain.empty() || !base::is_level(states_[rows_[due_[i].row].mover].tilt) || moves(due_[i].row);
+  return !world_.terrain.empty() || !base::is_level(states_[rows_[due_[i].row].mover].tilt) || rolling_[i] != 0;
 }
 
 /// Bearings [rad] of the cast beams of a laser, without angular noise.
@@ -286,12 +265,14 @@ std::vector<double> pattern_key(const std::vector<double>& bearings, const std::
 
 void Lasers::prepare_scene() {
   bool any = false;
+  rolling_.resize(due_.size());
   for (std::size_t i = 0; i < due_.size(); ++i) {
+    const std::uint32_t row = due_[i].row;
+    rolling_[i] = moves(row);
     if (!needs_scene(i)) continue;
     any = true;
-    const std::uint32_t row = due_[i].row;
     const auto bearings = bearings_of(caster_.scanners()[row].scan, caster_.plan(row));
-    const auto times = moves(row) ? times_of(lasers_[row].laser, caster_.plan(row)) : std::vector<double>();
+    const auto times = rolling_[i] != 0 ? times_of(lasers_[row].laser, caster_.plan(row)) : std::vector<double>();
     const auto key = pattern_key(bearings, times);
     if (!patterns_.contains(key)) patterns_.emplace(key, planar_beams(bearings, times));
   }
@@ -300,21 +281,9 @@ void Lasers::prepare_scene() {
     double reach = 0.0;
     for (const Row& row : rows_) reach = std::max(reach, row.range_max);
     tilted_ = std::make_unique<TiltedScans>(world_, reach, reference_, thread_pool_.threads());
-    scratch_.resize(thread_pool_.threads());
+    scans_.resize(thread_pool_.threads());
   }
   tilted_->place(states_);
-}
-
-/// The sensor's poses, one, or one per tile of a rolling scan.
-void Lasers::find_poses(std::uint32_t row, const PlanarBeams& beams, std::vector<base::RigidTransform>& X_WS) const {
-  const base::RigidTransform X_MS = base::transform_of(lasers_[row].laser.X_MS);
-  X_WS.clear();
-  if (!moves(row)) return X_WS.push_back(base::compose(tilted_->X_WM(rows_[row].mover), X_MS));
-  const base::Report now = state_of(row);
-  for (const scene::BeamTile& tile : beams.pattern) {
-    const base::Report state = trails_[row].at(now_ + base::nanoseconds(tile.time), now);
-    X_WS.push_back(base::compose(base::transform_of(state.X_WM, state.tilt), X_MS));
-  }
 }
 
 /// Replaces the results of the planar caster, in its tables, by those in the scene of solids.
@@ -324,7 +293,7 @@ void Lasers::cast_in_scene(std::size_t i, unsigned thread) {
   const raycast::BeamPlan& plan = caster_.plan(r);
   const raycast::ScanSettings& scan = caster_.scanners()[r].scan;
   std::vector<double> bearings = bearings_of(scan, plan);
-  const auto times = moves(r) ? times_of(lasers_[r].laser, plan) : std::vector<double>();
+  const auto times = rolling_[i] != 0 ? times_of(lasers_[r].laser, plan) : std::vector<double>();
   const PlanarBeams* beams = &patterns_.at(pattern_key(bearings, times));
   PlanarBeams noisy;
   if (noise_ && scan.noise.angle_sigma > 0.0) {
@@ -335,9 +304,9 @@ void Lasers::cast_in_scene(std::size_t i, unsigned thread) {
     noisy = planar_beams(bearings, times);
     beams = &noisy;
   }
-  auto& [out, X_WS] = scratch_[thread];
-  find_poses(r, *beams, X_WS);
-  tilted_->cast(*beams, row.mover, X_WS, row.range_max, thread, out);
+  TiltedScan& out = scans_[thread];
+  tilted_->cast(*beams, row.mover, base::transform_of(lasers_[r].laser.X_MS), row.range_max,
+                times.empty() ? nullptr : &trails_, thread, out);
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{caster_.lane(r)};
   row.grazing = false;
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {

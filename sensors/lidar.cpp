@@ -160,6 +160,7 @@ ParsedSensors parse_lidars(const world::World& world) {
     row.X_MS = {s.X_MS.p.x, s.X_MS.p.y, s.X_MS.p.z, base::atan2(s.X_MS.R[0].y, s.X_MS.R[0].x)};
     row.limit = row.reach = echo.range_max;
     row.dependency_radius = s.beams->times.empty() ? echo.range_max : 0.0;  // else also on earlier poses
+    row.sweep = 1e-9 * static_cast<double>(s.beams->duration());
     row.range_min = echo.range_min;
     row.sigma = echo.dropout > 0.0 || (echo.is_noisy() && s.beams->parts > 1)
                     ? HUGE_VAL

@@ -11,6 +11,7 @@
 
 #include "base/elementary.h"
 #include "base/suggest.h"
+#include "base/time.h"
 #include "sensors/accuracy.h"
 #include "sensors/beam_table.h"
 #include "sensors/lidar_modes.h"
@@ -291,6 +292,8 @@ void read_echoes(const world::Sensor& sensor, EchoSettings& s) {
 }
 
 }  // namespace
+
+std::int64_t LidarBeams::duration() const { return times.empty() ? 0 : base::nanoseconds(-std::ranges::min(times)); }
 
 base::RigidTransform spatial_mount(const world::Sensor& sensor) {
   base::RigidTransform X_MB = base::transform_of(sensor.X_MS);

@@ -32,6 +32,8 @@ struct LidarBeams {
   std::vector<glm::dvec3> part_directions;  ///< of all parts of the cast beams, beam by beam; empty: `directions`
   scene::BeamPattern pattern;               ///< of the parts
 
+  /// [ns] from the first beam of a rolling scan to its reading; 0: all are cast at once.
+  std::int64_t duration() const;
   const std::vector<glm::dvec3>& cast_directions() const {
     return part_directions.empty() ? directions : part_directions;
   }

@@ -64,8 +64,8 @@ struct SensorSpec {
   double pitch = 0.0;          ///< [m] side of an image's cell
   std::uint8_t mode = 0;       ///< row of its type's modes
   double fov = 0.0;            ///< [rad] of a scan (SensorType::is_scan)
-  double sweep = 0.0;      ///< [s] of a rolling scan (SensorType::is_scan), from its first beam to the end of the last
-  double range_min = 0.0;  ///< [m] of ranges (laser, sonar, infrared); valid ranges end before `limit`
+  double sweep = 0.0;          ///< [s] of a rolling scan, from its first beam to its last one, or to its end
+  double range_min = 0.0;      ///< [m] of ranges (laser, sonar, infrared); valid ranges end before `limit`
 
   // Dependencies of a reading other than its sequence number, for the farm's reading cache.
   double dependency_radius = 0.0;   ///< [m] > 0: the reading depends only on its own mover's pose and on the poses

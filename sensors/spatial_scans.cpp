@@ -28,9 +28,10 @@ SceneExtras extras_of(std::span<const SpatialScanner> scanners) {
   return extras;
 }
 
-/// [ns] since the first beam of a rolling scan.
-std::int64_t duration_of(const LidarBeams& beams) {
-  return beams.times.empty() ? 0 : base::nanoseconds(-std::ranges::min(beams.times));
+std::int64_t longest_scan(std::span<const SpatialScanner> scanners) {
+  std::int64_t longest = 0;
+  for (const SpatialScanner& scanner : scanners) longest = std::max(longest, scanner.beams->duration());
+  return longest;
 }
 
 }  // namespace
@@ -43,52 +44,34 @@ SpatialScans::SpatialScans(const SensorContext& context, const SensorType& type,
       scene_(context.world, longest_range(scanners_), extras_of(scanners_)),
       first_beam_(1, 0),
       first_part_(1, 0),
-      rasterizers_(context.thread_pool.threads()) {
-  bool normals = false, rolling = false;
+      rasterizers_(context.thread_pool.threads()),
+      trails_(context.world, context.states, longest_scan(scanners_)),
+      moved_(rasterizers_.size()) {
+  bool normals = false;
   for (const SpatialScanner& s : scanners_) {
     first_beam_.push_back(first_beam_.back() + s.beams->directions.size());
     first_part_.push_back(first_part_.back() + (s.plain ? 0 : s.beams->cast_directions().size()));
-    normals = normals || s.normals, rolling = rolling || !s.beams->times.empty();
+    normals = normals || s.normals;
   }
   hits_.resize(first_beam_.back()), quality_.resize(first_beam_.back());
   const std::size_t parts = first_part_.back();
   part_ranges_.resize(parts), part_cosines_.resize(parts), part_hits_.resize(parts), part_quality_.resize(parts);
   if (normals) part_normals_.resize(parts);
   if (!materials().empty()) part_materials_.resize(parts);
-  for (std::size_t row = 0; rolling && row < scanners_.size(); ++row)
-    trails_.emplace_back(duration_of(*scanners_[row].beams), context.world.movers[rows()[row].mover].max_forward);
-  last_.resize(trails_.size());
   if (raycast::choose_caster(context.device.info().software, context.scene.caster).on_device)
     device_.emplace(context.device);
 }
 
-base::Report SpatialScans::state_of(std::size_t row) const {
-  base::Report state = states()[rows()[row].mover];
-  state.time = now_;
-  return state;
-}
-
-void SpatialScans::accumulate(std::int64_t now, bool between) {
-  now_ = now;
-  for (std::size_t row = 0; row < trails_.size(); ++row) {
-    last_[row] = state_of(row);
-    if (!between && !scanners_[row].beams->times.empty()) trails_[row].add(last_[row]);
-  }
-}
-
 void SpatialScans::write_state(std::uint32_t row, base::ByteWriter& out) const {
-  if (!trails_.empty()) trails_[row].write(out);
+  if (scanners_[row].beams->duration() > 0) trails_.write(rows()[row].mover, out);
 }
 
 void SpatialScans::read_state(std::uint32_t row, base::ByteReader& in) {
-  if (!trails_.empty()) trails_[row].read(in);
+  if (scanners_[row].beams->duration() > 0) trails_.read(in);
 }
 
-void SpatialScans::restart(std::uint32_t row, std::int64_t now) {
-  now_ = now;
-  if (trails_.empty()) return;
-  trails_[row].clear();
-  last_[row] = state_of(row);
+void SpatialScans::take_over(SensorBackend& before, std::uint32_t) {
+  trails_.take_over(static_cast<SpatialScans&>(before).trails_);
 }
 
 bool SpatialScans::update_outlines(const world::World& world) {
@@ -97,26 +80,34 @@ bool SpatialScans::update_outlines(const world::World& world) {
   return true;
 }
 
+void SpatialScans::list_scene(std::size_t i) {
+  const std::uint32_t row = samples()[i].row, mover = rows()[row].mover;
+  const SpatialScanner& s = scanners_[row];
+  Surroundings& around = surroundings_[i];
+  around.X_WS = base::compose(scene_.X_WM(mover), s.X_MS);
+  SensorView view{.mover = mover, .p = around.X_WS.p, .range = s.range_max, .angle = s.angle};
+  const std::int64_t duration = s.beams->duration();
+  if (duration > 0 && trails_.is_here(mover)) {
+    view.trails = &trails_, view.since = trails_.now() - duration;
+    view.range += trails_.reach(mover) + 2.0 * glm::length(s.X_MS.p);
+  }
+  scene_.list(view, around.list);
+  around.rolling = view.trails != nullptr && (!around.list.moving.empty() || !trails_.at_rest(mover, view.since));
+}
+
 bool SpatialScans::prepare(std::span<const DueSample> due) {
   bool again = HostBackend::prepare(due);
   jobs_.clear();
   if (device_) device_->begin();
   on_device_.assign(due.size(), std::nullopt);
-  X_WS_.resize(due.size());
-  instances_.resize(std::max(instances_.size(), due.size()));
-  floor_.resize(due.size());
+  surroundings_.resize(std::max(surroundings_.size(), due.size()));
   const bool whole = due.size() >= 8 * rasterizers_.size();  // enough work for all threads without dividing scans
   for (std::size_t i = 0; i < due.size(); ++i) {
-    const std::uint32_t row = due[i].row, mover = rows()[row].mover;
-    const SpatialScanner& s = scanners_[row];
-    X_WS_[i] = base::compose(scene_.X_WM(mover), s.X_MS);
-    double reach = s.range_max;
-    if (!trails_.empty() && moves_on(row)) reach += trails_[row].reach(state_of(row)) + 2.0 * glm::length(s.X_MS.p);
-    floor_[i] = scene_.list(mover, X_WS_[i].p, reach, instances_[i], s.angle);
-    if (device_ && !moves(row)) {
-      const scene::SceneView view{instances_[i], floor_[i] != 0, scene_.terrain()};
-      on_device_[i] = device_->add(X_WS_[i], s.beams->pattern, s.range_max, view);
-    }
+    list_scene(i);
+    const Surroundings& around = surroundings_[i];
+    const SpatialScanner& s = scanner_of(i);
+    if (device_ && !around.rolling)
+      on_device_[i] = device_->add(around.X_WS, s.beams->pattern, s.range_max, view_of(around.list.instances, i));
     if (device_ && !on_device_[i]) ++host_scans_;
     const std::size_t tiles = s.beams->pattern.size(), size = whole ? tiles : kTilesPerJob;
     for (std::size_t first = 0; first < tiles; first += size)
@@ -134,11 +125,6 @@ void SpatialScans::add_copies(gpu::Batch& batch) {
   if (device_) device_->add_copies(batch);
 }
 
-bool SpatialScans::moves(std::size_t row) const {
-  return !trails_.empty() && !scanners_[row].beams->times.empty() && moves_on(row) &&
-         !trails_[row].at_rest(state_of(row));
-}
-
 std::span<const scene::CastBeam> SpatialScans::cast_beams_of(const Job& job) {
   const std::optional<std::size_t> first = on_device_[job.sample];
   if (!first) return {};
@@ -146,15 +132,26 @@ std::span<const scene::CastBeam> SpatialScans::cast_beams_of(const Job& job) {
 }
 
 void SpatialScans::cast(const Job& job, unsigned thread) {
+  const Surroundings& around = surroundings_[job.sample];
+  const auto tiles =
+      std::span(scanner_of(job.sample).beams->pattern).subspan(job.first_tile, job.end_tile - job.first_tile);
+  if (around.rolling)
+    cast_rolling(job, tiles, thread);
+  else
+    cast_tiles(around.X_WS, around.list.instances, tiles, job, thread, cast_beams_of(job));
+}
+
+/// Casts each tile from and among the poses at its time.
+void SpatialScans::cast_rolling(const Job& job, std::span<const scene::BeamTile> tiles, unsigned thread) {
   const std::uint32_t row = samples()[job.sample].row;
-  const LidarBeams& beams = *scanners_[row].beams;
-  const auto tiles = std::span(beams.pattern).subspan(job.first_tile, job.end_tile - job.first_tile);
-  if (!moves(row)) return cast_tiles(X_WS_[job.sample], tiles, job, thread, cast_beams_of(job));
-  const base::Report now = state_of(row);
+  const SceneList& list = surroundings_[job.sample].list;
+  std::vector<scene::Instance>& instances = moved_[thread];
+  instances = list.instances;
   for (const scene::BeamTile& tile : tiles) {
-    const base::Report state = trails_[row].at(now_ + base::nanoseconds(tile.time), now);
-    const auto X_WS = base::compose(base::transform_of(state.X_WM, state.tilt), scanners_[row].X_MS);
-    cast_tiles(X_WS, std::span(&tile, 1), job, thread);
+    const std::int64_t time = trails_.now() + base::nanoseconds(tile.time);
+    move_to(time, trails_, list, instances);
+    const auto X_WS = base::compose(trails_.X_WM(rows()[row].mover, time), scanners_[row].X_MS);
+    cast_tiles(X_WS, instances, std::span(&tile, 1), job, thread);
   }
 }
 
@@ -168,12 +165,13 @@ scene::ScanOutput SpatialScans::output_of(std::size_t i) {
   return out;
 }
 
-void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const Job& job,
-                              unsigned thread, std::span<const scene::CastBeam> cast) {
+void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::Instance> instances,
+                              std::span<const scene::BeamTile> tiles, const Job& job, unsigned thread,
+                              std::span<const scene::CastBeam> cast) {
   const std::uint32_t row = samples()[job.sample].row;
   const SpatialScanner& s = scanners_[row];
   const scene::ScanOutput out = output_of(job.sample);
-  const scene::SceneView view{instances_[job.sample], floor_[job.sample] != 0, scene_.terrain()};
+  const scene::SceneView view = view_of(instances, job.sample);
   if (!reference_) {
     rasterizers_[thread].scan(X_WS, tiles, s.range_max, view, out, cast);
     return;

@@ -10,9 +10,9 @@
 
 #include "scene/device/device_rasterizer.h"
 #include "scene/rasterizer.h"
-#include "sensors/carrier_trail.h"
 #include "sensors/host_backend.h"
 #include "sensors/lidar_beams.h"
+#include "sensors/mover_trails.h"
 #include "sensors/spatial_scene.h"
 
 namespace sf::sensors {
@@ -31,7 +31,7 @@ struct SpatialScanner {
 /// Not thread-safe.
 class SpatialScans : public HostBackend {
  public:
-  void accumulate(std::int64_t now, bool between) override;
+  void accumulate(std::int64_t now, bool between) override { trails_.add(now, between); }
   void place_movers() override { scene_.place(states()); }
   bool update_outlines(const world::World& world) override;
   bool prepare(std::span<const DueSample> due) override;
@@ -41,7 +41,8 @@ class SpatialScans : public HostBackend {
   void collect(std::span<base::ReadingBlock> out) override;
   void write_state(std::uint32_t row, base::ByteWriter& out) const override;
   void read_state(std::uint32_t row, base::ByteReader& in) override;
-  void restart(std::uint32_t row, std::int64_t now) override;
+  void take_over(SensorBackend& before, std::uint32_t rows) override;
+  void restart(std::uint32_t row, std::int64_t now) override { trails_.restart(rows()[row].mover, now); }
   SensorStats stats() const override;
 
  protected:
@@ -66,16 +67,17 @@ class SpatialScans : public HostBackend {
     std::size_t first_tile = 0, end_tile = 0;
   };
   void measure_all() override;
-  /// Returns whether the carrier has moved during a due scan, so that its tiles have poses of their own.
-  bool moves(std::size_t row) const;
   void cast(const Job& job, unsigned thread);
+  void list_scene(std::size_t sample);
+  scene::SceneView view_of(std::span<const scene::Instance> instances, std::size_t sample) const {
+    return {instances, surroundings_[sample].list.floor, scene_.terrain()};
+  }
   /// Returns what the device found along the beams of a job; empty: the host casts them.
   std::span<const scene::CastBeam> cast_beams_of(const Job& job);
-  void cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles, const Job& job,
-                  unsigned thread, std::span<const scene::CastBeam> cast = {});
-  base::Report state_of(std::size_t row) const;
-  /// True if the carrier is where the last tick or sample left it, not at a pose of a single reading.
-  bool moves_on(std::size_t row) const { return is_same_place(states()[rows()[row].mover], last_[row]); }
+  void cast_rolling(const Job& job, std::span<const scene::BeamTile> tiles, unsigned thread);
+  void cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::Instance> instances,
+                  std::span<const scene::BeamTile> tiles, const Job& job, unsigned thread,
+                  std::span<const scene::CastBeam> cast = {});
   /// A sample's part of a table with one entry per beam.
   template <class Value>
   std::span<Value> beams_of(std::vector<Value>& table, std::size_t sample) const {
@@ -104,12 +106,15 @@ class SpatialScans : public HostBackend {
   std::vector<std::uint32_t> part_materials_;   ///< empty unless a sensor uses them
   std::vector<std::size_t> first_part_;         ///< per row, plus one
   std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
-  std::vector<CarrierTrail> trails_;            ///< per row; empty: no scan is rolling
-  std::vector<base::Report> last_;              ///< per row, in the last tick or sample, if a scan is rolling
-  std::int64_t now_ = 0;
-  std::vector<base::RigidTransform> X_WS_;  ///< per due sample
-  std::vector<std::vector<scene::Instance>> instances_;
-  std::vector<std::uint8_t> floor_;  ///< per due sample: the plane z = 0 is a surface
+  /// What a due sample sees.
+  struct Surroundings {
+    base::RigidTransform X_WS;  ///< the sensor at the time of the reading
+    SceneList list;
+    bool rolling = false;  ///< its carrier or a surface moves between its beams
+  };
+  MoverTrails trails_;                               ///< empty: no scan is rolling
+  std::vector<Surroundings> surroundings_;           ///< per due sample
+  std::vector<std::vector<scene::Instance>> moved_;  ///< per thread: instances at the time of a beam
   std::vector<Job> jobs_;
   std::optional<scene::DeviceRasterizer> device_;
   std::vector<std::optional<std::size_t>> on_device_;  ///< per due sample: its first tile in the device's results

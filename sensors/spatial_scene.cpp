@@ -104,36 +104,57 @@ void SpatialScene::place(std::span<const base::Report> states) {
 
 /// Absent movers, which are nowhere, are beyond every range.
 void SpatialScene::add(const scene::SurfaceTree& tree, const base::RigidTransform& X_WI, std::uint32_t owner,
-                       glm::dvec3 p, double range, std::vector<scene::Instance>& out) const {
-  if (tree.empty() || !(glm::distance(X_WI.p, p) <= range + tree.radius + glm::length(tree.centre))) return;
-  out.push_back({&tree, X_WI, false, owner});
+                       const SensorView& view, SceneList& out) const {
+  if (tree.empty() || !(glm::distance(X_WI.p, view.p) <= view.range + tree.radius + glm::length(tree.centre))) return;
+  out.instances.push_back({&tree, X_WI, false, owner});
 }
 
-void SpatialScene::add_mesh(std::uint32_t mesh, const base::RigidTransform& X_WI, std::uint32_t owner, const View& view,
-                            std::vector<scene::Instance>& out) const {
+void SpatialScene::add_mesh(std::uint32_t mesh, const base::RigidTransform& X_WI, std::uint32_t owner,
+                            const SensorView& view, SceneList& out) const {
   const scene::SurfaceTree& exact = meshes_[mesh];
-  if (view.angle == 0.0 || levels_.empty()) return add(exact, X_WI, owner, view.p, view.range, out);
+  if (view.angle == 0.0 || levels_.empty()) return add(exact, X_WI, owner, view, out);
   const double away = glm::distance(base::transform(X_WI, exact.centre), view.p) - exact.radius;
-  add(scene::level_for(levels_[mesh], view.angle * away, exact), X_WI, owner, view.p, view.range, out);
+  add(scene::level_for(levels_[mesh], view.angle * away, exact), X_WI, owner, view, out);
 }
 
-bool SpatialScene::list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out,
-                        double angle) const {
-  const View view{p, range, angle};
-  out.assign({{&walls_, {}, true}, {&roads_, {}, true, base::kFloorHit}});
-  const glm::dvec2 foot(p);
+void SpatialScene::add_mover(std::uint32_t m, const SensorView& view, SceneList& out) const {
+  SensorView near = view;
+  const bool moves = view.trails != nullptr && !view.trails->at_rest(m, view.since);
+  if (moves) near.range += view.trails->reach(m);
+  const auto add_moving = [&](const base::RigidTransform& X_MI, const auto& add_instance) {
+    const std::size_t row = out.instances.size();
+    add_instance(base::compose(X_WM_[m], X_MI));
+    if (moves && out.instances.size() > row) out.moving.push_back({row, m, X_MI});
+  };
+  add_moving({}, [&](const base::RigidTransform& X_WI) { add(bodies_[m], X_WI, base::kNoHit, near, out); });
+  for (const Part& part : carried_[copies_.row_of(m)])
+    if (!part.own || changed_[m] == 0)
+      add_moving(part.X_BF,
+                 [&](const base::RigidTransform& X_WI) { add_mesh(part.mesh, X_WI, part.model, near, out); });
+}
+
+void SpatialScene::list(const SensorView& view, SceneList& out) const {
+  out.moving.clear();
+  out.instances.assign({{&walls_, {}, true}, {&roads_, {}, true, base::kFloorHit}});
+  const glm::dvec2 foot(view.p);
   const bool near_holes =
-      !holed_floor_.empty() && glm::distance(foot, glm::clamp(foot, holes_.min, holes_.max)) <= range;
-  if (near_holes) out.push_back({&holed_floor_, {}, true, base::kFloorHit});
+      !holed_floor_.empty() && glm::distance(foot, glm::clamp(foot, holes_.min, holes_.max)) <= view.range;
+  if (near_holes) out.instances.push_back({&holed_floor_, {}, true, base::kFloorHit});
   for (const Part& part : fixed_) add_mesh(part.mesh, part.X_BF, part.model, view, out);
-  const auto [first, end] = copies_.rows_with(mover, static_cast<std::uint32_t>(bodies_.size()));
-  for (std::uint32_t m = first; m < end; ++m) {
-    if (m == mover) continue;
-    add(bodies_[m], X_WM_[m], base::kNoHit, p, range, out);
-    for (const Part& part : carried_[copies_.row_of(m)])
-      if (!part.own || changed_[m] == 0) add_mesh(part.mesh, base::compose(X_WM_[m], part.X_BF), part.model, view, out);
+  const auto [first, end] = copies_.rows_with(view.mover, static_cast<std::uint32_t>(bodies_.size()));
+  for (std::uint32_t m = first; m < end; ++m)
+    if (m != view.mover) add_mover(m, view, out);
+  out.floor = floor_ && !near_holes;
+}
+
+void move_to(std::int64_t time, const MoverTrails& trails, const SceneList& list,
+             std::span<scene::Instance> instances) {
+  base::RigidTransform X_WM;
+  std::uint32_t mover = world::kNone;
+  for (const SceneList::Moving& each : list.moving) {
+    if (each.mover != mover) mover = each.mover, X_WM = trails.X_WM(mover, time);
+    instances[each.row].X_WI = base::compose(X_WM, each.X_MI);
   }
-  return floor_ && !near_holes;
 }
 
 }  // namespace sf::sensors

@@ -9,6 +9,7 @@
 #include "base/rigid_transform.h"
 #include "scene/rasterizer.h"
 #include "scene/simplify.h"
+#include "sensors/mover_trails.h"
 #include "world/copies.h"
 #include "world/world.h"
 
@@ -19,6 +20,32 @@ struct SceneExtras {
   bool coarse = false;     ///< coarser meshes, for `list`
   bool materials = false;  ///< faces have their materials
 };
+
+/// Surroundings of a sensor, and when it casts its beams.
+struct SensorView {
+  std::uint32_t mover = 0;  ///< its carrier, which it does not see
+  glm::dvec3 p{};           ///< [m] its place
+  double range = 0.0;       ///< [m] of surfaces that it may see from there
+  double angle = 0.0;       ///< [rad] meshes may be coarser by displacements of this size as seen from `p`; 0: exact
+  const MoverTrails* trails = nullptr;  ///< of a rolling scan; null: all beams are cast at once
+  std::int64_t since = 0;               ///< [ns] time of its first beam
+};
+
+/// Surfaces that a sensor may see. Valid until the movers are updated or placed.
+struct SceneList {
+  /// An instance whose mover moves during a rolling scan.
+  struct Moving {
+    std::size_t row = 0;  ///< in `instances`
+    std::uint32_t mover = 0;
+    base::RigidTransform X_MI;
+  };
+  std::vector<scene::Instance> instances;  ///< where they are at the time of the reading
+  std::vector<Moving> moving;
+  bool floor = false;  ///< the plane z = 0 is a surface; near holes in it, or terrain, an instance is that instead
+};
+
+/// Puts the moving instances of a list where they are at a time [ns]. @param instances those of the list, or a copy
+void move_to(std::int64_t time, const MoverTrails& trails, const SceneList& list, std::span<scene::Instance> instances);
 
 class SpatialScene {
  public:
@@ -35,13 +62,8 @@ class SpatialScene {
   const std::vector<world::Material>& materials() const { return materials_; }
 
   scene::Terrain terrain() const { return {terrain_.empty() ? nullptr : &terrain_, X_WF_}; }
-  /// Sets `out` to the walls, and to all other surfaces of the world of `mover` within `range` [m] of `p`, except its
-  /// own. They are valid until the movers are updated or placed.
-  /// @param angle [rad] meshes may be coarser by displacements of this size as seen from `p`; 0: exact
-  /// @return whether the plane z = 0 is a surface; near holes in the floor, or terrain, a mesh in
-  /// `out` is that instead
-  bool list(std::uint32_t mover, glm::dvec3 p, double range, std::vector<scene::Instance>& out,
-            double angle = 0.0) const;
+  /// Lists the walls, and all other surfaces of the carrier's world within range, except its own.
+  void list(const SensorView& view, SceneList& out) const;
 
  private:
   /// A mesh of a model.
@@ -52,15 +74,11 @@ class SpatialScene {
     bool own = false;  ///< of the mover's own model, whose shape may change
   };
   void add_meshes(const world::World& world, const SceneExtras& extras);
-  /// Surroundings of a sensor.
-  struct View {
-    glm::dvec3 p;
-    double range = 0.0, angle = 0.0;
-  };
-  void add_mesh(std::uint32_t mesh, const base::RigidTransform& X_WI, std::uint32_t owner, const View& view,
-                std::vector<scene::Instance>& out) const;
-  void add(const scene::SurfaceTree& tree, const base::RigidTransform& X_WI, std::uint32_t owner, glm::dvec3 p,
-           double range, std::vector<scene::Instance>& out) const;
+  void add_mover(std::uint32_t mover, const SensorView& view, SceneList& out) const;
+  void add_mesh(std::uint32_t mesh, const base::RigidTransform& X_WI, std::uint32_t owner, const SensorView& view,
+                SceneList& out) const;
+  void add(const scene::SurfaceTree& tree, const base::RigidTransform& X_WI, std::uint32_t owner,
+           const SensorView& view, SceneList& out) const;
 
   world::CopyIndex copies_;
   bool floor_;

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/elementary.h"
+#include "base/time.h"
 #include "scene/reference_scan.h"
 
 namespace sf::sensors {
@@ -21,22 +22,30 @@ PlanarBeams planar_beams(std::span<const double> bearings, std::span<const doubl
 TiltedScans::TiltedScans(const world::World& world, double reach, bool reference, unsigned threads)
     : scene_(world, reach), reference_(reference), scratch_(threads) {}
 
-void TiltedScans::cast(const PlanarBeams& beams, std::uint32_t mover, std::span<const base::RigidTransform> X_WS,
-                       double range_max, unsigned thread, TiltedScan& out) {
-  Scratch& scratch = scratch_[thread];
-  const base::RigidTransform& last = X_WS.back();
-  double reach = range_max;
-  for (const base::RigidTransform& X : X_WS) reach = std::max(reach, range_max + glm::distance(X.p, last.p));
-  const bool floor = scene_.list(mover, last.p, reach, scratch.instances);
-  const scene::SceneView view{scratch.instances, floor, scene_.terrain()};
+void TiltedScans::cast(const PlanarBeams& beams, std::uint32_t mover, const base::RigidTransform& X_MS,
+                       double range_max, const MoverTrails* trails, unsigned thread, TiltedScan& out) {
+  auto& [rasterizer, list] = scratch_[thread];
+  base::RigidTransform X = base::compose(scene_.X_WM(mover), X_MS);
+  SensorView surroundings{.mover = mover, .p = X.p, .range = range_max, .trails = trails};
+  if (trails != nullptr) {
+    surroundings.since = trails->now() + base::nanoseconds(beams.pattern.front().time);
+    for (const scene::BeamTile& tile : beams.pattern)
+      surroundings.since = std::min(surroundings.since, trails->now() + base::nanoseconds(tile.time));
+    surroundings.range += trails->reach(mover) + 2.0 * glm::length(X_MS.p);
+  }
+  scene_.list(surroundings, list);
+  const scene::SceneView view{list.instances, list.floor, scene_.terrain()};
   const std::size_t count = beams.directions.size();
   out.ranges.resize(count), out.hits.resize(count);
   out.quality.assign(count, base::QualityFlag::none);
-  for (std::size_t t = 0; t < beams.pattern.size(); ++t) {
-    const scene::BeamTile& tile = beams.pattern[t];
-    const base::RigidTransform& X = X_WS[X_WS.size() == 1 ? 0 : t];
+  for (const scene::BeamTile& tile : beams.pattern) {
+    if (trails != nullptr) {
+      const std::int64_t time = trails->now() + base::nanoseconds(tile.time);
+      move_to(time, *trails, list, list.instances);
+      X = base::compose(trails->X_WM(mover, time), X_MS);
+    }
     if (!reference_) {
-      scratch.rasterizer.scan(X, {&tile, 1}, range_max, view, {out.ranges, out.hits, out.quality});
+      rasterizer.scan(X, {&tile, 1}, range_max, view, {out.ranges, out.hits, out.quality});
       continue;
     }
     for (const std::uint32_t i : std::span(tile.place).first(tile.used * scene::kWidth)) {

@@ -39,17 +39,16 @@ class TiltedScans {
 
   void update_movers(const world::World& world) { scene_.update_movers(world); }
   void place(std::span<const base::Report> states) { scene_.place(states); }
-  /// Pose of the mover in the world, as placed.
-  const base::RigidTransform& X_WM(std::uint32_t mover) const { return scene_.X_WM(mover); }
-  /// @param X_WS the sensor's poses, one or one per tile of the pattern, the last at the time of the reading
-  /// @param range_max [m]  @param thread less than `threads`; each thread uses its own number
-  void cast(const PlanarBeams& beams, std::uint32_t mover, std::span<const base::RigidTransform> X_WS, double range_max,
-            unsigned thread, TiltedScan& out);
+  /// @param X_MS the sensor in its mover's frame  @param range_max [m]
+  /// @param trails of a rolling scan, whose beams have times; null: all are cast at once
+  /// @param thread less than `threads`; each thread uses its own number
+  void cast(const PlanarBeams& beams, std::uint32_t mover, const base::RigidTransform& X_MS, double range_max,
+            const MoverTrails* trails, unsigned thread, TiltedScan& out);
 
  private:
   struct Scratch {
     scene::Rasterizer rasterizer;
-    std::vector<scene::Instance> instances;
+    SceneList list;
   };
   SpatialScene scene_;
   bool reference_;

@@ -33,6 +33,7 @@ world::World town(unsigned robots) {
       "create_gyro( ) )\n"
       "define driver pioneer3at( pioneer_sonar( ) pioneer_encoder( ) pioneer_battery( ) outdoor_gps( ) mems_gyro( ) "
       ")\n";
+  text.replace(text.find(" create_battery( )"), 1, " lidar( channels 2 columns 16 range [0 2] rate 5 rolling 1 ) ");
   text.replace(text.find(" create_gyro( )"), 15, " mems_gyro( latency 0.25 )");
   text.replace(text.find("( laser \"\" )"), 12, "( )");
   for (int x = 0; x < 6; ++x)

@@ -9,9 +9,12 @@
 #include <string>
 
 #include "raycast/casters.h"
+#include "robots/kinematics.h"
 #include "sensors/lidar.h"
+#include "sensors/mover_trails.h"
 #include "sensors/spatial_scene.h"
 #include "tests/folder.h"
+#include "tests/refusal.h"
 #include "tests/sensors/series.h"
 #include "world/copies.h"
 #include "world/shapes.h"
@@ -111,13 +114,62 @@ TEST_F(LidarMeshes, CopiesOfAWorld) {
   for (std::uint32_t m = 0; m < several.movers.size(); ++m) states.push_back({m, 0, several.movers[m].X_WM, {}});
   states[3].X_WM.x = 5.0;  // r2 of the second copy
   scene.place(states);
-  std::vector<scene::Instance> out;
-  scene.list(2, {}, 20.0, out);
+  sensors::SceneList list;
+  const std::vector<scene::Instance>& out = list.instances;
+  scene.list({.mover = 2, .range = 20.0}, list);
   ASSERT_EQ(out.size(), 2u + 2 + 2) << "walls, ground, two boxes, and the body and the load of one robot";
   EXPECT_EQ(out[4].X_WI.p.x, 5.0);
   EXPECT_EQ(several.models[out[4].owner].name, "r2");
-  scene.list(4, {}, 20.0, out);
+  scene.list({.mover = 4, .range = 20.0}, list);
   EXPECT_EQ(out[4].X_WI.p.x, 1.5);
+}
+
+/// A rolling scan, at rest or moving itself, sees another robot, with its mesh and its load, where that one was at the
+/// time of each beam: as still scans do of worlds with both at these poses.
+TEST_F(LidarMeshes, RollingScansSeeOthersMove) {
+  const auto with = [&](const std::string& keys) {
+    world::World world = scene(true);
+    for (world::Sensor& sensor : world.movers[0].sensors)
+      if (!keys.empty()) sensor.settings.push_back({keys, {1.0}, "", 1, "trial.world"});
+    world.interval = 0.01;
+    return world;
+  };
+  const world::World rolling = with("rolling"), still = with("");
+  const base::Twist other{2.0, 0.3, 3.0};
+  for (const base::Twist& own : {base::Twist{}, base::Twist{-1.0, 0.2, 1.0}}) {
+    farm::Farm farm(rolling, host_device(), {.noise = false, .threads = 2});
+    farm.subscribe(0, base::only(sensors::kLidar));
+    std::vector<base::Report> states{{0, 0, {0, 0, 0, 0.2}, own}, {1, 0, {1.2, -1.0, 0.2, 0.9}, other}};
+    std::vector<double> values;
+    for (int tick = 0; tick <= 20; ++tick) {
+      for (const base::ReadingBlock& r : farm.tick(10'000'000 * tick, states))
+        values.assign(r.values.begin(), r.values.end());
+      for (base::Report& state : states)
+        if (tick < 20) state.X_WM = robots::advance(state.X_WM, state.velocity, 0.01), state.time += 10'000'000;
+    }
+    farm::Farm reference(still, host_device(), {.noise = false, .threads = 1});
+    reference.subscribe(0, base::only(sensors::kLidar));
+    std::size_t seen = 0;
+    for (std::size_t column = 0; column < 120; column += 2) {
+      const double time = -0.1 * static_cast<double>(119 - column) / 120;
+      std::vector<base::Report> then = states;
+      for (base::Report& state : then) state.X_WM = robots::advance(state.X_WM, state.velocity, time);
+      const base::ReadingBlock r = reference.tick(static_cast<std::int64_t>(1 + column) * 1'000'000'000, then)[0];
+      for (std::size_t i = column; i < values.size(); i += 120) {
+        EXPECT_NEAR(r.values[i], values[i], 1e-6) << i;
+        seen += r.hits[i] < rolling.models.size() && rolling.models[r.hits[i]].mover == 1;
+      }
+    }
+    EXPECT_GT(seen, 5u);
+  }
+}
+
+/// The memory of trails is bounded before a run: 60 s at 100 000 ticks a second.
+TEST_F(LidarMeshes, LongTrailsAreRefused) {
+  world::World world = scene(false);
+  world.interval = 1e-5;
+  expect_in("rolling scans of 60 s need the poses of 2 movers in the last 6e+06 ticks; expected at most 5e+06 poses",
+            refusal_of([&] { sensors::MoverTrails(world, {}, 60'000'000'000); }));
 }
 
 /// An object that takes on another shape is seen as that; with its own size again, as its mesh.
@@ -130,8 +182,9 @@ TEST_F(LidarMeshes, ChangedShapesAreSolids) {
   const auto seen = [&] {
     scene.update_movers(world);
     scene.place(states);
-    std::vector<scene::Instance> out;
-    scene.list(0, {}, 20.0, out);
+    sensors::SceneList list;
+  const std::vector<scene::Instance>& out = list.instances;
+    scene.list({.range = 20.0}, list);
     EXPECT_EQ(out.size(), 7u);
     return out.back().owner == base::kNoHit ? "solid" : "mesh";
   };
@@ -158,8 +211,9 @@ TEST_F(LidarMeshes, PlacesFarAway) {
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < meshes.movers.size(); ++m) states.push_back({m, 0, meshes.movers[m].X_WM, {}});
   scene.place(states);
-  std::vector<scene::Instance> out;
-  scene.list(0, scene.X_WM(0).p, 20.0, out);
+  sensors::SceneList list;
+  const std::vector<scene::Instance>& out = list.instances;
+  scene.list({.p = scene.X_WM(0).p, .range = 20.0}, list);
   EXPECT_EQ(out.size(), 6u);
 }
 

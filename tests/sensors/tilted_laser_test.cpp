@@ -131,6 +131,31 @@ TEST(RollingLaser, EachBeamIsCastFromThePoseAtItsTime) {
   EXPECT_GT(moved, 20u);
 }
 
+/// At rest, it sees another robot pass where that one was at the time of each beam.
+TEST(RollingLaser, SeesOthersMove) {
+  world::World rolling = twins("rolling 1"), still = twins();
+  rolling.interval = 0.01;
+  farm::Farm farm(rolling, host_device(), {.noise = false, .threads = 1});
+  farm::Farm reference(still, host_device(), {.noise = false, .threads = 1});
+  for (farm::Farm* each : {&farm, &reference}) each->subscribe(0, base::only(sensors::kLaser));
+  std::vector<base::Report> states{{0, 0, {}, {}}, {1, 0, {1.5, 2.0, 0.4, -1.5}, {6.0, 0.0, 1.0}}};
+  std::vector<double> values;
+  for (int tick = 0; tick <= 20; ++tick, states[1].time += 10'000'000) {
+    if (tick > 0) states[1].X_WM = robots::advance(states[1].X_WM, states[1].velocity, 0.01);
+    for (const base::ReadingBlock& r : farm.tick(states[1].time, states))
+      values.assign(r.values.begin(), r.values.end());
+  }
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<base::Report> then = states;
+    then[1].X_WM = robots::advance(then[1].X_WM, then[1].velocity, -0.05 * static_cast<double>(90 - i) / 91);
+    const base::ReadingBlock r = reference.tick(static_cast<std::int64_t>(i + 1) * 1'000'000'000, then)[0];
+    EXPECT_NEAR(r.values[i], values[i], 1e-6) << i;
+    seen += r.hits[i] < rolling.models.size() && rolling.models[r.hits[i]].mover == 1;
+  }
+  EXPECT_GT(seen, 3u);
+}
+
 /// At rest it has the bytes of a scan that is not rolling.
 TEST(RollingLaser, AtRestNothingChanges) {
   base::Pose X{0.3, -0.2, 0.0, 0.4};

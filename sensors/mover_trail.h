@@ -1,7 +1,8 @@
 #pragma once
-// Recent states of a rolling sensor's carrier, for poses during its last scan.
+// Recent states of a mover, for its poses during a rolling scan.
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -15,22 +16,26 @@ inline bool is_same_place(const base::Report& a, const base::Report& b) {
          a.tilt.roll == b.tilt.roll && a.tilt.pitch == b.tilt.pitch;
 }
 
-class CarrierTrail {
+class MoverTrail {
  public:
-  /// @param duration [ns] that `at` looks back  @param max_speed [m/s] of the carrier
-  CarrierTrail(std::int64_t duration, double max_speed) : duration_(duration), max_speed_(max_speed) {}
+  /// @param duration [ns] that `at` looks back  @param max_speed [m/s] of the mover
+  MoverTrail(std::int64_t duration, double max_speed) : duration_(duration), max_speed_(max_speed) {}
 
-  /// Adds the state of a tick. Times increase.
+  /// Adds the state of a tick. Times increase. An absent mover's trail ends.
   void add(const base::Report& state);
   void clear() { states_.clear(); }
   /// Returns the state at `time` [ns] on the arcs between the ticks, and from the last tick to `now`. Before the first
-  /// tick and before a relocation the carrier stood still.
+  /// tick and before a relocation the mover stood still.
   base::Report at(std::int64_t time, const base::Report& now) const;
   /// Returns the greatest distance [m] of the positions since the oldest tick from that of `now`.
   double reach(const base::Report& now) const;
 
-  /// True if the carrier stood still since the oldest tick.
-  bool at_rest(const base::Report& now) const;
+  /// True if the mover stood still since `time` [ns], at most `duration` before `now`.
+  bool at_rest(std::int64_t time, const base::Report& now) const;
+  /// Continues another trail of the mover.
+  void take_over(MoverTrail& before) { states_ = std::move(before.states_); }
+  /// True if it begins before another trail of the same mover.
+  bool is_longer(const MoverTrail& other) const;
 
   void write(base::ByteWriter& out) const;
   void read(base::ByteReader& in);
