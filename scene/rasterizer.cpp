@@ -40,8 +40,10 @@ class Scan {
   void draw_floor(const BeamTile& tile, std::uint32_t vectors);
   void take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast);
   void list_meshes(const BeamTile& tile);
+  void measure(const BeamTile& tile, std::uint32_t vector);
   void evaluate_vector(const BeamTile& tile, std::uint32_t vector);
-  void decide_uncertain(const BeamTile& tile, std::uint32_t vector);
+  std::uint32_t measure_single(const BeamTile& tile, std::uint32_t vector, std::uint32_t known);
+  std::uint32_t decide_uncertain(const BeamTile& tile, std::uint32_t vector);
   void march(const BeamTile& tile, std::uint32_t vector);
   void meet_terrain(const BeamTile& tile, std::uint32_t vector);
   void write(const BeamTile& tile, std::uint32_t vector);
@@ -136,11 +138,8 @@ void Scan::list_meshes(const BeamTile& tile) {
 
 void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
   const std::uint32_t first = kWidth * vector, face = s_.face[first];
-  const Words faces = load(s_.face + first);
-  bool one = true;
-  for (std::size_t p = 0; p < kParts; ++p) one = one && hn::AllTrue(kU, faces.part[p] == hn::Set(kU, face));
   grazing_ = 0;
-  if (one) {
+  if (are_all(s_.face + first, face)) {
     const std::uint32_t owner = face == kNoFace ? base::kNoHit : plane_of(face).owner;
     store(all(owner), hits_);
     if (face == kNoFace)
@@ -154,9 +153,11 @@ void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
   }
 }
 
-void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
+/// Decides and measures uncertain beams in 64 bits. @return their bit mask
+std::uint32_t Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
   const std::uint32_t first = kWidth * vector;
-  std::uint32_t rest = bits_of(at_least(load(s_.others + first), load(s_.low + first)));
+  const std::uint32_t all = bits_of(at_least(load(s_.others + first), load(s_.low + first)));
+  std::uint32_t rest = all;
   if (rest != 0) list_candidates(s_.meshes, s_.drawn, 1u << vector, s_.candidates);
   for (; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
@@ -174,6 +175,55 @@ void Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
     s_.face[first + i] = nearest.face;
     grazing_ = (grazing_ & ~(1u << i)) | std::uint32_t{nearest.flagged} << i;
     ++s_.counts.uncertain;
+  }
+  return all;
+}
+
+/// Measures a vector's beams in 32 bits where these are accurate enough, the others in 64 bits.
+/// @param known bit mask of beams that have been measured in 64 bits  @return that of those in 32 bits
+std::uint32_t Scan::measure_single(const BeamTile& tile, std::uint32_t vector, std::uint32_t known) {
+  const std::uint32_t first = kWidth * vector, *const faces = s_.face + first;
+  double ranges[kWidth], sines[kWidth];  // in 64 bits
+  std::copy_n(ranges_, kWidth, ranges), std::copy_n(sines_, kWidth, sines);
+  std::uint32_t good = 0;
+  if (are_all(faces, faces[0])) {
+    const bool none = faces[0] == kNoFace;
+    store(all(none ? base::kNoHit : plane_of(faces[0]).owner), hits_);
+    const SinglePlane plane = none ? SinglePlane{} : single_plane(plane_of(faces[0]));
+    good = evaluate_single(tile, first, range_max_, load(plane), ranges_, sines_);
+  } else {
+    SinglePlane planes[kWidth];
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      const bool same = i > 0 && faces[i] == faces[i - 1], none = faces[i] == kNoFace;
+      if (!none) planes[i] = same ? planes[i - 1] : single_plane(plane_of(faces[i]));
+      hits_[i] = same ? hits_[i - 1] : none ? base::kNoHit : plane_of(faces[i]).owner;
+    }
+    good = evaluate_single(tile, first, range_max_, load(planes), ranges_, sines_);
+  }
+  for (std::uint32_t rest = ~good & 0xFFFFu; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
+    if ((known >> i & 1) != 0) {
+      ranges_[i] = ranges[i], sines_[i] = sines[i];
+    } else if (faces[i] != kNoFace) {
+      const SeenPlane& plane = plane_of(faces[i]);
+      sines_[i] = sine_of(plane, {tile.dx[first + i], tile.dy[first + i], tile.dz[first + i]});
+      ranges_[i] = std::min(range_max_, plane.height / sines_[i]);
+      grazing_ |= std::uint32_t{std::abs(sines_[i]) < plane.least_sine} << i;
+    } else {
+      ranges_[i] = range_max_;
+    }
+  }
+  return good;
+}
+
+/// Measures the beams of a vector that has been drawn.
+void Scan::measure(const BeamTile& tile, std::uint32_t vector) {
+  if (out_.single) {
+    grazing_ = 0;
+    measure_single(tile, vector, decide_uncertain(tile, vector));
+  } else {
+    evaluate_vector(tile, vector);
+    decide_uncertain(tile, vector);
   }
 }
 
@@ -239,8 +289,7 @@ bool Scan::cast(const BeamTile& tile) {
   draw(tile, used_vectors(tile));
   for (std::uint32_t v = 0; v < tile.used; ++v) {
     if (terrain_ && v % kMarchings == 0) march(tile, v);
-    evaluate_vector(tile, v);
-    decide_uncertain(tile, v);
+    measure(tile, v);
     if (terrain_) meet_terrain(tile, v);
     write(tile, v);
   }
@@ -262,6 +311,7 @@ void Scan::take(const BeamTile& tile, std::uint32_t vector, std::span<const Cast
     if (sines && face != kNoFace) sines_[i] = sine_of(plane_of(face), {tile.dx[beam], tile.dy[beam], tile.dz[beam]});
     grazing_ |= (cast[i].flags & CastBeam::kGrazing) != 0 ? 1u << i : 0u;
   }
+  if (out_.single) grazing_ &= ~measure_single(tile, vector, 0xFFFFu);
 }
 
 bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
@@ -271,7 +321,7 @@ bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
   if (uncertain != 0) draw(tile, uncertain);
   for (std::uint32_t v = 0; v < tile.used; ++v) {
     if ((uncertain >> v & 1) != 0)
-      evaluate_vector(tile, v), decide_uncertain(tile, v);
+      measure(tile, v);
     else
       take(tile, v, cast.subspan(kWidth * v).first<kWidth>());
     write(tile, v);

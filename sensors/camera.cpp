@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "base/elementary.h"
+#include "sensors/accuracy.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
 #include "sensors/settings.h"
@@ -27,10 +28,16 @@ std::vector<SpatialScanner> scanners_of(const std::vector<CameraSettings>& camer
     // The longest beam is that of a corner.
     double least = 1.0;
     for (const glm::dvec3& d : s.beams->directions) least = std::min(least, d.x);
-    scanners.push_back({s.X_MS, s.range_max / least * (1.0 + 1e-12), 0.0, s.beams, false, s.normals});
+    scanners.push_back({.X_MS = s.X_MS,
+                        .range_max = s.range_max / least * (1.0 + 1e-12),
+                        .beams = s.beams,
+                        .normals = s.normals,
+                        .single = s.mode != 0});
   }
   return scanners;
 }
+
+double error_of(const CameraSettings& s) { return s.mode == 0 ? scene::kRangeError : scene::kSingleRangeError; }
 
 class Cameras : public SpatialScans {
  public:
@@ -40,8 +47,8 @@ class Cameras : public SpatialScans {
 
   void collect(std::span<base::ReadingBlock> out) override {
     SpatialScans::collect(out);
-    for (base::ReadingBlock& block : out.first(samples().size()))
-      block.bound = block.bound_without_noise = scene::kRangeError;
+    for (std::size_t i = 0; i < samples().size(); ++i)
+      out[i].bound = out[i].bound_without_noise = error_of(settings_[samples()[i].row]);
   }
 
  private:
@@ -132,6 +139,7 @@ ParsedSensors parse_cameras(const world::World& world) {
   ImageBeams images;
   return parse_each(world, camera_type, [&](const world::Sensor& sensor, SensorSpec& row) {
     CameraSettings s = camera_of(sensor);
+    row.mode = s.mode = mode_of("camera", kCameraModes, accuracy_of(sensor), world);
     s.beams = images.of(s);
     row.elements = s.width * s.height;
     row.width = s.normals ? 4 : 1;
@@ -149,7 +157,9 @@ SpatialBeams beams_of_camera(const ParsedSensors& sensors, std::size_t row) {
   return {s.X_MS, s.beams->directions, {}};
 }
 
-ErrorBound bound_of_camera(const world::World&, const ParsedSensors&, std::size_t) { return {scene::kRangeError, ""}; }
+ErrorBound bound_of_camera(const world::World&, const ParsedSensors& sensors, std::size_t row) {
+  return {error_of(sensors.settings_as<CameraSettings>()[row]), ""};
+}
 
 // Depths are sent as the ranges of lidars are. Normals are not sent.
 
@@ -216,6 +226,7 @@ constinit const SensorType camera_type{
     .list = "pixels",
     .columns = kColumns,
     .beams = beams_of_camera,
+    .modes = kCameraModes,
     .bound = bound_of_camera,
     .parse = parse_cameras,
     .make = make_backend<Cameras>,

@@ -23,11 +23,17 @@ struct CameraSettings {
   double focal_length = 0.0;                 ///< [px]
   double range_min = 0.0, range_max = 50.0;  ///< [m] of the depth along the optical axis
   bool normals = false;
+  std::uint8_t mode = 0;                    ///< row of kCameraModes
   std::shared_ptr<const LidarBeams> beams;  ///< one per pixel
 };
 
 /// Principal point [px]: whole numbers are centres of pixels.
 inline double centre_of(std::uint32_t pixels) { return 0.5 * (pixels - 1.0); }
+
+inline constexpr AccuracyMode kCameraModes[] = {
+    {"exact", "every pixel"},
+    {"single", "every pixel, decided in 64 bits, measured in 32 bits where these are within 1 mm"},
+};
 
 extern const SensorType camera_type;
 

@@ -43,7 +43,8 @@ bool is_coarse(const LidarSettings& s) { return kLidarAngles[s.mode] > 0.0; }
 
 /// A mixed pixel has no true range, and a simplified mesh none that is bounded along a beam.
 double range_error(const LidarSettings& s) {
-  return s.beams->parts == 1 && !is_coarse(s) ? scene::kRangeError : HUGE_VAL;
+  if (s.beams->parts > 1 || is_coarse(s)) return HUGE_VAL;
+  return kLidarSingle[s.mode] ? scene::kSingleRangeError : scene::kRangeError;
 }
 
 /// True if a lidar reports what its beams meet.
@@ -61,7 +62,8 @@ std::vector<SpatialScanner> scanners_of(const std::vector<LidarSettings>& lidars
                         .angle = kLidarAngles[s.mode],
                         .beams = s.beams,
                         .plain = is_plain(s),
-                        .materials = powers});
+                        .materials = powers,
+                        .single = kLidarSingle[s.mode]});
   }
   return scanners;
 }

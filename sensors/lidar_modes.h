@@ -1,5 +1,6 @@
 #pragma once
-// Accuracy modes of lidars: fewer columns are cast, the others interpolated between them; or meshes are simplified.
+// Accuracy modes of lidars: ranges are measured in 32 bits; fewer columns are cast, the others interpolated between
+// them; or meshes are simplified.
 
 #include <cstdint>
 #include <span>
@@ -13,14 +14,16 @@ namespace sf::sensors {
 
 inline constexpr AccuracyMode kLidarModes[] = {
     {"exact", "every beam"},
+    {"single", "every beam, decided in 64 bits, measured in 32 bits where these are within 1 mm"},
     {"skip2", "every 2nd column; the others interpolated between the hits"},
     {"skip4", "every 4th column"},
     {"coarse1", "every beam; meshes simplified by at most 1 mrad as seen from the sensor"},
     {"coarse4", "meshes simplified by at most 4 mrad"},
 };
 // By row of kLidarModes.
-inline constexpr std::uint32_t kLidarSkips[] = {1, 2, 4, 1, 1};          ///< columns per cast column
-inline constexpr double kLidarAngles[] = {0.0, 0.0, 0.0, 0.001, 0.004};  ///< [rad] of displaced vertices
+inline constexpr bool kLidarSingle[] = {false, true, false, false, false, false};
+inline constexpr std::uint32_t kLidarSkips[] = {1, 1, 2, 4, 1, 1};            ///< columns per cast column
+inline constexpr double kLidarAngles[] = {0.0, 0.0, 0.0, 0.0, 0.001, 0.004};  ///< [rad] of displaced vertices
 
 /// A scan's tables, beam by beam.
 struct LidarScan {

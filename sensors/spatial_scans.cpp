@@ -157,11 +157,14 @@ void SpatialScans::cast_rolling(const Job& job, std::span<const scene::BeamTile>
 
 scene::ScanOutput SpatialScans::output_of(std::size_t i) {
   const HostSample& sample = samples()[i];
-  if (scanners_[sample.row].plain) return {sample.values, beams_of(hits_, i), beams_of(quality_, i)};
+  const SpatialScanner& s = scanners_[sample.row];
+  if (s.plain)
+    return {.ranges = sample.values, .hits = beams_of(hits_, i), .quality = beams_of(quality_, i), .single = s.single};
   scene::ScanOutput out{parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i),
                         parts_of(part_cosines_, i)};
-  if (scanners_[sample.row].normals) out.normals = parts_of(part_normals_, i);
-  if (scanners_[sample.row].materials && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
+  out.single = s.single;
+  if (s.normals) out.normals = parts_of(part_normals_, i);
+  if (s.materials && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
   return out;
 }
 

@@ -26,6 +26,7 @@ struct SpatialScanner {
   bool plain = false;      ///< beams are cast into the reading's values
   bool normals = false;    ///< also casts the normals of surfaces
   bool materials = false;  ///< also casts their materials
+  bool single = false;     ///< as scene::ScanOutput::single
 };
 
 /// Not thread-safe.

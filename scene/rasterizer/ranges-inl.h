@@ -15,6 +15,13 @@ namespace sf::scene::HWY_NAMESPACE {
 constexpr hn::CappedTag<double, kWidth> kD;
 using VD = hn::Vec<decltype(kD)>;
 
+HWY_INLINE bool are_all(const std::uint32_t* faces, std::uint32_t face) {
+  const Words found = load(faces);
+  bool all_same = true;
+  for (std::size_t p = 0; p < kParts; ++p) all_same = all_same && hn::AllTrue(kU, found.part[p] == hn::Set(kU, face));
+  return all_same;
+}
+
 /// Planes of a vector's beams, beam by beam: range = height / (x dx + y dy + z dz + extra).
 struct BeamPlanes {
   alignas(64) double x[kWidth], y[kWidth], z[kWidth], height[kWidth], extra[kWidth], least_sine[kWidth];
@@ -78,6 +85,53 @@ HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t fi
                         hn::Load(kD, rows.height + i), hn::Load(kD, rows.extra + i), hn::Load(kD, rows.least_sine + i)};
   };
   return evaluate(tile, first, range_max, row, out, sines);
+}
+
+/// A face for ranges in 32 bits.
+struct SinglePlane {
+  float x = 0.0f, y = 0.0f, z = 0.0f;  ///< n / h
+  float height = 0.0f, least_sine = 0.0f;
+};
+
+inline SinglePlane single_plane(const SeenPlane& plane) {
+  const glm::dvec3 a = plane.normal * (1.0 / plane.height);
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z), static_cast<float>(plane.height),
+          std::max(80.0f * kRounding, 1.01f * static_cast<float>(plane.least_sine))};
+}
+
+struct SingleVectors {
+  Floats x, y, z, height, least_sine;
+};
+HWY_INLINE SingleVectors load(const SinglePlane& plane) {
+  return {all(plane.x), all(plane.y), all(plane.z), all(plane.height), all(plane.least_sine)};
+}
+/// @param planes one per beam
+HWY_INLINE SingleVectors load(const SinglePlane* planes) {
+  alignas(64) float rows[5][kWidth];
+  for (std::uint32_t i = 0; i < kWidth; ++i) {
+    rows[0][i] = planes[i].x, rows[1][i] = planes[i].y, rows[2][i] = planes[i].z;
+    rows[3][i] = planes[i].height, rows[4][i] = planes[i].least_sine;
+  }
+  return {load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]), load(rows[4])};
+}
+
+/// Writes sixteen ranges that are measured in 32 bits, range_max for beams without a face, and the sines of the angles
+/// to the faces. @return bit mask of the beams whose error is within kSingleRangeError
+HWY_INLINE std::uint32_t evaluate_single(const BeamTile& tile, std::uint32_t first, double range_max,
+                                         const SingleVectors& plane, double* out, double* sines) {
+  const Floats inverse =
+      (plane.x * load(tile.x + first) + plane.y * load(tile.y + first)) + plane.z * load(tile.z + first);
+  const Floats range = all(1.0f) / inverse, sine = plane.height * inverse, steep = absolute(sine);
+  alignas(64) float short_ranges[kWidth], short_sines[kWidth];
+  store(range, short_ranges), store(sine, short_sines);
+  constexpr hn::Rebind<float, decltype(kD)> kHalf;
+  for (std::size_t i = 0; i < kWidth; i += hn::Lanes(kD)) {
+    hn::Store(hn::Min(hn::PromoteTo(kD, hn::Load(kHalf, short_ranges + i)), hn::Set(kD, range_max)), kD, out + i);
+    hn::Store(hn::PromoteTo(kD, hn::Load(kHalf, short_sines + i)), kD, sines + i);
+  }
+  const Floats error = range * all(10.0f * kRounding), most = all(0.999f * static_cast<float>(kSingleRangeError));
+  return bits_of(
+      both(both(greater(inverse, all(0.0f)), at_least(steep, plane.least_sine)), at_least(most * steep, error)));
 }
 
 }  // namespace sf::scene::HWY_NAMESPACE

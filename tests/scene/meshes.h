@@ -111,12 +111,13 @@ struct SpatialScan {
 
 /// Casts into poisoned memory.
 inline SpatialScan cast(const RigidTransform& X_WS, const std::vector<glm::dvec3>& beams, double range_max,
-                        const SceneView& scene, std::uint32_t row = 0) {
+                        const SceneView& scene, std::uint32_t row = 0, bool single = false) {
   SpatialScan out{std::vector<double>(beams.size(), -1.0), std::vector<std::uint32_t>(beams.size(), 0xDEADu),
                   std::vector<base::QualityFlag>(beams.size())};
   Rasterizer rasterizer;
   const bool flagged =
-      rasterizer.scan(X_WS, make_pattern(beams, row), range_max, scene, {out.ranges, out.hits, out.quality});
+      rasterizer.scan(X_WS, make_pattern(beams, row), range_max, scene,
+                      {.ranges = out.ranges, .hits = out.hits, .quality = out.quality, .single = single});
   const bool found = std::ranges::any_of(out.quality, [](auto flag) { return flag != base::QualityFlag::none; });
   EXPECT_EQ(flagged, found);
   out.uncertain = rasterizer.counts().uncertain;
@@ -125,7 +126,8 @@ inline SpatialScan cast(const RigidTransform& X_WS, const std::vector<glm::dvec3
 
 /// Compares a scan with the reference. @return the number of flagged beams
 inline std::size_t expect_bound(const SpatialScan& scan, const RigidTransform& X_WS,
-                                const std::vector<glm::dvec3>& beams, double range_max, const SceneView& scene) {
+                                const std::vector<glm::dvec3>& beams, double range_max, const SceneView& scene,
+                                double bound = kRangeError) {
   std::size_t flagged = 0, wrong = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (scan.quality[i] != base::QualityFlag::none) {
@@ -134,7 +136,7 @@ inline std::size_t expect_bound(const SpatialScan& scan, const RigidTransform& X
     }
     const ReferenceHit hit = reference_scan(X_WS, beams[i], range_max, scene);
     const double error = static_cast<double>(std::abs(scan.ranges[i] - hit.range));
-    if (error <= kRangeError) continue;
+    if (error <= bound) continue;
     if (++wrong < 4)
       ADD_FAILURE() << "beam " << i << ": " << scan.ranges[i] << ", expected " << static_cast<double>(hit.range);
   }

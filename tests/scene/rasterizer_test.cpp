@@ -196,8 +196,36 @@ TEST(SpatialRasterizer, Floor) {
   EXPECT_EQ(std::ranges::count(on.quality, QualityFlag::grazing), 16);
 }
 
+/// In 32 bits, near and up to 1 km away, along the ground and at all angles to faces: within the stated bound, with the
+/// faces and flags of 64 bits, and only where these are accurate enough.
+TEST(SpatialRasterizer, SingleRangesAreWithinTheirBound) {
+  struct {
+    Mesh mesh;
+    double range, least_part;  ///< part of the beams that differ from those in 64 bits
+    bool floor;
+  } const cases[] = {{soup(300, 2.0, 1), 5.0, 0.2, false},    // a few metres: all but the flattest
+                     {soup(300, 50.0, 2), 100.0, 0.2, true},  // with a floor
+                     {hills(30, 3), 40.0, 0.2, false},
+                     {soup(200, 400.0, 4), 1000.0, 0.0, true}};  // few are accurate enough
+  for (const auto& [mesh, range, least_part, floor] : cases) {
+    const SurfaceTree tree = build_tree(mesh);
+    const Instance instance = still(tree);
+    const auto beams = rings(24, 80, -1.2, 1.2);
+    const RigidTransform X_WS = Posed(7, 0.4).X_WS;
+    const SceneView scene{{&instance, 1}, floor};
+    const SpatialScan exact = cast(X_WS, beams, range, scene), single = cast(X_WS, beams, range, scene, 0, true);
+    expect_bound(single, X_WS, beams, range, scene, kSingleRangeError);
+    EXPECT_EQ(single.hits, exact.hits);
+    EXPECT_EQ(single.quality, exact.quality);
+    std::size_t rounded = 0;
+    for (std::size_t i = 0; i < beams.size(); ++i) rounded += single.ranges[i] != exact.ranges[i];
+    EXPECT_GT(rounded, static_cast<std::size_t>(least_part * static_cast<double>(beams.size()))) << range;
+  }
+}
+
 /// Bytes do not depend on the machine's vectors.
-TEST(SpatialRasterizer, EqualOnAllInstructionSets) {
+class SpatialInstructionSets : public testing::TestWithParam<bool> {};
+TEST_P(SpatialInstructionSets, AreEqual) {
   const SurfaceTree tree = build_tree(soup(500, 10.0, 8));
   const Instance instance = still(tree);
   const auto beams = rings(20, 100, -0.7, 0.7);
@@ -205,7 +233,7 @@ TEST(SpatialRasterizer, EqualOnAllInstructionSets) {
   const auto scan_with = [&](std::int64_t targets) {
     hwy::SetSupportedTargetsForTest(targets);
     hwy::GetChosenTarget().DeInit();  // reselected by the next call
-    SpatialScan scan = cast(X_WS, beams, 30.0, {{&instance, 1}, true});
+    SpatialScan scan = cast(X_WS, beams, 30.0, {{&instance, 1}, true}, 0, GetParam());
     scan.uncertain = 0;  // bounds depend on fused products
     return scan;
   };
@@ -214,6 +242,9 @@ TEST(SpatialRasterizer, EqualOnAllInstructionSets) {
   for (std::int64_t left = all; left != 0; left &= left - 1) EXPECT_EQ(scan_with(left & -left), best);
   scan_with(0);
 }
+
+INSTANTIATE_TEST_SUITE_P(SpatialRasterizer, SpatialInstructionSets, testing::Bool(),
+                         [](const auto& single) { return single.param ? "Single" : "Double"; });
 
 /// 32 bits settle nearly all beams, or the scan would be slow.
 TEST(SpatialRasterizer, CertifiesNearlyAllBeams) {

@@ -170,7 +170,7 @@ TEST(LidarModes, SkippedColumnsAreInterpolated) {
   const Read exact = echoes_of(boards(beams)), skip = echoes_of(world);
   farm::Farm farm(world, host_device(), {.noise = false, .threads = 1});
   const base::ReadingBlock r = farm.sense(0, sensors::kLidar, 0, {});
-  EXPECT_EQ(r.mode, 2);
+  EXPECT_EQ(r.mode, 3);
   std::size_t interpolated = 0;
   for (std::size_t i = 0; i < skip.beams(); ++i) {
     const std::size_t column = i % 32;

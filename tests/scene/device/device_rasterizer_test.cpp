@@ -32,7 +32,7 @@ struct WithNormals {
   bool operator==(const WithNormals&) const = default;
 };
 
-WithNormals finish(const Scene& scene, const BeamPattern& pattern, std::span<const CastBeam> cast) {
+WithNormals finish(const Scene& scene, const BeamPattern& pattern, std::span<const CastBeam> cast, bool single) {
   const std::size_t n = scene.beams.size();
   WithNormals out{
       {std::vector<double>(n, -1.0), std::vector<std::uint32_t>(n, 0xDEADu), std::vector<base::QualityFlag>(n)},
@@ -40,7 +40,13 @@ WithNormals finish(const Scene& scene, const BeamPattern& pattern, std::span<con
       std::vector<glm::vec3>(n, glm::vec3(9.0f))};
   Rasterizer rasterizer;
   rasterizer.scan(scene.X_WS, pattern, scene.range_max, scene.view(),
-                  {out.scan.ranges, out.scan.hits, out.scan.quality, out.cosines, out.normals}, cast);
+                  {.ranges = out.scan.ranges,
+                   .hits = out.scan.hits,
+                   .quality = out.scan.quality,
+                   .cosines = out.cosines,
+                   .normals = out.normals,
+                   .single = single},
+                  cast);
   return out;
 }
 
@@ -61,7 +67,9 @@ std::size_t expect_host_bytes(DeviceRasterizer& device, gpu::Batch& batch, const
     const auto cast = device.results(first[i], patterns[i].size());
     for (std::size_t k = 0; k < cast.size(); ++k)
       uncertain += k % kTileBeams < kWidth * patterns[i][k / kTileBeams].used && (cast[k].flags & CastBeam::kUncertain);
-    EXPECT_EQ(finish(scenes[i], patterns[i], cast), finish(scenes[i], patterns[i], {})) << "scene " << i;
+    for (const bool single : {false, true})
+      EXPECT_EQ(finish(scenes[i], patterns[i], cast, single), finish(scenes[i], patterns[i], {}, single))
+          << "scene " << i;
   }
   return uncertain;
 }
