@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 namespace sf::bench {
 
@@ -118,6 +119,58 @@ LidarScene terrain(int poses, Random& random) {
   return out;
 }
 
+/// A crown of leaves in two triangles each, within a ball above a trunk.
+world::Mesh tree(Random& random) {
+  constexpr std::uint32_t kLeaves = 9'900, kSides = 100;
+  world::Mesh mesh;
+  const auto add = [&](dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c, d});
+    for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.corners.push_back(first + k);
+  };
+  const auto unit = [&] {
+    return glm::normalize(dvec3{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)});
+  };
+  for (std::uint32_t k = 0; k < kLeaves; ++k) {
+    const dvec3 p = dvec3{0, 0, 3.5} + 1.5 * std::cbrt(uniform(random, 0.1, 1.0)) * unit(), u = 0.05 * unit(),
+                v = 0.05 * glm::normalize(glm::cross(u, unit()));
+    add(p - u - v, p + u - v, p + u + v, p - u + v);
+  }
+  for (std::uint32_t k = 0; k < kSides; ++k) {
+    const dvec3 a = 0.15 * on_circle(2.0 * M_PI * k / kSides), b = 0.15 * on_circle(2.0 * M_PI * (k + 1) / kSides),
+                up{0, 0, 3.0};
+    add(a, b, b + up, a + up);
+  }
+  return mesh;
+}
+
+/// A ball with dents, of triangles of 1 to 3 cm.
+world::Mesh statue() {
+  constexpr std::uint32_t kRings = 140, kColumns = 280;
+  Mesh ball;
+  add_grid(ball, kRings, kColumns, false, [&](std::uint32_t r, std::uint32_t c) {
+    const double u = M_PI * (r + 0.01) / (kRings + 0.02), v = 2.0 * M_PI * c / kColumns;
+    return dvec3{0, 0, 1.0} + (1.0 + 0.02 * std::sin(9.0 * u) * std::sin(8.0 * v)) *
+                                  (std::sin(u) * on_circle(v) + dvec3{0, 0, std::cos(u)});
+  });
+  world::Mesh mesh{.vertices = ball.vertices};
+  for (const scene::Face& face : ball.faces) mesh.corners.insert(mesh.corners.end(), face.begin(), face.begin() + 3);
+  return mesh;
+}
+
+LidarScene forest(world::Mesh mesh, int poses, Random& random) {
+  constexpr std::uint32_t kTrees = 1'000;
+  LidarScene out;
+  out.forest.meshes.push_back(std::move(mesh));
+  out.forest.models.resize(kTrees);
+  for (std::uint32_t i = 0; i < kTrees; ++i)
+    out.forest.mesh_models.push_back(
+        {0, i, {uniform(random, 0, 160), uniform(random, 0, 160), 0.0, uniform(random, -M_PI, M_PI)}});
+  for (int k = 0; k < poses; ++k)
+    out.poses.push_back({{}, {uniform(random, 40, 120), uniform(random, 40, 120), uniform(random, 0.9, 2.0)}});
+  return out;
+}
+
 }  // namespace
 
 LidarScene lidar_scene(const std::string& name, int poses) {
@@ -126,8 +179,11 @@ LidarScene lidar_scene(const std::string& name, int poses) {
   LidarScene out = std::sscanf(name.c_str(), "city%d", &blocks) == 1 ? city(blocks, poses, random)
                    : name == "room"                                  ? room(poses, random)
                    : name == "terrain"                               ? terrain(poses, random)
+                   : name == "forest"                                ? forest(tree(random), poses, random)
+                   : name == "statues"                               ? forest(statue(), poses, random)
                                                                      : LidarScene{};
-  if (out.poses.empty()) throw std::invalid_argument("no scene " + name + "; expected cityN, room or terrain");
+  if (out.poses.empty())
+    throw std::invalid_argument("no scene " + name + "; expected cityN, room, terrain, forest or statues");
   for (base::RigidTransform& X : out.poses)
     X.R = base::rotation_of(uniform(random, -0.05, 0.05), uniform(random, -0.05, 0.05), uniform(random, -M_PI, M_PI));
   return out;

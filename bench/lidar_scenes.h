@@ -8,17 +8,20 @@
 #include "base/rigid_transform.h"
 #include "scene/height_field.h"
 #include "scene/mesh.h"
+#include "world/world.h"
 
 namespace sf::bench {
 
 struct LidarScene {
   scene::Mesh mesh;
   scene::HeightField field;                 ///< of the same surface; empty: none
+  world::World forest;                      ///< instead of a mesh: models with one mesh; without models: none
   std::vector<base::RigidTransform> poses;  ///< of the sensor
 };
 
 /// @param name `cityN` (N x N houses of 6 m on squares of 10 m), `room` (furniture of 42 000 triangles in 20 m x 15 m),
-/// or `terrain` (524 000 triangles in 256 m x 256 m)
+/// `terrain` (524 000 triangles in 256 m x 256 m), `forest` or `statues` (1 000 trees of 20 000 triangles, or balls of
+/// 78 000, in 160 m x 160 m)
 LidarScene lidar_scene(const std::string& name, int poses);
 
 /// @param name `lidarRxC` (R rings of C columns over 45 degrees, up to 16 rings 30 degrees) or `cameraWxH` (90 degrees)
