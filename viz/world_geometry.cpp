@@ -1,5 +1,6 @@
 #include "viz/world_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "world/meshes/mesh_file.h"
 #include "world/path_geometry.h"
 #include "world/shapes.h"
+#include "world/terrain.h"
 
 namespace sf::viz {
 namespace {
@@ -37,6 +39,38 @@ void append_color(std::vector<DataArray>& arrays, std::uint32_t color) {
 void add_upright(PolyData& data, glm::dvec2 a, glm::dvec2 b, double z_min, double z_max) {
   data.polygons.push_back(
       {add_point(data, a, z_min), add_point(data, b, z_min), add_point(data, b, z_max), add_point(data, a, z_max)});
+}
+
+constexpr std::uint32_t kTerrainColor = 0xFFA3AD94u;
+
+/// Returns every `step`-th of `points` rows, and the last.
+std::vector<std::uint32_t> rows_in_steps(std::uint32_t points, std::uint32_t step) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t i = 0; i + 1 < points; i += step) rows.push_back(i);
+  rows.push_back(points - 1);
+  return rows;
+}
+
+/// @return the number of triangles
+std::size_t add_terrain(PolyData& data, const world::Terrain& terrain) {
+  std::uint32_t step = 1;
+  while (2 * (std::size_t{terrain.columns} / step + 1) * (std::size_t{terrain.rows} / step + 1) > kMostTerrainTriangles)
+    ++step;
+  const std::vector<std::uint32_t> columns = rows_in_steps(terrain.columns, step),
+                                   rows = rows_in_steps(terrain.rows, step);
+  const base::Pose X_WC = world::corner_of(terrain);
+  const auto first = static_cast<std::int64_t>(data.points.size()), width = static_cast<std::int64_t>(columns.size());
+  for (const std::uint32_t j : rows)
+    for (const std::uint32_t i : columns)
+      add_point(data, transform(X_WC, glm::dvec2{i * terrain.cell.x, j * terrain.cell.y}),
+                X_WC.z + static_cast<double>(terrain.heights[std::size_t{j} * terrain.columns + i]));
+  for (std::int64_t j = 0; j + 1 < static_cast<std::int64_t>(rows.size()); ++j)
+    for (std::int64_t i = 0; i + 1 < width; ++i) {
+      const std::int64_t a = first + j * width + i, above = a + width;
+      data.polygons.push_back({a, a + 1, above + 1});
+      data.polygons.push_back({a, above + 1, above});
+    }
+  return 2 * (columns.size() - 1) * (rows.size() - 1);
 }
 
 std::uint32_t color_of(const world::World& world, std::uint32_t model) {
@@ -174,6 +208,17 @@ PolyData walls_geometry(const world::World& world) {
     if (&mesh != last) last = &mesh, height = world::box_of(mesh.vertices).size().z;
     add_cell(model, height, true, stops[model] != 0);
   });
+  for (const world::Terrain& terrain : world.terrain) {
+    const auto [low, high] = std::ranges::minmax(terrain.heights);
+    for (std::size_t left = add_terrain(data, terrain); left > 0; --left) {
+      append(data.cell_data, "model", {-1.0});
+      append(data.cell_data, "height", {static_cast<double>(high - low)});
+      append(data.cell_data, "laser", {1.0});
+      append(data.cell_data, "robots", {0.0});
+      append_color(data.cell_data, kTerrainColor);
+      data.names.push_back("terrain");
+    }
+  }
   return data;
 }
 

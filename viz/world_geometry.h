@@ -15,10 +15,11 @@ namespace sf::viz {
 
 /// Triangles of meshes beyond this number, over all their places, are not drawn: their outlines are.
 inline constexpr std::size_t kMostDrawnTriangles = 2'000'000;
+inline constexpr std::size_t kMostTerrainTriangles = 500'000;  ///< terrain is drawn in larger cells beyond this number
 
 /// Returns one upright rectangle per wall segment, or the triangles of a model that has a mesh. Cell arrays: `model`
 /// (row of the world's models), `height` [m], `rgb` [0, 255]; `laser` and `robots` are 1 if lasers see the wall or
-/// robots stop at it; `name` of the model.
+/// robots stop at it; `name` of the model. `model` of terrain is -1.
 PolyData walls_geometry(const world::World& world);
 
 /// Returns lane markings and paths as lines on the ground. Cell arrays: `width` [m], `rgb` [0, 255], `kind`: 0 marking,

@@ -202,6 +202,23 @@ TEST(VtkFiles, MeshesAreDrawnInPlaceOfOutlines) {
   EXPECT_EQ(walls_geometry(world).polygons[0].size(), 4u) << "its wall";
 }
 
+/// Terrain is drawn in place, in coarser cells where it has too many.
+TEST(VtkFiles, TerrainIsDrawn) {
+  world::World world;
+  world.terrain.push_back({"", {10.0, 20.0, 1.0, 0.0}, {2.0, 1.0}, 3, 2, {0, 1, 2, 3, 4, 5}});
+  const PolyData small = walls_geometry(world);
+  ASSERT_EQ(small.polygons.size(), 4u);
+  EXPECT_EQ(small.points[0], glm::dvec3(8.0, 19.5, 1.0)) << "the corner; the pose is that of the middle";
+  EXPECT_EQ(small.points[5], glm::dvec3(12.0, 20.5, 6.0));
+  EXPECT_EQ(small.names[3], "terrain");
+  world.terrain[0].columns = world.terrain[0].rows = 1'501;  // 4.5 million triangles
+  world.terrain[0].heights.assign(1'501 * 1'501, 0.0f);
+  const PolyData large = walls_geometry(world);
+  EXPECT_LE(large.polygons.size(), kMostTerrainTriangles);
+  EXPECT_GT(large.polygons.size(), kMostTerrainTriangles / 2);
+  EXPECT_EQ(large.points.back(), glm::dvec3(1510.0, 770.0, 1.0)) << "the last point stays";
+}
+
 /// Models with closed outlines have a lid at their height; an open bar has none.
 TEST(VtkFiles, OnlyClosedOutlinesHaveALid) {
   world::World world;
