@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
+#include <utility>
 
 #include "base/error.h"
 #include "record/cdr.h"
@@ -41,17 +43,20 @@ void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
 /// Returns whether a message can hold that many numbers: each takes at least four bytes.
 bool fits(std::size_t numbers, std::span<const std::uint8_t> message) { return numbers <= message.size() / 4; }
 
-/// Moves a column's numbers, at the end of `values`, to the ends of the elements.
-/// @param width numbers per element before  @param added of the column
-void order(std::vector<double>& values, std::size_t elements, std::size_t width, std::size_t added) {
-  if (width == 0 || elements <= 1) return;
-  const std::vector<double> columns = values;
-  for (std::size_t i = 0; i < elements; ++i) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(i * (width + added));
-    std::copy_n(columns.begin() + static_cast<std::ptrdiff_t>(i * width), width, at);
-    std::copy_n(columns.begin() + static_cast<std::ptrdiff_t>(elements * width + i * added), added,
-                at + static_cast<std::ptrdiff_t>(width));
+/// Orders numbers by elements instead of by columns.
+/// @param widths numbers per element of each column
+std::vector<double> by_elements(const std::vector<double>& columns, std::size_t elements,
+                                const std::vector<std::size_t>& widths) {
+  std::vector<double> values(columns.size());
+  const std::size_t width = std::accumulate(widths.begin(), widths.end(), std::size_t{0});
+  auto from = columns.begin();
+  std::size_t first = 0;
+  for (const std::size_t own : widths) {
+    for (std::size_t i = 0; i < elements; ++i, from += static_cast<std::ptrdiff_t>(own))
+      std::copy_n(from, own, values.begin() + static_cast<std::ptrdiff_t>(i * width + first));
+    first += own;
   }
+  return values;
 }
 
 }  // namespace
@@ -103,20 +108,23 @@ bool decode_reading(const SensorTypeInfo& sensor_type, std::span<const std::uint
   std::size_t elements = 1;  // with a list: the length of its first array
   std::size_t width = 0;     // of the columns so far
   bool complete = true;      // none of them is empty
-  values.clear();
+  std::vector<double> columns;
+  std::vector<std::size_t> widths;
   for (const ColumnInfo& column : sensor_type.columns) {
     const std::size_t numbers = sensor_type.list.empty() ? column.width : cdr.get_count(sizeof(std::uint32_t));
     if (width == 0 && column.width > 0) elements = numbers / column.width;
     const bool left_out = width > 0 && elements > 0 && numbers == 0;
     complete = complete && !left_out;
     if (left_out) continue;
-    if (column.width == 0 || !complete || numbers != elements * column.width || !fits(values.size() + numbers, message))
+    if (column.width == 0 || !complete || numbers != elements * column.width ||
+        !fits(columns.size() + numbers, message))
       return false;
     for (std::size_t i = 0; i < numbers; ++i)
-      values.push_back(column.whole ? static_cast<double>(cdr.get<std::uint32_t>()) : cdr.get<double>());
-    order(values, elements, width, column.width);
+      columns.push_back(column.whole ? static_cast<double>(cdr.get<std::uint32_t>()) : cdr.get<double>());
+    widths.push_back(column.width);
     width += column.width;
   }
+  values = widths.size() > 1 ? by_elements(columns, elements, widths) : std::move(columns);
   if (width_out != nullptr) *width_out = width;
   return width > 0 && cdr.good();
 }
