@@ -235,31 +235,20 @@ void add_body(const netio::Neighbours& neighbours, Fields& out) {
   }
 }
 
-/// Which part of a scan an extended packet carries.
-template <typename Part>
-void add_part(const Part& scan, Fields& out) {
-  add(out, "total", scan.total);
-  add(out, "first", scan.first);
-  add(out, "part", scan.part);
-  add(out, "parts", scan.parts);
-}
-
-void add_scan(std::span<const std::uint8_t> payload, bool extended, Fields& out) {
-  sensors::LaserPart scan;
-  sensors::read_laser(payload, extended, scan);
-  if (extended) add_part(scan, out);
-  std::vector<double> ranges;
-  for (std::uint32_t i = 0; i < scan.count; ++i) ranges.push_back(sensors::range_of(scan, i));
-  add(out, "range_m", ranges);
-}
-
-void add_lidar(std::span<const std::uint8_t> payload, bool extended, const sensors::SensorType& type, Fields& out) {
-  sensors::LidarPart scan;
-  sensors::read_lidar(payload, extended, scan);
-  if (extended) add_part(scan, out);
-  for (std::uint32_t column = 0; column < scan.width; ++column) {
+/// Adds the columns of a scan, and which part of it an extended packet carries.
+/// @param values element by element, `width` numbers each
+template <class Part>
+void add_scan(const sensors::SensorType& type, const Part& part, bool extended, std::span<const double> values,
+              std::size_t width, Fields& out) {
+  if (extended) {
+    add(out, "total", part.total);
+    add(out, "first", part.first);
+    add(out, "part", part.part);
+    add(out, "parts", part.parts);
+  }
+  for (std::size_t column = 0; column < width; ++column) {
     std::vector<double> numbers;
-    for (std::size_t i = column; i < scan.values.size(); i += scan.width) numbers.push_back(scan.values[i]);
+    for (std::size_t i = column; i < values.size(); i += width) numbers.push_back(values[i]);
     add(out, std::string(type.columns[column].name), numbers);
   }
 }
@@ -304,9 +293,15 @@ PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8
   if (info.status != PacketStatus::accepted) return info.status;
   const bool extended = static_cast<std::uint8_t>(header.type) >= sensors::kExtended;
   if (type.id == sensors::kLidar || type.id == sensors::kCamera) {
-    add_lidar(payload, extended, type, out);
+    sensors::LidarPart scan;
+    sensors::read_lidar(payload, extended, scan);
+    add_scan(type, scan, extended, scan.values, scan.width, out);
   } else if (type.is_scan) {
-    add_scan(payload, extended, out);
+    sensors::LaserPart scan;
+    sensors::read_laser(payload, extended, scan);
+    std::vector<double> ranges;
+    for (std::uint32_t i = 0; i < scan.count; ++i) ranges.push_back(sensors::range_of(scan, i));
+    add_scan(type, scan, extended, ranges, 1, out);
   } else if (type.id == sensors::kOccupancy) {
     add_map(payload, out);
   } else {
