@@ -4,19 +4,17 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "base/elementary.h"
-
 namespace sf::sensors {
 
 namespace {
 
-/// Range along the direction d between those at a and b, where the line through both points is crossed, in the plane of
-/// a and b.
+/// Range along d, turned into the plane of a and b, where it crosses the line through the points at a and b: the
+/// inverse range of a line is linear in the direction.
 double range_between(glm::dvec3 a, double range_a, glm::dvec3 b, double range_b, glm::dvec3 d) {
-  const double whole = base::asin(std::min(1.0, glm::length(glm::cross(a, b))));
-  const double part = std::min(whole, base::asin(std::min(1.0, glm::length(glm::cross(a, d)))));
-  const double inverse = base::sin(whole - part) / range_a + base::sin(part) / range_b;
-  return base::sin(whole) / inverse;
+  const glm::dvec3 normal = glm::cross(a, b);
+  const double u = glm::dot(glm::cross(d, b), normal), v = glm::dot(glm::cross(a, d), normal);
+  const double length = std::sqrt(u * u + v * v + 2.0 * u * v * glm::dot(a, b));
+  return length / (u / range_a + v / range_b);
 }
 
 }  // namespace
