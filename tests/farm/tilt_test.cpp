@@ -19,7 +19,7 @@ constexpr const char* kScene =
 
 struct Scene {
   world::World world = trial::world_of(kScene);
-  Farm farm{world, host_device(), {.noise = false}};
+  Farm farm{world, device(), {.noise = false}};
   std::vector<base::Report> states;
   std::int64_t now = 0;
 
