@@ -2,9 +2,12 @@
 // and the error of each method against every face in `long double`.
 //
 //   build/release/lidar_cost [SCENE [SENSOR [POSES [TURNS]]]]; default: city100 lidar64x1024 20 7
+//
+// LIDAR_ISA=avx2 limits both sides to AVX2.
 
 #include <fmt/format.h>
 
+#include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -302,6 +305,8 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
 }  // namespace sf::bench
 
 int main(int count, char** arguments) {
+  const char* const isa = std::getenv("LIDAR_ISA");
+  if (isa != nullptr && std::string(isa) == "avx2") hwy::DisableTargets(HWY_AVX2 - 1);
   const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
   return sf::bench::run(word(1, "city100"), word(2, "lidar64x1024"), std::atoi(word(3, "20").c_str()),
                         static_cast<std::size_t>(std::atoi(word(4, "7").c_str())));

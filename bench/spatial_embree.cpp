@@ -5,17 +5,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <glm/common.hpp>
+#include <string>
 
 namespace sf::bench {
 
 namespace {
 
+std::string embree_options() {
+  const char* const isa = std::getenv("LIDAR_ISA");
+  return std::string("threads=1") + (isa != nullptr ? std::string(",isa=") + isa : "");
+}
+
 /// A scene, shared by the casters that use it.
 class EmbreeScene {
  public:
-  EmbreeScene(const scene::Mesh& mesh, bool robust) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
+  EmbreeScene(const scene::Mesh& mesh, bool robust)
+      : device_(rtcNewDevice(embree_options().c_str())), scene_(rtcNewScene(device_)) {
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
     for (const glm::dvec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
     centre_ = 0.5 * (low + high);
