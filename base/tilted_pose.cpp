@@ -12,6 +12,32 @@ Quaternion product(const Quaternion& p, const Quaternion& q) {
           p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x, p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
 }
 
+/// Screw motion from frame A to frame B, in A.
+struct Screw {
+  Quaternion q_WA;
+  glm::dmat3 R_WA;
+  double half = 0.0;   ///< [rad] half of the turn, in [0, pi/2]
+  glm::dvec3 axis;     ///< unit vector; 0 without a turn
+  double along = 0.0;  ///< [m] way along the axis
+  glm::dvec3 chord;    ///< [m] of the origin's way, across the axis
+};
+
+Screw screw_of(const TiltedPose& from, const TiltedPose& to) {
+  Screw s;
+  s.q_WA = quaternion_of(from.X.yaw, from.tilt);
+  const Quaternion q_WB = quaternion_of(to.X.yaw, to.tilt);
+  Quaternion q = product({s.q_WA.w, -s.q_WA.x, -s.q_WA.y, -s.q_WA.z}, q_WB);
+  if (q.w < 0.0) q = {-q.w, -q.x, -q.y, -q.z};
+  const double sine = hypot(q.x, q.y, q.z);
+  s.half = atan2(sine, q.w);
+  s.axis = sine > 0.0 ? glm::dvec3{q.x, q.y, q.z} / sine : glm::dvec3{};
+  s.R_WA = rotation_of(s.q_WA);
+  const glm::dvec3 p = glm::transpose(s.R_WA) * glm::dvec3{to.X.x - from.X.x, to.X.y - from.X.y, to.X.z - from.X.z};
+  s.along = glm::dot(s.axis, p);
+  s.chord = p - s.along * s.axis;
+  return s;
+}
+
 }  // namespace
 
 TiltedPose tilted_pose_of(const RigidTransform& X_AB) {
@@ -44,23 +70,23 @@ glm::dmat3 rotation_of(const Quaternion& q) {
 // along a circle: the chord of a part of the turn has the direction of the whole chord, less half of the turn that is
 // left, and its length is in proportion to the sine of half the turn.
 TiltedPose screw_between(const TiltedPose& from, const TiltedPose& to, double part) {
-  const Quaternion q_WA = quaternion_of(from.X.yaw, from.tilt), q_WB = quaternion_of(to.X.yaw, to.tilt);
-  Quaternion q = product({q_WA.w, -q_WA.x, -q_WA.y, -q_WA.z}, q_WB);
-  if (q.w < 0.0) q = {-q.w, -q.x, -q.y, -q.z};
-  const double sine = hypot(q.x, q.y, q.z), half = atan2(sine, q.w);
-  const glm::dvec3 axis = sine > 0.0 ? glm::dvec3{q.x, q.y, q.z} / sine : glm::dvec3{};
+  const Screw s = screw_of(from, to);
+  const SinCos back = sin_cos((part - 1.0) * s.half), turned = sin_cos(part * s.half);
+  const double share = part * sinc(part * s.half) / sinc(s.half);
+  const glm::dvec3 p_AC =
+      part * s.along * s.axis + share * (back.cos * s.chord + back.sin * glm::cross(s.axis, s.chord));
 
-  const glm::dmat3 R_WA = rotation_of(q_WA);
-  const glm::dvec3 p = glm::transpose(R_WA) * glm::dvec3{to.X.x - from.X.x, to.X.y - from.X.y, to.X.z - from.X.z};
-  const double along = glm::dot(axis, p);
-  const glm::dvec3 chord = p - along * axis;
-  const SinCos back = sin_cos((part - 1.0) * half), turned = sin_cos(part * half);
-  const double share = part * sinc(part * half) / sinc(half);
-  const glm::dvec3 p_AC = part * along * axis + share * (back.cos * chord + back.sin * glm::cross(axis, chord));
+  const glm::dvec3 v = turned.sin * s.axis;
+  return tilted_pose_of({rotation_of(product(s.q_WA, {turned.cos, v.x, v.y, v.z})),
+                         s.R_WA * p_AC + glm::dvec3{from.X.x, from.X.y, from.X.z}});
+}
 
-  const glm::dvec3 v = turned.sin * axis;
-  return tilted_pose_of({rotation_of(product(q_WA, {turned.cos, v.x, v.y, v.z})),
-                         R_WA * p_AC + glm::dvec3{from.X.x, from.X.y, from.X.z}});
+// The derivative of the way above at its start.
+BodyVelocity screw_velocity(const TiltedPose& from, const TiltedPose& to, double seconds) {
+  const Screw s = screw_of(from, to);
+  const auto [sine, cosine] = sin_cos(s.half);
+  const glm::dvec3 across = (cosine * s.chord - sine * glm::cross(s.axis, s.chord)) / sinc(s.half);
+  return {(s.along * s.axis + across) / seconds, 2.0 * s.half / seconds * s.axis};
 }
 
 }  // namespace sf::base

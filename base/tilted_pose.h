@@ -33,4 +33,13 @@ glm::dmat3 rotation_of(const Quaternion& q);
 /// constant twist.
 TiltedPose screw_between(const TiltedPose& from, const TiltedPose& to, double part);
 
+/// Velocity of a frame, in that frame.
+struct BodyVelocity {
+  glm::dvec3 linear{};   ///< [m/s] of its origin
+  glm::dvec3 angular{};  ///< [rad/s]
+};
+
+/// Returns the constant velocity of that motion, which takes `seconds` > 0.
+BodyVelocity screw_velocity(const TiltedPose& from, const TiltedPose& to, double seconds);
+
 }  // namespace sf::base

@@ -25,6 +25,29 @@ base::Twist twist_between(const base::Pose& from, const base::Pose& to, double s
   return {per * chord.x, per * chord.y, turn / seconds};
 }
 
+bool is_level(const base::Report& before, const base::Report& after) {
+  return base::is_level(before.tilt) && base::is_level(after.tilt);
+}
+
+/// True for bitwise equal poses; of level movers at any height.
+bool is_at_rest(const base::Report& before, const base::Report& after) {
+  const base::Pose &from = before.X_WM, &to = after.X_WM;
+  const bool same_tilt = before.tilt.roll == after.tilt.roll && before.tilt.pitch == after.tilt.pitch;
+  return from.x == to.x && from.y == to.y && from.yaw == to.yaw &&
+         (is_level(before, after) || (same_tilt && from.z == to.z));
+}
+
+double seconds_between(const base::Report& before, const base::Report& after) {
+  return 1e-9 * static_cast<double>(after.time - before.time);
+}
+
+/// Returns the planar velocity between two states, disregarding tilt.
+base::Twist planar_velocity(const base::Report& before, const base::Report& after) {
+  const double seconds = seconds_between(before, after);
+  const bool led = near(advance(before.X_WM, after.velocity, seconds), after.X_WM);
+  return led ? after.velocity : twist_between(before.X_WM, after.X_WM, seconds);
+}
+
 }  // namespace
 
 base::Twist finite(const base::Twist& twist) {
@@ -50,27 +73,31 @@ base::Report extrapolate(const base::Report& known, std::int64_t time) {
 }
 
 base::Report interpolate(const base::Report& before, const base::Report& after, std::int64_t time) {
-  const base::Pose &from = before.X_WM, &to = after.X_WM;
   base::Report report = before;
   report.time = time;
-  const bool level = base::is_level(before.tilt) && base::is_level(after.tilt);
-  const bool same_tilt = before.tilt.roll == after.tilt.roll && before.tilt.pitch == after.tilt.pitch;
   // Bitwise equal poses allow readings of a mover at rest to be reused.
-  if (from.x == to.x && from.y == to.y && from.yaw == to.yaw && (level || (same_tilt && from.z == to.z))) {
+  if (is_at_rest(before, after)) {
     report.velocity = after.velocity;
     return report;
   }
-  const double seconds = 1e-9 * static_cast<double>(after.time - before.time);
-  const bool led = near(advance(from, after.velocity, seconds), to);
-  report.velocity = led ? after.velocity : twist_between(from, to, seconds);
+  report.velocity = planar_velocity(before, after);
   const double since = 1e-9 * static_cast<double>(time - before.time);
-  if (level) {
-    report.X_WM = advance(from, report.velocity, since);
+  if (is_level(before, after)) {
+    report.X_WM = advance(before.X_WM, report.velocity, since);
   } else if (since > 0.0) {
-    const auto between = base::screw_between({from, before.tilt}, {to, after.tilt}, since / seconds);
+    const auto between = base::screw_between({before.X_WM, before.tilt}, {after.X_WM, after.tilt},
+                                             since / seconds_between(before, after));
     report.X_WM = between.X, report.tilt = between.tilt;
   }
   return report;
+}
+
+base::BodyVelocity velocity_between(const base::Report& before, const base::Report& after) {
+  if (is_at_rest(before, after)) return {};
+  if (!is_level(before, after))
+    return base::screw_velocity({before.X_WM, before.tilt}, {after.X_WM, after.tilt}, seconds_between(before, after));
+  const base::Twist v = planar_velocity(before, after);
+  return {{v.forward, v.left, 0.0}, {0.0, 0.0, v.turn}};
 }
 
 }  // namespace sf::robots

@@ -5,6 +5,7 @@
 
 #include "base/pose.h"
 #include "base/report.h"
+#include "base/tilted_pose.h"
 #include "world/world.h"
 
 namespace sf::robots {
@@ -32,5 +33,9 @@ base::Report extrapolate(const base::Report& known, std::int64_t time);
 /// movers. Contacts are those of `before`. Pure function.
 /// @param time [ns] in [before.time, after.time); before.time < after.time
 base::Report interpolate(const base::Report& before, const base::Report& after, std::int64_t time);
+
+/// Returns the constant velocity of a mover between two of its states, in its own frame, by the motion that
+/// `interpolate` follows. Level movers have no vertical velocity, since their height changes at ticks.
+base::BodyVelocity velocity_between(const base::Report& before, const base::Report& after);
 
 }  // namespace sf::robots

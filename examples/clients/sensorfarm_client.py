@@ -81,6 +81,8 @@ SENSORS = {
     41: ("location", 24000, [("x_m", 5e-3), ("y_m", 5e-3), ("valid", 1), ("xx_m2", None), ("xy_m2", None),
                             ("yy_m2", None), ("source", 1), ("age_s", None)]),
     42: ("thermometer", 22000, [("temperature_C", 1e-3)]),
+    46: ("imu", 12000, [("rate_x_rad_s", None), ("rate_y_rad_s", None), ("rate_z_rad_s", None), ("force_x_m_s2", None),
+                        ("force_y_m_s2", None), ("force_z_m_s2", None), ("saturated", 1)]),
     44: ("lidar", 14000, [("range_m", 1e-3)]),
     45: ("camera", 15000, [("depth_m", 1e-3)]),
     43: ("aggregate", 18000, [("value", None), ("valid", 1), ("variance", None), ("source", 1), ("age_s", None)]),

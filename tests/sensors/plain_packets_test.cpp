@@ -157,6 +157,7 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
                2, 0.25}},
              {"location", 41, 1, {1.5, -0.5, 1, 0.0625, -0.0078125, 0.25, -1, 0.125}},
              {"thermometer", 42, 1, {21.5}},
+             {"imu", 46, 1, {0.5, -0.25, 0.125, 1.5, -0.5, 9.75, 36}},
              {"aggregate", 43, 1, {21.5, 1, 0.25, 0, 0.0625}},
              {"loop", 36, 1, {12, 0.25, 0.5, 1}},
              {"link-speed", 37, 2, {0.5, 40, 1, 0.0625, -5, 400, 2.5, kNaN, kNaN, 0, kNaN, kNaN, kNaN, kNaN}},
@@ -213,7 +214,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 24u) << "plain readings";
+  EXPECT_EQ(rows, 25u) << "plain readings";
 }
 
 }  // namespace

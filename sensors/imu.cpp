@@ -1,0 +1,271 @@
+#include "sensors/imu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/suggest.h"
+#include "base/time.h"
+#include "sensors/carrier_trail.h"
+#include "sensors/host_backend.h"
+#include "sensors/inertial_motion.h"
+#include "sensors/lidar_beams.h"
+#include "sensors/plain_packets.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::size_t kPiece = 16;  // sensors per piece of work
+
+/// One unit during a run.
+struct ImuState {
+  InertialMotion motion;
+  Triad gyros, accels;
+};
+
+class Imus : public HostBackend {
+ public:
+  Imus(const SensorContext& context, const ParsedSensors& sensors);
+
+  void accumulate(std::int64_t now, bool between) override;
+  void write_state(std::uint32_t row, base::ByteWriter& out) const override;
+  void read_state(std::uint32_t row, base::ByteReader& in) override;
+  void restart(std::uint32_t row, std::int64_t now) override;
+
+ private:
+  void measure_all() override;
+  void measure_one(const HostSample& sample);
+  ImuState state_at_start(std::uint32_t row) const;
+  base::Report report_of(std::size_t row) const {
+    base::Report report = states()[rows()[row].mover];
+    report.time = now_;
+    return report;
+  }
+
+  const std::vector<Imu>& settings_;  ///< per row
+  bool noise_;
+  std::vector<ImuState> imus_;      ///< per row
+  std::vector<base::Report> last_;  ///< per row, in the last tick or sample
+  std::int64_t now_ = 0;            ///< [ns]
+};
+
+ParsedSensors parse_imus(const world::World& world) {
+  return parse_each(world, imu_type, [](const world::Sensor& sensor, SensorSpec& row) {
+    const Imu imu = read_imu(sensor);
+    row.rate = rate_of(sensor, kImuRate);
+    if (row.rate < kLeastImuRate)
+      refuse(sensor, find(sensor, "rate") != nullptr ? "rate" : "update_interval",
+             fmt::format("the rate is {:g} Hz; expected at least {:g}: each reading is a mean since the last one",
+                         row.rate, kLeastImuRate));
+    row.X_MS = {imu.X_MS.p.x, imu.X_MS.p.y, imu.X_MS.p.z, base::atan2(imu.X_MS.R[0].y, imu.X_MS.R[0].x)};
+    row.limit = imu.gyro.range;
+    row.sigma = imu.g_sensitivity > 0.0 ? HUGE_VAL : reading_deviation(imu.gyro, 1.0 / row.rate);
+    row.reach = 0.0;
+    return imu;
+  });
+}
+
+Imus::Imus(const SensorContext& context, const ParsedSensors& sensors)
+    : HostBackend(context, imu_type, sensors),
+      settings_(sensors.settings_as<Imu>()),
+      noise_(context.noise),
+      last_(rows().size()) {
+  for (std::uint32_t i = 0; i < rows().size(); ++i) imus_.push_back(state_at_start(i));
+}
+
+ImuState Imus::state_at_start(std::uint32_t row) const {
+  const SensorSpec& spec = rows()[row];
+  const Imu& s = settings_[row];
+  const base::RandomKey noise = episodes().key(base::RandomStream::inertial_noise, spec.mover, spec.sensor),
+                        drift = episodes().key(base::RandomStream::inertial_drift, spec.mover, spec.sensor);
+  const double interval = 1.0 / spec.rate;
+  return {{s.X_MS, base::nanoseconds(interval), world().movers[spec.mover].max_forward, s.gravity},
+          {s.gyro, s.g_sensitivity, interval, noise, drift, 0, noise_},
+          {s.accel, 0.0, interval, noise, drift, 1, noise_}};
+}
+
+void Imus::restart(std::uint32_t row, std::int64_t now) {
+  now_ = now;
+  imus_[row] = state_at_start(row);
+  last_[row] = report_of(row);
+}
+
+void Imus::accumulate(std::int64_t now, bool between) {
+  now_ = now;
+  thread_pool().parallel_for(imus_.size(), kPiece, [&](std::size_t first, std::size_t end, unsigned) {
+    for (std::size_t row = first; row < end; ++row) {
+      last_[row] = report_of(row);
+      if (!between) imus_[row].motion.add(last_[row]);
+    }
+  });
+}
+
+/// A mover at the pose of a single reading, where no tick has put it, is at rest.
+void Imus::measure_one(const HostSample& sample) {
+  ImuState& imu = imus_[sample.row];
+  const base::Report now = report_of(sample.row);
+  const InertialMeans truth = is_same_place(now, last_[sample.row]) ? imu.motion.mean(now) : imu.motion.at_rest(now);
+  const Triad::Output rate = imu.gyros.measure(truth.rate, truth.force, sample.sequence),
+                      force = imu.accels.measure(truth.force, {}, sample.sequence);
+  const double row[] = {rate.values.x,
+                        rate.values.y,
+                        rate.values.z,
+                        force.values.x,
+                        force.values.y,
+                        force.values.z,
+                        static_cast<double>(rate.saturated | force.saturated << 3)};
+  std::copy(std::begin(row), std::end(row), sample.values.begin());
+}
+
+void Imus::measure_all() {
+  thread_pool().parallel_for(samples().size(), kPiece, [&](std::size_t first, std::size_t end, unsigned) {
+    for (std::size_t i = first; i < end; ++i) measure_one(samples()[i]);
+  });
+}
+
+void Imus::write_state(std::uint32_t row, base::ByteWriter& out) const {
+  const ImuState& imu = imus_[row];
+  imu.motion.write(out);
+  imu.gyros.write(out), imu.accels.write(out);
+}
+
+void Imus::read_state(std::uint32_t row, base::ByteReader& in) {
+  ImuState& imu = imus_[row];
+  imu.motion.read(in);
+  imu.gyros.read(in), imu.accels.read(in);
+}
+
+// --- Settings ---
+
+constexpr double kDegree = M_PI / 180.0, kHour = 3600.0, kRootHour = 60.0;
+constexpr double kFloor = 1.0 / 0.664;  // B of an Allan deviation at its lowest
+constexpr double kG = kStandardGravity;
+
+/// A real device, by its data sheet.
+struct Preset {
+  std::string_view name;
+  TriadErrors gyro, accel;
+  double g_sensitivity = 0.0;
+};
+
+// Limits ("+-3 %") are three deviations. Figures that a sheet does not state are 0. Densities are of one side, so N is
+// the density over sqrt(2). Bias instabilities are read off Allan deviations at their lowest.
+// InvenSense PS-MPU-6000A-00 Rev. 3.4, at 250 deg/s and 2 g: 0.005 deg/s/sqrt(Hz), 20 deg/s, 3 %, 2 %, 0.1 deg/s/g;
+// 400 ug/sqrt(Hz), 50 mg, 3 %, 2 %; 131 and 16 384 counts.
+// Analog Devices ADIS16470 Rev. C: 0.34 deg/sqrt(h), 8 deg/h, 2000 deg/s; 0.037 m/s/sqrt(h), 13 ug, 40 g.
+// Sensonor STIM300 Rev. 9, of 10 g: 0.15 deg/sqrt(h), 0.5 deg/h, 500 ppm, 1 mrad, 1 deg/h/g, 400 deg/s; 0.06
+// m/s/sqrt(h), 0.05 mg, 0.75 mg, 300 ppm, 1 mrad.
+constexpr Preset kPresets[] = {
+    {"MPU-6050",
+     {.noise = 0.005 * kDegree * M_SQRT1_2,
+      .bias = 20.0 / 3.0 * kDegree,
+      .scale = 0.01,
+      .misalignment = 0.02 / 3.0,
+      .step = kDegree / 131.0,
+      .range = 250.0 * kDegree},
+     {.noise = 400e-6 * kG * M_SQRT1_2,
+      .bias = 50e-3 / 3.0 * kG,
+      .scale = 0.01,
+      .misalignment = 0.02 / 3.0,
+      .step = kG / 16384.0,
+      .range = 2.0 * kG},
+     0.1 * kDegree / kG},
+    {"ADIS16470",
+     {.noise = 0.34 * kDegree / kRootHour, .drift = {8.0 * kDegree / kHour * kFloor}, .range = 2000.0 * kDegree},
+     {.noise = 0.037 / kRootHour, .drift = {13e-6 * kG * kFloor}, .range = 40.0 * kG}},
+    {"STIM300",
+     {.noise = 0.15 * kDegree / kRootHour,
+      .drift = {0.5 * kDegree / kHour * kFloor},
+      .scale = 500e-6,
+      .misalignment = 1e-3,
+      .range = 400.0 * kDegree},
+     {.noise = 0.06 / kRootHour,
+      .drift = {0.05e-3 * kG * kFloor},
+      .bias = 0.75e-3 * kG,
+      .scale = 300e-6,
+      .misalignment = 1e-3,
+      .range = 10.0 * kG},
+     kDegree / kHour / kG}};
+
+Preset preset_of(const world::Sensor& sensor) {
+  const world::Setting* setting = find(sensor, "preset");
+  if (setting == nullptr) return {};
+  std::vector<std::string_view> names;
+  for (const Preset& preset : kPresets) {
+    if (setting->text == preset.name) return preset;
+    names.push_back(preset.name);
+  }
+  refuse(sensor, "preset",
+         fmt::format("there is no preset \"{}\"; expected {}{}", setting->text, fmt::join(names, ", "),
+                     base::suggest(setting->text, names)));
+}
+
+using Quantity = double (*)(const world::Sensor& sensor, std::string_view key, double fallback, double least,
+                            double most);
+
+/// Reads the errors of gyros (`prefix` "gyro_") or accelerometers (`prefix` "accel_").
+/// @param quantity reads in the unit of the quantity  @param most in this unit
+void read_triad(const world::Sensor& sensor, const std::string& prefix, Quantity quantity, double most,
+                TriadErrors& e) {
+  const auto read = [&](const char* key, double& value) { value = quantity(sensor, prefix + key, value, 0.0, most); };
+  read("noise", e.noise);
+  read("instability", e.drift.instability);
+  read("walk", e.drift.walk);
+  read("bias", e.bias);
+  read("step", e.step);
+  e.scale = number(sensor, prefix + "scale", e.scale, 0.0, 1.0);
+  e.misalignment = angle(sensor, prefix + "misalignment", e.misalignment, 0.0, 0.5);
+  e.range = quantity(sensor, prefix + "range", e.range, 1e-9, most);
+}
+
+constexpr std::string_view kKeys[] = {"preset",
+                                      "pose6",
+                                      "gravity",
+                                      "g_sensitivity",
+                                      "gyro_noise",
+                                      "gyro_instability",
+                                      "gyro_walk",
+                                      "gyro_bias",
+                                      "gyro_scale",
+                                      "gyro_step",
+                                      "gyro_misalignment",
+                                      "gyro_range",
+                                      "accel_noise",
+                                      "accel_walk",
+                                      "accel_instability",
+                                      "accel_bias",
+                                      "accel_scale",
+                                      "accel_step",
+                                      "accel_range",
+                                      "accel_misalignment"};
+constexpr Column kColumns[] = {{"rate_x_rad_s"}, {"rate_y_rad_s"}, {"rate_z_rad_s"},      {"force_x_m_s2"},
+                               {"force_y_m_s2"}, {"force_z_m_s2"}, {"saturated", 1, true}};
+constexpr PlainNumber kReal{.real = true};
+constexpr PlainNumber kNumbers[] = {kReal, kReal, kReal, kReal, kReal, kReal, {1.0, 0.0, 63.0}};
+constexpr PlainForm kForm{kImu, "imu", kNumbers};
+
+}  // namespace
+
+Imu read_imu(const world::Sensor& sensor) {
+  constexpr double kMostRate = 1e3, kMostForce = 1e5;  // [rad/s], [m/s^2]
+  const Preset preset = preset_of(sensor);
+  Imu imu{.X_MS = spatial_mount(sensor), .gyro = preset.gyro, .accel = preset.accel};
+  imu.gravity = length(sensor, "gravity", imu.gravity, 0.0, 1e3);
+  imu.g_sensitivity = angle(sensor, "g_sensitivity", preset.g_sensitivity * kG, 0.0, kMostRate) / kG;
+  read_triad(sensor, "gyro_", angle, kMostRate, imu.gyro);
+  read_triad(sensor, "accel_", length, kMostForce, imu.accel);
+  return imu;
+}
+
+constinit const SensorType imu_type = plain<kForm>({
+    .word = {"imu", kKeys},
+    .base_port = 12000,
+    .list = "",
+    .columns = kColumns,
+    .parse = parse_imus,
+    .make = make_backend<Imus>,
+});
+
+}  // namespace sf::sensors

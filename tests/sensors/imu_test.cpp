@@ -1,0 +1,189 @@
+// Inertial measurement units: readings at rest and on circles, errors, saturation, states that are carried on, and
+// settings that are refused.
+
+#include "sensors/imu.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robots/kinematics.h"
+#include "tests/refusal.h"
+#include "tests/sensors/series.h"
+
+namespace sf::trial {
+namespace {
+
+using sensors::kImu;
+constexpr double kG = sensors::kStandardGravity;
+constexpr std::int64_t kTick = 100'000'000;  // [ns]
+
+/// A farm with one robot whose readings are taken in ticks and between them.
+struct Drive {
+  explicit Drive(const std::string& text, std::uint64_t seed = 1, bool noise = true)
+      : world(world_of(text)), farm(world, host_device(), {.seed = seed, .noise = noise, .threads = 1}) {
+    farm.subscribe_all();
+    state.X_WM = world.movers[0].X_WM;
+    take(farm.tick(0, {&state, 1}));
+  }
+  /// Goes on to the next tick, where the robot is at `next`.
+  void tick(base::Report next) {
+    next.time = state.time + kTick;
+    for (std::int64_t due = farm.next_due(); due < next.time; due = farm.next_due())
+      take(farm.sample_between(due, {&next, 1}));
+    take(farm.tick(next.time, {&next, 1}));
+    state = next;
+  }
+  void drive(const base::Twist& twist) {
+    base::Report next = state;
+    next.velocity = twist;
+    next.X_WM = robots::advance(state.X_WM, twist, 0.1);
+    tick(next);
+  }
+  void take(std::span<const base::ReadingBlock> blocks) {
+    for (const base::ReadingBlock& block : blocks) readings.emplace_back(block.values.begin(), block.values.end());
+  }
+
+  world::World world;
+  farm::Farm farm;
+  base::Report state;
+  std::vector<std::vector<double>> readings;
+};
+
+void expect_near(const std::vector<double>& reading, const std::vector<double>& expected, const char* what) {
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(reading[i], expected[i], 1e-9) << what << " " << i;
+}
+
+TEST(Imu, ReadsGravityAtRest) {
+  const auto first = [](const std::string& text) { return series(world_of(text), kImu, 1)[0]; };
+  expect_near(first("position( imu() )"), {0, 0, 0, 0, 0, kG, 0}, "level");
+  expect_near(first("position( pose [3 4 0 50] imu( gravity 1.62 ) )"), {0, 0, 0, 0, 0, 1.62, 0}, "on the Moon");
+  const double s = kG * std::sin(0.5), c = kG * std::cos(0.5);
+  expect_near(first("unit_angle \"radians\" position( imu( pose6 [1 2 3 0 0.5 1] ) )"), {0, 0, 0, -s, 0, c, 0},
+              "nose down");
+  expect_near(first("unit_angle \"radians\" position( imu( pose6 [0 0 0 0.5 0 0] ) )"), {0, 0, 0, 0, s, c, 0},
+              "left side up");
+
+  const world::World world = world_of("position( imu() )");
+  farm::Farm farm(world, host_device(), {});
+  const base::ReadingBlock placed = farm.sense(0, kImu, 0, {5, 5, 0, 1}, {0.0, 0.5});
+  expect_near({placed.values.begin(), placed.values.end()}, {0, 0, 0, -s, 0, c, 0}, "placed there");
+}
+
+/// Starts from rest at once, drives a circle of radius 2 m at 1 m/s with the sensor 0.5 m ahead and turned to the left,
+/// and stops at once.
+TEST(Imu, IntegratesStartsCirclesAndStops) {
+  Drive d("position( imu( rate 40 pose6 [0.5 0 0 0 0 90] ) )");
+  for (int k = 0; k < 3; ++k) d.drive({1.0, 0.0, 0.5});
+  for (int k = 0; k < 2; ++k) d.drive({});
+  ASSERT_EQ(d.readings.size(), 21u) << "one every 25 ms from 0";
+  expect_near(d.readings[0], {0, 0, 0, 0, 0, kG}, "before the start");
+  // The sensor moves by (1, 0.25) m/s in the robot's frame: (0.25, -1) in its own. It accelerates by (-0.125, 0.5).
+  expect_near(d.readings[1], {0, 0, 0.5, 0.5 + 0.25 * 40, 0.125 - 1.0 * 40, kG}, "the start");
+  for (std::size_t k = 2; k <= 12; ++k) expect_near(d.readings[k], {0, 0, 0.5, 0.5, 0.125, kG}, "on the circle");
+  expect_near(d.readings[13], {0, 0, 0, -0.25 * 40, 1.0 * 40, kG}, "the stop");
+  for (std::size_t k = 14; k <= 20; ++k) expect_near(d.readings[k], {0, 0, 0, 0, 0, kG}, "at rest again");
+}
+
+TEST(Imu, RelocationsAreNoMotion) {
+  Drive d("position( imu( rate 40 ) )");
+  d.drive({});
+  base::Report there = d.state;
+  there.X_WM = {500.0, 0.0, 0.0, 2.0};
+  d.tick(there);
+  d.drive({});
+  for (const auto& reading : d.readings) expect_near(reading, {0, 0, 0, 0, 0, kG}, "relocated");
+}
+
+TEST(Imu, SaturatesAxisByAxis) {
+  Drive d("position( imu( rate 10 gyro_range 90 accel_range 9 ) )");
+  EXPECT_EQ(d.readings[0][6], 32.0) << "gravity is beyond the range of accelerometer z";
+  EXPECT_EQ(d.readings[0][5], 9.0);
+  d.drive({1.0, 0.0, -3.0});
+  EXPECT_EQ(d.readings[1][2], -M_PI / 2);
+  EXPECT_EQ(d.readings[1][6], 4.0 + 8.0 + 32.0) << "gyro z, and accelerometers x and z";
+}
+
+TEST(Imu, ErrorsOfARunAreDrawnOnceAndRoundedLast) {
+  const char* text =
+      "position( imu( gyro_bias 1 gyro_scale 0.1 gyro_misalignment 1 g_sensitivity 1 accel_bias 0.1 "
+      "accel_step 0.5 accel_scale 0.01 ) )";
+  const auto one = series(world_of(text), kImu, 2, 7), other = series(world_of(text), kImu, 1, 8);
+  EXPECT_EQ(one[0], one[1]);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NE(one[0][i], other[0][i]);
+  for (std::size_t i = 3; i < 6; ++i) EXPECT_EQ(std::remainder(one[0][i], 0.5), 0.0);
+  expect_near(Drive(text, 7, false).readings[0], {0, 0, 0, 0, 0, 10.0, 0}, "without noise, but rounded");
+}
+
+/// White noise of gyros and accelerometers has the stated deviation at the rate, and axes are independent.
+TEST(Imu, NoiseFollowsTheDensity) {
+  const auto readings = series(world_of("position( imu( rate 10 gyro_noise 0.1 accel_noise 0.02 ) )"), kImu, 4000, 3);
+  const double sigma[] = {0.1 * M_PI / 180.0 * std::sqrt(10.0), 0.02 * std::sqrt(10.0)};
+  std::vector<double> squares(6);
+  double cross = 0.0;
+  for (const auto& r : readings) {
+    for (std::size_t i = 0; i < 6; ++i) squares[i] += std::pow((r[i] - (i == 5 ? kG : 0.0)) / sigma[i / 3], 2) / 4000.0;
+    cross += r[0] * r[1] / (sigma[0] * sigma[0]) / 4000.0;
+  }
+  for (const double square : squares) EXPECT_NEAR(square, 1.0, 0.1) << "4.5 deviations of 4000 squares";
+  EXPECT_NEAR(cross, 0.0, 0.07);
+}
+
+/// Another process continues with the bytes of the same sensor.
+TEST(Imu, ContinuesFromItsState) {
+  const char* text = "position( imu( rate 10 preset \"ADIS16470\" gyro_walk 0.01 ) )";
+  Drive whole(text), second(text);
+  for (int k = 0; k < 4; ++k) whole.drive({1.0, 0.0, 0.3 * k});
+  base::Bytes state;
+  base::ByteWriter out(state);
+  whole.farm.write_sensors(0, out);
+  base::ByteReader in(state);
+  for (int k = 0; k < 4; ++k) second.drive({});
+  second.farm.read_sensors(0, in);
+  EXPECT_TRUE(in.good() && in.left() == 0);
+  second.state = whole.state;
+  whole.drive({0.5, 0.0, 0.1});
+  second.drive({0.5, 0.0, 0.1});
+  EXPECT_EQ(second.readings.back(), whole.readings.back());
+  EXPECT_NE(second.readings.front(), whole.readings.back());
+}
+
+/// Readings that nobody has asked for do not change later ones.
+TEST(Imu, WandersWhetherItIsReadOrNot) {
+  const world::World world = world_of("position( imu( rate 10 gyro_instability 1 gyro_walk 1 gyro_noise 1 ) )");
+  farm::Farm farm(world, host_device(), {.seed = 1, .threads = 1});
+  const base::Report at_rest{0, 0, world.movers[0].X_WM};
+  for (int k = 0; k < 50; ++k) farm.tick(k * kTick, {&at_rest, 1});
+  farm.subscribe_all();
+  const auto readings = farm.tick(50 * kTick, {&at_rest, 1});
+  ASSERT_EQ(readings.size(), 1u);
+  EXPECT_EQ(std::vector<double>(readings[0].values.begin(), readings[0].values.end()), series(world, kImu, 51)[50]);
+}
+
+TEST(Imu, PresetsAreOfDataSheetsAndMayBeChanged) {
+  const auto settings = [](const std::string& text) {
+    const world::World world = world_of("position( imu( " + text + " ) )");
+    return sensors::SensorSet(world).settings_of<sensors::Imu>(kImu)[0];
+  };
+  const sensors::Imu adis = settings("preset \"ADIS16470\"");
+  EXPECT_NEAR(adis.gyro.noise * 180.0 / M_PI * 60.0, 0.34, 1e-12) << "[deg/sqrt(h)]";
+  EXPECT_NEAR(adis.gyro.noise * 180.0 / M_PI * std::sqrt(2.0), 0.008, 1e-4) << "the stated density of one side";
+  EXPECT_EQ(settings("preset \"ADIS16470\" gyro_noise 0").gyro.noise, 0.0);
+  EXPECT_EQ(settings("preset \"ADIS16470\" gyro_noise 0").accel.noise, adis.accel.noise);
+  EXPECT_GT(settings("preset \"MPU-6050\"").gyro.noise, settings("preset \"STIM300\"").gyro.noise);
+}
+
+TEST(Imu, ImpossibleSettingsAreRefused) {
+  const auto refused = [](const std::string& text) {
+    return refusal_of([&] { sensors::SensorSet(world_of("position(\nimu( " + text + " ) )")); });
+  };
+  expect_in("trial.world:2: there is no preset \"MPU6050\"; expected MPU-6050, ADIS16470, STIM300",
+            refused("preset \"MPU6050\""));
+  expect_in("the rate is 0.5 Hz; expected at least 1", refused("rate 0.5"));
+  expect_in("'gyro_noise'", refused("gyro_noise -1"));
+  expect_in("'accel_range'", refused("accel_range 0"));
+  expect_in("'pose6'", refused("pose6 [1 2 3]"));
+}
+
+}  // namespace
+}  // namespace sf::trial
