@@ -2,6 +2,7 @@
 // Description of a run. Together with the world and the states, it suffices to recompute all scans.
 
 #include <cstdint>
+#include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/vector_double3.hpp>
 #include <limits>
 #include <memory>
@@ -56,6 +57,11 @@ struct StandardTopic {
   std::uint32_t rings = 1;                                    ///< rows of the cloud, of equal length
   std::size_t width = 1;                                      ///< numbers per beam: the range, the intensity, ...
   std::shared_ptr<const std::vector<double>> times;           ///< [s] of the beams relative to the reading; null: 0
+
+  // For the readings of an imu, whose vectors are turned into frame `frame`, which is level at rest:
+  bool six_axes = false;      ///< false: of a gyro
+  glm::dmat3 R_FS{1.0};       ///< sensor in this frame
+  double force_sigma = 0.0;   ///< [m/s^2] of each axis; 0: not stated
 
   /// Standard deviation of a turn rate [rad/s], or of a fix [m] at an HDOP of 1; 0: not stated.
   double sigma = 0.0;

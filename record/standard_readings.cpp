@@ -46,6 +46,11 @@ Degrees degrees_at(double east, double north) {
   return {base::atan2(a * a * north, b * b * from_axis) * 180.0 / M_PI, base::atan2(east, up) * 180.0 / M_PI};
 }
 
+/// Writes the covariance of a vector with independent axes; zeros if it is unknown.
+void put_variances(CdrWriter& cdr, double x, double y, double z) {
+  for (const double term : {x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, z}) cdr.put(term);
+}
+
 void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
   constexpr std::uint16_t kGps = 1;
   const bool fix = std::isfinite(values[0]);
@@ -58,7 +63,7 @@ void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double>
   if (topic.sigma > 0.0 && fix) {
     constexpr double kUnmeasured = 1e6;                                            // [m^2] of the altitude
     const double error = topic.sigma * values[2], variance = 0.5 * error * error;  // HDOP refers to both axes together
-    for (const double term : {variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, kUnmeasured}) cdr.put(term);
+    put_variances(cdr, variance, variance, kUnmeasured);
     return cdr.put(std::uint8_t{1});  // approximated
   }
   put_zeros(cdr, 9);
@@ -74,11 +79,19 @@ void put_unmeasured(CdrWriter& cdr) {
 void put_imu(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
   for (const double part : {0.0, 0.0, 0.0, 1.0}) cdr.put(part);
   put_unmeasured(cdr);
-  for (const double rate : {0.0, 0.0, values[0]}) cdr.put(rate);
   const double variance = topic.sigma * topic.sigma, fixed = variance > 0.0 ? kLeastVariance : 0.0;
-  for (const double term : {fixed, 0.0, 0.0, 0.0, fixed, 0.0, 0.0, 0.0, variance}) cdr.put(term);
-  put_zeros(cdr, 3);
-  put_unmeasured(cdr);
+  if (!topic.six_axes) {
+    for (const double rate : {0.0, 0.0, values[0]}) cdr.put(rate);
+    put_variances(cdr, fixed, fixed, variance);
+    put_zeros(cdr, 3);
+    return put_unmeasured(cdr);
+  }
+  for (std::size_t first = 0; first < 6; first += 3) {
+    const glm::dvec3 v = topic.R_FS * glm::dvec3{values[first], values[first + 1], values[first + 2]};
+    for (const double part : {v.x, v.y, v.z}) cdr.put(part);
+    const double each = first == 0 ? variance : topic.force_sigma * topic.force_sigma;
+    put_variances(cdr, each, each, each);
+  }
 }
 
 void put_map(CdrWriter& cdr, const StandardTopic& topic, std::int64_t time, std::span<const double> values) {

@@ -18,7 +18,8 @@ std::string_view type_of(StandardTopic::Message message);
 ///   magnetic_field  vector_T [T]
 ///   fix             x_m, y_m on a plane that touches WGS84 at latitude 0 and longitude 0, x east, y north; NaN: no
 ///                   fix; half of (sigma hdop)^2 as the variance of each axis
-///   imu             rate_rad_s about z, and its variance
+///   imu             rate_rad_s of a gyro about z, and its variance; or the rates and forces of an imu in `topic.frame`,
+///                   and the variance of each axis
 ///   map             words (maps/grid.h): -1 unexplored, 0 free, 100 occupied
 /// @param time [ns] of the measurement
 /// @param values of the whole reading, with a range below `range_min` for a surface that is too near; in the layout of

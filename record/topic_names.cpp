@@ -91,6 +91,14 @@ void name_standard_topics(SensorInfo& sensor, const std::string& prefix) {
   }
 }
 
+/// Returns the last word of a sensor's topic: "scan", "gps"; "imu_reading" where a standard message is called "imu".
+std::string topic_word(const SensorTypeInfo& type, const SensorInfo& sensor) {
+  if (type.is_scan) return "scan";
+  for (const StandardTopic& each : sensor.standard)
+    if (type.name == word_of(each.message)) return type.name + "_reading";
+  return type.name;
+}
+
 const SensorTypeInfo& sensor_type_of(const RunInfo& info, const SensorInfo& sensor) {
   const SensorTypeInfo* type = find_sensor_type(info, sensor.type);
   SF_CHECK(type != nullptr, "sensor type " + std::to_string(sensor.type));
@@ -106,12 +114,12 @@ void name_by_sensors(const RunInfo& info, MoverInfo& mover) {
   for (SensorInfo& sensor : mover.sensors) {
     const SensorTypeInfo& type = sensor_type_of(info, sensor);
     sensor.frame = mover.frame + "/" + unique(plain_ros_name(sensor.name, type.name), sensors, 2);
-    sensor.topic = "/" + sensor.frame + "/" + (type.is_scan ? "scan" : type.name);
+    sensor.topic = "/" + sensor.frame + "/" + topic_word(type, sensor);
     name_standard_topics(sensor, "/" + sensor.frame);
   }
 }
 
-/// Names topics after the sensor's type: `scan`, `scan_1`, ... A gyro's Imu uses the robot's topic `imu`.
+/// Names topics after the sensor's type: `scan`, `scan_1`, ... The Imu of a gyro or an imu uses the robot's topic `imu`.
 void name_by_types(const RunInfo& info, TopicStyle style, MoverInfo& mover, std::vector<std::string>& notes) {
   const std::string prefix = style == TopicStyle::nav2 || mover.plain ? "" : mover.frame + "/";
   mover.space = mover.plain ? "" : "/" + mover.frame;
@@ -125,7 +133,7 @@ void name_by_types(const RunInfo& info, TopicStyle style, MoverInfo& mover, std:
   std::map<std::string, int> counts;  // of sensors by type
   for (SensorInfo& sensor : mover.sensors) {
     const SensorTypeInfo& type = sensor_type_of(info, sensor);
-    const std::string name = type.is_scan ? "scan" : ros_name(type.name, "sensor");
+    const std::string name = ros_name(topic_word(type, sensor), "sensor");
     const int number = counts[name]++;
     const std::string topic = unique(name, topics, 1);
     if (info.record_readings && topic != (number == 0 ? name : name + "_" + std::to_string(number)))

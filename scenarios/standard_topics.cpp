@@ -9,6 +9,7 @@
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
+#include "sensors/imu.h"
 #include "sensors/infrared.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_beams.h"
@@ -114,6 +115,15 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
   });
   for_each_sensor<Gyro>(sensor_set, sensors::kGyro, [&](const auto& row, const Gyro& gyro) {
     add(row, sensors::kGyro, {.message = Message::imu, .sigma = base::hypot(gyro.noise, gyro.bias)});
+  });
+  for_each_sensor<sensors::Imu>(sensor_set, sensors::kImu, [&](const auto& row, const sensors::Imu& imu) {
+    const double noise = std::sqrt(row.rate);
+    add(row, sensors::kImu,
+        {.message = Message::imu,
+         .six_axes = true,
+         .R_FS = glm::transpose(base::transform_of(row.X_MS).R) * imu.X_MS.R,
+         .force_sigma = base::hypot(noise * imu.accel.noise, imu.accel.bias),
+         .sigma = base::hypot(noise * imu.gyro.noise, imu.gyro.bias)});
   });
 }
 

@@ -134,6 +134,22 @@ TEST(StandardReadings, ImuContainsOnlyTheYawRate) {
   EXPECT_TRUE(message.cdr.good());
 }
 
+/// The vectors of an imu whose x points to the left are those of its level frame; each axis has its variance.
+TEST(StandardReadings, ImuOfSixAxesIsTurnedIntoItsFrame) {
+  const glm::dmat3 left{{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+  Encoded message =
+      of({.message = Message::imu, .six_axes = true, .R_FS = left, .force_sigma = 0.25, .sigma = 0.5},
+         {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0});
+  message.skip(4);
+  EXPECT_EQ(message.cdr.get<double>(), -1.0) << "no orientation";
+  message.skip(8);
+  for (const auto& [vector, variance] : {std::pair{glm::dvec3{-2, 1, 3}, 0.25}, {glm::dvec3{-5, 4, 6}, 0.0625}}) {
+    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(message.cdr.get<double>(), vector[axis]);
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(message.cdr.get<double>(), i % 4 == 0 ? variance : 0.0);
+  }
+  EXPECT_TRUE(message.cdr.good());
+}
+
 /// One word of 4 x 4 cells: rows of a ROS map begin at the lower left, rows of a word at the upper left.
 TEST(StandardReadings, MapIsFlippedVertically) {
   maps::OccupancyGrid grid({.left = -1.0, .top = 3.0, .cell = 0.5, .word_columns = 2, .word_rows = 1});

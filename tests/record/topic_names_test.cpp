@@ -18,7 +18,8 @@ RunInfo named(Naming naming, std::vector<MoverInfo> movers, std::vector<std::str
   info.record_readings = record_readings;
   info.sensor_types = {
       test::scan_type(),       {.id = 2, .name = "sonar"}, {.id = 3, .name = "gyro"},     {.id = 4, .name = "odom"},
-      {.id = 5, .name = "3d"}, {.id = 6, .name = "gps"},   {.id = 7, .name = "occupancy"}};
+      {.id = 5, .name = "3d"}, {.id = 6, .name = "gps"},   {.id = 7, .name = "occupancy"},
+      {.id = 8, .name = "imu"}};
   info.movers = std::move(movers);
   put_naming(naming, info);
   const std::vector<std::string> lines = name_frames(info);
@@ -61,6 +62,14 @@ TEST(TopicNames, FollowTheSensorsTypes) {
   EXPECT_EQ(robot.sensors[2].standard[1].frame, "roomba2/sonar/range_1");
   EXPECT_EQ(robot.sensors[3].standard[0].frame, "roomba2/sonar_1") << "one element is its sensor";
   EXPECT_EQ(robot.sensors[6].standard[0].frame, "world") << "maps do not move with their robot";
+}
+
+/// A sensor type may be called as its standard message, which has the short name.
+TEST(TopicNames, StandardMessagesOfTheirTypesNameComeFirst) {
+  const MoverInfo robot{.name = "r", .sensors = {{.type = 8, .name = "i", .standard = {{.message = Message::imu}}}}};
+  EXPECT_EQ(topics_of(named({}, {robot}).movers[0]), (Names{"/r/imu_reading", "/r/imu"}));
+  EXPECT_EQ(topics_of(named({.style = TopicStyle::sensor}, {robot}).movers[0]),
+            (Names{"/r/i/imu_reading", "/r/i/imu"}));
 }
 
 TEST(TopicNames, Nav2FramesHaveNoRobotPrefix) {
