@@ -34,8 +34,9 @@ struct Span {
 /// Layout of one panel.
 struct SeriesPlot {
   PixelBox plot;
-  Span time;   ///< [s]
-  Span shown;  ///< of the values
+  Span time;                 ///< [s]
+  Span shown;                ///< of the values
+  bool logarithmic = false;  ///< all numbers are logarithms
   std::vector<LegendItem> legend;
   std::vector<LegendPlace> legend_at;
   double legend_top = 0.0;
@@ -61,22 +62,36 @@ Span with_zero(Span span) {
   return span;
 }
 
+/// Returns the span of whole decades around it.
+Span decades(const std::optional<Span>& span) {
+  if (!span) return {0.0, 1.0};
+  const double from = std::floor(span->from);
+  return {from, std::max(std::ceil(span->to), from + 1.0)};
+}
+
 Span time_span(const SeriesOptions& options) {
   std::optional<Span> span;
   for (const Panel& panel : options.panels) {
     if (panel.map) widen(span, panel.map->times, [](double t) { return std::isfinite(t); });
     for (const Series& series : panel.series) widen(span, series.times, [](double t) { return std::isfinite(t); });
   }
-  if (!span) return {0.0, 1.0};
+  if (!span || options.logarithmic) return decades(span);
   if (!(span->to > span->from)) return {span->from - 0.5, span->to + 0.5};
   return options.from_zero ? with_zero(*span) : *span;
 }
 
+/// Returns ticks of an axis along y, or along x.
+Ticks ticks_of(const Span& span, double pixels, bool whole, bool logarithmic, bool up) {
+  Ticks ticks = (up ? ticks_up : ticks_across)(span.from, span.to, pixels, whole || logarithmic);
+  ticks.powers = logarithmic;
+  return ticks;
+}
+
 /// Returns the span of a panel's values with a margin; never empty.
-Span value_span(const Panel& panel, bool from_zero) {
+Span value_span(const Panel& panel, bool from_zero, bool logarithmic) {
   std::optional<Span> span;
   for (const Series& series : panel.series) widen(span, series.values, [](double v) { return std::isfinite(v); });
-  if (!span) return {0.0, 1.0};
+  if (!span || logarithmic) return decades(span);
   if (panel.from_zero) span->from = std::min(span->from, 0.0);
   if (from_zero) span = with_zero(*span);
   const double size = span->to - span->from;
@@ -135,9 +150,10 @@ struct SeriesLayout {
 };
 
 /// Returns the lines of a panel's axis name. The name may extend into the gap below the plot.
-std::vector<std::string> y_lines(const Panel& panel, const Span& shown, double height) {
+std::vector<std::string> y_lines(const Panel& panel, const Span& shown, double height, bool logarithmic) {
   if (panel.map) return name_lines(panel.y_name, height + kNameBelow);
-  return name_lines(axis_name(panel.y_name, ticks_up(shown.from, shown.to, height, panel.whole)), height + kNameBelow);
+  const Ticks ticks = ticks_of(shown, height, panel.whole, logarithmic, true);
+  return name_lines(axis_name(panel.y_name, ticks), height + kNameBelow);
 }
 
 /// [px] Returns the left end of the plots, right of the widest label.
@@ -145,10 +161,10 @@ double plots_left(const SeriesOptions& options, double height, double edge) {
   double widest = 0.0;
   std::size_t lines = 1;
   for (const Panel& panel : options.panels) {
-    const Span span = value_span(panel, options.from_zero);
-    lines = std::max(lines, y_lines(panel, span, height).size());
-    widest = std::max(
-        widest, panel.map ? rows_room(*panel.map) : widest_label(ticks_up(span.from, span.to, height, panel.whole)));
+    const Span span = value_span(panel, options.from_zero, options.logarithmic);
+    lines = std::max(lines, y_lines(panel, span, height, options.logarithmic).size());
+    widest = std::max(widest, panel.map ? rows_room(*panel.map)
+                                        : widest_label(ticks_of(span, height, panel.whole, options.logarithmic, true)));
   }
   return widest + edge + kSeriesAxisName + kNameLine * (static_cast<double>(lines) - 1.0) + 14.0;
 }
@@ -196,18 +212,28 @@ void place_panels(SeriesLayout& layout, const SeriesOptions& options, const Page
   for (std::size_t i = 0; i < options.panels.size(); ++i) {
     SeriesPlot& place = places.emplace_back();
     place.time = time;
-    place.shown = value_span(options.panels[i], options.from_zero);
+    place.shown = value_span(options.panels[i], options.from_zero, options.logarithmic);
+    place.logarithmic = options.logarithmic;
     if (!options.panels[i].title.empty()) top += kPanelTitle;
     place.plot = {static_cast<int>(left), static_cast<int>(top), static_cast<int>(right),
                   static_cast<int>(top + height)};
     const bool last = i + 1 == options.panels.size();
     if (last || !same_legend(legends[i], legends[i + 1])) place.legend = legends[i];
-    place.y_name = y_lines(options.panels[i], place.shown, height);
+    place.y_name = y_lines(options.panels[i], place.shown, height, options.logarithmic);
     place.legend_at = place_legend(place.legend, layout.width - edge - legend_left(page, left));
     place.legend_top = place.plot.y_max + (last ? kSeriesTicks + 8.0 : 20.0);
     const int rows = place.legend_at.empty() ? 0 : place.legend_at.back().row + 1;
     top = place.legend_top + rows * kLegendRow + 14.0;
   }
+}
+
+/// Replaces all numbers by their logarithms.
+SeriesOptions with_logarithms(SeriesOptions options) {
+  for (Panel& panel : options.panels)
+    for (Series& series : panel.series)
+      for (std::vector<double>* numbers : {&series.times, &series.values})
+        for (double& number : *numbers) number = number > 0.0 ? std::log10(number) : NAN;
+  return options;
 }
 
 /// Uses the short row labels of heat maps if the long ones would take half of the picture.
@@ -246,7 +272,7 @@ void draw_values(Canvas& canvas, const Panel& panel, const SeriesPlot& at) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
-  const Ticks values = ticks_up(at.shown.from, at.shown.to, p.y_max - p.y_min, panel.whole);
+  const Ticks values = ticks_of(at.shown, p.y_max - p.y_min, panel.whole, at.logarithmic, true);
   for (const double value : values.at) {
     const double y = crisp(at.pixel(at.time.from, value).y);
     canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, theme::kHairline, theme::kGridLine);
@@ -260,7 +286,7 @@ void draw_times(Canvas& canvas, const SeriesPlot& at, const std::string& x_name,
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const Ticks times = ticks_across(at.time.from, at.time.to, p.x_max - p.x_min);
+  const Ticks times = ticks_of(at.time, p.x_max - p.x_min, false, at.logarithmic, false);
   for (const double time : times.at) {
     const double x = crisp(at.pixel(time, at.shown.from).x);
     if (grid)
@@ -327,7 +353,7 @@ void draw_panel(Canvas& canvas, const Panel& panel, const SeriesPlot& at, const 
 }  // namespace
 
 void draw_series(const SeriesOptions& wanted, const std::string& path, const Page& page) {
-  const SeriesOptions options = with_fitting_rows(wanted, page);
+  const SeriesOptions options = with_fitting_rows(wanted.logarithmic ? with_logarithms(wanted) : wanted, page);
   SF_CHECK(!options.panels.empty() && options.panels.size() <= 16, std::to_string(options.panels.size()) + " panels");
   SF_CHECK(options.width >= 600 && options.width <= 8000, "width " + std::to_string(options.width) + " px");
   for (const Panel& panel : options.panels)

@@ -33,8 +33,9 @@ struct SeriesOptions {
   std::string subtitle;
   std::vector<Panel> panels;  ///< at least one, at most 16
   std::string x_name = "time [s]";
-  bool from_zero = false;  ///< axes begin at 0 unless more than half of their length would be empty
-  int width = 1600;        ///< [px] of the picture, in [600, 8000]
+  bool from_zero = false;    ///< axes begin at 0 unless more than half of their length would be empty
+  bool logarithmic = false;  ///< both axes; numbers that are not above 0 leave a gap. Not for heat maps
+  int width = 1600;          ///< [px] of the picture, in [600, 8000]
 };
 
 /// Draws each series in the colour and the dashes of its row. The legend below a panel names up to eight series, or

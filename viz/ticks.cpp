@@ -44,6 +44,7 @@ std::string tick_text(double value, int decimals) {
 }
 
 std::string tick_text(double value, const Ticks& ticks) {
+  if (ticks.powers) return power_of_ten(static_cast<int>(std::lround(value)));
   const double unit = std::pow(10.0, ticks.exponent);
   return tick_text((value - ticks.offset) / unit,
                    ticks.exponent == 0 ? ticks.decimals : decimals_of(ticks.step / unit));

@@ -14,6 +14,7 @@ struct Ticks {
   // Shown with the axis name (viz/scales.h): labels are (value - offset) / 10^exponent.
   int exponent = 0;     ///< a multiple of 3
   double offset = 0.0;  ///< nonzero only if labels of the values themselves would be too wide
+  bool powers = false;  ///< of a logarithmic axis: ticks are the exponents of powers of ten, which are their labels
 };
 
 /// Returns the largest 1, 2 or 5 times a power of ten that is at most `value` > 0.

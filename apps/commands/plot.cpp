@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "apps/commands/commands.h"
+#include "apps/commands/plot_allan.h"
 #include "apps/commands/plot_maps.h"
 #include "apps/commands/plot_readings.h"
 #include "apps/commands/recorded_video.h"
@@ -131,6 +132,17 @@ void draw_lights(const RecordingPart& part, const world::World& world, const Plo
   if (options.csv) Written{}(write_lights_csv(part, folder));
 }
 
+void draw_allan(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+                const std::string& folder) {
+  const viz::SeriesOptions figure = allan_figure(part.recording, world);
+  const std::string file = folder + "/allan.";
+  viz::draw_series(figure, file + options.format, options.page);
+  Written{}(file + options.format);
+  if (!options.csv) return;
+  scenarios::write_text(file + "csv", csv_of(figure));
+  Written{}(file + "csv");
+}
+
 void draw_occupancy(const RecordingPart& part, world::World& world, const PlotOptions& options,
                     const std::string& folder) {
   if (!has_laser(part, world))
@@ -150,10 +162,11 @@ namespace {
 /// Plots the results of `sweep` in a folder.
 int plot_sweep(const PlotOptions& options, const std::string& jobs) {
   if (!options.robots.empty() || !options.labels.empty() || !options.elements.empty() || options.curves ||
-      options.csv || !options.video.empty() || options.from > 0.0 || std::isfinite(options.to))
-    throw base::InputError(options.recording, 0,
-                           "is the folder of a sweep; --robots, --label, --elements, --curves, --csv, --video, --from "
-                           "and --to apply to recordings");
+      options.allan || options.csv || !options.video.empty() || options.from > 0.0 || std::isfinite(options.to))
+    throw base::InputError(
+        options.recording, 0,
+        "is the folder of a sweep; --robots, --label, --elements, --curves, --allan, --csv, --video, "
+        "--from and --to apply to recordings");
   const std::string folder = options.out.empty() ? options.recording + "/plots" : options.out;
   const scenarios::SweepPlots plots = scenarios::draw_sweep(
       jobs, base::read_text(jobs, kLargestTable), folder, {options.over, options.x_axis, options.format, options.page});
@@ -177,6 +190,7 @@ int plot(const PlotOptions& options) {
       options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
   scenarios::make_folder(folder);
 
+  if (options.allan) return draw_allan(part, world, options, folder), 0;
   draw_paths(part, world, options, folder);
   for (const std::string& file : draw_readings(part.recording, world, options, folder)) Written{}(file);
   draw_lights(part, world, options, folder);

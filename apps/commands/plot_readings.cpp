@@ -14,7 +14,6 @@
 #include "record/reading_messages.h"
 #include "scenarios/experiment.h"
 #include "sensors/occupancy.h"
-#include "viz/series_figure.h"
 
 namespace sf::apps {
 
@@ -300,6 +299,8 @@ void check_elements(const record::Recording& recording, const PlotOptions& optio
               : fmt::format("has no sensor with an element {}; elements are numbered from 0 to {}", element, most - 1));
 }
 
+}  // namespace
+
 std::string csv_of(const viz::SeriesOptions& figure) {
   std::string text = "panel,curve,time_s,value\n";
   for (const viz::Panel& panel : figure.panels) {
@@ -318,8 +319,6 @@ std::string csv_of(const viz::SeriesOptions& figure) {
   }
   return text;
 }
-
-}  // namespace
 
 std::vector<std::string> draw_readings(const record::Recording& recording, const world::World& world,
                                        const PlotOptions& options, const std::string& folder) {

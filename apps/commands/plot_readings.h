@@ -7,6 +7,7 @@
 
 #include "apps/options/options.h"
 #include "record/recording.h"
+#include "viz/series_figure.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -16,5 +17,8 @@ namespace sf::apps {
 /// @throws base::InputError for an element in `options` that no recorded sensor has
 std::vector<std::string> draw_readings(const record::Recording& recording, const world::World& world,
                                        const PlotOptions& options, const std::string& folder);
+
+/// Returns the curves as a table with the columns panel, curve, time_s and value.
+std::string csv_of(const viz::SeriesOptions& figure);
 
 }  // namespace sf::apps

@@ -223,6 +223,7 @@ struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption, Swee
   std::vector<std::string> labels;      ///< robots named in the trajectories, or "all"
   std::vector<std::uint32_t> elements;  ///< of sensors, drawn as curves; empty: all
   bool curves = false;                  ///< curves instead of heat maps for readings with many elements
+  bool allan = false;                   ///< only the Allan deviations of gyros and imus
 };
 
 /// Files of point clouds. `pcd`: every beam of a scan in the sensor's frame, row by ring, NaN without an echo, as

@@ -34,7 +34,7 @@ void add_plot(CLI::App& app, Call& call) {
     if (sub->count("--video") == 0) return;
     for (const std::string option :
          {"--format", "--csv", "--size", "--dpi", "--no-title", "--extent", "--font-size", "--line-styles",
-          "--map-colors", "--label", "--elements", "--curves", "--over", "--x-axis"})
+          "--map-colors", "--label", "--elements", "--curves", "--allan", "--over", "--x-axis"})
       if (sub->count(option) > 0)
         throw CLI::ValidationError(option, "changes figures, but --video writes none; leave out one of the two");
     if (sub->count("--out") == 0) return;
@@ -66,6 +66,8 @@ void add_plot(CLI::App& app, Call& call) {
                        ->type_name("N,...");
   sub->add_flag("--curves", o.curves, "Plot the readings of many elements as curves instead of heat maps")
       ->excludes(elements);
+  sub->add_flag("--allan", o.allan,
+                "Plot only the Allan deviations of imus and gyros, of robots at rest, with the stated ones");
   constexpr const char* kSweeps = "Sweeps (docs/sweeps.md)";
   sub->add_option("--over", o.over, "Parameter on the x axis (default: the first with different numeric values)")
       ->check(not_empty("the name of a parameter"))

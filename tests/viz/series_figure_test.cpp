@@ -50,6 +50,17 @@ TEST(SeriesFigure, MissingValuesAreGaps) {
   for (double part = 0.3; part < 0.75; part += 0.05) EXPECT_EQ(colored(p, color, part, part + 0.05), 0) << part;
 }
 
+/// Ten times as much is one step, as long as a number is above 0.
+TEST(SeriesFigure, LogarithmicAxesHaveEqualDecades) {
+  SeriesOptions options = one_panel({{"a", {1.0, 10.0, 100.0, 1000.0}, {1.0, 5.0, 0.0, 2.0}}});
+  options.logarithmic = true;
+  const scenes::Picture p = drawn(options, "decades.png");
+  const std::uint32_t color = row_color(0, 1);
+  EXPECT_GT(colored(p, color, 0.15, 0.3), 20) << "the first of three decades";
+  EXPECT_EQ(colored(p, color, 0.45, 0.95), 0) << "none of the values 0 and 2 is joined to another";
+  EXPECT_GT(colored(p, color, 0.95, 1.0), 0) << "the dot at the end";
+}
+
 /// The axes begin at 0 only if that does not compress the values too much.
 TEST(SeriesFigure, StartsAtZeroUnlessThatCompressesTheValues) {
   const std::uint32_t color = row_color(0, 1);

@@ -1,0 +1,124 @@
+#include "apps/commands/plot_allan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <tuple>
+
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "sensors/allan.h"
+#include "sensors/gyro.h"
+#include "sensors/imu.h"
+#include "sensors/sensor_set.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr std::size_t kMostPanels = 16;
+
+/// One quantity of a sensor.
+struct Quantity {
+  std::string name;
+  std::size_t first = 0, axes = 1;       ///< numbers of a reading
+  std::function<double(double)> stated;  ///< square of the Allan deviation at a time [s]
+};
+
+/// One sensor with its readings by time.
+struct AllanSensor {
+  std::string name;
+  double interval = 0.0;  ///< [s] between readings
+  std::vector<Quantity> quantities;
+  std::vector<const record::ReadingSample*> readings;
+};
+
+std::vector<Quantity> quantities_of(const sensors::SensorSet& sensor_set, const record::ReadingSample& reading) {
+  if (reading.type == sensors::kGyro) {
+    const double noise = sensor_set.settings_of<sensors::Gyro>(reading.type, reading.mover)[reading.sensor].noise;
+    const double interval = 1.0 / sensor_set.of(reading.type, reading.mover)[reading.sensor].rate;
+    return {{"angular rate [rad/s]", 0, 1, [=](double time) { return noise * noise * interval / time; }}};
+  }
+  const sensors::Imu imu = sensor_set.settings_of<sensors::Imu>(reading.type, reading.mover)[reading.sensor];
+  const auto stated = [](const sensors::TriadErrors& errors) {
+    return [errors](double time) { return sensors::allan_variance(errors, time); };
+  };
+  return {{"angular rate [rad/s]", 0, 3, stated(imu.gyro)}, {"specific force [m/s²]", 3, 3, stated(imu.accel)}};
+}
+
+std::vector<AllanSensor> sensors_of(const record::Recording& recording, const world::World& world) {
+  const sensors::SensorSet sensor_set(world);
+  std::map<std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>, AllanSensor> sensors;
+  for (const record::ReadingSample& reading : recording.readings) {
+    if (reading.type != sensors::kImu && reading.type != sensors::kGyro) continue;
+    AllanSensor& sensor = sensors[{reading.mover, reading.type, reading.sensor}];
+    if (sensor.readings.empty()) {
+      const sensors::SensorSpec& row = sensor_set.of(reading.type, reading.mover)[reading.sensor];
+      sensor = {
+          world.movers[reading.mover].name + " " + row.name, 1.0 / row.rate, quantities_of(sensor_set, reading), {}};
+    }
+    sensor.readings.push_back(&reading);
+  }
+  std::vector<AllanSensor> all;
+  for (auto& [key, sensor] : sensors) all.push_back(std::move(sensor));
+  return all;
+}
+
+void check_interval(const record::Recording& recording, const AllanSensor& sensor) {
+  for (std::size_t i = 1; i < sensor.readings.size(); ++i) {
+    const double time = 1e-9 * static_cast<double>(sensor.readings[i]->time - sensor.readings[i - 1]->time);
+    if (std::abs(time - sensor.interval) > 0.5 * sensor.interval)
+      throw base::InputError(
+          recording.file, 0,
+          fmt::format("--allan: the readings of '{}' at {:g} s are {:g} s apart, not {:g} s; expected readings without "
+                      "gaps",
+                      sensor.name, 1e-9 * static_cast<double>(sensor.readings[i]->time), time, sensor.interval));
+  }
+}
+
+viz::Panel panel_of(const AllanSensor& sensor, const Quantity& quantity) {
+  viz::Panel panel{sensor.name, "Allan deviation, " + quantity.name, {}};
+  std::vector<double> samples(sensor.readings.size());
+  for (std::size_t axis = 0; axis < quantity.axes; ++axis) {
+    viz::Series& series = panel.series.emplace_back();
+    series.name = quantity.axes == 1 ? "measured" : fmt::format("{}", "xyz"[axis]);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = sensor.readings[i]->values[quantity.first + axis];
+    for (const sensors::AllanPoint& point : sensors::allan_deviation(samples, sensor.interval))
+      series.times.push_back(point.time), series.values.push_back(point.deviation);
+  }
+  viz::Series stated{"stated", panel.series[0].times, {}};
+  for (const double time : stated.times) stated.values.push_back(std::sqrt(quantity.stated(time)));
+  panel.series.push_back(std::move(stated));
+  return panel;
+}
+
+}  // namespace
+
+viz::SeriesOptions allan_figure(const record::Recording& recording, const world::World& world) {
+  viz::SeriesOptions figure{"Allan deviation", "", {}, "time of the means [s]"};
+  figure.logarithmic = true;
+  const std::vector<AllanSensor> sensors = sensors_of(recording, world);
+  if (sensors.empty())
+    throw base::InputError(recording.file, 0,
+                           "--allan: there are no readings of an imu or a gyro; record them with `run "
+                           "--record-readings`");
+  std::size_t drawn = 0;
+  for (const AllanSensor& sensor : sensors) {
+    if (figure.panels.size() + sensor.quantities.size() > kMostPanels) break;
+    check_interval(recording, sensor);
+    if (sensor.readings.size() < 4)
+      throw base::InputError(recording.file, 0,
+                             fmt::format("--allan: '{}' has {}; expected at least 4", sensor.name,
+                                         counted(sensor.readings.size(), "reading")));
+    for (const Quantity& quantity : sensor.quantities) figure.panels.push_back(panel_of(sensor, quantity));
+    ++drawn;
+  }
+  figure.subtitle = fmt::format("{}: {}", recording.info.world, counted(sensors.size(), "sensor"));
+  if (drawn < sensors.size()) figure.subtitle += fmt::format(", the first {} shown", drawn);
+  return figure;
+}
+
+}  // namespace sf::apps
