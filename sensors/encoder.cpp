@@ -7,6 +7,8 @@
 #include <iterator>
 
 #include "base/displacement.h"
+#include "base/elementary.h"
+#include "base/tilted_pose.h"
 #include "sensors/host_backend.h"
 #include "sensors/odometer.h"
 #include "sensors/plain_packets.h"
@@ -102,7 +104,9 @@ void Encoders::accumulate(std::int64_t now, bool between) {
       continue;
     }
     if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
-      (between ? ahead_ : wheels_)[i].roll(track.X_WM, X_WM, world().variation_of(mover).slip);
+      // Level robots that change their height do not drive up.
+      const double rise = base::is_level(states()[mover].tilt) ? 0.0 : X_WM.z - track.X_WM.z;
+      (between ? ahead_ : wheels_)[i].roll(track.X_WM, X_WM, world().variation_of(mover).slip, rise);
     }
     if (!between) track = {X_WM, now, true};
   }
@@ -138,7 +142,7 @@ void Encoders::measure(std::span<const HostSample> samples) const {
   }
 }
 
-constexpr std::string_view kKeys[] = {"per_count", "slip", "scale", "track", "scrub"};
+constexpr std::string_view kKeys[] = {"per_count", "slip", "scale", "track", "scrub", "slip_ratio", "slope_slip"};
 // Counts are signed, but integer columns of recordings are not.
 constexpr Column kColumns[] = {{"left_m"}, {"right_m"}, {"left_counts"}, {"right_counts"}};
 constexpr PlainNumber kNumbers[] = {{1e-5}, {1e-5}, {1.0}, {1.0}};
@@ -146,9 +150,19 @@ constexpr PlainForm kForm{kEncoder, "encoder", kNumbers};
 
 }  // namespace
 
-void Wheels::roll(const base::Pose& before, const base::Pose& after, double slip) {
+void Wheels::roll(const base::Pose& before, const base::Pose& after, double slip, double rise) {
   Rolled step = sensors::roll(before, after, settings.track);
+  double climb = 0.0;  // sine of the slope
+  if (const double way = base::hypot(after.x - before.x, after.y - before.y); rise != 0.0 && way > 0.0) {
+    const double slope = base::hypot(way, rise) / way;
+    step = {step.left * slope, step.right * slope};
+    climb = rise / (way * slope);
+  }
   if (slip != 0.0) step = {step.left / (1.0 - slip), step.right / (1.0 - slip)};
+  const auto slipping = [&](double way, double ratio) {
+    return way / (1.0 - std::clamp(ratio + settings.slope_slip * climb, -world::kMostSlip, world::kMostSlip));
+  };
+  step = {slipping(step.left, settings.slip_ratio_left), slipping(step.right, settings.slip_ratio_right)};
   rolled.left += step.left;
   rolled.right += step.right;
   left.advance(std::abs(step.left));
@@ -174,6 +188,14 @@ Encoder read_encoder(const world::Sensor& sensor, const world::Mover& mover) {
              fmt::format("'scale' is [{:g} {:g}]; expected [left right], factors from 0.1 to 10", e.scale_left,
                          e.scale_right));
   }
+  if (const auto slip = tuple(sensor, "slip_ratio", 2, "[left right]")) {
+    e.slip_ratio_left = (*slip)[0], e.slip_ratio_right = (*slip)[1];
+    if (!(std::max(std::abs(e.slip_ratio_left), std::abs(e.slip_ratio_right)) <= world::kMostSlip))
+      refuse(sensor, "slip_ratio",
+             fmt::format("'slip_ratio' is [{:g} {:g}]; expected [left right], from {:g} to {:g}", e.slip_ratio_left,
+                         e.slip_ratio_right, -world::kMostSlip, world::kMostSlip));
+  }
+  e.slope_slip = number(sensor, "slope_slip", 0.0, 0.0, 10.0);
   const double scrub = number(sensor, "scrub", mover.drive == world::Drive::skid ? kSkidScrub : 1.0, 0.1, 10.0);
   e.track = scrub * length(sensor, "track", mover.track, 1e-3, 1e3);
   return e;

@@ -6,7 +6,8 @@
 // `per_count`: distance that a wheel rolls per count. `slip`: standard deviation of the error after one metre; it grows
 // with the square root of the distance. `scale`: factor on each wheel's counts. `track`: distance between the wheels
 // (default: the robot's). `scrub`: factor on the track when wheels scrub sideways in turns (default: 1.5 for skid
-// steering, else 1).
+// steering, else 1). `slip_ratio` [left right]: part of each wheel's way that the robot does not advance; `slope_slip`:
+// more of it per unit of slope, uphill.
 //
 // A reading is one row: distance rolled by the left and the right wheel since the start, in metres and in counts,
 // forward positive. A displacement of more than 0.5 m plus twice the distance possible at the robot's top speed is a
@@ -29,6 +30,8 @@ struct Encoder {
   double scale_left = 1.0;   ///< [-] > 0
   double scale_right = 1.0;  ///< [-] > 0
   double track = 0.3;        ///< [m] > 0, effective: including scrub
+  double slip_ratio_left = 0.0, slip_ratio_right = 0.0;  ///< [-] in [-kMostSlip, kMostSlip]
+  double slope_slip = 0.0;                               ///< [-] in [0, 10] added per sine of the slope
 };
 
 /// The wheels of one robot, as its encoders count them.
@@ -37,7 +40,8 @@ struct Wheels {
       : settings(encoder), left(walk, 0, noise ? encoder.slip : 0.0), right(walk, 1, noise ? encoder.slip : 0.0) {}
 
   /// Adds the motion between two poses. @param slip world::Variation::slip
-  void roll(const base::Pose& before, const base::Pose& after, double slip = 0.0);
+  /// @param rise [m] height gained on a slope
+  void roll(const base::Pose& before, const base::Pose& after, double slip = 0.0, double rise = 0.0);
   /// Returns the distances in counts, with scale, slip and rounding.
   Rolled counts() const;
   /// Returns the distances [m] that the counts state.

@@ -123,6 +123,45 @@ std::vector<double> drive(const world::World& world, const std::vector<Rolled>& 
   return last;
 }
 
+/// A slipping wheel counts more than the robot advances; on a slope the way is the longer one.
+TEST(Encoder, WheelsSlipByARatioAndOnSlopes) {
+  const sensors::Encoder flat{.per_count = 1e-9, .track = 0.5, .slip_ratio_left = 0.2, .slip_ratio_right = -0.25};
+  const auto rolled = [](sensors::Encoder encoder, double x, double slip, double rise) {
+    sensors::Wheels wheels(encoder, {}, false);
+    wheels.roll({}, {x, 0.0, rise, 0.0}, slip, rise);
+    return wheels.rolled;
+  };
+  EXPECT_DOUBLE_EQ(rolled(flat, 1.0, 0.0, 0.0).left, 1.25);
+  EXPECT_DOUBLE_EQ(rolled(flat, 1.0, 0.0, 0.0).right, 0.8) << "a wheel that is dragged";
+  EXPECT_DOUBLE_EQ(rolled(flat, -1.0, 0.0, 0.0).left, -1.25) << "backwards";
+  EXPECT_DOUBLE_EQ(rolled(flat, 1.0, 0.5, 0.0).left, 2.5) << "with the slip of the run";
+
+  const sensors::Encoder hill{.track = 0.5, .slope_slip = 0.5};
+  EXPECT_DOUBLE_EQ(rolled({.track = 0.5}, 0.4, 0.0, 0.3).left, 0.5) << "along the slope";
+  EXPECT_DOUBLE_EQ(rolled(hill, 0.4, 0.0, 0.3).left, 0.5 / (1.0 - 0.5 * 0.6)) << "uphill";
+  EXPECT_DOUBLE_EQ(rolled(hill, -0.4, 0.0, 0.3).left, -0.5 / (1.0 - 0.5 * 0.6)) << "uphill, backwards";
+  EXPECT_DOUBLE_EQ(rolled(hill, 0.4, 0.0, -0.3).left, 0.5 / (1.0 + 0.5 * 0.6)) << "downhill";
+  EXPECT_DOUBLE_EQ(rolled({.track = 0.5, .slope_slip = 10.0}, 0.4, 0.0, 0.3).left, 5.0) << "at most 0.9";
+
+  expect_refused("encoder", {setting("slip_ratio", {0, 0.95})}, 8, "expected [left right], from -0.9 to 0.9");
+  expect_refused("encoder", {setting("slope_slip", {-1})}, 8, "'slope_slip'");
+}
+
+/// Robots on slopes are tilted; level ones that are lifted do not drive.
+TEST(Encoder, OnlyTiltedRobotsClimb) {
+  for (const double pitch : {0.0, -0.5}) {
+    const world::World world = one_robot({setting("per_count", {1e-6})});
+    farm::Farm farm(world, device());
+    farm.subscribe_all();
+    std::vector<base::Report> states = robots::states_at_load(world);
+    farm.tick(0, states);
+    states[0].X_WM = {0.4, 0.0, 0.3, 0.0};
+    states[0].tilt.pitch = pitch;
+    states[0].time = 500'000'000;
+    EXPECT_NEAR(farm.tick(500'000'000, states)[0].values[0], pitch == 0.0 ? 0.4 : 0.5, 1e-6);
+  }
+}
+
 TEST(Encoder, CountsBothWheels) {
   const std::vector<double> r = drive(one_robot(), std::vector<Rolled>(100, {0.03, 0.05}));
   ASSERT_EQ(r.size(), 4u);
