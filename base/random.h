@@ -25,14 +25,11 @@ enum class RandomStream : std::uint32_t {
   fiducials = 13,
   faults = 14,  ///< of sensors
   thermometers = 15,
-  spatial_range = 16,    ///< of lidars
-  spatial_second = 17,   ///< second echoes of lidars
-  spatial_dropout = 18,  ///< of lidars' beams
-  inertial_noise = 19,   ///< of inertial measurement units, per reading and run
-  inertial_drift = 20,   ///< of their biases
-  compass = 21,
-  altimeter = 22,
-  inclinometer = 23
+  spatial_range = 16,     ///< of lidars
+  spatial_second = 17,    ///< second echoes of lidars
+  spatial_dropout = 18,   ///< of lidars' beams
+  instrument_noise = 19,  ///< sensors::Triad: per reading and run
+  instrument_drift = 20   ///< sensors::Drift
 };
 
 /// Identifies one draw by its first five fields.

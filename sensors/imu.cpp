@@ -12,6 +12,7 @@
 #include "sensors/lidar_beams.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
+#include "sensors/triad_backend.h"
 
 namespace sf::sensors {
 
@@ -60,7 +61,7 @@ ParsedSensors parse_imus(const world::World& world) {
              fmt::format("the rate is {:g} Hz; expected at least {:g}: each reading is a mean since the last one",
                          row.rate, kLeastImuRate));
     row.X_MS = {imu.X_MS.p.x, imu.X_MS.p.y, imu.X_MS.p.z, base::atan2(imu.X_MS.R[0].y, imu.X_MS.R[0].x)};
-    row.limit = imu.gyro.range;
+    if (std::isfinite(imu.gyro.range)) row.limit = imu.gyro.range;
     row.sigma = imu.g_sensitivity > 0.0 ? HUGE_VAL : reading_deviation(imu.gyro, 1.0 / row.rate);
     row.reach = 0.0;
     return imu;
@@ -78,8 +79,8 @@ Imus::Imus(const SensorContext& context, const ParsedSensors& sensors)
 ImuState Imus::state_at_start(std::uint32_t row) const {
   const SensorSpec& spec = rows()[row];
   const Imu& s = settings_[row];
-  const base::RandomKey noise = episodes().key(base::RandomStream::inertial_noise, spec.mover, spec.sensor),
-                        drift = episodes().key(base::RandomStream::inertial_drift, spec.mover, spec.sensor);
+  const base::RandomKey noise = episodes().key(base::RandomStream::instrument_noise, spec.mover, spec.sensor),
+                        drift = episodes().key(base::RandomStream::instrument_drift, spec.mover, spec.sensor);
   const double interval = 1.0 / spec.rate;
   return {{s.X_MS, base::nanoseconds(interval), world().movers[spec.mover].max_forward, s.gravity},
           {s.gyro, s.g_sensitivity, interval, noise, drift, 0, noise_},
@@ -202,24 +203,6 @@ Preset preset_of(const world::Sensor& sensor) {
                      base::suggest(setting->text, names)));
 }
 
-using Quantity = double (*)(const world::Sensor& sensor, std::string_view key, double fallback, double least,
-                            double most);
-
-/// Reads the errors of gyros (`prefix` "gyro_") or accelerometers (`prefix` "accel_").
-/// @param quantity reads in the unit of the quantity  @param most in this unit
-void read_triad(const world::Sensor& sensor, const std::string& prefix, Quantity quantity, double most,
-                TriadErrors& e) {
-  const auto read = [&](const char* key, double& value) { value = quantity(sensor, prefix + key, value, 0.0, most); };
-  read("noise", e.noise);
-  read("instability", e.drift.instability);
-  read("walk", e.drift.walk);
-  read("bias", e.bias);
-  read("step", e.step);
-  e.scale = number(sensor, prefix + "scale", e.scale, 0.0, 1.0);
-  e.misalignment = angle(sensor, prefix + "misalignment", e.misalignment, 0.0, 0.5);
-  e.range = quantity(sensor, prefix + "range", e.range, 1e-9, most);
-}
-
 constexpr std::string_view kKeys[] = {"preset",
                                       "pose6",
                                       "gravity",
@@ -254,8 +237,8 @@ Imu read_imu(const world::Sensor& sensor) {
   Imu imu{.X_MS = spatial_mount(sensor), .gyro = preset.gyro, .accel = preset.accel};
   imu.gravity = length(sensor, "gravity", imu.gravity, 0.0, 1e3);
   imu.g_sensitivity = angle(sensor, "g_sensitivity", preset.g_sensitivity * kG, 0.0, kMostRate) / kG;
-  read_triad(sensor, "gyro_", angle, kMostRate, imu.gyro);
-  read_triad(sensor, "accel_", length, kMostForce, imu.accel);
+  read_errors(sensor, "gyro_", angle, kMostRate, imu.gyro);
+  read_errors(sensor, "accel_", length, kMostForce, imu.accel);
   return imu;
 }
 

@@ -37,7 +37,7 @@ class Triad {
 
   /// @param interval [s] between readings, over which each is a mean  @param cross deviation of the response to each
   /// axis of another quantity  @param noise, drift keys of its random numbers  @param number distinguishes triads of
-  /// equal keys, below 4  @param noisy false: only rounding and saturation
+  /// equal keys, below 8  @param noisy false: only rounding and saturation
   Triad(const TriadErrors& errors, double cross, double interval, const base::RandomKey& noise,
         const base::RandomKey& drift, std::uint32_t number, bool noisy);
 

@@ -28,8 +28,8 @@ TEST(Allan, SimpleSeriesHaveTheirClosedForms) {
 
 /// Returns the Allan deviations of one axis at rest over an hour.
 std::vector<AllanPoint> hour(const TriadErrors& errors, double rate, std::uint64_t seed, int axis) {
-  Triad triad(errors, 0.0, 1.0 / rate, {seed, base::RandomStream::inertial_noise},
-              {seed, base::RandomStream::inertial_drift}, 0, true);
+  Triad triad(errors, 0.0, 1.0 / rate, {seed, base::RandomStream::instrument_noise},
+              {seed, base::RandomStream::instrument_drift}, 0, true);
   std::vector<double> series;
   for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(3600.0 * rate); ++k)
     series.push_back(triad.measure({}, {}, k).values[axis]);
