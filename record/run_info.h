@@ -58,12 +58,13 @@ struct StandardTopic {
   std::size_t width = 1;                                      ///< numbers per beam: the range, the intensity, ...
   std::shared_ptr<const std::vector<double>> times;           ///< [s] of the beams relative to the reading; null: 0
 
-  // For the readings of an imu, whose vectors are turned into frame `frame`, which is level at rest:
-  bool six_axes = false;      ///< false: of a gyro
-  glm::dmat3 R_FS{1.0};       ///< sensor in this frame
-  double force_sigma = 0.0;   ///< [m/s^2] of each axis; 0: not stated
+  // For readings in three dimensions: of an imu or a compass, whose vectors are turned into frame `frame`, which is
+  // level on a level robot, and of a receiver with an altitude:
+  bool spatial = false;      ///< false: of a gyro, of a magnetometer, without altitude
+  glm::dmat3 R_FS{1.0};      ///< sensor in this frame
+  double force_sigma = 0.0;  ///< [m/s^2] of each axis; 0: not stated
 
-  /// Standard deviation of a turn rate [rad/s], or of a fix [m] at an HDOP of 1; 0: not stated.
+  /// Standard deviation of a turn rate [rad/s], of a field [T], or of a fix [m] at an HDOP of 1; 0: not stated.
   double sigma = 0.0;
 };
 

@@ -27,8 +27,21 @@ void put_range(CdrWriter& cdr, const StandardTopic& topic, std::span<const doubl
   cdr.put(0.0F);  // variance: unknown
 }
 
+/// Writes the covariance of a vector with independent axes; zeros if it is unknown.
+void put_variances(CdrWriter& cdr, double x, double y, double z) {
+  for (const double term : {x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, z}) cdr.put(term);
+}
+
+/// Writes a vector of the sensor in the topic's frame, and the variance of each axis.
+void put_turned(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> vector, double sigma) {
+  const glm::dvec3 v = topic.R_FS * glm::dvec3{vector[0], vector[1], vector[2]};
+  for (const double part : {v.x, v.y, v.z}) cdr.put(part);
+  put_variances(cdr, sigma * sigma, sigma * sigma, sigma * sigma);
+}
+
 void put_field(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
-  const std::span<const double> element = values.subspan(4 * topic.element, 4);
+  const std::span<const double> element = values.subspan(4 * topic.element, 4);  // the magnitude first
+  if (topic.spatial) return put_turned(cdr, topic, element.subspan(1), topic.sigma);
   for (std::size_t axis = 1; axis < 4; ++axis) cdr.put(element[axis]);
   put_zeros(cdr, 9);
 }
@@ -46,11 +59,6 @@ Degrees degrees_at(double east, double north) {
   return {base::atan2(a * a * north, b * b * from_axis) * 180.0 / M_PI, base::atan2(east, up) * 180.0 / M_PI};
 }
 
-/// Writes the covariance of a vector with independent axes; zeros if it is unknown.
-void put_variances(CdrWriter& cdr, double x, double y, double z) {
-  for (const double term : {x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, z}) cdr.put(term);
-}
-
 void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
   constexpr std::uint16_t kGps = 1;
   const bool fix = std::isfinite(values[0]);
@@ -59,11 +67,12 @@ void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double>
   cdr.put(kGps);
   cdr.put(at.latitude);
   cdr.put(at.longitude);
-  cdr.put(std::numeric_limits<double>::quiet_NaN());  // altitude: not measured
+  cdr.put(topic.spatial ? values[4] : std::numeric_limits<double>::quiet_NaN());  // NaN: not measured
   if (topic.sigma > 0.0 && fix) {
     constexpr double kUnmeasured = 1e6;                                            // [m^2] of the altitude
     const double error = topic.sigma * values[2], variance = 0.5 * error * error;  // HDOP refers to both axes together
-    put_variances(cdr, variance, variance, kUnmeasured);
+    const double up = topic.spatial ? topic.sigma * values[5] : 0.0;
+    put_variances(cdr, variance, variance, topic.spatial ? up * up : kUnmeasured);
     return cdr.put(std::uint8_t{1});  // approximated
   }
   put_zeros(cdr, 9);
@@ -80,18 +89,14 @@ void put_imu(CdrWriter& cdr, const StandardTopic& topic, std::span<const double>
   for (const double part : {0.0, 0.0, 0.0, 1.0}) cdr.put(part);
   put_unmeasured(cdr);
   const double variance = topic.sigma * topic.sigma, fixed = variance > 0.0 ? kLeastVariance : 0.0;
-  if (!topic.six_axes) {
+  if (!topic.spatial) {
     for (const double rate : {0.0, 0.0, values[0]}) cdr.put(rate);
     put_variances(cdr, fixed, fixed, variance);
     put_zeros(cdr, 3);
     return put_unmeasured(cdr);
   }
-  for (std::size_t first = 0; first < 6; first += 3) {
-    const glm::dvec3 v = topic.R_FS * glm::dvec3{values[first], values[first + 1], values[first + 2]};
-    for (const double part : {v.x, v.y, v.z}) cdr.put(part);
-    const double each = first == 0 ? variance : topic.force_sigma * topic.force_sigma;
-    put_variances(cdr, each, each, each);
-  }
+  put_turned(cdr, topic, values.first(3), topic.sigma);
+  put_turned(cdr, topic, values.subspan(3, 3), topic.force_sigma);
 }
 
 void put_map(CdrWriter& cdr, const StandardTopic& topic, std::int64_t time, std::span<const double> values) {

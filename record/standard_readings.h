@@ -15,11 +15,12 @@ std::string_view type_of(StandardTopic::Message message);
 /// Appends one message. Marks quantities that a sensor does not measure as unknown, as each message defines it: an
 /// orientation or an acceleration (covariance -1), the covariance of a fix (type 0).
 ///   range           range_m as defined by base::rep117_range; the limits are rounded outwards
-///   magnetic_field  vector_T [T]
+///   magnetic_field  vector_T [T]; of a compass in `topic.frame`, with the variance of each axis
 ///   fix             x_m, y_m on a plane that touches WGS84 at latitude 0 and longitude 0, x east, y north; NaN: no
-///                   fix; half of (sigma hdop)^2 as the variance of each axis
-///   imu             rate_rad_s of a gyro about z, and its variance; or the rates and forces of an imu in `topic.frame`,
-///                   and the variance of each axis
+///                   fix; half of (sigma hdop)^2 as the variance of each axis; with an altitude, altitude_m above that
+///                   plane and (sigma vdop)^2
+///   imu             rate_rad_s of a gyro about z, and its variance; or the rates and forces of an imu in
+///                   `topic.frame`, and the variance of each axis
 ///   map             words (maps/grid.h): -1 unexplored, 0 free, 100 occupied
 /// @param time [ns] of the measurement
 /// @param values of the whole reading, with a range below `range_min` for a surface that is too near; in the layout of

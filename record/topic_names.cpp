@@ -119,7 +119,7 @@ void name_by_sensors(const RunInfo& info, MoverInfo& mover) {
   }
 }
 
-/// Names topics after the sensor's type: `scan`, `scan_1`, ... The Imu of a gyro or an imu uses the robot's topic `imu`.
+/// Names topics after the sensor's type: `scan`, `scan_1`, ... Imu messages use the robot's topic `imu`.
 void name_by_types(const RunInfo& info, TopicStyle style, MoverInfo& mover, std::vector<std::string>& notes) {
   const std::string prefix = style == TopicStyle::nav2 || mover.plain ? "" : mover.frame + "/";
   mover.space = mover.plain ? "" : "/" + mover.frame;

@@ -15,16 +15,22 @@ namespace sf::scenarios {
 
 namespace {
 
-record::SensorTypeInfo sensor_type_info(const sensors::SensorType& type) {
+/// Messages of one row have no columns that are left out: `rows` of such a type have the same ones.
+record::SensorTypeInfo sensor_type_info(const sensors::SensorType& type, std::span<const sensors::SensorSpec> rows) {
   record::SensorTypeInfo info{type.id, std::string(type.name), std::string(type.list), {}, type.is_scan};
-  for (const sensors::Column& column : type.columns)
+  const std::size_t width = type.list.empty() ? sensors::element_width(type, rows[0]) : sensors::element_width(type);
+  std::size_t before = 0;
+  for (const sensors::Column& column : type.columns) {
+    if (before >= width) break;
     info.columns.push_back({std::string(column.name), column.width, column.whole});
+    before += column.width;
+  }
   return info;
 }
 
 void add_type(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
-    info.sensor_types.push_back(sensor_type_info(*group.type));
+    info.sensor_types.push_back(sensor_type_info(*group.type, group.rows));
     for (const sensors::SensorSpec& row : group.rows)
       info.movers[row.mover].sensors.push_back({group.type->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements,
                                                 row.range_min, row.limit, row.width, row.sweep});

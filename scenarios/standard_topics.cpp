@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/elementary.h"
+#include "sensors/compass.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
@@ -111,16 +112,24 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
                       : std::shared_ptr<const std::vector<double>>(lidar.beams, &lidar.beams->times)});
   });
   for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {
-    add(row, sensors::kGps, {.message = Message::fix, .sigma = gps.noise});
+    add(row, sensors::kGps, {.message = Message::fix, .spatial = gps.altitude, .sigma = gps.noise});
   });
   for_each_sensor<Gyro>(sensor_set, sensors::kGyro, [&](const auto& row, const Gyro& gyro) {
     add(row, sensors::kGyro, {.message = Message::imu, .sigma = base::hypot(gyro.noise, gyro.bias)});
+  });
+  for_each_sensor<sensors::Compass>(sensor_set, sensors::kCompass, [&](const auto& row, const auto& compass) {
+    const sensors::TriadErrors& errors = compass.instrument.errors;
+    add(row, sensors::kCompass,
+        {.message = Message::magnetic_field,
+         .spatial = true,
+         .R_FS = glm::transpose(base::transform_of(row.X_MS).R) * compass.instrument.X_MS.R,
+         .sigma = base::hypot(errors.noise * std::sqrt(row.rate), errors.bias)});
   });
   for_each_sensor<sensors::Imu>(sensor_set, sensors::kImu, [&](const auto& row, const sensors::Imu& imu) {
     const double noise = std::sqrt(row.rate);
     add(row, sensors::kImu,
         {.message = Message::imu,
-         .six_axes = true,
+         .spatial = true,
          .R_FS = glm::transpose(base::transform_of(row.X_MS).R) * imu.X_MS.R,
          .force_sigma = base::hypot(noise * imu.accel.noise, imu.accel.bias),
          .sigma = base::hypot(noise * imu.gyro.noise, imu.gyro.bias)});

@@ -85,7 +85,16 @@ std::optional<Dilution> dilution(std::span<const Satellite> satellites, std::uin
   // Cholesky factor with x first: for Q = [a b; b d] it is [sqrt(a) 0; b / sqrt(a), sqrt(d - b^2 / a)].
   const double l = m[2][2], k = m[3][2], n = m[3][3];
   const double a = 1.0 / (l * l) + k * k / (l * l * n * n), b = -k / (l * n * n), d = 1.0 / (n * n);
-  return Dilution{std::sqrt(a), b / std::sqrt(a), std::sqrt(std::max(0.0, d - b * b / a)), std::sqrt(a + d)};
+  // The errors (up, x, y) solve the transposed factor for three normal numbers, so up follows from the others.
+  const double z = 1.0 / m[1][1], zx = -m[2][1] * z, zy = -m[3][1] * z;
+  return Dilution{std::sqrt(a),
+                  b / std::sqrt(a),
+                  std::sqrt(std::max(0.0, d - b * b / a)),
+                  std::sqrt(a + d),
+                  zx,
+                  zy,
+                  z,
+                  std::sqrt(zx * zx * a + 2.0 * zx * zy * b + zy * zy * d + z * z)};
 }
 
 GnssVisibility::GnssVisibility(const world::World& world) : GnssVisibility(blocking(world)) {}

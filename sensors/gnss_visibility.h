@@ -35,12 +35,14 @@ inline constexpr double kLeastElevation = 15.0 * M_PI / 180.0;  ///< [rad] small
 double top_of_blocking(const world::World& world);
 
 /// Position errors due to independent range errors of standard deviation 1, with unknown 3-D position and clock: (x, y)
-/// = (xx n, yx n + yy m), with standard normal n and m.
+/// = (xx n, yx n + yy m), z = zx x + zy y + zz o, with standard normal n, m and o.
 struct Dilution {
   double xx = 0.0;
   double yx = 0.0;
   double yy = 0.0;
   double hdop = 0.0;  ///< horizontal dilution of precision: square root of the sum of both variances
+  double zx = 0.0, zy = 0.0, zz = 0.0;
+  double vdop = 0.0;  ///< vertical dilution of precision: deviation of z
 };
 
 /// Returns an empty value when fewer than four satellites are visible, or when all lie on one cone.

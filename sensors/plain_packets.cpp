@@ -44,6 +44,14 @@ bool plausible(Word word, const PlainNumber& number) {
   return !low && !high;
 }
 
+/// Returns the numbers per row of a sensor, or, if that is not known, of `bytes` of rows.
+std::size_t width_of(const PlainForm& form, const SensorSpec& sensor, std::size_t count = 0, std::size_t bytes = 0) {
+  const std::size_t all = form.numbers.size();
+  if (sensor.width != 0) return sensor.width;
+  if (sensor.elements != 0 || form.fewest == 0 || count == 0) return all;
+  return std::clamp<std::size_t>(bytes / (kWord * count), form.fewest, all);
+}
+
 }  // namespace
 
 std::string plain_wire_problem(const PlainForm& form, WireFormat wire) {
@@ -62,7 +70,7 @@ std::string plain_wire_problem(const PlainForm& form, const SensorSpec& sensor, 
 std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,
                           base::Bytes& out) {
   const std::span<const double> values = reading.values;
-  const std::size_t width = form.numbers.size();
+  const std::size_t width = width_of(form, sensor);
   SF_CHECK(values.size() == sensor.elements * width && !values.empty() && values.size() <= kMaxPlainWords,
            fmt::format("{} values of {} rows of {}", values.size(), sensor.elements, form.name));
   base::ByteWriter writer(out);
@@ -76,9 +84,9 @@ PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::s
                          std::uint8_t type, WireFormat wire) {
   if (type != form.id || wire != WireFormat::farm) return {.fault = PayloadError::out_of_range};
   base::ByteReader reader(payload);
-  const std::size_t width = form.numbers.size();
   const std::uint32_t count = reader.get<std::uint16_t>();
   reader.get<std::uint16_t>();  // reserved
+  const std::size_t width = width_of(form, sensor, count, reader.left());
   if (!reader.good() || reader.left() < kWord * width * count) return {.fault = PayloadError::too_short};
   if (reader.left() > kWord * width * count) return {.fault = PayloadError::too_long};
   const bool whole = sensor.elements == 0 || count == sensor.elements;
@@ -92,9 +100,10 @@ void read_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const
                 std::span<double> values) {
   SF_CHECK(payload.size() == kHeader + kWord * values.size(),
            fmt::format("{} bytes of {} for {} values", payload.size(), form.name, values.size()));
+  const std::size_t rows = base::ByteReader(payload).get<std::uint16_t>(), width = values.size() / rows;
   base::ByteReader reader(payload.subspan(kHeader));
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const PlainNumber& number = form.numbers[i % form.numbers.size()];
+    const PlainNumber& number = form.numbers[i % width];
     values[i] = from_word(reader.get<Word>(), number);
     if (number.range && sensor.limit > 0.0) values[i] = wire_limits(sensor, number).range(values[i]);
   }

@@ -1,7 +1,7 @@
 #pragma once
 // Readings of a few plain numbers as payloads, in a single little-endian layout; docs/packets.md specifies every byte.
 //
-//   u16 count, u16 0, then for each row i32 (or f32) for each of the type's numbers
+//   u16 count, u16 0, then for each row i32 (or f32) for each of the sensor's numbers
 //
 // Each number has its own unit and is rounded to nearest (half away from zero). Words saturate and never wrap. The
 // smallest word means NaN. The thesis format has no layout for these types.
@@ -37,6 +37,8 @@ struct PlainForm {
   std::uint8_t id = 0;                   ///< wire id and packet type
   std::string_view name;                 ///< of the sensor type, for messages
   std::span<const PlainNumber> numbers;  ///< of one row: one per column number; static lifetime
+  std::uint32_t fewest =
+      0;  ///< sensors may have this many numbers per row or more (SensorSpec::width); 0: all have all
 };
 
 // Wire part of SensorType for `form`. Rows have at most kMaxPlainWords numbers in total: one datagram.

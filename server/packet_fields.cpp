@@ -273,11 +273,13 @@ void add_map(std::span<const std::uint8_t> payload, Fields& out) {
 /// @param elements its rows
 void add_columns(const sensors::SensorType& type, std::uint32_t elements, std::span<const std::uint8_t> payload,
                  Fields& out) {
-  const std::size_t width = sensors::element_width(type);
+  constexpr std::size_t kHead = 4, kNumber = 4;  // [bytes]
+  const std::size_t width = (payload.size() - kHead) / (kNumber * elements);
   std::vector<double> values(elements * width);
   type.read({.elements = elements}, payload, type.id, sensors::WireFormat::farm, values);
   std::size_t first = 0;
   for (const sensors::Column& column : type.columns) {
+    if (first >= width) break;
     std::vector<double> numbers;
     for (std::size_t row = 0; row < elements; ++row)
       for (std::size_t k = 0; k < column.width; ++k) numbers.push_back(values[row * width + first + k]);

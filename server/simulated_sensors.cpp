@@ -52,7 +52,7 @@ void SimulatedSensors::measure_gps(const base::Pose& X_WM, std::int64_t now, Own
     fixes_.push_back({now, gps_->model.measure(gps_->visibility, gps_->draw, X_WS)});
   }
   for (; !fixes_.empty() && fixes_.front().time + schedule.latency <= now; fixes_.pop_front()) {
-    const auto& [x, y, hdop, satellites] = fixes_.front().values;
+    const auto& [x, y, hdop, satellites, z, vdop] = fixes_.front().values;
     own.add_gps(fixes_.front().time, {x, y}, hdop, {schedule.X_MS.x, schedule.X_MS.y});
   }
 }

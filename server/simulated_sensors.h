@@ -49,7 +49,7 @@ class SimulatedSensors {
   };
   struct Fix {
     std::int64_t time = 0;  ///< [ns]
-    std::array<double, 4> values{};
+    std::array<double, 6> values{};
   };
   void measure_gps(const base::Pose& X_WM, std::int64_t now, OwnState& own);
 

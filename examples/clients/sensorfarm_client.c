@@ -31,6 +31,7 @@ enum {
   SF_LASER = 1,
   SF_LANE_EDGE = 2,
   SF_MAGNETOMETER = 3,
+  SF_GPS = 10,
   SF_OCCUPANCY = 12,
   SF_LASER_EXTENDED = 65,
   SF_LIDAR = 44,
@@ -100,7 +101,16 @@ static const sf_type sf_types[] = {
      {0},
      {{"left_m", 1, 1e-5}, {"right_m", 1, 1e-5}, {"left_counts", 1, 1}, {"right_counts", 1, 1}}},
     {9, "gyro", 46000, {0}, {{"rate_rad_s", 1, 1e-6}}},
-    {10, "gps", 48000, {0}, {{"x_m", 1, 5e-3}, {"y_m", 1, 5e-3}, {"hdop", 1, 1e-3}, {"satellites", 1, 1}}},
+    {10,
+     "gps",
+     48000,
+     {0},
+     {{"x_m", 1, 5e-3},
+      {"y_m", 1, 5e-3},
+      {"hdop", 1, 1e-3},
+      {"satellites", 1, 1},
+      {"altitude_m", 1, 5e-3},
+      {"vdop", 1, 1e-3}}},
     {11, "irreceiver", 50000, {0}, {{"virtual_wall", 1, 1}, {"ir_byte", 1, 1}}},
     {12, "occupancy", 52000, {"part", "parts", "word_columns", "word_rows", "flags"}, {{"word", 1, 1}}},
     {27,
@@ -189,6 +199,13 @@ static const sf_type sf_types[] = {
      18000,
      {0},
      {{"value", 1, 0}, {"valid", 1, 1}, {"variance", 1, 0}, {"source", 1, 1}, {"age_s", 1, 0}}},
+    {47,
+     "compass",
+     16000,
+     {0},
+     {{"field_T", 1, 0}, {"field_x_T", 1, 0}, {"field_y_T", 1, 0}, {"field_z_T", 1, 0}, {"heading_rad", 1, 1e-6}}},
+    {48, "altimeter", 32000, {0}, {{"height_m", 1, 1e-3}}},
+    {49, "inclinometer", 13000, {0}, {{"roll_rad", 1, 1e-6}, {"pitch_rad", 1, 1e-6}, {"saturated", 1, 1}}},
     {46,
      "imu",
      12000,
@@ -401,12 +418,14 @@ static const char* decode_lane_edge(sf_packet* p, const uint8_t* b, size_t size)
 
 static const char* decode_rows(sf_packet* p, const sf_type* type, const uint8_t* b, size_t size) {
   if (size < 4) return "too short";
-  const unsigned rows = (unsigned)get(b, 2), width = sf_row_width(type);
+  const unsigned rows = (unsigned)get(b, 2);
+  unsigned width = sf_row_width(type);
+  if (p->type == SF_GPS && size == 4 + (size_t)16 * rows) p->width = width = 4;  // without an altitude
   const char* const sized = check_size(size, 4 + (size_t)4 * rows * width);
   if (sized) return sized;
   if (rows < 1 || rows * width > 313 || (p->type == SF_MAGNETOMETER && rows > 16)) return "out of range";
   for (unsigned r = 0; r < rows; ++r)
-    for (unsigned c = 0; type->columns[c].name; ++c)
+    for (unsigned c = 0, first = 0; type->columns[c].name && first < width; first += type->columns[c++].width)
       for (unsigned k = 0; k < type->columns[c].width; ++k, ++p->count) {
         const uint32_t bits = (uint32_t)get(b + 4 + 4 * p->count, 4);
         const int32_t word = (int32_t)bits;

@@ -29,7 +29,7 @@ import struct
 import sys
 import time
 
-LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 4, 5, 6, 12, 65
+LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, GPS, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 4, 5, 6, 10, 12, 65
 LIDAR, LIDAR_EXTENDED = 44, 108
 CAMERA, CAMERA_EXTENDED = 45, 109
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
@@ -56,7 +56,8 @@ SENSORS = {
     7: ("cliff", 42000, [("cliff", 1)]),
     8: ("encoder", 44000, [("left_m", 1e-5), ("right_m", 1e-5), ("left_counts", 1), ("right_counts", 1)]),
     9: ("gyro", 46000, [("rate_rad_s", 1e-6)]),
-    10: ("gps", 48000, [("x_m", 5e-3), ("y_m", 5e-3), ("hdop", 1e-3), ("satellites", 1)]),
+    10: ("gps", 48000, [("x_m", 5e-3), ("y_m", 5e-3), ("hdop", 1e-3), ("satellites", 1), ("altitude_m", 5e-3),
+                        ("vdop", 1e-3)]),
     11: ("irreceiver", 50000, [("virtual_wall", 1), ("ir_byte", 1)]),
     12: ("occupancy", 52000, []),
     27: ("fiducial", 62000, [("id", 1), ("fiducial_type", 1), ("range_m", 1e-3), ("bearing_rad", 1e-6),
@@ -81,6 +82,10 @@ SENSORS = {
     41: ("location", 24000, [("x_m", 5e-3), ("y_m", 5e-3), ("valid", 1), ("xx_m2", None), ("xy_m2", None),
                             ("yy_m2", None), ("source", 1), ("age_s", None)]),
     42: ("thermometer", 22000, [("temperature_C", 1e-3)]),
+    47: ("compass", 16000, [("field_T", None), ("field_x_T", None), ("field_y_T", None), ("field_z_T", None),
+                            ("heading_rad", 1e-6)]),
+    48: ("altimeter", 32000, [("height_m", 1e-3)]),
+    49: ("inclinometer", 13000, [("roll_rad", 1e-6), ("pitch_rad", 1e-6), ("saturated", 1)]),
     46: ("imu", 12000, [("rate_x_rad_s", None), ("rate_y_rad_s", None), ("rate_z_rad_s", None), ("force_x_m_s2", None),
                         ("force_y_m_s2", None), ("force_z_m_s2", None), ("saturated", 1)]),
     44: ("lidar", 14000, [("range_m", 1e-3)]),
@@ -193,6 +198,8 @@ def decode_rows(type, payload):
     columns = SENSORS[type][2]
     require(len(payload) >= 4, "too short")
     count = struct.unpack_from("<H", payload)[0]
+    if type == GPS and len(payload) == 4 + 16 * count:  # without an altitude
+        columns = columns[:4]
     words = unpack("<%di" % (count * len(columns)), payload[4:])
     require(1 <= count and len(words) <= 313 and (type != MAGNETOMETER or count <= 16))
     body = {}

@@ -113,6 +113,26 @@ TEST(StandardReadings, StatesKnownErrors) {
   EXPECT_EQ(imu.cdr.get<double>(), 0.25);
 }
 
+TEST(StandardReadings, FixHasTheAltitudeOfReceiversThatMeasureIt) {
+  Encoded fix = of({.message = Message::fix, .spatial = true, .sigma = 2.0}, {1.0, 2.0, 1.5, 7, 100.0, 3.0});
+  fix.cdr.get<std::int8_t>();
+  fix.cdr.get<std::uint16_t>();
+  fix.skip(2);
+  EXPECT_EQ(fix.cdr.get<double>(), 100.0);
+  fix.skip(8);
+  EXPECT_EQ(fix.cdr.get<double>(), 36.0) << "(2 m x 3)^2";
+}
+
+TEST(StandardReadings, FieldOfACompassIsTurnedIntoItsFrame) {
+  const glm::dmat3 left{{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+  Encoded field =
+      of({.message = Message::magnetic_field, .spatial = true, .R_FS = left, .sigma = 0.5}, {9, 1, 2, 3, 1.5});
+  for (const double part : {-2.0, 1.0, 3.0}) EXPECT_EQ(field.cdr.get<double>(), part);
+  EXPECT_EQ(field.cdr.get<double>(), 0.25);
+  field.skip(8);
+  EXPECT_TRUE(field.cdr.good());
+}
+
 TEST(StandardReadings, NoFixGivesNoPosition) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Encoded message = of({.message = Message::fix}, {nan, nan, nan, 3});
@@ -137,9 +157,8 @@ TEST(StandardReadings, ImuContainsOnlyTheYawRate) {
 /// The vectors of an imu whose x points to the left are those of its level frame; each axis has its variance.
 TEST(StandardReadings, ImuOfSixAxesIsTurnedIntoItsFrame) {
   const glm::dmat3 left{{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
-  Encoded message =
-      of({.message = Message::imu, .six_axes = true, .R_FS = left, .force_sigma = 0.25, .sigma = 0.5},
-         {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0});
+  Encoded message = of({.message = Message::imu, .spatial = true, .R_FS = left, .force_sigma = 0.25, .sigma = 0.5},
+                       {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0});
   message.skip(4);
   EXPECT_EQ(message.cdr.get<double>(), -1.0) << "no orientation";
   message.skip(8);

@@ -91,6 +91,11 @@ TEST(Gps, DilutionIsTheInverseOfTheGeometry) {
     EXPECT_NEAR(d->xx * d->xx, static_cast<double>(q[0][0]), 1e-9 * scale);
     EXPECT_NEAR(d->xx * d->yx, static_cast<double>(q[0][1]), 1e-9 * scale);
     EXPECT_NEAR(d->yx * d->yx + d->yy * d->yy, static_cast<double>(q[1][1]), 1e-9 * scale);
+    const double high = static_cast<double>(q[2][2]);
+    EXPECT_NEAR(d->vdop * d->vdop, high, 1e-9 * (scale + high));
+    for (std::size_t k = 0; k < 2; ++k)  // cov(z, x) and cov(z, y) from those of x and y
+      EXPECT_NEAR(d->zx * static_cast<double>(q[0][k]) + d->zy * static_cast<double>(q[1][k]),
+                  static_cast<double>(q[2][k]), 1e-9 * (scale + high));
   }
 }
 
@@ -303,6 +308,31 @@ TEST(Gps, ErrorsAreNoiseTimesTheDilution) {
   EXPECT_LT(std::abs(correlation(n, m)), some);
   for (const std::size_t lag : {1u, 100u}) EXPECT_LT(std::abs(correlation(n, n, lag)), some) << lag;
   EXPECT_NEAR(std::sqrt(squares / 2000.0), 2.0 * hdop, 0.1 * hdop) << "root of the mean square distance";
+}
+
+/// The altitude is that of the antenna, which leans with its robot, with an error of its own.
+TEST(Gps, MeasuresTheAltitudeIfAsked) {
+  world::World world = carriers(fitted("gps", {setting("altitude", {1}), setting("noise", {2.0})}), {{1, 2, 3, 0}});
+  scenes::add_carrier(world, {}, fitted("gps"));
+  world.movers[0].sensors[0].X_MS = {0.5, 0.0, 0.0, 0.0};
+  farm::Farm farm(world, device(), {.seed = 5});
+  farm.subscribe_all();
+  std::vector<double> errors;
+  double vdop = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    const auto readings = farm.tick(k * 1'000'000'000ll, {});
+    ASSERT_EQ(readings[0].values.size(), 6u);
+    vdop = readings[0].values[5];
+    errors.push_back((readings[0].values[4] - 3.0) / (2.0 * vdop));
+    EXPECT_TRUE(std::isnan(readings[1].values[4]) && std::isnan(readings[1].values[5])) << "not asked";
+    EXPECT_GT(vdop, readings[0].values[2]) << "altitudes are worse than positions";
+  }
+  EXPECT_LT(ks(errors), 1.95);
+
+  farm::Farm exact(world, device(), {.noise = false});
+  const auto up = exact.sense(0, sensors::kGps, 0, {1, 2, 3, 0}, {0.0, -M_PI / 2}).values;
+  EXPECT_NEAR(up[0], 1.0, 1e-12);
+  EXPECT_NEAR(up[4], 3.5, 1e-12) << "half a metre ahead of a robot that looks up";
 }
 
 TEST(Gps, IsTheSameForAnyNumberOfThreads) {

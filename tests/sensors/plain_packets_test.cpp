@@ -157,6 +157,9 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
                2, 0.25}},
              {"location", 41, 1, {1.5, -0.5, 1, 0.0625, -0.0078125, 0.25, -1, 0.125}},
              {"thermometer", 42, 1, {21.5}},
+             {"compass", 47, 1, {5e-5, 0.25, -0.5, 0.125, 1.5}},
+             {"altimeter", 48, 1, {12.5}},
+             {"inclinometer", 49, 1, {0.25, -0.5, 2}},
              {"imu", 46, 1, {0.5, -0.25, 0.125, 1.5, -0.5, 9.75, 36}},
              {"aggregate", 43, 1, {21.5, 1, 0.25, 0, 0.0625}},
              {"loop", 36, 1, {12, 0.25, 0.5, 1}},
@@ -174,13 +177,41 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
     base::ReadingBlock block;
     block.values = values;
     base::Bytes bytes;
-    EXPECT_EQ(type->encode(plain_row(rows), block, WireFormat::farm, 0, bytes), id);
+    SensorSpec row = plain_row(rows);
+    row.width = static_cast<std::uint32_t>(values.size() / rows);
+    EXPECT_EQ(type->encode(row, block, WireFormat::farm, 0, bytes), id);
     const base::Bytes packet = test::documented(example);
     ASSERT_GT(packet.size(), 64u) << example;
     EXPECT_EQ(packet[5], id);
     EXPECT_EQ(base::Bytes(packet.begin() + 64, packet.end()), bytes) << example;
-    EXPECT_EQ(type->decode(plain_row(rows), bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
+    EXPECT_EQ(type->decode(row, bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
     EXPECT_NE(type->wire_problem(plain_row(rows), WireFormat::thesis), "") << example;
+  }
+}
+
+/// Sensors may have fewer numbers than their type, as receivers without an altitude: the length says how many.
+TEST(PlainPackets, RowsMayEndEarly) {
+  const SensorType& gps = *find_sensor_type(10);
+  SensorSpec planar = plain_row(1), spatial = plain_row(1);
+  planar.width = 4;
+  base::ReadingBlock block;
+  const std::vector<double> values{1.0, 2.0, 1.5, 8.0, 3.0, 2.5};
+  const SensorSpec any{.elements = 0};
+  for (const SensorSpec& sensor : {planar, spatial}) {
+    const std::size_t width = sensor.width != 0 ? 4 : 6;
+    block.values = std::span(values).first(width);
+    base::Bytes bytes;
+    gps.encode(sensor, block, WireFormat::farm, 0, bytes);
+    EXPECT_EQ(bytes.size(), 4 + 4 * width);
+    const SensorSpec& other = sensor.width != 0 ? spatial : planar;
+    EXPECT_EQ(gps.decode(sensor, bytes, 10, WireFormat::farm).fault, PayloadError::none);
+    EXPECT_EQ(gps.decode(any, bytes, 10, WireFormat::farm).fault, PayloadError::none);
+    EXPECT_NE(gps.decode(other, bytes, 10, WireFormat::farm).fault, PayloadError::none);
+    std::vector<double> read(width);
+    gps.read(sensor, bytes, 10, WireFormat::farm, read);
+    EXPECT_EQ(read, std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width)));
+    bytes.resize(bytes.size() - (width == 4 ? 4 : 12));
+    EXPECT_EQ(gps.decode(any, bytes, 10, WireFormat::farm).fault, PayloadError::too_short) << "fewer than four";
   }
 }
 
@@ -214,7 +245,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 25u) << "plain readings";
+  EXPECT_EQ(rows, 28u) << "plain readings";
 }
 
 }  // namespace

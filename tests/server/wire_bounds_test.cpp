@@ -213,7 +213,7 @@ TEST(WireBounds, AreOmittedForTypesWithoutOne) {
     world::Sensor sensor = plain(std::string(type->word.type));
     Wire wire(sensor);
     const sensors::SensorSpec& row = wire.sensor_set().group(type->id)->rows[0];
-    Made made(type->id, std::vector<double>(row.elements, 0.0), kInf, sensors::element_width(*type));
+    Made made(type->id, std::vector<double>(row.elements, 0.0), kInf, sensors::element_width(*type, row));
     made.block.X_WS = row.X_MS;
     for (const double sigma : {0.0, 0.1}) {
       made.block.sigma = sigma;
