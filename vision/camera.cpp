@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/elementary.h"
+#include "base/lens.h"
 #include "base/pose.h"
 
 namespace sf::vision {
@@ -13,27 +14,6 @@ namespace {
 
 constexpr double kMaxTangent = 5.67;  // of 80 degrees
 constexpr double kMaxDepth = 1e3;     // [m]
-
-/// Returns distorted normalised coordinates.
-glm::dvec2 bend(const std::array<double, 5>& d, glm::dvec2 n) {
-  const double r2 = n.x * n.x + n.y * n.y;
-  const double radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-  return {n.x * radial + 2.0 * d[2] * n.x * n.y + d[3] * (r2 + 2.0 * n.x * n.x),
-          n.y * radial + d[2] * (r2 + 2.0 * n.y * n.y) + 2.0 * d[3] * n.x * n.y};
-}
-
-/// Columns of the Jacobian of `bend`, which is symmetric: d/dx = (xx, xy), d/dy = (xy, yy).
-struct Jacobian {
-  double xx, xy, yy;
-};
-Jacobian jacobian(const std::array<double, 5>& d, glm::dvec2 n) {
-  const double r2 = n.x * n.x + n.y * n.y;
-  const double radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-  const double slope = 2.0 * (d[0] + r2 * (2.0 * d[1] + 3.0 * r2 * d[4]));
-  return {radial + n.x * n.x * slope + 2.0 * d[2] * n.y + 6.0 * d[3] * n.x,
-          n.x * n.y * slope + 2.0 * d[2] * n.x + 2.0 * d[3] * n.y,
-          radial + n.y * n.y * slope + 6.0 * d[2] * n.y + 2.0 * d[3] * n.x};
-}
 
 }  // namespace
 
@@ -46,20 +26,12 @@ bool is_camera_name(std::string_view name) {
 }
 
 glm::dvec2 distort(const Intrinsics& intrinsics, glm::dvec2 normalised) {
-  return intrinsics.center + intrinsics.focal * bend(intrinsics.distortion, normalised);
+  return intrinsics.center + intrinsics.focal * base::distorted(intrinsics.distortion, normalised);
 }
 
 glm::dvec2 undistort(const Intrinsics& intrinsics, glm::dvec2 pixel) {
   const glm::dvec2 bent = (pixel - intrinsics.center) / intrinsics.focal;
-  glm::dvec2 n = bent;
-  for (int i = 0; i < 20; ++i) {
-    const glm::dvec2 error = bend(intrinsics.distortion, n) - bent;
-    if (std::abs(error.x) + std::abs(error.y) < 1e-13) break;
-    const Jacobian j = jacobian(intrinsics.distortion, n);
-    const double det = j.xx * j.yy - j.xy * j.xy;
-    n -= glm::dvec2{j.yy * error.x - j.xy * error.y, j.xx * error.y - j.xy * error.x} / det;
-  }
-  return n;
+  return base::undistorted(intrinsics.distortion, bent, bent);
 }
 
 bool is_invertible(const Intrinsics& intrinsics) {
@@ -73,8 +45,7 @@ bool is_invertible(const Intrinsics& intrinsics) {
     for (int step = 0; step <= kSteps && !outside; ++step) {
       const double tangent = kMaxTangent * step / kSteps;
       const glm::dvec2 n = tangent * base::direction(angle);
-      const Jacobian j = jacobian(intrinsics.distortion, n);
-      if (!(j.xx > 0.0) || !(j.xx * j.yy - j.xy * j.xy > 0.0)) return false;
+      if (!base::distortion_jacobian(intrinsics.distortion, n).is_positive()) return false;
       const glm::dvec2 pixel = distort(intrinsics, n);
       const glm::dvec2 margin = 0.05 * glm::dvec2{intrinsics.width, intrinsics.height};
       outside = pixel.x < -margin.x || pixel.y < -margin.y || pixel.x > intrinsics.width - 1 + margin.x ||

@@ -1,6 +1,5 @@
 #pragma once
-// Camera model: pinhole with Brown's distortion (D. C. Brown, "Close-range camera calibration", 1971), with OpenCV's
-// parameters, and a pose in the world.
+// Camera model: pinhole with Brown's distortion (base/lens.h), and a pose in the world.
 //
 // Frames: W world, C camera (x right in the image, y down, z forward along the optical axis). "Normalised" image
 // coordinates are x/z and y/z of a point in C, without distortion.
@@ -41,8 +40,7 @@ inline constexpr const char* kCameraNameForm =
 
 /// Returns the pixel of a point in normalised coordinates.
 glm::dvec2 distort(const Intrinsics& intrinsics, glm::dvec2 normalised);
-/// Returns the normalised coordinates of a pixel: the inverse of `distort`, by Newton's method, to 1e-12 within the
-/// image.
+/// Returns the normalised coordinates of a pixel: the inverse of `distort`, to rounding within the image.
 glm::dvec2 undistort(const Intrinsics& intrinsics, glm::dvec2 pixel);
 /// True if `distort` is invertible over the image and a margin of 5 %: larger field angles are imaged farther out.
 bool is_invertible(const Intrinsics& intrinsics);
