@@ -58,13 +58,16 @@ class Scan {
     return on_mesh ? plane_of(s_.face[beam]).material : world::kNoMaterial;
   }
 
-  /// Normal of a beam's surface, toward the sensor.
+  /// Normal of a beam's surface, toward the sensor, which is on one side of a face for all beams.
   glm::vec3 normal_of(std::uint32_t hit, std::uint32_t beam) {
     if (hit == base::kNoHit) return {};
-    const std::uint32_t i = beam % kWidth;
-    const bool on_terrain = (terrain_hits_ >> i & 1) != 0;
-    const glm::vec3 normal(on_terrain ? terrain_normals_[i] : plane_of(s_.face[beam]).normal);
-    return sines_[i] > 0.0 ? -normal : normal;
+    const std::uint32_t i = beam % kWidth, face = s_.face[beam];
+    if ((terrain_hits_ >> i & 1) != 0) return glm::vec3(sines_[i] > 0.0 ? -terrain_normals_[i] : terrain_normals_[i]);
+    if (face != normal_face_) {
+      const SeenPlane& plane = plane_of(face);
+      normal_face_ = face, normal_ = glm::vec3(plane.height > 0.0 ? -plane.normal : plane.normal);
+    }
+    return normal_;
   }
 
   Scratch& s_;
@@ -79,6 +82,8 @@ class Scan {
   bool flagged_ = false;
   std::uint32_t last_face_ = kNoFace;
   SeenPlane last_plane_;  ///< of `last_face_`
+  std::uint32_t normal_face_ = kNoFace;
+  glm::vec3 normal_;  ///< of `normal_face_`
 
   // One vector's results.
   alignas(64) double ranges_[kWidth];

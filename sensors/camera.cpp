@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
-#include <tuple>
+#include <optional>
 
 #include "base/elementary.h"
+#include "base/random.h"
+#include "base/srgb.h"
 #include "sensors/accuracy.h"
+#include "sensors/camera_light.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
 #include "sensors/settings.h"
@@ -19,21 +21,25 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::uint32_t kMostSide = 4'096;  ///< [px]
-constexpr double kDegree = M_PI / 180.0;
+constexpr std::size_t kMostBeamsInAll = 100'000'000;
+constexpr std::uint32_t kNoiseId = 1u << 31;  ///< added to the numbers of cameras, in the random numbers of lidars
+
+/// Range of the longest beam to the largest depth, over that depth.
+double stretch(const CameraSettings& s) {
+  double least = 1.0;
+  for (const glm::dvec3& d : s.beams->directions) least = std::min(least, d.x);
+  return 1.0 / least;
+}
 
 std::vector<SpatialScanner> scanners_of(const std::vector<CameraSettings>& cameras) {
   std::vector<SpatialScanner> scanners;
-  for (const CameraSettings& s : cameras) {
-    // The longest beam is that of a corner.
-    double least = 1.0;
-    for (const glm::dvec3& d : s.beams->directions) least = std::min(least, d.x);
+  for (const CameraSettings& s : cameras)
     scanners.push_back({.X_MS = s.X_MS,
-                        .range_max = s.range_max / least * (1.0 + 1e-12),
+                        .range_max = s.range_max * stretch(s) * (1.0 + 1e-12),
                         .beams = s.beams,
-                        .normals = s.normals,
+                        .normals = s.normals || s.rgb,
+                        .materials = s.rgb,
                         .single = s.mode != 0});
-  }
   return scanners;
 }
 
@@ -41,10 +47,10 @@ double error_of(const CameraSettings& s) { return s.mode == 0 ? scene::kRangeErr
 
 class Cameras : public SpatialScans {
  public:
-  Cameras(const SensorContext& context, const ParsedSensors& sensors)
-      : SpatialScans(context, camera_type, sensors, scanners_of(sensors.settings_as<CameraSettings>())),
-        settings_(sensors.settings_as<CameraSettings>()) {}
+  Cameras(const SensorContext& context, const ParsedSensors& sensors);
 
+  bool update_outlines(const world::World& world) override;
+  bool prepare(std::span<const DueSample> due) override;
   void collect(std::span<base::ReadingBlock> out) override {
     SpatialScans::collect(out);
     for (std::size_t i = 0; i < samples().size(); ++i)
@@ -52,10 +58,96 @@ class Cameras : public SpatialScans {
   }
 
  private:
+  void follow(std::size_t sample, const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles,
+              unsigned thread) override;
   void finish(std::size_t sample, unsigned thread) override;
+  std::uint32_t color_of(std::size_t sample, std::size_t pixel, std::span<const glm::vec3> light) const;
 
   const std::vector<CameraSettings>& settings_;
+  bool noise_;
+  // Of cameras with colours.
+  std::optional<CameraLight> light_;
+  std::vector<glm::vec3> part_light_;
+  std::vector<CameraLight::Scratch> scratch_;  ///< per thread
+  std::vector<SceneList> casting_;             ///< per due sample: surfaces that cast shadows
 };
+
+Cameras::Cameras(const SensorContext& context, const ParsedSensors& sensors)
+    : SpatialScans(context, camera_type, sensors, scanners_of(sensors.settings_as<CameraSettings>())),
+      settings_(sensors.settings_as<CameraSettings>()),
+      noise_(context.noise) {
+  if (std::ranges::none_of(settings_, &CameraSettings::rgb)) return;
+  light_.emplace(context.world, materials());
+  part_light_.resize(parts());
+  scratch_.resize(context.thread_pool.threads());
+}
+
+bool Cameras::update_outlines(const world::World& world) {
+  if (light_) light_->update(world);
+  return SpatialScans::update_outlines(world);
+}
+
+bool Cameras::prepare(std::span<const DueSample> due) {
+  const bool again = SpatialScans::prepare(due);
+  if (!light_ || !light_->has_sun()) return again;
+  casting_.resize(std::max(casting_.size(), due.size()));
+  const double further = light_->shadow_reach(scene().largest());
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    if (!settings_[due[i].row].rgb) continue;
+    SensorView view = sensor_view(i);
+    view.range += further, view.own = true;
+    scene().list(view, casting_[i]);
+  }
+  return again;
+}
+
+void Cameras::follow(std::size_t i, const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles,
+                     unsigned thread) {
+  const CameraSettings& s = settings_[samples()[i].row];
+  if (!s.rgb) return;
+  CameraLight::Scratch& scratch = scratch_[thread];
+  const float least = s.mode == 0 ? scene::kLeastShadow : 2.0f * static_cast<float>(scene::kSingleRangeError);
+  const bool moving = light_->has_sun() && !casting_[i].moving.empty();
+  if (light_->has_sun()) scratch.shadows.begin(X_WS.p, light_->to_sun(), casting_[i].instances, least);
+  for (const scene::BeamTile& tile : tiles) {
+    if (moving) {
+      move_to_tile(tile, casting_[i], scratch.moved);
+      scratch.shadows.begin(X_WS.p, light_->to_sun(), scratch.moved, least);
+    }
+    light_->shade(X_WS, tile, s.range_max, output_of(i), parts_of(part_light_, i), scratch);
+  }
+}
+
+/// @param light of the samples of a pixel
+std::uint32_t Cameras::color_of(std::size_t i, std::size_t pixel, std::span<const glm::vec3> light) const {
+  const HostSample& sample = samples()[i];
+  const CameraSettings& s = settings_[sample.row];
+  glm::vec3 sum{};
+  for (const glm::vec3& each : light) sum += each;
+  glm::dvec3 mean = s.gain / static_cast<double>(light.size()) * glm::dvec3(sum);
+  if (s.vignetting > 0.0) {
+    const glm::dvec2 corner = 0.5 * glm::dvec2(s.width - 1.0, s.height - 1.0),
+                     from = glm::dvec2(pixel % s.width, pixel / s.width) - corner;
+    mean *= 1.0 - s.vignetting * glm::dot(from, from) / std::max(1.0, glm::dot(corner, corner));
+  }
+  if (noise_ && s.is_noisy()) {
+    const SensorSpec& row = rows()[sample.row];
+    const base::RandomKey key =
+        episodes().key(base::RandomStream::spatial_range, row.mover, kNoiseId + row.sensor, sample.sequence);
+    const auto index = static_cast<std::uint32_t>(2 * pixel);
+    const auto a = base::random_normal(key, index), b = base::random_normal(key, index + 1);
+    const glm::dvec3 normal(a[0], a[1], b[0]);
+    for (int k = 0; k < 3; ++k) mean[k] += normal[k] * std::sqrt(s.read_noise * s.read_noise + s.shot_noise * mean[k]);
+  }
+  return base::srgb_color(glm::vec3(mean));
+}
+
+/// Pixels of a whole image without a surface.
+void see_nothing(const CameraSettings& s, std::span<double> values, std::span<std::uint32_t> hits) {
+  std::ranges::fill(hits, base::kNoHit);
+  std::ranges::fill(values, 0.0);
+  for (std::size_t i = 0; i < values.size(); i += s.columns()) values[i] = s.range_max;
+}
 
 void Cameras::finish(std::size_t i, unsigned) {
   const HostSample& sample = samples()[i];
@@ -63,91 +155,48 @@ void Cameras::finish(std::size_t i, unsigned) {
   const scene::ScanOutput from = output_of(i);
   const auto hits = hits_of(i);
   const auto quality = quality_of(i);
-  const std::size_t width = s.normals ? 4 : 1;
-  for (std::size_t k = 0; k < hits.size(); ++k) {
-    const double depth = from.ranges[k] * s.beams->directions[k].x;
-    const bool seen = from.hits[k] != base::kNoHit && depth < s.range_max;
-    hits[k] = seen ? from.hits[k] : base::kNoHit;
-    quality[k] = seen && depth < s.range_min ? base::QualityFlag::too_near : from.quality[k];
-    sample.values[k * width] = seen ? std::max(depth, s.range_min) : s.range_max;
-    for (std::size_t axis = 0; axis + 1 < width; ++axis)
-      sample.values[k * width + 1 + axis] = seen ? static_cast<double>(from.normals[k][static_cast<int>(axis)]) : 0.0;
+  const std::size_t width = s.columns(), parts = s.samples;
+  const std::vector<std::uint32_t>& cast = s.beams->cast;
+  if (!cast.empty()) see_nothing(s, sample.values, hits);
+  const auto light = s.rgb ? parts_of(part_light_, i) : std::span<glm::vec3>();
+  for (std::size_t c = 0; c < from.ranges.size() / parts; ++c) {
+    const std::size_t k = cast.empty() ? c : cast[c], first = c * parts;
+    const double depth = from.ranges[first] * s.beams->directions[k].x;
+    const bool seen = from.hits[first] != base::kNoHit && depth < s.range_max;
+    hits[k] = seen ? from.hits[first] : base::kNoHit;
+    quality[k] = seen && depth < s.range_min ? base::QualityFlag::too_near : from.quality[first];
+    const std::span<double> pixel = sample.values.subspan(k * width, width);
+    pixel[0] = seen ? std::max(depth, s.range_min) : s.range_max;
+    if (width > 1) pixel[1] = s.rgb ? color_of(i, k, light.subspan(first, parts)) : 0.0;
+    const glm::vec3 normal = seen && s.normals ? from.normals[first] : glm::vec3{};
+    for (std::size_t axis = 0; axis + 2 < width; ++axis) pixel[2 + axis] = normal[static_cast<int>(axis)];
   }
-}
-
-/// Beams through the centres of the pixels of all cameras with equal images.
-class ImageBeams {
- public:
-  std::shared_ptr<const LidarBeams> of(const CameraSettings& s) {
-    auto& beams = known_[{s.width, s.height, s.focal_length}];
-    if (beams) return beams;
-    auto made = std::make_shared<LidarBeams>();
-    for (std::uint32_t v = 0; v < s.height; ++v)
-      for (std::uint32_t u = 0; u < s.width; ++u)
-        made->directions.push_back(
-            glm::normalize(glm::dvec3{s.focal_length, centre_of(s.width) - u, centre_of(s.height) - v}));
-    made->channels = s.height;
-    made->pattern = scene::make_pattern(made->directions, 0);
-    return beams = std::move(made);
-  }
-
- private:
-  std::map<std::tuple<std::uint32_t, std::uint32_t, double>, std::shared_ptr<const LidarBeams>> known_;
-};
-
-void read_image(const world::Sensor& sensor, CameraSettings& s) {
-  if (const auto size = tuple(sensor, "resolution", 2, "[width height]")) {
-    const auto fits = [](double n) { return n >= 1.0 && n <= kMostSide && n == std::floor(n); };
-    if (!fits((*size)[0]) || !fits((*size)[1]))
-      refuse(sensor, "resolution",
-             fmt::format("{:g} x {:g} pixels; expected whole numbers from 1 to {}", (*size)[0], (*size)[1], kMostSide));
-    s.width = static_cast<std::uint32_t>((*size)[0]), s.height = static_cast<std::uint32_t>((*size)[1]);
-  }
-  if (s.width * s.height > kMostLidarBeams)
-    refuse(sensor, "resolution",
-           fmt::format("{} x {} are {} pixels; expected at most {}", s.width, s.height, s.width * s.height,
-                       kMostLidarBeams));
-  // Stage also gives the vertical field of view, which follows from the resolution.
-  const auto fov = tuple(sensor, "fov", 1, "the horizontal field of view");
-  const double angle = fov ? (*fov)[0] * sensor.radians_per_unit : 70.0 * kDegree;
-  if (!(angle > 0.0 && angle <= 170.0 * kDegree * (1.0 + 1e-12)))
-    refuse(sensor, "fov",
-           fmt::format("a field of view of {:g} degrees; expected more than 0, to 170{}", angle / kDegree,
-                       hint_of_radians(sensor, angle)));
-  s.focal_length = 0.5 * s.width / base::tan(0.5 * angle);
-}
-
-CameraSettings camera_of(const world::Sensor& sensor) {
-  CameraSettings s;
-  s.X_MS = spatial_mount(sensor);
-  if (const auto turn = tuple(sensor, "pantilt", 2, "[pan tilt]"))
-    s.X_MS.R =
-        s.X_MS.R * base::rotation_of(0.0, (*turn)[1] * sensor.radians_per_unit, (*turn)[0] * sensor.radians_per_unit);
-  read_image(sensor, s);
-  if (const auto range = tuple(sensor, "range", 2, "[min max]"))
-    s.range_min = sensor.metres_per_unit * (*range)[0], s.range_max = sensor.metres_per_unit * (*range)[1];
-  if (!(s.range_max > 0.0 && s.range_max <= 1e4 && s.range_min >= 0.0 && s.range_min <= s.range_max))
-    refuse(sensor, "range",
-           fmt::format("depths from {:g} to {:g} m; expected 0 or more, to more than that and at most "
-                       "10000 m",
-                       s.range_min, s.range_max));
-  s.normals = whole(sensor, "normals", 0, 0, 1) == 1;
-  return s;
 }
 
 ParsedSensors parse_cameras(const world::World& world) {
-  ImageBeams images;
+  CameraReader reader;
+  std::size_t beams = 0;
+  const world::Daylight day = world::daylight_of(world);
+  const bool sunny = day.elevation > 0.0 && day.sun > 0.0;
   return parse_each(world, camera_type, [&](const world::Sensor& sensor, SensorSpec& row) {
-    CameraSettings s = camera_of(sensor);
+    CameraSettings s = reader.read(sensor);
     row.mode = s.mode = mode_of("camera", kCameraModes, accuracy_of(sensor), world);
-    s.beams = images.of(s);
+    beams += s.beams->cast_directions().size();
+    if (beams > kMostBeamsInAll)
+      refuse(sensor, "resolution",
+             fmt::format("the world's cameras have more than {} beams in all; give fewer pixels, 'samples', or robots",
+                         kMostBeamsInAll));
     row.elements = s.width * s.height;
-    row.width = s.normals ? 4 : 1;
+    row.width = static_cast<std::uint32_t>(s.columns());
+    row.across = s.width;
     row.X_MS = {s.X_MS.p.x, s.X_MS.p.y, s.X_MS.p.z, base::atan2(s.X_MS.R[0].y, s.X_MS.R[0].x)};
     row.limit = s.range_max;
     row.range_min = s.range_min;
-    const double corner = base::hypot(s.focal_length, centre_of(s.width), centre_of(s.height)) / s.focal_length;
-    row.dependency_radius = row.reach = s.range_max * corner;
+    const double reach = s.range_max * stretch(s);
+    if (!(s.rgb && sunny)) row.reach = reach;  // shadows come from anywhere
+    // Else readings also depend on these, on earlier poses, or on noise in colours.
+    const bool near = !(s.rgb && sunny) && s.beams->times.empty() && !s.is_noisy();
+    row.dependency_radius = near ? reach : 0.0;
     return s;
   });
 }
@@ -161,9 +210,9 @@ ErrorBound bound_of_camera(const world::World&, const ParsedSensors& sensors, st
   return {error_of(sensors.settings_as<CameraSettings>()[row]), ""};
 }
 
-// Depths are sent as the ranges of lidars are. Normals are not sent.
+// Depths are sent as the ranges of lidars are. Colours and normals are not sent.
 
-std::size_t width_of(const SensorSpec& sensor) { return sensor.width != 0 ? sensor.width : 4; }
+std::size_t width_of(const SensorSpec& sensor) { return sensor.width != 0 ? sensor.width : 5; }
 
 std::vector<double> depths_of(std::span<const double> values, std::size_t width) {
   std::vector<double> depths;
@@ -213,15 +262,13 @@ void read(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::
   for (std::size_t i = 0; i < depths.size(); ++i) values[i * width] = depths[i];
 }
 
-constexpr Column kColumns[] = {{"depth_m", 1, false, 9}, {"normal", 3}};
-constexpr std::string_view kKeys[] = {"resolution", "fov", "range", "normals", "pose6", "pantilt"};
-
+constexpr Column kColumns[] = {{"depth_m", 1, false, 9}, {"rgb", 1, true}, {"normal", 3}};
 }  // namespace
 
 constinit const SensorType camera_type{
     .id = kCamera,
     .name = "camera",
-    .word = {"camera", kKeys},
+    .word = {"camera", kCameraKeys},
     .base_port = 15000,
     .list = "pixels",
     .columns = kColumns,

@@ -80,19 +80,31 @@ bool SpatialScans::update_outlines(const world::World& world) {
   return true;
 }
 
-void SpatialScans::list_scene(std::size_t i) {
+SensorView SpatialScans::sensor_view(std::size_t i) const {
   const std::uint32_t row = samples()[i].row, mover = rows()[row].mover;
   const SpatialScanner& s = scanners_[row];
-  Surroundings& around = surroundings_[i];
-  around.X_WS = base::compose(scene_.X_WM(mover), s.X_MS);
-  SensorView view{.mover = mover, .p = around.X_WS.p, .range = s.range_max, .angle = s.angle};
+  SensorView view{.mover = mover, .p = X_WS(i).p, .range = s.range_max, .angle = s.angle};
   const std::int64_t duration = s.beams->duration();
   if (duration > 0 && trails_.is_here(mover)) {
     view.trails = &trails_, view.since = trails_.now() - duration;
     view.range += trails_.reach(mover) + 2.0 * glm::length(s.X_MS.p);
   }
+  return view;
+}
+
+void SpatialScans::list_scene(std::size_t i) {
+  const std::uint32_t row = samples()[i].row, mover = rows()[row].mover;
+  Surroundings& around = surroundings_[i];
+  around.X_WS = base::compose(scene_.X_WM(mover), scanners_[row].X_MS);
+  const SensorView view = sensor_view(i);
   scene_.list(view, around.list);
   around.rolling = view.trails != nullptr && (!around.list.moving.empty() || !trails_.at_rest(mover, view.since));
+}
+
+void SpatialScans::move_to_tile(const scene::BeamTile& tile, const SceneList& list,
+                                std::vector<scene::Instance>& out) const {
+  out = list.instances;
+  move_to(trails_.now() + base::nanoseconds(tile.time), trails_, list, out);
 }
 
 bool SpatialScans::prepare(std::span<const DueSample> due) {
@@ -177,7 +189,7 @@ void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const 
   const scene::SceneView view = view_of(instances, job.sample);
   if (!reference_) {
     rasterizers_[thread].scan(X_WS, tiles, s.range_max, view, out, cast);
-    return;
+    return follow(job.sample, X_WS, tiles, thread);
   }
   for (const scene::BeamTile& tile : tiles)
     for (const std::uint32_t i : std::span(tile.place).first(tile.used * scene::kWidth)) {
@@ -188,6 +200,7 @@ void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const 
       if (!out.normals.empty()) out.normals[i] = hit.normal;
       if (!out.materials.empty()) out.materials[i] = hit.material;
     }
+  follow(job.sample, X_WS, tiles, thread);
 }
 
 void SpatialScans::measure_all() {

@@ -55,9 +55,27 @@ class SpatialScans : public HostBackend {
 
   /// As SpatialScene::materials, if a sensor uses them.
   const std::vector<world::Material>& materials() const { return scene_.materials(); }
+  /// Computes further quantities of what the beams of some tiles met, after they were cast. Several threads call it at
+  /// once.
+  virtual void follow(std::size_t /*sample*/, const base::RigidTransform& /*X_WS*/,
+                      std::span<const scene::BeamTile> /*tiles*/, unsigned /*thread*/) {}
+
+  const SpatialScene& scene() const { return scene_; }
+  /// Returns the view of a due sample, before its surroundings are used.
+  SensorView sensor_view(std::size_t sample) const;
+  /// Puts the instances of a list where they are at the time of a tile.
+  void move_to_tile(const scene::BeamTile& tile, const SceneList& list, std::vector<scene::Instance>& out) const;
+  const base::RigidTransform& X_WS(std::size_t sample) const { return surroundings_[sample].X_WS; }
   const SpatialScanner& scanner_of(std::size_t sample) const { return scanners_[samples()[sample].row]; }
   /// Returns the hits of a sample, one per part of each cast beam. For a plain sensor, this is its reading itself.
   scene::ScanOutput output_of(std::size_t sample);
+  /// A sample's part of a table with one entry per part of the cast beams.
+  template <class Value>
+  std::span<Value> parts_of(std::vector<Value>& table, std::size_t sample) const {
+    const std::size_t row = samples()[sample].row;
+    return std::span(table).subspan(first_part_[row], first_part_[row + 1] - first_part_[row]);
+  }
+  std::size_t parts() const { return first_part_.back(); }
   std::span<std::uint32_t> hits_of(std::size_t sample) { return beams_of(hits_, sample); }
   std::span<base::QualityFlag> quality_of(std::size_t sample) { return beams_of(quality_, sample); }
 
@@ -84,12 +102,6 @@ class SpatialScans : public HostBackend {
   std::span<Value> beams_of(std::vector<Value>& table, std::size_t sample) const {
     const std::size_t row = samples()[sample].row;
     return std::span(table).subspan(first_beam_[row], first_beam_[row + 1] - first_beam_[row]);
-  }
-  /// A sample's part of a table with one entry per part of the cast beams.
-  template <class Value>
-  std::span<Value> parts_of(std::vector<Value>& table, std::size_t sample) const {
-    const std::size_t row = samples()[sample].row;
-    return std::span(table).subspan(first_part_[row], first_part_[row + 1] - first_part_[row]);
   }
 
   std::vector<SpatialScanner> scanners_;

@@ -133,6 +133,13 @@ void SpatialScene::add_mover(std::uint32_t m, const SensorView& view, SceneList&
                  [&](const base::RigidTransform& X_WI) { add_mesh(part.mesh, X_WI, part.model, near, out); });
 }
 
+double SpatialScene::largest() const {
+  double largest = 0.0;
+  for (const auto* trees : {&bodies_, &meshes_})
+    for (const scene::SurfaceTree& tree : *trees) largest = std::max(largest, tree.radius + glm::length(tree.centre));
+  return largest;
+}
+
 void SpatialScene::list(const SensorView& view, SceneList& out) const {
   out.moving.clear();
   out.instances.assign({{&walls_, {}, true}, {&roads_, {}, true, base::kFloorHit}});
@@ -143,7 +150,7 @@ void SpatialScene::list(const SensorView& view, SceneList& out) const {
   for (const Part& part : fixed_) add_mesh(part.mesh, part.X_BF, part.model, view, out);
   const auto [first, end] = copies_.rows_with(view.mover, static_cast<std::uint32_t>(bodies_.size()));
   for (std::uint32_t m = first; m < end; ++m)
-    if (m != view.mover) add_mover(m, view, out);
+    if (m != view.mover || view.own) add_mover(m, view, out);
   out.floor = floor_ && !near_holes;
 }
 

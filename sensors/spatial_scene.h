@@ -23,9 +23,10 @@ struct SceneExtras {
 
 /// Surroundings of a sensor, and when it casts its beams.
 struct SensorView {
-  std::uint32_t mover = 0;  ///< its carrier, which it does not see
+  std::uint32_t mover = 0;  ///< its carrier
   glm::dvec3 p{};           ///< [m] its place
   double range = 0.0;       ///< [m] of surfaces that it may see from there
+  bool own = false;         ///< also those of its carrier
   double angle = 0.0;       ///< [rad] meshes may be coarser by displacements of this size as seen from `p`; 0: exact
   const MoverTrails* trails = nullptr;  ///< of a rolling scan; null: all beams are cast at once
   std::int64_t since = 0;               ///< [ns] time of its first beam
@@ -62,8 +63,10 @@ class SpatialScene {
   const std::vector<world::Material>& materials() const { return materials_; }
 
   scene::Terrain terrain() const { return {terrain_.empty() ? nullptr : &terrain_, X_WF_}; }
-  /// Lists the walls, and all other surfaces of the carrier's world within range, except its own.
+  /// Lists the walls, and all other surfaces of the carrier's world within range.
   void list(const SensorView& view, SceneList& out) const;
+  /// [m] Returns how far any body or mesh reaches from the origin of its frame.
+  double largest() const;
 
  private:
   /// A mesh of a model.

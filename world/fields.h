@@ -147,6 +147,12 @@ template <> inline constexpr auto kFields<Terrain> = std::make_tuple(
     path(&Terrain::file), field(&Terrain::X_WT), field(&Terrain::cell, kAboveZero), field(&Terrain::columns),
     field(&Terrain::rows), field(&Terrain::heights));
 
+template <> inline constexpr auto kFields<Daylight> = std::make_tuple(
+    field(&Daylight::azimuth, Key{"sun", Unit::angle, "[azimuth elevation]", 0, 2}, Bounds{-1e6, 1e6}),
+    field(&Daylight::elevation, Key{"sun", Unit::angle, "[azimuth elevation]", 1, 2}, Bounds{-M_PI / 2 * (1.0 + 1e-12), M_PI / 2 * (1.0 + 1e-12)}),
+    field(&Daylight::sun, Key{"sunlight"}, Bounds{0.0, 100.0}), field(&Daylight::sky, Key{"skylight"}, Bounds{0.0, 100.0}),
+    field(&Daylight::floor));
+
 template <> inline constexpr auto kFields<Warning> = std::make_tuple(
     path(&Warning::file), label(&Warning::line), label(&Warning::message));
 
@@ -182,7 +188,7 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 13
     field(&World::reflectances), field(&World::terrain),
     // since version 14
-    field(&World::mesh_materials));
+    field(&World::mesh_materials), field(&World::daylight));
 
 // clang-format on
 

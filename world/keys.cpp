@@ -14,7 +14,7 @@ using Words = std::span<const std::string_view>;
 
 // clang-format off
 // Keys with their own readers. world/fields.h has all others.
-constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "earth_field", "earth_location", "floor_return", "old_shapes", "stage_noise", "stage_obstacles",
+constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "earth_field", "earth_location", "floor_color", "floor_return", "old_shapes", "stage_noise", "stage_obstacles",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
@@ -101,7 +101,7 @@ std::vector<Words> model_and(std::initializer_list<Words> others) {
 std::vector<Words> keys_in(KeyScope where) {
   switch (where) {
     case KeyScope::world:
-      return {kWorld, fields_of<World>()};
+      return {kWorld, fields_of<World>(), fields_of<Daylight>()};
     case KeyScope::position:
       return model_and({kPosition, fields_of<Mover>()});
     case KeyScope::light:

@@ -16,7 +16,8 @@ constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 14;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
-constexpr std::size_t kSinceVersion14 = least_bytes<std::vector<MeshMaterials>>();
+constexpr std::size_t kSinceVersion14 =
+    least_bytes<std::vector<MeshMaterials>>() + least_bytes<std::vector<Daylight>>();
 constexpr std::size_t kSinceVersion13 = least_bytes<std::vector<Reflectance>>() + least_bytes<std::vector<Terrain>>();
 constexpr std::size_t kSinceVersion12 = least_bytes<std::vector<Mesh>>() + least_bytes<std::vector<MeshModel>>();
 constexpr std::size_t kSinceVersion11 = least_bytes<bool>();
@@ -28,7 +29,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
-  if (!world.mesh_materials.empty()) return 14;
+  if (!world.mesh_materials.empty() || !world.daylight.empty()) return 14;
   if (!world.reflectances.empty() || !world.terrain.empty()) return 13;
   if (!world.meshes.empty() || !world.mesh_models.empty()) return 12;
   if (world.floor_unseen) return 11;
@@ -98,7 +99,7 @@ void check_rows(const World& world) {
       for (int k = 0; k < 3; ++k) good &= material.color[k] >= 0.0 && material.color[k] <= 1.0;
     with_materials[row.mesh] = true;
   }
-  good &= world.terrain.size() <= 1;
+  good &= world.terrain.size() <= 1 && world.daylight.size() <= 1;
   for (const Terrain& terrain : world.terrain)
     good &= std::min(terrain.columns, terrain.rows) >= 2 && std::max(terrain.columns, terrain.rows) <= kMostSide &&
             terrain.heights.size() == std::size_t{terrain.columns} * terrain.rows;

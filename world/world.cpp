@@ -93,7 +93,7 @@ constexpr auto kHashedIfSet =
     std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights,
                     &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature, &World::variations,
                     &World::floor_unseen, &World::meshes, &World::mesh_models, &World::reflectances, &World::terrain,
-                    &World::mesh_materials);
+                    &World::mesh_materials, &World::daylight);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -183,6 +183,8 @@ void update_extent_and_hash(World& world) {
   world.extent = extent_of(world, unread.extent);
   world.hash = hash_of(world, unread.count);
 }
+
+Daylight daylight_of(const World& world) { return world.daylight.empty() ? Daylight{} : world.daylight[0]; }
 
 void translate(World& world, double dx, double dy) {
   const auto move = [&](auto& p) {

@@ -329,6 +329,16 @@ struct Terrain {
   std::vector<float> heights;           ///< [m] row by row from the smallest y, finite
 };
 
+/// Light and colours outside of models, for cameras (sensors/camera_light.h). Irradiances are relative: a white surface
+/// with 1 is just fully exposed at a gain of 1.
+struct Daylight {
+  double azimuth = 0.75 * M_PI;          ///< [rad] of the sun, counter-clockwise from the x axis
+  double elevation = 5.0 / 18.0 * M_PI;  ///< [rad] of the sun; 0 or less: it does not shine
+  double sun = 0.8;                      ///< in [0, 100], on a surface that faces it
+  double sky = 0.3;                      ///< in [0, 100], on a level surface
+  std::uint32_t floor = 0xFFB0B0B0u;     ///< 0xAARRGGBB, of the floor, roads and terrain
+};
+
 /// A user message about a problem that did not stop the load.
 struct Warning {
   std::string file;
@@ -359,7 +369,7 @@ struct World {
   std::vector<Model> models;
   std::vector<Segment> walls;              ///< static segments in the world frame
   std::vector<OutlineFile> unread;         ///< walls after `walls`, part of `extent` and `hash` (leave_outlines)
-  std::vector<LaneMarking> lane_markings;  ///< road paint, visible to lane edge sensors only
+  std::vector<LaneMarking> lane_markings;  ///< road paint, visible to lane edge sensors and cameras
   std::vector<Ramp> ramps;                 ///< roads with heights
   /// Of the first lane markings; those without are on the floor. Empty in worlds without ramps.
   std::vector<MarkingHeights> marking_heights;
@@ -390,12 +400,14 @@ struct World {
   std::vector<Reflectance> reflectances;
   std::vector<Terrain> terrain;  ///< at most one
   std::vector<MeshMaterials> mesh_materials;
+  std::vector<Daylight> daylight;         ///< at most one; empty: the default (daylight_of)
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
-  std::uint64_t hash = 0;  ///< of all data above that readings depend on; changes of shapes do not update it
+  std::uint64_t hash = 0;  ///< of all data above that readings depend on, except colours of models and
+                           ///< paint; changes of shapes do not update it
 
   Variation variation_of(std::uint32_t mover) const {
     return mover < variations.size() ? variations[mover] : Variation{};
@@ -440,6 +452,8 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
 /// elsewhere.
 std::vector<std::uint8_t> snapshot(const World& world);
 World from_snapshot(const std::vector<std::uint8_t>& bytes);
+
+Daylight daylight_of(const World& world);
 
 /// [m] Returns the radius of the circle about the mover's origin that contains its body.
 double radius_of(const Mover& mover);

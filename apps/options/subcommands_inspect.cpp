@@ -94,8 +94,10 @@ void add_sense(CLI::App& app, Call& call) {
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first with a sensor)")->type_name("NAME");
   add_robot_from(*sub, o);
   add_sensor_type(*sub, o);
-  const std::vector<std::pair<std::string, ImageKind>> kinds{
-      {"depth", ImageKind::depth}, {"labels", ImageKind::labels}, {"normals", ImageKind::normals}};
+  const std::vector<std::pair<std::string, ImageKind>> kinds{{"depth", ImageKind::depth},
+                                                             {"labels", ImageKind::labels},
+                                                             {"normals", ImageKind::normals},
+                                                             {"colour", ImageKind::colour}};
   CLI::Option* const out = sub->add_option("-o,--out", o.out, "PNG file of --image")->type_name("FILE");
   sub->add_option_function<std::string>(
          "--image",
@@ -105,7 +107,7 @@ void add_sense(CLI::App& app, Call& call) {
          "Write this image of a camera: depth (16 bits, mm), labels (16 bits: 0 nothing, 1 floor, 2 + row of the "
          "model) "
          "or normals")
-      ->check(CLI::IsMember({"depth", "labels", "normals"}))
+      ->check(CLI::IsMember({"depth", "labels", "normals", "colour"}))
       ->type_name("KIND")
       ->needs(out);
   sub->add_option("--sensor", o.sensor, "Number of the sensor, from 0: within --type, or across all types without it")

@@ -18,10 +18,18 @@ std::uint16_t label_of(std::uint32_t hit) {
 std::string normals_png(const base::ReadingBlock& reading, int width, int height) {
   std::vector<std::uint8_t> rgb;
   for (std::size_t i = 0; i < reading.hits.size(); ++i)
-    for (std::size_t axis = 1; axis < 4; ++axis)
+    for (std::size_t axis = 2; axis < 5; ++axis)
       rgb.push_back(reading.hits[i] == base::kNoHit
                         ? std::uint8_t{0}
-                        : static_cast<std::uint8_t>(std::lround(127.5 * (1.0 + reading.values[4 * i + axis]))));
+                        : static_cast<std::uint8_t>(std::lround(127.5 * (1.0 + reading.values[5 * i + axis]))));
+  return viz::encode_png(rgb, width, height);
+}
+
+std::string colour_png(const base::ReadingBlock& reading, std::size_t step, int width, int height) {
+  std::vector<std::uint8_t> rgb;
+  for (std::size_t i = 1; i < reading.values.size(); i += step)
+    for (const int shift : {16, 8, 0})
+      rgb.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(reading.values[i]) >> shift));
   return viz::encode_png(rgb, width, height);
 }
 
@@ -30,7 +38,8 @@ std::string normals_png(const base::ReadingBlock& reading, int width, int height
 std::string camera_png(const sensors::CameraSettings& camera, const base::ReadingBlock& reading, ImageKind kind) {
   const auto width = static_cast<int>(camera.width), height = static_cast<int>(camera.height);
   if (kind == ImageKind::normals) return normals_png(reading, width, height);
-  const std::size_t step = reading.values.size() / reading.hits.size();
+  const std::size_t step = camera.columns();
+  if (kind == ImageKind::colour) return colour_png(reading, step, width, height);
   std::vector<std::uint16_t> grey;
   for (std::size_t i = 0; i < reading.hits.size(); ++i) {
     const double millimetres = std::clamp(std::round(1e3 * reading.values[i * step]), 1.0, 65535.0);

@@ -99,18 +99,24 @@ Json spatial_pose_json(const base::ReadingBlock& reading, const sensors::Spatial
 
 /// Returns the numbers of an image, row by row from the top left.
 Json image_json(const world::World& world, const sensors::CameraSettings& camera, const base::ReadingBlock& reading) {
-  Json depth = Json::array(), labels = Json::array(), normals = Json::array();
-  const std::size_t width = camera.normals ? 4 : 1;
+  const base::Lens& lens = camera.lens;
+  Json depth = Json::array(), labels = Json::array(), rgb = Json::array(), normals = Json::array();
+  const std::size_t width = camera.columns();
   for (std::size_t i = 0; i < reading.hits.size(); ++i) {
     const std::span<const double> pixel = reading.values.subspan(i * width, width);
     depth.push_back(pixel[0]);
     labels.push_back(reading.hits[i] == base::kNoHit ? Json() : Json(hit_name(world, reading.hits[i])));
-    if (camera.normals) normals.push_back({pixel[1], pixel[2], pixel[3]});
+    if (camera.rgb) rgb.push_back(static_cast<std::uint32_t>(pixel[1]));
+    if (camera.normals) normals.push_back({pixel[2], pixel[3], pixel[4]});
   }
   Json json{{"resolution", {camera.width, camera.height}},
-            {"focal_length_px", camera.focal_length},
+            {"focal_length_px", {lens.focal.x, lens.focal.y}},
+            {"principal_point_px", {lens.center.x, lens.center.y}},
+            {"distortion", lens.distortion},
+            {"fisheye", lens.fisheye},
             {"depth_m", std::move(depth)},
             {"labels", std::move(labels)}};
+  if (camera.rgb) json["rgb"] = std::move(rgb);
   if (camera.normals) json["normals"] = std::move(normals);
   Json unsure = Json::array();
   for (std::size_t i = 0; i < reading.quality.size(); ++i)

@@ -65,11 +65,21 @@ void add_side(const std::vector<glm::dvec2>& side, bool closed, bool forward, bo
   }
 }
 
+bool is_closed(const std::vector<glm::dvec2>& line) { return line.size() > 3 && same(line.front(), line.back()); }
+
 }  // namespace
+
+void add_quads(const world::LaneMarking& marking, std::vector<Quad>& out) {
+  const auto [left, right] = sides_of(marking.line, 0.5 * marking.width, is_closed(marking.line));
+  for (std::size_t i = 0; i + 1 < marking.line.size(); ++i) {
+    const std::size_t j = (i + 1) % left.size();
+    out.push_back({right[i], right[j], left[j], left[i]});
+  }
+}
 
 void add_outline(const world::LaneMarking& marking, std::vector<OutlineEdge>& out) {
   const std::vector<glm::dvec2>& line = marking.line;
-  const bool closed = line.size() > 3 && same(line.front(), line.back());
+  const bool closed = is_closed(line);
   const Sides sides = sides_of(line, 0.5 * marking.width, closed);
   const bool solid = !runs_back(line, sides.left) && !runs_back(line, sides.right);
   add_side(sides.right, closed, true, solid, out);

@@ -5,6 +5,7 @@
 // end, back along the left side and across the start. At the line's vertices both sides meet on the bisector (a mitre),
 // so the outline keeps exactly half the width from the line.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,11 @@ struct OutlineEdge {
 /// Appends the edges of one marking. A closed line has no end edges.
 /// Precondition (World::lane_markings): at least two points, distinct neighbours, turns below 90 degrees.
 void add_outline(const world::LaneMarking& marking, std::vector<OutlineEdge>& out);
+
+/// Corners of a part of a marking, counter-clockwise: its right side, then its left side.
+using Quad = std::array<glm::dvec2, 4>;
+/// Appends one quad per piece of the marking's line. Together they are the band inside of the outline.
+void add_quads(const world::LaneMarking& marking, std::vector<Quad>& out);
 
 /// Removes duplicates, because two lanes paint their shared edge twice. Duplicates have equal width and points within
 /// `within` [m], in either direction. The first one is kept.

@@ -6,10 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <map>
 
 #include "raycast/casters.h"
+#include "robots/kinematics.h"
 #include "scene/rasterizer.h"
+#include "scene/reference_scan.h"
+#include "scene/solids.h"
 #include "tests/refusal.h"
 #include "tests/sensors/series.h"
 
@@ -20,7 +25,7 @@ namespace {
 world::World boards(const std::string& camera) {
   return world_of(
       "define robot position( size [0.4 0.4 0.5] origin [0 0 0 0] )\n"
-      "model( name \"board\" pose [4.05 0 0 0] size [0.1 1 3] )\n"
+      "model( name \"board\" pose [4.05 0 0 0] size [0.1 1 3] color \"white\" )\n"
       "model( name \"wall\" pose [9.1 0 0 0] size [0.2 40 8] )\n"
       "robot( name \"r1\" pose [0 0 0 0] camera( pose [0 0 0.25 0] size [0 0 0] " +
       camera + " ) )\n");
@@ -82,9 +87,9 @@ TEST(Camera, AgreesWithEveryFace) {
   for (std::size_t i = 0; i < fast.hits.size(); ++i) {
     if (fast.quality[i] != base::QualityFlag::none) continue;
     EXPECT_EQ(fast.hits[i], slow.hits[i]);
-    EXPECT_NEAR(fast.values[4 * i], slow.values[4 * i], fast.bound);
-    for (std::size_t axis = 1; axis < 4; ++axis)
-      EXPECT_NEAR(fast.values[4 * i + axis], slow.values[4 * i + axis], 1e-6);
+    EXPECT_NEAR(fast.values[5 * i], slow.values[5 * i], fast.bound);
+    for (std::size_t axis = 2; axis < 5; ++axis)
+      EXPECT_NEAR(fast.values[5 * i + axis], slow.values[5 * i + axis], 1e-6);
     ++compared;
   }
   EXPECT_GT(compared, 2'300u);
@@ -93,14 +98,14 @@ TEST(Camera, AgreesWithEveryFace) {
 /// A wall that is faced has the normal (-1, 0, 0), toward the camera; the floor points up; nothing has 0.
 TEST(Camera, NormalsPointToTheCamera) {
   const Image image = shoot(boards("resolution [16 16] fov 100 range [0 8] normals 1"));
-  ASSERT_EQ(image.width, 4u);
+  ASSERT_EQ(image.width, 5u);
   for (std::size_t i = 0; i < image.hits.size(); ++i) {
-    const glm::dvec3 normal{image.values[4 * i + 1], image.values[4 * i + 2], image.values[4 * i + 3]};
+    const glm::dvec3 normal{image.values[5 * i + 2], image.values[5 * i + 3], image.values[5 * i + 4]};
     const glm::dvec3 expected = image.hits[i] == base::kFloorHit ? glm::dvec3{0, 0, 1}
                                 : image.hits[i] == base::kNoHit  ? glm::dvec3{}
                                                                  : glm::dvec3{-1, 0, 0};
     EXPECT_NEAR(glm::distance(normal, expected), 0.0, 1e-6);
-    EXPECT_EQ(image.values[4 * i] == 8.0, image.hits[i] == base::kNoHit);
+    EXPECT_EQ(image.values[5 * i] == 8.0, image.hits[i] == base::kNoHit);
   }
 }
 
@@ -126,6 +131,212 @@ TEST(Camera, ReadsStagesKeys) {
   EXPECT_EQ(image.hits[4], base::kFloorHit);
 }
 
+/// The pixels of a distorted image of a board's edge are those that the lens projects it to; normal images begin the
+/// same.
+TEST(Camera, LensesBendImages) {
+  const struct {
+    const char* keys;
+    base::Lens lens;
+  } kCases[] = {{"focal [60 58] principal [48.5 20] distortion [-0.2 0.05 0.01 -0.01]",
+                 {{60, 58}, {48.5, 20}, {-0.2, 0.05, 0.01, -0.01}}},
+                {"focal 60 fisheye [-0.05 0.01 0 0]", {{60, 60}, {49.5, 29.5}, {-0.05, 0.01}, true}}};
+  for (const auto& [keys, lens] : kCases) {
+    const Image image = shoot(boards(std::string("resolution [100 60] range [0 50] ") + keys));
+    const base::LensImage inverse(lens, 100, 60);
+    for (std::size_t i = 0; i < image.hits.size(); ++i) {
+      const glm::dvec2 n = inverse.direction({i % 100, i / 100}).value();  // the board: 0.5 m aside, 3 m high, 4 m away
+      const double up = 0.75 - 4.0 * n.y;
+      if (std::abs(std::abs(n.x) - 0.125) < 1e-6 || std::abs(up) < 1e-6 || std::abs(up - 3.0) < 1e-6) continue;
+      EXPECT_EQ(image.hits[i] == 0, std::abs(n.x) < 0.125 && up > 0.0 && up < 3.0) << keys << " " << i;
+    }
+  }
+}
+
+/// `fov` of a fisheye is the angle that its width images, and what lies outside of its circle sees nothing.
+TEST(Camera, FisheyesEndAtTheirRim) {
+  const Image image = shoot(boards("resolution [100 100] fov 160 fisheye [0 0 0 0] range [0 50] normals 1"));
+  EXPECT_EQ(image.hits[0], base::kNoHit);
+  EXPECT_EQ(image.values[0], 50.0);
+  EXPECT_NE(image.hits[99 * 100 + 50], base::kNoHit) << "79 degrees below the axis";
+}
+
+glm::ivec3 rgb_of(const Image& image, std::size_t i) {
+  const auto rgb = static_cast<int>(image.values[i * image.width + 1]);
+  return {rgb >> 16, rgb >> 8 & 255, rgb & 255};
+}
+
+/// Linear light of an 8-bit value of sRGB, by the standard's formula.
+double linear(double srgb) {
+  const double s = srgb / 255.0;
+  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+}
+
+/// Every pixel against another renderer, of rays in `long double`: paint, two robots, shadows, the sky.
+TEST(Camera, ColoursAgreeWithRays) {
+  const world::World world = world_of(
+      "sun [70 35]  sunlight 0.7  skylight 0.25  floor_color \"gray40\"\n"
+      "define robot position( size [0.5 0.4 0.6] color \"blue\" )\n"
+      "model( name \"box\" pose [4 1 0 30] size [1 2 1.5] color \"green\" )\n"
+      "path( pose [-2 -2.5 0 20] pieces 2 straight[0] [8 2] arc[1] [4 60 2] left \"broken_white\" right "
+      "\"double_yellow\" "
+      "paint_width 0.2 dash [0.8 0.6] )\n"
+      "robot( name \"r1\" camera( resolution [90 60] fov 90 range [0 30] rgb 1 pose6 [0 0 1 2 15 -5] ) )\n"
+      "robot( name \"r2\" pose [2.5 -0.8 0 0] )\n");
+  ASSERT_EQ(world.lane_markings.size() > 4, true);
+  const Image image = shoot(world);
+  const scene::SurfaceTree walls = scene::build_tree(scene::mesh_of(world.walls)),
+                           own = scene::build_tree(scene::mesh_of(world.movers[0].body)),
+                           other = scene::build_tree(scene::mesh_of(world.movers[1].body));
+  const scene::Instance all[] = {{&walls, {}, true},
+                                 {&other, base::transform_of(world.movers[1].X_WM)},
+                                 {&own, base::transform_of(world.movers[0].X_WM)}};
+  const glm::dvec3 sun{std::cos(35 * M_PI / 180) * std::cos(70 * M_PI / 180),
+                       std::cos(35 * M_PI / 180) * std::sin(70 * M_PI / 180), std::sin(35 * M_PI / 180)};
+  const base::RigidTransform X_WS =
+      sensors::SensorSet(world).settings_of<sensors::CameraSettings>(sensors::kCamera)[0].X_MS;  // the robot is at 0
+  const double f = 45 / std::tan(45 * M_PI / 180);
+  std::map<std::string, int> seen;
+  int wrong = 0;
+  for (std::size_t i = 0; i < image.hits.size(); ++i) {
+    const glm::dvec3 d =
+        glm::normalize(glm::dvec3{f, 44.5 - static_cast<double>(i % 90), 29.5 - static_cast<double>(i / 90)});
+    const auto hit = scene::reference_scan(X_WS, d, 30.0 / d.x, {std::span(all).first(2), true});
+    ASSERT_EQ(image.hits[i], hit.owner) << i;
+    glm::dvec3 light;
+    if (hit.owner == base::kNoHit) {
+      light =
+          glm::mix(glm::dvec3{0.75, 0.85, 0.95}, glm::dvec3{0.2, 0.4, 0.8}, std::sqrt(std::max(0.0, (X_WS.R * d).z))) *
+          0.25 / 0.3;
+      ++seen["sky"];
+    } else {
+      const glm::dvec3 p = X_WS.p + X_WS.R * (static_cast<double>(hit.range) * d), n = X_WS.R * glm::dvec3(hit.normal);
+      std::uint32_t color = hit.owner == base::kFloorHit ? 0x666666 : world.models[hit.owner].color;
+      for (const world::LaneMarking& m : world.lane_markings)
+        for (std::size_t k = 0; hit.owner == base::kFloorHit && k + 1 < m.line.size(); ++k) {
+          const glm::dvec2 a = m.line[k], e = glm::normalize(m.line[k + 1] - a), q = glm::dvec2(p) - a;
+          if (glm::dot(q, e) >= 0 && glm::dot(q, e) <= glm::distance(a, m.line[k + 1]) &&
+              std::abs(q.x * e.y - q.y * e.x) <= 0.5 * m.width)
+            color = m.color, ++seen["paint"];
+        }
+      const double up = n.z, facing = std::max(0.0, glm::dot(n, sun));
+      const bool dark =
+          facing > 0 && scene::reference_scan({glm::dmat3(1.0), p + 3e-4 * n}, sun, 1e3, {all}).owner != base::kNoHit;
+      seen["shadow"] += dark;
+      const double ground = 0.25 * (0.25 + 0.7 * sun.z);
+      const double shade = (dark ? 0.0 : 0.7 * facing) + 0.25 * (0.5 + 0.5 * up) + ground * (0.5 - 0.5 * up);
+      light = shade * glm::dvec3{linear(color >> 16 & 255), linear(color >> 8 & 255), linear(color & 255)};
+    }
+    const glm::ivec3 rgb = rgb_of(image, i);
+    for (int k = 0; k < 3; ++k) {
+      const double low = linear(std::max(0.0, rgb[k] - 0.51)), high = rgb[k] == 255 ? 1e9 : linear(rgb[k] + 0.51);
+      if (light[k] < low || light[k] > high) {
+        ++wrong;
+        break;
+      }
+    }
+  }
+  EXPECT_LE(wrong, 6) << "pixels on borders of paint and of shadows";
+  EXPECT_GT(seen["paint"], 40);
+  EXPECT_GT(seen["sky"], 100);
+  EXPECT_GT(seen["shadow"], 60);
+}
+
+/// Mean and variance of the linear light of a white floor: gain, vignetting, noise in the dark and of photons.
+TEST(Camera, NoiseAndVignetting) {
+  const auto light_of = [](const std::string& keys, bool noise, std::uint32_t reading) {
+    const world::World world = world_of(
+        "sunlight 0 skylight 0.4 floor_color \"white\"\n"
+        "position( size [0.4 0.4 0.5] camera( resolution [101 101] fov 30 rgb 1 pose6 [0 0 0.3 0 90 0] " +
+        keys + " ) )");
+    farm::Farm farm(world, host_device(), {.noise = noise, .threads = 1});
+    farm.subscribe(0, base::only(sensors::kCamera));
+    base::Report state{0, 0, world.movers[0].X_WM, {}};
+    std::vector<double> light;
+    for (std::uint32_t k = 0; k <= reading; ++k, state.time += 100'000'000)
+      for (const base::ReadingBlock& r : farm.tick(state.time, std::span(&state, 1))) {
+        light.clear();
+        for (std::size_t i = 1; i < r.values.size(); i += 2)
+          light.push_back(linear(static_cast<int>(r.values[i]) >> 8 & 255));
+      }
+    return light;
+  };
+  const auto even = light_of("", true, 0);
+  EXPECT_NEAR(even[0], 0.4, 0.004);
+  EXPECT_EQ(std::ranges::count(even, even[0]), 101 * 101);
+  const auto dim = light_of("gain 0.5 vignetting 0.3", true, 0);
+  EXPECT_NEAR(dim[50 * 101 + 50], 0.2, 0.003);
+  EXPECT_NEAR(dim[0], 0.2 * 0.7, 0.003);
+  EXPECT_NEAR(dim[50 * 101], 0.2 * 0.85, 0.003) << "half of the square of the radius";
+  const auto noisy = light_of("noise [0.02 0.001]", true, 1);
+  double sum = 0.0, squares = 0.0;
+  for (const double x : noisy) sum += x, squares += x * x;
+  const double n = 101 * 101, mean = sum / n, variance = squares / n - mean * mean;
+  EXPECT_NEAR(mean, 0.4, 5 * 0.03 / 101);
+  EXPECT_NEAR(variance, 0.0004 + 0.0004, 0.0008 * 5 * std::sqrt(2 / n)) << "0.02^2 + 0.001 x 0.4; steps add 1 %";
+  EXPECT_NE(noisy, light_of("noise [0.02 0.001]", true, 0)) << "of each reading";
+  EXPECT_EQ(noisy, light_of("noise [0.02 0.001]", true, 1));
+  EXPECT_EQ(light_of("noise [0.02 0.001]", false, 0), even);
+}
+
+/// Each row of a rolling image is cast from the pose at its time, and the samples of an exposure from those before it.
+TEST(Camera, RowsAndSamplesHaveTheirTimes) {
+  const auto driven = [](const std::string& keys, const base::Twist& twist) {
+    world::World world = boards("resolution [40 30] fov 80 range [0 50] rate 10 rgb 1 " + keys);
+    world.interval = 0.01;
+    farm::Farm farm(world, host_device(), {.noise = false, .threads = 2});
+    farm.subscribe(0, base::only(sensors::kCamera));
+    base::Report state{0, 0, {}, twist};
+    std::vector<double> last;
+    for (int tick = 0; tick <= 20; ++tick, state.time += 10'000'000) {
+      for (const base::ReadingBlock& r : farm.tick(state.time, std::span(&state, 1)))
+        last.assign(r.values.begin(), r.values.end());
+      if (tick < 20) state.X_WM = robots::advance(state.X_WM, twist, 0.01);
+    }
+    return std::pair{last, state.X_WM};
+  };
+  const base::Twist twist{1.0, 0.0, 1.5};
+  const auto [rolled, X_WM] = driven("rolling 1", twist);
+  const world::World still = boards("resolution [40 30] fov 80 range [0 50] rgb 1");
+  for (std::size_t v = 0; v < 30; v += 7) {
+    const Image then = shoot(still, robots::advance(X_WM, twist, -0.1 * static_cast<double>(29 - v) / 30));
+    std::size_t same = 0;
+    for (std::size_t i = 40 * v; i < 40 * (v + 1); ++i) same += std::abs(then.values[2 * i] - rolled[2 * i]) < 1e-6;
+    EXPECT_GE(same, 39u) << v;
+  }
+  EXPECT_EQ(driven("rolling 1", {}).first, driven("", {}).first) << "at rest";
+  // A pixel's light is the mean of those of the sub-beams' poses: an edge that moves is a ramp.
+  const auto [blurred, at_end] = driven("exposure 0.1 samples 16", twist);
+  const auto sharp = driven("samples 16", twist).first;
+  EXPECT_EQ(at_end.x, X_WM.x);
+  std::size_t between = 0, crisp = 0;
+  for (std::size_t i = 40 * 10; i < 40 * 11; ++i) {
+    const auto partly = [](double rgb) {
+      const int green = static_cast<int>(rgb) >> 8 & 255;
+      return green > 20 && green < 150;  // between the white board and the red wall
+    };
+    between += partly(blurred[2 * i + 1]), crisp += partly(sharp[2 * i + 1]);
+    EXPECT_EQ(blurred[2 * i], sharp[2 * i]) << "depths are those of the end";
+  }
+  EXPECT_GT(between, crisp + 2);
+}
+
+/// Keys of the world change its hash and are recorded; without them, worlds keep theirs.
+TEST(Camera, Daylight) {
+  const world::World plain = world_of("model( )"),
+                     sunny = world_of("sun [-30 20] sunlight 2 floor_color \"red\" model( )");
+  EXPECT_TRUE(plain.daylight.empty());
+  EXPECT_NE(plain.hash, sunny.hash);
+  const world::Daylight day = world::daylight_of(world::from_snapshot(world::snapshot(sunny)));
+  EXPECT_NEAR(day.azimuth, -M_PI / 6, 1e-15);
+  EXPECT_NEAR(day.elevation, M_PI / 9, 1e-15);
+  EXPECT_EQ(day.sun, 2.0);
+  EXPECT_EQ(day.sky, world::Daylight{}.sky);
+  EXPECT_EQ(day.floor, 0xFFFF0000u);
+  expect_in("trial.world:1", refusal_of([] { world_of("sun [0 91]"); }));
+  expect_in("'sun' expects [azimuth elevation]", refusal_of([] { world_of("sun [0]"); }));
+  expect_in("skylight", refusal_of([] { world_of("skylight -1"); }));
+}
+
 TEST(Camera, Packets) {
   const world::World world = boards("resolution [40 30] fov 60 range [0 50] normals 1");
   const Image image = shoot(world);
@@ -142,7 +353,7 @@ TEST(Camera, Packets) {
     type.read(spec, bytes, id, sensors::WireFormat::farm, received);
     EXPECT_NE(type.decode(spec, bytes, sensors::kCamera, sensors::WireFormat::farm).fault, sensors::PayloadError::none);
   }
-  for (std::size_t i = 0; i < received.size(); i += 4) {
+  for (std::size_t i = 0; i < received.size(); i += 5) {
     EXPECT_NEAR(received[i], image.values[i], type.wire_error(spec, block));
     EXPECT_EQ(received[i + 1], -1.0) << "normals are not sent";
   }
@@ -159,6 +370,19 @@ TEST(Camera, ImpossibleSettingsAreRefused) {
   expect_in("a field of view of 175 degrees", refused("fov 175"));
   expect_in("a field of view of 0 degrees", refused("fov 0"));
   expect_in("depths from 5 to 2 m", refused("range [5 2]"));
+  expect_in("the lens folds its image between the axis and pixel (0, 0)", refused("distortion [-0.8 0 0 0]"));
+  expect_in("6 coefficients; expected 4, 5 or 8", refused("distortion [1 2 3 4 5 6]"));
+  expect_in("'distortion' and 'fisheye'; expected one", refused("distortion [0 0 0 0] fisheye [0 0 0 0]"));
+  expect_in("'fov' and 'focal'; expected one", refused("fov 60 focal 300"));
+  expect_in("a focal length of 0 px", refused("focal [300 0]"));
+  expect_in("'samples' changes colours; expected 'rgb 1'", refused("samples 4"));
+  expect_in("expected 'samples' of 2 or more", refused("rgb 1 exposure 0.01"));
+  expect_in("19200 different times; expected at most 10000",
+            refused("rgb 1 samples 64 exposure 0.01 rolling 1 resolution [4 300]"));
+  expect_in("'noise' is negative", refused("rgb 1 noise [-1]"));
+  expect_in("1000 x 1000 pixels of 5 samples; expected at most 4000000",
+            refused("rgb 1 samples 5 resolution [1000 1000]"));
+  expect_in("no pixel sees anything", refused("fisheye [0 0 0 0] principal [5000 0]"));
 }
 
 }  // namespace

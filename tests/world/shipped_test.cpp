@@ -24,7 +24,8 @@ World shipped(const std::string& name) {
                                                "range", "satellites", "noise"};
   static constexpr std::string_view kSeen[] = {"range_max", "range_max_id", "fov", "noise"};
   static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays", "noise"};
-  static constexpr std::string_view kBeams[] = {"preset", "channels", "columns", "fov_v", "range", "pose6", "noise"};
+  static constexpr std::string_view kBeams[] = {"preset", "channels", "columns",    "fov_v", "range",   "pose6",
+                                                "noise",  "fov",      "resolution", "rgb",   "normals", "samples"};
   static constexpr std::string_view kComputed[] = {"type", "inputs", "most", "agility"};
   static constexpr SensorKeyword kWords[] = {kLaserWords[0],
                                              kLaserWords[1],

@@ -14,6 +14,7 @@
 #include "world/ros_map.h"
 #include "world/stage/build_state.h"
 #include "world/stage/earth_field.h"
+#include "world/stage/entity_color.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
 #include "world/stage/read_keys.h"
@@ -119,6 +120,17 @@ void warn_of_overlaps(BuildState& b) {
 
 }  // namespace
 
+/// Adds the light of cameras, if it is not the default.
+void read_daylight(BuildState& b, const Entity& root) {
+  Daylight day;
+  bool given = find(root, "floor_color") != nullptr;
+  for_each_key<Daylight>([&](const auto& field) { given = given || find(root, field.key.name) != nullptr; });
+  if (!given) return;
+  read_keys(b.context, root, day);
+  day.floor = entity_color(b.context, root, "floor_color", day.floor, 0);
+  b.world.daylight.push_back(day);
+}
+
 World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
   refuse_foreign(file, content);
   const Document document = parse(file, content);
@@ -138,6 +150,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   read_keys(b.context, document.root, b.world);
   b.world.accuracy = accuracy(b.context, options, document.root);
   read_terrain(b, document.root);
+  read_daylight(b, document.root);
   Parent nowhere;
   add_children(b, document.root, nowhere);
   if (!document.ros_map.empty()) add_ros_map(b.world, document.ros_map, options);

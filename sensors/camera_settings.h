@@ -1,0 +1,62 @@
+#pragma once
+// World-file settings of cameras.
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "base/lens.h"
+#include "base/rigid_transform.h"
+#include "sensors/lidar_beams.h"
+
+namespace sf::sensors {
+
+/// Settings of one camera. It looks along its x axis; y points to the left of the image, z up.
+struct CameraSettings {
+  base::RigidTransform X_MS;                ///< sensor in the mover's frame
+  std::uint32_t width = 320, height = 240;  ///< [px]
+  base::Lens lens;
+  double range_min = 0.0, range_max = 50.0;  ///< [m] of the depth along the optical axis
+  bool normals = false;
+  std::uint8_t mode = 0;      ///< row of kCameraModes
+  bool rgb = false;           ///< pixels have colours
+  std::uint32_t samples = 1;  ///< beams per pixel; depths, labels and normals are those of the first
+  double exposure = 0.0;      ///< [s] before the time of a row, divided among its samples
+  double readout = 0.0;       ///< [s] from the first row to one below the last (rolling shutter); 0: all at once
+  // Of the colours, linear in the light:
+  double gain = 1.0;        ///< >= 0
+  double vignetting = 0.0;  ///< in [0, 1]: part of the light lost in the corners of the image
+  double read_noise = 0.0;  ///< >= 0, standard deviation in the dark
+  double shot_noise = 0.0;  ///< >= 0, variance per light: photon noise
+  std::shared_ptr<const LidarBeams>
+      beams;  ///< one per pixel, with a part per sample; pixels that see nothing are not cast
+
+  std::size_t columns() const { return normals ? 5 : rgb ? 2 : 1; }  ///< numbers per pixel: depth, colour, normal
+  bool is_noisy() const { return read_noise > 0.0 || shot_noise > 0.0; }
+};
+
+inline constexpr std::string_view kCameraKeys[] = {
+    "resolution", "fov",      "focal",   "principal", "distortion", "fisheye",    "range", "normals", "rgb",
+    "samples",    "exposure", "rolling", "scan_time", "gain",       "vignetting", "noise", "pose6",   "pantilt"};
+
+/// Reads the settings of cameras. Cameras with equal images share their beams.
+class CameraReader {
+ public:
+  /// @throws base::InputError with file and line for invalid settings
+  CameraSettings read(const world::Sensor& sensor);
+
+ private:
+  struct Image {
+    std::uint32_t width, height;
+    base::Lens lens;
+    std::uint32_t samples = 1;
+    double exposure = 0.0, readout = 0.0;
+    bool operator==(const Image&) const = default;
+  };
+  std::shared_ptr<const LidarBeams> beams_of(const world::Sensor& sensor, const CameraSettings& s);
+
+  std::vector<std::pair<Image, std::shared_ptr<const LidarBeams>>> known_;
+};
+
+}  // namespace sf::sensors
