@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/bytes.h"
+#include "base/lens.h"
 #include "base/pose.h"
 #include "maps/grid.h"
 
@@ -37,12 +38,23 @@ struct SensorTypeInfo {
 
 /// An element of a sensor whose readings are also published as standard ROS messages, for viewers and drivers.
 struct StandardTopic {
-  enum class Message : std::uint8_t { range, magnetic_field, fix, imu, map, points };
+  enum class Message : std::uint8_t {
+    range,
+    magnetic_field,
+    fix,
+    imu,
+    map,
+    points,
+    depth_image,
+    color_image,
+    camera_info
+  };
   Message message = Message::range;
   std::uint32_t element = 0;  ///< index in the reading
   std::string topic;          ///< set by `name_frames`, like `frame`
   std::string frame;          ///< the sensor's own for a sensor with one element; `world` for maps
   base::Pose X_SE;            ///< element in the sensor's frame
+  base::Tilt tilt;            ///< of the element after X_SE
 
   // For ranges:
   bool infrared = false;   ///< false: ultrasound
@@ -55,8 +67,12 @@ struct StandardTopic {
   // For points, of which an element is the whole reading:
   std::shared_ptr<const std::vector<glm::dvec3>> directions;  ///< unit vectors of the beams in frame `frame`
   std::uint32_t rings = 1;                                    ///< rows of the cloud, of equal length
-  std::size_t width = 1;                                      ///< numbers per beam: the range, the intensity, ...
-  std::shared_ptr<const std::vector<double>> times;           ///< [s] of the beams relative to the reading; null: 0
+  std::size_t width = 1;  ///< numbers per beam: the range, the intensity, ...; per pixel: the depth, the colour, ...
+  std::shared_ptr<const std::vector<double>> times;  ///< [s] of the beams relative to the reading; null: 0
+
+  // For images and CameraInfo, of which an element is the whole reading. X_SE is the optical frame (REP 103).
+  std::uint32_t columns = 0, rows = 0;  ///< [px]
+  base::Lens lens;
 
   // For readings in three dimensions: of an imu or a compass, whose vectors are turned into frame `frame`, which is
   // level on a level robot, and of a receiver with an altitude:

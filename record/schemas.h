@@ -8,6 +8,8 @@ namespace sf::record {
 
 inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
 inline constexpr std::string_view kLaserScan = "sensor_msgs/msg/LaserScan";
+inline constexpr std::string_view kImage = "sensor_msgs/msg/Image";
+inline constexpr std::string_view kCameraInfo = "sensor_msgs/msg/CameraInfo";
 inline constexpr std::string_view kPointCloud = "sensor_msgs/msg/PointCloud2";
 inline constexpr std::string_view kTwistStamped = "geometry_msgs/msg/TwistStamped";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";

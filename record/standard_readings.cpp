@@ -166,6 +166,47 @@ void put_points(CdrWriter& cdr, const StandardTopic& topic, std::span<const doub
   cdr.put(std::uint8_t{0});  // is_dense: points may be NaN
 }
 
+/// Writes an image up to its data. @param bytes per pixel
+void put_image_header(CdrWriter& cdr, const StandardTopic& topic, std::string_view encoding, std::uint32_t bytes) {
+  cdr.put(topic.rows), cdr.put(topic.columns);
+  cdr.put(encoding);
+  cdr.put(std::uint8_t{0});  // little-endian
+  cdr.put(bytes * topic.columns);
+  cdr.put_count(std::size_t{bytes} * topic.columns * topic.rows);
+}
+
+void put_depth_image(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  put_image_header(cdr, topic, "32FC1", sizeof(float));
+  for (std::size_t i = 0; i < values.size(); i += topic.width)
+    cdr.put_packed(base::rep117_range(values[i], {topic.range_min, topic.range_max}));
+}
+
+void put_color_image(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  put_image_header(cdr, topic, "rgb8", 3);
+  for (std::size_t i = 1; i < values.size(); i += topic.width) {
+    const auto rgb = static_cast<std::uint32_t>(values[i]);
+    for (const int shift : {16, 8, 0}) cdr.put_packed(static_cast<std::uint8_t>(rgb >> shift));
+  }
+}
+
+void put_camera_info(CdrWriter& cdr, const StandardTopic& topic) {
+  const base::Lens& lens = topic.lens;
+  const auto& k = lens.distortion;
+  const bool rational = k[5] != 0.0 || k[6] != 0.0 || k[7] != 0.0;
+  cdr.put(topic.rows), cdr.put(topic.columns);
+  cdr.put(std::string_view(lens.fisheye ? "equidistant" : rational ? "rational_polynomial" : "plumb_bob"));
+  const std::size_t count = lens.fisheye ? 4 : rational ? 8 : 5;
+  cdr.put_count(count);
+  for (std::size_t i = 0; i < count; ++i) cdr.put(k[i]);
+  for (const double n : {lens.focal.x, 0.0, lens.center.x, 0.0, lens.focal.y, lens.center.y, 0.0, 0.0, 1.0}) cdr.put(n);
+  for (const double n : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) cdr.put(n);
+  for (const double n :
+       {lens.focal.x, 0.0, lens.center.x, 0.0, 0.0, lens.focal.y, lens.center.y, 0.0, 0.0, 0.0, 1.0, 0.0})
+    cdr.put(n);
+  for (int i = 0; i < 6; ++i) cdr.put(std::uint32_t{0});  // binning, region of interest: the whole image
+  cdr.put(std::uint8_t{0});
+}
+
 }  // namespace
 
 std::string_view type_of(Message message) {
@@ -182,6 +223,11 @@ std::string_view type_of(Message message) {
       return kOccupancyGrid;
     case Message::points:
       return kPointCloud;
+    case Message::depth_image:
+    case Message::color_image:
+      return kImage;
+    case Message::camera_info:
+      return kCameraInfo;
   }
   return {};
 }
@@ -202,6 +248,12 @@ void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<co
       return put_map(cdr, topic, time, values);
     case Message::points:
       return put_points(cdr, topic, values);
+    case Message::depth_image:
+      return put_depth_image(cdr, topic, values);
+    case Message::color_image:
+      return put_color_image(cdr, topic, values);
+    case Message::camera_info:
+      return put_camera_info(cdr, topic);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Elements of readings as standard ROS messages: ranges, magnetic fields, GPS fixes, yaw rates, occupancy maps.
+// Elements of readings as standard ROS messages: ranges, magnetic fields, GPS fixes, yaw rates, occupancy maps, clouds,
+// images.
 
 #include <cstdint>
 #include <span>
@@ -22,6 +23,10 @@ std::string_view type_of(StandardTopic::Message message);
 ///   imu             rate_rad_s of a gyro about z, and its variance; or the rates and forces of an imu in
 ///                   `topic.frame`, and the variance of each axis
 ///   map             words (maps/grid.h): -1 unexplored, 0 free, 100 occupied
+///   depth_image     32FC1 [m] along the optical axis; +infinity without a surface before range_max, -infinity for one
+///                   that is too near (REP 118)
+///   color_image     rgb8
+///   camera_info     of the distorted images; P is K, as nothing is rectified
 /// @param time [ns] of the measurement
 /// @param values of the whole reading, with a range below `range_min` for a surface that is too near; in the layout of
 /// the sensor type of `topic`

@@ -73,19 +73,28 @@ const char* word_of(StandardTopic::Message message) {
       return "map";
     case StandardTopic::Message::points:
       return "points";
+    case StandardTopic::Message::depth_image:
+      return "depth/image_raw";
+    case StandardTopic::Message::color_image:
+      return "image_raw";
+    case StandardTopic::Message::camera_info:
+      return "camera_info";
   }
   return "";
 }
 
 /// Names the topic "PREFIX/range_3" and the frame "SENSOR/range_3"; for a sensor with one element "PREFIX/fix" and
-/// "SENSOR". Maps have the frame `world`.
+/// "SENSOR". Maps have the frame `world`; the images of a camera have names as in image_pipeline, and one optical
+/// frame.
 void name_standard_topics(SensorInfo& sensor, const std::string& prefix) {
   const bool single = sensor.standard.size() == 1;
   for (StandardTopic& each : sensor.standard) {
     std::string name = word_of(each.message);
-    if (!single) name += "_" + std::to_string(each.element);
+    const bool image = each.columns > 0;
+    if (!single && !image) name += "_" + std::to_string(each.element);
     each.topic = prefix + "/" + name;
     each.frame = each.message == StandardTopic::Message::map ? "world"
+                 : image                                     ? sensor.frame + "_optical_frame"
                  : single                                    ? sensor.frame
                                                              : sensor.frame + "/" + name;
   }

@@ -188,8 +188,9 @@ void TickMessages::add_fixed(const MoverInfo& mover, const MoverTopics& topics) 
   for (const SensorTopics& each : topics.sensors) {
     transforms_.push_back({0, mover.base_frame, each.header.frame, each.sensor->X_MS});
     for (const StandardTopic& element : each.sensor->standard)
-      if (element.message != StandardTopic::Message::map && element.frame != each.header.frame)
-        transforms_.push_back({0, each.header.frame, element.frame, element.X_SE});
+      if (element.message != StandardTopic::Message::map && element.frame != each.header.frame &&
+          element.frame != transforms_.back().child)
+        transforms_.push_back({0, each.header.frame, element.frame, element.X_SE, element.tilt});
   }
 }
 

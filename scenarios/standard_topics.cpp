@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "base/elementary.h"
+#include "base/tilted_pose.h"
+#include "sensors/camera.h"
 #include "sensors/compass.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
@@ -78,6 +80,12 @@ class CloudDirections {
   std::vector<Known> known_;
 };
 
+/// Frame of a camera's images in the sensor's level frame: z along the optical axis, x to the right (REP 103).
+base::TiltedPose optical_frame(const sensors::SensorSpec& row, const sensors::CameraSettings& camera) {
+  const glm::dmat3 R_SO({0.0, -1.0, 0.0}, {0.0, 0.0, -1.0}, {1.0, 0.0, 0.0});
+  return base::tilted_pose_of({glm::transpose(base::transform_of(row.X_MS).R) * camera.X_MS.R * R_SO, {}});
+}
+
 }  // namespace
 
 void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
@@ -110,6 +118,21 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
          .times = lidar.beams->times.empty()
                       ? nullptr
                       : std::shared_ptr<const std::vector<double>>(lidar.beams, &lidar.beams->times)});
+  });
+  for_each_sensor<sensors::CameraSettings>(sensor_set, sensors::kCamera, [&](const auto& row, const auto& camera) {
+    const base::TiltedPose X_SO = optical_frame(row, camera);
+    StandardTopic topic{.X_SE = X_SO.X,
+                        .tilt = X_SO.tilt,
+                        .range_min = camera.range_min,
+                        .range_max = camera.range_max,
+                        .width = camera.columns(),
+                        .columns = camera.width,
+                        .rows = camera.height,
+                        .lens = camera.lens};
+    for (const Message message : {Message::camera_info, Message::depth_image, Message::color_image}) {
+      topic.message = message;
+      if (message != Message::color_image || camera.rgb) add(row, sensors::kCamera, topic);
+    }
   });
   for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {
     add(row, sensors::kGps, {.message = Message::fix, .spatial = gps.altitude, .sigma = gps.noise});

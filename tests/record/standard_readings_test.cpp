@@ -266,5 +266,65 @@ TEST(StandardReadings, PointsAreRangesAlongDirections) {
   EXPECT_TRUE(cdr.good());
 }
 
+/// A camera of 3 x 2 pixels with colours: depth and colour per pixel.
+StandardTopic camera(Message message) {
+  StandardTopic topic{.message = message, .range_min = 0.5, .range_max = 8.0, .width = 2, .columns = 3, .rows = 2};
+  topic.lens = {{310.0, 305.0}, {1.0, 0.5}, {-0.2, 0.05, 0.001, -0.002, 0.01}};
+  return topic;
+}
+const std::vector<double> kPixels{2.0, 0x102030, 8.0, 0, -HUGE_VAL, 1, 7.5, 2, 0.5, 3, 1.0, 0xFFFEFD};
+
+/// An image up to its data.
+void expect_image(CdrReader& cdr, const char* encoding, std::uint32_t bytes) {
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 2u) << "height";
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 3u) << "width";
+  EXPECT_EQ(cdr.get_string(), encoding);
+  EXPECT_EQ(cdr.get<std::uint8_t>(), 0) << "little-endian";
+  EXPECT_EQ(cdr.get<std::uint32_t>(), 3 * bytes) << "step";
+  ASSERT_EQ(cdr.get_count(1), 6 * bytes);
+}
+
+/// REP 118: infinity without a surface, -infinity for one that is too near.
+TEST(StandardReadings, DepthImages) {
+  Encoded message = of(camera(Message::depth_image), kPixels);
+  expect_image(message.cdr, "32FC1", 4);
+  for (const float depth : {2.0f, kInfinity, -kInfinity, 7.5f, 0.5f, 1.0f}) EXPECT_EQ(message.cdr.get<float>(), depth);
+  EXPECT_TRUE(message.cdr.good());
+}
+
+TEST(StandardReadings, ColourImages) {
+  Encoded message = of(camera(Message::color_image), kPixels);
+  expect_image(message.cdr, "rgb8", 3);
+  for (const int byte : {0x10, 0x20, 0x30, 0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0xFF, 0xFE, 0xFD})
+    EXPECT_EQ(message.cdr.get<std::uint8_t>(), byte);
+  EXPECT_TRUE(message.cdr.good());
+}
+
+/// The coefficients that each model has, K, and P, which is K without rectification.
+TEST(StandardReadings, CameraInfoHasTheLens) {
+  const auto expect_model = [](const StandardTopic& topic, const char* model, std::size_t coefficients) {
+    Encoded message = of(topic, kPixels);
+    CdrReader& cdr = message.cdr;
+    EXPECT_EQ(cdr.get<std::uint32_t>(), 2u) << "height";
+    EXPECT_EQ(cdr.get<std::uint32_t>(), 3u) << "width";
+    EXPECT_EQ(cdr.get_string(), model);
+    ASSERT_EQ(cdr.get_count(8), coefficients);
+    for (std::size_t i = 0; i < coefficients; ++i) EXPECT_EQ(cdr.get<double>(), topic.lens.distortion[i]);
+    for (const double k : {310.0, 0.0, 1.0, 0.0, 305.0, 0.5, 0.0, 0.0, 1.0}) EXPECT_EQ(cdr.get<double>(), k);
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(cdr.get<double>(), i % 4 == 0 ? 1.0 : 0.0) << "R";
+    for (const double p : {310.0, 0.0, 1.0, 0.0, 0.0, 305.0, 0.5, 0.0, 0.0, 0.0, 1.0, 0.0})
+      EXPECT_EQ(cdr.get<double>(), p);
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(cdr.get<std::uint32_t>(), 0u);
+    EXPECT_EQ(cdr.get<std::uint8_t>(), 0);
+    EXPECT_TRUE(cdr.good());
+  };
+  StandardTopic topic = camera(Message::camera_info);
+  expect_model(topic, "plumb_bob", 5);
+  topic.lens.distortion[6] = 0.3;
+  expect_model(topic, "rational_polynomial", 8);
+  topic.lens.fisheye = true;
+  expect_model(topic, "equidistant", 4);
+}
+
 }  // namespace
 }  // namespace sf::record
