@@ -19,11 +19,13 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "base/srgb.h"
 #include "bench/cost.h"
 #include "bench/lidar_scenes.h"
 #include "bench/spatial_embree.h"
 #include "scene/rasterizer.h"
 #include "scene/reference_scan.h"
+#include "sensors/camera_light.h"
 #include "sensors/lidar_modes.h"
 #include "sensors/spatial_scene.h"
 
@@ -58,7 +60,6 @@ class FarmCaster : public SpatialCaster {
                      {.ranges = ranges, .hits = hits_, .quality = quality_, .cosines = cosines, .single = single});
   }
 
- private:
   scene::Instance instance_;
   const scene::HeightField* field_;
   scene::BeamPattern pattern_;
@@ -178,6 +179,34 @@ class SkipCaster : public SpatialCaster {
   std::vector<base::QualityFlag> quality_;
 };
 
+/// A camera's colours: normals, shadows and shading of each tile, without paint.
+class ColourCaster : public FarmCaster {
+ public:
+  ColourCaster(const scene::SurfaceTree& tree, const scene::HeightField* field, const std::vector<glm::dvec3>& beams,
+               bool shadows)
+      : FarmCaster(tree, field, beams, 0), shadows_(shadows), normals_(beams.size()), light_of_(beams.size()) {}
+  std::string name() const override { return shadows_ ? "farm, colours" : "farm, no shadows"; }
+  void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
+    const std::span instances(&instance_, field_ == nullptr ? 1 : 0);
+    const scene::ScanOutput out{ranges, hits_, quality_, {}, normals_};
+    scratch_.shadows.begin(X_WS.p, light_.to_sun(), shadows_ ? instances : std::span<scene::Instance>());
+    constexpr std::size_t kTiles = 16;  // as cameras: while their results are in the cache
+    for (std::size_t first = 0; first < pattern_.size(); first += kTiles) {
+      const auto tiles = std::span(pattern_).subspan(first, std::min(kTiles, pattern_.size() - first));
+      rasterizer_.scan(X_WS, tiles, kRange, {instances, false, {field_, {}}}, out);
+      for (const scene::BeamTile& tile : tiles) light_.shade(X_WS, tile, kRange, out, light_of_, scratch_);
+    }
+    for (const glm::vec3& light : light_of_) sum_ += base::srgb_color(light);
+  }
+
+ private:
+  bool shadows_;
+  sensors::CameraLight light_{world::World{}, {}};
+  sensors::CameraLight::Scratch scratch_;
+  std::vector<glm::vec3> normals_, light_of_;
+  std::uint64_t sum_ = 0;
+};
+
 struct Method : Timing {
   std::unique_ptr<SpatialCaster> caster;
   std::uint64_t hash = 0;
@@ -254,6 +283,8 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
     add(std::make_unique<CosineCaster>(tree, nullptr, beams, row));
     add(std::make_unique<SingleCaster>(tree, nullptr, beams, row));
     if (row > 0) add(std::make_unique<RollingCaster>(tree, beams, row));
+    for (const bool shadows : {false, true})
+      if (row == 0) add(std::make_unique<ColourCaster>(tree, nullptr, beams, shadows));
     add_skips([&](const std::vector<glm::dvec3>& cast, std::uint32_t columns) {
       return std::make_unique<FarmCaster>(tree, nullptr, cast, columns);
     });

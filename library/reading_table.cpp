@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "sensors/camera.h"
+
 namespace sf::library {
 
 namespace {
@@ -27,6 +29,11 @@ ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interv
     view_.columns = std::max(view_.columns, sensors::element_width(*group.type, row));
     robots_.push_back(row.mover);
   }
+  const auto is_like_first = [&](const auto& row) {
+    return row.across == rows.front().across && row.elements == rows.front().elements;
+  };
+  if (group.type->id == sensors::kCamera && std::ranges::all_of(rows, is_like_first))
+    view_.image_width = rows.front().across;
   view_.type = group.type->name;
   view_.sensors = rows.size();
   times_.assign(rows.size(), kNan);

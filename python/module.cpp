@@ -425,6 +425,8 @@ void add_readings(py::class_<PySimulation>& c) {
   const py::arg type("type");
   c.def("readings", &values, type,
         "(sensors, elements[, columns]): the newest reading of each sensor; shorter ones end in NaN.")
+      .def(
+          "_image_width", [](const PySimulation& s, Text t) { return s.farm.readings(t).image_width; }, type)
       .def("hits", &hits, type, "(sensors, beams): number of the model that each beam met, FLOOR or NONE.")
       .def("flags", &flags, type, "(sensors, elements): 0 where a stated bound holds.")
       .def(

@@ -34,6 +34,23 @@ def _valid(self, type, without_noise=False):
     return measured & (self.flags(type) == 0) & stated[:, None]
 
 
+def _images(self, kind="depth", type="camera"):
+    """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m] and of "normals" (cameras, height,
+    width, 3) views without a copy; of "colour" a new array of bytes (cameras, height, width, 3)."""
+    width, values = self._image_width(type), self.readings(type)
+    if width == 0:
+        raise Error(f"images of '{type}' have no common size; expected cameras with one resolution")
+    columns = 1 if values.ndim == 2 else values.shape[2]
+    images = values.reshape(values.shape[0], -1, width, columns)
+    if kind == "depth":
+        return images[..., 0]
+    if kind == "colour" and columns > 1:
+        return _numpy.nan_to_num(images[..., 1]).astype("<u4", order="C").view(_numpy.uint8).reshape(*images.shape[:3], 4)[..., 2::-1]
+    if kind == "normals" and columns > 2:
+        return images[..., 2:5]
+    raise Error(f"'{type}' has no images of '{kind}'; expected depth, or colour with 'rgb 1', or normals with 'normals 1'")
+
+
 def _png(self):
     """Returns the picture of `draw` as bytes of a PNG file, for display in a notebook."""
     with _tempfile.TemporaryDirectory() as folder:
@@ -59,4 +76,4 @@ def _end_all_by_errors():
     _sys.excepthook = hook
 
 
-Simulation.valid, Simulation._repr_png_ = _valid, _png
+Simulation.valid, Simulation.images, Simulation._repr_png_ = _valid, _images, _png

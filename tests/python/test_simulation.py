@@ -385,6 +385,21 @@ class Images(unittest.TestCase):
         self.assertEqual(sim.image(1, 1).shape, (1, 1, 3))
 
 
+class Cameras(unittest.TestCase):
+    def test_images(self):
+        sim = sensorfarm.Simulation("worlds/camera.world")
+        sim.step()
+        depths, normals, colours = sim.images(), sim.images("normals"), sim.images("colour")
+        self.assertEqual((depths.shape, normals.shape, colours.shape), ((1, 480, 640), (1, 480, 640, 3), (1, 480, 640, 3)))
+        self.assertTrue(numpy.shares_memory(depths, sim.readings("camera")), "a view")
+        self.assertTrue(numpy.shares_memory(normals, sim.readings("camera")), "a view")
+        self.assertEqual(colours.dtype, numpy.uint8)
+        self.assertEqual(depths[0, 0, 639], 60.0, "the sky")
+        self.assertGreater(int(colours[0, 0, 639, 2]), int(colours[0, 0, 639, 0]), "which is blue")
+        with self.assertRaisesRegex(sensorfarm.Error, "expected depth"):
+            sim.images("heat")
+
+
 class Processes(unittest.TestCase):
     def test_a_forked_process_needs_its_own_simulation(self):
         """The child refuses its parent's simulation, and a new one has the parent's readings, with every caster."""
