@@ -251,7 +251,8 @@ bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b) {
     const std::uint32_t model = world.movers[row].model;
     return model < world.models.size() ? world.models[model].type : std::string();
   };
-  return type(a) == type(b) && kind_of(world, a) == kind_of(world, b);
+  const DynamicsChoice &p = world.movers[a].dynamics, &q = world.movers[b].dynamics;
+  return type(a) == type(b) && p.name == q.name && p.settings == q.settings && kind_of(world, a) == kind_of(world, b);
 }
 
 }  // namespace sf::world

@@ -25,17 +25,18 @@ base::BoxTree tree_of(std::span<const Ramp> ramps) {
 
 }  // namespace
 
-Ground::Ground(std::span<const Ramp> ramps, std::span<const Terrain> terrain)
-    : ramps_(ramps), terrain_(terrain), tree_(tree_of(ramps)) {}
-
-/// Of the terrain, or of the floor.
-double Ground::base_height(glm::dvec2 p) const {
-  return terrain_.empty() ? 0.0 : height_at(terrain_[0], p).value_or(0.0);
+Ground::Ground(std::span<const Ramp> ramps, std::span<const Terrain> terrain) : ramps_(ramps), tree_(tree_of(ramps)) {
+  if (!terrain.empty()) terrain_.emplace(terrain[0]);
 }
 
-double Ground::height(glm::dvec2 p, double most) const {
-  const double ground = base_height(p);
-  double highest = ground, beyond = ground;  // of pieces at p, and of those that end near p
+/// Of the terrain, or of the floor.
+GroundPoint Ground::base_at(glm::dvec2 p) const {
+  return terrain_ ? terrain_->at(p).value_or(GroundPoint{}) : GroundPoint{};
+}
+
+GroundPoint Ground::at(glm::dvec2 p, double most) const {
+  if (is_flat()) return {};
+  GroundPoint highest = base_at(p), beyond = highest;  // of pieces at p, and of those that end near p
   tree_.any({p, p}, [&](std::uint32_t i) {
     const Ramp& ramp = ramps_[i];
     const glm::dvec2 e = ramp.b - ramp.a;
@@ -45,11 +46,11 @@ double Ground::height(glm::dvec2 p, double most) const {
     const double past = std::max({0.0, -s, s - length});
     const double z = ramp.z_a + std::clamp(s / length, 0.0, 1.0) * (ramp.z_b - ramp.z_a);
     if (z > most || past > kOverlap * ramp.half_width) return false;
-    double& surface = past > 0.0 ? beyond : highest;
-    surface = std::max(surface, z);
+    GroundPoint& surface = past > 0.0 ? beyond : highest;
+    if (z > surface.z) surface = {z, past > 0.0 ? glm::dvec2{} : (ramp.z_b - ramp.z_a) / (length * length) * e};
     return false;
   });
-  return beyond > highest + kContact ? beyond : highest;
+  return beyond.z > highest.z + kContact ? beyond : highest;
 }
 
 double Ground::follow(const base::Pose& from, glm::dvec2 to) const {
@@ -61,8 +62,8 @@ double Ground::follow(const base::Pose& from, glm::dvec2 to) const {
 }
 
 base::Tilt Ground::tilt(const base::Pose& at, double length, double width) const {
-  if (terrain_.empty()) return {};
-  const auto height_of = [&](double x, double y) { return base_height(base::transform(at, {x * length, y * width})); };
+  if (!terrain_) return {};
+  const auto height_of = [&](double x, double y) { return base_at(base::transform(at, {x * length, y * width})).z; };
   const double front_left = height_of(0.5, 0.5), front_right = height_of(0.5, -0.5);
   const double rear_left = height_of(-0.5, 0.5), rear_right = height_of(-0.5, -0.5);
   const double along = 0.5 * ((front_left - rear_left) + (front_right - rear_right)) / length;

@@ -2,10 +2,12 @@
 // Heights of the ground: the floor at z = 0 or a terrain in its place, and roads above it (World::ramps). Bodies stand
 // on these, and spatial sensors see them (scene/solids.h); planar sensors do not.
 
+#include <optional>
 #include <span>
 
 #include "base/box_tree.h"
 #include "base/pose.h"
+#include "world/terrain.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -16,10 +18,12 @@ class Ground {
   /// Both must outlive it.
   explicit Ground(std::span<const Ramp> ramps, std::span<const Terrain> terrain = {});
 
-  bool is_flat() const { return ramps_.empty() && terrain_.empty(); }
-  bool has_terrain() const { return !terrain_.empty(); }
+  bool is_flat() const { return ramps_.empty() && !terrain_; }
+  bool has_terrain() const { return terrain_.has_value(); }
   /// Returns the height [m] of the highest road at `p` that is at most `most` [m] high, or of the ground below.
-  double height(glm::dvec2 p, double most) const;
+  double height(glm::dvec2 p, double most) const { return at(p, most).z; }
+  /// Same, with the slope there. Edges of roads are steps.
+  GroundPoint at(glm::dvec2 p, double most) const;
   /// Returns the z [m] of a body after a move. On a surface (within 1 cm) it stays on it, and above a surface it keeps
   /// its height above it. It climbs a rise of a road of at most kMostStep plus kMostSlope times the length of the move,
   /// passes under higher roads, drops from an edge within the move, and follows terrain of any slope.
@@ -36,10 +40,10 @@ class Ground {
   static constexpr double kOverlap = 0.05;
 
  private:
-  double base_height(glm::dvec2 p) const;
+  GroundPoint base_at(glm::dvec2 p) const;
 
   std::span<const Ramp> ramps_;
-  std::span<const Terrain> terrain_;
+  std::optional<TerrainSurface> terrain_;
   base::BoxTree tree_;
 };
 

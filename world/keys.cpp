@@ -28,7 +28,7 @@ constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size",
   "map_resolution", "say", "alwayson", "thread_safe", "joules", "kjoules", "joules_capacity", "watts", "give_watts",
   "take_watts", "trail_length", "trail_interval", "event_queue", "debug", "rebuild_displaylist", "block[].color"});
 
-constexpr auto kPosition = std::to_array<std::string_view>({"random_slip", "random_acceleration", "random_noise",
+constexpr auto kPosition = std::to_array<std::string_view>({"dynamics", "random_slip", "random_acceleration", "random_noise",
   // known, not modelled
   "velocity", "localization", "localization_origin", "odom_error", "odom"});
 

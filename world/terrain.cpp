@@ -93,9 +93,14 @@ std::array<glm::dvec2, 4> outline_of(const Terrain& terrain) {
           transform(X_WF, {0.0, size.y})};
 }
 
-std::optional<double> height_at(const Terrain& terrain, glm::dvec2 p) {
-  const Pose X_WF = corner_of(terrain);
-  const glm::dvec2 at = transform(inverse(X_WF), p) / terrain.cell;
+TerrainSurface::TerrainSurface(const Terrain& terrain)
+    : terrain_(terrain), X_FW_(inverse(corner_of(terrain))), turn_(base::sin_cos(X_FW_.yaw)) {}
+
+std::optional<GroundPoint> TerrainSurface::at(glm::dvec2 p) const {
+  const Terrain& terrain = terrain_;
+  const auto [s, c] = turn_;
+  const glm::dvec2 at =
+      (glm::dvec2{X_FW_.x, X_FW_.y} + glm::dvec2{c * p.x - s * p.y, s * p.x + c * p.y}) / terrain.cell;
   if (!(at.x >= 0.0 && at.y >= 0.0 && at.x <= terrain.columns - 1.0 && at.y <= terrain.rows - 1.0)) return {};
   const auto i = std::min(static_cast<std::uint32_t>(at.x), terrain.columns - 2);
   const auto j = std::min(static_cast<std::uint32_t>(at.y), terrain.rows - 2);
@@ -103,7 +108,15 @@ std::optional<double> height_at(const Terrain& terrain, glm::dvec2 p) {
   const double a = row[0], e = row[terrain.columns + 1], x = at.x - i, y = at.y - j;
   // Cut along the diagonal from the corner with the smallest x and y.
   const double side = x >= y ? row[1] : row[terrain.columns];
-  return X_WF.z + a + (side - a) * std::abs(x - y) + (e - a) * std::min(x, y);
+  const glm::dvec2 rise = x >= y ? glm::dvec2{side - a, e - side} : glm::dvec2{e - side, side - a};
+  const glm::dvec2 g = rise / terrain.cell;
+  return GroundPoint{terrain.X_WT.z + a + (side - a) * std::abs(x - y) + (e - a) * std::min(x, y),
+                     {c * g.x + s * g.y, c * g.y - s * g.x}};
+}
+
+std::optional<double> height_at(const Terrain& terrain, glm::dvec2 p) {
+  const auto found = TerrainSurface(terrain).at(p);
+  return found ? std::optional(found->z) : std::nullopt;
 }
 
 }  // namespace sf::world

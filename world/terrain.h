@@ -38,6 +38,27 @@ void require_height_map_size(const std::string& file, std::uint64_t columns, std
 Pose corner_of(const Terrain& terrain);
 /// Returns the corners of its rectangle [m], counter-clockwise in the world.
 std::array<glm::dvec2, 4> outline_of(const Terrain& terrain);
+
+/// A point of the ground.
+struct GroundPoint {
+  double z = 0.0;    ///< [m]
+  glm::dvec2 slope;  ///< rise of the surface along the world's x and y
+};
+
+/// The surface of a terrain, with its frame computed once.
+class TerrainSurface {
+ public:
+  /// @param terrain must outlive it
+  explicit TerrainSurface(const Terrain& terrain);
+  /// Returns the surface at `p` in the world; nullopt outside.
+  std::optional<GroundPoint> at(glm::dvec2 p) const;
+
+ private:
+  const Terrain& terrain_;
+  Pose X_FW_;
+  base::SinCos turn_;  ///< of X_FW_
+};
+
 /// Returns the height [m] of the surface at `p` in the world; nullopt outside.
 std::optional<double> height_at(const Terrain& terrain, glm::dvec2 p);
 

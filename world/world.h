@@ -155,6 +155,14 @@ struct Variation {
   bool operator==(const Variation&) const = default;
 };
 
+/// How a robot moves in six degrees of freedom (`dynamics "NAME KEY=VALUE ..."`), in place of the kinematics of its
+/// drive.
+struct DynamicsChoice {
+  std::string name;  ///< "car" or a plug-in's file; empty: it moves in the plane
+  std::vector<std::pair<std::string, std::string>> settings;  ///< untyped values by key
+  std::string at;                                             ///< "FILE:LINE: ", prefix of errors
+};
+
 /// A robot, or a linked object that follows packets.
 struct Mover {
   std::string name;           ///< the model's name
@@ -180,6 +188,7 @@ struct Mover {
       controller;  ///< of `ctrl`: a name, "none" (the robot stays at rest), or a file; empty: no known controller
   std::vector<std::pair<std::string, std::string>> controller_settings;  ///< of `ctrl`, untyped values by key
   std::string controller_at;    ///< "FILE:LINE: " of `ctrl`, prefix of errors. Snapshots contain none of these three
+  DynamicsChoice dynamics;      ///< not in snapshots, since recordings have the states of robots
   std::vector<Sensor> sensors;  ///< in file order
   std::vector<Magnet> magnets;  ///< carried magnets, in the mover's frame
 };

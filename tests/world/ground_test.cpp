@@ -29,6 +29,8 @@ TEST(Ground, HeightsAreThoseOfTheHighestSurfaceBelow) {
   const Ground ground(kBridge);
   EXPECT_EQ(ground.height({1.0, 0.0}, 1.0), 0.2);
   EXPECT_EQ(ground.height({1.0, 0.0}, 0.1), 0.0) << "the ramp is above";
+  EXPECT_NEAR(ground.at({1.0, 0.0}, 1.0).slope.x, 0.2, 1e-15);
+  EXPECT_EQ(ground.at({3.0, 0.0}, 1.0).slope.x, 0.0) << "the deck is level";
   EXPECT_EQ(ground.height({3.0, 0.25}, 0.4), 0.4) << "its edge belongs to the deck";
   EXPECT_EQ(ground.height({3.0, 0.26}, 1.0), 0.0) << "beyond its edge";
   EXPECT_EQ(ground.height({-0.3, 0.0}, 1.0), 0.0);

@@ -141,6 +141,14 @@ TEST(Terrain, GroundFollowsIt) {
   EXPECT_NEAR(back.pitch, std::atan(1.0), 1e-12);
   EXPECT_NEAR(back.roll, -along.roll, 1e-12);
   EXPECT_EQ(Ground({}).tilt({}, 0.5, 0.4).pitch, 0.0);
+  const auto slope_at = [&](double yaw, glm::dvec2 p) {
+    slope.X_WT.yaw = yaw;
+    return Ground({}, {&slope, 1}).at(p, 0.0).slope;
+  };
+  EXPECT_NEAR(slope_at(0.0, {2.0, 1.0}).x, 1.0, 1e-12);
+  EXPECT_NEAR(slope_at(0.0, {1.0, 2.0}).y, 2.0, 1e-12) << "the other triangle";
+  EXPECT_NEAR(slope_at(0.5 * M_PI, {1.0, 2.0}).x, -2.0, 1e-12) << "in the world's frame";
+  EXPECT_NEAR(slope_at(0.5 * M_PI, {1.0, 2.0}).y, 1.0, 1e-12);
 }
 
 }  // namespace

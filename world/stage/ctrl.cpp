@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 9> kStagePlugins{
     "fasr", "fasr2", "dynamic", "lasernoise", "pioneer_flocking", "rasterize", "sink", "source", "lsp_test"};
 
 /// Returns the words between blanks outside of quotes and brackets.
-std::vector<std::string> words_of(std::string_view text) {
+std::vector<std::string> setting_words(std::string_view text) {
   std::vector<std::string> words(1);
   char open = 0;
   for (const char c : text) {
@@ -61,10 +61,33 @@ std::string fault_of(const BuildState& b, const std::string& name) {
 std::vector<std::string> words_of_ctrl(const Entity& entity) {
   const Property* property = find(entity, "ctrl");
   if (property == nullptr || property->values.empty()) return {};
-  return words_of(property->values.front().text);
+  return setting_words(property->values.front().text);
 }
 
 }  // namespace
+
+void read_dynamics(BuildState& b, const Entity& entity, Mover& mover) {
+  const Property* property = find(entity, "dynamics");
+  if (property == nullptr) return;
+  const auto refuse = [&](const std::string& why) { fail(b.context, property->at, why); };
+  const std::vector<std::string> words = setting_words(property->values.front().text);
+  if (mover.is_tag) refuse(fmt::format("'{}' is not a robot; expected 'dynamics' in a robot", mover.name));
+  if (property->values.size() > 1 || words.empty() || (words[0] != "car" && !base::names_a_plugin(words[0])))
+    refuse("'dynamics' expects one text: \"car\" or a plug-in's file (./libmine.so), and settings KEY=VALUE");
+  const std::string& file = b.context.document.files[property->at.file];
+  mover.dynamics = {words[0] == "car" ? "car" : (std::filesystem::path(file).parent_path() / words[0]).string(),
+                    {},
+                    fmt::format("{}:{}: ", file, property->at.line)};
+  for (auto word = words.begin() + 1; word != words.end(); ++word) {
+    const std::size_t equals = word->find('=');
+    const std::string key = word->substr(0, equals);
+    if (equals == std::string::npos || key.empty())
+      refuse(fmt::format("'{}' in 'dynamics': expected a setting KEY=VALUE", *word));
+    for (const auto& setting : mover.dynamics.settings)
+      if (setting.first == key) refuse(fmt::format("'dynamics' gives '{}' twice", key));
+    mover.dynamics.settings.emplace_back(key, word->substr(equals + 1));
+  }
+}
 
 bool names_model_controller(const BuildState& b, const Entity& entity) {
   const std::vector<std::string> words = words_of_ctrl(entity);

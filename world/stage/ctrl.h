@@ -1,5 +1,7 @@
 #pragma once
-// `ctrl "NAME KEY=VALUE ..."`: the controller of one robot, or of a model that is not a robot.
+// `ctrl "NAME KEY=VALUE ..."`: the controller of one robot, or of a model that is not a robot. `dynamics "NAME
+// KEY=VALUE
+// ..."`: how a robot moves.
 
 #include <string>
 
@@ -19,5 +21,9 @@ void warn_of_ctrl(BuildState& b, const Entity& entity, const std::string& model)
 /// names, words that are not KEY=VALUE, and further controllers; such a robot is driven as without `ctrl`. Movers that
 /// are not robots accept controllers of models only.
 void read_ctrl(BuildState& b, const Entity& entity, Mover& mover);
+
+/// Reads `dynamics` into the mover. Loads no code. @throws base::InputError for a name that is neither "car" nor a
+/// file, words that are not KEY=VALUE, repeated keys, and objects that are not robots
+void read_dynamics(BuildState& b, const Entity& entity, Mover& mover);
 
 }  // namespace sf::world

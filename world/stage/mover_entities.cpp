@@ -70,6 +70,11 @@ RandomStart random_start_of(StageContext& context, const Entity& entity, const M
     start.acceleration = random_part(context, entity, "random_acceleration", 1.0 - kLeastAcceleration);
     start.noise = random_part(context, entity, "random_noise", 1.0);
   }
+  if (!mover.dynamics.name.empty() && (start.slip > 0.0 || start.acceleration > 0.0))
+    fail(context, entity.at,
+         fmt::format("'{}' has 'dynamics', whose slip and accelerations follow from forces; leave 'random_slip' and "
+                     "'random_acceleration' out",
+                     mover.name));
   if (start.acceleration > 0.0 && mover.max_acceleration == HUGE_VAL && mover.max_turn_acceleration == HUGE_VAL)
     fail(context, find(entity, "random_acceleration")->at,
          fmt::format("'random_acceleration' lowers acceleration_bounds, which '{}' has none of; expected these, too",
@@ -134,6 +139,7 @@ std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model,
   if (is_tag && names_model_controller(b, entity)) mover.drive = Drive::omni;
   mover.max_forward = 1.0;  // Stage's default
   read_keys(b.context, entity, mover);
+  read_dynamics(b, entity, mover);
   mover.random_start = random_start_of(b.context, entity, mover, size);
   b.world.movers.push_back(std::move(mover));
   b.numbers.push_back(packet_id ? std::optional(packet_id->number) : std::nullopt);
