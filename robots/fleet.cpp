@@ -61,6 +61,7 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
       scratch_(thread_pool != nullptr ? thread_pool->threads() : 1) {
   make_room();
   neighbours_.build(reports_, 1.0, copies_);
+  for (std::uint32_t row = 0; row < reports_.size(); ++row) add_dynamics(row);
 }
 
 void Fleet::add_mover() {
@@ -76,6 +77,7 @@ void Fleet::add_mover() {
   rank_ = ranks_of(world_);
   disturbed_ = true;
   make_room();
+  add_dynamics(static_cast<std::uint32_t>(row));
 }
 
 void Fleet::restart(std::uint32_t row) {
@@ -87,6 +89,7 @@ void Fleet::restart(std::uint32_t row) {
                    .tilt = tilt_of(ground_, world_.movers[row], X_WM)};
   predicted_[row] = reports_[row];
   free_discs_[row] = {};
+  if (is_dynamic(row)) bodies_[row].dynamics->place(reports_[row], bodies_[row].state);
   for (auto* flags : {&contacts_, &refused_, &struck_, &reported_}) (*flags)[row] = 0;
   disturbed_ = true;
 }
@@ -111,6 +114,7 @@ void Fleet::make_room() {
   }
   travels_.resize(count);
   starts_.resize(ground_.is_flat() ? 0 : count);
+  if (!bodies_.empty()) bodies_.resize(count);
   progress_.resize(count);
   proposed_.resize(count);
   free_discs_.resize(count);
@@ -131,6 +135,7 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
   SF_CHECK(commands.size() == reports_.size(), std::to_string(commands.size()) + " commands");
   SF_CHECK(dt > 0, "dt " + std::to_string(dt));
   const double seconds = 1e-9 * static_cast<double>(dt);
+  require_dynamics();
 
   for (Scratch& scratch : scratch_) scratch.farthest = 0.0;
   for_rows(commands.size(), [&](std::uint32_t row, Scratch& scratch) { start(row, commands[row], seconds, scratch); });
@@ -156,6 +161,7 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
     reports_[row].velocity = progress.left > 0.0 ? Twist{} : progress.velocity;
     reports_[row].time += dt;
     contacts_[row] = absent_[row] == 0 && (refused_[row] != 0 || reports_[row].contact_mask != 0);
+    if (is_dynamic(row) && absent_[row] == 0) return place_body(row);
     if (ground_.is_flat() || absent_[row] != 0) return;
     const double z = ground_.follow(starts_[row], {reports_[row].X_WM.x, reports_[row].X_WM.y});
     if (z != std::exchange(reports_[row].X_WM.z, z)) moved_[row] = 1;

@@ -30,6 +30,7 @@
 #include "base/report.h"
 #include "base/thread_pool.h"
 #include "robots/contact_sectors.h"
+#include "robots/dynamics.h"
 #include "robots/footprint.h"
 #include "robots/neighbour_grid.h"
 #include "world/copies.h"
@@ -64,6 +65,10 @@ class Fleet {
   /// and of the movers that refused it. The mask is kept as long as the contact lasts, also at rest. Passing by without
   /// a refused step does not count.
   ///
+  /// A robot with `dynamics` advances by these instead, without obstacles, and its path for the tests is the arc to
+  /// that pose, at the height before the tick. If a step is refused, it keeps its height above the ground, its tilt and
+  /// its vertical motion.
+  ///
   /// The work is bounded. On a path of more than 1024 substeps, pieces without obstacles near them are not tested. A
   /// mover that has passed obstacles for 16384 substeps ends its tick there.
   /// @param commands one per mover; NaN and infinity count as 0
@@ -81,6 +86,10 @@ class Fleet {
   /// Marks a mover as absent or present. Other movers do not collide with an absent mover, `move` does not move it, and
   /// it has no contacts.
   void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0, disturbed_ = true; }
+
+  /// Makes a robot move by `dynamics`, from its current state. Cars (`dynamics "car"`) do so from the start; the
+  /// dynamics of plug-ins have to be set before `move` (control/own_dynamics.h).
+  void set_dynamics(std::uint32_t row, DynamicsPointer dynamics);
 
   /// Adds the world's new last mover: at rest at its load pose, at the time of the others.
   void add_mover();
@@ -140,8 +149,8 @@ class Fleet {
     std::uint32_t sectors = 0;
     glm::dvec2 away;  ///< world frame: sum of the unit vectors from the touching surfaces to the mover's origin
   };
-  /// A disc without walls around a former place. No walls are searched while a mover's path stays in it. A mover's
-  /// height never changes.
+  /// A disc without walls around a former place. No walls are searched while a mover's path stays in it. Those of
+  /// robots with dynamics, whose heights change, last for a tick.
   struct FreeDisc {
     glm::dvec2 centre;
     double radius = 0.0;  ///< [m]
@@ -174,7 +183,20 @@ class Fleet {
     double farthest = 0.0;     ///< [m] largest travel of an origin in this tick, of all movers so far
   };
 
+  /// A robot with dynamics.
+  struct DynamicBody {
+    DynamicsPointer dynamics;   ///< null: it moves in the plane
+    std::vector<double> state;  ///< Dynamics::state_size
+    base::Report end;           ///< after this tick, without obstacles
+  };
+
   void make_room();
+  void add_dynamics(std::uint32_t row);
+  void require_dynamics() const;
+  bool is_dynamic(std::uint32_t row) const { return !bodies_.empty() && bodies_[row].dynamics != nullptr; }
+  base::Twist move_body(std::uint32_t row, const base::Twist& wanted, double seconds);
+  void place_body(std::uint32_t row);
+  base::Twist velocity_for(std::uint32_t row, const base::Twist& wanted, double seconds) const;
   void start(std::uint32_t row, const base::Twist& command, double seconds, Scratch& scratch);
   void run_round(bool last);
   void find_next();
@@ -241,6 +263,7 @@ class Fleet {
   std::vector<std::uint32_t> rank_;  ///< place in the order of ids, robots before tags
   std::vector<base::Pose> starts_;   ///< at the start of the tick; empty on flat ground
   std::vector<double> travels_;      ///< [m] largest travel of each origin in this tick
+  std::vector<DynamicBody> bodies_;  ///< empty: all movers move in the plane
   std::vector<Progress>
       progress_;  ///< at the start of the round; `reports_` has the poses that other movers test against
   std::vector<Progress> proposed_;

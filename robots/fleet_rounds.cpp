@@ -21,6 +21,15 @@ Twist times(const Twist& v, double factor) { return {factor * v.forward, factor 
 
 }  // namespace
 
+/// Returns the velocity in this tick of a mover without dynamics.
+Twist Fleet::velocity_for(std::uint32_t row, const Twist& wanted, double seconds) const {
+  const world::Variation variation = world_.variation_of(row);
+  const double grip = 1.0 - variation.slip;
+  const Twist rolled = limit_acceleration(world_.movers[row], times(reports_[row].velocity, 1.0 / grip), wanted,
+                                          variation.acceleration * seconds);
+  return times(rolled, grip);
+}
+
 void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scratch& scratch) {
   waiting_[row] = moved_[row] = 0;
   nearby_[row].count = world::kNone;
@@ -32,11 +41,7 @@ void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scrat
   const world::Mover& mover = world_.movers[row];
   const Footprint& outline = footprints_[row];
   const Twist wanted = limit_kinematics(mover, apply_actuator_model(mover, command));
-  const world::Variation variation = world_.variation_of(row);
-  const double grip = 1.0 - variation.slip;
-  const Twist rolled =
-      limit_acceleration(mover, times(reports_[row].velocity, 1.0 / grip), wanted, variation.acceleration * seconds);
-  const Twist v = times(rolled, grip);
+  const Twist v = is_dynamic(row) ? move_body(row, wanted, seconds) : velocity_for(row, wanted, seconds);
   progress_[row] = proposed_[row] = {reports_[row].X_WM, v, moves(v) ? seconds : 0.0, false};
   waiting_[row] = moves(v) ? 1 : 0;
   reported_[row] = 0;

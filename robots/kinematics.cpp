@@ -17,13 +17,16 @@ bool near(const base::Pose& p, const base::Pose& q) {
          std::abs(base::wrap_angle(p.yaw - q.yaw)) <= kSame;
 }
 
-/// Returns the constant twist from one pose to another in `seconds`, by the smaller turn: the inverse of `advance`.
+}  // namespace
+
 base::Twist twist_between(const base::Pose& from, const base::Pose& to, double seconds) {
   const double turn = base::wrap_angle(to.yaw - from.yaw);
   const glm::dvec2 chord = base::rotate(-(from.yaw + 0.5 * turn), {to.x - from.x, to.y - from.y});
   const double per = 1.0 / (base::sinc(0.5 * turn) * seconds);
   return {per * chord.x, per * chord.y, turn / seconds};
 }
+
+namespace {
 
 bool is_level(const base::Report& before, const base::Report& after) {
   return base::is_level(before.tilt) && base::is_level(after.tilt);

@@ -19,6 +19,9 @@ base::Twist finite(const base::Twist& twist);
 /// in [-pi, pi].
 base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double dt);
 
+/// Returns the constant twist from one pose to another in `seconds` > 0, by the smaller turn: the inverse of `advance`.
+base::Twist twist_between(const base::Pose& from, const base::Pose& to, double seconds);
+
 /// [ns] Longest time by which a report is extrapolated with its velocity.
 inline constexpr std::int64_t kMaxExtrapolation = 500'000'000;
 

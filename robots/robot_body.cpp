@@ -14,6 +14,7 @@ world::World with_free_others(world::World world, std::uint32_t mover) {
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     if (m == mover) continue;
     world.movers[m].actuator_model = world::ActuatorModel::direct;
+    world.movers[m].dynamics = {};
     world.movers[m].max_acceleration = world.movers[m].max_turn_acceleration = HUGE_VAL;
   }
   return world;

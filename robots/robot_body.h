@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/report.h"
@@ -20,6 +21,9 @@ class RobotBody {
   /// @param mover row of this robot; all robots start at their load poses
   /// @param forget [ns] time without a state after which another robot becomes absent; 0: never
   RobotBody(const world::World& world, std::uint32_t mover, std::int64_t forget = 0);
+
+  /// Makes the robot move by a plug-in's dynamics (Fleet::set_dynamics).
+  void set_dynamics(DynamicsPointer dynamics) { fleet_.set_dynamics(mover_, std::move(dynamics)); }
 
   /// Sets the state of another robot, received at `now`.
   void update_other(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now);

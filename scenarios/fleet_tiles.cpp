@@ -93,6 +93,8 @@ FleetTiles::FleetTiles(cluster::Ranks& ranks, const world::World& world, const s
     return std::any_of(group.rows.begin(), group.rows.end(), [](const auto& row) { return row.depends_on_magnets; });
   });
   for (const world::Mover& mover : world.movers) {
+    if (!mover.dynamics.name.empty())
+      throw base::InputError(mover.dynamics.at + "--tiles cannot move robots by 'dynamics'; leave --tiles out");
     homes_.push_back(tiles_.at(place_of(mover.X_WM)));
     everywhere_.push_back(magnets && !mover.magnets.empty());
   }

@@ -64,6 +64,9 @@ std::string DeviceFleet::refusal(const world::World& world, std::int64_t dt) {
   if (!world.ramps.empty()) return "the world has roads above the floor, which kernels do not follow";
   const double seconds = 1e-9 * static_cast<double>(dt);
   for (const world::Mover& mover : world.movers) {
+    if (!mover.dynamics.name.empty())
+      return fmt::format("'{}' moves by dynamics \"{}\", which kernels do not compute", mover.name,
+                         mover.dynamics.name);
     const MotionBound bound = motion_bound(mover);
     const double turn = bound.turn * seconds, steps = bound.steps(seconds);
     if (!(std::abs(mover.X_WM.yaw) + turn < kMostTurn))

@@ -157,6 +157,12 @@ TEST(Shipped, RobotsMatchTheirDataSheets) {
   EXPECT_EQ(pioneer.max_forward, 1.2);
   EXPECT_DOUBLE_EQ(pioneer.max_turn, 300.0 * M_PI / 180.0);
   EXPECT_EQ(pioneer.body.size(), 8u);
+  const World cars = read_world(R"(include "robots.inc"
+    family_car( ) small_car( pose [9 0 0 0] ) pioneer3at_dynamic( pose [20 0 0 0] ))");
+  EXPECT_EQ(warnings_of(cars), "");
+  for (const Mover& car : cars.movers) EXPECT_EQ(car.dynamics.name, "car");
+  EXPECT_EQ(cars.movers.at(0).drive, Drive::car);
+  EXPECT_EQ(cars.movers.at(2).dynamics.settings.at(0).second, "pioneer");
   const Mover& khepera = world.movers.at(2);
   EXPECT_EQ(khepera.id, 5u);
   EXPECT_NEAR(khepera.radius, 0.035, 1e-6);

@@ -325,6 +325,7 @@ TEST(DeviceFleet, RefusesWhatItDoesNotMove) {
     return DeviceFleet::refusal(changed, kTick);
   };
   EXPECT_NE(refused([](World& w) { w.ramps.emplace_back(); }).find("roads above the floor"), std::string::npos);
+  EXPECT_NE(refused([](World& w) { w.movers[0].dynamics.name = "car"; }).find("dynamics"), std::string::npos);
   EXPECT_NE(refused([](World& w) { w.movers[0].max_forward = 1e3; }).find("substeps"), std::string::npos);
   EXPECT_NE(refused([](World& w) { w.movers[0].max_forward = HUGE_VAL; }).find("substeps"), std::string::npos);
   EXPECT_NE(refused([](World& w) { w.movers[0].max_turn = HUGE_VAL; }).find("may turn"), std::string::npos);

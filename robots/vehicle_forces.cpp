@@ -1,0 +1,242 @@
+// Forces on a car, and its step.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/elementary.h"
+#include "robots/vehicle.h"
+
+namespace sf::robots {
+
+namespace {
+
+constexpr double kHoldFade = 0.05;   // [s] in which the hold of a rolling tyre vanishes
+constexpr double kMotorSlack = 0.2;  // [rad/s] by which a skid drive's motor at full torque lags
+constexpr double kSill = 0.3;        // [-] height of the body's lower corners, in that of the box
+constexpr unsigned kCorners = 8;
+constexpr double kCornerFriction = 0.6;
+
+glm::dvec3 normal_of(const world::GroundPoint& ground) {
+  if (ground.slope == glm::dvec2{}) return {0.0, 0.0, 1.0};
+  return glm::normalize(glm::dvec3{-ground.slope.x, -ground.slope.y, 1.0});
+}
+
+}  // namespace
+
+Vehicle::Contact Vehicle::contact_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel,
+                                     const world::Ground& ground, double dt) const {
+  const Rest& rest = rest_[wheel];
+  const glm::dvec3 arm = R * rest.p, up = R[2], at = body.p + arm;
+  const double most = at.z + 0.5 * model_.car.wheel_radius;
+  Contact contact{.p = arm, .normal = up};
+  // Where the strut meets the plane of the ground below its end, and then that below this point.
+  double gap = 0.0, slant = 0.0;
+  for (int round = 0; round < (ground.is_flat() ? 1 : 2); ++round) {
+    const glm::dvec3 end = at - gap * up;
+    const world::GroundPoint below = ground.at({end.x, end.y}, most);
+    const glm::dvec3 normal = normal_of(below);
+    slant = glm::dot(up, normal);
+    if (slant < kLeastSlant) return contact;
+    gap += (end.z - below.z) * normal.z / slant;
+    contact.normal = normal;
+  }
+  contact.p = arm - gap * up;
+  contact.compression = rest.compression - gap;
+  contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal) / slant;
+  const double next = contact.compression + dt * contact.rate;
+  if (next <= 0.0) return contact;
+  const double bump = std::max(0.0, next - rest.compression - model_.travel);
+  const double force = model_.spring * (next + kBumpStiffness * bump) + model_.damper * contact.rate;
+  contact.load = std::max(0.0, force) / slant;
+  return contact;
+}
+
+/// Returns the rate of a tyre's deflection [m/s]. @param slip [m/s] of the tyre on the ground
+glm::dvec2 Vehicle::hold_rate(const Tyre& t, glm::dvec2 hold, glm::dvec2 slip) {
+  return t.hold * slip - (1.0 - t.hold) / kHoldFade * hold;
+}
+
+/// Returns the direction of a wheel in the plane of the body.
+glm::dvec2 Vehicle::heading_of(std::size_t wheel, const base::SinCos& steer) const {
+  if (wheel >= kRearLeft) return {1.0, 0.0};
+  const double length = model_.car.wheelbase();
+  return glm::normalize(glm::dvec2{length * steer.cos - rest_[wheel].p.y * steer.sin, length * steer.sin});
+}
+
+Vehicle::Tyre Vehicle::tyre_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel,
+                               const glm::dvec2& heading, const Contact& contact, double dt) const {
+  const CarModel& car = model_.car;
+  const Rest& rest = rest_[wheel];
+  const glm::dvec3 ahead = heading.x * R[0] + heading.y * R[1], n = contact.normal;
+  Tyre t;
+  t.x = glm::normalize(ahead - glm::dot(ahead, n) * n), t.y = glm::cross(n, t.x);
+  const glm::dvec3 v = body.v + glm::cross(body.w, contact.p);
+  // The wheel's middle, not the body's point on the ground, moves it forward.
+  t.pitching = glm::dot(body.w, t.y);
+  t.forward = glm::dot(v, t.x) + car.wheel_radius * t.pitching, t.left = glm::dot(v, t.y);
+  t.rim = car.wheel_radius * body.spin[wheel];
+
+  // Viscosities that are stable in a step.
+  const double grip = contact.load * std::max(0.1, 1.0 - car.load_loss * (contact.load / rest.load - 1.0));
+  const double reference = std::max({std::abs(t.rim), std::abs(t.forward), kLeastSlipSpeed});
+  const double slip = glm::length(glm::dvec2{t.rim - t.forward, rest.lateral * t.left}) / reference;
+  const double viscosity = grip * (slip < 1e-9 ? car.friction.slope() : car.friction.at(slip) / slip) / reference;
+  const double most = 0.5 * contact_mass_ / dt;
+  t.along = std::min(viscosity, most), t.across = std::min(rest.lateral * viscosity, most);
+  t.most = peak_ * grip;
+  t.hold = std::max(0.0, 1.0 - std::max({std::abs(t.rim), std::abs(t.forward), std::abs(t.left)}) / kHoldSpeed);
+  return t;
+}
+
+/// Returns the force of the hold after a step [N]. Where it exceeds what friction leaves, the tyre slips.
+glm::dvec2 Vehicle::hold_of(const Tyre& t, glm::dvec2& deflection, double dt) const {
+  glm::dvec2 held = deflection + dt * hold_rate(t, deflection, {t.rim - t.forward, -t.left});
+  const double left = t.most - glm::length(glm::dvec2{t.along * (t.rim - t.forward), t.across * t.left});
+  if (const double force = hold_ * glm::length(held); force > left) {
+    const double part = std::max(0.0, left) / force;
+    held *= part, deflection *= part;
+  }
+  return t.hold * hold_ * held;
+}
+
+/// Returns the spin of a wheel after a step, with friction and motors implicit. @param hold [N] along
+double Vehicle::spin_after(const Tyre& t, std::size_t wheel, const VehicleControls& controls, double spin, double load,
+                           double hold, double dt) const {
+  const CarModel& car = model_.car;
+  const double r = car.wheel_radius, inertia = car.wheel_inertia / dt;
+  const double motor = 0.25 * car.drive_limit, gain = model_.skid ? motor / kMotorSlack : 0.0;
+  const double push = inertia * spin + r * (t.along * t.forward - hold) + controls.drive * rest_[wheel].drive;
+  double drag = inertia + r * r * t.along, next = (push + gain * controls.spin[wheel]) / (drag + gain);
+  if (const double torque = gain * (controls.spin[wheel] - next); std::abs(torque) > motor) {
+    next = (push + std::copysign(motor, torque)) / drag;
+  } else {
+    drag += gain;
+  }
+  const double friction = controls.brake * rest_[wheel].brake + car.rolling * load * r, turns = next - t.pitching;
+  return t.pitching + std::copysign(std::max(0.0, std::abs(turns) - friction / drag), turns);
+}
+
+/// Adds the forces of a wheel, and changes its spin.
+Vehicle::Tyre Vehicle::add_wheel(VehicleBody& body, const glm::dmat3& R, std::size_t wheel,
+                                 const VehicleControls& controls, const glm::dvec2& heading, const Contact& contact,
+                                 double dt, Wrench& sum) const {
+  const CarModel& car = model_.car;
+  const Tyre t = tyre_of(body, R, wheel, heading, contact, dt);
+  const glm::dvec2 hold = hold_of(t, body.hold[wheel], dt);
+  const double spin = spin_after(t, wheel, controls, body.spin[wheel], contact.load, hold.x, dt);
+  glm::dvec2 grip{t.along * (car.wheel_radius * spin - t.forward) + hold.x, hold.y - t.across * t.left};
+  if (const double size = glm::length(grip); size > t.most) grip *= t.most / size;
+  const glm::dvec3 force = contact.load * contact.normal + grip.x * t.x + grip.y * t.y;
+  sum.force += force;
+  sum.torque += glm::cross(contact.p, force) - car.wheel_inertia / dt * (spin - body.spin[wheel]) * t.y;
+  body.spin[wheel] = spin;
+  return t;
+}
+
+/// Returns whether corners of the body may be on the ground.
+bool Vehicle::lies(const glm::dmat3& R, const std::array<Contact, kWheels>& wheels) const {
+  const glm::dvec3& box = model_.box;
+  const glm::dvec3 sill = R * (glm::dvec3{0.0, 0.0, kSill * box.z} - centre_);
+  const double height = std::min(0.0, (1.0 - kSill) * box.z * R[2].z);
+  double highest = wheels[0].p.z;
+  for (const Contact& wheel : wheels) highest = std::max(highest, wheel.p.z);
+  const double lowest = sill.z + height - std::abs(R[0].z) * box.x - std::abs(R[1].z) * box.y;
+  return lowest < highest + 0.5 * kSill * box.z;
+}
+
+Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R, unsigned corner,
+                                    const world::Ground& ground, double dt) const {
+  const glm::dvec3& box = model_.box;
+  const glm::dvec3 place{(corner & 1) != 0 ? box.x : -box.x, (corner & 2) != 0 ? box.y : -box.y,
+                         (corner & 4) != 0 ? box.z : kSill * box.z};
+  Contact contact{.p = R * (place - centre_)};
+  const glm::dvec3 at = body.p + contact.p;
+  const world::GroundPoint below = ground.at({at.x, at.y}, at.z + 0.5 * model_.car.wheel_radius);
+  contact.normal = normal_of(below);
+  contact.compression = below.z - at.z;
+  contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal) / contact.normal.z;
+  const double next = contact.compression + dt * contact.rate;
+  if (next > 0.0)
+    contact.load =
+        std::max(0.0, kBumpStiffness * model_.spring * next + 4.0 * model_.damper * contact.rate) / contact.normal.z;
+  return contact;
+}
+
+void Vehicle::add_corners(const VehicleBody& body, const glm::dmat3& R, const world::Ground& ground, double dt,
+                          Wrench& sum) const {
+  for (unsigned k = 0; k < kCorners; ++k) {
+    const Contact corner = corner_of(body, R, k, ground, dt);
+    if (corner.load == 0.0) continue;
+    const glm::dvec3 v = body.v + glm::cross(body.w, corner.p);
+    const glm::dvec3 across = v - glm::dot(v, corner.normal) * corner.normal;
+    const double viscosity =
+        std::min(0.5 * contact_mass_ / dt, kCornerFriction * corner.load / (glm::length(across) + 1e-9));
+    const glm::dvec3 force = corner.load * corner.normal - viscosity * across;
+    sum.force += force;
+    sum.torque += glm::cross(corner.p, force);
+  }
+}
+
+void Vehicle::step(VehicleBody& body, const VehicleControls& controls, double dt, const world::Ground& ground) const {
+  const CarModel& car = model_.car;
+  const double steer = std::clamp(controls.steer, -car.steer_limit, car.steer_limit);
+  body.steer += dt * std::clamp((steer - body.steer) / std::max(car.steer_lag, dt), -car.steer_rate, car.steer_rate);
+  const base::SinCos steered = base::sin_cos(body.steer);
+
+  const glm::dmat3 R = base::rotation_of(body.q);
+  Wrench sum{glm::dvec3{0.0, 0.0, -car.mass * kGravity} - car.drag * glm::length(body.v) * body.v, {}};
+  std::array<Contact, kWheels> contacts;
+  for (std::size_t k = 0; k < kWheels; ++k) contacts[k] = contact_of(body, R, k, ground, dt);
+  std::array<Tyre, kWheels> tyres;
+  for (std::size_t k = 0; k < kWheels; ++k)
+    tyres[k] = add_wheel(body, R, k, controls, heading_of(k, steered), contacts[k], dt, sum);
+  if (lies(R, contacts)) add_corners(body, R, ground, dt, sum);
+
+  const glm::dvec3 inertia{model_.roll_inertia, model_.pitch_inertia, car.inertia};
+  const glm::dvec3 w = glm::transpose(R) * body.w, torque = glm::transpose(R) * sum.torque;
+  // Gyroscopic torques do no work.
+  glm::dvec3 turned = w - dt * (glm::cross(w, inertia * w) / inertia);
+  if (const double now = glm::dot(turned, inertia * turned); now > 0.0)
+    turned *= std::sqrt(glm::dot(w, inertia * w) / now);
+  body.w = R * (turned + dt * (torque / inertia));
+  body.v += dt / car.mass * sum.force;
+  body.p += dt * body.v;
+  for (std::size_t k = 0; k < kWheels; ++k) {
+    const glm::dvec3 &x = tyres[k].x, &y = tyres[k].y;
+    const glm::dvec3 v = body.v + glm::cross(body.w, contacts[k].p);
+    const double rim = car.wheel_radius * (body.spin[k] - glm::dot(body.w, y));
+    body.hold[k] += dt * hold_rate(tyres[k], body.hold[k], {rim - glm::dot(v, x), -glm::dot(v, y)});
+  }
+  const glm::dvec3 h = 0.5 * dt * body.w;
+  const auto [a, x, y, z] = body.q;
+  body.q = {a - h.x * x - h.y * y - h.z * z, x + h.x * a + h.y * z - h.z * y, y + h.y * a + h.z * x - h.x * z,
+            z + h.z * a + h.x * y - h.y * x};
+  const auto& q = body.q;
+  const double norm = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  body.q = {norm * q.w, norm * q.x, norm * q.y, norm * q.z};
+}
+
+double Vehicle::load(const VehicleBody& body, std::size_t wheel, const world::Ground& ground) const {
+  return contact_of(body, base::rotation_of(body.q), wheel, ground).load;
+}
+
+double Vehicle::energy(const VehicleBody& body, const world::Ground& ground) const {
+  const CarModel& car = model_.car;
+  const glm::dmat3 R = base::rotation_of(body.q);
+  const glm::dvec3 w = glm::transpose(R) * body.w, inertia{model_.roll_inertia, model_.pitch_inertia, car.inertia};
+  double sum = car.mass * (kGravity * body.p.z + 0.5 * glm::dot(body.v, body.v)) + 0.5 * glm::dot(w, inertia * w);
+  for (std::size_t k = 0; k < kWheels; ++k) {
+    const double x = std::max(0.0, contact_of(body, R, k, ground).compression);
+    const double bump = std::max(0.0, x - rest_[k].compression - model_.travel);
+    sum += 0.5 * car.wheel_inertia * body.spin[k] * body.spin[k] +
+           0.5 * model_.spring * (x * x + kBumpStiffness * bump * bump) +
+           0.5 * hold_ * glm::dot(body.hold[k], body.hold[k]);
+  }
+  for (unsigned k = 0; k < kCorners; ++k) {
+    const double depth = std::max(0.0, corner_of(body, R, k, ground).compression);
+    sum += 0.5 * kBumpStiffness * model_.spring * depth * depth;
+  }
+  return sum;
+}
+
+}  // namespace sf::robots
