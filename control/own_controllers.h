@@ -25,6 +25,10 @@ const ControllerType* load_controller(const std::string& name);
 /// @param name as in `find_controller`
 /// @throws base::InputError for a file that cannot be loaded, and for an unknown name, with the known ones
 const sensorfarm::ModelEntry& find_model_controller(const std::string& name);
+/// Returns the dynamics in a plug-in's file, which is loaded if it is not yet loaded.
+/// @param name "./libmine.so" or "./libmine.so:name"
+/// @throws base::InputError for a file that cannot be loaded or has none
+const sensorfarm::DynamicsEntry& find_dynamics(const std::string& name);
 /// Returns the controllers of models in the order in which they were added.
 const std::deque<sensorfarm::ModelEntry>& model_controllers();
 /// Returns their names, for world::LoadOptions.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -26,9 +27,10 @@ namespace fs = std::filesystem;
 struct PluginControllers {
   std::vector<const ControllerType*> robots;
   std::vector<const sensorfarm::ModelEntry*> models;
+  std::vector<const sensorfarm::DynamicsEntry*> dynamics;
 };
 
-/// Controllers of the files loaded so far, by canonical path.
+/// Controllers and dynamics of the files loaded so far, by canonical path.
 using Loaded = std::map<std::string, PluginControllers>;
 Loaded& loaded() {
   static Loaded files;
@@ -77,6 +79,15 @@ void fill_from_library(const std::string& file, sensorfarm::Plugin& plugin) {
   }
 }
 
+const sensorfarm::DynamicsEntry* add_dynamics(sensorfarm::DynamicsEntry entry, const std::string& from) {
+  if (entry.name.empty() || !entry.make)
+    throw base::InputError(
+        from, 0,
+        fmt::format("dynamics '{}' have no name, or no function that creates them; expected both", entry.name));
+  static std::deque<sensorfarm::DynamicsEntry> entries;
+  return &entries.emplace_back(std::move(entry));
+}
+
 PluginControllers load(const std::string& file, const std::string& whole) {
   sensorfarm::Plugin plugin;
   {
@@ -92,6 +103,8 @@ PluginControllers load(const std::string& file, const std::string& whole) {
     types.robots.push_back(add_own_controller(std::move(entry), file));
   for (sensorfarm::ModelEntry& entry : plugin.models)
     types.models.push_back(add_own_model_controller(std::move(entry), file));
+  for (sensorfarm::DynamicsEntry& entry : plugin.dynamics)
+    types.dynamics.push_back(add_dynamics(std::move(entry), file));
   for (sensorfarm::SensorEntry& entry : plugin.sensors) sensors::add_own_sensor(std::move(entry), file);
   for (sensorfarm::DerivedEntry& entry : plugin.derived) sensors::add_own_derived(std::move(entry), file);
   return types;
@@ -115,10 +128,11 @@ const Type* chosen(const std::string& name, const std::vector<const Type*>& type
   if (found != types.end()) return *found;
   std::string names;
   for (const Type* type : types) names += fmt::format("{}{}:{}", names.empty() ? "" : ", ", file, type->name);
-  throw base::InputError(
-      file, 0,
-      fmt::format("has {}; expected one of: {}",
-                  wanted.empty() ? fmt::format("several {}s", kind) : fmt::format("no {} '{}'", kind, wanted), names));
+  throw base::InputError(file, 0,
+                         fmt::format("has {}; expected one of: {}",
+                                     wanted.empty() ? fmt::format("several {}{}", kind, kind.ends_with('s') ? "" : "s")
+                                                    : fmt::format("no {} '{}'", kind, wanted),
+                                     names));
 }
 
 }  // namespace
@@ -133,6 +147,10 @@ const sensorfarm::ModelEntry& find_model_controller(const std::string& name) {
     if (entry.name == name) return entry;
   throw base::InputError(
       fmt::format("there is no model controller '{}'{}", name, base::expected_one_of(name, model_controller_names())));
+}
+
+const sensorfarm::DynamicsEntry& find_dynamics(const std::string& name) {
+  return *chosen(name, controllers_in(parts_of(name).first).dynamics, "dynamics");
 }
 
 void load_plugin_file(const std::string& file) { controllers_in(file); }

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/thread_pool.h"
 #include "base/time.h"
+#include "control/own_dynamics.h"
 #include "control/own_localization.h"
 #include "farm/schedule.h"
 #include "netio/packets.h"
@@ -103,6 +104,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
     throw base::InputError("[v2v] cannot be simulated with --tiles; expected ranks that share the whole world");
   if (options.v2v) v2v_.emplace(*options.v2v, world.movers.size());
   farm_.subscribe_all();
+  control::set_own_dynamics(world_, fleet_);
   for (const auto& [row, tilt] : options.tilts) {
     base::Report tilted = fleet_.reports()[row];
     tilted.tilt = tilt;
@@ -365,7 +367,9 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
   const std::size_t models = world.models.size();
   const std::uint32_t row = world::append_robot(world, original, robot.name, robot.X_WM);
   share_->add_mover();
+  robots::DynamicsPointer dynamics;
   try {
+    dynamics = control::make_own_dynamics(world, row);
     RobotControl control = make_control(row, robot.actor);
     earlier_readings_ = farm_.add_mover();
     use_control(std::move(control));
@@ -377,6 +381,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
     throw;
   }
   fleet_.add_mover();
+  if (dynamics) fleet_.set_dynamics(row, std::move(dynamics));
   if (states_) states_->add_mover(fleet_.reports()[row]);
   for (auto* const twists : {&commands_, &executed_commands_}) twists->emplace_back();
   for (auto* const intents : {&intents_, &next_intents_}) intents->emplace_back();

@@ -1,6 +1,6 @@
 #pragma once
-// A plug-in: a shared library with your own controllers, model controllers and sensors. It needs only these headers,
-// and no library of the farm.
+// A plug-in: a shared library with your own controllers, model controllers, dynamics and sensors. It needs only these
+// headers, and no library of the farm.
 
 #include <memory>
 #include <string>
@@ -9,6 +9,7 @@
 
 #include "sensorfarm/controller.h"
 #include "sensorfarm/derived.h"
+#include "sensorfarm/dynamics.h"
 #include "sensorfarm/model.h"
 #include "sensorfarm/sensor.h"
 
@@ -16,14 +17,15 @@ namespace sensorfarm {
 
 /// Incremented with every change of these headers that changes the layout of a type. A library with another number is
 /// refused.
-inline constexpr int kPluginInterface = 6;
+inline constexpr int kPluginInterface = 7;
 
-/// The controllers, model controllers, sensors and derived sensors of a plug-in.
+/// The controllers, model controllers, dynamics, sensors and derived sensors of a plug-in.
 struct Plugin {
   std::vector<ControllerEntry> controllers;
   std::vector<ModelEntry> models;
   std::vector<SensorEntry> sensors;
   std::vector<DerivedEntry> derived;
+  std::vector<DynamicsEntry> dynamics;
 
   /// Adds a controller. `Made` is constructed from (const Robot&, Settings&).
   template <class Made>
@@ -39,6 +41,14 @@ struct Plugin {
     return models.emplace_back(
         ModelEntry{std::move(name), std::move(summary),
                    [](const ModelSite& site, Settings& settings) { return std::make_unique<Made>(site, settings); }});
+  }
+
+  /// Adds dynamics of robots. `Made` is constructed from (const DynamicsSite&, Settings&).
+  template <class Made>
+  DynamicsEntry& add_dynamics(std::string name, std::string summary) {
+    return dynamics.emplace_back(DynamicsEntry{
+        std::move(name), std::move(summary),
+        [](const DynamicsSite& site, Settings& settings) { return std::make_unique<Made>(site, settings); }});
   }
 
   /// Adds a sensor type. `Made` is constructed from (const SensorSite&, const SensorSettings&). @param entry without

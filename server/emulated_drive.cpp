@@ -7,6 +7,7 @@
 
 #include "base/elementary.h"
 #include "base/error.h"
+#include "control/own_dynamics.h"
 #include "netio/own_readings.h"
 
 namespace sf::server {
@@ -37,6 +38,7 @@ EmulatedDrive::EmulatedDrive(const RealRobotType& type, const RealRobotOptions& 
       device_(std::string(gpu::kHostDevice)),
       farm_(*world_, device_, {.seed = options.seed, .threads = 1}),
       body_(*world_, mover_) {
+  if (auto dynamics = control::make_own_dynamics(*world_, mover_)) body_.set_dynamics(std::move(dynamics));
   const base::Pose& X = world_->movers[mover_].X_WM;
   if (base::hypot(X.x - X_WM.x, X.y - X_WM.y, base::wrap_angle(X.yaw - X_WM.yaw)) > kSamePlace)
     throw base::InputError(

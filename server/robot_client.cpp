@@ -11,6 +11,7 @@
 #include "base/elementary.h"
 #include "base/error.h"
 #include "base/time.h"
+#include "control/own_dynamics.h"
 #include "world/roads/roads.h"
 
 namespace sf::server {
@@ -84,6 +85,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       controller_(options.controller.name),
       utc_(options.utc ? options.utc : utc_now),
       shares_readings_(options.shares_readings) {
+  if (auto dynamics = control::make_own_dynamics(world, mover)) body_.set_dynamics(std::move(dynamics));
   if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
   if (options.map) map_.emplace(world, sensor_set, mover, *options.map);
   if (options.real) real_ = make_real_robot(*options.real, world.movers[mover].X_WM, world.movers[mover].track);

@@ -56,19 +56,19 @@ bool is_code(std::string_view argument) {
   return argument.ends_with(".so") || argument.ends_with(".py");
 }
 
-/// Returns whether a world file, or a file that it includes, names a file of code in a `ctrl`.
+/// Returns whether a world file, or a file that it includes, names a file of code in a `ctrl` or `dynamics`.
 /// @param seen paths that were read
 bool world_has_code(const std::string& file, std::set<std::string>& seen) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error) || !seen.insert(file).second) return false;
   const std::string text = base::read_text(file);
-  for (const std::string_view key : {"ctrl", "include"})
+  for (const std::string_view key : {"ctrl", "dynamics", "include"})
     for (std::size_t at = 0; (at = text.find(key, at)) != std::string::npos;) {
       const std::size_t begin = text.find('"', at),
                         end = text.find('"', begin == std::string::npos ? begin : begin + 1);
       if (end == std::string::npos) break;
       const std::string value = text.substr(begin + 1, end - begin - 1);
-      if (key == "ctrl" && base::names_a_plugin(value.substr(0, value.find(' ')))) return true;
+      if (key != "include" && base::names_a_plugin(value.substr(0, value.find(' ')))) return true;
       if (key == "include" && world_has_code((std::filesystem::path(file).parent_path() / value).string(), seen))
         return true;
       at = end;

@@ -1,5 +1,5 @@
-// A plug-in of tests: two controllers, one that affects its process as its setting `how` states, and controllers of
-// models.
+// A plug-in of tests: two controllers, one that affects its process as its setting `how` states, controllers of models,
+// and dynamics.
 
 #include <fcntl.h>
 #include <sensorfarm/plugin.h>
@@ -154,9 +154,43 @@ class Shy : public Slide {
   }
 };
 
+/// Rises at the speed `rise`.
+class Lift : public sensorfarm::Dynamics {
+ public:
+  Lift(const sensorfarm::DynamicsSite&, sensorfarm::Settings& settings)
+      : rise_(settings.number("rise", 1.0, -1.0, 1e300)) {}
+  std::size_t state_size() const override { return 1; }
+  sensorfarm::BodyState move(const sensorfarm::BodyState& from, const sensorfarm::Twist&, double seconds,
+                             const sensorfarm::Ground&, std::span<double>) const override {
+    if (rise_ < 0.0) throw std::runtime_error("it cannot sink");
+    sensorfarm::BodyState to = from;
+    to.pose.z += rise_ * seconds;
+    return to;
+  }
+
+ private:
+  double rise_;  // [m/s]
+};
+
+class LargeLift : public Lift {
+ public:
+  using Lift::Lift;
+  std::size_t state_size() const override { return 5000; }
+};
+
+class PickyLift : public Lift {
+ public:
+  PickyLift(const sensorfarm::DynamicsSite& site, sensorfarm::Settings& settings) : Lift(site, settings) {
+    throw std::invalid_argument("no");
+  }
+};
+
 }  // namespace
 
 SENSORFARM_PLUGIN(plugin) {
+  plugin.add_dynamics<Lift>("test-lift", "rises");
+  plugin.add_dynamics<LargeLift>("test-large", "has a large state");
+  plugin.add_dynamics<PickyLift>("test-picky-dynamics", "refuses every robot");
   plugin.add_model_controller<Slide>("test-slide", "slides to and fro");
   plugin.add_model_controller<Shy>("test-shy", "refuses every model");
   plugin.add_controller<Straight>("test-straight", "drives straight on", 5.0);
