@@ -160,7 +160,9 @@ std::string work_text(const RunReport& f) {
   if (f.farm.dropped > 0)
     text += row("dropped", "{}, besides {} readings: no processor time was left", f.farm.dropped, f.farm.readings);
   if (work.host_scans > 0)
-    text += row("cast on the host", "{} scans that the device cannot take: too many surfaces, terrain, or rolling in motion", work.host_scans);
+    text +=
+        row("cast on the host",
+            "{} scans that the device cannot take: too many surfaces, terrain, or rolling in motion", work.host_scans);
   std::string faults;
   for (std::size_t kind = 0; kind < f.farm.faults.size(); ++kind)
     if (f.farm.faults[kind] > 0)
