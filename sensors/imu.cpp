@@ -6,10 +6,10 @@
 
 #include "base/suggest.h"
 #include "base/time.h"
-#include "sensors/carrier_trail.h"
 #include "sensors/host_backend.h"
 #include "sensors/inertial_motion.h"
 #include "sensors/lidar_beams.h"
+#include "sensors/mover_trail.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
 #include "sensors/triad_backend.h"

@@ -152,6 +152,25 @@ TEST_F(PaperFigures, IntegersAreSteps) {
   EXPECT_TRUE(contains(svg, ">0<") && contains(svg, ">1<")) << "integer ticks";
 }
 
+/// Decades on both axes, a curve per axis of the sensor, and the stated deviation.
+TEST(AllanDeviation, IsDrawnBesideTheStatedOne) {
+  const Folder folder;
+  const std::string world =
+      folder.write("w.world", "position( name \"a\" ctrl \"none\" imu( gyro_noise 1 accel_noise 0.01 ) )");
+  run_successfully({"run", world, "--duration", "8", "--record", folder.path("r"), "--record-readings"});
+  run_successfully({"plot", folder.path("r"), "--allan", "--csv", "--format", "svg"});
+  const std::string figure = read_file(folder.path("r/allan.svg"));
+  for (const char* text : {">stated<", ">x<", ">10⁻²<", ">1<", ">time of the means [s]<"})
+    EXPECT_TRUE(contains(figure, text)) << text;
+  const std::string table = read_file(folder.path("r/allan.csv"));
+  EXPECT_TRUE(contains(table, "x,0.01,") && contains(table, "stated,0.01,")) << table;
+  EXPECT_FALSE(fs::exists(folder.path("r/trajectories.svg"))) << "alone";
+}
+
+TEST_F(PaperFigures, AllanDeviationsNeedImusOrGyros) {
+  EXPECT_TRUE(contains(refusal({"--allan"}), "there are no readings of an imu or a gyro"));
+}
+
 TEST_F(PaperFigures, SweepOptionsAreRejected) {
   EXPECT_TRUE(contains(refusal({"--over", "kp"}), "--over and --x-axis apply to the folder of a sweep"));
 }

@@ -38,6 +38,10 @@ world::World everything(int robots) {
     sensors.push_back(fitted("encoder", {setting("slip", {0.01}), setting("per_count", {1e-6})}));
     sensors.push_back(fitted("gyro", {setting("noise", {0.1}), setting("bias", {0.1})}));
     sensors.push_back(fitted("gps", {setting("noise", {1}), setting("rate", {10})}));
+    sensors.push_back(fitted("imu", {setting("gyro_noise", {0.1}), setting("accel_instability", {0.1})}));
+    sensors.push_back(fitted("compass", {setting("noise", {1e-6})}));
+    sensors.push_back(fitted("altimeter", {setting("walk", {0.1})}));
+    sensors.push_back(fitted("inclinometer", {setting("bias", {1})}));
     sensors.push_back(fitted("irreceiver"));
     sensors.push_back(fitted("lightsensor"));
     sensors.push_back(fitted("battery"));
