@@ -17,9 +17,8 @@ RunInfo named(Naming naming, std::vector<MoverInfo> movers, std::vector<std::str
   RunInfo info;
   info.record_readings = record_readings;
   info.sensor_types = {
-      test::scan_type(),       {.id = 2, .name = "sonar"}, {.id = 3, .name = "gyro"},     {.id = 4, .name = "odom"},
-      {.id = 5, .name = "3d"}, {.id = 6, .name = "gps"},   {.id = 7, .name = "occupancy"},
-      {.id = 8, .name = "imu"}};
+      test::scan_type(),       {.id = 2, .name = "sonar"}, {.id = 3, .name = "gyro"},      {.id = 4, .name = "odom"},
+      {.id = 5, .name = "3d"}, {.id = 6, .name = "gps"},   {.id = 7, .name = "occupancy"}, {.id = 8, .name = "imu"}};
   info.movers = std::move(movers);
   put_naming(naming, info);
   const std::vector<std::string> lines = name_frames(info);
