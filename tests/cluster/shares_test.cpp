@@ -34,7 +34,7 @@ TEST(Shares, ItemOnABoundaryBelongsToTheLaterShare) {
 TEST(Shares, NoItems) { EXPECT_EQ(equal_shares({}, 2), (Firsts{0, 0, 0})); }
 
 TEST(Shares, DeviationIsBelowOneItem) {  // both ends deviate by at most half an item
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const auto whole = *rc::gen::container<std::vector<unsigned>>(rc::gen::inRange(0u, 100u));
     const std::vector<double> costs(whole.begin(), whole.end());
     const unsigned shares = *rc::gen::inRange(1u, 9u);
@@ -46,7 +46,7 @@ TEST(Shares, DeviationIsBelowOneItem) {  // both ends deviate by at most half an
       const double cost = std::accumulate(costs.begin() + first[k], costs.begin() + first[k + 1], 0.0);
       RC_ASSERT(std::abs(cost - part) <= 100.0);
     }
-  });
+  }));
 }
 
 }  // namespace

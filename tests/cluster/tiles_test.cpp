@@ -60,7 +60,7 @@ TEST(Tiles, NoPoints) {  // a world without robots
 }
 
 TEST(Tiles, EveryPointIsInExactlyOneTile) {
-  rc::check([](std::vector<std::pair<int, int>> places, std::uint8_t ranks, int x, int y) {
+  EXPECT_TRUE(rc::check([](std::vector<std::pair<int, int>> places, std::uint8_t ranks, int x, int y) {
     Points points;
     for (const auto& [a, b] : places) points.push_back({a, b});
     const Tiles tiles(points, std::vector<double>(points.size(), 1.0), 1 + ranks % 9);
@@ -71,7 +71,7 @@ TEST(Tiles, EveryPointIsInExactlyOneTile) {
       const bool inside = box.min.x <= p.x && p.x < box.max.x && box.min.y <= p.y && p.y < box.max.y;
       RC_ASSERT(inside == (k == tiles.at(p)));
     }
-  });
+  }));
 }
 
 TEST(Tiles, DistanceIsToTheNearestPoint) {

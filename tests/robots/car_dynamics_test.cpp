@@ -88,7 +88,7 @@ TEST(CarDynamics, SteadyCorneringFollowsTheUndersteerGradient) {
 }
 
 TEST(CarDynamics, TyresOnlyTakeEnergy) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const CarModel model = without_resistance();
     CarState state = any_state(model);
     double before = energy(model, state);
@@ -97,7 +97,7 @@ TEST(CarDynamics, TyresOnlyTakeEnergy) {
       RC_ASSERT(energy(model, state) <= before + 1e-6);
       before = energy(model, state);
     }
-  });
+  }));
 }
 
 /// The engine's work, minus the losses by slip, is the change of energy; the tyres' impulse that of momentum.
@@ -137,7 +137,7 @@ TEST(CarDynamics, BalancesOfEnergyAndMomentumHold) {
 }
 
 TEST(CarDynamics, AMirroredCarMovesMirrored) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const CarModel model;
     CarState left = any_state(model), right = left;
     for (const std::size_t k : {kCarLeft, kCarTurn, kCarSteer}) right[k] = -right[k];
@@ -150,11 +150,11 @@ TEST(CarDynamics, AMirroredCarMovesMirrored) {
     RC_ASSERT(std::abs(left[kCarLeft] + right[kCarLeft]) < 1e-9);
     RC_ASSERT(std::abs(left[kCarTurn] + right[kCarTurn]) < 1e-9);
     RC_ASSERT(std::abs(left[kCarForward] - right[kCarForward]) < 1e-9);
-  });
+  }));
 }
 
 TEST(CarDynamics, ForcesStayWithinFrictionAndLoadsAddUpToTheWeight) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     CarModel model;
     model.load_loss = 0.0;
     const CarForces f = car_forces(model, any_state(model));
@@ -165,7 +165,7 @@ TEST(CarDynamics, ForcesStayWithinFrictionAndLoadsAddUpToTheWeight) {
     }
     const double sum = std::accumulate(f.load.begin(), f.load.end(), 0.0);
     RC_ASSERT(lifted || std::abs(sum - model.mass * kGravity) < 1e-3);
-  });
+  }));
 }
 
 TEST(CarDynamics, ActuatorsAreLimited) {

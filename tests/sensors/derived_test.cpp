@@ -261,7 +261,7 @@ TEST(Derived, OrderOfArrivalDoesNotMatter) {
   const SensorSet all(world);
   base::ThreadPool pool(1);
   const auto states = robots::states_at_load(world);
-  rc::check([&](std::uint64_t seed) {
+  EXPECT_TRUE(rc::check([&](std::uint64_t seed) {
     std::vector<std::vector<double>> values;
     std::vector<base::ReadingBlock> delivered;
     for (std::uint32_t k = 0; k < 8; ++k)
@@ -285,7 +285,7 @@ TEST(Derived, OrderOfArrivalDoesNotMatter) {
         std::swap(delivered[k], delivered[*rc::gen::inRange<std::size_t>(0, k + 1)]);
       RC_ASSERT(chain() == first);
     }
-  });
+  }));
 }
 
 TEST(Derived, RobotsThatJoinBecomeInputs) {

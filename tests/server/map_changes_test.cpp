@@ -34,16 +34,16 @@ base::Bytes bytes_of(const control::MapChanges& changes) {
 }
 
 TEST(MapChanges, RoundTrip) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const control::MapChanges changes = any_changes();
     const auto again = decode_changes(bytes_of(changes), kChangesArea);
     RC_ASSERT(again && equal(*again, changes));
-  });
+  }));
 }
 
 /// Any prefix and any changed byte: the result is in the map, or nothing.
 TEST(MapChanges, OtherBytesAreRefusedOrInTheMap) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     base::Bytes bytes = bytes_of(any_changes());
     const auto at = static_cast<std::size_t>(*rc::gen::inRange(0, static_cast<int>(bytes.size())));
     RC_ASSERT(!decode_changes(std::span(bytes).first(at), kChangesArea));
@@ -53,7 +53,7 @@ TEST(MapChanges, OtherBytesAreRefusedOrInTheMap) {
       RC_ASSERT(maps::contains(kChangesArea, changes->cells[i].at));
     for (std::size_t i = 0; changes && i < changes->nodes.size(); ++i)
       RC_ASSERT(changes->nodes[i] >= 0 && changes->nodes[i] < 9 * 240);
-  });
+  }));
 }
 
 /// The example of docs/packets.md, its neighbours at the limits, and each list with too many or too few bytes.

@@ -136,7 +136,7 @@ TEST(Sideslip, CovarianceIsConsistentOver100Seeds) {
 }
 
 TEST(Sideslip, OrderOfArrivalDoesNotMatter) {
-  rc::check([] {
+  EXPECT_TRUE(rc::check([] {
     const auto observer = static_cast<Observer>(*rc::gen::inRange(0, 4));
     const SideslipModel model = model_of(observer);
     std::vector<SideslipMeasurement> measurements;
@@ -155,7 +155,7 @@ TEST(Sideslip, OrderOfArrivalDoesNotMatter) {
     const SideslipState other = end();
     RC_ASSERT(first.mean == other.mean);
     RC_ASSERT(first.covariance == other.covariance);
-  });
+  }));
 }
 
 TEST(Sideslip, StartsWithASpeedAndStopsWithoutReadings) {
