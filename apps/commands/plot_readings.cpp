@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kPlottedGauss = 1e4;          ///< per tesla
 constexpr std::size_t kMostMagnetometers = 4;  ///< that get panels of their own
-constexpr std::size_t kMostPanels = 16;
+constexpr std::size_t kMostReadingPanels = 16;
 constexpr std::size_t kMostCurves = 32;  ///< per panel, for sensors with few elements
 constexpr std::size_t kNamedCurves = 7;  ///< sensors with more elements are drawn as heat maps
 constexpr std::size_t kMostHeatMaps = 4;
@@ -213,7 +213,7 @@ std::string subtitle_of(const record::Recording& recording, std::size_t sensors,
                         std::size_t panels) {
   std::string text = fmt::format("{}: {}", recording.info.world, counted(sensors, "sensor"));
   if (drawn < sensors) text += fmt::format(", the first {} shown", drawn);
-  if (panels > kMostPanels) text += fmt::format(", {} of {} quantities shown", kMostPanels, panels);
+  if (panels > kMostReadingPanels) text += fmt::format(", {} of {} quantities shown", kMostReadingPanels, panels);
   return text;
 }
 
@@ -223,13 +223,13 @@ viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world:
   viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
   const std::size_t width = widest(channels);
   const sensors::SensorSet sensor_set(world);
-  const std::size_t drawn = std::min({channels.size(), kMostHeatMaps, std::max<std::size_t>(1, kMostPanels / width)});
+  const std::size_t drawn = std::min({channels.size(), kMostHeatMaps, std::max<std::size_t>(1, kMostReadingPanels / width)});
   for (std::size_t i = 0; i < drawn; ++i) {
     const SensorElements elements = elements_of(sensor_set, type.id, channels[i].mover, channels[i].sensor);
     std::size_t offset = 0;
     for (const record::ColumnInfo& column : type.columns)
       for (std::uint32_t k = 0;
-           k < column.width && offset < width_of(channels[i]) && figure.panels.size() < kMostPanels; ++k)
+           k < column.width && offset < width_of(channels[i]) && figure.panels.size() < kMostReadingPanels; ++k)
         figure.panels.push_back(
             heat_panel(channels[i], elements,
                        {offset++, axis_name(column.name) + (column.width > 1 ? fmt::format(" {}", "xyz"[k % 3]) : ""),
@@ -245,7 +245,7 @@ viz::SeriesOptions columns_of(const record::Recording& recording, const record::
   viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
   std::size_t drawn = 0, offset = 0;
   for (const record::ColumnInfo& column : type.columns) {
-    if (figure.panels.size() == kMostPanels || offset >= widest(channels)) break;
+    if (figure.panels.size() == kMostReadingPanels || offset >= widest(channels)) break;
     viz::Panel panel{"", axis_name(column.name), {}, false, is_whole(column)};
     drawn = 0;
     for (const Channel& channel : channels) {
