@@ -32,7 +32,9 @@ bool has_type(const sensors::SensorSet& sensor_set, std::uint8_t type, std::uint
 [[noreturn]] void refuse_blind_world(const world::World& world, std::uint8_t type) {
   std::vector<std::string> words;
   for (const sensors::SensorType* known : sensors::sensor_types())
-    if (type == 0 || known->id == type) words.push_back("a " + std::string(known->name) + "( )");
+    if (type == 0 || known->id == type)
+      words.push_back((std::string_view("aeio").find(known->name.front()) != std::string_view::npos ? "an " : "a ") +
+                      std::string(known->name) + "( )");
   throw base::InputError(world.file, 0, "no robot has such a sensor; give one " + join_or(words));
 }
 
