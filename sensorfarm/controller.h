@@ -39,7 +39,7 @@ struct SensorInfo {
   double rate = 0.0;                 ///< [Hz]
   std::uint32_t elements = 1;        ///< rows of a reading: beams of a laser, cones of a sonar ring, otherwise 1
   std::vector<std::string> columns;  ///< names of a row's columns, with units: "range_m"; a 3-D vector takes three
-                                     ///< columns
+                                     ///< columns. Those of the type that this sensor was asked for
   double limit = 0.0;                ///< largest value of the first column of a row: a laser's range [m]
   std::vector<double> bearings;      ///< [rad] bearings of a laser's beams in the sensor's frame; empty for other types
 };
@@ -64,8 +64,8 @@ struct Reading {
   std::uint32_t number = 0;        ///< 0-based among the robot's sensors of this type
   double time = 0.0;               ///< [s] time of the measurement
   Pose X_WS;                       ///< pose of the sensor at the measurement
-  std::span<const double> values;  ///< row by row, each with the columns of the type; a range without a return equals
-                                   ///< the limit
+  std::span<const double> values;  ///< row by row, each with the columns of the sensor; a range without a return
+                                   ///< equals the limit
   std::span<const std::uint32_t>
       hits;  ///< lasers in a simulation: index of the model hit by each beam, kFloor or kNone
   /// Largest error of the first column, in rows without a flag; infinite: not stated, as for noisy sensors.

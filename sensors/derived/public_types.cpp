@@ -14,8 +14,9 @@ sensorfarm::SensorInfo public_info(const SensorType& type, const SensorSpec& spe
                               {},
                               spec.limit,
                               {}};
+  const std::size_t width = element_width(type, spec);
   for (const Column& column : type.columns)
-    for (std::uint32_t k = 0; k < column.width; ++k)
+    for (std::uint32_t k = 0; k < column.width && info.columns.size() < width; ++k)
       info.columns.push_back(column.width == 1 ? std::string(column.name) : fmt::format("{}[{}]", column.name, k));
   for (std::uint32_t i = 0; type.is_scan && i < spec.elements; ++i) info.bearings.push_back(bearing_of(spec, i));
   return info;
