@@ -68,6 +68,11 @@ bool is_filled_in(const sensors::SensorType& type, std::string_view column) {
   return type.id == sensors::kGps && column == "satellites";
 }
 
+/// True for the last columns of receivers without the key `altitude`, whose readings do not have them.
+bool is_left_out(const SensorText& sensor, const sensors::SensorType& type, std::string_view column) {
+  return type.id == sensors::kGps && (column == "altitude_m" || column == "vdop") && sensor.value("altitude").empty();
+}
+
 }  // namespace
 
 ForeignSensor bind_sensor(const std::string& file, const ForeignInput& input, const std::string& source,
@@ -94,6 +99,10 @@ ForeignSensor bind_sensor(const std::string& file, const ForeignInput& input, co
       fail(fmt::format("sensor type '{}' has no column '{}'", sensor.type->name, name));
   for (const sensors::Column& column : sensor.type->columns) {
     const auto stated = std::ranges::find(columns, column.name, &std::pair<std::string, std::string>::first);
+    if (is_left_out(input.sensor, *sensor.type, column.name)) {
+      if (stated != columns.end()) fail(fmt::format("column '{}' of gps needs altitude = 1", column.name));
+      continue;
+    }
     const std::string from = stated == columns.end() ? std::string(column.name) : stated->second;
     sensor.from.push_back(index_of(from));
     if (sensor.from.back() < available.size() && column.width == 1) {
