@@ -23,7 +23,7 @@ class GrowingTable {
   /// Adds records. @throws base::DeviceError if the table would exceed a limit of the device; it is unchanged then
   template <class Record>
   void add(std::span<const Record> records) {
-    std::memcpy(extend(records.size_bytes()), records.data(), records.size_bytes());
+    if (!records.empty()) std::memcpy(extend(records.size_bytes()), records.data(), records.size_bytes());
   }
   /// Returns true if the table is a new buffer since the last call.
   bool take_replaced();
