@@ -223,7 +223,8 @@ viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world:
   viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
   const std::size_t width = widest(channels);
   const sensors::SensorSet sensor_set(world);
-  const std::size_t drawn = std::min({channels.size(), kMostHeatMaps, std::max<std::size_t>(1, kMostReadingPanels / width)});
+  const std::size_t drawn =
+      std::min({channels.size(), kMostHeatMaps, std::max<std::size_t>(1, kMostReadingPanels / width)});
   for (std::size_t i = 0; i < drawn; ++i) {
     const SensorElements elements = elements_of(sensor_set, type.id, channels[i].mover, channels[i].sensor);
     std::size_t offset = 0;
