@@ -88,8 +88,8 @@ RC_GTEST_PROP(SpatialTerrain, AnyScene, ()) {
   RC_ASSERT(scan == by_rows);
 }
 
-/// Where the horizon lets beams skip the field up to its border and beyond, they meet nothing: next to the border, and in
-/// a narrow field.
+/// Where the horizon lets beams skip the field up to its border and beyond, they meet nothing: next to the border, and
+/// in a narrow field.
 TEST(SpatialTerrain, BeamsLeaveOverTheBorder) {
   const auto beams = rings(12, 60, -1.5, 1.5);
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {

@@ -183,7 +183,7 @@ TEST_F(LidarMeshes, ChangedShapesAreSolids) {
     scene.update_movers(world);
     scene.place(states);
     sensors::SceneList list;
-  const std::vector<scene::Instance>& out = list.instances;
+    const std::vector<scene::Instance>& out = list.instances;
     scene.list({.range = 20.0}, list);
     EXPECT_EQ(out.size(), 7u);
     return out.back().owner == base::kNoHit ? "solid" : "mesh";
