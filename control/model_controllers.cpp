@@ -15,6 +15,7 @@
 #include "base/suggest.h"
 #include "control/controllers.h"
 #include "control/own_controllers.h"
+#include "control/plugin_guard.h"
 #include "control/public_settings.h"
 #include "sensorfarm/model.h"
 #include "sensors/derived/public_types.h"
@@ -50,13 +51,7 @@ struct ModelControllers::Controlled {
       return base::InputError(fmt::format("{} failed at {:.3f} s: {}", name, time, base::one_line(why)));
     };
     const base::PluginCall under_way(name, time);
-    try {
-      return call();
-    } catch (const std::exception& error) {
-      throw fail(error.what());
-    } catch (...) {
-      throw fail("it threw something that is not a std::exception");
-    }
+    return guarded_call(call, fail);
   }
 };
 
@@ -159,18 +154,7 @@ std::unique_ptr<sensorfarm::ModelController> make_model_controller(const sensorf
     return base::InputError(
         fmt::format("controller '{}' refuses model '{}': {}", entry.name, site.name, base::one_line(why)));
   };
-  std::unique_ptr<sensorfarm::ModelController> made;
-  try {
-    made = entry.make(site, settings);
-  } catch (const base::InputError&) {
-    throw;  // a setting
-  } catch (const std::exception& error) {
-    throw refused(error.what());
-  } catch (...) {
-    throw refused("it threw something that is not a std::exception");
-  }
-  if (made == nullptr) throw refused("it returned none");
-  return made;
+  return made_by_plugin([&] { return entry.make(site, settings); }, refused);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "base/plugin_calls.h"
 #include "base/printable.h"
 #include "base/suggest.h"
+#include "control/plugin_guard.h"
 #include "control/public_settings.h"
 #include "sensors/derived/public_types.h"
 
@@ -46,19 +47,13 @@ std::string own_controller_name(const ControllerContext& context) {
 
 class OwnController final : public Controller {
   void translate(const ControllerInput& input);
-  [[noreturn]] void fail(const std::string& why) const {
-    throw base::InputError(fmt::format("{} failed at {:.3f} s: {}", name_, time_, base::one_line(why)));
+  [[nodiscard]] base::InputError failure(const std::string& why) const {
+    return base::InputError(fmt::format("{} failed at {:.3f} s: {}", name_, time_, base::one_line(why)));
   }
   template <class Call>
   auto guarded(Call&& call) const {
     const base::PluginCall under_way(name_, time_);
-    try {
-      return call();
-    } catch (const std::exception& error) {
-      fail(error.what());
-    } catch (...) {
-      fail("it threw something that is not a std::exception");
-    }
+    return guarded_call(call, [this](const char* why) { return failure(why); });
   }
 
  public:
@@ -145,7 +140,8 @@ base::Twist OwnController::step(const ControllerInput& input) {
                          readings_, input.contact, input.started, others_, lights_});
   });
   if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
-    fail(fmt::format("its twist is ({}, {}, {}); expected finite numbers", twist.forward, twist.left, twist.turn));
+    throw failure(
+        fmt::format("its twist is ({}, {}, {}); expected finite numbers", twist.forward, twist.left, twist.turn));
   return {twist.forward, twist.left, twist.turn};
 }
 
@@ -154,23 +150,13 @@ base::Twist OwnController::step(const ControllerInput& input) {
 std::unique_ptr<Controller> make_own_controller(const ControllerContext& context, Settings& settings) {
   const sensorfarm::ControllerEntry& entry = *context.type->entry;
   PublicSettings keys(settings);
-  const auto refuse = [&](const char* why) {
-    throw base::InputError(fmt::format("controller '{}' refuses robot '{}': {}", entry.name,
-                                       context.world.movers[context.mover].name, base::one_line(why)));
+  const auto refused = [&](const char* why) {
+    return base::InputError(fmt::format("controller '{}' refuses robot '{}': {}", entry.name,
+                                        context.world.movers[context.mover].name, base::one_line(why)));
   };
   const base::PluginCall under_way(own_controller_name(context));
-  std::unique_ptr<sensorfarm::Controller> inner;
-  try {
-    inner = entry.make(robot_of(context), keys);
-  } catch (const base::InputError&) {
-    throw;  // a setting
-  } catch (const std::exception& error) {
-    refuse(error.what());
-  } catch (...) {
-    refuse("it threw something that is not a std::exception");
-  }
-  if (inner == nullptr) refuse("it returned none");
-  return std::make_unique<OwnController>(context, std::move(inner));
+  return std::make_unique<OwnController>(context,
+                                         made_by_plugin([&] { return entry.make(robot_of(context), keys); }, refused));
 }
 
 }  // namespace sf::control

@@ -10,6 +10,7 @@
 #include "base/plugin_calls.h"
 #include "base/printable.h"
 #include "control/own_controllers.h"
+#include "control/plugin_guard.h"
 #include "control/public_settings.h"
 #include "sensors/derived/public_types.h"
 
@@ -34,26 +35,20 @@ class PublicGround final : public sensorfarm::Ground {
 };
 
 class OwnDynamics final : public robots::Dynamics {
-  [[noreturn]] void fail(const std::string& why) const {
-    throw base::InputError(fmt::format("{} failed: {}", name_, base::one_line(why)));
+  [[nodiscard]] base::InputError failure(const std::string& why) const {
+    return base::InputError(fmt::format("{} failed: {}", name_, base::one_line(why)));
   }
   template <class Call>
   auto guarded(Call&& call) const {
     const base::PluginCall under_way(name_);
-    try {
-      return call();
-    } catch (const std::exception& error) {
-      fail(error.what());
-    } catch (...) {
-      fail("it threw something that is not a std::exception");
-    }
+    return guarded_call(call, [this](const char* why) { return failure(why); });
   }
 
  public:
   OwnDynamics(std::string name, std::unique_ptr<sensorfarm::Dynamics> inner)
       : name_(std::move(name)), inner_(std::move(inner)), size_(guarded([&] { return inner_->state_size(); })) {
     if (size_ > kLargestState)
-      fail(fmt::format("its state has {} elements; expected at most {}", size_, kLargestState));
+      throw failure(fmt::format("its state has {} elements; expected at most {}", size_, kLargestState));
   }
   ~OwnDynamics() override {
     const base::PluginCall under_way(name_);
@@ -89,7 +84,7 @@ base::Report OwnDynamics::move(const base::Report& from, const base::Twist& comm
                           [](double number) { return std::isfinite(number); });
   const double farthest = std::max({std::abs(pose.x), std::abs(pose.y), std::abs(pose.z)});
   if (!finite || !(farthest <= kFarthest) || std::isnan(pose.x + pose.y + pose.z))
-    fail(fmt::format(
+    throw failure(fmt::format(
         "it moved to ({}, {}, {}) with yaw {}, roll {}, pitch {} and velocity ({}, {}, {}); expected finite "
         "numbers, within {:g} m",
         pose.x, pose.y, pose.z, pose.yaw, roll, pitch, v.forward, v.left, v.turn, kFarthest));
@@ -107,25 +102,19 @@ robots::DynamicsPointer make_dynamics(const world::World& world, std::uint32_t r
   for (const auto& [key, value] : mover.dynamics.settings) said.push_back({key, RawText{value}, ""});
   Settings settings(fmt::format("dynamics '{}'", entry.name), std::move(said));
   PublicSettings keys(settings);
-  const auto refuse = [&](const char* why) {
-    throw base::InputError(
+  const auto refused = [&](const char* why) {
+    return base::InputError(
         fmt::format("dynamics '{}' refuses robot '{}': {}", entry.name, mover.name, base::one_line(why)));
   };
   const auto copy = static_cast<std::uint32_t>(world.movers.size()) / world.copies;
   const base::PluginCall under_way(name);
-  std::unique_ptr<sensorfarm::Dynamics> inner;
-  try {
-    inner = entry.make({mover.name, row % copy, sensors::public_pose(mover.X_WM), mover.radius, mover.max_forward,
-                        mover.max_turn, mover.wheelbase, mover.track, world.file},
-                       keys);
-  } catch (const base::InputError&) {
-    throw;  // a setting
-  } catch (const std::exception& error) {
-    refuse(error.what());
-  } catch (...) {
-    refuse("it threw something that is not a std::exception");
-  }
-  if (inner == nullptr) refuse("it returned none");
+  auto inner = made_by_plugin(
+      [&] {
+        return entry.make({mover.name, row % copy, sensors::public_pose(mover.X_WM), mover.radius, mover.max_forward,
+                           mover.max_turn, mover.wheelbase, mover.track, world.file},
+                          keys);
+      },
+      refused);
   settings.require_all_read();
   return std::make_shared<OwnDynamics>(name, std::move(inner));
 }

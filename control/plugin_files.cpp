@@ -15,6 +15,7 @@
 #include "base/printable.h"
 #include "base/suggest.h"
 #include "control/own_controllers.h"
+#include "control/plugin_guard.h"
 #include "sensors/derived/own_derived.h"
 #include "sensors/own_sensors.h"
 
@@ -70,13 +71,10 @@ void fill_from_library(const std::string& file, sensorfarm::Plugin& plugin) {
                            fmt::format("was built for plug-in interface {}, and this program has {}: build it again "
                                        "with this version's headers",
                                        interface(), sensorfarm::kPluginInterface));
-  try {
-    fill(plugin);
-  } catch (const std::exception& error) {
-    throw base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: " + base::one_line(error.what()));
-  } catch (...) {
-    throw base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: it threw something that is not a std::exception");
-  }
+  guarded_call([&] { fill(plugin); },
+               [&](const char* why) {
+                 return base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: " + base::one_line(why));
+               });
 }
 
 const sensorfarm::DynamicsEntry* add_dynamics(sensorfarm::DynamicsEntry entry, const std::string& from) {
