@@ -15,12 +15,6 @@ struct Altimeter {
   double datum = 0.0;  ///< [m] height in the world that reads 0
 };
 
-std::vector<TriadInstrument> instruments_of(const std::vector<Altimeter>& settings) {
-  std::vector<TriadInstrument> instruments;
-  for (const Altimeter& s : settings) instruments.push_back(s.instrument);
-  return instruments;
-}
-
 class Altimeters : public TriadBackend {
  public:
   Altimeters(const SensorContext& context, const ParsedSensors& sensors)

@@ -189,7 +189,7 @@ ParsedSensors parse_cameras(const world::World& world) {
     row.elements = s.width * s.height;
     row.width = static_cast<std::uint32_t>(s.columns());
     row.across = s.width;
-    row.X_MS = {s.X_MS.p.x, s.X_MS.p.y, s.X_MS.p.z, base::atan2(s.X_MS.R[0].y, s.X_MS.R[0].x)};
+    row.X_MS = planar_mount(s.X_MS);
     row.limit = s.range_max;
     row.range_min = s.range_min;
     const double reach = s.range_max * stretch(s);

@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kMostField = 1.0;  // [T]
 
-std::vector<TriadInstrument> instruments_of(const std::vector<Compass>& settings) {
-  std::vector<TriadInstrument> instruments;
-  for (const Compass& s : settings) instruments.push_back(s.instrument);
-  return instruments;
-}
-
 class Compasses : public TriadBackend {
  public:
   Compasses(const SensorContext& context, const ParsedSensors& sensors)

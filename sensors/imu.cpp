@@ -4,11 +4,9 @@
 
 #include <algorithm>
 
-#include "base/suggest.h"
 #include "base/time.h"
 #include "sensors/host_backend.h"
 #include "sensors/inertial_motion.h"
-#include "sensors/lidar_beams.h"
 #include "sensors/mover_trail.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -60,7 +58,7 @@ ParsedSensors parse_imus(const world::World& world) {
       refuse(sensor, find(sensor, "rate") != nullptr ? "rate" : "update_interval",
              fmt::format("the rate is {:g} Hz; expected at least {:g}: each reading is a mean since the last one",
                          row.rate, kLeastImuRate));
-    row.X_MS = {imu.X_MS.p.x, imu.X_MS.p.y, imu.X_MS.p.z, base::atan2(imu.X_MS.R[0].y, imu.X_MS.R[0].x)};
+    row.X_MS = planar_mount(imu.X_MS);
     if (std::isfinite(imu.gyro.range)) row.limit = imu.gyro.range;
     row.sigma = imu.g_sensitivity > 0.0 ? HUGE_VAL : reading_deviation(imu.gyro, 1.0 / row.rate);
     row.reach = 0.0;
@@ -190,19 +188,6 @@ constexpr Preset kPresets[] = {
       .range = 10.0 * kG},
      kDegree / kHour / kG}};
 
-Preset preset_of(const world::Sensor& sensor) {
-  const world::Setting* setting = find(sensor, "preset");
-  if (setting == nullptr) return {};
-  std::vector<std::string_view> names;
-  for (const Preset& preset : kPresets) {
-    if (setting->text == preset.name) return preset;
-    names.push_back(preset.name);
-  }
-  refuse(sensor, "preset",
-         fmt::format("there is no preset \"{}\"; expected {}{}", setting->text, fmt::join(names, ", "),
-                     base::suggest(setting->text, names)));
-}
-
 constexpr std::string_view kKeys[] = {"preset",
                                       "pose6",
                                       "gravity",
@@ -233,7 +218,8 @@ constexpr PlainForm kForm{kImu, "imu", kNumbers};
 
 Imu read_imu(const world::Sensor& sensor) {
   constexpr double kMostRate = 1e3, kMostForce = 1e5;  // [rad/s], [m/s^2]
-  const Preset preset = preset_of(sensor);
+  const Preset* const known = preset_of(sensor, kPresets);
+  const Preset preset = known != nullptr ? *known : Preset{};
   Imu imu{.X_MS = spatial_mount(sensor), .gyro = preset.gyro, .accel = preset.accel};
   imu.gravity = length(sensor, "gravity", imu.gravity, 0.0, 1e3);
   imu.g_sensitivity = angle(sensor, "g_sensitivity", preset.g_sensitivity * kG, 0.0, kMostRate) / kG;

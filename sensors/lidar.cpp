@@ -159,7 +159,7 @@ ParsedSensors parse_lidars(const world::World& world) {
           sensor, "columns",
           fmt::format("the world's lidars have more than {} beams in all; give fewer 'columns', 'channels', or robots",
                       kMostBeamsInAll));
-    row.X_MS = {s.X_MS.p.x, s.X_MS.p.y, s.X_MS.p.z, base::atan2(s.X_MS.R[0].y, s.X_MS.R[0].x)};
+    row.X_MS = planar_mount(s.X_MS);
     row.limit = row.reach = echo.range_max;
     row.dependency_radius = s.beams->times.empty() ? echo.range_max : 0.0;  // else also on earlier poses
     row.sweep = 1e-9 * static_cast<double>(s.beams->duration());

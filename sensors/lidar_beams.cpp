@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/suggest.h"
 #include "base/time.h"
 #include "sensors/accuracy.h"
 #include "sensors/beam_table.h"
@@ -40,19 +39,6 @@ constexpr Preset kPresets[] = {{"VLP-16", 16, 1800, -15.0, 15.0, 360.0, 100.0, 0
                                {"OS1-64", 64, 1024, -22.5, 22.5, 360.0, 120.0, 0.03},
                                {"Mid-40", 1, 10000, 0.0, 0.0, 38.4, 260.0, 0.02}};
 constexpr const Preset& kRosette = kPresets[3];
-
-const Preset* preset_of(const world::Sensor& sensor) {
-  const world::Setting* setting = find(sensor, "preset");
-  if (setting == nullptr) return nullptr;
-  std::vector<std::string_view> names;
-  for (const Preset& preset : kPresets) {
-    if (setting->text == preset.name) return &preset;
-    names.push_back(preset.name);
-  }
-  refuse(sensor, "preset",
-         fmt::format("there is no preset \"{}\"; expected {}{}", setting->text, fmt::join(names, ", "),
-                     base::suggest(setting->text, names)));
-}
 
 std::optional<std::vector<double>> angles(const world::Sensor& sensor, std::string_view key, std::size_t least,
                                           const std::string& meaning, double most) {
@@ -88,7 +74,7 @@ std::vector<double> elevations_of(const world::Sensor& sensor, const Preset* pre
 }
 
 void read_rings(const world::Sensor& sensor, LidarLayout& layout) {
-  const Preset* const preset = preset_of(sensor);
+  const Preset* const preset = preset_of(sensor, kPresets);
   layout.rosette = preset == &kRosette;
   layout.elevations = elevations_of(sensor, preset);
   layout.columns = whole(sensor, "columns", preset != nullptr ? preset->columns : 1800, 1, kMostLidarBeams);
@@ -181,21 +167,6 @@ void read_echoes(const world::Sensor& sensor, EchoSettings& s) {
 
 std::int64_t LidarBeams::duration() const { return times.empty() ? 0 : base::nanoseconds(-std::ranges::min(times)); }
 
-base::RigidTransform spatial_mount(const world::Sensor& sensor) {
-  base::RigidTransform X_MB = base::transform_of(sensor.X_MS);
-  if (const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]")) {
-    const auto& v = *pose;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!(std::abs(v[k] * sensor.metres_per_unit) <= 1e6)) refuse(sensor, "pose6", "'pose6' is more than 1e6 m away");
-    const double unit = sensor.radians_per_unit;
-    for (std::size_t k = 3; k < 6; ++k)
-      if (!(std::abs(v[k] * unit) <= 1e6)) refuse(sensor, "pose6", "an angle of 'pose6' is more than 1e6 radians");
-    X_MB = base::compose(X_MB, {base::rotation_of(unit * v[3], unit * v[4], unit * v[5]),
-                                sensor.metres_per_unit * glm::dvec3{v[0], v[1], v[2]}});
-  }
-  return base::compose(X_MB, {glm::dmat3(1.0), {0.0, 0.0, 0.5 * sensor.height}});
-}
-
 std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor, std::uint32_t skip) {
   LidarLayout layout;
   if (const world::Setting* const file = find(sensor, "directions")) {
@@ -227,7 +198,7 @@ std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sen
 }
 
 LidarSettings LidarReader::read(const world::World& world, const world::Sensor& sensor) {
-  const Preset* const preset = preset_of(sensor);
+  const Preset* const preset = preset_of(sensor, kPresets);
   LidarSettings s;
   s.X_MS = spatial_mount(sensor);
   if (preset != nullptr) s.echo.range_max = preset->range, s.echo.sigma = preset->sigma;

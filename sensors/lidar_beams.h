@@ -54,10 +54,6 @@ inline constexpr std::string_view kLidarKeys[] = {
 
 struct BeamTable;
 
-/// Returns the mount of a spatial sensor in the mover's frame: `pose`, then `pose6`, at half of its model's height.
-/// @throws base::InputError for a pose beyond its bounds
-base::RigidTransform spatial_mount(const world::Sensor& sensor);
-
 /// Reads the settings of lidars. Lidars with equal beams share them.
 class LidarReader {
  public:

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/elementary.h"
 #include "base/error.h"
+#include "base/suggest.h"
 
 namespace sf::sensors {
 
@@ -103,6 +105,35 @@ void refuse_beyond(const world::Sensor& sensor, std::string_view prefix, std::st
            fmt::format("'{}' is beyond '{} {}' (numbered from 0); raise '{}' (at most {}) or leave it out", setting.key,
                        counter, count, counter, most));
   }
+}
+
+std::optional<std::size_t> preset_of(const world::Sensor& sensor, std::span<const std::string_view> names) {
+  const world::Setting* const setting = find(sensor, "preset");
+  if (setting == nullptr) return std::nullopt;
+  const auto known = std::ranges::find(names, setting->text);
+  if (known != names.end()) return static_cast<std::size_t>(known - names.begin());
+  refuse(sensor, "preset",
+         fmt::format("there is no preset \"{}\"; expected {}{}", setting->text, fmt::join(names, ", "),
+                     base::suggest(setting->text, names)));
+}
+
+base::RigidTransform spatial_mount(const world::Sensor& sensor) {
+  base::RigidTransform X_MB = base::transform_of(sensor.X_MS);
+  if (const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]")) {
+    const auto& v = *pose;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!(std::abs(v[k] * sensor.metres_per_unit) <= 1e6)) refuse(sensor, "pose6", "'pose6' is more than 1e6 m away");
+    const double unit = sensor.radians_per_unit;
+    for (std::size_t k = 3; k < 6; ++k)
+      if (!(std::abs(v[k] * unit) <= 1e6)) refuse(sensor, "pose6", "an angle of 'pose6' is more than 1e6 radians");
+    X_MB = base::compose(X_MB, {base::rotation_of(unit * v[3], unit * v[4], unit * v[5]),
+                                sensor.metres_per_unit * glm::dvec3{v[0], v[1], v[2]}});
+  }
+  return base::compose(X_MB, {glm::dmat3(1.0), {0.0, 0.0, 0.5 * sensor.height}});
+}
+
+Pose planar_mount(const base::RigidTransform& X_MS) {
+  return {X_MS.p.x, X_MS.p.y, X_MS.p.z, base::atan2(X_MS.R[0].y, X_MS.R[0].x)};
 }
 
 double rate_of(const world::Sensor& sensor, double fallback) {

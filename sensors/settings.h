@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,22 @@ std::size_t choice(const world::Sensor& sensor, std::string_view key, std::size_
 /// Reads the numbers of a tuple as written, at least `least` of them. @param meaning such as "[min max]", for the error
 std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::string_view key, std::size_t least,
                                          const std::string& meaning);
+
+/// Returns the index of the name that `preset` states; nullopt without that setting.
+std::optional<std::size_t> preset_of(const world::Sensor& sensor, std::span<const std::string_view> names);
+/// Returns the one of `presets`, by its `name`, that `preset` states; null without that setting.
+template <class Preset, std::size_t count>
+const Preset* preset_of(const world::Sensor& sensor, const Preset (&presets)[count]) {
+  std::vector<std::string_view> names;
+  for (const Preset& preset : presets) names.push_back(preset.name);
+  const auto row = preset_of(sensor, std::span<const std::string_view>(names));
+  return row ? &presets[*row] : nullptr;
+}
+
+/// Returns the mount of a spatial sensor in the mover's frame: `pose`, then `pose6`, at half of its model's height.
+base::RigidTransform spatial_mount(const world::Sensor& sensor);
+/// Returns a mount without its roll and pitch.
+Pose planar_mount(const base::RigidTransform& X_MS);
 
 /// Reads `rate` or `update_interval` [Hz].
 double rate_of(const world::Sensor& sensor, double fallback);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "sensors/lidar_beams.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -32,8 +31,7 @@ TriadInstrument read_instrument(const world::Sensor& sensor, SettingReader quant
   TriadInstrument instrument{.X_MS = spatial_mount(sensor), .errors = {}};
   read_errors(sensor, "", quantity, most, instrument.errors);
   instrument.errors.noise /= std::sqrt(row.rate);
-  const base::RigidTransform& X = instrument.X_MS;
-  row.X_MS = {X.p.x, X.p.y, X.p.z, base::atan2(X.R[0].y, X.R[0].x)};
+  row.X_MS = planar_mount(instrument.X_MS);
   if (std::isfinite(instrument.errors.range)) row.limit = instrument.errors.range;
   row.sigma = reading_deviation(instrument.errors, 1.0 / row.rate);
   row.reach = 0.0;

@@ -15,17 +15,25 @@ struct TriadInstrument {
   TriadErrors errors;
 };
 
-/// Reads the errors whose keys begin with `prefix`; absent ones keep their values.
-/// @param quantity reads a setting in the unit of the numbers: `angle`, `length` or `number`  @param most in this unit
-/// @throws base::InputError with file and line
+/// Reads a setting in the unit of an instrument's numbers: `angle`, `length` or `number`.
 using SettingReader = double (*)(const world::Sensor& sensor, std::string_view key, double fallback, double least,
                                  double most);
+/// Reads the errors whose keys begin with `prefix`; absent ones keep their values. @param most in their unit
+/// @throws base::InputError with file and line
 void read_errors(const world::Sensor& sensor, const std::string& prefix, SettingReader quantity, double most,
                  TriadErrors& errors);
 
 /// Reads an instrument whose `noise` is the deviation of a reading, and sets the mount, the noise and the limit of its
 /// row. Its readings depend on more than poses nearby.
 TriadInstrument read_instrument(const world::Sensor& sensor, SettingReader quantity, double most, SensorSpec& row);
+
+/// Returns the `instrument` of each row's settings.
+template <class Settings>
+std::vector<TriadInstrument> instruments_of(const std::vector<Settings>& settings) {
+  std::vector<TriadInstrument> instruments;
+  for (const Settings& each : settings) instruments.push_back(each.instrument);
+  return instruments;
+}
 
 /// Not thread-safe.
 class TriadBackend : public HostBackend {
