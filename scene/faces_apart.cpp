@@ -10,6 +10,7 @@ namespace sf::scene {
 namespace {
 
 constexpr double kSeparation = 1e-11;  // of the faces' size
+constexpr std::uint32_t kNoCorner = 4;     // no corner
 
 glm::dvec3 normal_of(const SweptFace& f) { return glm::cross(f.at[1] - f.at[0], f.at[2] - f.at[0]); }
 
@@ -30,17 +31,18 @@ bool any_axis(const SweptFace& a, const SweptFace& b, const Test& test) {
   return false;
 }
 
-/// Corners of a face other than a shared one, relative to that and along an axis.
+/// Corners of a face along an axis, relative to a point.
 struct Heights {
   double low = HUGE_VAL, high = -HUGE_VAL;
-  std::uint32_t level = 0;  ///< corners at the height of the shared one
+  std::uint32_t level = 0;  ///< corners at the height of the point
   glm::dvec3 beside{};      ///< one of them
 
-  Heights(const SweptFace& f, std::uint32_t shared, glm::dvec3 axis, double sign, double room) {
+  /// @param skipped corner that does not count; kNoCorner: all do
+  Heights(const SweptFace& f, glm::dvec3 from, std::uint32_t skipped, glm::dvec3 axis, double room) {
     for (std::uint32_t k = 0; k < f.corners; ++k) {
-      if (k == shared) continue;
-      const glm::dvec3 p = f.at[k] - f.at[shared];
-      const double height = sign * glm::dot(axis, p);
+      if (k == skipped) continue;
+      const glm::dvec3 p = f.at[k] - from;
+      const double height = glm::dot(axis, p);
       low = std::min(low, height), high = std::max(high, height);
       if (std::abs(height) <= room) ++level, beside = p;
     }
@@ -58,7 +60,7 @@ bool are_apart_at(const SweptFace& a, std::uint32_t i, const SweptFace& b, std::
     const double room = kSeparation * size * glm::length(axis);
     if (!(room > 0.0)) return false;
     for (const double sign : {1.0, -1.0}) {
-      const Heights below(a, i, axis, sign, room), above(b, k, axis, sign, room);
+      const Heights below(a, a.at[i], i, sign * axis, room), above(b, b.at[k], k, sign * axis, room);
       if (below.high > room || above.low < -room) continue;
       if (below.level == 0 || above.level == 0) return true;
       if (below.level == 1 && above.level == 1 && !same_direction(below.beside, above.beside)) return true;
@@ -111,16 +113,8 @@ bool are_apart(const SweptFace& a, const SweptFace& b) {
   return any_axis(a, b, [&](glm::dvec3 axis) {
     const double room = kSeparation * size * glm::length(axis);
     if (!(room > 0.0)) return false;
-    double a_low = HUGE_VAL, a_high = -HUGE_VAL, b_low = HUGE_VAL, b_high = -HUGE_VAL;
-    for (std::uint32_t i = 0; i < a.corners; ++i) {
-      const double height = glm::dot(axis, a.at[i] - a.at[0]);
-      a_low = std::min(a_low, height), a_high = std::max(a_high, height);
-    }
-    for (std::uint32_t k = 0; k < b.corners; ++k) {
-      const double height = glm::dot(axis, b.at[k] - a.at[0]);
-      b_low = std::min(b_low, height), b_high = std::max(b_high, height);
-    }
-    return a_high + room < b_low || b_high + room < a_low;
+    const Heights of_a(a, a.at[0], kNoCorner, axis, room), of_b(b, a.at[0], kNoCorner, axis, room);
+    return of_a.high + room < of_b.low || of_b.high + room < of_a.low;
   });
 }
 

@@ -47,7 +47,7 @@ shared float child_depth[16];
 #include "shaders/lib/scene_leaf.glsl"
 #include "shaders/lib/scene_walk.glsl"
 
-double component(dvec3 n, dvec3 v) {
+double dot64(dvec3 n, dvec3 v) {
   precise double sum = n.x * v.x + n.y * v.y + n.z * v.z;
   return sum;
 }
@@ -64,13 +64,13 @@ uvec4 evaluate(uint face, uint instance, SceneScan scan, dvec3 d) {
     const SceneInstance mesh = load_SceneInstance(instances, int(instance));
     const ScenePlane plane = load_ScenePlane(planes, int(mesh.first_face + face));
     const dvec3 n = dvec3(plane.normal_x, plane.normal_y, plane.normal_z);
-    normal = dvec3(component(dvec3(mesh.ax, mesh.ay, mesh.az), n), component(dvec3(mesh.bx, mesh.by, mesh.bz), n),
-                   component(dvec3(mesh.cx, mesh.cy, mesh.cz), n));
+    normal = dvec3(dot64(dvec3(mesh.ax, mesh.ay, mesh.az), n), dot64(dvec3(mesh.bx, mesh.by, mesh.bz), n),
+                   dot64(dvec3(mesh.cx, mesh.cy, mesh.cz), n));
     precise dvec3 from = dvec3(plane.x, plane.y, plane.z) - dvec3(mesh.px, mesh.py, mesh.pz);
-    height = component(n, from), extra = 0.0LF, least_sine = mesh.least_sine;
+    height = dot64(n, from), extra = 0.0LF, least_sine = mesh.least_sine;
     number = mesh.face + face;
   }
-  const double sine = component(normal, d);
+  const double sine = dot64(normal, d);
   precise double range = height / (sine + extra);
   const double nearer = scan.range_max < range ? scan.range_max : range;
   return uvec4(unpackDouble2x32(nearer), number, abs(sine) < least_sine ? SF_BEAM_GRAZING : 0u);
