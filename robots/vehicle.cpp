@@ -15,7 +15,7 @@ constexpr double kResponse = 0.25;   // [s] in which the drive-line corrects spe
 
 }  // namespace
 
-/// What `Dynamics::move` keeps besides the pose.
+/// Layout of `state` in Dynamics::move.
 struct Vehicle::State {
   glm::dvec3 v, w;
   std::array<double, kWheels> spin{};

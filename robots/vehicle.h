@@ -5,10 +5,9 @@
 // - Suspension: a wheel has no mass of its own (but a spin), moves along the body's z axis and meets the ground below
 //   in one point. Springs are linear, with a bump stop ten times as stiff; there are no anti-roll bars. The ground
 //   pushes along its normal and never pulls. The edge of a road is a step, which loads the spring at once.
-// - Tyres: Burckhardt's friction by combined slip, as in robots/car_dynamics.h. Slip relates to at least
-// kLeastSlipSpeed,
-//   so that friction becomes viscous near rest; below kHoldSpeed a spring between tyre and ground is added, which holds
-//   a braked car on a slope. Sum of both: at most the friction at its peak.
+// - Tyres: Burckhardt's friction by combined slip, as in robots/car_dynamics.h. Slip is relative to a speed of at least
+//   kLeastSlipSpeed, so that friction becomes viscous near rest. Below kHoldSpeed, a spring between tyre and ground
+//   holds a braked car on a slope. Both together are limited to the peak friction.
 // - Drive-line: open differentials, a limit of torque and one of power; brakes with a fixed distribution. Steering
 //   follows Ackermann with a lag and a largest rate. A skid drive controls the speed of each wheel instead.
 // - Upside down, the corners of the body's box are springs with friction.
@@ -37,7 +36,7 @@ inline constexpr double kBumpStiffness = 10.0;  ///< of bump stops, in those of 
 inline constexpr double kLeastSlant = 0.3;      ///< [-] cosine between strut and normal of a wheel that bears a load
 inline constexpr double kLongestVehicleTick = 1.0;  ///< [s]
 
-/// What the planar model lacks. All are > 0 unless a range is stated.
+/// Parameters: those of the planar model, and of vertical motion. All are > 0 unless a range is stated.
 struct VehicleModel {
   CarModel car;                    ///< `steer_lag` and `steer_rate` of its steering, no `torque_lag`, no `front_roll`
   double roll_inertia = 244.05;    ///< [kg m^2] about x
@@ -63,7 +62,7 @@ struct VehicleBody {
   double steer = 0.0;                      ///< [rad] of the middle of the front axle
 };
 
-/// What acts on the wheels in a step.
+/// Inputs of the wheels in one step.
 struct VehicleControls {
   double drive = 0.0;                  ///< [N m] of the engine at all driven wheels together
   double brake = 0.0;                  ///< [N m] >= 0 at all wheels together

@@ -80,7 +80,7 @@ struct ScanOutput {
   bool single = false;  ///< ranges of meshes and the floor in 32 bits where these are within kSingleRangeError
 };
 
-/// What a device found along a beam (scene/device/device_rasterizer.h).
+/// Result of one beam that a device has cast (scene/device/device_rasterizer.h).
 struct CastBeam {
   static constexpr std::uint32_t kUncertain = 1, kGrazing = 2;
   double range = 0.0;       ///< [m] as ScanOutput::ranges

@@ -119,7 +119,7 @@ class SpatialScans : public HostBackend {
   std::vector<std::uint32_t> part_materials_;   ///< empty unless a sensor uses them
   std::vector<std::size_t> first_part_;         ///< per row, plus one
   std::vector<scene::Rasterizer> rasterizers_;  ///< per thread
-  /// What a due sample sees.
+  /// Surroundings of the sensor of a due sample.
   struct Surroundings {
     base::RigidTransform X_WS;  ///< the sensor at the time of the reading
     SceneList list;

@@ -15,7 +15,7 @@
 
 namespace sf::sensors {
 
-/// What sensors use beyond the surfaces.
+/// Optional parts of the scene.
 struct SceneExtras {
   bool coarse = false;     ///< coarser meshes, for `list`
   bool materials = false;  ///< faces have their materials

@@ -1,5 +1,6 @@
 #pragma once
-// `plot --allan`: Allan deviations of recorded gyros and inertial measurement units beside the stated ones.
+// `plot --allan`: draws the Allan deviations of recorded gyros and inertial measurement units, and those that follow
+// from their settings.
 
 #include "record/recording.h"
 #include "viz/series_figure.h"

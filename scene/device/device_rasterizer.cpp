@@ -17,7 +17,7 @@ namespace {
 using gpu::Role;
 using gpu::Texel;
 
-// What the kernel reads as words.
+// The kernel reads these structs as words.
 static_assert(SF_TILE_BEAMS == kTileBeams && kTileVectors == 32 && kWidth == 16);
 static_assert(sizeof(BeamTile) == 4 * SF_TILE_WORDS && offsetof(BeamTile, x) == 4 * SF_TILE_X);
 static_assert(offsetof(BeamTile, dx) == 4 * SF_TILE_DX && offsetof(BeamTile, vectors) == 4 * SF_TILE_VECTORS);
