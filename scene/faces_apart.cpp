@@ -9,8 +9,8 @@ namespace sf::scene {
 
 namespace {
 
-constexpr double kSeparation = 1e-11;  // of the faces' size
-constexpr std::uint32_t kNoCorner = 4;     // no corner
+constexpr double kSeparation = 1e-11;   // of the faces' size
+constexpr std::uint32_t kNoCorner = 4;  // no corner
 
 glm::dvec3 normal_of(const SweptFace& f) { return glm::cross(f.at[1] - f.at[0], f.at[2] - f.at[0]); }
 
