@@ -12,6 +12,7 @@
 #include "apps/reports/text.h"
 #include "base/box.h"
 #include "base/error.h"
+#include "robots/fleet.h"
 #include "sensors/camera.h"
 #include "sensors/laser_noise.h"
 #include "viz/png.h"
@@ -129,6 +130,12 @@ int write_image(const world::World& world, const sensors::SensorSet& sensor_set,
   return 0;
 }
 
+/// A fleet reads the settings of its cars.
+void check_dynamics(const world::World& world) {
+  const auto is_car = [](const world::Mover& mover) { return mover.dynamics.name == "car"; };
+  if (std::ranges::any_of(world.movers, is_car)) robots::Fleet{world};
+}
+
 }  // namespace
 
 int devices(const DevicesOptions& options) {
@@ -144,6 +151,7 @@ int check(const CheckOptions& options) {
   if (const auto code = check_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   const sensors::SensorSet sensor_set(world);
+  check_dynamics(world);
   warn_of_many_times(sensor_set);
   if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
   print(options.json ? world_report_json(world, sensor_set) : world_report_text(world, sensor_set));

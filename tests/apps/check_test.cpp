@@ -117,6 +117,17 @@ TEST(Check, WarningsNameFileAndLineAndSuggest) {
   EXPECT_NE(text.out.find(world + ":11: "), std::string::npos) << text.out;
 }
 
+/// Cars read their settings when a fleet is made, which `check` does.
+TEST(Check, RefusesSettingsOfCars) {
+  const Folder folder;
+  const std::string world =
+      folder.write("car.world", "position( name \"c\" size [1 1 1] drive \"car\"\n dynamics \"car mass=-3\" )\n");
+  const Outcome outcome = run_program({"check", world});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find(world + ":2: 'dynamics': 'mass' is '-3'; expected a number"), std::string::npos)
+      << outcome.err;
+}
+
 TEST(Check, NamesWithInvalidUtf8GiveValidJson) {
   const Folder folder;
   const std::string world = folder.write("latin.world",
