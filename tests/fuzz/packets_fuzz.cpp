@@ -37,6 +37,13 @@ void examine(const netio::Packet& packet) {
   }
 }
 
+/// Returns the bytes that the long form of a packet has in addition, and that encoding leaves out if they say what the
+/// short form says: no types above 31, no tilt.
+std::size_t bytes_of_default(netio::Type type) {
+  if (type == netio::Type::subscribe) return netio::kWideSubscribeBytes - netio::kSubscribeBytes;
+  return type == netio::Type::v2v ? netio::kTiltBytes : 0;
+}
+
 /// Accepted packets keep their meaning when encoded and decoded again.
 void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes) {
   base::Bytes again;
@@ -45,13 +52,14 @@ void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes
         if constexpr (!std::is_same_v<Body, netio::Reading>) netio::encode(packet.header, body, again);
       },
       packet.body);
-  const std::size_t trailer = bytes[60] | std::size_t{bytes[61]} << 8;
-  if (packet.header.type == netio::Type::subscribe && again.size() + 4 + trailer == bytes.size())
-    again.resize(again.size() + 4);  // the long form without types above 31: its last four bytes are 0
-  require(trailer <= netio::kMaxTrailer && again.size() + trailer == bytes.size());
-  const bool v2i = packet.header.type == netio::Type::v2i;
+  const std::size_t trailer = bytes[60] | std::size_t{bytes[61]} << 8, written = again.size();
+  require(trailer <= netio::kMaxTrailer);
+  if (bytes.size() - trailer == written + bytes_of_default(packet.header.type)) again.resize(bytes.size() - trailer);
+  require(again.size() + trailer == bytes.size());
+  const bool v2i = packet.header.type == netio::Type::v2i, v2v = packet.header.type == netio::Type::v2v;
   const auto reserved = [&](std::size_t i) {
-    return i == 10 || i == 11 || (i >= 32 && i < netio::kHeaderBytes) || (v2i && i >= 68 && i < 72);
+    return i == 10 || i == 11 || (i >= 32 && i < netio::kHeaderBytes) || (v2i && i >= 68 && i < 72) ||
+           (v2v && i >= written);  // 0 or -0
   };
   for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || reserved(i));
 }
