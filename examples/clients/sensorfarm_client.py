@@ -86,6 +86,7 @@ SENSORS = {
                             ("heading_rad", 1e-6)]),
     48: ("altimeter", 32000, [("height_m", 1e-3)]),
     49: ("inclinometer", 13000, [("roll_rad", 1e-6), ("pitch_rad", 1e-6), ("saturated", 1)]),
+    50: ("radar", 17000, [("range_m", 1e-3), ("bearing_rad", 1e-6), ("closing_m_s", 1e-4), ("elevation_rad", 1e-6)]),
     46: ("imu", 12000, [("rate_x_rad_s", None), ("rate_y_rad_s", None), ("rate_z_rad_s", None), ("force_x_m_s2", None),
                         ("force_y_m_s2", None), ("force_z_m_s2", None), ("saturated", 1)]),
     44: ("lidar", 14000, [("range_m", 1e-3)]),

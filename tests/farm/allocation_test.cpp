@@ -79,7 +79,7 @@ TEST(Allocation, NoneWithHostSensors) {
   for (int i = 0; i < 12; ++i) {
     const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, trial::fitted("bumper"));
     auto& sensors = world.movers[m].sensors;
-    for (const char* type : {"cliff", "irreceiver", "lightsensor", "battery", "fiducial"})
+    for (const char* type : {"cliff", "irreceiver", "lightsensor", "battery", "fiducial", "radar"})
       sensors.push_back(trial::fitted(type));
     world::Setting input = scenes::setting("input[0]", {0.01});
     input.text = "light";

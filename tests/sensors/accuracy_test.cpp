@@ -332,11 +332,11 @@ TEST(Accuracy, TypesWithoutABoundStateNone) {
   scenes::add_room(world, {0.0, 0.0}, 4.0);
   const std::uint32_t m = scenes::add_robot(world, {}, scenes::laser(3));
   for (const char* type : {"sonar", "infrared", "bumper", "cliff", "encoder", "gyro", "gps", "irreceiver",
-                           "lightsensor", "battery", "fiducial"})
+                           "lightsensor", "battery", "fiducial", "radar"})
     world.movers[m].sensors.push_back({type, type, {}, 0.1, 1.0, 1.0, {}, 0, ""});
   world::update_extent_and_hash(world);
   const Glance glance(world);
-  EXPECT_EQ(glance.readings.size(), 12u);
+  EXPECT_EQ(glance.readings.size(), 13u);
   for (const base::ReadingBlock& r : glance.readings)
     EXPECT_EQ(std::isinf(r.bound), r.type != sensors::kLaser) << static_cast<int>(r.type);
 }

@@ -160,6 +160,7 @@ TEST(PlainPackets, PayloadsMatchTheDocumentation) {
              {"compass", 47, 1, {5e-5, 0.25, -0.5, 0.125, 1.5}},
              {"altimeter", 48, 1, {12.5}},
              {"inclinometer", 49, 1, {0.25, -0.5, 2}},
+             {"radar", 50, 2, {12.5, 0.25, 3.5, -0.125, kNaN, kNaN, kNaN, kNaN}},
              {"imu", 46, 1, {0.5, -0.25, 0.125, 1.5, -0.5, 9.75, 36}},
              {"aggregate", 43, 1, {21.5, 1, 0.25, 0, 0.0625}},
              {"loop", 36, 1, {12, 0.25, 0.5, 1}},
@@ -245,7 +246,7 @@ TEST(PacketsPage, SensorTypesMatchTheProgram) {
     }
   }
   EXPECT_EQ(ports, built_in_sensor_types().size());
-  EXPECT_EQ(rows, 28u) << "plain readings";
+  EXPECT_EQ(rows, 29u) << "plain readings";
 }
 
 }  // namespace
