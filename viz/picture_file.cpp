@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/png.h"
 #include "viz/drawing_backend.h"
 #include "viz/png.h"
 #include "viz/svg.h"
@@ -63,7 +64,7 @@ std::string picture_bytes(const Drawing& drawing, const std::string& path, const
                                        "fewer dots per inch or a smaller size",
                                        drawing.width * scale, drawing.height * scale, kLargestPicture));
   const PixelImage image = paint_pixels(drawing, scale);
-  return encode_png(image.rgb, image.width, image.height, PngContent::figure, page.dpi);
+  return base::encode_png(image.rgb, image.width, image.height, base::PngContent::figure, page.dpi);
 }
 
 void save_picture(const Drawing& drawing, const std::string& path, const Page& page) {

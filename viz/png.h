@@ -1,24 +1,14 @@
 #pragma once
-// PNG files of figures, and writing of picture files in general.
+// Picture files.
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "base/png.h"
+
 namespace sf::viz {
-
-/// Figures have uniform areas, for which a search for long matches pays off; photographs do not.
-enum class PngContent { figure, photograph };
-
-/// Returns the bytes of a PNG file.
-/// @param rgb 3 bytes per pixel, row by row, the top row first
-/// @param dpi pixels per inch on paper, stored in the file; 0: not stored
-std::string encode_png(std::span<const std::uint8_t> rgb, int width, int height,
-                       PngContent content = PngContent::figure, double dpi = 0.0);
-
-/// Returns the bytes of a PNG file with 16 bits per pixel. @param grey row by row, the top row first
-std::string encode_grey_png(std::span<const std::uint16_t> grey, int width, int height);
 
 /// Writes the bytes of a picture. @throws base::InputError if the file cannot be written
 void write_picture(const std::string& path, std::string_view bytes);
@@ -27,8 +17,9 @@ void write_picture(const std::string& path, std::string_view bytes);
 /// @throws base::InputError if the file cannot be written
 void replace_picture(const std::string& path, std::string_view bytes);
 
+/// @param rgb 3 bytes per pixel, row by row, the top row first
 /// @throws base::InputError if the file cannot be written
 void write_png(const std::string& path, std::span<const std::uint8_t> rgb, int width, int height,
-               PngContent content = PngContent::figure);
+               base::PngContent content = base::PngContent::figure);
 
 }  // namespace sf::viz

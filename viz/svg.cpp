@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "viz/png.h"
+#include "base/png.h"
 
 namespace sf::viz {
 namespace {
@@ -98,7 +98,7 @@ struct SvgWriter {
         "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
         "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
         number(cells.from.x), number(cells.from.y), number(cells.to.x - cells.from.x),
-        number(cells.to.y - cells.from.y), base64(encode_png(rgb, cells.columns, cells.rows)));
+        number(cells.to.y - cells.from.y), base64(base::encode_png(rgb, cells.columns, cells.rows)));
   }
 };
 

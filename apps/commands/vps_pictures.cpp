@@ -121,7 +121,7 @@ vision::Image VpsPictures::drawn(std::size_t i, const vision::Positioning& posit
 void VpsPictures::write(std::size_t i, const vision::Image& picture, std::uint64_t number) {
   if (!videos_.empty()) return videos_[i]->write(picture);
   viz::write_png(fmt::format("{}/{}-{:06}.png", options_.overlay, testbed_.cameras[i].camera.name, number),
-                 picture.pixels, picture.width, picture.height, viz::PngContent::photograph);
+                 picture.pixels, picture.width, picture.height, base::PngContent::photograph);
 }
 
 }  // namespace sf::apps

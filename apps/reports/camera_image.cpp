@@ -4,8 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "viz/png.h"
-
+#include "base/png.h"
 namespace sf::apps {
 
 namespace {
@@ -22,15 +21,7 @@ std::string normals_png(const base::ReadingBlock& reading, int width, int height
       rgb.push_back(reading.hits[i] == base::kNoHit
                         ? std::uint8_t{0}
                         : static_cast<std::uint8_t>(std::lround(127.5 * (1.0 + reading.values[5 * i + axis]))));
-  return viz::encode_png(rgb, width, height);
-}
-
-std::string colour_png(const base::ReadingBlock& reading, std::size_t step, int width, int height) {
-  std::vector<std::uint8_t> rgb;
-  for (std::size_t i = 1; i < reading.values.size(); i += step)
-    for (const int shift : {16, 8, 0})
-      rgb.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(reading.values[i]) >> shift));
-  return viz::encode_png(rgb, width, height);
+  return base::encode_png(rgb, width, height);
 }
 
 }  // namespace
@@ -39,7 +30,7 @@ std::string camera_png(const sensors::CameraSettings& camera, const base::Readin
   const auto width = static_cast<int>(camera.width), height = static_cast<int>(camera.height);
   if (kind == ImageKind::normals) return normals_png(reading, width, height);
   const std::size_t step = camera.columns();
-  if (kind == ImageKind::colour) return colour_png(reading, step, width, height);
+  if (kind == ImageKind::colour) return base::encode_png(base::color_bytes(reading.values, step), width, height);
   std::vector<std::uint16_t> grey;
   for (std::size_t i = 0; i < reading.hits.size(); ++i) {
     const double millimetres = std::clamp(std::round(1e3 * reading.values[i * step]), 1.0, 65535.0);
@@ -47,7 +38,7 @@ std::string camera_png(const sensors::CameraSettings& camera, const base::Readin
     grey.push_back(kind == ImageKind::labels ? label_of(reading.hits[i])
                                              : static_cast<std::uint16_t>(seen ? millimetres : 0.0));
   }
-  return viz::encode_grey_png(grey, width, height);
+  return base::encode_png(grey, width, height);
 }
 
 }  // namespace sf::apps
