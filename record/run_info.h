@@ -47,6 +47,8 @@ struct StandardTopic {
     points,
     depth_image,
     color_image,
+    depth_png,
+    color_png,
     camera_info
   };
   Message message = Message::range;
@@ -83,6 +85,9 @@ struct StandardTopic {
   /// Standard deviation of a turn rate [rad/s], of a field [T], or of a fix [m] at an HDOP of 1; 0: not stated.
   double sigma = 0.0;
 };
+
+/// Which messages have the images of cameras.
+enum class ImageMessages : std::uint8_t { png, raw, both };
 
 struct SensorInfo {
   std::uint8_t type = 0;  ///< id of a row of `RunInfo::sensor_types`

@@ -1,10 +1,13 @@
 #include "record/standard_readings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/echo.h"
 #include "base/elementary.h"
+#include "base/png.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 #include "record/schemas.h"
@@ -183,10 +186,35 @@ void put_depth_image(CdrWriter& cdr, const StandardTopic& topic, std::span<const
 
 void put_color_image(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
   put_image_header(cdr, topic, "rgb8", 3);
-  for (std::size_t i = 1; i < values.size(); i += topic.width) {
-    const auto rgb = static_cast<std::uint32_t>(values[i]);
-    for (const int shift : {16, 8, 0}) cdr.put_packed(static_cast<std::uint8_t>(rgb >> shift));
+  for (const std::uint8_t part : base::color_bytes(values, topic.width)) cdr.put_packed(part);
+}
+
+void put_file(CdrWriter& cdr, std::string_view header, std::string_view file) {
+  cdr.put_count(header.size() + file.size());
+  for (const std::string_view part : {header, file})
+    for (const char byte : part) cdr.put_packed(byte);
+}
+
+/// Millimetres, since inverse depths, which the plug-in makes of 32FC1, would be exact to 1 % only.
+void put_depth_png(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  std::vector<std::uint16_t> depths;
+  for (std::size_t i = 0; i < values.size(); i += topic.width) {
+    const bool seen = base::echo_of(values[i], {topic.range_min, topic.range_max}) == base::Echo::valid;
+    const double millimetres = seen ? std::round(1e3 * values[i]) : 0.0;
+    depths.push_back(static_cast<std::uint16_t>(millimetres > 65535.0 ? 0.0 : millimetres));
   }
+  cdr.put(std::string_view("16UC1; compressedDepth png"));
+  put_file(cdr, std::string(12, '\0'),  // of the plug-in, with parameters of inverse depths
+           base::encode_png(depths, static_cast<int>(topic.columns), static_cast<int>(topic.rows),
+                            base::PngContent::photograph));
+}
+
+/// The plug-in's readers decode files as blue, green and red, and make rgb8 of them.
+void put_color_png(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  cdr.put(std::string_view("rgb8; png compressed bgr8"));
+  put_file(cdr, "",
+           base::encode_png(base::color_bytes(values, topic.width), static_cast<int>(topic.columns),
+                            static_cast<int>(topic.rows), base::PngContent::photograph));
 }
 
 void put_camera_info(CdrWriter& cdr, const StandardTopic& topic) {
@@ -226,6 +254,9 @@ std::string_view type_of(Message message) {
     case Message::depth_image:
     case Message::color_image:
       return kImage;
+    case Message::depth_png:
+    case Message::color_png:
+      return kCompressedImage;
     case Message::camera_info:
       return kCameraInfo;
   }
@@ -252,6 +283,10 @@ void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<co
       return put_depth_image(cdr, topic, values);
     case Message::color_image:
       return put_color_image(cdr, topic, values);
+    case Message::depth_png:
+      return put_depth_png(cdr, topic, values);
+    case Message::color_png:
+      return put_color_png(cdr, topic, values);
     case Message::camera_info:
       return put_camera_info(cdr, topic);
   }

@@ -77,6 +77,10 @@ const char* word_of(StandardTopic::Message message) {
       return "depth/image_raw";
     case StandardTopic::Message::color_image:
       return "image_raw";
+    case StandardTopic::Message::depth_png:
+      return "depth/image_raw/compressedDepth";
+    case StandardTopic::Message::color_png:
+      return "image_raw/compressed";
     case StandardTopic::Message::camera_info:
       return "camera_info";
   }

@@ -101,7 +101,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.shape = shape_of(world);
   for (const world::Light& light : world.lights) info.lights.push_back(light.name);
   add_type(sensor_set, info);
-  add_standard_topics(sensor_set, info);
+  add_standard_topics(sensor_set, settings.images, info);
   return info;
 }
 

@@ -21,6 +21,7 @@ struct RunSettings {
   std::vector<record::JoinedMover> joined = {};  ///< movers of the world that were not in the recording's world
   bool too_near_min = false;  ///< surfaces nearer than a sensor's minimum range are recorded as that minimum
   record::Naming naming;      ///< of topics and frames
+  record::ImageMessages images = record::ImageMessages::png;  ///< of cameras
   std::string faults = {};    ///< of sensors (faults_text); empty: none
 };
 

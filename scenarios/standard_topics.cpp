@@ -86,9 +86,18 @@ base::TiltedPose optical_frame(const sensors::SensorSpec& row, const sensors::Ca
   return base::tilted_pose_of({glm::transpose(base::transform_of(row.X_MS).R) * camera.X_MS.R * R_SO, {}});
 }
 
+std::vector<Message> image_messages(record::ImageMessages images, bool rgb) {
+  std::vector<Message> messages{Message::camera_info};
+  if (images != record::ImageMessages::png) messages.push_back(Message::depth_image);
+  if (images != record::ImageMessages::png && rgb) messages.push_back(Message::color_image);
+  if (images != record::ImageMessages::raw) messages.push_back(Message::depth_png);
+  if (images != record::ImageMessages::raw && rgb) messages.push_back(Message::color_png);
+  return messages;
+}
+
 }  // namespace
 
-void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
+void add_standard_topics(const sensors::SensorSet& sensor_set, record::ImageMessages images, record::RunInfo& info) {
   for (const std::uint8_t type : {sensors::kSonar, sensors::kInfrared})
     add_ranges(sensor_set.settings_of<sensors::ConeArray>(type), type, info);
   const auto add = [&](const sensors::SensorSpec& row, std::uint8_t type, StandardTopic topic) {
@@ -129,9 +138,9 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& 
                         .columns = camera.width,
                         .rows = camera.height,
                         .lens = camera.lens};
-    for (const Message message : {Message::camera_info, Message::depth_image, Message::color_image}) {
+    for (const Message message : image_messages(images, camera.rgb)) {
       topic.message = message;
-      if (message != Message::color_image || camera.rgb) add(row, sensors::kCamera, topic);
+      add(row, sensors::kCamera, topic);
     }
   });
   for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {

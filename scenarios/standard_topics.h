@@ -7,8 +7,8 @@
 
 namespace sf::scenarios {
 
-/// Sets `SensorInfo::standard` of all sensors.
+/// Sets `SensorInfo::standard` of all sensors. @param images of cameras
 /// @pre `info` has the same sensors
-void add_standard_topics(const sensors::SensorSet& sensor_set, record::RunInfo& info);
+void add_standard_topics(const sensors::SensorSet& sensor_set, record::ImageMessages images, record::RunInfo& info);
 
 }  // namespace sf::scenarios

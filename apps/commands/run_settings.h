@@ -19,6 +19,7 @@ scenarios::RunSettings run_settings(const Options& options, const std::string& c
           .caster = caster,
           .too_near_min = options.too_near_min,
           .naming = options.naming,
+          .images = options.images,
           .faults = std::move(faults)};
 }
 

@@ -165,9 +165,11 @@ int view(const ViewOptions& options) {
   const sensors::SensorSet sensor_set(world);
   record::Naming naming = record::naming_of(recording.info);
   naming.odometry = record::OdometrySource::truth;  // users can jump to any time
-  record::RunInfo info = scenarios::run_info(
-      world, sensor_set,
-      {.seed = recording.info.seed, .record_readings = !recording.readings.empty(), .naming = naming});
+  record::RunInfo info = scenarios::run_info(world, sensor_set,
+                                             {.seed = recording.info.seed,
+                                              .record_readings = !recording.readings.empty(),
+                                              .naming = naming,
+                                              .images = record::ImageMessages::both});
   record::name_frames(info);
   info.world = recording.info.world;
   scenarios::Replay replay(recording, info);

@@ -51,6 +51,7 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
       settings_(settings),
       simulated_(simulated),
       drives_(drives) {
+  settings_.images = record::ImageMessages::both;  // encoded for subscribers alone
   if (!options.any()) return;
   info_ = scenarios::run_info(world, sensor_set, settings);
   print_taken_names(record::name_frames(info_));

@@ -40,7 +40,7 @@ class LiveBridges : public base::Sink {
   BridgeOptions options_;  ///< with the ports that were chosen
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
-  const scenarios::RunSettings settings_;
+  scenarios::RunSettings settings_;
   const bool simulated_;
   server::DriveRelay* const drives_;
   record::RunInfo info_;

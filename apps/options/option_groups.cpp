@@ -178,6 +178,15 @@ CLI::Option* add_compression(CLI::App& app, CompressionOption& o) {
              "Compression of recordings: zstd, or none (twice as large, but no tick is lost if the process is killed)")
       ->default_str("zstd");
 }
+CLI::Option* add_images(CLI::App& app, ImagesOption& o) {
+  using record::ImageMessages;
+  return add_choice<ImageMessages, ImageMessages>(
+             app, "--images", o.images,
+             {{"png", ImageMessages::png}, {"raw", ImageMessages::raw}, {"both", ImageMessages::both}},
+             "Messages with the images of cameras in recordings: png (CompressedImage), raw (Image), or both")
+      ->default_str("png");
+}
+
 
 void add_wire(CLI::App& app, WireOption& o) {
   using sensors::WireFormat;

@@ -55,6 +55,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
 
 void add_json(CLI::App& app, JsonOption& o);
 CLI::Option* add_compression(CLI::App& app, CompressionOption& o);
+CLI::Option* add_images(CLI::App& app, ImagesOption& o);
 /// Without `--device`, the environment variable SENSORFARM_DEVICE applies.
 void add_device(CLI::App& app, DeviceOption& o);
 void add_in_process(CLI::App& app, InProcessOption& o);

@@ -62,6 +62,10 @@ struct CompressionOption {
   record::Compression compression = record::Compression::zstd;  ///< of recordings
 };
 
+struct ImagesOption {
+  record::ImageMessages images = record::ImageMessages::png;  ///< of recordings
+};
+
 /// A video of a run, or its frames.
 struct VideoOptions {
   std::string video;                           ///< file; empty: none
@@ -276,6 +280,7 @@ struct RunOptions : WorldOptions,
                     CompressionOption,
                     VideoOptions,
                     NamingOption,
+                    ImagesOption,
                     BridgeOptions {
   bool keep_ctrl = false;          ///< `ctrl` of the world file overrides --controller
   std::vector<std::string> drive;  ///< names of the robots that the controller drives; empty: all robots
@@ -310,6 +315,7 @@ struct ServeOptions : WorldOptions,
                       CompressionOption,
                       NamingOption,
                       BridgeOptions {
+                      ImagesOption,
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free port
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
   double radio = netio::kV2vRange;         ///< [m] range beyond which states are not relayed; 0: no states are relayed

@@ -90,9 +90,10 @@ void add_run(CLI::App& app, Call& call) {
   auto* record = sub->add_option("--record", o.record, "Folder for the recording of the run (run.mcap)")
                      ->check(not_empty("a folder"))
                      ->type_name("DIR");
-  sub->add_flag("--record-readings", o.record_readings,
-                "Also record the readings, not only the states from which they can be recomputed")
-      ->needs(record);
+  auto* readings = sub->add_flag("--record-readings", o.record_readings,
+                                 "Also record the readings, not only the states from which they can be recomputed")
+                       ->needs(record);
+  add_images(*sub, o)->needs(readings);
   add_compression(*sub, o)->needs(record);
   sub->add_option("--checkpoint", o.checkpoint,
                   "Write a checkpoint of the run every S simulated seconds (with --record)")
@@ -328,6 +329,7 @@ void add_serve(CLI::App& app, Call& call) {
                                  "Folder for the recording of states, their quality, and readings (run.mcap)")
                      ->check(not_empty("a folder"))
                      ->type_name("DIR");
+  add_images(*sub, o)->needs(record);
   add_compression(*sub, o)->needs(record);
   add_robots(*sub, o);
   add_robot_from(*sub, o);

@@ -10,8 +10,10 @@
 #include <cstring>
 #include <limits>
 
+#include "base/png.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
+#include "tests/base/decoded_png.h"
 
 namespace sf::record {
 namespace {
@@ -298,6 +300,38 @@ TEST(StandardReadings, ColourImages) {
   for (const int byte : {0x10, 0x20, 0x30, 0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0xFF, 0xFE, 0xFD})
     EXPECT_EQ(message.cdr.get<std::uint8_t>(), byte);
   EXPECT_TRUE(message.cdr.good());
+}
+
+/// The file of a CompressedImage.
+base::DecodedPng file_of(CdrReader& cdr, const char* format, std::size_t header) {
+  EXPECT_EQ(cdr.get_string(), format);
+  std::string bytes(cdr.get_count(1), '\0');
+  for (char& byte : bytes) byte = static_cast<char>(cdr.get<std::uint8_t>());
+  EXPECT_TRUE(cdr.good());
+  EXPECT_EQ(cdr.left(), 0u);
+  EXPECT_EQ(bytes.substr(0, header), std::string(header, '\0'));
+  base::DecodedPng png = base::decode_png(std::string_view(bytes).substr(header));
+  EXPECT_EQ(png.header.width, 3u);
+  EXPECT_EQ(png.header.height, 2u);
+  return png;
+}
+
+/// As image_transport's plug-ins `compressed` and `compressedDepth` publish them.
+TEST(StandardReadings, CompressedImages) {
+  Encoded color = of(camera(Message::color_png), kPixels);
+  EXPECT_EQ(file_of(color.cdr, "rgb8; png compressed bgr8", 0).pixels, base::color_bytes(kPixels, 2));
+  StandardTopic far = camera(Message::depth_png);
+  far.range_max = 100.0;
+  std::vector<double> depths;
+  for (const double depth : {0.5004, 0.5006, 65.5354, 65.5356, -HUGE_VAL, 100.0})
+    depths.insert(depths.end(), {depth, 0.0});
+  Encoded depth = of(far, depths);
+  const base::DecodedPng png = file_of(depth.cdr, "16UC1; compressedDepth png", 12);
+  ASSERT_EQ(png.header.bit_depth, 16);
+  std::vector<std::uint16_t> millimetres(6);
+  ASSERT_EQ(png.pixels.size(), 12u);
+  std::memcpy(millimetres.data(), png.pixels.data(), 12);
+  EXPECT_EQ(millimetres, (std::vector<std::uint16_t>{500, 501, 65535, 0, 0, 0})) << "too far, too near, no surface";
 }
 
 /// The coefficients that each model has, K, and P, which is K without rectification.
