@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/rigid_transform.h"
 #include "bridges/view_solids.h"
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser.h"
@@ -135,6 +136,23 @@ Json holes_json(const World& world) {
   return holes;
 }
 
+/// The pinhole or fisheye that images a camera's picture (base/lens.h), and its optical frame in the robot's: z along
+/// the optical axis, x to the right, y down.
+Json camera_json(const record::SensorInfo& sensor, const record::StandardTopic& picture) {
+  const base::RigidTransform X =
+      base::compose(base::transform_of(sensor.X_MS), base::transform_of(picture.X_SE, picture.tilt));
+  const base::Lens& lens = picture.lens;
+  return {{"image", picture.topic},
+          {"size", {picture.columns, picture.rows}},
+          {"focal", {lens.focal.x, lens.focal.y}},
+          {"center", {lens.center.x, lens.center.y}},
+          {"fisheye", lens.fisheye},
+          {"distortion", lens.distortion},
+          {"range_max", picture.range_max},
+          {"p", {X.p.x, X.p.y, X.p.z}},
+          {"axes", {{X.R[0].x, X.R[0].y, X.R[0].z}, {X.R[1].x, X.R[1].y, X.R[1].z}, {X.R[2].x, X.R[2].y, X.R[2].z}}}};
+}
+
 /// Adds details that a sensor's messages do not contain: poses of its elements, apertures, the corner of a map.
 void add_elements(const record::SensorInfo& sensor, Json& row) {
   using Message = record::StandardTopic::Message;
@@ -146,6 +164,8 @@ void add_elements(const record::SensorInfo& sensor, Json& row) {
       row["range_max"] = element.range_max;
     } else if (element.message == Message::magnetic_field) {
       row["elements"].push_back(pose_json(element.X_SE));
+    } else if (element.message == Message::depth_png || element.message == Message::color_png) {
+      row["camera"] = camera_json(sensor, element);  // the colours, if there are any, follow the depths
     } else if (element.message == Message::map) {
       const maps::GridGeometry& grid = element.grid;
       row["map"] = {{"left", grid.left}, {"top", grid.top}, {"cell", grid.cell}, {"words", grid.word_columns}};

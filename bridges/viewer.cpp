@@ -16,6 +16,8 @@ using std::chrono::milliseconds;
 // Ticks at 30 Hz arrive about every 33 ms; none of them may be skipped.
 constexpr milliseconds kLeastInterval(25);
 constexpr milliseconds kStateInterval(500);  // of the measured speed
+constexpr milliseconds kImageInterval(62);   // 15 images/s pass
+constexpr double kImageBytes = 5e6;          // per second of one camera
 constexpr int kMostWaiting = 4;
 constexpr std::size_t kViewTopics = 2;  // clouds and solids
 
@@ -41,6 +43,12 @@ std::vector<record::Topic> topics_of(const record::TickMessages& messages) {
   return topics;
 }
 
+std::chrono::steady_clock::duration time_of_bytes(std::size_t bytes) {
+  using std::chrono::steady_clock;
+  return std::chrono::duration_cast<steady_clock::duration>(
+      std::chrono::duration<double>(static_cast<double>(bytes) / kImageBytes));
+}
+
 }  // namespace
 
 Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
@@ -62,6 +70,8 @@ Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
     latched.push_back({message.topic, message.log_time,
                        std::make_shared<const base::Bytes>(message.bytes.begin(), message.bytes.end())});
   });
+  for (const record::Topic& topic : messages_.topics()) is_image_.push_back(topic.type == record::kCompressedImage);
+  is_image_.resize(next_.size());
   WebOptions web{options.address, {kSdkV1, kWebSocketV1}, web_files(), options.limits};
   web.files["/scene.json"] = {"application/json", scene_json_, true};
   server_ = std::make_unique<WebServer>(std::move(web), sessions_);
@@ -166,7 +176,9 @@ void Viewer::send(const base::TickRecord& tick) {
   std::vector<SharedMessage> update;
   for (const std::uint32_t topic : due_) wanted_[topic] = true;
   const auto add = [&](const record::TopicMessage& message) {
-    next_[message.topic] = next(next_[message.topic]);
+    next_[message.topic] = is_image_[message.topic]
+                               ? now + std::max(Clock::duration(kImageInterval), time_of_bytes(message.bytes.size()))
+                               : next(next_[message.topic]);
     update.push_back({message.topic, message.log_time, copy_of(message.bytes)});
   };
   messages_.encode(tick, add, wanted_);

@@ -4,8 +4,8 @@
 //   Viewer viewer(scene, {.address = {"127.0.0.1", 8765}});
 //   puts(viewer.describe());   // view on http://127.0.0.1:8765/
 //
-// The run's thread encodes messages of subscribed topics, each at most 40 times a second of real time. The server's
-// thread does the rest.
+// The run's thread encodes messages of subscribed topics, each at most 40 times a second of real time, images 16
+// times and at most 5 MB/s. The server's thread does the rest.
 
 #include <atomic>
 #include <chrono>
@@ -73,6 +73,7 @@ class Viewer : public Bridge {
   base::Bytes cloud_message_;
   std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: topics to send, including `fresh_`
   std::vector<bool> wanted_;
+  std::vector<bool> is_image_;                         ///< per topic: CompressedImage, sent at a lower rate
   std::vector<Clock::time_point> next_;                ///< per topic: earliest time of its next message
   std::vector<std::shared_ptr<base::Bytes>> buffers_;  ///< of large messages, reused
   Requests requests_;

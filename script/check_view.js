@@ -389,6 +389,30 @@ async function watchRecording(browser, requests) {
   fs.rmSync(folder, { recursive: true });
 }
 
+/** The selected robot's cameras: a picture with the colours of its world, at a bounded rate, and depths in grey. */
+async function watchPictures(browser, requests) {
+  const server = start(program, ["run", "worlds/camera.world", "--view", "0", "--duration", "600"]);
+  const page = await open(browser, await server.url, requests);
+  await page.evaluate(() => view.select(view.scene.movers.findIndex(({ sensors }) => sensors.some(({ camera }) => camera))));
+  const topic = await page.evaluate(() => view.scene.movers[view.drawing.selected].sensors.find(({ camera }) => camera).topic);
+  await until(page, "no pictures", (name) => view.panel.picture(name).drawn > 3, topic);
+  const seen = await page.evaluate((name) => {
+    const { canvas, message } = view.panel.picture(name), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    let red = 0;
+    for (let i = 0; i < data.length; i += 4) red += data[i] > data[i + 1] + 40 && data[i] > data[i + 2] + 40;
+    return { red, size: [canvas.width, canvas.height], bytes: message.data.length, readings: view.connection.topics().includes(name) };
+  }, topic);
+  check(seen.size.join() === "640,480" && seen.red > 1000, `the red robot: ${JSON.stringify(seen)}`);
+  const [before, since] = await page.evaluate((name) => [view.panel.picture(name).drawn, performance.now()], topic);
+  await until(page, "no further pictures", ([name, count]) => view.panel.picture(name).drawn > count + 20, [topic, before]);
+  const rate = await page.evaluate(([name, count, begin]) => 1000 * (view.panel.picture(name).drawn - count) / (performance.now() - begin), [topic, before, since]);
+  console.log(`${seen.bytes} bytes per picture, ${rate.toFixed(1)} pictures/s`);
+  check(rate < 17, `${rate} pictures/s`);
+  if (picture) await page.screenshot({ path: picture.replace(/(\.\w+)?$/, "-picture$1") });
+  await page.close();
+  await server.end();
+}
+
 /** The page of `vps`: the images of both cameras follow each other, and the table lists their tags. */
 async function watchCameras(browser, requests) {
   const server = start(program, ["vps", "worlds/testbed.toml", "--rendered", "12", "--world", "worlds/testpath/testpath.world", "--view", "0"]);
@@ -413,7 +437,7 @@ async function main() {
   const profile = fs.mkdtempSync(path.join(os.tmpdir(), "chromium-"));
   const browser = await chromium.launchPersistentContext(profile, { executablePath: process.env.CHROMIUM, headless: true, args: flags, viewport: { width: 1366, height: 768 } });
   const requests = [];
-  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchThird, watchTown, watchRecording, watchCameras]) {
+  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchThird, watchTown, watchRecording, watchPictures, watchCameras]) {
     const since = Date.now();
     await part(browser, requests);
     console.log(`${part.name}: ${((Date.now() - since) / 1000).toFixed(1)} s`);

@@ -14,6 +14,7 @@ const { HeldReadings } = await load('held.js');
 const { keyDown, pressed } = await load('input.js');
 const { keyName } = await load('key_name.js');
 const { Orbit, fov } = await load('orbit.js');
+const { shadeDepths } = await load('picture.js');
 const { prisms } = await load('solids_3d.js');
 const near = (found, expected, within, what) => assert.ok(Math.abs(found - expected) <= within, `${what}: ${found}, not ${expected}`);
 
@@ -137,6 +138,15 @@ function echo({ message, pose: [x, , yaw] }) { return x + message.range * Math.c
   fleet.update({ tick: 0, states: [state(0, [0, 0, 0])] }, 3.15, 3.15);
   assert.ok(!fleet.isStuck(0), 'it moves again');
   assert.ok(!fleet.isOutside(1), 'absent robots count nowhere');
+}
+
+// Depths as shades: none is black, and the nearer, the brighter, up to the largest.
+{
+  const data = new Uint8ClampedArray([0, 10, 100, 194, 255].flatMap((high) => [high, high, high, 255]));  // bytes of the high half of millimetres
+  shadeDepths(data, 50);
+  const shades = [0, 4, 8, 12, 16].map((i) => data[i]);
+  assert.equal(shades[0], 0);
+  assert.ok(shades[1] > shades[2] && shades[2] > shades[3] && shades[3] === 40 && shades[4] === 40, `${shades}`);
 }
 
 // The camera of the 3-D view: its distance and its side; it stays above the floor.

@@ -384,6 +384,29 @@ TEST(Viewer, PlaysRecordings) {
   }
 }
 
+/// Of a camera that looks to the left of its sensor, which looks to the left of its robot: backwards.
+TEST(SceneJson, CamerasHaveTheirLensAndOpticalFrame) {
+  const world::World world = ViewerFixture::world_of(1);
+  const sensors::SensorSet sensor_set(world);
+  record::RunInfo info = ViewerFixture::run_info_of(world);
+  info.sensor_types = {{45, "camera", "pixels", {}, false}};
+  record::SensorInfo sensor{45, "eye", "/left/camera", {1, 2, 0.5, M_PI / 2}};
+  record::StandardTopic image{.message = record::StandardTopic::Message::color_png, .topic = "/left/image"};
+  image.X_SE = {0, 0, 0, M_PI / 2};
+  image.range_max = 20, image.columns = 64, image.rows = 48;
+  image.lens = {{50, 51}, {31.5, 23.5}, {0.1}};
+  sensor.standard = {image};
+  info.movers[0].sensors = {sensor};
+  const std::string json = scene_json({world, sensor_set, info}, ViewerMode::run);
+  const std::size_t begin = json.find("\"camera\":{");
+  ASSERT_LT(begin, json.size());
+  const std::string camera = json.substr(begin, json.find('}', begin) - begin);
+  for (const char* const part : {"\"image\":\"/left/image\"", "\"size\":[64,48]", "\"focal\":[50.0,51.0]",
+                                 "\"center\":[31.5,23.5]", "\"fisheye\":false", "\"distortion\":[0.1,0.0,",
+                                 "\"range_max\":20.0", "\"p\":[1.0,2.0,0.5]", "\"axes\":[[-1.0,"})
+    EXPECT_NE(camera.find(part), std::string::npos) << part << " in " << camera;
+}
+
 /// In file order, by sensor; other sensor types have no colour.
 TEST(SceneJson, LasersHaveTheirColours) {
   world::World world = ViewerFixture::world_of(2);

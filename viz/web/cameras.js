@@ -1,6 +1,7 @@
 // The page of `vps --view`, with the newest image of each camera and the tags that the cameras see, and of `robot --view`
 // and `map --view`, with maps as pictures.
 
+import { Picture } from './picture.js';
 import { Connection } from './protocol.js';
 
 const $ = (id) => document.getElementById(id);
@@ -23,46 +24,20 @@ function showStatus(state, text) {
   $('status').textContent = text;
 }
 
-/** Draws the newest image. Those that arrive while one is being decoded replace each other. */
 class CameraImage {
-  #waiting = null; #busy = false; #times = [];
-  drawn = 0;
-
   constructor(name) {
-    this.canvas = element('canvas', { width: 4, height: 3 });
-    this.canvas.setAttribute('role', 'img');
-    this.canvas.setAttribute('aria-label', `Image of ${name}`);
-    this.rate = element('small', { textContent: 'waiting for an image' });
+    const canvas = element('canvas', { width: 4, height: 3 });
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', `Image of ${name}`);
+    const rate = element('small', { textContent: 'waiting for an image' });
     const enlarge = element('button', { textContent: 'Enlarge', onclick: () => enlarge.setAttribute('aria-pressed', String(this.root.classList.toggle('large'))) });
     enlarge.setAttribute('aria-pressed', 'false');
-    this.root = element('figure', {}, this.canvas, element('figcaption', {}, element('b', { textContent: name }), this.rate, enlarge));
+    this.root = element('figure', {}, canvas, element('figcaption', {}, element('b', { textContent: name }), rate, enlarge));
+    this.picture = new Picture(canvas);
+    this.picture.onDrawn = () => { rate.textContent = this.picture.text(); };
   }
-  show(message) {
-    this.#waiting = message;
-    if (!this.#busy) this.#draw();
-  }
-  async #draw() {
-    this.#busy = true;
-    while (this.#waiting) {
-      const { data, format } = this.#waiting;
-      this.#waiting = null;
-      try {
-        const image = await createImageBitmap(new Blob([data], { type: `image/${format}` }));
-        if (this.canvas.width !== image.width || this.canvas.height !== image.height) Object.assign(this.canvas, { width: image.width, height: image.height });
-        this.canvas.getContext('2d').drawImage(image, 0, 0);
-        image.close();
-        ++this.drawn;
-        this.#count(performance.now() / 1000);
-      } catch { /* an image that cannot be decoded is left out */ }
-    }
-    this.#busy = false;
-  }
-  #count(now) {
-    this.#times.push(now);
-    while (now - this.#times[0] > 2) this.#times.shift();
-    const rate = this.#times.length > 1 ? (this.#times.length - 1) / (now - this.#times[0]) : 0;
-    this.rate.textContent = `${this.canvas.width} × ${this.canvas.height}${rate > 0 ? `, ${rate.toFixed(1)} images/s` : ''}`;
-  }
+  get drawn() { return this.picture.drawn; }
+  get canvas() { return this.picture.canvas; }
 }
 
 function addCameras(connection, channels) {
@@ -70,7 +45,7 @@ function addCameras(connection, channels) {
     const name = imageTopic.exec(topic)?.[1];
     if (!name) continue;
     if (!cameras.has(name)) cameras.set(name, new CameraImage(name));
-    connection.subscribe(topic, (message) => cameras.get(name).show(message));
+    connection.subscribe(topic, (message) => cameras.get(name).picture.show(message));
   }
   $('panel').hidden = !channels.some(({ topic }) => topic === '/tags');
   $('cameras').replaceChildren(...[...cameras.values()].map(({ root }) => root));

@@ -110,7 +110,9 @@ async function loadShapes() {
 
 // Robots
 
-function topicsOf(row) { return row < 0 ? [] : scene.movers[row].sensors.map((sensor) => sensor.topic); }
+/** Of cameras, images are shown, which are far smaller than readings. */
+function topicOf(sensor) { return sensor.camera?.image ?? sensor.topic; }
+function topicsOf(row) { return row < 0 ? [] : scene.movers[row].sensors.map(topicOf); }
 
 function select(row) {
   if (row === drawing.selected) return;
@@ -127,7 +129,7 @@ function select(row) {
   }
   panel.last = row >= 0 ? fleet.states[row] : null;
   panel.show(row, actions);
-  for (const sensor of row < 0 ? [] : scene.movers[row].sensors) connection.subscribe(sensor.topic, (message) => hold(sensor, message));
+  for (const sensor of row < 0 ? [] : scene.movers[row].sensors) connection.subscribe(topicOf(sensor), (message) => hold(sensor, message));
   $('follow').disabled = row < 0;
   if (row < 0) setFollowing(false);
   dirty = true;
@@ -136,7 +138,7 @@ function select(row) {
 function hold(sensor, message) {
   const at = message.header ? message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec : fleet.time;
   if (sensor.map) drawing.maps.set(sensor.topic, new MapPicture(message, sensor.map));
-  else readings.add(sensor, message, at);
+  else if (!sensor.camera) readings.add(sensor, message, at);
   panel.reading(sensor.topic, message, at);
   dirty = true;
 }

@@ -1,5 +1,6 @@
 // The list of robots, and the readings of the selected one.
 
+import { Picture } from './picture.js';
 import { History, plotBars, plotHistory, short } from './plot.js';
 
 const listed = 200;  // at a time; the search finds more
@@ -80,6 +81,21 @@ class Card {
     const values = this.type.scan ? this.message.ranges : this.message[this.type.columns[0].name.toLowerCase()];
     if (values) plotBars(this.bars, Array.from(values), this.sensor.range_max);
   }
+}
+
+/** The newest image of a camera. */
+class CameraCard {
+  constructor(sensor, waiting) {
+    const canvas = element('canvas', { className: 'picture', width: 4, height: 3 });
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', `Image of ${sensor.name}`);
+    this.histories = [];
+    this.picture = new Picture(canvas, sensor.camera.range_max);
+    this.text = element('small', { textContent: waiting });
+    this.root = element('div', { className: 'card' }, element('h3', {}, element('span', { textContent: sensor.name }), this.text), canvas);
+  }
+  update(message) { this.picture.show(message); }
+  draw() { if (this.picture.drawn > 0) this.text.textContent = this.picture.text(); }
 }
 
 export class Panel {
@@ -185,12 +201,16 @@ export class Panel {
       element('div', { className: 'head' }, element('h2', { textContent: mover.name }), this.badge, ...actions),
       element('div', { className: 'card' }, element('h3', {}, element('span', { textContent: 'State' }), element('small', { textContent: `id ${mover.id}` })), this.state, this.speedPlot));
     for (const sensor of mover.sensors) {
-      const card = new Card(sensor, this.scene.types[sensor.type] ?? { columns: [], list: '' }, this.scene.readings ? 'waiting for a reading' : 'not recorded (run --record-readings)');
+      const waiting = this.scene.readings ? 'waiting for a reading' : 'not recorded (run --record-readings)';
+      const card = sensor.camera ? new CameraCard(sensor, waiting) : new Card(sensor, this.scene.types[sensor.type] ?? { columns: [], list: '' }, waiting);
       this.#cards.set(sensor.topic, card);
       this.section.append(card.root);
     }
     this.dirty = true;
   }
+
+  /** The image of a camera of the selected robot; undefined: the sensor is no camera. @param topic of the sensor */
+  picture(topic) { return this.#cards.get(topic)?.picture; }
 
   reading(topic, message, time) {
     this.#cards.get(topic)?.update(message, time);
