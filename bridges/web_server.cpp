@@ -53,8 +53,8 @@ Response answer(const Request& request, http::status status, std::string_view ty
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Referrer-Policy", "no-referrer");
   response.set("Content-Security-Policy",
-               "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data:; frame-ancestors 'none'; "
-               "base-uri 'none'; form-action 'none'");
+               "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob: http: https:; "
+               "media-src 'self' blob: http: https:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
   response.keep_alive(request.keep_alive());
   response.body().assign(body.data(), request.method() == http::verb::head ? 0 : body.size());
   response.prepare_payload();

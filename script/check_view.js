@@ -2,6 +2,7 @@
 // Exits with an error at the first violation.
 
 const fs = require("fs");
+const http = require("http");
 const os = require("os");
 const path = require("path");
 const { chromium } = require("playwright-core");
@@ -9,7 +10,7 @@ const { execFileSync } = require("child_process");
 const { start, check, run } = require("./live_run");
 
 const [program, picture] = process.argv.slice(2);
-const flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+const flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"];
 
 /** Contents of the page's last frame (`window.view`), and its state. */
 const look = (page) => page.evaluate(() => ({ ...view.drawing.drawn, time: view.time, paused: view.paused, updates: view.counters.updates, frames: view.counters.frames, scale: view.camera.scale, status: document.getElementById("status").textContent }));
@@ -368,6 +369,115 @@ async function watchTown(browser, requests) {
   fs.rmSync(folder, { recursive: true });
 }
 
+/** Robots in a yard, one with a camera of a bending lens, a lidar, a map and tracks. */
+function yard() {
+  return `sun [-150 40]  floor_color "gray60"
+define rover position( size [0.6 0.4 0.25]  color "steel blue"  drive "diff"  ctrl "wander"
+  laser( name "scan" pose [0.25 0 0 0] size [0.1 0.1 0.1] samples 181 fov 270 range_max 8 rate 10 )  gps( rate 10 )  encoder( rate 20 )  gyro( rate 20 )
+  derived( type "localization" inputs ["encoder" "gyro" "gps"] rate 20 )  derived( type "features" name "front" inputs ["laser:0"] rate 10 most 22 )
+  derived( type "tracks" name "tracks" inputs ["features:0" "localization"] rate 10 )  occupancy( name "map" cell 0.1 words [40 40] offset [8 -8] sources ["laser:0"] rate 5 ) )
+model( name "yard" size [14 12 1] boundary 1 color "gray50" )
+model( name "house" pose [4 3.5 0 0] size [3 2 2] color "tan" )
+model( name "kiosk" pose [3.4 -2.1 0 15] size [0.9 0.9 1.1] color "dark sea green" )
+model( name "crate" pose [2.2 2 0 40] size [0.5 0.5 0.4] color "sienna" )
+rover( name "rover1" pose [-4 0 0 0]  lidar( preset "VLP-16" columns 450 noise 0 size [0.1 0.1 0.08] rate 10 )
+  camera( name "eye" resolution [640 480] fov 80 distortion [-0.2 0.04 0.001 -0.001 0] range [0 60] rgb 1 pose6 [0 0 0.05 3 14 2] rate 10 ) )
+rover( name "rover2" pose [0 0.5 0 100] color "firebrick" )
+rover( name "rover3" pose [1.5 -0.8 0 200] color "gold" )`;
+}
+
+/** Serves a PNG as /still.png and, in parts without an end, as /stream. */
+async function serveImage(image) {
+  const server = http.createServer(({ url }, answer) => {
+    if (url.startsWith("/still.png")) return answer.writeHead(200, { "Content-Type": "image/png" }).end(image);
+    answer.writeHead(200, { "Content-Type": "multipart/x-mixed-replace; boundary=frame" });
+    for (let k = 0; k < 2; ++k) answer.write(Buffer.concat([Buffer.from(`--frame\r\nContent-Type: image/png\r\nContent-Length: ${image.length}\r\n\r\n`), image, Buffer.from("\r\n")]));
+  });
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  return server;
+}
+
+/** Pixels and depths of the newest lidar scan in the shown image. */
+const echoesInImage = (page) => page.evaluate(() => {
+  const { over } = view, [cloud] = over.state.cloudsAt(0, over.time).filter(({ planar }) => !planar), found = [];
+  for (let i = 0; i < cloud.points.length; i += 4) {
+    const p = [0, 1, 2].map((k) => cloud.points[i + k] + cloud.origin[k]), at = over.sight.pixelOf(p);
+    if (at && over.sight.isInImage(at, -2)) found.push([...at, over.sight.inCamera(p)[2]]);
+  }
+  return { found, cloud: cloud.time, image: over.time };
+});
+
+/** The view over images: echoes lie on the pixels that see them, also from a calibration file; what it lacks, it says. */
+async function watchOverlay(browser, requests) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yard-")), world = path.join(folder, "yard.world");
+  fs.writeFileSync(world, yard());
+  const server = start(program, ["run", world, "--view", "0", "--duration", "600"]), known = requests.length;
+  const page = await open(browser, await server.url, requests);
+  check(!requests.slice(known).some((url) => /overlay|view_camera|lens/.test(url)), "the plan view loads parts of the other");
+  const note = () => page.textContent("#view-camera .note");
+  await page.keyboard.press("c");
+  await until(page, "nothing over the image", () => { const { points = 0, robots, cells, tracks, arcs } = view.over?.drawn ?? {}; return points > 500 && robots === 2 && cells > 100 && tracks > 0 && arcs > 0; });
+  check((await page.evaluate(() => view.drawing.selected)) === 0, "the camera's robot is not selected");
+  if (picture) {
+    await page.evaluate(() => new Promise((done) => setTimeout(done, 4000)));
+    await page.screenshot({ path: picture.replace(/(\.\w+)?$/, "-overlay$1") });
+  }
+
+  // At one tick, the depth along the axis of each echo of the moving lidar is that of the pixel on which it lies.
+  await page.keyboard.press("Space");
+  await until(page, "not paused", () => view.paused && view.fleet.shownTime === view.fleet.time);
+  await page.evaluate(() => { const topic = view.connection.topics().find((name) => name.endsWith("/depth/image_raw")); view.connection.subscribe(topic, (message) => { window.depths = message; }); });
+  await until(page, "no depths", () => window.depths);
+  await until(page, "images and scans of one time", () => { const stamp = window.depths.header.stamp.sec + 1e-9 * window.depths.header.stamp.nanosec; return Math.abs(stamp - view.over.time) < 1e-6 && view.over.state.cloudsAt(0, stamp).some(({ planar, time }) => !planar && Math.abs(time - stamp) < 1e-6); });
+  const echoes = await echoesInImage(page), depths = new Float32Array(await page.evaluate(() => Array.from(new Float32Array(window.depths.data.buffer))));
+  const agree = echoes.found.filter(([u, v, z]) => {
+    const near = [-1, 0, 1].flatMap((dv) => [-1, 0, 1].map((du) => depths[640 * (Math.round(v) + dv) + Math.round(u) + du]));
+    return z >= Math.min(...near) - 0.01 && z <= Math.max(...near) + 0.01;
+  }).length;
+  check(echoes.found.length > 500 && agree > 0.97 * echoes.found.length, `${agree} of ${echoes.found.length} echoes lie on their surfaces`);
+  check(/robots at its time/.test(await note()), await note());
+
+  // Each layer can be switched off.
+  for (const key of ["robots", "scans", "map", "tracks", "intent"]) await page.click(`#camera-${key}`);
+  await until(page, "layers", () => Object.values(view.over.drawn).every((count) => count === 0));
+  for (const key of ["robots", "scans", "map", "tracks", "intent"]) await page.click(`#camera-${key}`);
+
+  // The same image by its address, with the lens and the pose of the camera in a calibration file: the echoes lie where they lay.
+  const shot = await page.evaluate(() => { const [canvas] = document.querySelectorAll("#view-camera .picture canvas"); return canvas.toDataURL("image/png").split(",")[1]; });
+  const files = await serveImage(Buffer.from(shot, "base64")), address = `http://127.0.0.1:${files.address().port}`;
+  const section = await page.evaluate(() => {
+    const { camera: { size, focal, center, distortion, p, axes: [x, y, z] } } = view.scene.movers[0].sensors.find(({ camera }) => camera), w = 0.5 * Math.sqrt(1 + x[0] + y[1] + z[2]) || 1e-9;
+    const q = [y[2] - z[1], z[0] - x[2], x[1] - y[0]].map((v) => v / (4 * w)).concat(w);
+    return `[[camera]]\nname = "eye"\nsize = [${size}]\nfocal = [${focal}]\ncenter = [${center}]\ndistortion = [${distortion.slice(0, 5)}]\nposition = [${p}]\norientation = [${q}]\n`;
+  });
+  await page.selectOption("#view-camera .choices select", "url");
+  check(/calibration file/.test(await note()), await note());
+  const load = (text) => page.setInputFiles("#view-camera input[type=file]", { name: "lab.toml", mimeType: "application/toml", buffer: Buffer.from(text) });
+  await load(section.replace("focal", "vocal"));
+  await until(page, "no error of the file", () => /lab\.toml:1: 'focal' is missing/.test(document.querySelector("#view-camera .note").textContent));
+  await load(section);
+  await page.selectOption("#view-camera select >> nth=2", "0");
+  for (const name of ["still.png", "stream"]) {
+    await page.fill("#view-camera input[type=url]", `${address}/${name}`);
+    await page.keyboard.press("Tab");
+    await until(page, `no echoes over ${name}`, () => view.over.drawn.points > 500 && /states no time/.test(document.querySelector("#view-camera .note").textContent));
+  }
+  const again = await echoesInImage(page);
+  check(again.found.length === echoes.found.length && again.found.every(([u, v], i) => Math.hypot(u - echoes.found[i][0], v - echoes.found[i][1]) < 0.01), `${again.found.length} echoes moved`);
+  await page.fill("#view-camera input[type=url]", `${address.slice(0, -1)}/none.mp4`);
+  await page.keyboard.press("Tab");
+  await until(page, "no error of the address", () => /cannot be shown/.test(document.querySelector("#view-camera .note").textContent));
+  await page.selectOption("#view-camera .choices select", "device");
+  await until(page, "no image of the device", () => /scaled to the calibration|states no time/.test(document.querySelector("#view-camera .note").textContent) && view.over.drawn.points > 0);
+  await page.keyboard.press("c");
+  await until(page, "no plan", () => !document.getElementById("view").hidden && !view.connection.topics().some((name) => name === "none"));
+  await page.close();
+  await server.end();
+  files.closeAllConnections();
+  files.close();
+  fs.rmSync(folder, { recursive: true });
+}
+
 async function watchRecording(browser, requests) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "view-"));
   execFileSync(program, ["run", "worlds/mapping/mapping.world", "--duration", "8", "--record", folder, "--record-readings"], { stdio: "ignore" });
@@ -437,7 +547,7 @@ async function main() {
   const profile = fs.mkdtempSync(path.join(os.tmpdir(), "chromium-"));
   const browser = await chromium.launchPersistentContext(profile, { executablePath: process.env.CHROMIUM, headless: true, args: flags, viewport: { width: 1366, height: 768 } });
   const requests = [];
-  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchThird, watchTown, watchRecording, watchPictures, watchCameras]) {
+  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchThird, watchTown, watchOverlay, watchRecording, watchPictures, watchCameras]) {
     const since = Date.now();
     await part(browser, requests);
     console.log(`${part.name}: ${((Date.now() - since) / 1000).toFixed(1)} s`);

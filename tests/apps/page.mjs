@@ -13,6 +13,11 @@ const { Fleet } = await load('fleet.js');
 const { HeldReadings } = await load('held.js');
 const { keyDown, pressed } = await load('input.js');
 const { keyName } = await load('key_name.js');
+const { readCalibration } = await load('calibration.js');
+const { Lens, Sight } = await load('lens.js');
+const { arcOf, mapRuns, roundRange } = await load('overlay.js');
+const { OverlayState } = await load('overlay_state.js');
+const { composed, inverse, poseOf, transform, transformOf } = await load('rigid.js');
 const { Orbit, fov } = await load('orbit.js');
 const { shadeDepths } = await load('picture.js');
 const { prisms } = await load('solids_3d.js');
@@ -75,7 +80,7 @@ function actionOf(key, { typing = false, driving = false, ...more } = {}) {
   keyDown({ key, shiftKey: false, target: { matches: () => typing, blur: () => { called = 'blur'; } }, getModifierState: () => false, preventDefault: () => {}, ...more }, page);
   return called;
 }
-for (const [key, more, action] of [['n', {}, 'step '], ['F', {}, 'toggleFollowing '], ['4', {}, 'setFastest '], ['r', {}, ''], ['n', { ctrlKey: true }, ''], ['n', { typing: true }, ''], ['Escape', { typing: true }, 'blur'], ['ArrowLeft', {}, 'pan 60,0'], ['v', {}, 'toggleThird '], ['ArrowUp', { driving: true }, '']])
+for (const [key, more, action] of [['n', {}, 'step '], ['F', {}, 'toggleFollowing '], ['4', {}, 'setFastest '], ['r', {}, ''], ['n', { ctrlKey: true }, ''], ['n', { typing: true }, ''], ['Escape', { typing: true }, 'blur'], ['ArrowLeft', {}, 'pan 60,0'], ['v', {}, 'toggleThird '], ['c', {}, 'toggleCamera '], ['ArrowUp', { driving: true }, '']])
   assert.equal(actionOf(key, more), action, `${key} ${JSON.stringify(more)}`);
 assert.deepEqual([...pressed], ['ArrowUp']);
 
@@ -175,4 +180,113 @@ function echo({ message, pose: [x, , yaw] }) { return x + message.range * Math.c
   assert.deepEqual([triangles, top, isMesh], [2 * 4 + 2 * 2 + 2, 2, true]);
   assert.equal(Math.min(...vertices.filter((_, k) => k % 3 === 2)), 0);
   assert.deepEqual(prisms({ ...THREE, ShapeUtils: { triangulateShape: () => [] } }, { closed: [], closed_z: [], open: [], open_z: [] }, 0.5).top, 0.5, 'a body without outlines');
+}
+
+// Images. Poses and lenses are those of base/, by tables of page_test.cpp.
+const tables = JSON.parse(fs.readFileSync(path.join(folder, 'tables.json'), 'utf8'));
+const nearAll = (found, expected, within, what) => expected.forEach((value, k) => near(found[k], value, within, `${what} [${k}]`));
+for (const { pose, tilt, p, seen } of tables.transforms) {
+  const X = transformOf(pose, tilt);
+  nearAll(transform(X, p), seen, 1e-12, 'a point of the body');
+  nearAll(transform(composed(inverse(X), X), p), p, 1e-12, 'there and back');
+}
+for (const { why, points, ...camera } of tables.lenses) {
+  const lens = new Lens(camera);
+  assert.ok(points.length > 30, `${why}: ${points.length} points`);
+  for (const [x, y, z, u, v] of points) nearAll(lens.pixelOf([x, y, z]) ?? [], [u, v], 1e-9, why);
+  assert.equal(lens.pixelOf([0.1, 0.2, -1]), null, `${why}: a point behind the camera`);
+  assert.equal(lens.pixelOf([0.1, 0.2, 0]), null, `${why}: a point in the plane of the camera`);
+}
+{
+  // A pinhole whose distortion folds outside of the image: points beyond the fold are not seen inside.
+  const camera = { size: [640, 480], focal: [400, 400], center: [319.5, 239.5], distortion: [-0.3, 0, 0, 0, 0, 0, 0, 0] }, lens = new Lens(camera);
+  const fold = Math.sqrt(1 / 0.9), bent = (r) => r * (1 - 0.3 * r * r);
+  near(bent(1.6), bent(0.39), 0.005, 'both would be imaged nearly at one pixel');
+  for (const angle of [0, 1, 2, 3, 4, 5]) {
+    const at = (r) => lens.pixelOf([r * Math.cos(angle), r * Math.sin(angle), 1]);
+    assert.ok(at(0.97 * fold) && !at(1.03 * fold) && !at(1.6), `fold at ${angle}`);
+  }
+  assert.equal(new Lens({ ...camera, distortion: [0, 0, 0, 0], fisheye: true }).pixelOf([Math.tan(86 * Math.PI / 180), 0, 1]), null, 'beyond the widest angle of a fisheye');
+}
+
+/** The lines of a path as lists of points. */
+function pathRecord() {
+  const lines = [];
+  return { lines, moveTo: (...p) => lines.push([p]), lineTo: (...p) => lines.at(-1).push(p), closePath: () => {} };
+}
+{
+  const camera = { size: [640, 480], focal: [400, 400], center: [319.5, 239.5], distortion: [0, 0, 0, 0, 0, 0, 0, 0] }, ahead = { R: [1, 0, 0, 0, 1, 0, 0, 0, 1], p: [0, 0, 0] };
+  const draw = (lens, points) => { const path = pathRecord(); new Sight(new Lens({ ...camera, ...lens }), ahead).line(path, points); return path.lines; };
+  assert.deepEqual(draw({}, [[0, 0, 1], [1, 0, 2]]), [[[319.5, 239.5], [519.5, 239.5]]], 'a pinhole images lines as lines');
+  assert.deepEqual(draw({}, [[0, 0, -1], [0, 1, -2]]), [], 'a line behind the camera');
+  assert.deepEqual(draw({}, [[0, 0, 0.02], [0, 0, 0.02]]).length, 1, 'just at the near plane');
+  // Through the near plane: the seen part ends at its image, (0.01, 0, 0.02).
+  const [[first, last]] = draw({}, [[0.01, 0, -1], [0.01, 0, 1]]);
+  nearAll(first, [319.5 + 400 * 0.01 / 0.02, 239.5], 1e-9, 'start');
+  nearAll(last, [319.5 + 4, 239.5], 1e-9, 'end');
+  assert.deepEqual(draw({}, [[0, 0, 1], [0, 0, -1], [0.5, 0, 1]]).length, 2, 'two parts of a corner behind');
+  // A bent line: all of its points are within a pixel of the true curve, which is 20 px off the chord.
+  const lens = new Lens({ ...camera, distortion: [-0.2, 0, 0, 0, 0, 0, 0, 0] }), [curve] = draw({ distortion: [-0.2, 0, 0, 0, 0, 0, 0, 0] }, [[-0.7, 0.5, 1], [0.7, 0.5, 1]]);
+  const chord = curve[0][1], middle = lens.pixelOf([0, 0.5, 1])[1];
+  assert.ok(Math.abs(middle - chord) > 15 && curve.length > 8 && curve.length < 60, `${curve.length} pieces`);
+  for (let i = 1; i < curve.length; ++i) {
+    const [[u0, v0], [u1, v1]] = curve.slice(i - 1, i + 1), u = (u0 + u1) / 2;
+    let low = -0.7, high = 0.7;
+    for (let k = 0; k < 50; ++k) { const x = (low + high) / 2; if (lens.pixelOf([x, 0.5, 1])[0] < u) low = x; else high = x; }
+    near((v0 + v1) / 2, lens.pixelOf([low, 0.5, 1])[1], 0.5, 'a piece of the curve');
+  }
+  // Polygons: one half behind the camera is cut; one that is entirely behind, or off the image, is left out.
+  const fill = (points) => { const path = pathRecord(); return [new Sight(new Lens(camera), ahead).polygon(path, points), path.lines]; };
+  const floor = (z0, z1, x = 0) => [[x - 1, 1, z0], [x + 1, 1, z0], [x + 1, 1, z1], [x - 1, 1, z1]];
+  assert.equal(fill(floor(1, 3))[0], true);
+  const [isDrawn, [cut]] = fill(floor(-1, 3));
+  assert.ok(isDrawn && Math.max(...cut.map(([, v]) => v)) > 1e4 && cut.every((p) => p.every(Number.isFinite)), 'cut at the near plane');
+  assert.deepEqual(fill(floor(-3, -1)), [false, []], 'behind');
+  assert.deepEqual(fill(floor(1, 3, 50)), [false, []], 'to the right of the image');
+}
+{
+  // Calibration files: the cameras of vision/, and errors with their lines.
+  const text = fs.readFileSync(tables.calibration.file, 'utf8'), cameras = readCalibration('lab.toml', text);
+  assert.deepEqual(cameras.map(({ name }) => name), tables.calibration.cameras.map(({ name }) => name));
+  cameras.forEach((camera, i) => {
+    const sight = new Sight(new Lens(camera), poseOf(camera.axes, camera.p));
+    for (const [x, y, z, u, v] of tables.calibration.cameras[i].points) nearAll(sight.pixelOf([x, y, z]) ?? [], [u, v], 1e-6, camera.name);
+  });
+  const plain = '[[camera]]\nname = "a"\nsize = [640, 480]\nfocal = [500,\n  500]  # px\nposition = [0, 0, 3]\n';
+  const [found] = readCalibration('f', plain);
+  assert.deepEqual([found.center, found.focal, found.distortion, found.axes], [[319.5, 239.5], [500, 500], [0, 0, 0, 0, 0, 0, 0, 0], [[1, 0, 0], [0, -1, 0], [0, 0, -1]]], 'defaults as in testbed files');
+  for (const [bad, message] of [
+    ['', /^f:1: has no camera/], [plain.replace('position = [0, 0, 3]', ''), /^f:1: 'position' is missing/], [plain.replace('640', '6.5'), /^f:1: 'size'/],
+    [plain.replace('[640, 480]', '[640]'), /^f:3: 'size' expects 2 numbers/], [plain.replace('640,', '640, x,'), /^f:3: 'size'/], [plain.replace('[0, 0, 3]', '[0, 0, nan]'), /^f:6: 'position'/],
+    [plain.replace('"a"', '"a b"'), /^f:2: 'name'/], [plain.replace('name = "a"', 'name'), /^f:2: 'name' is neither/], [`${plain}orientation = [1, 1, 0, 0]`, /^f:1: 'orientation' expects a unit/], [plain.repeat(65), /more than 64 cameras/]])
+    assert.throws(() => readCalibration('f', bad), ({ message: text2 }) => message.test(text2), `${message}`);
+}
+{
+  // The commanded way: a quarter of a circle of 1 m, straight ahead, sideways.
+  const end = (twist, seconds) => arcOf(twist, seconds).at(-1);
+  nearAll(end({ forward: 1, left: 0, turn: Math.PI / 2 }, 1), [2 / Math.PI, 2 / Math.PI, 0], 1e-12, 'arc');
+  nearAll(end({ forward: 1, left: 0, turn: 0 }, 2), [2, 0, 0], 1e-12, 'straight');
+  nearAll(end({ forward: 0, left: 0.5, turn: 0 }, 2), [0, 1, 0], 1e-12, 'sideways');
+  for (const [metres, round] of [[0.9, 1], [1, 1], [1.01, 2], [3, 5], [7, 10], [12, 20]]) assert.equal(roundRange(metres), round);
+  // Cells of a map: runs of one state, each cell once, within reach. Two words of 4 x 4 cells; the first row is `free free occupied unknown`, twice.
+  const map = { message: { word: Uint32Array.from([0b00011010, 0b00011010]) }, geometry: { left: 10, top: 5, cell: 0.5, words: 2 } };
+  assert.deepEqual([...mapRuns(map, [12, 4], 50)].map(({ state, left, right, top, bottom }) => [state, left, right, top, bottom]), [[2, 10, 11, 5, 4.5], [1, 11, 11.5, 5, 4.5], [2, 12, 13, 5, 4.5], [1, 13, 13.5, 5, 4.5]]);
+  assert.deepEqual([...mapRuns(map, [50, 50])], [], 'out of reach');
+}
+{
+  // Poses at an image's time lie between updates, with height and tilt; without a state of that time, its age is stated.
+  const fleet = new Fleet({ movers, extent, origin }), overlay = new OverlayState(fleet), none = { origin: [0, 0, 0], stride: 1 };
+  const cloud = (mover) => ({ mover, type: 1, sensor: 0, planar: true, position: [0, 0, 0], points: [] });
+  for (const [time, x, z, roll] of [[1, 0, 0, 0], [1.1, 0.2, 0.1, 0.4]]) {
+    fleet.update({ tick: 0, states: [state(0, [x, 0, 0], { pose: { x, y: 0, yaw: 0, z } })] }, time, time);
+    overlay.take({ ...none, tilts: [{ mover: 0, roll, pitch: 0 }], clouds: [cloud(0)] }, time);
+  }
+  nearAll(overlay.poseAt(0, 1.05).p, [0.1, 0, 0.05], 1e-9, 'between');
+  nearAll(overlay.poseAt(0, 1.05).R, transformOf([0, 0, 0, 0], { roll: 0.2, pitch: 0 }).R, 1e-9, 'its tilt');
+  assert.equal(overlay.poseAt(1, 1.05), null, 'absent');
+  near(overlay.poseAt(0, 1.3).late, 0.2, 1e-9, 'no state of that time');
+  for (const [time, nearest] of [[0.9, 1], [1.04, 1], [1.06, 1.1], [2, 1.1]]) assert.equal(overlay.cloudsAt(0, time)[0].time, nearest, `cloud at ${time}`);
+  assert.deepEqual([overlay.cloudsAt(-1, 1).length, overlay.cloudsAt(1, 1).length], [1, 0], 'of all robots, of another one');
+  overlay.take({ ...none, tilts: [], clouds: [] }, 0);
+  assert.equal(overlay.cloudsAt(0, 1).length, 0, 'a restarted run');
 }

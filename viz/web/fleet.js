@@ -75,20 +75,20 @@ export class Fleet {
   }
 
   /**
-   * Returns [x, y, yaw] of a robot at a time [s]: interpolated between updates, extrapolated by the twist before the
+   * Returns [x, y, yaw, z] of a robot at a time [s]: interpolated between updates, extrapolated by the twist before the
    * first stored one; null if the time is after the last update.
    */
   poseAt(i, time) {
     const after = this.past.findIndex((update) => update.time >= time - 1e-6), next = this.past[after]?.states[i];
     if (!next) return null;
-    const { x, y, yaw } = next.pose, late = Math.max(0, this.past[after].time - time);
+    const { x, y, yaw, z = 0 } = next.pose, late = Math.max(0, this.past[after].time - time);
     const before = this.past[after - 1], last = before?.states[i]?.pose;
     if (last) {
       const share = late / (this.past[after].time - before.time);
-      return [x + share * (last.x - x), y + share * (last.y - y), yaw + share * shortestTurn(last.yaw - yaw)];
+      return [x + share * (last.x - x), y + share * (last.y - y), yaw + share * shortestTurn(last.yaw - yaw), z + share * ((last.z ?? z) - z)];
     }
     const { forward, left, turn } = next.velocity, middle = yaw - 0.5 * late * turn;
-    return [x - late * (forward * Math.cos(middle) - left * Math.sin(middle)), y - late * (forward * Math.sin(middle) + left * Math.cos(middle)), yaw - late * turn];
+    return [x - late * (forward * Math.cos(middle) - left * Math.sin(middle)), y - late * (forward * Math.sin(middle) + left * Math.cos(middle)), yaw - late * turn, z];
   }
 
   isStuck(i) { return !this.absent[i] && this.time - this.heldSince[i] >= stuckAfter; }

@@ -6,11 +6,11 @@ import { keyName } from './key_name.js';
 export const pressed = new Set();
 
 /** The list of keys in the page's help, with their effects. */
-export const keyHelp = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow the robot'], ['V', 'three-dimensional or plan view; drags turn it, with Shift or the right button they pan'], ['D', 'drive the robot'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'recording: one second back, forward'], ['Esc', 'close, stop driving, clear the selection']];
+export const keyHelp = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow the robot'], ['V', 'three-dimensional or plan view; drags turn it, with Shift or the right button they pan'], ['C', 'over the image of a camera'], ['D', 'drive the robot'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'recording: one second back, forward'], ['Esc', 'close, stop driving, clear the selection']];
 
 // Letters as without caps lock.
 const keys = {
-  ' ': (page) => page.togglePaused(), n: (page) => page.step(), 'Shift r': (page) => page.reset(), t: (page) => page.toggleTheme(), f: (page) => page.toggleFollowing(), d: (page) => page.toggleDriving(), v: (page) => page.toggleThird(),
+  ' ': (page) => page.togglePaused(), n: (page) => page.step(), 'Shift r': (page) => page.reset(), t: (page) => page.toggleTheme(), f: (page) => page.toggleFollowing(), d: (page) => page.toggleDriving(), v: (page) => page.toggleThird(), c: (page) => page.toggleCamera(),
   '+': (page) => page.zoom(1.25), '=': (page) => page.zoom(1.25), '-': (page) => page.zoom(0.8), '0': (page) => page.fitAll(), Home: (page) => page.fitAll(),
   '[': (page) => page.nextRobot(-1), ']': (page) => page.nextRobot(1), l: (page) => page.openPopup('layers'), '?': (page) => page.openPopup('help'),
   '/': (page) => page.search(), Escape: (page) => page.escape(), ',': (page) => page.seekBy(-1), '.': (page) => page.seekBy(1),
@@ -19,7 +19,7 @@ const keys = {
 const pans = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 export function keyDown(event, page) {
-  const typing = event.target.matches('input[type=search], select, #slider');
+  const typing = event.target.matches('input[type=search], input[type=url], input[type=number], select, #slider');
   const forSigns = event.getModifierState('AltGraph');  // some layouts need AltGr for brackets, which counts as Ctrl+Alt
   if (!forSigns && (event.ctrlKey || event.metaKey || event.altKey)) return;
   if (typing && event.key === 'Escape') return event.target.blur();

@@ -18,7 +18,8 @@ const seconds = () => performance.now() / 1000;
 
 let scene, camera, fleet, drawing, panel, connection;
 let paused = false, speed = 1, following = false, driving = false, sliding = false, dirty = true, time = 0;
-let third = null;  // the three-dimensional view, once it was opened
+let third = null, over = null;  // the three-dimensional view and that over a camera's image, once they were opened
+let mode = 'plan';  // or 'third', 'camera'
 let runs = null, shapes = 0, range = [0, 0];
 const readings = new HeldReadings();
 
@@ -230,19 +231,26 @@ function fitAll() {
   dirty = true;
 }
 
-const inThird = () => !$('view-3d').hidden;
+const inThird = () => mode === 'third', inCamera = () => mode === 'camera';
 
-/** The plan view does not load the three-dimensional one, and the server sends it no clouds. */
-async function toggleThird() {
-  if (toggleThird.isLoading) return;
-  toggleThird.isLoading = true;
+/** The plan view does not load the other ones, and the server sends it neither clouds nor images. */
+async function setMode(next) {
+  if (setMode.isLoading) return;
+  setMode.isLoading = true;
   try {
-    if (!third) await openThird();
-    showThird(!inThird());
+    if (next === 'third' && !third) await openThird();
+    if (next === 'camera' && !over) await openCamera();
+    show(next);
   } catch (error) {
     notice(error.message);
   }
-  toggleThird.isLoading = false;
+  setMode.isLoading = false;
+}
+const toggleThird = () => setMode(inThird() ? 'plan' : 'third'), toggleCamera = () => setMode(inCamera() ? 'plan' : 'camera');
+
+async function openCamera() {
+  const { ViewCamera } = await import('./view_camera.js');
+  over = new ViewCamera($('view-camera'), { scene, fleet, drawing, readings, select, onChange: () => { dirty = true; } });
 }
 
 async function openThird() {
@@ -253,11 +261,19 @@ async function openThird() {
   new ResizeObserver(() => { third.resize(); dirty = true; }).observe($('view-3d'));
 }
 
-function showThird(on) {
-  for (const id of ['view', 'legend', 'scale']) $(id).hidden = on;
-  for (const id of ['view-3d', 'notes']) $(id).hidden = !on;
-  $('third').setAttribute('aria-pressed', String(on));
-  if (on) third.subscribe(connection, () => { dirty = true; }); else third.unsubscribe(connection);
+function subscribeView() {
+  if (inThird()) third.subscribe(connection, () => { dirty = true; });
+  if (inCamera()) over.subscribe(connection);
+}
+
+function show(next) {
+  if (inThird()) third.unsubscribe(connection);
+  if (inCamera()) over.unsubscribe(connection);
+  mode = next;
+  for (const [id, shown] of [['view', 'plan'], ['legend', 'plan'], ['scale', 'plan'], ['view-3d', 'third'], ['notes', 'third'], ['view-camera', 'camera']]) $(id).hidden = shown !== mode;
+  $('third').setAttribute('aria-pressed', String(inThird()));
+  $('camera').setAttribute('aria-pressed', String(inCamera()));
+  subscribeView();
   dirty = true;
 }
 
@@ -319,7 +335,7 @@ function animate() {
   const waiting = inThird() && third.isWaiting;
   if ((dirty || moving || blinking || waiting) && (!inThird() || third.isDue())) {
     dirty = false;
-    if (inThird()) drawThird(); else drawPlan();
+    if (inThird()) drawThird(); else if (inCamera()) over.frame(); else drawPlan();
     ++counters.frames;
   }
   panel.draw(now, drawing.maps);
@@ -386,7 +402,7 @@ function selectAt(px, py) {
 /** The effects of keys and pointer (input.js). */
 const actions = {
   get driving() { return driving; }, get following() { return following; },
-  drag: pan, escape, fitAll, nextRobot, openPopup, pan, reset, search, seekBy, selectAt, setFastest, setSpeed, step, toggleDriving, toggleFollowing, togglePaused, toggleTheme, toggleThird, zoom,
+  drag: pan, escape, fitAll, nextRobot, openPopup, pan, reset, search, seekBy, selectAt, setFastest, setSpeed, step, toggleDriving, toggleFollowing, togglePaused, toggleCamera, toggleTheme, toggleThird, zoom,
 };
 
 function listen() {
@@ -396,6 +412,7 @@ function listen() {
   $('speed').onchange = () => setSpeed(Number($('speed').value));
   $('fit').onclick = fitAll;
   $('third').onclick = toggleThird;
+  $('camera').onclick = toggleCamera;
   $('follow').onclick = toggleFollowing;
   $('layers').onclick = () => openPopup('layers');
   $('help').onclick = () => openPopup('help');
@@ -408,7 +425,7 @@ function listen() {
   $('slider').onchange = () => { sliding = false; };
   listenToKeys(actions);
   listenToPointer($('view'), actions);
-  new ResizeObserver(() => { if (inThird()) return; drawing.resize(); dirty = true; }).observe($('view'));
+  new ResizeObserver(() => { if (mode !== 'plan') return; drawing.resize(); dirty = true; }).observe($('view'));
 }
 
 // Connection
@@ -456,7 +473,7 @@ function connect() {
     dirty = true;
   });
   connection.subscribe('/lights', (message) => { drawing.lights = message.lights; dirty = true; });
-  if (inThird()) third.subscribe(connection, () => { dirty = true; });
+  subscribeView();
   const row = drawing.selected;
   drawing.selected = -1;
   select(row);
@@ -499,7 +516,7 @@ async function start() {
   $('follow').disabled = true;
   connect();
   // For tests, and for the browser's console.
-  window.view = { scene, camera, fleet, drawing, panel, counters, select, get paused() { return paused; }, get time() { return time; }, get connection() { return connection; }, get third() { return third; } };
+  window.view = { scene, camera, fleet, drawing, panel, counters, select, get paused() { return paused; }, get time() { return time; }, get connection() { return connection; }, get third() { return third; }, get over() { return over; } };
   requestAnimationFrame(animate);
 }
 

@@ -18,15 +18,23 @@ export class Connection extends EventTarget {
     this.#socket.onmessage = ({ data }) => (typeof data === 'string' ? this.#text(JSON.parse(data)) : this.#binary(new DataView(data)));
   }
 
-  /** @param onMessage called with (message, time in s); `read: false` passes the bytes as a DataView */
-  subscribe(topic, onMessage, { read = true } = {}) {
-    this.#wanted.set(topic, { onMessage, read, id: 0 });
+  /**
+   * @param onMessage called with (message, time in s); `read: false` passes the bytes as a DataView
+   * @param owner of the subscription: several may subscribe to one topic, and a later one gets the newest message at once
+   */
+  subscribe(topic, onMessage, { read = true, owner = 'page' } = {}) {
+    if (!this.#wanted.has(topic)) this.#wanted.set(topic, { listeners: new Map(), read, id: 0, last: null });
+    const { listeners, last } = this.#wanted.get(topic);
+    listeners.set(owner, onMessage);
     this.#trySubscribe(topic);
+    if (last) onMessage(...last);
   }
-  unsubscribe(topic) {
+  unsubscribe(topic, owner = 'page') {
     const wish = this.#wanted.get(topic);
+    wish?.listeners.delete(owner);
+    if (!wish || wish.listeners.size > 0) return;
     this.#wanted.delete(topic);
-    if (!wish?.id) return;
+    if (!wish.id) return;
     this.#subscriptions.delete(wish.id);
     this.#send({ op: 'unsubscribe', subscriptionIds: [wish.id] });
   }
@@ -115,7 +123,8 @@ export class Connection extends EventTarget {
         const wish = this.#subscriptions.get(view.getUint32(1, true));
         if (!wish) break;
         const time = Number(view.getBigUint64(5, true)) * 1e-9;
-        wish.onMessage(wish.reader(new DataView(view.buffer, 13)), time);
+        wish.last = [wish.reader(new DataView(view.buffer, 13)), time];
+        for (const onMessage of wish.listeners.values()) onMessage(...wish.last);
         break;
       }
       case 2: this.#tell('time', Number(view.getBigUint64(1, true)) * 1e-9); break;
