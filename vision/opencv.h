@@ -1,7 +1,7 @@
 #pragma once
-// The interface to OpenCV: fiducial dictionaries, detection, image files, cameras, calibration. OpenCV's libraries need
-// 50 MB and 0.4 s to load, so this part is a plug-in (vision/opencv/, `sensorfarm_opencv.so`) that is loaded at first
-// use.
+// The interface to OpenCV: fiducial dictionaries, detection, image files, cameras, calibration, painted lines. OpenCV's
+// libraries need 50 MB and 0.4 s to load, so this part is a plug-in (vision/opencv/, `sensorfarm_opencv.so`) that is
+// loaded at first use.
 //
 // All functions throw base::InputError for invalid user input; OpenCV's exceptions do not escape.
 
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "vision/camera.h"
+#include "vision/ground_raster.h"
 #include "vision/image.h"
 #include "vision/tag_pattern.h"
 
@@ -38,6 +39,16 @@ class TagFinder {
   /// image. @param image grey @param region within the image
   /// @return false if the image has no pixels or OpenCV fails on it; `found` is then empty
   virtual bool find(const Image& image, const Region& region, std::vector<TagOutline>& found) = 0;
+};
+
+/// Finds painted lines on the ground. Not thread-safe.
+class PaintFinder {
+ public:
+  virtual ~PaintFinder() = default;
+  /// @param image grey, of the size of the camera's images
+  /// @param ground out, grey: the image as a raster of the ground, 0 where it sees nothing, else more
+  /// @param paint out, grey: brightness above that of the ground beside a line, 0 where there is no line
+  virtual void find(const Image& image, Image& ground, Image& paint) = 0;
 };
 
 /// Greyscale images from a device, a video or a folder. Not thread-safe.
@@ -132,6 +143,9 @@ struct OpenCv {
                            int height);
   /// Sets a camera's pose in the world from at least four points, not on one line, and their pixels.
   void (*place)(const std::vector<glm::dvec3>& places, const std::vector<glm::dvec2>& pixels, Camera& camera);
+  /// @param pixels of the raster's cells (`pixels_of`)
+  std::unique_ptr<PaintFinder> (*make_paint_finder)(const GroundRaster& raster, const PaintLines& lines,
+                                                    const std::vector<glm::dvec2>& pixels);
 };
 
 /// The only symbol of the plug-in: `extern "C" const OpenCv sensorfarm_opencv`.

@@ -17,5 +17,6 @@ const sf::vision::OpenCv sensorfarm_opencv{
     .find_board = sf::vision::find_board,
     .calibrate = sf::vision::calibrate,
     .place = sf::vision::place,
+    .make_paint_finder = sf::vision::make_paint_finder,
 };
 }
