@@ -18,6 +18,7 @@ extern const ControllerType avoid_controller;
 extern const ControllerType convoy_controller;
 extern const ControllerType docking_controller;
 extern const ControllerType explore_controller;
+extern const ControllerType lane_camera_controller;
 extern const ControllerType lane_keeping_controller;
 extern const ControllerType magnet_keeping_controller;
 extern const ControllerType patrol_controller;
@@ -29,9 +30,9 @@ namespace {
 
 std::vector<const ControllerType*>& all() {
   static std::vector<const ControllerType*> types{
-      &avoid_controller,        &convoy_controller,         &docking_controller, &explore_controller,
-      &lane_keeping_controller, &magnet_keeping_controller, &patrol_controller,  &remote_controller,
-      &route_controller,        &wander_controller,
+      &avoid_controller,       &convoy_controller,       &docking_controller,        &explore_controller,
+      &lane_camera_controller, &lane_keeping_controller, &magnet_keeping_controller, &patrol_controller,
+      &remote_controller,      &route_controller,        &wander_controller,
   };
   return types;
 }

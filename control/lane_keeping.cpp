@@ -30,18 +30,22 @@ namespace {
 constexpr double kLeastAhead = 0.1;  // [m] lower bound of the sensor's distance ahead
 constexpr double kMostAhead = 2.0;   // [rad/s] upper bound of gain times distance ahead, for stability at 10 Hz
 
+}  // namespace
+
+// A unicycle at speed v whose error is measured l ahead of it obeys e'' + kp l e' + kp v e = 0. The damping ratio is 1
+// / sqrt(2) for kp = 2 v / l^2. Player's driver for the Create turns twice as much as commanded.
+double damped_gain(const world::Mover& mover, double ahead, double speed) {
+  const double l = std::max(ahead, kLeastAhead);
+  const double gain = std::min(2.0 * speed / (l * l), kMostAhead / l);
+  return mover.actuator_model == world::ActuatorModel::player_create ? 0.5 * gain : gain;
+}
+
+namespace {
+
 const world::Sensor* find_sensor(const world::Mover& mover) {
   const auto found = std::find_if(mover.sensors.begin(), mover.sensors.end(),
                                   [](const world::Sensor& sensor) { return sensor.type == "laneedge"; });
   return found == mover.sensors.end() ? nullptr : &*found;
-}
-
-// A unicycle at speed v whose error is measured l ahead of it obeys e'' + kp l e' + kp v e = 0. The damping ratio is 1
-// / sqrt(2) for kp = 2 v / l^2. Player's driver for the Create turns twice as much as commanded.
-double damped_gain(const world::Mover& mover, const LaneSettings& lane) {
-  const double ahead = std::max(lane.p_MS.x, kLeastAhead);
-  const double gain = std::min(2.0 * lane.speed / (ahead * ahead), kMostAhead / ahead);
-  return mover.actuator_model == world::ActuatorModel::player_create ? 0.5 * gain : gain;
 }
 
 std::unique_ptr<Controller> make_lane_keeping(const ControllerContext& context, Settings& settings) {
@@ -55,7 +59,7 @@ std::unique_ptr<Controller> make_lane_keeping(const ControllerContext& context, 
   LaneSettings lane;
   lane.speed = settings.number("speed", std::min(lane.speed, mover.max_forward), 0.0, mover.max_forward);
   lane.p_MS = {sensor->X_MS.x, sensor->X_MS.y};
-  lane.gains = read_gains(settings, {.kp = damped_gain(mover, lane)});
+  lane.gains = read_gains(settings, {.kp = damped_gain(mover, lane.p_MS.x, lane.speed)});
   lane.hold = settings.number("hold", lane.hold, 0.0, 1e6);
   if (settings.has("half_width")) lane.half_width = settings.number("half_width", 0.0, 1e-3, 1e3);
   if (!lane.half_width && !task.known())

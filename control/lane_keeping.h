@@ -29,6 +29,10 @@ class LaneKeeping final : public PathFollower {
   LaneSettings settings_;
 };
 
+/// Returns the gain [rad/s per m] with which a robot returns to its lane without oscillation.
+/// @param ahead [m] of the robot's origin: where the error is measured @param speed [m/s]
+double damped_gain(const world::Mover& mover, double ahead, double speed);
+
 extern const ControllerType lane_keeping_controller;
 
 }  // namespace sf::control

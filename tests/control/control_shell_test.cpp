@@ -157,7 +157,7 @@ TEST(MakeController, NamesTheControllerInErrors) {
   const world::World world = shell_world();
   const std::string at = "s.toml:3: ";
   const std::vector<Refused> cases = {
-      {"wanter", {}, "docking, explore, lane-keeping, magnet-keeping, patrol"},
+      {"wanter", {}, "docking, explore, lane-camera, lane-keeping, magnet-keeping, patrol"},
       {"wander", {{"start", std::string("later"), at}}, "s.toml:3: 'start' of controller 'wander' is 'later'"},
       {"wander", {{"wait_on_bumper", 1.0, at}}, "expects true or false"},
       {"wander",
