@@ -27,6 +27,7 @@ extern const ExperimentType accuracy_experiment;
 extern const ExperimentType mrclam_experiment;
 extern const ExperimentType sideslip_experiment;
 extern const ExperimentType lane_sensor_experiment;
+extern const ExperimentType lane_camera_experiment;
 extern const ExperimentType monitor_experiment;
 extern const ExperimentType links_experiment;
 extern const ExperimentType follow_experiment;
@@ -39,8 +40,9 @@ std::span<const ExperimentType* const> experiments() {
       &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,       &magnet_pi_experiment,
       &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
       &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment,       &mrclam_experiment,
-      &sideslip_experiment,    &lane_sensor_experiment,  &monitor_experiment,        &links_experiment,
-      &follow_experiment,      &budget_experiment,       &location_experiment,       &tree_experiment};
+      &sideslip_experiment,    &lane_sensor_experiment,  &lane_camera_experiment,    &monitor_experiment,
+      &links_experiment,       &follow_experiment,       &budget_experiment,         &location_experiment,
+      &tree_experiment};
   return kKinds;
 }
 
