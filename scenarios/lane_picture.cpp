@@ -1,9 +1,11 @@
 #include "scenarios/lane_picture.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <span>
+#include <vector>
 
-#include "base/elementary.h"
+#include "base/png.h"
 #include "control/lane_view.h"
 #include "farm/farm.h"
 #include "sensors/camera.h"
@@ -32,11 +34,11 @@ std::vector<glm::dvec2> parallel(const vision::Lane& lane, double left, double f
   return points;
 }
 
-vision::Image enlarged(const vision::Image& small, int columns, int rows) {
-  vision::Image large{columns, rows, 3, std::vector<std::uint8_t>(static_cast<std::size_t>(3) * columns * rows, 255)};
-  for (int v = 0; v < std::min(rows, kScale * small.height); ++v)
-    for (int u = 0; u < std::min(columns, kScale * small.width); ++u)
-      for (int c = 0; c < 3; ++c) large.at(u, v)[c] = small.at(u / kScale, v / kScale)[small.channels == 3 ? c : 0];
+vision::Image enlarged(const vision::Image& small) {
+  vision::Image large{kScale * small.width, kScale * small.height, 3, {}};
+  for (int v = 0; v < large.height; ++v)
+    for (int u = 0; u < large.width; ++u)
+      for (int c = 0; c < 3; ++c) large.pixels.push_back(small.at(u / kScale, v / kScale)[small.channels == 3 ? c : 0]);
   return large;
 }
 
@@ -52,14 +54,51 @@ vision::Image side_by_side(const vision::Image& left, const vision::Image& right
   return both;
 }
 
-/// Pixels of points on the ground; those behind the camera are left out.
-std::vector<glm::dvec2> in_image(const sensors::CameraSettings& camera, const std::vector<glm::dvec2>& ground) {
-  std::vector<glm::dvec2> pixels;
-  for (const glm::dvec2& p : ground) {
-    const glm::dvec3 q = glm::transpose(camera.X_MS.R) * (glm::dvec3(p, 0.0) - camera.X_MS.p);
-    if (q.x > 0.05) pixels.push_back(in_picture(base::pixel_of(camera.lens, {-q.y / q.x, -q.z / q.x})));
+/// The camera's image, with lines on the ground.
+vision::Image drawn_image(const sensors::CameraSettings& camera, std::span<const double> values,
+                          const std::vector<vision::Mark>& lines) {
+  vision::Image picture = enlarged({static_cast<int>(camera.width), static_cast<int>(camera.height), 3,
+                                    base::color_bytes(values, camera.columns())});
+  std::vector<vision::Mark> marks;
+  for (const vision::Mark& line : lines) {
+    std::vector<glm::dvec2> pixels;
+    for (const glm::dvec2& p : line.points) {
+      const glm::dvec3 q = glm::transpose(camera.X_MS.R) * (glm::dvec3(p, 0.0) - camera.X_MS.p);
+      if (q.x > 0.05) pixels.push_back(in_picture(base::pixel_of(camera.lens, {-q.y / q.x, -q.z / q.x})));
+    }
+    marks.push_back({pixels, "", line.color, 2});
   }
-  return pixels;
+  vision::opencv().draw(picture, marks);
+  return picture;
+}
+
+/// The ground, with points of paint and lines.
+vision::Image drawn_ground(const vision::GroundRaster& raster, const vision::Image& ground,
+                           const std::vector<glm::dvec2>& points, const std::vector<vision::Mark>& lines) {
+  vision::Image picture = enlarged(ground);
+  const auto pixel = [&](glm::dvec2 p) {
+    return in_picture({0.5 * raster.columns() - p.y / raster.cell - 0.5, (raster.far - p.x) / raster.cell - 0.5});
+  };
+  std::vector<vision::Mark> marks;
+  for (std::size_t i = 0; i < points.size(); i += kEvery) {
+    const glm::dvec2 at = pixel(points[i]), half{2.0, 0.0};
+    marks.push_back({{at - half, at + half}, "", kPaint, 3});
+  }
+  for (vision::Mark line : lines) {
+    std::ranges::transform(line.points, line.points.begin(), pixel);
+    marks.push_back(std::move(line));
+  }
+  vision::opencv().draw(picture, marks);
+  return picture;
+}
+
+/// The lane's edges and middle [m] in the robot's frame; empty without a lane.
+std::vector<vision::Mark> lane_lines(const vision::LaneTracker& tracker, double far) {
+  std::vector<vision::Mark> lines;
+  for (const double side : {-0.5, 0.0, 0.5})
+    if (tracker.has_lane())
+      lines.push_back({parallel(tracker.lane(), side * tracker.lane().width, far), "", side == 0.0 ? kMiddle : kEdge});
+  return lines;
 }
 
 }  // namespace
@@ -69,40 +108,18 @@ void draw_lane_view(const Scenario& scenario, const LaneVariant& variant, gpu::D
   const world::World world = lane_world(scenario, variant);
   const std::uint32_t probe = probe_of(world);
   farm::Farm farm(world, device, {});
-  const base::ReadingBlock reading = farm.sense(
-      probe, sensors::kCamera, 0, base::compose(pose_on(lane_course(world), kPlace), {0.0, kOffset, 0.0, 0.0}));
+  const base::Pose X_WM = base::compose(pose_on(lane_course(world), kPlace), base::Pose{0.0, kOffset, 0.0, 0.0});
+  const base::ReadingBlock reading = farm.sense(probe, sensors::kCamera, 0, X_WM);
   const auto& camera = farm.sensor_set().settings_of<sensors::CameraSettings>(sensors::kCamera, probe)[0];
   const vision::GroundRaster raster;
   control::LaneView view(raster, {}, camera);
   const std::vector<glm::dvec2> points = view.look(reading.values);
   vision::LaneTracker tracker{vision::LaneLimits{}};
   for (int k = 0; k < 3; ++k) tracker.update(points);
-  vision::Image image{static_cast<int>(camera.width), static_cast<int>(camera.height), 3, {}};
-  for (std::size_t i = 0; i < reading.values.size(); i += camera.columns())
-    for (int shift = 16; shift >= 0; shift -= 8)
-      image.pixels.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(reading.values[i + 1]) >> shift));
-  vision::Image left = enlarged(image, kScale * image.width, kScale * image.height),
-                right = enlarged(view.ground(), kScale * raster.columns(), kScale * raster.rows());
-  std::vector<vision::Mark> in_left, in_right;
-  const auto on_ground = [&](glm::dvec2 p) {
-    return in_picture({0.5 * raster.columns() - p.y / raster.cell - 0.5, (raster.far - p.x) / raster.cell - 0.5});
-  };
-  for (std::size_t i = 0; i < points.size(); i += kEvery) {
-    const glm::dvec2 at = on_ground(points[i]), half{2.0, 0.0};
-    in_right.push_back({{at - half, at + half}, "", kPaint, 3});
-  }
-  for (const double side : {-0.5, 0.0, 0.5}) {
-    if (!tracker.has_lane()) break;
-    const auto line = parallel(tracker.lane(), side * tracker.lane().width, raster.far);
-    const auto color = side == 0.0 ? kMiddle : kEdge;
-    in_left.push_back({in_image(camera, line), "", color, 2});
-    std::vector<glm::dvec2> above;
-    std::ranges::transform(line, std::back_inserter(above), on_ground);
-    in_right.push_back({above, "", color, 1});
-  }
-  vision::opencv().draw(left, in_left), vision::opencv().draw(right, in_right);
-  const vision::Image both = side_by_side(left, right);
-  viz::write_png(file, both.pixels, both.width, both.height, viz::PngContent::photograph);
+  const std::vector<vision::Mark> lines = lane_lines(tracker, raster.far);
+  const vision::Image both =
+      side_by_side(drawn_image(camera, reading.values, lines), drawn_ground(raster, view.ground(), points, lines));
+  viz::write_png(file, both.pixels, both.width, both.height, base::PngContent::photograph);
 }
 
 }  // namespace sf::scenarios
