@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/commands/camera_video.h"
 #include "apps/commands/scan_replay.h"
 #include "apps/processes/stop_signals.h"
 #include "apps/reports/progress_line.h"
@@ -45,6 +46,7 @@ class MissingScans {
 }  // namespace
 
 void write_recorded_video(RecordingPart& part, const VideoOptions& options, const std::string& device) {
+  if (!options.video_camera.empty()) return write_camera_video(part, options);
   const record::Recording& recording = part.recording;
   world::World world = scenarios::recorded_world(recording);
   scenarios::RecordedShapes shapes(recording, world);

@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "apps/commands/frame_writer.h"
-#include "apps/commands/numbered_files.h"
 #include "apps/options/robot_names.h"
 #include "apps/reports/report.h"
-#include "apps/reports/text.h"
 #include "base/displacement.h"
 #include "base/echo.h"
 #include "base/elementary.h"
@@ -22,8 +19,6 @@
 #include "base/time.h"
 #include "robots/kinematics.h"
 #include "scenarios/experiment.h"
-#include "viz/png.h"
-#include "viz/video_file.h"
 
 namespace sf::apps {
 
@@ -116,10 +111,7 @@ class RunVideo::Work {
     std::sort(chosen.begin(), chosen.end());
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     choose_sensors(chosen);
-    if (options.frames.empty())
-      file_.emplace(options.video, viz::VideoFormat{options.video_width, options.video_height, options.video_fps});
-    else
-      begin_numbered_files(options.frames, "", ".png");
+    sink_.emplace(options, options.video_width, options.video_height);
     start_writer();
   }
 
@@ -151,20 +143,13 @@ class RunVideo::Work {
       while (frame_time() < end - 1) add_frame(frame_time());
     }
     writer_->finish();
-    if (file_) file_->finish();
-    VideoFacts facts{file_ ? options_.video : options_.frames, frames_,
-                     static_cast<double>(frames_) / options_.video_fps};
-    std::error_code ignored;
-    if (file_) facts.bytes = std::filesystem::file_size(options_.video, ignored);
-    return facts;
+    return sink_->finish();
   }
 
  private:
   void start_writer() {
-    writer_.emplace(viz::RunView(world_, view_options(world_, options_)), [this](const viz::PixelImage& image) {
-      if (file_) return file_->add(image);
-      viz::write_png(fmt::format("{}/{:06}.png", options_.frames, images_++), image.rgb, image.width, image.height);
-    });
+    writer_.emplace(viz::RunView(world_, view_options(world_, options_)),
+                    [this](const viz::PixelImage& image) { sink_->add(image); });
   }
 
   using Key = std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>;  // mover, type, index of the sensor
@@ -223,11 +208,10 @@ class RunVideo::Work {
   std::map<Key, Shown> shown_;
   Moment before_, now_;  ///< the last two ticks
   bool started_ = false;
-  std::int64_t start_ = 0;    ///< [ns] of the first tick
-  std::uint64_t frames_ = 0;  ///< so far
-  std::uint64_t images_ = 0;  ///< files written by the writer's thread
-  std::optional<viz::VideoFile> file_;
-  std::optional<FrameWriter> writer_;  ///< destroyed before the file
+  std::int64_t start_ = 0;             ///< [ns] of the first tick
+  std::uint64_t frames_ = 0;           ///< so far
+  std::optional<FrameSink> sink_;      ///< used by the writer's thread
+  std::optional<FrameWriter> writer_;  ///< destroyed before the sink
 };
 
 RunVideo::RunVideo(const world::World& world, record::RunInfo info, const VideoOptions& options,
@@ -241,11 +225,5 @@ void RunVideo::write(const base::TickRecord& tick) { work_->write(tick); }
 void RunVideo::add_movers(const world::World& world) { work_->add_movers(world); }
 
 VideoFacts RunVideo::finish() { return work_->finish(); }
-
-std::string video_text(const VideoFacts& facts) {
-  std::string text = fmt::format("{}, {:g} s", counted(facts.frames, "frame"), facts.seconds);
-  if (facts.bytes > 0) text += fmt::format(", {:.2f} MB", 1e-6 * static_cast<double>(facts.bytes));
-  return text;
-}
 
 }  // namespace sf::apps

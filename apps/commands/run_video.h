@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/commands/frame_sink.h"
 #include "apps/options/options.h"
 #include "base/tick_record.h"
 #include "record/run_info.h"
@@ -15,16 +16,6 @@ namespace sf::apps {
 /// Returns the rows of the movers named in an option (apps/robot_names.h). @throws base::InputError for a name that the
 /// world lacks
 std::vector<std::size_t> rows_of(const world::World& world, const std::vector<std::string>& texts);
-
-struct VideoFacts {
-  std::string file;  ///< or folder of the frames; empty: none
-  std::uint64_t frames = 0;
-  double seconds = 0.0;     ///< [s] of video
-  std::uint64_t bytes = 0;  ///< of the file; 0 for frames
-};
-
-/// "250 frames, 10 s, 1.2 MB".
-std::string video_text(const VideoFacts& facts);
 
 /// Frame k at F frames per second shows the simulated time k / F times the speed after the first tick. Poses are
 /// interpolated between ticks; readings are the newest at that time. The queue of frames is bounded and no frame is

@@ -23,7 +23,6 @@ namespace {
 constexpr const char* kWorld = "World file";
 constexpr const char* kAccuracy = "Accuracy";
 constexpr const char* kDevice = "Device";
-constexpr const char* kVideoGroup = "Video (docs/figures.md)";
 constexpr const char* kNaming = "Names of topics and frames (docs/bridges.md)";
 constexpr const char* kPorts = "Ports of sensor packets (first + robot id * ports per robot + sensor)";
 
@@ -178,6 +177,7 @@ CLI::Option* add_compression(CLI::App& app, CompressionOption& o) {
              "Compression of recordings: zstd, or none (twice as large, but no tick is lost if the process is killed)")
       ->default_str("zstd");
 }
+
 CLI::Option* add_images(CLI::App& app, ImagesOption& o) {
   using record::ImageMessages;
   return add_choice<ImageMessages, ImageMessages>(
@@ -186,7 +186,6 @@ CLI::Option* add_images(CLI::App& app, ImagesOption& o) {
              "Messages with the images of cameras in recordings: png (CompressedImage), raw (Image), or both")
       ->default_str("png");
 }
-
 
 void add_wire(CLI::App& app, WireOption& o) {
   using sensors::WireFormat;

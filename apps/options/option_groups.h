@@ -111,6 +111,8 @@ void add_map_colors(CLI::App& app, PageOption& o);
 void add_extent(CLI::App& app, PageOption& o);
 /// Adds `--format` for pictures in a folder.
 void add_format(CLI::App& app, std::string& format);
+/// Heading in the help.
+inline constexpr const char* kVideoGroup = "Video (docs/figures.md)";
 /// Adds the options for a video's appearance. @param wanted option that requests the video
 void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted);
 void add_video(CLI::App& app, VideoOptions& o, const std::string& help);

@@ -77,6 +77,8 @@ struct VideoOptions {
   std::vector<std::string> video_follow;       ///< robots that the camera follows; empty: the camera does not move
   double video_around = 5.0;                   ///< [m] margin around them
   std::vector<std::string> video_readings;     ///< robots whose ranges are drawn
+  std::string video_camera;                    ///< "ROBOT" or "ROBOT:CAMERA" of a recording, whose images are shown
+                                               ///< instead of the world; empty: none
 };
 
 /// The part of a recording that a command processes.
@@ -278,9 +280,9 @@ struct RunOptions : WorldOptions,
                     PortOptions,
                     ThreadsOption,
                     CompressionOption,
+                    ImagesOption,
                     VideoOptions,
                     NamingOption,
-                    ImagesOption,
                     BridgeOptions {
   bool keep_ctrl = false;          ///< `ctrl` of the world file overrides --controller
   std::vector<std::string> drive;  ///< names of the robots that the controller drives; empty: all robots
@@ -313,9 +315,9 @@ struct ServeOptions : WorldOptions,
                       CloneOptions,
                       DurationOption,
                       CompressionOption,
+                      ImagesOption,
                       NamingOption,
                       BridgeOptions {
-                      ImagesOption,
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free port
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
   double radio = netio::kV2vRange;         ///< [m] range beyond which states are not relayed; 0: no states are relayed

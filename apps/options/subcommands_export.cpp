@@ -26,6 +26,19 @@ CLI::Option* add_every(CLI::App& app, double& every, const std::string& help) {
   return app.add_option("--every", every, help)->check(in_seconds(1e-3, 1e6))->type_name("S")->capture_default_str();
 }
 
+/// @param wanted option without which there are no frames
+void add_video_camera(CLI::App& app, VideoOptions& o, const char* wanted) {
+  CLI::Option* const camera = app.add_option("--video-camera", o.video_camera,
+                                             "Camera whose recorded images are the frames, instead of the world from "
+                                             "above: ROBOT, for its first one, or ROBOT:CAMERA")
+                                  ->check(not_empty("the name of a robot"))
+                                  ->needs(wanted)
+                                  ->type_name("CAMERA")
+                                  ->group(kVideoGroup);
+  for (const char* const other : {"--video-size", "--video-extent", "--video-follow", "--video-readings"})
+    camera->excludes(other);
+}
+
 void add_plot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "plot",
@@ -80,6 +93,7 @@ void add_plot(CLI::App& app, Call& call) {
       "Scale of the x axis: auto selects log if successive values have about equal ratios (default: auto)")
       ->group(kSweeps);
   add_video(*sub, o, "Video to write instead of pictures (VP9 in WebM, encoded by FFmpeg)");
+  add_video_camera(*sub, o, "--video");
   add_part(*sub, o);
   add_device(*sub, o);
 }
@@ -218,6 +232,7 @@ void add_view(CLI::App& app, Call& call) {
                      ->excludes("--port")
                      ->type_name("DIR");
   add_video_look(*sub, o, frames);
+  add_video_camera(*sub, o, "--frames");
   auto* window = sub->add_flag("--3d", o.three_d,
                                "Open a 3-D window (VTK): walls, robots, beams, clouds, magnetic field, a time slider")
                      ->excludes(frames)

@@ -8,6 +8,7 @@
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/viz/png.h"
 
 namespace sf {
 namespace {
@@ -175,6 +176,53 @@ TEST_F(Video, WithoutFfmpegTheMessageNamesItsPackage) {
   const Outcome frames =
       Program({"view", record("0.5"), "--frames", folder.path("f"), "--video-size", "64x64"}, {}, "", "", alone).wait();
   EXPECT_EQ(frames.code, 0) << frames.err;
+}
+
+/// A robot at rest with a camera in colours, of an odd width, and one of depths alone.
+std::string record_cameras(const Folder& folder) {
+  const std::string world = folder.write("w.world",
+                                         "position( name \"a\" pose [0 0 0 0] camera( resolution [33 24] rgb 1 ) "
+                                         "camera( resolution [16 18] range [0 4] ) )\n"
+                                         "model( name \"box\" pose [2 0 0 0] size [0.5 0.5 1] color \"gold\" )\n");
+  run_successfully(
+      {"run", world, "--controller", "remote", "--duration", "1", "--record", folder.path("c"), "--record-readings"});
+  return world;
+}
+
+/// Frames are the images that `sense` takes, with the last column repeated, or shades of depths.
+TEST(CameraVideo, FramesAreTheRecordedImages) {
+  const Folder folder;
+  const std::string world = record_cameras(folder);
+  const auto frames = [&](const char* camera) {
+    run_successfully(
+        {"view", folder.path("c"), "--frames", folder.path("f"), "--video-camera", camera, "--video-fps", "10"});
+    EXPECT_TRUE(std::filesystem::exists(folder.path("f/000009.png")));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("f/000010.png"))) << "the last image lasts for its interval";
+    return scenes::read_png(folder.path("f/000009.png"));
+  };
+  run_successfully({"sense", world, "--type", "camera", "--image", "colour", "-o", folder.path("s.png")});
+  const scenes::Picture frame = frames("a"), sensed = scenes::read_png(folder.path("s.png"));
+  ASSERT_EQ(std::pair(frame.width, frame.height), std::pair(34, 24));
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 34; ++x) ASSERT_EQ(frame.at(x, y), sensed.at(std::min(x, 32), y)) << x << ", " << y;
+
+  const scenes::Picture depths = frames("a:camera:1");
+  ASSERT_EQ(std::pair(depths.width, depths.height), std::pair(16, 18));
+  EXPECT_EQ(depths.at(0, 0), kBlack) << "the sky";
+  EXPECT_GT(depths.at(8, 17), depths.at(8, 14)) << "nearer ground is brighter";
+}
+
+TEST(CameraVideo, WrongOptionsAreReported) {
+  const Folder folder;
+  record_cameras(folder);
+  const auto refuse = [&](const Words& more, const std::string& message) {
+    expect_refused(with({"view", folder.path("c"), "--frames", folder.path("f")}, more), message);
+  };
+  refuse({"--video-camera", "b"}, "has no camera 'b'; expected 'a:camera:0', 'a:camera:1'");
+  refuse({"--video-camera", "a", "--video-size", "64x64"}, "--video-size");
+  expect_refused({"view", folder.path("c"), "--video-camera", "a"}, "--video-camera requires --frames");
+  run_successfully({"run", folder.path("w.world"), "--duration", "0.2", "--record", folder.path("d")});
+  expect_refused({"view", folder.path("d"), "--frames", folder.path("f"), "--video-camera", "a"}, "--record-readings");
 }
 
 TEST_F(Video, WrongOptionsAreReported) {
