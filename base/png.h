@@ -23,7 +23,7 @@ std::string encode_png(std::span<const std::uint16_t> grey, int width, int heigh
                        PngContent content = PngContent::figure);
 
 /// Returns the red, green and blue of each pixel of a camera's reading with colours.
-/// @param width numbers per pixel, of which the second is the colour, 0xRRGGBB
+/// @param width numbers per pixel, of which the second is the colour, 0xRRGGBB; others are black
 std::vector<std::uint8_t> color_bytes(std::span<const double> reading, std::size_t width);
 
 }  // namespace sf::base

@@ -34,6 +34,7 @@ PartStatus Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, 
   if (info.status == PacketStatus::accepted) info = inspect_(i, header, payload);
   counts_.packets.add(info.status);
   if (info.status != PacketStatus::accepted) return PartStatus::rejected;
+  if (info.parts == 0) return PartStatus::incomplete;
 
   if (headerless_) synthesise_header(stream, info.part, now, header);
   const ReadingPart part{header.sequence, info.part, info.parts, header.time, header.accuracy};

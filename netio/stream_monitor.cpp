@@ -132,7 +132,8 @@ PacketStatus StreamMonitor::accept(std::size_t i, std::span<const std::uint8_t> 
   if (!s.headerless && header.state.stale) ++s.stale_states;
   if (!s.headerless) s.oldest_state = std::max(s.oldest_state, header.state.age);
   stream.elements += info.elements;
-  if (!s.headerless) count_arrival(stream.tracker, std::uint64_t{header.sequence} * info.parts + info.part);
+  if (!s.headerless && info.parts > 0)
+    count_arrival(stream.tracker, std::uint64_t{header.sequence} * info.parts + info.part);
   return PacketStatus::accepted;
 }
 

@@ -29,7 +29,8 @@ struct PayloadInfo {
   PacketStatus status = PacketStatus::accepted;
   std::uint32_t elements = 0;  ///< beams or other repeated elements in this datagram
   std::uint32_t part = 0;      ///< index of the datagram in its reading
-  std::uint32_t parts = 1;     ///< datagrams per reading, >= 1, the same for all readings of a stream
+  std::uint32_t parts = 1;     ///< datagrams per reading, the same for all readings of a stream; 0: this one belongs to
+                               ///< a file, and is not counted among them
 };
 
 /// Checks any bytes received for stream `stream` (an index into the options' streams) with the header of a reading of

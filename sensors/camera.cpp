@@ -12,6 +12,7 @@
 #include "base/srgb.h"
 #include "sensors/accuracy.h"
 #include "sensors/camera_light.h"
+#include "sensors/image_packets.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
 #include "sensors/settings.h"
@@ -210,7 +211,7 @@ ErrorBound bound_of_camera(const world::World&, const ParsedSensors& sensors, st
   return {error_of(sensors.settings_as<CameraSettings>()[row]), ""};
 }
 
-// Depths are sent as the ranges of lidars are. Colours and normals are not sent.
+// Depths are sent as the ranges of lidars are, colours as a file (sensors/image_packets.h). Normals are not sent.
 
 std::size_t width_of(const SensorSpec& sensor) { return sensor.width != 0 ? sensor.width : 5; }
 
@@ -251,6 +252,13 @@ double wire_error(const SensorSpec& sensor, const base::ReadingBlock& reading) {
 
 PayloadPart decode(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                    WireFormat wire) {
+  const std::uint16_t form = wire == WireFormat::farm ? camera_form(type, payload) : std::uint16_t{0};
+  if (form > kImageForm) return {.fault = PayloadError::out_of_range};
+  if (form == kImageForm) {
+    ImagePart image;
+    const PayloadError fault = read_image(payload, image);
+    return {.fault = fault, .part = image.part, .parts = 0};
+  }
   return decode_lidar(depth_spec(sensor), payload, lidar_form(type), wire);
 }
 

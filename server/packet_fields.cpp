@@ -11,6 +11,7 @@
 #include "netio/packet_forms.h"
 #include "sensors/camera.h"
 #include "sensors/gps.h"
+#include "sensors/image_packets.h"
 #include "sensors/laser_packets.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
@@ -236,17 +237,21 @@ void add_body(const netio::Neighbours& neighbours, Fields& out) {
   }
 }
 
+/// Adds which part of a reading an extended packet carries.
+template <class Part>
+void add_part(const Part& part, Fields& out) {
+  add(out, "total", part.total);
+  add(out, "first", part.first);
+  add(out, "part", part.part);
+  add(out, "parts", part.parts);
+}
+
 /// Adds the columns of a scan, and which part of it an extended packet carries.
 /// @param values element by element, `width` numbers each
 template <class Part>
 void add_scan(const sensors::SensorType& type, const Part& part, bool extended, std::span<const double> values,
               std::size_t width, Fields& out) {
-  if (extended) {
-    add(out, "total", part.total);
-    add(out, "first", part.first);
-    add(out, "part", part.part);
-    add(out, "parts", part.parts);
-  }
+  if (extended) add_part(part, out);
   for (std::size_t column = 0; column < width; ++column) {
     std::vector<double> numbers;
     for (std::size_t i = column; i < values.size(); i += width) numbers.push_back(values[i]);
@@ -296,7 +301,12 @@ PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8
   const netio::PayloadInfo info = inspect_payload({&type, &any}, sensors::WireFormat::farm, header, payload);
   if (info.status != PacketStatus::accepted) return info.status;
   const bool extended = static_cast<std::uint8_t>(header.type) >= sensors::kExtended;
-  if (type.id == sensors::kLidar || type.id == sensors::kCamera) {
+  if (sensors::camera_form(static_cast<std::uint8_t>(header.type), payload) == sensors::kImageForm) {
+    sensors::ImagePart image;
+    sensors::read_image(payload, image);
+    add_part(image, out);
+    add(out, "image", std::vector<double>(image.bytes.begin(), image.bytes.end()));
+  } else if (type.id == sensors::kLidar || type.id == sensors::kCamera) {
     sensors::LidarPart scan;
     sensors::read_lidar(payload, extended, scan);
     add_scan(type, scan, extended, scan.values, scan.width, out);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "netio/packets.h"
+#include "sensors/image_packets.h"
 
 namespace sf::server {
 
@@ -55,9 +57,13 @@ ReadingPublisher::Stream& ReadingPublisher::stream_of(const base::ReadingBlock& 
 }
 
 ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& addressed) {
-  Stream& stream = stream_of(*addressed.reading);
-  return {addressed, sensor_set_.group(addressed.reading->type)->type, &sensor_set_.row(*addressed.reading), &stream,
-          stream.sent};
+  const base::ReadingBlock& reading = *addressed.reading;
+  Stream& stream = stream_of(reading);
+  Job job{addressed, sensor_set_.group(reading.type)->type, &sensor_set_.row(reading), &stream, stream.sent};
+  if (stream.parts > 0 && layout_.wire == sensors::WireFormat::farm)
+    job.image = sensors::image_file(sensor_set_, reading);
+  job.parts = stream.parts + sensors::image_parts(job.image.size());
+  return job;
 }
 
 /// Returns the readings for which bytes are left, in their order.
@@ -126,9 +132,11 @@ std::uint32_t ReadingPublisher::encode(Job& job, Memory& memory, Put&& put) cons
     job.bytes += static_cast<std::uint32_t>(bytes.size());
     put(place, to, bytes);
   };
-  for (std::uint32_t part = 0; part < job.stream->parts; ++part) {
+  for (std::uint32_t part = 0; part < job.parts; ++part) {
     memory.payload.clear();
-    const std::uint8_t type = job.type->encode(*job.row, reading, layout_.wire, part, memory.payload);
+    const std::uint8_t type = part < job.stream->parts
+                                  ? job.type->encode(*job.row, reading, layout_.wire, part, memory.payload)
+                                  : sensors::encode_image(job.image, part - job.stream->parts, memory.payload);
     if (type == 0) {
       ++failed;
     } else if (layout_.wire == sensors::WireFormat::thesis) {
@@ -138,7 +146,7 @@ std::uint32_t ReadingPublisher::encode(Job& job, Memory& memory, Put&& put) cons
       const netio::PacketSigner* signer = job.addressed.signer;
       if (signer != nullptr) netio::sign(memory.packet, signer->key(), job.counter + part);
       send(part, netio::Endpoint{job.addressed.address, port}, memory.packet);
-      if (mirror_) send(job.stream->parts + part, *mirror_, memory.packet);
+      if (mirror_) send(job.parts + part, *mirror_, memory.packet);
     }
   }
   return failed;
@@ -150,16 +158,16 @@ void ReadingPublisher::queue(std::span<const AddressedReading> readings, std::in
   for (const AddressedReading& addressed : admit(readings, now)) {
     Job job = make_job(addressed);
     if (job.stream->parts == 0) continue;
-    if (datagrams + datagrams_of(*job.stream) > outbox_.capacity()) {
+    if (datagrams + datagrams_of(job.parts) > outbox_.capacity()) {
       encode_all();
       datagrams = 0;
     }
     job.place = datagrams;
     // Take counters before the threads start: signatures do not depend on the order of the threads.
-    if (job.addressed.signer != nullptr) job.counter = job.addressed.signer->take(job.stream->parts);
-    datagrams += datagrams_of(*job.stream);
+    if (job.addressed.signer != nullptr) job.counter = job.addressed.signer->take(job.parts);
+    datagrams += datagrams_of(job.parts);
     ++job.stream->sent;
-    jobs_.push_back(job);
+    jobs_.push_back(std::move(job));
   }
   encode_all();
 }
@@ -168,7 +176,7 @@ void ReadingPublisher::queue(std::span<const AddressedReading> readings, std::in
 /// unsent packets are not numbered.
 void ReadingPublisher::encode_all() {
   if (jobs_.empty()) return;
-  const std::size_t datagrams = jobs_.back().place + datagrams_of(*jobs_.back().stream);
+  const std::size_t datagrams = jobs_.back().place + datagrams_of(jobs_.back().parts);
   const bool fits = datagrams <= outbox_.capacity();
   const std::size_t first = fits ? outbox_.claim(datagrams) : 0;
   if (fits)
@@ -192,7 +200,7 @@ void ReadingPublisher::encode_and_queue(Job& job) {
   const std::uint32_t failed = encode(
       job, memory_[0], [&](std::uint32_t, const netio::Endpoint& to, const auto& bytes) { outbox_.queue(to, bytes); });
   not_numbers_ += failed;
-  job.stream->sent += failed < job.stream->parts ? 1 : 0;
+  job.stream->sent += failed < job.parts ? 1 : 0;
 }
 
 }  // namespace sf::server

@@ -74,6 +74,8 @@ class ReadingPublisher {
     const sensors::SensorSpec* row = nullptr;
     Stream* stream = nullptr;
     std::uint32_t sequence = 0;
+    std::string image = {};     ///< file of a camera's colours; empty: none
+    std::uint32_t parts = 0;    ///< datagrams, those of the file included
     std::size_t place = 0;      ///< of its first datagram
     std::uint64_t counter = 0;  ///< of its first datagram's signature
     bool whole = true;          ///< every part contains only numbers
@@ -87,10 +89,10 @@ class ReadingPublisher {
   std::span<const AddressedReading> admit(std::span<const AddressedReading> readings, std::int64_t now);
   void charge();
   /// Datagrams of a reading, copies included.
-  std::size_t datagrams_of(const Stream& stream) const { return stream.parts * (mirror_ ? 2u : 1u); }
+  std::size_t datagrams_of(std::uint32_t parts) const { return parts * (mirror_ ? 2u : 1u); }
   /// Bytes of a reading whose size is not known yet, at least.
   double least_bytes(const Stream& stream) const {
-    return static_cast<double>(datagrams_of(stream) * netio::kHeaderBytes);
+    return static_cast<double>(datagrams_of(stream.parts) * netio::kHeaderBytes);
   }
   void encode_all();
   void encode_and_queue(Job& job);

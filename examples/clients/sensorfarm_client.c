@@ -307,6 +307,8 @@ typedef struct {
   unsigned width;                // values per row, of the first columns; 0: of all
   unsigned approaches;           // V2I: number of rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
+  const uint8_t* image;          // CAMERA_EXTENDED: part of a PNG file, in place of values, from byte words[1] on; as `states`
+  unsigned image_bytes;          // 0: the values are depths
   const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; valid as long as the datagram
   const uint8_t* rows[3];        // TEAM_MAP: acknowledgements (4 u32 each), claim (2 u16 each), bytes; as `states`
   unsigned lengths[3];           // TEAM_MAP: number of integers in each of them
@@ -388,11 +390,25 @@ static const char* decode_echoes(sf_packet* p, const uint8_t* b, size_t size, un
   return NULL;
 }
 
+// A part of the PNG file with a camera's colours.
+static const char* decode_image(sf_packet* p, const uint8_t* b, size_t size) {
+  uint32_t* const w = p->words;  // total, first, part, parts
+  w[0] = (uint32_t)get(b, 4), w[1] = (uint32_t)get(b + 4, 4), w[2] = (uint32_t)get(b + 8, 2), w[3] = (uint32_t)get(b + 10, 2);
+  p->image = b + 16;
+  p->image_bytes = (unsigned)get(b + 12, 2);
+  if (get(b + 14, 2) != 1) return "out of range";
+  const char* const sized = check_size(size, 16 + (size_t)p->image_bytes);
+  if (sized) return sized;
+  return in_range(w[0] >= 1 && w[0] <= 4000000 && w[3] == (w[0] + 1239) / 1240 && w[2] < w[3] && w[1] == 1240 * w[2] &&
+                  p->image_bytes == (w[0] - w[1] < 1240 ? w[0] - w[1] : 1240));
+}
+
 static const char* decode_laser(sf_packet* p, const uint8_t* b, size_t size) {
   const bool extended = p->type >= 64;
   const unsigned head = extended ? 16 : 2, word = extended ? 4 : 2;
   if (size < head) return "too short";
   p->width = 1;
+  if (p->type == SF_CAMERA_EXTENDED && get(b + 14, 2) != 0) return decode_image(p, b, size);
   if (p->type == SF_LIDAR_EXTENDED && get(b + 14, 2) != 0) return decode_echoes(p, b, size, (unsigned)get(b + 14, 2));
   p->count = (unsigned)get(b + (extended ? 12 : 0), 2);
   const char* const sized = check_size(size, head + (size_t)word * p->count);
@@ -877,6 +893,12 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     for (unsigned k = 0; k < p->lengths[i]; ++k)
       fprintf(out, " %lu", (unsigned long)get(p->rows[i] + team_map_widths[i] * k, team_map_widths[i]));
     fputs(after, out);
+  }
+  if (p->image_bytes > 0) {
+    fprintf(out, "%simage =", before);
+    for (unsigned i = 0; i < p->image_bytes; ++i) fprintf(out, " %u", p->image[i]);
+    fputs(after, out);
+    return;
   }
   const unsigned approaches = p->type == SF_V2I ? 8 * p->approaches : p->count;
   print_columns(out, type, p->values, approaches, p->width, before, after);

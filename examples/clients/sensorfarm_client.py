@@ -166,6 +166,37 @@ def decode_laser(extended, payload):
     return {"total": total, "first": first, "part": part, "parts": parts, "range_m": ranges}
 
 
+def decode_image(payload):
+    """A part of the PNG file with a camera's colours."""
+    total, first, part, parts, count, _ = struct.unpack_from("<IIHHHH", payload)
+    require(len(payload) >= 16 + count, "too short")
+    require(len(payload) <= 16 + count, "too long")
+    require(1 <= total <= 4000000 and parts == -(-total // 1240) and part < parts)
+    require(first == 1240 * part and count == min(1240, total - first))
+    return {"total": total, "first": first, "part": part, "parts": parts, "image": list(payload[16:])}
+
+
+class Images:
+    """Assembles the newest image of each camera. Images of which a part was lost are dropped."""
+
+    def __init__(self):
+        self.parts = {}  # by camera: sequence, and bytes by part
+
+    def add(self, packet):
+        """Returns the bytes of a PNG file whose last missing part is in the packet, else None."""
+        if "image" not in packet:
+            return None
+        camera = packet["robot"], packet["sensor"]
+        if self.parts.get(camera, (None,))[0] != packet["sequence"]:
+            self.parts[camera] = packet["sequence"], {}
+        parts = self.parts[camera][1]
+        parts[packet["part"]] = bytes(packet["image"])
+        if len(parts) < packet["parts"]:
+            return None
+        del self.parts[camera]
+        return b"".join(parts[i] for i in range(packet["parts"]))
+
+
 LIDAR_COLUMNS = [("range_m", "I", 1e4), ("intensity", "H", 1e3), ("incidence_rad", "H", 1e4), ("second_range_m", "I", 1e4),
                  ("second_intensity", "H", 1e3)]
 
@@ -415,7 +446,10 @@ def decode(data):
         packet.update(decode_state(type, robot, payload))
     elif type in (LASER, LASER_EXTENDED):
         packet.update(decode_laser(type == LASER_EXTENDED, payload))
+    elif type == CAMERA_EXTENDED and payload[14:16] == b"\1\0":
+        packet.update(decode_image(payload))
     elif type in (CAMERA, CAMERA_EXTENDED):
+        require(type == CAMERA or payload[14:16] in (b"", b"\0", b"\0\0"))
         image = decode_laser(type == CAMERA_EXTENDED, payload)
         packet.update({"depth_m" if key == "range_m" else key: value for key, value in image.items()})
     elif type in (LIDAR, LIDAR_EXTENDED):
@@ -705,6 +739,7 @@ def main():
     parser.add_argument("--rate", type=float, default=10.0, metavar="HZ", help="states per second, 1 to 1000")
     parser.add_argument("--sensor", type=read_sensor, action="append", metavar="TYPE[.NUMBER][=PORT]")
     parser.add_argument("--key", type=read_key, metavar="FILE", help="64 hexadecimal digits: sign, and check signatures")
+    parser.add_argument("--images", metavar="FOLDER", help="write each camera's newest image there, as camera-NUMBER.png")
     parser.add_argument("--neighbours", action="store_true", help="print the states of other robots, too")
     # "-1,0.5,30" is a value of --pose, not an option.
     options = parser.parse_args("\0".join(sys.argv[1:]).replace("--pose\0", "--pose=").split("\0"))
@@ -718,6 +753,7 @@ def main():
         parser.error(str(error))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
+    images = Images()
     try:
         due = time.monotonic()
         while True:
@@ -725,7 +761,12 @@ def main():
                 client.send_state(**options.pose)
                 due = max(due + 1.0 / options.rate, time.monotonic())
             for packet in client.receive(due - time.monotonic()):
-                print(words(packet), flush=True)
+                image = images.add(packet) if options.images else None
+                if image:
+                    with open("%s/camera-%d.png" % (options.images, packet["sensor"]), "wb") as file:
+                        file.write(image)
+                if not (options.images and "image" in packet):
+                    print(words(packet), flush=True)
     except (KeyboardInterrupt, BrokenPipeError):
         pass
     finally:

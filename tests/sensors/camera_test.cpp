@@ -10,11 +10,14 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "base/png.h"
 #include "raycast/casters.h"
 #include "robots/kinematics.h"
 #include "scene/rasterizer.h"
 #include "scene/reference_scan.h"
 #include "scene/solids.h"
+#include "sensors/image_packets.h"
+#include "tests/base/decoded_png.h"
 #include "tests/refusal.h"
 #include "tests/sensors/series.h"
 
@@ -356,6 +359,41 @@ TEST(Camera, Packets) {
   for (std::size_t i = 0; i < received.size(); i += 5) {
     EXPECT_NEAR(received[i], image.values[i], type.wire_error(spec, block));
     EXPECT_EQ(received[i + 1], -1.0) << "normals are not sent";
+  }
+}
+
+/// Boundaries: one byte, a full part, one byte more, the largest file.
+TEST(Camera, ImageFilesInParts) {
+  const sensors::SensorSpec any{.elements = 0};
+  for (const auto& [size, parts] : {std::pair{1u, 1u}, {1240u, 1u}, {1241u, 2u}, {4'000'000u, 3226u}}) {
+    std::string file(size, '\0'), received;
+    for (std::size_t i = 0; i < size; ++i) file[i] = static_cast<char>(i * 7 >> 3);
+    ASSERT_EQ(sensors::image_parts(size), parts);
+    for (std::uint32_t part = 0; part < parts; ++part) {
+      base::Bytes bytes;
+      const std::uint8_t id = sensors::encode_image(file, part, bytes);
+      ASSERT_EQ(sensors::camera_form(id, bytes), sensors::kImageForm);
+      sensors::ImagePart image;
+      ASSERT_EQ(sensors::read_image(bytes, image), sensors::PayloadError::none);
+      ASSERT_EQ(image.first, received.size());
+      received.append(image.bytes.begin(), image.bytes.end());
+      const sensors::PayloadPart judged = sensors::camera_type.decode(any, bytes, id, sensors::WireFormat::farm);
+      ASSERT_EQ(judged.fault, sensors::PayloadError::none);
+      ASSERT_EQ(judged.parts, 0u) << "none of the reading's";
+    }
+    EXPECT_EQ(received, file);
+  }
+}
+
+TEST(Camera, ColoursAsFile) {
+  for (const char* const colours : {"", "rgb 1", "rgb 1 normals 1"}) {
+    const world::World world = boards("resolution [40 30] range [0 50] " + std::string(colours));
+    const Image image = shoot(world);
+    const base::ReadingBlock block{.type = sensors::kCamera, .values = image.values};
+    const std::string file = sensors::image_file(sensors::SensorSet(world), block);
+    EXPECT_EQ(file.empty(), *colours == '\0');
+    if (file.empty()) continue;
+    EXPECT_EQ(base::decode_png(file).pixels, base::color_bytes(image.values, image.values.size() / 1200));
   }
 }
 

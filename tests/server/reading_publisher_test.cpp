@@ -10,8 +10,11 @@
 
 #include "netio/packets.h"
 #include "netio/socket.h"
+#include "sensors/camera.h"
+#include "sensors/image_packets.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "tests/world/read_world.h"
 
 namespace sf::server {
 namespace {
@@ -179,6 +182,48 @@ TEST(ReadingPublisher, AMirrorReceivesACopyOfEachPacket) {
   for (std::size_t i = 0; i < 5; ++i)
     EXPECT_TRUE(std::ranges::equal(sent.bytes(i), copied.bytes(i))) << i << ": signatures too";
   EXPECT_EQ(publisher.counts().packets.sent, 10u);
+}
+
+/// The colours of a camera follow its depths as a file, also in the copies; signatures count them.
+TEST(ReadingPublisher, ColoursAreSentAsAFile) {
+  const world::World world = world::read_world("position( name \"a\" camera( resolution [32 16] rgb 1 ) )\n",
+                                               {.sensors = sensors::world_file_words()});
+  const sensors::SensorSet sensor_set(world);
+  const netio::Socket receiver = netio::open_udp({netio::kLoopback, 0}),
+                      mirror = netio::open_udp({netio::kLoopback, 0});
+  StreamLayout layout;
+  layout.stride = 0;
+  layout.bases[sensors::kCamera] = netio::bound_endpoint(receiver).port;
+  ReadingPublisher publisher(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)),
+                             netio::bound_endpoint(mirror));
+  netio::PacketSigner signer(netio::SigningKey{1}, 5);
+  std::vector<double> pixels;
+  for (std::uint32_t i = 0; i < 32 * 16; ++i) pixels.insert(pixels.end(), {1.0, (i * 2654435761u) >> 8});
+  base::ReadingBlock block;
+  block.type = sensors::kCamera;
+  block.values = pixels;
+  const AddressedReading addressed{&block, netio::kLoopback, {7, 9}, &signer};
+  publisher.queue({&addressed, 1});
+  publisher.flush();
+
+  netio::ReceiveBatch sent(8), copied(8);
+  const std::string file = sensors::image_file(sensor_set, block);
+  const std::size_t datagrams = 2 + sensors::image_parts(file.size());
+  ASSERT_EQ(datagrams, 4u) << file.size() << " bytes of random colours";
+  ASSERT_EQ(sent.fill(receiver), datagrams);
+  ASSERT_EQ(copied.fill(mirror), datagrams);
+  std::string received;
+  for (std::size_t i = 0; i < datagrams; ++i) {
+    EXPECT_TRUE(std::ranges::equal(sent.bytes(i), copied.bytes(i))) << i;
+    netio::Packet packet;
+    ASSERT_EQ(netio::decode(sent.bytes(i), packet), netio::PacketStatus::accepted);
+    sensors::ImagePart image;
+    if (i < 2) continue;
+    ASSERT_EQ(sensors::read_image(std::get<netio::Reading>(packet.body).payload, image), sensors::PayloadError::none);
+    received.append(image.bytes.begin(), image.bytes.end());
+  }
+  EXPECT_EQ(received, file);
+  EXPECT_EQ(signer.take(), 5 + datagrams) << "as many as datagrams";
 }
 
 INSTANTIATE_TEST_SUITE_P(Fleets, PostTest, testing::Values(3u, 256u, 257u, 2500u));
