@@ -34,6 +34,10 @@ void Bridges::publish(const base::TickRecord& tick, const RunState& state) {
   for (const auto& bridge : bridges_) bridge->publish(tick, state);
 }
 
+void Bridges::show_intents(std::span<const base::Intent> intents) {
+  for (const auto& bridge : bridges_) bridge->show_intents(intents);
+}
+
 void Bridges::show_scene(bool is_new) {
   for (const auto& bridge : bridges_) bridge->show_scene(is_new);
 }

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,6 +104,9 @@ struct RunState {
 class Bridge {
  public:
   virtual ~Bridge() = default;
+  /// Takes what robots intend, before `publish` of the tick in which they decided on it. Copies what it needs.
+  /// @param intents by row of the mover
+  virtual void show_intents(std::span<const base::Intent> /*intents*/) {}
   /// Publishes one tick. Times restart at 0 after a reset (`RunState::runs`). Copies what it needs and never blocks.
   virtual void publish(const base::TickRecord& tick, const RunState& state) = 0;
   /// Called instead while the run is paused, about 30 times a second. Never blocks.
@@ -130,6 +134,7 @@ class Bridges {
     std::erase_if(bridges_, [&](const auto& bridge) { return condition(*bridge); });
   }
   void show_scene(bool is_new);
+  void show_intents(std::span<const base::Intent> intents);
   bool empty() const { return bridges_.empty(); }
 
   void publish(const base::TickRecord& tick, const RunState& state);

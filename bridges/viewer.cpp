@@ -19,7 +19,7 @@ constexpr milliseconds kStateInterval(500);  // of the measured speed
 constexpr milliseconds kImageInterval(62);   // 15 images/s pass
 constexpr double kImageBytes = 5e6;          // per second of one camera
 constexpr int kMostWaiting = 4;
-constexpr std::size_t kViewTopics = 2;  // clouds and solids
+constexpr std::size_t kViewTopics = 3;  // clouds, solids and intents
 
 std::vector<std::string> drivers_of(const Scene& scene, ViewerMode mode) {
   std::vector<std::string> topics;
@@ -34,12 +34,14 @@ std::uint32_t row_of(std::string_view name, std::span<const record::Topic> topic
   return static_cast<std::uint32_t>(found - topics.begin());
 }
 
-/// The topics of messages, then those of the 3-D view.
+/// The topics of messages, then those of the 3-D view and of the view over images.
 std::vector<record::Topic> topics_of(const record::TickMessages& messages) {
-  static const std::string clouds = record::schema_text(record::kClouds), solids = record::schema_text(record::kSolids);
+  static const std::string clouds = record::schema_text(record::kClouds), solids = record::schema_text(record::kSolids),
+                           intents = record::schema_text(record::kIntents);
   std::vector<record::Topic> topics = messages.topics();
   topics.push_back({std::string(kCloudsTopic), record::kClouds, clouds});
   topics.push_back({std::string(kSolidsTopic), record::kSolids, solids, true});
+  topics.push_back({std::string(kIntentsTopic), record::kIntents, intents});
   return topics;
 }
 
@@ -63,6 +65,7 @@ Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
       fleet_(row_of("/fleet", messages_.topics())),
       cloud_topic_(static_cast<std::uint32_t>(messages_.topics().size())),
       clouds_(scene),
+      intents_(scene.world),
       wanted_(messages_.topics().size() + kViewTopics),
       next_(messages_.topics().size() + kViewTopics) {
   std::vector<SharedMessage> latched;
@@ -186,6 +189,11 @@ void Viewer::send(const base::TickRecord& tick) {
     cloud_message_.clear();
     clouds_.encode(tick, cloud_message_);
     add({.topic = cloud_topic_, .log_time = tick.time, .time = tick.time, .bytes = cloud_message_});
+  }
+  if (const std::uint32_t topic = cloud_topic_ + 2; wanted_[topic]) {
+    intent_message_.clear();
+    intents_.encode(tick.time, intent_message_);
+    add({.topic = topic, .log_time = tick.time, .time = tick.time, .bytes = intent_message_});
   }
   for (const std::uint32_t topic : due_) wanted_[topic] = false;
   ++waiting_;

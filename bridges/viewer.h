@@ -18,6 +18,7 @@
 #include "bridges/bridge.h"
 #include "bridges/last_tick.h"
 #include "bridges/view_clouds.h"
+#include "bridges/view_intents.h"
 #include "bridges/viewer_sessions.h"
 #include "bridges/web_server.h"
 #include "record/topics.h"
@@ -37,6 +38,7 @@ class Viewer : public Bridge {
   Viewer(const Scene& scene, const ViewerOptions& options);
   ~Viewer() override;
 
+  void show_intents(std::span<const base::Intent> intents) override { intents_.take(intents); }
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;
   /// Delays a pause by one tick, whose readings are all kept for users who select robots meanwhile.
@@ -68,9 +70,10 @@ class Viewer : public Bridge {
   bool shown_ = false;
   Clock::time_point next_state_, next_time_;
   std::uint32_t fleet_;        ///< topic of the states
-  std::uint32_t cloud_topic_;  ///< of `clouds_`; that of the solids follows
+  std::uint32_t cloud_topic_;  ///< of `clouds_`; those of the solids and of `intents_` follow
   ViewClouds clouds_;
-  base::Bytes cloud_message_;
+  ViewIntents intents_;
+  base::Bytes cloud_message_, intent_message_;
   std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: topics to send, including `fresh_`
   std::vector<bool> wanted_;
   std::vector<bool> is_image_;                         ///< per topic: CompressedImage, sent at a lower rate

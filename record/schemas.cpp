@@ -109,6 +109,10 @@ constexpr std::array kDefinitions = {
     Definition{"sensorfarm_msgs/Solid",
                "string kind\nfloat32[] vertices\nuint32[] corners\nsensorfarm_msgs/Place[] places\n"},
     Definition{"sensorfarm_msgs/Solids", "string note\nsensorfarm_msgs/Solid[] solids\n"},
+    Definition{"sensorfarm_msgs/Intent",
+               "uint32 NONE=4294967295\nuint32 mover\nuint32 follows\nuint32 checkpoint\nfloat64 x\nfloat64 y\n"
+               "bool docking\n"},
+    Definition{"sensorfarm_msgs/Intents", "std_msgs/Header header\nsensorfarm_msgs/Intent[] intents\n"},
     Definition{"sensorfarm_msgs/Light",
                "uint8 DARK=0\nuint8 RED=1\nuint8 YELLOW=2\nuint8 GREEN=3\nuint8 FLASHING_RED=4\n"
                "uint8 FLASHING_YELLOW=5\nstring name\nuint8 state\nfloat64 left\n"},

@@ -29,6 +29,7 @@ inline constexpr std::string_view kShapes = "sensorfarm_msgs/msg/Shapes";
 inline constexpr std::string_view kTilts = "sensorfarm_msgs/msg/Tilts";
 inline constexpr std::string_view kClouds = "sensorfarm_msgs/msg/Clouds";
 inline constexpr std::string_view kSolids = "sensorfarm_msgs/msg/Solids";
+inline constexpr std::string_view kIntents = "sensorfarm_msgs/msg/Intents";
 inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
 inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 

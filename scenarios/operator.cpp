@@ -44,7 +44,10 @@ void Operator::keep_pace(double simulated) const {
   while (Clock::now() < due && !stop_) std::this_thread::sleep_until(std::min(due, Clock::now() + kLook));
 }
 
-void Operator::publish(const base::TickRecord& tick) { bridges_.publish(tick, state_); }
+void Operator::publish(const base::TickRecord& tick, std::span<const base::Intent> intents) {
+  bridges_.show_intents(intents);
+  bridges_.publish(tick, state_);
+}
 
 void Operator::begin_again() {
   reset_ = false;

@@ -35,8 +35,8 @@ class Operator {
   Next wait(Simulation& simulation, double simulated);
   /// Only waits until `simulated` [s] are due, for data that is sent between two ticks.
   void keep_pace(double simulated) const;
-  /// Publishes a tick to the bridges.
-  void publish(const base::TickRecord& tick);
+  /// Publishes a tick to the bridges. @param intents one per report; empty: unknown
+  void publish(const base::TickRecord& tick, std::span<const base::Intent> intents = {});
   /// Restarts the run.
   void begin_again();
   /// Returns the world that a user requested, after `Next::world`. The caller writes the outcome and, on success,

@@ -259,6 +259,7 @@ struct Course {
   ControlMetrics tally;
   std::optional<scenarios::ScenarioEvents> events;
   std::vector<base::ContactOnset> contacts;
+  std::vector<base::Intent> intents;  ///< of this tick, for the bridges
   StrayedRobots strayed;
   std::optional<Checkpoints> checkpoints;
   RunOutputs outputs;
@@ -322,7 +323,9 @@ struct Course {
   /// Motion and readings of a tick are computed at its end, so readings due during the tick are sent one tick later.
   void step(scenarios::Operator& users) {
     const base::TickRecord tick = simulation.step();
-    users.publish(tick);
+    intents.clear();
+    for (const base::Report& report : tick.reports) intents.push_back(simulation.intent(report.mover));
+    users.publish(tick, intents);
     outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
     simulation.settle();
     if (maps) maps->write(tick);

@@ -265,6 +265,22 @@ TEST(ViewSolids, LargeTerrainIsThinnedOut) {
   }
 }
 
+/// With the states of their tick; those of the last tick hold until the next ones.
+TEST(ViewIntents, AreSentToTheirSubscribers) {
+  ViewerFixture fixture;
+  const int topic = static_cast<int>(record::TickMessages(fixture.info).topics().size()) + 2;
+  Watcher watcher(fixture);
+  EXPECT_NE(watcher.greeting.find("\"topic\":\"/view/intents\""), std::string::npos);
+  watcher.subscribe(7, topic);
+  watcher.settle();
+  const base::Intent intents[] = {{.follows = 0x04030201}};
+  fixture.viewer->show_intents(intents);
+  fixture.tick(1);
+  const std::string message = watcher.receive_binary(1);
+  EXPECT_EQ(subscription_tick(message), "7@1");
+  EXPECT_NE(message.find(std::string("\1\2\3\4", 4)), std::string::npos);
+}
+
 /// Plan viewers get nothing of it; the solids are made once, for the first subscriber.
 TEST(View3d, IsSentToItsSubscribersOnly) {
   ViewerFixture fixture;

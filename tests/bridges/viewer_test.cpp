@@ -9,10 +9,12 @@
 #include <thread>
 
 #include "bridges/scene_json.h"
+#include "bridges/view_intents.h"
 #include "record/cdr.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "tests/bridges/viewer_fixture.h"
+#include "world/roads/roads.h"
 
 namespace sf::bridges {
 
@@ -405,6 +407,36 @@ TEST(SceneJson, CamerasHaveTheirLensAndOpticalFrame) {
                                  "\"center\":[31.5,23.5]", "\"fisheye\":false", "\"distortion\":[0.1,0.0,",
                                  "\"range_max\":20.0", "\"p\":[1.0,2.0,0.5]", "\"axes\":[[-1.0,"})
     EXPECT_NE(camera.find(part), std::string::npos) << part << " in " << camera;
+}
+
+/// Movers without an intent are left out; the place of a checkpoint is that of the road network.
+TEST(ViewIntents, HaveThePlacesOfCheckpoints) {
+  world::World world;
+  world.road_files = {SF_SOURCE_DIR "/worlds/simville/simville.rndf"};
+  const world::RoadNetwork roads = *world::roads_of(world);
+  const world::RoadCheckpoint& last = roads.checkpoints.back();
+  const auto id = static_cast<std::uint32_t>(last.id);
+  const std::vector<base::Intent> intents{
+      {.checkpoint = id}, {}, {.follows = 7}, {.checkpoint = id + 1}, {.docking = true}};
+  ViewIntents view(world);
+  view.take(intents);
+  base::Bytes bytes;
+  view.encode(2'000'000'000, bytes);
+  record::CdrReader cdr(bytes);
+  EXPECT_EQ(cdr.get<std::int32_t>(), 2);
+  cdr.get<std::uint32_t>(), cdr.get_string();
+  ASSERT_EQ(cdr.get_count(29), 4u);
+  for (const std::uint32_t mover : {0u, 2u, 3u, 4u}) {
+    EXPECT_EQ(cdr.get<std::uint32_t>(), mover);
+    EXPECT_EQ(cdr.get<std::uint32_t>(), intents[mover].follows);
+    EXPECT_EQ(cdr.get<std::uint32_t>(), intents[mover].checkpoint);
+    const double x = cdr.get<double>(), y = cdr.get<double>();
+    if (mover == 0) EXPECT_EQ(glm::dvec2(x, y), last.p);
+    if (mover != 0) EXPECT_TRUE(std::isnan(x) && std::isnan(y)) << "mover " << mover << " has no known checkpoint";
+    EXPECT_EQ(cdr.get<bool>(), mover == 4);
+  }
+  EXPECT_TRUE(cdr.good());
+  EXPECT_EQ(cdr.left(), 0u);
 }
 
 /// In file order, by sensor; other sensor types have no colour.

@@ -32,9 +32,11 @@ struct Script : bridges::Bridge {
   void publish(const bridges::RunState& state) override { ++looks, last = state; }
   void take(bridges::Requests& requests) override { act(requests); }
   std::string describe() const override { return "script"; }
+  void show_intents(std::span<const base::Intent> shown) override { intents.assign(shown.begin(), shown.end()); }
 
   std::function<void(bridges::Requests&)> act = [](bridges::Requests&) {};
   int ticks = 0, looks = 0;
+  std::vector<base::Intent> intents;
   bridges::RunState last;
 };
 
@@ -69,6 +71,15 @@ TEST_F(OperatorTest, WithoutRequestsTicksFollow) {
   }
   EXPECT_EQ(script->ticks, 3);
   EXPECT_EQ(script->looks, 0);
+}
+
+TEST_F(OperatorTest, IntentsReachTheBridges) {
+  const base::Intent intents[] = {{.checkpoint = 3}, {.follows = 1}};
+  users.publish(simulation.step(), intents);
+  ASSERT_EQ(script->intents.size(), 2u);
+  EXPECT_EQ(script->intents[0].checkpoint, 3u);
+  users.publish(simulation.step());
+  EXPECT_TRUE(script->intents.empty()) << "unknown";
 }
 
 TEST_F(OperatorTest, APausedRunSimulatesRequestedTicks) {
