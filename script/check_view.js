@@ -456,7 +456,7 @@ async function watchOverlay(browser, requests) {
   await load(section.replace("focal", "vocal"));
   await until(page, "no error of the file", () => /lab\.toml:1: 'focal' is missing/.test(document.querySelector("#view-camera .note").textContent));
   await load(section);
-  await page.selectOption("#view-camera select >> nth=2", "0");
+  await page.selectOption("#camera-mount", "0");
   for (const name of ["still.png", "stream"]) {
     await page.fill("#view-camera input[type=url]", `${address}/${name}`);
     await page.keyboard.press("Tab");

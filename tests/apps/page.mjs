@@ -15,6 +15,7 @@ const { keyDown, pressed } = await load('input.js');
 const { keyName } = await load('key_name.js');
 const { readCalibration } = await load('calibration.js');
 const { Lens, Sight } = await load('lens.js');
+const { Connection } = await load('protocol.js');
 const { arcOf, mapRuns, roundRange } = await load('overlay.js');
 const { OverlayState } = await load('overlay_state.js');
 const { composed, inverse, poseOf, transform, transformOf } = await load('rigid.js');
@@ -289,4 +290,31 @@ function pathRecord() {
   assert.deepEqual([overlay.cloudsAt(-1, 1).length, overlay.cloudsAt(1, 1).length], [1, 0], 'of all robots, of another one');
   overlay.take({ ...none, tilts: [], clouds: [] }, 0);
   assert.equal(overlay.cloudsAt(0, 1).length, 0, 'a restarted run');
+}
+{
+  // Two owners of a subscription: one request, messages for both, the newest at once for the later one; it ends with the last owner.
+  const sent = [];
+  globalThis.WebSocket = class { static OPEN = 1; readyState = 1; constructor() { WebSocket.last = this; } send(text) { sent.push(JSON.parse(text)); } close() {} };
+  globalThis.CustomEvent ??= class extends Event {};
+  const connection = new Connection('ws://host'), got = { page: [], camera: [] };
+  WebSocket.last.onmessage({ data: JSON.stringify({ op: 'advertise', channels: [{ id: 5, topic: '/n', schema: 'uint32 n' }] }) });
+  connection.subscribe('/n', ({ n }) => got.page.push(n));
+  const deliver = (n) => {
+    const view = new DataView(new ArrayBuffer(21));
+    view.setUint8(0, 1);
+    view.setUint32(1, sent[0].subscriptions[0].id, true);
+    view.setUint8(14, 1);
+    view.setUint32(17, n, true);
+    WebSocket.last.onmessage({ data: view.buffer });
+  };
+  deliver(1);
+  connection.subscribe('/n', ({ n }) => got.camera.push(n), { owner: 'camera' });
+  deliver(2);
+  connection.unsubscribe('/n');
+  deliver(3);
+  connection.unsubscribe('/n', 'nobody');
+  assert.deepEqual([got, sent.map(({ op }) => op)], [{ page: [1, 2], camera: [1, 2, 3] }, ['subscribe']]);
+  connection.unsubscribe('/n', 'camera');
+  deliver(4);
+  assert.deepEqual([got.camera.length, sent.map(({ op }) => op)], [3, ['subscribe', 'unsubscribe']]);
 }

@@ -38,19 +38,24 @@ class ViewImages {
   get size() { return this.#images.size; }
   get time() { return this.#images.time; }
   start() {
-    this.#connection = new Connection(this.url);
-    this.#connection.addEventListener('channels', ({ detail }) => { this.error = detail.some(({ topic }) => topic === this.#images.topic) ? '' : `${this.url} has no camera '${this.name}'; its name is that of the calibration file.`; this.onChange(); });
+    try {
+      this.#connection = new Connection(this.url);
+    } catch (error) {
+      this.error = error.message;
+      return;
+    }
+    this.#connection.addEventListener('channels', () => { this.error = this.#connection.topics().includes(this.#images.topic) ? '' : `${this.url} has no camera '${this.name}'; its name is that of the calibration file.`; this.onChange(); });
     this.#connection.addEventListener('close', () => { this.error = `No connection to ${this.url}.`; this.onChange(); });
     this.#images.start(this.#connection);
   }
-  stop() { this.#connection.close(); }
+  stop() { this.#connection?.close(); }
 }
 
 /** A picture, also MJPEG, or a video by its address. @param reload [s] of pictures; 0: never */
 class UrlImages {
   time = NaN; error = ''; #timer = 0;
   constructor(url, onChange, reload = 0) {
-    const isVideo = /\.(mp4|webm|ogv|mov)$/i.test(new URL(url, location.href).pathname);
+    const isVideo = /\.(mp4|webm|ogv|mov)($|[?#])/i.test(url);
     this.element = made(isVideo ? 'video' : 'img', isVideo ? { muted: true, loop: true, playsInline: true, controls: true } : { alt: 'Image of the camera' });
     this.element.onload = this.element.onloadeddata = () => { this.error = ''; onChange(); this.#again(); };
     this.element.onerror = () => { this.error = `${url} cannot be shown; expected the address of a picture, an MJPEG stream, or a video.`; onChange(); this.#again(); };

@@ -84,6 +84,7 @@ export class Connection extends EventTarget {
     new Uint8Array(view.buffer).set(id, 19);
     this.#socket.send(view.buffer);
   }
+  close() { this.#socket.close(); }
   topics() { return [...this.#channels.keys()]; }
 
   #send(message) {

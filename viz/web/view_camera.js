@@ -1,7 +1,7 @@
 // The view over a camera's image: of a robot's simulated camera, or of a real one with a calibration file.
 
-import { readCalibration } from './calibration.js';
-import { offersDevice, realImages, robotImages } from './camera_sources.js';
+import { CameraControls, element } from './camera_controls.js';
+import { realImages, robotImages } from './camera_sources.js';
 import { Lens, Sight } from './lens.js';
 import { Overlay, colors, rangeColor, roundRange } from './overlay.js';
 import { OverlayState } from './overlay_state.js';
@@ -12,83 +12,43 @@ const noticeable = 0.0005;  // [s]
 const words = { robots: 'outlines of robots', scans: 'echoes, by range', map: 'occupancy map: occupied, free', tracks: 'tracks: moving, at rest', intent: 'commanded way in 2 s, next checkpoint or robot', walls: 'lower edges of walls, lane markings' };
 const swatches = { robots: [colors.robots], scans: [rangeColor(0), rangeColor(0.5), rangeColor(1)], map: [colors.occupied, colors.free], tracks: [colors.moving, colors.resting], intent: [colors.intent], walls: [colors.walls] };
 
-function element(tag, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-}
-const labelled = (text, control) => element('label', {}, text, control);
 const span = (seconds) => (seconds < 1 ? `${Math.round(1000 * seconds)} ms` : `${seconds.toFixed(1)} s`);
 
 export class ViewCamera {
   layers = { robots: true, scans: true, map: true, tracks: true, intent: true, walls: false };
   drawn = {}; sight = null; time = NaN; state;  // of the last frame, for tests, too
-  #page; #root; #canvas = element('canvas'); #picture = element('div', { className: 'picture' }); #note = element('p', { className: 'note' }); #legend = element('div', { className: 'keys' });
-  #choice; #real; #connection = null; #source = null; #camera = null; #lens = null; #cameras = []; #most = 0; #intents = [];
+  #page; #canvas = element('canvas'); #picture = element('div', { className: 'picture' }); #note = element('p', { className: 'note' }); #legend = element('div', { className: 'keys' });
+  #controls; #connection = null; #source = null; #camera = null; #lens = null; #most = 0; #intents = [];
 
   /** @param page {scene, fleet, drawing, readings, select, onChange} */
   constructor(root, page) {
     this.#page = page;
-    this.#root = root;
     this.state = new OverlayState(page.fleet);
     this.#canvas.setAttribute('role', 'img');
     this.#canvas.setAttribute('aria-label', 'What robots sense and intend, over the image of a camera');
-    this.#addControls();
-    root.replaceChildren(element('div', { className: 'choices' }, labelled('Camera ', this.#choice), this.#real), this.#legend, element('div', { className: 'middle' }, this.#picture), this.#note);
+    this.#controls = new CameraControls(page.scene, () => this.#choose(), page.onChange);
+    this.#fillLegend();
+    root.replaceChildren(this.#controls.root, this.#legend, element('div', { className: 'middle' }, this.#picture), this.#note);
     new ResizeObserver(() => this.#layout()).observe(root.querySelector('.middle'));
   }
-
-  // Controls
-
-  #addControls() {
-    const { scene } = this.#page, options = [];
-    scene.movers.forEach(({ name, sensors }, row) => sensors.forEach((sensor, i) => { if (sensor.camera) options.push(new Option(`${name}: ${sensor.name}`, `${row} ${i}`)); }));
-    options.push(new Option('A real camera: picture or video by its address', 'url'));
-    if (offersDevice()) options.push(new Option('A real camera: this device’s', 'device'));
-    this.#choice = element('select', { onchange: () => this.#choose() });
-    this.#choice.append(...options);
-    this.#real = this.#realControls();
+  #fillLegend() {
     this.#legend.append(...Object.entries(words).map(([key, text]) => {
       const box = element('input', { type: 'checkbox', checked: this.layers[key], onchange: () => { this.layers[key] = box.checked; this.#page.onChange(); } });
       return element('label', {}, box, ...swatches[key].map((color) => { const mark = element('i'); mark.style.background = color; return mark; }), element('span', { textContent: text, id: `camera-${key}` }));
     }));
   }
-  #realControls() {
-    const remember = () => this.#choose(), { movers } = this.#page.scene;
-    this.url = element('input', { type: 'url', placeholder: 'http://… or ws://…, of vps --view', size: 32, onchange: remember });
-    this.file = element('input', { type: 'file', accept: '.toml', onchange: () => this.#calibrate() });
-    this.named = element('select', { onchange: remember });
-    this.mount = element('select', { onchange: remember }, new Option('in the world', '-1'), ...movers.map(({ name }, row) => new Option(`on ${name}`, row)));
-    this.delay = element('input', { type: 'number', min: 0, max: 10000, value: 0, onchange: () => this.#page.onChange() });
-    this.reload = element('input', { type: 'number', min: 0, max: 3600, step: 0.1, value: 0, onchange: remember });
-    this.urlLabel = labelled('Address ', this.url);
-    return element('span', { hidden: true }, this.urlLabel, labelled('Calibration ', this.file), this.named, labelled('Mounted ', this.mount), labelled('Delay [ms] ', this.delay), labelled('Reload [s] ', this.reload));
-  }
-  async #calibrate() {
-    const [file] = this.file.files;
-    this.#cameras = [];
-    try {
-      if (file) this.#cameras = readCalibration(file.name, await file.text());
-      this.error = '';
-    } catch (error) {
-      this.error = error.message;
-    }
-    this.named.replaceChildren(...this.#cameras.map(({ name }, i) => new Option(name, i)));
-    this.#choose();
-  }
+
+  // Images
 
   #choose() {
-    const { scene, drawing, select, onChange } = this.#page, robots = /^(\d+) (\d+)$/.exec(this.#choice.value);
+    const { scene, drawing, select, onChange } = this.#page, { isRobot, robot: [row, i], real } = this.#controls;
     this.#drop();
-    this.#real.hidden = Boolean(robots);
-    this.urlLabel.hidden = this.#choice.value === 'device';
-    if (robots) {
-      const row = Number(robots[1]), sensor = scene.movers[row].sensors[robots[2]];
-      this.#use(sensor.camera, row, robotImages(sensor.camera, onChange));
+    if (isRobot) {
+      const { camera } = scene.movers[row].sensors[i];
+      this.#use(camera, row, robotImages(camera, onChange));
       if (drawing.selected < 0) select(row);
-    } else {
-      const camera = this.#cameras[this.named.value], kind = this.#choice.value;
-      if (camera && (kind === 'device' || this.url.value)) this.#use(camera, Number(this.mount.value), realImages({ kind, url: this.url.value, reload: Number(this.reload.value) }, camera.name, onChange));
+    } else if (real) {
+      this.#use(real.camera, real.row, realImages(real, real.camera.name, onChange));
     }
     onChange();
   }
@@ -135,12 +95,12 @@ export class ViewCamera {
   #timeOf() {
     const { fleet } = this.#page;
     if (Number.isFinite(this.#source.time)) return this.#source.time;
-    return fleet.shownTime - 0.001 * Math.max(0, Number(this.delay.value) || 0);
+    return fleet.shownTime - this.#controls.delay;
   }
 
   frame() {
     this.#canvas.hidden = !this.#source?.size;
-    if (!this.#source?.size) return this.#say([this.error || this.#source?.error || this.#lacks()]);
+    if (!this.#source?.size) return this.#say([this.#controls.error || this.#source?.error || this.#lacks()]);
     const { width } = this.#canvas, c = this.#canvas.getContext('2d'), camera = this.#camera, late = {};
     this.time = this.#timeOf();
     c.setTransform(1, 0, 0, 1, 0, 0);
@@ -174,10 +134,9 @@ export class ViewCamera {
     overlay.goals(this.#intents.filter(({ mover }) => row < 0 || mover === row).flatMap((intent) => this.#goalsOf(intent, poses)));
   }
   /** Where a robot is heading: a checkpoint, or the robot that it follows. */
-  #goalsOf({ mover, follows, checkpoint }, poses) {
-    const { movers, checkpoints = [] } = this.#page.scene, from = poses[mover]?.p, goals = [];
-    const next = checkpoint !== none && checkpoints.find(({ id }) => id === checkpoint), leader = follows === none ? -1 : movers.findIndex(({ id }) => id === follows);
-    if (next) goals.push({ to: [...next.at, from?.[2] ?? 0], name: `checkpoint ${checkpoint}` });
+  #goalsOf({ mover, follows, checkpoint, x, y }, poses) {
+    const { movers } = this.#page.scene, from = poses[mover]?.p, goals = [], leader = follows === none ? -1 : movers.findIndex(({ id }) => id === follows);
+    if (Number.isFinite(x) && from) goals.push({ to: [x, y, from[2]], name: `checkpoint ${checkpoint}` });
     if (poses[leader]) goals.push({ to: poses[leader].p, name: movers[leader].name });
     return from ? goals.map((goal) => ({ from, ...goal })) : [];
   }
@@ -196,16 +155,16 @@ export class ViewCamera {
   // Remarks
 
   #lacks() {
-    if (!this.#real.hidden) return 'Choose the calibration file of the camera (sections [[camera]], docs/vps.md) and the address of its images.';
+    if (!this.#controls.isRobot) return 'Choose the calibration file of the camera (sections [[camera]], docs/vps.md) and the address of its images.';
     return 'Waiting for an image.';
   }
   /** Differences in time between the image and what is drawn over it, and what does not fit. */
   #remarks(late, X_WM) {
     const { fleet, drawing } = this.#page, { size, time } = this.#source, [width, height] = this.#camera.size, remarks = [];
-    if (this.error || this.#source.error) remarks.push(this.error || this.#source.error);
+    if (this.#source.error) remarks.push(this.#source.error);
     if (Number.isFinite(time)) {
-      const behind = X_WM?.late ?? time - fleet.time;
-      remarks.push(behind > noticeable ? `Image of ${time.toFixed(2)} s; robots ${span(behind)} older` : `Image of ${time.toFixed(2)} s, robots at its time`);
+      const behind = X_WM?.late ?? time - fleet.time, age = fleet.time - time;
+      remarks.push(`Image of ${time.toFixed(2)} s${age > noticeable ? `, ${span(age)} before the newest states` : ''}`, behind > noticeable ? `robots ${span(behind)} older` : 'robots at its time');
     } else {
       remarks.push(`The image states no time: drawn with the states of ${this.time.toFixed(2)} s, those of its arrival less the delay`);
     }
