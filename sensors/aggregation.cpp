@@ -31,7 +31,8 @@ AggregationSettings read_aggregation(const DerivedContext& context, double drift
   settings.choice = static_cast<Choice>(choice(from, kChooseKey, 0, kChoices));
   settings.max_age = number(from, kMaxAgeKey, settings.max_age, 1e-3, kMostAge);
   settings.drift = number(from, kDriftKey, drift, 0.0, kMostDeviation);
-  settings.noise = tuple(from, kNoiseKey, 1, "[standard deviation of each input]").value_or(std::vector<double>{});
+  settings.noise = tuple(from, kNoiseKey, 1, "[deviation ...], the standard deviation of each input")
+                       .value_or(std::vector<double>{});
   std::uint32_t texts = 0;
   for (const WiredInput& input : context.inputs) texts = std::max(texts, input.place + 1);
   const bool in_range = std::ranges::all_of(settings.noise, [](double v) { return v >= 0.0 && v <= kMostDeviation; });

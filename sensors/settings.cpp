@@ -9,6 +9,7 @@
 #include "base/elementary.h"
 #include "base/error.h"
 #include "base/suggest.h"
+#include "base/tuple_text.h"
 
 namespace sf::sensors {
 
@@ -20,8 +21,13 @@ constexpr double kSlowest = 1e-6;  // [Hz]
 
 const std::vector<double>& numbers(const world::Sensor& sensor, const world::Setting& setting, std::size_t least,
                                    const std::string& meaning) {
-  if (setting.numbers.size() >= least && setting.text.empty()) return setting.numbers;
-  refuse(sensor, setting.key, fmt::format("'{}' expects {}", setting.key, meaning));
+  const std::size_t count = setting.numbers.size();
+  if (count < least || !setting.text.empty())
+    refuse(sensor, setting.key, fmt::format("'{}' expects {}", setting.key, meaning));
+  const std::size_t most = base::numbers_in(meaning);
+  if (count > most)
+    refuse(sensor, setting.key, fmt::format("'{}' has {} numbers; expected {}", setting.key, count, meaning));
+  return setting.numbers;
 }
 
 /// @param unit one unit of the file in SI; bounds and fallback are in SI

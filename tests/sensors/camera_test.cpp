@@ -336,7 +336,7 @@ TEST(Camera, Daylight) {
   EXPECT_EQ(day.sky, world::Daylight{}.sky);
   EXPECT_EQ(day.floor, 0xFFFF0000u);
   expect_in("trial.world:1", refusal_of([] { world_of("sun [0 91]"); }));
-  expect_in("'sun' has only 1 numbers; expected [azimuth elevation]", refusal_of([] { world_of("sun [0]"); }));
+  expect_in("'sun' has only 1 number; expected [azimuth elevation]", refusal_of([] { world_of("sun [0]"); }));
   expect_in("skylight", refusal_of([] { world_of("skylight -1"); }));
 }
 

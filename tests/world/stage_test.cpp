@@ -414,6 +414,12 @@ TEST(Stage, TagPoseOfThreeNumbersIsReadLikeAPose) {
       << warnings_of(world);
 }
 
+TEST(Stage, WarnsOfNumbersBeyondATuple) {
+  const World world = read_world("model( size [1 2 3 4] )\nmodel( size [1 2 3] )");
+  EXPECT_NE(warnings_of(world).find("1: 'size' has 4 numbers; only 3 are read: [x y z]"), std::string::npos);
+  EXPECT_EQ(warnings_of(world).find("2: 'size'"), std::string::npos) << "as many as are read";
+}
+
 TEST(Stage, OtherNamesLinkNothing) {
   const World world = read_world(
       "model( name \"roomba\" ) model( name \"tag\" ) model( name \"tag0\" ) model( name \"roombax1\" )"

@@ -126,7 +126,7 @@ void add_sensors(BuildState& b, const Entity& entity, const Model& model, const 
 }
 
 void add_magnet(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {
-  const StageContext& context = b.context;
+  StageContext& context = b.context;
   const char* key = find(entity, "magnetic_moment") != nullptr ? "magnetic_moment" : "magneticmoment";
   const double moment = number(context, entity, key, 0.0);
   if (moment == 0.0 || !flag(context, entity, "magnetometer_return", true)) return;

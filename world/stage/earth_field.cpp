@@ -35,7 +35,7 @@ Location location_of_road(const BuildState& b, const Property& property) {
   return {*sidecar.origin, sidecar.heading};
 }
 
-Location read_location(const BuildState& b, const Entity& root, const Property& property) {
+Location read_location(BuildState& b, const Entity& root, const Property& property) {
   constexpr const char* kExpected = "[latitude longitude heading] in degrees";
   if (property.values.size() == 1 && property.values[0].is_text) {
     if (property.values[0].text == "road") return location_of_road(b, property);

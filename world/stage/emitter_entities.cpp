@@ -22,7 +22,7 @@ constexpr double kMaxFiducialId = 65535.0;
 }  // namespace
 
 void add_emitter(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {
-  const StageContext& context = b.context;
+  StageContext& context = b.context;
   const Property* property = find(entity, "ir_emitter");
   if (property == nullptr) return;
   if (model.mover != kNone)
@@ -39,7 +39,7 @@ void add_emitter(BuildState& b, const Entity& entity, const Model& model, const 
 }
 
 void add_lamp(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {
-  const StageContext& context = b.context;
+  StageContext& context = b.context;
   const Property* fov = find(entity, "lamp_fov");
   const Property* property = find(entity, "lamp_intensity");
   if (property == nullptr) {
@@ -59,7 +59,7 @@ void add_lamp(BuildState& b, const Entity& entity, const Model& model, const Siz
 }
 
 void add_heat_source(BuildState& b, const Entity& entity, const Model& model, const Pose& X_B) {
-  const StageContext& context = b.context;
+  StageContext& context = b.context;
   const Property* radius = find(entity, "heat_radius");
   const Property* property = find(entity, "heat");
   if (property == nullptr) {
@@ -77,7 +77,7 @@ void add_heat_source(BuildState& b, const Entity& entity, const Model& model, co
 }
 
 void add_fiducial(BuildState& b, const Entity& entity, const Size& size, const Pose& X_B) {
-  const StageContext& context = b.context;
+  StageContext& context = b.context;
   constexpr auto kMaxId = static_cast<std::uint32_t>(kMaxFiducialId);
   const std::uint32_t id = whole(context, entity, "fiducial_return", 0, 0, kMaxId);
   if (id == 0) return;

@@ -12,7 +12,7 @@ constexpr double kMaxMagnets = 1e6;
 
 }  // namespace
 
-std::optional<MagnetRow> read_magnet_row(const StageContext& context, const Entity& entity) {
+std::optional<MagnetRow> read_magnet_row(StageContext& context, const Entity& entity) {
   MagnetRow row;
   row.spacing = length(context, entity, "magnet_spacing", 0.0);
   const double moment = number(context, entity, "magnetic_moment", 0.0);

@@ -20,7 +20,7 @@ struct MagnetRow {
 /// Reads `magnetic_moment`, `magnet_spacing`, `magnet_size [width length]` and `magnet_top`; nullopt if the first two
 /// are absent.
 /// @throws base::InputError with file and line
-std::optional<MagnetRow> read_magnet_row(const StageContext& context, const Entity& entity);
+std::optional<MagnetRow> read_magnet_row(StageContext& context, const Entity& entity);
 
 /// Adds magnets at s = 0, spacing, 2 spacing ... up to `length` [m], at `along(s)`. They belong to the last model.
 /// @throws base::InputError, with the place of `entity`, for more than a million magnets

@@ -24,7 +24,7 @@ struct Block {
 };
 
 /// @return whether the point exists
-bool read_point(const StageContext& context, const Entity& entity, const std::string& key, glm::dvec2& out) {
+bool read_point(StageContext& context, const Entity& entity, const std::string& key, glm::dvec2& out) {
   const auto point = tuple(context, entity, key, 2, "[x y]");
   if (!point) return false;
   const SourceLocation at = find(entity, key)->at;
@@ -262,7 +262,7 @@ std::vector<Segment> shape_of(StageContext& context, BitmapCache& bitmaps, const
   return segments;
 }
 
-Size size_of(const StageContext& context, const Entity& entity, const Size& fallback) {
+Size size_of(StageContext& context, const Entity& entity, const Size& fallback) {
   const auto values = tuple(context, entity, "size", 2, "[x y z]");
   if (!values) return fallback;
   const SourceLocation at = find(entity, "size")->at;

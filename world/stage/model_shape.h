@@ -18,6 +18,6 @@ std::vector<Segment> shape_of(StageContext& context, BitmapCache& bitmaps, const
                               bool is_box);
 
 /// Reads the `size` property, or returns the fallback. Two numbers keep the fallback's height.
-Size size_of(const StageContext& context, const Entity& entity, const Size& fallback);
+Size size_of(StageContext& context, const Entity& entity, const Size& fallback);
 
 }  // namespace sf::world

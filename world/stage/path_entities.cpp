@@ -40,7 +40,7 @@ PathPiece read_arc(const StageContext& context, const Property& property) {
 }
 
 std::vector<PathPiece> read_pieces(BuildState& b, const Entity& entity) {
-  const StageContext& context = b.context;
+  StageContext& context = b.context;
   const std::uint32_t count = whole(context, entity, "pieces", 0, 1, kMaxPieces);
   if (count == 0) fail(context, entity.at, "a path requires 'pieces', and a straight[i] or an arc[i] for each");
   std::vector<PathPiece> pieces;
@@ -71,7 +71,7 @@ struct Paint {
   bool none = true;
 };
 
-Paint read_paint(const StageContext& context, const Entity& entity, const char* side) {
+Paint read_paint(StageContext& context, const Entity& entity, const char* side) {
   constexpr std::uint32_t kYellow = 0xFFFFCC00u;
   Paint paint;
   const std::string word = text(context, entity, side, "none");
@@ -128,8 +128,7 @@ void paint_edge(World& world, const PathPiece& piece, double start, double offse
   }
 }
 
-void check_dashes(const StageContext& context, const Entity& entity, const char* side, const Paint& paint,
-                  double total) {
+void check_dashes(StageContext& context, const Entity& entity, const char* side, const Paint& paint, double total) {
   if (paint.none || paint.dash == 0.0 || total / (paint.dash + paint.gap) <= kMaxDashes) return;
   const bool said = find(entity, "dash") != nullptr;
   fail(context, location_of(entity, said ? "dash" : side),

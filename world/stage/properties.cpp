@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/tuple_text.h"
 
 namespace sf::world {
 
@@ -120,7 +121,7 @@ std::uint32_t whole(const StageContext& context, const Entity& entity, std::stri
   return static_cast<std::uint32_t>(value);
 }
 
-std::optional<std::vector<double>> tuple(const StageContext& context, const Entity& entity, std::string_view key,
+std::optional<std::vector<double>> tuple(StageContext& context, const Entity& entity, std::string_view key,
                                          std::size_t least, const std::string& meaning) {
   const Property* property = find(entity, key);
   if (property == nullptr) return std::nullopt;
@@ -132,7 +133,14 @@ std::optional<std::vector<double>> tuple(const StageContext& context, const Enti
     values.push_back(value.number);
   }
   if (values.size() < least) {
-    fail(context, property->at, fmt::format("'{}' has only {} numbers; expected {}", key, values.size(), meaning));
+    fail(context, property->at,
+         fmt::format("'{}' has only {} number{}; expected {}", key, values.size(), values.size() == 1 ? "" : "s",
+                     meaning));
+  }
+  const std::size_t most = base::numbers_in(meaning);
+  if (values.size() > most) {
+    warn(context, property->at,
+         fmt::format("'{}' has {} numbers; only {} are read: {}", key, values.size(), most, meaning));
   }
   return values;
 }

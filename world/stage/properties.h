@@ -82,9 +82,10 @@ Accuracy accuracy(const StageContext& context, const LoadOptions& options, const
 std::uint32_t whole(const StageContext& context, const Entity& entity, std::string_view key, std::uint32_t fallback,
                     std::uint32_t least, std::uint32_t most);
 
-/// Reads the numbers of a tuple as written, at least `least` of them; nullopt if the property is absent.
-/// @param meaning e.g. "[min max]", for errors
-std::optional<std::vector<double>> tuple(const StageContext& context, const Entity& entity, std::string_view key,
+/// Reads the numbers of a tuple as written, at least `least` of them; nullopt if the property is absent. Numbers beyond
+/// those that `meaning` names are kept, with a warning, because Stage ignores them.
+/// @param meaning e.g. "[min max]", for messages
+std::optional<std::vector<double>> tuple(StageContext& context, const Entity& entity, std::string_view key,
                                          std::size_t least, const std::string& meaning);
 
 /// Reads `[x y z yaw]`. Three numbers are read as [x y z], with a warning.

@@ -50,8 +50,7 @@ std::string key_name(const Key& key) {
 
 }  // namespace
 
-double read_number(const StageContext& context, const Entity& entity, const Key& key, const Bounds& bounds,
-                   double value) {
+double read_number(StageContext& context, const Entity& entity, const Key& key, const Bounds& bounds, double value) {
   const SourceLocation at = find(entity, key.name)->at;
   const UnitScale unit = scale_of(context, key.unit);
   double written = 0.0;
@@ -83,7 +82,7 @@ std::size_t word_row(const StageContext& context, SourceLocation at, std::string
   fail(context, at, fmt::format("'{}' is \"{}\"; expected {}", key, written, expected));
 }
 
-std::size_t read_word(const StageContext& context, const Entity& entity, std::string_view key,
+std::size_t read_word(StageContext& context, const Entity& entity, std::string_view key,
                       std::span<const std::string_view> words) {
   return word_row(context, find(entity, key)->at, key, text(context, entity, key, ""), words);
 }

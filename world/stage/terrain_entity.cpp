@@ -14,7 +14,7 @@ namespace {
 constexpr double kMostHeight = 1e5;  // [m] of the surface, above or below the pose
 constexpr double kLeastCell = 1e-3;  // [m]
 
-glm::dvec2 heights_of(const StageContext& context, const Entity& entity) {
+glm::dvec2 heights_of(StageContext& context, const Entity& entity) {
   const SourceLocation at = location_of(entity, "heights");
   const auto heights = tuple(context, entity, "heights", 2, "[lowest highest]");
   if (!heights)
@@ -27,7 +27,7 @@ glm::dvec2 heights_of(const StageContext& context, const Entity& entity) {
   return range;
 }
 
-HeightMap map_of(const StageContext& context, const Entity& entity, const std::string& file) {
+HeightMap map_of(StageContext& context, const Entity& entity, const std::string& file) {
   if (is_geotiff(file)) {
     if (find(entity, "heights") != nullptr)
       fail(context, location_of(entity, "heights"), "a GeoTIFF states its heights; expected no 'heights' here");
@@ -37,7 +37,7 @@ HeightMap map_of(const StageContext& context, const Entity& entity, const std::s
   return read_height_map(file, heights.x, heights.y);
 }
 
-glm::dvec2 cell_of(const StageContext& context, const Entity& entity, const HeightMap& map) {
+glm::dvec2 cell_of(StageContext& context, const Entity& entity, const HeightMap& map) {
   const SourceLocation at = location_of(entity, "size");
   const auto size = tuple(context, entity, "size", 2, "[x y]");
   if (!size && map.cell.x >= kLeastCell && map.cell.y >= kLeastCell) return map.cell;
