@@ -4,7 +4,8 @@
 //
 // - Suspension: a wheel has no mass of its own (but a spin), moves along the body's z axis and meets the ground below
 //   in one point. Springs are linear, with a bump stop ten times as stiff; there are no anti-roll bars. The ground
-//   pushes along its normal and never pulls. The edge of a road is a step, which loads the spring at once.
+//   pushes along its normal and never pulls. The edge of a road is a step, which loads the spring at once; bump stops
+//   and corners push out of the ground by at most 1 m/s, so that edges and cars placed in the ground throw nothing.
 // - Tyres: Burckhardt's friction by combined slip, as in robots/car_dynamics.h. Slip is relative to a speed of at least
 //   kLeastSlipSpeed, so that friction becomes viscous near rest. Below kHoldSpeed, a spring between tyre and ground
 //   holds a braked car on a slope. Both together are limited to the peak friction.
@@ -135,6 +136,7 @@ class Vehicle final : public Dynamics {
   struct State;
   void approach(Goal& goal, const base::Twist& command, double dt) const;
   VehicleControls controls_for(const VehicleBody& body, const Goal& goal) const;
+  double bounded(double load, double closing, double dt) const;
   // The loads are those of the compressions after `dt`, at constant rates.
   Contact contact_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel, const world::Ground& ground,
                      double dt = 0.0) const;

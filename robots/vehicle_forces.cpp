@@ -15,6 +15,8 @@ constexpr double kMotorSlack = 0.2;  // [rad/s] by which a skid drive's motor at
 constexpr double kSill = 0.3;        // [-] height of the body's lower corners, in that of the box
 constexpr unsigned kCorners = 8;
 constexpr double kCornerFriction = 0.6;
+constexpr double kContacts = 12.0;  // wheels and corners
+constexpr double kOutward = 1.0;    // [m/s] at which deep contacts push out of the ground at most
 
 glm::dvec3 normal_of(const world::GroundPoint& ground) {
   if (ground.slope == glm::dvec2{}) return {0.0, 0.0, 1.0};
@@ -22,6 +24,13 @@ glm::dvec3 normal_of(const world::GroundPoint& ground) {
 }
 
 }  // namespace
+
+/// Limits the load of a contact [N], so that an overlap with an edge of the ground, or with the ground where a car is
+/// placed, does not throw it. Takes energy only. @param closing [m/s] along the normal
+double Vehicle::bounded(double load, double closing, double dt) const {
+  const double most = contact_mass_ * 4.0 / kContacts * std::max(0.0, kOutward + closing);
+  return load * dt > most ? most / dt : load;
+}
 
 Vehicle::Contact Vehicle::contact_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel,
                                      const world::Ground& ground, double dt) const {
@@ -46,8 +55,10 @@ Vehicle::Contact Vehicle::contact_of(const VehicleBody& body, const glm::dmat3& 
   const double next = contact.compression + dt * contact.rate;
   if (next <= 0.0) return contact;
   const double bump = std::max(0.0, next - rest.compression - model_.travel);
-  const double force = model_.spring * (next + kBumpStiffness * bump) + model_.damper * contact.rate;
-  contact.load = std::max(0.0, force) / slant;
+  const double closing = contact.rate * slant;
+  const double stop = bounded((1.0 + kBumpStiffness) * model_.spring * bump / slant, closing, dt);
+  const double strut = (model_.spring * (next - bump) + model_.damper * contact.rate) / slant;
+  contact.load = bounded(std::max(0.0, strut + stop), std::max(0.0, closing), dt);
   return contact;
 }
 
@@ -153,12 +164,12 @@ Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R
   const glm::dvec3 at = body.p + contact.p;
   const world::GroundPoint below = ground.at({at.x, at.y}, at.z + 0.5 * model_.car.wheel_radius);
   contact.normal = normal_of(below);
-  contact.compression = below.z - at.z;
-  contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal) / contact.normal.z;
+  contact.compression = (below.z - at.z) * contact.normal.z;
+  contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal);
   const double next = contact.compression + dt * contact.rate;
-  if (next > 0.0)
-    contact.load =
-        std::max(0.0, kBumpStiffness * model_.spring * next + 4.0 * model_.damper * contact.rate) / contact.normal.z;
+  if (next <= 0.0) return contact;
+  const double push = kBumpStiffness * model_.spring * next + 4.0 * model_.damper * contact.rate;
+  contact.load = bounded(std::max(0.0, push), contact.rate, dt);
   return contact;
 }
 

@@ -71,6 +71,17 @@ std::optional<double> number_of(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
+/// Throws unless the wheels turn more easily than the car moves.
+void require_light_wheels(const VehicleModel& m, const std::string& at) {
+  const CarModel& car = m.car;
+  const double least = 4.0 * car.wheel_inertia / (car.wheel_radius * car.wheel_radius);
+  if (car.mass < least)
+    throw base::InputError(
+        fmt::format("{}'dynamics': a car of {:g} kg is too light for the wheels of its preset; "
+                    "expected at least {:.3g} kg: choose a smaller preset",
+                    at, car.mass, least));
+}
+
 /// Throws unless springs and dampers are soft enough for kVehicleStep.
 void require_stable(const VehicleModel& m, const std::string& at) {
   const CarModel& car = m.car;
@@ -133,6 +144,7 @@ VehicleModel vehicle_of(const world::Mover& mover) {
   if (!mover.body.empty()) model.box = {};
   for (const world::Segment& side : mover.body)
     model.box = glm::max(model.box, glm::dvec3{std::abs(side.a.x), std::abs(side.a.y), side.z_max});
+  require_light_wheels(model, choice.at);
   require_stable(model, choice.at);
   return model;
 }

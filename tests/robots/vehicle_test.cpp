@@ -182,6 +182,41 @@ TEST(Vehicle, DrivesOverAKerb) {
   EXPECT_NEAR(at.velocity.forward, 8.0, 0.1);
 }
 
+TEST(Vehicle, RisesSlowlyFromWithinTheGround) {
+  for (const double depth : {0.3, 0.6, 2.0, 20.0}) {  // bump stops, corners, the roof, far below
+    Drive drive(family_model());
+    drive.report.X_WM.z = -depth;
+    drive.vehicle.place(drive.report, drive.state);
+    double last = -depth, highest = -depth;
+    for (int k = 0; k < 300; ++k) {
+      highest = std::max(highest, drive.go({}, 0.1).X_WM.z);
+      EXPECT_LT(drive.report.X_WM.z - last, 0.2) << depth << " m deep, after " << k << " ticks";
+      last = drive.report.X_WM.z;
+    }
+    EXPECT_NEAR(last, 0.0, 0.01) << depth;
+    EXPECT_LT(highest, 0.2) << depth;
+  }
+}
+
+TEST(Vehicle, CliffsThrowNothing) {
+  for (const double rise : {0.5, 1.0, 2.0, 4.0, 11.0, 57.0}) {  // within 1 m: up to 89 degrees
+    const world::Terrain cliff = terrain_of([&](double x, double) { return x < 0.5 ? 0.0 : rise; });
+    const world::Ground ground({}, {&cliff, 1});
+    for (const double speed : {5.0, 20.0}) {
+      const Vehicle vehicle(family_model());
+      VehicleBody body = vehicle.body_at({.X_WM = {-10.0, 0.0, 0.0, 0.0}, .velocity = {speed, 0.0, 0.0}});
+      const double start = body.p.z;
+      double fastest = 0.0, highest = 0.0;
+      for (int k = 0; k < 5'000; ++k) {
+        vehicle.step(body, {}, kVehicleStep, ground);
+        fastest = std::max(fastest, glm::length(body.v)), highest = std::max(highest, body.p.z - start);
+      }
+      EXPECT_LT(fastest, speed + 2.0) << rise << " m, at " << speed << " m/s";
+      EXPECT_LT(highest, 0.5 * speed * speed / 9.81 + 1.5) << rise << " m, at " << speed << " m/s";
+    }
+  }
+}
+
 TEST(Vehicle, LiesOnItsRoofWhenUpsideDown) {
   const Vehicle vehicle(family_model());
   VehicleBody body = vehicle.body_at({.X_WM = {0.0, 0.0, 1.6}, .tilt = {.roll = 3.0}});
@@ -258,6 +293,7 @@ TEST(DynamicFleet, RefusesBadSettings) {
   EXPECT_NE(refusal("preset", "pioneer").find("\"skid\""), std::string::npos) << "which cannot steer";
   EXPECT_NE(refusal("preset", "small", world::Drive::skid).find("drive \"car\""), std::string::npos);
   EXPECT_NE(refusal("spring", "2e7").find("too stiff"), std::string::npos);
+  EXPECT_NE(refusal("mass", "50").find("expected at least 57.5 kg"), std::string::npos) << "as its wheels";
 }
 
 }  // namespace
