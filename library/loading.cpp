@@ -51,7 +51,8 @@ void Starts::place(world::World& world, std::uint32_t copy, std::uint64_t seed, 
       resized.push_back(first + i);
     }
   if (space_) {
-    const auto poses = space_->poses(static_cast<std::uint32_t>(clones_.size()), seed, world::places_of_tags(movers));
+    const auto poses =
+        space_->poses(world, static_cast<std::uint32_t>(clones_.size()), seed, world::places_of_tags(movers));
     for (std::size_t i = 0; i < poses.size(); ++i) world.movers[first + clones_[i]].X_WM = poses[i];
   }
   for (std::uint32_t i = 0; i < originals_.size(); ++i) place_given(world, first + i, given, first_given + i);

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "world/ground.h"
 #include "world/ros_map.h"
 #include "world/wall_tree.h"
 
@@ -41,7 +42,8 @@ std::vector<Segment> walls_at_height(const World& world, const Mover& robot, std
   std::vector<Segment> walls;
   for (const Segment& wall : world.walls) {
     const bool matters = wall.stops_robots || wall.seen_by_laser;
-    if (matters && heights.meet(wall)) walls.push_back(wall);
+    // On terrain, robots and walls stand at any height.
+    if (matters && (!world.terrain.empty() || heights.meet(wall))) walls.push_back(wall);
   }
   for (const Segment& edge : known) {
     walls.push_back(edge);
@@ -279,10 +281,14 @@ std::string PlaceCheck::problem(const Mover& robot, const Pose& X_WM) const {
 }
 
 std::string PlaceCheck::start_problem(const Mover& robot) const {
-  const std::string where = robot.is_tag ? "" : problem(robot, robot.X_WM);
+  const Pose& X = robot.X_WM;
+  std::string where = robot.is_tag ? "" : problem(robot, X);
+  const bool moves_in_height = !robot.dynamics.name.empty();
+  if (where.empty() && moves_in_height && X.z < Ground(world_.ramps, world_.terrain).height({X.x, X.y}, X.z) - 0.1)
+    where = fmt::format("{:g} m high, below the ground", X.z);
   return where.empty() ? ""
                        : fmt::format("'{}' starts at ({:g}, {:g}), {}; expected a 'pose' in free space", robot.name,
-                                     robot.X_WM.x, robot.X_WM.y, where);
+                                     X.x, X.y, where);
 }
 
 std::vector<Disc> places_of_tags(std::span<const Mover> movers) {
@@ -295,25 +301,28 @@ std::vector<Disc> places_of_tags(std::span<const Mover> movers) {
 struct FreeSpace::Area {
   WallTree walls;
   Region region;
-  std::string file, name;   // of the world, of the robot
-  double radius, clear, z;  // [m]
+  std::string file, name;  // of the world, of the robot
+  double radius, clear;    // [m]
+  Pose start;              // of the robot
 };
 
 FreeSpace::FreeSpace(const World& world, const Mover& robot) {
   const std::vector<Segment> known = known_free(world);
   WallTree walls(walls_at_height(world, robot, known));
   Region region = reachable(known, walls, robot);
-  area_ = std::make_unique<const Area>(Area{std::move(walls), std::move(region), world.file, robot.name, robot.radius,
-                                            clear_radius(robot), robot.X_WM.z});
+  area_ = std::make_unique<const Area>(
+      Area{std::move(walls), std::move(region), world.file, robot.name, robot.radius, clear_radius(robot), robot.X_WM});
 }
 
 FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
 FreeSpace& FreeSpace::operator=(FreeSpace&&) noexcept = default;
 FreeSpace::~FreeSpace() = default;
 
-std::vector<Pose> FreeSpace::poses(std::uint32_t count, std::uint64_t seed, std::span<const Disc> tags) const {
+std::vector<Pose> FreeSpace::poses(const World& world, std::uint32_t count, std::uint64_t seed,
+                                   std::span<const Disc> tags) const {
   const Area& area = *area_;
   const Region& region = area.region;
+  const Ground ground(world.ramps, world.terrain);
   PlacedRobots crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * area.radius + kPlaceMargin);
   std::vector<Pose> poses;
   const auto draw = [&](std::uint32_t k) {
@@ -327,7 +336,7 @@ std::vector<Pose> FreeSpace::poses(std::uint32_t count, std::uint64_t seed, std:
       if (!clear_of_walls(area.walls, p, area.clear) || !clear_of_tags(tags, p, area.clear) || !crowd.clear(p))
         continue;
       crowd.add(p);
-      poses.push_back({p.x, p.y, area.z, M_PI * (2.0 * turn - 1.0)});
+      poses.push_back(ground.stand(area.start, {p.x, p.y, 0.0, M_PI * (2.0 * turn - 1.0)}));
       return true;
     }
     return false;
@@ -342,7 +351,7 @@ std::vector<Pose> FreeSpace::poses(std::uint32_t count, std::uint64_t seed, std:
 }
 
 std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed) {
-  return FreeSpace(world, robot).poses(count, seed, places_of_tags(world.movers));
+  return FreeSpace(world, robot).poses(world, count, seed, places_of_tags(world.movers));
 }
 
 }  // namespace sf::world

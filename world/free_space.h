@@ -35,11 +35,13 @@ class FreeSpace {
   FreeSpace& operator=(FreeSpace&&) noexcept;
   ~FreeSpace();
 
-  /// Returns `count` poses for robots like that one, at its height, uniformly distributed over its region, with any yaw
-  /// in (-pi, pi). Pose k depends on (seed, k), the world and poses 0..k-1, but not on `count`.
-  /// @param tags places that they avoid
+  /// Returns `count` poses for robots like that one, as high above the ground of `world`, uniformly distributed over
+  /// its region, with any yaw in (-pi, pi). Pose k depends on (seed, k), the world and poses 0..k-1, but not on
+  /// `count`.
+  /// @param world that of the constructor, or a copy  @param tags places that they avoid
   /// @throws base::InputError if there is not enough room
-  std::vector<Pose> poses(std::uint32_t count, std::uint64_t seed, std::span<const Disc> tags) const;
+  std::vector<Pose> poses(const World& world, std::uint32_t count, std::uint64_t seed,
+                          std::span<const Disc> tags) const;
 
  private:
   struct Area;
@@ -49,7 +51,7 @@ class FreeSpace {
 /// Returns the circles of the tags among `movers` that are in the world.
 std::vector<Disc> places_of_tags(std::span<const Mover> movers);
 
-/// Returns FreeSpace(world, robot).poses(count, seed, places_of_tags(world.movers)).
+/// Returns FreeSpace(world, robot).poses(world, count, seed, places_of_tags(world.movers)).
 std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed);
 
 /// Returns the row of the robot to copy: the robot with that name; without a name, the first robot with sensors, or

@@ -61,6 +61,11 @@ double Ground::follow(const base::Pose& from, glm::dvec2 to) const {
   return std::abs(from.z - below) <= kContact ? next : from.z + (next - below);
 }
 
+Pose Ground::stand(const Pose& from, const Pose& to) const {
+  const double above = is_flat() ? from.z : from.z - height({from.x, from.y}, from.z + kContact);
+  return {to.x, to.y, is_flat() ? above : above + height({to.x, to.y}, HUGE_VAL), to.yaw};
+}
+
 base::Tilt Ground::tilt(const base::Pose& at, double length, double width) const {
   if (!terrain_) return {};
   const auto height_of = [&](double x, double y) { return base_at(base::transform(at, {x * length, y * width})).z; };

@@ -28,6 +28,8 @@ class Ground {
   /// its height above it. It climbs a rise of a road of at most kMostStep plus kMostSlope times the length of the move,
   /// passes under higher roads, drops from an edge within the move, and follows terrain of any slope.
   double follow(const base::Pose& from, glm::dvec2 to) const;
+  /// Returns `to` as high above the ground, or the highest road, as `from` is above what it stands on.
+  Pose stand(const Pose& from, const Pose& to) const;
   /// Returns the tilt of a robot on terrain: that of the plane through the contacts of its four wheels, at the corners
   /// of a rectangle about its origin (least squares). Zero in worlds without terrain.
   /// @param length, width [m] > 0, along and across its heading

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/random.h"
+#include "world/ground.h"
 #include "world/shapes.h"
 
 namespace sf::world {
@@ -80,8 +81,12 @@ void draw_poses(World& world, std::uint32_t first, std::span<const Original> ori
     movers[row].X_WM = originals[row].mover.X_WM;
     movers[row].absent = originals[row].mover.absent;
   }
+  const Ground ground(world.ramps, world.terrain);
   for_random(originals, [&](std::uint32_t row, std::uint32_t number) {
-    if (robots || movers[row].is_tag) draw_start(movers[row], originals[row].mover.X_WM, seed, number);
+    if (!robots && !movers[row].is_tag) return;
+    const Pose& X_WM = originals[row].mover.X_WM;
+    draw_start(movers[row], X_WM, seed, number);
+    movers[row].X_WM = ground.stand(X_WM, movers[row].X_WM);
   });
 }
 

@@ -18,6 +18,7 @@
 #include "viz/png.h"
 #include "viz/world_figure.h"
 #include "world/free_space.h"
+#include "world/ground.h"
 
 namespace sf::apps {
 
@@ -170,16 +171,15 @@ int draw(const DrawOptions& options) {
 }
 
 int sense(const SenseOptions& options) {
-  const world::World world = load_with_robots(options);
+  world::World world = load_with_robots(options);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, sensor_set, options);
   const Chosen chosen = require_sensor(world, sensor_set, options, mover);
-  base::Pose X_WM = world.movers[mover].X_WM;
-  const base::Tilt tilt = options.pose ? options.pose->tilt : base::Tilt{};
-  if (options.pose) {
-    const base::Pose& X = options.pose->X;
-    X_WM = {X.x, X.y, options.pose->has_height ? X.z : X_WM.z, X.yaw};
-  }
+  base::Pose& X_WM = world.movers[mover].X_WM;
+  const bool stands = !options.pose || !options.pose->has_height;
+  if (options.pose)
+    X_WM = stands ? world::Ground(world.ramps, world.terrain).stand(X_WM, options.pose->X) : options.pose->X;
+  const base::Tilt tilt = stands ? robots::states_at_load(world)[mover].tilt : options.pose->tilt;
   if (options.pose) warn_of_pose(world, world.movers[mover], X_WM);
 
   gpu::Device device = open_device(options);
