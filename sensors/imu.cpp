@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
+#include "base/tilted_pose.h"
 #include "base/time.h"
+#include "sensors/attitude_filter.h"
 #include "sensors/host_backend.h"
 #include "sensors/inertial_motion.h"
 #include "sensors/mover_trail.h"
@@ -16,12 +19,16 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::size_t kPiece = 16;  // sensors per piece of work
+constexpr std::size_t kPiece = 16;          // sensors per piece of work
+constexpr std::uint32_t kPlainNumbers = 7;  // of readings without an orientation
+constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
 /// One unit during a run.
 struct ImuState {
   InertialMotion motion;
   Triad gyros, accels;
+  AttitudeFilter attitude;
+  std::uint64_t last = kNone;  ///< number of the reading that the orientation is of
 };
 
 class Imus : public HostBackend {
@@ -36,6 +43,7 @@ class Imus : public HostBackend {
  private:
   void measure_all() override;
   void measure_one(const HostSample& sample);
+  glm::dquat orientation(const HostSample& sample, const glm::dvec3& rate, const glm::dvec3& force, bool goes_on);
   ImuState state_at_start(std::uint32_t row) const;
   base::Report report_of(std::size_t row) const {
     base::Report report = states()[rows()[row].mover];
@@ -51,7 +59,7 @@ class Imus : public HostBackend {
 };
 
 ParsedSensors parse_imus(const world::World& world) {
-  return parse_each(world, imu_type, [](const world::Sensor& sensor, SensorSpec& row) {
+  ParsedSensors sensors = parse_each(world, imu_type, [](const world::Sensor& sensor, SensorSpec& row) {
     const Imu imu = read_imu(sensor);
     row.rate = rate_of(sensor, kImuRate);
     if (row.rate < kLeastImuRate)
@@ -64,6 +72,9 @@ ParsedSensors parse_imus(const world::World& world) {
     row.reach = 0.0;
     return imu;
   });
+  const bool orientation = std::ranges::any_of(sensors.settings_as<Imu>(), &Imu::orientation);
+  for (SensorSpec& row : sensors.rows) row.width = orientation ? 0 : kPlainNumbers;
+  return sensors;
 }
 
 Imus::Imus(const SensorContext& context, const ParsedSensors& sensors)
@@ -82,7 +93,8 @@ ImuState Imus::state_at_start(std::uint32_t row) const {
   const double interval = 1.0 / spec.rate;
   return {{s.X_MS, base::nanoseconds(interval), world().movers[spec.mover].max_forward, s.gravity},
           {s.gyro, s.g_sensitivity, interval, noise, drift, 0, noise_},
-          {s.accel, 0.0, interval, noise, drift, 1, noise_}};
+          {s.accel, 0.0, interval, noise, drift, 1, noise_},
+          {s.gain, s.bias_gain, s.gravity}};
 }
 
 void Imus::restart(std::uint32_t row, std::int64_t now) {
@@ -101,11 +113,29 @@ void Imus::accumulate(std::int64_t now, bool between) {
   });
 }
 
+/// The filter starts with the true heading. So it does after readings that were not taken, and for a single one at
+/// another pose. A single one at the present pose has the last orientation.
+glm::dquat Imus::orientation(const HostSample& sample, const glm::dvec3& rate, const glm::dvec3& force, bool goes_on) {
+  ImuState& imu = imus_[sample.row];
+  if (goes_on && imu.last != kNone && sample.sequence <= imu.last) return imu.attitude.q_WS();
+  AttitudeFilter attitude = imu.attitude;
+  if (goes_on && imu.last != kNone && sample.sequence == imu.last + 1) {
+    attitude.update(rate, force, 1.0 / rows()[sample.row].rate);
+  } else {
+    const base::Report& state = states()[rows()[sample.row].mover];
+    const auto X_WS = base::compose(base::transform_of(state.X_WM, state.tilt), settings_[sample.row].X_MS);
+    attitude.align(base::tilted_pose_of(X_WS).X.yaw, force);
+  }
+  if (goes_on) imu.attitude = attitude, imu.last = sample.sequence;
+  return attitude.q_WS();
+}
+
 /// A mover at the pose of a single reading, where no tick has put it, is at rest.
 void Imus::measure_one(const HostSample& sample) {
   ImuState& imu = imus_[sample.row];
   const base::Report now = report_of(sample.row);
-  const InertialMeans truth = is_same_place(now, last_[sample.row]) ? imu.motion.mean(now) : imu.motion.at_rest(now);
+  const bool goes_on = is_same_place(now, last_[sample.row]);
+  const InertialMeans truth = goes_on ? imu.motion.mean(now) : imu.motion.at_rest(now);
   const Triad::Output rate = imu.gyros.measure(truth.rate, truth.force, sample.sequence),
                       force = imu.accels.measure(truth.force, {}, sample.sequence);
   const double row[] = {rate.values.x,
@@ -116,6 +146,10 @@ void Imus::measure_one(const HostSample& sample) {
                         force.values.z,
                         static_cast<double>(rate.saturated | force.saturated << 3)};
   std::copy(std::begin(row), std::end(row), sample.values.begin());
+  if (sample.values.size() == kPlainNumbers) return;
+  glm::dquat q(NAN, NAN, NAN, NAN);
+  if (settings_[sample.row].orientation) q = orientation(sample, rate.values, force.values, goes_on);
+  std::ranges::copy(std::array{q.w, q.x, q.y, q.z}, sample.values.begin() + kPlainNumbers);
 }
 
 void Imus::measure_all() {
@@ -128,12 +162,16 @@ void Imus::write_state(std::uint32_t row, base::ByteWriter& out) const {
   const ImuState& imu = imus_[row];
   imu.motion.write(out);
   imu.gyros.write(out), imu.accels.write(out);
+  if (!settings_[row].orientation) return;
+  imu.attitude.write(out), out.put(imu.last);
 }
 
 void Imus::read_state(std::uint32_t row, base::ByteReader& in) {
   ImuState& imu = imus_[row];
   imu.motion.read(in);
   imu.gyros.read(in), imu.accels.read(in);
+  if (!settings_[row].orientation) return;
+  imu.attitude.read(in), imu.last = in.get<std::uint64_t>();
 }
 
 // --- Settings ---
@@ -192,6 +230,8 @@ constexpr std::string_view kKeys[] = {"preset",
                                       "pose6",
                                       "gravity",
                                       "g_sensitivity",
+                                      "orientation",
+                                      "gains",
                                       "gyro_noise",
                                       "gyro_instability",
                                       "gyro_walk",
@@ -208,11 +248,13 @@ constexpr std::string_view kKeys[] = {"preset",
                                       "accel_step",
                                       "accel_range",
                                       "accel_misalignment"};
-constexpr Column kColumns[] = {{"rate_x_rad_s"}, {"rate_y_rad_s"}, {"rate_z_rad_s"},      {"force_x_m_s2"},
-                               {"force_y_m_s2"}, {"force_z_m_s2"}, {"saturated", 1, true}};
+constexpr Column kColumns[] = {{"rate_x_rad_s"},  {"rate_y_rad_s"},  {"rate_z_rad_s"},       {"force_x_m_s2"},
+                               {"force_y_m_s2"},  {"force_z_m_s2"},  {"saturated", 1, true}, {"orientation_w"},
+                               {"orientation_x"}, {"orientation_y"}, {"orientation_z"}};
 constexpr PlainNumber kReal{.real = true};
-constexpr PlainNumber kNumbers[] = {kReal, kReal, kReal, kReal, kReal, kReal, {1.0, 0.0, 63.0}};
-constexpr PlainForm kForm{kImu, "imu", kNumbers};
+constexpr PlainNumber kNumbers[] = {kReal, kReal, kReal, kReal, kReal, kReal, {1.0, 0.0, 63.0},
+                                    kReal, kReal, kReal, kReal};
+constexpr PlainForm kForm{kImu, "imu", kNumbers, kPlainNumbers};
 
 }  // namespace
 
@@ -223,6 +265,12 @@ Imu read_imu(const world::Sensor& sensor) {
   Imu imu{.X_MS = spatial_mount(sensor), .gyro = preset.gyro, .accel = preset.accel};
   imu.gravity = length(sensor, "gravity", imu.gravity, 0.0, 1e3);
   imu.g_sensitivity = angle(sensor, "g_sensitivity", preset.g_sensitivity * kG, 0.0, kMostRate) / kG;
+  imu.orientation = whole(sensor, "orientation", 0, 0, 1) == 1;
+  if (const auto gains = tuple(sensor, "gains", 2, "[proportional integral]"))
+    imu.gain = (*gains)[0], imu.bias_gain = (*gains)[1];
+  const auto is_gain = [](double gain) { return gain >= 0.0 && gain <= 1e3; };
+  if (find(sensor, "gains") != nullptr && !(imu.orientation && is_gain(imu.gain) && is_gain(imu.bias_gain)))
+    refuse(sensor, "gains", "expected 'orientation 1' with 'gains', which are two numbers from 0 to 1000");
   read_errors(sensor, "gyro_", angle, kMostRate, imu.gyro);
   read_errors(sensor, "accel_", length, kMostForce, imu.accel);
   return imu;

@@ -33,6 +33,7 @@ enum {
   SF_MAGNETOMETER = 3,
   SF_GPS = 10,
   SF_OCCUPANCY = 12,
+  SF_IMU = 46,
   SF_LASER_EXTENDED = 65,
   SF_LIDAR = 44,
   SF_LIDAR_EXTENDED = 108,
@@ -221,7 +222,11 @@ static const sf_type sf_types[] = {
       {"force_x_m_s2", 1, 0},
       {"force_y_m_s2", 1, 0},
       {"force_z_m_s2", 1, 0},
-      {"saturated", 1, 1}}},
+      {"saturated", 1, 1},
+      {"orientation_w", 1, 0},
+      {"orientation_x", 1, 0},
+      {"orientation_y", 1, 0},
+      {"orientation_z", 1, 0}}},
     {44, "lidar", 14000, {0}, {{"range_m", 1, 1e-3}}},
     {45, "camera", 15000, {0}, {{"depth_m", 1, 1e-3}}},
     {36, "loop", 8000, {0}, {{"count", 1, 1}, {"occupancy", 1, 1e-6}, {"speed_m_s", 1, 1e-4}, {"vehicles", 1, 1}}},
@@ -442,6 +447,7 @@ static const char* decode_rows(sf_packet* p, const sf_type* type, const uint8_t*
   const unsigned rows = (unsigned)get(b, 2);
   unsigned width = sf_row_width(type);
   if (p->type == SF_GPS && size == 4 + (size_t)16 * rows) p->width = width = 4;  // without an altitude
+  if (p->type == SF_IMU && size == 4 + (size_t)28 * rows) p->width = width = 7;  // without an orientation
   const char* const sized = check_size(size, 4 + (size_t)4 * rows * width);
   if (sized) return sized;
   if (rows < 1 || rows * width > 313 || (p->type == SF_MAGNETOMETER && rows > 16)) return "out of range";

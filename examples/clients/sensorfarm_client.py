@@ -29,7 +29,7 @@ import struct
 import sys
 import time
 
-LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, GPS, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 4, 5, 6, 10, 12, 65
+LASER, LANE_EDGE, MAGNETOMETER, SONAR, INFRARED, BUMPER, GPS, OCCUPANCY, IMU, LASER_EXTENDED = 1, 2, 3, 4, 5, 6, 10, 12, 46, 65
 LIDAR, LIDAR_EXTENDED = 44, 108
 CAMERA, CAMERA_EXTENDED = 45, 109
 # The reason why the farm drops packets of this client. Anyone may have sent it, so it is only counted.
@@ -88,7 +88,8 @@ SENSORS = {
     49: ("inclinometer", 13000, [("roll_rad", 1e-6), ("pitch_rad", 1e-6), ("saturated", 1)]),
     50: ("radar", 17000, [("range_m", 1e-3), ("bearing_rad", 1e-6), ("closing_m_s", 1e-4), ("elevation_rad", 1e-6)]),
     46: ("imu", 12000, [("rate_x_rad_s", None), ("rate_y_rad_s", None), ("rate_z_rad_s", None), ("force_x_m_s2", None),
-                        ("force_y_m_s2", None), ("force_z_m_s2", None), ("saturated", 1)]),
+                        ("force_y_m_s2", None), ("force_z_m_s2", None), ("saturated", 1), ("orientation_w", None),
+                        ("orientation_x", None), ("orientation_y", None), ("orientation_z", None)]),
     44: ("lidar", 14000, [("range_m", 1e-3)]),
     45: ("camera", 15000, [("depth_m", 1e-3)]),
     43: ("aggregate", 18000, [("value", None), ("valid", 1), ("variance", None), ("source", 1), ("age_s", None)]),
@@ -230,8 +231,9 @@ def decode_rows(type, payload):
     columns = SENSORS[type][2]
     require(len(payload) >= 4, "too short")
     count = struct.unpack_from("<H", payload)[0]
-    if type == GPS and len(payload) == 4 + 16 * count:  # without an altitude
-        columns = columns[:4]
+    for short, numbers in (GPS, 4), (IMU, 7):  # without an altitude, without an orientation
+        if type == short and len(payload) == 4 + 4 * numbers * count:
+            columns = columns[:numbers]
     words = unpack("<%di" % (count * len(columns)), payload[4:])
     require(1 <= count and len(words) <= 313 and (type != MAGNETOMETER or count <= 16))
     body = {}

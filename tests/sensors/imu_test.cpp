@@ -7,7 +7,9 @@
 
 #include <cmath>
 
+#include "base/tilted_pose.h"
 #include "robots/kinematics.h"
+#include "sensors/attitude_filter.h"
 #include "tests/refusal.h"
 #include "tests/sensors/series.h"
 
@@ -131,7 +133,7 @@ TEST(Imu, NoiseFollowsTheDensity) {
 
 /// Another process continues with the bytes of the same sensor.
 TEST(Imu, ContinuesFromItsState) {
-  const char* text = "position( imu( rate 10 preset \"ADIS16470\" gyro_walk 0.01 ) )";
+  const char* text = "position( imu( rate 10 preset \"ADIS16470\" gyro_walk 0.01 orientation 1 ) )";
   Drive whole(text), second(text);
   for (int k = 0; k < 4; ++k) whole.drive({1.0, 0.0, 0.3 * k});
   base::Bytes state;
@@ -160,6 +162,52 @@ TEST(Imu, WandersWhetherItIsReadOrNot) {
   EXPECT_EQ(std::vector<double>(readings[0].values.begin(), readings[0].values.end()), series(world, kImu, 51)[50]);
 }
 
+/// Without corrections the orientation is that of the integrated rates: the true one.
+TEST(Imu, OrientationFollowsTheGyros) {
+  Drive d("position( pose [1 2 0 50] imu( rate 40 pose6 [0.5 0 0 10 20 90] orientation 1 gains [0 0] ) )");
+  for (int k = 0; k < 12; ++k) d.drive({1.0, 0.2, 2.0 - 0.3 * k});
+  const auto X_WS = base::compose(base::transform_of(d.state.X_WM),
+                                  sensors::SensorSet(d.world).settings_of<sensors::Imu>(kImu)[0].X_MS);
+  const auto& v = d.readings.back();
+  ASSERT_EQ(v.size(), 11u);
+  const glm::dmat3 R = base::rotation_of(base::Quaternion{v[7], v[8], v[9], v[10]});
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(glm::length(R[k] - X_WS.R[k]), 0.0, 1e-9) << "axis " << k;
+}
+
+/// Gravity holds roll and pitch against the biases of gyros, whose z axis turns the heading.
+TEST(Imu, GravityCorrectsRollAndPitch) {
+  sensors::AttitudeFilter filter(sensors::kAttitudeGain, sensors::kAttitudeBiasGain, kG);
+  filter.align(0.5, {0.0, 0.0, kG});
+  const glm::dvec3 bias{0.02, -0.01, 0.005}, up{0.0, 0.0, kG};
+  double worst = 0.0;
+  const auto tilt = [&] { return glm::length(glm::dvec2(filter.q_WS() * glm::dvec3{0.0, 0.0, 1.0})); };
+  for (int k = 0; k < 6000; ++k) filter.update(bias, up, 0.01), worst = std::max(worst, tilt());
+  EXPECT_GT(worst, 0.01) << "before the biases are known";
+  EXPECT_NEAR(tilt(), 0.0, 1e-6) << "after a minute";
+  EXPECT_NEAR(2.0 * std::atan2(filter.q_WS().z, filter.q_WS().w), 0.5 + 60 * 0.005, 1e-3) << "nothing corrects it";
+  filter.align(0.0, up);
+  filter.update({}, {0.0, 0.0, 1.2 * kG}, 1.0), filter.update({}, {0.6 * kG, 0.0, kG}, 1.0);
+  EXPECT_EQ(tilt(), 0.0) << "forces of an accelerating body correct nothing";
+}
+
+/// At rest the filter finds the tilt. Imus without the setting, beside one with it, have no orientation.
+TEST(Imu, OrientationAtRestAndWhereItIsNotMeasured) {
+  Drive d("position( pose [0 0 0 90] imu( rate 10 pose6 [0 0 0 0 30 0] orientation 1 ) imu( rate 10 ) )");
+  for (int k = 0; k < 3; ++k) d.drive({});
+  const base::Quaternion q = base::quaternion_of(M_PI / 2, {0.0, M_PI / 6});
+  for (std::size_t k = 0; k + 1 < d.readings.size(); k += 2) {
+    const auto& v = d.readings[k];
+    for (const auto& [found, expected] : {std::pair{v[7], q.w}, {v[8], q.x}, {v[9], q.y}, {v[10], q.z}})
+      EXPECT_NEAR(found, expected, 1e-12);
+    EXPECT_TRUE(std::isnan(d.readings[k + 1][7]));
+  }
+  const base::Quaternion there = base::quaternion_of(0.0, {0.0, M_PI / 6 + 0.3});
+  EXPECT_NEAR(d.farm.sense(0, kImu, 0, {5, 5, 0, 0}, {0.0, 0.3}).values[9], there.y, 1e-12) << "placed elsewhere";
+  const std::vector<double> before = d.readings[d.readings.size() - 2];
+  d.drive({});
+  EXPECT_EQ(d.readings[d.readings.size() - 2], before) << "which changes nothing";
+}
+
 TEST(Imu, PresetsAreOfDataSheetsAndMayBeChanged) {
   const auto settings = [](const std::string& text) {
     const world::World world = world_of("position( imu( " + text + " ) )");
@@ -182,6 +230,8 @@ TEST(Imu, ImpossibleSettingsAreRefused) {
   expect_in("the rate is 0.5 Hz; expected at least 1", refused("rate 0.5"));
   expect_in("'gyro_noise'", refused("gyro_noise -1"));
   expect_in("'accel_range'", refused("accel_range 0"));
+  expect_in("expected 'orientation 1' with 'gains'", refused("gains [1 0.3]"));
+  expect_in("two numbers from 0 to 1000", refused("orientation 1 gains [-1 0]"));
   expect_in("'pose6'", refused("pose6 [1 2 3]"));
 }
 
