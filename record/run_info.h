@@ -45,6 +45,7 @@ struct StandardTopic {
     imu,
     map,
     points,
+    radar_scan,
     depth_image,
     color_image,
     depth_png,
@@ -76,8 +77,8 @@ struct StandardTopic {
   std::uint32_t columns = 0, rows = 0;  ///< [px]
   base::Lens lens;
 
-  // For readings in three dimensions: of an imu or a compass, whose vectors are turned into frame `frame`, which is
-  // level on a level robot, and of a receiver with an altitude:
+  // For readings in three dimensions: of an imu, a compass or a radar, whose vectors are turned into frame `frame`,
+  // which is level on a level robot, and of a receiver with an altitude:
   bool spatial = false;      ///< false: of a gyro, of a magnetometer, without altitude
   glm::dmat3 R_FS{1.0};      ///< sensor in this frame
   double force_sigma = 0.0;  ///< [m/s^2] of each axis; 0: not stated

@@ -81,6 +81,9 @@ constexpr std::array kDefinitions = {
                "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
                "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
                "float64[9] linear_acceleration_covariance\n"},
+    Definition{"radar_msgs/RadarReturn",
+               "float32 range\nfloat32 azimuth\nfloat32 elevation\nfloat32 doppler_velocity\nfloat32 amplitude\n"},
+    Definition{"radar_msgs/RadarScan", "std_msgs/Header header\nradar_msgs/RadarReturn[] returns\n"},
     Definition{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
     Definition{"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
     Definition{"visualization_msgs/Marker",

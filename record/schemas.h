@@ -20,6 +20,7 @@ inline constexpr std::string_view kRange = "sensor_msgs/msg/Range";
 inline constexpr std::string_view kMagneticField = "sensor_msgs/msg/MagneticField";
 inline constexpr std::string_view kNavSatFix = "sensor_msgs/msg/NavSatFix";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
+inline constexpr std::string_view kRadarScan = "radar_msgs/msg/RadarScan";
 inline constexpr std::string_view kCompressedImage = "sensor_msgs/msg/CompressedImage";
 inline constexpr std::string_view kTags = "sensorfarm_msgs/msg/Tags";
 inline constexpr std::string_view kStateQuality = "sensorfarm_msgs/msg/StateQuality";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <vector>
 
@@ -88,9 +89,17 @@ void put_unmeasured(CdrWriter& cdr) {
   put_zeros(cdr, 8);
 }
 
+/// Writes the orientation of the topic's frame, whose covariance is unknown, if the device estimates it.
+void put_orientation(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> q_WS) {
+  const bool known = q_WS.size() == 4 && std::isfinite(q_WS[0]);
+  glm::dquat q(1.0, 0.0, 0.0, 0.0);
+  if (known) q = glm::dquat(q_WS[0], q_WS[1], q_WS[2], q_WS[3]) * glm::conjugate(glm::quat_cast(topic.R_FS));
+  for (const double part : {q.x, q.y, q.z, q.w}) cdr.put(part);
+  known ? put_zeros(cdr, 9) : put_unmeasured(cdr);
+}
+
 void put_imu(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
-  for (const double part : {0.0, 0.0, 0.0, 1.0}) cdr.put(part);
-  put_unmeasured(cdr);
+  put_orientation(cdr, topic, values.subspan(std::min<std::size_t>(values.size(), 7)));
   const double variance = topic.sigma * topic.sigma, fixed = variance > 0.0 ? kLeastVariance : 0.0;
   if (!topic.spatial) {
     for (const double rate : {0.0, 0.0, values[0]}) cdr.put(rate);
@@ -100,6 +109,22 @@ void put_imu(CdrWriter& cdr, const StandardTopic& topic, std::span<const double>
   }
   put_turned(cdr, topic, values.first(3), topic.sigma);
   put_turned(cdr, topic, values.subspan(3, 3), topic.force_sigma);
+}
+
+/// Speeds of radar_msgs are positive where the range grows.
+void put_radar_scan(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  std::vector<float> returns;
+  for (std::size_t i = 0; i < values.size() && std::isfinite(values[i]); i += 4) {
+    const auto [sa, ca] = base::sin_cos(values[i + 1]);
+    const auto [se, ce] = base::sin_cos(values[i + 3]);
+    const glm::dvec3 d = topic.R_FS * glm::dvec3{ce * ca, ce * sa, se};
+    const double azimuth = base::atan2(d.y, d.x), elevation = base::atan2(d.z, base::hypot(d.x, d.y));
+    constexpr double kAmplitude = 0.0;  // [dB] not modelled
+    for (const double number : {values[i], azimuth, elevation, -values[i + 2], kAmplitude})
+      returns.push_back(static_cast<float>(number));
+  }
+  cdr.put_count(returns.size() / 5);
+  for (const float number : returns) cdr.put(number);
 }
 
 void put_map(CdrWriter& cdr, const StandardTopic& topic, std::int64_t time, std::span<const double> values) {
@@ -251,6 +276,8 @@ std::string_view type_of(Message message) {
       return kOccupancyGrid;
     case Message::points:
       return kPointCloud;
+    case Message::radar_scan:
+      return kRadarScan;
     case Message::depth_image:
     case Message::color_image:
       return kImage;
@@ -279,6 +306,8 @@ void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<co
       return put_map(cdr, topic, time, values);
     case Message::points:
       return put_points(cdr, topic, values);
+    case Message::radar_scan:
+      return put_radar_scan(cdr, topic, values);
     case Message::depth_image:
       return put_depth_image(cdr, topic, values);
     case Message::color_image:

@@ -73,6 +73,8 @@ const char* word_of(StandardTopic::Message message) {
       return "map";
     case StandardTopic::Message::points:
       return "points";
+    case StandardTopic::Message::radar_scan:
+      return "scan";
     case StandardTopic::Message::depth_image:
       return "depth/image_raw";
     case StandardTopic::Message::color_image:

@@ -18,6 +18,7 @@
 #include "sensors/lidar_beams.h"
 #include "sensors/magnetometer.h"
 #include "sensors/occupancy.h"
+#include "sensors/radar.h"
 #include "sensors/sonar.h"
 
 namespace sf::scenarios {
@@ -142,6 +143,12 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::ImageMess
       topic.message = message;
       add(row, sensors::kCamera, topic);
     }
+  });
+  for_each_sensor<sensors::RadarSettings>(sensor_set, sensors::kRadar, [&](const auto& row, const auto& radar) {
+    add(row, sensors::kRadar,
+        {.message = Message::radar_scan,
+         .spatial = true,
+         .R_FS = glm::transpose(base::transform_of(row.X_MS).R) * radar.X_MS.R});
   });
   for_each_sensor<Gps>(sensor_set, sensors::kGps, [&](const auto& row, const Gps& gps) {
     add(row, sensors::kGps, {.message = Message::fix, .spatial = gps.altitude, .sigma = gps.noise});

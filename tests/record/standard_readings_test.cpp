@@ -135,6 +135,29 @@ TEST(StandardReadings, FieldOfACompassIsTurnedIntoItsFrame) {
   EXPECT_TRUE(field.cdr.good());
 }
 
+/// As radar_msgs: speeds are positive where the range grows, angles those of the level frame.
+TEST(StandardReadings, RadarScanHasTheTargets) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const glm::dmat3 left{{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+  Encoded scan = of({.message = Message::radar_scan, .R_FS = left}, {12.5, 0.25, 3.5, -0.125, nan, nan, nan, nan});
+  EXPECT_EQ(scan.cdr.get_count(20), 1u);
+  for (const float number : {12.5F, static_cast<float>(M_PI / 2 + 0.25), -0.125F, -3.5F, 0.0F})
+    EXPECT_FLOAT_EQ(scan.cdr.get<float>(), number);
+  EXPECT_TRUE(scan.cdr.good());
+}
+
+/// The frame is level where the sensor, which is turned in it, is not.
+TEST(StandardReadings, OrientationIsThatOfTheFrame) {
+  const glm::dmat3 left{{0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+  const double h = std::sqrt(0.5);
+  Encoded imu = of({.message = Message::imu, .spatial = true, .R_FS = left}, {0, 0, 0, 0, 0, 9.8, 0, h, 0, 0, h});
+  for (const double part : {0.0, 0.0, 0.0, 1.0}) EXPECT_NEAR(imu.cdr.get<double>(), part, 1e-15);
+  EXPECT_EQ(imu.cdr.get<double>(), 0.0) << "its covariance is not known";
+  Encoded none = of({.message = Message::imu, .spatial = true}, {0, 0, 0, 0, 0, 9.8, 0});
+  none.skip(4);
+  EXPECT_EQ(none.cdr.get<double>(), -1.0) << "not measured";
+}
+
 TEST(StandardReadings, NoFixGivesNoPosition) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Encoded message = of({.message = Message::fix}, {nan, nan, nan, 3});
