@@ -132,9 +132,7 @@ void draw_lights(const RecordingPart& part, const world::World& world, const Plo
   if (options.csv) Written{}(write_lights_csv(part, folder));
 }
 
-void draw_allan(const RecordingPart& part, const world::World& world, const PlotOptions& options,
-                const std::string& folder) {
-  const viz::SeriesOptions figure = allan_figure(part.recording, world);
+void draw_allan(const viz::SeriesOptions& figure, const PlotOptions& options, const std::string& folder) {
   const std::string file = folder + "/allan.";
   viz::draw_series(figure, file + options.format, options.page);
   Written{}(file + options.format);
@@ -175,6 +173,22 @@ int plot_sweep(const PlotOptions& options, const std::string& jobs) {
   return 0;
 }
 
+/// Plots the Allan deviations of a table's columns.
+int plot_table(const PlotOptions& options) {
+  if (!options.allan) throw base::InputError(options.recording, 0, "is a table; expected --allan, or a recording");
+  if (!options.robots.empty() || !options.video.empty() || options.from > 0.0 || std::isfinite(options.to))
+    throw base::InputError(options.recording, 0, "is a table; --robots, --video, --from and --to apply to recordings");
+  const std::filesystem::path beside = std::filesystem::path(options.recording).parent_path();
+  const std::string folder = !options.out.empty() ? options.out : beside.empty() ? "." : beside.string();
+  const std::string written = folder + "/allan.csv";
+  if (options.csv && std::filesystem::exists(written) && std::filesystem::equivalent(written, options.recording))
+    throw base::InputError(options.recording, 0, "would be overwritten by the figure's; name another folder by --out");
+  const viz::SeriesOptions figure = allan_figure_of_table(options.recording);
+  scenarios::make_folder(folder);
+  draw_allan(figure, options, folder);
+  return 0;
+}
+
 }  // namespace
 
 int plot(const PlotOptions& options) {
@@ -183,6 +197,7 @@ int plot(const PlotOptions& options) {
     return plot_sweep(options, jobs);
   if (!options.over.empty() || options.x_axis != viz::AxisScale::automatic)
     throw base::InputError(options.recording, 0, "--over and --x-axis apply to the folder of a sweep");
+  if (options.recording.ends_with(".csv")) return plot_table(options);
   RecordingPart part = open_part(options.recording, options);
   if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;
   world::World world = scenarios::recorded_world(part.recording);
@@ -190,7 +205,7 @@ int plot(const PlotOptions& options) {
       options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
   scenarios::make_folder(folder);
 
-  if (options.allan) return draw_allan(part, world, options, folder), 0;
+  if (options.allan) return draw_allan(allan_figure(part.recording, world), options, folder), 0;
   draw_paths(part, world, options, folder);
   for (const std::string& file : draw_readings(part.recording, world, options, folder)) Written{}(file);
   draw_lights(part, world, options, folder);

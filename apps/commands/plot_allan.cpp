@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
+#include <string_view>
 #include <tuple>
 
 #include "apps/reports/text.h"
@@ -14,6 +18,7 @@
 #include "sensors/gyro.h"
 #include "sensors/imu.h"
 #include "sensors/sensor_set.h"
+#include "world/table_record.h"
 
 namespace sf::apps {
 
@@ -95,7 +100,86 @@ viz::Panel panel_of(const AllanSensor& sensor, const Quantity& quantity) {
   return panel;
 }
 
+/// A column of a table.
+struct TableColumn {
+  std::string name;
+  std::size_t place = 0;  ///< field of a row
+  std::vector<double> samples;
+};
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Returns the times first, then the columns whose first field is a number.
+std::vector<TableColumn> columns_of(const std::string& file) {
+  constexpr std::string_view kTime = "time_s";
+  world::TableRecord record(file);
+  std::vector<TableColumn> columns;
+  std::vector<std::string> headings;
+  for (bool first = true; record.next();) {
+    record.split(',', false);
+    if (headings.empty()) {
+      for (std::size_t i = 0; i < record.size(); ++i) headings.emplace_back(record.field(i));
+      const auto time = std::ranges::find(headings, kTime);
+      if (time == headings.end())
+        throw base::InputError(file, record.first_line(),
+                               fmt::format("--allan: the columns are '{}'; expected one named {} and one per axis",
+                                           fmt::join(headings, ","), kTime));
+      columns.push_back({std::string(kTime), static_cast<std::size_t>(time - headings.begin()), {}});
+      continue;
+    }
+    for (std::size_t i = 0; first && i < headings.size(); ++i)
+      if (i != columns[0].place && number_of(record.field(i))) columns.push_back({headings[i], i, {}});
+    first = false;
+    for (TableColumn& column : columns) {
+      const std::optional<double> value = number_of(record.field(column.place));
+      if (!value)
+        throw base::InputError(
+            file, record.first_line(),
+            fmt::format("--allan: '{}' in column {}; expected a number", record.field(column.place), column.name));
+      column.samples.push_back(*value);
+    }
+  }
+  return columns;
+}
+
+/// Returns the interval of the times [s].
+double interval_of(const std::string& file, const std::vector<double>& times) {
+  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(interval > 0.0 && std::abs(times[i] - times[i - 1] - interval) <= 0.5 * interval))
+      throw base::InputError(file, 0,
+                             fmt::format("--allan: the rows at {:g} s and {:g} s are {:g} s apart, {:g} s in the mean; "
+                                         "expected one sensor's readings without gaps, by time",
+                                         times[i - 1], times[i], times[i] - times[i - 1], interval));
+  return interval;
+}
+
 }  // namespace
+
+viz::SeriesOptions allan_figure_of_table(const std::string& file) {
+  const std::vector<TableColumn> columns = columns_of(file);
+  if (columns.size() < 2 || columns[0].samples.size() < 4)
+    throw base::InputError(file, 0, "--allan: expected a heading, and at least four rows of numbers");
+  const double interval = interval_of(file, columns[0].samples);
+  viz::SeriesOptions figure{"Allan deviation", "", {}, "time of the means [s]"};
+  figure.logarithmic = true;
+  for (std::size_t i = 1; i < columns.size() && i <= kMostPanels; ++i) {
+    viz::Panel& panel = figure.panels.emplace_back(viz::Panel{"", "Allan deviation, " + columns[i].name, {}});
+    viz::Series& series = panel.series.emplace_back();
+    series.name = "measured";
+    for (const sensors::AllanPoint& point : sensors::allan_deviation(columns[i].samples, interval))
+      series.times.push_back(point.time), series.values.push_back(point.deviation);
+  }
+  figure.subtitle =
+      fmt::format("{}: {}", std::filesystem::path(file).filename().string(), counted(columns[0].samples.size(), "row"));
+  if (columns.size() > kMostPanels + 1) figure.subtitle += fmt::format(", the first {} columns shown", kMostPanels);
+  return figure;
+}
 
 viz::SeriesOptions allan_figure(const record::Recording& recording, const world::World& world) {
   viz::SeriesOptions figure{"Allan deviation", "", {}, "time of the means [s]"};

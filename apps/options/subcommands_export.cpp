@@ -59,7 +59,13 @@ void add_plot(CLI::App& app, Call& call) {
   });
   add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 88 --no-title --robots robot1,robot2",
                       "out/sweep --format pdf --size 88"});
-  add_recording(*sub, o);
+  const auto is_table_or = [check = recording()](const std::string& text) {
+    return text.ends_with(".csv") ? std::string() : check(text);
+  };
+  sub->add_option("recording", o.recording, "Folder of the recording or of a sweep; with --allan also a CSV file")
+      ->required()
+      ->check(is_table_or)
+      ->type_name("DIR");
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
@@ -79,8 +85,10 @@ void add_plot(CLI::App& app, Call& call) {
                        ->type_name("N,...");
   sub->add_flag("--curves", o.curves, "Plot the readings of many elements as curves instead of heat maps")
       ->excludes(elements);
-  sub->add_flag("--allan", o.allan,
-                "Plot only the Allan deviations of imus and gyros, of robots at rest, with the stated ones");
+  sub->add_flag(
+      "--allan", o.allan,
+      "Plot only the Allan deviations of imus and gyros, of robots at rest, with the stated ones; or those of "
+      "the columns of a CSV file");
   constexpr const char* kSweeps = "Sweeps (docs/sweeps.md)";
   sub->add_option("--over", o.over, "Parameter on the x axis (default: the first with different numeric values)")
       ->check(not_empty("the name of a parameter"))

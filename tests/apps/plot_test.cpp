@@ -167,6 +167,26 @@ TEST(AllanDeviation, IsDrawnBesideTheStatedOne) {
   EXPECT_FALSE(fs::exists(folder.path("r/trajectories.svg"))) << "alone";
 }
 
+/// The log of a device: columns of numbers, at the interval of its times.
+TEST(AllanDeviation, IsDrawnOfTables) {
+  const Folder folder;
+  std::string rows = "device,time_s,rate_rad_s\n";
+  for (int k = 0; k < 16; ++k) rows += "a," + std::to_string(5 + k) + "," + std::to_string(k % 2) + "\n";
+  run_successfully(
+      {"plot", folder.write("log.csv", rows), "--allan", "--csv", "--format", "svg", "-o", folder.path("o")});
+  const std::string table = read_file(folder.path("o/allan.csv"));
+  EXPECT_TRUE(contains(table, "measured,1,0.707106")) << "of 0 and 1 in turn: " << table;
+  EXPECT_TRUE(contains(table, "measured,2,0\n")) << "means of two are equal: " << table;
+  const auto refused = [&](const std::string& text) {
+    return run_program({"plot", folder.write("bad.csv", text), "--allan"}).err;
+  };
+  expect_refused({"plot", folder.path("log.csv")}, "log.csv: is a table; expected --allan, or a recording");
+  EXPECT_TRUE(contains(refused("a,b\n1,2\n"), "bad.csv:1: --allan: the columns are 'a,b'; expected one named time_s"));
+  EXPECT_TRUE(contains(refused("time_s,x\n0,1\n1,one\n"), "bad.csv:3: --allan: 'one' in column x"));
+  EXPECT_TRUE(contains(refused("time_s,x\n0,1\n1,1\n"), "at least four rows"));
+  EXPECT_TRUE(contains(refused("time_s,x\n0,1\n1,1\n2,1\n9,1\n"), "without gaps"));
+}
+
 TEST_F(PaperFigures, AllanDeviationsNeedImusOrGyros) {
   EXPECT_TRUE(contains(refusal({"--allan"}), "there are no readings of an imu or a gyro"));
 }
