@@ -23,6 +23,7 @@
 #include "bench/cost.h"
 #include "bench/lidar_scenes.h"
 #include "bench/spatial_embree.h"
+#include "scene/join_triangles.h"
 #include "scene/rasterizer.h"
 #include "scene/reference_scan.h"
 #include "sensors/camera_light.h"
@@ -251,10 +252,11 @@ void check(Method& method, const LidarScene& scene, const std::vector<Sample>& s
 }
 
 int run(const std::string& scene_name, const std::string& sensor, int poses, std::size_t turns) {
-  const LidarScene scene = lidar_scene(scene_name, poses);
+  LidarScene scene = lidar_scene(scene_name, poses);
   std::uint32_t row = 0;
   const std::vector<glm::dvec3> beams = lidar_beams(sensor, row);
   const Cost start = now();
+  scene.mesh = scene::join_triangles(std::move(scene.mesh));
   const scene::SurfaceTree tree = scene::build_tree(scene.mesh);
   const Cost built = since(start);
   const bool is_forest = !scene.forest.models.empty();
@@ -304,7 +306,7 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
              tree.mesh.faces.size(), built.cpu_s, beams.size(), poses, turns);
   for (const Method& method : methods)
     if (const auto* const farm = dynamic_cast<FarmCaster*>(method.caster.get()))
-      fmt::print("  {:16} {:.4f} % uncertain\n", method.method, 100.0 * farm->uncertain());
+      fmt::print("  {:25} {:.4f} % uncertain\n", method.method, 100.0 * farm->uncertain());
   // The forest has too many triangles for the reference: errors are against the farm's exact ranges.
   const scene::Instance instance{&tree, {}, true};
   std::size_t cast_pose = scene.poses.size();
@@ -321,7 +323,7 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
       return method.errors[static_cast<std::size_t>(part * static_cast<double>(method.errors.size() - 1))];
     };
     fmt::print(
-        "  {:16} {:7.2f} ns/beam, {:5.2f} times the farm's; {:.1f} % off by 1 cm, 99 % within {:.1e} m, worst {:.1e} "
+        "  {:25} {:7.2f} ns/beam, {:5.2f} times the farm's; {:.1f} % off by 1 cm, 99 % within {:.1e} m, worst {:.1e} "
         "m, "
         "hash {:016x}\n",
         method.method, 1e9 * method.typical.cpu_s / static_cast<double>(beams.size()) / poses, 1.0 / method.cpu_ratio,

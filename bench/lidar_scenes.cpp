@@ -177,13 +177,15 @@ LidarScene lidar_scene(const std::string& name, int poses) {
   Random random(7);
   int blocks = 0;
   LidarScene out = std::sscanf(name.c_str(), "city%d", &blocks) == 1 ? city(blocks, poses, random)
-                   : name == "room"                                  ? room(poses, random)
+                   : name == "room" || name == "room32"              ? room(poses, random)
                    : name == "terrain"                               ? terrain(poses, random)
                    : name == "forest"                                ? forest(tree(random), poses, random)
                    : name == "statues"                               ? forest(statue(), poses, random)
                                                                      : LidarScene{};
   if (out.poses.empty())
-    throw std::invalid_argument("no scene " + name + "; expected cityN, room, terrain, forest or statues");
+    throw std::invalid_argument("no scene " + name + "; expected cityN, room, room32, terrain, forest or statues");
+  if (name == "room32")
+    for (dvec3& v : out.mesh.vertices) v = dvec3(glm::vec3(v));
   for (base::RigidTransform& X : out.poses)
     X.R = base::rotation_of(uniform(random, -0.05, 0.05), uniform(random, -0.05, 0.05), uniform(random, -M_PI, M_PI));
   return out;

@@ -19,7 +19,8 @@ struct LidarScene {
   std::vector<base::RigidTransform> poses;  ///< of the sensor
 };
 
-/// @param name `cityN` (N x N houses of 6 m on squares of 10 m), `room` (furniture of 42 000 triangles in 20 m x 15 m),
+/// @param name `cityN` (N x N houses of 6 m on squares of 10 m), `room` (furniture of 42 000 triangles in 20 m x 15 m;
+/// `room32`: with coordinates in 32 bits, as in many files, so that only axis-aligned ones are exactly in a plane),
 /// `terrain` (524 000 triangles in 256 m x 256 m), `forest` or `statues` (1 000 trees of 20 000 triangles, or balls of
 /// 78 000, in 160 m x 160 m)
 LidarScene lidar_scene(const std::string& name, int poses);

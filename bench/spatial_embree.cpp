@@ -22,19 +22,28 @@ std::string embree_options() {
 /// A scene, shared by the casters that use it.
 class EmbreeScene {
  public:
-  EmbreeScene(const scene::Mesh& mesh, bool robust)
+  /// @param triangles split faces of four corners
+  EmbreeScene(const scene::Mesh& mesh, bool triangles, bool robust)
       : device_(rtcNewDevice(embree_options().c_str())), scene_(rtcNewScene(device_)) {
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
     for (const glm::dvec3& v : mesh.vertices) low = glm::min(low, v), high = glm::max(high, v);
     centre_ = 0.5 * (low + high);
-    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
+    const RTCGeometry geometry =
+        rtcNewGeometry(device_, triangles ? RTC_GEOMETRY_TYPE_TRIANGLE : RTC_GEOMETRY_TYPE_QUAD);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), mesh.vertices.size()));
     for (const glm::dvec3& v : mesh.vertices)
       for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>((v - centre_)[axis]);
-    void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, sizeof(scene::Face),
-                                          mesh.faces.size());
-    std::memcpy(faces, mesh.faces.data(), mesh.faces.size() * sizeof(scene::Face));
+    std::vector<std::uint32_t> corners;
+    for (const scene::Face& face : mesh.faces) {
+      corners.insert(corners.end(), face.begin(), face.begin() + (triangles ? 3 : 4));
+      if (triangles && scene::corners_of(face) == 4) corners.insert(corners.end(), {face[0], face[2], face[3]});
+    }
+    const std::size_t each = triangles ? 3 : 4;
+    void* faces =
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, triangles ? RTC_FORMAT_UINT3 : RTC_FORMAT_UINT4,
+                                each * sizeof(std::uint32_t), corners.size() / each);
+    std::memcpy(faces, corners.data(), corners.size() * sizeof(std::uint32_t));
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
@@ -70,22 +79,21 @@ void intersect(RTCScene scene, RTCIntersectContext& context, RTCRayHit16& rays) 
 class EmbreeBeams : public SpatialCaster {
  public:
   EmbreeBeams(std::shared_ptr<EmbreeScene> scene, const std::vector<glm::dvec3>& beams, double range_max, int packet,
-              bool robust)
+              std::string name)
       : scene_(std::move(scene)),
         beams_(beams.size()),
         range_(static_cast<float>(range_max)),
         packet_(packet),
-        robust_(robust) {
+        name_(std::move(name)) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const glm::dvec3& beam : beams) directions_[axis].push_back(static_cast<float>(beam[axis]));
       directions_[axis].resize((beams.size() + 15) / 16 * 16, directions_[axis].back());
     }
   }
-  std::string name() const override { return fmt::format("embree {}{}", packet_, robust_ ? " robust" : ""); }
+  std::string name() const override { return name_; }
   void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
     if (packet_ == 16) return cast_packets<RTCRayHit16, 16>(X_WS, ranges);
-    if (packet_ == 8) return cast_packets<RTCRayHit8, 8>(X_WS, ranges);
-    cast_single(X_WS, ranges);
+    cast_packets<RTCRayHit8, 8>(X_WS, ranges);
   }
 
  private:
@@ -129,26 +137,11 @@ class EmbreeBeams : public SpatialCaster {
     }
   }
 
-  void cast_single(const base::RigidTransform& X_WS, std::span<double> ranges) {
-    const View view = view_of(X_WS);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    for (std::size_t i = 0; i < beams_; ++i) {
-      RTCRayHit ray{};
-      ray.ray = {view.p[0], view.p[1], view.p[2], 0.0f, along(view, 0, i), along(view, 1, i), along(view, 2, i), 0.0f,
-                 range_,    ~0u,       0,         0};
-      ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_->scene(), &context, &ray);
-      ranges[i] = static_cast<double>(ray.ray.tfar);
-    }
-  }
-
   std::shared_ptr<EmbreeScene> scene_;
   std::size_t beams_;
   float range_;
   int packet_;
-  bool robust_;
+  std::string name_;
   std::vector<float> directions_[3];  ///< padded to whole packets
 };
 
@@ -157,11 +150,14 @@ class EmbreeBeams : public SpatialCaster {
 std::vector<std::unique_ptr<SpatialCaster>> embree_casters(const scene::Mesh& mesh,
                                                            const std::vector<glm::dvec3>& beams, double range_max) {
   std::vector<std::unique_ptr<SpatialCaster>> casters;
-  for (const bool robust : {false, true}) {
-    const auto scene = std::make_shared<EmbreeScene>(mesh, robust);
-    for (const int packet : {1, 8, 16})
-      casters.push_back(std::make_unique<EmbreeBeams>(scene, beams, range_max, packet, robust));
-  }
+  for (const bool triangles : {false, true})
+    for (const bool robust : {false, true}) {
+      const auto scene = std::make_shared<EmbreeScene>(mesh, triangles, robust);
+      for (const int packet : {8, 16})
+        casters.push_back(std::make_unique<EmbreeBeams>(
+            scene, beams, range_max, packet,
+            fmt::format("embree {}{}{}", packet, triangles ? " triangles" : "", robust ? " robust" : "")));
+    }
   return casters;
 }
 

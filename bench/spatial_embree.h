@@ -19,8 +19,8 @@ class SpatialCaster {
   virtual void cast(const base::RigidTransform& X_WS, std::span<double> ranges) = 0;
 };
 
-/// Returns Embree's variants: packets of 1, 8 and 16 rays, fast and robust. Their scenes are relative to the mesh's
-/// middle; quads are Embree's quads.
+/// Returns Embree's variants: packets of 8 and 16 rays, fast and robust, with the faces as Embree's quads or split into
+/// triangles. Their scenes are relative to the mesh's middle.
 std::vector<std::unique_ptr<SpatialCaster>> embree_casters(const scene::Mesh& mesh,
                                                            const std::vector<glm::dvec3>& beams, double range_max);
 

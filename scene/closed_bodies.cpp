@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <span>
 #include <tuple>
 
@@ -33,11 +32,11 @@ struct Neighbour {
 
 class Finder {
  public:
-  explicit Finder(const Mesh& mesh) : mesh_(mesh), pairs_left_(kPairsPerFace * mesh.faces.size()) {}
+  explicit Finder(const Mesh& mesh)
+      : mesh_(mesh), pairs_left_(kPairsPerFace * mesh.faces.size()), welded_(equal_vertices(mesh)) {}
   FaceSides find();
 
  private:
-  void weld();
   void connect();
   void collect(std::uint32_t first);
   bool orient();
@@ -48,26 +47,13 @@ class Finder {
 
   const Mesh& mesh_;
   std::size_t pairs_left_;
-  std::vector<std::uint32_t> welded_;  ///< per vertex: the first with its coordinates
+  std::vector<std::uint32_t> welded_;  ///< equal_vertices
   std::vector<std::array<Neighbour, 4>> neighbours_;
   std::vector<std::uint8_t> open_;  ///< per face: an edge without exactly one other face
   FaceSides sides_;
   std::vector<std::uint32_t> members_;  ///< faces of one body
   Bounds box_;                          ///< of one body
 };
-
-void Finder::weld() {
-  std::vector<std::uint32_t> order(mesh_.vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](std::uint32_t v) {
-    const glm::dvec3& p = mesh_.vertices[v];
-    return std::tuple(p.x, p.y, p.z);
-  };
-  std::ranges::sort(order, {}, key);
-  welded_.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    welded_[order[i]] = i > 0 && key(order[i - 1]) == key(order[i]) ? welded_[order[i - 1]] : order[i];
-}
 
 void Finder::connect() {
   std::vector<HalfEdge> edges;
@@ -164,7 +150,7 @@ bool Finder::meets_itself() {
 }
 
 FaceSides Finder::find() {
-  weld(), connect();
+  connect();
   sides_.outward.resize(mesh_.faces.size());
   sides_.body.assign(mesh_.faces.size(), kNone);
   for (std::uint32_t first = 0; first < mesh_.faces.size(); ++first) {

@@ -30,4 +30,15 @@ struct Mesh {
   void add(std::span<const glm::dvec3> corners, std::optional<std::uint32_t> owner);
 };
 
+/// Plane of a face: `normal` . (x - point) = 0.
+struct Plane {
+  glm::dvec3 normal;  ///< unit vector
+  glm::dvec3 point;   ///< [m] first corner
+};
+
+Plane plane_of(const Mesh& mesh, const Face& face);
+
+/// Returns for each vertex the row of one vertex with its coordinates, which are compared exactly.
+std::vector<std::uint32_t> equal_vertices(const Mesh& mesh);
+
 }  // namespace sf::scene

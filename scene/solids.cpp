@@ -8,6 +8,7 @@
 
 #include "base/box_tree.h"
 #include "base/pose.h"
+#include "scene/join_triangles.h"
 #include "scene/trapezoids.h"
 #include "world/ground.h"
 #include "world/terrain.h"
@@ -209,7 +210,7 @@ Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials)
   mesh.faces.reserve(corners.size() / 3);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
     mesh.faces.push_back({corners[i], corners[i + 1], corners[i + 2], corners[i + 2]});
-  return mesh;
+  return join_triangles(std::move(mesh));
 }
 
 }  // namespace sf::scene

@@ -26,7 +26,7 @@ base::Box box_of_holes(const world::World& world);
 /// owners.
 Mesh holed_floor(const world::World& world, double reach);
 
-/// Returns the triangles of a file's mesh, without owners. @param materials as Mesh::materials
+/// Returns the surface of a file's mesh, without owners. @param materials per triangle, as Mesh::materials
 Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials = {});
 
 }  // namespace sf::scene

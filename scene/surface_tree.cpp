@@ -72,11 +72,7 @@ void Builder::add_planes() {
     Bounds box;
     for (const std::uint32_t corner : face) box.add(mesh_.vertices[corner] - tree_.centre);
     boxes_.push_back(box);
-    const glm::dvec3 p = mesh_.vertices[face[0]];
-    const glm::dvec3 across = mesh_.vertices[face[2]] - p;
-    glm::dvec3 normal = glm::cross(mesh_.vertices[face[1]] - p, across);
-    if (corners_of(face) == 4) normal += glm::cross(across, mesh_.vertices[face[3]] - p);
-    tree_.planes.push_back({glm::normalize(normal), p});
+    tree_.planes.push_back(plane_of(mesh_, face));
   }
 }
 

@@ -33,12 +33,6 @@ struct alignas(64) TreeLeaf {
                           ///< inward. Seen from outside of the box, back faces are hidden
 };
 
-/// Plane of a face: `normal` . (x - point) = 0.
-struct Plane {
-  glm::dvec3 normal;  ///< unit vector
-  glm::dvec3 point;   ///< [m] first corner
-};
-
 /// Immutable once built; any number of threads may read it.
 struct SurfaceTree {
   Mesh mesh;

@@ -1,0 +1,108 @@
+#include "scene/join_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <tuple>
+#include <vector>
+
+namespace sf::scene {
+
+namespace {
+
+constexpr double kLeastTurn = 1e-6;  // sine of the angle between two edges, so that rounding leaves a face convex
+constexpr std::uint32_t kRemoved = 0xFFFFFFFFu;  // instead of a face's first corner
+
+/// An edge of a triangle.
+struct TriangleEdge {
+  std::uint32_t low, high;  ///< its ends, of equal_vertices
+  std::uint32_t face, k;    ///< from the face's corner k to the next
+};
+
+/// Two triangles with an edge in common.
+struct TrianglePair {
+  double edge;  ///< [m] square of its length
+  std::uint32_t first, second;
+  Face joined;
+};
+
+/// Edges of all triangles, the same ones together.
+std::vector<TriangleEdge> edges_of_triangles(const Mesh& mesh) {
+  const std::vector<std::uint32_t> equal = equal_vertices(mesh);
+  std::vector<TriangleEdge> edges;
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    const Face& face = mesh.faces[f];
+    for (std::uint32_t k = 0; k < 3 && corners_of(face) == 3; ++k) {
+      const std::uint32_t a = equal[face[k]], b = equal[face[(k + 1) % 3]];
+      edges.push_back({std::min(a, b), std::max(a, b), f, k});
+    }
+  }
+  std::ranges::sort(edges, {}, [](const TriangleEdge& e) { return std::tuple(e.low, e.high, e.face); });
+  return edges;
+}
+
+/// Returns whether a face of four corners is convex and keeps the invariant of Mesh.
+bool is_flat_and_convex(const Mesh& mesh, const Face& face) {
+  const Plane plane = plane_of(mesh, face);
+  const auto at = [&](std::uint32_t k) { return mesh.vertices[face[k % 4]]; };
+  double size = 0.0, coordinates = 0.0, distance = 0.0;
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const glm::dvec3 a = at(k + 1) - at(k), b = at(k + 2) - at(k + 1), p = glm::abs(at(k));
+    const double length = glm::length(a);
+    if (!(glm::dot(glm::cross(a, b), plane.normal) > kLeastTurn * length * glm::length(b))) return false;
+    size = std::max(size, length), coordinates = std::max({coordinates, p.x, p.y, p.z});
+    distance = std::max(distance, std::abs(glm::dot(plane.normal, at(k) - plane.point)));
+  }
+  return distance < 1e-13 * size + 4.0 * 0x1p-53 * coordinates;
+}
+
+bool alike(const std::vector<std::uint32_t>& rows, const TrianglePair& pair) {
+  return rows.empty() || rows[pair.first] == rows[pair.second];
+}
+
+/// Pairs of triangles that may be joined, those with the longest edges first.
+std::vector<TrianglePair> flat_pairs(const Mesh& mesh) {
+  const std::vector<TriangleEdge> edges = edges_of_triangles(mesh);
+  std::vector<TrianglePair> pairs;
+  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
+    if (end - i != 2) continue;
+    const TriangleEdge &e = edges[i], &other = edges[i + 1];
+    const Face& face = mesh.faces[e.face];
+    const std::uint32_t a = face[e.k], b = face[(e.k + 1) % 3], c = face[(e.k + 2) % 3];
+    const std::uint32_t opposite = mesh.faces[other.face][(other.k + 2) % 3];
+    const glm::dvec3 along = mesh.vertices[b] - mesh.vertices[a];
+    const TrianglePair pair{glm::dot(along, along), e.face, other.face, {a, opposite, b, c}};
+    if (alike(mesh.owners, pair) && alike(mesh.materials, pair) && is_flat_and_convex(mesh, pair.joined))
+      pairs.push_back(pair);
+  }
+  std::ranges::sort(pairs, {}, [](const TrianglePair& p) { return std::tuple(-p.edge, p.first, p.second); });
+  return pairs;
+}
+
+}  // namespace
+
+Mesh join_triangles(Mesh mesh) {
+  std::vector<std::uint8_t> joined(mesh.faces.size(), 0);
+  for (const TrianglePair& pair : flat_pairs(mesh)) {
+    if (joined[pair.first] || joined[pair.second]) continue;
+    joined[pair.first] = joined[pair.second] = 1;
+    mesh.faces[pair.first] = pair.joined;
+    mesh.faces[pair.second][0] = kRemoved;
+  }
+  std::uint32_t kept = 0;
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    if (mesh.faces[f][0] == kRemoved) continue;
+    mesh.faces[kept] = mesh.faces[f];
+    for (auto* rows : {&mesh.owners, &mesh.materials})
+      if (!rows->empty()) (*rows)[kept] = (*rows)[f];
+    ++kept;
+  }
+  mesh.faces.resize(kept);
+  for (auto* rows : {&mesh.owners, &mesh.materials})
+    if (!rows->empty()) rows->resize(kept);
+  return mesh;
+}
+
+}  // namespace sf::scene
