@@ -35,6 +35,12 @@ class Scan {
   bool finish(const BeamTile& tile, std::span<const CastBeam> cast);
 
  private:
+  /// Plane of a face, kept while beams next to each other meet it.
+  struct KnownPlane {
+    std::uint32_t face = kNoFace;
+    SeenPlane plane;
+    SinglePlane single;
+  };
   void draw(const BeamTile& tile, std::uint32_t vectors);
   void begin(const BeamTile& tile, std::uint32_t vectors);
   void draw_floor(const BeamTile& tile, std::uint32_t vectors);
@@ -47,10 +53,13 @@ class Scan {
   void march(const BeamTile& tile, std::uint32_t vector);
   void meet_terrain(const BeamTile& tile, std::uint32_t vector);
   void write(const BeamTile& tile, std::uint32_t vector);
-  const SeenPlane& plane_of(std::uint32_t face) {
-    if (face == kFloorFace) return floor_plane_;
-    if (face != last_face_) last_face_ = face, last_plane_ = seen_plane(mesh_with(s_.meshes, face), face);
-    return last_plane_;
+  const SeenPlane& plane_of(std::uint32_t face) { return known_plane(face).plane; }
+  const KnownPlane& known_plane(std::uint32_t face) {
+    KnownPlane& known = planes_[face % kKnownPlanes];
+    if (face == known.face) return known;
+    known = {face, face == kFloorFace ? floor_plane_ : seen_plane(mesh_with(s_.meshes, face), face), {}};
+    if (out_.single) known.single = single_plane(known.plane);
+    return known;
   }
 
   std::uint32_t material_of(std::uint32_t hit, std::uint32_t beam) {
@@ -80,8 +89,8 @@ class Scan {
   Marching marching_[kMarchings];
   const ScanOutput& out_;
   bool flagged_ = false;
-  std::uint32_t last_face_ = kNoFace;
-  SeenPlane last_plane_;  ///< of `last_face_`
+  static constexpr std::uint32_t kKnownPlanes = 64;
+  KnownPlane planes_[kKnownPlanes];  ///< by face, modulo their number
   std::uint32_t normal_face_ = kNoFace;
   glm::vec3 normal_;  ///< of `normal_face_`
 
@@ -189,22 +198,20 @@ std::uint32_t Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector)
 std::uint32_t Scan::measure_single(const BeamTile& tile, std::uint32_t vector, std::uint32_t known) {
   const std::uint32_t first = kWidth * vector, *const faces = s_.face + first;
   double ranges[kWidth], sines[kWidth];  // in 64 bits
-  std::copy_n(ranges_, kWidth, ranges), std::copy_n(sines_, kWidth, sines);
-  std::uint32_t good = 0;
-  if (are_all(faces, faces[0])) {
-    const bool none = faces[0] == kNoFace;
-    store(all(none ? base::kNoHit : plane_of(faces[0]).owner), hits_);
-    const SinglePlane plane = none ? SinglePlane{} : single_plane(plane_of(faces[0]));
-    good = evaluate_single(tile, first, range_max_, load(plane), ranges_, sines_);
-  } else {
-    SinglePlane planes[kWidth];
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-      const bool same = i > 0 && faces[i] == faces[i - 1], none = faces[i] == kNoFace;
-      if (!none) planes[i] = same ? planes[i - 1] : single_plane(plane_of(faces[i]));
-      hits_[i] = same ? hits_[i - 1] : none ? base::kNoHit : plane_of(faces[i]).owner;
-    }
-    good = evaluate_single(tile, first, range_max_, load(planes), ranges_, sines_);
+  if (known != 0) std::copy_n(ranges_, kWidth, ranges), std::copy_n(sines_, kWidth, sines);
+  SingleVectors planes{all(0.0f), all(0.0f), all(0.0f), all(0.0f), all(0.0f)};
+  Words owners = all(base::kNoHit);
+  for (std::uint32_t rest = (1u << kWidth) - 1; rest != 0;) {
+    const std::uint32_t face = faces[__builtin_ctz(rest)];
+    const Mask meets = equal(load(faces), all(face));
+    rest &= ~bits_of(meets);
+    if (face == kNoFace) continue;
+    const KnownPlane& plane = known_plane(face);
+    owners = select(meets, all(plane.plane.owner), owners);
+    put(meets, plane.single, planes);
   }
+  store(owners, hits_);
+  const std::uint32_t good = evaluate_single(tile, first, range_max_, planes, ranges_, sines_);
   for (std::uint32_t rest = ~good & 0xFFFFu; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
     if ((known >> i & 1) != 0) {

@@ -16,16 +16,8 @@ constexpr hn::CappedTag<double, kWidth> kD;
 using VD = hn::Vec<decltype(kD)>;
 
 HWY_INLINE bool are_all(const std::uint32_t* faces, std::uint32_t face) {
-  const Words found = load(faces);
-  bool all_same = true;
-  for (std::size_t p = 0; p < kParts; ++p) all_same = all_same && hn::AllTrue(kU, found.part[p] == hn::Set(kU, face));
-  return all_same;
+  return bits_of(equal(load(faces), all(face))) == (1u << kWidth) - 1;
 }
-
-/// Planes of a vector's beams, beam by beam: range = height / (x dx + y dy + z dz + extra).
-struct BeamPlanes {
-  alignas(64) double x[kWidth], y[kWidth], z[kWidth], height[kWidth], extra[kWidth], least_sine[kWidth];
-};
 
 /// Writes sixteen ranges, and the sines of the angles to the faces. @return bit mask of the beams whose angle to their
 /// face is too small
@@ -70,21 +62,31 @@ template <class PlaneOf>
 HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t first, double range_max,
                                           const std::uint32_t* faces, const PlaneOf& plane_of, double* out,
                                           double* sines, std::uint32_t* hits) {
-  BeamPlanes rows;
-  SeenPlane plane;
-  for (std::uint32_t i = 0; i < kWidth; ++i) {
-    const bool none = faces[i] == kNoFace;
-    if (i == 0 || faces[i] != faces[i - 1])
-      plane = none ? SeenPlane{.height = range_max, .owner = base::kNoHit} : plane_of(faces[i]);
-    hits[i] = plane.owner;
-    rows.x[i] = plane.normal.x, rows.y[i] = plane.normal.y, rows.z[i] = plane.normal.z;
-    rows.height[i] = plane.height, rows.extra[i] = none ? 1.0 : 0.0, rows.least_sine[i] = plane.least_sine;
+  constexpr std::size_t kLanesD = hn::MaxLanes(kD);
+  const VD zero = hn::Zero(kD);
+  PlaneVectors rows[kWidth / kLanesD];
+  for (PlaneVectors& row : rows) row = {zero, zero, zero, zero, zero, zero};
+  Words owners = all(base::kNoHit);
+  for (std::uint32_t rest = (1u << kWidth) - 1; rest != 0;) {
+    const std::uint32_t face = faces[__builtin_ctz(rest)];
+    const bool none = face == kNoFace;
+    const SeenPlane plane = none ? SeenPlane{.height = range_max, .owner = base::kNoHit} : plane_of(face);
+    const Mask meets = equal(load(faces), all(face));
+    const std::uint32_t same = bits_of(meets);
+    rest &= ~same;
+    owners = select(meets, all(plane.owner), owners);
+    for (std::size_t p = 0; p < kWidth / kLanesD; ++p) {
+      const std::uint8_t bits[8] = {static_cast<std::uint8_t>(same >> (p * kLanesD))};
+      const auto mask = hn::LoadMaskBits(kD, bits);
+      const auto put = [&](double value, VD& to) { to = hn::IfThenElse(mask, hn::Set(kD, value), to); };
+      put(plane.normal.x, rows[p].x), put(plane.normal.y, rows[p].y), put(plane.normal.z, rows[p].z);
+      put(plane.height, rows[p].height), put(none ? 1.0 : 0.0, rows[p].extra),
+          put(plane.least_sine, rows[p].least_sine);
+    }
   }
-  const auto row = [&](std::size_t i) {
-    return PlaneVectors{hn::Load(kD, rows.x + i),      hn::Load(kD, rows.y + i),     hn::Load(kD, rows.z + i),
-                        hn::Load(kD, rows.height + i), hn::Load(kD, rows.extra + i), hn::Load(kD, rows.least_sine + i)};
-  };
-  return evaluate(tile, first, range_max, row, out, sines);
+  store(owners, hits);
+  return evaluate(
+      tile, first, range_max, [&](std::size_t i) -> const PlaneVectors& { return rows[i / kLanesD]; }, out, sines);
 }
 
 /// A face for ranges in 32 bits.
@@ -102,17 +104,12 @@ inline SinglePlane single_plane(const SeenPlane& plane) {
 struct SingleVectors {
   Floats x, y, z, height, least_sine;
 };
-HWY_INLINE SingleVectors load(const SinglePlane& plane) {
-  return {all(plane.x), all(plane.y), all(plane.z), all(plane.height), all(plane.least_sine)};
-}
-/// @param planes one per beam
-HWY_INLINE SingleVectors load(const SinglePlane* planes) {
-  alignas(64) float rows[5][kWidth];
-  for (std::uint32_t i = 0; i < kWidth; ++i) {
-    rows[0][i] = planes[i].x, rows[1][i] = planes[i].y, rows[2][i] = planes[i].z;
-    rows[3][i] = planes[i].height, rows[4][i] = planes[i].least_sine;
-  }
-  return {load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]), load(rows[4])};
+
+/// Sets the planes of some beams.
+HWY_INLINE void put(const Mask& beams, const SinglePlane& plane, SingleVectors& to) {
+  const auto put_one = [&](float value, Floats& row) { row = select(beams, all(value), row); };
+  put_one(plane.x, to.x), put_one(plane.y, to.y), put_one(plane.z, to.z);
+  put_one(plane.height, to.height), put_one(plane.least_sine, to.least_sine);
 }
 
 /// Writes sixteen ranges that are measured in 32 bits, range_max for beams without a face, and the sines of the angles

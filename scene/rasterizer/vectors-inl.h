@@ -86,6 +86,7 @@ SF_BY_PARTS(Ints, larger, (const Ints& a, const Ints& b), hn::Max(a.part[p], b.p
 SF_BY_PARTS(Ints, smaller, (const Ints& a, const Ints& b), hn::Min(a.part[p], b.part[p]))
 SF_BY_PARTS(Mask, greater, (const Ints& a, const Ints& b), hn::RebindMask(kF, a.part[p] > b.part[p]))
 SF_BY_PARTS(Mask, equal, (const Ints& a, const Ints& b), hn::RebindMask(kF, a.part[p] == b.part[p]))
+SF_BY_PARTS(Mask, equal, (const Words& a, const Words& b), hn::RebindMask(kF, a.part[p] == b.part[p]))
 SF_BY_PARTS(Ints, select, (const Mask& m, const Ints& yes, const Ints& no),
             hn::IfThenElse(hn::RebindMask(kI, m.part[p]), yes.part[p], no.part[p]))
 SF_BY_PARTS(Floats, floats_of, (const Ints& a), hn::ConvertTo(kF, a.part[p]))
