@@ -109,8 +109,11 @@ void Building::run() {
   double from = 0.0, to = kInnermost * std::max(f_.cell.x, f_.cell.y);
   for (std::int32_t octave = 0; from < last; ++octave, from = to, to *= 2.0)
     add_annulus(from, std::min(to, last), std::clamp(octave - 1, 1, f_.levels));
-  for (auto& sector : out_.slope)
+  out_.highest = -HUGE_VALF;
+  for (auto& sector : out_.slope) {
     for (std::int32_t k = 1; k < out_.rings; ++k) sector[k] = std::max(sector[k], sector[k - 1]);
+    out_.highest = std::max(out_.highest, sector[out_.rings - 1]);
+  }
 }
 
 }  // namespace

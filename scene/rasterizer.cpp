@@ -35,7 +35,6 @@ class Scan {
   bool finish(const BeamTile& tile, std::span<const CastBeam> cast);
 
  private:
-  /// Plane of a face, kept while beams next to each other meet it.
   struct KnownPlane {
     std::uint32_t face = kNoFace;
     SeenPlane plane;
@@ -52,6 +51,7 @@ class Scan {
   std::uint32_t decide_uncertain(const BeamTile& tile, std::uint32_t vector);
   void march(const BeamTile& tile, std::uint32_t vector);
   void meet_terrain(const BeamTile& tile, std::uint32_t vector);
+  bool stays_above(const BeamTile& tile) const;
   void write(const BeamTile& tile, std::uint32_t vector);
   const SeenPlane& plane_of(std::uint32_t face) { return known_plane(face).plane; }
   const KnownPlane& known_plane(std::uint32_t face) {
@@ -169,6 +169,7 @@ void Scan::evaluate_vector(const BeamTile& tile, std::uint32_t vector) {
 
 /// Decides and measures uncertain beams in 64 bits. @return their bit mask
 std::uint32_t Scan::decide_uncertain(const BeamTile& tile, std::uint32_t vector) {
+  if (s_.drawn.empty() && !floor_) return 0;
   const std::uint32_t first = kWidth * vector;
   const std::uint32_t all = bits_of(at_least(load(s_.others + first), load(s_.low + first)));
   std::uint32_t rest = all;
@@ -297,12 +298,30 @@ void Scan::draw(const BeamTile& tile, std::uint32_t vectors) {
   }
 }
 
+/// Returns true if all beams of a tile stay above the terrain.
+bool Scan::stays_above(const BeamTile& tile) const {
+  if (terrain_->side <= 0) return false;
+  const Rotation R(terrain_->X_FS.R);
+  const float slope = std::max(horizon_.highest, 0.0f);  // directions above a positive slope are a convex cone
+  for (const float u : {-1.0f, 1.0f})
+    for (const float v : {-1.0f, 1.0f}) {
+      float corner[3];
+      for (int i = 0; i < 3; ++i)
+        corner[i] = tile.tile.box[i][0] + u * tile.tile.box[3 + i][0] + v * tile.tile.box[6 + i][0];
+      const float x = R.row(0, corner), y = R.row(1, corner);
+      if (!(R.row(2, corner) > slope * std::sqrt(x * x + y * y) * 1.00001f + 1e-5f)) return false;
+    }
+  return true;
+}
+
 bool Scan::cast(const BeamTile& tile) {
   draw(tile, used_vectors(tile));
+  const bool terrain = terrain_ && !stays_above(tile);
+  terrain_hits_ = 0;
   for (std::uint32_t v = 0; v < tile.used; ++v) {
-    if (terrain_ && v % kMarchings == 0) march(tile, v);
+    if (terrain && v % kMarchings == 0) march(tile, v);
     measure(tile, v);
-    if (terrain_) meet_terrain(tile, v);
+    if (terrain) meet_terrain(tile, v);
     write(tile, v);
   }
   s_.counts.beams += kWidth * tile.used;

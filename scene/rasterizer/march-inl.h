@@ -76,13 +76,14 @@ void Marching::begin(const FieldView& view, const Horizon& horizon, const BeamTi
   const Floats zero = all(0.0f);
   if (!view.searchable || view.near) return void(unsure_ = (1u << kWidth) - 1);
   if (view.side != 0) {
-    search_[searches_++] = Search(view, rays_, static_cast<float>(view.side), end);
+    search_[searches_++].begin(view, rays_, static_cast<float>(view.side), end);
     std::fill_n(from_, kWidth, static_cast<std::int8_t>(view.side));
     if (view.side > 0) return search_[0].start(horizon);
     return search_[0].start(search_[0].points_at(zero), at_least(end, zero), all(kFirstLevel));
   }
   // From outside: where each beam enters the field.
-  const Search above(view, rays_, 1.0f, end);
+  Search above;
+  above.begin(view, rays_, 1.0f, end);
   Floats in, out;
   above.enter(above.room(), in, out);
   const Mask enters = both(at_least(out, in), at_least(end, in));
@@ -91,7 +92,11 @@ void Marching::begin(const FieldView& view, const Horizon& horizon, const BeamTi
   const Floats height = above.above(points), error = above.error_at(in);
   const Mask over = both(enters, greater(height, error)), under = both(enters, greater(zero - error, height));
   add(above, points, over, 1.0f);
-  if (!none(under)) add(Search(view, rays_, -1.0f, end), points, under, -1.0f);
+  if (!none(under)) {
+    Search below;
+    below.begin(view, rays_, -1.0f, end);
+    add(below, points, under, -1.0f);
+  }
   unsure_ = bits_of(without(enters, either(over, under)));
 }
 

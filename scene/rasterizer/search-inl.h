@@ -63,7 +63,7 @@ HWY_INLINE Floats reciprocal(const Floats& v) {
 class Search {
  public:
   Search() = default;
-  HWY_INLINE Search(const FieldView& view, const FieldRays& rays, float side, const Floats& end);
+  HWY_INLINE void begin(const FieldView& view, const FieldRays& rays, float side, const Floats& end);
   /// Starts from points before which the beams certainly do not meet the field.
   HWY_INLINE void start(const FieldPoints& points, const Mask& active, const Ints& level) {
     const Mask no = greater(all(0.0f), all(0.0f));
@@ -160,8 +160,8 @@ HWY_INLINE Floats as_floats(const double* v, double scale) {
   return load(out);
 }
 
-Search::Search(const FieldView& view, const FieldRays& rays, float side, const Floats& end)
-    : view_(&view), field_(view.field), side_(side), z_(static_cast<float>(view.z * side)), end_(end) {
+void Search::begin(const FieldView& view, const FieldRays& rays, float side, const Floats& end) {
+  view_ = &view, field_ = view.field, side_ = side, z_ = static_cast<float>(view.z * side), end_ = end;
   planes_ = (side > 0.0f ? field_->above : field_->below).data() +
             static_cast<std::ptrdiff_t>(field_->bias / 2) * field_->pitch;
   dx_ = as_floats(rays.x, 1.0), dy_ = as_floats(rays.y, 1.0), dz_ = as_floats(rays.z, side);
