@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <random>
 #include <stdexcept>
@@ -185,7 +186,7 @@ LidarScene lidar_scene(const std::string& name, int poses) {
   if (out.poses.empty())
     throw std::invalid_argument("no scene " + name + "; expected cityN, room, room32, terrain, forest or statues");
   if (name == "room32")
-    for (dvec3& v : out.mesh.vertices) v = dvec3(glm::vec3(v));
+    for (dvec3& v : out.mesh.vertices) v = glm::round(v * 0x1p19) * 0x1p-19;  // as 32 bits at 16 m
   for (base::RigidTransform& X : out.poses)
     X.R = base::rotation_of(uniform(random, -0.05, 0.05), uniform(random, -0.05, 0.05), uniform(random, -M_PI, M_PI));
   return out;
