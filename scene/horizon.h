@@ -16,7 +16,7 @@ struct Horizon {
   float reach[kMostRings];         ///< [m]; the last: the whole field, or the range
   std::int32_t level[kMostRings];  ///< of blocks that suit searches from there
   float slope[kSectors][kMostRings];
-  float highest;  ///< largest of all slopes
+  float highest;  ///< largest of the slopes; beams that rise by more meet nothing
 
   /// Returns the sector of a direction as a fraction in [0, kSectors]: monotonic in the azimuth, in quadrants.
   static double sector_of(double x, double y);

@@ -35,6 +35,7 @@ class Scan {
   bool finish(const BeamTile& tile, std::span<const CastBeam> cast);
 
  private:
+  /// Plane of a face, kept while beams next to each other meet it.
   struct KnownPlane {
     std::uint32_t face = kNoFace;
     SeenPlane plane;
