@@ -11,7 +11,7 @@ namespace {
 
 double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : exp(2.4 * log((srgb + 0.055) / 1.055)); }
 
-/// Finds 8-bit values by a table of their upper limits.
+/// Finds 8-bit values by a table of their upper limits, of which no step of the search contains two.
 class SrgbTable {
  public:
   SrgbTable() {
@@ -24,9 +24,8 @@ class SrgbTable {
   }
   std::uint32_t of(float light) const {
     const float clamped = light > 0.0f ? std::min(light, 1.0f) : 0.0f;
-    std::uint32_t k = first_[static_cast<int>(clamped * kSteps)];
-    while (limit_[k] < clamped) ++k;
-    return k;
+    const std::uint32_t k = first_[static_cast<int>(clamped * kSteps)];
+    return k + (limit_[k] < clamped ? 1u : 0u);
   }
 
  private:
@@ -34,6 +33,14 @@ class SrgbTable {
   float limit_[256];
   std::uint8_t first_[kSteps + 1];
 };
+
+/// Returns whether the next `count` values are equal to the first.
+bool are_all(const float* values, std::size_t count) {
+  const float first = values[0];
+  int differ = 0;
+  for (std::size_t k = 1; k <= count; ++k) differ |= values[k] != first ? 1 : 0;
+  return differ == 0;
+}
 
 }  // namespace
 
@@ -43,8 +50,22 @@ glm::vec3 linear_color(std::uint32_t color) {
 }
 
 std::uint32_t srgb_color(glm::vec3 light) {
+  std::uint32_t color;
+  srgb_colors(&light.x, &light.y, &light.z, {&color, 1});
+  return color;
+}
+
+void srgb_colors(const float* red, const float* green, const float* blue, std::span<std::uint32_t> out) {
   static const SrgbTable table;
-  return table.of(light.x) << 16 | table.of(light.y) << 8 | table.of(light.z);
+  constexpr std::size_t kBlock = 16;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = table.of(red[i]) << 16 | table.of(green[i]) << 8 | table.of(blue[i]);
+    while (i + kBlock < out.size() && are_all(red + i, kBlock) && are_all(green + i, kBlock) &&
+           are_all(blue + i, kBlock)) {
+      std::fill_n(&out[i + 1], kBlock, out[i]);
+      i += kBlock;
+    }
+  }
 }
 
 }  // namespace sf::base

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/ext/vector_float3.hpp>
+#include <span>
 
 namespace sf::base {
 
@@ -11,5 +12,7 @@ glm::vec3 linear_color(std::uint32_t color);
 
 /// Returns 0xRRGGBB of linear light: clamped to [0, 1], and rounded exactly. NaN is 0.
 std::uint32_t srgb_color(glm::vec3 light);
+/// The same of as many lights as `out` has colours, fast where neighbours are equal.
+void srgb_colors(const float* red, const float* green, const float* blue, std::span<std::uint32_t> out);
 
 }  // namespace sf::base

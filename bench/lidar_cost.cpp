@@ -1,9 +1,10 @@
 // Spatial scans against Embree's packets: processor time per beam on one thread, with poses and a hash of the ranges,
 // and the error of each method against every face in `long double`.
 //
-//   build/release/lidar_cost [SCENE [SENSOR [POSES [TURNS]]]]; default: city100 lidar64x1024 20 7
+//   build/release/lidar_cost [SCENE [SENSOR [POSES [TURNS [METHODS]]]]]; default: city100 lidar64x1024 20 7
 //
 // Prints medians over turns, and sums of each pose's least time, which other load on the machine disturbs less.
+// METHODS: a regular expression for names of methods; the farm's is always measured.
 // LIDAR_ISA=avx2 limits both sides to AVX2.
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <regex>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -183,31 +185,37 @@ class SkipCaster : public SpatialCaster {
 };
 
 /// A camera's colours: normals, shadows and shading of each tile, without paint.
-class ColourCaster : public FarmCaster {
+class ColourCaster : public FarmCaster, private scene::TileSink {
  public:
   ColourCaster(const scene::SurfaceTree& tree, const scene::HeightField* field, const std::vector<glm::dvec3>& beams,
                bool shadows)
-      : FarmCaster(tree, field, beams, 0), shadows_(shadows), normals_(beams.size()), light_of_(beams.size()) {}
+      : FarmCaster(tree, field, beams, 0), shadows_(shadows), colours_(beams.size()) {}
   std::string name() const override { return shadows_ ? "farm, colours" : "farm, no shadows"; }
   void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
     const std::span instances(&instance_, field_ == nullptr ? 1 : 0);
-    const scene::ScanOutput out{ranges, hits_, quality_, {}, normals_};
-    scratch_.shadows.begin(X_WS.p, light_.to_sun(), shadows_ ? instances : std::span<scene::Instance>());
-    constexpr std::size_t kTiles = 16;  // as cameras: while their results are in the cache
-    for (std::size_t first = 0; first < pattern_.size(); first += kTiles) {
-      const auto tiles = std::span(pattern_).subspan(first, std::min(kTiles, pattern_.size() - first));
-      rasterizer_.scan(X_WS, tiles, kRange, {instances, false, {field_, {}}}, out);
-      for (const scene::BeamTile& tile : tiles) light_.shade(X_WS, tile, kRange, out, light_of_, scratch_);
-    }
-    for (const glm::vec3& light : light_of_) sum_ += base::srgb_color(light);
+    const scene::SceneView scene{instances, false, {field_, {}}};
+    scratch_.shadows.begin(X_WS.p, light_.to_sun(), shadows_ ? scene : scene::SceneView{});
+    X_WS_ = X_WS;
+    rasterizer_.scan(X_WS, pattern_, kRange, scene,
+                     {.ranges = ranges, .hits = hits_, .quality = quality_, .sink = this});
   }
+  void take(const scene::BeamTile& tile, const scene::TileSurfaces& surfaces) override {
+    light_.shade(X_WS_, tile, kRange, surfaces, scratch_);
+    std::uint32_t colours[scene::kTileBeams];
+    const std::uint32_t beams = tile.used * scene::kWidth;
+    const auto& light = scratch_.lanes.light;
+    base::srgb_colors(light[0], light[1], light[2], std::span(colours).first(beams));
+    for (std::uint32_t i = 0; i < beams; ++i) colours_[tile.place[i]] = colours[i];
+  }
+  /// Of the colours of the last cast.
+  std::uint64_t colour_hash() const { return base::hash_bytes(colours_.data(), colours_.size() * sizeof(colours_[0])); }
 
  private:
   bool shadows_;
   sensors::CameraLight light_{world::World{}, {}};
   sensors::CameraLight::Scratch scratch_;
-  std::vector<glm::vec3> normals_, light_of_;
-  std::uint64_t sum_ = 0;
+  base::RigidTransform X_WS_;
+  std::vector<std::uint32_t> colours_;
 };
 
 struct Method : Timing {
@@ -256,7 +264,8 @@ void check(Method& method, const LidarScene& scene, const std::vector<Sample>& s
   std::ranges::sort(method.errors);
 }
 
-int run(const std::string& scene_name, const std::string& sensor, int poses, std::size_t turns) {
+int run(const std::string& scene_name, const std::string& sensor, int poses, std::size_t turns,
+        const std::string& wanted) {
   LidarScene scene = lidar_scene(scene_name, poses);
   std::uint32_t row = 0;
   const std::vector<glm::dvec3> beams = lidar_beams(sensor, row);
@@ -298,6 +307,9 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
     if (!scene.field.empty()) add(std::make_unique<FarmCaster>(tree, &scene.field, beams, row));
     for (auto& caster : embree_casters(scene.mesh, beams, kRange)) add(std::move(caster));
   }
+  std::erase_if(methods, [&, names = std::regex(wanted)](const Method& method) {
+    return method.method != "farm" && !std::regex_search(method.method, names);
+  });
   std::vector<double> ranges(beams.size());
   take_turns(methods, turns, "farm", [&](std::size_t k, std::size_t) {
     std::ranges::fill(ranges, std::nan(""));
@@ -309,9 +321,12 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
   });
   fmt::print("{}, {}: {} faces, tree {:.2f} s, {} beams, {} poses, {} turns\n", scene_name, sensor,
              tree.mesh.faces.size(), built.cpu_s, beams.size(), poses, turns);
-  for (const Method& method : methods)
+  for (const Method& method : methods) {
     if (const auto* const farm = dynamic_cast<FarmCaster*>(method.caster.get()))
       fmt::print("  {:25} {:.4f} % uncertain\n", method.method, 100.0 * farm->uncertain());
+    if (const auto* const colours = dynamic_cast<ColourCaster*>(method.caster.get()))
+      fmt::print("  {:25} hash of the last image's colours {:016x}\n", method.method, colours->colour_hash());
+  }
   // The forest has too many triangles for the reference: errors are against the farm's exact ranges.
   const scene::Instance instance{&tree, {}, true};
   std::size_t cast_pose = scene.poses.size();
@@ -349,5 +364,5 @@ int main(int count, char** arguments) {
   if (isa != nullptr && std::string(isa) == "avx2") hwy::DisableTargets(HWY_AVX2 - 1);
   const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
   return sf::bench::run(word(1, "city100"), word(2, "lidar64x1024"), std::atoi(word(3, "20").c_str()),
-                        static_cast<std::size_t>(std::atoi(word(4, "7").c_str())));
+                        static_cast<std::size_t>(std::atoi(word(4, "7").c_str())), word(5, ""));
 }

@@ -24,7 +24,7 @@ double uniform(Random& random, double low, double high) {
 void add_quad(Mesh& mesh, dvec3 a, dvec3 b, dvec3 c, dvec3 d) { mesh.add(std::array{a, b, c, d}, 0); }
 
 /// The sides and the top of a box on the ground, or all six sides.
-void add_box(Mesh& mesh, dvec3 low, dvec3 high, bool bottom) {
+void add_box(Mesh& mesh, dvec3 low, dvec3 high, bool bottom, bool top = true) {
   const auto at = [&](int x, int y, int z) {
     return dvec3{x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z};
   };
@@ -32,7 +32,7 @@ void add_box(Mesh& mesh, dvec3 low, dvec3 high, bool bottom) {
   add_quad(mesh, at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1));
   add_quad(mesh, at(1, 1, 0), at(0, 1, 0), at(0, 1, 1), at(1, 1, 1));
   add_quad(mesh, at(0, 1, 0), at(0, 0, 0), at(0, 0, 1), at(0, 1, 1));
-  add_quad(mesh, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
+  if (top) add_quad(mesh, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
   if (bottom) add_quad(mesh, at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0));
 }
 
@@ -71,9 +71,9 @@ LidarScene city(int blocks, int poses, Random& random) {
   return out;
 }
 
-LidarScene room(int poses, Random& random) {
+LidarScene room(int poses, bool roof, Random& random) {
   LidarScene out;
-  add_box(out.mesh, {0, 0, 0}, {20, 15, 4}, true);
+  add_box(out.mesh, {0, 0, 0}, {20, 15, 4}, true, roof);
   for (int k = 0; k < 12; ++k) {
     const dvec3 c{uniform(random, 1, 19), uniform(random, 1, 14), uniform(random, 0.4, 3.0)};
     const double radius = uniform(random, 0.3, 0.8);
@@ -178,13 +178,15 @@ LidarScene lidar_scene(const std::string& name, int poses) {
   Random random(7);
   int blocks = 0;
   LidarScene out = std::sscanf(name.c_str(), "city%d", &blocks) == 1 ? city(blocks, poses, random)
-                   : name == "room" || name == "room32"              ? room(poses, random)
+                   : name == "room" || name == "room32"              ? room(poses, true, random)
+                   : name == "yard"                                  ? room(poses, false, random)
                    : name == "terrain"                               ? terrain(poses, random)
                    : name == "forest"                                ? forest(tree(random), poses, random)
                    : name == "statues"                               ? forest(statue(), poses, random)
                                                                      : LidarScene{};
   if (out.poses.empty())
-    throw std::invalid_argument("no scene " + name + "; expected cityN, room, room32, terrain, forest or statues");
+    throw std::invalid_argument("no scene " + name +
+                                "; expected cityN, room, room32, yard, terrain, forest or statues");
   if (name == "room32")
     for (dvec3& v : out.mesh.vertices) v = glm::round(v * 0x1p19) * 0x1p-19;  // as 32 bits at 16 m
   for (base::RigidTransform& X : out.poses)

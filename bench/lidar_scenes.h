@@ -20,9 +20,9 @@ struct LidarScene {
 };
 
 /// @param name `cityN` (N x N houses of 6 m on squares of 10 m), `room` (furniture of 42 000 triangles in 20 m x 15 m;
-/// `room32`: with coordinates in 32 bits, as in many files, so that only axis-aligned ones are exactly in a plane),
-/// `terrain` (524 000 triangles in 256 m x 256 m), `forest` or `statues` (1 000 trees of 20 000 triangles, or balls of
-/// 78 000, in 160 m x 160 m)
+/// `room32`: with coordinates in 32 bits, as in many files, so that only axis-aligned ones are exactly in a plane;
+/// `yard`: without a ceiling), `terrain` (524 000 triangles in 256 m x 256 m), `forest` or `statues` (1 000 trees of 20
+/// 000 triangles, or balls of 78 000, in 160 m x 160 m)
 LidarScene lidar_scene(const std::string& name, int poses);
 
 /// @param name `lidarRxC` (R rings of C columns over 45 degrees, up to 16 rings 30 degrees) or `cameraWxH` (90 degrees)

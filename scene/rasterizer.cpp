@@ -54,6 +54,8 @@ class Scan {
   void meet_terrain(const BeamTile& tile, std::uint32_t vector);
   bool stays_above(const BeamTile& tile) const;
   void write(const BeamTile& tile, std::uint32_t vector);
+  void write_surfaces(std::uint32_t vector);
+  bool end(const BeamTile& tile);
   const SeenPlane& plane_of(std::uint32_t face) { return known_plane(face).plane; }
   const KnownPlane& known_plane(std::uint32_t face) {
     KnownPlane& known = planes_[face % kKnownPlanes];
@@ -257,9 +259,30 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.normals[place[i]] = normal_of(hits_[i], first + i);
   if (!out_.materials.empty())
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.materials[place[i]] = material_of(hits_[i], first + i);
+  if (out_.sink != nullptr) write_surfaces(vector);
   flagged_ = flagged_ || grazing_ != 0;
   for (; grazing_ != 0; grazing_ &= grazing_ - 1)
     out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;
+}
+
+/// Writes what a vector's beams meet for the sink.
+void Scan::write_surfaces(std::uint32_t vector) {
+  TileSurfaces& to = s_.surfaces;
+  const std::uint32_t first = kWidth * vector;
+  std::memcpy(to.ranges + first, ranges_, sizeof ranges_);
+  std::memcpy(to.hits + first, hits_, sizeof hits_);
+  if (terrain_hits_ == 0 && are_all(s_.face + first, s_.face[first])) {
+    const glm::vec3 n = normal_of(hits_[0], first);
+    store(all(n.x), to.x + first), store(all(n.y), to.y + first), store(all(n.z), to.z + first);
+    store(all(material_of(hits_[0], first)), to.materials + first);
+    to.uniform |= 1u << vector;
+    return;
+  }
+  for (std::uint32_t i = 0; i < kWidth; ++i) {
+    const glm::vec3 n = normal_of(hits_[i], first + i);
+    to.x[first + i] = n.x, to.y[first + i] = n.y, to.z[first + i] = n.z;
+    to.materials[first + i] = material_of(hits_[i], first + i);
+  }
 }
 
 /// Searches the terrain for some vectors at a time, since each step waits for the one before.
@@ -313,63 +336,67 @@ bool Scan::stays_above(const BeamTile& tile) const {
       if (!(R.row(2, corner) > slope * std::sqrt(x * x + y * y) * 1.00001f + 1e-5f)) return false;
     }
   return true;
-}
-
-bool Scan::cast(const BeamTile& tile) {
-  draw(tile, used_vectors(tile));
-  const bool terrain = terrain_ && !stays_above(tile);
-  terrain_hits_ = 0;
-  for (std::uint32_t v = 0; v < tile.used; ++v) {
-    if (terrain && v % kMarchings == 0) march(tile, v);
-    measure(tile, v);
-    if (terrain) meet_terrain(tile, v);
-    write(tile, v);
+  /// @return true if any beam so far has a flag
+  bool Scan::end(const BeamTile& tile) {
+    if (out_.sink != nullptr) out_.sink->take(tile, s_.surfaces);
+    s_.surfaces.uniform = 0;
+    s_.counts.beams += kWidth * tile.used;
+    return flagged_;
   }
-  s_.counts.beams += kWidth * tile.used;
-  return flagged_;
-}
 
-/// Takes over what the device found along a vector's beams, which are all certain.
-void Scan::take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast) {
-  const std::uint32_t first = kWidth * vector;
-  const bool sines = !out_.cosines.empty() || !out_.normals.empty();
-  grazing_ = 0;
-  for (std::uint32_t i = 0; i < kWidth; ++i) {
-    const std::uint32_t face = cast[i].face, beam = first + i;
-    ranges_[i] = cast[i].range;
-    s_.face[beam] = face;
-    hits_[i] = face == kNoFace ? base::kNoHit : plane_of(face).owner;
-    sines_[i] = 0.0;
-    if (sines && face != kNoFace) sines_[i] = sine_of(plane_of(face), {tile.dx[beam], tile.dy[beam], tile.dz[beam]});
-    grazing_ |= (cast[i].flags & CastBeam::kGrazing) != 0 ? 1u << i : 0u;
-  }
-  if (out_.single) grazing_ &= ~measure_single(tile, vector, 0xFFFFu);
-}
-
-bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
-  std::uint32_t uncertain = 0;
-  for (std::uint32_t i = 0; i < kWidth * tile.used; ++i)
-    uncertain |= (cast[i].flags & CastBeam::kUncertain) != 0 ? 1u << i / kWidth : 0u;
-  if (uncertain != 0) draw(tile, uncertain);
-  for (std::uint32_t v = 0; v < tile.used; ++v) {
-    if ((uncertain >> v & 1) != 0)
+  bool Scan::cast(const BeamTile& tile) {
+    draw(tile, used_vectors(tile));
+    const bool terrain = terrain_ && !stays_above(tile);
+    terrain_hits_ = 0;
+    for (std::uint32_t v = 0; v < tile.used; ++v) {
+      if (terrain && v % kMarchings == 0) march(tile, v);
       measure(tile, v);
-    else
-      take(tile, v, cast.subspan(kWidth * v).first<kWidth>());
-    write(tile, v);
+      if (terrain) meet_terrain(tile, v);
+      write(tile, v);
+    }
+    return end(tile);
   }
-  s_.counts.beams += kWidth * tile.used;
-  return flagged_;
-}
 
-bool scan_tiles(Scratch& s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
-                const SceneView& scene, const ScanOutput& out, std::span<const CastBeam> cast) {
-  Scan scan(s, X_WS, range_max, scene, out);
-  bool flagged = false;
-  for (std::size_t i = 0; i < tiles.size(); ++i)
-    flagged = cast.empty() ? scan.cast(tiles[i]) : scan.finish(tiles[i], cast.subspan(i * kTileBeams, kTileBeams));
-  return flagged;
-}
+  /// Takes over what the device found along a vector's beams, which are all certain.
+  void Scan::take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast) {
+    const std::uint32_t first = kWidth * vector;
+    const bool sines = !out_.cosines.empty() || !out_.normals.empty();
+    grazing_ = 0;
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      const std::uint32_t face = cast[i].face, beam = first + i;
+      ranges_[i] = cast[i].range;
+      s_.face[beam] = face;
+      hits_[i] = face == kNoFace ? base::kNoHit : plane_of(face).owner;
+      sines_[i] = 0.0;
+      if (sines && face != kNoFace) sines_[i] = sine_of(plane_of(face), {tile.dx[beam], tile.dy[beam], tile.dz[beam]});
+      grazing_ |= (cast[i].flags & CastBeam::kGrazing) != 0 ? 1u << i : 0u;
+    }
+    if (out_.single) grazing_ &= ~measure_single(tile, vector, 0xFFFFu);
+  }
+
+  bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
+    std::uint32_t uncertain = 0;
+    for (std::uint32_t i = 0; i < kWidth * tile.used; ++i)
+      uncertain |= (cast[i].flags & CastBeam::kUncertain) != 0 ? 1u << i / kWidth : 0u;
+    if (uncertain != 0) draw(tile, uncertain);
+    for (std::uint32_t v = 0; v < tile.used; ++v) {
+      if ((uncertain >> v & 1) != 0)
+        measure(tile, v);
+      else
+        take(tile, v, cast.subspan(kWidth * v).first<kWidth>());
+      write(tile, v);
+    }
+    return end(tile);
+  }
+
+  bool scan_tiles(Scratch & s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
+                  const SceneView& scene, const ScanOutput& out, std::span<const CastBeam> cast) {
+    Scan scan(s, X_WS, range_max, scene, out);
+    bool flagged = false;
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+      flagged = cast.empty() ? scan.cast(tiles[i]) : scan.finish(tiles[i], cast.subspan(i * kTileBeams, kTileBeams));
+    return flagged;
+  }
 
 }  // namespace sf::scene::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

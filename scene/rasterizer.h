@@ -65,6 +65,22 @@ struct SceneView {
   Terrain terrain{};   ///< a beam that meets it hits base::kFloorHit
 };
 
+/// What the beams of a tile meet, in the tile's order.
+struct TileSurfaces {
+  alignas(64) double ranges[kTileBeams];                              ///< [m] as ScanOutput::ranges
+  alignas(64) float x[kTileBeams], y[kTileBeams], z[kTileBeams];      ///< as ScanOutput::normals
+  alignas(64) std::uint32_t hits[kTileBeams], materials[kTileBeams];  ///< as in ScanOutput
+  std::uint32_t uniform = 0;  ///< bit mask of vectors whose beams all meet one face, or all nothing
+};
+
+/// Receives what the beams of each tile meet, as soon as the tile has been cast.
+class TileSink {
+ public:
+  virtual ~TileSink() = default;
+  /// @param surfaces of the vectors that the tile uses, until the next call
+  virtual void take(const BeamTile& tile, const TileSurfaces& surfaces) = 0;
+};
+
 /// Results of one scan, beam by beam in the order of the scan.
 struct ScanOutput {
   std::span<double> ranges;              ///< [m] in [0, range_max]; range_max where nothing is nearer
@@ -76,8 +92,9 @@ struct ScanOutput {
   /// wanted.
   std::span<glm::vec3> normals = {};
   std::span<std::uint32_t> materials =
-      {};               ///< of the faces (Mesh::materials), or world::kNoMaterial. Empty: not wanted
-  bool single = false;  ///< ranges of meshes and the floor in 32 bits where these are within kSingleRangeError
+      {};                    ///< of the faces (Mesh::materials), or world::kNoMaterial. Empty: not wanted
+  bool single = false;       ///< ranges of meshes and the floor in 32 bits where these are within kSingleRangeError
+  TileSink* sink = nullptr;  ///< null: none
 };
 
 /// Result of one beam that a device has cast (scene/device/device_rasterizer.h).

@@ -38,8 +38,9 @@ std::vector<SpatialScanner> scanners_of(const std::vector<CameraSettings>& camer
     scanners.push_back({.X_MS = s.X_MS,
                         .range_max = s.range_max * stretch(s) * (1.0 + 1e-12),
                         .beams = s.beams,
-                        .normals = s.normals || s.rgb,
+                        .normals = s.normals,
                         .materials = s.rgb,
+                        .follows = s.rgb,
                         .single = s.mode != 0});
   return scanners;
 }
@@ -59,8 +60,11 @@ class Cameras : public SpatialScans {
   }
 
  private:
-  void follow(std::size_t sample, const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles,
-              unsigned thread) override;
+  void begin_follow(std::size_t sample, const base::RigidTransform& X_WS, unsigned thread) override;
+  void begin_shadows(std::size_t sample, const base::RigidTransform& X_WS, std::span<const scene::Instance> instances,
+                     unsigned thread);
+  void follow(std::size_t sample, const base::RigidTransform& X_WS, const scene::BeamTile& tile,
+              const scene::TileSurfaces& surfaces, unsigned thread) override;
   void finish(std::size_t sample, unsigned thread) override;
   std::uint32_t color_of(std::size_t sample, std::size_t pixel, std::span<const glm::vec3> light) const;
 
@@ -68,7 +72,8 @@ class Cameras : public SpatialScans {
   bool noise_;
   // Of cameras with colours.
   std::optional<CameraLight> light_;
-  std::vector<glm::vec3> part_light_;
+  std::vector<glm::vec3> part_light_;          ///< empty if all cameras have plain colours
+  std::vector<std::uint32_t> part_colors_;     ///< of cameras with plain colours: 0xRRGGBB
   std::vector<CameraLight::Scratch> scratch_;  ///< per thread
   std::vector<SceneList> casting_;             ///< per due sample: surfaces that cast shadows
 };
@@ -79,7 +84,9 @@ Cameras::Cameras(const SensorContext& context, const ParsedSensors& sensors)
       noise_(context.noise) {
   if (std::ranges::none_of(settings_, &CameraSettings::rgb)) return;
   light_.emplace(context.world, materials());
-  part_light_.resize(parts());
+  if (std::ranges::any_of(settings_, [](const CameraSettings& s) { return s.rgb && !s.is_plain(); }))
+    part_light_.resize(parts());
+  part_colors_.resize(parts());
   scratch_.resize(context.thread_pool.threads());
 }
 
@@ -102,20 +109,36 @@ bool Cameras::prepare(std::span<const DueSample> due) {
   return again;
 }
 
-void Cameras::follow(std::size_t i, const base::RigidTransform& X_WS, std::span<const scene::BeamTile> tiles,
-                     unsigned thread) {
-  const CameraSettings& s = settings_[samples()[i].row];
-  if (!s.rgb) return;
+void Cameras::begin_shadows(std::size_t i, const base::RigidTransform& X_WS, std::span<const scene::Instance> instances,
+                            unsigned thread) {
+  const bool exact = settings_[samples()[i].row].mode == 0;
+  const float least = exact ? scene::kLeastShadow : 2.0f * static_cast<float>(scene::kSingleRangeError);
+  scratch_[thread].shadows.begin(X_WS.p, light_->to_sun(), {instances, false, scene().terrain()}, least);
+}
+
+void Cameras::begin_follow(std::size_t i, const base::RigidTransform& X_WS, unsigned thread) {
+  if (light_->has_sun()) begin_shadows(i, X_WS, casting_[i].instances, thread);
+}
+
+void Cameras::follow(std::size_t i, const base::RigidTransform& X_WS, const scene::BeamTile& tile,
+                     const scene::TileSurfaces& surfaces, unsigned thread) {
   CameraLight::Scratch& scratch = scratch_[thread];
-  const float least = s.mode == 0 ? scene::kLeastShadow : 2.0f * static_cast<float>(scene::kSingleRangeError);
-  const bool moving = light_->has_sun() && !casting_[i].moving.empty();
-  if (light_->has_sun()) scratch.shadows.begin(X_WS.p, light_->to_sun(), casting_[i].instances, least);
-  for (const scene::BeamTile& tile : tiles) {
-    if (moving) {
-      move_to_tile(tile, casting_[i], scratch.moved);
-      scratch.shadows.begin(X_WS.p, light_->to_sun(), scratch.moved, least);
-    }
-    light_->shade(X_WS, tile, s.range_max, output_of(i), parts_of(part_light_, i), scratch);
+  if (light_->has_sun() && !casting_[i].moving.empty()) {
+    move_to_tile(tile, casting_[i], scratch.moved);
+    begin_shadows(i, X_WS, scratch.moved, thread);
+  }
+  const CameraSettings& s = settings_[samples()[i].row];
+  light_->shade(X_WS, tile, s.range_max, surfaces, scratch);
+  const auto& light = scratch.lanes.light;
+  const std::uint32_t beams = tile.used * scene::kWidth;
+  if (s.is_plain()) {
+    std::uint32_t colors[scene::kTileBeams];
+    base::srgb_colors(light[0], light[1], light[2], std::span(colors).first(beams));
+    const auto out = parts_of(part_colors_, i);
+    for (std::uint32_t k = 0; k < beams; ++k) out[tile.place[k]] = colors[k];
+  } else {
+    const auto out = parts_of(part_light_, i);
+    for (std::uint32_t k = 0; k < beams; ++k) out[tile.place[k]] = {light[0][k], light[1][k], light[2][k]};
   }
 }
 
@@ -159,7 +182,9 @@ void Cameras::finish(std::size_t i, unsigned) {
   const std::size_t width = s.columns(), parts = s.samples;
   const std::vector<std::uint32_t>& cast = s.beams->cast;
   if (!cast.empty()) see_nothing(s, sample.values, hits);
-  const auto light = s.rgb ? parts_of(part_light_, i) : std::span<glm::vec3>();
+  const bool plain = s.is_plain();
+  const auto light = s.rgb && !plain ? parts_of(part_light_, i) : std::span<glm::vec3>();
+  const auto colors = s.rgb && plain ? parts_of(part_colors_, i) : std::span<std::uint32_t>();
   for (std::size_t c = 0; c < from.ranges.size() / parts; ++c) {
     const std::size_t k = cast.empty() ? c : cast[c], first = c * parts;
     const double depth = from.ranges[first] * s.beams->directions[k].x;
@@ -168,7 +193,7 @@ void Cameras::finish(std::size_t i, unsigned) {
     quality[k] = seen && depth < s.range_min ? base::QualityFlag::too_near : from.quality[first];
     const std::span<double> pixel = sample.values.subspan(k * width, width);
     pixel[0] = seen ? std::max(depth, s.range_min) : s.range_max;
-    if (width > 1) pixel[1] = s.rgb ? color_of(i, k, light.subspan(first, parts)) : 0.0;
+    if (width > 1) pixel[1] = !s.rgb ? 0.0 : plain ? colors[c] : color_of(i, k, light.subspan(first, parts));
     const glm::vec3 normal = seen && s.normals ? from.normals[first] : glm::vec3{};
     for (std::size_t axis = 0; axis + 2 < width; ++axis) pixel[2 + axis] = normal[static_cast<int>(axis)];
   }

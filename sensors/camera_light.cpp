@@ -43,6 +43,17 @@ double CameraLight::shadow_reach(double height) const {
   return has_sun() ? 4.0 * height * base::hypot(to_sun_.x, to_sun_.y) / to_sun_.z : 0.0;
 }
 
+/// A tile with its pose.
+struct CameraLight::Frame {
+  const base::RigidTransform& X_WS;
+  const scene::BeamTile& tile;
+  const scene::TileSurfaces& surfaces;
+  std::uint32_t beams;
+  double depth_max;
+  glm::mat3 R_WS;
+  glm::vec3 up, sun;  ///< unit vectors in the sensor's frame
+};
+
 /// @param up, sun cosines of the angles between the direction and these
 glm::vec3 CameraLight::sky_at(float up, float sun) const {
   if (sun > kSunCosine && has_sun()) return glm::vec3(1.0f);
@@ -50,71 +61,104 @@ glm::vec3 CameraLight::sky_at(float up, float sun) const {
 }
 
 /// Returns the colour of the floor, or of paint on it, where a beam meets it.
-glm::vec3 CameraLight::ground_at(const base::RigidTransform& X_WS, double range, const scene::BeamTile& tile,
-                                 std::uint32_t i) const {
-  if (paint_.empty()) return floor_;
+const glm::vec3& CameraLight::ground_at(const Frame& f, double range, std::uint32_t i) const {
   const glm::vec3* const paint =
-      paint_.color_at(base::transform(X_WS, range * glm::dvec3(tile.dx[i], tile.dy[i], tile.dz[i])));
+      paint_.color_at(base::transform(f.X_WS, range * glm::dvec3(f.tile.dx[i], f.tile.dy[i], f.tile.dz[i])));
   return paint != nullptr ? *paint : floor_;
 }
 
-/// Geometry of a vector of beams, in loops that compilers turn into vector instructions.
-struct CameraLight::Lanes {
-  float x[kWidth], y[kWidth], z[kWidth];  ///< [m] in the world's axes, from the sensor
-  float ambient[kWidth];                  ///< light of sky and ground on a white surface
-  float sun[kWidth];                      ///< light of the sun, if it is not hidden; negative on the other side
-};
+/// Returns the colour of a surface; null: the ground's, which depends on the place.
+const glm::vec3* CameraLight::color_of(std::uint32_t hit, std::uint32_t material) const {
+  if (material < materials_.size()) return &materials_[material];
+  if (hit < models_.size()) return &models_[hit];
+  return paint_.empty() ? &floor_ : nullptr;
+}
 
-void CameraLight::find_lanes(const glm::mat3& R_WS, const scene::BeamTile& tile, std::uint32_t first,
-                             const scene::ScanOutput& scan, Lanes& lanes) const {
-  const glm::mat3 R_SW = glm::transpose(R_WS);
-  const glm::vec3 up_S = 0.5f * R_SW[2], sun_S = sun_ * (R_SW * glm::vec3(to_sun_));
-  float n[3][kWidth], range[kWidth];
-  for (std::uint32_t k = 0; k < kWidth; ++k) {
-    const std::uint32_t beam = tile.place[first + k];
-    const glm::vec3& normal = scan.normals[beam];
-    n[0][k] = normal.x, n[1][k] = normal.y, n[2][k] = normal.z;
-    range[k] = static_cast<float>(scan.ranges[beam]);
+/// Finds the colours of a vector's beams, also those of the sky, which has all of its light.
+void CameraLight::color_vector(const Frame& f, std::uint32_t first, Lanes& lanes) const {
+  const std::uint32_t *const hits = f.surfaces.hits + first, *const materials = f.surfaces.materials + first;
+  const double* const ranges = f.surfaces.ranges + first;
+  const glm::vec3* color = nullptr;
+  if ((f.surfaces.uniform >> first / kWidth & 1) != 0 && hits[0] != base::kNoHit &&
+      *std::max_element(ranges, ranges + kWidth) < f.depth_max * (1.0 - 1e-9))
+    color = color_of(hits[0], materials[0]);
+  if (color != nullptr) {
+    for (int c = 0; c < 3; ++c) std::fill_n(lanes.light[c] + first, kWidth, (*color)[c]);
+    return;
   }
-  for (std::uint32_t k = 0; k < kWidth; ++k) {
-    const float up = n[0][k] * up_S.x + n[1][k] * up_S.y + n[2][k] * up_S.z;
-    lanes.ambient[k] = sky_ * (0.5f + up) + ground_ * (0.5f - up);
-    lanes.sun[k] = n[0][k] * sun_S.x + n[1][k] * sun_S.y + n[2][k] * sun_S.z;
-    const float x = range[k] * tile.x[first + k], y = range[k] * tile.y[first + k], z = range[k] * tile.z[first + k];
-    lanes.x[k] = R_WS[0].x * x + R_WS[1].x * y + R_WS[2].x * z;
-    lanes.y[k] = R_WS[0].y * x + R_WS[1].y * y + R_WS[2].y * z;
-    lanes.z[k] = R_WS[0].z * x + R_WS[1].z * y + R_WS[2].z * z;
+  for (std::uint32_t k = 0, i = first; k < kWidth; ++k, ++i) {
+    glm::vec3 found;
+    if (hits[k] == base::kNoHit || !(ranges[k] * f.tile.dx[i] < f.depth_max)) {
+      const glm::vec3 d(f.tile.x[i], f.tile.y[i], f.tile.z[i]);
+      found = sky_at(glm::dot(d, f.up), glm::dot(d, f.sun));
+      lanes.ambient[i] = 1.0f, lanes.sun[i] = 0.0f;
+    } else {
+      color = color_of(hits[k], materials[k]);
+      found = color != nullptr ? *color : ground_at(f, ranges[k], i);
+    }
+    for (int c = 0; c < 3; ++c) lanes.light[c][i] = found[c];
   }
 }
 
+/// Finds the light that all surfaces of a tile would have without shadows, in a loop that compilers turn into vector
+/// instructions, as those below.
+void CameraLight::light_surfaces(const Frame& f, Lanes& lanes) const {
+  const glm::mat3& R = f.R_WS;
+  const glm::vec3 up = 0.5f * f.up, sun = sun_ * f.sun;
+  const scene::TileSurfaces& to = f.surfaces;
+  for (std::uint32_t i = 0; i < f.beams; ++i) {
+    const float upward = to.x[i] * up.x + to.y[i] * up.y + to.z[i] * up.z;
+    lanes.ambient[i] = sky_ * (0.5f + upward) + ground_ * (0.5f - upward);
+    lanes.sun[i] = to.x[i] * sun.x + to.y[i] * sun.y + to.z[i] * sun.z;
+    const auto range = static_cast<float>(to.ranges[i]);
+    const float x = range * f.tile.x[i], y = range * f.tile.y[i], z = range * f.tile.z[i];
+    lanes.x[i] = R[0].x * x + R[1].x * y + R[2].x * z;
+    lanes.y[i] = R[0].y * x + R[1].y * y + R[2].y * z;
+    lanes.z[i] = R[0].z * x + R[1].z * y + R[2].z * z;
+  }
+}
+
+/// Adds a vector to the points if the sun may shine on any of its beams. In the points, the others repeat the first of
+/// these. @return bit mask of these
+std::uint32_t CameraLight::add_points(std::uint32_t first, Scratch& s) {
+  std::uint32_t lit = 0;
+  for (std::uint32_t k = 0; k < kWidth; ++k) lit |= s.lanes.sun[first + k] > 0.0f ? 1u << k : 0u;
+  if (lit == 0) return 0;
+  const float* const from[3] = {s.lanes.x + first, s.lanes.y + first, s.lanes.z + first};
+  float* const to[3] = {s.points.x + s.points.count, s.points.y + s.points.count, s.points.z + s.points.count};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::copy_n(from[axis], kWidth, to[axis]);
+    for (std::uint32_t rest = ~lit & 0xFFFFu; rest != 0; rest &= rest - 1)
+      to[axis][__builtin_ctz(rest)] = from[axis][__builtin_ctz(lit)];
+  }
+  s.points.count += kWidth;
+  return lit;
+}
+
+/// @param shine per vector: bit mask of beams in the light of the sun
+void CameraLight::add_light(const Frame& f, std::span<const std::uint32_t> shine, Lanes& lanes) {
+  for (std::uint32_t v = 0, i = 0; i < f.beams; ++v)
+    for (std::uint32_t k = 0; k < kWidth; ++k, ++i)
+      if ((shine[v] >> k & 1) == 0) lanes.sun[i] = 0.0f;
+  for (auto& light : lanes.light)
+    for (std::uint32_t i = 0; i < f.beams; ++i) light[i] = light[i] * lanes.ambient[i] + light[i] * lanes.sun[i];
+}
+
 void CameraLight::shade(const base::RigidTransform& X_WS, const scene::BeamTile& tile, double depth_max,
-                        const scene::ScanOutput& scan, std::span<glm::vec3> out, Scratch& s) const {
+                        const scene::TileSurfaces& surfaces, Scratch& s) const {
   const glm::mat3 R_WS(X_WS.R), R_SW = glm::transpose(R_WS);
-  const glm::vec3 up_S = R_SW[2], sun_S = R_SW * glm::vec3(to_sun_);
-  const bool sunny = has_sun();
+  const Frame frame{X_WS, tile, surfaces, kWidth * tile.used, depth_max, R_WS, R_SW[2], R_SW * glm::vec3(to_sun_)};
+  light_surfaces(frame, s.lanes);
+  std::array<std::uint32_t, scene::kTileVectors> lit{};
   s.points.count = 0;
-  Lanes lanes;
-  for (std::uint32_t i = 0; i < tile.used * kWidth; ++i) {
-    const std::uint32_t beam = tile.place[i], hit = scan.hits[beam], k = i % kWidth;
-    if (k == 0) find_lanes(R_WS, tile, i, scan, lanes);
-    if (k > 0 && beam == tile.place[i - 1]) continue;  // a vector that is not full
-    if (hit == base::kNoHit || !(scan.ranges[beam] * tile.dx[i] < depth_max)) {
-      const glm::vec3 d(tile.x[i], tile.y[i], tile.z[i]);
-      out[beam] = sky_at(glm::dot(d, up_S), glm::dot(d, sun_S));
-      continue;
-    }
-    const std::uint32_t material = scan.materials.empty() ? world::kNoMaterial : scan.materials[beam];
-    const glm::vec3 albedo = material < materials_.size() ? materials_[material]
-                             : hit < models_.size()       ? models_[hit]
-                                                          : ground_at(X_WS, scan.ranges[beam], tile, i);
-    out[beam] = albedo * lanes.ambient[k];
-    if (!(sunny && lanes.sun[k] > 0.0f)) continue;
-    s.beam[s.points.count] = beam, s.direct[s.points.count] = albedo * lanes.sun[k];
-    s.points.add({lanes.x[k], lanes.y[k], lanes.z[k]});
+  for (std::uint32_t v = 0; v < tile.used; ++v) {
+    color_vector(frame, kWidth * v, s.lanes);
+    if (has_sun()) lit[v] = add_points(kWidth * v, s);
   }
   s.shadows.cast(s.points, s.dark);
-  for (std::uint32_t k = 0; k < s.points.count; ++k)
-    if ((s.dark[k / kWidth] >> k % kWidth & 1) == 0) out[s.beam[k]] += s.direct[k];
+  for (std::uint32_t v = 0, row = 0; v < tile.used; ++v)
+    if (lit[v] != 0) lit[v] &= ~s.dark[row++];
+  add_light(frame, lit, s.lanes);
 }
 
 }  // namespace sf::sensors

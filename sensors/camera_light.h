@@ -32,27 +32,36 @@ class CameraLight {
   /// [m] how far the shadow of a body of a height may reach, four times as far as on a plane.
   double shadow_reach(double height) const;
 
+  /// The beams of a tile, in its order.
+  struct Lanes {
+    float light[3][scene::kTileBeams];  ///< red, green and blue; before, the colours of surfaces
+    float ambient[scene::kTileBeams];   ///< light of sky and ground on a white surface
+    float sun[scene::kTileBeams];       ///< that of the sun; negative on the other side
+    float x[scene::kTileBeams], y[scene::kTileBeams], z[scene::kTileBeams];  ///< [m] from the sensor, in the world's
+                                                                             ///< axes
+  };
   /// Scratch memory of a thread.
   struct Scratch {
     scene::ShadowCaster shadows;
     std::vector<scene::Instance> moved;  ///< surfaces that cast shadows, at the time of a tile
-    scene::LightPoints points;
+    scene::LightPoints points;           ///< of vectors with light from the sun
     std::array<std::uint32_t, scene::kTileVectors> dark;
-    std::array<std::uint32_t, scene::kTileBeams> beam;
-    std::array<glm::vec3, scene::kTileBeams> direct;  ///< light from the sun, if it is not hidden
+    Lanes lanes;
   };
-  /// Computes the light of the beams of a tile, after its scan and `Scratch::shadows.begin`.
-  /// @param depth_max [m] along the x axis: surfaces from there on are not seen  @param scan with normals
+  /// Computes `Scratch::lanes.light` of a tile, after its scan and `Scratch::shadows.begin`.
+  /// @param depth_max [m] along the x axis: surfaces from there on are not seen
   void shade(const base::RigidTransform& X_WS, const scene::BeamTile& tile, double depth_max,
-             const scene::ScanOutput& scan, std::span<glm::vec3> out, Scratch& scratch) const;
+             const scene::TileSurfaces& surfaces, Scratch& scratch) const;
 
  private:
+  struct Frame;
   glm::vec3 sky_at(float up, float sun) const;
-  struct Lanes;
-  glm::vec3 ground_at(const base::RigidTransform& X_WS, double range, const scene::BeamTile& tile,
-                      std::uint32_t i) const;
-  void find_lanes(const glm::mat3& R_WS, const scene::BeamTile& tile, std::uint32_t first,
-                  const scene::ScanOutput& scan, Lanes& lanes) const;
+  const glm::vec3& ground_at(const Frame& frame, double range, std::uint32_t i) const;
+  const glm::vec3* color_of(std::uint32_t hit, std::uint32_t material) const;
+  void light_surfaces(const Frame& frame, Lanes& lanes) const;
+  void color_vector(const Frame& frame, std::uint32_t first, Lanes& lanes) const;
+  static std::uint32_t add_points(std::uint32_t first, Scratch& s);
+  static void add_light(const Frame& frame, std::span<const std::uint32_t> shine, Lanes& lanes);
 
   glm::dvec3 to_sun_{};
   float sun_ = 0.0f, sky_ = 0.0f, ground_ = 0.0f;

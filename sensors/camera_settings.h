@@ -33,6 +33,8 @@ struct CameraSettings {
       beams;  ///< one per pixel, with a part per sample; pixels that see nothing are not cast
 
   std::size_t columns() const { return normals ? 5 : rgb ? 2 : 1; }  ///< numbers per pixel: depth, colour, normal
+  /// Returns whether the colour of a pixel is that of its one beam.
+  bool is_plain() const { return samples == 1 && gain == 1.0 && vignetting == 0.0 && !is_noisy(); }
   bool is_noisy() const { return read_noise > 0.0 || shot_noise > 0.0; }
 };
 

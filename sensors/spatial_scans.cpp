@@ -176,31 +176,57 @@ scene::ScanOutput SpatialScans::output_of(std::size_t i) {
                         parts_of(part_cosines_, i)};
   out.single = s.single;
   if (s.normals) out.normals = parts_of(part_normals_, i);
-  if (s.materials && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
+  if (s.materials && !s.follows && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
   return out;
+}
+
+/// Passes tiles on.
+struct SpatialScans::Follower final : scene::TileSink {
+  SpatialScans& scans;
+  std::size_t sample;
+  const base::RigidTransform& X_WS;
+  unsigned thread;
+
+  Follower(SpatialScans& owner, std::size_t i, const base::RigidTransform& X, unsigned of)
+      : scans(owner), sample(i), X_WS(X), thread(of) {}
+  void take(const scene::BeamTile& tile, const scene::TileSurfaces& surfaces) override {
+    scans.follow(sample, X_WS, tile, surfaces, thread);
+  }
+};
+
+/// Casts a tile by the reference.
+void SpatialScans::cast_reference(const base::RigidTransform& X_WS, const scene::BeamTile& tile,
+                                  const SpatialScanner& s, const scene::SceneView& view, const scene::ScanOutput& out) {
+  scene::TileSurfaces surfaces;
+  for (std::uint32_t k = 0; k < tile.used * scene::kWidth; ++k) {
+    const std::uint32_t i = tile.place[k];
+    const auto hit = scene::reference_scan(X_WS, s.beams->cast_directions()[i], s.range_max, view);
+    out.ranges[i] = surfaces.ranges[k] = static_cast<double>(hit.range);
+    out.hits[i] = surfaces.hits[k] = hit.owner;
+    surfaces.x[k] = hit.normal.x, surfaces.y[k] = hit.normal.y, surfaces.z[k] = hit.normal.z;
+    surfaces.materials[k] = hit.material;
+    if (!out.cosines.empty()) out.cosines[i] = static_cast<float>(hit.cosine);
+    if (!out.normals.empty()) out.normals[i] = hit.normal;
+    if (!out.materials.empty()) out.materials[i] = hit.material;
+  }
+  if (out.sink != nullptr) out.sink->take(tile, surfaces);
 }
 
 void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::Instance> instances,
                               std::span<const scene::BeamTile> tiles, const Job& job, unsigned thread,
                               std::span<const scene::CastBeam> cast) {
-  const std::uint32_t row = samples()[job.sample].row;
-  const SpatialScanner& s = scanners_[row];
-  const scene::ScanOutput out = output_of(job.sample);
-  const scene::SceneView view = view_of(instances, job.sample);
-  if (!reference_) {
-    rasterizers_[thread].scan(X_WS, tiles, s.range_max, view, out, cast);
-    return follow(job.sample, X_WS, tiles, thread);
+  const SpatialScanner& s = scanners_[samples()[job.sample].row];
+  scene::ScanOutput out = output_of(job.sample);
+  Follower follower(*this, job.sample, X_WS, thread);
+  if (s.follows) {
+    begin_follow(job.sample, X_WS, thread);
+    out.sink = &follower;
   }
-  for (const scene::BeamTile& tile : tiles)
-    for (const std::uint32_t i : std::span(tile.place).first(tile.used * scene::kWidth)) {
-      const auto hit = scene::reference_scan(X_WS, s.beams->cast_directions()[i], s.range_max, view);
-      out.ranges[i] = static_cast<double>(hit.range);
-      out.hits[i] = hit.owner;
-      if (!out.cosines.empty()) out.cosines[i] = static_cast<float>(hit.cosine);
-      if (!out.normals.empty()) out.normals[i] = hit.normal;
-      if (!out.materials.empty()) out.materials[i] = hit.material;
-    }
-  follow(job.sample, X_WS, tiles, thread);
+  const scene::SceneView view = view_of(instances, job.sample);
+  if (reference_)
+    for (const scene::BeamTile& tile : tiles) cast_reference(X_WS, tile, s, view, out);
+  else
+    rasterizers_[thread].scan(X_WS, tiles, s.range_max, view, out, cast);
 }
 
 void SpatialScans::measure_all() {

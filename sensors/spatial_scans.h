@@ -25,7 +25,8 @@ struct SpatialScanner {
   std::shared_ptr<const LidarBeams> beams;
   bool plain = false;      ///< beams are cast into the reading's values
   bool normals = false;    ///< also casts the normals of surfaces
-  bool materials = false;  ///< also casts their materials
+  bool materials = false;  ///< surfaces have their materials, which are also cast,
+  bool follows = false;    ///< or passed to `follow`
   bool single = false;     ///< as scene::ScanOutput::single
 };
 
@@ -55,10 +56,11 @@ class SpatialScans : public HostBackend {
 
   /// As SpatialScene::materials, if a sensor uses them.
   const std::vector<world::Material>& materials() const { return scene_.materials(); }
-  /// Computes further quantities of what the beams of some tiles met, after they were cast. Several threads call it at
-  /// once.
-  virtual void follow(std::size_t /*sample*/, const base::RigidTransform& /*X_WS*/,
-                      std::span<const scene::BeamTile> /*tiles*/, unsigned /*thread*/) {}
+  /// Precedes calls of `follow` for tiles that are cast from one pose. Several threads call both at once.
+  virtual void begin_follow(std::size_t /*sample*/, const base::RigidTransform& /*X_WS*/, unsigned /*thread*/) {}
+  /// Computes further quantities of what the beams of a tile met.
+  virtual void follow(std::size_t /*sample*/, const base::RigidTransform& /*X_WS*/, const scene::BeamTile& /*tile*/,
+                      const scene::TileSurfaces& /*surfaces*/, unsigned /*thread*/) {}
 
   const SpatialScene& scene() const { return scene_; }
   /// Returns the view of a due sample, before its surroundings are used.
@@ -80,6 +82,7 @@ class SpatialScans : public HostBackend {
   std::span<base::QualityFlag> quality_of(std::size_t sample) { return beams_of(quality_, sample); }
 
  private:
+  struct Follower;
   /// Part of a scan, the work of one thread.
   struct Job {
     std::size_t sample = 0;
@@ -94,6 +97,8 @@ class SpatialScans : public HostBackend {
   /// Returns what the device found along the beams of a job; empty: the host casts them.
   std::span<const scene::CastBeam> cast_beams_of(const Job& job);
   void cast_rolling(const Job& job, std::span<const scene::BeamTile> tiles, unsigned thread);
+  static void cast_reference(const base::RigidTransform& X_WS, const scene::BeamTile& tile, const SpatialScanner& s,
+                             const scene::SceneView& view, const scene::ScanOutput& out);
   void cast_tiles(const base::RigidTransform& X_WS, std::span<const scene::Instance> instances,
                   std::span<const scene::BeamTile> tiles, const Job& job, unsigned thread,
                   std::span<const scene::CastBeam> cast = {});

@@ -40,6 +40,7 @@ struct Rasterizer::Scratch {
   float tile_side_offset[4], tile_axis_offset;
 
   LeafView leaf;
+  TileSurfaces surfaces;              ///< for ScanOutput::sink
   std::vector<std::uint64_t> stack;   ///< depth as sortable bits, above node * 16 + child
   std::vector<DrawnFace> drawn;       ///< in this tile
   std::vector<Candidate> candidates;  ///< of one vector

@@ -97,6 +97,18 @@ inline Mesh hills(std::uint32_t cells, std::uint64_t seed) {
   return mesh;
 }
 
+/// Heights drawn from [0, rough] on a surface with long waves.
+inline HeightField waves(std::uint32_t columns, std::uint32_t rows, double rough, std::uint64_t seed,
+                         glm::dvec2 cell = {1.0, 1.0}) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0.0, rough);
+  std::vector<float> heights;
+  for (std::uint32_t y = 0; y < rows; ++y)
+    for (std::uint32_t x = 0; x < columns; ++x)
+      heights.push_back(static_cast<float>(2.0 * std::sin(0.3 * x) * std::cos(0.2 * y) + unit(random)));
+  return build_height_field(columns, rows, cell, heights);
+}
+
 inline void move(Mesh& mesh, glm::dvec3 by) {
   for (glm::dvec3& vertex : mesh.vertices) vertex += by;
 }

@@ -254,5 +254,44 @@ TEST(SpatialRasterizer, CertifiesNearlyAllBeams) {
   EXPECT_LT(cast({}, beams, 30.0, {{&instance, 1}, false}).uncertain, beams.size() / 100);
 }
 
+/// A sink receives what the outputs of a scan contain, in the order of its tiles, and which vectors meet one face.
+TEST(SpatialScan, SinksReceiveTheScan) {
+  struct Sink final : TileSink {
+    const ScanOutput* out = nullptr;
+    std::size_t beams = 0, uniform = 0;
+    void take(const BeamTile& tile, const TileSurfaces& surfaces) override {
+      for (std::uint32_t i = 0; i < tile.used * kWidth; ++i, ++beams) {
+        const std::uint32_t at = tile.place[i];
+        EXPECT_EQ(surfaces.ranges[i], out->ranges[at]);
+        EXPECT_EQ(surfaces.hits[i], out->hits[at]);
+        EXPECT_EQ(surfaces.materials[i], out->materials[at]);
+        EXPECT_EQ(glm::vec3(surfaces.x[i], surfaces.y[i], surfaces.z[i]), out->normals[at]);
+        const std::uint32_t first = i / kWidth * kWidth;
+        if ((surfaces.uniform >> i / kWidth & 1) == 0) continue;
+        EXPECT_EQ(surfaces.hits[i], surfaces.hits[first]);
+        EXPECT_EQ(surfaces.x[i], surfaces.x[first]);
+        ++uniform;
+      }
+    }
+  } sink;
+  Mesh some = soup(60, 20.0, 3);
+  for (std::uint32_t k = 0; k < some.faces.size(); ++k) some.materials.push_back(k % 5);
+  const SurfaceTree tree = build_tree(some);
+  const Instance instance{&tree, {}, true};
+  const HeightField field = waves(30, 30, 0.3, 1);
+  const RigidTransform X_WF{glm::dmat3(1.0), {-15.0, -15.0, -4.0}}, X_WS = Posed(4, 1.0).X_WS;
+  const auto beams = rings(20, 101, -1.0, 1.0);
+  std::vector<double> ranges(beams.size());
+  std::vector<std::uint32_t> hits(beams.size()), materials(beams.size());
+  std::vector<base::QualityFlag> quality(beams.size());
+  std::vector<glm::vec3> normals(beams.size());
+  const ScanOutput out{
+      .ranges = ranges, .hits = hits, .quality = quality, .normals = normals, .materials = materials, .sink = &sink};
+  sink.out = &out;
+  Rasterizer().scan(X_WS, make_pattern(beams, 0), 40.0, {{&instance, 1}, false, {&field, X_WF}}, out);
+  EXPECT_GE(sink.beams, beams.size());
+  EXPECT_GT(sink.uniform, 16u);
+}
+
 }  // namespace
 }  // namespace sf::scene

@@ -13,18 +13,6 @@ namespace {
 
 using base::QualityFlag;
 
-/// Heights drawn from [0, rough] on a surface with long waves.
-HeightField waves(std::uint32_t columns, std::uint32_t rows, double rough, std::uint64_t seed,
-                  glm::dvec2 cell = {1.0, 1.0}) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> unit(0.0, rough);
-  std::vector<float> heights;
-  for (std::uint32_t y = 0; y < rows; ++y)
-    for (std::uint32_t x = 0; x < columns; ++x)
-      heights.push_back(static_cast<float>(2.0 * std::sin(0.3 * x) * std::cos(0.2 * y) + unit(random)));
-  return build_height_field(columns, rows, cell, heights);
-}
-
 SceneView over(const HeightField& field, const RigidTransform& X_WF = {}) { return {{}, false, {&field, X_WF}}; }
 
 std::size_t echoes(const SpatialScan& scan, double range_max) {
