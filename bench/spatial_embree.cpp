@@ -84,13 +84,15 @@ class EmbreeBeams : public SpatialCaster {
         beams_(beams.size()),
         range_(static_cast<float>(range_max)),
         packet_(packet),
-        name_(std::move(name)) {
+        name_(std::move(name)),
+        labels_(beams.size()) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const glm::dvec3& beam : beams) directions_[axis].push_back(static_cast<float>(beam[axis]));
       directions_[axis].resize((beams.size() + 15) / 16 * 16, directions_[axis].back());
     }
   }
   std::string name() const override { return name_; }
+  std::span<const std::uint32_t> labels() const override { return labels_; }
   void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
     if (packet_ == 16) return cast_packets<RTCRayHit16, 16>(X_WS, ranges);
     cast_packets<RTCRayHit8, 8>(X_WS, ranges);
@@ -133,7 +135,7 @@ class EmbreeBeams : public SpatialCaster {
       }
       intersect(scene_->scene(), context, rays);
       for (std::size_t i = 0; i < width && first + i < beams_; ++i)
-        ranges[first + i] = static_cast<double>(rays.ray.tfar[i]);
+        ranges[first + i] = static_cast<double>(rays.ray.tfar[i]), labels_[first + i] = rays.hit.geomID[i];
     }
   }
 
@@ -143,6 +145,7 @@ class EmbreeBeams : public SpatialCaster {
   int packet_;
   std::string name_;
   std::vector<float> directions_[3];  ///< padded to whole packets
+  std::vector<std::uint32_t> labels_;
 };
 
 }  // namespace

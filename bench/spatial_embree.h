@@ -17,6 +17,8 @@ class SpatialCaster {
   virtual std::string name() const = 0;
   /// Casts from one pose. @param ranges out: [m] in the order of the beams
   virtual void cast(const base::RigidTransform& X_WS, std::span<double> ranges) = 0;
+  /// Embree's numbers of the meshes that the beams of the last cast met: 0, or ~0u for none.
+  virtual std::span<const std::uint32_t> labels() const { return {}; }
 };
 
 /// Returns Embree's variants: packets of 8 and 16 rays, fast and robust, with the faces as Embree's quads or split into
