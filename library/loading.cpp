@@ -93,6 +93,11 @@ void Starts::check_row(const world::World& world, const sensorfarm::WorldStarts&
     refuse("the size of '{}' cannot change: its magnet, or its mark for fiducial finders, is at half of its height");
 }
 
+bool is_placeable(const sensorfarm::Pose& pose) {
+  const double most = std::max({std::abs(pose.x), std::abs(pose.y), std::abs(pose.z), std::abs(pose.yaw)});
+  return most <= 1e7 && !std::isnan(pose.x + pose.y + pose.z + pose.yaw);
+}
+
 void Starts::check(const world::World& world, const sensorfarm::WorldStarts& given, std::size_t rows) const {
   const auto check_size = [&](std::size_t size, const char* what) {
     if (size != 0 && size != rows)
@@ -105,9 +110,9 @@ void Starts::check(const world::World& world, const sensorfarm::WorldStarts& giv
   check_size(given.acceleration.size(), "accelerations");
   check_size(given.noise.size(), "entries of 'noise'");
   for (const sensorfarm::Pose& start : given.poses)
-    if (!std::isnan(start.x) && !std::isfinite(start.x + start.y + start.z + start.yaw))
+    if (!std::isnan(start.x) && !is_placeable(start))
       throw base::InputError(
-          "a start is not finite; expected finite poses, or NaN for the start that the seed chooses");
+          "a start is not finite, or beyond 1e7; expected finite poses, or NaN for the start that the seed chooses");
   for (std::size_t i = 0; i < rows; ++i) check_row(world, given, i);
 }
 

@@ -26,6 +26,9 @@ struct WorldSource {
 /// Returns `file`, or the installed file with that relative path if `file` does not exist here.
 std::string found(const std::string& file);
 
+/// Returns whether a robot may be placed there: numbers within 1e7 [m, rad].
+bool is_placeable(const sensorfarm::Pose& pose);
+
 /// How the movers of a world start: as in the file and as a seed chooses, or as the caller says.
 class Starts {
  public:

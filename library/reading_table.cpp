@@ -19,14 +19,16 @@ bool at_every_tick(const sensors::SensorSpec& row, double interval) {
   return std::abs(row.rate * interval - 1.0) < 1e-9 && row.phase == 0.0 && row.latency == 0.0;
 }
 
-ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interval) : group_(group) {
+ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interval)
+    : group_(group), has_hits_(group.type->is_scan || group.type->beams != nullptr) {
   const std::vector<sensors::SensorSpec>& rows = group.rows;
   every_tick_ = std::all_of(rows.begin(), rows.end(), [&](const auto& row) {
     return at_every_tick(row, interval) && row.elements == rows.front().elements && row.width == rows.front().width;
   });
   for (const sensors::SensorSpec& row : rows) {
     view_.elements = std::max<std::size_t>(view_.elements, row.elements);
-    view_.columns = std::max(view_.columns, sensors::element_width(*group.type, row));
+    widths_.push_back(static_cast<std::uint32_t>(sensors::element_width(*group.type, row)));
+    view_.columns = std::max<std::size_t>(view_.columns, widths_.back());
     robots_.push_back(row.mover);
   }
   const auto is_like_first = [&](const auto& row) {
@@ -36,15 +38,31 @@ ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interv
     view_.image_width = rows.front().across;
   view_.type = group.type->name;
   view_.sensors = rows.size();
-  times_.assign(rows.size(), kNan);
-  bounds_.assign(rows.size(), std::numeric_limits<double>::infinity());
-  bound_without_noise_ = bounds_;
-  sigma_.assign(rows.size(), 0.0);
-  fresh_.assign(rows.size(), 0);
-  flagged_.assign(rows.size(), 0);
-  flags_.assign(rows.size() * view_.elements, 0);
+  times_.resize(rows.size()), bounds_.resize(rows.size()), bound_without_noise_.resize(rows.size());
+  sigma_.resize(rows.size()), fresh_.resize(rows.size()), flagged_.resize(rows.size());
+  flags_.resize(rows.size() * view_.elements);
+  for (std::size_t row = 0; row < rows.size(); ++row) clear(row);
+  view_.widths = widths_;
   view_.robots = robots_, view_.times = times_, view_.fresh = fresh_, view_.flags = flags_;
   view_.bounds = bounds_, view_.bound_without_noise = bound_without_noise_, view_.sigma = sigma_;
+}
+
+/// Sets a row to that of a sensor without a reading. Rows in the farm's memory have been read again already.
+void ReadingTable::clear(std::size_t row) {
+  times_[row] = kNan;
+  bounds_[row] = bound_without_noise_[row] = std::numeric_limits<double>::infinity();
+  sigma_[row] = 0.0;
+  fresh_[row] = flagged_[row] = 0;
+  std::fill_n(flags_.begin() + static_cast<std::ptrdiff_t>(row * view_.elements), view_.elements, std::uint8_t{0});
+  if (view_.values == nullptr || view_.values != values_.data()) return;
+  std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(row * view_.stride), view_.stride, kNan);
+  if (has_hits_)
+    std::fill_n(hits_.begin() + static_cast<std::ptrdiff_t>(row * view_.elements), view_.elements, base::kNoHit);
+}
+
+void ReadingTable::forget(std::uint32_t first, std::uint32_t end) {
+  for (std::size_t row = 0; row < robots_.size(); ++row)
+    if (robots_[row] >= first && robots_[row] < end) clear(row);
 }
 
 std::size_t ReadingTable::row_of(const base::ReadingBlock& reading) const {
@@ -79,7 +97,7 @@ void ReadingTable::point_at(std::span<const base::ReadingBlock> readings) {
   const bool several = readings.size() > 1;
   const std::size_t length = view_.elements * view_.columns;
   view_.values = readings[0].values.data();
-  view_.hits = group_.type->is_scan ? readings[0].hits.data() : nullptr;
+  view_.hits = has_hits_ ? readings[0].hits.data() : nullptr;
   view_.stride = several ? static_cast<std::size_t>(readings[1].values.data() - view_.values) : length;
   view_.hit_stride =
       several ? static_cast<std::size_t>(readings[1].hits.data() - readings[0].hits.data()) : view_.elements;
@@ -88,7 +106,7 @@ void ReadingTable::point_at(std::span<const base::ReadingBlock> readings) {
 void ReadingTable::copy(std::span<const base::ReadingBlock> readings) {
   const std::size_t length = view_.elements * view_.columns;
   values_.resize(view_.sensors * length, kNan);
-  if (group_.type->is_scan) hits_.resize(view_.sensors * view_.elements, base::kNoHit);
+  if (has_hits_) hits_.resize(view_.sensors * view_.elements, base::kNoHit);
   for (const base::ReadingBlock& reading : readings) {
     const std::size_t row = row_of(reading);
     const std::size_t width = sensors::element_width(*group_.type, group_.rows[row]);

@@ -28,6 +28,9 @@ class ReadingTable {
   /// farm keeps a scan until its sensor's next one.
   void hold();
 
+  /// Empties the rows of robots [first, end), which start afresh. Call it after `hold`.
+  void forget(std::uint32_t first, std::uint32_t end);
+
   /// Continues with the rows of a table of the same type that had fewer sensors.
   void go_on(const ReadingTable& before);
 
@@ -42,14 +45,16 @@ class ReadingTable {
   void copy(std::span<const base::ReadingBlock> readings);
   void copy_rows(const sensorfarm::Readings& from);
   void note(const base::ReadingBlock& reading);
+  void clear(std::size_t row);
 
   const sensors::SensorSet::Group& group_;
+  bool has_hits_;      ///< elements are beams or pixels
   bool every_tick_;    ///< each sensor is read at every tick and at no other time
   bool held_ = false;  ///< the view of the farm's scans stays for the rows that the next `take` does not have
   sensorfarm::Readings view_;
   std::vector<double> values_;
   std::vector<std::uint32_t> hits_;
-  std::vector<std::uint32_t> robots_;
+  std::vector<std::uint32_t> robots_, widths_;
   std::vector<double> times_;
   std::vector<double> bounds_;
   std::vector<double> bound_without_noise_;

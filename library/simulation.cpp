@@ -274,6 +274,9 @@ void Simulation::State::restart(std::span<const std::uint32_t> worlds, std::span
   for (const std::uint32_t row : resized) radii[row] = world.movers[row].radius;
   for (library::ReadingTable& table : tables) table.hold();
   if (worlds.empty()) return;
+  const auto movers = static_cast<std::uint32_t>(robots.size());
+  for (library::ReadingTable& table : tables)
+    for (const std::uint32_t k : worlds) table.forget(k * movers, (k + 1) * movers);
   if (recorder && std::ranges::find(worlds, options.record_world) != worlds.end()) {
     recorder->finish();
     recorder.reset();
@@ -287,8 +290,10 @@ void Simulation::State::put(std::size_t row, const Pose& pose, const base::Tilt&
     throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
   if (!present[row])
     throw base::InputError(fmt::format("'{}' was removed; add it again before placing it", name_of(row)));
-  if (!std::isfinite(pose.x + pose.y + pose.z + pose.yaw))
-    throw base::InputError(fmt::format("the pose of '{}' is not finite", name_of(row)));
+  if (!library::is_placeable(pose))
+    throw base::InputError(
+        fmt::format("the pose of '{}' is not finite, or beyond 1e7: ({:g}, {:g}, {:g}, {:g})", name_of(row), pose.x,
+                    pose.y, pose.z, pose.yaw));
   simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw}, tilt);
   poses[row] = pose, velocities[row] = {};
 }

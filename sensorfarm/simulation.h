@@ -93,16 +93,17 @@ struct Options {
 /// step, put, add_robot or reset of its simulation. Simulation::memory keeps the memory alive for longer.
 struct Readings {
   std::string_view type;
-  std::size_t sensors = 0;                ///< rows: by robot, then in the order of the world file
-  std::size_t elements = 0;               ///< elements of the longest reading: beams of a laser; shorter readings are
-                                          ///< padded with NaN
-  std::size_t columns = 1;                ///< numbers per element
-  const double* values = nullptr;         ///< element by element, within an element column by column
-  std::size_t stride = 0;                 ///< distance between rows, in numbers; >= elements * columns
-  const std::uint32_t* hits = nullptr;    ///< indices of the models hit by the beams, kFloor or kNone; null for other
-                                          ///< types
-  std::size_t hit_stride = 0;             ///< distance between rows
+  std::size_t sensors = 0;              ///< rows: by robot, then in the order of the world file
+  std::size_t elements = 0;             ///< elements of the longest reading: beams of a laser; shorter readings are
+                                        ///< padded with NaN
+  std::size_t columns = 1;              ///< numbers per element
+  const double* values = nullptr;       ///< element by element, within an element column by column
+  std::size_t stride = 0;               ///< distance between rows, in numbers; >= elements * columns
+  const std::uint32_t* hits = nullptr;  ///< indices of the models that beams or pixels meet, kFloor or kNone; null for
+                                        ///< other types than laser, lidar and camera
+  std::size_t hit_stride = 0;           ///< distance between rows
   std::span<const std::uint32_t> robots;  ///< per row: the row of its robot in Simulation::poses
+  std::span<const std::uint32_t> widths;  ///< per row: its numbers per element, the first columns; the others are NaN
   std::span<const double> times;          ///< [s] per row: time of the measurement; NaN before the first
   std::span<const double> bounds;         ///< per row: largest error of the first column, as in Reading::bound
   std::span<const double> bound_without_noise;  ///< per row, as in Reading

@@ -101,6 +101,7 @@ void Imus::restart(std::uint32_t row, std::int64_t now) {
   now_ = now;
   imus_[row] = state_at_start(row);
   last_[row] = report_of(row);
+  imus_[row].motion.add(last_[row]);
 }
 
 void Imus::accumulate(std::int64_t now, bool between) {

@@ -290,6 +290,7 @@ TEST(Library, PlacesRobots) {
   EXPECT_NEAR(simulation.poses()[0].y, pose.y + 3.0, 1e-12);
   expect_in("there is no row 2", refusal_of<Error>([&] { simulation.put(2, {}); }));
   expect_in("is not finite", refusal_of<Error>([&] { simulation.put(0, {NAN}); }));
+  expect_in("beyond 1e7: (1e+300, 0, 0, 0)", refusal_of<Error>([&] { simulation.put(0, {1e300}); }));
 }
 
 /// A tilt turns lidars, lasts while the robot drives, and ends where it is placed level.

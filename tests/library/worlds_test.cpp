@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -88,6 +89,34 @@ TEST(Worlds, ARestartKeepsTheReadingsOfOthers) {
   EXPECT_NE(after[2], before[2]);
   go(worlds, 1);
   EXPECT_NE(scans()[5], before[5]);
+}
+
+/// With a latency, the first reading of the new episode is still to come.
+TEST(Worlds, ARestartForgetsTheReadingsOfTheLastEpisode) {
+  const std::string text =
+      "model( size [1 9 1] pose [3 0 0 0] ) position( name \"bot\" drive \"diff\" laser( samples 3 rate 10 latency 0.3 "
+      ") "
+      "lidar( channels 1 columns 4 rate 10 latency 0.3 ) gyro( noise 1 rate 10 latency 0.3 ) )";
+  Simulation worlds = Simulation::from_text(text, {.copies = 2}), alone = Simulation::from_text(text, {.seed = 9});
+  go(worlds, 6);
+  const std::uint32_t one[] = {1};
+  const std::uint64_t seed[] = {9};
+  worlds.reset(one, seed);
+  for (int step = 0; step < 5; ++step) {
+    for (const char* type : {"laser", "lidar", "gyro"}) {
+      const Readings found = worlds.readings(type), expected = alone.readings(type);
+      const auto same = [](const auto& a, const auto& b) {
+        return std::ranges::equal(a, b, [](auto x, auto y) { return x == y || (x != x && y != y); });
+      };
+      EXPECT_TRUE(same(found.row(1), expected.row(0))) << type << step;
+      EXPECT_TRUE(same(found.times.subspan(1), expected.times) && same(found.fresh.subspan(1), expected.fresh) &&
+                  same(found.bounds.subspan(1), expected.bounds) && same(found.sigma.subspan(1), expected.sigma))
+          << type << step;
+      if (found.hits != nullptr) EXPECT_TRUE(same(found.hits_of(1), expected.hits_of(0))) << type << step;
+      EXPECT_FALSE(std::isnan(found.row(0)[0])) << "the other world goes on";
+    }
+    go(worlds, 1), go(alone, 1);
+  }
 }
 
 TEST(Worlds, GivenStartsCountExceptNan) {
