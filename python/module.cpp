@@ -224,8 +224,7 @@ py::array values(const PySimulation& s, Text type) {
 
 py::array hits(const PySimulation& s, Text type) {
   const Readings r = s.farm.readings(type);
-  if (r.hits == nullptr)
-    throw Error("a reading of type '" + type + "' has no hits; expected a type whose elements are beams");
+  if (r.hits == nullptr) throw Error("a reading of type '" + type + "' has no hits; expected laser, lidar or camera");
   return view(s, py::dtype::of<std::uint32_t>(), r.hits, {count(r.sensors), count(r.elements)},
               r.hit_stride * sizeof(std::uint32_t));
 }
@@ -427,7 +426,9 @@ void add_readings(py::class_<PySimulation>& c) {
         "(sensors, elements[, columns]): the newest reading of each sensor; shorter ones end in NaN.")
       .def(
           "_image_width", [](const PySimulation& s, Text t) { return s.farm.readings(t).image_width; }, type)
-      .def("hits", &hits, type, "(sensors, beams): number of the model that each beam met, FLOOR or NONE.")
+      .def(
+          "_widths", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).widths); }, type)
+      .def("hits", &hits, type, "(sensors, beams or pixels): number of the model that each one met, FLOOR or NONE.")
       .def("flags", &flags, type, "(sensors, elements): 0 where a stated bound holds.")
       .def(
           "bounds", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).bounds); }, type,

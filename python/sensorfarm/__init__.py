@@ -29,14 +29,21 @@ def _valid(self, type, without_noise=False):
     """Returns a new bool array (sensors, elements): True if the element was measured and a stated error bound holds for
     it. With without_noise=True, it suffices that the bound holds before noise is added."""
     values = self.readings(type)
-    measured = _numpy.isfinite(values) if values.ndim == 2 else _numpy.isfinite(values).all(axis=2)
+    measured = _numpy.isfinite(values)
+    if values.ndim == 3:
+        without = _numpy.arange(values.shape[2]) >= self._widths(type)[:, None, None]  # columns of other sensors
+        measured = (measured | without).all(axis=2)
     stated = _numpy.isfinite(self.bound_without_noise(type) if without_noise else self.bounds(type))
     return measured & (self.flags(type) == 0) & stated[:, None]
 
 
 def _images(self, kind="depth", type="camera"):
-    """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m] and of "normals" (cameras, height,
-    width, 3) views without a copy; of "colour" a new array of bytes (cameras, height, width, 3)."""
+    """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m], of "labels" (cameras, height,
+    width), the hits, and of "normals" (cameras, height, width, 3) views without a copy; of "colour" a new array of bytes
+    (cameras, height, width, 3)."""
+    kinds = "depth", "labels", "colour", "normals"
+    if kind not in kinds:
+        raise Error(f"there are no images of '{kind}'; expected one of {', '.join(kinds)}")
     width, values = self._image_width(type), self.readings(type)
     if width == 0:
         raise Error(f"images of '{type}' have no common size; expected cameras with one resolution")
@@ -44,11 +51,13 @@ def _images(self, kind="depth", type="camera"):
     images = values.reshape(values.shape[0], -1, width, columns)
     if kind == "depth":
         return images[..., 0]
+    if kind == "labels":
+        return self.hits(type).reshape(images.shape[:3])
     if kind == "colour" and columns > 1:
         return _numpy.nan_to_num(images[..., 1]).astype("<u4", order="C").view(_numpy.uint8).reshape(*images.shape[:3], 4)[..., 2::-1]
     if kind == "normals" and columns > 2:
         return images[..., 2:5]
-    raise Error(f"'{type}' has no images of '{kind}'; expected depth, or colour with 'rgb 1', or normals with 'normals 1'")
+    raise Error(f"'{type}' has no images of '{kind}'; expected 'rgb 1' for colour, or 'normals 1' for normals")
 
 
 def _png(self):

@@ -486,12 +486,13 @@ class Simulation:
         reading of each sensor of the type. Shorter readings are padded with NaN. A range without a return equals the
         sensor's limit. The range of a surface nearer than the sensor's minimum equals this minimum, with flag 5."""
     def hits(self, type: str) -> NDArray[np.uint32]:
-        """Returns (sensors, beams): index of the model hit by each beam, FLOOR or NONE."""
+        """Returns (sensors, beams or pixels): index of the model that each one meets, FLOOR or NONE."""
     def flags(self, type: str) -> NDArray[np.uint8]:
         """Returns (sensors, elements): 0 if a stated bound holds (docs/accuracy.md); 5: the surface is too near."""
     def images(self, kind: str = "depth", type: str = "camera") -> NDArray[Any]:
-        """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m] and "normals" (cameras, height,
-        width, 3) without a copy, of "colour" (cameras, height, width, 3) as new bytes."""
+        """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m], "labels" (cameras, height,
+        width), the hits, and "normals" (cameras, height, width, 3) without a copy, of "colour" (cameras, height, width, 3)
+        as new bytes."""
     def valid(self, type: str, without_noise: bool = False) -> NDArray[np.bool_]:
         """Returns a new array (sensors, elements): True if the element was measured and a stated bound holds.
         without_noise=True uses `bound_without_noise`, which noisy sensors also have."""

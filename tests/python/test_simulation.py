@@ -396,8 +396,21 @@ class Cameras(unittest.TestCase):
         self.assertEqual(colours.dtype, numpy.uint8)
         self.assertEqual(depths[0, 0, 639], 60.0, "the sky")
         self.assertGreater(int(colours[0, 0, 639, 2]), int(colours[0, 0, 639, 0]), "which is blue")
-        with self.assertRaisesRegex(sensorfarm.Error, "expected depth"):
+        labels = sim.images("labels")
+        self.assertTrue(numpy.shares_memory(labels, sim.hits("camera")), "a view")
+        self.assertEqual((labels.shape, labels[0, 0, 639]), ((1, 480, 640), sensorfarm.NONE))
+        self.assertTrue(((labels == sensorfarm.NONE) == (depths == 60.0)).all())
+        with self.assertRaisesRegex(sensorfarm.Error, "expected one of depth, labels, colour, normals"):
             sim.images("heat")
+
+    def test_sensors_with_fewer_columns_are_valid_and_have_hits(self):
+        sim = sensorfarm.Simulation.from_text(
+            "model( name \"wall\" size [1 9 4] pose [3 0 0 0] ) position( camera( resolution [4 2] rgb 1 normals 1 ) "
+            "camera( resolution [3 1] rgb 1 ) lidar( channels 1 columns 4 intensity 1 ) lidar( channels 1 columns 2 ) )")
+        self.assertEqual(sim.valid("camera").sum(axis=1).tolist(), [8, 3])
+        self.assertEqual(sim.valid("lidar").sum(axis=1).tolist(), [4, 2])
+        self.assertEqual(sim.models[sim.hits("camera")[1, 1]], "wall")
+        self.assertEqual(sim.hits("lidar")[1, 1], sensorfarm.NONE)
 
 
 class Processes(unittest.TestCase):
