@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/number_name.h"
 #include "base/random.h"
 #include "base/suggest.h"
 #include "base/time.h"
@@ -39,19 +40,32 @@ bool alters_columns(FaultKind kind) {
   return kind < FaultKind::stuck || (kind > FaultKind::stuck && kind < FaultKind::swap);
 }
 
+/// A column, or one number of a vector.
 struct ColumnPlace {
-  const sensors::Column* column;
-  std::uint32_t offset;
+  std::string name;
+  std::uint32_t offset, width;
+  bool whole;
+  bool is_range(const sensors::SensorSpec& row) const {
+    return (name == "range_m" || name == "second_range_m" || name == "depth_m") && row.limit > row.range_min;
+  }
 };
 
-/// @param name empty: the first column
-ColumnPlace column_of(const Fault& fault, const sensors::SensorType& type, std::string_view name) {
+/// @param name empty: the first column. Numbers of vectors are named as in CSV files
+ColumnPlace column_of(const Fault& fault, const sensors::SensorType& type, const sensors::SensorSpec& row,
+                      std::string_view name) {
+  std::vector<ColumnPlace> places;
   std::uint32_t offset = 0;
-  std::vector<std::string_view> names;
   for (const sensors::Column& column : type.columns) {
-    if (name.empty() || column.name == name) return {&column, offset};
+    if (offset + column.width > sensors::element_width(type, row)) break;
+    places.push_back({std::string(column.name), offset, column.width, column.whole});
+    for (std::uint32_t k = 0; column.width > 1 && k < column.width; ++k)
+      places.push_back({base::number_name(column, k), offset + k, 1, column.whole});
     offset += column.width;
-    names.push_back(column.name);
+  }
+  std::vector<std::string_view> names;
+  for (const ColumnPlace& place : places) {
+    if (name.empty() || place.name == name) return place;
+    names.push_back(place.name);
   }
   refuse_fault(fault, fmt::format("{} has no column '{}'{}", type.name, name, base::expected_one_of(name, names)));
 }
@@ -161,24 +175,32 @@ Faults::Rule Faults::rule_of(std::uint32_t k, const Group& group, const sensors:
   if (fault.element) check_element(fault, row, *fault.element);
   for (const std::uint32_t element : fault.swapped_elements) check_element(fault, row, element);
   if (!fault.swapped_columns.empty()) {
-    const ColumnPlace one = column_of(fault, type, fault.swapped_columns[0]);
-    const ColumnPlace other = column_of(fault, type, fault.swapped_columns[1]);
-    if (one.column->width != other.column->width)
+    const ColumnPlace one = column_of(fault, type, row, fault.swapped_columns[0]);
+    const ColumnPlace other = column_of(fault, type, row, fault.swapped_columns[1]);
+    if (one.width != other.width)
       refuse_fault(fault,
                    fmt::format("columns '{}' and '{}' of {} have different widths; expected columns of one width",
-                               one.column->name, other.column->name, type.name));
-    rule.offset = one.offset, rule.other = other.offset, rule.width = one.column->width;
+                               one.name, other.name, type.name));
+    if (one.whole != other.whole || one.is_range(row) != other.is_range(row))
+      refuse_fault(fault, fmt::format("columns '{}' and '{}' of {} are of different kinds; expected two ranges, two "
+                                      "counts, or two other columns",
+                                      one.name, other.name, type.name));
+    rule.offset = one.offset, rule.other = other.offset, rule.width = one.width;
   }
   if (!alters_columns(fault.kind)) return rule;
-  const auto [column, offset] = column_of(fault, type, fault.column);
-  rule.offset = offset, rule.width = column->width, rule.whole = column->whole;
-  rule.is_range = offset == 0 && column->name == "range_m" && row.limit > row.range_min;
+  const ColumnPlace column = column_of(fault, type, row, fault.column);
+  rule.offset = column.offset, rule.width = column.width, rule.whole = column.whole;
+  rule.is_range = column.is_range(row);
+  // Colours do not depend on an echo; all else of a beam does.
+  const bool second = column.name.starts_with("second_");
+  const ColumnPlace range = column_of(fault, type, row, second ? "second_range_m" : "");
+  if (range.is_range(row) && !column.whole) rule.range = range.offset;
   if (fault.kind != FaultKind::noise) return rule;
-  if (fault.multiplies && (offset != 0 || !(row.sigma > 0.0 && std::isfinite(row.sigma))))
+  if (fault.multiplies && (column.offset != 0 || !(row.sigma > 0.0 && std::isfinite(row.sigma))))
     refuse_fault(fault,
                  fmt::format("the noise of column '{}' of '{}' cannot be multiplied: its standard deviation is {}; "
                              "expected sigma, the standard deviation to add",
-                             column->name, row.name, offset == 0 && row.sigma == 0.0 ? "0" : "not stated"));
+                             column.name, row.name, column.offset == 0 && row.sigma == 0.0 ? "0" : "not stated"));
   rule.sigma =
       fault.multiplies ? (noise_ ? row.sigma * std::sqrt(fault.amount * fault.amount - 1.0) : 0.0) : fault.amount;
   return rule;
@@ -235,9 +257,10 @@ bool Faults::alter_column(const Rule& rule, const base::ReadingBlock& reading, T
   bool any = fault.kind != FaultKind::spikes;
   for (std::size_t row = fault.element.value_or(0); row * target.width < target.values.size(); ++row) {
     const bool near = row < reading.quality.size() && reading.quality[row] == base::QualityFlag::too_near;
+    const bool echo = !rule.range || (!near && target.values[row * target.width + *rule.range] < target.limits.max);
     for (std::size_t k = row * target.width + rule.offset, end = k + rule.width; k < end; ++k) {
       double& value = target.values[k];
-      if (std::isnan(value) || (rule.is_range && (near || value >= target.limits.max))) continue;
+      if (std::isnan(value) || !echo) continue;
       const double before = value;
       value = altered(rule, value, reading, static_cast<std::uint32_t>(k));
       if (rule.is_range) value = std::clamp(value, target.limits.min, target.limits.max);

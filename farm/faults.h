@@ -9,6 +9,7 @@
 // fault and sequence number alone, so results do not depend on threads, reuse or other sensors.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,14 +52,15 @@ class Faults {
  private:
   /// A fault of one sensor.
   struct Rule {
-    std::uint32_t fault = 0;           ///< row of `faults_`
-    std::int64_t from = 0, until = 0;  ///< [ns]
-    std::uint32_t offset = 0;          ///< of its column in a row of values
-    std::uint32_t width = 0;           ///< values of its column; swap: of both
-    std::uint32_t other = 0;           ///< swap: offset of the other column
-    double sigma = 0.0;                ///< noise: deviation to add
-    bool whole = false;                ///< the column is a count
-    bool is_range = false;             ///< values without an echo stay
+    std::uint32_t fault = 0;                  ///< row of `faults_`
+    std::int64_t from = 0, until = 0;         ///< [ns]
+    std::uint32_t offset = 0;                 ///< of its column in a row of values
+    std::uint32_t width = 0;                  ///< values of its column; swap: of both
+    std::uint32_t other = 0;                  ///< swap: offset of the other column
+    double sigma = 0.0;                       ///< noise: deviation to add
+    bool whole = false;                       ///< the column is a count
+    bool is_range = false;                    ///< values stay within the sensor's limits
+    std::optional<std::uint32_t> range = {};  ///< offset of the range whose beams without an echo stay
     // Stuck: the last reading that was not affected.
     std::vector<double> values = {};
     std::vector<std::uint32_t> hits = {};

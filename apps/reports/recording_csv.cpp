@@ -10,6 +10,7 @@
 #include "apps/reports/csv_text.h"
 #include "base/bearing.h"
 #include "base/error.h"
+#include "base/number_name.h"
 #include "base/tilted_pose.h"
 #include "record/reading_messages.h"
 #include "scenarios/recorded_states.h"
@@ -61,10 +62,7 @@ std::string twist_fields(const base::Twist& v) {
 std::string column_names(const auto& type) {
   std::string text;
   for (const auto& column : type.columns)
-    for (std::uint32_t k = 0; k < column.width; ++k)
-      text += "," + csv_field(column.width == 1   ? std::string(column.name)
-                              : column.width <= 3 ? fmt::format("{}_{}", column.name, "xyz"[k])
-                                                  : fmt::format("{}_{}", column.name, k));
+    for (std::uint32_t k = 0; k < column.width; ++k) text += "," + csv_field(base::number_name(column, k));
   return text;
 }
 

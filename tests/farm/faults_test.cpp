@@ -10,9 +10,11 @@
 
 #include "base/time.h"
 #include "robots/fleet.h"
+#include "sensors/camera.h"
 #include "sensors/encoder.h"
 #include "sensors/gyro.h"
 #include "sensors/laser.h"
+#include "sensors/lidar.h"
 #include "tests/farm/small_farm.h"
 #include "tests/refusal.h"
 #include "world/append_robot.h"
@@ -207,6 +209,60 @@ TEST(Faults, RangesKeepTheirLimits) {
   const std::vector<double> one = run_with(world, {fault}, 1).readings.at(0).reading.values;
   for (std::size_t i = 0; i < clean.size(); ++i)
     EXPECT_EQ(one[i], i == 7 && clean[i] < kMost ? std::max(0.0, clean[i] - 0.25) : clean[i]) << "beam " << i;
+}
+
+/// Depths are ranges. Beams without an echo and with one that is too near keep all columns but the colour.
+TEST(Faults, PixelsAndEchoesKeepTheLimitsOfRanges) {
+  const world::World world = world::build_world(
+      "camera.world",
+      "model( pose [3 0 0 0] size [1 2 1] color \"red\" ) position( name \"bot\" size [0.2 0.2 0.4]\n"
+      "camera( resolution [5 1] fov 90 range [0.5 8] normals 1 rgb 1 )\n"
+      "camera( resolution [3 1] fov 20 range [4 8] )\n"
+      "lidar( channels 1 fov_v [0 0] columns 4 range [0.5 8] intensity 1 ) )",
+      {.sensors = sensors::world_file_words()});
+  const auto values = [&](std::vector<Fault> faults, std::size_t reading) {
+    return run_with(world, std::move(faults), 1).readings.at(reading).reading.values;
+  };
+  const auto fault = [](const char* type, double bias, const char* column = "", std::uint32_t sensor = 0) {
+    return Fault{
+        .kind = FaultKind::bias, .robot = "*", .type = type, .sensor = sensor, .column = column, .amount = bias};
+  };
+  std::size_t lidar = 0, near = 0;
+  const auto all = run_with(world, {}, 1).readings;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].type == sensors::kLidar) lidar = i;
+    if (all[i].type == sensors::kCamera && all[i].reading.sensor == 1) near = i;
+  }
+  const std::size_t seen = near - 1;
+  const Values clean = values({}, seen);
+  ASSERT_EQ(clean[0], 8.0) << "the first pixel sees nothing";
+  ASSERT_NEAR(clean[2 * 5], 2.5, 1e-9) << "the middle one sees the box";
+  for (const double bias : {100.0, -100.0}) {
+    const Values depths = values({fault("camera", bias)}, seen);
+    EXPECT_EQ(depths[0], 8.0);
+    EXPECT_EQ(depths[2 * 5], bias > 0.0 ? 8.0 : 0.5);
+  }
+  const Values normals = values({fault("camera", 0.25, "normal_x")}, seen);
+  EXPECT_EQ(normals[2], clean[2]) << "no surface, no normal";
+  EXPECT_EQ(normals[2 * 5 + 2], clean[2 * 5 + 2] + 0.25);
+  EXPECT_EQ(normals[2 * 5 + 3], clean[2 * 5 + 3]) << "normal_y";
+  EXPECT_EQ(values({fault("camera", 1.0, "rgb")}, seen)[1], clean[1] + 1.0) << "the sky has a colour";
+  EXPECT_EQ(values({fault("camera", 1.0, "", 1)}, near), (Values{4.0, 4.0, 4.0})) << "too near";
+  const Values echoes = values({fault("lidar", 0.5, "intensity")}, lidar), before = values({}, lidar);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(echoes[2 * i + 1], before[2 * i + 1] + (before[2 * i] < 8.0 ? 0.5 : 0.0)) << "beam " << i;
+
+  const sensors::SensorSet sensor_set(world);
+  const auto refusal = [&](const Fault& of) {
+    return refusal_of([&] { check_faults(std::span(&of, 1), world, sensor_set); });
+  };
+  Fault swap{.kind = FaultKind::swap, .robot = "*", .type = "camera", .swapped_columns = {"depth_m", "rgb"}};
+  expect_in("are of different kinds; expected two ranges, two counts, or two other columns", refusal(swap));
+  swap.swapped_columns = {"normal_x", "depth_m"};
+  expect_in("are of different kinds", refusal(swap));
+  swap.swapped_columns = {"normal_x", "normal_z"};
+  EXPECT_EQ(refusal(swap), "");
+  expect_in("camera has no column 'rgb'", refusal(fault("camera", 1.0, "rgb", 1)));
 }
 
 constexpr int kDraws = 4000;
