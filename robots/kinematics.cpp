@@ -32,12 +32,11 @@ bool is_level(const base::Report& before, const base::Report& after) {
   return base::is_level(before.tilt) && base::is_level(after.tilt);
 }
 
-/// True for bitwise equal poses; of level movers at any height.
+/// True for bitwise equal poses.
 bool is_at_rest(const base::Report& before, const base::Report& after) {
   const base::Pose &from = before.X_WM, &to = after.X_WM;
-  const bool same_tilt = before.tilt.roll == after.tilt.roll && before.tilt.pitch == after.tilt.pitch;
-  return from.x == to.x && from.y == to.y && from.yaw == to.yaw &&
-         (is_level(before, after) || (same_tilt && from.z == to.z));
+  return from.x == to.x && from.y == to.y && from.z == to.z && from.yaw == to.yaw &&
+         before.tilt.roll == after.tilt.roll && before.tilt.pitch == after.tilt.pitch;
 }
 
 double seconds_between(const base::Report& before, const base::Report& after) {
@@ -87,6 +86,8 @@ base::Report interpolate(const base::Report& before, const base::Report& after, 
   const double since = 1e-9 * static_cast<double>(time - before.time);
   if (is_level(before, after)) {
     report.X_WM = advance(before.X_WM, report.velocity, since);
+    if (after.X_WM.z != before.X_WM.z)
+      report.X_WM.z += since / seconds_between(before, after) * (after.X_WM.z - before.X_WM.z);
   } else if (since > 0.0) {
     const auto between = base::screw_between({before.X_WM, before.tilt}, {after.X_WM, after.tilt},
                                              since / seconds_between(before, after));
@@ -100,7 +101,8 @@ base::BodyVelocity velocity_between(const base::Report& before, const base::Repo
   if (!is_level(before, after))
     return base::screw_velocity({before.X_WM, before.tilt}, {after.X_WM, after.tilt}, seconds_between(before, after));
   const base::Twist v = planar_velocity(before, after);
-  return {{v.forward, v.left, 0.0}, {0.0, 0.0, v.turn}};
+  const double rise = (after.X_WM.z - before.X_WM.z) / seconds_between(before, after);
+  return {{v.forward, v.left, rise}, {0.0, 0.0, v.turn}};
 }
 
 }  // namespace sf::robots

@@ -97,6 +97,23 @@ TEST(Imu, RelocationsAreNoMotion) {
   for (const auto& reading : d.readings) expect_near(reading, {0, 0, 0, 0, 0, kG}, "relocated");
 }
 
+/// Heights are motion, of level movers too: thrown up at 1.96 m/s, in free fall, and caught.
+TEST(Imu, FeelsVerticalMotion) {
+  for (const double roll : {0.0, 1e-9}) {
+    Drive d("position( imu( rate 10 ) )");
+    d.state.tilt.roll = roll;
+    for (int k = 1; k <= 6; ++k) {
+      base::Report next = d.state;
+      next.X_WM.z = k < 5 ? 0.5 * kG * 0.01 * k * (5 - k) : 0.0;
+      d.tick(next);
+    }
+    const double up = 0.5 * kG * 0.01 * 4 * 10;
+    expect_near(d.readings[1], {0, 0, 0, 0, 0, kG + up * 10}, "thrown");
+    for (std::size_t k = 2; k <= 5; ++k) EXPECT_NEAR(d.readings[k][5], 0.0, 1e-6) << k << " roll " << roll;
+    EXPECT_NEAR(d.readings[6][5], kG + up * 10, 1e-6) << "caught";
+  }
+}
+
 TEST(Imu, SaturatesAxisByAxis) {
   Drive d("position( imu( rate 10 gyro_range 90 accel_range 9 ) )");
   EXPECT_EQ(d.readings[0][6], 32.0) << "gravity is beyond the range of accelerometer z";
