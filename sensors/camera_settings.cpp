@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint32_t kMostSide = 4'096;   ///< [px]
 constexpr double kPerDegree = M_PI / 180.0;  ///< [rad]
+constexpr double kMostFov = 170.0 * kPerDegree;
 constexpr std::uint32_t kMostSamples = 64;
 constexpr std::uint32_t kMostCameraBeams = 4'000'000;  ///< of one camera
 constexpr double kMostFocal = 1e6;                     ///< [px]
@@ -57,13 +58,18 @@ void read_focal(const world::Sensor& sensor, CameraSettings& s) {
   if (const auto focal = tuple(sensor, "focal", 1, "[fx fy], or one number for both [px]")) {
     if (fov) refuse(sensor, "focal", "'fov' and 'focal'; expected one of them");
     s.lens.focal = {focal->front(), focal->back()};
-    for (const double f : *focal)
-      if (!(f > 0.0 && f <= kMostFocal))
-        refuse(sensor, "focal", fmt::format("a focal length of {:g} px; expected more than 0, to {:g}", f, kMostFocal));
+    for (int axis = 0; axis < 2; ++axis) {
+      const double f = s.lens.focal[axis], half = 0.5 * (axis == 0 ? s.width : s.height);
+      const double least = s.lens.fisheye ? 1.0 : half / base::tan(0.5 * kMostFov);
+      if (!(f >= least * (1.0 - 1e-12) && f <= kMostFocal))
+        refuse(sensor, "focal",
+               fmt::format("a focal length of {:g} px; expected {:.4g} to {:g}{}", f, least, kMostFocal,
+                           s.lens.fisheye ? "" : ": a field of view of at most 170 degrees"));
+    }
     return;
   }
   const double angle = fov ? (*fov)[0] * sensor.radians_per_unit : 70.0 * kPerDegree;
-  if (!(angle > 0.0 && angle <= 170.0 * kPerDegree * (1.0 + 1e-12)))
+  if (!(angle > 0.0 && angle <= kMostFov * (1.0 + 1e-12)))
     refuse(sensor, "fov",
            fmt::format("a field of view of {:g} degrees; expected more than 0, to 170{}", angle / kPerDegree,
                        hint_of_radians(sensor, angle)));
@@ -87,7 +93,7 @@ void read_lens(const world::Sensor& sensor, CameraSettings& s) {
 void read_depths(const world::Sensor& sensor, CameraSettings& s) {
   if (const auto range = tuple(sensor, "range", 2, "[min max]"))
     s.range_min = sensor.metres_per_unit * (*range)[0], s.range_max = sensor.metres_per_unit * (*range)[1];
-  if (!(s.range_max > 0.0 && s.range_max <= 1e4 && s.range_min >= 0.0 && s.range_min <= s.range_max))
+  if (!(s.range_max > 0.0 && s.range_max <= 1e4 && s.range_min >= 0.0 && s.range_min < s.range_max))
     refuse(sensor, "range",
            fmt::format("depths from {:g} to {:g} m; expected 0 or more, to more than that and at most "
                        "10000 m",
@@ -119,6 +125,8 @@ void read_times(const world::Sensor& sensor, CameraSettings& s) {
     refuse(sensor, "exposure", "'exposure' is divided among the samples of a pixel; expected 'samples' of 2 or more");
   if (whole(sensor, "rolling", 0, 0, 1) == 1)
     s.readout = number(sensor, "scan_time", 1.0 / rate_of(sensor, 10.0), 1e-6, 60.0);
+  else if (find(sensor, "scan_time") != nullptr)
+    refuse(sensor, "scan_time", "'scan_time' is that of a rolling shutter; expected 'rolling 1' with it");
   const std::size_t times = (s.readout > 0.0 ? s.height : 1) * (s.exposure > 0.0 ? s.samples : 1);
   if (times > kMostBeamTimes)
     refuse(sensor, s.readout > 0.0 ? "rolling" : "exposure",

@@ -106,7 +106,7 @@ void require_few(const world::Sensor& sensor, const LidarLayout& layout) {
            fmt::format("{} beams of {} parts are {}; expected at most {}", layout.beams(), layout.parts, cast,
                        kMostLidarBeams));
   refuse(sensor, "columns",
-         fmt::format("{} channels of {} columns are {} beams; expected at most {}", layout.elevations.size(),
+         fmt::format("'channels' {} times 'columns' {} are {} beams; expected at most {}", layout.elevations.size(),
                      layout.columns, cast, kMostLidarBeams));
 }
 
@@ -126,7 +126,7 @@ void read_range(const world::Sensor& sensor, EchoSettings& s) {
   s.range_min = length(sensor, "range_min", s.range_min, -HUGE_VAL, HUGE_VAL);
   s.range_max = length(sensor, "range_max", s.range_max, -HUGE_VAL, HUGE_VAL);
   const std::string_view key = find(sensor, "range_max") != nullptr ? "range_max" : "range";
-  if (!(s.range_max > 0.0 && s.range_max <= kLongestLidarRange && s.range_min >= 0.0 && s.range_min <= s.range_max))
+  if (!(s.range_max > 0.0 && s.range_max <= kLongestLidarRange && s.range_min >= 0.0 && s.range_min < s.range_max))
     refuse(sensor, key,
            fmt::format("a range from {:g} to {:g} m; expected 0 or more, to more than that and at most {:g} m",
                        s.range_min, s.range_max, kLongestLidarRange));

@@ -194,7 +194,7 @@ LidarLayout read_layout(const world::Sensor& sensor) {
   const std::uint32_t channels = whole(sensor, "channels", 1, 1, kMostChannels);
   if (std::size_t{channels} * layout.columns > kMostRadarBeams)
     refuse(sensor, "columns",
-           fmt::format("{} channels of {} columns are {} beams; expected at most {}", channels, layout.columns,
+           fmt::format("'channels' {} times 'columns' {} are {} beams; expected at most {}", channels, layout.columns,
                        std::size_t{channels} * layout.columns, kMostRadarBeams));
   if ((channels > 1) != (find(sensor, "fov_v") != nullptr))
     refuse(sensor, channels > 1 ? "channels" : "fov_v",

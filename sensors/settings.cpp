@@ -30,6 +30,19 @@ const std::vector<double>& numbers(const world::Sensor& sensor, const world::Set
   return setting.numbers;
 }
 
+/// Returns a limit: a whole number, or four digits that are rounded inwards, so that the limit holds.
+std::string limit_text(double limit, bool is_least) {
+  const double slack = 1e-9 * std::abs(limit);  // of the conversion to the file's unit
+  if (!std::isfinite(limit) || std::abs(limit - std::round(limit)) <= slack) return fmt::format("{:.10g}", limit);
+  const std::string digits = fmt::format("{:.3e}", limit);
+  double shown = std::strtod(digits.c_str(), nullptr);
+  if (is_least ? shown < limit - slack : shown > limit + slack) {
+    const int exponent = std::atoi(digits.c_str() + digits.find('e') + 1);
+    shown += (is_least ? 1.0 : -1.0) * std::strtod(fmt::format("1e{}", exponent - 3).c_str(), nullptr);
+  }
+  return fmt::format("{:.4g}", shown);
+}
+
 /// @param unit one unit of the file in SI; bounds and fallback are in SI
 double scaled(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most,
               double unit, const std::string& name) {
@@ -38,8 +51,8 @@ double scaled(const world::Sensor& sensor, std::string_view key, double fallback
   const double value = unit * numbers(sensor, *setting, 1, "a number").front();
   if (value >= least && value <= most) return value;
   refuse(sensor, key,
-         fmt::format("'{}' is {:.10g}; expected {:.10g} to {:.10g}{}", key, value / unit, least / unit, most / unit,
-                     name));
+         fmt::format("'{}' is {:.10g}; expected {} to {}{}", key, value / unit, limit_text(least / unit, true),
+                     limit_text(most / unit, false), name));
 }
 
 }  // namespace

@@ -315,7 +315,9 @@ std::vector<std::string> DerivedSensors::never_valid() const {
   for (const std::vector<std::size_t>& level : levels_)
     for (const std::size_t i : level)
       if (const Node& node = nodes_[i]; node.readings > 0 && !node.was_valid)
-        lines.push_back(fmt::format("none of the {} readings of {} was valid", node.readings, node.name));
+        lines.push_back(node.readings == 1
+                            ? fmt::format("the only reading of {} was not valid", node.name)
+                            : fmt::format("none of the {} readings of {} was valid", node.readings, node.name));
   return lines;
 }
 

@@ -446,6 +446,10 @@ TEST(Camera, ImpossibleSettingsAreRefused) {
   expect_in("'distortion' and 'fisheye'; expected one", refused("distortion [0 0 0 0] fisheye [0 0 0 0]"));
   expect_in("'fov' and 'focal'; expected one", refused("fov 60 focal 300"));
   expect_in("a focal length of 0 px", refused("focal [300 0]"));
+  expect_in("a focal length of 1e-09 px", refused("focal 1e-9"));
+  expect_in("a focal length of 0.5 px; expected 1 to", refused("focal 0.5 fisheye [0 0 0 0]"));
+  expect_in("depths from 5 to 5 m", refused("range [5 5]"));
+  expect_in("expected 'rolling 1' with it", refused("scan_time 0.1"));
   expect_in("'samples' changes colours; expected 'rgb 1'", refused("samples 4"));
   expect_in("expected 'samples' of 2 or more", refused("rgb 1 exposure 0.01"));
   expect_in("19200 different times; expected at most 10000",

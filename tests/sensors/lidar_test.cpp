@@ -323,6 +323,8 @@ TEST(Lidar, ImpossibleSettingsAreRefused) {
   expect_in("'fov'", refused("fov 361"));
   expect_in("'fov'", refused("fov 0"));
   expect_in("a range from 5 to 2 m", refused("range [5 2]"));
+  expect_in("a range from 5 to 5 m", refused("range [5 5]"));
+  expect_in("'fov' is 0; expected 5.73e-08 to 360", refused("fov 0"));  // 1e-9 rad, rounded up
   expect_in("at most 100000 m", refused("range [0 1e6]"));
   expect_in("'noise' is negative", refused("noise -1"));
   expect_in("'pose6' expects [x y z roll pitch yaw]", refused("pose6 [1 2 3]"));
