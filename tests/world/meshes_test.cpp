@@ -316,7 +316,8 @@ TEST_F(Meshes, RowsOfGltfAreChecked) {
 }
 
 constexpr const char* kUrdf = R"(<?xml version="1.0"?><robot name="r">
-<link name="base"><visual><geometry><box size="1 2 3"/></geometry><origin xyz="0 0 1"/></visual>
+<material name="red"><color rgba="1 0 0 1"/></material>
+<link name="base"><visual><geometry><box size="1 2 3"/></geometry><origin xyz="0 0 1"/><material name="red"/></visual>
   <visual><geometry><mesh filename="package://mine/meshes/t.obj" scale="2 2 2"/></geometry></visual></link>
 <link name="wheel"><visual><geometry><cylinder radius="0.5" length="0.2"/></geometry></visual></link>
 <joint name="axle" type="continuous"><parent link="base"/><child link="wheel"/><origin xyz="10 0 0" rpy="1.5707963267948966 0 0"/></joint>
@@ -339,10 +340,14 @@ TEST_F(Meshes, RobotsFromUrdf) {
   EXPECT_NEAR(box.high.x, 10.5, 1e-12);
   EXPECT_EQ(box.high.y, 4.0) << "the mesh, twice its size";
   EXPECT_EQ(box.high.z, 6.0);
+  ASSERT_EQ(robot.materials.size(), 1u);
+  EXPECT_EQ(robot.materials[0].color, glm::dvec3(1.0, 0.0, 0.0));
+  EXPECT_EQ(robot.material_of.front(), 0u) << "the box";
+  EXPECT_EQ(robot.material_of.back(), kNoMaterial);
   ASSERT_EQ(robot.notes.size(), 4u);
   expect_in("link 'eye' has its shape for collisions: ", robot.notes[0]);  // there is no eye.dae
   EXPECT_EQ(robot.notes[1], "link 'lost' is left out: 'package://other/x.stl' is in no known folder");
-  EXPECT_EQ(robot.notes[2], "1 movable joints stay at 0");
+  EXPECT_EQ(robot.notes[2], "movable joints (1) stay at 0");
   EXPECT_EQ(robot.notes[3], "its sensors are left out; give them to the model, such as lidar( )");
   expect_in("a.urdf: is no readable URDF", refusal("a.urdf", "<robot name='x'/>"));
   expect_in("a.urdf: is no readable URDF", refusal("a.urdf", "no xml"));

@@ -73,6 +73,9 @@ void TriangleBuilder::add_face(std::span<const std::uint64_t> corners, const Mes
 }
 
 std::uint32_t TriangleBuilder::add_material(const std::string& name, Material material) {
+  if (const glm::dvec3& c = material.color; !std::isfinite(c.x + c.y + c.z))
+    fail(fmt::format("material '{}' has the colour ({:g}, {:g}, {:g}); expected numbers from 0 to 1", name, c.x, c.y,
+                     c.z));
   if (!(material.reflectance >= 0.0 && material.reflectance <= kMostReflectance))
     fail(fmt::format("material '{}' has the reflectance {:g}; expected 0 to {:g}", name, material.reflectance,
                      kMostReflectance));

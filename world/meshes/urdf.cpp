@@ -134,6 +134,10 @@ Triangles RobotReader::part_of(const UrdfShape& shape) {
     part = solid_of(shape);
   }
   for (glm::dvec3& p : part.vertices) p = shape.X * glm::dvec4(p, 1.0);
+  if (shape.color && part.material_of.empty()) {  // as in RViz, materials of a mesh file count more
+    part.materials = {{*shape.color, luminance(*shape.color)}};
+    part.material_of.assign(part.corners.size() / 3, 0);
+  }
   return part;
 }
 
@@ -164,7 +168,7 @@ Triangles RobotReader::read(const UrdfRobot& robot) {
   }
   if (builder_.vertices() == 0 && !notes.empty()) builder_.fail("has no shape that can be read: " + notes.front());
   Triangles out = builder_.finish();
-  if (robot.movable > 0) notes.push_back(fmt::format("{} movable joints stay at 0", robot.movable));
+  if (robot.movable > 0) notes.push_back(fmt::format("movable joints ({}) stay at 0", robot.movable));
   out.notes.insert(out.notes.end(), notes.begin(), notes.end());
   return out;
 }

@@ -2,6 +2,7 @@
 // Robots from URDF (Unified Robot Description Format, wiki.ros.org/urdf), as the plug-in reads them.
 
 #include <glm/mat4x4.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@ struct UrdfShape {
   std::string file;   ///< of a mesh, as written
   glm::dvec3 size{};  ///< [m] box: its sides; cylinder: [radius radius length]; sphere: its radius, thrice; mesh: scale
   glm::dmat4 X{1.0};  ///< its frame in the robot's, with all joints at 0
+  std::optional<glm::dvec3> color = {};  ///< of a material without texture: linear, as Material::color
 };
 
 struct UrdfLink {

@@ -127,7 +127,11 @@ void read_daylight(BuildState& b, const Entity& root) {
   for_each_key<Daylight>([&](const auto& field) { given = given || find(root, field.key.name) != nullptr; });
   if (!given) return;
   read_keys(b.context, root, day);
-  day.floor = entity_color(b.context, root, "floor_color", day.floor, 0);
+  if (text(b.context, root, "floor_color", "") == "random")
+    warn(b.context, find(root, "floor_color")->at,
+         "only models have random colours; expected a name of X11, e.g. \"gray69\"");
+  else
+    day.floor = entity_color(b.context, root, "floor_color", day.floor, 0);
   b.world.daylight.push_back(day);
 }
 

@@ -48,6 +48,12 @@ glm::dmat4 transform_of(const urdf::Pose& pose) {
   return X;
 }
 
+/// Returns the colour of a material, taken as linear, like those of OBJ files.
+std::optional<glm::dvec3> color_of(const urdf::MaterialSharedPtr& material) {
+  if (!material || !material->texture_filename.empty()) return std::nullopt;
+  return glm::dvec3{material->color.r, material->color.g, material->color.b};
+}
+
 UrdfShape shape_of(const urdf::Geometry& geometry, const glm::dmat4& X) {
   using Kind = UrdfShape::Kind;
   const auto size = [](const urdf::Vector3& v) { return glm::dvec3{v.x, v.y, v.z}; };
@@ -72,7 +78,10 @@ void add_link(const urdf::Link& link, const glm::dmat4& X, int depth, UrdfRobot&
   UrdfLink& row = out.links.emplace_back();
   row.name = link.name;
   for (const auto& visual : link.visual_array)
-    if (visual && visual->geometry) row.visual.push_back(shape_of(*visual->geometry, X * transform_of(visual->origin)));
+    if (visual && visual->geometry) {
+      row.visual.push_back(shape_of(*visual->geometry, X * transform_of(visual->origin)));
+      row.visual.back().color = color_of(visual->material);
+    }
   for (const auto& part : link.collision_array)
     if (part && part->geometry) row.collision.push_back(shape_of(*part->geometry, X * transform_of(part->origin)));
   for (const auto& joint : link.child_joints) out.movable += joint->type != urdf::Joint::FIXED;
