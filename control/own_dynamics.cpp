@@ -19,7 +19,7 @@ namespace sf::control {
 namespace {
 
 constexpr std::size_t kLargestState = 4096;
-constexpr double kFarthest = 1e7;  // [m]
+constexpr double kMost = 1e7;  // [m], [rad], [m/s], [rad/s] of a state
 
 sensorfarm::BodyState public_state(const base::Report& at) {
   return {sensors::public_pose(at.X_WM), at.tilt.roll, at.tilt.pitch, sensors::public_twist(at.velocity)};
@@ -79,15 +79,12 @@ base::Report OwnDynamics::move(const base::Report& from, const base::Twist& comm
     return inner_->move(public_state(from), sensors::public_twist(command), seconds, PublicGround(ground), state);
   });
   const auto& [pose, roll, pitch, v] = to;
-  const bool finite =
-      std::ranges::all_of(std::initializer_list<double>{pose.yaw, roll, pitch, v.forward, v.left, v.turn},
-                          [](double number) { return std::isfinite(number); });
-  const double farthest = std::max({std::abs(pose.x), std::abs(pose.y), std::abs(pose.z)});
-  if (!finite || !(farthest <= kFarthest) || std::isnan(pose.x + pose.y + pose.z))
+  const double state_of_body[] = {pose.x, pose.y, pose.z, pose.yaw, roll, pitch, v.forward, v.left, v.turn};
+  if (!std::ranges::all_of(state_of_body, [](double number) { return std::abs(number) <= kMost; }))
     throw failure(fmt::format(
-        "it moved to ({}, {}, {}) with yaw {}, roll {}, pitch {} and velocity ({}, {}, {}); expected finite "
-        "numbers, within {:g} m",
-        pose.x, pose.y, pose.z, pose.yaw, roll, pitch, v.forward, v.left, v.turn, kFarthest));
+        "it moved to ({}, {}, {}) with yaw {}, roll {}, pitch {} and velocity ({}, {}, {}); expected numbers within "
+        "{:g}",
+        pose.x, pose.y, pose.z, pose.yaw, roll, pitch, v.forward, v.left, v.turn, kMost));
   base::Report report = from;
   report.X_WM = {pose.x, pose.y, pose.z, base::wrap_angle(pose.yaw)};
   report.tilt = {roll, pitch}, report.velocity = {v.forward, v.left, v.turn};
