@@ -99,7 +99,7 @@ std::vector<WallSlice> slices_of(const world::World& world, const sensors::Senso
   std::map<double, std::uint32_t> heights;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      if (group.type->is_scan) ++heights[world.movers[row.mover].X_WM.z + row.X_MS.z];
+      if (group.type->is_scan && world.terrain.empty()) ++heights[world.movers[row.mover].X_WM.z + row.X_MS.z];
   std::vector<WallSlice> slices;
   for (const auto& [z, sensors] : heights) {
     const auto seen = std::count_if(world.walls.begin(), world.walls.end(), [z = z](const world::Segment& s) {

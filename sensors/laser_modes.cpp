@@ -6,6 +6,7 @@
 
 #include "base/elementary.h"
 #include "raycast/ray_caster.h"
+#include "scene/rasterizer.h"
 #include "sensors/accuracy.h"
 
 namespace sf::sensors {
@@ -50,7 +51,11 @@ double laser_bound(double range_max, bool single, double longest, double farthes
 ErrorBound bound_of_laser(const world::World& world, const ParsedSensors& sensors, std::size_t row) {
   const CastLaser& cast = sensors.settings_as<CastLaser>()[row];
   const Reaches reaches = reaches_of(world);
-  return {laser_bound(cast.laser.range_max, cast.single, reaches.longest, reaches.farthest + cast.laser.range_max),
+  const double planar =
+      laser_bound(cast.laser.range_max, cast.single, reaches.longest, reaches.farthest + cast.laser.range_max);
+  const bool in_scene = !world.terrain.empty() || cast.laser.scan_time > 0.0 ||
+                        !world.movers[sensors.rows[row].mover].dynamics.name.empty();
+  return {in_scene ? std::max(planar, scene::kRangeError) : planar,
           "cast beams that do not graze and are not nearer than range_min; the others are flagged"};
 }
 

@@ -28,8 +28,9 @@ double headroom(const world::World& world) {
   return top;
 }
 
-Kind kind_of(const world::Segment& s, double headroom) {
-  if (s.z_min >= headroom) return Kind::overhead;
+/// @param headroom [m] above the terrain, or the floor
+Kind kind_of(const world::Segment& s, double headroom, const world::Ground& terrain) {
+  if (s.z_min - terrain.height(0.5 * (s.a + s.b), s.z_min) >= headroom) return Kind::overhead;
   if (!s.seen_by_laser) return Kind::unseen;
   return s.stops_robots ? Kind::solid : Kind::passable;
 }
@@ -70,8 +71,9 @@ void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
   // Draw walls that are invisible to lasers beneath visible ones.
   std::map<std::tuple<bool, std::uint32_t, Kind>, WallGroup> groups;
   const double room = headroom(world);
+  const world::Ground terrain({}, world.terrain);
   for (const world::Segment& s : world.walls) {
-    const Kind kind = kind_of(s, room);
+    const Kind kind = kind_of(s, room, terrain);
     WallGroup& group = groups[{kind != Kind::unseen, s.model, kind}];
     const Line line{axes.pixel(s.a), axes.pixel(s.b)};
     group.all.push_back(line);
@@ -86,8 +88,9 @@ void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
 std::vector<LegendItem> wall_legend(const world::World& world, WallColors colors) {
   std::array<const world::Segment*, 4> seen{};
   const double room = headroom(world);
+  const world::Ground terrain({}, world.terrain);
   for (const world::Segment& s : world.walls) {
-    auto& first = seen[static_cast<std::size_t>(kind_of(s, room))];
+    auto& first = seen[static_cast<std::size_t>(kind_of(s, room, terrain))];
     if (first == nullptr) first = &s;
   }
   std::vector<LegendItem> items;
