@@ -1,6 +1,7 @@
 // Commands that inspect without running: devices, check, draw, sense.
 
 #include <algorithm>
+#include <set>
 
 #include "apps/commands/commands.h"
 #include "apps/commands/road_commands.h"
@@ -12,6 +13,7 @@
 #include "apps/reports/text.h"
 #include "base/box.h"
 #include "base/error.h"
+#include "base/installation.h"
 #include "robots/fleet.h"
 #include "sensors/camera.h"
 #include "sensors/laser_noise.h"
@@ -133,6 +135,11 @@ int write_image(const world::World& world, const sensors::SensorSet& sensor_set,
 
 /// A fleet reads the settings of its cars.
 void check_dynamics(const world::World& world) {
+  std::set<std::string> plugins;
+  for (const world::Mover& mover : world.movers)
+    if (base::names_a_plugin(mover.dynamics.name) && plugins.insert(mover.dynamics.name).second)
+      print_message("warning: {}the plug-in '{}' is not checked; `run` loads it", mover.dynamics.at,
+                    mover.dynamics.name);
   const auto is_car = [](const world::Mover& mover) { return mover.dynamics.name == "car"; };
   if (std::ranges::any_of(world.movers, is_car)) robots::Fleet{world};
 }

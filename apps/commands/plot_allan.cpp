@@ -17,6 +17,7 @@
 #include "sensors/allan.h"
 #include "sensors/gyro.h"
 #include "sensors/imu.h"
+#include "sensors/mover_trail.h"
 #include "sensors/sensor_set.h"
 #include "world/table_record.h"
 
@@ -81,6 +82,21 @@ void check_interval(const record::Recording& recording, const AllanSensor& senso
           fmt::format("--allan: the readings of '{}' at {:g} s are {:g} s apart, not {:g} s; expected readings without "
                       "gaps",
                       sensor.name, 1e-9 * static_cast<double>(sensor.readings[i]->time), time, sensor.interval));
+  }
+}
+
+void warn_of_motion(const record::Recording& recording, const world::World& world) {
+  for (std::uint32_t mover = 0; mover < recording.states.size(); ++mover) {
+    const auto& states = recording.states[mover];
+    const auto reads = [&](const record::ReadingSample& reading) {
+      return reading.mover == mover && (reading.type == sensors::kImu || reading.type == sensors::kGyro);
+    };
+    const auto moves = [&](const record::StateSample& state) {
+      return !sensors::is_same_place(record::report_of(state, mover), record::report_of(states.front(), mover));
+    };
+    if (std::ranges::any_of(states, moves) && std::ranges::any_of(recording.readings, reads))
+      print_message("warning: '{}' moves in this recording, and --allan takes motion for noise",
+                    world.movers[mover].name);
   }
 }
 
@@ -189,6 +205,7 @@ viz::SeriesOptions allan_figure(const record::Recording& recording, const world:
     throw base::InputError(recording.file, 0,
                            "--allan: there are no readings of an imu or a gyro; record them with `run "
                            "--record-readings`");
+  warn_of_motion(recording, world);
   std::size_t drawn = 0;
   for (const AllanSensor& sensor : sensors) {
     if (figure.panels.size() + sensor.quantities.size() > kMostPanels) break;

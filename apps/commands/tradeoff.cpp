@@ -135,10 +135,13 @@ int measure_alone(const TradeoffOptions& options) {
   const scenarios::AccuracyTarget target = wish_of(options);
   const auto results = measure(world, device, options.seed, options.threads);
   if (stop_requested()) throw Incomplete("interrupted: nothing was written");
-  if (results.empty())
-    throw base::InputError(
-        world.file, 0,
-        "has no sensor with more than one accuracy mode; give a robot a laser( ), a laneedge( ) or a magnetometer( )");
+  if (results.empty()) {
+    std::vector<std::string> words;
+    for (const sensors::SensorType* type : sensors::sensor_types())
+      if (!type->modes.empty()) words.push_back(std::string(type->word.type) + "( )");
+    throw base::InputError(world.file, 0,
+                           "has no sensor with more than one accuracy mode; expected one of " + join_or(words));
+  }
   if (!options.out.empty()) write(options, world, device, results);
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
   const std::string text = options.json        ? with_warnings(mode_results_json(results, target), world.warnings)

@@ -1,6 +1,9 @@
 // Subcommands that inspect worlds, devices and V2X messages.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "apps/commands/commands.h"
 #include "apps/options/option_groups.h"
@@ -76,6 +79,13 @@ void add_field(CLI::App& app, Call& call) {
       ->type_name("FILE");
 }
 
+/// @return why the file is no PNG; empty if it is
+std::string png_file(const std::string& text) {
+  std::filesystem::path file(text);
+  if (file.extension() == ".png") return "";
+  return fmt::format("images are PNG files; write {}", file.replace_extension(".png").string());
+}
+
 void add_sense(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("sense", "Compute one reading of one sensor, without noise, to check a world");
   auto& o = add_command(*sub, call, sense);
@@ -89,7 +99,9 @@ void add_sense(CLI::App& app, Call& call) {
          "--pose", [&o](const std::string& text) { o.pose = read_tilted_pose(text); },
          "Pose of the robot's origin on the ground [m, degrees], also as X,Y,Z,ROLL,PITCH,YAW (default: its pose in "
          "the world)")
-      ->check(readable(read_tilted_pose, "X,Y,YAW_DEG such as 1.5,-2,90 or X,Y,Z,ROLL_DEG,PITCH_DEG,YAW_DEG"))
+      ->check(readable(read_tilted_pose,
+                       "X,Y,YAW_DEG such as 1.5,-2,90 or X,Y,Z,ROLL_DEG,PITCH_DEG,YAW_DEG, each within "
+                       "1e7"))
       ->type_name("X,Y,YAW_DEG");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first with a sensor)")->type_name("NAME");
   add_robot_from(*sub, o);
@@ -98,18 +110,22 @@ void add_sense(CLI::App& app, Call& call) {
                                                              {"labels", ImageKind::labels},
                                                              {"normals", ImageKind::normals},
                                                              {"colour", ImageKind::colour}};
-  CLI::Option* const out = sub->add_option("-o,--out", o.out, "PNG file of --image")->type_name("FILE");
-  sub->add_option_function<std::string>(
-         "--image",
-         [&o, kinds](const std::string& word) {
-           o.image = std::ranges::find(kinds, word, &std::pair<std::string, ImageKind>::first)->second;
-         },
-         "Write this image of a camera: depth (16 bits, mm), labels (16 bits: 0 nothing, 1 floor, 2 + row of the "
-         "model) "
-         "or normals")
-      ->check(CLI::IsMember({"depth", "labels", "normals", "colour"}))
-      ->type_name("KIND")
-      ->needs(out);
+  CLI::Option* const out = sub->add_option("-o,--out", o.out, "PNG file of --image")
+                               ->check(png_file)
+                               ->type_name("FILE");
+  CLI::Option* const image =
+      sub->add_option_function<std::string>(
+             "--image",
+             [&o, kinds](const std::string& word) {
+               o.image = std::ranges::find(kinds, word, &std::pair<std::string, ImageKind>::first)->second;
+             },
+             "Write this image of a camera: depth (16 bits, mm), labels (16 bits: 0 nothing, 1 floor, 2 + row of the "
+             "model), "
+             "normals or colour (8 bits)")
+          ->check(CLI::IsMember({"depth", "labels", "normals", "colour"}))
+          ->type_name("KIND")
+          ->needs(out);
+  out->needs(image);
   sub->add_option("--sensor", o.sensor, "Number of the sensor, from 0: within --type, or across all types without it")
       ->check(whole(0, 65535))
       ->type_name("N")

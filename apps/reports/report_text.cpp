@@ -130,8 +130,8 @@ std::string world_report_text(const world::World& world, const sensors::SensorSe
               : sensors_text(sensor_set) + rates_text(world, sensor_set) + accuracy_text(world, sensor_set);
   text += row("wall segments", world.walls.size());
   if (!world.meshes.empty())
-    text += row("meshes", "{} with {} triangles, in {} models", world.meshes.size(), triangles_of(world.meshes),
-                world.mesh_models.size());
+    text += row("meshes", "{} with {}, in {}", world.meshes.size(), counted(triangles_of(world.meshes), "triangle"),
+                counted(world.mesh_models.size(), "model"));
   text += paint_text(world) + magnets_text(world) + earth_text(world) + street_text(world);
   if (!world.shapes.empty()) text += row("shapes", world.shapes.size());
   text += row("extent", "x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max);
