@@ -291,9 +291,8 @@ void Simulation::State::put(std::size_t row, const Pose& pose, const base::Tilt&
   if (!present[row])
     throw base::InputError(fmt::format("'{}' was removed; add it again before placing it", name_of(row)));
   if (!library::is_placeable(pose))
-    throw base::InputError(
-        fmt::format("the pose of '{}' is not finite, or beyond 1e7: ({:g}, {:g}, {:g}, {:g})", name_of(row), pose.x,
-                    pose.y, pose.z, pose.yaw));
+    throw base::InputError(fmt::format("the pose of '{}' is not finite, or beyond 1e7: ({:g}, {:g}, {:g}, {:g})",
+                                       name_of(row), pose.x, pose.y, pose.z, pose.yaw));
   simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw}, tilt);
   poses[row] = pose, velocities[row] = {};
 }

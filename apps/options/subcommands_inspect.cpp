@@ -110,9 +110,8 @@ void add_sense(CLI::App& app, Call& call) {
                                                              {"labels", ImageKind::labels},
                                                              {"normals", ImageKind::normals},
                                                              {"colour", ImageKind::colour}};
-  CLI::Option* const out = sub->add_option("-o,--out", o.out, "PNG file of --image")
-                               ->check(png_file)
-                               ->type_name("FILE");
+  CLI::Option* const out =
+      sub->add_option("-o,--out", o.out, "PNG file of --image")->check(png_file)->type_name("FILE");
   CLI::Option* const image =
       sub->add_option_function<std::string>(
              "--image",
