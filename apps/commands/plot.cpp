@@ -197,6 +197,9 @@ int plot(const PlotOptions& options) {
     return plot_sweep(options, jobs);
   if (!options.over.empty() || options.x_axis != viz::AxisScale::automatic)
     throw base::InputError(options.recording, 0, "--over and --x-axis apply to the folder of a sweep");
+  if (options.allan && (!options.elements.empty() || options.curves))
+    throw base::InputError(options.recording, 0,
+                           "--elements and --curves do not apply to --allan, which draws all axes");
   if (options.recording.ends_with(".csv")) return plot_table(options);
   RecordingPart part = open_part(options.recording, options);
   if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;

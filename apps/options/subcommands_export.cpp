@@ -83,14 +83,11 @@ void add_plot(CLI::App& app, Call& call) {
                        ->allow_extra_args(false)
                        ->check(whole(0, UINT32_MAX))
                        ->type_name("N,...");
-  auto* curves =
-      sub->add_flag("--curves", o.curves, "Plot the readings of many elements as curves instead of heat maps")
-          ->excludes(elements);
+  sub->add_flag("--curves", o.curves, "Plot the readings of many elements as curves instead of heat maps")
+      ->excludes(elements);
   sub->add_flag("--allan", o.allan,
                 "Plot only the Allan deviations of imus and gyros, of robots at rest, with the stated ones; or those "
-                "of the columns of a CSV file")
-      ->excludes(elements)
-      ->excludes(curves);
+                "of the columns of a CSV file");
   constexpr const char* kSweeps = "Sweeps (docs/sweeps.md)";
   sub->add_option("--over", o.over, "Parameter on the x axis (default: the first with different numeric values)")
       ->check(not_empty("the name of a parameter"))

@@ -155,10 +155,11 @@ std::string work_text(const RunReport& f) {
   std::string text = work.rays > 0 || work.dipoles == 0 ? rows("rays", work.rays) : "";
   if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
   if (f.farm.missed > 0)
-    text +=
-        row("missed", "{}, besides {} readings: newer ones were due at the same tick", f.farm.missed, f.farm.readings);
+    text += row("missed", "{}, besides {}: newer ones were due at the same tick", f.farm.missed,
+                counted(f.farm.readings, "reading"));
   if (f.farm.dropped > 0)
-    text += row("dropped", "{}, besides {} readings: no processor time was left", f.farm.dropped, f.farm.readings);
+    text += row("dropped", "{}, besides {}: no processor time was left", f.farm.dropped,
+                counted(f.farm.readings, "reading"));
   if (work.host_scans > 0)
     text +=
         row("cast on the host",
@@ -168,7 +169,8 @@ std::string work_text(const RunReport& f) {
     if (f.farm.faults[kind] > 0)
       faults += fmt::format("{}{} {}", faults.empty() ? "" : ", ", base::kFaultNames[kind], f.farm.faults[kind]);
   if (!faults.empty()) text += row("faulty readings", faults);
-  if (f.farm.reused > 0) text += row("reused", "{} of {} readings: nothing had moved", f.farm.reused, f.farm.readings);
+  if (f.farm.reused > 0)
+    text += row("reused", "{} of {}: nothing had moved", f.farm.reused, counted(f.farm.readings, "reading"));
   return text;
 }
 
