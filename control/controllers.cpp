@@ -16,6 +16,7 @@ namespace sf::control {
 // All controllers, in the order of the help text.
 extern const ControllerType avoid_controller;
 extern const ControllerType convoy_controller;
+extern const ControllerType cruise_controller;
 extern const ControllerType docking_controller;
 extern const ControllerType explore_controller;
 extern const ControllerType lane_camera_controller;
@@ -30,9 +31,9 @@ namespace {
 
 std::vector<const ControllerType*>& all() {
   static std::vector<const ControllerType*> types{
-      &avoid_controller,       &convoy_controller,       &docking_controller,        &explore_controller,
-      &lane_camera_controller, &lane_keeping_controller, &magnet_keeping_controller, &patrol_controller,
-      &remote_controller,      &route_controller,        &wander_controller,
+      &avoid_controller,   &convoy_controller,      &cruise_controller,       &docking_controller,
+      &explore_controller, &lane_camera_controller, &lane_keeping_controller, &magnet_keeping_controller,
+      &patrol_controller,  &remote_controller,      &route_controller,        &wander_controller,
   };
   return types;
 }
