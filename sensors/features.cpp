@@ -14,6 +14,8 @@
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "sensors/lidar.h"
+#include "sensors/lidar_columns.h"
 #include "sensors/plain_packets.h"
 #include "sensors/pose_sensor.h"
 #include "sensors/settings.h"
@@ -57,6 +59,22 @@ class LaserFeatures final : public FeatureSource {
   base::RangeLimits limits_;
   estimation::ScanFeatures finder_;
   std::vector<double> ranges_;
+};
+
+class LidarFeatures final : public FeatureSource {
+ public:
+  /// @param width numbers per beam
+  LidarFeatures(const LidarSettings& lidar, std::size_t width, const estimation::FeatureOptions& options)
+      : columns_(lidar, width),
+        finder_(columns_.X_MS(), columns_.bearings(), {lidar.echo.sigma, lidar.echo.proportional, 0.0}, options) {}
+
+  std::span<const Feature> find(const sensorfarm::Reading& reading) override {
+    return finder_.find(columns_.ranges(reading));
+  }
+
+ private:
+  LidarColumns columns_;
+  estimation::ScanFeatures finder_;
 };
 
 class ConeFeatures final : public FeatureSource {
@@ -160,16 +178,26 @@ class FeaturesSensor final : public sensorfarm::DerivedSensor {
   std::vector<const Feature*> nearest_;
 };
 
+estimation::FeatureOptions feature_options(const world::Sensor& settings) {
+  estimation::FeatureOptions options;
+  options.shortest = length(settings, "shortest", options.shortest, 1e-3, 1e3);
+  options.widest = length(settings, "widest", options.widest, 1e-3, 1e3);
+  if (const auto size = tuple(settings, "objects", 2, "[length width]")) {
+    options.size = settings.metres_per_unit * glm::dvec2{(*size)[0], (*size)[1]};
+    if (!(options.size.x <= 1e3 && options.size.x >= options.size.y && options.size.y >= 1e-3))
+      refuse(settings, "objects", "'objects' expects [length width], the length not below the width, both above 0");
+  }
+  return options;
+}
+
 std::unique_ptr<sensorfarm::DerivedSensor> make_features(const DerivedContext& context) {
   if (context.inputs.size() != 1 || context.inputs[0].mover != context.spec.mover)
-    refuse(context.settings, "inputs", "features are those of one laser, sonar, infrared or fiducial of its own robot");
-  const estimation::FeatureOptions defaults;
-  auto source = feature_source(context.world, context.inputs[0],
-                               {.shortest = length(context.settings, "shortest", defaults.shortest, 1e-3, 1e3),
-                                .widest = length(context.settings, "widest", defaults.widest, 1e-3, 1e3)});
+    refuse(context.settings, "inputs",
+           "features are those of one laser, lidar, sonar, infrared or fiducial of its own robot");
+  auto source = feature_source(context.world, context.inputs[0], feature_options(context.settings));
   if (source == nullptr)
     refuse(context.settings, "inputs",
-           fmt::format("{} has no features; expected a laser, sonar, infrared or fiducial",
+           fmt::format("{} has no features; expected a laser, a lidar with rings, sonar, infrared or fiducial",
                        context.site.inputs[0].sensor.type));
   return std::make_unique<FeaturesSensor>(std::move(source), context.site.inputs[0].sensor.X_RS);
 }
@@ -179,7 +207,7 @@ constexpr std::string_view kRangeColumns[] = {"range_m"},
 constexpr DerivedPort kPorts[] = {{"ranges", kRangeColumns}, {"fiducial", kTagColumns}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .extra = 4, .make = make_features};
 
-constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most", "shortest", "widest"};
+constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most", "shortest", "widest", "objects"};
 constexpr Column kColumns[] = {{"x_m"},
                                {"y_m"},
                                {"direction_rad"},
@@ -196,7 +224,7 @@ constexpr Column kColumns[] = {{"x_m"},
                                {"age_s"}};
 constexpr PlainNumber kNumbers[] = {
     {1e-3}, {1e-3},          {1e-6},      {1.0, 0.0, 1.0},     kReal,      kReal, kReal, kReal, kReal,
-    kReal,  {1.0, 0.0, 4.0}, {1e-3, 0.0}, {1.0, 0.0, 65535.0}, {1e-6, 0.0}};
+    kReal,  {1.0, 0.0, 5.0}, {1e-3, 0.0}, {1.0, 0.0, 65535.0}, {1e-6, 0.0}};
 static_assert(std::size(kColumns) == kFeatureNumbers && std::size(kNumbers) == kFeatureNumbers);
 static_assert(kMostFeatures * kFeatureNumbers <= kMaxPlainWords);
 constexpr PlainForm kForm{kFeatures, "features", kNumbers};
@@ -207,8 +235,15 @@ std::unique_ptr<FeatureSource> feature_source(const world::World& world, const W
                                               const estimation::FeatureOptions& options) {
   const world::Mover& mover = world.movers[input.mover];
   if (input.type == kLaser) return std::make_unique<LaserFeatures>(lasers_of(mover)[input.sensor], options);
-  if (input.type != kSonar && input.type != kInfrared && input.type != kFiducial) return nullptr;
+  if (input.type != kLidar && input.type != kSonar && input.type != kInfrared && input.type != kFiducial)
+    return nullptr;
   const world::Sensor& settings = input_settings(world, input);
+  if (input.type == kLidar) {
+    LidarReader reader;
+    const LidarSettings lidar = reader.read(world, settings);
+    if (lidar.beams->channels < 2) return nullptr;
+    return std::make_unique<LidarFeatures>(lidar, lidar.echo.width, options);
+  }
   if (input.type == kFiducial) {
     base::Pose X_MS = common_spec(settings, input.mover, input.sensor).X_MS;
     return std::make_unique<TagFeatures>(read_finder(settings), X_MS);

@@ -2,9 +2,11 @@
 // Features: lines, corners, clusters and tags in the readings of one sensor, as a derived sensor (docs/derived.md).
 //
 // In a world file, inside a robot:
-//   derived( type "features"  inputs ["laser"]  rate 10  most 16  shortest 0.3  widest 1 )
-// Input: one laser, sonar, infrared or fiducial of the same robot. `most`: rows of a reading. `shortest`: [m] shorter
-// straight pieces are no lines. `widest`: [m] wider remains are no clusters.
+//   derived( type "features"  inputs ["laser"]  rate 10  most 16  shortest 0.3  widest 1  objects [4.2 1.7] )
+// Input: one laser, lidar, sonar, infrared or fiducial of the same robot. `most`: rows of a reading. `shortest`: [m]
+// shorter straight pieces are no lines. `widest`: [m] wider remains are no clusters. `objects`: [m] length and width of
+// objects, to which clusters are completed that fit; default: there are none. Of a lidar, features are those of the
+// nearest echoes above the ground (sensors/lidar_columns.h).
 //
 // A reading is `most` rows, the nearest feature to the sensor first: x and y in the frame of the robot, direction,
 // `valid`, their covariance, then kind (estimation::FeatureKind), half length, id of a tag, and age: the time since the
@@ -30,7 +32,7 @@ class FeatureSource {
   /// Valid until the next call.
   virtual std::span<const estimation::Feature> find(const sensorfarm::Reading& reading) = 0;
 };
-/// @return null for sensors other than lasers, sonars, infrareds and fiducials
+/// @return null for sensors other than lasers, lidars with rings, sonars, infrareds and fiducials
 /// @throws base::InputError for invalid settings
 std::unique_ptr<FeatureSource> feature_source(const world::World& world, const WiredInput& input,
                                               const estimation::FeatureOptions& options);

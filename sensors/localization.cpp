@@ -9,6 +9,7 @@
 #include "base/elementary.h"
 #include "base/error.h"
 #include "sensors/fiducial.h"
+#include "sensors/imu.h"
 #include "sensors/plain_packets.h"
 #include "sensors/pose_sensor.h"
 #include "sensors/settings.h"
@@ -57,7 +58,10 @@ class LocalizationSensor final : public PoseSensor<estimation::Localization> {
       refuse(context.settings, "noise", "'noise' expects two standard deviations above 0: [metres degrees]");
     covariance_ = {position * position, 0.0, 0.0, position * position, 0.0, yaw * yaw};
     for (std::uint32_t i = 0; i < context.inputs.size(); ++i)
-      if (context.inputs[i].port == kFinders) finders_.emplace(i, landmark_finder(context, context.inputs[i]));
+      if (context.inputs[i].port == kFinders)
+        finders_.emplace(i, landmark_finder(context, context.inputs[i]));
+      else if (context.inputs[i].port == kImus)
+        up_ = glm::transpose(read_imu(input_settings(context.world, context.inputs[i])).X_MS.R)[2];
   }
 
   void take(std::uint32_t input, const sensorfarm::Reading& reading) override {
@@ -102,7 +106,11 @@ class LocalizationSensor final : public PoseSensor<estimation::Localization> {
 
 std::unique_ptr<sensorfarm::DerivedSensor> make_localization(const DerivedContext& context) {
   const PositionSensors sensors = position_inputs(context);
-  const bool located = std::ranges::any_of(context.inputs, [](auto& input) { return input.port >= kPoses; });
+  const bool located = std::ranges::any_of(
+      context.inputs, [](const WiredInput& input) { return input.port == kPoses || input.port == kFinders; });
+  const auto turns = std::ranges::count_if(
+      context.inputs, [](const WiredInput& input) { return input.port == kGyros || input.port == kImus; });
+  if (turns > 1) refuse(context.settings, "inputs", "a localization takes a gyro or an imu, not both");
   if (!located && !sensors.wheels && !sensors.gps)
     refuse(context.settings, "inputs", "a localization needs an encoder, a gps, a pose or a fiducial");
   return std::make_unique<LocalizationSensor>(context,
@@ -110,11 +118,10 @@ std::unique_ptr<sensorfarm::DerivedSensor> make_localization(const DerivedContex
 }
 
 constexpr std::string_view kFinderColumns[] = {"id", "fiducial_type", "range_m", "bearing_rad"};
-constexpr DerivedPort kPorts[] = {{"encoder", kEncoderColumns},
-                                  {"gyro", kGyroColumns},
-                                  {"gps", kGpsColumns},
-                                  {"pose", kPoseColumns, 0, 4},
-                                  {"fiducial", kFinderColumns, 0, 4}};
+constexpr std::string_view kRateColumns[] = {"rate_x_rad_s", "rate_y_rad_s", "rate_z_rad_s"};
+constexpr DerivedPort kPorts[] = {
+    {"encoder", kEncoderColumns},       {"gyro", kGyroColumns}, {"gps", kGpsColumns}, {"pose", kPoseColumns, 0, 4},
+    {"fiducial", kFinderColumns, 0, 4}, {"imu", kRateColumns}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .make = make_localization};
 
 constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "noise"};
@@ -140,12 +147,21 @@ void PositionSensors::add(std::size_t kind, const world::Sensor& settings, const
   latencies[kind] = spec.latency;
 }
 
+/// Returns the errors of an imu's yaw rate as those of a gyro: a bias that wanders counts as one that is constant.
+Gyro yaw_gyro(const world::Sensor& settings) {
+  const TriadErrors errors = read_imu(settings).gyro;
+  return {.bias = base::hypot(errors.bias, errors.drift.instability),
+          .noise = errors.noise * std::sqrt(rate_of(settings, kImuRate)),
+          .scale_error = errors.scale};
+}
+
 PositionSensors position_inputs(const DerivedContext& context) {
   PositionSensors sensors;
   for (const WiredInput& input : context.inputs) {
     if (input.mover != context.spec.mover)
       refuse(context.settings, "inputs",
              fmt::format("the inputs of a {} are sensors of its own robot", context.settings.type));
+    if (input.port == kImus) sensors.gyro = yaw_gyro(input_settings(context.world, input));
     if (input.port >= kPoses) continue;
     sensors.add(input.port, input_settings(context.world, input), context.world.movers[input.mover]);
   }

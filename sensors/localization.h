@@ -3,7 +3,8 @@
 //
 // In a world file, inside a robot:
 //   derived( type "localization"  inputs ["encoder" "gyro" "gps"]  rate 20  noise [0.05 1.1] )
-// Inputs: at most one encoder, gyro and gps, with the errors that their settings state, and up to four sensors whose
+// Inputs: at most one encoder, gyro and gps, with the errors that their settings state (in place of the gyro an imu, of
+// which the rate about the robot's z axis is used), and up to four sensors whose
 // columns begin with x_m, y_m, yaw_rad, and up to four fiducial finders, whose landmarks are the fiducials that stand
 // still. `noise`: standard deviations of such a pose that states no covariance. It needs an encoder, a gps, a pose or a
 // fiducial finder.

@@ -15,7 +15,7 @@
 namespace sf::sensors {
 
 /// Rows of the ports. Those of further ones follow.
-enum PosePort : std::uint8_t { kEncoders, kGyros, kReceivers, kPoses, kFinders };
+enum PosePort : std::uint8_t { kEncoders, kGyros, kReceivers, kPoses, kFinders, kImus };
 inline constexpr std::string_view kEncoderColumns[] = {"left_m", "right_m"}, kGyroColumns[] = {"rate_rad_s"},
                                   kGpsColumns[] = {"x_m", "y_m", "hdop"}, kPoseColumns[] = {"x_m", "y_m", "yaw_rad"};
 
@@ -61,8 +61,9 @@ class PoseSensor : public sensorfarm::DerivedSensor {
     begin(time);
     const std::span<const double> v = reading.values;
     const sensorfarm::DerivedInput& from = inputs_[input];
-    if (from.port != kGyros || time > rolled_.time) flush();
-    if (from.port == kGyros) filter_.add_gyro(time, v[0]);
+    const bool turns = from.port == kGyros || from.port == kImus;
+    if (!turns || time > rolled_.time) flush();
+    if (turns) filter_.add_gyro(time, from.port == kImus ? glm::dot(up_, {v[0], v[1], v[2]}) : v[0]);
     if (from.port == kEncoders) rolled_ = {time, v[0], v[1]};
     if (from.port != kReceivers) return;
     // The antenna moves with the robot: its position uses the estimated heading.
@@ -103,6 +104,7 @@ class PoseSensor : public sensorfarm::DerivedSensor {
 
   Filter filter_;
   std::vector<sensorfarm::DerivedInput> inputs_;
+  glm::dvec3 up_{0.0, 0.0, 1.0};  ///< the robot's z axis in the frame of its imu
 
  private:
   struct Rolled {

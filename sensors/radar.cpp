@@ -206,6 +206,8 @@ LidarLayout read_layout(const world::Sensor& sensor) {
   return layout;
 }
 
+}  // namespace
+
 RadarSettings read_radar(const world::Sensor& sensor) {
   RadarSettings s{.X_MS = spatial_mount(sensor)};
   if (const auto range = tuple(sensor, "range", 2, "[min max]"))
@@ -221,6 +223,8 @@ RadarSettings read_radar(const world::Sensor& sensor) {
   s.detection_range = length(sensor, "detection_range", 0.0, 0.0, 1e6);
   return s;
 }
+
+namespace {
 
 ParsedSensors parse_radars(const world::World& world) {
   std::map<std::vector<double>, std::shared_ptr<const LidarBeams>> known;

@@ -39,6 +39,9 @@ struct RadarSettings {
 /// @param range [m] >= 0  @param half [m] > 0: the range at which the probability is 1/2
 double detection_probability(double range, double half);
 
+/// Reads the settings, without the beams. @throws base::InputError for invalid ones
+RadarSettings read_radar(const world::Sensor& sensor);
+
 extern const SensorType radar_type;
 
 }  // namespace sf::sensors

@@ -13,6 +13,7 @@
 #include "sensors/features.h"
 #include "sensors/plain_packets.h"
 #include "sensors/pose_sensor.h"
+#include "sensors/radar.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -23,15 +24,20 @@ using estimation::FeatureKind;
 using estimation::ObjectTrack;
 using estimation::Observation;
 
-enum TrackPort : std::uint8_t { kFeatureInputs, kPoseInputs };
+enum TrackPort : std::uint8_t { kFeatureInputs, kPoseInputs, kRadarInputs };
 constexpr double kExtentShare = 0.5;      // standard deviation of an object's middle, as a share of its half width
 constexpr double kDepthShare = 0.4;       // of the half width, from the ends of what is seen to the middle
 constexpr double kLargestExtent = 0.5;    // [m] default
 constexpr double kLongestContact = 60.0;  // [s]
 constexpr std::int64_t kLatest = base::kSecond;
 constexpr double kFarthestFeature = 1e6;  // [m]
+// [s] over which the motion of a radar is a mean of stated poses, and the standard deviation [m/s] of its error
+constexpr std::int64_t kOwnMotion = base::kSecond / 2;
+constexpr double kOwnSpeedSigma = 0.15;
+constexpr double kLeastRadarSigma = 1e-2;  // [m] of targets without noise
+constexpr double kLeastLevel = 0.5;        // [-] cosine of a target's elevation
 
-/// The rows of one reading of `features`, waiting for the pose at their time.
+/// The rows of one reading of `features`, or of a radar, waiting for the pose at their time.
 struct PendingFeatures {
   std::int64_t time = 0;  ///< [ns] of the measurement
   std::uint32_t input = 0;
@@ -58,6 +64,9 @@ class TracksSensor final : public sensorfarm::DerivedSensor {
   TracksSensor(const DerivedContext& context, const estimation::TrackOptions& options, double radius, double extent)
       : robot_(context.spec.mover), radius_(radius), extent_(extent), tracks_(options) {
     for (const sensorfarm::DerivedInput& input : context.site.inputs) add_input(input);
+    for (std::uint32_t i = 0; i < context.inputs.size(); ++i)
+      if (context.inputs[i].port == kRadarInputs)
+        radars_.emplace(i, read_radar(input_settings(context.world, context.inputs[i])));
   }
 
   void add_input(const sensorfarm::DerivedInput& input) override { inputs_.push_back(input); }
@@ -65,6 +74,10 @@ class TracksSensor final : public sensorfarm::DerivedSensor {
   void take(std::uint32_t input, const sensorfarm::Reading& reading) override {
     if (inputs_[input].port == kPoseInputs)
       return poses_[inputs_[input].robot].take(reading, inputs_[input].sensor.columns);
+    if (inputs_[input].port == kRadarInputs) {
+      pending_.push_back({base::nanoseconds(reading.time), input, {reading.values.begin(), reading.values.end()}});
+      return;
+    }
     if (reading.values.size() < kFeatureNumbers) return;
     const double age = reading.values[kFeatureNumbers - 1];  // all rows have that of one measurement
     pending_.push_back({base::nanoseconds(reading.time - (std::isfinite(age) ? age : 0.0)),
@@ -84,6 +97,7 @@ class TracksSensor final : public sensorfarm::DerivedSensor {
 
  private:
   void add(const PendingFeatures& features);
+  void add_targets(const PendingFeatures& targets, const PoseHistory& poses, const StatedPose& pose);
   Observation observation_of(std::span<const double> row, const StatedPose& pose) const;
   void write(std::vector<ObjectTrack> objects, std::int64_t now, sensorfarm::DerivedReading& out);
   void decide(const ObjectTrack& object, std::int64_t now, double* ahead, double* contact) const;
@@ -91,7 +105,8 @@ class TracksSensor final : public sensorfarm::DerivedSensor {
   std::uint32_t robot_;
   double radius_, extent_;
   std::vector<sensorfarm::DerivedInput> inputs_;
-  std::map<std::uint32_t, PoseHistory> poses_;  ///< by robot
+  std::map<std::uint32_t, RadarSettings> radars_;  ///< by input
+  std::map<std::uint32_t, PoseHistory> poses_;     ///< by robot
   std::vector<PendingFeatures> pending_;
   std::vector<Observation> observations_;
   estimation::ObjectTracks tracks_;
@@ -102,6 +117,7 @@ Observation TracksSensor::observation_of(std::span<const double> row, const Stat
   Observation seen{.p = base::transform(pose.X_WM, {row[0], row[1]}), .corner = kind == FeatureKind::corner};
   seen.own = turned(pose.X_WM.yaw, row[4], row[5], row[7]);
   seen.repeated = spread_by(pose, seen.p);
+  // The middle of an object of known size is what is seen.
   if (kind == FeatureKind::cluster) {
     const double half_length = row[kFeatureKindAt + 1], distance = base::hypot(row[0], row[1]);
     const double extent = kExtentShare * (half_length > 0.0 ? half_length : extent_);
@@ -118,6 +134,7 @@ void TracksSensor::add(const PendingFeatures& features) {
   const auto known = poses_.find(inputs_[features.input].robot);
   const auto pose = known == poses_.end() ? std::nullopt : known->second.at(features.time);
   if (!pose) return;
+  if (inputs_[features.input].port == kRadarInputs) return add_targets(features, known->second, *pose);
   observations_.clear();
   std::vector<estimation::SeenWall> walls;
   for (std::size_t at = 0; at + kFeatureNumbers <= features.values.size(); at += kFeatureNumbers) {
@@ -135,6 +152,33 @@ void TracksSensor::add(const PendingFeatures& features) {
   }
   tracks_.add_walls(features.time, walls);
   tracks_.add(features.time, observations_);
+}
+
+/// The motion of the radar, with which closing speeds become speeds of objects, is that of the poses before.
+void TracksSensor::add_targets(const PendingFeatures& targets, const PoseHistory& poses, const StatedPose& pose) {
+  const auto before = poses.at(targets.time - kOwnMotion);
+  if (!before) return;
+  const RadarSettings& radar = radars_.at(targets.input);
+  const base::Pose X_RS = planar_mount(radar.X_MS);
+  const glm::dvec2 p_WS = base::transform(pose.X_WM, {X_RS.x, X_RS.y});
+  const glm::dvec2 v = (p_WS - base::transform(before->X_WM, {X_RS.x, X_RS.y})) / (1e-9 * kOwnMotion);
+  observations_.clear();
+  for (std::size_t at = 0; at + kRadarNumbers <= targets.values.size(); at += kRadarNumbers) {
+    const double* const row = targets.values.data() + at;
+    if (!std::isfinite(row[0] + row[1] + row[2] + row[3])) continue;
+    const double level = base::cos(row[3]), range = row[0] * level, yaw = pose.X_WM.yaw + X_RS.yaw + row[1];
+    const glm::dvec2 u = base::rotate(yaw, {1.0, 0.0});
+    const double along = std::max(radar.noise[0], kLeastRadarSigma);
+    const double across = range * radar.noise[1] + kLeastRadarSigma, side = kExtentShare * extent_;
+    Observation seen{.p = p_WS + range * u, .to_middle = extent_ * u};
+    seen.own = turned(yaw, along * along, 0.0, across * across);
+    seen.repeated = spread_by(pose, seen.p);
+    seen.repeated[0] += side * side, seen.repeated[2] += side * side;
+    const double sigma = base::hypot(radar.noise[2], kOwnSpeedSigma);
+    seen.radial = {u, glm::dot(v, u) - row[2] / std::max(level, kLeastLevel), sigma * sigma};
+    observations_.push_back(seen);
+  }
+  tracks_.add(targets.time, observations_);
 }
 
 /// The distance of an object in the robot's corridor, and the time until it is within `radius_`.
@@ -194,8 +238,9 @@ void check_poses(const DerivedContext& context) {
   for (const auto& [mover, count] : features)
     if (poses[mover] != 1)
       refuse(context.settings, "inputs",
-             fmt::format("features of '{0}' need one pose of '{0}', such as \"{0}/localization\"; there are {1}",
-                         context.world.movers[mover].name, poses[mover]));
+             fmt::format(
+                 "features and radars of '{0}' need one pose of '{0}', such as \"{0}/localization\"; there are {1}",
+                 context.world.movers[mover].name, poses[mover]));
   for (const auto& [mover, count] : poses)
     if (count > 1)
       refuse(context.settings, "inputs",
@@ -203,20 +248,26 @@ void check_poses(const DerivedContext& context) {
 }
 
 std::unique_ptr<sensorfarm::DerivedSensor> make_tracks(const DerivedContext& context) {
+  if (std::ranges::all_of(context.inputs, [](const WiredInput& input) { return input.port == kPoseInputs; }))
+    refuse(context.settings, "inputs", "tracks need features or a radar among their inputs");
   check_poses(context);
   const world::Sensor& s = context.settings;
   estimation::TrackOptions options;
   options.keep = number(s, "keep", options.keep, 0.01, 3600.0);
   options.agility = length(s, "agility", options.agility, 1e-3, 1e3);
+  options.speed = length(s, "speed", options.speed, 1e-3, 1e3);
   const double own = std::clamp(context.world.movers[context.spec.mover].radius, 1e-3, 1e3);
   return std::make_unique<TracksSensor>(context, options, length(s, "radius", own, 1e-3, 1e3),
                                         length(s, "extent", std::min(own, kLargestExtent), 0.0, 1e3));
 }
 
-constexpr DerivedPort kPorts[] = {{"features", kFeatureColumns, 1, 4096}, {"pose", kPoseColumns, 1, 4096}};
+constexpr std::string_view kRadarColumns[] = {"range_m", "bearing_rad", "closing_m_s", "elevation_rad"};
+constexpr DerivedPort kPorts[] = {
+    {"features", kFeatureColumns, 0, 4096}, {"pose", kPoseColumns, 1, 4096}, {"radar", kRadarColumns, 0, 4096}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 4, .covariance = true, .extra = 5, .make = make_tracks};
 
-constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most", "keep", "agility", "radius", "extent"};
+constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most",   "keep",
+                                      "agility",       "speed",         "radius", "extent"};
 constexpr Column kColumns[] = {{"x_m"},
                                {"y_m"},
                                {"vx_m_s"},

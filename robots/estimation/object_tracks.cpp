@@ -51,6 +51,21 @@ void predict_track(ObjectTrack& track, std::int64_t time, double agility) {
   track.time = time;
 }
 
+using Vector4 = Eigen::Vector4d;
+Vector4 row_of(const RadialSpeed& radial) { return {0.0, 0.0, radial.along.x, radial.along.y}; }
+/// [m/s] Measured less expected.
+double surplus(const ObjectTrack& track, const RadialSpeed& radial) {
+  return radial.speed - glm::dot(radial.along, track.v);
+}
+
+void correct_speed(ObjectTrack& track, const RadialSpeed& radial) {
+  const Matrix4 P = read(track.own);
+  const Vector4 h = row_of(radial), Ph = P * h, K = Ph / (h.dot(Ph) + radial.variance);
+  const Vector4 change = surplus(track, radial) * K;
+  track.p += glm::dvec2{change[0], change[1]}, track.v += glm::dvec2{change[2], change[3]};
+  write(P - K * Ph.transpose(), track.own);
+}
+
 void correct_track(ObjectTrack& track, const Observation& observation) {
   const Matrix2 repeated = matrix_of(observation.repeated);
   const Matrix4 P = read(track.own);
@@ -65,15 +80,24 @@ void correct_track(ObjectTrack& track, const Observation& observation) {
   // Errors that repeat are averaged with weights that sum up to 1, at worst as if they were the same.
   const double share = std::clamp(0.5 * (K(0, 0) + K(1, 1)), 0.0, 1.0);
   for (std::size_t k = 0; k < 3; ++k) track.repeated[k] += share * (observation.repeated[k] - track.repeated[k]);
+  if (observation.radial) correct_speed(track, *observation.radial);
 }
 
-/// Returns the squared normalised distance and the logarithm of the determinant of its covariance.
+/// Returns the squared normalised distance, that of a measured speed included, and the logarithm of the determinant of
+/// its covariance.
 std::array<double, 2> distance_of(const ObjectTrack& track, const Observation& observation) {
   const Matrix2 S = matrix_of({track.covariance(0, 0), track.covariance(0, 1), track.covariance(1, 1)}) +
                     matrix_of(observation.own) + matrix_of(observation.repeated);
   const glm::dvec2 away = observation.p + observation.to_middle - track.p;
   const Eigen::Vector2d d(away.x, away.y);
-  return {d.dot(S.inverse() * d), base::log(S.determinant())};
+  std::array<double, 2> distance{d.dot(S.inverse() * d), base::log(S.determinant())};
+  if (observation.radial) {
+    const Vector4 h = row_of(*observation.radial);
+    const double variance = h.dot(read(track.own) * h) + observation.radial->variance;
+    const double off = surplus(track, *observation.radial);
+    distance[0] += off * off / variance, distance[1] += base::log(variance);
+  }
+  return distance;
 }
 
 void decide_motion(ObjectTrack& track) {
@@ -161,6 +185,7 @@ void ObjectTracks::start(std::int64_t time, const Observation& observation) {
   own.topLeftCorner<2, 2>() = matrix_of(observation.own) + matrix_of(observation.repeated);
   own(2, 2) = own(3, 3) = options_.speed * options_.speed;
   write(own, track.own), track.repeated = observation.repeated;
+  if (observation.radial) correct_speed(track, *observation.radial);
   tracks_.push_back(track);
 }
 

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -24,14 +25,22 @@ namespace sf::estimation {
 /// Upper triangle of a covariance of x, y [m^2].
 using Spread = std::array<double, 3>;
 
+/// The speed of an object along a line of sight, as radars measure it.
+struct RadialSpeed {
+  glm::dvec2 along;       ///< unit vector in the world frame
+  double speed = 0.0;     ///< [m/s] of the object along it
+  double variance = 0.0;  ///< [m^2/s^2] > 0
+};
+
 /// One observation of an object, in the world frame.
 struct Observation {
-  glm::dvec2 p;           ///< [m] what is seen: a surface, or a tag
-  glm::dvec2 to_middle;   ///< [m] from there to the middle of the object, as far as it is known
-  Spread own{};           ///< of the sensor's error
-  Spread repeated{};      ///< of the errors that repeat
-  bool corner = false;    ///< corners are tracked apart from other objects
-  std::uint32_t tag = 0;  ///< of a tag; 0: unknown
+  glm::dvec2 p;                            ///< [m] what is seen: a surface, or a tag
+  glm::dvec2 to_middle;                    ///< [m] from there to the middle of the object, as far as it is known
+  Spread own{};                            ///< of the sensor's error
+  Spread repeated{};                       ///< of the errors that repeat
+  bool corner = false;                     ///< corners are tracked apart from other objects
+  std::uint32_t tag = 0;                   ///< of a tag; 0: unknown
+  std::optional<RadialSpeed> radial = {};  ///< nullopt: not measured
 };
 
 /// A wall, on which echoes are no objects.

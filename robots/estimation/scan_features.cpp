@@ -16,8 +16,35 @@ constexpr double kGrazing = 0.17;         // [rad] surfaces at smaller angles to
 constexpr double kGapSigmas = 3.0;
 constexpr double kBluntest = 2.6, kSharpest = 0.5;  // [rad] angles between the arms of a corner
 constexpr double kCornerGap = 0.2;                  // [m] from the end of an arm to the corner
+constexpr int kTurns = 30;                          // directions of an object that are tried in a right angle
+constexpr std::size_t kObjectEchoes = 3;            // fewest
+constexpr double kObjectRoom = 0.5;                 // [m] by which echoes may exceed an object's size
+constexpr double kLeastWidth = 0.5;                 // [-] smallest part of an object's width that is seen
+constexpr double kSizeSigma = 0.08;                 // [-] standard deviation of an object's size and turn
+constexpr double kObjectGap = 0.8;                  // [-] of its width, between echoes of an object
+constexpr std::uint32_t kObjectBeams = 3;           // between two echoes of an object
 
 double square_of(double value) { return value * value; }
+
+/// What is seen of an object along one of its axes.
+struct Side {
+  glm::dvec2 along;
+  double low = HUGE_VAL, high = -HUGE_VAL;  ///< [m]
+  void add(glm::dvec2 p) { low = std::min(low, glm::dot(p, along)), high = std::max(high, glm::dot(p, along)); }
+  double width() const { return high - low; }
+  double depth(glm::dvec2 p) const { return std::min(glm::dot(p, along) - low, high - glm::dot(p, along)); }
+  /// [m] The middle of a side of this size, behind its end that is nearer to a sensor outside of it.
+  double middle(double size, glm::dvec2 sensor) const {
+    const double s = glm::dot(sensor, along);
+    return s < low ? low + 0.5 * size : s > high ? high - 0.5 * size : 0.5 * (low + high);
+  }
+};
+
+/// [rad] Returns the direction of a line, in (-pi/2, pi/2].
+double undirected(glm::dvec2 u) {
+  const double angle = base::atan2(u.y, u.x);
+  return angle > 0.5 * M_PI ? angle - M_PI : angle <= -0.5 * M_PI ? angle + M_PI : angle;
+}
 
 /// Returns the upper triangle of a covariance of x, y with variances along and across a direction.
 std::array<double, 6> oriented(glm::dvec2 u, double along, double across) {
@@ -53,8 +80,11 @@ void ScanFeatures::place_echoes(std::span<const double> ranges) {
   }
 }
 
-/// Two neighbouring echoes are of one surface if it could be met at kGrazing.
+/// Two neighbouring echoes are of one surface if it could be met at kGrazing, or if an object may have both.
 bool ScanFeatures::continues(const Echo& before, const Echo& after) const {
+  if (after.beam > before.beam && after.beam <= before.beam + kObjectBeams &&
+      glm::length(after.p - before.p) < kObjectGap * options_.size.y)
+    return true;
   if (after.beam != before.beam + 1 && !(is_round_ && after.beam == 0 && before.beam + 1 == bearings_.size()))
     return false;
   const double grazing = base::sin(step_) / base::sin(std::max(kGrazing - step_, 0.5 * kGrazing));
@@ -118,11 +148,9 @@ void ScanFeatures::add_line(const Line& line) {
   const double along = (first.along + last.along + (square_of(first.spacing) + square_of(last.spacing)) / 12.0) / 4.0;
   Feature feature{.kind = FeatureKind::line,
                   .p = line.centre + middle * u,
-                  .direction = base::atan2(u.y, u.x),
+                  .direction = undirected(u),
                   .half_length = 0.5 * (line.to - line.from),
                   .covariance = oriented(u, along, across)};
-  if (feature.direction > 0.5 * M_PI) feature.direction -= M_PI;
-  if (feature.direction <= -0.5 * M_PI) feature.direction += M_PI;
   feature.covariance[2] = middle * turn * n.x, feature.covariance[4] = middle * turn * n.y;
   feature.covariance[5] = turn;
   lines_.push_back(feature);
@@ -159,7 +187,7 @@ void ScanFeatures::add_corner(const Line& before, const Line& after) {
 void ScanFeatures::add_cluster(std::size_t first, std::size_t last) {
   const Echo &a = echoes_[first], &b = echoes_[last];
   const double width = glm::length(b.p - a.p);
-  if (width > options_.widest) return;
+  if (width > options_.widest || add_object(first, last)) return;
   const double along = 0.25 * (a.along + b.along);
   const double across = 0.25 * (a.across + b.across) + (square_of(a.spacing) + square_of(b.spacing)) / 48.0;
   Feature feature{.kind = FeatureKind::cluster,
@@ -168,6 +196,42 @@ void ScanFeatures::add_cluster(std::size_t first, std::size_t last) {
                   .half_length = 0.5 * (width + 0.5 * (a.spacing + b.spacing))};
   feature.covariance = oriented(glm::normalize(a.sight + b.sight), along, across);
   clusters_.push_back(feature);
+}
+
+bool ScanFeatures::add_object(std::size_t first, std::size_t last) {
+  if (!(options_.size.x > 0.0) || last - first + 1 < kObjectEchoes) return false;
+  const auto echoes = std::span(echoes_).subspan(first, last - first + 1);
+  std::array<Side, 2> best;
+  double least = HUGE_VAL;
+  for (int k = 0; k < kTurns; ++k) {
+    const glm::dvec2 u = base::rotate(0.5 * M_PI * k / kTurns, {1.0, 0.0});
+    std::array<Side, 2> sides{Side{u}, Side{left_of(u)}};
+    for (const Echo& echo : echoes) sides[0].add(echo.p), sides[1].add(echo.p);
+    double sum = 0.0;
+    for (const Echo& echo : echoes) sum += std::min(sides[0].depth(echo.p), sides[1].depth(echo.p));
+    if (sum < least) least = sum, best = sides;
+  }
+  if (best[0].width() < best[1].width()) std::swap(best[0], best[1]);
+  if (best[0].width() < kLeastWidth * options_.size.y) return false;
+  // What is wider than an object is its length; else its width is the side that has this size.
+  const auto misfit = [&](const Side& side) { return std::abs(side.width() - options_.size.y); };
+  if (best[0].width() <= options_.size.y + kObjectRoom && misfit(best[0]) <= misfit(best[1]))
+    std::swap(best[0], best[1]);
+  const auto& [length, breadth] = best;
+  if (length.width() > options_.size.x + kObjectRoom || breadth.width() > options_.size.y + kObjectRoom) return false;
+  // Of an object that the end of the scan cuts off, it is unknown where it ends.
+  if (!is_round_ && (echoes.front().beam == 0 || echoes.back().beam + 1 == bearings_.size())) return true;
+  const glm::dvec2 sensor{X_MS_.x, X_MS_.y};
+  const double spacing = 0.5 * (echoes.front().spacing + echoes.back().spacing);
+  const double sigma = base::hypot(kSizeSigma * options_.size.x, spacing / std::sqrt(12.0), std::sqrt(echoes[0].along));
+  clusters_.push_back({.kind = FeatureKind::object,
+                       .p = length.middle(options_.size.x, sensor) * length.along +
+                            breadth.middle(options_.size.y, sensor) * breadth.along,
+                       .direction = undirected(length.along),
+                       .half_length = 0.5 * options_.size.x,
+                       .covariance = {square_of(sigma), 0.0, 0.0, square_of(sigma), 0.0,
+                                      square_of(kSizeSigma + spacing / options_.size.x)}});
+  return true;
 }
 
 Feature cone_echo(const base::Pose& X_MC, double range, double sigma, double fov) {

@@ -4,7 +4,10 @@
 // Lines: groups of neighbouring echoes (breakpoints as in G. A. Borges, M.-J. Aldon, Line extraction in 2D range images
 // for mobile robotics, 2004) are split at the farthest echo, fitted by weighted total least squares (S. T. Pfister and
 // others, Weighted line fitting algorithms for mobile robot map building, 2003) and merged. Corners: where neighbouring
-// lines meet. Clusters: the remaining echoes of a group. Positions are in the frame of the sensor's robot.
+// lines meet. Clusters: the remaining echoes of a group. Objects: clusters that fit into a rectangle of known size,
+// turned so that the echoes are near its sides (X. Zhang and others, Efficient L-shape fitting for vehicle detection
+// using laser scanners, 2017, criterion of closeness) and completed to this size behind its nearest sides. Positions
+// are in the frame of the sensor's robot.
 
 #include <array>
 #include <cstdint>
@@ -15,15 +18,15 @@
 
 namespace sf::estimation {
 
-enum class FeatureKind : std::uint8_t { none, line, corner, cluster, tag };
+enum class FeatureKind : std::uint8_t { none, line, corner, cluster, tag, object };
 
 struct Feature {
   FeatureKind kind = FeatureKind::none;
-  /// [m] a line's middle; a corner; the middle between the two ends of a cluster, as seen; a tag.
+  /// [m] a line's middle; a corner; the middle between the two ends of a cluster, as seen; a tag; an object's middle.
   glm::dvec2 p;
-  /// [rad] along a line, in (-pi/2, pi/2]; between the two arms of a corner; of a tag; NaN for clusters.
+  /// [rad] along a line or an object, in (-pi/2, pi/2]; between the two arms of a corner; of a tag; NaN for clusters.
   double direction = 0.0;
-  double half_length = 0.0;            ///< [m] of a line, of a cluster as seen; else 0
+  double half_length = 0.0;            ///< [m] of a line, of an object, of a cluster as seen; else 0
   std::array<double, 6> covariance{};  ///< upper triangle of x, y, direction [m, rad]; NaN where nothing is stated
   std::uint32_t id = 0;                ///< of a tag; 0: unknown
 };
@@ -38,6 +41,7 @@ struct FeatureOptions {
   double shortest = 0.3;    ///< [m] > 0: shorter straight pieces are parts of clusters
   double widest = 1.0;      ///< [m] > 0: largest width of a cluster; wider remains of a group are dropped
   std::uint32_t least = 5;  ///< >= 3 echoes on a line
+  glm::dvec2 size{};        ///< [m] length and width of objects, length >= width; 0: there are none
 };
 
 /// Returns the vector turned by a right angle to the left.
@@ -83,6 +87,7 @@ class ScanFeatures {
   bool straight(const Line& line) const;
   void add_corner(const Line& before, const Line& after);
   void add_cluster(std::size_t first, std::size_t last);
+  bool add_object(std::size_t first, std::size_t last);
   void add_line(const Line& line);
 
   base::Pose X_MS_;

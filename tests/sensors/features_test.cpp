@@ -74,6 +74,34 @@ TEST(Features, OfALaserAreAClusterAndALineInTheRobotsFrame) {
   }
 }
 
+TEST(Features, OfALidarAreAboveTheGroundAndBelowBridges) {
+  const std::string lidar =
+      "lidar( channels 48 fov_v [-30 10] columns 241 fov 120 range [0.3 40] noise [0.01 0] pose6 [0 0 0.9 0 3 0] ) ";
+  const auto rows_in = [&](const std::string& more) {
+    const world::World world = world::build_world(
+        "featured.world",
+        "define bot position( size [0.3 0.3 0.1] drive \"diff\" " + lidar +
+            "derived( type \"features\" inputs [\"lidar\"] shortest 5.5 widest 5 objects [4.2 1.7] ) )\n"
+            "bot( name \"r0\" pose [0 0 0 0] )\n" +
+            more,
+        {.sensors = sensors::world_file_words()});
+    Rows valid;
+    for (const auto& row : readings_of(world).back())
+      if (row[3] != 0.0) valid.push_back(row);
+    return valid;
+  };
+  EXPECT_TRUE(rows_in("").empty()) << "the floor is no obstacle";
+  EXPECT_TRUE(rows_in("model( pose [10 0 3 0] size [4 8 0.3] )\n").empty()) << "a bridge is overhead";
+  const Rows rows =
+      rows_in("model( pose [12 1 0 20] size [4.2 1.7 1.4] )\nmodel( pose [15 -6 0 0] size [0.4 0.4 2] )\n");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0][sensors::kFeatureKindAt], 5.0) << "as large as a car";
+  EXPECT_NEAR(rows[0][0], 12.0, 0.3);
+  EXPECT_NEAR(rows[0][1], 1.0, 0.3);
+  EXPECT_EQ(rows[1][sensors::kFeatureKindAt], 3.0) << "a trunk";
+  EXPECT_NEAR(rows[1][0], 14.8, 0.1);
+}
+
 TEST(Features, OfConesStateTheirWidth) {
   const auto all = readings_of(featured(
       "sonar( scount 2 spose[0] [0.1 0 0] spose[1] [0 0 180] fov 20 range [0.1 4] rate 10 )", "inputs [\"sonar\"]"));
@@ -126,6 +154,7 @@ TEST(Features, RefusesWhatHasNone) {
   expect_in("'most'", refusal("inputs [\"laser\"] most 23"));
   expect_in("'shortest'", refusal("inputs [\"laser\"] shortest 0"));
   expect_in("'widest'", refusal("inputs [\"laser\"] widest -1"));
+  expect_in("the length not below the width", refusal("inputs [\"laser\"] objects [1 2]"));
 }
 
 }  // namespace

@@ -57,6 +57,20 @@ TEST(Localization, FollowsItsEncodersFromTheStartPose) {
   EXPECT_GT(reading[4] * reading[7], reading[5] * reading[5]) << "positive definite";
 }
 
+TEST(Localization, TakesTheYawRateOfAnImuMountedInAnyWay) {
+  base::Pose truth;
+  const auto reading_with = [&](const std::string& imu, const std::string& input) {
+    return reading_after_an_arc(robot_with(imu + "derived( type \"localization\" inputs [\"encoder\"" + input + "] )"),
+                                1, 20.0, truth);
+  };
+  const double alone = reading_with("", "")[9];  // [rad^2]
+  for (const char* const mount : {"[0 0 0 0 0 0]", "[0.1 0 0.1 90 0 30]", "[0 0 0 180 20 0]"}) {
+    const auto reading = reading_with(std::string("imu( rate 20 gyro_noise 0.02 pose6 ") + mount + " ) ", " \"imu\"");
+    EXPECT_LT(4.0 * reading[9], alone) << mount;
+    EXPECT_NEAR(reading[2], truth.yaw, 4.0 * std::sqrt(reading[9])) << mount;
+  }
+}
+
 /// The mean normalized squared error of 100 seeds is within its 95 % band: chi square of 300 degrees of freedom.
 TEST(Localization, CovarianceIsConsistentOver100Seeds) {
   const world::World world = robot_with(
@@ -112,7 +126,7 @@ TEST(Localization, NeedsSomethingThatLocates) {
   const auto refusal = [](const std::string& inputs, const std::string& others = "") {
     try {
       const sensors::SensorSet all(
-          robot_with("gyro( ) fiducial( ) derived( type \"localization\" inputs " + inputs + " )", others));
+          robot_with("gyro( ) imu( ) fiducial( ) derived( type \"localization\" inputs " + inputs + " )", others));
     } catch (const base::InputError& error) {
       return std::string(error.what());
     }
@@ -122,6 +136,7 @@ TEST(Localization, NeedsSomethingThatLocates) {
   EXPECT_NE(refusal("[\"gyro\"]").find("needs an encoder, a gps, a pose or a fiducial"), std::string::npos)
       << refusal("[\"gyro\"]");
   EXPECT_NE(refusal("[\"encoder\" \"encoder\"]").find("'encoder' is listed twice"), std::string::npos);
+  EXPECT_NE(refusal("[\"encoder\" \"gyro\" \"imu\"]").find("takes a gyro or an imu, not both"), std::string::npos);
   const char* const kOther =
       "position( name \"other\" encoder( ) derived( type \"localization\" inputs [\"encoder\"] ) )";
   EXPECT_NE(refusal("[\"encoder\" \"other/localization\"]", kOther).find("are sensors of its own robot"),

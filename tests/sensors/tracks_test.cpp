@@ -106,6 +106,43 @@ TEST(Tracks, EchoesOfConesAreInFrontOfTheirObjects) {
   EXPECT_NEAR(x_of("").first - surface, std::hypot(0.15, 0.15), 0.02) << "the default: as large as the robot";
 }
 
+/// A car of 12 m/s ahead of one of 20 m/s, which has a radar and the pose that its encoders state.
+TEST(Tracks, ACarAheadIsTrackedWithinItsStatedErrorsByItsClosingSpeed) {
+  const world::World world = world::build_world(
+      "radar.world",
+      "define car position( size [4 2 1.5] velocity_bounds [-40 40 0 0 0 0 -90 90] )\n"
+      "car( name \"r0\" encoder( per_count 0.01 slip 0.001 )\n"
+      "  radar( targets 4 range [1 120] fov 60 noise [0.2 0.3 0.1] rate 10 )\n"
+      "  derived( type \"localization\" inputs [\"encoder\"] rate 20 )\n"
+      "  derived( type \"tracks\" inputs [\"radar\" \"localization\"] speed 10 agility 1 extent 2 rate 10 ) )\n"
+      "car( name \"ahead\" pose [60 0 0 0] )\n",
+      {.sensors = sensors::world_file_words()});
+  farm::Farm farm(world, host_device(), {.seed = 1, .threads = 1});
+  farm.subscribe(0, base::only(sensors::kTracks));
+  double nees = 0.0;
+  int count = 0;
+  for (int tick = 0; tick <= 50; ++tick) {
+    const double t = 0.1 * tick;
+    const std::int64_t now = base::nanoseconds(t);
+    const base::Report reports[] = {{0, now, {20.0 * t, 0, 0, 0}, {20, 0, 0}},
+                                    {1, now, {60.0 + 12.0 * t, 0, 0, 0}, {12, 0, 0}}};
+    for (const base::ReadingBlock& block : farm.tick(now, reports)) {
+      if (block.type != sensors::kTracks || tick < 15) continue;
+      const std::span<const double> row = block.values.first(sensors::kTrackNumbers);
+      ASSERT_EQ(row[sensors::kTrackValidAt], 1.0);
+      EXPECT_EQ(row[sensors::kTrackKindAt], 2.0);
+      EXPECT_NEAR(row[0], 60.0 + 12.0 * t, 1.5);
+      EXPECT_NEAR(row[2], 12.0, 0.5) << "along the line of sight";
+      EXPECT_NEAR(row[sensors::kTrackAheadAt], 60.0 - 8.0 * t, 1.5);
+      const double variance = row[sensors::kTrackCovarianceAt + 7];  // of vx
+      EXPECT_LT(variance, 0.04);
+      nees += (row[2] - 12.0) * (row[2] - 12.0) / variance, ++count;
+    }
+  }
+  EXPECT_GT(count, 30);
+  EXPECT_LT(nees / count, 4.0) << "the speed's error is as stated";
+}
+
 TEST(Tracks, RefusesFeaturesWithoutAPose) {
   const auto refusal = [](const std::string& more) {
     return refusal_of([&] { const sensors::SensorSet all(tracked("derived( type \"tracks\" " + more + " )")); });
@@ -121,6 +158,8 @@ TEST(Tracks, RefusesFeaturesWithoutAPose) {
   expect_in("'extent'", refusal("inputs [\"features\" \"localization\"] extent -1"));
   expect_in("'keep'", refusal("inputs [\"features\" \"localization\"] keep 0"));
   expect_in("'agility'", refusal("inputs [\"features\" \"localization\"] agility -1"));
+  expect_in("'speed'", refusal("inputs [\"features\" \"localization\"] speed 0"));
+  expect_in("need features or a radar", refusal("inputs [\"localization\"]"));
 }
 
 }  // namespace

@@ -44,6 +44,22 @@ TEST(ObjectTracks, KeepIdentitiesOfObjectsThatCross) {
   }
 }
 
+TEST(ObjectTracks, RadialSpeedsAreKnownAtOnceAndTellObjectsApart) {
+  ObjectTracks tracks({.speed = 10.0});
+  const auto see = [&](int k, double x, double speed) {
+    const Observation seen{.p = {x, 0.0}, .own = {0.09, 0.0, 0.09}, .radial = RadialSpeed{{1.0, 0.0}, speed, 0.01}};
+    tracks.add(track_time(k), {&seen, 1});
+  };
+  for (int k = 0; k < 3; ++k) see(k, 1.2 * k, 12.0);
+  const auto objects = tracks.at(track_time(2));
+  ASSERT_EQ(objects.size(), 1u);
+  EXPECT_NEAR(objects[0].v.x, 12.0, 0.15) << "along the line of sight";
+  EXPECT_NEAR(objects[0].covariance(2, 2), 0.01 / 3.0, 0.02);
+  EXPECT_GT(objects[0].covariance(3, 3), 0.5) << "across it only from positions";
+  for (int k = 3; k < 6; ++k) see(k, 1.2 * k, 12.0), see(k, 7.4 - 1.2 * k, -12.0);
+  EXPECT_EQ(tracks.at(track_time(5)).size(), 2u) << "where they meet at first, another one drives the other way";
+}
+
 TEST(ObjectTracks, EndWithoutObservationsAndAreNumberedAnew) {
   ObjectTracks tracks({.keep = 0.5});
   const Observation seen[] = {{.p = {1.0, 2.0}, .own = kSmallError}};

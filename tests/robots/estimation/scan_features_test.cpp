@@ -104,6 +104,36 @@ TEST(ScanFeatures, ADiscIsOneClusterWhoseMiddleIsNearItsAxis) {
   EXPECT_TRUE(std::isnan(clusters[0].direction));
 }
 
+/// What a sensor at the origin sees of a rectangle of this size at 15 m to the right of its x axis.
+Feature seen_of(glm::dvec2 size, double yaw, std::uint64_t seed) {
+  const glm::dvec2 middle{15.0, -3.0}, x = base::rotate(yaw, {0.5 * size.x, 0.0}),
+                                       y = base::rotate(yaw, {0.0, 0.5 * size.y});
+  const glm::dvec2 corners[] = {middle + x + y, middle - x + y, middle - x - y, middle + x - y};
+  std::vector<Wall> walls;
+  for (int k = 0; k < 4; ++k) walls.push_back({corners[k], corners[(k + 1) % 4]});
+  const auto bearings = bearings_over(M_PI / 2.0, 226);
+  std::vector<double> ranges = ranges_in(walls, kNowhere, 0.1, {}, bearings, 50.0);
+  for (std::uint32_t i = 0; i < ranges.size(); ++i)
+    ranges[i] += 0.02 * base::random_normal({seed, base::RandomStream::range_noise}, i)[0];
+  ScanFeatures finder({}, bearings, {.constant = 0.02}, {.shortest = 5.5, .widest = 5.0, .size = {4.2, 1.7}});
+  const auto found = finder.find(ranges);
+  return found.empty() ? Feature{} : *std::ranges::max_element(found, {}, &Feature::kind);
+}
+
+TEST(ScanFeatures, ClustersAreCompletedToObjectsOfKnownSize) {
+  for (int k = 0; k < 24; ++k) {
+    // End on, sides on and all oblique views: behind what is seen, the middle follows from the size.
+    const double yaw = M_PI * k / 24.0;
+    const Feature car = seen_of({4.2, 1.7}, yaw, static_cast<std::uint64_t>(k));
+    ASSERT_EQ(car.kind, FeatureKind::object) << k;
+    EXPECT_LT(glm::length(car.p - glm::dvec2{15.0, -3.0}), 0.35) << k;
+    EXPECT_NEAR(std::sin(car.direction - yaw), 0.0, 0.15) << k;
+    EXPECT_GT(car.covariance[0] * car.covariance[3], 0.0);
+  }
+  EXPECT_EQ(seen_of({0.5, 0.5}, 0.3, 1).kind, FeatureKind::cluster) << "a trunk is too narrow";
+  EXPECT_EQ(seen_of({4.95, 0.2}, 1.5, 1).kind, FeatureKind::cluster) << "a fence is too long";
+}
+
 TEST(ScanFeatures, SurviveScansWithoutEchoesAndWithAbsurdOnes) {
   ScanFeatures finder({}, bearings_over(M_PI, 5), {.constant = 0.01}, {});
   EXPECT_TRUE(finder.find(std::vector<double>(5, kNoRange)).empty());
