@@ -34,6 +34,7 @@ extern const ExperimentType follow_experiment;
 extern const ExperimentType budget_experiment;
 extern const ExperimentType location_experiment;
 extern const ExperimentType tree_experiment;
+extern const ExperimentType vesim_experiment;
 
 std::span<const ExperimentType* const> experiments() {
   static constexpr const ExperimentType* kKinds[] = {
@@ -42,7 +43,7 @@ std::span<const ExperimentType* const> experiments() {
       &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment,       &mrclam_experiment,
       &sideslip_experiment,    &lane_sensor_experiment,  &lane_camera_experiment,    &monitor_experiment,
       &links_experiment,       &follow_experiment,       &budget_experiment,         &location_experiment,
-      &tree_experiment};
+      &tree_experiment,        &vesim_experiment};
   return kKinds;
 }
 

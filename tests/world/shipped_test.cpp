@@ -21,12 +21,14 @@ World shipped(const std::string& name) {
   static constexpr std::string_view kShippedMap[] = {"cell", "words", "offset", "sources"};
   static constexpr std::string_view kFelt[] = {"zones", "zone[]",     "scount", "spose[]", "per_count",
                                                "track", "slip",       "scrub",  "bias",    "scale_error",
-                                               "range", "satellites", "noise"};
+                                               "range", "satellites", "noise",  "scale"};
   static constexpr std::string_view kSeen[] = {"range_max", "range_max_id", "fov", "noise"};
   static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays", "noise"};
-  static constexpr std::string_view kBeams[] = {"preset", "channels", "columns",    "fov_v", "range",   "pose6",
-                                                "noise",  "fov",      "resolution", "rgb",   "normals", "samples"};
-  static constexpr std::string_view kComputed[] = {"type", "inputs", "most", "agility"};
+  static constexpr std::string_view kBeams[] = {
+      "preset",     "channels", "columns", "fov_v",   "range",   "pose6",     "noise",   "fov",
+      "resolution", "rgb",      "normals", "samples", "detects", "gyro_bias", "targets", "detection_range"};
+  static constexpr std::string_view kComputed[] = {"type",   "inputs",   "most",   "agility", "speed",
+                                                   "extent", "shortest", "widest", "objects"};
   static constexpr SensorKeyword kWords[] = {kLaserWords[0],
                                              kLaserWords[1],
                                              {"laneedge", kAny},
@@ -47,6 +49,8 @@ World shipped(const std::string& name) {
                                              {"fiducial", kSeen},
                                              {"lidar", kBeams},
                                              {"camera", kBeams},
+                                             {"imu", kBeams},
+                                             {"radar", kBeams},
                                              {"localization", kComputed, {}, true},
                                              {"features", kComputed, {}, true},
                                              {"tracks", kComputed, {}, true}};
