@@ -198,7 +198,8 @@ TEST(ReadingPublisher, ColoursAreSentAsAFile) {
                              netio::bound_endpoint(mirror));
   netio::PacketSigner signer(netio::SigningKey{1}, 5);
   std::vector<double> pixels;
-  for (std::uint32_t i = 0; i < 32 * 16; ++i) pixels.insert(pixels.end(), {1.0, (i * 2654435761u) >> 8});
+  for (std::uint32_t i = 0; i < 32 * 16; ++i)
+    pixels.insert(pixels.end(), {1.0, static_cast<double>((i * i * 2654435761u) >> 8)});
   base::ReadingBlock block;
   block.type = sensors::kCamera;
   block.values = pixels;
