@@ -426,10 +426,13 @@ async function watchOverlay(browser, requests) {
   // At one tick, the depth along the axis of each echo of the moving lidar is that of the pixel on which it lies.
   await page.keyboard.press("Space");
   await until(page, "not paused", () => view.paused && view.fleet.shownTime === view.fleet.time);
-  await page.evaluate(() => { const topic = view.connection.topics().find((name) => name.endsWith("/depth/image_raw")); view.connection.subscribe(topic, (message) => { window.depths = message; }); });
+  await page.evaluate(() => {
+    const { topic, type } = view.scene.movers[0].sensors.find(({ camera }) => camera), [{ name }] = view.scene.types[type].columns;
+    view.connection.subscribe(topic, ({ header, [name.toLowerCase()]: depths }) => { window.depths = { header, depths }; }, { owner: "check" });
+  });
   await until(page, "no depths", () => window.depths);
   await until(page, "images and scans of one time", () => { const stamp = window.depths.header.stamp.sec + 1e-9 * window.depths.header.stamp.nanosec; return Math.abs(stamp - view.over.time) < 1e-6 && view.over.state.cloudsAt(0, stamp).some(({ planar, time }) => !planar && Math.abs(time - stamp) < 1e-6); });
-  const echoes = await echoesInImage(page), depths = new Float32Array(await page.evaluate(() => Array.from(new Float32Array(window.depths.data.buffer))));
+  const echoes = await echoesInImage(page), depths = await page.evaluate(() => Array.from(window.depths.depths));
   const agree = echoes.found.filter(([u, v, z]) => {
     const near = [-1, 0, 1].flatMap((dv) => [-1, 0, 1].map((du) => depths[640 * (Math.round(v) + dv) + Math.round(u) + du]));
     return z >= Math.min(...near) - 0.01 && z <= Math.max(...near) + 0.01;
