@@ -431,8 +431,8 @@ TEST(ViewIntents, HaveThePlacesOfCheckpoints) {
     EXPECT_EQ(cdr.get<std::uint32_t>(), intents[mover].follows);
     EXPECT_EQ(cdr.get<std::uint32_t>(), intents[mover].checkpoint);
     const double x = cdr.get<double>(), y = cdr.get<double>();
-    if (mover == 0) EXPECT_EQ(glm::dvec2(x, y), last.p);
-    if (mover != 0) EXPECT_TRUE(std::isnan(x) && std::isnan(y)) << "mover " << mover << " has no known checkpoint";
+    EXPECT_EQ(glm::dvec2(x, y) == last.p, mover == 0);
+    EXPECT_EQ(std::isnan(x) && std::isnan(y), mover != 0) << "mover " << mover << " has no known checkpoint";
     EXPECT_EQ(cdr.get<bool>(), mover == 4);
   }
   EXPECT_TRUE(cdr.good());
