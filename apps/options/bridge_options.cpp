@@ -53,7 +53,7 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
       drives_(drives) {
   settings_.images = record::ImageMessages::both;  // encoded for subscribers alone
   if (!options.any()) return;
-  info_ = scenarios::run_info(world, sensor_set, settings);
+  info_ = scenarios::run_info(world, sensor_set, settings_);
   print_taken_names(record::name_frames(info_));
   if (options.ros2) open_ros2();
   if (!options.player.empty()) {
