@@ -562,4 +562,4 @@ async function main() {
   console.log(`${requests.length} requests, all to this machine`);
 }
 
-run(main);
+run(main, 5);

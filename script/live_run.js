@@ -27,12 +27,12 @@ function check(condition, message) {
   if (!condition) throw new Error(message);
 }
 
-/** Exits with an error if `main` throws or takes more than two minutes. */
-function run(main) {
+/** Exits with an error if `main` throws or takes longer than that. */
+function run(main, minutes = 2) {
   const guard = setTimeout(() => {
-    console.error("not done after two minutes");
+    console.error(`not done after ${minutes} minutes`);
     process.exit(1);
-  }, 120_000);
+  }, 60_000 * minutes);
   main().then(
     () => clearTimeout(guard),
     (error) => {
