@@ -336,67 +336,69 @@ bool Scan::stays_above(const BeamTile& tile) const {
       if (!(R.row(2, corner) > slope * std::sqrt(x * x + y * y) * 1.00001f + 1e-5f)) return false;
     }
   return true;
-  /// @return true if any beam so far has a flag
-  bool Scan::end(const BeamTile& tile) {
-    if (out_.sink != nullptr) out_.sink->take(tile, s_.surfaces);
-    s_.surfaces.uniform = 0;
-    s_.counts.beams += kWidth * tile.used;
-    return flagged_;
-  }
+}
 
-  bool Scan::cast(const BeamTile& tile) {
-    draw(tile, used_vectors(tile));
-    const bool terrain = terrain_ && !stays_above(tile);
-    terrain_hits_ = 0;
-    for (std::uint32_t v = 0; v < tile.used; ++v) {
-      if (terrain && v % kMarchings == 0) march(tile, v);
+/// @return true if any beam so far has a flag
+bool Scan::end(const BeamTile& tile) {
+  if (out_.sink != nullptr) out_.sink->take(tile, s_.surfaces);
+  s_.surfaces.uniform = 0;
+  s_.counts.beams += kWidth * tile.used;
+  return flagged_;
+}
+
+bool Scan::cast(const BeamTile& tile) {
+  draw(tile, used_vectors(tile));
+  const bool terrain = terrain_ && !stays_above(tile);
+  terrain_hits_ = 0;
+  for (std::uint32_t v = 0; v < tile.used; ++v) {
+    if (terrain && v % kMarchings == 0) march(tile, v);
+    measure(tile, v);
+    if (terrain) meet_terrain(tile, v);
+    write(tile, v);
+  }
+  return end(tile);
+}
+
+/// Takes over what the device found along a vector's beams, which are all certain.
+void Scan::take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast) {
+  const std::uint32_t first = kWidth * vector;
+  const bool sines = !out_.cosines.empty() || !out_.normals.empty();
+  grazing_ = 0;
+  for (std::uint32_t i = 0; i < kWidth; ++i) {
+    const std::uint32_t face = cast[i].face, beam = first + i;
+    ranges_[i] = cast[i].range;
+    s_.face[beam] = face;
+    hits_[i] = face == kNoFace ? base::kNoHit : plane_of(face).owner;
+    sines_[i] = 0.0;
+    if (sines && face != kNoFace) sines_[i] = sine_of(plane_of(face), {tile.dx[beam], tile.dy[beam], tile.dz[beam]});
+    grazing_ |= (cast[i].flags & CastBeam::kGrazing) != 0 ? 1u << i : 0u;
+  }
+  if (out_.single) grazing_ &= ~measure_single(tile, vector, 0xFFFFu);
+}
+
+bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
+  std::uint32_t uncertain = 0;
+  for (std::uint32_t i = 0; i < kWidth * tile.used; ++i)
+    uncertain |= (cast[i].flags & CastBeam::kUncertain) != 0 ? 1u << i / kWidth : 0u;
+  if (uncertain != 0) draw(tile, uncertain);
+  for (std::uint32_t v = 0; v < tile.used; ++v) {
+    if ((uncertain >> v & 1) != 0)
       measure(tile, v);
-      if (terrain) meet_terrain(tile, v);
-      write(tile, v);
-    }
-    return end(tile);
+    else
+      take(tile, v, cast.subspan(kWidth * v).first<kWidth>());
+    write(tile, v);
   }
+  return end(tile);
+}
 
-  /// Takes over what the device found along a vector's beams, which are all certain.
-  void Scan::take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast) {
-    const std::uint32_t first = kWidth * vector;
-    const bool sines = !out_.cosines.empty() || !out_.normals.empty();
-    grazing_ = 0;
-    for (std::uint32_t i = 0; i < kWidth; ++i) {
-      const std::uint32_t face = cast[i].face, beam = first + i;
-      ranges_[i] = cast[i].range;
-      s_.face[beam] = face;
-      hits_[i] = face == kNoFace ? base::kNoHit : plane_of(face).owner;
-      sines_[i] = 0.0;
-      if (sines && face != kNoFace) sines_[i] = sine_of(plane_of(face), {tile.dx[beam], tile.dy[beam], tile.dz[beam]});
-      grazing_ |= (cast[i].flags & CastBeam::kGrazing) != 0 ? 1u << i : 0u;
-    }
-    if (out_.single) grazing_ &= ~measure_single(tile, vector, 0xFFFFu);
-  }
-
-  bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
-    std::uint32_t uncertain = 0;
-    for (std::uint32_t i = 0; i < kWidth * tile.used; ++i)
-      uncertain |= (cast[i].flags & CastBeam::kUncertain) != 0 ? 1u << i / kWidth : 0u;
-    if (uncertain != 0) draw(tile, uncertain);
-    for (std::uint32_t v = 0; v < tile.used; ++v) {
-      if ((uncertain >> v & 1) != 0)
-        measure(tile, v);
-      else
-        take(tile, v, cast.subspan(kWidth * v).first<kWidth>());
-      write(tile, v);
-    }
-    return end(tile);
-  }
-
-  bool scan_tiles(Scratch & s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
-                  const SceneView& scene, const ScanOutput& out, std::span<const CastBeam> cast) {
-    Scan scan(s, X_WS, range_max, scene, out);
-    bool flagged = false;
-    for (std::size_t i = 0; i < tiles.size(); ++i)
-      flagged = cast.empty() ? scan.cast(tiles[i]) : scan.finish(tiles[i], cast.subspan(i * kTileBeams, kTileBeams));
-    return flagged;
-  }
+bool scan_tiles(Scratch& s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
+                const SceneView& scene, const ScanOutput& out, std::span<const CastBeam> cast) {
+  Scan scan(s, X_WS, range_max, scene, out);
+  bool flagged = false;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    flagged = cast.empty() ? scan.cast(tiles[i]) : scan.finish(tiles[i], cast.subspan(i * kTileBeams, kTileBeams));
+  return flagged;
+}
 
 }  // namespace sf::scene::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
