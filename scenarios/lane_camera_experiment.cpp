@@ -110,13 +110,13 @@ std::vector<std::string> run_lane_camera(const ExperimentContext& context) {
 }
 
 constexpr std::string_view kLaneCameraReasons =
-    "All rows have the same law and gain, so they differ by their sensors. The camera's errors are largest where the "
-    "lane's curvature changes: its arc is then a mean of both pieces. A wide lens, distorted or not, shows more of the "
-    "lane near the car and is better; a quarter of the pixels is as good. Between images the lane moves with the "
-    "commands, so one image per second, every 0.2 m, is enough. The noise of 30 % looks like paint: the car leaves its "
-    "lane. At 0.5 m/s the gain is at its limit, and the distance from the middle is that of the law. In crossings, "
-    "1.2 m without paint, the car drives by its commands until it sees the next lane; it does so for 4 s at most, "
-    "elsewhere for 1 s.";
+    "All rows at one speed have the same law and gain, so they differ by their sensors. The lane edge sensor fits a "
+    "straight line to the bend. The camera's errors are largest where the lane's curvature changes: its arc is then a "
+    "mean of both pieces. Wide lenses, distorted or not, show more of the lane near the car and are better. Between "
+    "images the lane moves with the commands, so one image per second is enough. With 30 % of noise the image is full "
+    "of lines, and the car takes a wrong lane. At 0.5 m/s the gain is at its limit, and the distance from the middle "
+    "is "
+    "that of the law. In crossings, 1.2 m without paint, the car drives by its commands until it sees the next lane.";
 
 }  // namespace
 

@@ -47,7 +47,6 @@ constexpr LaneVariant kVariants[] = {
 };
 
 constexpr double kFast = 0.5;  // [m/s] the largest speed of a Create
-constexpr double kBlind = 4.0;  // [s] a crossing at 0.2 m/s
 constexpr std::string_view kLanes[] = {"2.1", "3.1", "4.1", "5.1", "1.1"};
 constexpr double kHalfLane = 0.25;  // [m]
 constexpr double kNearFace =
@@ -92,11 +91,12 @@ LanePlace place_on(const world::Curve& curve, glm::dvec2 p) {
 }
 
 void drive_by(const LaneVariant& variant, control::ControllerConfig& controller) {
-  std::vector<control::Setting> settings{
-      {"speed", variant.fast ? kFast : controller.settings.number("speed", 0.1, 0.0, 10.0), ""}};
-  controller.name = variant.camera ? "lane-camera" : "lane-keeping";
-  if (variant.lap) settings.push_back({"hold", kBlind, ""});
+  control::Settings& given = controller.settings;
+  const double speed = given.number("speed", 0.1, 0.0, 10.0), hold = given.number("hold", 1.0, 0.0, 60.0);
+  std::vector<control::Setting> settings{{"speed", variant.fast ? kFast : speed, ""}};
+  if (variant.lap) settings.push_back({"hold", hold, ""});
   if (!variant.camera) settings.push_back({"half_width", kHalfLane - kNearFace, ""});
+  controller.name = variant.camera ? "lane-camera" : "lane-keeping";
   controller.settings = {"controller '" + controller.name + "'", std::move(settings)};
 }
 

@@ -68,6 +68,11 @@ struct Histogram {
   double left_of(int i) const { return (i + 0.5 - 0.5 * kBins) * bin; }
   int at(int i) const { return i < 0 || i >= kBins ? 0 : points[static_cast<std::size_t>(i)]; }
   int around(int i) const { return at(i - 2) + at(i - 1) + at(i) + at(i + 1) + at(i + 2); }
+  int largest() const {
+    int most = 0;
+    for (int i = 0; i < kBins; ++i) most = std::max(most, around(i));
+    return most;
+  }
   long sharpness() const {
     long sum = 0;
     for (const int n : points) sum += long{n} * n;
@@ -107,7 +112,6 @@ bool LaneTracker::update(std::span<const glm::dvec2> points) {
 
 bool LaneTracker::search(std::span<const glm::dvec2> points) {
   const double scale = limits_.scale;
-  const int least = static_cast<int>(2.0 * kLeastEdge * limits_.scale / limits_.row);
   Histogram best;
   Lane found;
   long sharpest = 0;
@@ -122,7 +126,8 @@ bool LaneTracker::search(std::span<const glm::dvec2> points) {
       if (histogram.sharpness() <= sharpest) continue;
       sharpest = histogram.sharpness(), best = histogram, found = lane;
     }
-  if (sharpest == 0) return false;
+  // An edge has a third of the length of the longest line, so that scattered points are none.
+  const int least = std::max(static_cast<int>(2.0 * kLeastEdge * scale / limits_.row), best.largest() / 3);
   const int left = best.edge(1, least), right = best.edge(-1, least);
   if (left < 0 || right < 0) return false;
   found.offset = -0.5 * (best.left_of(left) + best.left_of(right));

@@ -41,9 +41,9 @@ world::World camera_world(double rgb = 1.0) {
   return world;
 }
 
-std::unique_ptr<Controller> make(const world::World& world, std::vector<Setting> numbers = {}) {
+std::unique_ptr<Controller> make_driver(const world::World& world, std::vector<Setting> numbers = {}) {
   Settings settings("controller 'lane-camera'", std::move(numbers));
-  return lane_camera_controller.make({world}, settings);
+  return lane_camera_controller.make_driver({world}, settings);
 }
 
 /// Lane of a robot in a world whose lane begins at the origin along x, with constant curvature.
@@ -60,7 +60,7 @@ std::vector<double> reading_of(const vision::Image& image) {
   return values;
 }
 
-struct Drive {
+struct CameraDrive {
   Pose X_WM;
   std::vector<Twist> twists;
   std::vector<double> errors;
@@ -68,13 +68,13 @@ struct Drive {
 };
 
 /// @param image_every steps of 0.1 s from one image to the next @param paint whether there is any, by step
-Drive drive(
+CameraDrive drive_by_camera(
     double curvature, Pose X_WM, int steps, int image_every = 1,
     const std::function<bool(int)>& paint = [](int) { return true; }) {
   const world::World world = camera_world();
   const vision::GroundCamera camera = small_camera();
-  const auto controller = make(world, {{"speed", 0.2, ""}});
-  Drive drive;
+  const auto controller = make_driver(world, {{"speed", 0.2, ""}});
+  CameraDrive result;
   std::vector<double> values;
   base::ReadingBlock block{.type = sensors::kCamera};
   const Pose unknown{NAN, NAN, NAN, NAN};  // the controller must do without
@@ -86,17 +86,17 @@ Drive drive(
       block.values = values, block.sequence = static_cast<std::uint32_t>(k), block.time = k * kTick;
       block.X_WM = block.X_WS = unknown;
     }
-    drive.twists.push_back(controller->step({.time = k * kTick, .state = {.X_WM = unknown}, .readings = {&block, 1}}));
-    drive.errors.push_back(controller->error());
-    drive.farthest = std::max(drive.farthest, std::abs(lane_at(X_WM, curvature).offset));
-    X_WM = robots::advance(X_WM, drive.twists.back(), 0.1);
+    result.twists.push_back(controller->step({.time = k * kTick, .state = {.X_WM = unknown}, .readings = {&block, 1}}));
+    result.errors.push_back(controller->error());
+    result.farthest = std::max(result.farthest, std::abs(lane_at(X_WM, curvature).offset));
+    X_WM = robots::advance(X_WM, result.twists.back(), 0.1);
   }
-  drive.X_WM = X_WM;
-  return drive;
+  result.X_WM = X_WM;
+  return result;
 }
 
 TEST(LaneCamera, ReturnsToTheMiddleOfAStraightLane) {
-  const Drive d = drive(0.0, {0.0, 0.08, 0.0, 0.1}, 40);
+  const CameraDrive d = drive_by_camera(0.0, {0.0, 0.08, 0.0, 0.1}, 40);
   EXPECT_LT(d.farthest, 0.1);
   EXPECT_NEAR(d.X_WM.y, 0.0, 0.003);
   EXPECT_NEAR(d.X_WM.yaw, 0.0, 0.01);
@@ -105,7 +105,7 @@ TEST(LaneCamera, ReturnsToTheMiddleOfAStraightLane) {
 // As `lane-keeping`, whose law is the same: off by l^2 / 2R at the robot, v / (R kp) ahead of it.
 TEST(LaneCamera, KeepsItsLaneInBends) {
   for (const double curvature : {0.8, -0.8}) {
-    const Drive d = drive(curvature, {}, 40);
+    const CameraDrive d = drive_by_camera(curvature, {}, 40);
     const double kp = 2.0 * 0.2 / (0.225 * 0.225);
     EXPECT_NEAR(d.errors.back(), 0.2 * curvature / kp, 0.005);
     EXPECT_LT(d.farthest, 0.03);
@@ -114,24 +114,24 @@ TEST(LaneCamera, KeepsItsLaneInBends) {
 
 // Two images a second: the track moves with the commands between them.
 TEST(LaneCamera, DrivesOnBetweenImages) {
-  const Drive often = drive(0.8, {}, 40), rarely = drive(0.8, {}, 40, 5);
+  const CameraDrive often = drive_by_camera(0.8, {}, 40), rarely = drive_by_camera(0.8, {}, 40, 5);
   EXPECT_LT(rarely.farthest, 0.03);
   for (std::size_t k = 20; k < 40; ++k) EXPECT_NEAR(rarely.errors[k], often.errors[k], 0.006) << k;
 }
 
 TEST(LaneCamera, SlowsDownAndStopsWithoutPaint) {
-  const Drive d = drive(0.0, {}, 40, 1, [](int k) { return k < 5; });
+  const CameraDrive d = drive_by_camera(0.0, {}, 40, 1, [](int k) { return k < 5; });
   EXPECT_EQ(d.twists[14].forward, 0.2) << "1 s after the last image with paint";
   EXPECT_NEAR(d.twists[19].forward, 0.1, 1e-9) << "1.5 s";
   EXPECT_EQ(d.twists[24].forward, 0.0) << "2 s";
   EXPECT_TRUE(std::isnan(d.errors[24]));
-  const Drive again = drive(0.0, {}, 45, 1, [](int k) { return k < 5 || k > 40; });
+  const CameraDrive again = drive_by_camera(0.0, {}, 45, 1, [](int k) { return k < 5 || k > 40; });
   EXPECT_EQ(again.twists[44].forward, 0.2) << "drives on as soon as it sees a lane again";
 }
 
 TEST(LaneCamera, StatesWhyItStops) {
   const world::World world = camera_world();
-  const auto controller = make(world);
+  const auto controller = make_driver(world);
   EXPECT_EQ(controller->step({}).forward, 0.0);
   EXPECT_EQ(stop_reason_of(*controller), "no new images arrive from its camera") << "none so far";
   const std::vector<double> values = reading_of(image_of(
@@ -144,13 +144,14 @@ TEST(LaneCamera, StatesWhyItStops) {
 }
 
 TEST(LaneCamera, RepeatsItsBytes) {
-  const Drive a = drive(0.8, {0.0, 0.02, 0.0, 0.0}, 15), b = drive(0.8, {0.0, 0.02, 0.0, 0.0}, 15);
+  const CameraDrive a = drive_by_camera(0.8, {0.0, 0.02, 0.0, 0.0}, 15),
+                    b = drive_by_camera(0.8, {0.0, 0.02, 0.0, 0.0}, 15);
   for (std::size_t k = 0; k < a.twists.size(); ++k) EXPECT_EQ(a.twists[k].turn, b.twists[k].turn) << k;
 }
 
-std::string refusal(const world::World& world, std::vector<Setting> settings = {}) {
+std::string driver_refusal(const world::World& world, std::vector<Setting> settings = {}) {
   try {
-    make(world, std::move(settings));
+    make_driver(world, std::move(settings));
   } catch (const base::InputError& error) {
     return error.what();
   }
@@ -160,13 +161,13 @@ std::string refusal(const world::World& world, std::vector<Setting> settings = {
 TEST(LaneCamera, RefusesWhatItCannotUse) {
   world::World blind = scenes::empty_world();
   scenes::add_create(blind, {0, 0, 0, 0});
-  EXPECT_NE(refusal(blind).find("has no camera with colours; give it a camera( rgb 1"), std::string::npos);
-  EXPECT_NE(refusal(camera_world(0.0)).find("has no camera with colours"), std::string::npos) << "depths alone";
+  EXPECT_NE(driver_refusal(blind).find("has no camera with colours; give it a camera( rgb 1"), std::string::npos);
+  EXPECT_NE(driver_refusal(camera_world(0.0)).find("has no camera with colours"), std::string::npos) << "depths alone";
   const world::World world = camera_world();
-  EXPECT_NE(refusal(world, {{"cell", 0.0005, ""}}).find("at most 1e+06 in all"), std::string::npos)
+  EXPECT_NE(driver_refusal(world, {{"cell", 0.0005, ""}}).find("at most 1e+06 in all"), std::string::npos)
       << "6 400 000 cells";
-  EXPECT_NE(refusal(world, {{"far", 0.2, ""}}).find("at least 10 x 20"), std::string::npos) << "no ground";
-  EXPECT_EQ(refusal(world, {{"far", 0.25, ""}}), "");
+  EXPECT_NE(driver_refusal(world, {{"far", 0.2, ""}}).find("at least 10 x 20"), std::string::npos) << "no ground";
+  EXPECT_EQ(driver_refusal(world, {{"far", 0.25, ""}}), "");
 }
 
 }  // namespace

@@ -15,26 +15,26 @@ namespace sf::vision {
 
 namespace {
 
-struct Seen {
+struct SeenGround {
   Image ground, paint;
   std::vector<glm::dvec2> points;
 };
 
-Seen see(const GroundCamera& camera, const Image& image, const GroundRaster& raster = {}) {
-  Seen seen;
+SeenGround see_ground(const GroundCamera& camera, const Image& image, const GroundRaster& raster = {}) {
+  SeenGround seen;
   const auto pixels = pixels_of(raster, camera.lens, camera.X_RC, camera.width, camera.height);
   opencv().make_paint_finder(raster, {}, pixels)->find(image, seen.ground, seen.paint);
   seen.points = paint_points(raster, {}, seen.ground, seen.paint);
   return seen;
 }
 
-GroundCamera distorted_camera() {
+GroundCamera distorted_ground_camera() {
   GroundCamera camera;
   camera.lens.distortion = {-0.12, 0.01, 0.001, -0.001};
   return camera;
 }
 
-GroundCamera fisheye_camera() {
+GroundCamera fisheye_ground_camera() {
   GroundCamera camera;
   camera.lens.fisheye = true;
   camera.lens.distortion = {0.02, -0.004};
@@ -43,9 +43,9 @@ GroundCamera fisheye_camera() {
 
 // Straight lines ahead at known places, through three lenses: within a cell of the raster near the robot.
 TEST(GroundRaster, LinesAreWhereTheyArePainted) {
-  for (const GroundCamera& camera : {GroundCamera(), distorted_camera(), fisheye_camera()}) {
+  for (const GroundCamera& camera : {GroundCamera(), distorted_ground_camera(), fisheye_ground_camera()}) {
     const Lane lane{.offset = 0.1, .width = 0.5};
-    const Seen seen = see(camera, image_of(camera, painted(lane)));
+    const SeenGround seen = see_ground(camera, image_of(camera, painted(lane)));
     std::size_t left = 0, right = 0;
     for (const glm::dvec2& p : seen.points) {
       const double y = p.y + lane.offset;
@@ -58,14 +58,14 @@ TEST(GroundRaster, LinesAreWhereTheyArePainted) {
 }
 
 TEST(GroundRaster, CellsBesideTheImageAreUnseen) {
-  const GroundCamera camera = distorted_camera();
+  const GroundCamera camera = distorted_ground_camera();
   // Behind the camera, and so far to the side that the lens would fold it into the image.
   const auto pixels = pixels_of({-1.0, 0.0, 3.0, 0.05}, camera.lens, camera.X_RC, camera.width, camera.height);
   for (const glm::dvec2& pixel : pixels) EXPECT_EQ(pixel, kUnseen);
 }
 
 /// A row of a raster with a line from each first to each last column.
-std::vector<glm::dvec2> points_of(const std::vector<std::pair<int, int>>& lines, int unseen = 0) {
+std::vector<glm::dvec2> points_of_row(const std::vector<std::pair<int, int>>& lines, int unseen = 0) {
   const GroundRaster raster{0.2, 0.205, 0.25, 0.005};
   Image ground{raster.columns(), 1, 1, std::vector<std::uint8_t>(100, 150)}, paint = ground;
   std::fill(paint.pixels.begin(), paint.pixels.end(), std::uint8_t{0});
@@ -76,17 +76,17 @@ std::vector<glm::dvec2> points_of(const std::vector<std::pair<int, int>>& lines,
 }
 
 TEST(PaintPoints, LinesOfARow) {
-  EXPECT_TRUE(points_of({}).empty()) << "no paint";
-  ASSERT_EQ(points_of({{40, 42}}).size(), 1u);
-  EXPECT_NEAR(points_of({{40, 42}})[0].y, (50 - 41.5) * 0.005, 1e-12) << "its middle";
-  EXPECT_EQ(points_of({{40, 42}, {48, 50}}).size(), 1u) << "25 mm between them: a double line";
-  EXPECT_EQ(points_of({{40, 42}, {49, 51}}).size(), 2u) << "30 mm between them: two lines";
-  EXPECT_EQ(points_of({{40, 59}}).size(), 1u) << "as wide as allowed";
-  EXPECT_TRUE(points_of({{40, 60}}).empty()) << "wider: a stop line along the row";
-  EXPECT_TRUE(points_of({{0, 2}}).empty()) << "at the border of the raster it may be cut";
-  EXPECT_TRUE(points_of({{99, 99}}).empty());
-  EXPECT_TRUE(points_of({{40, 42}}, 35).empty()) << "5 cells from what is not seen: a part may be hidden";
-  EXPECT_EQ(points_of({{40, 42}}, 34).size(), 1u);
+  EXPECT_TRUE(points_of_row({}).empty()) << "no paint";
+  ASSERT_EQ(points_of_row({{40, 42}}).size(), 1u);
+  EXPECT_NEAR(points_of_row({{40, 42}})[0].y, (50 - 41.5) * 0.005, 1e-12) << "its middle";
+  EXPECT_EQ(points_of_row({{40, 42}, {48, 50}}).size(), 1u) << "25 mm between them: a double line";
+  EXPECT_EQ(points_of_row({{40, 42}, {49, 51}}).size(), 2u) << "30 mm between them: two lines";
+  EXPECT_EQ(points_of_row({{40, 59}}).size(), 1u) << "as wide as allowed";
+  EXPECT_TRUE(points_of_row({{40, 60}}).empty()) << "wider: a stop line along the row";
+  EXPECT_TRUE(points_of_row({{0, 2}}).empty()) << "at the border of the raster it may be cut";
+  EXPECT_TRUE(points_of_row({{99, 99}}).empty());
+  EXPECT_TRUE(points_of_row({{40, 42}}, 35).empty()) << "5 cells from what is not seen: a part may be hidden";
+  EXPECT_EQ(points_of_row({{40, 42}}, 34).size(), 1u);
 }
 
 // Against the distance from the centre of the arc, in another form.
