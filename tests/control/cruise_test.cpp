@@ -13,14 +13,14 @@
 namespace sf::control {
 namespace {
 
-constexpr double kRadius = 60.0;  // [m]
+constexpr double kBendRadius = 60.0;  // [m]
 
 /// A circle to the left, or a part of it, from (0, 0) towards +x.
 world::RoadLane lane(double turn) {
   std::vector<glm::dvec2> points;
   const int count = static_cast<int>(turn / (10.0 * kDegree));
   for (int i = 0; i <= count; ++i)
-    points.push_back(kRadius * glm::dvec2{std::sin(turn * i / count), 1.0 - std::cos(turn * i / count)});
+    points.push_back(kBendRadius * glm::dvec2{std::sin(turn * i / count), 1.0 - std::cos(turn * i / count)});
   return {.width = 3.5, .centre = world::smooth_curve(points, {})};
 }
 
@@ -54,29 +54,29 @@ TEST(Cruise, KeepsToItsLaneAndGoesRoundAClosedOne) {
 
 TEST(Cruise, SlowsDownInBends) {
   Cruise cruise(lane(2.0 * M_PI), true, {.speed = 15.0, .sideways = 1.5});
-  EXPECT_NEAR(drive(cruise, 30.0).forward, std::sqrt(1.5 * kRadius), 0.1) << "v^2 / r is the limit";
+  EXPECT_NEAR(drive(cruise, 30.0).forward, std::sqrt(1.5 * kBendRadius), 0.1) << "v^2 / r is the limit";
 }
 
 TEST(Cruise, StopsAtTheEndOfAnOpenLane) {
   Cruise cruise(lane(M_PI), false, {.speed = 10.0});
   const base::Pose end = drive(cruise, 60.0).at.X_WM;
   EXPECT_TRUE(cruise.done());
-  EXPECT_LT(std::hypot(end.x, end.y - 2.0 * kRadius), 10.0);
+  EXPECT_LT(std::hypot(end.x, end.y - 2.0 * kBendRadius), 10.0);
 }
 
 TEST(Cruise, KeepsItsDistanceToARobotInItsLaneOnly) {
   const double angle = 100.0 * kDegree;
   const auto ahead = [&](double radius) {
     Neighbour other{.id = 2};
-    other.state.X_WM = {radius * std::sin(angle), kRadius - radius * std::cos(angle), 0.0, angle};
+    other.state.X_WM = {radius * std::sin(angle), kBendRadius - radius * std::cos(angle), 0.0, angle};
     return std::vector{other};
   };
   Cruise behind(lane(2.0 * M_PI), true, {.speed = 10.0, .gap = 8.0}), beside(lane(2.0 * M_PI), true, {.speed = 10.0});
-  const std::vector<Neighbour> other = ahead(kRadius);
+  const std::vector<Neighbour> other = ahead(kBendRadius);
   const base::Pose at = drive(behind, 60.0, other).at.X_WM;
   EXPECT_NEAR(std::hypot(at.x - other[0].state.X_WM.x, at.y - other[0].state.X_WM.y), 8.0, 0.5) << "the gap at rest";
   EXPECT_NE(behind.stop_reason(), "");
-  EXPECT_NEAR(drive(beside, 30.0, ahead(kRadius + 3.5)).forward, 10.0, 0.01) << "it is in the next lane";
+  EXPECT_NEAR(drive(beside, 30.0, ahead(kBendRadius + 3.5)).forward, 10.0, 0.01) << "it is in the next lane";
 }
 
 TEST(Cruise, NeedsALaneOfTheRoads) {

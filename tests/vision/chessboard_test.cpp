@@ -17,7 +17,7 @@
 namespace sf::vision {
 namespace {
 
-constexpr Chessboard kBoard{8, 6, 0.2};
+constexpr Chessboard kChessboard{8, 6, 0.2};
 constexpr int kWidth = 640, kHeight = 480;
 
 /// A board 2 m ahead of a camera, on a white plate; its squares are boxes with a common front.
@@ -27,8 +27,8 @@ Image photograph(const std::string& lens) {
       "position( size [0.4 0.4 0.5] origin [0 0 0 0] camera( resolution [640 480] rgb 1 samples 8 pose6 [0 0 0.75 0 0 "
       "0] " +
       lens + " ) )\n";
-  for (int row = 0; row <= kBoard.rows; ++row)
-    for (int column = 0; column <= kBoard.columns; ++column)
+  for (int row = 0; row <= kChessboard.rows; ++row)
+    for (int column = 0; column <= kChessboard.columns; ++column)
       text += fmt::format("model( pose [2.01 {:.1f} {:.1f} 0] size [0.02 0.2 0.2] color \"{}\" )\n", 0.2 * column - 0.8,
                           0.2 * row + 0.3, (row + column) % 2 == 0 ? "black" : "white");
   const world::World world = trial::world_of(text);
@@ -54,14 +54,14 @@ double bend(const std::vector<glm::dvec2>& points) {
 /// [px] of the rows and columns of a board. @param corners row by row
 double bend_of_lines(const std::vector<glm::dvec2>& corners) {
   double most = 0.0;
-  for (int row = 0; row < kBoard.rows; ++row) {
-    const auto first = corners.begin() + row * kBoard.columns;
-    most = std::max(most, bend({first, first + kBoard.columns}));
+  for (int row = 0; row < kChessboard.rows; ++row) {
+    const auto first = corners.begin() + row * kChessboard.columns;
+    most = std::max(most, bend({first, first + kChessboard.columns}));
   }
-  for (int column = 0; column < kBoard.columns; ++column) {
+  for (int column = 0; column < kChessboard.columns; ++column) {
     std::vector<glm::dvec2> line;
-    for (int row = 0; row < kBoard.rows; ++row)
-      line.push_back(corners[static_cast<std::size_t>(row * kBoard.columns + column)]);
+    for (int row = 0; row < kChessboard.rows; ++row)
+      line.push_back(corners[static_cast<std::size_t>(row * kChessboard.columns + column)]);
     most = std::max(most, bend(line));
   }
   return most;
@@ -77,7 +77,7 @@ TEST(CameraSensor, UndistortedChessboardsHaveStraightLines) {
       {"focal 450 fisheye [-0.05 0.01 0 0]", {{450, 450}, {319.5, 239.5}, {-0.05, 0.01}, true}},
   };
   for (const auto& [keys, lens] : kLenses) {
-    const std::vector<BoardCorner> found = opencv().find_board(photograph(keys), kBoard);
+    const std::vector<BoardCorner> found = opencv().find_board(photograph(keys), kChessboard);
     ASSERT_EQ(found.size(), 48u) << keys;
     const base::LensImage image(lens, kWidth, kHeight);
     std::vector<glm::dvec2> bent, straight;
