@@ -172,13 +172,15 @@ void Radars::finish(std::size_t i, unsigned thread) {
 
 // --- Settings ---
 
-/// Reads numbers in the order of the columns, in SI.
-std::array<double, kRadarNumbers> read_row(const world::Sensor& sensor, std::string_view key, std::size_t least) {
+/// Reads numbers in the order of the columns, in SI. @param meaning as of `tuple`
+std::array<double, kRadarNumbers> read_row(const world::Sensor& sensor, std::string_view key, std::size_t least,
+                                           const std::string& meaning) {
   std::array<double, kRadarNumbers> row{};
   const double units[] = {sensor.metres_per_unit, sensor.radians_per_unit, sensor.metres_per_unit,
                           sensor.radians_per_unit};
-  const auto values = tuple(sensor, key, least, "[range bearing speed elevation]");
-  for (std::size_t k = 0; values && k < std::min<std::size_t>(values->size(), kRadarNumbers); ++k) {
+  const auto values = tuple(sensor, key, least, meaning);
+  if (!values) return row;
+  for (std::size_t k = 0; k < values->size(); ++k) {
     row[k] = units[k] * (*values)[k];
     if (!(row[k] >= 0.0 && row[k] <= 1e6))
       refuse(sensor, key, fmt::format("'{}' has {:g}; expected numbers from 0 to 1e6", key, (*values)[k]));
@@ -189,7 +191,8 @@ std::array<double, kRadarNumbers> read_row(const world::Sensor& sensor, std::str
 LidarLayout read_layout(const world::Sensor& sensor) {
   LidarLayout layout;
   layout.fov = std::min(angle(sensor, "fov", 90.0 * kDegree, 1e-6, 2.0 * M_PI * (1.0 + 1e-12)), 2.0 * M_PI);
-  const std::uint32_t spaced = static_cast<std::uint32_t>(std::lround(layout.fov / (0.5 * kDegree))) + 1;
+  const std::uint32_t spaced =
+      static_cast<std::uint32_t>(std::lround(layout.fov / (0.5 * kDegree))) + (layout.fov < 2.0 * M_PI ? 1 : 0);
   layout.columns = whole(sensor, "columns", spaced, 1, kMostRadarBeams);
   const std::uint32_t channels = whole(sensor, "channels", 1, 1, kMostChannels);
   if (std::size_t{channels} * layout.columns > kMostRadarBeams)
@@ -217,9 +220,12 @@ RadarSettings read_radar(const world::Sensor& sensor) {
            fmt::format("a range from {:g} to {:g} m; expected 0 or more, to more than that and at most {:g} m",
                        s.range_min, s.range_max, kLongestLidarRange));
   s.with_static = whole(sensor, "static", 0, 0, 1) == 1;
-  s.noise = read_row(sensor, "noise", 1);
-  s.step = read_row(sensor, "step", 1);
-  s.cell = read_row(sensor, "resolution", 3);
+  const std::string row = "[range bearing speed elevation]";
+  s.noise = read_row(sensor, "noise", 1, row);
+  s.step = read_row(sensor, "step", 1, row);
+  s.cell = read_row(sensor, "resolution", 3, "[range bearing speed]");
+  if (find(sensor, "resolution") != nullptr && std::min({s.cell[0], s.cell[1], s.cell[2]}) == 0.0)
+    refuse(sensor, "resolution", "'resolution' has a 0, by which all targets are resolved; expected numbers above 0");
   s.detection_range = length(sensor, "detection_range", 0.0, 0.0, 1e6);
   return s;
 }

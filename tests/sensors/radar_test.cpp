@@ -260,6 +260,9 @@ TEST(Radar, InvalidSettingsAreRefused) {
   expect_in("expected both, or neither", refusal("fov_v 3"));
   expect_in("'noise' has -1", refusal("noise [-1]"));
   expect_in("[range bearing speed", refusal("resolution [1 2]"));
+  expect_in("'noise' has 5 numbers", refusal("noise [1 1 1 1 1]"));
+  expect_in("'resolution' has 4 numbers", refusal("resolution [1 1 1 1]"));
+  expect_in("'resolution' has a 0", refusal("resolution [1 0 1]"));
   expect_in("expected 0 to 1", refusal("static 2"));
   EXPECT_EQ(refusal(""), "");
 }
