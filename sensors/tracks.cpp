@@ -62,7 +62,7 @@ estimation::Spread turned(double yaw, double xx, double xy, double yy) {
 class TracksSensor final : public sensorfarm::DerivedSensor {
  public:
   TracksSensor(const DerivedContext& context, const estimation::TrackOptions& options, double radius, double extent)
-      : robot_(context.spec.mover), radius_(radius), extent_(extent), tracks_(options) {
+      : robot_(context.site.sensor.robot), radius_(radius), extent_(extent), tracks_(options) {
     for (const sensorfarm::DerivedInput& input : context.site.inputs) add_input(input);
     for (std::uint32_t i = 0; i < context.inputs.size(); ++i)
       if (context.inputs[i].port == kRadarInputs)
@@ -102,7 +102,7 @@ class TracksSensor final : public sensorfarm::DerivedSensor {
   void write(std::vector<ObjectTrack> objects, std::int64_t now, sensorfarm::DerivedReading& out);
   void decide(const ObjectTrack& object, std::int64_t now, double* ahead, double* contact) const;
 
-  std::uint32_t robot_;
+  std::uint32_t robot_;  ///< row in its copy of the world, as of inputs
   double radius_, extent_;
   std::vector<sensorfarm::DerivedInput> inputs_;
   std::map<std::uint32_t, RadarSettings> radars_;  ///< by input
