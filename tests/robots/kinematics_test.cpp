@@ -113,6 +113,16 @@ TEST(Interpolate, MoverAtRestStaysAtRest) {
   EXPECT_EQ(report.X_WM.z, 0.3);
 }
 
+/// A lift, also without motion in the plane, and a ramp.
+TEST(Interpolate, LevelMoverRisesEvenly) {
+  for (const double x : {0.1, 0.2}) {
+    const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, {x, 0.2, 0.5, 7.0}, {});
+    EXPECT_NEAR(interpolate(before, after, kTick / 4).X_WM.z, 0.35, 1e-15);
+    EXPECT_NEAR(velocity_between(before, after).linear.z, 2.0, 1e-12);
+    EXPECT_EQ(interpolate(before, after, 0).X_WM.z, 0.3) << "bitwise the state before at its time";
+  }
+}
+
 /// Height and tilt, too. The planar velocity is that of gyros and encoders.
 TEST(Interpolate, TiltedMoverIsOnTheScrewMotionBetweenItsPoses) {
   base::Report before = at(0, {1, 2, 0.5, 3.0}, {}), after = at(kTick, {1.1, 2, 0.75, -3.0}, {});
