@@ -7,6 +7,7 @@
 #include "apps/reports/csv_text.h"
 #include "apps/reports/report.h"
 #include "base/elementary.h"
+#include "base/number_name.h"
 
 namespace sf::apps {
 
@@ -26,8 +27,7 @@ std::string csv_heading(const sensors::SensorType& type, std::size_t width) {
   for (const sensors::Column& column : type.columns)
     for (std::uint32_t k = 0; k < column.width && width > 0; ++k, --width) {
       if (!text.empty()) text += ',';
-      text += column.name;
-      if (column.width > 1) text += column.width <= 3 ? fmt::format("_{}", "xyz"[k]) : fmt::format("_{}", k);
+      text += base::number_name(column, k);
     }
   return text + (type.is_scan || type.beams != nullptr ? ",hit\n" : "\n");
 }
