@@ -27,7 +27,7 @@ Cruise::Cruise(const world::RoadLane& lane, bool closed, CruiseSettings settings
       closed_(closed),
       half_width_(0.5 * lane.width),
       settings_(settings) {
-  if (!closed || points_.front() == points_.back()) return;
+  if (!closed || glm::length(points_.front() - points_.back()) < 1e-6) return;
   s_.push_back(s_.back() + glm::length(points_.front() - points_.back()));
   points_.push_back(points_.front());
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr double kBendRadius = 60.0;  // [m]
 
 /// A circle to the left, or a part of it, from (0, 0) towards +x.
-world::RoadLane lane(double turn) {
+world::RoadLane bend_of(double turn) {
   std::vector<glm::dvec2> points;
   const int count = static_cast<int>(turn / (10.0 * kDegree));
   for (int i = 0; i <= count; ++i)
@@ -25,12 +25,12 @@ world::RoadLane lane(double turn) {
 }
 
 /// Drives a car of 15 m/s at most. Returns the largest offset [m] after 5 s, and where it is at the end.
-struct Drive {
+struct Cruised {
   double largest = 0.0, forward = 0.0;
   base::Report at;
 };
-Drive drive(Cruise& cruise, double seconds, const std::vector<Neighbour>& others = {}) {
-  Drive drive{.at = {.X_WM = {0.0, 0.5, 0.0, 0.0}}};
+Cruised cruise_for(Cruise& cruise, double seconds, const std::vector<Neighbour>& others = {}) {
+  Cruised drive{.at = {.X_WM = {0.0, 0.5, 0.0, 0.0}}};
   for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i) {
     base::Twist twist = cruise.step({.time = i * kTick / 2, .state = drive.at, .others = others});
     // A car needs time for its speed.
@@ -45,21 +45,21 @@ Drive drive(Cruise& cruise, double seconds, const std::vector<Neighbour>& others
 }
 
 TEST(Cruise, KeepsToItsLaneAndGoesRoundAClosedOne) {
-  Cruise cruise(lane(2.0 * M_PI), true, {.speed = 10.0});
-  const Drive once = drive(cruise, 60.0);
+  Cruise cruise(bend_of(2.0 * M_PI), true, {.speed = 10.0});
+  const Cruised once = cruise_for(cruise, 60.0);
   EXPECT_LT(once.largest, 0.1) << "more than one round, the start included";
   EXPECT_NEAR(once.forward, 10.0, 0.01);
   EXPECT_FALSE(cruise.done());
 }
 
 TEST(Cruise, SlowsDownInBends) {
-  Cruise cruise(lane(2.0 * M_PI), true, {.speed = 15.0, .sideways = 1.5});
-  EXPECT_NEAR(drive(cruise, 30.0).forward, std::sqrt(1.5 * kBendRadius), 0.1) << "v^2 / r is the limit";
+  Cruise cruise(bend_of(2.0 * M_PI), true, {.speed = 15.0, .sideways = 1.5});
+  EXPECT_NEAR(cruise_for(cruise, 30.0).forward, std::sqrt(1.5 * kBendRadius), 0.1) << "v^2 / r is the limit";
 }
 
 TEST(Cruise, StopsAtTheEndOfAnOpenLane) {
-  Cruise cruise(lane(M_PI), false, {.speed = 10.0});
-  const base::Pose end = drive(cruise, 60.0).at.X_WM;
+  Cruise cruise(bend_of(M_PI), false, {.speed = 10.0});
+  const base::Pose end = cruise_for(cruise, 60.0).at.X_WM;
   EXPECT_TRUE(cruise.done());
   EXPECT_LT(std::hypot(end.x, end.y - 2.0 * kBendRadius), 10.0);
 }
@@ -71,12 +71,13 @@ TEST(Cruise, KeepsItsDistanceToARobotInItsLaneOnly) {
     other.state.X_WM = {radius * std::sin(angle), kBendRadius - radius * std::cos(angle), 0.0, angle};
     return std::vector{other};
   };
-  Cruise behind(lane(2.0 * M_PI), true, {.speed = 10.0, .gap = 8.0}), beside(lane(2.0 * M_PI), true, {.speed = 10.0});
+  Cruise behind(bend_of(2.0 * M_PI), true, {.speed = 10.0, .gap = 8.0}),
+      beside(bend_of(2.0 * M_PI), true, {.speed = 10.0});
   const std::vector<Neighbour> other = ahead(kBendRadius);
-  const base::Pose at = drive(behind, 60.0, other).at.X_WM;
+  const base::Pose at = cruise_for(behind, 60.0, other).at.X_WM;
   EXPECT_NEAR(std::hypot(at.x - other[0].state.X_WM.x, at.y - other[0].state.X_WM.y), 8.0, 0.5) << "the gap at rest";
   EXPECT_NE(behind.stop_reason(), "");
-  EXPECT_NEAR(drive(beside, 30.0, ahead(kBendRadius + 3.5)).forward, 10.0, 0.01) << "it is in the next lane";
+  EXPECT_NEAR(cruise_for(beside, 30.0, ahead(kBendRadius + 3.5)).forward, 10.0, 0.01) << "it is in the next lane";
 }
 
 TEST(Cruise, NeedsALaneOfTheRoads) {

@@ -67,7 +67,7 @@ TEST(Localization, TakesTheYawRateOfAnImuMountedInAnyWay) {
   for (const char* const mount : {"[0 0 0 0 0 0]", "[0.1 0 0.1 90 0 30]", "[0 0 0 180 20 0]"}) {
     const auto reading = reading_with(std::string("imu( rate 20 gyro_noise 0.02 pose6 ") + mount + " ) ", " \"imu\"");
     EXPECT_LT(4.0 * reading[9], alone) << mount;
-    EXPECT_NEAR(reading[2], truth.yaw, 4.0 * std::sqrt(reading[9])) << mount;
+    EXPECT_NEAR(base::wrap_angle(reading[2] - truth.yaw), 0.0, 4.0 * std::sqrt(reading[9])) << mount;
   }
 }
 

@@ -112,7 +112,7 @@ TEST(Tracks, ACarAheadIsTrackedWithinItsStatedErrorsByItsClosingSpeed) {
       "radar.world",
       "define car position( size [4 2 1.5] velocity_bounds [-40 40 0 0 0 0 -90 90] )\n"
       "car( name \"r0\" encoder( per_count 0.01 slip 0.001 )\n"
-      "  radar( targets 4 range [1 120] fov 60 noise [0.2 0.3 0.1] rate 10 )\n"
+      "  radar( targets 4 range [1 120] fov 60 noise [0.2 0.3 0.1] rate 10 pose6 [2 0 -0.9 0 0 0] )\n"
       "  derived( type \"localization\" inputs [\"encoder\"] rate 20 )\n"
       "  derived( type \"tracks\" inputs [\"radar\" \"localization\"] speed 10 agility 1 extent 2 rate 10 ) )\n"
       "car( name \"ahead\" pose [60 0 0 0] )\n",

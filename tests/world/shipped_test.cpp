@@ -56,6 +56,7 @@ World shipped(const std::string& name) {
                                              {"tracks", kComputed, {}, true}};
   LoadOptions options;
   options.sensors = kWords;
+  options.controllers = [] { return std::vector<std::string_view>{"cruise", "wander"}; };
   return load_world(SF_SOURCE_DIR "/worlds/" + name, options);
 }
 
